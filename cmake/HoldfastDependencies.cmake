@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Every outside library, found once. cmake/holdfastConfig.cmake.in repeats the public ones for installed packages.
+if(PROJECT_IS_TOP_LEVEL AND NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+  set(CMAKE_BUILD_TYPE Release CACHE STRING "Build type" FORCE)
+endif()
+
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs features2d calib3d video)
+find_package(Ceres 2.1 REQUIRED)
+find_package(yaml-cpp REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(nlohmann_json REQUIRED)
+if(HOLDFAST_BUILD_PROGRAM)
+  find_package(CLI11 REQUIRED)
+endif()
+if(HOLDFAST_BUILD_TESTS)
+  find_package(GTest REQUIRED)
+endif()
+if(HOLDFAST_BUILD_BENCHMARKS)
+  find_package(benchmark REQUIRED)
+endif()

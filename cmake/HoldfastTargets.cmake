@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# One function per idea, so that a module's CMakeLists.txt reads as a table.
+include(GNUInstallDirs)
+
+# What every Holdfast target shares. No global flags: a project that embeds us keeps its own.
+function(holdfast_target_defaults target)
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_EXTENSIONS OFF)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  if(HOLDFAST_WARNINGS)
+    target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
+  endif()
+  if(HOLDFAST_WARNINGS_AS_ERRORS)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+  # -ffp-contract=off: the same sums on every processor, whatever the compiler could fuse.
+  target_compile_options(${target} PRIVATE -ffp-contract=off)
+  if(HOLDFAST_SANITIZE)
+    list(JOIN HOLDFAST_SANITIZE "," sanitizers)
+    target_compile_options(${target} PUBLIC -fsanitize=${sanitizers} -fno-omit-frame-pointer)
+    target_link_options(${target} PUBLIC -fsanitize=${sanitizers})
+  endif()
+endfunction()
+
+# holdfast_add_module(NAME [SOURCES a.cpp ...] [DEPENDS target ...] [PRIVATE_DEPENDS target ...])
+# The library holdfast_NAME, known as holdfast::NAME in the build tree and after installation alike. Without SOURCES
+# it is header-only.
+function(holdfast_add_module name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS")
+  set(target holdfast_${name})
+  if(arg_SOURCES)
+    add_library(${target} ${arg_SOURCES})
+    set(scope PUBLIC)
+    holdfast_target_defaults(${target})
+    target_link_libraries(${target} PRIVATE ${arg_PRIVATE_DEPENDS})
+  else()
+    add_library(${target} INTERFACE)
+    set(scope INTERFACE)
+    target_compile_features(${target} INTERFACE cxx_std_20)
+  endif()
+  add_library(holdfast::${name} ALIAS ${target})
+  target_include_directories(${target} ${scope}
+    $<BUILD_INTERFACE:${holdfast_SOURCE_DIR}/include> $<BUILD_INTERFACE:${holdfast_BINARY_DIR}/include>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_link_libraries(${target} ${scope} ${arg_DEPENDS})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name})
+  set_property(GLOBAL APPEND PROPERTY HOLDFAST_EXPORTED_TARGETS ${target})
+endfunction()
+
+# holdfast_add_builtin_plugin(NAME SOURCES a.cpp ... [DEPENDS target ...])
+# A plugin of ours, linked in: its HOLDFAST_PLUGIN(NAME, registry) entry is called by name from the generated list.
+function(holdfast_add_builtin_plugin name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;DEPENDS")
+  holdfast_add_module(plugin_${name} SOURCES ${arg_SOURCES} DEPENDS holdfast::interfaces holdfast::plugin ${arg_DEPENDS})
+  target_compile_definitions(holdfast_plugin_${name} PRIVATE HOLDFAST_STATIC_PLUGIN)
+  target_include_directories(holdfast_plugin_${name} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>)
+  set_property(GLOBAL APPEND PROPERTY HOLDFAST_BUILTIN_PLUGINS ${name})
+endfunction()
+
+# holdfast_add_plugin(NAME SOURCES a.cpp ... [DEPENDS target ...] [STATIC])
+# A third party's plugin: NAME.so (libNAME.so) to be named under `plugins:` in the YAML, or, with STATIC, a library
+# whose entry function holdfast_register_plugin_NAME the program calls itself.
+function(holdfast_add_plugin name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "STATIC" "" "SOURCES;DEPENDS")
+  if(arg_STATIC)
+    add_library(${name} STATIC ${arg_SOURCES})
+    target_compile_definitions(${name} PRIVATE HOLDFAST_STATIC_PLUGIN)
+  else()
+    add_library(${name} MODULE ${arg_SOURCES})
+    set_target_properties(${name} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  endif()
+  set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_EXTENSIONS OFF)
+  target_compile_features(${name} PRIVATE cxx_std_20)
+  target_link_libraries(${name} PRIVATE holdfast::interfaces holdfast::plugin ${arg_DEPENDS})
+endfunction()
+
+# holdfast_add_test(NAME SOURCES a.cpp ... [DEPENDS target ...] [LABELS label ...] [TIMEOUT seconds])
+# A GoogleTest program; each of its tests becomes a ctest case. Labels: quick (default), slow, data.
+function(holdfast_add_test name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "TIMEOUT" "SOURCES;DEPENDS;LABELS")
+  if(NOT arg_LABELS)
+    set(arg_LABELS quick)
+  endif()
+  if(NOT arg_TIMEOUT)
+    set(arg_TIMEOUT 300)
+  endif()
+  add_executable(${name} ${arg_SOURCES})
+  holdfast_target_defaults(${name})
+  target_include_directories(${name} PRIVATE ${holdfast_SOURCE_DIR}/tests)
+  target_link_libraries(${name} PRIVATE ${arg_DEPENDS} GTest::gtest GTest::gmock GTest::gtest_main)
+  set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${holdfast_BINARY_DIR}/tests)
+  include(GoogleTest)
+  gtest_discover_tests(${name} PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT} DISCOVERY_TIMEOUT 60
+                       DISCOVERY_MODE PRE_TEST)
+endfunction()

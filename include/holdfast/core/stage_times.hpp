@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <string_view>
+#include <vector>
+
+namespace holdfast {
+
+/// Seconds of monotonic wall-clock time since construction or the last restart.
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
+  void restart() { begin_ = Clock::now(); }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point begin_ = Clock::now();
+};
+
+/// Time that one frame spent in each stage, in the order in which the stages ended.
+class StageTimes {
+ public:
+  struct Entry {
+    std::string_view stage;  ///< a string literal
+    double seconds = 0.0;
+  };
+  /// Adds to the stage's time of this frame.
+  void add(std::string_view stage, double seconds) {
+    for (Entry& entry : entries_)
+      if (entry.stage == stage) {
+        entry.seconds += seconds;
+        return;
+      }
+    entries_.push_back({stage, seconds});
+  }
+  const std::vector<Entry>& entries() const { return entries_; }
+  void clear() { entries_.clear(); }
+
+ private:
+  std::vector<Entry> entries_;
+};
+
+/// Adds the time of its own life to a stage.
+class StageTimer {
+ public:
+  StageTimer(StageTimes& times, std::string_view stage) : times_(times), stage_(stage) {}
+  ~StageTimer() { times_.add(stage_, watch_.seconds()); }
+  StageTimer(const StageTimer&) = delete;
+  StageTimer& operator=(const StageTimer&) = delete;
+
+ private:
+  StageTimes& times_;
+  std::string_view stage_;
+  Stopwatch watch_;
+};
+
+}  // namespace holdfast

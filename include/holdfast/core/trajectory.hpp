@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace holdfast {
+
+/// The pose of the camera at a time. T_world_camera maps points from the camera frame to the world frame.
+struct TimedPose {
+  double timestamp = 0.0;  ///< [s]
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+};
+
+using Trajectory = std::vector<TimedPose>;
+
+/// Reads a trajectory in TUM format: lines "timestamp tx ty tz qx qy qz qw", '#' begins a comment. Sorted by stamp;
+/// of several poses with one stamp the last one counts, as in the TUM tools. Lines with a value that is not finite are
+/// left out, as there. Throws InputError (file and line) for a file that cannot be read or a line that is no pose.
+Trajectory read_trajectory(const std::filesystem::path& file);
+
+/// Writes TUM format, stamps with 6 decimals and values with 9; to a temporary name first, then renamed. Throws
+/// InputError when the file cannot be written.
+void write_trajectory(const std::filesystem::path& file, const Trajectory& trajectory);
+
+/// Replaces the content of a file in one step: written to a temporary name beside it, then renamed.
+void write_file_atomically(const std::filesystem::path& file, const std::string& content);
+
+}  // namespace holdfast

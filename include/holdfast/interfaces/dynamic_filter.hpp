@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "holdfast/core/frame.hpp"
+#include "holdfast/core/map.hpp"
+#include "holdfast/core/module.hpp"
+#include "holdfast/core/sensor_frame.hpp"
+#include "holdfast/interfaces/segmenter.hpp"
+
+namespace holdfast {
+
+/// What a filter cannot work without. Checked against the source and the pipeline before the first frame.
+struct Needs {
+  bool depth = false;
+  bool segmentation = false;   ///< a segmenter other than none
+  bool pose_prior = false;     ///< FilterContext::T_camera_world
+  bool map = false;
+};
+
+/// What filters may look at when a frame is judged. References are valid during apply() only.
+struct FilterContext {
+  const SensorFrame& sensor_frame;
+  const Frame& frame;                 ///< features with map points where they were matched
+  const Frame* previous = nullptr;    ///< the frame before, nullptr for the first
+  const Map& map;
+  /// Best guess of the frame's pose so far, nullptr when there is none.
+  const Eigen::Isometry3d* T_camera_world = nullptr;
+  const Segmentation* segmentation = nullptr;         ///< of the sensor frame, or carried to it; nullptr = none
+  const std::vector<std::string>* classes = nullptr;  ///< of the segmenter; never nullptr when segmentation is set
+};
+
+/// Log-odds of being part of the static world for every feature of a frame, with which stage said what. 0 = unknown;
+/// positive = static. "Movable" (a prior of the class) and "moving" (a measurement) are kept apart.
+class StaticEvidence {
+ public:
+  enum class Sort : std::uint8_t { prior, measurement };
+
+  /// One thing said about one feature.
+  struct Statement {
+    std::uint32_t feature;
+    float log_odds;
+    std::uint16_t stage;  ///< index into stages()
+    Sort sort;
+  };
+
+  explicit StaticEvidence(std::size_t feature_count = 0) { reset(feature_count); }
+  void reset(std::size_t feature_count) {
+    log_odds_.assign(feature_count, 0.0F);
+    statements_.clear();
+    stages_.clear();
+  }
+
+  /// Names the stage whose statements follow; the chain calls it before each filter.
+  void begin_stage(std::string_view name) { stages_.emplace_back(name); }
+  /// Adds evidence about a feature. Never takes anything away: filters do not delete.
+  void add(std::size_t feature, float log_odds, Sort sort = Sort::measurement) {
+    log_odds_[feature] += log_odds;
+    statements_.push_back({static_cast<std::uint32_t>(feature), log_odds,
+                           static_cast<std::uint16_t>(stages_.empty() ? 0 : stages_.size() - 1), sort});
+  }
+
+  std::size_t size() const { return log_odds_.size(); }
+  float log_odds(std::size_t feature) const { return log_odds_[feature]; }
+  const std::vector<Statement>& statements() const { return statements_; }
+  const std::vector<std::string>& stages() const { return stages_; }
+
+ private:
+  std::vector<float> log_odds_;
+  std::vector<Statement> statements_;
+  std::vector<std::string> stages_;
+};
+
+/// Judges which features belong to the static world by adding evidence. An empty chain says nothing, so every feature
+/// counts as static. Used by one thread.
+class DynamicFilter : public Module {
+ public:
+  static constexpr const char* kind = "filters";
+
+  virtual Needs needs() const = 0;
+  /// Adds evidence about the features of context.frame; says nothing where it cannot judge.
+  virtual void apply(const FilterContext& context, StaticEvidence& evidence) = 0;
+};
+
+}  // namespace holdfast

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "holdfast/core/descriptor.hpp"
+#include "holdfast/core/id.hpp"
+#include "holdfast/core/module.hpp"
+
+namespace holdfast {
+
+/// A keyframe that looks like the query; larger scores look more alike.
+struct PlaceMatch {
+  KeyFrameId keyframe;
+  double score = 0.0;
+};
+
+/// Recognises places by the descriptors of keyframes. Used by one thread at a time.
+class LoopDetector : public Module {
+ public:
+  static constexpr const char* kind = "loop_detector";
+
+  virtual void add(KeyFrameId keyframe, std::span<const Descriptor> descriptors) = 0;
+  virtual void remove(KeyFrameId keyframe) = 0;
+  /// Up to `most` keyframes, best first; equal scores by rising id.
+  virtual std::vector<PlaceMatch> query(std::span<const Descriptor> descriptors, int most) const = 0;
+};
+
+/// Recognises nothing: `loop_detector: none`, the default.
+class NullLoopDetector final : public LoopDetector {
+ public:
+  void add(KeyFrameId, std::span<const Descriptor>) override {}
+  void remove(KeyFrameId) override {}
+  std::vector<PlaceMatch> query(std::span<const Descriptor>, int) const override { return {}; }
+};
+
+}  // namespace holdfast

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "holdfast/core/camera.hpp"
+#include "holdfast/core/module.hpp"
+
+namespace holdfast {
+
+/// One camera pose, seen against fixed points: motion-only bundle adjustment (Mur-Artal and Tardos 2017, equation 3).
+/// Entry i of every array belongs to observation i. Residual: undistorted pixel and, where there is depth, column in the
+/// virtual right image, minus the projection of the point; weighted by inverse_sigma2 * weight.
+struct PoseProblem {
+  const Camera* camera = nullptr;
+  Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();  ///< in: first guess; out: the result
+  std::vector<Eigen::Vector3d> points;  ///< world [m]
+  std::vector<float> x, y;              ///< undistorted [px]
+  std::vector<float> right_x;           ///< [px], NaN = none
+  std::vector<float> inverse_sigma2;    ///< [1/px^2]
+  std::vector<float> weight;            ///< 0 to 1, static probability
+  std::vector<std::uint8_t> inlier;     ///< out: 1 where the final chi-square test passed
+
+  void clear() {
+    points.clear(), x.clear(), y.clear(), right_x.clear(), inverse_sigma2.clear(), weight.clear(), inlier.clear();
+  }
+  std::size_t size() const { return points.size(); }
+};
+
+struct PoseSummary {
+  bool usable = false;  ///< false: too few observations or no finite solution; T_camera_world is unchanged then
+  int inliers = 0;
+  int iterations = 0;
+  double final_cost = 0.0;
+  /// Inverse of the approximated Hessian at the result: covariance of a left perturbation (translation, rotation).
+  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+};
+
+/// Poses and points together: local and full bundle adjustment (Mur-Artal and Tardos 2017, section III-C).
+struct BundleProblem {
+  struct Pose {
+    Eigen::Isometry3d T_camera_world;  ///< in and out
+    bool fixed = false;
+  };
+  struct Observation {
+    std::uint32_t pose = 0;
+    std::uint32_t point = 0;
+    float x = 0, y = 0;         ///< undistorted [px]
+    float right_x = 0;          ///< [px], NaN = none
+    float inverse_sigma2 = 1;   ///< [1/px^2]
+    float weight = 1;           ///< 0 to 1, static probability
+    bool outlier = false;       ///< out
+  };
+
+  const Camera* camera = nullptr;
+  std::vector<Pose> poses;
+  std::vector<Eigen::Vector3d> points;  ///< world [m], in and out
+  std::vector<Observation> observations;
+  int robust_iterations = 5;   ///< with Huber's cost, then outliers are set aside
+  int final_iterations = 10;   ///< without it, on what is left; 0 = skip
+};
+
+struct BundleSummary {
+  bool usable = false;   ///< false: nothing was changed
+  bool stopped = false;  ///< the stop flag ended it early; the best state so far is in the problem
+  int iterations = 0;
+  int outliers = 0;
+  double initial_cost = 0.0;
+  double final_cost = 0.0;
+  double seconds = 0.0;
+};
+
+/// Keyframe poses linked by relative poses (Mur-Artal and Tardos 2017, section III-D).
+struct PoseGraphProblem {
+  struct Node {
+    Eigen::Isometry3d T_camera_world;  ///< in and out
+    bool fixed = false;
+  };
+  struct Edge {
+    std::uint32_t from = 0;
+    std::uint32_t to = 0;
+    Eigen::Isometry3d T_to_from;  ///< measured: maps camera `from` to camera `to`
+    double weight = 1.0;
+  };
+  std::vector<Node> nodes;
+  std::vector<Edge> edges;
+  int iterations = 20;
+};
+
+struct GraphSummary {
+  bool usable = false;
+  int iterations = 0;
+  double initial_cost = 0.0;
+  double final_cost = 0.0;
+};
+
+/// Solves the least-squares problems of the pipeline. Each method may be called from its own thread, never the same
+/// method from two at once. With CreationContext::sequential the results are bit-identical from run to run.
+class Optimizer : public Module {
+ public:
+  static constexpr const char* kind = "optimizer";
+
+  virtual PoseSummary optimize_pose(PoseProblem& problem) = 0;
+  /// `stop` is looked at between iterations.
+  virtual BundleSummary optimize_bundle(BundleProblem& problem, const std::atomic<bool>& stop) = 0;
+  virtual GraphSummary optimize_pose_graph(PoseGraphProblem& problem) = 0;
+};
+
+}  // namespace holdfast

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/plugin/registry.hpp"
+
+namespace holdfast {
+
+void Registry::add_entry(ModuleEntry entry) {
+  auto& of_this_kind = entries_[entry.kind];
+  if (const auto found = of_this_kind.find(entry.description.name); found != of_this_kind.end())
+    throw PluginError(entry.kind + " module '" + entry.description.name + "' of " + entry.origin +
+                      " cannot be registered: the name is taken by one of " + found->second.origin +
+                      "; rename one of them");
+  std::string name = entry.description.name;
+  of_this_kind.emplace(std::move(name), std::move(entry));
+}
+
+const ModuleEntry* Registry::find(const std::string& kind, const std::string& name) const {
+  const auto of_this_kind = entries_.find(kind);
+  if (of_this_kind == entries_.end()) return nullptr;
+  const auto found = of_this_kind->second.find(name);
+  return found == of_this_kind->second.end() ? nullptr : &found->second;
+}
+
+std::vector<const ModuleEntry*> Registry::of_kind(const std::string& kind) const {
+  std::vector<const ModuleEntry*> found;
+  if (const auto of_this_kind = entries_.find(kind); of_this_kind != entries_.end())
+    for (const auto& [name, entry] : of_this_kind->second) found.push_back(&entry);
+  return found;
+}
+
+std::vector<std::string> Registry::kinds() const {
+  std::vector<std::string> names;
+  for (const auto& [kind, entries] : entries_) names.push_back(kind);
+  return names;
+}
+
+const ModuleEntry& Registry::require(const std::string& kind, const std::string& name) const {
+  if (const ModuleEntry* entry = find(kind, name)) return *entry;
+  std::string known;
+  for (const ModuleEntry* entry : of_kind(kind)) known += (known.empty() ? "" : ", ") + entry->description.name;
+  throw PluginError("no " + kind + " module is called '" + name + "'; there are: " + (known.empty() ? "none" : known));
+}
+
+}  // namespace holdfast
