@@ -21,6 +21,8 @@ void FeatureGrid::build(std::span<const float> x, std::span<const float> y, floa
   HOLDFAST_CHECK(x.size() == y.size() && cell_size > 0, x.size() << " " << y.size() << " " << cell_size);
   minimum_x_ = minimum_x;
   minimum_y_ = minimum_y;
+  maximum_x_ = maximum_x;
+  maximum_y_ = maximum_y;
   inverse_cell_ = 1.0F / cell_size;
   columns_ = std::max(1, static_cast<int>(std::ceil((maximum_x - minimum_x) * inverse_cell_)));
   rows_ = std::max(1, static_cast<int>(std::ceil((maximum_y - minimum_y) * inverse_cell_)));

@@ -1,2 +1,115 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <utility>
+
 #include "holdfast/core/map.hpp"
+
+namespace holdfast {
+
+void Map::set_edge(KeyFrame& keyframe, KeyFrameId neighbour, int weight) {
+  erase_edge(keyframe, neighbour);
+  const std::uint64_t sequence = keyframes_.at(neighbour).sequence;
+  const auto place = std::find_if(keyframe.covisible.begin(), keyframe.covisible.end(), [&](const CovisibilityEdge& e) {
+    return e.weight < weight || (e.weight == weight && keyframes_.at(e.keyframe).sequence > sequence);
+  });
+  keyframe.covisible.insert(place, {neighbour, weight});
+}
+
+void Map::erase_edge(KeyFrame& keyframe, KeyFrameId neighbour) {
+  std::erase_if(keyframe.covisible, [&](const CovisibilityEdge& edge) { return edge.keyframe == neighbour; });
+}
+
+void Map::update_covisibility(KeyFrameId id, int minimum_weight) {
+  KeyFrame& keyframe = keyframes_.at(id);
+  std::map<std::uint64_t, std::pair<KeyFrameId, int>> shared;  // by sequence: the order of time
+  for (const MapPointId point_id : keyframe.frame.map_points) {
+    const MapPoint* point = points_.find(point_id);
+    if (point == nullptr) continue;
+    for (const Observation& observation : point->observations) {
+      if (observation.keyframe == id) continue;
+      auto& entry = shared[keyframes_.at(observation.keyframe).sequence];
+      entry.first = observation.keyframe;
+      ++entry.second;
+    }
+  }
+
+  for (const CovisibilityEdge& edge : keyframe.covisible) erase_edge(keyframes_.at(edge.keyframe), id);
+  keyframe.covisible.clear();
+  if (shared.empty()) return;
+
+  const auto strongest = std::max_element(shared.begin(), shared.end(), [](const auto& a, const auto& b) {
+    return a.second.second < b.second.second;
+  });
+  for (const auto& [sequence, entry] : shared) {
+    const auto [neighbour, weight] = entry;
+    if (weight < minimum_weight && sequence != strongest->first) continue;
+    set_edge(keyframe, neighbour, weight);
+    set_edge(keyframes_.at(neighbour), id, weight);
+  }
+
+  if (keyframe.sequence == 0 || keyframe.parent.valid()) return;
+  // The parent is the strongest neighbour that is older, so that the spanning tree has no cycle.
+  for (const CovisibilityEdge& edge : keyframe.covisible) {
+    KeyFrame& neighbour = keyframes_.at(edge.keyframe);
+    if (neighbour.sequence >= keyframe.sequence) continue;
+    keyframe.parent = edge.keyframe;
+    neighbour.children.push_back(id);
+    return;
+  }
+}
+
+void Map::find_new_parents(KeyFrameId removed) {
+  KeyFrame& keyframe = keyframes_.at(removed);
+  for (const KeyFrameId child_id : keyframe.children) {
+    KeyFrame& child = keyframes_.at(child_id);
+    child.parent = keyframe.parent;
+    // An older neighbour keeps the tree free of cycles: parents are always older than their children.
+    for (const CovisibilityEdge& edge : child.covisible) {
+      if (edge.keyframe == removed || keyframes_.at(edge.keyframe).sequence >= child.sequence) continue;
+      child.parent = edge.keyframe;
+      break;
+    }
+    if (child.parent.valid()) keyframes_.at(child.parent).children.push_back(child_id);
+  }
+  if (keyframe.parent.valid()) std::erase(keyframes_.at(keyframe.parent).children, removed);
+}
+
+void Map::remove_keyframe(KeyFrameId id) {
+  KeyFrame& keyframe = keyframes_.at(id);
+  HOLDFAST_CHECK(keyframe.parent.valid(), "keyframe " << keyframe.sequence << " holds the map in place");
+  const std::vector<MapPointId> points = keyframe.frame.map_points;
+  for (const MapPointId point_id : points) {
+    const MapPoint* point = points_.find(point_id);
+    if (point == nullptr) continue;
+    const bool was_reference = point->reference_keyframe == id;
+    remove_observation(point_id, id);
+    if (was_reference && points_.contains(point_id)) update_point_geometry(point_id);
+  }
+  find_new_parents(id);
+  for (const CovisibilityEdge& edge : keyframe.covisible) erase_edge(keyframes_.at(edge.keyframe), id);
+  removed_keyframes_[id] = {keyframe.parent,
+                            keyframe.frame.T_camera_world * keyframes_.at(keyframe.parent).frame.T_world_camera()};
+  keyframes_.erase(id);
+}
+
+std::vector<KeyFrameId> Map::best_covisible(KeyFrameId id, int most) const {
+  std::vector<KeyFrameId> best;
+  for (const CovisibilityEdge& edge : keyframes_.at(id).covisible) {
+    if (static_cast<int>(best.size()) >= most) break;
+    best.push_back(edge.keyframe);
+  }
+  return best;
+}
+
+Eigen::Isometry3d Map::pose_of(KeyFrameId id) const {
+  Eigen::Isometry3d T_camera_ancestor = Eigen::Isometry3d::Identity();
+  while (true) {
+    if (const KeyFrame* keyframe = keyframes_.find(id)) return T_camera_ancestor * keyframe->frame.T_camera_world;
+    const auto removed = removed_keyframes_.find(id);
+    HOLDFAST_CHECK(removed != removed_keyframes_.end(), "keyframe " << id.slot << " was never in the map");
+    T_camera_ancestor = T_camera_ancestor * removed->second.T_camera_parent;
+    id = removed->second.parent;
+  }
+}
+
+}  // namespace holdfast

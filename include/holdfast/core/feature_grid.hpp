@@ -20,12 +20,16 @@ class FeatureGrid {
              std::vector<std::uint32_t>& found) const;
 
   bool empty() const { return features_.empty(); }
+  /// Whether a position lies within the bounds given to build.
+  bool covers(float x, float y) const {
+    return x >= minimum_x_ && x <= maximum_x_ && y >= minimum_y_ && y <= maximum_y_;
+  }
 
  private:
   int column_of(float x) const;
   int row_of(float y) const;
 
-  float minimum_x_ = 0, minimum_y_ = 0, inverse_cell_ = 0;
+  float minimum_x_ = 0, minimum_y_ = 0, maximum_x_ = 0, maximum_y_ = 0, inverse_cell_ = 0;
   int columns_ = 0, rows_ = 0;
   std::vector<std::uint32_t> cell_begin_;  // per cell, plus one
   std::vector<std::uint32_t> features_;    // by cell

@@ -43,6 +43,7 @@ struct FrameResult {
   int inliers = 0;        ///< of those, after the motion-only adjustment
   bool is_keyframe = false;
   KeyFrameId keyframe;    ///< the keyframe made of this frame, or the reference keyframe
+  double tracking_seconds = 0.0;  ///< from the images to the pose: all but decoding them and local mapping
   StageTimes times;
 };
 

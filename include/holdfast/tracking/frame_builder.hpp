@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <opencv2/core/mat.hpp>
+
+#include "holdfast/core/frame.hpp"
+#include "holdfast/core/sensor_frame.hpp"
+#include "holdfast/core/stage_times.hpp"
+#include "holdfast/interfaces/feature_extractor.hpp"
+#include "holdfast/tracking/undistortion_table.hpp"
+
+namespace holdfast {
+
+/// Makes frames of images: features, undistorted positions, depth, virtual right column, grid. Reuses its buffers and
+/// those of the frame it fills. One thread.
+class FrameBuilder {
+ public:
+  /// The extractor must outlive the builder. depth_edge_ratio: see TrackingSettings.
+  FrameBuilder(const Camera& camera, FeatureExtractor& extractor, double depth_edge_ratio);
+
+  /// Replaces the content of `frame`; poses and map points are reset. The images must have the camera's size (InputError
+  /// otherwise). Adds the stages "features" and "frame".
+  void build(const SensorFrame& sensor_frame, Frame& frame, StageTimes& times);
+
+  const std::shared_ptr<const Camera>& camera() const { return camera_; }
+
+ private:
+  void read_depth(const cv::Mat& depth, Frame& frame) const;
+
+  std::shared_ptr<const Camera> camera_;
+  std::shared_ptr<const ScalePyramid> pyramid_;
+  FeatureExtractor& extractor_;
+  double depth_edge_ratio_;
+  UndistortionTable undistortion_;
+  Eigen::Vector2d minimum_, maximum_;
+  cv::Mat grey_;
+};
+
+}  // namespace holdfast

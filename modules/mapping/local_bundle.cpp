@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
+#include "holdfast/mapping/local_mapper.hpp"
+
+namespace holdfast {
+
+void LocalMapper::adjust_bundle(KeyFrameId id) {
+  // The keyframe and its strongest neighbours move, with all points that they see; other keyframes that see these points
+  // hold them in place.
+  std::vector<KeyFrameId> keyframes = {id};
+  for (const KeyFrameId neighbour : map_.best_covisible(id, settings_.bundle_keyframes - 1)) keyframes.push_back(neighbour);
+  const std::size_t moving = keyframes.size();
+
+  std::vector<std::int32_t> pose_of_slot(map_.keyframes().slot_count(), -1);
+  for (std::size_t i = 0; i < moving; ++i) pose_of_slot[keyframes[i].slot] = static_cast<std::int32_t>(i);
+  std::vector<std::uint8_t> taken(map_.points().slot_count(), 0);
+  std::vector<MapPointId> points;
+  for (std::size_t i = 0; i < moving; ++i)
+    for (const MapPointId point : map_.keyframe(keyframes[i]).frame.map_points)
+      if (point.valid() && taken[point.slot] == 0) {
+        taken[point.slot] = 1;
+        points.push_back(point);
+      }
+
+  problem_.camera = map_.keyframe(id).frame.camera.get();
+  problem_.poses.clear();
+  problem_.points.clear();
+  problem_.observations.clear();
+  problem_.robust_iterations = settings_.bundle_robust_iterations;
+  problem_.final_iterations = settings_.bundle_final_iterations;
+  std::vector<std::pair<MapPointId, KeyFrameId>> observation_names;
+  for (std::uint32_t p = 0; p < points.size(); ++p) {
+    const MapPoint& point = map_.point(points[p]);
+    problem_.points.push_back(point.position);
+    for (const Observation& observation : point.observations) {
+      std::int32_t& pose = pose_of_slot[observation.keyframe.slot];
+      if (pose < 0) {
+        pose = static_cast<std::int32_t>(keyframes.size());
+        keyframes.push_back(observation.keyframe);
+      }
+      const Frame& frame = map_.keyframe(observation.keyframe).frame;
+      const std::uint32_t feature = observation.feature;
+      problem_.observations.push_back({.pose = static_cast<std::uint32_t>(pose),
+                                       .point = p,
+                                       .x = frame.x[feature],
+                                       .y = frame.y[feature],
+                                       .right_x = frame.right_x[feature],
+                                       .inverse_sigma2 = frame.pyramid->inverse_sigma2[frame.features.octave[feature]],
+                                       .weight = frame.static_probability[feature]});
+      observation_names.emplace_back(points[p], observation.keyframe);
+    }
+  }
+  for (std::size_t i = 0; i < keyframes.size(); ++i) {
+    const KeyFrame& keyframe = map_.keyframe(keyframes[i]);
+    problem_.poses.push_back({keyframe.frame.T_camera_world, i >= moving || keyframe.sequence == 0});
+  }
+  // Something must hold the map in place: without a fixed keyframe, the oldest one does.
+  if (std::none_of(problem_.poses.begin(), problem_.poses.end(), [](const auto& pose) { return pose.fixed; })) {
+    std::size_t oldest = 0;
+    for (std::size_t i = 1; i < keyframes.size(); ++i)
+      if (map_.keyframe(keyframes[i]).sequence < map_.keyframe(keyframes[oldest]).sequence) oldest = i;
+    problem_.poses[oldest].fixed = true;
+  }
+
+  const BundleSummary summary = optimizer_.optimize_bundle(problem_, stop_);
+  if (!summary.usable) return;
+  for (std::size_t i = 0; i < moving; ++i)
+    if (!problem_.poses[i].fixed) map_.keyframe(keyframes[i]).frame.T_camera_world = problem_.poses[i].T_camera_world;
+  for (std::size_t p = 0; p < points.size(); ++p) map_.point(points[p]).position = problem_.points[p];
+  for (std::size_t o = 0; o < problem_.observations.size(); ++o) {
+    if (!problem_.observations[o].outlier) continue;
+    const auto& [point, keyframe] = observation_names[o];
+    if (map_.find_point(point) == nullptr) continue;
+    map_.remove_observation(point, keyframe);
+    ++counts_.observations_removed;
+  }
+  for (const MapPointId point : points)
+    if (map_.find_point(point) != nullptr) map_.update_point_geometry(point);
+}
+
+}  // namespace holdfast

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/mapping/local_mapper.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace holdfast {
+
+KeyFrameId LocalMapper::add_keyframe(const Frame& frame, StageTimes& times) {
+  KeyFrameId keyframe;
+  {
+    const StageTimer timer(times, "mapping: points");
+    keyframe = map_.add_keyframe(frame);
+    ++counts_.keyframes_made;
+    make_points_from_depth(keyframe);
+    for (const MapPointId point : map_.keyframe(keyframe).frame.map_points)
+      if (point.valid()) map_.update_point(point);
+    map_.update_covisibility(keyframe, settings_.covisibility_minimum);
+    remove_weak_points(keyframe);
+    triangulate_points(keyframe);
+  }
+  if (map_.keyframes().size() < 2) return keyframe;
+  {
+    const StageTimer timer(times, "mapping: fusion");
+    fuse_with_neighbours(keyframe);
+  }
+  {
+    const StageTimer timer(times, "mapping: bundle adjustment");
+    adjust_bundle(keyframe);
+  }
+  const StageTimer timer(times, "mapping: culling");
+  remove_redundant_keyframes(keyframe);
+  return keyframe;
+}
+
+void LocalMapper::make_points_from_depth(KeyFrameId id) {
+  const KeyFrame& keyframe = map_.keyframe(id);
+  const Frame& frame = keyframe.frame;
+  std::vector<std::pair<float, std::uint32_t>> by_depth;
+  for (std::uint32_t i = 0; i < frame.size(); ++i)
+    if (frame.has_depth(i)) by_depth.emplace_back(frame.depth[i], i);
+  std::sort(by_depth.begin(), by_depth.end());
+
+  const float close = static_cast<float>(settings_.close_depth_factor * frame.camera->baseline);
+  const Eigen::Isometry3d T_world_camera = frame.T_world_camera();
+  int rank = 0;
+  for (const auto& [depth, feature] : by_depth) {
+    if (depth > close && rank >= settings_.minimum_depth_points) break;
+    ++rank;
+    if (frame.map_points[feature].valid()) continue;
+    const MapPointId point = map_.add_point(T_world_camera * frame.camera_point(feature), keyframe.sequence);
+    map_.add_observation(point, id, feature);
+    map_.update_point(point);
+    recent_points_.push_back(point);
+    ++counts_.points_from_depth;
+  }
+}
+
+void LocalMapper::remove_weak_points(KeyFrameId id) {
+  const std::uint64_t now = map_.keyframe(id).sequence;
+  std::erase_if(recent_points_, [&](MapPointId point_id) {
+    const MapPoint* point = map_.find_point(point_id);
+    if (point == nullptr) return true;
+    const std::uint64_t age = now - point->created_at;
+    const bool rarely_found = point->found_ratio() < static_cast<float>(settings_.weak_found_ratio);
+    const bool seen_once = age >= 2 && point->observations.size() < 2;
+    if (rarely_found || seen_once) {
+      map_.remove_point(point_id);
+      ++counts_.points_removed;
+      return true;
+    }
+    return age >= static_cast<std::uint64_t>(settings_.probation_keyframes);
+  });
+}
+
+void LocalMapper::remove_redundant_keyframes(KeyFrameId id) {
+  if (settings_.redundant_share >= 1.0) return;
+  const std::vector<CovisibilityEdge> neighbours = map_.keyframe(id).covisible;
+  for (const CovisibilityEdge& edge : neighbours) {
+    const KeyFrame& keyframe = map_.keyframe(edge.keyframe);
+    if (!keyframe.parent.valid()) continue;
+    const Frame& frame = keyframe.frame;
+    const float close = static_cast<float>(settings_.close_depth_factor * frame.camera->baseline);
+    int points = 0, redundant = 0;
+    for (std::uint32_t feature = 0; feature < frame.size(); ++feature) {
+      if (!frame.map_points[feature].valid() || !frame.has_depth(feature) || frame.depth[feature] > close) continue;
+      ++points;
+      const MapPoint& point = map_.point(frame.map_points[feature]);
+      constexpr int enough = 3;
+      if (static_cast<int>(point.observations.size()) <= enough) continue;
+      int others = 0;
+      for (const Observation& observation : point.observations) {
+        if (observation.keyframe == edge.keyframe) continue;
+        const auto& octave = map_.keyframe(observation.keyframe).frame.features.octave;
+        if (octave[observation.feature] <= frame.features.octave[feature] + 1 && ++others >= enough) break;
+      }
+      if (others >= enough) ++redundant;
+    }
+    if (redundant <= settings_.redundant_share * points) continue;
+    map_.remove_keyframe(edge.keyframe);
+    ++counts_.keyframes_removed;
+  }
+}
+
+}  // namespace holdfast

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+
+#include "holdfast/core/hamming.hpp"
+#include "holdfast/mapping/local_mapper.hpp"
+
+namespace holdfast {
+
+namespace {
+constexpr double chi_square_two = 5.991;    // 95 %, two residuals
+constexpr double chi_square_three = 7.815;  // 95 %, three residuals
+constexpr int maximum_distance = 50;        // bits
+constexpr float window = 3.0F;              // px at level 0
+}  // namespace
+
+void LocalMapper::fuse_with_neighbours(KeyFrameId id) {
+  std::vector<std::uint8_t> taken(map_.keyframes().slot_count(), 0);
+  taken[id.slot] = 1;
+  std::vector<KeyFrameId> targets;
+  const auto take = [&](KeyFrameId keyframe) {
+    if (taken[keyframe.slot] != 0) return;
+    taken[keyframe.slot] = 1;
+    targets.push_back(keyframe);
+  };
+  const std::vector<KeyFrameId> neighbours = map_.best_covisible(id, settings_.neighbours);
+  for (const KeyFrameId neighbour : neighbours) take(neighbour);
+  for (const KeyFrameId neighbour : neighbours)
+    for (const KeyFrameId second : map_.best_covisible(neighbour, settings_.second_neighbours)) take(second);
+
+  const auto points_of = [&](KeyFrameId keyframe, std::vector<MapPointId>& points, std::vector<std::uint8_t>& known) {
+    for (const MapPointId point : map_.keyframe(keyframe).frame.map_points)
+      if (point.valid() && known[point.slot] == 0) {
+        known[point.slot] = 1;
+        points.push_back(point);
+      }
+  };
+  std::vector<MapPointId> points;
+  std::vector<std::uint8_t> known(map_.points().slot_count(), 0);
+  points_of(id, points, known);
+  for (const KeyFrameId target : targets) fuse_into(target, points);
+
+  points.clear();
+  known.assign(map_.points().slot_count(), 0);
+  for (const KeyFrameId target : targets) points_of(target, points, known);
+  fuse_into(id, points);
+
+  for (const MapPointId point : map_.keyframe(id).frame.map_points)
+    if (point.valid()) map_.update_point(point);
+  map_.update_covisibility(id, settings_.covisibility_minimum);
+}
+
+void LocalMapper::fuse_into(KeyFrameId target, const std::vector<MapPointId>& points) {
+  const Frame& frame = map_.keyframe(target).frame;
+  const Camera& camera = *frame.camera;
+  const ScalePyramid& pyramid = *frame.pyramid;
+  const Eigen::Vector3d centre = frame.T_world_camera().translation();
+  std::vector<std::uint32_t> candidates;
+  for (const MapPointId id : points) {
+    const MapPoint* point = map_.find_point(id);
+    if (point == nullptr || map_.feature_of(id, target) >= 0) continue;
+    const Eigen::Vector3d in_camera = frame.T_camera_world * point->position;
+    if (in_camera.z() <= 0.05) continue;
+    const Eigen::Vector2d pixel = camera.project(in_camera);
+    const float x = static_cast<float>(pixel.x()), y = static_cast<float>(pixel.y());
+    if (!frame.grid.covers(x, y)) continue;
+    const Eigen::Vector3d ray = point->position - centre;
+    const double distance = ray.norm();
+    if (distance < 0.8 * point->minimum_distance || distance > 1.2 * point->maximum_distance) continue;
+    if (ray.dot(point->viewing_direction) < 0.5 * distance) continue;
+    const float right_x = static_cast<float>(camera.right_x(pixel.x(), in_camera.z()));
+    const int level = pyramid.predict_level(point->maximum_distance, distance);
+
+    candidates.clear();
+    frame.grid.query(x, y, window * pyramid.scale[static_cast<std::size_t>(level)], frame.x, frame.y, candidates);
+    std::erase_if(candidates, [&](std::uint32_t feature) {
+      const int octave = frame.features.octave[feature];
+      if (octave < level - 1 || octave > level) return true;
+      const double dx = frame.x[feature] - x, dy = frame.y[feature] - y;
+      double error = dx * dx + dy * dy, limit = chi_square_two;
+      if (frame.has_depth(feature)) {
+        const double dr = frame.right_x[feature] - right_x;
+        error += dr * dr;
+        limit = chi_square_three;
+      }
+      return error * pyramid.inverse_sigma2[static_cast<std::size_t>(octave)] > limit;
+    });
+    const NearestDescriptors nearest = nearest_descriptors(point->descriptor, frame.features.descriptors.data(), candidates);
+    if (nearest.best_index < 0 || nearest.best_distance > maximum_distance) continue;
+    const auto feature = static_cast<std::uint32_t>(nearest.best_index);
+    const MapPointId shown = frame.map_points[feature];
+    if (!shown.valid()) {
+      map_.add_observation(id, target, feature);
+      map_.update_point(id);
+      continue;
+    }
+    ++counts_.points_fused;
+    if (map_.point(shown).observations.size() > point->observations.size()) map_.fuse_points(id, shown);
+    else map_.fuse_points(shown, id);
+  }
+}
+
+}  // namespace holdfast

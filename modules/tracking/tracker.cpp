@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/tracking/tracker.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace holdfast {
+
+Tracker::Tracker(const TrackingSettings& settings, const Camera& camera, FeatureExtractor& extractor,
+                 Optimizer& optimizer, FilterChain& filters, Map& map, std::uint64_t seed)
+    : settings_(settings),
+      builder_(camera, extractor, settings.depth_edge_ratio),
+      optimizer_(optimizer),
+      filters_(filters),
+      map_(map),
+      random_(Random(seed).fork(1)),
+      local_map_(settings.local_keyframes) {}
+
+FrameResult Tracker::track(const SensorFrame& sensor_frame, std::uint64_t map_version) {
+  FrameResult result;
+  result.index = sensor_frame.index;
+  result.timestamp = sensor_frame.timestamp;
+  const Stopwatch watch;
+
+  std::swap(current_, previous_);
+  builder_.build(sensor_frame, current_, result.times);
+  result.features = static_cast<int>(current_.size());
+
+  if (state_ == State::waiting) {
+    if (start_map(result)) {
+      state_ = State::tracking;
+      result.status = TrackingStatus::initialised;
+    }
+  } else {
+    map_version_ = map_version;
+    bool found = false;
+    {
+      const StageTimer timer(result.times, "predict");
+      if (has_previous_) previous_.T_camera_world = T_previous_reference_ * map_.pose_of(reference_keyframe_);
+      if (state_ == State::tracking)
+        found = predict_with_velocity(result) || predict_with_keyframe(reference_keyframe_, result);
+      if (!found) found = recover(result);
+    }
+    if (found && !filters_.empty()) {
+      const StageTimer timer(result.times, "filters");
+      filters_.apply({.sensor_frame = sensor_frame,
+                      .frame = current_,
+                      .previous = has_previous_ ? &previous_ : nullptr,
+                      .map = map_,
+                      .T_camera_world = &current_.T_camera_world},
+                     current_);
+    }
+    found = found && track_local_map(result);
+    state_ = found ? State::tracking : State::lost;
+    result.status = found ? TrackingStatus::tracked : TrackingStatus::lost;
+    if (found) {
+      const StageTimer timer(result.times, "keyframe");
+      result.is_keyframe = needs_keyframe(result);
+      result.trouble = TrackingTrouble::none;
+    }
+  }
+  remember(result);
+  result.tracking_seconds = watch.seconds();
+  return result;
+}
+
+bool Tracker::start_map(FrameResult& result) {
+  int with_depth = 0;
+  for (std::size_t i = 0; i < current_.size(); ++i) with_depth += current_.has_depth(i) ? 1 : 0;
+  if (with_depth < settings_.minimum_start_points) {
+    result.trouble = result.features < settings_.minimum_start_points ? TrackingTrouble::few_features
+                                                                       : TrackingTrouble::no_depth;
+    return false;
+  }
+  current_.T_camera_world.setIdentity();
+  result.is_keyframe = true;
+  result.inliers = 0;
+  return true;
+}
+
+bool Tracker::track_local_map(FrameResult& result) {
+  const StageTimer timer(result.times, "local map");
+  local_map_.update(map_, current_, map_version_);
+  windows_.clear();
+  local_map_.project(current_, static_cast<float>(settings_.local_map_window), windows_);
+  MatchRule rule;
+  rule.maximum_distance = settings_.possible_distance;
+  rule.ratio = static_cast<float>(settings_.descriptor_ratio);
+  for (const ProjectionMatch& match : search_.match(windows_, local_map_.descriptors().data(), current_, rule))
+    current_.map_points[match.feature] = local_map_.points()[match.source];
+
+  result.inliers = adjust_pose();
+  result.matches = static_cast<int>(problem_.size());
+  result.static_features = static_cast<int>(std::count_if(current_.static_probability.begin(), current_.static_probability.end(),
+                                                          [](float p) { return p >= 0.5F; }));
+  drop_outliers();
+  local_map_.count_found(current_);
+  if (result.inliers < settings_.minimum_inliers) {
+    result.trouble = TrackingTrouble::few_inliers;
+    return false;
+  }
+  reference_keyframe_ = local_map_.reference_keyframe();
+  return true;
+}
+
+bool Tracker::needs_keyframe(const FrameResult& result) const {
+  const double since_last = current_.timestamp - last_keyframe_time_;
+  if (result.inliers < settings_.minimum_inliers) return false;
+
+  // Points that the reference keyframe shares with the established map.
+  const Frame& reference = map_.keyframe(reference_keyframe_).frame;
+  const std::size_t enough_observations = map_.keyframes().size() <= 2 ? 1 : 2;
+  int reference_points = 0;
+  for (const MapPointId id : reference.map_points)
+    if (const MapPoint* point = map_.find_point(id); point && point->observations.size() >= enough_observations)
+      ++reference_points;
+
+  int close_tracked = 0, close_possible = 0;
+  const float close = static_cast<float>(settings_.close_depth_factor * current_.camera->baseline);
+  for (std::size_t i = 0; i < current_.size(); ++i) {
+    if (!current_.has_depth(i) || current_.depth[i] > close) continue;
+    ++(current_.map_points[i].valid() ? close_tracked : close_possible);
+  }
+  const bool wants_close =
+      close_tracked < settings_.keyframe_close_tracked && close_possible > settings_.keyframe_close_possible;
+  const double ratio = map_.keyframes().size() < 2 ? std::min(0.4, settings_.keyframe_tracked_ratio)
+                                                   : settings_.keyframe_tracked_ratio;
+  const bool weak = result.inliers < ratio * reference_points;
+  const bool due = since_last >= settings_.keyframe_maximum_interval;
+  return wants_close || weak || (due && result.inliers < 0.9 * reference_points);
+}
+
+void Tracker::keyframe_added(KeyFrameId keyframe) {
+  const Frame& stored = map_.keyframe(keyframe).frame;
+  current_.map_points = stored.map_points;
+  current_.T_camera_world = stored.T_camera_world;
+  reference_keyframe_ = last_keyframe_ = keyframe;
+  last_keyframe_time_ = current_.timestamp;
+  T_previous_reference_.setIdentity();
+  if (!records_.empty() && records_.back().timestamp == current_.timestamp)
+    records_.back() = {current_.timestamp, keyframe, Eigen::Isometry3d::Identity()};
+}
+
+void Tracker::remember(FrameResult& result) {
+  const bool has_pose = result.status == TrackingStatus::initialised || result.status == TrackingStatus::tracked;
+  if (!has_pose) {
+    has_previous_ = has_velocity_ = false;
+    return;
+  }
+  result.T_world_camera = current_.T_world_camera();
+  if (has_previous_) {
+    velocity_ = current_.T_camera_world * previous_.T_world_camera();
+    velocity_interval_ = current_.timestamp - previous_.timestamp;
+    has_velocity_ = true;
+  }
+  has_previous_ = true;
+  if (reference_keyframe_.valid()) {
+    result.keyframe = reference_keyframe_;
+    T_previous_reference_ = current_.T_camera_world * map_.pose_of(reference_keyframe_).inverse();
+  }
+  records_.push_back({current_.timestamp, reference_keyframe_, T_previous_reference_});
+}
+
+Trajectory Tracker::trajectory() const {
+  Trajectory trajectory;
+  trajectory.reserve(records_.size());
+  for (const Record& record : records_)
+    trajectory.push_back({record.timestamp, (record.T_camera_reference * map_.pose_of(record.reference)).inverse()});
+  return trajectory;
+}
+
+}  // namespace holdfast
