@@ -57,6 +57,7 @@ FrameResult Tracker::track(const SensorFrame& sensor_frame, std::uint64_t map_ve
       const StageTimer timer(result.times, "keyframe");
       result.is_keyframe = needs_keyframe(result);
       result.trouble = TrackingTrouble::none;
+      if (result.is_keyframe) local_map_.write_counts(map_);  // local mapping judges points by them
     }
   }
   remember(result);
