@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/plugin/plugin.hpp"
+
+#include "opencv_orb.hpp"
+
+HOLDFAST_PLUGIN(opencv_orb, registry) {
+  registry.add<holdfast::FeatureExtractor, holdfast::OpencvOrb, holdfast::OpencvOrbSettings>(
+      {.name = "opencv_orb",
+       .summary = "OpenCV's ORB: FAST corners of a pyramid, the strongest of each level, steered BRIEF of 256 bits.",
+       .paper = "Rublee, Rabaud, Konolige, Bradski: ORB: an efficient alternative to SIFT or SURF. ICCV 2011"});
+}
