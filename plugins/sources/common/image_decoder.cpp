@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/image_files/image_decoder.hpp"
+
+#include <cstdio>
+#include <memory>
+#include <opencv2/imgcodecs.hpp>
+
+#include "holdfast/core/error.hpp"
+#include "holdfast/image_files/image_structure.hpp"
+
+namespace holdfast {
+
+namespace {
+
+/// Above this the decoding library refuses an image, and prints.
+constexpr int largest_side = 1 << 15;
+
+void require_decodable(const std::filesystem::path& file, const ImageStructure& image) {
+  if (!image.problem.empty())
+    throw InputError({file.string()},
+                     image.problem + "; expected a complete PNG or JPEG image; copy or download the file again");
+  if (image.width < 1 || image.height < 1 || image.width > largest_side || image.height > largest_side)
+    throw InputError({file.string()}, "is an image of " + image.to_string() + "; expected 1 to " +
+                                          std::to_string(largest_side) + " pixels in width and height");
+}
+
+cv::Mat decode(const std::filesystem::path& file, const std::vector<std::uint8_t>& bytes, int flags, cv::Mat& target) {
+  cv::Mat image;
+  try {
+    image = cv::imdecode(bytes, flags, &target);
+  } catch (const cv::Exception& error) {
+    throw InputError({file.string()}, "cannot be decoded (" + error.err + "); copy or download the file again");
+  }
+  if (image.empty())
+    throw InputError({file.string()}, "is damaged: it cannot be decoded; copy or download the file again");
+  return image;
+}
+
+}  // namespace
+
+void ImageDecoder::load(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(file, error);
+  if (status.type() == std::filesystem::file_type::not_found)
+    throw InputError({file.string()}, "is missing; expected a PNG or JPEG image; complete the recording");
+  if (!std::filesystem::is_regular_file(status))
+    throw InputError({file.string()}, "is not a file; expected a PNG or JPEG image");
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), &std::fclose);
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  if (!stream || error) throw InputError({file.string()}, "cannot be read; check its permissions");
+  bytes_.resize(size);
+  if (std::fread(bytes_.data(), 1, size, stream.get()) != size)
+    throw InputError({file.string()}, "cannot be read to its end; check the disk, or copy the file again");
+}
+
+cv::Mat ImageDecoder::read_colour(const std::filesystem::path& file) {
+  load(file);
+  const ImageStructure image = examine_image(bytes_);
+  require_decodable(file, image);
+  if (image.channels != 3 || image.bits != 8)
+    throw InputError({file.string()}, "is an image of " + image.to_string() +
+                                          "; expected a colour image, 3 channels of 8 bits; convert it");
+  cv::Mat colour;
+  return decode(file, bytes_, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION, colour);
+}
+
+cv::Mat ImageDecoder::read_depth(const std::filesystem::path& file, double depth_factor) {
+  load(file);
+  const ImageStructure image = examine_image(bytes_);
+  require_decodable(file, image);
+  if (image.format != ImageStructure::Format::png || image.channels != 1 || image.bits != 16)
+    throw InputError({file.string()}, std::string("is a ") +
+                                          (image.format == ImageStructure::Format::png ? "PNG" : "JPEG") +
+                                          " image of " + image.to_string() +
+                                          "; expected a depth image, a PNG of 1 channel of 16 bits; export the depth "
+                                          "without conversion");
+  raw_depth_ = decode(file, bytes_, cv::IMREAD_UNCHANGED, raw_depth_);
+  cv::Mat depth(raw_depth_.size(), CV_32FC1);
+  for (int y = 0; y < depth.rows; ++y) {
+    const auto* from = raw_depth_.ptr<std::uint16_t>(y);
+    auto* to = depth.ptr<float>(y);
+    // Divided, not multiplied by an inverse: every value is the float nearest to the true quotient.
+    for (int x = 0; x < depth.cols; ++x) to[x] = static_cast<float>(from[x] / depth_factor);
+  }
+  return depth;
+}
+
+}  // namespace holdfast

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/image_files/image_sequence.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace holdfast {
+
+namespace {
+
+std::string size_text(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
+
+/// Runs read; what is wrong with an image is told at the line of the list that names it.
+template <class Read>
+cv::Mat read_at(const SourceLocation& listed_at, Read&& read) {
+  if (listed_at.file.empty()) return read();
+  try {
+    return read();
+  } catch (const InputError& error) {
+    throw InputError(listed_at, error.what());
+  }
+}
+
+}  // namespace
+
+ImageSequence::ImageSequence(std::vector<ImageFiles> files, const ImageSequenceOptions& options)
+    : files_(std::move(files)), options_(options) {
+  for (std::size_t i = 1; i < files_.size(); ++i)
+    HOLDFAST_CHECK(files_[i - 1].timestamp < files_[i].timestamp,
+                   files_[i - 1].timestamp << " before " << files_[i].timestamp);
+}
+
+SensorFrame ImageSequence::decode(const ImageFiles& files) {
+  SensorFrame frame;
+  frame.timestamp = files.timestamp;
+  frame.colour = read_at(files.colour_listed_at, [&] {
+    cv::Mat colour = decoder_.read_colour(files.colour);
+    if (colour.cols != options_.width || colour.rows != options_.height)
+      throw InputError({files.colour.string()},
+                       "is " + size_text(colour.cols, colour.rows) + " pixels, but the camera is " +
+                           size_text(options_.width, options_.height) +
+                           "; give the camera of this recording under `camera:`, or scale the images");
+    return colour;
+  });
+  if (files.depth.empty()) return frame;
+  frame.depth = read_at(files.depth_listed_at, [&] {
+    cv::Mat depth = decoder_.read_depth(files.depth, options_.depth_factor);
+    if (depth.size() != frame.colour.size())
+      throw InputError({files.depth.string()}, "is " + size_text(depth.cols, depth.rows) +
+                                                   " pixels, but its colour image '" + files.colour.string() + "' is " +
+                                                   size_text(frame.colour.cols, frame.colour.rows) +
+                                                   "; expected depth registered to the colour image, pixel by pixel");
+    return depth;
+  });
+  return frame;
+}
+
+std::optional<SensorFrame> ImageSequence::next() {
+  while (position_ < files_.size()) {
+    const std::uint64_t index = position_++;
+    try {
+      SensorFrame frame = decode(files_[index]);
+      frame.index = index;
+      return frame;
+    } catch (const InputError& error) {
+      if (!options_.skip_bad_frames)
+        throw InputError(error.location(), std::string(error.what()).substr(error.location().to_string().size() + 2) +
+                                               "; or leave out such frames with `on_bad_frame: skip`");
+      skipped_.push_back({index, files_[index].timestamp, error.what()});
+    }
+  }
+  if (!files_.empty() && skipped_.size() == files_.size())
+    throw InputError({}, "none of the " + std::to_string(files_.size()) +
+                             " frames can be used; the first: " + skipped_.front().reason);
+  return std::nullopt;
+}
+
+void select_range(std::vector<ImageFiles>& files, std::int64_t start, std::int64_t count,
+                  const std::filesystem::path& place, const char* what) {
+  const auto size = static_cast<std::int64_t>(files.size());
+  if (start >= size)
+    throw InputError({place.string()}, "has " + std::to_string(size) + ' ' + what + ", but `start` is " +
+                                           std::to_string(start) + "; expected 0 to " + std::to_string(size - 1));
+  files.erase(files.begin(), files.begin() + start);
+  if (count > 0 && count < size - start) files.resize(static_cast<std::size_t>(count));
+}
+
+}  // namespace holdfast

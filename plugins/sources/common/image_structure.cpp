@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/image_files/image_structure.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+namespace holdfast {
+
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+
+std::uint32_t big_endian_16(const std::uint8_t* p) { return std::uint32_t{p[0]} << 8 | p[1]; }
+std::uint32_t big_endian_32(const std::uint8_t* p) { return big_endian_16(p) << 16 | big_endian_16(p + 2); }
+
+/// Tables of the PNG checksum (ISO/IEC 15948, annex D), eight bytes at a time: table k advances a byte by k more bytes.
+constexpr std::array<std::array<std::uint32_t, 256>, 8> make_checksum_tables() {
+  std::array<std::array<std::uint32_t, 256>, 8> tables{};
+  for (std::uint32_t n = 0; n < 256; ++n) {
+    std::uint32_t value = n;
+    for (int bit = 0; bit < 8; ++bit) value = (value & 1) ? 0xedb88320u ^ (value >> 1) : value >> 1;
+    tables[0][n] = value;
+  }
+  for (std::size_t k = 1; k < 8; ++k)
+    for (std::size_t n = 0; n < 256; ++n) tables[k][n] = tables[0][tables[k - 1][n] & 0xff] ^ (tables[k - 1][n] >> 8);
+  return tables;
+}
+constexpr auto checksum_tables = make_checksum_tables();
+
+std::uint32_t png_checksum(Bytes bytes) {
+  const auto& t = checksum_tables;
+  std::uint32_t value = 0xffffffffu;
+  const std::uint8_t* p = bytes.data();
+  std::size_t left = bytes.size();
+  for (; left >= 8; left -= 8, p += 8) {
+    value ^= std::uint32_t{p[0]} | std::uint32_t{p[1]} << 8 | std::uint32_t{p[2]} << 16 | std::uint32_t{p[3]} << 24;
+    value = t[7][value & 0xff] ^ t[6][(value >> 8) & 0xff] ^ t[5][(value >> 16) & 0xff] ^ t[4][value >> 24] ^
+            t[3][p[4]] ^ t[2][p[5]] ^ t[1][p[6]] ^ t[0][p[7]];
+  }
+  for (; left > 0; --left, ++p) value = t[0][(value ^ *p) & 0xff] ^ (value >> 8);
+  return ~value;
+}
+
+std::string truncated(std::size_t size, const char* expected) {
+  return "is truncated: it ends after " + std::to_string(size) + " bytes, before " + expected;
+}
+
+constexpr std::array<std::uint8_t, 8> png_signature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+
+void examine_png(Bytes bytes, ImageStructure& image) {
+  image.format = ImageStructure::Format::png;
+  constexpr const char* end = "its IEND chunk";
+  bool has_data = false;
+  for (std::size_t at = png_signature.size();;) {
+    if (bytes.size() - at < 12) return void(image.problem = truncated(bytes.size(), end));
+    const std::size_t length = big_endian_32(&bytes[at]);
+    const char* type = reinterpret_cast<const char*>(&bytes[at + 4]);
+    if (bytes.size() - at - 12 < length) return void(image.problem = truncated(bytes.size(), end));
+    const std::uint8_t* data = &bytes[at + 8];
+    const std::string name(type, 4);
+    if (png_checksum(bytes.subspan(at + 4, length + 4)) != big_endian_32(data + length))
+      return void(image.problem = "is damaged: the checksum of its chunk at byte " + std::to_string(at) + " is wrong");
+    if (at == png_signature.size()) {
+      if (name != "IHDR" || length != 13)
+        return void(image.problem = "is damaged: it does not begin with an IHDR chunk");
+      image.width = static_cast<int>(std::min<std::uint32_t>(big_endian_32(data), 0x7fffffffu));
+      image.height = static_cast<int>(std::min<std::uint32_t>(big_endian_32(data + 4), 0x7fffffffu));
+      const int colour_type = data[9];
+      const bool palette = colour_type == 3;
+      image.bits = palette ? 8 : data[8];
+      image.channels = palette || colour_type == 2 ? 3 : colour_type == 6 ? 4 : colour_type == 4 ? 2 : 1;
+    }
+    has_data |= name == "IDAT";
+    if (name == "IEND") break;
+    at += 12 + length;
+  }
+  if (!has_data) image.problem = "is damaged: it holds no image data (no IDAT chunk)";
+}
+
+void examine_jpeg(Bytes bytes, ImageStructure& image) {
+  image.format = ImageStructure::Format::jpeg;
+  constexpr const char* end = "its end-of-image marker";
+  bool has_scan = false;
+  for (std::size_t at = 2;;) {
+    // A marker: any number of fill bytes 0xFF, then a code. After a scan, entropy-coded data come first.
+    const void* found = at < bytes.size() ? std::memchr(&bytes[at], 0xff, bytes.size() - at) : nullptr;
+    if (found == nullptr) return void(image.problem = truncated(bytes.size(), end));
+    const auto position = static_cast<std::size_t>(static_cast<const std::uint8_t*>(found) - bytes.data());
+    if (position != at && !has_scan)
+      return void(image.problem = "is damaged: no JPEG marker at byte " + std::to_string(at));
+    at = position + 1;
+    if (at >= bytes.size()) return void(image.problem = truncated(bytes.size(), end));
+    const int code = bytes[at];
+    if (code == 0xff) continue;
+    ++at;
+    if (code == 0xd9) break;
+    if (code == 0x00 || code == 0x01 || (code >= 0xd0 && code <= 0xd7)) continue;
+    if (bytes.size() - at < 2) return void(image.problem = truncated(bytes.size(), end));
+    const std::size_t length = big_endian_16(&bytes[at]);
+    if (length < 2)
+      return void(image.problem = "is damaged: a JPEG segment of no length at byte " + std::to_string(at));
+    if (bytes.size() - at < length) return void(image.problem = truncated(bytes.size(), end));
+    const bool frame_header = code >= 0xc0 && code <= 0xcf && code != 0xc4 && code != 0xc8 && code != 0xcc;
+    if (frame_header && length >= 8) {
+      image.bits = bytes[at + 2];
+      image.height = static_cast<int>(big_endian_16(&bytes[at + 3]));
+      image.width = static_cast<int>(big_endian_16(&bytes[at + 5]));
+      image.channels = bytes[at + 7];
+    }
+    has_scan |= code == 0xda;
+    at += length;
+  }
+  if (!has_scan || image.width == 0) image.problem = "is damaged: it holds no image data (no JPEG scan)";
+}
+
+}  // namespace
+
+std::string ImageStructure::to_string() const {
+  return std::to_string(width) + "x" + std::to_string(height) + ", " + std::to_string(channels) +
+         (channels == 1 ? " channel of " : " channels of ") + std::to_string(bits) + " bits";
+}
+
+ImageStructure examine_image(std::span<const std::uint8_t> bytes) {
+  ImageStructure image;
+  if (bytes.empty())
+    image.problem = "is empty (0 bytes)";
+  else if (bytes.size() >= 8 && std::equal(png_signature.begin(), png_signature.end(), bytes.begin()))
+    examine_png(bytes, image);
+  else if (bytes.size() >= 3 && bytes[0] == 0xff && bytes[1] == 0xd8 && bytes[2] == 0xff)
+    examine_jpeg(bytes, image);
+  else
+    image.problem = "is neither a PNG nor a JPEG image";
+  return image;
+}
+
+}  // namespace holdfast

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "holdfast/core/error.hpp"
+#include "holdfast/core/sensor_frame.hpp"
+#include "holdfast/image_files/image_decoder.hpp"
+#include "holdfast/interfaces/frame_source.hpp"
+
+namespace holdfast {
+
+/// The files of one frame of a recording.
+struct ImageFiles {
+  double timestamp = 0.0;  ///< of the colour image [s]
+  std::filesystem::path colour;
+  std::filesystem::path depth;      ///< empty for a recording without depth
+  SourceLocation colour_listed_at;  ///< the line that names the image; no file when no list does
+  SourceLocation depth_listed_at;
+};
+
+struct ImageSequenceOptions {
+  double depth_factor = 5000.0;  ///< value of one metre in a depth image
+  int width = 0;                 ///< of every image [px]
+  int height = 0;
+  bool skip_bad_frames = false;  ///< leave out and count what cannot be used; otherwise it is an InputError
+};
+
+/// Decodes the frames of a recording one by one: what the sources that read image files have in common. Used by one
+/// thread.
+class ImageSequence {
+ public:
+  /// The stamps must rise strictly.
+  ImageSequence(std::vector<ImageFiles> files, const ImageSequenceOptions& options);
+
+  /// The next frame that can be used, or nothing at the end. Throws InputError, naming the image and the line of the
+  /// list it stands in, for one that cannot be used, unless bad frames are skipped; then it throws at the end when no
+  /// frame at all could be used.
+  std::optional<SensorFrame> next();
+
+  std::uint64_t size() const { return files_.size(); }
+  const std::vector<SkippedFrame>& skipped() const { return skipped_; }
+
+ private:
+  SensorFrame decode(const ImageFiles& files);
+
+  std::vector<ImageFiles> files_;
+  ImageSequenceOptions options_;
+  std::size_t position_ = 0;
+  ImageDecoder decoder_;
+  std::vector<SkippedFrame> skipped_;
+};
+
+/// Keeps `count` elements (0 = all that follow) from `start` on. Throws InputError at `place` when `start` lies behind
+/// the last one; `what` says what is counted.
+void select_range(std::vector<ImageFiles>& files, std::int64_t start, std::int64_t count,
+                  const std::filesystem::path& place, const char* what);
+
+}  // namespace holdfast

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <utility>
+
+#include "holdfast/core/association.hpp"
+#include "holdfast/image_files/image_list.hpp"
+#include "holdfast/image_files/image_sequence.hpp"
+#include "holdfast/interfaces/frame_source.hpp"
+#include "holdfast/plugin/plugin.hpp"
+
+namespace holdfast {
+
+namespace {
+
+struct TumSettings {
+  std::filesystem::path path;
+  double max_time_difference = 0.02;
+  double depth_factor = 5000.0;
+  std::filesystem::path associations;
+  std::string on_bad_frame = "fail";
+  std::int64_t start = 0;
+  std::int64_t frames = 0;
+
+  static void describe(ParameterTable<TumSettings>& table) {
+    table.add("path", &TumSettings::path, "folder of the recording, with rgb.txt and depth.txt").required();
+    table
+        .add("max_time_difference", &TumSettings::max_time_difference,
+             "a colour and a depth image whose stamps differ by less than this may make a pair")
+        .range(1e-6, 1.0)
+        .unit("s");
+    table.add("depth_factor", &TumSettings::depth_factor, "value of one metre in a depth image").range(1.0, 65535.0);
+    table.add("associations", &TumSettings::associations,
+              "file of ready pairs, lines 'colour_timestamp colour_file depth_timestamp depth_file', used in place of "
+              "rgb.txt and depth.txt; image names are relative to path");
+    table
+        .add("on_bad_frame", &TumSettings::on_bad_frame,
+             "what to do with a missing, damaged or unfit image: stop with an error, or leave the frame out and count "
+             "it")
+        .one_of({"fail", "skip"});
+    table.add("start", &TumSettings::start, "number of the first pair, from 0").at_least(0);
+    table.add("frames", &TumSettings::frames, "number of pairs, 0 = all").at_least(0);
+  }
+};
+
+ImageFiles image_files(const std::filesystem::path& folder, const ListedImage& colour,
+                       const std::filesystem::path& colour_list, const ListedImage& depth,
+                       const std::filesystem::path& depth_list) {
+  return {colour.timestamp,
+          folder / colour.name,
+          folder / depth.name,
+          {colour_list.string(), colour.line},
+          {depth_list.string(), depth.line}};
+}
+
+std::vector<ImageFiles> read_ready_pairs(const std::filesystem::path& folder, const std::filesystem::path& file) {
+  std::vector<ImageFiles> pairs;
+  for (const ListedPair& pair : read_association_list(file))
+    pairs.push_back(image_files(folder, pair.colour, file, pair.depth, file));
+  return pairs;
+}
+
+std::vector<ImageFiles> associate(const std::filesystem::path& folder, double max_time_difference) {
+  const std::filesystem::path colour_list = folder / "rgb.txt";
+  const std::filesystem::path depth_list = folder / "depth.txt";
+  const std::vector<ListedImage> colour = read_image_list(colour_list);
+  const std::vector<ListedImage> depth = read_image_list(depth_list);
+  const auto stamps = [](const std::vector<ListedImage>& images) {
+    std::vector<double> result;
+    result.reserve(images.size());
+    for (const ListedImage& image : images) result.push_back(image.timestamp);
+    return result;
+  };
+  const std::vector<double> colour_stamps = stamps(colour), depth_stamps = stamps(depth);
+  std::vector<ImageFiles> pairs;
+  for (const auto& [c, d] : associate_stamps(colour_stamps, depth_stamps, max_time_difference))
+    pairs.push_back(image_files(folder, colour[c], colour_list, depth[d], depth_list));
+  if (pairs.empty())
+    throw InputError({folder.string()},
+                     "no colour and depth image lie within " + stamp_text(max_time_difference) + " s of each other: " +
+                         colour_list.filename().string() + " runs from " + stamp_text(colour_stamps.front()) + " to " +
+                         stamp_text(colour_stamps.back()) + " s, " + depth_list.filename().string() + " from " +
+                         stamp_text(depth_stamps.front()) + " to " + stamp_text(depth_stamps.back()) +
+                         " s; are both lists of this recording? Otherwise raise `max_time_difference`");
+  return pairs;
+}
+
+std::vector<ImageFiles> find_pairs(const TumSettings& settings) {
+  std::error_code error;
+  if (!std::filesystem::is_directory(settings.path, error))
+    throw InputError({settings.path.string()},
+                     std::string(std::filesystem::exists(settings.path, error) ? "is not a folder" : "is missing") +
+                         "; expected the folder of a TUM recording, with rgb.txt and depth.txt; set `source.tum.path`");
+  std::vector<ImageFiles> pairs = settings.associations.empty()
+                                      ? associate(settings.path, settings.max_time_difference)
+                                      : read_ready_pairs(settings.path, settings.associations);
+  select_range(pairs, settings.start, settings.frames, settings.path, "colour and depth pairs");
+  return pairs;
+}
+
+/// A recording in the layout of the TUM RGB-D benchmark (Sturm et al., IROS 2012), which the Bonn RGB-D Dynamic dataset
+/// shares. A colour image without a depth image near enough in time makes no frame.
+class TumSource final : public FrameSource {
+ public:
+  TumSource(const TumSettings& settings, const CreationContext& context)
+      : sequence_(find_pairs(settings), {settings.depth_factor, context.camera.width, context.camera.height,
+                                         settings.on_bad_frame == "skip"}) {
+    const std::filesystem::path folder = settings.path.lexically_normal();
+    description_.name = (folder.has_filename() ? folder : folder.parent_path()).filename().string();
+    description_.has_depth = true;
+    description_.frame_count = sequence_.size();
+    if (const auto truth_file = settings.path / "groundtruth.txt"; std::filesystem::exists(truth_file))
+      truth_ = read_trajectory(truth_file);
+  }
+
+  SourceDescription describe() const override { return description_; }
+  std::optional<SensorFrame> next() override { return sequence_.next(); }
+  Trajectory truth() const override { return truth_; }
+  std::vector<SkippedFrame> skipped() const override { return sequence_.skipped(); }
+
+ private:
+  ImageSequence sequence_;
+  SourceDescription description_;
+  Trajectory truth_;
+};
+
+}  // namespace
+
+HOLDFAST_PLUGIN(tum, registry) {
+  registry.add<FrameSource, TumSource, TumSettings>(
+      {.name = "tum",
+       .summary = "Recordings in the layout of the TUM RGB-D benchmark, also Bonn RGB-D Dynamic.",
+       .paper =
+           "Sturm, Engelhard, Endres, Burgard, Cremers: A benchmark for the evaluation of RGB-D SLAM systems, IROS "
+           "2012"});
+}
+
+}  // namespace holdfast
