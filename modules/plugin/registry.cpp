@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/plugin/registry.hpp"
 
+#include "holdfast/plugin/did_you_mean.hpp"
+
 namespace holdfast {
 
 void Registry::add_entry(ModuleEntry entry) {
@@ -33,11 +35,15 @@ std::vector<std::string> Registry::kinds() const {
   return names;
 }
 
+std::vector<std::string> Registry::names(const std::string& kind) const {
+  std::vector<std::string> names;
+  for (const ModuleEntry* entry : of_kind(kind)) names.push_back(entry->description.name);
+  return names;
+}
+
 const ModuleEntry& Registry::require(const std::string& kind, const std::string& name) const {
   if (const ModuleEntry* entry = find(kind, name)) return *entry;
-  std::string known;
-  for (const ModuleEntry* entry : of_kind(kind)) known += (known.empty() ? "" : ", ") + entry->description.name;
-  throw PluginError("no " + kind + " module is called '" + name + "'; there are: " + (known.empty() ? "none" : known));
+  throw PluginError("no " + kind + " module is called '" + name + "'; " + did_you_mean(name, names(kind)));
 }
 
 }  // namespace holdfast

@@ -5,6 +5,7 @@
 #include <deque>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -18,32 +19,54 @@ namespace detail {
 
 template <class Member>
 constexpr ParameterType parameter_type_of() {
-  if constexpr (std::is_same_v<Member, bool>) return ParameterType::boolean;
-  else if constexpr (std::is_integral_v<Member>) return ParameterType::integer;
-  else if constexpr (std::is_floating_point_v<Member>) return ParameterType::real;
-  else if constexpr (std::is_same_v<Member, std::string>) return ParameterType::text;
-  else if constexpr (std::is_same_v<Member, std::filesystem::path>) return ParameterType::path;
-  else if constexpr (std::is_same_v<Member, std::vector<std::string>>) return ParameterType::text_list;
-  else if constexpr (std::is_same_v<Member, std::vector<double>>) return ParameterType::real_list;
-  else { static_assert(std::is_same_v<Member, TextMap>, "no parameter type for this member"); return ParameterType::text_map; }
+  if constexpr (std::is_same_v<Member, bool>)
+    return ParameterType::boolean;
+  else if constexpr (std::is_integral_v<Member>)
+    return ParameterType::integer;
+  else if constexpr (std::is_floating_point_v<Member>)
+    return ParameterType::real;
+  else if constexpr (std::is_same_v<Member, std::string>)
+    return ParameterType::text;
+  else if constexpr (std::is_same_v<Member, std::filesystem::path>)
+    return ParameterType::path;
+  else if constexpr (std::is_same_v<Member, std::vector<std::string>>)
+    return ParameterType::text_list;
+  else if constexpr (std::is_same_v<Member, std::vector<double>>)
+    return ParameterType::real_list;
+  else {
+    static_assert(std::is_same_v<Member, TextMap>, "no parameter type for this member");
+    return ParameterType::text_map;
+  }
 }
 
 template <class Member>
 ParameterValue to_parameter_value(const Member& member) {
-  if constexpr (std::is_same_v<Member, bool>) return member;
-  else if constexpr (std::is_integral_v<Member>) return static_cast<std::int64_t>(member);
-  else if constexpr (std::is_floating_point_v<Member>) return static_cast<double>(member);
-  else if constexpr (std::is_same_v<Member, std::filesystem::path>) return member.string();
-  else return member;
+  if constexpr (std::is_same_v<Member, bool>)
+    return member;
+  else if constexpr (std::is_integral_v<Member>)
+    return static_cast<std::int64_t>(member);
+  else if constexpr (std::is_same_v<Member, float>)
+    return shortest_double(member);
+  else if constexpr (std::is_floating_point_v<Member>)
+    return static_cast<double>(member);
+  else if constexpr (std::is_same_v<Member, std::filesystem::path>)
+    return member.string();
+  else
+    return member;
 }
 
 template <class Member>
 void from_parameter_value(const ParameterValue& value, Member& member) {
-  if constexpr (std::is_same_v<Member, bool>) member = std::get<bool>(value);
-  else if constexpr (std::is_integral_v<Member>) member = static_cast<Member>(std::get<std::int64_t>(value));
-  else if constexpr (std::is_floating_point_v<Member>) member = static_cast<Member>(std::get<double>(value));
-  else if constexpr (std::is_same_v<Member, std::filesystem::path>) member = std::get<std::string>(value);
-  else member = std::get<Member>(value);
+  if constexpr (std::is_same_v<Member, bool>)
+    member = std::get<bool>(value);
+  else if constexpr (std::is_integral_v<Member>)
+    member = static_cast<Member>(std::get<std::int64_t>(value));
+  else if constexpr (std::is_floating_point_v<Member>)
+    member = static_cast<Member>(std::get<double>(value));
+  else if constexpr (std::is_same_v<Member, std::filesystem::path>)
+    member = std::get<std::string>(value);
+  else
+    member = std::get<Member>(value);
 }
 
 }  // namespace detail
@@ -71,6 +94,13 @@ class ParameterTable {
     parameter.type = detail::parameter_type_of<Member>();
     parameter.default_value = detail::to_parameter_value(Settings{}.*member);
     parameter.help = std::move(help);
+    if constexpr (std::is_integral_v<Member>) {
+      if constexpr (std::is_unsigned_v<Member>)
+        parameter.least_integer = 0;
+      else
+        parameter.least_integer = std::numeric_limits<Member>::min();
+      if constexpr (sizeof(Member) < sizeof(std::int64_t)) parameter.most_integer = std::numeric_limits<Member>::max();
+    }
     readers_.push_back([member](const Settings& s) { return detail::to_parameter_value(s.*member); });
     writers_.push_back([member](const ParameterValue& v, Settings& s) { detail::from_parameter_value(v, s.*member); });
     return parameter;

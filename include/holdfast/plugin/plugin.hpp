@@ -16,7 +16,7 @@
 #if defined(HOLDFAST_STATIC_PLUGIN)
 #define HOLDFAST_PLUGIN(name, registry) extern "C" void holdfast_register_plugin_##name(::holdfast::Registry& registry)
 #else
-#define HOLDFAST_PLUGIN(name, registry)                                                             \
+#define HOLDFAST_PLUGIN(name, registry)                                                              \
   extern "C" __attribute__((visibility("default"))) const ::holdfast::AbiRecord holdfast_plugin_abi; \
   const ::holdfast::AbiRecord holdfast_plugin_abi = ::holdfast::compiled_abi();                      \
   extern "C" __attribute__((visibility("default"))) void holdfast_register_plugin(::holdfast::Registry& registry)

@@ -16,17 +16,17 @@ namespace holdfast {
 
 /// What the reference says about a module.
 struct ModuleDescription {
-  std::string name;      ///< key in the configuration: lower case, words joined by _
-  std::string summary;   ///< one sentence
-  std::string paper;     ///< what it implements, "" when nothing published
+  std::string name = {};     ///< key in the configuration: lower case, words joined by _
+  std::string summary = {};  ///< one sentence
+  std::string paper = {};    ///< what it implements, "" when nothing published
   std::string licence = "BSD-3-Clause";
 };
 
 /// A registered module: its description, its parameter table and how to make one.
 struct ModuleEntry {
-  std::string kind;      ///< the section of the configuration: source, features, ...
+  std::string kind;  ///< the section of the configuration: source, features, ...
   ModuleDescription description;
-  std::string origin;    ///< "built in" or the file of the plugin
+  std::string origin;  ///< "built in" or the file of the plugin
   std::vector<Parameter> parameters;
   std::function<std::unique_ptr<Module>(const ParameterValues&, const CreationContext&)> create;
 };
@@ -61,6 +61,8 @@ class Registry {
   std::vector<const ModuleEntry*> of_kind(const std::string& kind) const;
   /// Kinds that have a module, sorted.
   std::vector<std::string> kinds() const;
+  /// Names of a kind's modules, sorted.
+  std::vector<std::string> names(const std::string& kind) const;
 
   /// Makes a module; the values must have passed the checks of its table. Throws PluginError for an unknown name and
   /// passes on what the module throws.
@@ -73,6 +75,7 @@ class Registry {
 
   /// Names where the modules added next come from; the plugin loader sets it.
   void set_origin(std::string origin) { origin_ = std::move(origin); }
+  const std::string& origin() const { return origin_; }
 
  private:
   void add_entry(ModuleEntry entry);
