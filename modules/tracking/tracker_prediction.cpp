@@ -86,7 +86,7 @@ bool Tracker::predict_with_velocity(FrameResult& result) {
   if (has_velocity_ && velocity_interval_ > 0.0) {
     // Recordings leave frames out: the same speed over the time that really passed.
     const double ratio = std::clamp((current_.timestamp - previous_.timestamp) / velocity_interval_, 0.0, 4.0);
-    step = std::abs(ratio - 1.0) < 0.05 ? velocity_ : se3_exp(ratio * se3_log(velocity_));
+    step = std::abs(ratio - 1.0) < 0.05 ? velocity_ : geometry::exp_se3(ratio * geometry::log_se3(velocity_));
   }
   const float window = static_cast<float>(settings_.motion_window);
   for (const float radius : {window, 2.0F * window}) {

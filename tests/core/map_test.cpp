@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/core/map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "holdfast/core/random.hpp"
+
+namespace holdfast {
+namespace {
+
+Frame frame_with(std::size_t features, double timestamp, const Eigen::Vector3d& position) {
+  static const auto camera = std::make_shared<const Camera>();
+  static const auto pyramid = std::make_shared<const ScalePyramid>();
+  Frame frame;
+  frame.timestamp = timestamp;
+  frame.camera = camera;
+  frame.pyramid = pyramid;
+  frame.features.resize(features);
+  frame.x.assign(features, 100.0F);
+  frame.y.assign(features, 100.0F);
+  frame.depth.assign(features, 1.0F);
+  frame.right_x.assign(features, 58.0F);
+  frame.map_points.assign(features, MapPointId());
+  frame.static_probability.assign(features, 1.0F);
+  Random random(static_cast<std::uint64_t>(timestamp * 1000) + 7);
+  for (Descriptor& descriptor : frame.features.descriptors)
+    for (std::uint64_t& word : descriptor.words) word = random.next();
+  frame.T_camera_world = Eigen::Isometry3d(Eigen::Translation3d(position)).inverse();
+  return frame;
+}
+
+/// Both directions of every link agree, edges are symmetric and sorted, and the spanning tree has no cycle.
+void expect_consistent(const Map& map) {
+  map.points().for_each([&](MapPointId id, const MapPoint& point) {
+    std::set<KeyFrameId> seen;
+    for (const Observation& o : point.observations) {
+      ASSERT_NE(map.find_keyframe(o.keyframe), nullptr);
+      EXPECT_EQ(map.keyframe(o.keyframe).frame.map_points.at(o.feature), id);
+      EXPECT_TRUE(seen.insert(o.keyframe).second) << "a keyframe sees a point twice";
+    }
+    ASSERT_FALSE(point.observations.empty());
+    EXPECT_TRUE(seen.contains(point.reference_keyframe));
+  });
+  map.keyframes().for_each([&](KeyFrameId id, const KeyFrame& keyframe) {
+    for (std::uint32_t f = 0; f < keyframe.frame.map_points.size(); ++f) {
+      const MapPointId point = keyframe.frame.map_points[f];
+      if (point.valid()) {
+        ASSERT_NE(map.find_point(point), nullptr);
+        EXPECT_EQ(map.feature_of(point, id), static_cast<int>(f));
+      }
+    }
+    int last = 1 << 30;
+    for (const CovisibilityEdge& edge : keyframe.covisible) {
+      EXPECT_LE(edge.weight, last);
+      last = edge.weight;
+      const auto& back = map.keyframe(edge.keyframe).covisible;
+      EXPECT_EQ(std::count_if(back.begin(), back.end(), [&](const auto& e) { return e.keyframe == id && e.weight == edge.weight; }), 1);
+    }
+    if (keyframe.parent.valid()) EXPECT_LT(map.keyframe(keyframe.parent).sequence, keyframe.sequence);
+    for (const KeyFrameId child : keyframe.children) EXPECT_EQ(map.keyframe(child).parent, id);
+  });
+}
+
+/// Keyframes in a row; each shares its points with the two before it.
+std::vector<KeyFrameId> build_row(Map& map, int keyframes, std::size_t features = 60) {
+  std::vector<KeyFrameId> ids;
+  std::vector<MapPointId> points;
+  for (int k = 0; k < keyframes; ++k) {
+    Frame frame = frame_with(features, k + 1.0, {0.1 * k, 0, 0});
+    for (std::size_t f = 0; f < features * 2 / 3 && f + features / 3 < points.size(); ++f)
+      frame.map_points[f] = points[points.size() - features * 2 / 3 + f < points.size() ? points.size() - features * 2 / 3 + f : 0];
+    const KeyFrameId id = map.add_keyframe(frame);
+    for (std::uint32_t f = 0; f < features; ++f) {
+      if (map.keyframe(id).frame.map_points[f].valid()) continue;
+      const MapPointId point = map.add_point({0.1 * k + 0.01 * f, 0.02 * f, 2.0}, map.keyframe(id).sequence);
+      map.add_observation(point, id, f);
+      points.push_back(point);
+    }
+    for (const MapPointId point : map.keyframe(id).frame.map_points) map.update_point(point);
+    map.update_covisibility(id, 5);
+    ids.push_back(id);
+  }
+  return ids;
+}
+
+TEST(Map, LinksStayConsistentWhileKeyframesAndPointsComeAndGo) {
+  Map map;
+  std::vector<KeyFrameId> ids = build_row(map, 12);
+  expect_consistent(map);
+  Random random(3);
+  for (const int k : {4, 7, 5, 11}) {
+    map.remove_keyframe(ids[static_cast<std::size_t>(k)]);
+    expect_consistent(map);
+  }
+  for (int i = 0; i < 40; ++i) {
+    const auto points = map.points().ids();
+    const MapPointId a = points[random.below(static_cast<std::uint32_t>(points.size()))];
+    const MapPointId b = points[random.below(static_cast<std::uint32_t>(points.size()))];
+    if (i % 2 == 0) map.remove_point(a);
+    else map.fuse_points(a, b);
+    expect_consistent(map);
+  }
+}
+
+TEST(Map, RemovedKeyframeKeepsItsPoseThroughItsParent) {
+  Map map;
+  const std::vector<KeyFrameId> ids = build_row(map, 6);
+  const Eigen::Isometry3d before = map.pose_of(ids[3]);
+  map.remove_keyframe(ids[3]);
+  EXPECT_TRUE(map.pose_of(ids[3]).isApprox(before, 1e-12));
+  // When everything moves as one, the removed keyframe moves along.
+  const Eigen::Isometry3d shift(Eigen::Translation3d(1, 2, 3));
+  for (const KeyFrameId id : map.keyframes().ids()) map.keyframe(id).frame.T_camera_world = map.keyframe(id).frame.T_camera_world * shift;
+  EXPECT_TRUE(map.pose_of(ids[3]).isApprox(before * shift, 1e-12));
+}
+
+TEST(Map, FirstKeyframeCannotBeRemoved) {
+  Map map;
+  const std::vector<KeyFrameId> ids = build_row(map, 3);
+  EXPECT_THROW(map.remove_keyframe(ids[0]), CheckError);
+}
+
+TEST(Map, IdsOfRemovedPointsNameNothing) {
+  Map map;
+  build_row(map, 2);
+  const MapPointId id = map.points().ids().front();
+  map.remove_point(id);
+  EXPECT_EQ(map.find_point(id), nullptr);
+  EXPECT_THROW(map.point(id), CheckError);
+  const MapPointId next = map.add_point(Eigen::Vector3d::Zero(), 0);
+  EXPECT_EQ(next.slot, id.slot);
+  EXPECT_NE(next, id);
+}
+
+TEST(Map, KeyframeForgetsPointsThatAreGone) {
+  Map map;
+  build_row(map, 2);
+  const MapPointId gone = map.points().ids().front();
+  Frame frame = frame_with(10, 9.0, {0, 0, 0});
+  frame.map_points[3] = gone;
+  map.remove_point(gone);
+  const KeyFrameId id = map.add_keyframe(frame);
+  EXPECT_FALSE(map.keyframe(id).frame.map_points[3].valid());
+}
+
+TEST(Map, DistanceRangeFollowsTheOctaveOfTheReference) {
+  Map map;
+  Frame frame = frame_with(2, 1.0, {0, 0, 0});
+  frame.features.octave = {0, 3};
+  const KeyFrameId id = map.add_keyframe(frame);
+  for (std::uint32_t f = 0; f < 2; ++f) {
+    const MapPointId point = map.add_point({0, 0, 2}, 0);
+    map.add_observation(point, id, f);
+    map.update_point(point);
+    EXPECT_NEAR(map.point(point).maximum_distance, 2.0 * std::pow(1.2, f == 0 ? 0 : 3), 1e-4);
+    EXPECT_NEAR(map.point(point).minimum_distance, map.point(point).maximum_distance / std::pow(1.2, 7), 1e-4);
+    EXPECT_TRUE(map.point(point).viewing_direction.isApprox(Eigen::Vector3d::UnitZ(), 1e-12));
+  }
+}
+
+}  // namespace
+}  // namespace holdfast
