@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "ceres_optimizer.hpp"
+
+#include <glog/logging.h>
+
+#include "bundle_adjustment.hpp"
+#include "holdfast/plugin/plugin.hpp"
+#include "pose_graph.hpp"
+
+namespace holdfast::ceres_plugin {
+
+CeresOptimizer::CeresOptimizer(const CeresSettings& settings, const CreationContext&) : settings_(settings) {
+  // Ceres warns through glog, which writes to stderr until somebody initialises it. Whoever does so keeps their levels.
+  if (!google::IsGoogleLoggingInitialized()) FLAGS_minloglevel = google::GLOG_FATAL;
+}
+
+PoseSummary CeresOptimizer::optimize_pose(PoseProblem& problem) {
+  geometry::PoseAdjustmentOptions options;
+  options.robust_rounds = settings_.pose_rounds / 2;
+  options.final_rounds = settings_.pose_rounds - options.robust_rounds;
+  options.iterations = settings_.pose_iterations;
+  options.limit_two = settings_.chi_square_two;
+  options.limit_three = settings_.chi_square_three;
+  return geometry::adjust_pose(problem, options);
+}
+
+BundleSummary CeresOptimizer::optimize_bundle(BundleProblem& problem, const std::atomic<bool>& stop) {
+  return adjust_bundle(problem, stop, settings_);
+}
+
+GraphSummary CeresOptimizer::optimize_pose_graph(PoseGraphProblem& problem) {
+  return adjust_pose_graph(problem, settings_);
+}
+
+}  // namespace holdfast::ceres_plugin
+
+HOLDFAST_PLUGIN(ceres, registry) {
+  using namespace holdfast;
+  registry.add<Optimizer, ceres_plugin::CeresOptimizer, ceres_plugin::CeresSettings>(
+      {.name = "ceres",
+       .summary = "Bundle adjustment and pose graphs with Ceres Solver, single poses with a fixed-size solver.",
+       .paper = "Mur-Artal and Tardos, ORB-SLAM2, IEEE Transactions on Robotics 33(5), 2017; Agarwal, Mierle et al., "
+                "Ceres Solver"});
+}

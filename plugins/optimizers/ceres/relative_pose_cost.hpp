@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <ceres/manifold.h>
+#include <ceres/sized_cost_function.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "holdfast/geometry/se3.hpp"
+
+namespace holdfast::ceres_plugin {
+
+/// T_camera_world as the solver stores it: quaternion x y z w, translation.
+inline Eigen::Isometry3d pose_of(const double* block) {
+  Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
+  result.linear() = Eigen::Map<const Eigen::Quaterniond>(block).normalized().toRotationMatrix();
+  result.translation() = Eigen::Vector3d::Map(block + 4);
+  return result;
+}
+inline void store(const Eigen::Isometry3d& pose, double* block) {
+  Eigen::Vector4d::Map(block) = Eigen::Quaterniond(pose.linear()).normalized().coeffs();
+  Eigen::Vector3d::Map(block + 4) = pose.translation();
+}
+
+/// Poses moved by a left perturbation: plus(T, d) = exp(d) * T. Cost functions give the derivative by d in the first
+/// six of their seven columns, and the seventh is zero; so the derivative of plus that the solver multiplies them with
+/// is (identity; 0) and nothing is differentiated twice.
+class LeftPerturbation final : public ceres::Manifold {
+ public:
+  int AmbientSize() const override { return 7; }
+  int TangentSize() const override { return 6; }
+  bool Plus(const double* x, const double* delta, double* x_plus_delta) const override {
+    store(geometry::exp_se3(geometry::Vector6d::Map(delta)) * pose_of(x), x_plus_delta);
+    return true;
+  }
+  bool PlusJacobian(const double*, double* jacobian) const override {
+    Eigen::Map<Eigen::Matrix<double, 7, 6, Eigen::RowMajor>>(jacobian).setIdentity();
+    return true;
+  }
+  bool Minus(const double* y, const double* x, double* y_minus_x) const override {
+    geometry::Vector6d::Map(y_minus_x) = geometry::log_se3(pose_of(y) * pose_of(x).inverse());
+    return true;
+  }
+  bool MinusJacobian(const double*, double* jacobian) const override {
+    Eigen::Map<Eigen::Matrix<double, 6, 7, Eigen::RowMajor>>(jacobian).setIdentity();
+    return true;
+  }
+};
+
+/// Residual log(T_to_from^-1 * T_to * T_from^-1) * scale; blocks: the poses `from` and `to`.
+class RelativePoseCost final : public ceres::SizedCostFunction<6, 7, 7> {
+ public:
+  RelativePoseCost(const Eigen::Isometry3d& T_to_from, double scale) : inverse_(T_to_from.inverse()), scale_(scale) {}
+
+  bool Evaluate(const double* const* parameters, double* residual, double** jacobians) const override {
+    const Eigen::Isometry3d error = inverse_ * pose_of(parameters[1]) * pose_of(parameters[0]).inverse();
+    const geometry::Vector6d tangent = geometry::log_se3(error);
+    geometry::Vector6d::Map(residual) = scale_ * tangent;
+    if (!jacobians) return true;
+    using Block = Eigen::Map<Eigen::Matrix<double, 6, 7, Eigen::RowMajor>>;
+    if (jacobians[0]) {
+      Block block(jacobians[0]);
+      block.leftCols<6>() = -scale_ * geometry::right_jacobian_inverse_se3(tangent);
+      block.col(6).setZero();
+    }
+    if (jacobians[1]) {
+      Block block(jacobians[1]);
+      block.leftCols<6>() = scale_ * geometry::left_jacobian_inverse_se3(tangent) * geometry::adjoint_se3(inverse_);
+      block.col(6).setZero();
+    }
+    return true;
+  }
+
+ private:
+  Eigen::Isometry3d inverse_;
+  double scale_;
+};
+
+}  // namespace holdfast::ceres_plugin
