@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "holdfast/core/hamming.hpp"
-#include "holdfast/geometry/alignment.hpp"
 #include "holdfast/geometry/se3.hpp"
 #include "holdfast/tracking/tracker.hpp"
 
@@ -156,6 +155,8 @@ bool Tracker::predict_with_keyframe(KeyFrameId keyframe, FrameResult& result) {
   result.method = TrackingMethod::reference_keyframe;
   return true;
 }
+
+void Tracker::align_start(const std::vector<Eigen::Vector3d>&, const std::vector<Eigen::Vector3d>&) {}
 
 bool Tracker::recover(FrameResult& result) {
   constexpr int most_keyframes = 5;
