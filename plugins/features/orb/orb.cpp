@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "orb.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "brief.hpp"
+#include "detector.hpp"
+#include "holdfast/core/error.hpp"
+#include "kernels.hpp"
+#include "orientation.hpp"
+#include "pyramid.hpp"
+#include "spread.hpp"
+
+namespace holdfast {
+
+using orb::Corner;
+using orb::CornerDetector;
+using orb::ImageView;
+
+static_assert(orb::brief_radius + orb::blur_radius <= CornerDetector::border);
+
+void OrbSettings::describe(ParameterTable<OrbSettings>& table) {
+  using S = OrbSettings;
+  table.add("count", &S::count, "features to keep of an image").range(10, 50000);
+  table.add("levels", &S::levels, "pyramid levels").range(1, 16);
+  table.add("scale_factor", &S::scale_factor, "scale between neighbouring pyramid levels").range(1.05, 2.0);
+  table.add("fast_threshold", &S::fast_threshold, "contrast of a FAST corner").range(1, 250).unit("grey level");
+  table.add("fast_threshold_low", &S::fast_threshold_low,
+            "contrast of a FAST corner in cells that have none otherwise; not below fast_threshold: no second search")
+      .range(1, 250)
+      .unit("grey level");
+  table.add("cell_size", &S::cell_size, "side of those cells, in pixels of their level").range(16, 512).unit("px");
+  table.add("subpixel", &S::subpixel, "refine positions below the pixel of their level");
+}
+
+/// Buffers, kept from image to image.
+struct OrbExtractor::Work {
+  Work(const OrbSettings& settings, const ScalePyramid& scales, const orb::Kernels& chosen_kernels)
+      : kernels(chosen_kernels),
+        pyramid(scales, kernels),
+        detector(settings.fast_threshold, settings.fast_threshold_low, settings.cell_size, kernels),
+        corners(scales.levels()) {}
+
+  const orb::Kernels& kernels;
+  orb::ImagePyramid pyramid;
+  CornerDetector detector;
+  orb::EvenSpread spread;
+  orb::SteeredPattern pattern;
+  std::vector<std::vector<Corner>> corners;  // by level
+  std::vector<std::uint8_t> blurred, row;
+};
+
+OrbExtractor::OrbExtractor(const OrbSettings& settings, const CreationContext&, SimdLevel level)
+    : settings_(settings),
+      scales_(settings.levels, settings.scale_factor),
+      work_(std::make_unique<Work>(settings_, scales_, orb::kernels(level))) {}
+
+OrbExtractor::~OrbExtractor() = default;
+
+void OrbExtractor::extract(const cv::Mat& grey, const cv::Mat& ignore, Features& out) {
+  HOLDFAST_CHECK(grey.empty() || grey.type() == CV_8UC1, "image type " << grey.type() << ", expected 8UC1");
+  HOLDFAST_CHECK(ignore.empty() || (ignore.type() == CV_8UC1 && ignore.size() == grey.size()),
+                 "mask " << ignore.cols << " x " << ignore.rows << " type " << ignore.type() << ", image " << grey.cols
+                         << " x " << grey.rows);
+  HOLDFAST_CHECK(std::max(grey.cols, grey.rows) <= 0xffff, "image " << grey.cols << " x " << grey.rows);
+  work_->pyramid.build(grey, CornerDetector::minimum_image_size);
+  detect(ignore);
+  select();
+  describe(out);
+}
+
+void OrbExtractor::detect(const cv::Mat& ignore) {
+  const orb::ImagePyramid& pyramid = work_->pyramid;
+  for (int level = 0; level < pyramid.levels(); ++level) {
+    std::vector<Corner>& corners = work_->corners[level];
+    if (ignore.empty()) {
+      work_->detector.detect(pyramid.view(level), [](int, int) { return false; }, corners);
+      continue;
+    }
+    const auto is_ignored = [&](int x, int y) {
+      const auto column = static_cast<int>(pyramid.full_x(level, static_cast<float>(x)) + 0.5F);
+      const auto row = static_cast<int>(pyramid.full_y(level, static_cast<float>(y)) + 0.5F);
+      return ignore.at<std::uint8_t>(std::min(row, ignore.rows - 1), std::min(column, ignore.cols - 1)) != 0;
+    };
+    work_->detector.detect(pyramid.view(level), is_ignored, corners);
+  }
+}
+
+void OrbExtractor::select() {
+  // Shares in proportion to the levels' inverse scale; what a coarse level lacks goes to the finer ones, whose positions
+  // are the more accurate.
+  const int levels = work_->pyramid.levels();
+  double share_left = 0;
+  for (int level = 0; level < levels; ++level) share_left += scales_.inverse_scale[level];
+  std::size_t left = static_cast<std::size_t>(settings_.count);
+  for (int level = levels - 1; level >= 0; --level) {
+    const double share = scales_.inverse_scale[level];
+    const auto wanted = level == 0 ? left : static_cast<std::size_t>(std::lround(static_cast<double>(left) * share / share_left));
+    work_->spread.select(wanted, work_->corners[level]);
+    left -= work_->corners[level].size();
+    share_left -= share;
+  }
+}
+
+void OrbExtractor::describe(Features& out) {
+  const orb::ImagePyramid& pyramid = work_->pyramid;
+  const orb::Kernels& kernels = work_->kernels;
+  std::size_t count = 0;
+  for (int level = 0; level < pyramid.levels(); ++level) count += work_->corners[level].size();
+  out.resize(count);
+  if (count == 0) return;
+
+  // All levels are blurred into one buffer of one stride, so that one table of offsets serves them all.
+  const ImageView& full = pyramid.view(0);
+  const std::ptrdiff_t stride = (full.width + 63) / 64 * 64;
+  if (const std::size_t size = static_cast<std::size_t>(stride) * full.height; work_->blurred.size() < size + 4)
+    work_->blurred.resize(size + 4);
+  if (work_->row.size() < static_cast<std::size_t>(full.width)) work_->row.resize(full.width);
+  work_->pattern.build(stride);
+
+  std::size_t i = 0;
+  for (int level = 0; level < pyramid.levels(); ++level) {
+    if (work_->corners[level].empty()) continue;
+    const ImageView& image = pyramid.view(level);
+    kernels.blur(image.data, image.stride, image.width, image.height, work_->row.data(), work_->blurred.data(), stride);
+    for (const Corner& corner : work_->corners[level]) {
+      int moment_x = 0, moment_y = 0;
+      kernels.moments(image.at(corner.x, corner.y), image.stride, moment_x, moment_y);
+      out.angle[i] = orb::direction(moment_x, moment_y);
+      kernels.describe(work_->blurred.data() + corner.y * stride + corner.x, work_->pattern.offsets(out.angle[i]),
+                       out.descriptors[i]);
+      out.x[i] = pyramid.full_x(level, corner.x);
+      out.y[i] = pyramid.full_y(level, corner.y);
+      out.response[i] = corner.score;
+      out.octave[i] = static_cast<std::uint8_t>(level);
+      ++i;
+    }
+  }
+}
+
+}  // namespace holdfast

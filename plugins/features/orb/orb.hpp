@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+
+#include "holdfast/core/module.hpp"
+#include "holdfast/core/simd.hpp"
+#include "holdfast/interfaces/feature_extractor.hpp"
+#include "holdfast/plugin/parameter_table.hpp"
+
+namespace holdfast {
+
+struct OrbSettings {
+  int count = 1000;
+  int levels = 8;
+  double scale_factor = 1.2;
+  int fast_threshold = 20;
+  int fast_threshold_low = 7;
+  int cell_size = 32;
+  bool subpixel = true;
+
+  static void describe(ParameterTable<OrbSettings>& table);
+};
+
+/// ORB features, evenly spread (README.md): FAST corners of an image pyramid, orientation by intensity centroid, steered
+/// BRIEF of 256 bits. Positions are of the full image, at sub-pixel accuracy; no feature lies within 16 pixels of the
+/// border of its level. `response` is the FAST score. At most `count` features.
+class OrbExtractor : public FeatureExtractor {
+ public:
+  /// `level` is for tests and benchmarks: all levels give the same bytes.
+  explicit OrbExtractor(const OrbSettings& settings = {}, const CreationContext& context = {},
+                        SimdLevel level = simd_level());
+  ~OrbExtractor() override;
+
+  void extract(const cv::Mat& grey, const cv::Mat& ignore, Features& out) override;
+  const ScalePyramid& pyramid() const override { return scales_; }
+
+ private:
+  struct Work;
+
+  void detect(const cv::Mat& ignore);
+  void select();
+  void describe(Features& out);
+
+  OrbSettings settings_;
+  ScalePyramid scales_;
+  std::unique_ptr<Work> work_;
+};
+
+}  // namespace holdfast
