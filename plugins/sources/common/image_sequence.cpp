@@ -85,4 +85,9 @@ void select_range(std::vector<ImageFiles>& files, std::int64_t start, std::int64
   if (count > 0 && count < size - start) files.resize(static_cast<std::size_t>(count));
 }
 
+std::string folder_name(const std::filesystem::path& path) {
+  const std::filesystem::path folder = std::filesystem::absolute(path).lexically_normal();
+  return (folder.has_filename() ? folder : folder.parent_path()).filename().string();
+}
+
 }  // namespace holdfast

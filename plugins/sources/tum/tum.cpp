@@ -104,8 +104,7 @@ class TumSource final : public FrameSource {
   TumSource(const TumSettings& settings, const CreationContext& context)
       : sequence_(find_pairs(settings), {settings.depth_factor, context.camera.width, context.camera.height,
                                          settings.on_bad_frame == "skip"}) {
-    const std::filesystem::path folder = settings.path.lexically_normal();
-    description_.name = (folder.has_filename() ? folder : folder.parent_path()).filename().string();
+    description_.name = folder_name(settings.path);
     description_.has_depth = true;
     description_.frame_count = sequence_.size();
     if (const auto truth_file = settings.path / "groundtruth.txt"; std::filesystem::exists(truth_file))

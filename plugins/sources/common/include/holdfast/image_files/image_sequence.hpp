@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "holdfast/core/error.hpp"
@@ -59,5 +60,8 @@ class ImageSequence {
 /// the last one; `what` says what is counted.
 void select_range(std::vector<ImageFiles>& files, std::int64_t start, std::int64_t count,
                   const std::filesystem::path& place, const char* what);
+
+/// The last name of a path, for titles: "fr1_xyz" for "data/fr1_xyz/".
+std::string folder_name(const std::filesystem::path& path);
 
 }  // namespace holdfast

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/image_files/image_decoder.hpp"
+
+#include <gmock/gmock.h>
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "sources/recording.hpp"
+
+namespace holdfast {
+namespace {
+
+using test::input_error;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class ImageDecoderTest : public testing::Test {
+ protected:
+  std::filesystem::path file(const char* name) const { return folder_.path() / name; }
+  std::string colour_error(const char* name) {
+    return input_error([&] { decoder_.read_colour(file(name)); });
+  }
+  std::string depth_error(const char* name) {
+    return input_error([&] { decoder_.read_depth(file(name), 5000.0); });
+  }
+
+  test::TemporaryFolder folder_;
+  ImageDecoder decoder_;
+};
+
+TEST_F(ImageDecoderTest, ReadsTheColoursThatWereWritten) {
+  const cv::Mat original = test::colour_image(3);
+  folder_.write_image("a.png", original);
+  const cv::Mat image = decoder_.read_colour(file("a.png"));
+  ASSERT_EQ(image.type(), CV_8UC3);
+  EXPECT_EQ(cv::norm(image, original, cv::NORM_INF), 0.0);
+}
+
+TEST_F(ImageDecoderTest, ReadsJpegAsTheDecodingLibraryDoes) {
+  folder_.write_image("a.jpg", test::colour_image(3));
+  const cv::Mat expected = cv::imread(file("a.jpg").string(), cv::IMREAD_COLOR);
+  EXPECT_EQ(cv::norm(decoder_.read_colour(file("a.jpg")), expected, cv::NORM_INF), 0.0);
+  cv::imwrite(file("progressive.jpg").string(), test::colour_image(3), {cv::IMWRITE_JPEG_PROGRESSIVE, 1});
+  EXPECT_EQ(decoder_.read_colour(file("progressive.jpg")).cols, test::recording_width);
+}
+
+TEST_F(ImageDecoderTest, DepthIsTheQuotientExactly) {
+  cv::Mat original(256, 256, CV_16UC1);
+  for (int value = 0; value < 65536; ++value)
+    original.at<std::uint16_t>(value / 256, value % 256) = static_cast<std::uint16_t>(value);
+  folder_.write_image("d.png", original);
+  for (const double factor : {5000.0, 1000.0, 4999.5}) {
+    const cv::Mat depth = decoder_.read_depth(file("d.png"), factor);
+    ASSERT_EQ(depth.type(), CV_32FC1);
+    for (int value = 0; value < 65536; ++value)
+      ASSERT_EQ(depth.at<float>(value / 256, value % 256), static_cast<float>(value / factor)) << value;
+  }
+}
+
+TEST_F(ImageDecoderTest, AnImageIsNotOverwrittenByTheNext) {
+  folder_.write_image("1.png", test::depth_image(1));
+  folder_.write_image("2.png", test::depth_image(2));
+  const cv::Mat first = decoder_.read_depth(file("1.png"), 1.0);
+  decoder_.read_depth(file("2.png"), 1.0);
+  EXPECT_EQ(first.at<float>(1, 1), 165.0f);
+}
+
+TEST_F(ImageDecoderTest, MissingAndUnreadableFiles) {
+  EXPECT_THAT(colour_error("none.png"), AllOf(StartsWith(file("none.png").string()), HasSubstr("is missing")));
+  std::filesystem::create_directory(file("folder.png"));
+  EXPECT_THAT(colour_error("folder.png"), HasSubstr("is not a file"));
+  folder_.write("empty.png", "");
+  EXPECT_THAT(colour_error("empty.png"), HasSubstr("is empty (0 bytes)"));
+  folder_.write("text.png", "<html>404 not found</html>");
+  EXPECT_THAT(colour_error("text.png"), HasSubstr("is neither a PNG nor a JPEG image"));
+}
+
+TEST_F(ImageDecoderTest, EveryTruncationIsFoundWithoutAWordFromTheLibraries) {
+  folder_.write_image("c.jpg", test::colour_image(1));
+  folder_.write_image("c.png", test::colour_image(1));
+  folder_.write_image("d.png", test::depth_image(1));
+  for (const char* name : {"c.jpg", "c.png", "d.png"}) {
+    const std::string whole = folder_.read(name);
+    for (std::size_t size = 8; size < whole.size(); size += size < 64 ? 1 : 13) {
+      folder_.write("cut", whole.substr(0, size));
+      EXPECT_THAT(name[0] == 'd' ? depth_error("cut") : colour_error("cut"),
+                  HasSubstr("is truncated: it ends after " + std::to_string(size) + " bytes"))
+          << name;
+    }
+    folder_.write("cut", whole.substr(0, whole.size() - 1));
+    EXPECT_THAT(name[0] == 'd' ? depth_error("cut") : colour_error("cut"), HasSubstr("is truncated")) << name;
+  }
+}
+
+TEST_F(ImageDecoderTest, BytesAfterTheEndAreAllowed) {
+  for (const char* name : {"c.jpg", "c.png"}) {
+    folder_.write_image(name, test::colour_image(1));
+    folder_.write("longer", folder_.read(name) + std::string(37, '\0') + "tail");
+    EXPECT_EQ(decoder_.read_colour(file("longer")).rows, test::recording_height);
+  }
+}
+
+TEST_F(ImageDecoderTest, DamagedPngIsFoundByItsChecksum) {
+  folder_.write_image("d.png", test::depth_image(1));
+  std::string bytes = folder_.read("d.png");
+  bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x10);
+  folder_.write("d.png", bytes);
+  EXPECT_THAT(depth_error("d.png"), HasSubstr("is damaged: the checksum"));
+}
+
+TEST_F(ImageDecoderTest, JpegWithoutDataIsDamaged) {
+  folder_.write("a.jpg", std::string("\xff\xd8\xff\xd9", 4));
+  EXPECT_THAT(colour_error("a.jpg"), HasSubstr("holds no image data"));
+}
+
+TEST_F(ImageDecoderTest, ColourOfAnotherKindIsNotConverted) {
+  folder_.write_image("grey.jpg", cv::Mat(48, 64, CV_8UC1, cv::Scalar(7)));
+  EXPECT_THAT(colour_error("grey.jpg"),
+              AllOf(HasSubstr("64x48, 1 channel of 8 bits"), HasSubstr("expected a colour image")));
+  folder_.write_image("alpha.png", cv::Mat(48, 64, CV_8UC4, cv::Scalar::all(7)));
+  EXPECT_THAT(colour_error("alpha.png"), HasSubstr("4 channels of 8 bits"));
+  folder_.write_image("deep.png", cv::Mat(48, 64, CV_16UC3, cv::Scalar::all(7)));
+  EXPECT_THAT(colour_error("deep.png"), HasSubstr("3 channels of 16 bits"));
+}
+
+TEST_F(ImageDecoderTest, DepthOfAnotherKindIsNotConverted) {
+  folder_.write_image("grey.png", cv::Mat(48, 64, CV_8UC1, cv::Scalar(7)));
+  EXPECT_THAT(depth_error("grey.png"), AllOf(HasSubstr("1 channel of 8 bits"), HasSubstr("1 channel of 16 bits")));
+  folder_.write_image("colour.png", cv::Mat(48, 64, CV_16UC3, cv::Scalar::all(7)));
+  EXPECT_THAT(depth_error("colour.png"), HasSubstr("3 channels of 16 bits"));
+  folder_.write_image("grey.jpg", cv::Mat(48, 64, CV_8UC1, cv::Scalar(7)));
+  EXPECT_THAT(depth_error("grey.jpg"), HasSubstr("is a JPEG image"));
+}
+
+}  // namespace
+}  // namespace holdfast

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+
+#include "sources/recording.hpp"
+
+namespace holdfast {
+namespace {
+
+using test::colour_name;
+using test::depth_name;
+using test::input_error;
+using test::read_all;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class TumSourceTest : public testing::Test {
+ protected:
+  void SetUp() override { test::write_tum_recording(folder_, 5); }
+
+  std::unique_ptr<FrameSource> open(ParameterValues values = {}, int width = test::recording_width,
+                                    int height = test::recording_height) const {
+    values["path"] = folder_.path().string();
+    return test::make_source("tum", values, width, height);
+  }
+  /// The message of the error on opening and reading everything.
+  std::string error(const ParameterValues& values = {}) const {
+    return input_error([&] { read_all(*open(values)); });
+  }
+  std::string place(const char* list, int line) const {
+    return (folder_.path() / list).string() + ':' + std::to_string(line) + ": ";
+  }
+  std::string full(const std::string& name) const { return (folder_.path() / name).string(); }
+  /// Frame 2 is made bad and the rest is not: the error names its line, or one skipped frame does.
+  void expect_bad_frame(const char* list, const std::string& image, const std::string& reason) const {
+    const std::string expected = place(list, 4) + full(image) + ": " + reason;
+    EXPECT_THAT(error(), AllOf(StartsWith(expected), HasSubstr("on_bad_frame: skip")));
+
+    const auto source = open({{"on_bad_frame", std::string("skip")}});
+    const std::vector<SensorFrame> frames = read_all(*source);
+    ASSERT_EQ(frames.size(), 4u);
+    EXPECT_EQ(frames[1].index, 1u);
+    EXPECT_EQ(frames[2].index, 3u);
+    const std::vector<SkippedFrame> skipped = source->skipped();
+    ASSERT_EQ(skipped.size(), 1u);
+    EXPECT_EQ(skipped[0].index, 2u);
+    EXPECT_DOUBLE_EQ(skipped[0].timestamp, 100.2);
+    EXPECT_THAT(skipped[0].reason, StartsWith(expected));
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(TumSourceTest, GivesEveryPairInOrder) {
+  const auto source = open();
+  EXPECT_EQ(source->describe().frame_count, 5u);
+  EXPECT_TRUE(source->describe().has_depth);
+  EXPECT_EQ(source->describe().name, folder_.path().filename().string());
+  EXPECT_FALSE(source->describe().camera.has_value());
+  const std::vector<SensorFrame> frames = read_all(*source);
+  ASSERT_EQ(frames.size(), 5u);
+  for (int i = 0; i < 5; ++i) {
+    const SensorFrame& frame = frames[static_cast<std::size_t>(i)];
+    EXPECT_EQ(frame.index, static_cast<std::uint64_t>(i));
+    EXPECT_NEAR(frame.timestamp, 100.0 + 0.1 * i, 1e-9);
+    ASSERT_EQ(frame.colour.type(), CV_8UC3);
+    ASSERT_EQ(frame.depth.type(), CV_32FC1);
+    EXPECT_NEAR(frame.colour.at<cv::Vec3b>(10, 10)[0], 40 + i, i % 2 == 0 ? 0 : 4);
+    EXPECT_EQ(frame.depth.at<float>(0, 0), 0.0f);
+    EXPECT_EQ(frame.depth.at<float>(20, 30), static_cast<float>((100 * i + 64 * 20 + 30) / 5000.0));
+  }
+  EXPECT_FALSE(source->next().has_value());
+  EXPECT_TRUE(source->skipped().empty());
+  EXPECT_TRUE(source->truth().empty());
+}
+
+TEST_F(TumSourceTest, DepthFactorStartAndFrames) {
+  const auto source = open({{"depth_factor", 1000.0}, {"start", std::int64_t{1}}, {"frames", std::int64_t{3}}});
+  EXPECT_EQ(source->describe().frame_count, 3u);
+  const std::vector<SensorFrame> frames = read_all(*source);
+  ASSERT_EQ(frames.size(), 3u);
+  EXPECT_EQ(frames[0].index, 0u);
+  EXPECT_NEAR(frames[0].timestamp, 100.1, 1e-9);
+  EXPECT_EQ(frames[0].depth.at<float>(0, 5), static_cast<float>(105 / 1000.0));
+  EXPECT_EQ(open({{"start", std::int64_t{3}}, {"frames", std::int64_t{9}}})->describe().frame_count, 2u);
+  EXPECT_THAT(error({{"start", std::int64_t{5}}}), HasSubstr("has 5 colour and depth pairs, but `start` is 5"));
+}
+
+TEST_F(TumSourceTest, AColourImageWithoutDepthNearbyMakesNoPair) {
+  folder_.write("depth.txt", "100.001 " + depth_name(0) + "\n100.119 " + depth_name(1) + "\n100.225 " + depth_name(2) +
+                                 "\n100.315 " + depth_name(3) + "\n");
+  const std::vector<SensorFrame> frames = read_all(*open());
+  ASSERT_EQ(frames.size(), 3u);  // the depth images of 100.2 and 100.4 are too far
+  EXPECT_NEAR(frames[1].timestamp, 100.1, 1e-9);
+  EXPECT_NEAR(frames[2].timestamp, 100.3, 1e-9);
+  EXPECT_EQ(read_all(*open({{"max_time_difference", 0.01}})).size(), 1u);
+}
+
+TEST_F(TumSourceTest, ADepthImageServesTheNearestColourImageOnly) {
+  folder_.write("rgb.txt", "100.000 " + colour_name(0) + "\n100.006 " + colour_name(1) + "\n");
+  folder_.write("depth.txt", "100.004 " + depth_name(4) + "\n");
+  const std::vector<SensorFrame> frames = read_all(*open());
+  ASSERT_EQ(frames.size(), 1u);
+  EXPECT_NEAR(frames[0].timestamp, 100.006, 1e-9);
+}
+
+TEST_F(TumSourceTest, ReadyPairsReplaceTheLists) {
+  std::filesystem::remove(folder_.path() / "rgb.txt");
+  std::filesystem::remove(folder_.path() / "depth.txt");
+  const std::string file = folder_.write("pairs.txt", "7.0 " + colour_name(2) + " 9.0 " + depth_name(3) + "\n8.0 " +
+                                                          colour_name(4) + " 9.5 depth/none.png\n");
+  const auto source = open({{"associations", file}});
+  const std::optional<SensorFrame> frame = source->next();
+  ASSERT_TRUE(frame.has_value());
+  EXPECT_EQ(frame->timestamp, 7.0);
+  EXPECT_EQ(frame->colour.at<cv::Vec3b>(0, 0)[0], 42);
+  EXPECT_EQ(frame->depth.at<float>(0, 1), static_cast<float>(301 / 5000.0));
+  EXPECT_THAT(input_error([&] { source->next(); }),
+              AllOf(StartsWith(file + ":2: "), HasSubstr("none.png: is missing")));
+}
+
+TEST_F(TumSourceTest, TruthIsGivenWhereThereIsOne) {
+  folder_.write("groundtruth.txt", "# t\n99 1 2 3 0 0 0 1\n101 4 5 6 0 0 0 1\n");
+  const Trajectory truth = open()->truth();
+  ASSERT_EQ(truth.size(), 2u);
+  EXPECT_EQ(truth[1].timestamp, 101.0);
+  EXPECT_EQ(truth[1].T_world_camera.translation(), Eigen::Vector3d(4, 5, 6));
+  folder_.write("groundtruth.txt", "99 1 2 3 0 0 0 1\n101 4 5\n");
+  EXPECT_THAT(error(), StartsWith(place("groundtruth.txt", 2)));
+}
+
+TEST_F(TumSourceTest, BadFolders) {
+  EXPECT_THAT(input_error([] {
+                test::make_source("tum", {{"path", std::string("/nowhere/recording")}});
+              }),
+              AllOf(StartsWith("/nowhere/recording: is missing"), HasSubstr("source.tum.path")));
+  EXPECT_THAT(input_error([&] {
+                test::make_source("tum", {{"path", full("rgb.txt")}});
+              }),
+              StartsWith(full("rgb.txt") + ": is not a folder"));
+}
+
+TEST_F(TumSourceTest, BadListsAreErrorsEvenWhenBadFramesAreSkipped) {
+  const ParameterValues skip{{"on_bad_frame", std::string("skip")}};
+  const std::string good = folder_.read("depth.txt");
+  folder_.write("depth.txt", good + "100.0 depth/9.png\n");
+  EXPECT_THAT(error(skip), AllOf(StartsWith(place("depth.txt", 7)), HasSubstr("earlier than")));
+  folder_.write("depth.txt", "# nothing\n");
+  EXPECT_THAT(error(skip), StartsWith(full("depth.txt") + ": is an empty list"));
+  std::filesystem::remove(folder_.path() / "depth.txt");
+  EXPECT_THAT(error(skip), StartsWith(full("depth.txt") + ": is missing"));
+  std::filesystem::remove(folder_.path() / "rgb.txt");
+  EXPECT_THAT(error(skip), StartsWith(full("rgb.txt") + ": is missing"));
+}
+
+TEST_F(TumSourceTest, ListsOfDifferentTimesSaySo) {
+  folder_.write("depth.txt", "500.5 depth/0.png\n501.25 depth/1.png\n");
+  EXPECT_THAT(error(), AllOf(StartsWith(folder_.path().string() + ": no colour and depth image lie within 0.020000 s"),
+                             HasSubstr("rgb.txt runs from 100.000000 to 100.400000 s"),
+                             HasSubstr("depth.txt from 500.500000 to 501.250000 s")));
+}
+
+TEST_F(TumSourceTest, MissingColour) {
+  std::filesystem::remove(folder_.path() / colour_name(2));
+  expect_bad_frame("rgb.txt", colour_name(2), "is missing");
+}
+
+TEST_F(TumSourceTest, MissingDepth) {
+  std::filesystem::remove(folder_.path() / depth_name(2));
+  expect_bad_frame("depth.txt", depth_name(2), "is missing");
+}
+
+TEST_F(TumSourceTest, TruncatedColour) {
+  folder_.truncate(colour_name(2), 0.6);
+  expect_bad_frame("rgb.txt", colour_name(2), "is truncated");
+}
+
+TEST_F(TumSourceTest, TruncatedDepth) {
+  folder_.truncate(depth_name(2), 0.6);
+  expect_bad_frame("depth.txt", depth_name(2), "is truncated");
+}
+
+TEST_F(TumSourceTest, EightBitDepth) {
+  folder_.write_image(depth_name(2), cv::Mat(48, 64, CV_8UC1, cv::Scalar(9)));
+  expect_bad_frame("depth.txt", depth_name(2), "is a PNG image of 64x48, 1 channel of 8 bits; expected a depth image");
+}
+
+TEST_F(TumSourceTest, GreyColour) {
+  folder_.write_image(colour_name(2), cv::Mat(48, 64, CV_8UC1, cv::Scalar(9)));
+  expect_bad_frame("rgb.txt", colour_name(2), "is an image of 64x48, 1 channel of 8 bits; expected a colour image");
+}
+
+TEST_F(TumSourceTest, DepthOfAnotherSize) {
+  folder_.write_image(depth_name(2), test::depth_image(2, 32, 24));
+  expect_bad_frame("depth.txt", depth_name(2),
+                   "is 32x24 pixels, but its colour image '" + full(colour_name(2)) + "' is 64x48; expected");
+}
+
+TEST_F(TumSourceTest, ImageOfAnotherSizeThanTheCamera) {
+  folder_.write_image(colour_name(2), test::colour_image(2, 32, 24));
+  expect_bad_frame("rgb.txt", colour_name(2), "is 32x24 pixels, but the camera is 64x48; give the camera");
+}
+
+TEST_F(TumSourceTest, SkippingEveryFrameIsAnError) {
+  const auto source = open({{"on_bad_frame", std::string("skip")}}, 640, 480);
+  EXPECT_THAT(input_error([&] { read_all(*source); }),
+              AllOf(HasSubstr("none of the 5 frames can be used; the first: " + place("rgb.txt", 2)),
+                    HasSubstr("is 64x48 pixels, but the camera is 640x480")));
+  EXPECT_EQ(source->skipped().size(), 5u);
+}
+
+}  // namespace
+}  // namespace holdfast
