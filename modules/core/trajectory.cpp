@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <string_view>
+#include <utility>
 
 #include "holdfast/core/error.hpp"
 
@@ -32,12 +32,42 @@ bool parse_numbers(std::string_view line, std::vector<double>& numbers) {
   }
 }
 
+/// Appends a number with a fixed count of decimals and never a locale's decimal comma.
+void append_fixed(std::string& text, double value, int decimals) {
+  char buffer[400];
+  const auto [end, error] = std::to_chars(buffer, buffer + sizeof(buffer), value, std::chars_format::fixed, decimals);
+  text.append(buffer, error == std::errc() ? end : buffer);
+}
+
+constexpr const char* expected_format = "expected a trajectory in TUM format (t tx ty tz qx qy qz qw)";
+
 }  // namespace
 
+Trajectory sort_and_clean(Trajectory trajectory) {
+  std::erase_if(trajectory, [](const TimedPose& pose) {
+    return !std::isfinite(pose.timestamp) || !pose.T_world_camera.matrix().allFinite();
+  });
+  std::stable_sort(trajectory.begin(), trajectory.end(),
+                   [](const TimedPose& a, const TimedPose& b) { return a.timestamp < b.timestamp; });
+  Trajectory unique;
+  unique.reserve(trajectory.size());
+  for (const TimedPose& pose : trajectory) {
+    if (!unique.empty() && unique.back().timestamp == pose.timestamp)
+      unique.back() = pose;
+    else
+      unique.push_back(pose);
+  }
+  return unique;
+}
+
 Trajectory read_trajectory(const std::filesystem::path& file) {
+  std::error_code status;
+  if (!std::filesystem::exists(file, status))
+    throw InputError({file.string()}, std::string("no such file; ") + expected_format);
+  if (std::filesystem::is_directory(file, status))
+    throw InputError({file.string()}, std::string("found a folder; ") + expected_format);
   std::ifstream stream(file);
-  if (!stream || std::filesystem::is_directory(file))
-    throw InputError({file.string()}, "cannot be read; expected a trajectory in TUM format (t tx ty tz qx qy qz qw)");
+  if (!stream) throw InputError({file.string()}, std::string("cannot be opened for reading; ") + expected_format);
   Trajectory trajectory;
   std::string line;
   std::vector<double> numbers;
@@ -47,35 +77,30 @@ Trajectory read_trajectory(const std::filesystem::path& file) {
     if (!parsed || numbers.size() < 8)
       throw InputError({file.string(), line_number},
                        "found '" + line.substr(0, 60) + "'; expected 8 numbers: t tx ty tz qx qy qz qw");
-    const bool finite = std::all_of(numbers.begin(), numbers.begin() + 8, [](double v) { return std::isfinite(v); });
-    Eigen::Quaterniond rotation(numbers[7], numbers[4], numbers[5], numbers[6]);
-    if (!finite || rotation.norm() == 0.0) continue;
+    const Eigen::Quaterniond rotation(numbers[7], numbers[4], numbers[5], numbers[6]);
+    if (rotation.norm() == 0.0) continue;
     TimedPose pose;
     pose.timestamp = numbers[0];
     pose.T_world_camera = Eigen::Translation3d(numbers[1], numbers[2], numbers[3]) * rotation.normalized();
     trajectory.push_back(pose);
   }
-  std::stable_sort(trajectory.begin(), trajectory.end(),
-                   [](const TimedPose& a, const TimedPose& b) { return a.timestamp < b.timestamp; });
-  Trajectory unique;
-  for (const TimedPose& pose : trajectory) {
-    if (!unique.empty() && unique.back().timestamp == pose.timestamp) unique.back() = pose;
-    else unique.push_back(pose);
-  }
-  return unique;
+  if (stream.bad()) throw InputError({file.string()}, "reading stopped before the end; is the disk in order?");
+  return sort_and_clean(std::move(trajectory));
 }
 
 void write_trajectory(const std::filesystem::path& file, const Trajectory& trajectory) {
   std::string text;
-  char line[256];
   for (const TimedPose& pose : trajectory) {
     const Eigen::Vector3d t = pose.T_world_camera.translation();
     Eigen::Quaterniond q(pose.T_world_camera.linear());
     q.normalize();
     if (q.w() < 0.0) q.coeffs() = -q.coeffs();
-    std::snprintf(line, sizeof(line), "%.6f %.9f %.9f %.9f %.9f %.9f %.9f %.9f\n", pose.timestamp, t.x(), t.y(), t.z(),
-                  q.x(), q.y(), q.z(), q.w());
-    text += line;
+    append_fixed(text, pose.timestamp, 6);
+    for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) {
+      text += ' ';
+      append_fixed(text, value, 9);
+    }
+    text += '\n';
   }
   write_file_atomically(file, text);
 }
@@ -87,7 +112,12 @@ void write_file_atomically(const std::filesystem::path& file, const std::string&
     std::ofstream stream(temporary, std::ios::binary);
     stream.write(content.data(), static_cast<std::streamsize>(content.size()));
     stream.flush();
-    if (!stream) throw InputError({temporary.string()}, "cannot be written; is the folder there, writable and not full?");
+    if (!stream) {
+      stream.close();
+      std::error_code ignored;
+      std::filesystem::remove(temporary, ignored);
+      throw InputError({file.string()}, "cannot be written; is the folder there, writable and not full?");
+    }
   }
   std::error_code error;
   std::filesystem::rename(temporary, file, error);

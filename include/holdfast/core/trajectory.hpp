@@ -16,13 +16,17 @@ struct TimedPose {
 
 using Trajectory = std::vector<TimedPose>;
 
-/// Reads a trajectory in TUM format: lines "timestamp tx ty tz qx qy qz qw", '#' begins a comment. Sorted by stamp;
-/// of several poses with one stamp the last one counts, as in the TUM tools. Lines with a value that is not finite are
-/// left out, as there. Throws InputError (file and line) for a file that cannot be read or a line that is no pose.
+/// The poses sorted by stamp, each stamp once: of several poses with one stamp the last one counts, as in the TUM
+/// tools. Poses with a value that is not finite are left out, as there.
+Trajectory sort_and_clean(Trajectory trajectory);
+
+/// Reads a trajectory in TUM format: lines "timestamp tx ty tz qx qy qz qw", '#' begins a comment, further words are
+/// ignored. The result is sorted and cleaned as by sort_and_clean(); quaternions are normalised, lines with a zero one
+/// are left out. Throws InputError (file and line) for a file that cannot be read or a line that is no pose.
 Trajectory read_trajectory(const std::filesystem::path& file);
 
 /// Writes TUM format, stamps with 6 decimals and values with 9; to a temporary name first, then renamed. Throws
-/// InputError when the file cannot be written.
+/// InputError when the file cannot be written. The same bytes whatever the process's locale.
 void write_trajectory(const std::filesystem::path& file, const Trajectory& trajectory);
 
 /// Replaces the content of a file in one step: written to a temporary name beside it, then renamed.

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/evaluation/coverage.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+#include "holdfast/core/error.hpp"
+#include "holdfast/evaluation/association.hpp"
+
+namespace holdfast {
+
+namespace {
+
+constexpr double frame_tolerance = 0.001;        // [s]
+constexpr double colour_depth_tolerance = 0.02;  // [s]
+
+std::vector<double> read_stamp_list(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream)
+    throw InputError({file.string()}, "cannot be read; expected a list of frames, each line beginning with a stamp");
+  std::vector<double> stamps;
+  std::string line;
+  for (int line_number = 1; std::getline(stream, line); ++line_number) {
+    const std::string_view content = std::string_view(line).substr(0, line.find('#'));
+    const std::size_t begin = content.find_first_not_of(" \t\r,");
+    if (begin == std::string_view::npos) continue;
+    const std::size_t end = std::min(content.find_first_of(" \t\r,", begin), content.size());
+    double stamp = 0.0;
+    const auto [stop, error] = std::from_chars(content.data() + begin, content.data() + end, stamp);
+    if (error != std::errc() || stop != content.data() + end || !std::isfinite(stamp))
+      throw InputError({file.string(), line_number},
+                       "found '" + line.substr(0, 60) + "'; expected a line that begins with a stamp in seconds");
+    stamps.push_back(stamp);
+  }
+  if (stamps.empty())
+    throw InputError({file.string()}, "holds no frame; expected lines that begin with a stamp in seconds");
+  std::sort(stamps.begin(), stamps.end());
+  stamps.erase(std::unique(stamps.begin(), stamps.end()), stamps.end());
+  return stamps;
+}
+
+}  // namespace
+
+Coverage measure_coverage(std::span<const double> frame_stamps, std::span<const double> pose_stamps) {
+  HOLDFAST_CHECK(!frame_stamps.empty(), "poses " << pose_stamps.size());
+  Coverage coverage;
+  const std::vector<StampPair> pairs = pair_stamps(frame_stamps, pose_stamps, frame_tolerance);
+  coverage.frames = frame_stamps.size();
+  coverage.poses = pairs.size();
+  coverage.poses_of_no_frame = pose_stamps.size() - pairs.size();
+  const auto close_gap = [&](std::size_t missing) {
+    coverage.gaps += missing > 0;
+    coverage.longest_gap = std::max(coverage.longest_gap, missing);
+  };
+  std::size_t next_frame = 0;
+  for (const StampPair& pair : pairs) {
+    close_gap(pair.first - next_frame);
+    next_frame = pair.first + 1;
+  }
+  close_gap(coverage.frames - next_frame);
+  return coverage;
+}
+
+std::vector<double> read_frame_stamps(const std::filesystem::path& source) {
+  std::error_code status;
+  if (!std::filesystem::exists(source, status))
+    throw InputError({source.string()},
+                     "no such file or folder; expected a list of frames or the folder of a TUM sequence");
+  if (!std::filesystem::is_directory(source, status)) return read_stamp_list(source);
+  const std::vector<double> colour = read_stamp_list(source / "rgb.txt");
+  const std::vector<double> depth = read_stamp_list(source / "depth.txt");
+  std::vector<double> stamps;
+  for (const StampPair& pair : pair_stamps(colour, depth, colour_depth_tolerance)) stamps.push_back(colour[pair.first]);
+  if (stamps.empty())
+    throw InputError({source.string()}, "no colour frame of rgb.txt has a depth frame of depth.txt within 0.02 s");
+  return stamps;
+}
+
+}  // namespace holdfast

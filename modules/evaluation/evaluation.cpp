@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/evaluation/evaluation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "holdfast/core/error.hpp"
+#include "holdfast/evaluation/association.hpp"
+#include "number_text.hpp"
+#include "relative_error.hpp"
+
+namespace holdfast {
+
+namespace {
+
+constexpr std::size_t fewest_pairs = 3;
+
+void check_options(const EvaluationOptions& options) {
+  const auto check = [](const char* name, double value) {
+    if (!(value > 0.0) || !std::isfinite(value))
+      throw Error(std::string(name) + " is " + shortest_text(value) + "; expected a positive number");
+  };
+  check("the largest time difference of a pair [s]", options.max_time_difference);
+  check("the time step of the relative error [s]", options.time_step);
+  check("the path step of the relative error [m]", options.path_step);
+}
+
+std::string describe(const std::string& name, const std::vector<double>& stamps) {
+  if (stamps.empty()) return name + " holds no pose";
+  return name + " holds " + std::to_string(stamps.size()) + (stamps.size() == 1 ? " pose" : " poses") + " from " +
+         fixed_text(stamps.front(), 6) + " to " + fixed_text(stamps.back(), 6) + " s";
+}
+
+[[noreturn]] void throw_too_few_pairs(const EvaluationOptions& options, std::size_t pairs,
+                                      const std::vector<double>& truth, const std::vector<double>& estimate) {
+  std::string message = "found " + std::to_string(pairs) + (pairs == 1 ? " pair" : " pairs") +
+                        " of stamps closer than " + shortest_text(options.max_time_difference) +
+                        " s; expected at least 3. " + describe(options.truth_name, truth) + ", " +
+                        describe(options.estimate_name, estimate) + ". ";
+  if (truth.size() < fewest_pairs || estimate.size() < fewest_pairs)
+    message += "Give trajectories of at least 3 poses.";
+  else if (truth.back() < estimate.front() || estimate.back() < truth.front())
+    message += "They do not overlap in time: are both of the same sequence, in seconds of the same clock?";
+  else
+    message += "They overlap in time: allow a larger difference of stamps if the truth was recorded less often.";
+  throw Error(message);
+}
+
+/// The truth from shortly before the first to shortly after the last pose of the estimate.
+std::vector<TimedPosition> track_between(const Trajectory& truth, double begin, double end) {
+  std::vector<TimedPosition> track;
+  for (const TimedPose& pose : truth)
+    if (pose.timestamp >= begin && pose.timestamp <= end)
+      track.push_back({pose.timestamp, pose.T_world_camera.translation()});
+  return track;
+}
+
+}  // namespace
+
+Evaluation evaluate(const Trajectory& truth_as_given, const Trajectory& estimate_as_given,
+                    const EvaluationOptions& options, const std::optional<std::vector<double>>& frame_stamps) {
+  check_options(options);
+  const Trajectory truth = sort_and_clean(truth_as_given);
+  const Trajectory estimate = sort_and_clean(estimate_as_given);
+  const std::vector<double> truth_stamps = stamps_of(truth);
+  const std::vector<double> estimate_stamps = stamps_of(estimate);
+  const std::vector<StampPair> pairs = pair_stamps(truth_stamps, estimate_stamps, options.max_time_difference);
+  if (pairs.size() < fewest_pairs) throw_too_few_pairs(options, pairs.size(), truth_stamps, estimate_stamps);
+
+  Evaluation result;
+  result.options = options;
+  result.truth_poses = truth.size();
+  result.estimate_poses = estimate.size();
+
+  Eigen::Matrix3Xd true_positions(3, pairs.size()), estimated_positions(3, pairs.size());
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    true_positions.col(static_cast<Eigen::Index>(k)) = truth[pairs[k].first].T_world_camera.translation();
+    estimated_positions.col(static_cast<Eigen::Index>(k)) = estimate[pairs[k].second].T_world_camera.translation();
+  }
+  result.alignment = align_positions(estimated_positions, true_positions, options.alignment);
+
+  std::vector<double> errors;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    EvaluatedPose pose;
+    pose.timestamp = estimate_stamps[pairs[k].second];
+    pose.truth_timestamp = truth_stamps[pairs[k].first];
+    pose.truth = true_positions.col(static_cast<Eigen::Index>(k));
+    pose.estimate = result.alignment.apply(estimated_positions.col(static_cast<Eigen::Index>(k)));
+    pose.error = (pose.estimate - pose.truth).norm();
+    errors.push_back(pose.error);
+    if (k > 0) result.path_length += (pose.truth - result.poses.back().truth).norm();
+    result.poses.push_back(pose);
+  }
+  result.duration = result.poses.back().timestamp - result.poses.front().timestamp;
+  result.absolute_error = statistics_of(errors);
+  const double scale = result.alignment.scale;
+  result.error_per_time = relative_error_per_time(truth, estimate, options.time_step, scale);
+  result.error_per_way = relative_error_per_way(truth, estimate, options.path_step, scale);
+
+  if (frame_stamps) {
+    std::vector<double> frames = *frame_stamps;
+    std::sort(frames.begin(), frames.end());
+    frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+    if (frames.empty()) throw Error("the list of frames is empty; expected the stamps of the sequence's frames");
+    result.coverage = measure_coverage(frames, estimate_stamps);
+  }
+
+  result.truth_track = track_between(truth, estimate_stamps.front(), estimate_stamps.back());
+  for (const TimedPose& pose : estimate)
+    result.estimate_track.push_back({pose.timestamp, result.alignment.apply(pose.T_world_camera.translation())});
+  return result;
+}
+
+}  // namespace holdfast

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include "holdfast/evaluation/evaluation.hpp"
+#include "holdfast/evaluation/svg_plot.hpp"
+#include "number_text.hpp"
+
+namespace holdfast {
+
+namespace {
+
+constexpr double lift_pen = std::numeric_limits<double>::quiet_NaN();
+constexpr const char* axis_names[3] = {"x", "y", "z"};
+
+/// A distance between stamps beyond which a line is broken: the usual one with room for a single dropped frame.
+double gap_threshold(const std::vector<double>& stamps) {
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < stamps.size(); ++i) intervals.push_back(stamps[i] - stamps[i - 1]);
+  return intervals.empty() ? 0.0 : 2.5 * median(intervals);
+}
+
+/// The two axes in which the truth extends most, in the order x, y, z.
+std::array<int, 2> widest_axes(const std::vector<EvaluatedPose>& poses) {
+  Eigen::Vector3d minimum = poses.front().truth, maximum = poses.front().truth;
+  for (const EvaluatedPose& pose : poses) {
+    minimum = minimum.cwiseMin(pose.truth);
+    maximum = maximum.cwiseMax(pose.truth);
+  }
+  int narrowest = 2;
+  // Strictly less, so that of equal extents z is the one looked along: the true top view where up is z.
+  for (const int axis : {1, 0})
+    if (maximum[axis] - minimum[axis] < maximum[narrowest] - minimum[narrowest]) narrowest = axis;
+  return {narrowest == 0 ? 1 : 0, narrowest == 2 ? 1 : 2};
+}
+
+void append_track(PlotLine& line, const std::vector<TimedPosition>& track, const std::array<int, 2>& axes) {
+  std::vector<double> stamps;
+  for (const TimedPosition& point : track) stamps.push_back(point.timestamp);
+  const double threshold = gap_threshold(stamps);
+  for (std::size_t i = 0; i < track.size(); ++i) {
+    if (i > 0 && stamps[i] - stamps[i - 1] > threshold) {
+      line.x.push_back(lift_pen);
+      line.y.push_back(lift_pen);
+    }
+    line.x.push_back(track[i].position[axes[0]]);
+    line.y.push_back(track[i].position[axes[1]]);
+  }
+}
+
+/// Metres, or millimetres when they read better.
+struct LengthUnit {
+  const char* name;
+  double per_metre;
+};
+LengthUnit unit_for(double largest) { return largest < 0.2 ? LengthUnit{"mm", 1000.0} : LengthUnit{"m", 1.0}; }
+
+std::string length_text(double metres) {
+  const LengthUnit unit = unit_for(metres);
+  return fixed_text(metres * unit.per_metre, unit.per_metre > 1.0 ? 1 : 3) + ' ' + unit.name;
+}
+
+}  // namespace
+
+std::string top_view_svg(const Evaluation& evaluation) {
+  const std::array<int, 2> axes = widest_axes(evaluation.poses);
+  const int sight = 3 - axes[0] - axes[1];
+  Plot plot;
+  plot.title = std::string(sight == 2 ? "Top view" : "View along the axis of least extent") + " (" +
+               axis_names[axes[0]] + "-" + axis_names[axes[1]] + "), alignment " +
+               std::string(to_string(evaluation.options.alignment)) + ", ATE RMSE " +
+               length_text(evaluation.absolute_error.rmse);
+  plot.x_label = std::string(axis_names[axes[0]]) + " [m]";
+  plot.y_label = std::string(axis_names[axes[1]]) + " [m]";
+  plot.equal_scale = true;
+  plot.width = 760;
+  plot.height = 620;
+
+  PlotLine difference{"difference", plot_colour::orange, {}, {}, 0.7, false};
+  constexpr std::size_t most_differences = 1500;  // more only make the file large
+  const std::size_t stride = evaluation.poses.size() / most_differences + 1;
+  for (std::size_t i = 0; i < evaluation.poses.size(); i += stride) {
+    const EvaluatedPose& pose = evaluation.poses[i];
+    difference.x.insert(difference.x.end(), {pose.truth[axes[0]], pose.estimate[axes[0]], lift_pen});
+    difference.y.insert(difference.y.end(), {pose.truth[axes[1]], pose.estimate[axes[1]], lift_pen});
+  }
+  PlotLine truth{"truth", plot_colour::black, {}, {}, 1.4, false};
+  append_track(truth, evaluation.truth_track, axes);
+  PlotLine estimate{"estimate", plot_colour::blue, {}, {}, 1.4, false};
+  append_track(estimate, evaluation.estimate_track, axes);
+  plot.lines = {difference, truth, estimate};
+  const Eigen::Vector3d& begin = evaluation.poses.front().estimate;
+  plot.points = {{"start", plot_colour::green, begin[axes[0]], begin[axes[1]]}};
+  return to_svg(plot);
+}
+
+std::string error_over_time_svg(const Evaluation& evaluation) {
+  const LengthUnit unit = unit_for(evaluation.absolute_error.maximum);
+  const double begin = evaluation.poses.front().timestamp;
+  std::vector<double> stamps;
+  for (const EvaluatedPose& pose : evaluation.poses) stamps.push_back(pose.timestamp);
+  const double threshold = gap_threshold(stamps);
+
+  Plot plot;
+  plot.title = "Absolute error over time, alignment " + std::string(to_string(evaluation.options.alignment));
+  plot.x_label = "time since the first pose [s]";
+  plot.y_label = std::string("position error [") + unit.name + "]";
+  plot.y_from_zero = true;
+  plot.height = 380;
+  plot.band_label = "no pose";
+  PlotLine error{"error", plot_colour::blue, {}, {}, 1.4, false};
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    if (i > 0 && stamps[i] - stamps[i - 1] > threshold) {
+      plot.bands.push_back({stamps[i - 1] - begin, stamps[i] - begin});
+      error.x.push_back(lift_pen);
+      error.y.push_back(lift_pen);
+    }
+    error.x.push_back(stamps[i] - begin);
+    error.y.push_back(evaluation.poses[i].error * unit.per_metre);
+  }
+  plot.lines = {error};
+  const Statistics& statistics = evaluation.absolute_error;
+  plot.levels = {{"RMSE " + length_text(statistics.rmse), plot_colour::vermilion, statistics.rmse * unit.per_metre}};
+  return to_svg(plot);
+}
+
+}  // namespace holdfast

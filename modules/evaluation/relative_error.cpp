@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "relative_error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "holdfast/evaluation/association.hpp"
+
+namespace holdfast {
+
+namespace {
+
+constexpr double uneven_share = 0.1;  // of the step
+
+/// For every pose of the estimate its nearest truth, where that is near enough.
+class NearestTruth {
+ public:
+  NearestTruth(const std::vector<double>& truth_stamps, const std::vector<double>& estimate_stamps) {
+    std::vector<double> intervals;
+    for (std::size_t i = 1; i < truth_stamps.size(); ++i) intervals.push_back(truth_stamps[i] - truth_stamps[i - 1]);
+    const double tolerance = 2.0 * median(intervals);
+    for (const double stamp : estimate_stamps) {
+      const std::size_t nearest = nearest_stamp(truth_stamps, stamp);
+      index_.push_back(nearest);
+      near_.push_back(std::abs(truth_stamps[nearest] - stamp) <= tolerance);
+    }
+  }
+  bool is_near(std::size_t estimate_index) const { return near_[estimate_index]; }
+  std::size_t operator[](std::size_t estimate_index) const { return index_[estimate_index]; }
+
+ private:
+  std::vector<std::size_t> index_;
+  std::vector<char> near_;
+};
+
+/// Collects the errors of pairs and sums them up.
+class Collector {
+ public:
+  Collector(const Trajectory& truth, const Trajectory& estimate, double scale)
+      : truth_(truth), estimate_(estimate), scale_(scale) {}
+
+  void add(std::size_t i, std::size_t j, std::size_t truth_i, std::size_t truth_j) {
+    Eigen::Isometry3d moved = estimate_[i].T_world_camera.inverse() * estimate_[j].T_world_camera;
+    moved.translation() *= scale_;
+    const Eigen::Isometry3d truly_moved = truth_[truth_i].T_world_camera.inverse() * truth_[truth_j].T_world_camera;
+    const Eigen::Isometry3d error = moved * truly_moved.inverse();
+    translation_.push_back(error.translation().norm());
+    const double cosine = std::clamp((error.linear().trace() - 1.0) / 2.0, -1.0, 1.0);
+    rotation_.push_back(std::acos(cosine) * 180.0 / std::numbers::pi);
+  }
+
+  void finish(RelativeError& result) const {
+    result.pairs = translation_.size();
+    result.translation = statistics_of(translation_);
+    result.rotation = statistics_of(rotation_);
+  }
+
+ private:
+  const Trajectory& truth_;
+  const Trajectory& estimate_;
+  double scale_;
+  std::vector<double> translation_, rotation_;
+};
+
+}  // namespace
+
+std::vector<double> stamps_of(const Trajectory& trajectory) {
+  std::vector<double> stamps;
+  stamps.reserve(trajectory.size());
+  for (const TimedPose& pose : trajectory) stamps.push_back(pose.timestamp);
+  return stamps;
+}
+
+RelativeError relative_error_per_time(const Trajectory& truth, const Trajectory& estimate, double time_step,
+                                      double scale) {
+  const std::vector<double> stamps = stamps_of(estimate);
+  const NearestTruth nearest(stamps_of(truth), stamps);
+  Collector collector(truth, estimate, scale);
+  RelativeError result;
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    const std::size_t j = nearest_stamp(stamps, stamps[i] + time_step);
+    if (j + 1 == stamps.size() || !nearest.is_near(i) || !nearest.is_near(j)) continue;
+    collector.add(i, j, nearest[i], nearest[j]);
+    if (std::abs(stamps[j] - stamps[i] - time_step) > uneven_share * time_step) ++result.uneven_pairs;
+  }
+  collector.finish(result);
+  return result;
+}
+
+RelativeError relative_error_per_way(const Trajectory& truth, const Trajectory& estimate, double path_step,
+                                     double scale) {
+  const NearestTruth nearest(stamps_of(truth), stamps_of(estimate));
+  std::vector<double> way(truth.size(), 0.0);
+  for (std::size_t k = 1; k < truth.size(); ++k)
+    way[k] = way[k - 1] + (truth[k].T_world_camera.translation() - truth[k - 1].T_world_camera.translation()).norm();
+  Collector collector(truth, estimate, scale);
+  RelativeError result;
+  // The way never shrinks with time, so the end of the pair never moves back.
+  std::size_t j = 0;
+  for (std::size_t i = 0; i < estimate.size(); ++i) {
+    if (!nearest.is_near(i)) continue;
+    while (j < estimate.size() && (!nearest.is_near(j) || way[nearest[j]] - way[nearest[i]] < path_step)) ++j;
+    if (j == estimate.size()) break;
+    if (way[nearest[j]] - way[nearest[i]] > (1.0 + uneven_share) * path_step)
+      ++result.omitted_pairs;
+    else
+      collector.add(i, j, nearest[i], nearest[j]);
+  }
+  collector.finish(result);
+  return result;
+}
+
+}  // namespace holdfast
