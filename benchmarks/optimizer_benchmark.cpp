@@ -5,7 +5,7 @@
 
 #include "holdfast/geometry/pose_adjustment.hpp"
 #include "holdfast/plugin/plugin.hpp"
-#include "optimizers/synthetic.hpp"
+#include "geometry/synthetic.hpp"
 
 extern "C" void holdfast_register_plugin_ceres(holdfast::Registry& registry);
 

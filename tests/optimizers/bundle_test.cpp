@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "holdfast/plugin/registry.hpp"
-#include "optimizers/synthetic.hpp"
+#include "geometry/synthetic.hpp"
 
 extern "C" void holdfast_register_plugin_ceres(holdfast::Registry& registry);
 

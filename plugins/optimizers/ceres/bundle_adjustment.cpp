@@ -56,8 +56,8 @@ class Bundle {
 
   void choose();
   void build();
-  template <int rows>
-  void add(std::size_t index, ceres::LossFunction* loss);
+  void add_free(const Observation& observation);
+  void set_outliers_aside();
   bool is_outlier(const Observation& observation) const;
   double limit(const Observation& observation) const {
     return std::isnan(observation.right_x) ? settings_.chi_square_two : settings_.chi_square_three;
@@ -71,15 +71,17 @@ class Bundle {
   std::vector<PoseState> states_;
   PoseUpdater updater_;
   std::vector<Eigen::Vector3d> points_;
-  std::vector<std::uint32_t> chosen_;  // observations in the problem
   std::vector<std::uint8_t> pose_is_used_, point_is_used_;
-  std::vector<Measurement> measurements_;  // of chosen_
-  std::vector<SwitchableHuber> losses_;    // of chosen_
-  // Pools: one block of memory each rather than one per observation. References stay valid as they grow.
+  std::vector<std::uint32_t> free_;   // observations in the problem, from free poses
+  std::vector<std::uint32_t> fixed_;  // from fixed poses, by point
+  bool is_robust_ = true;
+  // What the problem points to; reserved, so that references stay valid.
+  std::vector<Measurement> measurements_;             // of free_
+  std::vector<SwitchableHuber> losses_;               // of free_
+  std::vector<FixedObservation> fixed_observations_;  // of fixed_
   std::deque<FreePoseCost<2>> free_two_;
   std::deque<FreePoseCost<3>> free_three_;
-  std::deque<FixedPoseCost<2>> fixed_two_;
-  std::deque<FixedPoseCost<3>> fixed_three_;
+  std::deque<FixedPosesCost> fixed_costs_;
   std::unique_ptr<ceres::Problem> ceres_;
 };
 
@@ -120,29 +122,31 @@ void Bundle::choose() {
   for (std::size_t i = 0; i < count; ++i) {
     const Observation& observation = problem_.observations[i];
     if (!usable[i] || !point_is_used_[observation.point]) continue;
-    chosen_.push_back(static_cast<std::uint32_t>(i));
-    if (!problem_.poses[observation.pose].fixed) pose_is_used_[observation.pose] = 1;
+    const bool is_fixed = problem_.poses[observation.pose].fixed;
+    (is_fixed ? fixed_ : free_).push_back(static_cast<std::uint32_t>(i));
+    if (!is_fixed) pose_is_used_[observation.pose] = 1;
   }
+  std::stable_sort(fixed_.begin(), fixed_.end(), [this](std::uint32_t a, std::uint32_t b) {
+    return problem_.observations[a].point < problem_.observations[b].point;
+  });
 }
 
-template <int rows>
-void Bundle::add(std::size_t index, ceres::LossFunction* loss) {
-  const Observation& observation = problem_.observations[chosen_[index]];
+Measurement measurement_of(const BundleProblem::Observation& observation) {
+  const double scale2 = static_cast<double>(observation.inverse_sigma2) * observation.weight;
+  return {observation.x, observation.y, observation.right_x, std::sqrt(scale2), true};
+}
+
+void Bundle::add_free(const Observation& observation) {
   PoseState& pose = states_[observation.pose];
   double* point = points_[observation.point].data();
-  if (problem_.poses[observation.pose].fixed) {
-    if constexpr (rows == 2)
-      ceres_->AddResidualBlock(&fixed_two_.emplace_back(camera_, measurements_[index], pose), loss, point);
-    else
-      ceres_->AddResidualBlock(&fixed_three_.emplace_back(camera_, measurements_[index], pose), loss, point);
-  } else {
-    if constexpr (rows == 2)
-      ceres_->AddResidualBlock(&free_two_.emplace_back(camera_, measurements_[index], pose), loss, pose.parameters,
-                               point);
-    else
-      ceres_->AddResidualBlock(&free_three_.emplace_back(camera_, measurements_[index], pose), loss, pose.parameters,
-                               point);
-  }
+  const Measurement& measurement = measurements_.emplace_back(measurement_of(observation));
+  SwitchableHuber* loss = &losses_.emplace_back(limit(observation) * observation.weight, is_robust_);
+  ceres::CostFunction* cost = nullptr;
+  if (std::isnan(observation.right_x))
+    cost = &free_two_.emplace_back(camera_, measurement, pose);
+  else
+    cost = &free_three_.emplace_back(camera_, measurement, pose);
+  ceres_->AddResidualBlock(cost, loss, pose.parameters, point);
 }
 
 void Bundle::build() {
@@ -152,18 +156,28 @@ void Bundle::build() {
   options.disable_all_safety_checks = true;
   options.evaluation_callback = &updater_;
   ceres_ = std::make_unique<ceres::Problem>(options);
-  measurements_.resize(chosen_.size());
-  losses_.reserve(chosen_.size());
-  for (std::size_t i = 0; i < chosen_.size(); ++i) {
-    const Observation& observation = problem_.observations[chosen_[i]];
-    const double scale2 = static_cast<double>(observation.inverse_sigma2) * observation.weight;
-    measurements_[i] = {observation.x, observation.y, observation.right_x, std::sqrt(scale2), true};
-    losses_.emplace_back(limit(observation) * observation.weight);
-    if (std::isnan(observation.right_x))
-      add<2>(i, &losses_.back());
-    else
-      add<3>(i, &losses_.back());
+  measurements_.reserve(free_.size());
+  losses_.reserve(free_.size());
+  for (const std::uint32_t i : free_) add_free(problem_.observations[i]);
+
+  fixed_observations_.reserve(fixed_.size());
+  for (std::size_t begin = 0, end = 0; begin < fixed_.size(); begin = end) {
+    const std::uint32_t point = problem_.observations[fixed_[begin]].point;
+    for (; end < fixed_.size() && problem_.observations[fixed_[end]].point == point; ++end) {
+      const Observation& observation = problem_.observations[fixed_[end]];
+      fixed_observations_.push_back({measurement_of(observation), &states_[observation.pose],
+                                     limit(observation) * observation.weight, !std::isnan(observation.right_x)});
+    }
+    const std::span<const FixedObservation> group(fixed_observations_.data() + begin, end - begin);
+    ceres_->AddResidualBlock(&fixed_costs_.emplace_back(camera_, group, is_robust_), nullptr, points_[point].data());
   }
+}
+
+void Bundle::set_outliers_aside() {
+  for (std::size_t i = 0; i < free_.size(); ++i) measurements_[i].active = !is_outlier(problem_.observations[free_[i]]);
+  for (std::size_t i = 0; i < fixed_.size(); ++i)
+    fixed_observations_[i].measurement.active = !is_outlier(problem_.observations[fixed_[i]]);
+  is_robust_ = false;
 }
 
 bool Bundle::solve(int iterations, const std::atomic<bool>& stop, BundleSummary& summary, double& cost_before) {
@@ -179,6 +193,7 @@ bool Bundle::solve(int iterations, const std::atomic<bool>& stop, BundleSummary&
   options.linear_solver_type = free_poses <= settings_.dense_poses ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
   options.max_num_iterations = iterations;
   options.function_tolerance = settings_.function_tolerance;
+  options.jacobi_scaling = false;  // the damping is scaled by the columns anyway
   options.num_threads = 1;
   options.logging_type = ceres::SILENT;
   StopCallback callback(stop);
@@ -203,13 +218,11 @@ BundleSummary Bundle::run(const std::atomic<bool>& stop) {
     summary.stopped = true;
     return summary;
   }
-  if (chosen_.empty()) return summary;
+  if (free_.empty()) return summary;
   build();
   if (!solve(problem_.robust_iterations, stop, summary, summary.initial_cost)) return summary;
   if (!summary.stopped && problem_.final_iterations > 0) {
-    for (std::size_t i = 0; i < chosen_.size(); ++i)
-      measurements_[i].active = !is_outlier(problem_.observations[chosen_[i]]);
-    for (SwitchableHuber& loss : losses_) loss.lift();
+    set_outliers_aside();
     double ignored = 0.0;
     if (!solve(problem_.final_iterations, stop, summary, ignored)) return summary;
   }

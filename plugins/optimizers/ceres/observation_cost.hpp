@@ -6,7 +6,9 @@
 #include <ceres/sized_cost_function.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "holdfast/core/camera.hpp"
@@ -58,13 +60,13 @@ class PoseUpdater final : public ceres::EvaluationCallback {
   std::vector<PoseState>& poses_;
 };
 
-/// Huber's cost with a limit that can be lifted between two solves.
+/// Huber's cost while `is_robust` is set, plain squares otherwise.
 class SwitchableHuber final : public ceres::LossFunction {
  public:
-  explicit SwitchableHuber(double limit) : limit_(limit), threshold_(std::sqrt(limit)) {}
-  void lift() { is_lifted_ = true; }
+  SwitchableHuber(double limit, const bool& is_robust)
+      : limit_(limit), threshold_(std::sqrt(limit)), is_robust_(is_robust) {}
   void Evaluate(double squared, double result[3]) const override {
-    if (is_lifted_ || squared <= limit_) {
+    if (!is_robust_ || squared <= limit_) {
       result[0] = squared, result[1] = 1.0, result[2] = 0.0;
       return;
     }
@@ -76,7 +78,7 @@ class SwitchableHuber final : public ceres::LossFunction {
 
  private:
   double limit_, threshold_;
-  bool is_lifted_ = false;
+  const bool& is_robust_;
 };
 
 /// A measurement, its scale, and whether it has a say.
@@ -144,22 +146,81 @@ class FreePoseCost final : public ceres::SizedCostFunction<rows, 6, 3> {
   const PoseState& pose_;
 };
 
-/// Block: point (3).
-template <int rows>
-class FixedPoseCost final : public ceres::SizedCostFunction<rows, 3> {
+/// One observation from a fixed pose.
+struct FixedObservation {
+  Measurement measurement;
+  const PoseState* pose = nullptr;
+  double limit = 0;  ///< of Huber's cost, times weight
+  bool has_right = false;
+};
+
+/// All observations of a point from fixed poses as one block of four residuals, which spares the solver most of its
+/// rows. Block: point (3).
+///
+/// With H = sum of rho' J^T J and g = sum of rho' J^T r over the observations, and H = L L^T, the residual is
+/// (L^-1 g, e) and its Jacobian (L^T, 0): the same Gauss-Newton system and gradient as row by row. e fills the square
+/// up to the sum of rho, which never is less than |L^-1 g|^2, because rho >= rho' s for Huber's cost.
+class FixedPosesCost final : public ceres::SizedCostFunction<4, 3> {
  public:
-  FixedPoseCost(const Camera& camera, const Measurement& measurement, const PoseState& pose)
-      : camera_(camera), measurement_(measurement), pose_(pose) {}
+  /// `is_robust` is looked at in every evaluation: Huber's cost or plain squares.
+  FixedPosesCost(const Camera& camera, std::span<const FixedObservation> observations, const bool& is_robust)
+      : camera_(camera), observations_(observations), is_robust_(is_robust) {}
+
   bool Evaluate(const double* const* parameters, double* residual, double** jacobians) const override {
-    evaluate_observation<rows>(camera_, measurement_, pose_, parameters[0], residual, nullptr,
-                               jacobians ? jacobians[0] : nullptr);
+    const bool linearise = jacobians && jacobians[0];
+    Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+    double squared_sum = 0.0;
+    for (const FixedObservation& observation : observations_) {
+      const auto accumulate = [&]<int rows>() {
+        Eigen::Matrix<double, rows, 1> error;
+        Eigen::Matrix<double, rows, 3, Eigen::RowMajor> jacobian;
+        evaluate_observation<rows>(camera_, observation.measurement, *observation.pose, parameters[0], error.data(),
+                                   nullptr, linearise ? jacobian.data() : nullptr);
+        const double squared = error.squaredNorm();
+        const bool beyond = is_robust_ && squared > observation.limit;
+        const double slope = beyond ? std::sqrt(observation.limit / squared) : 1.0;
+        squared_sum += beyond ? 2.0 * slope * squared - observation.limit : squared;
+        if (!linearise) return;
+        hessian.noalias() += slope * (jacobian.transpose() * jacobian);
+        gradient.noalias() += slope * (jacobian.transpose() * error);
+      };
+      observation.has_right ? accumulate.template operator()<3>() : accumulate.template operator()<2>();
+    }
+    std::fill_n(residual, 4, 0.0);
+    if (linearise) {
+      Eigen::Map<Eigen::Matrix<double, 4, 3, Eigen::RowMajor>> jacobian(jacobians[0]);
+      jacobian.setZero();
+      factor(hessian, gradient, jacobian, residual);
+      for (int i = 0; i < 3; ++i) squared_sum -= residual[i] * residual[i];
+    }
+    residual[3] = std::sqrt(std::max(0.0, squared_sum));
     return true;
   }
 
  private:
+  /// Cholesky's factor of a matrix that may be singular: directions without information get a row of zeros.
+  template <class Jacobian>
+  static void factor(const Eigen::Matrix3d& hessian, const Eigen::Vector3d& gradient, Jacobian& jacobian,
+                     double* residual) {
+    for (int i = 0; i < 3; ++i) {
+      double pivot = hessian(i, i), right = gradient[i];
+      for (int k = 0; k < i; ++k) pivot -= jacobian(k, i) * jacobian(k, i), right -= jacobian(k, i) * residual[k];
+      if (!(pivot > 1e-12 * hessian(i, i))) continue;
+      const double root = std::sqrt(pivot);
+      jacobian(i, i) = root;
+      residual[i] = right / root;
+      for (int j = i + 1; j < 3; ++j) {
+        double value = hessian(i, j);
+        for (int k = 0; k < i; ++k) value -= jacobian(k, i) * jacobian(k, j);
+        jacobian(i, j) = value / root;
+      }
+    }
+  }
+
   const Camera& camera_;
-  const Measurement& measurement_;
-  const PoseState& pose_;
+  std::span<const FixedObservation> observations_;
+  const bool& is_robust_;
 };
 
 }  // namespace holdfast::ceres_plugin

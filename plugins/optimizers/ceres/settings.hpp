@@ -11,7 +11,7 @@ struct CeresSettings {
   double chi_square_three = geometry::chi_square_three;
   int pose_rounds = 4;
   int pose_iterations = 10;
-  double function_tolerance = 1e-6;
+  double function_tolerance = 1e-5;
   int dense_poses = 30;
 
   static void describe(ParameterTable<CeresSettings>& table) {
