@@ -58,7 +58,9 @@ void expect_consistent(const Map& map) {
       const auto& back = map.keyframe(edge.keyframe).covisible;
       EXPECT_EQ(std::count_if(back.begin(), back.end(), [&](const auto& e) { return e.keyframe == id && e.weight == edge.weight; }), 1);
     }
-    if (keyframe.parent.valid()) EXPECT_LT(map.keyframe(keyframe.parent).sequence, keyframe.sequence);
+    if (keyframe.parent.valid()) {
+      EXPECT_LT(map.keyframe(keyframe.parent).sequence, keyframe.sequence);
+    }
     for (const KeyFrameId child : keyframe.children) EXPECT_EQ(map.keyframe(child).parent, id);
   });
 }

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/pipeline/pipeline.hpp"
+
+#include <gtest/gtest.h>
+
+#include "holdfast/core/error.hpp"
+#include "holdfast/plugin/registry.hpp"
+#include "support/point_world.hpp"
+
+extern "C" void holdfast_register_plugin_ceres(holdfast::Registry&);
+
+namespace holdfast {
+namespace {
+
+PipelineParts parts_for(test::PointWorld& world, double pixel_noise) {
+  Registry registry;
+  holdfast_register_plugin_ceres(registry);
+  PipelineParts parts;
+  parts.camera = world.camera();
+  parts.features = std::make_unique<test::PointExtractor>(world, pixel_noise);
+  parts.optimizer = registry.create<Optimizer>("ceres", {}, {});
+  return parts;
+}
+
+double largest_error(const Trajectory& trajectory) {
+  double largest = 0.0;
+  for (const TimedPose& pose : trajectory)
+    largest = std::max(largest, (pose.T_world_camera.translation() - test::path_pose(pose.timestamp).translation()).norm());
+  return largest;
+}
+
+TEST(Pipeline, FollowsACameraThroughAWorldOfPoints) {
+  test::PointWorld world(find_camera("tum_fr1").value());
+  Pipeline pipeline(parts_for(world, 0.3));
+  constexpr int frames = 120;
+  for (int i = 0; i < frames; ++i) {
+    const double time = i / 30.0;
+    const FrameResult result = pipeline.feed(world.frame(static_cast<std::uint64_t>(i), time, test::path_pose(time)));
+    EXPECT_EQ(result.status, i == 0 ? TrackingStatus::initialised : TrackingStatus::tracked) << i;
+    ASSERT_TRUE(result.T_world_camera.has_value());
+  }
+  pipeline.finish();
+  ASSERT_EQ(pipeline.trajectory().size(), static_cast<std::size_t>(frames));
+  EXPECT_LT(largest_error(pipeline.trajectory()), 0.004);
+  EXPECT_GE(pipeline.map().keyframes().size(), 2U);
+  EXPECT_EQ(pipeline.keyframe_trajectory().size(), pipeline.map().keyframes().size());
+}
+
+TEST(Pipeline, TwoRunsGiveTheSameBits) {
+  const auto run = [] {
+    test::PointWorld world(find_camera("tum_fr1").value());
+    Pipeline pipeline(parts_for(world, 0.5));
+    for (int i = 0; i < 60; ++i) pipeline.feed(world.frame(static_cast<std::uint64_t>(i), i / 30.0, test::path_pose(i / 30.0)));
+    return pipeline.trajectory();
+  };
+  const Trajectory first = run(), second = run();
+  ASSERT_EQ(first.size(), second.size());
+  for (std::size_t i = 0; i < first.size(); ++i)
+    EXPECT_EQ(first[i].T_world_camera.matrix(), second[i].T_world_camera.matrix()) << i;
+}
+
+TEST(Pipeline, LostInTheDarkIsAResultAndLightBringsItBack) {
+  test::PointWorld world(find_camera("tum_fr1").value());
+  Pipeline pipeline(parts_for(world, 0.3));
+  int lost = 0, recovered = 0;
+  for (int i = 0; i < 90; ++i) {
+    const double time = i / 30.0;
+    const bool dark = i >= 40 && i < 60;
+    const FrameResult result = pipeline.feed(world.frame(static_cast<std::uint64_t>(i), time, test::path_pose(time), !dark));
+    EXPECT_EQ(result.status == TrackingStatus::lost, dark) << i;
+    EXPECT_EQ(result.T_world_camera.has_value(), !dark) << i;
+    EXPECT_EQ(result.trouble != TrackingTrouble::none, dark) << i;
+    lost += result.status == TrackingStatus::lost ? 1 : 0;
+    recovered += result.method == TrackingMethod::recovered && !dark ? 1 : 0;
+  }
+  EXPECT_EQ(lost, 20);
+  EXPECT_EQ(recovered, 1);
+  EXPECT_EQ(pipeline.trajectory().size(), 70U);
+  EXPECT_LT(largest_error(pipeline.trajectory()), 0.006);
+}
+
+TEST(Pipeline, WaitsForAFrameWithDepth) {
+  test::PointWorld world(Camera{});
+  Pipeline pipeline(parts_for(world, 0.0));
+  SensorFrame blind = world.frame(0, 0.0, Eigen::Isometry3d::Identity());
+  blind.depth.release();
+  FrameResult result = pipeline.feed(blind);
+  EXPECT_EQ(result.status, TrackingStatus::waiting);
+  EXPECT_EQ(result.trouble, TrackingTrouble::no_depth);
+  EXPECT_FALSE(result.T_world_camera);
+  result = pipeline.feed(world.frame(1, 0.1, Eigen::Isometry3d::Identity(), false));
+  EXPECT_EQ(result.trouble, TrackingTrouble::few_features);
+  result = pipeline.feed(world.frame(2, 0.2, Eigen::Isometry3d::Identity()));
+  EXPECT_EQ(result.status, TrackingStatus::initialised);
+}
+
+TEST(Pipeline, RefusesStampsThatDoNotRise) {
+  test::PointWorld world(Camera{});
+  Pipeline pipeline(parts_for(world, 0.0));
+  pipeline.feed(world.frame(0, 1.0, Eigen::Isometry3d::Identity()));
+  EXPECT_THROW(pipeline.feed(world.frame(1, 1.0, Eigen::Isometry3d::Identity())), InputError);
+}
+
+TEST(Pipeline, RequiredPartsAreRequired) { EXPECT_THROW(Pipeline(PipelineParts{}), CheckError); }
+
+/// Counts what it is told.
+class Counter final : public Observer {
+ public:
+  struct Counts {
+    int frames = 0, keyframes = 0, finished = 0;
+  };
+  explicit Counter(Counts& counts) : counts_(counts) {}
+  void on_frame(const SensorFrame&, const Frame&, const FrameResult&) override { ++counts_.frames; }
+  void on_keyframe(KeyFrameId, const Map&) override { ++counts_.keyframes; }
+  void on_finish(const Map&) override { ++counts_.finished; }
+
+ private:
+  Counts& counts_;
+};
+
+TEST(Pipeline, TellsItsObservers) {
+  test::PointWorld world(Camera{});
+  PipelineParts parts = parts_for(world, 0.0);
+  Counter::Counts counts;
+  parts.observers.push_back(std::make_unique<Counter>(counts));
+  Pipeline pipeline(std::move(parts));
+  int keyframes = 0;
+  for (int i = 0; i < 10; ++i)
+    keyframes += pipeline.feed(world.frame(static_cast<std::uint64_t>(i), i / 30.0, test::path_pose(i / 30.0))).is_keyframe ? 1 : 0;
+  pipeline.finish();
+  EXPECT_EQ(counts.frames, 10);
+  EXPECT_EQ(counts.keyframes, keyframes);
+  EXPECT_EQ(counts.finished, 1);
+}
+
+}  // namespace
+}  // namespace holdfast

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/tracking/frame_builder.hpp"
+
+#include <gtest/gtest.h>
+
+#include "holdfast/core/error.hpp"
+#include "support/point_world.hpp"
+
+namespace holdfast {
+namespace {
+
+class KnownCamera : public testing::TestWithParam<std::string> {};
+
+TEST_P(KnownCamera, TableUndistortsLikeTheCamera) {
+  const Camera camera = find_camera(GetParam()).value();
+  const UndistortionTable table(camera);
+  Random random(2);
+  std::vector<float> x, y, out_x, out_y;
+  for (int i = 0; i < 5000; ++i) {
+    x.push_back(static_cast<float>(random.uniform(0, camera.width - 1)));
+    y.push_back(static_cast<float>(random.uniform(0, camera.height - 1)));
+  }
+  table.undistort(x, y, out_x, out_y);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const Eigen::Vector2d exact = camera.undistort({x[i], y[i]});
+    ASSERT_LT((exact - Eigen::Vector2d(out_x[i], out_y[i])).norm(), 2e-3) << x[i] << " " << y[i];
+  }
+}
+INSTANTIATE_TEST_SUITE_P(All, KnownCamera, testing::ValuesIn(camera_names()));
+
+TEST(FrameBuilder, FeaturesLieWhereTheWorldIs) {
+  test::PointWorld world(find_camera("tum_fr1").value());
+  test::PointExtractor extractor(world);
+  FrameBuilder builder(world.camera(), extractor, 0.0);
+  Frame frame;
+  StageTimes times;
+  builder.build(world.frame(4, 2.5, Eigen::Isometry3d::Identity()), frame, times);
+  EXPECT_EQ(frame.index, 4U);
+  EXPECT_EQ(frame.timestamp, 2.5);
+  ASSERT_GT(frame.size(), 500U);
+  for (std::size_t i = 0; i < frame.size(); ++i) {
+    ASSERT_TRUE(frame.has_depth(i));
+    const Eigen::Vector2d raw = world.camera().distort(world.camera().project(frame.camera_point(i)));
+    EXPECT_NEAR(raw.x(), frame.features.x[i], 0.01);
+    EXPECT_NEAR(raw.y(), frame.features.y[i], 0.01);
+    EXPECT_NEAR(frame.right_x[i], world.camera().right_x(frame.x[i], frame.depth[i]), 1e-3);
+    EXPECT_FALSE(frame.map_points[i].valid());
+    EXPECT_EQ(frame.static_probability[i], 1.0F);
+  }
+}
+
+TEST(FrameBuilder, WithoutDepthNothingHasDepth) {
+  test::PointWorld world(Camera{});
+  test::PointExtractor extractor(world);
+  FrameBuilder builder(world.camera(), extractor, 0.0);
+  SensorFrame sensor_frame = world.frame(0, 0.0, Eigen::Isometry3d::Identity());
+  sensor_frame.depth.release();
+  Frame frame;
+  StageTimes times;
+  builder.build(sensor_frame, frame, times);
+  ASSERT_GT(frame.size(), 0U);
+  for (std::size_t i = 0; i < frame.size(); ++i) {
+    EXPECT_FALSE(frame.has_depth(i));
+    EXPECT_TRUE(std::isnan(frame.right_x[i]));
+  }
+}
+
+TEST(FrameBuilder, DepthAtAnEdgeIsNotTrustedWhenAsked) {
+  test::PointWorld world(Camera{});
+  test::PointExtractor extractor(world);
+  SensorFrame sensor_frame = world.frame(0, 0.0, Eigen::Isometry3d::Identity());
+  sensor_frame.depth.setTo(2.0F);
+  sensor_frame.depth.colRange(320, 640).setTo(3.0F);
+  StageTimes times;
+  Frame careful, trusting;
+  FrameBuilder(world.camera(), extractor, 0.05).build(sensor_frame, careful, times);
+  FrameBuilder(world.camera(), extractor, 0.0).build(sensor_frame, trusting, times);
+  int at_edge = 0;
+  for (std::size_t i = 0; i < careful.size(); ++i) {
+    const bool edge = std::abs(careful.features.x[i] - 319.5F) < 1.9F;
+    at_edge += edge ? 1 : 0;
+    EXPECT_EQ(careful.has_depth(i), !edge) << careful.features.x[i];
+    EXPECT_TRUE(trusting.has_depth(i));
+  }
+  EXPECT_GT(at_edge, 0);
+}
+
+TEST(FrameBuilder, WrongSizesNameBothSizes) {
+  test::PointWorld world(Camera{});
+  test::PointExtractor extractor(world);
+  FrameBuilder builder(world.camera(), extractor, 0.0);
+  SensorFrame sensor_frame = world.frame(3, 0.0, Eigen::Isometry3d::Identity());
+  sensor_frame.colour = cv::Mat::zeros(100, 120, CV_8UC3);
+  Frame frame;
+  StageTimes times;
+  try {
+    builder.build(sensor_frame, frame, times);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("frame 3"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("120x100"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("640x480"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace holdfast
