@@ -122,6 +122,7 @@ PoseSummary adjust_pose(PoseProblem& problem, const PoseAdjustmentOptions& optio
   if (pack(problem, options, batches) < 3 || !problem.T_camera_world.matrix().allFinite()) return summary;
 
   Eigen::Isometry3d pose = problem.T_camera_world;
+  if (options.trust_guess) decide(problem, pose, batches);
   PoseSystem system;
   bool settled = false;  // the last round has been solved on the very set that it left behind
   for (int round = 0; round < options.robust_rounds + options.final_rounds; ++round) {

@@ -52,7 +52,7 @@ inline PoseCase pose_case(const Camera& camera, int count, double pixel_noise, d
     result.is_outlier.push_back(off);
     problem.x.push_back(static_cast<float>(x + dx));
     problem.y.push_back(static_cast<float>(y + dy));
-    const double right = camera.right_x(x, depth) + dx + pixel_noise * random.normal();
+    const double right = camera.right_x(x, depth) + (off ? dx : 0.0) + pixel_noise * random.normal();
     problem.right_x.push_back(i % 3 ? static_cast<float>(right) : std::numeric_limits<float>::quiet_NaN());
     problem.inverse_sigma2.push_back(pixel_noise > 0 ? static_cast<float>(1.0 / (pixel_noise * pixel_noise)) : 1.0f);
     problem.weight.push_back(1.0f);

@@ -13,10 +13,11 @@ inline constexpr double chi_square_three = 7.815;
 inline constexpr double minimum_depth = 1e-3;
 
 struct PoseAdjustmentOptions {
-  int robust_rounds = 2;                  ///< with Huber's cost
-  int final_rounds = 2;                   ///< without it
-  int iterations = 10;                    ///< at most, per round
-  double limit_two = chi_square_two;      ///< an observation with two residuals beyond this is an outlier
+  int robust_rounds = 2;              ///< with Huber's cost
+  int final_rounds = 2;               ///< without it
+  bool trust_guess = false;           ///< the first guess already decides which observations count in the first round
+  int iterations = 10;                ///< at most, per round
+  double limit_two = chi_square_two;  ///< an observation with two residuals beyond this is an outlier
   double limit_three = chi_square_three;  ///< an observation with three residuals beyond this is an outlier
 };
 

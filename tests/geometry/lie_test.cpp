@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "geometry/synthetic.hpp"
+
+namespace holdfast::geometry {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+Eigen::Vector3d axis(Random& random) {
+  return Eigen::Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+}
+
+TEST(So3, LogUndoesExpAtEveryAngle) {
+  Random random(1);
+  for (const double angle : {0.0, 1e-12, 1e-9, 1e-6, 1e-4, 0.01, 0.1, 1.0, 3.0, pi - 1e-3, pi - 1e-6, pi - 1e-9}) {
+    const Eigen::Vector3d rotation = angle * axis(random);
+    EXPECT_LT((log_so3(exp_so3(rotation)) - rotation).norm(), 1e-15 + 1e-14 * angle) << angle;
+    EXPECT_LT((log_so3(Eigen::Matrix3d(exp_so3(rotation).toRotationMatrix())) - rotation).norm(), 1e-14) << angle;
+  }
+  // At pi both signs are right.
+  const Eigen::Vector3d half_turn = pi * axis(random);
+  const Eigen::Vector3d back = log_so3(Eigen::Matrix3d(exp_so3(half_turn).toRotationMatrix()));
+  EXPECT_LT(std::min((back - half_turn).norm(), (back + half_turn).norm()), 1e-12);
+  // Beyond it the short way round.
+  EXPECT_NEAR(log_so3(exp_so3(Eigen::Vector3d(0, 0, 1.5 * pi))).z(), -0.5 * pi, 1e-12);
+}
+
+TEST(So3, ExpAgreesWithAngleAxis) {
+  const Eigen::Vector3d rotation(0.3, -1.2, 0.5);
+  const Eigen::AngleAxisd expected(rotation.norm(), rotation.normalized());
+  EXPECT_LT((exp_so3(rotation).toRotationMatrix() - expected.toRotationMatrix()).norm(), 1e-14);
+}
+
+TEST(So3, JacobiansAgreeWithDifferences) {
+  Random random(2);
+  for (const double angle : {0.0, 1e-5, 0.05, 0.0999, 0.1001, 1.0, 2.5, 3.1}) {
+    const Eigen::Vector3d rotation = angle * axis(random);
+    const double h = 1e-6;
+    Eigen::Matrix3d left, right;
+    for (int i = 0; i < 3; ++i) {
+      const Eigen::Vector3d d = h * Eigen::Vector3d::Unit(i);
+      const Eigen::Quaterniond plus = exp_so3(rotation + d), minus = exp_so3(rotation - d);
+      left.col(i) = log_so3(plus * minus.inverse()) / (2 * h);
+      right.col(i) = log_so3(minus.inverse() * plus) / (2 * h);
+    }
+    EXPECT_LT((left_jacobian_so3(rotation) - left).norm(), 1e-8) << angle;
+    EXPECT_LT((right_jacobian_so3(rotation) - right).norm(), 1e-8) << angle;
+    const Eigen::Matrix3d one = left_jacobian_so3(rotation) * left_jacobian_inverse_so3(rotation);
+    EXPECT_LT((one - Eigen::Matrix3d::Identity()).norm(), 1e-12) << angle;
+  }
+}
+
+TEST(Se3, LogUndoesExpAtEveryAngle) {
+  Random random(3);
+  for (const double angle : {0.0, 1e-9, 1e-4, 0.05, 0.2, 1.0, 3.0, pi - 1e-4, pi - 1e-7}) {
+    Vector6d tangent;
+    tangent << axis(random), angle * axis(random);
+    EXPECT_LT((log_se3(exp_se3(tangent)) - tangent).norm(), 1e-13) << angle;
+  }
+}
+
+TEST(Se3, JacobiansAgreeWithDifferences) {
+  Random random(4);
+  for (const double angle : {0.0, 1e-3, 0.2999, 0.3001, 1.5, 3.0}) {
+    Vector6d tangent;
+    tangent << 2.0 * axis(random), angle * axis(random);
+    const double h = 1e-6;
+    Matrix6d left, right;
+    for (int i = 0; i < 6; ++i) {
+      const Vector6d d = h * Vector6d::Unit(i);
+      const Eigen::Isometry3d plus = exp_se3(tangent + d), minus = exp_se3(tangent - d);
+      left.col(i) = log_se3(plus * minus.inverse()) / (2 * h);
+      right.col(i) = log_se3(minus.inverse() * plus) / (2 * h);
+    }
+    EXPECT_LT((left_jacobian_se3(tangent) - left).norm(), 2e-8) << angle;
+    EXPECT_LT((right_jacobian_se3(tangent) - right).norm(), 2e-8) << angle;
+    const Matrix6d one = left_jacobian_se3(tangent) * left_jacobian_inverse_se3(tangent);
+    EXPECT_LT((one - Matrix6d::Identity()).norm(), 1e-11) << angle;
+  }
+}
+
+TEST(Se3, AdjointMovesAPerturbationToTheOtherSide) {
+  Random random(5);
+  const Eigen::Isometry3d motion = exp_se3(synthetic::tangent(random, 1.0, 0.7));
+  const Vector6d d = synthetic::tangent(random, 0.3, 0.2);
+  const Eigen::Isometry3d expected = motion * exp_se3(d);
+  EXPECT_LT((expected.matrix() - (exp_se3(adjoint_se3(motion) * d) * motion).matrix()).norm(), 1e-13);
+}
+
+}  // namespace
+}  // namespace holdfast::geometry
