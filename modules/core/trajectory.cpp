@@ -14,11 +14,12 @@ namespace holdfast {
 
 namespace {
 
-/// The numbers of a line, separated by blanks or commas; '#' begins a comment. False for a word that is no number.
+/// The first 8 numbers of a line, separated by blanks or commas; '#' begins a comment. False for a word among them that
+/// is no number.
 bool parse_numbers(std::string_view line, std::vector<double>& numbers) {
   numbers.clear();
   line = line.substr(0, line.find('#'));
-  while (true) {
+  while (numbers.size() < 8) {
     const std::size_t begin = line.find_first_not_of(" \t\r,");
     if (begin == std::string_view::npos) return true;
     const std::size_t end = std::min(line.find_first_of(" \t\r,", begin), line.size());
@@ -30,6 +31,7 @@ bool parse_numbers(std::string_view line, std::vector<double>& numbers) {
     numbers.push_back(value);
     line.remove_prefix(end);
   }
+  return true;
 }
 
 /// Appends a number with a fixed count of decimals and never a locale's decimal comma.

@@ -52,16 +52,18 @@ Coverage measure_coverage(std::span<const double> frame_stamps, std::span<const 
   coverage.frames = frame_stamps.size();
   coverage.poses = pairs.size();
   coverage.poses_of_no_frame = pose_stamps.size() - pairs.size();
-  const auto close_gap = [&](std::size_t missing) {
-    coverage.gaps += missing > 0;
-    coverage.longest_gap = std::max(coverage.longest_gap, missing);
+  std::size_t next = 0;  // the first frame that is not accounted for yet
+  const auto close_gap = [&](std::size_t frame_with_pose) {
+    if (frame_with_pose == next) return;
+    const std::size_t before = next == 0 ? 0 : next - 1;
+    const std::size_t after = std::min(frame_with_pose, frame_stamps.size() - 1);
+    coverage.gaps.push_back({frame_stamps[before], frame_stamps[after], frame_with_pose - next});
   };
-  std::size_t next_frame = 0;
   for (const StampPair& pair : pairs) {
-    close_gap(pair.first - next_frame);
-    next_frame = pair.first + 1;
+    close_gap(pair.first);
+    next = pair.first + 1;
   }
-  close_gap(coverage.frames - next_frame);
+  close_gap(frame_stamps.size());
   return coverage;
 }
 

@@ -99,6 +99,7 @@ Evaluation evaluate(const Trajectory& truth_as_given, const Trajectory& estimate
 
   if (frame_stamps) {
     std::vector<double> frames = *frame_stamps;
+    std::erase_if(frames, [](double stamp) { return !std::isfinite(stamp); });
     std::sort(frames.begin(), frames.end());
     frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
     if (frames.empty()) throw Error("the list of frames is empty; expected the stamps of the sequence's frames");

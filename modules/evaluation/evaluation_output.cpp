@@ -93,8 +93,9 @@ std::string to_text(const Evaluation& evaluation) {
     const Coverage& coverage = *evaluation.coverage;
     text += fixed_text(100.0 * coverage.ratio(), 2) + " %: " + std::to_string(coverage.poses) + " of " +
             counted(coverage.frames, "frame") + " have a pose";
-    if (coverage.gaps > 0)
-      text += "; " + counted(coverage.gaps, "gap") + ", the longest of " + counted(coverage.longest_gap, "frame");
+    if (!coverage.gaps.empty())
+      text +=
+          "; " + counted(coverage.gaps.size(), "gap") + ", the longest of " + counted(coverage.longest_gap(), "frame");
     if (coverage.poses_of_no_frame > 0)
       text += "; not counted: " + counted(coverage.poses_of_no_frame, "pose") + " with the stamp of no frame";
     text += '\n';
@@ -155,9 +156,9 @@ std::string to_json(const Evaluation& evaluation) {
                          {"rotation_deg", to_json_value(evaluation.error_per_way.rotation)}};
   json["coverage"] = nullptr;
   if (const auto& coverage = evaluation.coverage)
-    json["coverage"] = {{"ratio", coverage->ratio()}, {"frames", coverage->frames},
-                        {"poses", coverage->poses},   {"poses_of_no_frame", coverage->poses_of_no_frame},
-                        {"gaps", coverage->gaps},     {"longest_gap_frames", coverage->longest_gap}};
+    json["coverage"] = {{"ratio", coverage->ratio()},    {"frames", coverage->frames},
+                        {"poses", coverage->poses},      {"poses_of_no_frame", coverage->poses_of_no_frame},
+                        {"gaps", coverage->gaps.size()}, {"longest_gap_frames", coverage->longest_gap()}};
   // A file name need not be UTF-8; its odd bytes must not cost the figures.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
@@ -189,8 +190,8 @@ std::string to_csv(const Evaluation& evaluation) {
     rows.add("coverage", "frames", coverage->frames);
     rows.add("coverage", "poses", coverage->poses);
     rows.add("coverage", "poses_of_no_frame", coverage->poses_of_no_frame);
-    rows.add("coverage", "gaps", coverage->gaps);
-    rows.add("coverage", "longest_gap", coverage->longest_gap);
+    rows.add("coverage", "gaps", coverage->gaps.size());
+    rows.add("coverage", "longest_gap_frames", coverage->longest_gap());
   } else {
     rows.add("coverage", "ratio", "unknown", "");
   }

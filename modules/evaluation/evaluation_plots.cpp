@@ -67,7 +67,7 @@ std::string top_view_svg(const Evaluation& evaluation) {
   const std::array<int, 2> axes = widest_axes(evaluation.poses);
   const int sight = 3 - axes[0] - axes[1];
   Plot plot;
-  plot.title = std::string(sight == 2 ? "Top view" : "View along the axis of least extent") + " (" +
+  plot.title = (sight == 2 ? std::string("Top view") : std::string("View along ") + axis_names[sight]) + " (" +
                axis_names[axes[0]] + "-" + axis_names[axes[1]] + "), alignment " +
                std::string(to_string(evaluation.options.alignment)) + ", ATE RMSE " +
                length_text(evaluation.absolute_error.rmse);
@@ -77,7 +77,7 @@ std::string top_view_svg(const Evaluation& evaluation) {
   plot.width = 760;
   plot.height = 620;
 
-  PlotLine difference{"difference", plot_colour::orange, {}, {}, 0.7, false};
+  PlotLine difference{"difference", plot_colour::orange, {}, {}, 0.8, false, 0.45};
   constexpr std::size_t most_differences = 1500;  // more only make the file large
   const std::size_t stride = evaluation.poses.size() / most_differences + 1;
   for (std::size_t i = 0; i < evaluation.poses.size(); i += stride) {
@@ -85,9 +85,9 @@ std::string top_view_svg(const Evaluation& evaluation) {
     difference.x.insert(difference.x.end(), {pose.truth[axes[0]], pose.estimate[axes[0]], lift_pen});
     difference.y.insert(difference.y.end(), {pose.truth[axes[1]], pose.estimate[axes[1]], lift_pen});
   }
-  PlotLine truth{"truth", plot_colour::black, {}, {}, 1.4, false};
+  PlotLine truth{"truth", plot_colour::black, {}, {}, 2.4, false, 1.0};
   append_track(truth, evaluation.truth_track, axes);
-  PlotLine estimate{"estimate", plot_colour::blue, {}, {}, 1.4, false};
+  PlotLine estimate{"estimate", plot_colour::blue, {}, {}, 1.2, false, 1.0};
   append_track(estimate, evaluation.estimate_track, axes);
   plot.lines = {difference, truth, estimate};
   const Eigen::Vector3d& begin = evaluation.poses.front().estimate;
@@ -97,31 +97,37 @@ std::string top_view_svg(const Evaluation& evaluation) {
 
 std::string error_over_time_svg(const Evaluation& evaluation) {
   const LengthUnit unit = unit_for(evaluation.absolute_error.maximum);
-  const double begin = evaluation.poses.front().timestamp;
+  const std::optional<Coverage>& coverage = evaluation.coverage;
   std::vector<double> stamps;
   for (const EvaluatedPose& pose : evaluation.poses) stamps.push_back(pose.timestamp);
   const double threshold = gap_threshold(stamps);
+  // A gap at the begin of the sequence belongs to the picture too.
+  double begin = stamps.front();
+  if (coverage && !coverage->gaps.empty()) begin = std::min(begin, coverage->gaps.front().begin);
 
   Plot plot;
   plot.title = "Absolute error over time, alignment " + std::string(to_string(evaluation.options.alignment));
-  plot.x_label = "time since the first pose [s]";
+  plot.x_label = "time [s]";
   plot.y_label = std::string("position error [") + unit.name + "]";
   plot.y_from_zero = true;
   plot.height = 380;
-  plot.band_label = "no pose";
-  PlotLine error{"error", plot_colour::blue, {}, {}, 1.4, false};
+  plot.band_label = coverage ? "frames without a pose" : "no pair of poses";
+  PlotLine error{"error", plot_colour::blue, {}, {}, 1.4, false, 1.0};
   for (std::size_t i = 0; i < stamps.size(); ++i) {
     if (i > 0 && stamps[i] - stamps[i - 1] > threshold) {
-      plot.bands.push_back({stamps[i - 1] - begin, stamps[i] - begin});
+      if (!coverage) plot.bands.push_back({stamps[i - 1] - begin, stamps[i] - begin});
       error.x.push_back(lift_pen);
       error.y.push_back(lift_pen);
     }
     error.x.push_back(stamps[i] - begin);
     error.y.push_back(evaluation.poses[i].error * unit.per_metre);
   }
+  if (coverage)
+    for (const CoverageGap& gap : coverage->gaps) plot.bands.push_back({gap.begin - begin, gap.end - begin});
   plot.lines = {error};
-  const Statistics& statistics = evaluation.absolute_error;
-  plot.levels = {{"RMSE " + length_text(statistics.rmse), plot_colour::vermilion, statistics.rmse * unit.per_metre}};
+  const double rmse = evaluation.absolute_error.rmse;
+  plot.levels = {{"RMSE " + fixed_text(rmse * unit.per_metre, unit.per_metre > 1.0 ? 1 : 3) + ' ' + unit.name,
+                  plot_colour::vermilion, rmse * unit.per_metre}};
   return to_svg(plot);
 }
 

@@ -12,7 +12,7 @@ namespace holdfast {
 
 namespace {
 
-constexpr double character_width = 6.7;  // of the 12 px font, on average [px]
+constexpr double character_width = 7.2;  // of the 12 px font, on average [px]
 constexpr double legend_row_height = 20.0;
 constexpr double swatch_width = 22.0;
 
@@ -92,7 +92,8 @@ std::string path_element(const PlotLine& line, const Frame& frame) {
   }
   if (path.empty()) return {};
   return "<path d=\"" + path + "\" fill=\"none\" stroke-linejoin=\"round\" stroke-linecap=\"round\" " +
-         stroke(line.colour, line.width, line.dashed) + "/>\n";
+         stroke(line.colour, line.width, line.dashed) +
+         (line.opacity < 1.0 ? " stroke-opacity=\"" + fixed_text(line.opacity, 2) + "\"" : "") + "/>\n";
 }
 
 /// One sign and its word.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <filesystem>
 #include <span>
@@ -8,15 +9,27 @@
 
 namespace holdfast {
 
+/// A run of successive frames without a pose.
+struct CoverageGap {
+  double begin = 0.0;      ///< stamp of the frame before it, or of its first frame where the sequence begins [s]
+  double end = 0.0;        ///< stamp of the frame after it, or of its last frame where the sequence ends [s]
+  std::size_t frames = 0;  ///< that are missing
+};
+
 /// How much of a sequence has a pose. A pose counts only when its stamp is that of a frame (one-to-one, closer than
 /// 1 ms, which allows for stamps that were written with three or more decimals).
 struct Coverage {
   std::size_t frames = 0;             ///< colour-depth pairs of the sequence
   std::size_t poses = 0;              ///< frames that have a pose
   std::size_t poses_of_no_frame = 0;  ///< poses of the estimate whose stamp is that of no frame; they do not count
-  std::size_t gaps = 0;               ///< runs of frames without a pose, those at the begin and the end included
-  std::size_t longest_gap = 0;        ///< frames
+  std::vector<CoverageGap> gaps;      ///< in order of time, those at the begin and the end included
 
+  /// Missing frames of the longest gap; 0 without gaps.
+  std::size_t longest_gap() const {
+    std::size_t longest = 0;
+    for (const CoverageGap& gap : gaps) longest = std::max(longest, gap.frames);
+    return longest;
+  }
   /// poses / frames, 0 to 1.
   double ratio() const { return static_cast<double>(poses) / static_cast<double>(frames); }
 };

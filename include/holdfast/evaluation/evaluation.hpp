@@ -90,7 +90,8 @@ std::string to_csv(const Evaluation& evaluation);
 /// A picture of the aligned estimate on the truth, seen along the axis in which the truth extends least, both axes to
 /// one scale. Self-contained SVG.
 std::string top_view_svg(const Evaluation& evaluation);
-/// A picture of the absolute error over time with its RMSE; times without a pair are shaded. Self-contained SVG.
+/// A picture of the absolute error over time with its RMSE. Shaded are frames without a pose, or,
+/// where the frames are unknown, times without a pair. Self-contained SVG.
 std::string error_over_time_svg(const Evaluation& evaluation);
 
 }  // namespace holdfast

@@ -26,6 +26,7 @@ struct PlotLine {
   std::vector<double> y;  ///< as many as x
   double width = 1.6;     ///< [px]
   bool dashed = false;
+  double opacity = 1.0;  ///< 0 to 1
 };
 
 /// A dashed line across the whole plot at one height.

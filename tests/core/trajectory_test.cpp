@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/core/trajectory.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "holdfast/core/error.hpp"
+#include "holdfast/core/random.hpp"
+
+namespace holdfast {
+namespace {
+
+using ::testing::HasSubstr;
+
+class TrajectoryFile : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::path(::testing::TempDir()) /
+              (std::string("holdfast_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path write(const std::string& content) const {
+    std::ofstream(folder_ / "trajectory.txt") << content;
+    return folder_ / "trajectory.txt";
+  }
+  static std::string content(const std::filesystem::path& file) {
+    std::stringstream text;
+    text << std::ifstream(file).rdbuf();
+    return text.str();
+  }
+  static std::string error_of(const std::filesystem::path& file) {
+    try {
+      read_trajectory(file);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(TrajectoryFile, ReadsBlanksTabsCommasCommentsAndWindowsLineEnds) {
+  const Trajectory trajectory =
+      read_trajectory(write("# timestamp tx ty tz qx qy qz qw\r\n"
+                            "1.5 1 2 3 0 0 0 2\r\n"
+                            "\n"
+                            "2.5,+4,-5,6e-1,0,0,1,0 # a comment\n"
+                            "3.5\t7 8 9 1 0 0 0 further words"));
+  ASSERT_EQ(trajectory.size(), 3u);
+  EXPECT_EQ(trajectory[0].timestamp, 1.5);
+  EXPECT_EQ(trajectory[1].T_world_camera.translation(), Eigen::Vector3d(4.0, -5.0, 0.6));
+  EXPECT_EQ(trajectory[2].T_world_camera.translation(), Eigen::Vector3d(7.0, 8.0, 9.0));
+}
+
+TEST_F(TrajectoryFile, SortsAndKeepsTheLastOfEqualStamps) {
+  const Trajectory trajectory =
+      read_trajectory(write("3 1 0 0 0 0 0 1\n1 2 0 0 0 0 0 1\n3 3 0 0 0 0 0 1\n2 4 0 0 0 0 0 1\n"));
+  ASSERT_EQ(trajectory.size(), 3u);
+  EXPECT_EQ(trajectory[0].timestamp, 1.0);
+  EXPECT_EQ(trajectory[1].timestamp, 2.0);
+  EXPECT_EQ(trajectory[2].timestamp, 3.0);
+  EXPECT_EQ(trajectory[2].T_world_camera.translation().x(), 3.0);
+}
+
+TEST_F(TrajectoryFile, LeavesOutPosesThatAreNotFiniteAndZeroQuaternions) {
+  const Trajectory trajectory =
+      read_trajectory(write("1 nan 0 0 0 0 0 1\n2 0 inf 0 0 0 0 1\n3 0 0 0 NaN 0 0 1\n4 0 0 0 0 0 0 0\nnan 0 0 0 0 0 0 "
+                            "1\n5 1 2 3 0 0 0 1\n"));
+  ASSERT_EQ(trajectory.size(), 1u);
+  EXPECT_EQ(trajectory[0].timestamp, 5.0);
+}
+
+TEST_F(TrajectoryFile, NormalisesQuaternions) {
+  const Trajectory trajectory = read_trajectory(write("1 0 0 0 0 0 3 3\n"));
+  ASSERT_EQ(trajectory.size(), 1u);
+  const Eigen::Vector3d turned = trajectory[0].T_world_camera.linear() * Eigen::Vector3d::UnitX();
+  EXPECT_NEAR((turned - Eigen::Vector3d::UnitY()).norm(), 0.0, 1e-15);
+}
+
+TEST_F(TrajectoryFile, NamesTheLineOfAnError) {
+  const std::string message = error_of(write("# head\n1 0 0 0 0 0 0 1\n2 0 0 zero 0 0 0 1\n"));
+  EXPECT_THAT(message, HasSubstr("trajectory.txt:3: found '2 0 0 zero"));
+  EXPECT_THAT(message, HasSubstr("expected 8 numbers"));
+  EXPECT_THAT(error_of(write("1 0 0 0 0 0 0\n")), HasSubstr("trajectory.txt:1:"));
+}
+
+TEST_F(TrajectoryFile, NamesAFileThatIsMissingOrAFolder) {
+  EXPECT_THAT(error_of(folder_ / "absent.txt"), HasSubstr("absent.txt: no such file"));
+  EXPECT_THAT(error_of(folder_), HasSubstr("found a folder"));
+}
+
+TEST_F(TrajectoryFile, WritesStampsWithSixAndValuesWithNineDecimals) {
+  TimedPose pose;
+  pose.timestamp = 1305031102.1753040;
+  pose.T_world_camera = Eigen::Translation3d(1.0, -0.25, 1e-9) * Eigen::Quaterniond(-0.6, 0.0, 0.8, 0.0);
+  write_trajectory(folder_ / "out.txt", {pose});
+  EXPECT_EQ(
+      content(folder_ / "out.txt"),
+      "1305031102.175304 1.000000000 -0.250000000 0.000000001 0.000000000 -0.800000000 0.000000000 0.600000000\n");
+}
+
+TEST_F(TrajectoryFile, ReadsWhatItWrote) {
+  Random random(7);
+  Trajectory trajectory;
+  for (int i = 0; i < 50; ++i) {
+    TimedPose pose;
+    pose.timestamp = 1.3e9 + i / 30.0;
+    const Eigen::Quaterniond rotation(random.normal(), random.normal(), random.normal(), random.normal());
+    pose.T_world_camera =
+        Eigen::Translation3d(random.normal(), random.normal(), random.normal()) * rotation.normalized();
+    trajectory.push_back(pose);
+  }
+  write_trajectory(folder_ / "out.txt", trajectory);
+  const Trajectory again = read_trajectory(folder_ / "out.txt");
+  ASSERT_EQ(again.size(), trajectory.size());
+  for (std::size_t i = 0; i < again.size(); ++i) {
+    EXPECT_NEAR(again[i].timestamp, trajectory[i].timestamp, 1e-6);
+    EXPECT_TRUE(again[i].T_world_camera.matrix().isApprox(trajectory[i].T_world_camera.matrix(), 1e-8));
+  }
+}
+
+TEST_F(TrajectoryFile, ReplacesAFileWithoutLeavingATemporaryOne) {
+  write_file_atomically(write("old"), "new");
+  EXPECT_EQ(content(folder_ / "trajectory.txt"), "new");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
+  EXPECT_THROW(write_file_atomically(folder_ / "absent" / "file.txt", "text"), InputError);
+}
+
+TEST(Trajectory, CleaningSortsAndDropsWhatIsNotFinite) {
+  Trajectory trajectory(4);
+  trajectory[0].timestamp = 2.0;
+  trajectory[1].timestamp = std::numeric_limits<double>::quiet_NaN();
+  trajectory[2].timestamp = 1.0;
+  trajectory[3].timestamp = 3.0;
+  trajectory[3].T_world_camera.translation().y() = std::numeric_limits<double>::infinity();
+  const Trajectory clean = sort_and_clean(trajectory);
+  ASSERT_EQ(clean.size(), 2u);
+  EXPECT_EQ(clean[0].timestamp, 1.0);
+  EXPECT_EQ(clean[1].timestamp, 2.0);
+}
+
+}  // namespace
+}  // namespace holdfast

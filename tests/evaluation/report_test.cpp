@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/evaluation/report.hpp"
+
+#include <gmock/gmock.h>
+
+#include "holdfast/core/error.hpp"
+
+namespace holdfast {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+Report sample() {
+  Report report;
+  report.title = "Run <one> & only";
+  report.highlights = {{"ATE RMSE", "9.6 mm"}};
+  ReportSection section;
+  section.heading = "Stages";
+  section.values = {{"seed", "1"}};
+  section.tables = {{"Time per frame", {"stage", "median"}, {{"track", "12.0"}, {"map", "3.0"}}, {0.8, 0.2}}};
+  section.figures = {{"<svg><title>t</title></svg>\n", "A figure"}};
+  section.preformatted = "source: { tum: {} }";
+  report.sections = {section};
+  return report;
+}
+
+TEST(Report, HoldsEverythingInOnePage) {
+  const std::string html = to_html(sample());
+  EXPECT_THAT(html, HasSubstr("<h1>Run &lt;one&gt; &amp; only</h1>"));
+  EXPECT_THAT(html, HasSubstr("<b>9.6 mm</b><span>ATE RMSE</span>"));
+  EXPECT_THAT(html, HasSubstr("<td>track</td><td>12.0</td><td class=\"bar\"><i style=\"width:80.0%\">"));
+  EXPECT_THAT(html, HasSubstr("<svg><title>t</title></svg>"));
+  EXPECT_THAT(html, HasSubstr("<figcaption>A figure</figcaption>"));
+  EXPECT_THAT(html, HasSubstr("<pre>source: { tum: {} }</pre>"));
+}
+
+TEST(Report, NeedsNothingFromOutside) {
+  const std::string html = to_html(sample());
+  for (const char* outside : {"http:", "https:", "<script", "<link", "@import", "url("})
+    EXPECT_THAT(html, Not(HasSubstr(outside)));
+}
+
+TEST(Report, RefusesRaggedTables) {
+  Report report = sample();
+  report.sections[0].tables[0].rows[1].pop_back();
+  EXPECT_THROW(to_html(report), CheckError);
+  report = sample();
+  report.sections[0].tables[0].bars.pop_back();
+  EXPECT_THROW(to_html(report), CheckError);
+}
+
+}  // namespace
+}  // namespace holdfast
