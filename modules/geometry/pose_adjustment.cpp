@@ -66,10 +66,11 @@ bool decide(const PoseProblem& problem, const Eigen::Isometry3d& pose, std::vect
   return changed;
 }
 
-/// One round of Levenberg-Marquardt. `tolerance`: stop when the predicted decrease is below this part of the cost.
+/// One round of Levenberg-Marquardt. It ends when the predicted decrease is below `relative` times the cost and below
+/// `absolute`; the decrease is half the squared number of standard deviations that the pose has still to go.
 /// Returns the iterations spent; `system` belongs to the pose that is left in `pose`.
 int minimise(const Camera& camera, const std::vector<ObservationBatch>& batches, bool robust, int iterations,
-             double tolerance, Eigen::Isometry3d& pose, PoseSystem& system) {
+             double relative, double absolute, Eigen::Isometry3d& pose, PoseSystem& system) {
   double damping = 1e-7;
   build_system(batches, PoseView(camera, pose), robust, system);
   PoseSystem candidate;
@@ -80,7 +81,7 @@ int minimise(const Camera& camera, const std::vector<ObservationBatch>& batches,
     const Vector6d step = factor.solve(-system.gradient);
     if (factor.info() != Eigen::Success || !step.allFinite()) return iteration;
     const double predicted = -0.5 * system.gradient.dot(step);
-    if (!(predicted > tolerance * system.cost + 1e-14)) return iteration;
+    if (!(predicted > std::min(relative * system.cost, absolute) + 1e-14)) return iteration;
     const Eigen::Isometry3d moved = orthonormalised(exp_se3(step) * pose);
     build_system(batches, PoseView(camera, moved), robust, candidate);
     if (candidate.cost <= system.cost) {
@@ -129,8 +130,9 @@ PoseSummary adjust_pose(PoseProblem& problem, const PoseAdjustmentOptions& optio
     const bool robust = round < options.robust_rounds;
     if (settled && round != options.robust_rounds) continue;
     // The robust rounds only have to tell outliers from the rest.
-    const double tolerance = robust ? 1e-4 : 1e-8;
-    summary.iterations += minimise(*problem.camera, batches, robust, options.iterations, tolerance, pose, system);
+    const double relative = robust ? 1e-4 : 1e-8, absolute = robust ? 0.02 : 1e-4;
+    summary.iterations +=
+        minimise(*problem.camera, batches, robust, options.iterations, relative, absolute, pose, system);
     settled = !decide(problem, pose, batches);
   }
 

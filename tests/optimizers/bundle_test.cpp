@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
-#include <cstring>
+#include <chrono>
+#include <thread>
 
-#include "holdfast/plugin/registry.hpp"
 #include "geometry/synthetic.hpp"
+#include "holdfast/plugin/registry.hpp"
 
 extern "C" void holdfast_register_plugin_ceres(holdfast::Registry& registry);
 
@@ -89,6 +90,37 @@ TEST(Bundle, StopBeforeTheStartChangesNothing) {
   EXPECT_FALSE(summary.usable);
   EXPECT_EQ(summary.iterations, 0);
   for (std::size_t i = 0; i < before.points.size(); ++i) EXPECT_EQ(c.problem.points[i], before.points[i]);
+}
+
+TEST(Bundle, StopBetweenIterationsKeepsTheBestSoFar) {
+  const synthetic::BundleCase c = synthetic::bundle_case(camera, 3, 6, 600, 9, 0.5, 0.05, 8);
+  BundleProblem full = c.problem;
+  const auto optimizer = make({{"function_tolerance", 0.0}});
+  const BundleSummary unstopped = optimizer->optimize_bundle(full, go_on);
+  ASSERT_GT(unstopped.iterations, 3);
+  // Looks for a moment that falls into the iterations, wherever they are on this machine.
+  double shortest = 0.0, longest = 2.0 * unstopped.seconds;
+  for (int attempt = 0; attempt < 40; ++attempt) {
+    const double delay = 0.5 * (shortest + longest);
+    BundleProblem problem = c.problem;
+    std::atomic<bool> stop = false;
+    std::thread other([&] {
+      std::this_thread::sleep_for(std::chrono::duration<double>(delay));
+      stop = true;
+    });
+    const BundleSummary summary = optimizer->optimize_bundle(problem, stop);
+    other.join();
+    if (summary.stopped && summary.usable && summary.iterations > 0 && summary.iterations < unstopped.iterations) {
+      EXPECT_LT(summary.final_cost, summary.initial_cost);
+      return;
+    }
+    if (summary.stopped)
+      shortest = delay;
+    else
+      longest = delay;
+    if (longest - shortest < 1e-3) shortest = 0.0, longest = 2.0 * unstopped.seconds;
+  }
+  FAIL() << "the stop flag was never seen between iterations";
 }
 
 TEST(Bundle, WeightZeroHasNoSay) {

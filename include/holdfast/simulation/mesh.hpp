@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace holdfast::simulation {
+
+/// A corner of a triangle, in the frame of its object [m].
+struct Vertex {
+  Eigen::Vector3f position;
+  Eigen::Vector3f normal;  ///< unit, outwards
+  float u = 0.0F;          ///< texture position [texels of level 0]
+  float v = 0.0F;
+  float light = 1.0F;  ///< brightness, set by Lighting
+};
+
+/// Seen from outside, a, b, c run clockwise in the image (x right, y down).
+struct Triangle {
+  std::uint32_t a, b, c;
+  std::uint32_t texture;  ///< number in World
+  std::uint32_t surface;  ///< triangles of one smooth surface share it: no edge is drawn between them
+};
+
+/// A part of a texture, in texels of level 0.
+struct TextureArea {
+  std::uint32_t texture = 0;
+  float u = 0.0F, v = 0.0F;  ///< upper left corner
+  float width = 1.0F, height = 1.0F;
+};
+
+/// Textured triangles, and boxes that stand for them when light is traced.
+struct Mesh {
+  std::vector<Vertex> vertices;
+  std::vector<Triangle> triangles;
+  std::vector<Eigen::AlignedBox3f> solids;
+  std::uint32_t surface_count = 0;
+};
+
+/// The sides of a box, in the order in which add_box takes their textures. The box stands with z up and is looked at
+/// from -y: front is -y, right is +x.
+enum BoxSide { front, back, left, right, top, bottom };
+using BoxSkin = std::array<TextureArea, 6>;
+
+/// Adds a rectangle. `origin` is the corner that shows the upper left of the texture, `right` and `down` are its edges
+/// as seen from outside. Cut into cells of at most `cell` [m], so that light can vary over it.
+void add_rectangle(Mesh& mesh, const Eigen::Vector3f& origin, const Eigen::Vector3f& right, const Eigen::Vector3f& down,
+                   const TextureArea& area, float cell = 0.25F);
+
+/// Adds an axis-aligned box with its outside textured. `solid`: it also casts shadows.
+void add_box(Mesh& mesh, const Eigen::AlignedBox3f& box, const BoxSkin& skin, float cell = 0.25F, bool solid = true);
+
+/// Adds an upright cylinder (or cone, with two radii) standing at `base`: the side shows `side` once around, the top
+/// (and bottom, which is seldom seen) the disc in `cap`.
+void add_cylinder(Mesh& mesh, const Eigen::Vector3f& base, float bottom_radius, float top_radius, float height,
+                  const TextureArea& side, const TextureArea& cap, int facets = 16, bool solid = true);
+
+/// Adds a round bar along a line of points, as cables, chair legs and lamp arms are.
+void add_bar(Mesh& mesh, const std::vector<Eigen::Vector3f>& points, float radius, const TextureArea& area,
+             int facets = 5);
+
+}  // namespace holdfast::simulation

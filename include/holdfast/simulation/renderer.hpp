@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <memory>
+#include <opencv2/core/mat.hpp>
+
+#include "holdfast/core/camera.hpp"
+#include "holdfast/simulation/world.hpp"
+
+namespace holdfast::simulation {
+
+/// What a perfect sensor sees, as raw (distorted) images of the camera's size.
+struct RenderedFrame {
+  cv::Mat colour;      ///< 8UC3, blue green red; edges are smoothed over a pixel
+  cv::Mat depth;       ///< 32FC1 along the optical axis [m] of what lies in the pixel's centre; 0 = nothing
+  cv::Mat object_ids;  ///< 16UC1, index into World::objects plus one, of the same surface as the depth; 0 = nothing
+  cv::Mat cosine;      ///< 32FC1, between the surface normal and the direction to the camera
+};
+
+/// Draws a world in software. Visibility is found with a z-buffer at twice the camera's resolution in the undistorted
+/// image plane (2D homogeneous rasterisation; Olano and Greer 1997, so nothing needs clipping). Then each raw pixel is
+/// shaded once along its own ray: depth and texture position are those of the ray's intersection with the surface, so
+/// distortion costs no second interpolation and depth is exact. At edges nine samples are weighed. Same input, same
+/// bytes. Not thread-safe: buffers are kept between frames. The world must outlive the renderer and stay unchanged.
+class Renderer {
+ public:
+  Renderer(const World& world, const Camera& camera);
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  /// `time` [s] sets the poses of things that move.
+  RenderedFrame render(const Eigen::Isometry3d& T_world_camera, double time);
+
+ private:
+  struct Buffers;
+  void shade(RenderedFrame& frame) const;
+
+  const World& world_;
+  Camera camera_;
+  std::unique_ptr<Buffers> buffers_;
+};
+
+}  // namespace holdfast::simulation

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "visibility.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace holdfast::simulation {
+
+using Eigen::Vector3d;
+
+VisibilityBuffer::VisibilityBuffer(const RayGrid& grid) : grid_(grid) {
+  const std::size_t count = static_cast<std::size_t>(grid.columns) * grid.rows;
+  nearest_.resize(count);
+  numbers_.resize(count);
+}
+
+void VisibilityBuffer::draw(const World& world, const Eigen::Isometry3d& T_world_camera, double time) {
+  std::fill(nearest_.begin(), nearest_.end(), 0.0F);
+  std::fill(numbers_.begin(), numbers_.end(), nothing);
+  triangles_.clear();
+
+  const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
+  std::uint32_t first_surface = 0;
+  for (std::size_t index = 0; index < world.objects.size(); ++index) {
+    const Object& object = world.objects[index];
+    const Mesh& mesh = object.mesh;
+    const Eigen::Isometry3d T_camera_object = T_camera_world * object.pose(time);
+    corners_.resize(mesh.vertices.size());
+    for (std::size_t i = 0; i < corners_.size(); ++i)
+      corners_[i] = T_camera_object * mesh.vertices[i].position.cast<double>();
+
+    for (const Triangle& triangle : mesh.triangles) {
+      const Vector3d corners[3] = {corners_[triangle.a], corners_[triangle.b], corners_[triangle.c]};
+      if (corners[0].z() < near_plane && corners[1].z() < near_plane && corners[2].z() < near_plane) continue;
+      Eigen::Matrix3d edges;  // rows: the inverse of the matrix of corners
+      edges.row(0) = corners[1].cross(corners[2]);
+      const double determinant = edges.row(0).dot(corners[0]);
+      if (determinant <= 1e-12) continue;  // turned away, or seen edge-on
+      edges.row(1) = corners[2].cross(corners[0]);
+      edges.row(2) = corners[0].cross(corners[1]);
+      edges /= determinant;
+
+      const std::size_t before = triangles_.size();
+      VisibleTriangle& visible = triangles_.emplace_back();
+      visible.inverse_depth = edges.colwise().sum().transpose();
+      const Vertex &a = mesh.vertices[triangle.a], &b = mesh.vertices[triangle.b], &c = mesh.vertices[triangle.c];
+      const auto gradient = [&](double at_a, double at_b, double at_c) -> Vector3d {
+        return at_a * edges.row(0) + at_b * edges.row(1) + at_c * edges.row(2);
+      };
+      visible.u = gradient(a.u, b.u, c.u);
+      visible.v = gradient(a.v, b.v, c.v);
+      visible.light = gradient(a.light, b.light, c.light);
+      visible.texture = &world.textures[triangle.texture];
+      visible.surface = first_surface + triangle.surface;
+      visible.object = static_cast<std::uint16_t>(index + 1);
+      visible.inverse_norm = static_cast<float>(1.0 / visible.inverse_depth.norm());
+      draw_triangle(corners, edges, static_cast<std::uint32_t>(before));
+    }
+    first_surface += mesh.surface_count;
+  }
+}
+
+void VisibilityBuffer::draw_triangle(const Vector3d corners[3], const Eigen::Matrix3d& edges, std::uint32_t number) {
+  double left = 0, right = grid_.columns - 1, top = 0, bottom = grid_.rows - 1;
+  const bool all_in_front =
+      corners[0].z() >= near_plane && corners[1].z() >= near_plane && corners[2].z() >= near_plane;
+  if (all_in_front) {
+    double low_x = 1e9, high_x = -1e9, low_y = 1e9, high_y = -1e9;
+    for (int i = 0; i < 3; ++i) {
+      const double x = (corners[i].x() / corners[i].z() - grid_.x0) / grid_.step_x;
+      const double y = (corners[i].y() / corners[i].z() - grid_.y0) / grid_.step_y;
+      low_x = std::min(low_x, x), high_x = std::max(high_x, x);
+      low_y = std::min(low_y, y), high_y = std::max(high_y, y);
+    }
+    left = std::max(left, low_x), right = std::min(right, high_x);
+    top = std::max(top, low_y), bottom = std::min(bottom, high_y);
+  }
+  if (left > right || top > bottom) return;
+
+  // Each half plane a i + b j + c >= 0 of the grid bounds the columns of a row: i >= or <= offset + slope j.
+  struct Bound {
+    double slope, offset;
+  };
+  Bound lower[4], upper[4];
+  int lowers = 0, uppers = 0;
+  double first_row = top, last_row = bottom;
+  const auto add_half_plane = [&](const Vector3d& plane) {
+    const double a = plane.x() * grid_.step_x, b = plane.y() * grid_.step_y;
+    const double c = plane.x() * grid_.x0 + plane.y() * grid_.y0 + plane.z();
+    if (a > 0)
+      lower[lowers++] = {-b / a, -c / a};
+    else if (a < 0)
+      upper[uppers++] = {-b / a, -c / a};
+    else if (b > 0)
+      first_row = std::max(first_row, -c / b);
+    else if (b < 0)
+      last_row = std::min(last_row, -c / b);
+    else if (c < 0)
+      last_row = first_row - 1.0;
+  };
+  for (int i = 0; i < 3; ++i) add_half_plane(edges.row(i).transpose());
+  const Vector3d& inverse_depth = triangles_[number].inverse_depth;
+  if (!all_in_front) add_half_plane(Vector3d(0, 0, 1.0 / near_plane) - inverse_depth);
+
+  constexpr double tolerance = 1e-6;  // triangles that share an edge both take samples on it: no gaps
+  const int begin_row = static_cast<int>(std::ceil(first_row - tolerance));
+  const int end_row = static_cast<int>(std::floor(last_row + tolerance));
+  const double step = inverse_depth.x() * grid_.step_x;
+  for (int j = std::max(0, begin_row); j <= std::min(end_row, grid_.rows - 1); ++j) {
+    double low = left, high = right;
+    for (int k = 0; k < lowers; ++k) low = std::max(low, lower[k].offset + lower[k].slope * j);
+    for (int k = 0; k < uppers; ++k) high = std::min(high, upper[k].offset + upper[k].slope * j);
+    const int begin = std::max(0, static_cast<int>(std::ceil(low - tolerance)));
+    const int end = std::min(grid_.columns - 1, static_cast<int>(std::floor(high + tolerance)));
+    if (begin > end) continue;
+    const double start = inverse_depth.x() * (grid_.x0 + begin * grid_.step_x) +
+                         inverse_depth.y() * (grid_.y0 + j * grid_.step_y) + inverse_depth.z();
+    const std::size_t offset = static_cast<std::size_t>(j) * grid_.columns + begin;
+    float* nearest = nearest_.data() + offset;
+    std::uint32_t* numbers = numbers_.data() + offset;
+    const auto start_value = static_cast<float>(start), step_value = static_cast<float>(step);
+    for (int i = 0; i <= end - begin; ++i) {
+      const float value = start_value + step_value * static_cast<float>(i);
+      const bool nearer = value > nearest[i];
+      nearest[i] = nearer ? value : nearest[i];
+      numbers[i] = nearer ? number : numbers[i];
+    }
+  }
+}
+
+}  // namespace holdfast::simulation

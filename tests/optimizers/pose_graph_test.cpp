@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "geometry/synthetic.hpp"
+#include "holdfast/core/error.hpp"
+#include "holdfast/plugin/registry.hpp"
+
+extern "C" void holdfast_register_plugin_ceres(holdfast::Registry& registry);
+
+namespace holdfast {
+namespace {
+
+std::unique_ptr<Optimizer> make() {
+  Registry registry;
+  holdfast_register_plugin_ceres(registry);
+  return registry.create<Optimizer>("ceres", {}, {});
+}
+
+struct Loop {
+  PoseGraphProblem problem;
+  std::vector<Eigen::Isometry3d> truth;
+
+  /// A walk round a circle of two metres; every step drifts by the same motion, and one edge closes the loop.
+  explicit Loop(int count) {
+    geometry::Vector6d drift;
+    drift << 0.01, 0.005, -0.004, 0.002, 0.006, -0.003;
+    for (int i = 0; i < count; ++i) {
+      Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+      const double angle = 2.0 * std::numbers::pi * i / count;
+      T_world_camera.linear() = geometry::exp_so3(Eigen::Vector3d(0, angle, 0)).toRotationMatrix();
+      T_world_camera.translation() = 2.0 * Eigen::Vector3d(std::sin(angle), 0.0, std::cos(angle));
+      truth.push_back(T_world_camera.inverse());
+    }
+    problem.nodes.push_back({truth[0], true});
+    for (int i = 1; i < count; ++i) {
+      const Eigen::Isometry3d step = truth[i] * truth[i - 1].inverse();
+      problem.nodes.push_back({geometry::exp_se3(drift) * step * problem.nodes[i - 1].T_camera_world, false});
+      problem.edges.push_back({static_cast<std::uint32_t>(i - 1), static_cast<std::uint32_t>(i),
+                               problem.nodes[i].T_camera_world * problem.nodes[i - 1].T_camera_world.inverse(), 1.0});
+    }
+    problem.edges.push_back({static_cast<std::uint32_t>(count - 1), 0, truth[0] * truth[count - 1].inverse(), 100.0});
+  }
+  double largest_error() const {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < truth.size(); ++i)
+      largest = std::max(largest, synthetic::distance(problem.nodes[i].T_camera_world, truth[i]));
+    return largest;
+  }
+};
+
+TEST(PoseGraph, ClosesALoop) {
+  Loop loop(60);
+  const double before = loop.largest_error();
+  const GraphSummary summary = make()->optimize_pose_graph(loop.problem);
+  ASSERT_TRUE(summary.usable);
+  EXPECT_LT(summary.final_cost, 0.1 * summary.initial_cost);
+  EXPECT_LT(loop.largest_error(), 0.35 * before);
+  EXPECT_EQ(loop.problem.nodes[0].T_camera_world.matrix(), loop.truth[0].matrix());
+  const Eigen::Isometry3d closed =
+      loop.problem.nodes[0].T_camera_world * loop.problem.nodes[59].T_camera_world.inverse();
+  EXPECT_LT(synthetic::distance(closed, loop.problem.edges.back().T_to_from), 0.01);
+}
+
+TEST(PoseGraph, IsExactWhereTheEdgesAgree) {
+  Loop loop(40);
+  for (PoseGraphProblem::Edge& edge : loop.problem.edges)
+    edge.T_to_from = loop.truth[edge.to] * loop.truth[edge.from].inverse();
+  loop.problem.iterations = 50;
+  ASSERT_TRUE(make()->optimize_pose_graph(loop.problem).usable);
+  EXPECT_LT(loop.largest_error(), 1e-5);
+}
+
+TEST(PoseGraph, SameBytesEveryTime) {
+  Loop a(30), b(30);
+  make()->optimize_pose_graph(a.problem);
+  make()->optimize_pose_graph(b.problem);
+  for (std::size_t i = 0; i < a.truth.size(); ++i)
+    EXPECT_EQ(a.problem.nodes[i].T_camera_world.matrix(), b.problem.nodes[i].T_camera_world.matrix());
+}
+
+TEST(PoseGraph, RefusesWhatCannotBeSolved) {
+  Loop loose(10);
+  loose.problem.nodes[0].fixed = false;
+  const Eigen::Matrix4d before = loose.problem.nodes[5].T_camera_world.matrix();
+  EXPECT_FALSE(make()->optimize_pose_graph(loose.problem).usable) << "no gauge";
+  EXPECT_EQ(loose.problem.nodes[5].T_camera_world.matrix(), before);
+  PoseGraphProblem empty;
+  EXPECT_FALSE(make()->optimize_pose_graph(empty).usable);
+  Loop broken(10);
+  broken.problem.edges[3].to = 10;
+  EXPECT_THROW(make()->optimize_pose_graph(broken.problem), CheckError);
+}
+
+}  // namespace
+}  // namespace holdfast
