@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "holdfast/core/hamming.hpp"
+#include "holdfast/geometry/triangulation.hpp"
 #include "holdfast/mapping/local_mapper.hpp"
 
 namespace holdfast {
@@ -18,19 +19,6 @@ constexpr double smallest_parallax_cosine = 0.9998;
 /// Ray through a feature in the camera frame, z = 1.
 Eigen::Vector3d ray_of(const Frame& frame, std::uint32_t feature) {
   return frame.camera->back_project(frame.x[feature], frame.y[feature], 1.0);
-}
-
-/// Point on the shortest line between two rays, in the first camera's frame.
-std::optional<Eigen::Vector3d> midpoint(const Eigen::Vector3d& first_ray, const Eigen::Vector3d& second_ray,
-                                        const Eigen::Isometry3d& T_first_second) {
-  const Eigen::Vector3d a = first_ray.normalized(), b = (T_first_second.linear() * second_ray).normalized();
-  const Eigen::Vector3d& origin = T_first_second.translation();
-  const double cosine = a.dot(b), determinant = 1.0 - cosine * cosine;
-  if (determinant < 1e-9) return std::nullopt;
-  const double along_a = (origin.dot(a) - cosine * origin.dot(b)) / determinant;
-  const double along_b = (cosine * origin.dot(a) - origin.dot(b)) / determinant;
-  if (along_a <= 0.0 || along_b <= 0.0) return std::nullopt;
-  return 0.5 * (along_a * a + origin + along_b * b);
 }
 
 /// Whether a point in the camera frame projects onto a feature (chi-square 95 %).
@@ -102,7 +90,8 @@ void LocalMapper::triangulate_with(KeyFrameId id, KeyFrameId neighbour_id) {
     };
     const double frame_cosine = depth_cosine(frame, feature), other_cosine = depth_cosine(neighbour, other);
     if (cosine > 0.0 && cosine < std::min({frame_cosine, other_cosine, smallest_parallax_cosine}))
-      in_frame = midpoint(ray, other_ray, T_frame_neighbour);
+      in_frame = geometry::triangulate_midpoint(Eigen::Vector3d::Zero(), ray, T_frame_neighbour.translation(),
+                                                T_frame_neighbour.linear() * other_ray);
     else if (frame.has_depth(feature) && frame_cosine <= other_cosine)
       in_frame = frame.camera_point(feature);
     else if (neighbour.has_depth(other))

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "holdfast/core/hamming.hpp"
+#include "holdfast/geometry/alignment.hpp"
 #include "holdfast/geometry/se3.hpp"
 #include "holdfast/tracking/tracker.hpp"
 
@@ -145,7 +146,9 @@ bool Tracker::predict_with_keyframe(KeyFrameId keyframe, FrameResult& result) {
       in_camera.push_back(current_.camera_point(i));
     }
   current_.T_camera_world = has_previous_ ? previous_.T_camera_world : found->frame.T_camera_world;
-  align_start(in_world, in_camera);
+  const geometry::AlignmentRansacOptions options{.threshold = 0.06, .seed = random_.next()};
+  if (const auto aligned = geometry::align_points_ransac(in_world, in_camera, options))
+    current_.T_camera_world = aligned->similarity.motion();
   const int inliers = adjust_pose();
   drop_outliers();
   if (inliers < settings_.minimum_matches / 2) {
@@ -155,8 +158,6 @@ bool Tracker::predict_with_keyframe(KeyFrameId keyframe, FrameResult& result) {
   result.method = TrackingMethod::reference_keyframe;
   return true;
 }
-
-void Tracker::align_start(const std::vector<Eigen::Vector3d>&, const std::vector<Eigen::Vector3d>&) {}
 
 bool Tracker::recover(FrameResult& result) {
   constexpr int most_keyframes = 5;

@@ -60,7 +60,6 @@ class Tracker {
   int match_previous(float radius_factor);
   void match_descriptors(const Frame& keyframe_frame);
   void remember(FrameResult& result);
-  void align_start(const std::vector<Eigen::Vector3d>& in_world, const std::vector<Eigen::Vector3d>& in_camera);
 
   /// A tracked frame, fixed to its reference keyframe.
   struct Record {
