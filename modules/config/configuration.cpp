@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/config/configuration.hpp"
+
+#include <algorithm>
+
+#include "holdfast/config/parameter_reader.hpp"
+#include "holdfast/plugin/did_you_mean.hpp"
+#include "holdfast/plugin/loader.hpp"
+
+namespace holdfast {
+
+void RunSettings::describe(ParameterTable<RunSettings>& table) {
+  table.add("mode", &RunSettings::mode, "sequential: one thread, the same bits on every run")
+      .one_of({"sequential", "threaded"});
+  table.add("seed", &RunSettings::seed, "the only source of chance").at_least(0);
+}
+
+void CameraSettings::describe(ParameterTable<CameraSettings>& table) {
+  using S = CameraSettings;
+  table.add("width", &S::width, "columns of the images").range(1, 32768).unit("px").required();
+  table.add("height", &S::height, "rows of the images").range(1, 32768).unit("px").required();
+  table.add("fx", &S::fx, "focal length along x").range(1, 1e6).unit("px").required();
+  table.add("fy", &S::fy, "focal length along y").range(1, 1e6).unit("px").required();
+  table.add("cx", &S::cx, "column of the optical axis").range(-1e6, 1e6).unit("px").required();
+  table.add("cy", &S::cy, "row of the optical axis").range(-1e6, 1e6).unit("px").required();
+  table.add("k1", &S::k1, "radial distortion, 2nd order");
+  table.add("k2", &S::k2, "radial distortion, 4th order");
+  table.add("p1", &S::p1, "tangential distortion");
+  table.add("p2", &S::p2, "tangential distortion");
+  table.add("k3", &S::k3, "radial distortion, 6th order");
+  table.add("baseline", &S::baseline, "of the stereo pair that depth stands for").range(1e-4, 100).unit("m");
+  table.add("frame_rate", &S::frame_rate, "images per second").range(0.01, 10000).unit("1/s");
+}
+
+const std::vector<std::string>& choice_sections() {
+  static const std::vector<std::string> names = {"source", "features", "segmenter", "optimizer", "loop_detector"};
+  return names;
+}
+
+namespace {
+
+using Kind = ConfigurationNode::Kind;
+
+class Resolver {
+ public:
+  Resolver(const ConfigurationNode& root, std::string file, Registry& registry,
+           const std::vector<SectionDescription>& sections)
+      : root_(root), file_(std::move(file)), registry_(registry), sections_(sections) {}
+
+  Configuration resolve() {
+    result_.file = file_;
+    if (root_.kind != Kind::map) {
+      complain({file_}, "found " + root_.found() + "; expected a map with the sections source, features, optimizer, ...");
+      throw ConfigurationError(diagnostics_);
+    }
+    load_plugins();
+    check_section_names();
+    result_.source = choose("source", nullptr);
+    result_.features = choose("features", nullptr);
+    result_.optimizer = choose("optimizer", nullptr);
+    result_.segmenter = choose("segmenter", "none");
+    result_.loop_detector = choose("loop_detector", "none");
+    result_.filters = chain("filters");
+    result_.observers = chain("observers");
+    read_camera();
+    read_run();
+    for (const SectionDescription& section : sections_)
+      result_.sections[section.name] =
+          read_parameters(at(section.name), section.parameters, "section '" + section.name + "'", diagnostics_);
+    if (!diagnostics_.empty()) throw ConfigurationError(diagnostics_);
+    return std::move(result_);
+  }
+
+ private:
+  void complain(const SourceLocation& location, const std::string& message) {
+    diagnostics_.push_back({location, message});
+  }
+
+  const ConfigurationNode& at(const std::string& section) const {
+    static const ConfigurationNode nothing;
+    const ConfigurationNode* node = root_.find(section);
+    return node != nullptr ? *node : nothing;
+  }
+
+  void load_plugins() {
+    const ConfigurationNode& node = at("plugins");
+    if (node.kind == Kind::nothing) return;
+    if (node.kind != Kind::list) {
+      complain(node.location, "found " + node.found() + " for 'plugins'; expected a list of files");
+      return;
+    }
+    for (const ConfigurationNode& item : node.items) {
+      if (item.kind != Kind::scalar) {
+        complain(item.location, "found " + item.found() + "; expected the file of a plugin");
+        continue;
+      }
+      std::string name = item.text;
+      const bool has_folder = name.find('/') != std::string::npos;
+      if (has_folder && std::filesystem::path(name).is_relative()) name = (item.folder / name).lexically_normal().string();
+      try {
+        load_plugin(registry_, name, {item.folder});
+        result_.plugins.push_back(name);
+      } catch (const PluginError& error) {
+        complain(item.location, error.what());
+      }
+    }
+  }
+
+  void check_section_names() {
+    std::vector<std::string> known = choice_sections();
+    known.insert(known.end(), {"filters", "observers", "camera", "run", "plugins"});
+    for (const SectionDescription& section : sections_) known.push_back(section.name);
+    for (const ConfigurationNode::Entry& entry : root_.entries)
+      if (std::find(known.begin(), known.end(), entry.key) == known.end())
+        complain(entry.location, "there is no section '" + entry.key + "'; " + did_you_mean(entry.key, known));
+  }
+
+  ModuleChoice module(const std::string& kind, const std::string& name, const SourceLocation& location,
+                      const ConfigurationNode& parameters) {
+    ModuleChoice choice{kind, name, {}, location};
+    const ModuleEntry* entry = registry_.find(kind, name);
+    if (entry == nullptr) {
+      complain(location, "there is no " + kind + " module '" + name + "'; " + did_you_mean(name, registry_.names(kind)));
+      return choice;
+    }
+    ConfigurationNode given = parameters;
+    if (given.location.file.empty()) given.location = location;
+    choice.values = read_parameters(given, entry->parameters, kind + " '" + name + "'", diagnostics_);
+    return choice;
+  }
+
+  ModuleChoice module(const std::string& kind, const ConfigurationNode& node) {
+    if (node.kind == Kind::scalar) return module(kind, node.text, node.location, ConfigurationNode{.location = node.location});
+    const bool one = node.kind == Kind::map && node.entries.size() == 1;
+    if (!one) {
+      std::string found = node.found();
+      if (node.kind == Kind::map) {
+        found = std::to_string(node.entries.size()) + " keys";
+        for (std::size_t i = 0; i < node.entries.size(); ++i) found += (i == 0 ? " (" : ", ") + node.entries[i].key;
+        if (!node.entries.empty()) found += ")";
+      }
+      complain(node.location, "found " + found + " for '" + kind + "'; expected one module, as `name` or { name: { ... } }; " +
+                                  did_you_mean("", registry_.names(kind)));
+      return {kind, {}, {}, node.location};
+    }
+    const ConfigurationNode::Entry& entry = node.entries.front();
+    ConfigurationNode parameters = entry.value;
+    if (parameters.kind == Kind::nothing) parameters.location = entry.location;
+    return module(kind, entry.key, entry.location, parameters);
+  }
+
+  ModuleChoice choose(const std::string& kind, const char* fallback) {
+    const ConfigurationNode& node = at(kind);
+    if (node.kind != Kind::nothing) return module(kind, node);
+    if (fallback != nullptr) return module(kind, fallback, {file_}, ConfigurationNode{.location = {file_}});
+    complain({file_}, "section '" + kind + "' is missing; expected one module; " + did_you_mean("", registry_.names(kind)));
+    return {kind, {}, {}, {file_}};
+  }
+
+  std::vector<ModuleChoice> chain(const std::string& kind) {
+    const ConfigurationNode& node = at(kind);
+    std::vector<ModuleChoice> choices;
+    if (node.kind == Kind::nothing) return choices;
+    if (node.kind != Kind::list) {
+      complain(node.location, "found " + node.found() + " for '" + kind + "'; expected a list, such as [ a, b: { ... } ]");
+      return choices;
+    }
+    for (const ConfigurationNode& item : node.items) choices.push_back(module(kind, item));
+    return choices;
+  }
+
+  void read_camera() {
+    const ConfigurationNode& node = at("camera");
+    if (node.kind == Kind::nothing) return;
+    if (node.kind == Kind::scalar) {
+      result_.camera = find_camera(node.text);
+      if (!result_.camera)
+        complain(node.location, "there is no known camera '" + node.text + "'; " + did_you_mean(node.text, camera_names()) +
+                                    " A camera can also be given by numbers: { width: 640, height: 480, fx: ... }");
+      return;
+    }
+    const ParameterTable<CameraSettings> table;
+    const std::size_t before = diagnostics_.size();
+    const ParameterValues values = read_parameters(node, table.parameters(), "section 'camera'", diagnostics_);
+    if (diagnostics_.size() != before) return;
+    const CameraSettings s = table.settings(values);
+    result_.camera = Camera{"", s.width, s.height, s.fx, s.fy, s.cx, s.cy, {s.k1, s.k2, s.p1, s.p2, s.k3}, s.baseline,
+                            s.frame_rate};
+  }
+
+  void read_run() {
+    const ParameterTable<RunSettings> table;
+    const ConfigurationNode& node = at("run");
+    result_.run = table.settings(read_parameters(node, table.parameters(), "section 'run'", diagnostics_));
+    if (result_.run.mode == "threaded")
+      complain(node.find("mode")->location,
+               "found 'threaded' for 'mode' of section 'run'; this version runs in sequential mode only");
+  }
+
+  const ConfigurationNode& root_;
+  std::string file_;
+  Registry& registry_;
+  const std::vector<SectionDescription>& sections_;
+  std::vector<Diagnostic> diagnostics_;
+  Configuration result_;
+};
+
+}  // namespace
+
+Configuration resolve_configuration(const ConfigurationNode& root, const std::string& file, Registry& registry,
+                                    const std::vector<SectionDescription>& sections) {
+  return Resolver(root, file, registry, sections).resolve();
+}
+
+Configuration load_configuration(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+                                 Registry& registry, const std::vector<SectionDescription>& sections) {
+  ConfigurationNode root = read_yaml(file);
+  for (const std::string& override_text : overrides) apply_override(root, override_text, choice_sections());
+  return resolve_configuration(root, file.string(), registry, sections);
+}
+
+}  // namespace holdfast

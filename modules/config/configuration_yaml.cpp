@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/config/configuration.hpp"
+
+namespace holdfast {
+
+namespace {
+
+void add_values(const ParameterValues& values, const std::string& indent, std::string& yaml) {
+  for (const auto& [name, value] : values) yaml += indent + name + ": " + to_string(value) + "\n";
+}
+
+void add_module(const ModuleChoice& choice, const std::string& first, const std::string& indent, std::string& yaml) {
+  if (choice.values.empty()) {
+    yaml += first + choice.name + ": {}\n";
+    return;
+  }
+  yaml += first + choice.name + ":\n";
+  add_values(choice.values, indent + "  ", yaml);
+}
+
+void add_choice(const ModuleChoice& choice, std::string& yaml) {
+  yaml += choice.kind + ":\n";
+  add_module(choice, "  ", "  ", yaml);
+}
+
+void add_chain(const std::string& kind, const std::vector<ModuleChoice>& choices, std::string& yaml) {
+  yaml += kind + ":" + (choices.empty() ? " []\n" : "\n");
+  for (const ModuleChoice& choice : choices) add_module(choice, "  - ", "    ", yaml);
+}
+
+ParameterValues camera_values(const Camera& camera) {
+  const Distortion& d = camera.distortion;
+  return ParameterTable<CameraSettings>().values({camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy,
+                                                  d.k1, d.k2, d.p1, d.p2, d.k3, camera.baseline, camera.frame_rate});
+}
+
+}  // namespace
+
+std::string to_yaml(const Configuration& configuration) {
+  std::string yaml;
+  add_choice(configuration.source, yaml);
+  if (configuration.camera) {
+    yaml += "camera:" + (configuration.camera->name.empty() ? std::string("\n") : "  # " + configuration.camera->name + "\n");
+    add_values(camera_values(*configuration.camera), "  ", yaml);
+  }
+  add_choice(configuration.features, yaml);
+  add_choice(configuration.segmenter, yaml);
+  add_chain("filters", configuration.filters, yaml);
+  add_choice(configuration.optimizer, yaml);
+  add_choice(configuration.loop_detector, yaml);
+  add_chain("observers", configuration.observers, yaml);
+  for (const auto& [name, values] : configuration.sections) {
+    yaml += name + ":\n";
+    add_values(values, "  ", yaml);
+  }
+  yaml += "run:\n";
+  add_values(ParameterTable<RunSettings>().values(configuration.run), "  ", yaml);
+  yaml += "plugins: " + to_string(ParameterValue(configuration.plugins)) + "\n";
+  return yaml;
+}
+
+}  // namespace holdfast

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <charconv>
+
+#include "holdfast/config/configuration_node.hpp"
+
+namespace holdfast {
+
+namespace {
+
+std::vector<std::string> split(const std::string& path) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin <= path.size();) {
+    const std::size_t end = std::min(path.find('.', begin), path.size());
+    parts.push_back(path.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return parts;
+}
+
+/// Gives every node of the value the place of the override, since it stands in no file.
+void relocate(ConfigurationNode& node, const SourceLocation& location) {
+  node.location = location;
+  for (ConfigurationNode& item : node.items) relocate(item, location);
+  for (ConfigurationNode::Entry& entry : node.entries) {
+    entry.location = location;
+    relocate(entry.value, location);
+  }
+}
+
+}  // namespace
+
+void apply_override(ConfigurationNode& root, const std::string& override_text, const std::vector<std::string>& choices) {
+  const SourceLocation location{"--set " + override_text};
+  const auto fail = [&](const std::string& message) { throw ConfigurationError({{location, message}}); };
+  const std::size_t equals = override_text.find('=');
+  if (equals == std::string::npos || equals == 0) fail("expected key.path=value, such as features.orb.count=500");
+  const std::vector<std::string> path = split(override_text.substr(0, equals));
+  if (std::any_of(path.begin(), path.end(), [](const std::string& part) { return part.empty(); }))
+    fail("the key has an empty part; expected key.path=value, such as features.orb.count=500");
+
+  ConfigurationNode value = parse_yaml(override_text.substr(equals + 1), location.file, std::filesystem::current_path());
+  relocate(value, location);
+
+  ConfigurationNode* node = &root;
+  for (std::size_t depth = 0; depth < path.size(); ++depth) {
+    const std::string& part = path[depth];
+    if (node->kind == ConfigurationNode::Kind::list) {
+      std::size_t index = 0;
+      const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
+      if (error != std::errc() || end != part.data() + part.size() || index >= node->items.size())
+        fail("'" + part + "' is no element of the list; expected a number from 0 to " +
+             std::to_string(static_cast<long>(node->items.size()) - 1));
+      node = &node->items[index];
+      continue;
+    }
+    const bool chooses = depth == 1 && std::find(choices.begin(), choices.end(), path[0]) != choices.end();
+    // `orb` stands for `orb: {}`, in a choice and as a link of a chain.
+    if (node->kind == ConfigurationNode::Kind::scalar) {
+      const std::string name = node->text;
+      const bool same = name == part;
+      node->kind = ConfigurationNode::Kind::map;
+      if (same) node->entries.push_back({name, node->location, ConfigurationNode{.location = node->location, .folder = node->folder}});
+    }
+    node->kind = ConfigurationNode::Kind::map;
+    if (chooses && node->find(part) == nullptr) node->entries.clear();
+    if (node->find(part) == nullptr) node->entries.push_back({part, location, ConfigurationNode{.location = location}});
+    node = node->find(part);
+  }
+  *node = std::move(value);
+}
+
+}  // namespace holdfast

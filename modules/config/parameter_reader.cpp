@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/config/parameter_reader.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include "holdfast/plugin/did_you_mean.hpp"
+
+namespace holdfast {
+
+namespace {
+
+using Kind = ConfigurationNode::Kind;
+
+std::optional<double> as_real(const ConfigurationNode& node) {
+  if (node.kind != Kind::scalar || node.quoted || node.text.empty()) return std::nullopt;
+  const char* begin = node.text.data() + (node.text.front() == '+' ? 1 : 0);
+  const char* end = node.text.data() + node.text.size();
+  double number = 0;
+  const auto [stop, error] = std::from_chars(begin, end, number);
+  if (error != std::errc() || stop != end || !std::isfinite(number)) return std::nullopt;
+  return number;
+}
+
+std::optional<std::int64_t> as_integer(const ConfigurationNode& node) {
+  if (node.kind != Kind::scalar || node.quoted || node.text.empty()) return std::nullopt;
+  const char* begin = node.text.data() + (node.text.front() == '+' ? 1 : 0);
+  const char* end = node.text.data() + node.text.size();
+  std::int64_t number = 0;
+  const auto [stop, error] = std::from_chars(begin, end, number);
+  if (error != std::errc() || stop != end) return std::nullopt;
+  return number;
+}
+
+std::optional<ParameterValue> as_type(const ConfigurationNode& node, ParameterType type) {
+  switch (type) {
+    case ParameterType::boolean:
+      if (node.kind != Kind::scalar || node.quoted || (node.text != "true" && node.text != "false")) return std::nullopt;
+      return node.text == "true";
+    case ParameterType::integer:
+      if (const auto number = as_integer(node)) return *number;
+      return std::nullopt;
+    case ParameterType::real:
+      if (const auto number = as_real(node)) return *number;
+      return std::nullopt;
+    case ParameterType::text:
+      if (node.kind != Kind::scalar) return std::nullopt;
+      return node.text;
+    case ParameterType::path: {
+      if (node.kind != Kind::scalar) return std::nullopt;
+      if (node.text.empty()) return node.text;
+      const std::filesystem::path path = node.text;
+      return (path.is_absolute() ? path : node.folder / path).lexically_normal().string();
+    }
+    case ParameterType::text_list: {
+      std::vector<std::string> texts;
+      if (node.kind != Kind::list) return std::nullopt;
+      for (const ConfigurationNode& item : node.items) {
+        if (item.kind != Kind::scalar) return std::nullopt;
+        texts.push_back(item.text);
+      }
+      return texts;
+    }
+    case ParameterType::real_list: {
+      std::vector<double> numbers;
+      if (node.kind != Kind::list) return std::nullopt;
+      for (const ConfigurationNode& item : node.items) {
+        const auto number = as_real(item);
+        if (!number) return std::nullopt;
+        numbers.push_back(*number);
+      }
+      return numbers;
+    }
+    case ParameterType::text_map: {
+      TextMap map;
+      if (node.kind != Kind::map) return std::nullopt;
+      for (const ConfigurationNode::Entry& entry : node.entries) {
+        if (entry.value.kind != Kind::scalar) return std::nullopt;
+        map.emplace_back(entry.key, entry.value.text);
+      }
+      return map;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+ParameterValues read_parameters(const ConfigurationNode& node, const std::vector<Parameter>& table,
+                                const std::string& owner, std::vector<Diagnostic>& diagnostics) {
+  ParameterValues values;
+  if (node.kind != Kind::map && node.kind != Kind::nothing) {
+    diagnostics.push_back({node.location, "found " + node.found() + "; expected the parameters of " + owner +
+                                              " as a map, such as { name: value }"});
+    return values;
+  }
+  std::vector<std::string> names;
+  for (const Parameter& parameter : table) names.push_back(parameter.name);
+  for (const ConfigurationNode::Entry& entry : node.entries) {
+    const auto parameter =
+        std::find_if(table.begin(), table.end(), [&](const Parameter& p) { return p.name == entry.key; });
+    if (parameter == table.end()) {
+      diagnostics.push_back(
+          {entry.location, owner + " has no parameter '" + entry.key + "'; " + did_you_mean(entry.key, names)});
+      continue;
+    }
+    const std::string name = "'" + entry.key + "' of " + owner;
+    const auto value = as_type(entry.value, parameter->type);
+    if (!value) {
+      diagnostics.push_back({entry.value.location, "found " + entry.value.found() + " for " + name + "; expected " +
+                                                       parameter->expectation()});
+      continue;
+    }
+    if (const auto reason = parameter->reject(*value)) {
+      diagnostics.push_back(
+          {entry.value.location, "found " + entry.value.found() + " for " + name + ": " + *reason + "; expected " +
+                                     parameter->expectation()});
+      continue;
+    }
+    values[entry.key] = *value;
+  }
+  for (const Parameter& parameter : table) {
+    if (node.find(parameter.name) != nullptr) continue;
+    if (parameter.is_required)
+      diagnostics.push_back({node.location, owner + " needs '" + parameter.name + "' (" + parameter.help +
+                                                "); expected " + parameter.expectation()});
+    else
+      values[parameter.name] = parameter.default_value;
+  }
+  return values;
+}
+
+}  // namespace holdfast

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/config/reference.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "holdfast/plugin/did_you_mean.hpp"
+
+namespace holdfast {
+
+namespace {
+
+/// One entry of the reference: a module, or a plain section.
+struct Entry {
+  std::string kind;  // "section" for plain ones
+  ModuleDescription description;
+  std::string origin;
+  std::vector<Parameter> parameters;
+};
+
+std::vector<Entry> all_entries(const Registry& registry, const std::vector<SectionDescription>& sections) {
+  std::vector<Entry> entries;
+  for (const std::string& kind : registry.kinds())
+    for (const ModuleEntry* module : registry.of_kind(kind))
+      entries.push_back({kind, module->description, module->origin, module->parameters});
+  const auto add_section = [&](const std::string& name, const std::string& help, std::vector<Parameter> parameters) {
+    entries.push_back({"section", {.name = name, .summary = help}, "built in", std::move(parameters)});
+  };
+  std::string cameras;
+  for (const std::string& camera : camera_names()) cameras += (cameras.empty() ? "" : ", ") + camera;
+  add_section("camera", "The camera: one of the names " + cameras + ", or by numbers.",
+              ParameterTable<CameraSettings>().parameters());
+  for (const SectionDescription& section : sections) add_section(section.name, section.help, section.parameters);
+  add_section("run", "How the pipeline runs.", ParameterTable<RunSettings>().parameters());
+  return entries;
+}
+
+std::string default_text(const Parameter& parameter) {
+  return parameter.is_required ? "required" : to_string(parameter.default_value);
+}
+
+std::string range_text(const Parameter& parameter) {
+  std::string text = parameter.range_text();
+  for (std::size_t i = 0; i < parameter.allowed.size(); ++i) text += (i == 0 ? "" : " | ") + parameter.allowed[i];
+  return text;
+}
+
+std::string brief_text(const std::vector<Entry>& entries) {
+  std::string text, kind;
+  for (const Entry& entry : entries) {
+    if (entry.kind != kind) text += (kind.empty() ? "" : "\n") + (kind = entry.kind) + ":\n";
+    std::string name = "  " + entry.description.name;
+    name.resize(std::max<std::size_t>(name.size() + 1, 22), ' ');
+    text += name + entry.description.summary + "\n";
+  }
+  return text;
+}
+
+std::string full_text(const Entry& entry) {
+  std::string text = entry.kind + ": " + entry.description.name + "\n  " + entry.description.summary + "\n";
+  if (!entry.description.paper.empty()) text += "  Paper: " + entry.description.paper + "\n";
+  if (entry.kind != "section") text += "  Licence: " + entry.description.licence + "; " + entry.origin + "\n";
+  std::size_t width = 0;
+  for (const Parameter& parameter : entry.parameters) width = std::max(width, parameter.name.size());
+  for (const Parameter& parameter : entry.parameters) {
+    std::string name = parameter.name;
+    name.resize(width, ' ');
+    text += "    " + name + "  " + to_string(parameter.type) + ", " +
+            (parameter.is_required ? "required" : "default " + to_string(parameter.default_value));
+    if (!parameter.unit_name.empty()) text += " [" + parameter.unit_name + "]";
+    if (const std::string range = range_text(parameter); !range.empty()) text += ", " + range;
+    text += "\n    " + std::string(width, ' ') + "  " + parameter.help + "\n";
+  }
+  return text;
+}
+
+std::string escaped(std::string text) {
+  for (std::size_t i = 0; (i = text.find('|', i)) != std::string::npos; i += 2) text.insert(i, "\\");
+  return text;
+}
+
+std::string markdown(const std::vector<Entry>& entries) {
+  std::string text, kind;
+  for (const Entry& entry : entries) {
+    if (entry.kind != kind) {
+      kind = entry.kind;
+      text += (text.empty() ? "## " : "\n## ") + (kind == "section" ? std::string("Plain sections") : "`" + kind + "`") + "\n";
+    }
+    text += "\n### `" + entry.description.name + "`\n\n" + entry.description.summary + "\n";
+    if (!entry.description.paper.empty()) text += "\nPaper: " + entry.description.paper + "\n";
+    if (kind != "section") text += "\nLicence: " + entry.description.licence + "\n";
+    if (entry.parameters.empty()) continue;
+    text += "\n| parameter | type | default | range | unit | meaning |\n|---|---|---|---|---|---|\n";
+    for (const Parameter& p : entry.parameters)
+      text += "| `" + p.name + "` | " + to_string(p.type) + " | " + escaped(default_text(p)) + " | " +
+              escaped(range_text(p)) + " | " + p.unit_name + " | " + escaped(p.help) + " |\n";
+  }
+  return text;
+}
+
+nlohmann::ordered_json to_json(const ParameterValue& value) {
+  return std::visit(
+      [](const auto& v) -> nlohmann::ordered_json {
+        if constexpr (std::is_same_v<std::decay_t<decltype(v)>, TextMap>) {
+          nlohmann::ordered_json map = nlohmann::ordered_json::object();
+          for (const auto& [key, text] : v) map[key] = text;
+          return map;
+        } else {
+          return v;
+        }
+      },
+      value);
+}
+
+std::string json(const std::vector<Entry>& entries) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const Entry& entry : entries) {
+    nlohmann::ordered_json parameters = nlohmann::ordered_json::array();
+    for (const Parameter& p : entry.parameters) {
+      nlohmann::ordered_json row = {{"name", p.name}, {"type", to_string(p.type)}, {"required", p.is_required}};
+      row["default"] = p.is_required ? nlohmann::ordered_json(nullptr) : to_json(p.default_value);
+      row["minimum"] = p.minimum ? nlohmann::ordered_json(*p.minimum) : nlohmann::ordered_json(nullptr);
+      row["maximum"] = p.maximum ? nlohmann::ordered_json(*p.maximum) : nlohmann::ordered_json(nullptr);
+      row["allowed"] = p.allowed;
+      row["unit"] = p.unit_name;
+      row["help"] = p.help;
+      parameters.push_back(row);
+    }
+    all.push_back({{"kind", entry.kind},
+                   {"name", entry.description.name},
+                   {"summary", entry.description.summary},
+                   {"paper", entry.description.paper},
+                   {"licence", entry.description.licence},
+                   {"origin", entry.origin},
+                   {"parameters", parameters}});
+  }
+  return all.dump(2) + "\n";
+}
+
+}  // namespace
+
+std::string reference(const Registry& registry, const std::vector<SectionDescription>& sections, const std::string& name,
+                      ReferenceFormat format) {
+  std::vector<Entry> entries = all_entries(registry, sections);
+  if (!name.empty()) {
+    std::vector<std::string> names;
+    for (const Entry& entry : entries) {
+      names.push_back(entry.description.name);
+      names.push_back(entry.kind);
+    }
+    std::erase_if(entries, [&](const Entry& e) { return e.description.name != name && e.kind != name; });
+    if (entries.empty()) {
+      std::sort(names.begin(), names.end());
+      names.erase(std::unique(names.begin(), names.end()), names.end());
+      throw Error("there is no module or section '" + name + "'; " + did_you_mean(name, names));
+    }
+  }
+  if (format == ReferenceFormat::json) return json(entries);
+  if (format == ReferenceFormat::markdown) return markdown(entries);
+  if (name.empty()) return brief_text(entries);
+  std::string text;
+  for (const Entry& entry : entries) text += (text.empty() ? "" : "\n") + full_text(entry);
+  return text;
+}
+
+}  // namespace holdfast

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <yaml-cpp/yaml.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "holdfast/config/configuration_node.hpp"
+
+namespace holdfast {
+
+ConfigurationNode* ConfigurationNode::find(const std::string& key) {
+  for (Entry& entry : entries)
+    if (entry.key == key) return &entry.value;
+  return nullptr;
+}
+
+const ConfigurationNode* ConfigurationNode::find(const std::string& key) const {
+  return const_cast<ConfigurationNode*>(this)->find(key);
+}
+
+std::string ConfigurationNode::found() const {
+  switch (kind) {
+    case Kind::nothing:
+      return "nothing";
+    case Kind::scalar:
+      return "'" + text + "'";
+    case Kind::list:
+      return "a list";
+    case Kind::map:
+      return "a map";
+  }
+  return "";
+}
+
+namespace {
+
+class Converter {
+ public:
+  Converter(std::string file, std::filesystem::path folder) : file_(std::move(file)), folder_(std::move(folder)) {}
+
+  ConfigurationNode convert(const YAML::Node& node) {
+    ConfigurationNode result;
+    result.location = location(node);
+    result.folder = folder_;
+    switch (node.Type()) {
+      case YAML::NodeType::Scalar:
+        result.kind = ConfigurationNode::Kind::scalar;
+        result.text = node.Scalar();
+        result.quoted = node.Tag() == "!";  // what the parser gives to quoted scalars
+        break;
+      case YAML::NodeType::Sequence:
+        result.kind = ConfigurationNode::Kind::list;
+        for (const YAML::Node& item : node) result.items.push_back(convert(item));
+        break;
+      case YAML::NodeType::Map:
+        result.kind = ConfigurationNode::Kind::map;
+        for (const auto& pair : node) add_entry(pair.first, pair.second, result);
+        break;
+      case YAML::NodeType::Null:
+      case YAML::NodeType::Undefined:
+        break;
+    }
+    return result;
+  }
+
+  std::vector<Diagnostic> diagnostics;
+
+ private:
+  SourceLocation location(const YAML::Node& node) const {
+    const YAML::Mark mark = node.Mark();  // counts from 0, -1 = unknown
+    return {file_, mark.line + 1, mark.column + 1};
+  }
+
+  void add_entry(const YAML::Node& key, const YAML::Node& value, ConfigurationNode& map) {
+    const SourceLocation place = location(key);
+    if (!key.IsScalar()) {
+      diagnostics.push_back({place, "found a key that is no plain text; expected a name"});
+      return;
+    }
+    if (key.Scalar() == "<<") {
+      diagnostics.push_back({place, "merge keys (<<) are not supported; repeat the values, or use an alias (*name) for a "
+                                    "whole value"});
+      return;
+    }
+    for (const ConfigurationNode::Entry& entry : map.entries)
+      if (entry.key == key.Scalar()) {
+        diagnostics.push_back({place, "duplicate key '" + key.Scalar() + "'; it stands already in line " +
+                                          std::to_string(entry.location.line) + "; keep one of them"});
+        return;
+      }
+    map.entries.push_back({key.Scalar(), place, convert(value)});
+  }
+
+  std::string file_;
+  std::filesystem::path folder_;
+};
+
+}  // namespace
+
+ConfigurationNode parse_yaml(const std::string& text, const std::string& file_name,
+                             const std::filesystem::path& folder) {
+  YAML::Node document;
+  try {
+    document = YAML::Load(text);
+  } catch (const YAML::Exception& error) {
+    throw ConfigurationError({{{file_name, error.mark.line + 1, error.mark.column + 1}, "syntax error: " + error.msg}});
+  }
+  Converter converter(file_name, folder);
+  ConfigurationNode root = converter.convert(document);
+  if (!converter.diagnostics.empty()) throw ConfigurationError(converter.diagnostics);
+  return root;
+}
+
+ConfigurationNode read_yaml(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream || std::filesystem::is_directory(file))
+    throw ConfigurationError({{{file.string()}, "cannot be read; expected a configuration in YAML"}});
+  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  return parse_yaml(text, file.string(), std::filesystem::absolute(file).parent_path());
+}
+
+}  // namespace holdfast
