@@ -66,9 +66,9 @@ cv::Mat wood(cv::Size size, const cv::Scalar& colour, int board, Random random) 
     for (int from = 0; from < size.width;) {
       const int length = board > 0 ? static_cast<int>(height * own.uniform(5.0, 11.0)) : size.width;
       const int columns = std::min(length, size.width - from);
-      NoiseField field(columns, rows, static_cast<float>(own.uniform(-0.16, 0.16)));
-      add_fractal_noise(field, 260.0F, 22.0F, 0.11F, 3, 0.75F, own.fork(1));
-      add_fractal_noise(field, 70.0F, 5.0F, 0.13F, 3, 0.75F, own.fork(2));
+      NoiseField field(columns, rows, static_cast<float>(own.uniform(-0.13, 0.13)));
+      add_fractal_noise(field, 260.0F, 22.0F, 0.08F, 3, 0.75F, own.fork(1));
+      add_fractal_noise(field, 70.0F, 5.0F, 0.09F, 3, 0.75F, own.fork(2));
       NoiseField tint(columns, rows);
       add_value_noise(tint, 180.0F, 40.0F, 0.05F, own.fork(3));
       cv::Mat part = coloured(field, colour, &tint);
