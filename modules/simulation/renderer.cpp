@@ -88,7 +88,7 @@ Colour colour_of(const VisibleTriangle& triangle, float x, float y, float invers
 
   int taps = 1;
   for (float ratio2 = major2 / minor2; taps < 4 && ratio2 > 1.5F * static_cast<float>(taps * taps);) ++taps;
-  constexpr float blur = 0.15F;  // of a lens, on top of that of trilinear filtering [mip levels]
+  constexpr float blur = 0.4F;  // of a lens, on top of that of trilinear filtering [mip levels]
   const float level = 0.5F * quick_log2(major2) - (taps > 1 ? quick_log2(static_cast<float>(taps)) : 0.0F) + blur;
   std::uint64_t sum = 0;
   for (int tap = 0; tap < taps; ++tap) {
