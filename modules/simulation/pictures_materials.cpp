@@ -66,9 +66,9 @@ cv::Mat wood(cv::Size size, const cv::Scalar& colour, int board, Random random) 
     for (int from = 0; from < size.width;) {
       const int length = board > 0 ? static_cast<int>(height * own.uniform(5.0, 11.0)) : size.width;
       const int columns = std::min(length, size.width - from);
-      NoiseField field(columns, rows, static_cast<float>(own.uniform(-0.16, 0.16)));
-      add_fractal_noise(field, 260.0F, 22.0F, 0.11F, 3, 0.75F, own.fork(1));
-      add_fractal_noise(field, 70.0F, 5.0F, 0.13F, 3, 0.75F, own.fork(2));
+      NoiseField field(columns, rows, static_cast<float>(own.uniform(-0.13, 0.13)));
+      add_fractal_noise(field, 260.0F, 22.0F, 0.08F, 3, 0.75F, own.fork(1));
+      add_fractal_noise(field, 70.0F, 5.0F, 0.09F, 3, 0.75F, own.fork(2));
       NoiseField tint(columns, rows);
       add_value_noise(tint, 180.0F, 40.0F, 0.05F, own.fork(3));
       cv::Mat part = coloured(field, colour, &tint);
@@ -80,7 +80,7 @@ cv::Mat wood(cv::Size size, const cv::Scalar& colour, int board, Random random) 
           cv::ellipse(part, centre, {radius * ring / 2 + 1, radius * ring / 3 + 1}, own.uniform(-10, 10), 0, 360,
                       colour * (0.3 + 0.17 * ring), ring == 1 ? cv::FILLED : 1, cv::LINE_AA);
       }
-      if (board > 0) cv::rectangle(part, {0, 0, columns, rows}, colour * 0.35, 1);
+      if (board > 0) cv::rectangle(part, {0, 0, columns, rows}, colour * 0.55, 1);
       part.copyTo(picture(cv::Rect(from, top, columns, rows)));
       from += columns;
       own.next();
@@ -92,9 +92,9 @@ cv::Mat wood(cv::Size size, const cv::Scalar& colour, int board, Random random) 
 cv::Mat fabric(cv::Size size, const cv::Scalar& colour, Random random) {
   NoiseField field(size.width, size.height);
   add_fractal_noise(field, 0.3F * smallest_side(size), 0.3F * smallest_side(size), 0.12F, 3, 0.7F, random.fork(1));
-  add_value_noise(field, 9.0F, 2.0F, 0.2F, random.fork(2));
-  add_value_noise(field, 2.0F, 9.0F, 0.2F, random.fork(3));
-  add_value_noise(field, 3.0F, 3.0F, 0.25F, random.fork(4));
+  add_value_noise(field, 9.0F, 2.0F, 0.16F, random.fork(2));
+  add_value_noise(field, 2.0F, 9.0F, 0.16F, random.fork(3));
+  add_value_noise(field, 3.0F, 3.0F, 0.18F, random.fork(4));
   return coloured(field, colour);
 }
 

@@ -12,6 +12,7 @@ namespace holdfast::simulation {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using Eigen::Vector3f;
 
 namespace {
 constexpr double samples_per_pixel = 2.0;
@@ -70,37 +71,76 @@ struct Colour {
 
 // Colour of a triangle where the ray (x, y, 1) meets it. Footprints that are longer than wide take up to four samples
 // along their length (anisotropic filtering), so that desks and floors seen flat stay sharp.
-Colour colour_of(const VisibleTriangle& triangle, double x, double y, double inverse_depth, double pixel_x,
-                 double pixel_y) {
-  const double depth = 1.0 / inverse_depth;
-  const auto at = [&](const Vector3d& gradient) {
+Colour colour_of(const VisibleTriangle& triangle, float x, float y, float inverse_depth, float pixel_x, float pixel_y) {
+  const float depth = 1.0F / inverse_depth;
+  const auto at = [&](const Vector3f& gradient) {
     return (gradient.x() * x + gradient.y() * y + gradient.z()) * depth;
   };
-  const double u = at(triangle.u), v = at(triangle.v);
-  const auto light = static_cast<float>(at(triangle.light));
-  const Vector3d& g = triangle.inverse_depth;
-  const auto du_dx = static_cast<float>((triangle.u.x() - u * g.x()) * depth * pixel_x);
-  const auto dv_dx = static_cast<float>((triangle.v.x() - v * g.x()) * depth * pixel_x);
-  const auto du_dy = static_cast<float>((triangle.u.y() - u * g.y()) * depth * pixel_y);
-  const auto dv_dy = static_cast<float>((triangle.v.y() - v * g.y()) * depth * pixel_y);
+  const float u = at(triangle.u), v = at(triangle.v), light = at(triangle.light);
+  const auto slope_x = static_cast<float>(triangle.inverse_depth.x());
+  const auto slope_y = static_cast<float>(triangle.inverse_depth.y());
+  const float scale_x = depth * pixel_x, scale_y = depth * pixel_y;
+  const float du_dx = (triangle.u.x() - u * slope_x) * scale_x, dv_dx = (triangle.v.x() - v * slope_x) * scale_x;
+  const float du_dy = (triangle.u.y() - u * slope_y) * scale_y, dv_dy = (triangle.v.y() - v * slope_y) * scale_y;
   const float across2 = du_dx * du_dx + dv_dx * dv_dx, down2 = du_dy * du_dy + dv_dy * dv_dy;
   const bool lies = across2 > down2;
   const float major2 = std::max({across2, down2, 1e-12F}), minor2 = std::max(std::min(across2, down2), 1e-12F);
 
   int taps = 1;
   for (float ratio2 = major2 / minor2; taps < 4 && ratio2 > 1.5F * static_cast<float>(taps * taps);) ++taps;
-  constexpr float sharpness = -0.35F;  // trilinear filtering alone blurs more than a lens and sensor do
-  const float level = 0.5F * quick_log2(major2) - (taps > 1 ? quick_log2(static_cast<float>(taps)) : 0.0F) + sharpness;
+  constexpr float blur = 0.4F;  // of a lens, on top of that of trilinear filtering [mip levels]
+  const float level = 0.5F * quick_log2(major2) - (taps > 1 ? quick_log2(static_cast<float>(taps)) : 0.0F) + blur;
   std::uint64_t sum = 0;
-  const auto centre_u = static_cast<float>(u), centre_v = static_cast<float>(v);
   for (int tap = 0; tap < taps; ++tap) {
     const float share = (static_cast<float>(tap) + 0.5F) / static_cast<float>(taps) - 0.5F;
-    sum += triangle.texture->sample(centre_u + share * (lies ? du_dx : du_dy),
-                                    centre_v + share * (lies ? dv_dx : dv_dy), level);
+    sum += triangle.texture->sample(u + share * (lies ? du_dx : du_dy), v + share * (lies ? dv_dx : dv_dy), level);
   }
   const float scale = light / static_cast<float>(taps);
   return {scale * static_cast<float>(sum & 0xffff), scale * static_cast<float>((sum >> 16) & 0xffff),
           scale * static_cast<float>(sum >> 32)};
+}
+
+// The mean colour of the nine samples around a pixel, weighted as a tent. Samples on the pixel's own surface have its
+// colour `own`: a smooth surface is shaded once.
+Colour smooth_edges(const VisibilityBuffer& visibility, std::int32_t sample, const Colour& own, float pixel_x,
+                    float pixel_y) {
+  constexpr std::uint32_t nothing = VisibilityBuffer::nothing;
+  static constexpr int weights[9] = {1, 2, 1, 2, 4, 2, 1, 2, 1};
+  const RayGrid& grid = visibility.grid();
+  const std::uint32_t* centre = visibility.row(0) + sample;
+  const std::uint32_t *above = centre - grid.columns, *below = centre + grid.columns;
+  const std::uint32_t around[9] = {above[-1], above[0],  above[1], centre[-1], centre[0],
+                                   centre[1], below[-1], below[0], below[1]};
+  std::uint32_t difference = 0;
+  for (const std::uint32_t number : around) difference |= number ^ centre[0];
+  if (difference == 0) return own;
+
+  const std::vector<VisibleTriangle>& triangles = visibility.triangles();
+  std::uint32_t surfaces[9];
+  for (int k = 0; k < 9; ++k) surfaces[k] = around[k] == nothing ? nothing : triangles[around[k]].surface;
+  difference = 0;
+  for (const std::uint32_t surface : surfaces) difference |= surface ^ surfaces[4];
+  if (difference == 0) return own;
+
+  Colour blend;
+  int counted = 0;  // bit k: sample k
+  for (int k = 0; k < 9; ++k) {
+    if (counted & (1 << k)) continue;
+    int weight = 0;
+    for (int other = k; other < 9; ++other)
+      if (surfaces[other] == surfaces[k]) weight += weights[other], counted |= 1 << other;
+    if (surfaces[k] == nothing) continue;
+    Colour part = own;
+    if (surfaces[k] != surfaces[4]) {
+      const std::int32_t there = sample + (k / 3 - 1) * grid.columns + k % 3 - 1;
+      const auto x = static_cast<float>(grid.x0 + there % grid.columns * grid.step_x);
+      const auto y = static_cast<float>(grid.y0 + there / grid.columns * grid.step_y);
+      part = colour_of(triangles[around[k]], x, y, visibility.inverse_depths(0)[there], pixel_x, pixel_y);
+    }
+    const float share = static_cast<float>(weight) / 16.0F;
+    blend.blue += share * part.blue, blend.green += share * part.green, blend.red += share * part.red;
+  }
+  return blend;
 }
 
 std::uint8_t to_byte(float value) { return static_cast<std::uint8_t>(std::min(value + 0.5F, 255.0F)); }
@@ -126,11 +166,8 @@ RenderedFrame Renderer::render(const Eigen::Isometry3d& T_world_camera, double t
 
 void Renderer::shade(RenderedFrame& frame) const {
   const VisibilityBuffer& visibility = buffers_->visibility;
-  const RayGrid& grid = visibility.grid();
   const std::vector<VisibleTriangle>& triangles = visibility.triangles();
-  const double pixel_x = 1.0 / camera_.fx, pixel_y = 1.0 / camera_.fy;
-  constexpr std::uint32_t nothing = VisibilityBuffer::nothing;
-  static constexpr int weights[9] = {1, 2, 1, 2, 4, 2, 1, 2, 1};
+  const auto pixel_x = static_cast<float>(1.0 / camera_.fx), pixel_y = static_cast<float>(1.0 / camera_.fy);
 
   for (int y = 0; y < camera_.height; ++y) {
     auto* colour = frame.colour.ptr<std::uint8_t>(y);
@@ -142,7 +179,7 @@ void Renderer::shade(RenderedFrame& frame) const {
       const std::uint32_t* centre = visibility.row(0) + ray->sample;
       const std::uint32_t number = *centre;
       Colour sum;
-      if (number != nothing) {
+      if (number != VisibilityBuffer::nothing) {
         const VisibleTriangle& triangle = triangles[number];
         // The nearest sample is up to a quarter pixel off: on a surface seen almost edge-on the ray may miss it.
         const double sampled = visibility.inverse_depths(0)[ray->sample];
@@ -152,43 +189,12 @@ void Renderer::shade(RenderedFrame& frame) const {
         depth[x] = static_cast<float>(1.0 / inverse_depth);
         object[x] = triangle.object;
         cosine[x] = static_cast<float>(inverse_depth) * triangle.inverse_norm * ray->inverse_length;
-        sum = colour_of(triangle, ray->x, ray->y, inverse_depth, pixel_x, pixel_y);
+        sum = colour_of(triangle, ray->x, ray->y, static_cast<float>(inverse_depth), pixel_x, pixel_y);
       } else {
         depth[x] = 0.0F, object[x] = 0, cosine[x] = 0.0F;
       }
 
-      const std::uint32_t* above = centre - grid.columns;
-      const std::uint32_t* below = centre + grid.columns;
-      const std::uint32_t around[9] = {above[-1], above[0],  above[1], centre[-1], number,
-                                       centre[1], below[-1], below[0], below[1]};
-      bool same = true;
-      for (std::uint32_t other : around) same &= other == number;
-      if (!same) {
-        const auto surface_of = [&](std::uint32_t n) { return n == nothing ? nothing : triangles[n].surface; };
-        std::uint32_t surfaces[9];
-        for (int k = 0; k < 9; ++k) surfaces[k] = surface_of(around[k]);
-        Colour blend;
-        int done = 0;  // bit k: sample k has been counted
-        for (int k = 0; k < 9; ++k) {
-          const int first = (k + 4) % 9;  // the pixel's own surface comes first
-          if (done & (1 << first)) continue;
-          int weight = 0;
-          for (int other = 0; other < 9; ++other)
-            if (surfaces[other] == surfaces[first]) weight += weights[other], done |= 1 << other;
-          if (surfaces[first] == nothing) continue;
-          Colour part = sum;
-          if (first != 4) {
-            const std::int32_t sample = ray->sample + (first / 3 - 1) * grid.columns + first % 3 - 1;
-            const double sample_x = grid.x0 + sample % grid.columns * grid.step_x;
-            const double sample_y = grid.y0 + sample / grid.columns * grid.step_y;
-            part = colour_of(triangles[around[first]], sample_x, sample_y, visibility.inverse_depths(0)[sample],
-                             pixel_x, pixel_y);
-          }
-          const float share = static_cast<float>(weight) / 16.0F;
-          blend.blue += share * part.blue, blend.green += share * part.green, blend.red += share * part.red;
-        }
-        sum = blend;
-      }
+      sum = smooth_edges(visibility, ray->sample, sum, pixel_x, pixel_y);
       colour[0] = to_byte(sum.blue), colour[1] = to_byte(sum.green), colour[2] = to_byte(sum.red);
     }
   }

@@ -115,8 +115,8 @@ World make_room(std::uint64_t seed) {
   furnish_desk_wall(room);
   furnish_desks(room, Random(seed).fork(0xde5c));
   furnish_around(room);
-  world.lamps = {{{1.6F, 3.0F, 2.45F}, 0.55F}, {{4.4F, 3.1F, 2.45F}, 0.50F}, {{3.0F, 1.0F, 2.4F}, 0.45F}};
-  world.ambient = 0.55F;
+  world.lamps = {{{1.6F, 3.0F, 2.45F}, 0.85F}, {{4.4F, 3.1F, 2.45F}, 0.80F}, {{3.0F, 1.0F, 2.4F}, 0.75F}};
+  world.ambient = 0.62F;
   bake_light(world);
   return world;
 }

@@ -60,7 +60,7 @@ BoxSkin RoomBuilder::plain_skin(const cv::Scalar& colour) {
 
 void RoomBuilder::shell() {
   constexpr float width = 6.0F, depth = 5.0F, height = 2.6F;
-  constexpr double density = 240.0;
+  constexpr double density = 200.0;
   Object& walls = add("wall", {});
   const Vector3f x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
   const cv::Scalar colours[] = {{205, 215, 218}, {190, 208, 205}, {208, 205, 195}, {185, 200, 212}};
@@ -79,7 +79,7 @@ void RoomBuilder::shell() {
   wall(3, {0, 0, height}, y, depth);
   Object& floor = add("floor", {});
   add_rectangle(floor.mesh, {0, depth, 0}, x * width, -y * depth,
-                paint(pictures::wood(texels(width, depth, density), {70, 110, 160}, 28, random())), 0.2F);
+                paint(pictures::wood(texels(width, depth, density), {85, 125, 172}, 26, random())), 0.2F);
   Object& ceiling = add("ceiling", {});
   add_rectangle(ceiling.mesh, {0, 0, height}, x * width, y * depth,
                 paint(pictures::plaster(texels(width, depth, 120.0), {225, 228, 228}, random())), 0.4F);
@@ -97,9 +97,9 @@ void RoomBuilder::desk(const Place& place, double width, double depth) {
   Object& object = add("desk", place);
   const auto wooden = [](cv::Size size, Random random) { return pictures::wood(size, light_wood, 0, random); };
   const AlignedBox3f board = box(-width / 2, -depth / 2, 0.70, width / 2, depth / 2, 0.73);
-  add_box(object.mesh, board, skin(board, 500.0, wooden), 0.06F);
+  add_box(object.mesh, board, skin(board, 400.0, wooden), 0.08F);
   const AlignedBox3f modesty = box(-width / 2 + 0.06, depth / 2 - 0.08, 0.25, width / 2 - 0.06, depth / 2 - 0.06, 0.70);
-  add_box(object.mesh, modesty, skin(modesty, 250.0, wooden), 0.2F);
+  add_box(object.mesh, modesty, skin(modesty, 200.0, wooden), 0.2F);
   const BoxSkin metal = plain_skin(grey_plastic);
   for (const double side : {-1.0, 1.0})
     for (const double end : {-1.0, 1.0}) {
@@ -109,7 +109,7 @@ void RoomBuilder::desk(const Place& place, double width, double depth) {
   // A container with drawers under the right end.
   const AlignedBox3f drawers = box(width / 2 - 0.52, -depth / 2 + 0.05, 0.06, width / 2 - 0.10, depth / 2 - 0.12, 0.64);
   add_box(object.mesh, drawers,
-          skin(drawers, 300.0, [](cv::Size size, Random random) { return pictures::wood(size, dark_wood, 0, random); }),
+          skin(drawers, 250.0, [](cv::Size size, Random random) { return pictures::wood(size, dark_wood, 0, random); }),
           0.2F);
   for (int i = 0; i < 3; ++i) {
     const double z = 0.16 + 0.19 * i;
@@ -148,7 +148,7 @@ void RoomBuilder::cabinet(const Place& place, double width, double depth, double
   const cv::Scalar tone = random_.uniform() < 0.5 ? light_wood : cv::Scalar(150, 160, 165);
   const AlignedBox3f body = box(-width / 2, -depth / 2, 0, width / 2, depth / 2, height);
   add_box(object.mesh, body,
-          skin(body, 300.0, [&](cv::Size size, Random random) { return pictures::wood(size, tone, 0, random); }),
+          skin(body, 250.0, [&](cv::Size size, Random random) { return pictures::wood(size, tone, 0, random); }),
           0.15F);
   const BoxSkin metal = plain_skin(grey_plastic * 0.6);
   const int rows = std::max(1, static_cast<int>(height / 0.3));

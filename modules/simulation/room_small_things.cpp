@@ -178,6 +178,8 @@ void RoomBuilder::plant(const Place& place, double height) {
         out * static_cast<float>(reach) * base + Vector3f(0, 0, pot_height + static_cast<float>(rise));
     const Vector3f along =
         out * static_cast<float>(reach) * 0.7F + Vector3f(0, 0, static_cast<float>(random_.uniform(-0.06, 0.08)));
+    add_bar(object.mesh, {Vector3f(0, 0, pot_height), 0.4F * root + Vector3f(0, 0, 0.5F * pot_height), root}, 0.003F,
+            leaf, 4);
     // Both sides, for a leaf is seen from either.
     add_rectangle(object.mesh, root - wide * side, 2 * wide * side, along, leaf, 0.5F);
     add_rectangle(object.mesh, root + wide * side, -2 * wide * side, along, leaf, 0.5F);

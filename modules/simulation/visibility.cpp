@@ -32,6 +32,7 @@ void VisibilityBuffer::draw(const World& world, const Eigen::Isometry3d& T_world
     for (const Triangle& triangle : mesh.triangles) {
       const Vector3d corners[3] = {corners_[triangle.a], corners_[triangle.b], corners_[triangle.c]};
       if (corners[0].z() < near_plane && corners[1].z() < near_plane && corners[2].z() < near_plane) continue;
+      if (outside(corners)) continue;
       Eigen::Matrix3d edges;  // rows: the inverse of the matrix of corners
       edges.row(0) = corners[1].cross(corners[2]);
       const double determinant = edges.row(0).dot(corners[0]);
@@ -44,8 +45,8 @@ void VisibilityBuffer::draw(const World& world, const Eigen::Isometry3d& T_world
       VisibleTriangle& visible = triangles_.emplace_back();
       visible.inverse_depth = edges.colwise().sum().transpose();
       const Vertex &a = mesh.vertices[triangle.a], &b = mesh.vertices[triangle.b], &c = mesh.vertices[triangle.c];
-      const auto gradient = [&](double at_a, double at_b, double at_c) -> Vector3d {
-        return at_a * edges.row(0) + at_b * edges.row(1) + at_c * edges.row(2);
+      const auto gradient = [&](double at_a, double at_b, double at_c) -> Eigen::Vector3f {
+        return (at_a * edges.row(0) + at_b * edges.row(1) + at_c * edges.row(2)).transpose().cast<float>();
       };
       visible.u = gradient(a.u, b.u, c.u);
       visible.v = gradient(a.v, b.v, c.v);
@@ -58,6 +59,17 @@ void VisibilityBuffer::draw(const World& world, const Eigen::Isometry3d& T_world
     }
     first_surface += mesh.surface_count;
   }
+}
+
+bool VisibilityBuffer::outside(const Vector3d corners[3]) const {
+  const double x1 = grid_.x0 + grid_.columns * grid_.step_x, y1 = grid_.y0 + grid_.rows * grid_.step_y;
+  int left = 0, right = 0, above = 0, below = 0;
+  for (int i = 0; i < 3; ++i) {
+    const Vector3d& corner = corners[i];
+    left += corner.x()<grid_.x0 * corner.z(), right += corner.x()> x1 * corner.z();
+    above += corner.y()<grid_.y0 * corner.z(), below += corner.y()> y1 * corner.z();
+  }
+  return left == 3 || right == 3 || above == 3 || below == 3;
 }
 
 void VisibilityBuffer::draw_triangle(const Vector3d corners[3], const Eigen::Matrix3d& edges, std::uint32_t number) {

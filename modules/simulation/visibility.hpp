@@ -13,7 +13,7 @@ namespace holdfast::simulation {
 /// attribute / z = gradient . r, and 1 / z = inverse_depth . r.
 struct VisibleTriangle {
   Eigen::Vector3d inverse_depth;
-  Eigen::Vector3d u, v, light;
+  Eigen::Vector3f u, v, light;
   const Texture* texture = nullptr;
   std::uint32_t surface = 0;  ///< one number for all triangles of a smooth surface
   std::uint16_t object = 0;   ///< index plus one
@@ -45,6 +45,8 @@ class VisibilityBuffer {
   const float* inverse_depths(int j) const { return nearest_.data() + static_cast<std::size_t>(j) * grid_.columns; }
 
  private:
+  /// All corners lie beyond one side of the view: a plane through the eye, so this holds behind the camera too.
+  bool outside(const Eigen::Vector3d corners[3]) const;
   void draw_triangle(const Eigen::Vector3d corners[3], const Eigen::Matrix3d& edges, std::uint32_t number);
 
   RayGrid grid_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <opencv2/core/mat.hpp>
 #include <vector>
@@ -15,8 +16,8 @@ class Texture {
   /// From 8UC3, blue green red, not empty.
   explicit Texture(const cv::Mat& picture);
 
-  int width() const { return levels_.front().width; }
-  int height() const { return levels_.front().height; }
+  int width() const { return levels_[0].width; }
+  int height() const { return levels_[0].height; }
 
   /// Trilinear sample at (u, v) [texels of level 0]; `level` is the base-2 logarithm of the footprint. The result holds
   /// blue, green, red in 16-bit lanes, lowest first, each 0 to 255.
@@ -24,13 +25,15 @@ class Texture {
 
  private:
   struct Level {
-    int width = 0;
-    int height = 0;
-    std::vector<std::uint32_t> texels;  // 0x00rrggbb
+    std::int32_t width = 0;
+    std::int32_t height = 0;
+    std::uint32_t begin = 0;  // of its texels in texels_
   };
-  static std::uint64_t bilinear(const Level& level, float u, float v);
+  std::uint64_t bilinear(const Level& level, float u, float v) const;
 
-  std::vector<Level> levels_;
+  int last_level_ = 0;
+  std::array<Level, 16> levels_;
+  std::vector<std::uint32_t> texels_;  // 0x00rrggbb, level by level: together, so that a sample costs few cache misses
 };
 
 }  // namespace holdfast::simulation
