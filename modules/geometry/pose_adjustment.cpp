@@ -18,11 +18,6 @@ bool is_finite(const PoseProblem& problem, std::size_t i) {
          std::isfinite(problem.weight[i]) && problem.inverse_sigma2[i] > 0.0f;
 }
 
-/// The weight of an observation's cost, 0 for what cannot be used.
-double usable_weight(const PoseProblem& problem, std::size_t i) {
-  return is_finite(problem, i) ? std::max(0.0, static_cast<double>(problem.weight[i])) : 0.0;
-}
-
 /// Fills the batches; returns how many observations count.
 int pack(const PoseProblem& problem, const PoseAdjustmentOptions& options, std::vector<ObservationBatch>& batches) {
   const std::size_t size = problem.size();
@@ -45,23 +40,22 @@ int pack(const PoseProblem& problem, const PoseAdjustmentOptions& options, std::
       batch.information_right[k] = problem.inverse_sigma2[i];
       batch.limit[k] = options.limit_three;
     }
-    batch.weight[k] = usable_weight(problem, i);
+    batch.full_weight[k] = batch.weight[k] = std::max(0.0, static_cast<double>(problem.weight[i]));
     count += batch.weight[k] > 0.0;
   }
   return count;
 }
 
 /// Decides every observation anew at a pose. Returns whether the set that counts has changed.
-bool decide(const PoseProblem& problem, const Eigen::Isometry3d& pose, std::vector<ObservationBatch>& batches) {
-  chi_squares(batches, PoseView(*problem.camera, pose));
+bool decide(const Camera& camera, const Eigen::Isometry3d& pose, std::vector<ObservationBatch>& batches) {
+  chi_squares(batches, PoseView(camera, pose));
   bool changed = false;
-  for (std::size_t i = 0; i < problem.size(); ++i) {
-    ObservationBatch& batch = batches[i / batch_size];
-    const std::size_t k = i % batch_size;
-    const bool fits = batch.chi_square[k] <= batch.limit[k];
-    const double weight = fits ? usable_weight(problem, i) : 0.0;
-    changed |= weight != batch.weight[k];
-    batch.weight[k] = weight;
+  for (ObservationBatch& batch : batches) {
+    for (std::size_t k = 0; k < batch_size; ++k) {
+      const double weight = batch.chi_square[k] <= batch.limit[k] ? batch.full_weight[k] : 0.0;
+      changed |= weight != batch.weight[k];
+      batch.weight[k] = weight;
+    }
   }
   return changed;
 }
@@ -123,7 +117,7 @@ PoseSummary adjust_pose(PoseProblem& problem, const PoseAdjustmentOptions& optio
   if (pack(problem, options, batches) < 3 || !problem.T_camera_world.matrix().allFinite()) return summary;
 
   Eigen::Isometry3d pose = problem.T_camera_world;
-  if (options.trust_guess) decide(problem, pose, batches);
+  if (options.trust_guess) decide(*problem.camera, pose, batches);
   PoseSystem system;
   bool settled = false;  // the last round has been solved on the very set that it left behind
   for (int round = 0; round < options.robust_rounds + options.final_rounds; ++round) {
@@ -133,7 +127,7 @@ PoseSummary adjust_pose(PoseProblem& problem, const PoseAdjustmentOptions& optio
     const double relative = robust ? 1e-4 : 1e-8, absolute = robust ? 0.02 : 1e-4;
     summary.iterations +=
         minimise(*problem.camera, batches, robust, options.iterations, relative, absolute, pose, system);
-    settled = !decide(problem, pose, batches);
+    settled = !decide(*problem.camera, pose, batches);
   }
 
   int inliers = 0;

@@ -22,7 +22,8 @@ struct alignas(32) ObservationBatch {
   Batch information;                ///< of x and y [1/px^2]
   Batch information_right;          ///< of right_x, 0 where there is none
   Batch limit;                      ///< chi-square limit, and square of Huber's threshold
-  Batch weight;                     ///< of the observation's cost in this round, 0 = outlier
+  Batch full_weight;                ///< of the observation's cost while it is no outlier
+  Batch weight;                     ///< full_weight, or 0 in a round in which the observation is an outlier
   Batch chi_square;                 ///< by chi_squares()
 };
 
