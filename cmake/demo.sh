@@ -1,0 +1,22 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# From a fresh clone to a camera tracked through the simulated room: installs what is missing, builds the program,
+# runs the demo and says where its report lies. Call it as often as you like.
+#
+#   sh cmake/demo.sh [BUILD_FOLDER]        BUILD_FOLDER: build by default
+set -eu
+
+cd "$(dirname "$0")/.."
+build=${1:-build}
+output=out/demo
+
+sh cmake/install_dependencies.sh
+# The program alone: tests, benchmarks and examples would more than double the time to the first picture.
+cmake --preset release -B "$build" \
+  -DHOLDFAST_BUILD_TESTS=OFF -DHOLDFAST_BUILD_BENCHMARKS=OFF -DHOLDFAST_BUILD_EXAMPLES=OFF
+cmake --build "$build" --parallel "$(nproc)" --target holdfast_program
+"$build/bin/holdfast" run examples/configs/demo.yaml --output "$output" --overwrite
+
+[ -s "$output/report.html" ] || { echo "demo: $output/report.html was not written" >&2; exit 1; }
+echo
+echo "The report, with the path against the truth and the error over time: $PWD/$output/report.html"

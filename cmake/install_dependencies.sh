@@ -1,0 +1,62 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# Installs what Holdfast is built from, on Debian 12 and its relatives. Quick when everything is there already.
+#
+#   sh cmake/install_dependencies.sh             install what is missing (as root, or through sudo without a password)
+#   sh cmake/install_dependencies.sh --dry-run   say what would be installed, change nothing
+set -eu
+
+packages="
+  build-essential cmake ninja-build ccache git ca-certificates pkg-config
+  libeigen3-dev libopencv-dev libceres-dev libflann-dev liblz4-dev
+  libyaml-cpp-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
+  libgtest-dev libgmock-dev libbenchmark-dev"
+
+say() { printf 'install_dependencies: %s\n' "$*"; }
+fail() { say "$@" >&2; exit 1; }
+
+dry_run=no
+case "${1-}" in
+  "") ;;
+  --dry-run) dry_run=yes ;;
+  -h | --help) sed -n '3,6s/^# \{0,1\}//p' "$0"; exit 0 ;;
+  *) fail "unknown argument '$1'; known are --dry-run and --help" ;;
+esac
+
+if ! command -v apt-get >/dev/null 2>&1 || ! command -v dpkg-query >/dev/null 2>&1; then
+  fail "no apt-get here: please install, by the means of your system, what Debian 12 calls" $packages
+fi
+
+missing=""
+for package in $packages; do
+  status=$(dpkg-query --show --showformat='${db:Status-Status}' "$package" 2>/dev/null || true)
+  [ "$status" = installed ] || missing="$missing $package"
+done
+missing=${missing# }
+
+if [ -z "$missing" ]; then
+  say "everything is installed"
+  exit 0
+fi
+if [ "$dry_run" = yes ]; then
+  say "would install: $missing"
+  exit 0
+fi
+
+if [ "$(id -u)" -eq 0 ]; then
+  as_root=""
+elif command -v sudo >/dev/null 2>&1 && sudo -n true 2>/dev/null; then
+  as_root="sudo -n"
+else
+  say "missing packages, and neither root nor sudo without a password. Run this as root, then try again:" >&2
+  printf '  apt-get update && apt-get install --yes --no-install-recommends %s\n' "$missing" >&2
+  exit 1
+fi
+
+# `env` because sudo does not pass variables on.
+run_apt() { $as_root env DEBIAN_FRONTEND=noninteractive apt-get "$@"; }
+say "installing: $missing"
+run_apt update --quiet || fail "apt-get update failed; is there a network, and are the package sources right?"
+run_apt install --quiet --yes --no-install-recommends $missing ||
+  fail "apt-get install failed. These were wanted: $missing"
+say "done"

@@ -1,0 +1,24 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# From a fresh clone to the verdict of all tests: installs what is missing, builds everything, runs every test. Tests
+# on recordings run when HOLDFAST_DATA names the folder that holds them, and say that they were skipped otherwise.
+#
+#   sh cmake/test.sh [BUILD_FOLDER]        BUILD_FOLDER: build by default
+set -eu
+
+cd "$(dirname "$0")/.."
+build=${1:-build}
+jobs=$(nproc)
+
+sh cmake/install_dependencies.sh
+cmake --preset release -B "$build" \
+  -DHOLDFAST_BUILD_TESTS=ON -DHOLDFAST_BUILD_BENCHMARKS=ON -DHOLDFAST_BUILD_EXAMPLES=ON
+cmake --build "$build" --parallel "$jobs"
+
+run_tests() { ctest --test-dir "$build" --parallel "$jobs" --output-on-failure --no-tests=error "$@"; }
+# The quick ones first, so that a plain mistake shows within seconds; the others run even when those fail.
+verdict=0
+run_tests --label-regex '^quick$' || verdict=1
+run_tests --label-exclude '^quick$' || verdict=1
+[ "$verdict" -eq 0 ] && echo "All tests passed." || echo "Some tests failed: see above." >&2
+exit "$verdict"
