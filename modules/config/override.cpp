@@ -32,7 +32,7 @@ void relocate(ConfigurationNode& node, const SourceLocation& location) {
 
 void apply_override(ConfigurationNode& root, const std::string& override_text, const std::vector<std::string>& choices) {
   const SourceLocation location{"--set " + override_text};
-  const auto fail = [&](const std::string& message) { throw ConfigurationError({{location, message}}); };
+  const auto fail = [&](const std::string& message) { throw ConfigurationError(location, message); };
   const std::size_t equals = override_text.find('=');
   if (equals == std::string::npos || equals == 0) fail("expected key.path=value, such as features.orb.count=500");
   const std::vector<std::string> path = split(override_text.substr(0, equals));

@@ -103,7 +103,7 @@ ConfigurationNode parse_yaml(const std::string& text, const std::string& file_na
   try {
     document = YAML::Load(text);
   } catch (const YAML::Exception& error) {
-    throw ConfigurationError({{{file_name, error.mark.line + 1, error.mark.column + 1}, "syntax error: " + error.msg}});
+    throw ConfigurationError(SourceLocation{file_name, error.mark.line + 1, error.mark.column + 1}, "syntax error: " + error.msg);
   }
   Converter converter(file_name, folder);
   ConfigurationNode root = converter.convert(document);
@@ -114,7 +114,7 @@ ConfigurationNode parse_yaml(const std::string& text, const std::string& file_na
 ConfigurationNode read_yaml(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream || std::filesystem::is_directory(file))
-    throw ConfigurationError({{{file.string()}, "cannot be read; expected a configuration in YAML"}});
+    throw ConfigurationError(SourceLocation{file.string()}, "cannot be read; expected a configuration in YAML");
   const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   return parse_yaml(text, file.string(), std::filesystem::absolute(file).parent_path());
 }

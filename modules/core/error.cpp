@@ -34,6 +34,9 @@ std::string join(const std::vector<Diagnostic>& diagnostics) {
 ConfigurationError::ConfigurationError(std::vector<Diagnostic> diagnostics)
     : Error(join(diagnostics)), diagnostics_(std::move(diagnostics)) {}
 
+ConfigurationError::ConfigurationError(SourceLocation location, std::string message)
+    : ConfigurationError(std::vector<Diagnostic>{{std::move(location), std::move(message)}}) {}
+
 InputError::InputError(SourceLocation location, const std::string& message)
     : Error(Diagnostic{location, message}.to_string()), location_(std::move(location)) {}
 

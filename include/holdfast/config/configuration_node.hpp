@@ -15,12 +15,12 @@ struct ConfigurationNode {
   struct Entry;
 
   Kind kind = Kind::nothing;
-  SourceLocation location;        ///< of the value
-  std::filesystem::path folder;   ///< that relative paths start from
-  std::string text;               ///< of a scalar
+  SourceLocation location = {};        ///< of the value
+  std::filesystem::path folder = {};   ///< that relative paths start from
+  std::string text = {};               ///< of a scalar
   bool quoted = false;            ///< the scalar stands in quotes, so it is a text whatever it looks like
-  std::vector<ConfigurationNode> items;  ///< of a list
-  std::vector<Entry> entries;            ///< of a map, in the order of the file
+  std::vector<ConfigurationNode> items = {};  ///< of a list
+  std::vector<Entry> entries = {};            ///< of a map, in the order of the file
 
   /// The value of a key, or nullptr.
   ConfigurationNode* find(const std::string& key);

@@ -37,6 +37,7 @@ struct Diagnostic {
 class ConfigurationError : public Error {
  public:
   explicit ConfigurationError(std::vector<Diagnostic> diagnostics);
+  ConfigurationError(SourceLocation location, std::string message);
   const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }
 
  private:

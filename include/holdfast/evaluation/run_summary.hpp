@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "holdfast/core/frame_result.hpp"
+
+namespace holdfast {
+
+/// Time of one stage over a run. Median, 95th percentile and maximum are over the frames in which the stage ran.
+struct StageRow {
+  std::string stage;
+  std::size_t frames = 0;
+  double median = 0.0;   ///< [s]
+  double p95 = 0.0;      ///< [s]
+  double maximum = 0.0;  ///< [s]
+  double total = 0.0;    ///< [s]
+  double share = 0.0;    ///< of all stages' total, 0 to 1
+};
+
+/// Counts and times of a run, collected frame by frame.
+class RunSummary {
+ public:
+  /// `decode_seconds`: time the source took for the frame's images.
+  void add(const FrameResult& result, double decode_seconds);
+
+  std::uint64_t frames() const { return frames_; }
+  std::uint64_t tracked() const { return count(TrackingStatus::tracked) + count(TrackingStatus::initialised); }
+  std::uint64_t lost() const { return count(TrackingStatus::lost); }
+  std::uint64_t recovered() const { return recovered_; }
+  std::uint64_t count(TrackingStatus status) const;
+  const std::map<TrackingTrouble, std::uint64_t>& troubles() const { return troubles_; }
+  double mean_inliers() const;
+  /// Seconds from the images to the pose, frame by frame.
+  const std::vector<double>& tracking_seconds() const { return tracking_seconds_; }
+  /// Stages in the order in which they first ended.
+  std::vector<StageRow> stages() const;
+  /// The row of the tracking time as a whole.
+  StageRow tracking() const;
+
+ private:
+  struct Stage {
+    std::string name;
+    std::vector<double> seconds;
+  };
+  std::vector<double>& stage(const std::string& name);
+
+  std::uint64_t frames_ = 0, recovered_ = 0, inliers_ = 0;
+  std::map<TrackingStatus, std::uint64_t> statuses_;
+  std::map<TrackingTrouble, std::uint64_t> troubles_;
+  std::vector<Stage> stages_;
+  std::vector<double> tracking_seconds_;
+};
+
+/// The stage table as text: median, p95 and maximum in milliseconds, share in percent.
+std::string stage_table(const RunSummary& summary);
+
+}  // namespace holdfast

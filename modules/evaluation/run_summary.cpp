@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/evaluation/run_summary.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <numeric>
+
+#include "holdfast/evaluation/statistics.hpp"
+
+namespace holdfast {
+
+void RunSummary::add(const FrameResult& result, double decode_seconds) {
+  ++frames_;
+  ++statuses_[result.status];
+  if (result.status == TrackingStatus::lost || result.status == TrackingStatus::waiting) ++troubles_[result.trouble];
+  if (result.status == TrackingStatus::tracked) {
+    inliers_ += static_cast<std::uint64_t>(result.inliers);
+    if (result.method == TrackingMethod::recovered) ++recovered_;
+  }
+  stage("decode").push_back(decode_seconds);
+  for (const StageTimes::Entry& entry : result.times.entries()) stage(std::string(entry.stage)).push_back(entry.seconds);
+  tracking_seconds_.push_back(result.tracking_seconds);
+}
+
+std::uint64_t RunSummary::count(TrackingStatus status) const {
+  const auto found = statuses_.find(status);
+  return found == statuses_.end() ? 0 : found->second;
+}
+
+double RunSummary::mean_inliers() const {
+  const std::uint64_t tracked_frames = count(TrackingStatus::tracked);
+  return tracked_frames == 0 ? 0.0 : static_cast<double>(inliers_) / static_cast<double>(tracked_frames);
+}
+
+std::vector<double>& RunSummary::stage(const std::string& name) {
+  for (Stage& known : stages_)
+    if (known.name == name) return known.seconds;
+  return stages_.emplace_back(Stage{name, {}}).seconds;
+}
+
+namespace {
+StageRow row_of(const std::string& name, const std::vector<double>& seconds) {
+  StageRow row;
+  row.stage = name;
+  row.frames = seconds.size();
+  if (seconds.empty()) return row;
+  row.median = median(seconds);
+  row.p95 = percentile(seconds, 95.0);
+  row.maximum = *std::max_element(seconds.begin(), seconds.end());
+  row.total = std::accumulate(seconds.begin(), seconds.end(), 0.0);
+  return row;
+}
+}  // namespace
+
+std::vector<StageRow> RunSummary::stages() const {
+  std::vector<StageRow> rows;
+  double total = 0.0;
+  for (const Stage& known : stages_) {
+    rows.push_back(row_of(known.name, known.seconds));
+    total += rows.back().total;
+  }
+  for (StageRow& row : rows) row.share = total > 0.0 ? row.total / total : 0.0;
+  return rows;
+}
+
+StageRow RunSummary::tracking() const {
+  StageRow row = row_of("tracking", tracking_seconds_);
+  double total = 0.0;
+  for (const Stage& known : stages_) total += std::accumulate(known.seconds.begin(), known.seconds.end(), 0.0);
+  row.share = total > 0.0 ? row.total / total : 0.0;
+  return row;
+}
+
+std::string stage_table(const RunSummary& summary) {
+  char line[160];
+  std::snprintf(line, sizeof(line), "%-28s %7s %10s %9s %9s %7s\n", "stage", "frames", "median ms", "p95 ms", "max ms",
+                "share");
+  std::string text = line;
+  const auto add = [&](const StageRow& row, const std::string& name) {
+    std::snprintf(line, sizeof(line), "%-28s %7zu %10.3f %9.3f %9.3f %6.1f%%\n", name.c_str(), row.frames,
+                  row.median * 1e3, row.p95 * 1e3, row.maximum * 1e3, row.share * 100);
+    text += line;
+  };
+  for (const StageRow& row : summary.stages()) add(row, row.stage);
+  add(summary.tracking(), "tracking (all its stages)");
+  return text;
+}
+
+}  // namespace holdfast

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/pipeline/pipeline_builder.hpp"
+
+#include <utility>
+
+namespace holdfast {
+
+std::vector<SectionDescription> pipeline_sections() {
+  return {{"tracking", "How poses are found, and when a frame becomes a keyframe.",
+           ParameterTable<TrackingSettings>().parameters()},
+          {"mapping", "How the map around a new keyframe is made and kept.",
+           ParameterTable<MappingSettings>().parameters()}};
+}
+
+namespace {
+
+template <class Settings>
+Settings section(const Configuration& configuration, const std::string& name) {
+  const auto found = configuration.sections.find(name);
+  return found == configuration.sections.end() ? Settings{} : ParameterTable<Settings>().settings(found->second);
+}
+
+/// The camera of the run: the configuration's or the source's, exactly one of them.
+Camera resolve_camera(const Configuration& configuration, const SourceDescription& source,
+                      std::vector<Diagnostic>& diagnostics) {
+  if (source.camera && configuration.camera)
+    diagnostics.push_back({configuration.source.location,
+                           "the source '" + configuration.source.name +
+                               "' brings its own camera and the configuration has a section 'camera'; remove one of them"});
+  if (source.camera) return *source.camera;
+  if (configuration.camera) return *configuration.camera;
+  std::string known;
+  for (const std::string& name : camera_names()) known += (known.empty() ? "" : ", ") + name;
+  diagnostics.push_back({SourceLocation{configuration.file},
+                         "section 'camera' is missing, and the source '" + configuration.source.name +
+                             "' does not know its camera; expected a name (" + known + ") or numbers"});
+  return {};
+}
+
+void check_needs(const ModuleChoice& choice, const Needs& needs, const SourceDescription& source,
+                 const Configuration& configuration, std::vector<Diagnostic>& diagnostics) {
+  if (needs.depth && !source.has_depth)
+    diagnostics.push_back({choice.location, "the filter '" + choice.name + "' needs depth, which the source '" +
+                                                configuration.source.name + "' does not have; remove one of them"});
+  if (needs.segmentation && configuration.segmenter.name == "none")
+    diagnostics.push_back({choice.location, "the filter '" + choice.name +
+                                                "' needs a segmentation, but the segmenter is 'none'; choose a segmenter"});
+}
+
+}  // namespace
+
+BuiltPipeline build_pipeline(const Configuration& configuration, const Registry& registry,
+                             const std::filesystem::path& output_directory) {
+  CreationContext context;
+  if (configuration.camera) context.camera = *configuration.camera;
+  context.seed = configuration.run.seed;
+  context.sequential = configuration.run.mode == "sequential";
+  context.output_directory = output_directory;
+  const auto create = [&]<class Interface>(const ModuleChoice& choice) {
+    return registry.create<Interface>(choice.name, choice.values, context);
+  };
+
+  std::unique_ptr<FrameSource> source = create.operator()<FrameSource>(configuration.source);
+  const SourceDescription description = source->describe();
+  std::vector<Diagnostic> diagnostics;
+  context.camera = resolve_camera(configuration, description, diagnostics);
+
+  PipelineParts parts;
+  parts.camera = context.camera;
+  parts.seed = context.seed;
+  parts.features = create.operator()<FeatureExtractor>(configuration.features);
+  parts.segmenter = create.operator()<Segmenter>(configuration.segmenter);
+  parts.optimizer = create.operator()<Optimizer>(configuration.optimizer);
+  parts.loop_detector = create.operator()<LoopDetector>(configuration.loop_detector);
+  for (const ModuleChoice& choice : configuration.filters) {
+    auto filter = create.operator()<DynamicFilter>(choice);
+    check_needs(choice, filter->needs(), description, configuration, diagnostics);
+    parts.filters.emplace_back(choice.name, std::move(filter));
+  }
+  for (const ModuleChoice& choice : configuration.observers) parts.observers.push_back(create.operator()<Observer>(choice));
+  parts.tracking = section<TrackingSettings>(configuration, "tracking");
+  parts.mapping = section<MappingSettings>(configuration, "mapping");
+  if (!description.has_depth)
+    diagnostics.push_back({configuration.source.location,
+                           "the source '" + configuration.source.name +
+                               "' has no depth; this version tracks colour with depth only"});
+  if (!diagnostics.empty()) throw ConfigurationError(std::move(diagnostics));
+  return {std::move(source), Pipeline(std::move(parts))};
+}
+
+}  // namespace holdfast
