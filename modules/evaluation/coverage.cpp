@@ -8,8 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "holdfast/core/association.hpp"
 #include "holdfast/core/error.hpp"
-#include "holdfast/evaluation/association.hpp"
 
 namespace holdfast {
 
@@ -48,7 +48,7 @@ std::vector<double> read_stamp_list(const std::filesystem::path& file) {
 Coverage measure_coverage(std::span<const double> frame_stamps, std::span<const double> pose_stamps) {
   HOLDFAST_CHECK(!frame_stamps.empty(), "poses " << pose_stamps.size());
   Coverage coverage;
-  const std::vector<StampPair> pairs = pair_stamps(frame_stamps, pose_stamps, frame_tolerance);
+  const auto pairs = associate_stamps(frame_stamps, pose_stamps, frame_tolerance);
   coverage.frames = frame_stamps.size();
   coverage.poses = pairs.size();
   coverage.poses_of_no_frame = pose_stamps.size() - pairs.size();
@@ -59,7 +59,7 @@ Coverage measure_coverage(std::span<const double> frame_stamps, std::span<const 
     const std::size_t after = std::min(frame_with_pose, frame_stamps.size() - 1);
     coverage.gaps.push_back({frame_stamps[before], frame_stamps[after], frame_with_pose - next});
   };
-  for (const StampPair& pair : pairs) {
+  for (const auto& pair : pairs) {
     close_gap(pair.first);
     next = pair.first + 1;
   }
@@ -76,7 +76,7 @@ std::vector<double> read_frame_stamps(const std::filesystem::path& source) {
   const std::vector<double> colour = read_stamp_list(source / "rgb.txt");
   const std::vector<double> depth = read_stamp_list(source / "depth.txt");
   std::vector<double> stamps;
-  for (const StampPair& pair : pair_stamps(colour, depth, colour_depth_tolerance)) stamps.push_back(colour[pair.first]);
+  for (const auto& pair : associate_stamps(colour, depth, colour_depth_tolerance)) stamps.push_back(colour[pair.first]);
   if (stamps.empty())
     throw InputError({source.string()}, "no colour frame of rgb.txt has a depth frame of depth.txt within 0.02 s");
   return stamps;

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "holdfast/core/association.hpp"
 #include "holdfast/core/error.hpp"
-#include "holdfast/evaluation/association.hpp"
 #include "number_text.hpp"
 #include "relative_error.hpp"
 
@@ -64,7 +64,7 @@ Evaluation evaluate(const Trajectory& truth_as_given, const Trajectory& estimate
   const Trajectory estimate = sort_and_clean(estimate_as_given);
   const std::vector<double> truth_stamps = stamps_of(truth);
   const std::vector<double> estimate_stamps = stamps_of(estimate);
-  const std::vector<StampPair> pairs = pair_stamps(truth_stamps, estimate_stamps, options.max_time_difference);
+  const auto pairs = associate_stamps(truth_stamps, estimate_stamps, options.max_time_difference);
   if (pairs.size() < fewest_pairs) throw_too_few_pairs(options, pairs.size(), truth_stamps, estimate_stamps);
 
   Evaluation result;

@@ -5,13 +5,20 @@
 #include <cmath>
 #include <numbers>
 
-#include "holdfast/evaluation/association.hpp"
-
 namespace holdfast {
 
 namespace {
 
 constexpr double uneven_share = 0.1;  // of the step
+
+/// Place of the stamp nearest to `time` in a sorted list that is not empty; of two equally near ones the earlier.
+std::size_t nearest_stamp(const std::vector<double>& sorted, double time) {
+  const auto above = std::lower_bound(sorted.begin(), sorted.end(), time);
+  const auto index = static_cast<std::size_t>(above - sorted.begin());
+  if (index == 0) return 0;
+  if (index == sorted.size()) return index - 1;
+  return std::abs(sorted[index - 1] - time) <= std::abs(sorted[index] - time) ? index - 1 : index;
+}
 
 /// For every pose of the estimate its nearest truth, where that is near enough.
 class NearestTruth {
