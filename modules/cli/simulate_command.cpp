@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/cli/simulate_command.hpp"
 
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -13,8 +11,9 @@
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
+#include "holdfast/cli/output_folder.hpp"
+#include "holdfast/cli/terminal.hpp"
 #include "holdfast/core/error.hpp"
-#include "holdfast/core/stage_times.hpp"
 #include "holdfast/core/version.hpp"
 #include "holdfast/simulation/simulator.hpp"
 
@@ -109,44 +108,6 @@ Json describe_scene(const simulation::Simulator& simulator) {
   return scene;
 }
 
-void prepare_folder(const fs::path& folder, bool overwrite) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (!fs::is_directory(folder)) throw InputError({folder.string(), 0, 0}, "the output folder cannot be made");
-  if (!fs::is_empty(folder)) {
-    if (!overwrite)
-      throw InputError({folder.string(), 0, 0}, "the output folder is not empty; name another one or add --overwrite");
-    // Lists first: what is left after an interruption names nothing that is gone.
-    for (const char* name :
-         {"rgb.txt", "depth.txt", "associations.txt", "groundtruth.txt", "scene.json", "rgb", "depth"})
-      fs::remove_all(folder / name);
-  }
-  fs::create_directories(folder / "rgb");
-  fs::create_directories(folder / "depth");
-}
-
-// Frames done and time left, on one line of a terminal that is written over.
-class Progress {
- public:
-  explicit Progress(std::uint64_t total) : total_(total), shown_(isatty(STDERR_FILENO) == 1) {}
-  ~Progress() {
-    if (shown_) std::fputs("\r\033[K", stderr);
-  }
-  void update(std::uint64_t done) {
-    if (!shown_ || watch_.seconds() < next_) return;
-    next_ = watch_.seconds() + 0.2;
-    const double left = watch_.seconds() / static_cast<double>(done) * static_cast<double>(total_ - done);
-    std::fprintf(stderr, "\r\033[Kframe %llu of %llu, %.0f s left", static_cast<unsigned long long>(done),
-                 static_cast<unsigned long long>(total_), left);
-  }
-
- private:
-  std::uint64_t total_;
-  bool shown_;
-  Stopwatch watch_;
-  double next_ = 0.0;
-};
-
 void simulate(const SimulateOptions& options) {
   simulation::SimulationSettings settings = options.settings;
   settings.path = simulation::path_kind(options.path);
@@ -161,7 +122,11 @@ void simulate(const SimulateOptions& options) {
     throw Error("camera '" + options.camera + "' is not known; expected one of: " + known);
   }
   simulation::Simulator simulator(settings, *camera);
-  prepare_folder(options.output, options.overwrite);
+  // Lists first: what is left after an interruption names nothing that is gone.
+  prepare_output_folder(options.output, options.overwrite,
+                        {"rgb.txt", "depth.txt", "associations.txt", "groundtruth.txt", "scene.json", "rgb", "depth"});
+  fs::create_directories(options.output / "rgb");
+  fs::create_directories(options.output / "depth");
 
   std::ostringstream colour_list, depth_list, associations;
   colour_list << "# color images\n# timestamp filename\n";

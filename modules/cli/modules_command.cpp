@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/cli/modules_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "holdfast/config/reference.hpp"
+#include "holdfast/pipeline/pipeline_builder.hpp"
+#include "holdfast/plugin/builtin.hpp"
+#include "holdfast/plugin/loader.hpp"
+
+namespace holdfast {
+
+namespace {
+
+struct Arguments {
+  std::string name;
+  std::vector<std::string> plugins;
+  bool markdown = false;
+  bool json = false;
+};
+
+void print_modules(const Arguments& arguments) {
+  Registry registry;
+  register_builtin_plugins(registry);
+  for (const std::string& plugin : arguments.plugins) load_plugin(registry, plugin);
+  const ReferenceFormat format = arguments.json       ? ReferenceFormat::json
+                                 : arguments.markdown ? ReferenceFormat::markdown
+                                                      : ReferenceFormat::text;
+  std::fputs(reference(registry, pipeline_sections(), arguments.name, format).c_str(), stdout);
+}
+
+}  // namespace
+
+void add_modules_command(CLI::App& app, int&) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("modules", "Print what a configuration can say: modules and their parameters");
+  command->footer(
+      "\nThe reference is made from the same tables that check configurations.\n\n"
+      "Examples\n"
+      "  holdfast modules                 all names, one line each\n"
+      "  holdfast modules orb             one module with its parameters\n"
+      "  holdfast modules source          all modules of a section\n"
+      "  holdfast modules --plugin ./libmine.so mine");
+  command->add_option("NAME", arguments->name, "A module, a section, or a kind of module");
+  command->add_option("--plugin", arguments->plugins, "Load this plugin first; may be repeated")->allow_extra_args(false);
+  CLI::Option* markdown = command->add_flag("--markdown", arguments->markdown, "As Markdown, complete");
+  command->add_flag("--json", arguments->json, "As JSON, complete")->excludes(markdown);
+  command->callback([arguments] { print_modules(*arguments); });
+}
+
+}  // namespace holdfast

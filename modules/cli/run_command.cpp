@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/cli/run_command.hpp"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <opencv2/core/utility.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "holdfast/cli/output_folder.hpp"
+#include "holdfast/cli/run_results.hpp"
+#include "holdfast/cli/terminal.hpp"
+#include "holdfast/core/error.hpp"
+#include "holdfast/pipeline/pipeline_builder.hpp"
+#include "holdfast/plugin/builtin.hpp"
+
+namespace holdfast {
+
+namespace {
+
+struct Arguments {
+  std::string configuration;
+  std::vector<std::string> overrides;
+  std::filesystem::path output;
+  bool overwrite = false;
+  bool quiet = false;
+};
+
+std::size_t peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+/// Feeds frames until the source ends, a signal comes or a frame cannot be used; what was found until then is kept.
+void feed_frames(BuiltPipeline& built, bool quiet, const Stopwatch& since_start, RunRecord& record) {
+  Progress progress(record.source.frame_count, quiet);
+  std::uint64_t fed = 0;
+  try {
+    while (!interrupted()) {
+      const Stopwatch decoding;
+      const std::optional<SensorFrame> frame = built.source->next();
+      if (!frame) break;
+      const double decode_seconds = decoding.seconds();
+      record.frame_stamps.push_back(frame->timestamp);
+      const FrameResult result = built.pipeline.feed(*frame);
+      record.summary.add(result, decode_seconds);
+      if (record.start_seconds == 0.0 && result.T_world_camera) record.start_seconds = since_start.seconds();
+      progress.update(++fed, to_string(result.status));
+    }
+  } catch (const InputError& error) {
+    record.failure = error.what();
+  }
+  record.was_interrupted = interrupted();
+}
+
+void evaluate_run(const FrameSource& source, RunRecord& record) {
+  const Trajectory truth = source.truth();
+  if (truth.empty()) {
+    record.no_evaluation = "the source has no truth";
+    return;
+  }
+  for (const SkippedFrame& skipped : record.skipped) record.frame_stamps.push_back(skipped.timestamp);
+  EvaluationOptions options;
+  options.truth_name = "truth";
+  options.estimate_name = "trajectory.txt";
+  try {
+    record.evaluation = evaluate(truth, record.trajectory, options, record.frame_stamps);
+  } catch (const Error& error) {
+    record.no_evaluation = error.what();
+  }
+}
+
+void run(const Arguments& arguments, int& exit_code) {
+  const Stopwatch since_start;
+  cv::setNumThreads(1);  // OpenCV's own threads would change neither result nor, at this size, time for the better
+  catch_interrupts();
+
+  Registry registry;
+  register_builtin_plugins(registry);
+  const Configuration configuration =
+      load_configuration(arguments.configuration, arguments.overrides, registry, pipeline_sections());
+  BuiltPipeline built = build_pipeline(configuration, registry, arguments.output);
+  prepare_output_folder(arguments.output, arguments.overwrite,
+                        {"report.html", "run.json", "trajectory.txt", "keyframes.txt", "evaluation.json",
+                         "trajectory.svg", "error.svg", "config.yaml"});
+  write_file_atomically(arguments.output / "config.yaml", to_yaml(configuration));
+
+  RunRecord record;
+  record.configuration = &configuration;
+  record.source = built.source->describe();
+  record.camera = built.pipeline.camera();
+  feed_frames(built, arguments.quiet, since_start, record);
+  built.pipeline.finish();
+
+  record.skipped = built.source->skipped();
+  record.frames_expected = record.source.frame_count ? static_cast<std::size_t>(*record.source.frame_count)
+                                                     : record.frame_stamps.size() + record.skipped.size();
+  record.trajectory = built.pipeline.trajectory();
+  record.keyframes = built.pipeline.keyframe_trajectory();
+  record.map_keyframes = built.pipeline.map().keyframes().size();
+  record.map_points = built.pipeline.map().points().size();
+  record.mapping = built.pipeline.mapping_counts();
+  evaluate_run(*built.source, record);
+  record.total_seconds = since_start.seconds();
+  record.peak_memory = peak_memory();
+  write_run_results(arguments.output, record);
+
+  if (!arguments.quiet) std::fputs(run_summary_text(record).c_str(), stdout);
+  if (!record.failure.empty())
+    std::fprintf(stderr, "%s %s\n", red("error:", STDERR_FILENO).c_str(), record.failure.c_str());
+  else if (record.was_interrupted)
+    std::fprintf(stderr, "interrupted; what was done is in %s\n", arguments.output.c_str());
+  else if (record.trajectory.empty())
+    std::fprintf(stderr, "%s no frame got a pose; is there depth, and enough to see?\n",
+                 red("error:", STDERR_FILENO).c_str());
+  constexpr int interrupted_code = 130;
+  exit_code = record.was_interrupted ? interrupted_code : record.failure.empty() && !record.trajectory.empty() ? 0 : 1;
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("run", "Track a camera through a recording or a simulation");
+  command->footer(
+      "\nWrites into the output folder:\n"
+      "  trajectory.txt  every frame with a pose, TUM format      keyframes.txt  those of the map\n"
+      "  report.html     summary, plots and stage times           run.json       the same for programs\n"
+      "  config.yaml     the configuration with every default     evaluation.json, *.svg  where there is truth\n"
+      "Exits 0 when the run reached its end with a trajectory, 130 on Ctrl-C (what was done is kept), 2 when the\n"
+      "configuration is wrong, 1 for anything else.\n\n"
+      "Examples\n"
+      "  holdfast run examples/configs/demo.yaml --output out/demo\n"
+      "  holdfast run examples/configs/rgbd.yaml --set source.tum.path=rgbd_dataset_freiburg1_xyz --output out/xyz\n"
+      "  holdfast run rgbd.yaml --set features.opencv_orb.count=1500 --set run.seed=2 --output out/swap");
+  command->add_option("CONFIG", arguments->configuration, "Configuration in YAML")->required();
+  command->add_option("--output", arguments->output, "Folder for the results")->required();
+  command->add_option("--set", arguments->overrides, "key.path=value: as if the file said so; may be repeated")
+      ->allow_extra_args(false);
+  command->add_flag("--overwrite", arguments->overwrite, "Replace the results of an earlier run in the folder");
+  command->add_flag("--quiet", arguments->quiet, "No progress, no summary");
+  command->callback([arguments, &exit_code] { run(*arguments, exit_code); });
+}
+
+}  // namespace holdfast
