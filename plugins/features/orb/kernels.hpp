@@ -59,6 +59,8 @@ struct Kernels {
   /// that is below `threshold` (1 to 254). Reads 3 pixels beyond the region on each side.
   void (*fast_scores)(const std::uint8_t* image, std::ptrdiff_t stride, int width, int height, int threshold,
                       std::uint8_t* scores, std::ptrdiff_t score_stride);
+  /// Scores of a pixel and its eight neighbours, row by row, without a threshold. Reads 17 pixels to the right.
+  void (*neighbour_scores)(const std::uint8_t* pixel, std::ptrdiff_t stride, std::uint8_t* scores);
   /// Columns of a row of scores that are maxima of their 3 x 3 neighbourhood (of equal neighbours the first in reading
   /// order), ascending; returns how many. Reads one score beyond the row on each side.
   int (*local_maxima)(const std::uint8_t* scores, std::ptrdiff_t stride, int width, std::uint16_t* columns);
@@ -69,8 +71,8 @@ struct Kernels {
   /// room for the width.
   void (*blur)(const std::uint8_t* input, std::ptrdiff_t input_stride, int width, int height, std::uint8_t* row,
                std::uint8_t* output, std::ptrdiff_t output_stride);
-  /// First moments of the disc around a pixel: sums of column * grey and row * grey, from the centre. Reads 16 pixels to
-  /// the right.
+  /// First moments of the disc around a pixel: sums of column * grey and row * grey, from the centre. Reads 16 pixels
+  /// to the right.
   void (*moments)(const std::uint8_t* centre, std::ptrdiff_t stride, int& moment_x, int& moment_y);
   /// Bit i is set where centre[offsets[i]] < centre[offsets[256 + i]]. Reads up to 3 bytes beyond an offset.
   void (*describe)(const std::uint8_t* centre, const std::int32_t* offsets, Descriptor& descriptor);

@@ -35,6 +35,10 @@ void fast_scores(const std::uint8_t* image, std::ptrdiff_t stride, int width, in
       scores[y * score_stride + x] = fast_score(image + y * stride + x, offsets, threshold);
 }
 
+void neighbour_scores(const std::uint8_t* pixel, std::ptrdiff_t stride, std::uint8_t* scores) {
+  fast_scores(pixel - stride - 1, stride, 3, 3, 0, scores, 3);
+}
+
 int local_maxima(const std::uint8_t* scores, std::ptrdiff_t stride, int width, std::uint16_t* columns) {
   int count = 0;
   for (int x = 0; x < width; ++x) {
@@ -102,7 +106,7 @@ void describe(const std::uint8_t* centre, const std::int32_t* offsets, Descripto
 }  // namespace
 
 const Kernels& scalar_kernels() {
-  static constexpr Kernels table = {fast_scores, local_maxima, resize, blur, moments, describe};
+  static constexpr Kernels table = {fast_scores, neighbour_scores, local_maxima, resize, blur, moments, describe};
   return table;
 }
 
