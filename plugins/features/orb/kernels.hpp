@@ -32,8 +32,13 @@ inline constexpr std::array<std::array<int, 2>, 16> circle = {{{0, -3},
 /// Radius of the patch that gives a feature its orientation [px of the level].
 inline constexpr int patch_radius = 15;
 /// Half widths of the rows of that patch, from the middle row outwards: the disc x^2 + y^2 < (radius + 0.5)^2.
-inline constexpr std::array<int, patch_radius + 1> patch_half_width = {15, 15, 15, 15, 15, 14, 14, 14,
-                                                                       13, 13, 12, 11, 10, 8,  6,  3};
+inline constexpr auto patch_half_width = [] {
+  std::array<int, patch_radius + 1> half_width{};
+  for (int y = 0; y <= patch_radius; ++y)
+    while (4 * ((half_width[y] + 1) * (half_width[y] + 1) + y * y) < (2 * patch_radius + 1) * (2 * patch_radius + 1))
+      ++half_width[y];
+  return half_width;
+}();
 
 /// Gaussian of sigma 2 px, 7 taps (middle first), in 1/128.
 inline constexpr std::array<int, 4> blur_weights = {28, 24, 17, 9};
