@@ -13,7 +13,8 @@ std::uint8_t fast_score(const std::uint8_t* pixel, const std::ptrdiff_t* offsets
   const int centre = pixel[0];
   // Of two opposite pixels one lies in every arc of nine: both near the centre's grey value rules a corner out.
   const auto is_near = [&](int i) { return std::abs(pixel[offsets[i]] - centre) <= threshold; };
-  if ((is_near(0) && is_near(8)) || (is_near(4) && is_near(12))) return 0;
+  for (const int i : {0, 4, 2, 6})
+    if (is_near(i) && is_near(i + 8)) return 0;
 
   int difference[24];
   for (int i = 0; i < 16; ++i) difference[i] = pixel[offsets[i]] - centre;
