@@ -76,7 +76,7 @@ cv::Mat sense_depth(const cv::Mat& depth, const cv::Mat& cosine, const Camera& c
         // Surfaces seen flat change depth from pixel to pixel too: their own slope is no edge.
         const float slope = std::max(0.02F, 0.004F / std::max(facing[x], 0.05F));
         if (std::abs(other - z) > slope * z) continue;
-        const float flat = (0.26F - facing[x]) / 0.2F;
+        const float flat = (0.21F - facing[x]) / 0.15F;
         if (static_cast<float>(bits >> 48) * 0x1.0p-16F < flat) continue;
       }
       const float step = z * z / disparity_scale;
