@@ -89,7 +89,9 @@ cv::Mat sense_depth(const cv::Mat& depth, const cv::Mat& cosine, const Camera& c
         z += quick_normal(static_cast<std::uint32_t>(bits)) *
              std::sqrt(std::max(0.0F, deviation * deviation - rounding2));
       }
-      if (settings.quantisation && z > 0.0F) z = disparity_scale / std::round(disparity_scale / z);
+      if (settings.quantisation && z > 0.0F) {
+        z = disparity_scale / static_cast<float>(static_cast<int>(disparity_scale / z + 0.5F));
+      }
       if (z >= nearest && z <= farthest) out[x] = z;
     }
   }
