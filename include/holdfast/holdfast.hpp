@@ -2,9 +2,9 @@
 #pragma once
 
 /// Everything that a program which embeds Holdfast starts from; link holdfast::holdfast. The way through it:
-/// a Registry with register_builtin_plugins() and load_plugin(), load_configuration(), build_pipeline(), then frames into
-/// Pipeline::feed() and poses out of Pipeline::trajectory(), and evaluate() against a truth. A program that needs only
-/// one of these compiles faster with that one header.
+/// a Registry with register_builtin_plugins() and load_plugin(), load_configuration(), build_pipeline(), then frames
+/// into Pipeline::feed() and poses out of Pipeline::trajectory(), and evaluate() against a truth. A program that needs
+/// only one of these compiles faster with that one header.
 #include "holdfast/config/configuration.hpp"
 #include "holdfast/core/camera.hpp"
 #include "holdfast/core/error.hpp"
