@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # One function per idea, so that a module's CMakeLists.txt reads as a table.
 include(GNUInstallDirs)
+include(HoldfastAddPlugin)
 
 # What every Holdfast target shares. No global flags: a project that embeds us keeps its own.
 function(holdfast_target_defaults target)
@@ -58,23 +59,6 @@ function(holdfast_add_builtin_plugin name)
   target_compile_definitions(holdfast_plugin_${name} PRIVATE HOLDFAST_STATIC_PLUGIN)
   target_include_directories(holdfast_plugin_${name} PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include>)
   set_property(GLOBAL APPEND PROPERTY HOLDFAST_BUILTIN_PLUGINS ${name})
-endfunction()
-
-# holdfast_add_plugin(NAME SOURCES a.cpp ... [DEPENDS target ...] [STATIC])
-# A third party's plugin: NAME.so (libNAME.so) to be named under `plugins:` in the YAML, or, with STATIC, a library
-# whose entry function holdfast_register_plugin_NAME the program calls itself.
-function(holdfast_add_plugin name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "STATIC" "" "SOURCES;DEPENDS")
-  if(arg_STATIC)
-    add_library(${name} STATIC ${arg_SOURCES})
-    target_compile_definitions(${name} PRIVATE HOLDFAST_STATIC_PLUGIN)
-  else()
-    add_library(${name} MODULE ${arg_SOURCES})
-    set_target_properties(${name} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
-  endif()
-  set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_EXTENSIONS OFF)
-  target_compile_features(${name} PRIVATE cxx_std_20)
-  target_link_libraries(${name} PRIVATE holdfast::interfaces holdfast::plugin ${arg_DEPENDS})
 endfunction()
 
 # holdfast_add_test(NAME SOURCES a.cpp ... [DEPENDS target ...] [LABELS label ...] [TIMEOUT seconds])

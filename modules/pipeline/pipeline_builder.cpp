@@ -20,13 +20,13 @@ Settings section(const Configuration& configuration, const std::string& name) {
   return found == configuration.sections.end() ? Settings{} : ParameterTable<Settings>().settings(found->second);
 }
 
-/// The camera of the run: the configuration's or the source's, exactly one of them.
+/// The camera of the run: the configuration's or the source's; when both name one, they must agree.
 Camera resolve_camera(const Configuration& configuration, const SourceDescription& source,
                       std::vector<Diagnostic>& diagnostics) {
-  if (source.camera && configuration.camera)
+  if (source.camera && configuration.camera && *source.camera != *configuration.camera)
     diagnostics.push_back({configuration.source.location,
                            "the source '" + configuration.source.name +
-                               "' brings its own camera and the configuration has a section 'camera'; remove one of them"});
+                               "' brings its own camera, and the section 'camera' says something else; remove one of them"});
   if (source.camera) return *source.camera;
   if (configuration.camera) return *configuration.camera;
   std::string known;

@@ -87,7 +87,7 @@ Colour colour_of(const VisibleTriangle& triangle, float x, float y, float invers
   const float major2 = std::max({across2, down2, 1e-12F}), minor2 = std::max(std::min(across2, down2), 1e-12F);
 
   int taps = 1;
-  for (float ratio2 = major2 / minor2; taps < 4 && ratio2 > 1.5F * static_cast<float>(taps * taps);) ++taps;
+  for (float ratio2 = major2 / minor2; taps < 4 && ratio2 > 2.25F * static_cast<float>(taps * taps);) ++taps;
   constexpr float blur = 0.4F;  // of a lens, on top of that of trilinear filtering [mip levels]
   const float level = 0.5F * quick_log2(major2) - (taps > 1 ? quick_log2(static_cast<float>(taps)) : 0.0F) + blur;
   std::uint64_t sum = 0;

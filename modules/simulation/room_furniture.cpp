@@ -242,7 +242,7 @@ void RoomBuilder::painting(const Place& place, double width, double height) {
   const AlignedBox3f canvas = box(-width / 2, -0.03, -height / 2, width / 2, 0, height / 2);
   BoxSkin sides = plain_skin({28, 45, 70});
   sides[front] = paint(pictures::painting(texels(width, height, 450.0), random_));
-  add_box(object.mesh, canvas, sides, 0.2F);
+  add_box(object.mesh, canvas, sides, 0.2F, false);
 }
 
 }  // namespace holdfast::simulation

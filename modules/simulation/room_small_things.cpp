@@ -157,7 +157,7 @@ void RoomBuilder::clock(const Place& place) {
            {10, 10, 10}, 5, cv::LINE_AA);
   BoxSkin sides = plain_skin({40, 40, 40});
   sides[front] = paint(face);
-  add_box(object.mesh, box(-0.15, -0.04, -0.15, 0.15, 0, 0.15), sides, 0.2F);
+  add_box(object.mesh, box(-0.15, -0.04, -0.15, 0.15, 0, 0.15), sides, 0.2F, false);
 }
 
 void RoomBuilder::plant(const Place& place, double height) {

@@ -76,7 +76,7 @@ cv::Mat sense_depth(const cv::Mat& depth, const cv::Mat& cosine, const Camera& c
         // Surfaces seen flat change depth from pixel to pixel too: their own slope is no edge.
         const float slope = std::max(0.02F, 0.004F / std::max(facing[x], 0.05F));
         if (std::abs(other - z) > slope * z) continue;
-        const float flat = (0.26F - facing[x]) / 0.2F;
+        const float flat = (0.21F - facing[x]) / 0.15F;
         if (static_cast<float>(bits >> 48) * 0x1.0p-16F < flat) continue;
       }
       const float step = z * z / disparity_scale;
@@ -89,7 +89,9 @@ cv::Mat sense_depth(const cv::Mat& depth, const cv::Mat& cosine, const Camera& c
         z += quick_normal(static_cast<std::uint32_t>(bits)) *
              std::sqrt(std::max(0.0F, deviation * deviation - rounding2));
       }
-      if (settings.quantisation && z > 0.0F) z = disparity_scale / std::round(disparity_scale / z);
+      if (settings.quantisation && z > 0.0F) {
+        z = disparity_scale / static_cast<float>(static_cast<int>(disparity_scale / z + 0.5F));
+      }
       if (z >= nearest && z <= farthest) out[x] = z;
     }
   }

@@ -15,11 +15,17 @@ inline std::uint64_t spread(std::uint32_t texel) {
 }
 // Two neighbouring texels as eight 16-bit lanes; the compiler's vectors, so that any processor's are used.
 using Bytes8 = std::uint8_t __attribute__((vector_size(8)));
+using Longs2 = std::uint64_t __attribute__((vector_size(16)));
 using Lanes8 = std::uint16_t __attribute__((vector_size(16)));
 inline Lanes8 load_pair(const std::uint32_t* texels) {
   Bytes8 bytes;
   std::memcpy(&bytes, texels, sizeof(bytes));
   return __builtin_convertvector(bytes, Lanes8);
+}
+inline Lanes8 weights(std::uint64_t first, std::uint64_t second) {
+  constexpr std::uint64_t each = 0x0001000100010001ULL;
+  const Longs2 pair = {first * each, second * each};
+  return reinterpret_cast<Lanes8>(pair);
 }
 constexpr std::uint64_t lanes = 0x00ff00ff00ffULL;
 constexpr std::uint64_t half = 0x008000800080ULL;
@@ -71,12 +77,9 @@ inline std::uint64_t Texture::bilinear(const Level& level, float u, float v) con
   // In the last column fx is 0: the texel after it, which may be of another row or level, has no weight.
   const std::uint32_t* above = texels_.data() + level.begin + static_cast<std::size_t>(y) * level.width + x;
   const std::uint32_t* below = y + 1 < level.height ? above + level.width : above;
-  const auto lane = [](std::uint32_t weight) { return static_cast<std::uint16_t>(weight); };
-  const Lanes8 top = {lane(w00), lane(w00), lane(w00), lane(w00), lane(w10), lane(w10), lane(w10), lane(w10)};
-  const Lanes8 bottom = {lane(w01), lane(w01), lane(w01), lane(w01), lane(w11), lane(w11), lane(w11), lane(w11)};
+  const Lanes8 top = weights(w00, w10), bottom = weights(w01, w11);
   const Lanes8 sum = load_pair(above) * top + load_pair(below) * bottom;  // at most 255 * 256
-  std::uint64_t halves[2];
-  std::memcpy(halves, &sum, sizeof(sum));
+  const Longs2 halves = reinterpret_cast<Longs2>(sum);
   return ((halves[0] + halves[1] + half) >> 8) & lanes;
 }
 

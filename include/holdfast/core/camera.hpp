@@ -48,6 +48,8 @@ struct Camera {
   /// Undistorted pixel of a raw image position (fixed-point iteration, error below 1e-4 px for the known cameras).
   Eigen::Vector2d undistort(const Eigen::Vector2d& raw) const;
 
+  friend bool operator==(const Camera&, const Camera&) = default;
+
   /// Smallest rectangle [min, max] of undistorted pixels that holds the whole image.
   void undistorted_bounds(Eigen::Vector2d& minimum, Eigen::Vector2d& maximum) const;
 };

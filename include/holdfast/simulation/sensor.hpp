@@ -17,7 +17,7 @@ struct DepthSensorSettings {
   /// Round the disparity to eighths of a pixel, which is 2.9 mm z^2 of depth (Khoshelham and Elberink 2012).
   bool quantisation = true;
   /// No value in the shadow of the pattern projector (left of near things), at ragged depth edges, and, more and more,
-  /// on surfaces seen flatter than 15 degrees.
+  /// on surfaces seen flatter than 12 degrees.
   bool holes = true;
   double minimum_depth = 0.4;  ///< no value nearer [m]
   double maximum_depth = 8.0;  ///< no value farther [m]

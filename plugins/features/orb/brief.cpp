@@ -21,7 +21,8 @@ void SteeredPattern::build(std::ptrdiff_t stride) {
   for (int step = 0; step < steps; ++step, out += 512) {
     const double angle = 2 * std::numbers::pi * step / steps, cosine = std::cos(angle), sine = std::sin(angle);
     const auto offset = [&](int x, int y) {
-      return static_cast<std::int32_t>(std::lround(cosine * x - sine * y) + stride * std::lround(sine * x + cosine * y));
+      return static_cast<std::int32_t>(std::lround(cosine * x - sine * y) +
+                                       stride * std::lround(sine * x + cosine * y));
     };
     for (std::size_t i = 0; i < 256; ++i) {
       const BriefTest& test = brief_pattern()[i];

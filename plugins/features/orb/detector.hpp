@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "brief.hpp"
 #include "pyramid.hpp"
 
 namespace holdfast::orb {
@@ -18,9 +19,10 @@ struct Corner {
 /// searched again with the low one (Mur-Artal et al. 2015, section IV), so that weak texture gets features too.
 class CornerDetector {
  public:
-  /// Distance from the border within which no corner is taken: the orientation patch must fit, and the blur around the
-  /// outermost sample of the descriptor.
-  static constexpr int border = patch_radius + 1;
+  /// Distance from the border within which no corner is taken: the blur around the outermost sample of the descriptor
+  /// must fit, and the orientation patch.
+  static constexpr int border = brief_radius + blur_radius;
+  static_assert(border > patch_radius);
   static constexpr int minimum_image_size = 2 * border + 1;
 
   /// A low threshold that is not below the other switches the second search off. Sizes in pixels of the level.
@@ -60,8 +62,7 @@ class CornerDetector {
       for (int i = 0; i < found; ++i) {
         const int x = border + region.x + columns_[i];
         if (!is_ignored(x, border + y))
-          corners.push_back(
-              {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(border + y), row[columns_[i]]});
+          corners.push_back({static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(border + y), row[columns_[i]]});
       }
     }
   }

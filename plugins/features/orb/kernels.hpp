@@ -32,8 +32,13 @@ inline constexpr std::array<std::array<int, 2>, 16> circle = {{{0, -3},
 /// Radius of the patch that gives a feature its orientation [px of the level].
 inline constexpr int patch_radius = 15;
 /// Half widths of the rows of that patch, from the middle row outwards: the disc x^2 + y^2 < (radius + 0.5)^2.
-inline constexpr std::array<int, patch_radius + 1> patch_half_width = {15, 15, 15, 15, 15, 14, 14, 14,
-                                                                       13, 13, 12, 11, 10, 8,  6,  3};
+inline constexpr auto patch_half_width = [] {
+  std::array<int, patch_radius + 1> half_width{};
+  for (int y = 0; y <= patch_radius; ++y)
+    while (4 * ((half_width[y] + 1) * (half_width[y] + 1) + y * y) < (2 * patch_radius + 1) * (2 * patch_radius + 1))
+      ++half_width[y];
+  return half_width;
+}();
 
 /// Gaussian of sigma 2 px, 7 taps (middle first), in 1/128.
 inline constexpr std::array<int, 4> blur_weights = {28, 24, 17, 9};
@@ -59,6 +64,8 @@ struct Kernels {
   /// that is below `threshold` (1 to 254). Reads 3 pixels beyond the region on each side.
   void (*fast_scores)(const std::uint8_t* image, std::ptrdiff_t stride, int width, int height, int threshold,
                       std::uint8_t* scores, std::ptrdiff_t score_stride);
+  /// Scores of a pixel and its eight neighbours, row by row, without a threshold. Reads 17 pixels to the right.
+  void (*neighbour_scores)(const std::uint8_t* pixel, std::ptrdiff_t stride, std::uint8_t* scores);
   /// Columns of a row of scores that are maxima of their 3 x 3 neighbourhood (of equal neighbours the first in reading
   /// order), ascending; returns how many. Reads one score beyond the row on each side.
   int (*local_maxima)(const std::uint8_t* scores, std::ptrdiff_t stride, int width, std::uint16_t* columns);
@@ -69,8 +76,8 @@ struct Kernels {
   /// room for the width.
   void (*blur)(const std::uint8_t* input, std::ptrdiff_t input_stride, int width, int height, std::uint8_t* row,
                std::uint8_t* output, std::ptrdiff_t output_stride);
-  /// First moments of the disc around a pixel: sums of column * grey and row * grey, from the centre. Reads 16 pixels to
-  /// the right.
+  /// First moments of the disc around a pixel: sums of column * grey and row * grey, from the centre. Reads 16 pixels
+  /// to the right.
   void (*moments)(const std::uint8_t* centre, std::ptrdiff_t stride, int& moment_x, int& moment_y);
   /// Bit i is set where centre[offsets[i]] < centre[offsets[256 + i]]. Reads up to 3 bytes beyond an offset.
   void (*describe)(const std::uint8_t* centre, const std::int32_t* offsets, Descriptor& descriptor);

@@ -68,7 +68,9 @@ HOLDFAST_TARGET void describe(const std::uint8_t* centre, const std::int32_t* of
 }  // namespace
 
 const Kernels& avx2_kernels() {
-  static constexpr Kernels table = {fast_scores, local_maxima, resize, blur, moments, describe};
+  // Three pixels of a row do not fill even a small vector.
+  static const Kernels table = {fast_scores, sse4_kernels().neighbour_scores, local_maxima, resize, blur, moments,
+                                describe};
   return table;
 }
 

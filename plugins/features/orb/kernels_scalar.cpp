@@ -13,7 +13,8 @@ std::uint8_t fast_score(const std::uint8_t* pixel, const std::ptrdiff_t* offsets
   const int centre = pixel[0];
   // Of two opposite pixels one lies in every arc of nine: both near the centre's grey value rules a corner out.
   const auto is_near = [&](int i) { return std::abs(pixel[offsets[i]] - centre) <= threshold; };
-  if ((is_near(0) && is_near(8)) || (is_near(4) && is_near(12))) return 0;
+  for (const int i : {0, 4, 2, 6})
+    if (is_near(i) && is_near(i + 8)) return 0;
 
   int difference[24];
   for (int i = 0; i < 16; ++i) difference[i] = pixel[offsets[i]] - centre;
@@ -33,6 +34,10 @@ void fast_scores(const std::uint8_t* image, std::ptrdiff_t stride, int width, in
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
       scores[y * score_stride + x] = fast_score(image + y * stride + x, offsets, threshold);
+}
+
+void neighbour_scores(const std::uint8_t* pixel, std::ptrdiff_t stride, std::uint8_t* scores) {
+  fast_scores(pixel - stride - 1, stride, 3, 3, 0, scores, 3);
 }
 
 int local_maxima(const std::uint8_t* scores, std::ptrdiff_t stride, int width, std::uint16_t* columns) {
@@ -102,7 +107,7 @@ void describe(const std::uint8_t* centre, const std::int32_t* offsets, Descripto
 }  // namespace
 
 const Kernels& scalar_kernels() {
-  static constexpr Kernels table = {fast_scores, local_maxima, resize, blur, moments, describe};
+  static constexpr Kernels table = {fast_scores, neighbour_scores, local_maxima, resize, blur, moments, describe};
   return table;
 }
 

@@ -26,7 +26,9 @@ struct Simd {
   HOLDFAST_TARGET_INLINE static Vector and_not(Vector a, Vector b) { return _mm_andnot_si128(a, b); }
   HOLDFAST_TARGET_INLINE static Vector equal(Vector a, Vector b) { return _mm_cmpeq_epi8(a, b); }
   HOLDFAST_TARGET_INLINE static bool any(Vector v) { return _mm_testz_si128(v, v) == 0; }
-  HOLDFAST_TARGET_INLINE static std::uint32_t mask(Vector v) { return static_cast<std::uint32_t>(_mm_movemask_epi8(v)); }
+  HOLDFAST_TARGET_INLINE static std::uint32_t mask(Vector v) {
+    return static_cast<std::uint32_t>(_mm_movemask_epi8(v));
+  }
   HOLDFAST_TARGET_INLINE static Vector fill16(int value) { return _mm_set1_epi16(static_cast<short>(value)); }
   HOLDFAST_TARGET_INLINE static Vector fill_pairs(int first, int second) { return fill16(first | second << 8); }
   HOLDFAST_TARGET_INLINE static Vector interleave_low(Vector a, Vector b) { return _mm_unpacklo_epi8(a, b); }
@@ -46,11 +48,25 @@ struct Simd {
 
 #include "kernels_vector.inl"
 
+HOLDFAST_TARGET void neighbour_scores(const std::uint8_t* pixel, std::ptrdiff_t stride, std::uint8_t* scores) {
+  std::ptrdiff_t offsets[16];
+  for (int i = 0; i < 16; ++i) offsets[i] = circle[i][0] + circle[i][1] * stride;
+  for (int row = 0; row < 3; ++row) {
+    const std::uint8_t* first = pixel + (row - 1) * stride - 1;
+    Vector p[16];
+    for (int i = 0; i < 16; ++i) p[i] = Simd::load(first + offsets[i]);
+    const Vector score = Simd::subtract(exact_scores(Simd::load(first), p), Simd::fill(1));
+    const int three = _mm_cvtsi128_si32(score);
+    for (int i = 0; i < 3; ++i) scores[3 * row + i] = static_cast<std::uint8_t>(three >> (8 * i));
+  }
+}
+
 }  // namespace
 
 const Kernels& sse4_kernels() {
   // There is no gather below AVX2: plain loads describe.
-  static const Kernels table = {fast_scores, local_maxima, resize, blur, moments, scalar_kernels().describe};
+  static const Kernels table = {fast_scores, neighbour_scores,         local_maxima, resize, blur,
+                                moments,     scalar_kernels().describe};
   return table;
 }
 

@@ -2,6 +2,7 @@
 #include "orb.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "orientation.hpp"
 #include "pyramid.hpp"
 #include "spread.hpp"
+#include "subpixel.hpp"
 
 namespace holdfast {
 
@@ -19,19 +21,22 @@ using orb::Corner;
 using orb::CornerDetector;
 using orb::ImageView;
 
-static_assert(orb::brief_radius + orb::blur_radius <= CornerDetector::border);
-
 void OrbSettings::describe(ParameterTable<OrbSettings>& table) {
   using S = OrbSettings;
   table.add("count", &S::count, "features to keep of an image").range(10, 50000);
   table.add("levels", &S::levels, "pyramid levels").range(1, 16);
   table.add("scale_factor", &S::scale_factor, "scale between neighbouring pyramid levels").range(1.05, 2.0);
   table.add("fast_threshold", &S::fast_threshold, "contrast of a FAST corner").range(1, 250).unit("grey level");
-  table.add("fast_threshold_low", &S::fast_threshold_low,
-            "contrast of a FAST corner in cells that have none otherwise; not below fast_threshold: no second search")
+  table
+      .add("fast_threshold_low", &S::fast_threshold_low,
+           "contrast of a FAST corner in cells that have none otherwise; not below fast_threshold: no second search")
       .range(1, 250)
       .unit("grey level");
   table.add("cell_size", &S::cell_size, "side of those cells, in pixels of their level").range(16, 512).unit("px");
+  table
+      .add("spread", &S::spread,
+           "share of the features that is chosen for an even spread over the image; the rest are the strongest left")
+      .range(0, 1);
   table.add("subpixel", &S::subpixel, "refine positions below the pixel of their level");
 }
 
@@ -76,7 +81,8 @@ void OrbExtractor::detect(const cv::Mat& ignore) {
   for (int level = 0; level < pyramid.levels(); ++level) {
     std::vector<Corner>& corners = work_->corners[level];
     if (ignore.empty()) {
-      work_->detector.detect(pyramid.view(level), [](int, int) { return false; }, corners);
+      work_->detector.detect(
+          pyramid.view(level), [](int, int) { return false; }, corners);
       continue;
     }
     const auto is_ignored = [&](int x, int y) {
@@ -89,16 +95,18 @@ void OrbExtractor::detect(const cv::Mat& ignore) {
 }
 
 void OrbExtractor::select() {
-  // Shares in proportion to the levels' inverse scale; what a coarse level lacks goes to the finer ones, whose positions
-  // are the more accurate.
+  // Shares in proportion to the levels' inverse scale; what a coarse level lacks goes to the finer ones, whose
+  // positions are the more accurate.
   const int levels = work_->pyramid.levels();
   double share_left = 0;
   for (int level = 0; level < levels; ++level) share_left += scales_.inverse_scale[level];
   std::size_t left = static_cast<std::size_t>(settings_.count);
   for (int level = levels - 1; level >= 0; --level) {
     const double share = scales_.inverse_scale[level];
-    const auto wanted = level == 0 ? left : static_cast<std::size_t>(std::lround(static_cast<double>(left) * share / share_left));
-    work_->spread.select(wanted, work_->corners[level]);
+    const auto wanted =
+        level == 0 ? left : static_cast<std::size_t>(std::lround(static_cast<double>(left) * share / share_left));
+    work_->spread.select(wanted, static_cast<std::size_t>(std::lround(static_cast<double>(wanted) * settings_.spread)),
+                         work_->corners[level]);
     left -= work_->corners[level].size();
     share_left -= share;
   }
@@ -131,8 +139,14 @@ void OrbExtractor::describe(Features& out) {
       out.angle[i] = orb::direction(moment_x, moment_y);
       kernels.describe(work_->blurred.data() + corner.y * stride + corner.x, work_->pattern.offsets(out.angle[i]),
                        out.descriptors[i]);
-      out.x[i] = pyramid.full_x(level, corner.x);
-      out.y[i] = pyramid.full_y(level, corner.y);
+      orb::SubpixelOffset offset;
+      if (settings_.subpixel) {
+        std::array<std::uint8_t, 9> scores;
+        kernels.neighbour_scores(image.at(corner.x, corner.y), image.stride, scores.data());
+        offset = orb::score_peak(scores);
+      }
+      out.x[i] = pyramid.full_x(level, static_cast<float>(corner.x) + offset.x);
+      out.y[i] = pyramid.full_y(level, static_cast<float>(corner.y) + offset.y);
       out.response[i] = corner.score;
       out.octave[i] = static_cast<std::uint8_t>(level);
       ++i;

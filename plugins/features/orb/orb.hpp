@@ -17,14 +17,15 @@ struct OrbSettings {
   int fast_threshold = 20;
   int fast_threshold_low = 7;
   int cell_size = 32;
+  double spread = 0.4;
   bool subpixel = true;
 
   static void describe(ParameterTable<OrbSettings>& table);
 };
 
-/// ORB features, evenly spread (README.md): FAST corners of an image pyramid, orientation by intensity centroid, steered
-/// BRIEF of 256 bits. Positions are of the full image, at sub-pixel accuracy; no feature lies within 16 pixels of the
-/// border of its level. `response` is the FAST score. At most `count` features.
+/// ORB features, evenly spread (README.md): FAST corners of an image pyramid, orientation by intensity centroid,
+/// steered BRIEF of 256 bits. Positions are of the full image, at sub-pixel accuracy; no feature lies within 19 pixels
+/// of the border of its level. `response` is the FAST score. At most `count` features.
 class OrbExtractor : public FeatureExtractor {
  public:
   /// `level` is for tests and benchmarks: all levels give the same bytes.

@@ -15,8 +15,8 @@ float direction(int x, int y) {
   // Abramowitz and Stegun 1964, 4.4.49.
   const double t = across / along, t2 = t * t;
   double angle = 0.0028662257;
-  for (const double coefficient : {-0.0161657367, 0.0429096138, -0.0752896400, 0.1065626393, -0.1420889944,
-                                   0.1999355085, -0.3333314528, 1.0})
+  for (const double coefficient :
+       {-0.0161657367, 0.0429096138, -0.0752896400, 0.1065626393, -0.1420889944, 0.1999355085, -0.3333314528, 1.0})
     angle = angle * t2 + coefficient;
   angle *= t;
   if (is_steep) angle = std::numbers::pi / 2 - angle;

@@ -54,22 +54,17 @@ void EvenSpread::split(const Node& node) {
   }
 }
 
-void EvenSpread::select(std::size_t wanted, std::vector<Corner>& corners) {
-  if (corners.size() <= wanted || wanted == 0) {
-    if (wanted == 0) corners.clear();
-    return;
-  }
-  sort(corners);
+void EvenSpread::divide(std::size_t wanted) {
   nodes_.clear();  // those that stay as they are
   const auto bits = static_cast<int>(std::bit_width(sorted_.back().key));
   splittable_.assign(1, {0, static_cast<std::uint32_t>(sorted_.size()), (bits + 1) / 2 * 2 - 2});
   while (!splittable_.empty() && nodes_.size() + splittable_.size() < wanted) {
-    next_.clear();
     // Fullest first matters in the last round only, where not all can be split.
     const auto is_fuller = [](const Node& a, const Node& b) {
       return a.end - a.begin != b.end - b.begin ? a.end - a.begin > b.end - b.begin : a.begin < b.begin;
     };
     if (nodes_.size() + 4 * splittable_.size() > wanted) std::sort(splittable_.begin(), splittable_.end(), is_fuller);
+    next_.clear();
     std::size_t i = 0;
     for (; i < splittable_.size(); ++i) {
       if (nodes_.size() + next_.size() + (splittable_.size() - i) >= wanted) break;
@@ -79,19 +74,53 @@ void EvenSpread::select(std::size_t wanted, std::vector<Corner>& corners) {
     splittable_.swap(next_);
   }
   nodes_.insert(nodes_.end(), splittable_.begin(), splittable_.end());
+}
 
-  std::sort(nodes_.begin(), nodes_.end(), [](const Node& a, const Node& b) { return a.begin < b.begin; });
-  chosen_.clear();
+void EvenSpread::take_strongest_of_squares(std::size_t most, const std::vector<Corner>& corners) {
+  const auto score = [&](std::uint32_t i) { return corners[sorted_[i].index].score; };
+  best_.clear();
   for (const Node& node : nodes_) {
-    const Corner* best = &corners[sorted_[node.begin].index];
+    std::uint32_t best = node.begin;
     for (std::uint32_t i = node.begin + 1; i < node.end; ++i)
-      if (const Corner& corner = corners[sorted_[i].index]; corner.score > best->score) best = &corner;
-    chosen_.push_back(*best);
+      if (score(i) > score(best)) best = i;
+    best_.push_back(best);
   }
-  // The last split may have given up to three squares too many.
-  while (chosen_.size() > wanted)
-    chosen_.erase(std::min_element(chosen_.begin(), chosen_.end(),
-                                   [](const Corner& a, const Corner& b) { return a.score < b.score; }));
+  if (best_.size() > most) {  // the last split may have given up to three squares too many
+    std::sort(best_.begin(), best_.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return score(a) != score(b) ? score(a) > score(b) : a < b; });
+    best_.resize(most);
+  }
+  for (const std::uint32_t i : best_) is_taken_[i] = 1;
+}
+
+void EvenSpread::take_strongest_left(std::size_t count, const std::vector<Corner>& corners) {
+  std::array<std::size_t, 256> of_score{};
+  for (std::size_t i = 0; i < sorted_.size(); ++i)
+    if (is_taken_[i] == 0) ++of_score[corners[sorted_[i].index].score];
+  // All above a score are taken, and of that score as many as are left to take.
+  int limit = 255;
+  while (limit > 0 && of_score[limit] <= count) count -= of_score[limit--];
+  for (std::size_t i = 0; i < sorted_.size(); ++i) {
+    const int score = corners[sorted_[i].index].score;
+    if (is_taken_[i] != 0 || score < limit || (score == limit && count == 0)) continue;
+    if (score == limit) --count;
+    is_taken_[i] = 1;
+  }
+}
+
+void EvenSpread::select(std::size_t wanted, std::size_t spread, std::vector<Corner>& corners) {
+  if (corners.size() <= wanted) return;
+  sort(corners);
+  is_taken_.assign(corners.size(), 0);
+  if (spread > 0) {
+    divide(spread);
+    take_strongest_of_squares(spread, corners);
+  }
+  take_strongest_left(wanted - (spread > 0 ? best_.size() : 0), corners);
+
+  chosen_.clear();
+  for (std::size_t i = 0; i < sorted_.size(); ++i)
+    if (is_taken_[i] != 0) chosen_.push_back(corners[sorted_[i].index]);
   corners = chosen_;
 }
 

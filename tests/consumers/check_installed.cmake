@@ -1,0 +1,15 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# find_package: a program builds on an installation that was moved, and runs; so does the installed program itself.
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
+
+set(build ${WORK_FOLDER}/installed)
+configure(${CMAKE_CURRENT_LIST_DIR}/installed ${build} -DCMAKE_PREFIX_PATH=${WORK_FOLDER}/moved)
+run(COMMAND ${CMAKE_COMMAND} --build ${build})
+run(COMMAND ${build}/consumer)
+
+if(EXISTS ${BUILD_FOLDER}/bin/holdfast)
+  run(COMMAND ${WORK_FOLDER}/moved/bin/holdfast modules OUTPUT modules)
+  if(NOT modules MATCHES "opencv_orb")
+    message(FATAL_ERROR "the installed program does not know its modules:\n${modules}")
+  endif()
+endif()
