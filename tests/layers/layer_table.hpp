@@ -11,7 +11,7 @@ namespace holdfast::layers {
 /// A row of the table: who may include whom.
 struct Layer {
   std::string name;
-  std::vector<std::filesystem::path> folders;  ///< relative to the source tree
+  std::vector<std::filesystem::path> folders;  ///< relative to the source tree; a single file may stand for itself
   std::set<std::string> may_include;           ///< itself too
 };
 
