@@ -59,6 +59,13 @@ fs::path find_plugin(const std::string& name_or_path, const std::vector<fs::path
                     "; give a path with a folder, or name its folder in HOLDFAST_PLUGIN_PATH");
 }
 
+bool has_modules_of(const Registry& registry, const std::string& origin) {
+  for (const std::string& kind : registry.kinds())
+    for (const ModuleEntry* entry : registry.of_kind(kind))
+      if (entry->origin == origin) return true;
+  return false;
+}
+
 /// Sets the origin for what a plugin registers and puts the usual one back, also when it throws.
 class OriginScope {
  public:
@@ -76,9 +83,10 @@ class OriginScope {
 
 }  // namespace
 
-void load_plugin(Registry& registry, const std::string& name_or_path, const std::vector<fs::path>& search_first) {
+fs::path load_plugin(Registry& registry, const std::string& name_or_path, const std::vector<fs::path>& search_first) {
   const std::string file = find_plugin(name_or_path, search_first).lexically_normal().string();
   const auto refuse = [&](const std::string& reason) { throw PluginError("plugin '" + file + "' " + reason); };
+  if (has_modules_of(registry, file)) return file;
 
   // RTLD_NOW: a symbol that is missing is an error here and not in the middle of a run. Never closed: see the header.
   void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
@@ -105,6 +113,7 @@ void load_plugin(Registry& registry, const std::string& name_or_path, const std:
   } catch (const std::exception& reason) {
     refuse(std::string("failed to register its modules: ") + reason.what());
   }
+  return file;
 }
 
 }  // namespace holdfast

@@ -13,10 +13,12 @@ namespace holdfast {
 /// variable HOLDFAST_PLUGIN_PATH (separated by ':'), then the installed plugin folder.
 std::vector<std::filesystem::path> plugin_search_path(const std::vector<std::filesystem::path>& first);
 
-/// Loads a shared plugin and lets it register its modules. Throws PluginError when the file is not found (naming the
-/// folders searched), cannot be loaded, has no entry, does not fit this build (naming both sides), or names a module
-/// that exists already. The library stays loaded until the process ends: modules and their code may outlive registries.
-void load_plugin(Registry& registry, const std::string& name_or_path,
-                 const std::vector<std::filesystem::path>& search_first = {});
+/// Loads a shared plugin, lets it register its modules and returns the absolute path of its file. A name without a
+/// folder may leave out "lib" and ".so". Throws PluginError when the file is not found (naming the folders searched),
+/// cannot be loaded, has no entry, does not fit this build (naming both sides), or names a module that exists already.
+/// A registry that holds the plugin's modules already is left as it is. The library stays loaded until the process
+/// ends: modules and their code may outlive registries.
+std::filesystem::path load_plugin(Registry& registry, const std::string& name_or_path,
+                                  const std::vector<std::filesystem::path>& search_first = {});
 
 }  // namespace holdfast
