@@ -30,7 +30,8 @@ void relocate(ConfigurationNode& node, const SourceLocation& location) {
 
 }  // namespace
 
-void apply_override(ConfigurationNode& root, const std::string& override_text, const std::vector<std::string>& choices) {
+void apply_override(ConfigurationNode& root, const std::string& override_text,
+                    const std::vector<std::string>& choices) {
   const SourceLocation location{"--set " + override_text};
   const auto fail = [&](const std::string& message) { throw ConfigurationError(location, message); };
   const std::size_t equals = override_text.find('=');
@@ -39,7 +40,8 @@ void apply_override(ConfigurationNode& root, const std::string& override_text, c
   if (std::any_of(path.begin(), path.end(), [](const std::string& part) { return part.empty(); }))
     fail("the key has an empty part; expected key.path=value, such as features.orb.count=500");
 
-  ConfigurationNode value = parse_yaml(override_text.substr(equals + 1), location.file, std::filesystem::current_path());
+  ConfigurationNode value =
+      parse_yaml(override_text.substr(equals + 1), location.file, std::filesystem::current_path());
   relocate(value, location);
 
   ConfigurationNode* node = &root;
@@ -49,8 +51,9 @@ void apply_override(ConfigurationNode& root, const std::string& override_text, c
       std::size_t index = 0;
       const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
       if (error != std::errc() || end != part.data() + part.size() || index >= node->items.size())
-        fail("'" + part + "' is no element of the list; expected a number from 0 to " +
-             std::to_string(static_cast<long>(node->items.size()) - 1));
+        fail("'" + part + "' is no element of the list" +
+             (node->items.empty() ? std::string(", which is empty")
+                                  : "; expected a number from 0 to " + std::to_string(node->items.size() - 1)));
       node = &node->items[index];
       continue;
     }
@@ -60,7 +63,9 @@ void apply_override(ConfigurationNode& root, const std::string& override_text, c
       const std::string name = node->text;
       const bool same = name == part;
       node->kind = ConfigurationNode::Kind::map;
-      if (same) node->entries.push_back({name, node->location, ConfigurationNode{.location = node->location, .folder = node->folder}});
+      if (same)
+        node->entries.push_back(
+            {name, node->location, ConfigurationNode{.location = node->location, .folder = node->folder}});
     }
     node->kind = ConfigurationNode::Kind::map;
     if (chooses && node->find(part) == nullptr) node->entries.clear();

@@ -3,6 +3,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <sstream>
 
 #include "holdfast/config/configuration_node.hpp"
 
@@ -39,6 +40,24 @@ class Converter {
   Converter(std::string file, std::filesystem::path folder) : file_(std::move(file)), folder_(std::move(folder)) {}
 
   ConfigurationNode convert(const YAML::Node& node) {
+    // Aliases share nodes, so a short text can stand for an endless or an exponentially large tree.
+    if (++depth_ > most_depth)
+      throw ConfigurationError(location(node), "nested too deeply; an alias may name its own parent");
+    if (++count_ > most_nodes)
+      throw ConfigurationError(location(node),
+                               "aliases make the file larger than " + std::to_string(most_nodes) + " values");
+    ConfigurationNode result = convert_inside(node);
+    --depth_;
+    return result;
+  }
+
+  std::vector<Diagnostic> diagnostics;
+
+ private:
+  static constexpr int most_depth = 100;
+  static constexpr int most_nodes = 100000;
+
+  ConfigurationNode convert_inside(const YAML::Node& node) {
     ConfigurationNode result;
     result.location = location(node);
     result.folder = folder_;
@@ -63,9 +82,6 @@ class Converter {
     return result;
   }
 
-  std::vector<Diagnostic> diagnostics;
-
- private:
   SourceLocation location(const YAML::Node& node) const {
     const YAML::Mark mark = node.Mark();  // counts from 0, -1 = unknown
     return {file_, mark.line + 1, mark.column + 1};
@@ -78,8 +94,9 @@ class Converter {
       return;
     }
     if (key.Scalar() == "<<") {
-      diagnostics.push_back({place, "merge keys (<<) are not supported; repeat the values, or use an alias (*name) for a "
-                                    "whole value"});
+      diagnostics.push_back({place,
+                             "merge keys (<<) are not supported; repeat the values, or use an alias (*name) for a "
+                             "whole value"});
       return;
     }
     for (const ConfigurationNode::Entry& entry : map.entries)
@@ -93,7 +110,22 @@ class Converter {
 
   std::string file_;
   std::filesystem::path folder_;
+  int depth_ = 0;
+  int count_ = 0;
 };
+
+/// Where a second document begins; asked only when there is one.
+SourceLocation second_document(const std::string& text, const std::string& file) {
+  std::istringstream lines(text);
+  bool began = false;
+  int number = 1;
+  for (std::string line; std::getline(lines, line); ++number) {
+    const bool is_mark = line.starts_with("---") || line.starts_with("...");
+    if (is_mark && began) return {file, number, 1};
+    if (!is_mark && line.find_first_not_of(" \t\r") != std::string::npos && line.front() != '#') began = true;
+  }
+  return {file};
+}
 
 }  // namespace
 
@@ -101,9 +133,14 @@ ConfigurationNode parse_yaml(const std::string& text, const std::string& file_na
                              const std::filesystem::path& folder) {
   YAML::Node document;
   try {
-    document = YAML::Load(text);
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.size() > 1)
+      throw ConfigurationError(second_document(text, file_name),
+                               "found a second document; expected one: remove the line '---' or what follows it");
+    if (!documents.empty()) document = documents.front();
   } catch (const YAML::Exception& error) {
-    throw ConfigurationError(SourceLocation{file_name, error.mark.line + 1, error.mark.column + 1}, "syntax error: " + error.msg);
+    throw ConfigurationError(SourceLocation{file_name, error.mark.line + 1, error.mark.column + 1},
+                             "syntax error: " + error.msg);
   }
   Converter converter(file_name, folder);
   ConfigurationNode root = converter.convert(document);

@@ -57,7 +57,7 @@ struct Configuration {
   std::optional<Camera> camera;         ///< nothing: the source must know it
   RunSettings run;
   std::map<std::string, ParameterValues> sections;  ///< by name, as described by the caller
-  std::vector<std::string> plugins;     ///< as given, relative ones with a folder made absolute
+  std::vector<std::string> plugins;     ///< the files, absolute
 };
 
 /// Reads, overrides and checks a configuration. Plugins that it names are loaded into `registry` first. Throws

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/config/configuration.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "fixture.hpp"
+
+namespace holdfast {
+namespace {
+
+using test::resolve;
+
+TEST(Configuration, IsCompleteWithDefaults) {
+  const Configuration c = resolve(test::good);
+  EXPECT_EQ(c.features.name, "orb");
+  EXPECT_EQ(c.features.values.at("count"), ParameterValue(std::int64_t{500}));
+  EXPECT_EQ(c.features.values.at("scale"), ParameterValue(1.2));
+  EXPECT_EQ(c.segmenter.name, "none");
+  EXPECT_EQ(c.loop_detector.name, "none");
+  EXPECT_TRUE(c.filters.empty());
+  EXPECT_EQ(c.camera->name, "tum_fr1");
+  EXPECT_EQ(c.run.seed, 1U);
+  EXPECT_EQ(c.sections.at("tracking").at("window"), ParameterValue(15.0));
+  EXPECT_EQ(c.features.location.to_string(), "c.yaml:3:13");
+}
+
+TEST(Configuration, ARealMayBeWrittenAsAnInteger) {
+  EXPECT_EQ(resolve(test::good + "tracking: { window: 20 }\n").sections.at("tracking").at("window"),
+            ParameterValue(20.0));
+}
+
+TEST(Configuration, PathsStartFromTheFileThatSaysThem) {
+  EXPECT_EQ(resolve(test::good).source.values.at("path"), ParameterValue(std::string("/data/fr1")));
+  EXPECT_EQ(resolve(test::good, {"source.tum.path=../fr2"}).source.values.at("path"),
+            ParameterValue((std::filesystem::current_path() / "../fr2").lexically_normal().string()));
+  EXPECT_EQ(resolve(test::good, {"source.tum.path=/abs"}).source.values.at("path"),
+            ParameterValue(std::string("/abs")));
+}
+
+TEST(Configuration, CameraByNumbers) {
+  const Configuration c = resolve(
+      "source: { tum: { path: x } }\nfeatures: orb\noptimizer: ceres\n"
+      "camera: { width: 320, height: 240, fx: 260, fy: 261, cx: 160, cy: 120, k1: -0.1, p2: 0.01, baseline: 0.1 }\n");
+  EXPECT_EQ(c.camera->width, 320);
+  EXPECT_EQ(c.camera->fy, 261);
+  EXPECT_EQ(c.camera->distortion, (Distortion{.k1 = -0.1, .p2 = 0.01}));
+  EXPECT_EQ(c.camera->baseline, 0.1);
+  EXPECT_EQ(c.camera->frame_rate, 30);
+}
+
+TEST(Configuration, WrittenAndReadAgainIsTheSame) {
+  const Configuration first = resolve(test::good + R"(run: { seed: 7 }
+filters:
+  - semantic_mask: { classes: [ "true", "a b" ], weights: [ 0.1, 1 ], names: { "1": "it's \"x\"" } }
+  - semantic_mask
+)");
+  std::string yaml = to_yaml(first);
+  // The name of a known camera is kept as a comment only: its numbers are what counts.
+  const std::string comment = "  # tum_fr1";
+  ASSERT_NE(yaml.find(comment), std::string::npos);
+  yaml.erase(yaml.find(comment), comment.size());
+  Registry registry = test::test_registry();
+  const Configuration second =
+      resolve_configuration(parse_yaml(yaml, "out.yaml", "/elsewhere"), "out.yaml", registry, test::test_sections());
+  EXPECT_EQ(to_yaml(second), yaml);
+  EXPECT_EQ(second.source.values, first.source.values);
+  EXPECT_EQ(second.features.values, first.features.values);
+  ASSERT_EQ(second.filters.size(), 2U);
+  EXPECT_EQ(second.filters[0].values, first.filters[0].values);
+  EXPECT_EQ(second.sections, first.sections);
+  EXPECT_EQ(second.run.seed, 7U);
+  EXPECT_EQ(second.camera->fx, first.camera->fx);
+  EXPECT_EQ(second.camera->distortion, first.camera->distortion);
+}
+
+TEST(Configuration, LoadsPluginsAndNamesTheirFiles) {
+  const std::filesystem::path file = std::filesystem::path(TEST_PLUGIN_FOLDER) / "configuration_test.yaml";
+  std::ofstream(file) << test::good << "segmenter: { good: { dilate: 9 } }\nplugins: [ test_plugin_good ]\n";
+  Registry registry = test::test_registry();
+  const Configuration first = load_configuration(file, {}, registry, test::test_sections());
+  EXPECT_EQ(first.segmenter.values.at("dilate"), ParameterValue(std::int64_t{9}));
+  // The resolved configuration is run from another folder.
+  const ConfigurationNode moved = parse_yaml(to_yaml(first), "out.yaml", "/elsewhere");
+  Registry fresh = test::test_registry();
+  EXPECT_EQ(resolve_configuration(moved, "out.yaml", fresh, test::test_sections()).segmenter.name, "good");
+  EXPECT_NO_THROW(load_configuration(file, {}, registry, test::test_sections())) << "twice into one registry";
+  std::filesystem::remove(file);
+}
+
+}  // namespace
+}  // namespace holdfast

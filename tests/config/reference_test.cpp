@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/config/reference.hpp"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "fixture.hpp"
+
+namespace holdfast {
+namespace {
+
+using testing::HasSubstr;
+
+std::string reference_of(const std::string& name, ReferenceFormat format) {
+  return reference(test::test_registry(), test::test_sections(), name, format);
+}
+
+TEST(Reference, TextListsEverything) {
+  const std::string text = reference_of("", ReferenceFormat::text);
+  for (const std::string name : {"tum", "opencv_orb", "semantic_mask", "ceres", "camera", "tracking", "run"})
+    EXPECT_THAT(text, HasSubstr("\n  " + name + " ")) << name;
+}
+
+TEST(Reference, TextOfOneModuleShowsItsTable) {
+  const std::string text = reference_of("orb", ReferenceFormat::text);
+  EXPECT_THAT(text, HasSubstr("Summary of orb."));
+  EXPECT_THAT(text, HasSubstr("Paper: A paper"));
+  EXPECT_THAT(text, HasSubstr("count   integer, default 1000, from 50 to 20000"));
+  EXPECT_THAT(text, HasSubstr("tree | grid"));
+  EXPECT_THAT(text, testing::Not(HasSubstr("opencv_orb")));
+}
+
+TEST(Reference, MarkdownHasOneRowPerParameter) {
+  const std::string text = reference_of("", ReferenceFormat::markdown);
+  EXPECT_THAT(text, HasSubstr("| `count` | integer | 1000 | from 50 to 20000 |  | features to keep |\n"));
+  EXPECT_THAT(text, HasSubstr("| `spread` | text | tree | tree \\| grid |  | how |\n"));
+  EXPECT_THAT(text, HasSubstr("| `window` | real | 15.0 | from 1 to 200 | px | search radius |\n"));
+  EXPECT_THAT(text, HasSubstr("| `path` | path | required |"));
+}
+
+TEST(Reference, JsonHoldsTheTable) {
+  const auto all = nlohmann::json::parse(reference_of("orb", ReferenceFormat::json));
+  ASSERT_EQ(all.size(), 1U);
+  EXPECT_EQ(all[0]["kind"], "features");
+  const auto& count = all[0]["parameters"][0];
+  EXPECT_EQ(count["name"], "count");
+  EXPECT_EQ(count["default"], 1000);
+  EXPECT_EQ(count["minimum"], 50);
+}
+
+TEST(Reference, SuggestsAName) {
+  try {
+    reference_of("opencv_obr", ReferenceFormat::text);
+    FAIL() << "an unknown name was accepted";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "there is no module or section 'opencv_obr'; did you mean 'opencv_orb'?");
+  }
+}
+
+}  // namespace
+}  // namespace holdfast
