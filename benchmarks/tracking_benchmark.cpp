@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tracking time per frame as a ratio to cv::ORB(1000) on the same images, in the same process and on one thread: a ratio
-// says the same on fast, slow and busy machines. Tracking is all from the images to the pose; decoding images and local
-// mapping are left out. Reads $HOLDFAST_DATA/tum_fr1_xyz, or the simulated room when HOLDFAST_DATA is not set.
+// Tracking time per frame as a ratio to cv::ORB(1000) on the same images, in the same process and on one thread: a
+// ratio says the same on fast, slow and busy machines. Tracking is all from the images to the pose; decoding images and
+// local mapping are left out. Reads $HOLDFAST_DATA/tum_fr1_xyz, or the simulated room when HOLDFAST_DATA is not set.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>
@@ -56,7 +56,10 @@ void tracking(benchmark::State& state, const std::string& extractor) {
 }
 
 BENCHMARK_CAPTURE(tracking, orb, std::string("orb"))->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(tracking, opencv_orb, std::string("opencv_orb"))->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(tracking, opencv_orb, std::string("opencv_orb"))
+    ->Iterations(1)
+    ->UseManualTime()
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace holdfast

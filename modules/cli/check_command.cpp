@@ -47,7 +47,8 @@ void add_check_command(CLI::App& app, int&) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("check", "Check a configuration without running it");
   command->footer(
-      "\nEvery mistake is reported at once, as file:line:column: what was found, what was expected. Data is not looked\n"
+      "\nEvery mistake is reported at once, as file:line:column: what was found, what was expected. Data is not "
+      "looked\n"
       "at: whether a recording is there and whole shows in `holdfast run`. Exits 2 when something is wrong.\n\n"
       "Examples\n"
       "  holdfast check examples/configs/rgbd.yaml\n"

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/cli/modules_command.hpp"
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "holdfast/cli/terminal.hpp"
 #include "holdfast/config/reference.hpp"
 #include "holdfast/pipeline/pipeline_builder.hpp"
 #include "holdfast/plugin/builtin.hpp"
@@ -23,19 +26,26 @@ struct Arguments {
   bool json = false;
 };
 
-void print_modules(const Arguments& arguments) {
+int print_modules(const Arguments& arguments) {
   Registry registry;
   register_builtin_plugins(registry);
   for (const std::string& plugin : arguments.plugins) load_plugin(registry, plugin);
   const ReferenceFormat format = arguments.json       ? ReferenceFormat::json
                                  : arguments.markdown ? ReferenceFormat::markdown
                                                       : ReferenceFormat::text;
-  std::fputs(reference(registry, pipeline_sections(), arguments.name, format).c_str(), stdout);
+  try {
+    std::fputs(reference(registry, pipeline_sections(), arguments.name, format).c_str(), stdout);
+  } catch (const Error& error) {
+    std::fprintf(stderr, "%s %s\n", red("error:", STDERR_FILENO).c_str(), error.what());
+    constexpr int usage_error = 2;
+    return usage_error;
+  }
+  return 0;
 }
 
 }  // namespace
 
-void add_modules_command(CLI::App& app, int&) {
+void add_modules_command(CLI::App& app, int& exit_code) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("modules", "Print what a configuration can say: modules and their parameters");
   command->footer(
@@ -46,10 +56,11 @@ void add_modules_command(CLI::App& app, int&) {
       "  holdfast modules source          all modules of a section\n"
       "  holdfast modules --plugin ./libmine.so mine");
   command->add_option("NAME", arguments->name, "A module, a section, or a kind of module");
-  command->add_option("--plugin", arguments->plugins, "Load this plugin first; may be repeated")->allow_extra_args(false);
+  command->add_option("--plugin", arguments->plugins, "Load this plugin first; may be repeated")
+      ->allow_extra_args(false);
   CLI::Option* markdown = command->add_flag("--markdown", arguments->markdown, "As Markdown, complete");
   command->add_flag("--json", arguments->json, "As JSON, complete")->excludes(markdown);
-  command->callback([arguments] { print_modules(*arguments); });
+  command->callback([arguments, &exit_code] { exit_code = print_modules(*arguments); });
 }
 
 }  // namespace holdfast

@@ -44,10 +44,13 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& r
   const RunSummary& s = record.summary;
   std::vector<std::pair<std::string, std::string>> rows;
   rows.emplace_back("sequence", record.source.name);
-  rows.emplace_back("frames", std::to_string(s.frames()) + " of " + std::to_string(record.frames_expected) +
-                                  (record.skipped.empty() ? "" : ", " + std::to_string(record.skipped.size()) + " skipped"));
-  rows.emplace_back("coverage", percent(record.coverage()) + " (" + std::to_string(record.trajectory.size()) + " poses)");
-  rows.emplace_back("lost", std::to_string(s.lost()) + " frames, recovered " + std::to_string(s.recovered()) + " times");
+  rows.emplace_back("frames",
+                    std::to_string(s.frames()) + " of " + std::to_string(record.frames_expected) +
+                        (record.skipped.empty() ? "" : ", " + std::to_string(record.skipped.size()) + " skipped"));
+  rows.emplace_back("coverage",
+                    percent(record.coverage()) + " (" + std::to_string(record.trajectory.size()) + " poses)");
+  rows.emplace_back("lost",
+                    std::to_string(s.lost()) + " frames, recovered " + std::to_string(s.recovered()) + " times");
   rows.emplace_back("map", std::to_string(record.map_keyframes) + " keyframes, " + std::to_string(record.map_points) +
                                " points; " + number(s.mean_inliers(), 0) + " inliers a frame");
   if (record.evaluation) {
@@ -70,8 +73,8 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& r
 }
 
 Json stage_json(const StageRow& row) {
-  return {{"stage", row.stage},       {"frames", row.frames},         {"median_s", row.median}, {"p95_s", row.p95},
-          {"maximum_s", row.maximum}, {"total_s", row.total},         {"share", row.share}};
+  return {{"stage", row.stage},       {"frames", row.frames}, {"median_s", row.median}, {"p95_s", row.p95},
+          {"maximum_s", row.maximum}, {"total_s", row.total}, {"share", row.share}};
 }
 
 Json run_json(const RunRecord& record) {
@@ -123,7 +126,8 @@ Json run_json(const RunRecord& record) {
 }
 
 ReportTable stage_report(const RunSummary& summary) {
-  ReportTable table{"Time per frame in each stage", {"stage", "frames", "median ms", "p95 ms", "max ms", "share"}, {}, {}};
+  ReportTable table{
+      "Time per frame in each stage", {"stage", "frames", "median ms", "p95 ms", "max ms", "share"}, {}, {}};
   for (const StageRow& row : summary.stages()) {
     table.rows.push_back({row.stage, std::to_string(row.frames), number(row.median * 1e3, 3), number(row.p95 * 1e3, 3),
                           number(row.maximum * 1e3, 3), number(row.share * 100.0, 1) + " %"});
@@ -158,25 +162,46 @@ std::string report_html(const RunRecord& record) {
     report.highlights.push_back({"ATE RMSE", number(record.evaluation->absolute_error.rmse * 1e3, 2) + " mm"});
   report.highlights.push_back({"coverage", percent(record.coverage())});
   report.highlights.push_back({"tracking", number(record.summary.tracking().median * 1e3, 2) + " ms"});
-  ReportSection summary{.heading = "Summary", .text = {}, .values = summary_rows(record), .tables = {}, .figures = {}, .preformatted = {}};
+  ReportSection summary{.heading = "Summary",
+                        .text = {},
+                        .values = summary_rows(record),
+                        .tables = {},
+                        .figures = {},
+                        .preformatted = {}};
   if (!record.failure.empty()) summary.text = "The run ended before its time: " + record.failure;
   if (record.was_interrupted) summary.text = "The run was interrupted; this is what was done until then.";
   report.sections.push_back(std::move(summary));
   if (record.evaluation) {
-    ReportSection error{.heading = "Trajectory", .text = {}, .values = {}, .tables = {error_report(*record.evaluation)}, .figures = {}, .preformatted = {}};
-    error.text = "Aligned with the truth by a rigid motion (se3) over all pairs; stamps paired one to one within 0.02 s.";
+    ReportSection error{.heading = "Trajectory",
+                        .text = {},
+                        .values = {},
+                        .tables = {error_report(*record.evaluation)},
+                        .figures = {},
+                        .preformatted = {}};
+    error.text =
+        "Aligned with the truth by a rigid motion (se3) over all pairs; stamps paired one to one within 0.02 s.";
     error.figures.push_back({top_view_svg(*record.evaluation), "The path against the truth"});
     error.figures.push_back({error_over_time_svg(*record.evaluation), "Absolute error over time"});
     report.sections.push_back(std::move(error));
   }
-  report.sections.push_back(
-      {.heading = "Stages", .text = {}, .values = {}, .tables = {stage_report(record.summary)}, .figures = {}, .preformatted = {}});
+  report.sections.push_back({.heading = "Stages",
+                             .text = {},
+                             .values = {},
+                             .tables = {stage_report(record.summary)},
+                             .figures = {},
+                             .preformatted = {}});
   if (!record.skipped.empty()) {
     ReportTable table{"Frames left out", {"stamp", "reason"}, {}, {}};
     for (const SkippedFrame& frame : record.skipped) table.rows.push_back({number(frame.timestamp, 6), frame.reason});
-    report.sections.push_back({.heading = "Skipped frames", .text = {}, .values = {}, .tables = {table}, .figures = {}, .preformatted = {}});
+    report.sections.push_back(
+        {.heading = "Skipped frames", .text = {}, .values = {}, .tables = {table}, .figures = {}, .preformatted = {}});
   }
-  report.sections.push_back({.heading = "Configuration", .text = {}, .values = {}, .tables = {}, .figures = {}, .preformatted = to_yaml(*record.configuration)});
+  report.sections.push_back({.heading = "Configuration",
+                             .text = {},
+                             .values = {},
+                             .tables = {},
+                             .figures = {},
+                             .preformatted = to_yaml(*record.configuration)});
   return to_html(report);
 }
 

@@ -18,8 +18,10 @@ std::string coloured(const std::string& text, const char* code, int stream) {
 
 std::string time_text(double seconds) {
   char text[32];
-  if (seconds < 100.0) std::snprintf(text, sizeof(text), "%.0f s", seconds);
-  else std::snprintf(text, sizeof(text), "%d min %02d s", static_cast<int>(seconds) / 60, static_cast<int>(seconds) % 60);
+  if (seconds < 100.0)
+    std::snprintf(text, sizeof(text), "%.0f s", seconds);
+  else
+    std::snprintf(text, sizeof(text), "%d min %02d s", static_cast<int>(seconds) / 60, static_cast<int>(seconds) % 60);
   return text;
 }
 

@@ -11,13 +11,16 @@
 namespace holdfast {
 
 void RunSettings::describe(ParameterTable<RunSettings>& table) {
-  table.add("mode", &RunSettings::mode, "sequential: one thread, the same bits on every run")
+  table
+      .add("mode", &RunSettings::mode,
+           "sequential: one thread, the same bits on every run; threaded: not in this version")
       .one_of({"sequential", "threaded"});
   table.add("seed", &RunSettings::seed, "the only source of chance").at_least(0);
 }
 
 void CameraSettings::describe(ParameterTable<CameraSettings>& table) {
   using S = CameraSettings;
+  table.add("name", &S::name, "of a known camera, whose numbers count where none are given; empty = none");
   table.add("width", &S::width, "columns of the images").range(1, 32768).unit("px").required();
   table.add("height", &S::height, "rows of the images").range(1, 32768).unit("px").required();
   table.add("fx", &S::fx, "focal length along x").range(1, 1e6).unit("px").required();
@@ -31,6 +34,16 @@ void CameraSettings::describe(ParameterTable<CameraSettings>& table) {
   table.add("k3", &S::k3, "radial distortion, 6th order");
   table.add("baseline", &S::baseline, "of the stereo pair that depth stands for").range(1e-4, 100).unit("m");
   table.add("frame_rate", &S::frame_rate, "images per second").range(0.01, 10000).unit("1/s");
+}
+
+CameraSettings camera_settings(const Camera& camera) {
+  const Distortion& d = camera.distortion;
+  return {camera.name, camera.width, camera.height, camera.fx, camera.fy, camera.cx,       camera.cy,
+          d.k1,        d.k2,         d.p1,          d.p2,      d.k3,      camera.baseline, camera.frame_rate};
+}
+
+Camera make_camera(const CameraSettings& s) {
+  return {s.name, s.width, s.height, s.fx, s.fy, s.cx, s.cy, {s.k1, s.k2, s.p1, s.p2, s.k3}, s.baseline, s.frame_rate};
 }
 
 const std::vector<std::string>& choice_sections() {

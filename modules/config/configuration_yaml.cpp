@@ -28,20 +28,14 @@ void add_chain(const std::string& kind, const std::vector<ModuleChoice>& choices
   for (const ModuleChoice& choice : choices) add_module(choice, "  - ", "    ", yaml);
 }
 
-ParameterValues camera_values(const Camera& camera) {
-  const Distortion& d = camera.distortion;
-  return ParameterTable<CameraSettings>().values({camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy,
-                                                  d.k1, d.k2, d.p1, d.p2, d.k3, camera.baseline, camera.frame_rate});
-}
-
 }  // namespace
 
 std::string to_yaml(const Configuration& configuration) {
   std::string yaml;
   add_choice(configuration.source, yaml);
   if (configuration.camera) {
-    yaml += "camera:" + (configuration.camera->name.empty() ? std::string("\n") : "  # " + configuration.camera->name + "\n");
-    add_values(camera_values(*configuration.camera), "  ", yaml);
+    yaml += "camera:\n";
+    add_values(ParameterTable<CameraSettings>().values(camera_settings(*configuration.camera)), "  ", yaml);
   }
   add_choice(configuration.features, yaml);
   add_choice(configuration.segmenter, yaml);

@@ -58,14 +58,15 @@ void apply_override(ConfigurationNode& root, const std::string& override_text,
       continue;
     }
     const bool chooses = depth == 1 && std::find(choices.begin(), choices.end(), path[0]) != choices.end();
-    // `orb` stands for `orb: {}`, in a choice and as a link of a chain.
     if (node->kind == ConfigurationNode::Kind::scalar) {
-      const std::string name = node->text;
-      const bool same = name == part;
-      node->kind = ConfigurationNode::Kind::map;
-      if (same)
+      const ConfigurationNode name = *node;
+      *node = {.location = name.location, .folder = name.folder};
+      // `orb` stands for `orb: {}`, in a choice and as a link of a chain, and a camera's name for that camera.
+      if (name.text == part)
         node->entries.push_back(
-            {name, node->location, ConfigurationNode{.location = node->location, .folder = node->folder}});
+            {part, name.location, ConfigurationNode{.location = name.location, .folder = name.folder}});
+      else if (depth == 1 && path[0] == "camera")
+        node->entries.push_back({"name", name.location, name});
     }
     node->kind = ConfigurationNode::Kind::map;
     if (chooses && node->find(part) == nullptr) node->entries.clear();

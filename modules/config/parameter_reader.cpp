@@ -38,7 +38,8 @@ std::optional<std::int64_t> as_integer(const ConfigurationNode& node) {
 std::optional<ParameterValue> as_type(const ConfigurationNode& node, ParameterType type) {
   switch (type) {
     case ParameterType::boolean:
-      if (node.kind != Kind::scalar || node.quoted || (node.text != "true" && node.text != "false")) return std::nullopt;
+      if (node.kind != Kind::scalar || node.quoted || (node.text != "true" && node.text != "false"))
+        return std::nullopt;
       return node.text == "true";
     case ParameterType::integer:
       if (const auto number = as_integer(node)) return *number;
@@ -115,9 +116,8 @@ ParameterValues read_parameters(const ConfigurationNode& node, const std::vector
       continue;
     }
     if (const auto reason = parameter->reject(*value)) {
-      diagnostics.push_back(
-          {entry.value.location, "found " + entry.value.found() + " for " + name + ": " + *reason + "; expected " +
-                                     parameter->expectation()});
+      diagnostics.push_back({entry.value.location, "found " + entry.value.found() + " for " + name + ": " + *reason +
+                                                       "; expected " + parameter->expectation()});
       continue;
     }
     values[entry.key] = *value;

@@ -29,7 +29,9 @@ void FeatureGrid::build(std::span<const float> x, std::span<const float> y, floa
   cell_begin_.assign(static_cast<std::size_t>(columns_) * rows_ + 1, 0);
   features_.resize(x.size());
 
-  const auto cell_of = [&](std::size_t i) { return static_cast<std::size_t>(row_of(y[i])) * columns_ + column_of(x[i]); };
+  const auto cell_of = [&](std::size_t i) {
+    return static_cast<std::size_t>(row_of(y[i])) * columns_ + column_of(x[i]);
+  };
   for (std::size_t i = 0; i < x.size(); ++i) ++cell_begin_[cell_of(i) + 1];
   for (std::size_t cell = 1; cell < cell_begin_.size(); ++cell) cell_begin_[cell] += cell_begin_[cell - 1];
   // Filling moves each cell's begin to its end, which is the next cell's begin: shift back afterwards.
@@ -38,8 +40,8 @@ void FeatureGrid::build(std::span<const float> x, std::span<const float> y, floa
   cell_begin_.front() = 0;
 }
 
-void FeatureGrid::query(float centre_x, float centre_y, float radius, std::span<const float> x, std::span<const float> y,
-                        std::vector<std::uint32_t>& found) const {
+void FeatureGrid::query(float centre_x, float centre_y, float radius, std::span<const float> x,
+                        std::span<const float> y, std::vector<std::uint32_t>& found) const {
   if (features_.empty()) return;
   const int first_column = column_of(centre_x - radius), last_column = column_of(centre_x + radius);
   const int first_row = row_of(centre_y - radius), last_row = row_of(centre_y + radius);
@@ -50,7 +52,8 @@ void FeatureGrid::query(float centre_x, float centre_y, float radius, std::span<
     const std::uint32_t end = cell_begin_[row_begin + last_column + 1];
     for (std::uint32_t i = begin; i < end; ++i) {
       const std::uint32_t feature = features_[i];
-      if (std::abs(x[feature] - centre_x) < radius && std::abs(y[feature] - centre_y) < radius) found.push_back(feature);
+      if (std::abs(x[feature] - centre_x) < radius && std::abs(y[feature] - centre_y) < radius)
+        found.push_back(feature);
     }
   }
 }

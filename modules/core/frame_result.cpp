@@ -5,31 +5,44 @@ namespace holdfast {
 
 const char* to_string(TrackingStatus status) {
   switch (status) {
-    case TrackingStatus::waiting: return "waiting";
-    case TrackingStatus::initialised: return "initialised";
-    case TrackingStatus::tracked: return "tracked";
-    case TrackingStatus::lost: return "lost";
+    case TrackingStatus::waiting:
+      return "waiting";
+    case TrackingStatus::initialised:
+      return "initialised";
+    case TrackingStatus::tracked:
+      return "tracked";
+    case TrackingStatus::lost:
+      return "lost";
   }
   return "?";
 }
 
 const char* to_string(TrackingMethod method) {
   switch (method) {
-    case TrackingMethod::none: return "none";
-    case TrackingMethod::motion_model: return "motion model";
-    case TrackingMethod::reference_keyframe: return "reference keyframe";
-    case TrackingMethod::recovered: return "recovered";
+    case TrackingMethod::none:
+      return "none";
+    case TrackingMethod::motion_model:
+      return "motion model";
+    case TrackingMethod::reference_keyframe:
+      return "reference keyframe";
+    case TrackingMethod::recovered:
+      return "recovered";
   }
   return "?";
 }
 
 const char* to_string(TrackingTrouble trouble) {
   switch (trouble) {
-    case TrackingTrouble::none: return "none";
-    case TrackingTrouble::no_depth: return "no depth";
-    case TrackingTrouble::few_features: return "too few features";
-    case TrackingTrouble::few_matches: return "too few matches";
-    case TrackingTrouble::few_inliers: return "too few inliers";
+    case TrackingTrouble::none:
+      return "none";
+    case TrackingTrouble::no_depth:
+      return "no depth";
+    case TrackingTrouble::few_features:
+      return "too few features";
+    case TrackingTrouble::few_matches:
+      return "too few matches";
+    case TrackingTrouble::few_inliers:
+      return "too few inliers";
   }
   return "?";
 }

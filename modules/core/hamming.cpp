@@ -10,8 +10,9 @@ namespace {
 #if defined(__x86_64__)
 #define HOLDFAST_POPCNT __attribute__((target("popcnt")))
 HOLDFAST_POPCNT inline int distance_popcnt(const Descriptor& a, const Descriptor& b) {
-  return static_cast<int>(__builtin_popcountll(a.words[0] ^ b.words[0]) + __builtin_popcountll(a.words[1] ^ b.words[1]) +
-                          __builtin_popcountll(a.words[2] ^ b.words[2]) + __builtin_popcountll(a.words[3] ^ b.words[3]));
+  return static_cast<int>(
+      __builtin_popcountll(a.words[0] ^ b.words[0]) + __builtin_popcountll(a.words[1] ^ b.words[1]) +
+      __builtin_popcountll(a.words[2] ^ b.words[2]) + __builtin_popcountll(a.words[3] ^ b.words[3]));
 }
 
 HOLDFAST_POPCNT void distances_popcnt(const Descriptor& query, const Descriptor* descriptors,
@@ -41,8 +42,8 @@ inline void consider(int index, int distance, NearestDescriptors& nearest) {
 
 }  // namespace
 
-void hamming_distances(const Descriptor& query, const Descriptor* descriptors, std::span<const std::uint32_t> candidates,
-                       std::uint16_t* distances) {
+void hamming_distances(const Descriptor& query, const Descriptor* descriptors,
+                       std::span<const std::uint32_t> candidates, std::uint16_t* distances) {
 #if defined(__x86_64__)
   if (simd_level() >= SimdLevel::sse4) return distances_popcnt(query, descriptors, candidates, distances);
 #endif

@@ -38,7 +38,8 @@ void Map::add_observation(MapPointId point_id, KeyFrameId keyframe_id, std::uint
   MapPoint& point = points_.at(point_id);
   MapPointId& slot = keyframes_.at(keyframe_id).frame.map_points.at(feature);
   HOLDFAST_CHECK(!slot.valid(), "feature " << feature << " already shows point " << slot.slot);
-  HOLDFAST_CHECK(feature_of(point_id, keyframe_id) < 0, "point " << point_id.slot << " is already seen by the keyframe");
+  HOLDFAST_CHECK(feature_of(point_id, keyframe_id) < 0,
+                 "point " << point_id.slot << " is already seen by the keyframe");
   slot = point_id;
   point.observations.push_back({keyframe_id, feature});
   if (!point.reference_keyframe.valid()) point.reference_keyframe = keyframe_id;

@@ -37,9 +37,8 @@ void Map::update_covisibility(KeyFrameId id, int minimum_weight) {
   keyframe.covisible.clear();
   if (shared.empty()) return;
 
-  const auto strongest = std::max_element(shared.begin(), shared.end(), [](const auto& a, const auto& b) {
-    return a.second.second < b.second.second;
-  });
+  const auto strongest = std::max_element(
+      shared.begin(), shared.end(), [](const auto& a, const auto& b) { return a.second.second < b.second.second; });
   for (const auto& [sequence, entry] : shared) {
     const auto [neighbour, weight] = entry;
     if (weight < minimum_weight && sequence != strongest->first) continue;

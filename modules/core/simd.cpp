@@ -30,9 +30,12 @@ SimdLevel simd_level() {
 
 const char* to_string(SimdLevel level) {
   switch (level) {
-    case SimdLevel::scalar: return "scalar";
-    case SimdLevel::sse4: return "sse4";
-    case SimdLevel::avx2: return "avx2";
+    case SimdLevel::scalar:
+      return "scalar";
+    case SimdLevel::sse4:
+      return "sse4";
+    case SimdLevel::avx2:
+      return "avx2";
   }
   return "?";
 }

@@ -18,7 +18,8 @@ void RunSummary::add(const FrameResult& result, double decode_seconds) {
     if (result.method == TrackingMethod::recovered) ++recovered_;
   }
   stage("decode").push_back(decode_seconds);
-  for (const StageTimes::Entry& entry : result.times.entries()) stage(std::string(entry.stage)).push_back(entry.seconds);
+  for (const StageTimes::Entry& entry : result.times.entries())
+    stage(std::string(entry.stage)).push_back(entry.seconds);
   tracking_seconds_.push_back(result.tracking_seconds);
 }
 

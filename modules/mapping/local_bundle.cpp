@@ -6,10 +6,11 @@
 namespace holdfast {
 
 void LocalMapper::adjust_bundle(KeyFrameId id) {
-  // The keyframe and its strongest neighbours move, with all points that they see; other keyframes that see these points
-  // hold them in place.
+  // The keyframe and its strongest neighbours move, with all points that they see; other keyframes that see these
+  // points hold them in place.
   std::vector<KeyFrameId> keyframes = {id};
-  for (const KeyFrameId neighbour : map_.best_covisible(id, settings_.bundle_keyframes - 1)) keyframes.push_back(neighbour);
+  for (const KeyFrameId neighbour : map_.best_covisible(id, settings_.bundle_keyframes - 1))
+    keyframes.push_back(neighbour);
   const std::size_t moving = keyframes.size();
 
   std::vector<std::int32_t> pose_of_slot(map_.keyframes().slot_count(), -1);

@@ -85,7 +85,8 @@ void LocalMapper::fuse_into(KeyFrameId target, const std::vector<MapPointId>& po
       }
       return error * pyramid.inverse_sigma2[static_cast<std::size_t>(octave)] > limit;
     });
-    const NearestDescriptors nearest = nearest_descriptors(point->descriptor, frame.features.descriptors.data(), candidates);
+    const NearestDescriptors nearest =
+        nearest_descriptors(point->descriptor, frame.features.descriptors.data(), candidates);
     if (nearest.best_index < 0 || nearest.best_distance > maximum_distance) continue;
     const auto feature = static_cast<std::uint32_t>(nearest.best_index);
     const MapPointId shown = frame.map_points[feature];
@@ -95,8 +96,10 @@ void LocalMapper::fuse_into(KeyFrameId target, const std::vector<MapPointId>& po
       continue;
     }
     ++counts_.points_fused;
-    if (map_.point(shown).observations.size() > point->observations.size()) map_.fuse_points(id, shown);
-    else map_.fuse_points(shown, id);
+    if (map_.point(shown).observations.size() > point->observations.size())
+      map_.fuse_points(id, shown);
+    else
+      map_.fuse_points(shown, id);
   }
 }
 

@@ -86,7 +86,8 @@ void LocalMapper::triangulate_with(KeyFrameId id, KeyFrameId neighbour_id) {
     const double cosine = ray.normalized().dot((T_frame_neighbour.linear() * other_ray).normalized());
     std::optional<Eigen::Vector3d> in_frame;
     const auto depth_cosine = [](const Frame& f, std::uint32_t i) {
-      return f.has_depth(i) ? std::cos(2.0 * std::atan2(0.5 * f.camera->baseline, static_cast<double>(f.depth[i]))) : 2.0;
+      return f.has_depth(i) ? std::cos(2.0 * std::atan2(0.5 * f.camera->baseline, static_cast<double>(f.depth[i])))
+                            : 2.0;
     };
     const double frame_cosine = depth_cosine(frame, feature), other_cosine = depth_cosine(neighbour, other);
     if (cosine > 0.0 && cosine < std::min({frame_cosine, other_cosine, smallest_parallax_cosine}))

@@ -45,8 +45,8 @@ FrameResult Pipeline::feed(const SensorFrame& frame) {
   State& s = *state_;
   if (s.has_frame && !(frame.timestamp > s.last_timestamp)) {
     char text[128];
-    std::snprintf(text, sizeof(text), "time stamp %.6f does not follow %.6f; stamps must rise strictly", frame.timestamp,
-                  s.last_timestamp);
+    std::snprintf(text, sizeof(text), "time stamp %.6f does not follow %.6f; stamps must rise strictly",
+                  frame.timestamp, s.last_timestamp);
     throw InputError({"frame " + std::to_string(frame.index)}, text);
   }
   s.has_frame = true;

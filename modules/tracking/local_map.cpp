@@ -78,8 +78,8 @@ void LocalMap::collect_points(const Map& map) {
       points_.push_back(point);
     }
   const std::size_t count = points_.size();
-  for (std::vector<float>* values : {&position_x_, &position_y_, &position_z_, &direction_x_, &direction_y_, &direction_z_,
-                                     &minimum_distance_, &maximum_distance_})
+  for (std::vector<float>* values : {&position_x_, &position_y_, &position_z_, &direction_x_, &direction_y_,
+                                     &direction_z_, &minimum_distance_, &maximum_distance_})
     values->resize(count);
   descriptors_.resize(count);
   visible_.assign(count, 0);
@@ -133,7 +133,8 @@ void LocalMap::project(const Frame& frame, float radius_factor, SearchWindows& w
     ++visible_[i];
     if (shown_[i] != 0) continue;
     const int level = pyramid.predict_level(maximum_distance_[i], distance);
-    const float radius = (cosine > 0.998F ? 2.5F : 4.0F) * radius_factor * pyramid.scale[static_cast<std::size_t>(level)];
+    const float radius =
+        (cosine > 0.998F ? 2.5F : 4.0F) * radius_factor * pyramid.scale[static_cast<std::size_t>(level)];
     windows.add(static_cast<std::uint32_t>(i), x, y, x - fx_baseline * inverse_z, radius, level - 1, level);
   }
 }

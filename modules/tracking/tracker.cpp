@@ -69,8 +69,8 @@ bool Tracker::start_map(FrameResult& result) {
   int with_depth = 0;
   for (std::size_t i = 0; i < current_.size(); ++i) with_depth += current_.has_depth(i) ? 1 : 0;
   if (with_depth < settings_.minimum_start_points) {
-    result.trouble = result.features < settings_.minimum_start_points ? TrackingTrouble::few_features
-                                                                       : TrackingTrouble::no_depth;
+    result.trouble =
+        result.features < settings_.minimum_start_points ? TrackingTrouble::few_features : TrackingTrouble::no_depth;
     return false;
   }
   current_.T_camera_world.setIdentity();
@@ -92,8 +92,8 @@ bool Tracker::track_local_map(FrameResult& result) {
 
   result.inliers = adjust_pose();
   result.matches = static_cast<int>(problem_.size());
-  result.static_features = static_cast<int>(std::count_if(current_.static_probability.begin(), current_.static_probability.end(),
-                                                          [](float p) { return p >= 0.5F; }));
+  result.static_features = static_cast<int>(std::count_if(
+      current_.static_probability.begin(), current_.static_probability.end(), [](float p) { return p >= 0.5F; }));
   drop_outliers();
   local_map_.count_found(current_);
   if (result.inliers < settings_.minimum_inliers) {
@@ -124,8 +124,8 @@ bool Tracker::needs_keyframe(const FrameResult& result) const {
   }
   const bool wants_close =
       close_tracked < settings_.keyframe_close_tracked && close_possible > settings_.keyframe_close_possible;
-  const double ratio = map_.keyframes().size() < 2 ? std::min(0.4, settings_.keyframe_tracked_ratio)
-                                                   : settings_.keyframe_tracked_ratio;
+  const double ratio =
+      map_.keyframes().size() < 2 ? std::min(0.4, settings_.keyframe_tracked_ratio) : settings_.keyframe_tracked_ratio;
   const bool weak = result.inliers < ratio * reference_points;
   const bool due = since_last >= settings_.keyframe_maximum_interval;
   return wants_close || weak || (due && result.inliers < 0.9 * reference_points);

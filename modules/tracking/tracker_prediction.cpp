@@ -131,8 +131,8 @@ bool Tracker::predict_with_keyframe(KeyFrameId keyframe, FrameResult& result) {
   const KeyFrame* found = map_.find_keyframe(keyframe);
   if (found == nullptr) return false;
   match_descriptors(found->frame);
-  const auto matches = std::count_if(current_.map_points.begin(), current_.map_points.end(),
-                                     [](MapPointId id) { return id.valid(); });
+  const auto matches =
+      std::count_if(current_.map_points.begin(), current_.map_points.end(), [](MapPointId id) { return id.valid(); });
   if (matches < settings_.minimum_matches / 2) {
     result.trouble = TrackingTrouble::few_matches;
     return false;

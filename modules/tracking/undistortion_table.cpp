@@ -12,7 +12,8 @@ UndistortionTable::UndistortionTable(const Camera& camera) : identity_(camera.di
   knots_.resize(static_cast<std::size_t>(columns_) * rows_ * 2);
   for (int row = 0; row < rows_; ++row)
     for (int column = 0; column < columns_; ++column) {
-      const Eigen::Vector2d pixel = camera.undistort({static_cast<double>(column * step), static_cast<double>(row * step)});
+      const Eigen::Vector2d pixel =
+          camera.undistort({static_cast<double>(column * step), static_cast<double>(row * step)});
       const std::size_t knot = (static_cast<std::size_t>(row) * columns_ + column) * 2;
       knots_[knot] = static_cast<float>(pixel.x());
       knots_[knot + 1] = static_cast<float>(pixel.y());

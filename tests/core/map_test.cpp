@@ -56,7 +56,9 @@ void expect_consistent(const Map& map) {
       EXPECT_LE(edge.weight, last);
       last = edge.weight;
       const auto& back = map.keyframe(edge.keyframe).covisible;
-      EXPECT_EQ(std::count_if(back.begin(), back.end(), [&](const auto& e) { return e.keyframe == id && e.weight == edge.weight; }), 1);
+      EXPECT_EQ(std::count_if(back.begin(), back.end(),
+                              [&](const auto& e) { return e.keyframe == id && e.weight == edge.weight; }),
+                1);
     }
     if (keyframe.parent.valid()) {
       EXPECT_LT(map.keyframe(keyframe.parent).sequence, keyframe.sequence);
@@ -72,7 +74,8 @@ std::vector<KeyFrameId> build_row(Map& map, int keyframes, std::size_t features 
   for (int k = 0; k < keyframes; ++k) {
     Frame frame = frame_with(features, k + 1.0, {0.1 * k, 0, 0});
     for (std::size_t f = 0; f < features * 2 / 3 && f + features / 3 < points.size(); ++f)
-      frame.map_points[f] = points[points.size() - features * 2 / 3 + f < points.size() ? points.size() - features * 2 / 3 + f : 0];
+      frame.map_points[f] =
+          points[points.size() - features * 2 / 3 + f < points.size() ? points.size() - features * 2 / 3 + f : 0];
     const KeyFrameId id = map.add_keyframe(frame);
     for (std::uint32_t f = 0; f < features; ++f) {
       if (map.keyframe(id).frame.map_points[f].valid()) continue;
@@ -100,8 +103,10 @@ TEST(Map, LinksStayConsistentWhileKeyframesAndPointsComeAndGo) {
     const auto points = map.points().ids();
     const MapPointId a = points[random.below(static_cast<std::uint32_t>(points.size()))];
     const MapPointId b = points[random.below(static_cast<std::uint32_t>(points.size()))];
-    if (i % 2 == 0) map.remove_point(a);
-    else map.fuse_points(a, b);
+    if (i % 2 == 0)
+      map.remove_point(a);
+    else
+      map.fuse_points(a, b);
     expect_consistent(map);
   }
 }
@@ -114,7 +119,8 @@ TEST(Map, RemovedKeyframeKeepsItsPoseThroughItsParent) {
   EXPECT_TRUE(map.pose_of(ids[3]).isApprox(before, 1e-12));
   // When everything moves as one, the removed keyframe moves along.
   const Eigen::Isometry3d shift(Eigen::Translation3d(1, 2, 3));
-  for (const KeyFrameId id : map.keyframes().ids()) map.keyframe(id).frame.T_camera_world = map.keyframe(id).frame.T_camera_world * shift;
+  for (const KeyFrameId id : map.keyframes().ids())
+    map.keyframe(id).frame.T_camera_world = map.keyframe(id).frame.T_camera_world * shift;
   EXPECT_TRUE(map.pose_of(ids[3]).isApprox(before * shift, 1e-12));
 }
 

@@ -25,7 +25,8 @@ PipelineParts parts_for(test::PointWorld& world, double pixel_noise) {
 double largest_error(const Trajectory& trajectory) {
   double largest = 0.0;
   for (const TimedPose& pose : trajectory)
-    largest = std::max(largest, (pose.T_world_camera.translation() - test::path_pose(pose.timestamp).translation()).norm());
+    largest =
+        std::max(largest, (pose.T_world_camera.translation() - test::path_pose(pose.timestamp).translation()).norm());
   return largest;
 }
 
@@ -50,7 +51,8 @@ TEST(Pipeline, TwoRunsGiveTheSameBits) {
   const auto run = [] {
     test::PointWorld world(find_camera("tum_fr1").value());
     Pipeline pipeline(parts_for(world, 0.5));
-    for (int i = 0; i < 60; ++i) pipeline.feed(world.frame(static_cast<std::uint64_t>(i), i / 30.0, test::path_pose(i / 30.0)));
+    for (int i = 0; i < 60; ++i)
+      pipeline.feed(world.frame(static_cast<std::uint64_t>(i), i / 30.0, test::path_pose(i / 30.0)));
     return pipeline.trajectory();
   };
   const Trajectory first = run(), second = run();
@@ -66,7 +68,8 @@ TEST(Pipeline, LostInTheDarkIsAResultAndLightBringsItBack) {
   for (int i = 0; i < 90; ++i) {
     const double time = i / 30.0;
     const bool dark = i >= 40 && i < 60;
-    const FrameResult result = pipeline.feed(world.frame(static_cast<std::uint64_t>(i), time, test::path_pose(time), !dark));
+    const FrameResult result =
+        pipeline.feed(world.frame(static_cast<std::uint64_t>(i), time, test::path_pose(time), !dark));
     EXPECT_EQ(result.status == TrackingStatus::lost, dark) << i;
     EXPECT_EQ(result.T_world_camera.has_value(), !dark) << i;
     EXPECT_EQ(result.trouble != TrackingTrouble::none, dark) << i;
@@ -126,7 +129,9 @@ TEST(Pipeline, TellsItsObservers) {
   Pipeline pipeline(std::move(parts));
   int keyframes = 0;
   for (int i = 0; i < 10; ++i)
-    keyframes += pipeline.feed(world.frame(static_cast<std::uint64_t>(i), i / 30.0, test::path_pose(i / 30.0))).is_keyframe ? 1 : 0;
+    keyframes +=
+        pipeline.feed(world.frame(static_cast<std::uint64_t>(i), i / 30.0, test::path_pose(i / 30.0))).is_keyframe ? 1
+                                                                                                                   : 0;
   pipeline.finish();
   EXPECT_EQ(counts.frames, 10);
   EXPECT_EQ(counts.keyframes, keyframes);

@@ -14,11 +14,12 @@
 
 namespace holdfast::test {
 
-/// A world of points, each with its own descriptor: geometry without images. The frame's index tells the extractor which
-/// pose to see the points from; the depth image holds each point's depth at its pixel.
+/// A world of points, each with its own descriptor: geometry without images. The frame's index tells the extractor
+/// which pose to see the points from; the depth image holds each point's depth at its pixel.
 class PointWorld {
  public:
-  explicit PointWorld(Camera camera, int points = 1500, std::uint64_t seed = 5) : camera_(std::move(camera)), random_(seed) {
+  explicit PointWorld(Camera camera, int points = 1500, std::uint64_t seed = 5)
+      : camera_(std::move(camera)), random_(seed) {
     for (int i = 0; i < points; ++i) {
       points_.emplace_back(random_.uniform(-2.5, 2.5), random_.uniform(-1.8, 1.8), random_.uniform(1.2, 4.0));
       Descriptor descriptor;
@@ -30,7 +31,8 @@ class PointWorld {
   const Camera& camera() const { return camera_; }
 
   /// Images of the world from a pose; `pixel_noise` moves the features, `visible` hides all when false.
-  SensorFrame frame(std::uint64_t index, double timestamp, const Eigen::Isometry3d& T_world_camera, bool visible = true) {
+  SensorFrame frame(std::uint64_t index, double timestamp, const Eigen::Isometry3d& T_world_camera,
+                    bool visible = true) {
     SensorFrame frame;
     frame.index = index;
     frame.timestamp = timestamp;
@@ -106,9 +108,11 @@ class PointExtractor final : public FeatureExtractor {
 /// A smooth path that starts at the identity: side to side, up and down, turning a little.
 inline Eigen::Isometry3d path_pose(double time) {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
-  T_world_camera.translation() = Eigen::Vector3d(0.4 * std::sin(0.8 * time), 0.15 * std::sin(1.3 * time), 0.2 - 0.2 * std::cos(0.7 * time));
-  T_world_camera.linear() = Eigen::AngleAxisd(0.12 * std::sin(0.9 * time), Eigen::Vector3d::UnitY()).toRotationMatrix() *
-                            Eigen::AngleAxisd(0.06 * std::sin(1.1 * time), Eigen::Vector3d::UnitX()).toRotationMatrix();
+  T_world_camera.translation() =
+      Eigen::Vector3d(0.4 * std::sin(0.8 * time), 0.15 * std::sin(1.3 * time), 0.2 - 0.2 * std::cos(0.7 * time));
+  T_world_camera.linear() =
+      Eigen::AngleAxisd(0.12 * std::sin(0.9 * time), Eigen::Vector3d::UnitY()).toRotationMatrix() *
+      Eigen::AngleAxisd(0.06 * std::sin(1.1 * time), Eigen::Vector3d::UnitX()).toRotationMatrix();
   return T_world_camera;
 }
 

@@ -47,7 +47,7 @@ TEST(FilterChain, EvidenceAddsUpAndNamesItsStage) {
   const SensorFrame sensor_frame;
   chain.apply({.sensor_frame = sensor_frame, .frame = frame, .map = map}, frame);
   EXPECT_NEAR(frame.static_probability[0], 1.0 / (1.0 + std::exp(1.0)), 1e-6);   // -2 + 1
-  EXPECT_EQ(frame.static_probability[1], 1.0F);                                   // nothing said
+  EXPECT_EQ(frame.static_probability[1], 1.0F);                                  // nothing said
   EXPECT_NEAR(frame.static_probability[2], 1.0 / (1.0 + std::exp(2.0)), 1e-6);   // -2
   EXPECT_NEAR(frame.static_probability[3], 1.0 / (1.0 + std::exp(-1.0)), 1e-6);  // +1
   ASSERT_EQ(chain.evidence().stages(), (std::vector<std::string>{"even", "third"}));

@@ -22,14 +22,15 @@ struct RunRecord {
   Camera camera;
   RunSummary summary;
   std::vector<SkippedFrame> skipped;
-  std::vector<double> frame_stamps;  ///< of all frames of the source, fed or not when interrupted, skipped ones included [s]
-  std::size_t frames_expected = 0;   ///< as the source said, or those that came
+  std::vector<double>
+      frame_stamps;  ///< of all frames of the source, fed or not when interrupted, skipped ones included [s]
+  std::size_t frames_expected = 0;  ///< as the source said, or those that came
   Trajectory trajectory, keyframes;
   std::size_t map_keyframes = 0, map_points = 0;
   MappingCounts mapping;
   std::optional<Evaluation> evaluation;
-  std::string no_evaluation;  ///< why there is none
-  double start_seconds = 0.0;   ///< from the start of the program to the first pose
+  std::string no_evaluation;   ///< why there is none
+  double start_seconds = 0.0;  ///< from the start of the program to the first pose
   double total_seconds = 0.0;
   std::size_t peak_memory = 0;  ///< resident [bytes]
   bool was_interrupted = false;

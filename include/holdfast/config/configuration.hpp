@@ -29,8 +29,9 @@ struct RunSettings {
   static void describe(ParameterTable<RunSettings>& table);
 };
 
-/// The `camera` section when it is given by numbers.
+/// The `camera` section when it is a map: numbers, or a known name and what differs from it.
 struct CameraSettings {
+  std::string name;
   int width = 640, height = 480;
   double fx = 0, fy = 0, cx = 0, cy = 0;
   double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;
@@ -39,6 +40,9 @@ struct CameraSettings {
 
   static void describe(ParameterTable<CameraSettings>& table);
 };
+
+CameraSettings camera_settings(const Camera& camera);
+Camera make_camera(const CameraSettings& settings);
 
 /// A module that the configuration chose, with all its parameters, defaults included.
 struct ModuleChoice {
@@ -52,12 +56,12 @@ struct ModuleChoice {
 struct Configuration {
   std::string file;
   ModuleChoice source, features, segmenter, optimizer, loop_detector;
-  std::vector<ModuleChoice> filters;    ///< a chain
+  std::vector<ModuleChoice> filters;  ///< a chain
   std::vector<ModuleChoice> observers;
-  std::optional<Camera> camera;         ///< nothing: the source must know it
+  std::optional<Camera> camera;  ///< nothing: the source must know it
   RunSettings run;
   std::map<std::string, ParameterValues> sections;  ///< by name, as described by the caller
-  std::vector<std::string> plugins;     ///< the files, absolute
+  std::vector<std::string> plugins;                 ///< the files, absolute
 };
 
 /// Reads, overrides and checks a configuration. Plugins that it names are loaded into `registry` first. Throws

@@ -15,10 +15,10 @@ struct ConfigurationNode {
   struct Entry;
 
   Kind kind = Kind::nothing;
-  SourceLocation location = {};        ///< of the value
-  std::filesystem::path folder = {};   ///< that relative paths start from
-  std::string text = {};               ///< of a scalar
-  bool quoted = false;            ///< the scalar stands in quotes, so it is a text whatever it looks like
+  SourceLocation location = {};               ///< of the value
+  std::filesystem::path folder = {};          ///< that relative paths start from
+  std::string text = {};                      ///< of a scalar
+  bool quoted = false;                        ///< the scalar stands in quotes, so it is a text whatever it looks like
   std::vector<ConfigurationNode> items = {};  ///< of a list
   std::vector<Entry> entries = {};            ///< of a map, in the order of the file
 
@@ -36,9 +36,11 @@ struct ConfigurationNode::Entry {
   ConfigurationNode value;
 };
 
-/// Reads YAML. Aliases are followed; duplicate keys, merge keys (<<) and keys that are no scalars are errors, all reported
-/// together; a syntax error is reported alone. Throws ConfigurationError. `folder` is where relative paths start from.
-ConfigurationNode parse_yaml(const std::string& text, const std::string& file_name, const std::filesystem::path& folder);
+/// Reads YAML. Aliases are followed; duplicate keys, merge keys (<<) and keys that are no scalars are errors, all
+/// reported together; a syntax error is reported alone. Throws ConfigurationError. `folder` is where relative paths
+/// start from.
+ConfigurationNode parse_yaml(const std::string& text, const std::string& file_name,
+                             const std::filesystem::path& folder);
 ConfigurationNode read_yaml(const std::filesystem::path& file);
 
 /// Applies "key.path=value" as if the file said so. The value is YAML; elements of lists are named by number. Missing

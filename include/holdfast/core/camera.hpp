@@ -20,16 +20,16 @@ struct Distortion {
 /// coordinates. "Pixel" without further word means undistorted: where a camera without distortion and the same
 /// intrinsics would see the point.
 struct Camera {
-  std::string name;           ///< "" for a camera given by numbers
-  int width = 640;            ///< [px]
-  int height = 480;           ///< [px]
-  double fx = 525.0;          ///< [px]
-  double fy = 525.0;          ///< [px]
-  double cx = 319.5;          ///< [px]
-  double cy = 239.5;          ///< [px]
+  std::string name;   ///< "" for a camera given by numbers
+  int width = 640;    ///< [px]
+  int height = 480;   ///< [px]
+  double fx = 525.0;  ///< [px]
+  double fy = 525.0;  ///< [px]
+  double cx = 319.5;  ///< [px]
+  double cy = 239.5;  ///< [px]
   Distortion distortion;
-  double baseline = 0.08;     ///< of the virtual (or real) stereo pair [m]; a Kinect's projector stands about 0.08 m off
-  double frame_rate = 30.0;   ///< [1/s]
+  double baseline = 0.08;    ///< of the virtual (or real) stereo pair [m]; a Kinect's projector stands about 0.08 m off
+  double frame_rate = 30.0;  ///< [1/s]
 
   /// Undistorted pixel of a point in the camera frame; z must be positive.
   Eigen::Vector2d project(const Eigen::Vector3d& point) const {
@@ -40,7 +40,8 @@ struct Camera {
   Eigen::Vector3d back_project(double x, double y, double depth) const {
     return {(x - cx) / fx * depth, (y - cy) / fy * depth, depth};
   }
-  /// Column of the point in the virtual right image, as Mur-Artal and Tardos 2017, section III-A: x - fx * baseline / z.
+  /// Column of the point in the virtual right image, as Mur-Artal and Tardos 2017, section III-A: x - fx * baseline /
+  /// z.
   double right_x(double x, double depth) const { return x - fx * baseline / depth; }
 
   /// Raw image position of an undistorted pixel.

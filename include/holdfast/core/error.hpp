@@ -71,13 +71,13 @@ namespace detail {
 }  // namespace detail
 
 /// HOLDFAST_CHECK(i < n, "i " << i << " n " << n): throws CheckError with the place, the condition and the values.
-#define HOLDFAST_CHECK(condition, values)                                                           \
-  do {                                                                                              \
-    if (!(condition)) [[unlikely]] {                                                                \
-      std::ostringstream holdfast_check_stream;                                                     \
-      holdfast_check_stream << values;                                                              \
+#define HOLDFAST_CHECK(condition, values)                                                            \
+  do {                                                                                               \
+    if (!(condition)) [[unlikely]] {                                                                 \
+      std::ostringstream holdfast_check_stream;                                                      \
+      holdfast_check_stream << values;                                                               \
       ::holdfast::detail::check_failed(__FILE__, __LINE__, #condition, holdfast_check_stream.str()); \
-    }                                                                                               \
+    }                                                                                                \
   } while (false)
 
 }  // namespace holdfast

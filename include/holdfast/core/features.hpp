@@ -12,19 +12,17 @@ namespace holdfast {
 /// Features of one image as a structure of arrays: entry i of every array belongs to feature i. Positions are raw image
 /// positions [px of level 0], as the extractor found them; Frame adds the undistorted ones.
 struct Features {
-  std::vector<float> x;               ///< raw column [px of the full image]
-  std::vector<float> y;               ///< raw row [px of the full image]
-  std::vector<float> angle;           ///< orientation [rad, 0 to 2 pi), from the x axis towards the y axis
-  std::vector<float> response;        ///< corner strength, larger is stronger; comparable within one image only
-  std::vector<std::uint8_t> octave;   ///< pyramid level
+  std::vector<float> x;              ///< raw column [px of the full image]
+  std::vector<float> y;              ///< raw row [px of the full image]
+  std::vector<float> angle;          ///< orientation [rad, 0 to 2 pi), from the x axis towards the y axis
+  std::vector<float> response;       ///< corner strength, larger is stronger; comparable within one image only
+  std::vector<std::uint8_t> octave;  ///< pyramid level
   std::vector<Descriptor> descriptors;
 
   std::size_t size() const { return x.size(); }
   bool empty() const { return x.empty(); }
 
-  void clear() {
-    x.clear(), y.clear(), angle.clear(), response.clear(), octave.clear(), descriptors.clear();
-  }
+  void clear() { x.clear(), y.clear(), angle.clear(), response.clear(), octave.clear(), descriptors.clear(); }
   void resize(std::size_t count) {
     x.resize(count), y.resize(count), angle.resize(count), response.resize(count), octave.resize(count),
         descriptors.resize(count);

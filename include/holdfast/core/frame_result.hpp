@@ -37,12 +37,12 @@ struct FrameResult {
   TrackingTrouble trouble = TrackingTrouble::none;
   /// The pose as known when the frame was done; later adjustments may still correct it (Pipeline::trajectory).
   std::optional<Eigen::Isometry3d> T_world_camera;
-  int features = 0;       ///< found in the image
+  int features = 0;         ///< found in the image
   int static_features = 0;  ///< of those, not judged dynamic
-  int matches = 0;        ///< with the local map
-  int inliers = 0;        ///< of those, after the motion-only adjustment
+  int matches = 0;          ///< with the local map
+  int inliers = 0;          ///< of those, after the motion-only adjustment
   bool is_keyframe = false;
-  KeyFrameId keyframe;    ///< the keyframe made of this frame, or the reference keyframe
+  KeyFrameId keyframe;            ///< the keyframe made of this frame, or the reference keyframe
   double tracking_seconds = 0.0;  ///< from the images to the pose: all but decoding them and local mapping
   StageTimes times;
 };

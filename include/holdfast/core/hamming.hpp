@@ -17,9 +17,10 @@ struct NearestDescriptors {
   int second_distance = std::numeric_limits<int>::max();
 };
 
-/// distances[i] = Hamming distance of query and descriptors[candidates[i]]; run-time dispatch to popcnt where there is one.
-void hamming_distances(const Descriptor& query, const Descriptor* descriptors, std::span<const std::uint32_t> candidates,
-                       std::uint16_t* distances);
+/// distances[i] = Hamming distance of query and descriptors[candidates[i]]; run-time dispatch to popcnt where there is
+/// one.
+void hamming_distances(const Descriptor& query, const Descriptor* descriptors,
+                       std::span<const std::uint32_t> candidates, std::uint16_t* distances);
 
 /// The best and the second best of the candidates; of equal ones the first in the list. Indices are positions in
 /// `descriptors`.

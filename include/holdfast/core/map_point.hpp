@@ -18,11 +18,11 @@ struct Observation {
 
 /// A point of the static world. Changed through Map, which keeps points and keyframes consistent.
 struct MapPoint {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();        ///< world [m]
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();           ///< world [m]
   Eigen::Vector3d viewing_direction = Eigen::Vector3d::Zero();  ///< unit mean of camera-to-point directions, world
-  float minimum_distance = 0.0F;  ///< from which the descriptor can be found again [m]
+  float minimum_distance = 0.0F;                                ///< from which the descriptor can be found again [m]
   float maximum_distance = 0.0F;
-  Descriptor descriptor;          ///< the observation nearest to all others in Hamming distance
+  Descriptor descriptor;                  ///< the observation nearest to all others in Hamming distance
   std::vector<Observation> observations;  ///< ordered by time of adding
   KeyFrameId reference_keyframe;          ///< first keyframe that still sees it
   std::uint64_t created_at = 0;           ///< sequence number of the keyframe that made it

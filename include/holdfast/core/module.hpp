@@ -21,10 +21,10 @@ class Module {
 
 /// What a module is told when it is made, beside its own settings.
 struct CreationContext {
-  Camera camera;                           ///< of the run
-  std::uint64_t seed = 1;                  ///< the run's only seed; derive your own with Random::fork
-  bool sequential = true;                  ///< results must be bit-identical from run to run
-  std::filesystem::path output_directory;  ///< for observers that write files; empty when nothing is written
+  Camera camera = {};                           ///< of the run
+  std::uint64_t seed = 1;                       ///< the run's only seed; derive your own with Random::fork
+  bool sequential = true;                       ///< results must be bit-identical from run to run
+  std::filesystem::path output_directory = {};  ///< for observers that write files; empty when nothing is written
 };
 
 }  // namespace holdfast

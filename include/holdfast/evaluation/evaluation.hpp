@@ -74,9 +74,9 @@ struct Evaluation {
 };
 
 /// Compares an estimate with the truth. Stamps need not be sorted; of several poses with one stamp the last one counts,
-/// poses that are not finite are left out. Pairs are made by associate_stamps() within max_time_difference. Throws Error
-/// when options are out of range, when there are fewer than 3 pairs (the message says why) or the list of frames is
-/// empty.
+/// poses that are not finite are left out. Pairs are made by associate_stamps() within max_time_difference. Throws
+/// Error when options are out of range, when there are fewer than 3 pairs (the message says why) or the list of frames
+/// is empty.
 Evaluation evaluate(const Trajectory& truth, const Trajectory& estimate, const EvaluationOptions& options = {},
                     const std::optional<std::vector<double>>& frame_stamps = std::nullopt);
 

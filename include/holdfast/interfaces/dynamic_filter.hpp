@@ -18,16 +18,16 @@ namespace holdfast {
 /// What a filter cannot work without. Checked against the source and the pipeline before the first frame.
 struct Needs {
   bool depth = false;
-  bool segmentation = false;   ///< a segmenter other than none
-  bool pose_prior = false;     ///< FilterContext::T_camera_world
+  bool segmentation = false;  ///< a segmenter other than none
+  bool pose_prior = false;    ///< FilterContext::T_camera_world
   bool map = false;
 };
 
 /// What filters may look at when a frame is judged. References are valid during apply() only.
 struct FilterContext {
   const SensorFrame& sensor_frame;
-  const Frame& frame;                 ///< features with map points where they were matched
-  const Frame* previous = nullptr;    ///< the frame before, nullptr for the first
+  const Frame& frame;               ///< features with map points where they were matched
+  const Frame* previous = nullptr;  ///< the frame before, nullptr for the first
   const Map& map;
   /// Best guess of the frame's pose so far, nullptr when there is none.
   const Eigen::Isometry3d* T_camera_world = nullptr;

@@ -21,12 +21,12 @@ struct SkippedFrame {
 
 /// What a source offers, known before its first frame.
 struct SourceDescription {
-  std::string name;               ///< of the sequence, for titles
+  std::string name;  ///< of the sequence, for titles
   bool has_depth = false;
-  bool has_object_masks = false;  ///< FrameTruth::object_mask and class_labels
-  std::vector<std::string> class_names;  ///< of class_labels, by index
+  bool has_object_masks = false;             ///< FrameTruth::object_mask and class_labels
+  std::vector<std::string> class_names;      ///< of class_labels, by index
   std::optional<std::uint64_t> frame_count;  ///< nothing for an endless source
-  std::optional<Camera> camera;   ///< the source's own camera, when it knows it better than the configuration
+  std::optional<Camera> camera;  ///< the source's own camera, when it knows it better than the configuration
 };
 
 /// Where frames come from: a recording, a simulation, a camera. Frames come in the order of their time stamps, which

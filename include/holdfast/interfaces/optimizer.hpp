@@ -13,17 +13,17 @@
 namespace holdfast {
 
 /// One camera pose, seen against fixed points: motion-only bundle adjustment (Mur-Artal and Tardos 2017, equation 3).
-/// Entry i of every array belongs to observation i. Residual: undistorted pixel and, where there is depth, column in the
-/// virtual right image, minus the projection of the point; weighted by inverse_sigma2 * weight.
+/// Entry i of every array belongs to observation i. Residual: undistorted pixel and, where there is depth, column in
+/// the virtual right image, minus the projection of the point; weighted by inverse_sigma2 * weight.
 struct PoseProblem {
   const Camera* camera = nullptr;
   Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();  ///< in: first guess; out: the result
-  std::vector<Eigen::Vector3d> points;  ///< world [m]
-  std::vector<float> x, y;              ///< undistorted [px]
-  std::vector<float> right_x;           ///< [px], NaN = none
-  std::vector<float> inverse_sigma2;    ///< [1/px^2]
-  std::vector<float> weight;            ///< 0 to 1, static probability
-  std::vector<std::uint8_t> inlier;     ///< out: 1 where the final chi-square test passed
+  std::vector<Eigen::Vector3d> points;                               ///< world [m]
+  std::vector<float> x, y;                                           ///< undistorted [px]
+  std::vector<float> right_x;                                        ///< [px], NaN = none
+  std::vector<float> inverse_sigma2;                                 ///< [1/px^2]
+  std::vector<float> weight;                                         ///< 0 to 1, static probability
+  std::vector<std::uint8_t> inlier;                                  ///< out: 1 where the final chi-square test passed
 
   void clear() {
     points.clear(), x.clear(), y.clear(), right_x.clear(), inverse_sigma2.clear(), weight.clear(), inlier.clear();
@@ -49,19 +49,19 @@ struct BundleProblem {
   struct Observation {
     std::uint32_t pose = 0;
     std::uint32_t point = 0;
-    float x = 0, y = 0;         ///< undistorted [px]
-    float right_x = 0;          ///< [px], NaN = none
-    float inverse_sigma2 = 1;   ///< [1/px^2]
-    float weight = 1;           ///< 0 to 1, static probability
-    bool outlier = false;       ///< out
+    float x = 0, y = 0;        ///< undistorted [px]
+    float right_x = 0;         ///< [px], NaN = none
+    float inverse_sigma2 = 1;  ///< [1/px^2]
+    float weight = 1;          ///< 0 to 1, static probability
+    bool outlier = false;      ///< out
   };
 
   const Camera* camera = nullptr;
   std::vector<Pose> poses;
   std::vector<Eigen::Vector3d> points;  ///< world [m], in and out
   std::vector<Observation> observations;
-  int robust_iterations = 5;   ///< with Huber's cost, then outliers are set aside
-  int final_iterations = 10;   ///< without it, on what is left; 0 = skip
+  int robust_iterations = 5;  ///< with Huber's cost, then outliers are set aside
+  int final_iterations = 10;  ///< without it, on what is left; 0 = skip
 };
 
 struct BundleSummary {

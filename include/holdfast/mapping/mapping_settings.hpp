@@ -21,22 +21,28 @@ struct MappingSettings {
 
   static void describe(ParameterTable<MappingSettings>& table) {
     using S = MappingSettings;
-    table.add("close_depth_factor", &S::close_depth_factor,
-              "depth up to this many baselines makes a map point at once; farther points are triangulated")
+    table
+        .add("close_depth_factor", &S::close_depth_factor,
+             "depth up to this many baselines makes a map point at once; farther points are triangulated")
         .range(1, 10000);
-    table.add("minimum_depth_points", &S::minimum_depth_points,
-              "points made from depth in each keyframe, at least, even when they are far")
+    table
+        .add("minimum_depth_points", &S::minimum_depth_points,
+             "points made from depth in each keyframe, at least, even when they are far")
         .range(0, 100000);
     table.add("neighbours", &S::neighbours, "covisible keyframes to triangulate and fuse points with").range(1, 100);
-    table.add("second_neighbours", &S::second_neighbours, "of each of these, the neighbours to fuse points with").range(0, 100);
-    table.add("weak_found_ratio", &S::weak_found_ratio,
-              "a new point found in less than this share of the frames that should see it is removed")
+    table.add("second_neighbours", &S::second_neighbours, "of each of these, the neighbours to fuse points with")
+        .range(0, 100);
+    table
+        .add("weak_found_ratio", &S::weak_found_ratio,
+             "a new point found in less than this share of the frames that should see it is removed")
         .range(0, 1);
     table.add("probation_keyframes", &S::probation_keyframes, "keyframes during which a new point can be removed")
         .range(1, 100);
-    table.add("redundant_share", &S::redundant_share,
-              "a keyframe is removed when this share of its points is seen by three others at the same or a finer scale; "
-              "1 = keep all")
+    table
+        .add(
+            "redundant_share", &S::redundant_share,
+            "a keyframe is removed when this share of its points is seen by three others at the same or a finer scale; "
+            "1 = keep all")
         .range(0.1, 1);
     table.add("bundle_keyframes", &S::bundle_keyframes, "keyframes that a local bundle adjustment moves, at most")
         .range(2, 200);

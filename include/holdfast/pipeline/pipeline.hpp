@@ -35,8 +35,8 @@ struct PipelineParts {
 };
 
 /// Visual SLAM from frames to poses and a map, in sequential mode: feed() does all the work of a frame, local mapping
-/// included, in the calling thread, and gives the same bits on every run. Pipelines share nothing: any number may live in
-/// one process. One thread at a time.
+/// included, in the calling thread, and gives the same bits on every run. Pipelines share nothing: any number may live
+/// in one process. One thread at a time.
 class Pipeline {
  public:
   /// Throws CheckError when a required part is missing.
@@ -45,7 +45,8 @@ class Pipeline {
   Pipeline(Pipeline&&) noexcept;
   Pipeline& operator=(Pipeline&&) noexcept;
 
-  /// Processes one frame; time stamps must rise strictly (InputError otherwise). Trouble with the frame is a typed result.
+  /// Processes one frame; time stamps must rise strictly (InputError otherwise). Trouble with the frame is a typed
+  /// result.
   FrameResult feed(const SensorFrame& frame);
   /// Ends the run: tells the observers. feed() must not be called any more.
   void finish();

@@ -22,8 +22,9 @@ struct BuiltPipeline {
 };
 
 /// Makes every module that a configuration chose and checks that they fit together: the camera is known and not
-/// told twice differently, filters get what they need. Throws ConfigurationError with all misfits, and what a module throws when it is made.
-/// `output_directory` is told to the modules; empty when nothing is written. The registry is not needed afterwards.
+/// told twice differently, filters get what they need. Throws ConfigurationError with all misfits, and what a module
+/// throws when it is made. `output_directory` is told to the modules; empty when nothing is written. The registry is
+/// not needed afterwards.
 BuiltPipeline build_pipeline(const Configuration& configuration, const Registry& registry,
                              const std::filesystem::path& output_directory = {});
 

@@ -20,8 +20,8 @@ class FrameBuilder {
   /// The extractor must outlive the builder. depth_edge_ratio: see TrackingSettings.
   FrameBuilder(const Camera& camera, FeatureExtractor& extractor, double depth_edge_ratio);
 
-  /// Replaces the content of `frame`; poses and map points are reset. The images must have the camera's size (InputError
-  /// otherwise). Adds the stages "features" and "frame".
+  /// Replaces the content of `frame`; poses and map points are reset. The images must have the camera's size
+  /// (InputError otherwise). Adds the stages "features" and "frame".
   void build(const SensorFrame& sensor_frame, Frame& frame, StageTimes& times);
 
   const std::shared_ptr<const Camera>& camera() const { return camera_; }

@@ -11,14 +11,14 @@
 namespace holdfast {
 
 /// The part of the map that a frame may see: points of the keyframes that share points with it, and of their neighbours
-/// (Mur-Artal et al. 2015, section V-D), copied into flat arrays so that projecting thousands of points is one pass over
-/// memory. Rebuilt only when the map or the reference keyframe changes. One thread.
+/// (Mur-Artal et al. 2015, section V-D), copied into flat arrays so that projecting thousands of points is one pass
+/// over memory. Rebuilt only when the map or the reference keyframe changes. One thread.
 class LocalMap {
  public:
   explicit LocalMap(int most_keyframes) : most_keyframes_(most_keyframes) {}
 
-  /// Brings the local map up to date for a frame whose map points name what is matched so far. `map_version` must change
-  /// whenever the map did.
+  /// Brings the local map up to date for a frame whose map points name what is matched so far. `map_version` must
+  /// change whenever the map did.
   void update(Map& map, const Frame& frame, std::uint64_t map_version);
 
   /// Adds the windows of all points that the frame should see and does not show yet, and counts the points as visible.

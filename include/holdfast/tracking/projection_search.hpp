@@ -19,8 +19,11 @@ struct SearchWindows {
   std::vector<std::int8_t> highest_level;
 
   std::size_t size() const { return source.size(); }
-  void clear() { source.clear(), x.clear(), y.clear(), right_x.clear(), radius.clear(), lowest_level.clear(), highest_level.clear(); }
-  void add(std::uint32_t index, float pixel_x, float pixel_y, float pixel_right_x, float window, int lowest, int highest) {
+  void clear() {
+    source.clear(), x.clear(), y.clear(), right_x.clear(), radius.clear(), lowest_level.clear(), highest_level.clear();
+  }
+  void add(std::uint32_t index, float pixel_x, float pixel_y, float pixel_right_x, float window, int lowest,
+           int highest) {
     source.push_back(index), x.push_back(pixel_x), y.push_back(pixel_y), right_x.push_back(pixel_right_x);
     radius.push_back(window), lowest_level.push_back(static_cast<std::int8_t>(lowest));
     highest_level.push_back(static_cast<std::int8_t>(highest));
@@ -39,8 +42,8 @@ struct MatchRule {
   int maximum_distance = 100;  ///< [bits]
   /// Best to second best distance when both lie on the same octave; 1 = not asked for.
   float ratio = 1.0F;
-  /// When not nullptr, angles of the caller's points by source index: matches whose rotation is not among the three most
-  /// frequent of 30 bins are dropped (Mur-Artal et al. 2015, section V-C).
+  /// When not nullptr, angles of the caller's points by source index: matches whose rotation is not among the three
+  /// most frequent of 30 bins are dropped (Mur-Artal et al. 2015, section V-C).
   const float* angles = nullptr;
 };
 

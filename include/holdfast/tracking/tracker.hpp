@@ -32,15 +32,16 @@ class Tracker {
   Tracker(const TrackingSettings& settings, const Camera& camera, FeatureExtractor& extractor, Optimizer& optimizer,
           FilterChain& filters, Map& map, std::uint64_t seed);
 
-  /// Tracks one frame. When the result says is_keyframe, hand take_keyframe() to local mapping and tell the outcome with
-  /// keyframe_added().
+  /// Tracks one frame. When the result says is_keyframe, hand take_keyframe() to local mapping and tell the outcome
+  /// with keyframe_added().
   FrameResult track(const SensorFrame& sensor_frame, std::uint64_t map_version);
 
   /// The frame last tracked, as features, matches and pose.
   const Frame& frame() const { return current_; }
   /// Whether tracking runs against a map.
   bool has_map() const { return state_ != State::waiting; }
-  /// The keyframe that the tracked frame became, after local mapping had its turn: its matches and its pose are taken over.
+  /// The keyframe that the tracked frame became, after local mapping had its turn: its matches and its pose are taken
+  /// over.
   void keyframe_added(KeyFrameId keyframe);
 
   /// Every tracked frame's pose as the map knows it now: frames follow the keyframes that they were tracked against.
@@ -78,7 +79,7 @@ class Tracker {
   std::uint64_t map_version_ = 0;
   State state_ = State::waiting;
   Frame current_, previous_;
-  bool has_previous_ = false;         // previous_ has a pose
+  bool has_previous_ = false;  // previous_ has a pose
   Eigen::Isometry3d T_previous_reference_ = Eigen::Isometry3d::Identity();
   bool has_velocity_ = false;
   Eigen::Isometry3d velocity_ = Eigen::Isometry3d::Identity();  // T_current_previous of the last step

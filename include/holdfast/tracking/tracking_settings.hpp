@@ -18,7 +18,7 @@ struct TrackingSettings {
   int minimum_inliers = 30;
   int local_keyframes = 80;
   double keyframe_maximum_interval = 1.0;
-  double keyframe_tracked_ratio = 0.75;
+  double keyframe_tracked_ratio = 0.8;
   int keyframe_close_tracked = 100;
   int keyframe_close_possible = 70;
   double depth_edge_ratio = 0.0;
@@ -27,15 +27,17 @@ struct TrackingSettings {
     using S = TrackingSettings;
     table.add("minimum_start_points", &S::minimum_start_points, "points with depth that the first frame must have")
         .range(10, 100000);
-    table.add("close_depth_factor", &S::close_depth_factor,
-              "depth up to this many baselines is trusted alone; farther points are triangulated")
+    table
+        .add("close_depth_factor", &S::close_depth_factor,
+             "depth up to this many baselines is trusted alone; farther points are triangulated")
         .range(1, 10000);
     table.add("motion_window", &S::motion_window, "search radius around a predicted feature, at level 0")
         .range(1, 200)
         .unit("px");
     table.add("local_map_window", &S::local_map_window, "factor of the search radius around projected map points")
         .range(0.5, 20);
-    table.add("descriptor_ratio", &S::descriptor_ratio, "best to second best descriptor distance, at most").range(0.1, 1);
+    table.add("descriptor_ratio", &S::descriptor_ratio, "best to second best descriptor distance, at most")
+        .range(0.1, 1);
     table.add("sure_distance", &S::sure_distance, "descriptor distance of a match that needs no context, at most")
         .range(1, 256)
         .unit("bits");
@@ -46,20 +48,24 @@ struct TrackingSettings {
         .range(4, 10000);
     table.add("minimum_inliers", &S::minimum_inliers, "map points that must agree with a pose for it to be believed")
         .range(6, 10000);
-    table.add("local_keyframes", &S::local_keyframes, "keyframes whose points make the local map, at most").range(1, 1000);
+    table.add("local_keyframes", &S::local_keyframes, "keyframes whose points make the local map, at most")
+        .range(1, 1000);
     table.add("keyframe_maximum_interval", &S::keyframe_maximum_interval, "time after which a keyframe is due")
         .range(0.03, 1000)
         .unit("s");
-    table.add("keyframe_tracked_ratio", &S::keyframe_tracked_ratio,
-              "a keyframe is due when less than this share of the reference keyframe's points is tracked")
+    table
+        .add("keyframe_tracked_ratio", &S::keyframe_tracked_ratio,
+             "a keyframe is due when less than this share of the reference keyframe's points is tracked")
         .range(0, 1);
-    table.add("keyframe_close_tracked", &S::keyframe_close_tracked,
-              "a keyframe is due when fewer close points are tracked, and ...")
+    table
+        .add("keyframe_close_tracked", &S::keyframe_close_tracked,
+             "a keyframe is due when fewer close points are tracked, and ...")
         .range(0, 100000);
     table.add("keyframe_close_possible", &S::keyframe_close_possible, "... more than this many new ones could be made")
         .range(0, 100000);
-    table.add("depth_edge_ratio", &S::depth_edge_ratio,
-              "depth is not trusted where it varies around a feature by more than this share of itself; 0 = trust all")
+    table
+        .add("depth_edge_ratio", &S::depth_edge_ratio,
+             "depth is not trusted where it varies around a feature by more than this share of itself; 0 = trust all")
         .range(0, 1);
   }
 };
