@@ -2,6 +2,7 @@
 #include "holdfast/config/configuration.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 #include "holdfast/config/parameter_reader.hpp"
 #include "holdfast/plugin/did_you_mean.hpp"
@@ -41,6 +42,20 @@ namespace {
 
 using Kind = ConfigurationNode::Kind;
 
+/// As somebody reads who repairs them: down the file, then what it lacks, then what stands in no file. What an alias
+/// repeats is told once.
+std::vector<Diagnostic> in_reading_order(std::vector<Diagnostic> diagnostics, const std::string& file) {
+  const auto rank = [&](const Diagnostic& d) {
+    const int group = d.location.file != file ? 2 : d.location.line == 0 ? 1 : 0;
+    return std::tuple(group, d.location.line, d.location.column);
+  };
+  std::stable_sort(diagnostics.begin(), diagnostics.end(),
+                   [&](const Diagnostic& a, const Diagnostic& b) { return rank(a) < rank(b); });
+  const auto same = [](const Diagnostic& a, const Diagnostic& b) { return a.to_string() == b.to_string(); };
+  diagnostics.erase(std::unique(diagnostics.begin(), diagnostics.end(), same), diagnostics.end());
+  return diagnostics;
+}
+
 class Resolver {
  public:
   Resolver(const ConfigurationNode& root, std::string file, Registry& registry,
@@ -50,7 +65,8 @@ class Resolver {
   Configuration resolve() {
     result_.file = file_;
     if (root_.kind != Kind::map) {
-      complain({file_}, "found " + root_.found() + "; expected a map with the sections source, features, optimizer, ...");
+      complain({file_},
+               "found " + root_.found() + "; expected a map with the sections source, features, optimizer, ...");
       throw ConfigurationError(diagnostics_);
     }
     load_plugins();
@@ -67,7 +83,7 @@ class Resolver {
     for (const SectionDescription& section : sections_)
       result_.sections[section.name] =
           read_parameters(at(section.name), section.parameters, "section '" + section.name + "'", diagnostics_);
-    if (!diagnostics_.empty()) throw ConfigurationError(diagnostics_);
+    if (!diagnostics_.empty()) throw ConfigurationError(in_reading_order(std::move(diagnostics_), file_));
     return std::move(result_);
   }
 
@@ -96,10 +112,10 @@ class Resolver {
       }
       std::string name = item.text;
       const bool has_folder = name.find('/') != std::string::npos;
-      if (has_folder && std::filesystem::path(name).is_relative()) name = (item.folder / name).lexically_normal().string();
+      if (has_folder && std::filesystem::path(name).is_relative())
+        name = (item.folder / name).lexically_normal().string();
       try {
-        load_plugin(registry_, name, {item.folder});
-        result_.plugins.push_back(name);
+        result_.plugins.push_back(load_plugin(registry_, name, {item.folder}).string());
       } catch (const PluginError& error) {
         complain(item.location, error.what());
       }
@@ -120,7 +136,8 @@ class Resolver {
     ModuleChoice choice{kind, name, {}, location};
     const ModuleEntry* entry = registry_.find(kind, name);
     if (entry == nullptr) {
-      complain(location, "there is no " + kind + " module '" + name + "'; " + did_you_mean(name, registry_.names(kind)));
+      complain(location,
+               "there is no " + kind + " module '" + name + "'; " + did_you_mean(name, registry_.names(kind)));
       return choice;
     }
     ConfigurationNode given = parameters;
@@ -130,7 +147,8 @@ class Resolver {
   }
 
   ModuleChoice module(const std::string& kind, const ConfigurationNode& node) {
-    if (node.kind == Kind::scalar) return module(kind, node.text, node.location, ConfigurationNode{.location = node.location});
+    if (node.kind == Kind::scalar)
+      return module(kind, node.text, node.location, ConfigurationNode{.location = node.location});
     const bool one = node.kind == Kind::map && node.entries.size() == 1;
     if (!one) {
       std::string found = node.found();
@@ -139,7 +157,8 @@ class Resolver {
         for (std::size_t i = 0; i < node.entries.size(); ++i) found += (i == 0 ? " (" : ", ") + node.entries[i].key;
         if (!node.entries.empty()) found += ")";
       }
-      complain(node.location, "found " + found + " for '" + kind + "'; expected one module, as `name` or { name: { ... } }; " +
+      complain(node.location, "found " + found + " for '" + kind +
+                                  "'; expected one module, as `name` or { name: { ... } }; " +
                                   did_you_mean("", registry_.names(kind)));
       return {kind, {}, {}, node.location};
     }
@@ -153,8 +172,11 @@ class Resolver {
     const ConfigurationNode& node = at(kind);
     if (node.kind != Kind::nothing) return module(kind, node);
     if (fallback != nullptr) return module(kind, fallback, {file_}, ConfigurationNode{.location = {file_}});
-    complain({file_}, "section '" + kind + "' is missing; expected one module; " + did_you_mean("", registry_.names(kind)));
-    return {kind, {}, {}, {file_}};
+    const bool is_empty = !node.location.file.empty();
+    const SourceLocation place = is_empty ? node.location : SourceLocation{file_};
+    complain(place, "section '" + kind + "' is " + (is_empty ? "empty" : "missing") + "; expected one module; " +
+                        did_you_mean("", registry_.names(kind)));
+    return {kind, {}, {}, place};
   }
 
   std::vector<ModuleChoice> chain(const std::string& kind) {
@@ -162,7 +184,8 @@ class Resolver {
     std::vector<ModuleChoice> choices;
     if (node.kind == Kind::nothing) return choices;
     if (node.kind != Kind::list) {
-      complain(node.location, "found " + node.found() + " for '" + kind + "'; expected a list, such as [ a, b: { ... } ]");
+      complain(node.location,
+               "found " + node.found() + " for '" + kind + "'; expected a list, such as [ a, b: { ... } ]");
       return choices;
     }
     for (const ConfigurationNode& item : node.items) choices.push_back(module(kind, item));
@@ -175,7 +198,8 @@ class Resolver {
     if (node.kind == Kind::scalar) {
       result_.camera = find_camera(node.text);
       if (!result_.camera)
-        complain(node.location, "there is no known camera '" + node.text + "'; " + did_you_mean(node.text, camera_names()) +
+        complain(node.location, "there is no known camera '" + node.text + "'; " +
+                                    did_you_mean(node.text, camera_names()) +
                                     " A camera can also be given by numbers: { width: 640, height: 480, fx: ... }");
       return;
     }
@@ -184,8 +208,8 @@ class Resolver {
     const ParameterValues values = read_parameters(node, table.parameters(), "section 'camera'", diagnostics_);
     if (diagnostics_.size() != before) return;
     const CameraSettings s = table.settings(values);
-    result_.camera = Camera{"", s.width, s.height, s.fx, s.fy, s.cx, s.cy, {s.k1, s.k2, s.p1, s.p2, s.k3}, s.baseline,
-                            s.frame_rate};
+    result_.camera =
+        Camera{"", s.width, s.height, s.fx, s.fy, s.cx, s.cy, {s.k1, s.k2, s.p1, s.p2, s.k3}, s.baseline, s.frame_rate};
   }
 
   void read_run() {
@@ -215,8 +239,16 @@ Configuration resolve_configuration(const ConfigurationNode& root, const std::st
 Configuration load_configuration(const std::filesystem::path& file, const std::vector<std::string>& overrides,
                                  Registry& registry, const std::vector<SectionDescription>& sections) {
   ConfigurationNode root = read_yaml(file);
-  for (const std::string& override_text : overrides) apply_override(root, override_text, choice_sections());
-  return resolve_configuration(root, file.string(), registry, sections);
+  std::vector<Diagnostic> wrong_overrides;
+  for (const std::string& override_text : overrides) {
+    try {
+      apply_override(root, override_text, choice_sections());
+    } catch (const ConfigurationError& error) {
+      wrong_overrides.insert(wrong_overrides.end(), error.diagnostics().begin(), error.diagnostics().end());
+    }
+  }
+  if (wrong_overrides.empty()) return resolve_configuration(root, file.string(), registry, sections);
+  throw ConfigurationError(wrong_overrides);  // alone: what they would have set may be what is missing
 }
 
 }  // namespace holdfast

@@ -30,8 +30,9 @@ void add_chain(const std::string& kind, const std::vector<ModuleChoice>& choices
 
 ParameterValues camera_values(const Camera& camera) {
   const Distortion& d = camera.distortion;
-  return ParameterTable<CameraSettings>().values({camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy,
-                                                  d.k1, d.k2, d.p1, d.p2, d.k3, camera.baseline, camera.frame_rate});
+  return ParameterTable<CameraSettings>().values({camera.width, camera.height, camera.fx, camera.fy, camera.cx,
+                                                  camera.cy, d.k1, d.k2, d.p1, d.p2, d.k3, camera.baseline,
+                                                  camera.frame_rate});
 }
 
 }  // namespace
@@ -40,7 +41,8 @@ std::string to_yaml(const Configuration& configuration) {
   std::string yaml;
   add_choice(configuration.source, yaml);
   if (configuration.camera) {
-    yaml += "camera:" + (configuration.camera->name.empty() ? std::string("\n") : "  # " + configuration.camera->name + "\n");
+    yaml += "camera:" +
+            (configuration.camera->name.empty() ? std::string("\n") : "  # " + configuration.camera->name + "\n");
     add_values(camera_values(*configuration.camera), "  ", yaml);
   }
   add_choice(configuration.features, yaml);

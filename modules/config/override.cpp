@@ -18,6 +18,13 @@ std::vector<std::string> split(const std::string& path) {
   return parts;
 }
 
+/// The first `count` parts as a path again.
+std::string joined(const std::vector<std::string>& parts, std::size_t count) {
+  std::string path;
+  for (std::size_t i = 0; i < count; ++i) path += (i == 0 ? "" : ".") + parts[i];
+  return path;
+}
+
 /// Gives every node of the value the place of the override, since it stands in no file.
 void relocate(ConfigurationNode& node, const SourceLocation& location) {
   node.location = location;
@@ -30,7 +37,8 @@ void relocate(ConfigurationNode& node, const SourceLocation& location) {
 
 }  // namespace
 
-void apply_override(ConfigurationNode& root, const std::string& override_text, const std::vector<std::string>& choices) {
+void apply_override(ConfigurationNode& root, const std::string& override_text,
+                    const std::vector<std::string>& choices) {
   const SourceLocation location{"--set " + override_text};
   const auto fail = [&](const std::string& message) { throw ConfigurationError(location, message); };
   const std::size_t equals = override_text.find('=');
@@ -39,28 +47,37 @@ void apply_override(ConfigurationNode& root, const std::string& override_text, c
   if (std::any_of(path.begin(), path.end(), [](const std::string& part) { return part.empty(); }))
     fail("the key has an empty part; expected key.path=value, such as features.orb.count=500");
 
-  ConfigurationNode value = parse_yaml(override_text.substr(equals + 1), location.file, std::filesystem::current_path());
+  ConfigurationNode value =
+      parse_yaml(override_text.substr(equals + 1), location.file, std::filesystem::current_path());
   relocate(value, location);
 
   ConfigurationNode* node = &root;
+  bool in_chain = false;  // the node is a link of a chain: it chooses a module, too
   for (std::size_t depth = 0; depth < path.size(); ++depth) {
     const std::string& part = path[depth];
     if (node->kind == ConfigurationNode::Kind::list) {
       std::size_t index = 0;
       const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
       if (error != std::errc() || end != part.data() + part.size() || index >= node->items.size())
-        fail("'" + part + "' is no element of the list; expected a number from 0 to " +
-             std::to_string(static_cast<long>(node->items.size()) - 1));
+        fail("'" + part + "' is no element of the list, which " +
+             (node->items.empty() ? "is empty; set the whole list: " + joined(path, depth) + "=[ ... ]"
+                                  : "has " + std::to_string(node->items.size()) + "; expected a number from 0 to " +
+                                        std::to_string(node->items.size() - 1)));
       node = &node->items[index];
+      in_chain = true;
       continue;
     }
-    const bool chooses = depth == 1 && std::find(choices.begin(), choices.end(), path[0]) != choices.end();
+    const bool chooses =
+        in_chain || (depth == 1 && std::find(choices.begin(), choices.end(), path[0]) != choices.end());
+    in_chain = false;
     // `orb` stands for `orb: {}`, in a choice and as a link of a chain.
     if (node->kind == ConfigurationNode::Kind::scalar) {
       const std::string name = node->text;
       const bool same = name == part;
       node->kind = ConfigurationNode::Kind::map;
-      if (same) node->entries.push_back({name, node->location, ConfigurationNode{.location = node->location, .folder = node->folder}});
+      if (same)
+        node->entries.push_back(
+            {name, node->location, ConfigurationNode{.location = node->location, .folder = node->folder}});
     }
     node->kind = ConfigurationNode::Kind::map;
     if (chooses && node->find(part) == nullptr) node->entries.clear();

@@ -84,7 +84,8 @@ std::string markdown(const std::vector<Entry>& entries) {
   for (const Entry& entry : entries) {
     if (entry.kind != kind) {
       kind = entry.kind;
-      text += (text.empty() ? "## " : "\n## ") + (kind == "section" ? std::string("Plain sections") : "`" + kind + "`") + "\n";
+      text += (text.empty() ? "## " : "\n## ") +
+              (kind == "section" ? std::string("Plain sections") : "`" + kind + "`") + "\n";
     }
     text += "\n### `" + entry.description.name + "`\n\n" + entry.description.summary + "\n";
     if (!entry.description.paper.empty()) text += "\nPaper: " + entry.description.paper + "\n";
@@ -139,8 +140,8 @@ std::string json(const std::vector<Entry>& entries) {
 
 }  // namespace
 
-std::string reference(const Registry& registry, const std::vector<SectionDescription>& sections, const std::string& name,
-                      ReferenceFormat format) {
+std::string reference(const Registry& registry, const std::vector<SectionDescription>& sections,
+                      const std::string& name, ReferenceFormat format) {
   std::vector<Entry> entries = all_entries(registry, sections);
   if (!name.empty()) {
     std::vector<std::string> names;

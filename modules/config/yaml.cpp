@@ -42,6 +42,16 @@ class Converter {
     ConfigurationNode result;
     result.location = location(node);
     result.folder = folder_;
+    // Aliases share nodes and may even contain themselves; copies of them must end.
+    if (depth_ >= most_depth || ++nodes_ > most_nodes) {
+      if (!too_large_)
+        diagnostics.push_back({result.location,
+                               "found a value that is nested too deeply or repeated too often; expected "
+                               "no alias (*name) inside of what it names"});
+      too_large_ = true;
+      return result;
+    }
+    ++depth_;
     switch (node.Type()) {
       case YAML::NodeType::Scalar:
         result.kind = ConfigurationNode::Kind::scalar;
@@ -60,6 +70,7 @@ class Converter {
       case YAML::NodeType::Undefined:
         break;
     }
+    --depth_;
     return result;
   }
 
@@ -77,9 +88,10 @@ class Converter {
       diagnostics.push_back({place, "found a key that is no plain text; expected a name"});
       return;
     }
-    if (key.Scalar() == "<<") {
-      diagnostics.push_back({place, "merge keys (<<) are not supported; repeat the values, or use an alias (*name) for a "
-                                    "whole value"});
+    if (key.Scalar() == "<<" && key.Tag() != "!") {
+      diagnostics.push_back({place,
+                             "merge keys (<<) are not supported; repeat the values, or use an alias (*name) for a "
+                             "whole value"});
       return;
     }
     for (const ConfigurationNode::Entry& entry : map.entries)
@@ -91,22 +103,33 @@ class Converter {
     map.entries.push_back({key.Scalar(), place, convert(value)});
   }
 
+  static constexpr int most_depth = 64;
+  static constexpr int most_nodes = 100000;
+
   std::string file_;
   std::filesystem::path folder_;
+  int depth_ = 0;
+  int nodes_ = 0;
+  bool too_large_ = false;
 };
 
 }  // namespace
 
 ConfigurationNode parse_yaml(const std::string& text, const std::string& file_name,
                              const std::filesystem::path& folder) {
-  YAML::Node document;
+  std::vector<YAML::Node> documents;
   try {
-    document = YAML::Load(text);
+    documents = YAML::LoadAll(text);
   } catch (const YAML::Exception& error) {
-    throw ConfigurationError(SourceLocation{file_name, error.mark.line + 1, error.mark.column + 1}, "syntax error: " + error.msg);
+    throw ConfigurationError(SourceLocation{file_name, error.mark.line + 1, error.mark.column + 1},
+                             "syntax error: " + error.msg);
   }
   Converter converter(file_name, folder);
-  ConfigurationNode root = converter.convert(document);
+  ConfigurationNode root = documents.empty() ? ConfigurationNode{.location = {file_name}, .folder = folder}
+                                             : converter.convert(documents.front());
+  if (documents.size() > 1)
+    throw ConfigurationError(SourceLocation{file_name}, "found " + std::to_string(documents.size()) +
+                                                            " documents (separated by ---); expected one");
   if (!converter.diagnostics.empty()) throw ConfigurationError(converter.diagnostics);
   return root;
 }

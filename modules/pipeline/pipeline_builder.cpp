@@ -20,13 +20,20 @@ Settings section(const Configuration& configuration, const std::string& name) {
   return found == configuration.sections.end() ? Settings{} : ParameterTable<Settings>().settings(found->second);
 }
 
+/// Whether they are the same but for the name: a resolved configuration gives numbers.
+bool same_numbers(Camera a, const Camera& b) {
+  a.name = b.name;
+  return a == b;
+}
+
 /// The camera of the run: the configuration's or the source's; when both name one, they must agree.
 Camera resolve_camera(const Configuration& configuration, const SourceDescription& source,
                       std::vector<Diagnostic>& diagnostics) {
-  if (source.camera && configuration.camera && *source.camera != *configuration.camera)
-    diagnostics.push_back({configuration.source.location,
-                           "the source '" + configuration.source.name +
-                               "' brings its own camera, and the section 'camera' says something else; remove one of them"});
+  if (source.camera && configuration.camera && !same_numbers(*source.camera, *configuration.camera))
+    diagnostics.push_back(
+        {configuration.source.location,
+         "the source '" + configuration.source.name +
+             "' brings its own camera, and the section 'camera' says something else; remove one of them"});
   if (source.camera) return *source.camera;
   if (configuration.camera) return *configuration.camera;
   std::string known;
@@ -43,8 +50,9 @@ void check_needs(const ModuleChoice& choice, const Needs& needs, const SourceDes
     diagnostics.push_back({choice.location, "the filter '" + choice.name + "' needs depth, which the source '" +
                                                 configuration.source.name + "' does not have; remove one of them"});
   if (needs.segmentation && configuration.segmenter.name == "none")
-    diagnostics.push_back({choice.location, "the filter '" + choice.name +
-                                                "' needs a segmentation, but the segmenter is 'none'; choose a segmenter"});
+    diagnostics.push_back(
+        {choice.location,
+         "the filter '" + choice.name + "' needs a segmentation, but the segmenter is 'none'; choose a segmenter"});
 }
 
 }  // namespace
@@ -77,13 +85,14 @@ BuiltPipeline build_pipeline(const Configuration& configuration, const Registry&
     check_needs(choice, filter->needs(), description, configuration, diagnostics);
     parts.filters.emplace_back(choice.name, std::move(filter));
   }
-  for (const ModuleChoice& choice : configuration.observers) parts.observers.push_back(create.operator()<Observer>(choice));
+  for (const ModuleChoice& choice : configuration.observers)
+    parts.observers.push_back(create.operator()<Observer>(choice));
   parts.tracking = section<TrackingSettings>(configuration, "tracking");
   parts.mapping = section<MappingSettings>(configuration, "mapping");
   if (!description.has_depth)
-    diagnostics.push_back({configuration.source.location,
-                           "the source '" + configuration.source.name +
-                               "' has no depth; this version tracks colour with depth only"});
+    diagnostics.push_back(
+        {configuration.source.location,
+         "the source '" + configuration.source.name + "' has no depth; this version tracks colour with depth only"});
   if (!diagnostics.empty()) throw ConfigurationError(std::move(diagnostics));
   return {std::move(source), Pipeline(std::move(parts))};
 }

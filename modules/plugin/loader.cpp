@@ -76,7 +76,7 @@ class OriginScope {
 
 }  // namespace
 
-void load_plugin(Registry& registry, const std::string& name_or_path, const std::vector<fs::path>& search_first) {
+fs::path load_plugin(Registry& registry, const std::string& name_or_path, const std::vector<fs::path>& search_first) {
   const std::string file = find_plugin(name_or_path, search_first).lexically_normal().string();
   const auto refuse = [&](const std::string& reason) { throw PluginError("plugin '" + file + "' " + reason); };
 
@@ -105,6 +105,7 @@ void load_plugin(Registry& registry, const std::string& name_or_path, const std:
   } catch (const std::exception& reason) {
     refuse(std::string("failed to register its modules: ") + reason.what());
   }
+  return file;
 }
 
 }  // namespace holdfast

@@ -52,12 +52,12 @@ struct ModuleChoice {
 struct Configuration {
   std::string file;
   ModuleChoice source, features, segmenter, optimizer, loop_detector;
-  std::vector<ModuleChoice> filters;    ///< a chain
+  std::vector<ModuleChoice> filters;  ///< a chain
   std::vector<ModuleChoice> observers;
-  std::optional<Camera> camera;         ///< nothing: the source must know it
+  std::optional<Camera> camera;  ///< nothing: the source must know it
   RunSettings run;
   std::map<std::string, ParameterValues> sections;  ///< by name, as described by the caller
-  std::vector<std::string> plugins;     ///< as given, relative ones with a folder made absolute
+  std::vector<std::string> plugins;                 ///< the files, absolute
 };
 
 /// Reads, overrides and checks a configuration. Plugins that it names are loaded into `registry` first. Throws

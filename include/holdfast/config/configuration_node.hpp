@@ -15,10 +15,10 @@ struct ConfigurationNode {
   struct Entry;
 
   Kind kind = Kind::nothing;
-  SourceLocation location = {};        ///< of the value
-  std::filesystem::path folder = {};   ///< that relative paths start from
-  std::string text = {};               ///< of a scalar
-  bool quoted = false;            ///< the scalar stands in quotes, so it is a text whatever it looks like
+  SourceLocation location = {};               ///< of the value
+  std::filesystem::path folder = {};          ///< that relative paths start from
+  std::string text = {};                      ///< of a scalar
+  bool quoted = false;                        ///< the scalar stands in quotes, so it is a text whatever it looks like
   std::vector<ConfigurationNode> items = {};  ///< of a list
   std::vector<Entry> entries = {};            ///< of a map, in the order of the file
 
@@ -36,14 +36,16 @@ struct ConfigurationNode::Entry {
   ConfigurationNode value;
 };
 
-/// Reads YAML. Aliases are followed; duplicate keys, merge keys (<<) and keys that are no scalars are errors, all reported
-/// together; a syntax error is reported alone. Throws ConfigurationError. `folder` is where relative paths start from.
-ConfigurationNode parse_yaml(const std::string& text, const std::string& file_name, const std::filesystem::path& folder);
+/// Reads YAML, one document. Aliases are followed; duplicate keys, merge keys (<<), keys that are no scalars and
+/// aliases inside of what they name are errors, all reported together; a syntax error is reported alone. Throws
+/// ConfigurationError. `folder` is where relative paths start from.
+ConfigurationNode parse_yaml(const std::string& text, const std::string& file_name,
+                             const std::filesystem::path& folder);
 ConfigurationNode read_yaml(const std::filesystem::path& file);
 
 /// Applies "key.path=value" as if the file said so. The value is YAML; elements of lists are named by number. Missing
-/// sections are made. In a section that chooses one module (see `choices`) naming another module replaces the choice.
-/// Relative paths in the value start from the working directory. Throws ConfigurationError.
+/// sections are made. In a section that chooses one module (see `choices`), and in a link of a chain, naming another
+/// module replaces the choice. Relative paths in the value start from the working directory. Throws ConfigurationError.
 void apply_override(ConfigurationNode& root, const std::string& override_text, const std::vector<std::string>& choices);
 
 }  // namespace holdfast
