@@ -101,6 +101,9 @@ class Converter {
         return;
       }
     map.entries.push_back({key.Scalar(), place, convert(value)});
+    // The parser places a value that is not there where the next thing begins.
+    ConfigurationNode& added = map.entries.back().value;
+    if (added.kind == ConfigurationNode::Kind::nothing) added.location = place;
   }
 
   static constexpr int most_depth = 64;
@@ -135,9 +138,14 @@ ConfigurationNode parse_yaml(const std::string& text, const std::string& file_na
 }
 
 ConfigurationNode read_yaml(const std::filesystem::path& file) {
+  std::error_code ignored;
+  const auto refuse = [&](const std::string& reason) {
+    throw ConfigurationError(SourceLocation{file.string()}, reason + "; expected a configuration in YAML");
+  };
+  if (!std::filesystem::exists(file, ignored)) refuse("there is no such file");
+  if (std::filesystem::is_directory(file, ignored)) refuse("is a folder");
   std::ifstream stream(file, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(file))
-    throw ConfigurationError(SourceLocation{file.string()}, "cannot be read; expected a configuration in YAML");
+  if (!stream) refuse("cannot be read");
   const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   return parse_yaml(text, file.string(), std::filesystem::absolute(file).parent_path());
 }
