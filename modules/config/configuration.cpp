@@ -176,8 +176,10 @@ class Resolver {
     const ConfigurationNode& node = at(kind);
     if (node.kind != Kind::nothing) return module(kind, node);
     if (fallback != nullptr) return module(kind, fallback, {file_}, ConfigurationNode{.location = {file_}});
-    complain({file_},
-             "section '" + kind + "' is missing; expected one module; " + did_you_mean("", registry_.names(kind)));
+    const bool is_empty = !node.location.file.empty();
+    complain(is_empty ? node.location : SourceLocation{file_},
+             "section '" + kind + "' is " + (is_empty ? "empty" : "missing") + "; expected one module; " +
+                 did_you_mean("", registry_.names(kind)));
     return {kind, {}, {}, {file_}};
   }
 
@@ -206,12 +208,25 @@ class Resolver {
       return;
     }
     const ParameterTable<CameraSettings> table;
+    std::vector<Parameter> parameters = table.parameters();
+    // A known name gives the numbers that are not given.
+    const ConfigurationNode* name = node.find("name");
+    if (name != nullptr && name->kind == Kind::scalar && !name->text.empty()) {
+      const std::optional<Camera> known = find_camera(name->text);
+      if (!known) {
+        complain(name->location,
+                 "there is no known camera '" + name->text + "'; " + did_you_mean(name->text, camera_names()));
+        return;
+      }
+      const ParameterValues numbers = table.values(camera_settings(*known));
+      for (Parameter& parameter : parameters) {
+        parameter.is_required = false;
+        parameter.default_value = numbers.at(parameter.name);
+      }
+    }
     const std::size_t before = diagnostics_.size();
-    const ParameterValues values = read_parameters(node, table.parameters(), "section 'camera'", diagnostics_);
-    if (diagnostics_.size() != before) return;
-    const CameraSettings s = table.settings(values);
-    result_.camera =
-        Camera{"", s.width, s.height, s.fx, s.fy, s.cx, s.cy, {s.k1, s.k2, s.p1, s.p2, s.k3}, s.baseline, s.frame_rate};
+    const ParameterValues values = read_parameters(node, parameters, "section 'camera'", diagnostics_);
+    if (diagnostics_.size() == before) result_.camera = make_camera(table.settings(values));
   }
 
   void read_run() {
@@ -241,7 +256,16 @@ Configuration resolve_configuration(const ConfigurationNode& root, const std::st
 Configuration load_configuration(const std::filesystem::path& file, const std::vector<std::string>& overrides,
                                  Registry& registry, const std::vector<SectionDescription>& sections) {
   ConfigurationNode root = read_yaml(file);
-  for (const std::string& override_text : overrides) apply_override(root, override_text, choice_sections());
+  std::vector<Diagnostic> wrong_overrides;
+  for (const std::string& override_text : overrides) {
+    try {
+      apply_override(root, override_text, choice_sections());
+    } catch (const ConfigurationError& error) {
+      wrong_overrides.insert(wrong_overrides.end(), error.diagnostics().begin(), error.diagnostics().end());
+    }
+  }
+  // Alone: what they would have set may be what is missing.
+  if (!wrong_overrides.empty()) throw ConfigurationError(std::move(wrong_overrides));
   return resolve_configuration(root, file.string(), registry, sections);
 }
 

@@ -15,24 +15,22 @@ namespace {
 
 using Kind = ConfigurationNode::Kind;
 
-std::optional<double> as_real(const ConfigurationNode& node) {
+/// The number that is all of an unquoted scalar.
+template <class Number>
+std::optional<Number> as_number(const ConfigurationNode& node) {
   if (node.kind != Kind::scalar || node.quoted || node.text.empty()) return std::nullopt;
-  const char* begin = node.text.data() + (node.text.front() == '+' ? 1 : 0);
+  const bool plus = node.text.front() == '+' && !node.text.starts_with("+-");  // from_chars knows no plus
+  const char* begin = node.text.data() + (plus ? 1 : 0);
   const char* end = node.text.data() + node.text.size();
-  double number = 0;
-  const auto [stop, error] = std::from_chars(begin, end, number);
-  if (error != std::errc() || stop != end || !std::isfinite(number)) return std::nullopt;
-  return number;
-}
-
-std::optional<std::int64_t> as_integer(const ConfigurationNode& node) {
-  if (node.kind != Kind::scalar || node.quoted || node.text.empty()) return std::nullopt;
-  const char* begin = node.text.data() + (node.text.front() == '+' ? 1 : 0);
-  const char* end = node.text.data() + node.text.size();
-  std::int64_t number = 0;
+  Number number = 0;
   const auto [stop, error] = std::from_chars(begin, end, number);
   if (error != std::errc() || stop != end) return std::nullopt;
   return number;
+}
+
+std::optional<double> as_real(const ConfigurationNode& node) {
+  const auto number = as_number<double>(node);
+  return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
 std::optional<ParameterValue> as_type(const ConfigurationNode& node, ParameterType type) {
@@ -42,7 +40,7 @@ std::optional<ParameterValue> as_type(const ConfigurationNode& node, ParameterTy
         return std::nullopt;
       return node.text == "true";
     case ParameterType::integer:
-      if (const auto number = as_integer(node)) return *number;
+      if (const auto number = as_number<std::int64_t>(node)) return *number;
       return std::nullopt;
     case ParameterType::real:
       if (const auto number = as_real(node)) return *number;

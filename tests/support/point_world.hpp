@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <opencv2/core.hpp>
@@ -30,7 +31,7 @@ class PointWorld {
 
   const Camera& camera() const { return camera_; }
 
-  /// Images of the world from a pose; `pixel_noise` moves the features, `visible` hides all when false.
+  /// Images of the world from a pose; nothing is in them unless `visible`.
   SensorFrame frame(std::uint64_t index, double timestamp, const Eigen::Isometry3d& T_world_camera,
                     bool visible = true) {
     SensorFrame frame;
@@ -50,7 +51,12 @@ class PointWorld {
       if (column < 1 || row < 1 || column >= camera_.width - 1 || row >= camera_.height - 1) continue;
       if (owner.at<int>(row, column) >= 0) continue;
       owner.at<int>(row, column) = static_cast<int>(i);
-      frame.depth.at<float>(row, column) = static_cast<float>(p.z());
+      // Depth around the point, too, so that a noisy feature still has some.
+      constexpr int reach = 3;
+      for (int r = std::max(row - reach, 0); r <= std::min(row + reach, camera_.height - 1); ++r)
+        for (int c = std::max(column - reach, 0); c <= std::min(column + reach, camera_.width - 1); ++c)
+          if (frame.depth.at<float>(r, c) == 0.0F || (r == row && c == column))
+            frame.depth.at<float>(r, c) = static_cast<float>(p.z());
       // Octaves follow the distance, as those of real features do.
       const int octave = std::clamp(static_cast<int>(std::lround(std::log(4.0 / p.norm()) / std::log(1.2))), 0, 7);
       seen_.push_back({i, pixel.x(), pixel.y(), octave});
