@@ -6,6 +6,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <memory>
 #include <opencv2/core/utility.hpp>
@@ -38,7 +39,7 @@ std::size_t peak_memory() {
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
 }
 
-/// Feeds frames until the source ends, a signal comes or a frame cannot be used; what was found until then is kept.
+/// Feeds frames until the source ends, a signal comes or something throws; what was found until then is kept.
 void feed_frames(BuiltPipeline& built, bool quiet, const Stopwatch& since_start, RunRecord& record) {
   Progress progress(record.source.frame_count, quiet);
   std::uint64_t fed = 0;
@@ -54,7 +55,7 @@ void feed_frames(BuiltPipeline& built, bool quiet, const Stopwatch& since_start,
       if (record.start_seconds == 0.0 && result.T_world_camera) record.start_seconds = since_start.seconds();
       progress.update(++fed, to_string(result.status));
     }
-  } catch (const InputError& error) {
+  } catch (const std::exception& error) {  // whatever it is, what was found until then is the user's
     record.failure = error.what();
   }
   record.was_interrupted = interrupted();
