@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -36,10 +37,10 @@ void print_error(const std::string& message) {
 
 /// A word where a command should stand: CLI11 would only say that a command is required.
 bool is_unknown_command(const CLI::App& app, const std::string& word) {
-  if (word.starts_with('-') || app.get_subcommand_no_throw(word) != nullptr) return false;
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
     names.push_back(command->get_name());
+  if (word.starts_with('-') || std::find(names.begin(), names.end(), word) != names.end()) return false;
   print_error("there is no command '" + word + "'; " + holdfast::did_you_mean(word, names));
   return true;
 }
