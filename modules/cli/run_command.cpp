@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -61,6 +62,18 @@ void feed_frames(BuiltPipeline& built, bool quiet, const Stopwatch& since_start,
   record.was_interrupted = interrupted();
 }
 
+/// A run that ended before its time has frames whose stamps nobody saw; they count as missing, in a gap at the end.
+void count_frames_that_never_came(const RunRecord& record, Coverage& coverage) {
+  if (record.frame_stamps.size() >= record.frames_expected) return;
+  const std::size_t missing = record.frames_expected - record.frame_stamps.size();
+  const double last = record.frame_stamps.back();
+  coverage.frames += missing;
+  const bool gap_is_open = !coverage.gaps.empty() && coverage.gaps.back().end == last &&
+                           (record.trajectory.empty() || record.trajectory.back().timestamp < last);
+  if (!gap_is_open) coverage.gaps.push_back({last, last, 0});
+  coverage.gaps.back().frames += missing;
+}
+
 void evaluate_run(const FrameSource& source, RunRecord& record) {
   const Trajectory truth = source.truth();
   if (truth.empty()) {
@@ -68,6 +81,7 @@ void evaluate_run(const FrameSource& source, RunRecord& record) {
     return;
   }
   for (const SkippedFrame& skipped : record.skipped) record.frame_stamps.push_back(skipped.timestamp);
+  std::sort(record.frame_stamps.begin(), record.frame_stamps.end());
   EvaluationOptions options;
   options.truth_name = "truth";
   options.estimate_name = "trajectory.txt";
@@ -75,7 +89,9 @@ void evaluate_run(const FrameSource& source, RunRecord& record) {
     record.evaluation = evaluate(truth, record.trajectory, options, record.frame_stamps);
   } catch (const Error& error) {
     record.no_evaluation = error.what();
+    return;
   }
+  if (record.evaluation->coverage) count_frames_that_never_came(record, *record.evaluation->coverage);
 }
 
 void run(const Arguments& arguments, int& exit_code) {

@@ -121,6 +121,9 @@ TEST_F(RunTest, KeepsWhatWasDoneBeforeADamagedImage) {
   EXPECT_EQ(run.at("frames").at("poses"), 9);
   EXPECT_EQ(run.at("frames").at("expected"), 15);
   EXPECT_NEAR(run.at("frames").at("coverage"), 9.0 / 15.0, 1e-12);
+  EXPECT_EQ(run.at("evaluation").at("coverage").at("frames"), 15);  // those that never came are missing, too
+  EXPECT_EQ(run.at("evaluation").at("coverage").at("poses"), 9);
+  EXPECT_EQ(run.at("evaluation").at("coverage").at("longest_gap_frames"), 6);
   EXPECT_THAT(run.at("failure").get<std::string>(), HasSubstr(damaged_));
   EXPECT_THAT(program_.text("out/report.html"), HasSubstr("ended before its time"));
   EXPECT_GT(program_.text("out/trajectory.txt").size(), 300U);
@@ -136,6 +139,9 @@ TEST_F(RunTest, SkipsDamagedImagesWhereAllowed) {
   EXPECT_EQ(run.at("frames").at("skipped"), 1);
   EXPECT_EQ(run.at("frames").at("poses"), 14);
   EXPECT_NEAR(run.at("frames").at("coverage"), 14.0 / 15.0, 1e-12);
+  EXPECT_EQ(run.at("evaluation").at("coverage").at("frames"), 15);
+  EXPECT_EQ(run.at("evaluation").at("coverage").at("poses"), 14);
+  EXPECT_EQ(run.at("evaluation").at("coverage").at("longest_gap_frames"), 1);
   ASSERT_EQ(run.at("skipped_frames").size(), 1U);
   EXPECT_EQ(run.at("skipped_frames").at(0).at("index"), 9);
   EXPECT_THAT(run.at("skipped_frames").at(0).at("reason").get<std::string>(), HasSubstr(damaged_));
@@ -144,7 +150,7 @@ TEST_F(RunTest, SkipsDamagedImagesWhereAllowed) {
 TEST_F(RunTest, KeepsWhatWasDoneWhenInterrupted) {
   const pid_t process =
       program_.start({"run", "room.yaml", "--set", "source.simulated.duration=600", "--output", "out"});
-  while (!fs::exists(program_.path("out/config.yaml")) && kill(process, 0) == 0)
+  for (int i = 0; i < 3000 && !fs::exists(program_.path("out/config.yaml")); ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   std::this_thread::sleep_for(std::chrono::seconds(3));
   kill(process, SIGINT);
