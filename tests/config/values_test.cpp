@@ -162,6 +162,19 @@ TEST(ResolvedConfiguration, LoadsAsWhatItWas) {
   EXPECT_THAT(yaml, ::testing::HasSubstr("count: 1000\n"));
 }
 
+TEST(ResolvedConfiguration, FindsPluginsFromAnywhere) {
+  // A plugin beside the configuration, named without a folder: elsewhere it would not be found under that name.
+  const test::ScratchFolder folder;
+  const auto file = folder.write("c.yaml", rest + "features: orb\nplugins: [ libtest_good_plugin.so ]\n");
+  std::filesystem::copy_file(std::filesystem::path(HOLDFAST_TEST_PLUGINS) / "libtest_good_plugin.so",
+                             folder.path() / "libtest_good_plugin.so");
+  Registry registry = test::fake_registry();
+  const Configuration configuration = load_configuration(file, {}, registry, test::fake_sections());
+  EXPECT_THAT(configuration.plugins, ElementsAre((folder.path() / "libtest_good_plugin.so").string()));
+  EXPECT_NE(registry.find("number", "given"), nullptr);
+  EXPECT_EQ(load(to_yaml(configuration)).plugins, configuration.plugins);
+}
+
 TEST(ResolvedConfiguration, KeepsOddTexts) {
   const std::vector<std::string> odd = {
       "",      " ",    "true",        "12",           "1.5",      "null",   "~",      "a: b",   "- a",
