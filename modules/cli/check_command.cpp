@@ -49,7 +49,8 @@ void add_check_command(CLI::App& app, int&) {
   command->footer(
       "\nEvery mistake is reported at once, as file:line:column: what was found, what was expected. Data is not "
       "looked\n"
-      "at: whether a recording is there and whole shows in `holdfast run`. Exits 2 when something is wrong.\n\n"
+      "at: whether a recording is there, whole and knows its camera shows in `holdfast run`. Exits 2 when something is "
+      "wrong.\n\n"
       "Examples\n"
       "  holdfast check examples/configs/rgbd.yaml\n"
       "  holdfast check rgbd.yaml --set features.orb.count=1500 --print");

@@ -2,8 +2,11 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <string>
+#include <vector>
 
 #include "holdfast/cli/check_command.hpp"
 #include "holdfast/cli/evaluate_command.hpp"
@@ -13,6 +16,7 @@
 #include "holdfast/cli/terminal.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/version.hpp"
+#include "holdfast/plugin/did_you_mean.hpp"
 
 namespace {
 
@@ -31,6 +35,25 @@ void print_error(const std::string& message) {
   std::fprintf(stderr, "%s %s\n", holdfast::red("error:", STDERR_FILENO).c_str(), message.c_str());
 }
 
+/// A word where a command should stand: CLI11 would only say that a command is required.
+bool is_unknown_command(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  if (word.starts_with('-') || std::find(names.begin(), names.end(), word) != names.end()) return false;
+  print_error("there is no command '" + word + "'; " + holdfast::did_you_mean(word, names));
+  return true;
+}
+
+/// Help and version go to standard output; what is wrong with the arguments to standard error, with where to look.
+int answer_parse_error(const CLI::App& app, const CLI::ParseError& error) {
+  if (error.get_exit_code() == 0) return app.exit(error);
+  std::string command = "holdfast";
+  for (const CLI::App* parsed : app.get_subcommands()) command += " " + parsed->get_name();
+  print_error(std::string(error.what()) + "; see `" + command + " --help`");
+  return 2;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -44,10 +67,15 @@ int main(int argc, char** argv) {
   add_simulate_command(app, exit_code);
   add_check_command(app, exit_code);
   add_modules_command(app, exit_code);
+  if (argc == 1) {
+    std::fputs(app.help().c_str(), stderr);
+    return 2;
+  }
+  if (is_unknown_command(app, argv[1])) return 2;
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : 2;
+    return answer_parse_error(app, error);
   } catch (const ConfigurationError& error) {
     for (const Diagnostic& diagnostic : error.diagnostics()) print_error(diagnostic.to_string());
     return 2;

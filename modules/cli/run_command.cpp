@@ -5,7 +5,9 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <memory>
 #include <opencv2/core/utility.hpp>
@@ -38,7 +40,7 @@ std::size_t peak_memory() {
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
 }
 
-/// Feeds frames until the source ends, a signal comes or a frame cannot be used; what was found until then is kept.
+/// Feeds frames until the source ends, a signal comes or something throws; what was found until then is kept.
 void feed_frames(BuiltPipeline& built, bool quiet, const Stopwatch& since_start, RunRecord& record) {
   Progress progress(record.source.frame_count, quiet);
   std::uint64_t fed = 0;
@@ -54,10 +56,22 @@ void feed_frames(BuiltPipeline& built, bool quiet, const Stopwatch& since_start,
       if (record.start_seconds == 0.0 && result.T_world_camera) record.start_seconds = since_start.seconds();
       progress.update(++fed, to_string(result.status));
     }
-  } catch (const InputError& error) {
+  } catch (const std::exception& error) {  // whatever it is, what was found until then is the user's
     record.failure = error.what();
   }
   record.was_interrupted = interrupted();
+}
+
+/// A run that ended before its time has frames whose stamps nobody saw; they count as missing, in a gap at the end.
+void count_frames_that_never_came(const RunRecord& record, Coverage& coverage) {
+  if (record.frame_stamps.size() >= record.frames_expected) return;
+  const std::size_t missing = record.frames_expected - record.frame_stamps.size();
+  const double last = record.frame_stamps.back();
+  coverage.frames += missing;
+  const bool gap_is_open = !coverage.gaps.empty() && coverage.gaps.back().end == last &&
+                           (record.trajectory.empty() || record.trajectory.back().timestamp < last);
+  if (!gap_is_open) coverage.gaps.push_back({last, last, 0});
+  coverage.gaps.back().frames += missing;
 }
 
 void evaluate_run(const FrameSource& source, RunRecord& record) {
@@ -67,6 +81,7 @@ void evaluate_run(const FrameSource& source, RunRecord& record) {
     return;
   }
   for (const SkippedFrame& skipped : record.skipped) record.frame_stamps.push_back(skipped.timestamp);
+  std::sort(record.frame_stamps.begin(), record.frame_stamps.end());
   EvaluationOptions options;
   options.truth_name = "truth";
   options.estimate_name = "trajectory.txt";
@@ -74,7 +89,9 @@ void evaluate_run(const FrameSource& source, RunRecord& record) {
     record.evaluation = evaluate(truth, record.trajectory, options, record.frame_stamps);
   } catch (const Error& error) {
     record.no_evaluation = error.what();
+    return;
   }
+  if (record.evaluation->coverage) count_frames_that_never_came(record, *record.evaluation->coverage);
 }
 
 void run(const Arguments& arguments, int& exit_code) {

@@ -202,9 +202,9 @@ class Resolver {
     if (node.kind == Kind::scalar) {
       result_.camera = find_camera(node.text);
       if (!result_.camera)
-        complain(node.location, "there is no known camera '" + node.text + "'; " +
-                                    did_you_mean(node.text, camera_names()) +
-                                    " A camera can also be given by numbers: { width: 640, height: 480, fx: ... }");
+        complain(node.location, "there is no known camera '" + node.text +
+                                    "'; expected a name, or numbers as { width: 640, height: 480, fx: ... }; " +
+                                    did_you_mean(node.text, camera_names()));
       return;
     }
     const ParameterTable<CameraSettings> table;

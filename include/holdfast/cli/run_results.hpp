@@ -22,9 +22,8 @@ struct RunRecord {
   Camera camera;
   RunSummary summary;
   std::vector<SkippedFrame> skipped;
-  std::vector<double>
-      frame_stamps;  ///< of all frames of the source, fed or not when interrupted, skipped ones included [s]
-  std::size_t frames_expected = 0;  ///< as the source said, or those that came
+  std::vector<double> frame_stamps;  ///< of all frames that came, skipped ones included [s]
+  std::size_t frames_expected = 0;   ///< as the source said, or those that came
   Trajectory trajectory, keyframes;
   std::size_t map_keyframes = 0, map_points = 0;
   MappingCounts mapping;

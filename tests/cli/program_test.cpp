@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cli/program.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace holdfast {
+namespace {
+
+using test::Outcome;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+class ProgramTest : public ::testing::Test {
+ protected:
+  ProgramTest() {
+    program_.write("good.yaml",
+                   "source: { simulated: { duration: 0.1 } }\ncamera: tum_fr1\nfeatures: orb\noptimizer: ceres\n");
+  }
+  test::Program program_;
+};
+
+TEST_F(ProgramTest, HelpAndVersion) {
+  const Outcome help = program_.run({"--help"});
+  EXPECT_EQ(help.exit_code, 0);
+  for (const char* command : {"run", "evaluate", "simulate", "check", "modules"})
+    EXPECT_THAT(help.output, HasSubstr(std::string("\n  ") + command + " "));
+  EXPECT_EQ(help.errors, "");
+  const Outcome version = program_.run({"--version"});
+  EXPECT_EQ(version.exit_code, 0);
+  EXPECT_THAT(version.output, StartsWith("holdfast "));
+  const Outcome run = program_.run({"run", "--help"});
+  EXPECT_EQ(run.exit_code, 0);
+  EXPECT_THAT(run.output, AllOf(HasSubstr("--set"), HasSubstr("--output"), HasSubstr("trajectory.txt")));
+}
+
+TEST_F(ProgramTest, WithoutArgumentsItHelpsAndFails) {
+  const Outcome outcome = program_.run({});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.errors, HasSubstr("holdfast run"));
+  EXPECT_EQ(outcome.output, "");
+}
+
+TEST_F(ProgramTest, WrongArguments) {
+  const auto expect_error = [&](const std::vector<std::string>& arguments, const std::string& error) {
+    const Outcome outcome = program_.run(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << error;
+    EXPECT_THAT(outcome.errors, HasSubstr(error));
+    EXPECT_EQ(outcome.output, "");
+  };
+  expect_error({"rnu"}, "error: there is no command 'rnu'; did you mean 'run'?");
+  expect_error({"run"}, "error: CONFIG is required; see `holdfast run --help`");
+  expect_error({"run", "good.yaml"}, "error: --output is required; see `holdfast run --help`");
+  expect_error({"check", "good.yaml", "--fast"}, "--fast");
+  expect_error({"check", "good.yaml", "--set"}, "--set");
+  expect_error({"--fast"}, "see `holdfast --help`");
+}
+
+TEST_F(ProgramTest, ModulesPrintsTheReference) {
+  const Outcome all = program_.run({"modules"});
+  EXPECT_EQ(all.exit_code, 0);
+  for (const char* name :
+       {"orb", "opencv_orb", "ceres", "tum", "folder", "simulated", "none", "tracking", "mapping", "camera", "run"})
+    EXPECT_THAT(all.output, HasSubstr(std::string("\n  ") + name + " "));
+  const Outcome orb = program_.run({"modules", "orb"});
+  EXPECT_THAT(orb.output, AllOf(HasSubstr("features: orb"), HasSubstr("count"), HasSubstr("Paper: ")));
+  const auto json = nlohmann::json::parse(program_.run({"modules", "--json"}).output);
+  EXPECT_GE(json.size(), 12U);
+  EXPECT_THAT(program_.run({"modules", "--markdown"}).output, HasSubstr("### `simulated`"));
+  const Outcome unknown = program_.run({"modules", "obr"});
+  EXPECT_EQ(unknown.exit_code, 1);
+  EXPECT_EQ(unknown.output, "");
+  EXPECT_EQ(unknown.errors, "error: there is no module or section 'obr'; did you mean 'orb'?\n");
+}
+
+TEST_F(ProgramTest, CheckAcceptsWhatIsRight) {
+  const Outcome good = program_.run({"check", "good.yaml"});
+  EXPECT_EQ(good.exit_code, 0);
+  EXPECT_EQ(good.output, "ok good.yaml: simulated -> orb -> ceres\n");
+  const Outcome printed =
+      program_.run({"check", "good.yaml", "--set", "features.orb.count=1500", "--set", "run.seed=3", "--print"});
+  EXPECT_EQ(printed.exit_code, 0);
+  EXPECT_THAT(printed.output, AllOf(HasSubstr("    count: 1500\n"), HasSubstr("  seed: 3\n")));
+  program_.write("printed.yaml", printed.output);
+  EXPECT_EQ(program_.run({"check", "printed.yaml", "--print"}).output.size(),
+            printed.output.size() - std::string("  # tum_fr1").size());
+}
+
+TEST_F(ProgramTest, TheExamplesAreRight) {
+  for (const auto& entry : std::filesystem::directory_iterator(HOLDFAST_EXAMPLE_CONFIGURATIONS)) {
+    const Outcome outcome = program_.run({"check", entry.path().string()});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  }
+}
+
+TEST_F(ProgramTest, CheckTellsAllMistakes) {
+  program_.write("bad.yaml",
+                 "source: { tum: {} }\ncamera: tum_fr7\nfeatures: { orb: { cuont: 500, levels: many } }\noptimizer: "
+                 "ceres\nrun: { mode: threaded }\n");
+  const Outcome bad = program_.run({"check", "bad.yaml", "--set", "tracking.nothing=1"});
+  EXPECT_EQ(bad.exit_code, 2);
+  EXPECT_EQ(bad.output, "");
+  for (const char* line :
+       {"error: bad.yaml:1:16: source 'tum' needs 'path'", "error: bad.yaml:2:9: there is no known camera 'tum_fr7'",
+        "error: bad.yaml:3:20: features 'orb' has no parameter 'cuont'; did you mean 'count'?\n",
+        "error: bad.yaml:3:40: found 'many' for 'levels'", "error: bad.yaml:5:14: found 'threaded'",
+        "error: --set tracking.nothing=1: section 'tracking' has no parameter 'nothing'"})
+    EXPECT_THAT(bad.errors, HasSubstr(line));
+  EXPECT_EQ(std::count(bad.errors.begin(), bad.errors.end(), '\n'), 6);
+  // `run` says the same and makes nothing.
+  const Outcome run = program_.run({"run", "bad.yaml", "--set", "tracking.nothing=1", "--output", "out"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_EQ(run.errors, bad.errors);
+  EXPECT_FALSE(std::filesystem::exists(program_.path("out")));
+}
+
+TEST_F(ProgramTest, SetTakesAnyText) {
+  // '=', commas, blanks and brackets reach the value whole, and --set takes one argument only.
+  const Outcome outcome = program_.run(
+      {"check", "--set", "source.tum.path=a=b, c d/[x],y", "--set", "features.orb.count=77", "good.yaml", "--print"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("/a=b, c d/[x],y\""), HasSubstr("count: 77")));
+}
+
+TEST_F(ProgramTest, FilesThatAreNotThere) {
+  const Outcome missing = program_.run({"check", "nowhere.yaml"});
+  EXPECT_EQ(missing.exit_code, 2);
+  EXPECT_EQ(missing.errors, "error: nowhere.yaml: there is no such file; expected a configuration in YAML\n");
+  const Outcome recording = program_.run({"run", "good.yaml", "--set", "source.tum.path=nowhere", "--output", "out"});
+  EXPECT_EQ(recording.exit_code, 1);
+  EXPECT_THAT(recording.errors, AllOf(HasSubstr("/nowhere: is missing"), HasSubstr("source.tum.path")));
+  EXPECT_EQ(recording.output, "");
+  EXPECT_FALSE(std::filesystem::exists(program_.path("out")));
+}
+
+}  // namespace
+}  // namespace holdfast

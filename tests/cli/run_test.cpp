@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "cli/program.hpp"
+
+namespace holdfast {
+namespace {
+
+using test::Outcome;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+namespace fs = std::filesystem;
+
+std::size_t lines(const std::string& text) {
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+class RunTest : public ::testing::Test {
+ protected:
+  RunTest() {
+    program_.write("room.yaml",
+                   "source: { simulated: { duration: 0.5 } }\ncamera: tum_fr1\nfeatures: { orb: { count: 600 } "
+                   "}\noptimizer: ceres\n");
+    program_.write("recording.yaml",
+                   "source: { tum: { path: recording } }\ncamera: tum_fr1\nfeatures: orb\noptimizer: ceres\n");
+  }
+  nlohmann::json summary(const std::string& folder) const {
+    return nlohmann::json::parse(program_.text(folder + "/run.json"));
+  }
+
+  /// Fifteen frames of the room, of which the tenth colour image is cut short.
+  void record_with_a_damaged_image() {
+    const Outcome outcome = program_.run({"simulate", "--output", "recording", "--duration", "0.5"});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+    std::vector<fs::path> images;
+    for (const auto& entry : fs::directory_iterator(program_.path("recording/rgb"))) images.push_back(entry.path());
+    std::sort(images.begin(), images.end());
+    ASSERT_EQ(images.size(), 15U);
+    fs::resize_file(images[9], fs::file_size(images[9]) / 2);
+    damaged_ = images[9].filename().string();
+  }
+
+  test::Program program_;
+  std::string damaged_;
+};
+
+TEST_F(RunTest, WritesItsResults) {
+  const Outcome outcome = program_.run({"run", "room.yaml", "--output", "deep/out"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_EQ(outcome.errors, "");
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("coverage"), HasSubstr("ATE RMSE"), HasSubstr("median ms")));
+  for (const char* name : {"trajectory.txt", "keyframes.txt", "run.json", "report.html", "config.yaml",
+                           "evaluation.json", "trajectory.svg", "error.svg"})
+    EXPECT_GT(fs::file_size(program_.path(std::string("deep/out/") + name)), 20U) << name;
+  std::size_t files = 0;
+  for ([[maybe_unused]] const auto& entry : fs::directory_iterator(program_.path("deep/out"))) ++files;
+  EXPECT_EQ(files, 8U);  // nothing half-written is left
+
+  const nlohmann::json run = summary("deep/out");
+  EXPECT_EQ(run.at("frames").at("coverage"), 1.0);
+  EXPECT_EQ(run.at("frames").at("expected"), 15);
+  EXPECT_EQ(run.at("frames").at("poses"), 15);
+  EXPECT_EQ(run.at("frames").at("skipped"), 0);
+  EXPECT_EQ(run.at("interrupted"), false);
+  EXPECT_TRUE(run.at("failure").is_null());
+  EXPECT_LT(run.at("evaluation").at("ate_m").at("rmse"), 0.006);
+  const std::string trajectory = program_.text("deep/out/trajectory.txt");
+  EXPECT_EQ(lines(trajectory) - static_cast<std::size_t>(trajectory.find('#') == 0 ? 1 : 0), 15U);
+  const std::string report = program_.text("deep/out/report.html");
+  EXPECT_THAT(report, AllOf(HasSubstr("<svg"), HasSubstr("ATE RMSE"), HasSubstr("local map"), HasSubstr("</html>")));
+}
+
+TEST_F(RunTest, GivesTheSameBytesAgainAndFromItsOwnConfiguration) {
+  ASSERT_EQ(program_.run({"run", "room.yaml", "--set", "run.seed=5", "--output", "a", "--quiet"}).exit_code, 0);
+  const Outcome quiet = program_.run({"run", "room.yaml", "--set", "run.seed=5", "--output", "b", "--quiet"});
+  ASSERT_EQ(quiet.exit_code, 0);
+  EXPECT_EQ(quiet.output + quiet.errors, "");
+  ASSERT_EQ(program_.run({"run", "a/config.yaml", "--output", "c"}).exit_code, 0);
+  ASSERT_EQ(program_.run({"run", "room.yaml", "--set", "run.seed=6", "--output", "d"}).exit_code, 0);
+  const std::string first = program_.text("a/trajectory.txt");
+  EXPECT_GT(first.size(), 500U);
+  EXPECT_EQ(program_.text("b/trajectory.txt"), first);
+  EXPECT_EQ(program_.text("c/trajectory.txt"), first);
+  EXPECT_NE(program_.text("d/trajectory.txt"), first);
+  EXPECT_EQ(program_.text("b/keyframes.txt"), program_.text("a/keyframes.txt"));
+}
+
+TEST_F(RunTest, LeavesEarlierResultsAlone) {
+  fs::create_directory(program_.path("out"));
+  program_.write("out/trajectory.txt", "precious");
+  program_.write("out/notes.txt", "mine");
+  const Outcome refused = program_.run({"run", "room.yaml", "--output", "out"});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.errors, AllOf(HasSubstr("out: the output folder is not empty"), HasSubstr("--overwrite")));
+  EXPECT_EQ(program_.text("out/trajectory.txt"), "precious");
+  EXPECT_FALSE(fs::exists(program_.path("out/config.yaml")));
+  ASSERT_EQ(program_.run({"run", "room.yaml", "--output", "out", "--overwrite"}).exit_code, 0);
+  EXPECT_NE(program_.text("out/trajectory.txt"), "precious");
+  EXPECT_EQ(program_.text("out/notes.txt"), "mine");
+}
+
+TEST_F(RunTest, SwapsTheFeatures) {
+  const Outcome outcome = program_.run({"run", "room.yaml", "--set", "features=opencv_orb", "--output", "out"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_EQ(summary("out").at("frames").at("coverage"), 1.0);
+  EXPECT_THAT(program_.text("out/config.yaml"), HasSubstr("\nfeatures:\n  opencv_orb:\n"));
+}
+
+TEST_F(RunTest, KeepsWhatWasDoneBeforeADamagedImage) {
+  record_with_a_damaged_image();
+  const Outcome outcome = program_.run({"run", "recording.yaml", "--output", "out"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.errors, AllOf(HasSubstr("error: "), HasSubstr(damaged_)));
+  const nlohmann::json run = summary("out");
+  EXPECT_EQ(run.at("frames").at("poses"), 9);
+  EXPECT_EQ(run.at("frames").at("expected"), 15);
+  EXPECT_NEAR(run.at("frames").at("coverage"), 9.0 / 15.0, 1e-12);
+  EXPECT_EQ(run.at("evaluation").at("coverage").at("frames"), 15);  // those that never came are missing, too
+  EXPECT_EQ(run.at("evaluation").at("coverage").at("poses"), 9);
+  EXPECT_EQ(run.at("evaluation").at("coverage").at("longest_gap_frames"), 6);
+  EXPECT_THAT(run.at("failure").get<std::string>(), HasSubstr(damaged_));
+  EXPECT_THAT(program_.text("out/report.html"), HasSubstr("ended before its time"));
+  EXPECT_GT(program_.text("out/trajectory.txt").size(), 300U);
+}
+
+TEST_F(RunTest, SkipsDamagedImagesWhereAllowed) {
+  record_with_a_damaged_image();
+  const Outcome outcome =
+      program_.run({"run", "recording.yaml", "--set", "source.tum.on_bad_frame=skip", "--output", "out"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output, HasSubstr("1 skipped"));
+  const nlohmann::json run = summary("out");
+  EXPECT_EQ(run.at("frames").at("skipped"), 1);
+  EXPECT_EQ(run.at("frames").at("poses"), 14);
+  EXPECT_NEAR(run.at("frames").at("coverage"), 14.0 / 15.0, 1e-12);
+  EXPECT_EQ(run.at("evaluation").at("coverage").at("frames"), 15);
+  EXPECT_EQ(run.at("evaluation").at("coverage").at("poses"), 14);
+  EXPECT_EQ(run.at("evaluation").at("coverage").at("longest_gap_frames"), 1);
+  ASSERT_EQ(run.at("skipped_frames").size(), 1U);
+  EXPECT_EQ(run.at("skipped_frames").at(0).at("index"), 9);
+  EXPECT_THAT(run.at("skipped_frames").at(0).at("reason").get<std::string>(), HasSubstr(damaged_));
+}
+
+TEST_F(RunTest, KeepsWhatWasDoneWhenInterrupted) {
+  const pid_t process =
+      program_.start({"run", "room.yaml", "--set", "source.simulated.duration=600", "--output", "out"});
+  for (int i = 0; i < 3000 && !fs::exists(program_.path("out/config.yaml")); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  std::this_thread::sleep_for(std::chrono::seconds(3));
+  kill(process, SIGINT);
+  const Outcome outcome = program_.finish(process);
+  EXPECT_EQ(outcome.exit_code, 130) << outcome.errors;
+  EXPECT_THAT(outcome.errors, HasSubstr("interrupted; what was done is in out"));
+  const nlohmann::json run = summary("out");
+  EXPECT_EQ(run.at("interrupted"), true);
+  EXPECT_EQ(run.at("frames").at("expected"), 18000);
+  const std::size_t poses = run.at("frames").at("poses");
+  EXPECT_GT(poses, 0U);
+  EXPECT_LT(poses, 18000U);
+  EXPECT_GE(lines(program_.text("out/trajectory.txt")), poses);
+}
+
+TEST_F(RunTest, FailsWhenNothingCanBeSeen) {
+  // A camera for which no feature exists: the run ends, and says why it is no success.
+  const Outcome outcome =
+      program_.run({"run", "room.yaml", "--set", "tracking.minimum_start_points=5000", "--output", "out"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.errors, HasSubstr("error: no frame got a pose"));
+  EXPECT_EQ(summary("out").at("frames").at("coverage"), 0.0);
+}
+
+}  // namespace
+}  // namespace holdfast

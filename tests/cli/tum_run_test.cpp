@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/program.hpp"
+
+namespace holdfast {
+namespace {
+
+TEST(TumRun, TracksFr1XyzAsWellAsOthersAndTwiceTheSame) {
+  const char* data = std::getenv("HOLDFAST_DATA");
+  if (data == nullptr) GTEST_SKIP() << "HOLDFAST_DATA does not name the folder with tum_fr1_xyz";
+  const test::Program program;
+  const auto run = [&](const std::string& output) {
+    return program.run({"run", std::string(HOLDFAST_EXAMPLE_CONFIGURATIONS) + "/rgbd.yaml", "--set",
+                        std::string("source.tum.path=") + data + "/tum_fr1_xyz", "--output", output, "--quiet"});
+  };
+  const test::Outcome first = run("a");
+  ASSERT_EQ(first.exit_code, 0) << first.errors;
+  const auto summary = nlohmann::json::parse(program.text("a/run.json"));
+  EXPECT_EQ(summary.at("frames").at("expected"), 792);  // colour-depth pairs of the recording
+  EXPECT_GE(summary.at("frames").at("coverage"), 0.99);
+  // ORB-SLAM2 reaches 0.0095 to 0.0097 m.
+  EXPECT_LE(summary.at("evaluation").at("ate_m").at("rmse"), 0.0105);
+  ASSERT_EQ(run("b").exit_code, 0);
+  EXPECT_EQ(program.text("a/trajectory.txt"), program.text("b/trajectory.txt"));
+}
+
+}  // namespace
+}  // namespace holdfast
