@@ -151,7 +151,11 @@ ConfigurationNode parse_yaml(const std::string& text, const std::string& file_na
 ConfigurationNode read_yaml(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream || std::filesystem::is_directory(file))
-    throw ConfigurationError(SourceLocation{file.string()}, "cannot be read; expected a configuration in YAML");
+    throw ConfigurationError(SourceLocation{file.string()},
+                             std::string(!std::filesystem::exists(file)        ? "there is no such file"
+                                         : std::filesystem::is_directory(file) ? "is a folder"
+                                                                               : "cannot be read") +
+                                 "; expected a configuration in YAML");
   const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   return parse_yaml(text, file.string(), std::filesystem::absolute(file).parent_path());
 }

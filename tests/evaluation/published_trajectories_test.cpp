@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <ostream>
+
 #include <cstdlib>
 
 #include "holdfast/evaluation/evaluation.hpp"
@@ -22,6 +24,8 @@ struct Expected {
   std::size_t pairs;
   double rmse, mean, median, maximum;              // ATE [m]
   double relative_translation, relative_rotation;  // RPE per second, RMSE [m], [deg]
+
+  friend void PrintTo(const Expected& expected, std::ostream* stream) { *stream << expected.estimate; }
 };
 
 class PublishedTrajectory : public ::testing::TestWithParam<Expected> {};

@@ -73,7 +73,8 @@ TEST_F(LocalMapperTest, PointsSeenTwiceBecomeOne) {
   EXPECT_GT(mapper->counts().points_fused, first / 3);
   EXPECT_LT(map.points().size(), first * 12 / 10);
   std::size_t seen_twice = 0;
-  map.points().for_each([&](MapPointId, const MapPoint& point) { seen_twice += point.observations.size() == 2 ? 1 : 0; });
+  map.points().for_each(
+      [&](MapPointId, const MapPoint& point) { seen_twice += point.observations.size() == 2 ? 1 : 0; });
   EXPECT_GT(seen_twice, first * 8 / 10);
 }
 
