@@ -129,7 +129,7 @@ void run(const Arguments& arguments, int& exit_code) {
   record.peak_memory = peak_memory();
   write_run_results(arguments.output, record);
 
-  if (!arguments.quiet) std::fputs(run_summary_text(record).c_str(), stdout);
+  if (!arguments.quiet && record.summary.frames() > 0) std::fputs(run_summary_text(record).c_str(), stdout);
   if (!record.failure.empty())
     std::fprintf(stderr, "%s %s\n", red("error:", STDERR_FILENO).c_str(), record.failure.c_str());
   else if (record.was_interrupted)

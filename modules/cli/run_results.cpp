@@ -80,6 +80,7 @@ Json stage_json(const StageRow& row) {
 Json run_json(const RunRecord& record) {
   const RunSummary& s = record.summary;
   Json json = {{"holdfast", HOLDFAST_VERSION},
+               {"commit", HOLDFAST_COMMIT},
                {"configuration", record.configuration->file},
                {"seed", record.configuration->run.seed},
                {"mode", record.configuration->run.mode},

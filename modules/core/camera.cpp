@@ -55,8 +55,8 @@ void Camera::undistorted_bounds(Eigen::Vector2d& minimum, Eigen::Vector2d& maxim
 namespace {
 const std::array<Camera, 6>& known_cameras() {
   // TUM: https://cvg.cit.tum.de/data/datasets/rgbd-dataset/file_formats (colour camera of each freiburg setup).
-  // Bonn: https://www.ipb.uni-bonn.de/data/rgbd-dynamic-dataset (colour camera). ICL-NUIM: Handa et al., ICRA 2014; its
-  // images have y pointing up, hence the negative fy of the published matrix, positive here for flipped-back frames.
+  // Bonn: https://www.ipb.uni-bonn.de/data/rgbd-dynamic-dataset (colour camera). ICL-NUIM: Handa et al., ICRA 2014, who
+  // give fy as -480 because the y axis of their renderer points up; here y points down.
   static const std::array<Camera, 6> cameras = {{
       {"bonn",
        640,

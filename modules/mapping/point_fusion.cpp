@@ -4,14 +4,13 @@
 
 #include "holdfast/core/hamming.hpp"
 #include "holdfast/mapping/local_mapper.hpp"
+#include "reprojection.hpp"
 
 namespace holdfast {
 
 namespace {
-constexpr double chi_square_two = 5.991;    // 95 %, two residuals
-constexpr double chi_square_three = 7.815;  // 95 %, three residuals
-constexpr int maximum_distance = 50;        // bits
-constexpr float window = 3.0F;              // px at level 0
+constexpr int maximum_distance = 50;  // bits
+constexpr float window = 3.0F;        // px at level 0
 }  // namespace
 
 void LocalMapper::fuse_with_neighbours(KeyFrameId id) {
@@ -68,7 +67,7 @@ void LocalMapper::fuse_into(KeyFrameId target, const std::vector<MapPointId>& po
     const double distance = ray.norm();
     if (distance < 0.8 * point->minimum_distance || distance > 1.2 * point->maximum_distance) continue;
     if (ray.dot(point->viewing_direction) < 0.5 * distance) continue;
-    const float right_x = static_cast<float>(camera.right_x(pixel.x(), in_camera.z()));
+    const double right_x = camera.right_x(pixel.x(), in_camera.z());
     const int level = pyramid.predict_level(point->maximum_distance, distance);
 
     candidates.clear();
@@ -76,14 +75,7 @@ void LocalMapper::fuse_into(KeyFrameId target, const std::vector<MapPointId>& po
     std::erase_if(candidates, [&](std::uint32_t feature) {
       const int octave = frame.features.octave[feature];
       if (octave < level - 1 || octave > level) return true;
-      const double dx = frame.x[feature] - x, dy = frame.y[feature] - y;
-      double error = dx * dx + dy * dy, limit = chi_square_two;
-      if (frame.has_depth(feature)) {
-        const double dr = frame.right_x[feature] - right_x;
-        error += dr * dr;
-        limit = chi_square_three;
-      }
-      return error * pyramid.inverse_sigma2[static_cast<std::size_t>(octave)] > limit;
+      return !reprojects_onto(frame, feature, pixel, right_x);
     });
     const NearestDescriptors nearest =
         nearest_descriptors(point->descriptor, frame.features.descriptors.data(), candidates);

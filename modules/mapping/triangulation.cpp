@@ -6,13 +6,12 @@
 #include "holdfast/core/hamming.hpp"
 #include "holdfast/geometry/triangulation.hpp"
 #include "holdfast/mapping/local_mapper.hpp"
+#include "reprojection.hpp"
 
 namespace holdfast {
 
 namespace {
 
-constexpr double chi_square_two = 5.991;
-constexpr double chi_square_three = 7.815;
 constexpr int maximum_distance = 50;  // bits
 constexpr double smallest_parallax_cosine = 0.9998;
 
@@ -21,18 +20,12 @@ Eigen::Vector3d ray_of(const Frame& frame, std::uint32_t feature) {
   return frame.camera->back_project(frame.x[feature], frame.y[feature], 1.0);
 }
 
-/// Whether a point in the camera frame projects onto a feature (chi-square 95 %).
+/// Whether a point in the camera frame projects onto a feature.
 bool agrees(const Frame& frame, std::uint32_t feature, const Eigen::Vector3d& in_camera) {
-  if (in_camera.z() <= 0.05) return false;
+  constexpr double nearest = 0.05;  // m
+  if (in_camera.z() <= nearest) return false;
   const Eigen::Vector2d pixel = frame.camera->project(in_camera);
-  const double dx = pixel.x() - frame.x[feature], dy = pixel.y() - frame.y[feature];
-  double error = dx * dx + dy * dy, limit = chi_square_two;
-  if (frame.has_depth(feature)) {
-    const double dr = frame.camera->right_x(pixel.x(), in_camera.z()) - frame.right_x[feature];
-    error += dr * dr;
-    limit = chi_square_three;
-  }
-  return error * frame.pyramid->inverse_sigma2[frame.features.octave[feature]] <= limit;
+  return reprojects_onto(frame, feature, pixel, frame.camera->right_x(pixel.x(), in_camera.z()));
 }
 
 std::vector<std::uint32_t> free_features(const Frame& frame) {
