@@ -8,6 +8,7 @@
 #include "holdfast/geometry/alignment.hpp"
 #include "holdfast/geometry/pose_adjustment.hpp"
 #include "holdfast/geometry/ransac.hpp"
+#include "pose_system.hpp"
 
 namespace holdfast::geometry {
 namespace {
@@ -93,12 +94,7 @@ std::vector<Eigen::Isometry3d> solve_p3p(const std::array<Eigen::Vector3d, 3>& p
 
 PoseSummary find_pose(PoseProblem& problem, const PnpOptions& options) {
   const std::size_t size = problem.size();
-  HOLDFAST_CHECK(problem.camera != nullptr, "a pose problem needs a camera");
-  HOLDFAST_CHECK(problem.x.size() == size && problem.y.size() == size && problem.right_x.size() == size &&
-                     problem.inverse_sigma2.size() == size && problem.weight.size() == size,
-                 "points " << size << " x " << problem.x.size() << " y " << problem.y.size() << " right_x "
-                           << problem.right_x.size() << " inverse_sigma2 " << problem.inverse_sigma2.size()
-                           << " weight " << problem.weight.size());
+  check_pose_problem(problem);
   problem.inlier.assign(size, 0);
   std::vector<std::uint32_t> usable;
   for (std::size_t i = 0; i < size; ++i)

@@ -105,12 +105,7 @@ bool invert(const Matrix6d& hessian, Matrix6d& covariance) {
 
 PoseSummary adjust_pose(PoseProblem& problem, const PoseAdjustmentOptions& options) {
   const std::size_t size = problem.size();
-  HOLDFAST_CHECK(problem.camera != nullptr, "a pose problem needs a camera");
-  HOLDFAST_CHECK(problem.x.size() == size && problem.y.size() == size && problem.right_x.size() == size &&
-                     problem.inverse_sigma2.size() == size && problem.weight.size() == size,
-                 "points " << size << " x " << problem.x.size() << " y " << problem.y.size() << " right_x "
-                           << problem.right_x.size() << " inverse_sigma2 " << problem.inverse_sigma2.size()
-                           << " weight " << problem.weight.size());
+  check_pose_problem(problem);
   thread_local std::vector<ObservationBatch> batches;  // reused, so that tracking does not allocate per frame
   PoseSummary summary;
   problem.inlier.assign(size, 0);

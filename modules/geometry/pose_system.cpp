@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "holdfast/core/error.hpp"
 #include "holdfast/core/simd.hpp"
 #include "holdfast/geometry/pose_adjustment.hpp"
 
@@ -128,6 +129,16 @@ void accumulate_baseline(const std::vector<ObservationBatch>& batches, const Pos
 double sum(const Batch& batch) { return (batch[0] + batch[1]) + (batch[2] + batch[3]); }
 
 }  // namespace
+
+void check_pose_problem(const PoseProblem& problem) {
+  const std::size_t size = problem.size();
+  HOLDFAST_CHECK(problem.camera != nullptr, "a pose problem needs a camera");
+  HOLDFAST_CHECK(problem.x.size() == size && problem.y.size() == size && problem.right_x.size() == size &&
+                     problem.inverse_sigma2.size() == size && problem.weight.size() == size,
+                 "points " << size << " x " << problem.x.size() << " y " << problem.y.size() << " right_x "
+                           << problem.right_x.size() << " inverse_sigma2 " << problem.inverse_sigma2.size()
+                           << " weight " << problem.weight.size());
+}
 
 PoseView::PoseView(const Camera& camera, const Eigen::Isometry3d& T_camera_world)
     : fx(camera.fx), fy(camera.fy), cx(camera.cx), cy(camera.cy), fx_baseline(camera.fx * camera.baseline) {

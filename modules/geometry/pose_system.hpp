@@ -7,6 +7,7 @@
 
 #include "holdfast/core/camera.hpp"
 #include "holdfast/geometry/se3.hpp"
+#include "holdfast/interfaces/optimizer.hpp"
 
 namespace holdfast::geometry {
 
@@ -33,6 +34,9 @@ struct PoseSystem {
   Vector6d gradient;
   double cost = 0.0;  ///< half the weighted sum of (robust) squared residuals
 };
+
+/// Throws CheckError unless there is a camera and every array of the observations has one entry a point.
+void check_pose_problem(const PoseProblem& problem);
 
 /// What the kernels need of camera and pose.
 struct PoseView {

@@ -7,13 +7,6 @@
 
 namespace holdfast {
 
-void LocalMap::clear() {
-  map_version_ = ~std::uint64_t{0};
-  reference_keyframe_ = KeyFrameId();
-  keyframes_.clear();
-  points_.clear();
-}
-
 void LocalMap::update(Map& map, const Frame& frame, std::uint64_t map_version) {
   const KeyFrameId previous_reference = reference_keyframe_;
   const bool voted = vote(map, frame);

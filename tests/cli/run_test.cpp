@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -89,6 +90,18 @@ TEST_F(RunTest, GivesTheSameBytesAgainAndFromItsOwnConfiguration) {
   EXPECT_EQ(program_.text("c/trajectory.txt"), first);
   EXPECT_NE(program_.text("d/trajectory.txt"), first);
   EXPECT_EQ(program_.text("b/keyframes.txt"), program_.text("a/keyframes.txt"));
+}
+
+TEST_F(RunTest, GivesTheSameBytesAtEverySimdLevel) {
+  for (const char* level : {"scalar", "sse4", "avx2"}) {
+    ASSERT_EQ(setenv("HOLDFAST_SIMD", level, 1), 0);
+    const Outcome outcome = program_.run({"run", "room.yaml", "--output", level, "--quiet"});
+    ASSERT_EQ(unsetenv("HOLDFAST_SIMD"), 0);
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  }
+  EXPECT_EQ(summary("scalar").at("machine").at("simd"), "scalar");
+  EXPECT_EQ(program_.text("scalar/trajectory.txt"), program_.text("avx2/trajectory.txt"));
+  EXPECT_EQ(program_.text("sse4/trajectory.txt"), program_.text("avx2/trajectory.txt"));
 }
 
 TEST_F(RunTest, LeavesEarlierResultsAlone) {

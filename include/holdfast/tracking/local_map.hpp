@@ -34,7 +34,6 @@ class LocalMap {
   const std::vector<KeyFrameId>& keyframes() const { return keyframes_; }
   const std::vector<MapPointId>& points() const { return points_; }
   const std::vector<Descriptor>& descriptors() const { return descriptors_; }
-  void clear();
 
  private:
   bool vote(const Map& map, const Frame& frame);

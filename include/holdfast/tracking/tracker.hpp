@@ -38,8 +38,6 @@ class Tracker {
 
   /// The frame last tracked, as features, matches and pose.
   const Frame& frame() const { return current_; }
-  /// Whether tracking runs against a map.
-  bool has_map() const { return state_ != State::waiting; }
   /// The keyframe that the tracked frame became, after local mapping had its turn: its matches and its pose are taken
   /// over.
   void keyframe_added(KeyFrameId keyframe);
