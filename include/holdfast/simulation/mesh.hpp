@@ -31,12 +31,19 @@ struct TextureArea {
   float width = 1.0F, height = 1.0F;
 };
 
+/// Which bones carry a vertex, and how much of it (linear blend skinning). The weights sum to 1; unused ones are 0.
+struct BoneWeights {
+  std::array<std::uint8_t, 4> bones{};
+  std::array<float, 4> weights = {1.0F, 0.0F, 0.0F, 0.0F};
+};
+
 /// Textured triangles, and boxes that stand for them when light is traced.
 struct Mesh {
   std::vector<Vertex> vertices;
   std::vector<Triangle> triangles;
   std::vector<Eigen::AlignedBox3f> solids;
   std::uint32_t surface_count = 0;
+  std::vector<BoneWeights> skin;  ///< by vertex, for a mesh that bends; empty = rigid
 };
 
 /// The sides of a box, in the order in which add_box takes their textures. The box stands with z up and is looked at
