@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <opencv2/core/types.hpp>
+#include <string>
+#include <vector>
+
+#include "holdfast/core/random.hpp"
+#include "holdfast/simulation/pictures.hpp"
+#include "holdfast/simulation/skeleton.hpp"
+#include "holdfast/simulation/world.hpp"
+
+namespace holdfast::simulation {
+
+enum class HairStyle { bald, cropped, parted, curly, shoulder_length, bun };
+enum class Top { t_shirt, shirt, pullover, jacket };
+enum class Bottom { trousers, shorts, skirt };
+
+/// What somebody looks like besides how he is built. Colours are blue green red, 0 to 255, in full light.
+struct PersonLook {
+  double figure = 0.0;  ///< of the trunk: 0 like most men's, 1 like most women's
+  cv::Scalar skin;
+  HairStyle hair_style = HairStyle::cropped;
+  cv::Scalar hair;
+  bool beard = false, glasses = false;
+
+  Top top = Top::t_shirt;
+  pictures::Cloth top_cloth;
+  bool long_sleeves = false, tucked_in = false;
+  pictures::Cloth under_jacket;
+
+  Bottom bottom = Bottom::trousers;
+  pictures::Cloth bottom_cloth;
+  cv::Scalar shoes, soles;
+};
+
+/// Any of many: two draws seldom resemble one another.
+PersonLook random_look(Random random);
+
+/// Makes a person of class "person" in the rest posture (Skeleton::standing()) in the person's frame, and adds his
+/// textures to the world, but not him. The mesh bends with its Mesh::skin, indexed by Bone. It has no solids and casts
+/// no shadows when light is baked.
+Object make_person(World& world, const std::string& name, const Skeleton& skeleton, const PersonLook& look,
+                   Random random);
+
+/// What carries a vertex of a person from the rest posture to another, in the person's frame, by Bone:
+/// T_person_bone(posture) T_person_bone(standing)^-1.
+std::vector<Eigen::Isometry3f> skin_transforms(const Skeleton& skeleton, const Posture& posture);
+
+}  // namespace holdfast::simulation

@@ -1,0 +1,578 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "holdfast/simulation/noise.hpp"
+#include "holdfast/simulation/pictures.hpp"
+#include "pictures_folds.hpp"
+
+namespace holdfast::simulation::pictures {
+
+namespace {
+using Weave = Cloth::Weave;
+
+double brightness(const cv::Scalar& colour) { return 0.114 * colour[0] + 0.587 * colour[1] + 0.299 * colour[2]; }
+
+cv::Scalar darker(const cv::Scalar& colour, double factor = 0.55) { return colour * factor; }
+
+// Grain of the yarn, and unevenness of dye and wear.
+void add_grain(cv::Mat& picture, double texels, float strength, const Random& random) {
+  Shade shade(picture.size());
+  const auto scale = static_cast<float>(texels);
+  shade.uneven(0.10F * scale, 0.10F * scale, 0.05F, 3, random.fork(1));
+  shade.uneven(2.5F, 2.5F, strength, 1, random.fork(2));
+  shade.apply(picture);
+}
+
+// How much of the second colour a band pattern has at each place: threads of several widths that repeat.
+std::vector<float> bands(int length, double period, Random random) {
+  struct Band {
+    double begin, end;
+    float amount;
+  };
+  std::vector<Band> sett;
+  const double wide = random.uniform(0.25, 0.45);
+  sett.push_back({0.0, wide, static_cast<float>(random.uniform(0.7, 1.0))});
+  for (int i = 0; i < 3; ++i) {
+    const double begin = random.uniform(wide, 0.92);
+    sett.push_back({begin, begin + random.uniform(0.03, 0.10), static_cast<float>(random.uniform(-0.5, 1.0))});
+  }
+  const double phase = random.uniform();
+  std::vector<float> result(static_cast<std::size_t>(length), 0.0F);
+  for (int i = 0; i < length; ++i) {
+    const double position = std::fmod(i / period + phase, 1.0);
+    for (const Band& band : sett)
+      if (position >= band.begin && position < band.end) result[i] = band.amount;
+  }
+  return result;
+}
+
+void weave_plaid(cv::Mat& picture, const Cloth& cloth, double texels, const Random& random) {
+  const double period = 0.085 * cloth.scale * texels;
+  const std::vector<float> across = bands(picture.cols, period, random.fork(1));
+  const std::vector<float> down = bands(picture.rows, period, random.fork(2));
+  NoiseField drift(picture.cols, picture.rows);  // cloth never hangs straight
+  add_value_noise(drift, 0.16F * static_cast<float>(texels), 0.16F * static_cast<float>(texels),
+                  0.012F * static_cast<float>(texels), random.fork(3));
+  for (int y = 0; y < picture.rows; ++y) {
+    auto* out = picture.ptr<std::uint8_t>(y);
+    for (int x = 0; x < picture.cols; ++x, out += 3) {
+      const int shift = static_cast<int>(drift.row(y)[x]);
+      const float amount = 0.5F * (across[std::clamp(x + shift, 0, picture.cols - 1)] +
+                                   down[std::clamp(y + shift, 0, picture.rows - 1)]);
+      for (int channel = 0; channel < 3; ++channel) {
+        const auto ground = static_cast<float>(cloth.colour[channel]);
+        const float thread = amount >= 0.0F ? static_cast<float>(cloth.second[channel]) : 0.15F * ground;
+        out[channel] = cv::saturate_cast<std::uint8_t>(ground + std::abs(amount) * (thread - ground));
+      }
+    }
+  }
+}
+
+void weave_stripes(cv::Mat& picture, const Cloth& cloth, double texels, Random random) {
+  const double period = random.uniform(0.025, 0.065) * cloth.scale * texels, share = random.uniform(0.3, 0.55);
+  NoiseField drift(picture.cols, 1);
+  add_value_noise(drift, 0.10F * static_cast<float>(texels), 1.0F, 0.010F * static_cast<float>(texels), random.fork(3));
+  for (int x = 0; x < picture.cols; ++x)
+    for (int y = 0; y < picture.rows; ++y) {
+      const double position = (y + drift.row(0)[x]) / period + 100.0;
+      if (position - std::floor(position) < share)
+        for (int channel = 0; channel < 3; ++channel)
+          picture.at<cv::Vec3b>(y, x)[channel] = cv::saturate_cast<std::uint8_t>(cloth.second[channel]);
+    }
+}
+
+void print_dots(cv::Mat& picture, const Cloth& cloth, double texels, Random random) {
+  const double step = random.uniform(0.022, 0.04) * cloth.scale * texels, radius = step * random.uniform(0.16, 0.27);
+  int row = 0;
+  for (double y = 0.3 * step; y < picture.rows; y += 0.85 * step, ++row)
+    for (double x = (row % 2) * 0.5 * step; x < picture.cols; x += step)
+      cv::circle(picture,
+                 {static_cast<int>(16 * (x + random.uniform(-0.06, 0.06) * step)),
+                  static_cast<int>(16 * (y + random.uniform(-0.06, 0.06) * step))},
+                 static_cast<int>(16 * radius), cloth.second, cv::FILLED, cv::LINE_AA, 4);
+}
+
+void print_flowers(cv::Mat& picture, const Cloth& cloth, double texels, Random random) {
+  const int count = static_cast<int>(picture.total() / (0.0016 * cloth.scale * texels * texels));
+  for (int i = 0; i < count; ++i) {
+    const cv::Point2d centre(random.uniform(0, picture.cols), random.uniform(0, picture.rows));
+    const double size = 0.012 * texels * random.uniform(0.6, 1.3);
+    const cv::Scalar petal =
+        mix(cloth.second, {random.uniform(40, 240), random.uniform(40, 240), random.uniform(90, 250)}, 0.45);
+    const double turned = random.uniform(0, 1.2);
+    for (int k = 0; k < 5; ++k) {
+      const double angle = turned + 1.2566 * k;
+      cv::circle(picture,
+                 {static_cast<int>(16 * (centre.x + size * std::cos(angle))),
+                  static_cast<int>(16 * (centre.y + size * std::sin(angle)))},
+                 static_cast<int>(16 * 0.62 * size), petal, cv::FILLED, cv::LINE_AA, 4);
+    }
+    cv::circle(picture, {static_cast<int>(16 * centre.x), static_cast<int>(16 * centre.y)}, static_cast<int>(8 * size),
+               darker(cloth.colour, 0.4), cv::FILLED, cv::LINE_AA, 4);
+  }
+}
+
+void knit(cv::Mat& picture, const Cloth& cloth, double texels, const Random& random) {
+  const double stitch = 0.009 * cloth.scale * texels;
+  NoiseField mottle(picture.cols, picture.rows);
+  add_fractal_noise(mottle, 0.014F * static_cast<float>(texels), 0.014F * static_cast<float>(texels), 0.14F, 2, 0.8F,
+                    random);
+  for (int y = 0; y < picture.rows; ++y) {
+    auto* out = picture.ptr<std::uint8_t>(y);
+    for (int x = 0; x < picture.cols; ++x) {
+      const double column = x / stitch, in_column = column - std::floor(column);
+      // Chevrons in columns, with cables between.
+      const double chevron = std::sin(6.2832 * (y / stitch + std::abs(in_column - 0.5)));
+      const double rib = std::fmod(column, 6.0) < 1.0 ? -0.30 : 0.0;
+      const double factor = 1.0 + 0.10 * chevron + rib + mottle.row(y)[x];
+      for (int channel = 0; channel < 3; ++channel, ++out) *out = cv::saturate_cast<std::uint8_t>(*out * factor);
+    }
+  }
+}
+
+void twill(cv::Mat& picture, double texels, const Random& random) {
+  NoiseField wear(picture.cols, picture.rows);
+  add_fractal_noise(wear, 0.05F * static_cast<float>(texels), 0.12F * static_cast<float>(texels), 0.10F, 4, 0.75F,
+                    random.fork(1));
+  add_value_noise(wear, 2.0F, 9.0F, 0.16F, random.fork(2));
+  add_value_noise(wear, 5.0F, 2.5F, 0.09F, random.fork(3));
+  for (int y = 0; y < picture.rows; ++y) {
+    auto* out = picture.ptr<std::uint8_t>(y);
+    for (int x = 0; x < picture.cols * 3; ++x, ++out) {
+      const float value = wear.row(y)[x / 3];
+      *out = cv::saturate_cast<std::uint8_t>(static_cast<float>(*out) * (1.0F + value) + 14.0F * value);
+    }
+  }
+}
+
+cv::Mat cloth_ground(cv::Size size, const Cloth& cloth, double texels, const Random& random) {
+  cv::Mat picture(size, CV_8UC3, cloth.colour);
+  switch (cloth.weave) {
+    case Weave::plaid:
+      weave_plaid(picture, cloth, texels, random.fork(11));
+      break;
+    case Weave::striped:
+      weave_stripes(picture, cloth, texels, random.fork(11));
+      break;
+    case Weave::dotted:
+      print_dots(picture, cloth, texels, random.fork(11));
+      break;
+    case Weave::flowered:
+      print_flowers(picture, cloth, texels, random.fork(11));
+      break;
+    case Weave::knitted:
+      knit(picture, cloth, texels, random.fork(11));
+      break;
+    case Weave::denim:
+      twill(picture, texels, random.fork(11));
+      break;
+    case Weave::plain:
+    case Weave::printed:
+      break;
+  }
+  add_grain(picture, texels, 0.06F, random.fork(12));
+  return picture;
+}
+
+// A row of stitches.
+void stitch(cv::Mat& picture, cv::Point2d from, cv::Point2d to, const cv::Scalar& colour, double texels) {
+  const cv::Point2d way = to - from;
+  const double length = std::sqrt(way.x * way.x + way.y * way.y), step = 0.0060 * texels;
+  for (double s = 0.0; s + 0.6 * step < length; s += step) {
+    const cv::Point2d a = from + way * (s / length), b = from + way * ((s + 0.62 * step) / length);
+    cv::line(picture, {static_cast<int>(16 * a.x), static_cast<int>(16 * a.y)},
+             {static_cast<int>(16 * b.x), static_cast<int>(16 * b.y)}, colour, 1, cv::LINE_AA, 4);
+  }
+}
+
+void seam_line(cv::Mat& picture, cv::Point2d from, cv::Point2d to, const cv::Scalar& cloth, double texels) {
+  cv::line(picture, from, to, darker(cloth), std::max(1, static_cast<int>(0.0045 * texels)), cv::LINE_AA);
+  const cv::Point2d aside = std::abs(to.x - from.x) > std::abs(to.y - from.y) ? cv::Point2d(0, 0.009 * texels)
+                                                                              : cv::Point2d(0.009 * texels, 0);
+  stitch(picture, from + aside, to + aside,
+         mix(cloth, brightness(cloth) > 90 ? cv::Scalar::all(30) : cv::Scalar(150, 185, 200), 0.5), texels);
+}
+
+void patch_pocket(cv::Mat& picture, const cv::Rect2d& area, const cv::Scalar& cloth, double texels, bool buttoned) {
+  Shade shade(picture.size());
+  shade.spot(cv::Point2d(area.x + 0.5 * area.width, area.y + area.height), static_cast<float>(0.7 * area.width),
+             static_cast<float>(0.02 * texels), 0.25F);
+  shade.apply(picture);
+  const cv::Point2d corners[] = {{area.x, area.y},
+                                 {area.x + area.width, area.y},
+                                 {area.x + area.width, area.y + 0.86 * area.height},
+                                 {area.x + 0.5 * area.width, area.y + area.height},
+                                 {area.x, area.y + 0.86 * area.height}};
+  for (int i = 0; i < 5; ++i) {
+    cv::line(picture, corners[i], corners[(i + 1) % 5], darker(cloth, 0.5),
+             std::max(1, static_cast<int>(0.004 * texels)), cv::LINE_AA);
+  }
+  seam_line(picture, corners[0] + cv::Point2d(0, 0.016 * texels), corners[1] + cv::Point2d(0, 0.016 * texels), cloth,
+            texels);
+  if (buttoned)
+    cv::circle(picture, cv::Point2d(area.x + 0.5 * area.width, area.y + 0.02 * texels),
+               static_cast<int>(0.006 * texels) + 1,
+               brightness(cloth) > 100 ? cv::Scalar::all(60) : cv::Scalar::all(210), cv::FILLED, cv::LINE_AA);
+}
+
+void buttons(cv::Mat& picture, double x, double from, double to, const cv::Scalar& cloth, double texels) {
+  const double half = 0.016 * texels;
+  cv::line(picture, cv::Point2d(x + half, from), cv::Point2d(x + half, to), darker(cloth, 0.45),
+           std::max(1, static_cast<int>(0.005 * texels)), cv::LINE_AA);
+  stitch(picture, {x - half, from}, {x - half, to}, darker(cloth, 0.6), texels);
+  const cv::Scalar button = brightness(cloth) > 110 ? cv::Scalar(70, 75, 80) : cv::Scalar(210, 220, 225);
+  for (double y = from + 0.035 * texels; y < to; y += 0.085 * texels) {
+    const cv::Point2d centre(x, y);
+    cv::circle(picture, centre + cv::Point2d(1, 1), static_cast<int>(0.0065 * texels) + 1, darker(cloth, 0.4),
+               cv::FILLED, cv::LINE_AA);
+    cv::circle(picture, centre, static_cast<int>(0.0058 * texels) + 1, button, cv::FILLED, cv::LINE_AA);
+  }
+}
+
+// A print: a badge or picture with words.
+void print_front(cv::Mat& picture, cv::Point2d centre, double width, const Cloth& cloth, Random random) {
+  const cv::Scalar ink = cloth.second;
+  const cv::Scalar other = mix(ink, {random.uniform(20, 240), random.uniform(20, 240), random.uniform(20, 240)}, 0.7);
+  const double kind = random.uniform();
+  const double height = kind < 0.35 ? 0.35 * width : width * random.uniform(0.7, 1.1);
+  const auto line_of_text = [&](double y, double letter) {
+    std::string text = word(random, true);
+    for (char& character : text) character = static_cast<char>(std::toupper(static_cast<unsigned char>(character)));
+    const double wide = cv::getTextSize(text, cv::FONT_HERSHEY_DUPLEX, 1.0, 1, nullptr).width;
+    const double scale = std::min(width / wide, letter / 21.0);
+    cv::putText(picture, text, cv::Point2d(centre.x - 0.5 * wide * scale, y), cv::FONT_HERSHEY_DUPLEX, scale, ink,
+                std::max(1, static_cast<int>(2.6 * scale)), cv::LINE_AA);
+  };
+  if (kind >= 0.35) {
+    if (kind < 0.65)
+      cv::ellipse(picture, centre, cv::Size2d(0.5 * width, 0.42 * height), 0, 0, 360, other, cv::FILLED, cv::LINE_AA);
+    else
+      cv::rectangle(picture, cv::Rect2d(centre.x - 0.5 * width, centre.y - 0.42 * height, width, 0.84 * height), other,
+                    cv::FILLED);
+    for (int i = 0; i < 22; ++i) {
+      const cv::Point2d spot =
+          centre + cv::Point2d(random.uniform(-0.36, 0.36) * width, random.uniform(-0.30, 0.30) * height);
+      const cv::Scalar paint = i % 3 == 0 ? cloth.colour : i % 3 == 1 ? ink : darker(other, random.uniform(0.3, 0.8));
+      if (i % 2 == 0)
+        cv::ellipse(picture, spot, cv::Size2d(width * random.uniform(0.02, 0.12), width * random.uniform(0.02, 0.08)),
+                    random.uniform(0, 180), 0, 360, paint, cv::FILLED, cv::LINE_AA);
+      else
+        cv::line(picture, spot,
+                 spot + cv::Point2d(random.uniform(-0.2, 0.2) * width, random.uniform(-0.2, 0.2) * height), paint,
+                 1 + static_cast<int>(0.015 * width), cv::LINE_AA);
+    }
+    line_of_text(centre.y + 0.56 * height, 0.16 * width);
+  }
+  if (kind < 0.65) line_of_text(centre.y + 0.10 * height, 0.30 * width);
+  if (kind < 0.35) line_of_text(centre.y + 0.42 * height, 0.18 * width);
+}
+}  // namespace
+
+cv::Mat shirt(cv::Size size, const Cloth& cloth, const ShirtCut& cut, double texels, Random random) {
+  cv::Mat picture = cloth_ground(size, cloth, texels, random.fork(1));
+  const double width = size.width, height = size.height, middle = 0.5 * width;
+  const double neckline = cut.neckline * height, shoulder = cut.shoulder * height, chest = cut.chest * height,
+               waist = cut.waist * height, hem = cut.hem * height;
+  Random own = random.fork(2);
+
+  if (cloth.weave == Weave::printed) {
+    print_front(picture, {middle, chest + 0.03 * texels}, 0.24 * texels * own.uniform(0.7, 1.1), cloth, own.fork(1));
+    // Half a print each at the left and right border: one on the back.
+    if (own.uniform() < 0.6) {
+      cv::Mat back(size, CV_8UC3);
+      const int half = size.width / 2;
+      picture(cv::Rect(0, 0, half, size.height)).copyTo(back(cv::Rect(size.width - half, 0, half, size.height)));
+      picture(cv::Rect(half, 0, size.width - half, size.height))
+          .copyTo(back(cv::Rect(0, 0, size.width - half, size.height)));
+      print_front(back, {middle, chest}, 0.26 * texels, cloth, own.fork(2));
+      back(cv::Rect(size.width - half, 0, half, size.height)).copyTo(picture(cv::Rect(0, 0, half, size.height)));
+      back(cv::Rect(0, 0, size.width - half, size.height))
+          .copyTo(picture(cv::Rect(half, 0, size.width - half, size.height)));
+    }
+  }
+
+  // Folds: drawn from the armpits, hanging from the chest, gathered at the waist.
+  Shade shade(size);
+  const auto w = static_cast<float>(width), h = static_cast<float>(height);
+  const double strength = cloth.weave == Weave::knitted ? 0.20 : 0.34;
+  const auto fold = [&](double x, double y, double wide, double high, int count, double direction, double spread,
+                        double length, double thick, double factor) {
+    shade.folds({{static_cast<float>(x), static_cast<float>(y), static_cast<float>(wide), static_cast<float>(high)},
+                 count,
+                 direction,
+                 spread,
+                 length * texels,
+                 thick * texels,
+                 factor * strength},
+                own.fork(static_cast<std::uint64_t>(100.0 + x + 7.0 * y + count)));
+  };
+  for (const double side : {0.25, 0.75}) {
+    for (const double towards : {-1.0, 1.0})
+      fold((side + 0.06 * towards - 0.05) * width, shoulder + 0.02 * height, 0.10 * width, chest - shoulder, 6,
+           towards * (side < 0.5 ? 0.75 : 0.75), 0.45, 0.14, 0.010, 1.0);
+    fold((side - 0.10) * width, chest + 0.3 * (waist - chest), 0.2 * width, waist - chest, 9, side < 0.5 ? 0.4 : -0.4,
+         0.5, 0.13, 0.010, 1.0);
+    shade.spot({static_cast<float>(side) * w, static_cast<float>(chest)}, 0.10F * w,
+               static_cast<float>(0.5 * (waist - shoulder)), 0.30F);
+  }
+  fold(0.0, chest, width, waist - chest, 14, 1.57, 0.5, 0.16, 0.013, 0.8);
+  fold(0.0, waist - 0.06 * texels, width, 0.10 * texels, 20, 0.0, 0.55, 0.12, 0.009, 1.1);
+  fold(0.0, shoulder, width, chest - shoulder, 8, 1.57, 0.7, 0.12, 0.012, 0.6);
+  if (hem < height || cut.waist < 0.9) fold(0.0, waist, width, hem - waist, 12, 1.3, 0.6, 0.10, 0.011, 0.9);
+  shade.uneven(0.09F * static_cast<float>(texels), 0.07F * static_cast<float>(texels), 0.07F, 2, own.fork(9));
+  shade.spot({static_cast<float>(middle), static_cast<float>(neckline)}, 0.20F * w, 0.10F * h, 0.18F);
+  shade.spot({static_cast<float>(middle), static_cast<float>(chest + 0.06 * texels)}, 0.22F * w,
+             static_cast<float>(0.05 * texels), 0.10F);
+
+  if (cut.front == ShirtCut::Front::open) {
+    // What is worn under it shows between the edges.
+    const Cloth& under = cut.under;
+    cv::Mat beneath = cloth_ground(size, under, texels, random.fork(3));
+    buttons(beneath, middle, neckline, height, under.colour, texels);
+    const double at_neck = 0.060 * texels, at_chest = 0.028 * texels, at_hem = 0.050 * texels;
+    const auto edge = [&](double y) {
+      if (y < chest) return at_neck + (at_chest - at_neck) * std::clamp((y - neckline) / (chest - neckline), 0.0, 1.0);
+      return at_chest + (at_hem - at_chest) * std::clamp((y - chest) / (hem - chest), 0.0, 1.0);
+    };
+    for (int y = 0; y < size.height; ++y) {
+      const double half = edge(y);
+      for (int x = static_cast<int>(middle - half); x <= static_cast<int>(middle + half); ++x) {
+        if (x < 0 || x >= size.width) continue;
+        const double inside = std::min(x - (middle - half), middle + half - x) / (0.02 * texels);
+        const double shadow = 0.45 + 0.5 * std::clamp(inside, 0.0, 1.0);
+        const cv::Vec3b colour = beneath.at<cv::Vec3b>(y, x);
+        for (int channel = 0; channel < 3; ++channel)
+          picture.at<cv::Vec3b>(y, x)[channel] = cv::saturate_cast<std::uint8_t>(shadow * colour[channel]);
+      }
+    }
+    for (const double side : {-1.0, 1.0}) {
+      for (int y = 0; y + 4 < size.height; y += 4) {
+        const cv::Point2d a(middle + side * edge(y), y), b(middle + side * edge(y + 4), y + 4);
+        cv::line(picture, a, b, darker(cloth.colour, 0.4), 2, cv::LINE_AA);
+        const cv::Point2d aside(side * 0.012 * texels, 0);
+        if (y % 8 == 0)
+          cv::line(picture, a + aside, b + aside, mix(cloth.colour, cv::Scalar::all(150), 0.5), 1, cv::LINE_AA);
+      }
+      seam_line(picture, {middle + side * 0.10 * texels, waist + 0.02 * texels},
+                {middle + side * 0.16 * texels, waist + 0.10 * texels}, cloth.colour, texels);
+      patch_pocket(
+          picture,
+          {middle + side * 0.115 * texels - 0.05 * texels, chest - 0.01 * texels, 0.10 * texels, 0.12 * texels},
+          cloth.colour, texels, true);
+    }
+  } else if (cut.front == ShirtCut::Front::buttons) {
+    buttons(picture, middle, neckline, hem, cloth.colour, texels);
+    const double pocket = 0.105 * texels;
+    patch_pocket(picture, {middle + 0.045 * texels, chest - 0.03 * texels, pocket, 1.15 * pocket}, cloth.colour, texels,
+                 own.uniform() < 0.5);
+    if (own.uniform() < 0.5)
+      patch_pocket(picture, {middle - 0.045 * texels - pocket, chest - 0.03 * texels, pocket, 1.15 * pocket},
+                   cloth.colour, texels, true);
+  }
+  // Seams: shoulders, sides, hem; a ribbed neckline where there is no collar.
+  for (const double side : {0.25, 0.75})
+    seam_line(picture, {side * width, chest}, {side * width, height}, cloth.colour, texels);
+  if (cut.hem < 1.0) {
+    seam_line(picture, {0, hem - 0.022 * texels}, {width, hem - 0.022 * texels}, cloth.colour, texels);
+    cv::rectangle(picture, cv::Rect2d(0, hem, width, height - hem), darker(cloth.colour, 0.25), cv::FILLED);
+  }
+  if (cut.front == ShirtCut::Front::closed)
+    cv::rectangle(picture, cv::Rect2d(0, 0, width, neckline + 0.014 * texels), darker(cloth.colour, 0.8), cv::FILLED);
+  seam_line(picture, {0, neckline + 0.016 * texels}, {width, neckline + 0.016 * texels}, cloth.colour, texels);
+  if (neckline > 1.0) cv::rectangle(picture, cv::Rect2d(0, 0, width, neckline), darker(cloth.colour, 0.35), cv::FILLED);
+  shade.apply(picture);
+  return picture;
+}
+
+cv::Mat sleeve(cv::Size size, const Cloth& cloth, bool lengthy, double texels, Random random) {
+  cv::Mat picture = cloth_ground(size, cloth, texels, random.fork(1));
+  Shade shade(size);
+  const auto width = static_cast<float>(size.width), height = static_cast<float>(size.height);
+  const double strength = cloth.weave == Weave::knitted ? 0.22 : 0.36;
+  shade.folds({{0.0F, 0.15F * height, width, 0.8F * height},
+               lengthy ? 16 : 8,
+               0.5,
+               0.5,
+               0.12 * texels,
+               0.010 * texels,
+               strength},
+              random.fork(2));
+  shade.folds({{0.0F, 0.15F * height, width, 0.8F * height},
+               lengthy ? 12 : 4,
+               -0.5,
+               0.4,
+               0.10 * texels,
+               0.009 * texels,
+               strength},
+              random.fork(3));
+  if (lengthy)
+    shade.folds(
+        {{0.0F, 0.50F * height, width, 0.12F * height}, 10, 0.0, 0.4, 0.09 * texels, 0.009 * texels, 1.2 * strength},
+        random.fork(4));
+  shade.spot({0.0F, 0.35F * height}, 0.35F * width, 0.6F * height, 0.26F);
+  shade.uneven(0.08F * static_cast<float>(texels), 0.06F * static_cast<float>(texels), 0.06F, 2, random.fork(5));
+  // The seam that joins it to the shoulder, and the cuff or hem.
+  const double shoulder = 0.012 * texels + 0.05 * height * (lengthy ? 0.4 : 1.0);
+  seam_line(picture, {0, shoulder}, {width, shoulder}, cloth.colour, texels);
+  const double end = height - 0.012 * texels, cuff = end - (lengthy ? 0.06 : 0.022) * texels;
+  seam_line(picture, {0, cuff}, {width, cuff}, cloth.colour, texels);
+  if (lengthy)
+    cv::circle(picture, cv::Point2d(0.8 * width, 0.5 * (cuff + end)), static_cast<int>(0.006 * texels) + 1,
+               brightness(cloth.colour) > 110 ? cv::Scalar::all(70) : cv::Scalar::all(205), cv::FILLED, cv::LINE_AA);
+  shade.apply(picture);
+  cv::rectangle(picture, cv::Rect2d(0, end, width, height - end), darker(cloth.colour, 0.25), cv::FILLED);
+  return picture;
+}
+
+cv::Mat collar(cv::Size size, const Cloth& cloth, bool open, double texels, Random random) {
+  cv::Mat picture = cloth_ground(size, cloth, texels, random.fork(1));
+  const double width = size.width, height = size.height;
+  cv::rectangle(picture, cv::Rect2d(0, 0, width, 0.30 * height), darker(cloth.colour, 0.5), cv::FILLED);
+  cv::line(picture, cv::Point2d(0, 0.36 * height), cv::Point2d(width, 0.36 * height),
+           mix(cloth.colour, cv::Scalar::all(255), 0.15), 2, cv::LINE_AA);
+  seam_line(picture, {0, 0.80 * height}, {width, 0.80 * height}, cloth.colour, texels);
+  cv::rectangle(picture, cv::Rect2d(0, 0.92 * height, width, 0.1 * height), darker(cloth.colour, 0.4), cv::FILLED);
+  if (open) {
+    // The points of the collar part in front.
+    const cv::Point corners[] = {cv::Point2d(0.5 * width, 0.25 * height),
+                                 cv::Point2d(0.5 * width + 0.035 * texels, height),
+                                 cv::Point2d(0.5 * width - 0.035 * texels, height)};
+    cv::fillConvexPoly(picture, corners, 3, darker(cloth.colour, 0.35), cv::LINE_AA);
+  }
+  return picture;
+}
+
+cv::Mat trouser_seat(cv::Size size, const Cloth& cloth, bool belt, double texels, Random random) {
+  cv::Mat picture = cloth_ground(size, cloth, texels, random.fork(1));
+  const double width = size.width, height = size.height, middle = 0.5 * width;
+  Shade shade(size);
+  const auto w = static_cast<float>(width), h = static_cast<float>(height);
+  // Whiskers from the crotch, folds under the seat.
+  for (const double side : {-1.0, 1.0})
+    shade.folds({{static_cast<float>(middle + (side > 0 ? 0.02 : -0.16) * width), 0.45F * h, 0.14F * w, 0.3F * h},
+                 7,
+                 -0.45 * side,
+                 0.35,
+                 0.10 * texels,
+                 0.010 * texels,
+                 0.34},
+                random.fork(side > 0 ? 2 : 3));
+  shade.folds({{-0.15F * w, 0.45F * h, 0.3F * w, 0.35F * h}, 8, 0.0, 0.6, 0.10 * texels, 0.011 * texels, 0.26},
+              random.fork(4));
+  shade.spot({0.5F * w, 0.95F * h}, 0.22F * w, 0.35F * h, 0.45F);
+  shade.spot({0.0F, 0.95F * h}, 0.16F * w, 0.4F * h, 0.40F);
+  const double waistband = 0.055 * texels + 0.02 * height;
+  seam_line(picture, {0, waistband}, {width, waistband}, cloth.colour, texels);
+  seam_line(picture, {middle, waistband}, {middle, height}, cloth.colour, texels);
+  seam_line(picture, {middle + 0.03 * texels, waistband}, {middle + 0.03 * texels, 0.62 * height}, cloth.colour,
+            texels);
+  for (const double side : {-1.0, 1.0}) {
+    seam_line(picture, {middle + side * 0.10 * texels, waistband},
+              {middle + side * 0.17 * texels, waistband + 0.10 * texels}, cloth.colour, texels);
+    const double back = side > 0 ? 0.03 * width : 0.97 * width - 0.13 * texels;
+    patch_pocket(picture, {back, waistband + 0.04 * texels, 0.13 * texels, 0.14 * texels}, cloth.colour, texels, false);
+  }
+  shade.apply(picture);
+  if (belt) {
+    const cv::Rect2d strap(0, 0.016 * texels, width, 0.036 * texels);
+    cv::rectangle(picture, strap, {28, 34, 48}, cv::FILLED);
+    stitch(picture, {0, strap.y + 2}, {width, strap.y + 2}, {70, 85, 105}, texels);
+    const cv::Rect2d buckle(middle - 0.024 * texels, strap.y - 1, 0.048 * texels, strap.height + 2);
+    cv::rectangle(picture, buckle, {165, 180, 185}, std::max(2, static_cast<int>(0.007 * texels)), cv::LINE_AA);
+  }
+  for (int loop = 0; loop < 6; ++loop) {
+    const double x = (loop + 0.5) / 6.0 * width;
+    cv::rectangle(picture, cv::Rect2d(x - 0.006 * texels, 0, 0.012 * texels, 0.06 * texels), darker(cloth.colour, 0.85),
+                  cv::FILLED);
+    cv::rectangle(picture, cv::Rect2d(x - 0.006 * texels, 0, 0.012 * texels, 0.06 * texels), darker(cloth.colour, 0.5),
+                  1);
+  }
+  return picture;
+}
+
+cv::Mat trouser_leg(cv::Size size, const Cloth& cloth, bool shorts, double texels, Random random) {
+  cv::Mat picture = cloth_ground(size, cloth, texels, random.fork(1));
+  const double width = size.width, height = size.height;
+  const auto w = static_cast<float>(width), h = static_cast<float>(height);
+  Shade shade(size);
+  const bool denim = cloth.weave == Weave::denim;
+  const double strength = 0.36;
+  const float knee = shorts ? 1.5F : 0.51F;
+  shade.folds({{0.0F, 0.02F * h, w, 0.16F * h}, 9, 0.2, 0.7, 0.11 * texels, 0.010 * texels, strength}, random.fork(2));
+  shade.folds({{0.0F, (knee - 0.07F) * h, w, 0.14F * h}, 16, 0.0, 0.5, 0.09 * texels, 0.009 * texels, strength},
+              random.fork(3));
+  shade.folds({{0.0F, 0.15F * h, w, 0.35F * h}, 8, 1.4, 0.5, 0.16 * texels, 0.012 * texels, 0.7 * strength},
+              random.fork(4));
+  shade.folds({{0.0F, 0.55F * h, w, 0.3F * h}, 10, 0.3, 0.9, 0.11 * texels, 0.010 * texels, 0.9 * strength},
+              random.fork(5));
+  if (!shorts)
+    shade.folds({{0.0F, 0.84F * h, w, 0.14F * h}, 14, 0.0, 0.5, 0.09 * texels, 0.009 * texels, 1.15 * strength},
+                random.fork(6));
+  shade.spot({0.0F, 0.15F * h}, 0.25F * w, 0.5F * h, 0.30F);
+  shade.spot({0.0F, 0.8F * h}, 0.2F * w, 0.5F * h, 0.15F);
+  if (denim) {  // faded where it rubs
+    shade.spot({0.5F * w, 0.25F * h}, 0.20F * w, 0.25F * h, -0.30F);
+    shade.spot({0.5F * w, knee * h}, 0.18F * w, 0.08F * h, -0.22F);
+  }
+  shade.uneven(0.08F * static_cast<float>(texels), 0.10F * static_cast<float>(texels), 0.06F, 2, random.fork(7));
+  seam_line(picture, {0.5 * width + (0.25 * width), 0}, {0.75 * width, height}, cloth.colour, texels);
+  seam_line(picture, {0.25 * width, 0}, {0.25 * width, height}, cloth.colour, texels);
+  const double end = height - 0.012 * texels;
+  seam_line(picture, {0, end - 0.02 * texels}, {width, end - 0.02 * texels}, cloth.colour, texels);
+  shade.apply(picture);
+  cv::rectangle(picture, cv::Rect2d(0, end, width, height - end), darker(cloth.colour, 0.2), cv::FILLED);
+  return picture;
+}
+
+cv::Mat skirt(cv::Size size, const Cloth& cloth, double texels, Random random) {
+  cv::Mat picture = cloth_ground(size, cloth, texels, random.fork(1));
+  Shade shade(size);
+  const auto w = static_cast<float>(size.width), h = static_cast<float>(size.height);
+  shade.folds({{0.0F, 0.35F * h, w, 0.4F * h}, 22, 1.57, 0.12, 0.30 * texels, 0.014 * texels, 0.30}, random.fork(2));
+  shade.apply(picture);
+  seam_line(picture, {0, 0.06 * texels}, {w, 0.06 * texels}, cloth.colour, texels);
+  seam_line(picture, {0, h - 0.05 * texels}, {w, h - 0.05 * texels}, cloth.colour, texels);
+  cv::rectangle(picture, cv::Rect2d(0, h - 0.02 * texels, w, 0.03 * texels), darker(cloth.colour, 0.25), cv::FILLED);
+  return picture;
+}
+
+cv::Mat shoe(cv::Size size, const cv::Scalar& colour, const cv::Scalar& sole, double texels, Random random) {
+  cv::Mat picture(size, CV_8UC3, colour);
+  add_grain(picture, texels, 0.05F, random.fork(1));
+  const double width = size.width, height = size.height, middle = 0.5 * width;
+  const cv::Scalar line = brightness(colour) > 100 ? darker(colour, 0.5) : mix(colour, cv::Scalar::all(230), 0.45);
+  // Toe cap, side panels, laces.
+  cv::ellipse(picture, cv::Point2d(middle, 0.86 * height), cv::Size2d(0.20 * width, 0.09 * height), 0, 180, 360, line,
+              2, cv::LINE_AA);
+  for (const double side : {-1.0, 1.0}) {
+    cv::line(picture, cv::Point2d(middle + side * 0.07 * width, 0.40 * height),
+             cv::Point2d(middle + side * 0.09 * width, 0.72 * height), line, 1, cv::LINE_AA);
+    cv::line(picture, cv::Point2d(middle + side * 0.10 * width, 0.70 * height),
+             cv::Point2d(middle + side * 0.26 * width, 0.52 * height), line, 2, cv::LINE_AA);
+    cv::line(picture, cv::Point2d(middle + side * 0.24 * width, 0.28 * height),
+             cv::Point2d(middle + side * 0.14 * width, 0.44 * height), line, 2, cv::LINE_AA);
+  }
+  cv::rectangle(picture, cv::Rect2d(middle - 0.055 * width, 0.40 * height, 0.11 * width, 0.32 * height),
+                darker(colour, 0.6), cv::FILLED);
+  const cv::Scalar lace = brightness(colour) > 120 ? cv::Scalar(60, 60, 65) : cv::Scalar(215, 220, 220);
+  for (int i = 0; i < 5; ++i) {
+    const double y = (0.43 + 0.065 * i) * height;
+    cv::line(picture, cv::Point2d(middle - 0.075 * width, y), cv::Point2d(middle + 0.075 * width, y + 0.035 * height),
+             lace, 2, cv::LINE_AA);
+    cv::line(picture, cv::Point2d(middle + 0.075 * width, y), cv::Point2d(middle - 0.075 * width, y + 0.035 * height),
+             lace, 2, cv::LINE_AA);
+  }
+  // The opening at the ankle is dark; soles lie at the borders.
+  cv::rectangle(picture, cv::Rect2d(middle - 0.12 * width, 0.14 * height, 0.24 * width, 0.22 * height),
+                darker(colour, 0.4), cv::FILLED);
+  for (const double x : {0.0, 0.83 * width})
+    cv::rectangle(picture, cv::Rect2d(x, 0, 0.17 * width + 1, height), sole, cv::FILLED);
+  for (const double x : {0.17 * width, 0.83 * width})
+    cv::line(picture, cv::Point2d(x, 0), cv::Point2d(x, height), darker(sole, 0.5), 1, cv::LINE_AA);
+  return picture;
+}
+
+}  // namespace holdfast::simulation::pictures
