@@ -12,7 +12,7 @@ namespace holdfast::simulation {
 /// What tells one person's movements from another's.
 struct Style {
   double arm_swing = 1.0;   ///< factor
-  double elbow = 0.3;       ///< bent while the arm hangs [rad]
+  double elbow = 0.2;       ///< bent while the arm hangs [rad]
   double lean = 0.04;       ///< of the trunk forward while walking [rad]
   double abduction = 0.1;   ///< of the hanging arms [rad]
   double step = 1.0;        ///< factor on the length of steps
@@ -50,7 +50,8 @@ void add_idle(double time, const Style& style, double amount, Posture& posture);
 /// to where they were. Weight 0 ... 1.
 void add_gesture(double time, const Style& style, double weight, Posture& posture);
 
-/// Bows the trunk forward by an angle, spread over pelvis, abdomen and chest; the head follows by half.
+/// Bows the trunk forward by an angle, spread over pelvis, abdomen and chest; the head follows by half and the arms keep
+/// hanging.
 void add_bow(double angle, Posture& posture);
 
 }  // namespace holdfast::simulation

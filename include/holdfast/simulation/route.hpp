@@ -14,10 +14,11 @@ Eigen::Vector2d direction_of(double heading);
 /// A line over the floor past given places, corners rounded by arcs, measured by the distance travelled [m].
 class Route {
  public:
-  static constexpr double corner_radius = 0.6;  ///< where the legs beside a corner leave room for it [m]
+  static constexpr double usual_radius = 0.6;
 
-  /// Points that coincide with the one before are left out.
-  explicit Route(const std::vector<Eigen::Vector2d>& points);
+  /// `radius` of the corners [m], where the straights beside them leave room for it. Points that coincide with the one
+  /// before are left out.
+  explicit Route(const std::vector<Eigen::Vector2d>& points, double radius = usual_radius);
 
   double length() const { return length_; }
   /// Distances outside 0 ... length continue straight on.

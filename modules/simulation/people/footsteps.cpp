@@ -47,7 +47,7 @@ FootPose FootTrack::standing(const Stand& stand, double time) const {
   double pivot = heel_;
   if (time < stand.from + rolling_in) {
     const double rest = 1.0 - (time - stand.from) / rolling_in;
-    pose.pitch = -stand.strike * rest * rest;
+    pose.pitch = -stand.strike * rest * rest * (2.0 - rest);
   } else if (time > stand.to - rolling_out) {
     const double done = 1.0 - (stand.to - time) / rolling_out;
     pose.pitch = stand.push * done * done;

@@ -51,7 +51,7 @@ std::array<Quaterniond, 2> arm_rotations(Side side, const ArmAngles& angles) {
 
 Style::Style(Random random)
     : arm_swing(random.uniform(0.75, 1.3)),
-      elbow(random.uniform(0.2, 0.45)),
+      elbow(random.uniform(0.14, 0.3)),
       lean(random.uniform(0.02, 0.07)),
       abduction(random.uniform(0.07, 0.15)),
       step(random.uniform(0.94, 1.05)),
@@ -78,10 +78,10 @@ void add_gait(const GaitMoment& moment, const Style& style, Posture& posture) {
     const double swing = -sign(arm_side) * beat(0.62) * vigour * style.arm_swing;
     const double forward = 0.5 * (vigour + swing);
     const auto [upper, lower] =
-        arm_rotations(arm_side, {.flexion = 3.0 * degrees + 21.0 * degrees * swing - 4.0 * degrees * vigour,
+        arm_rotations(arm_side, {.flexion = 3.0 * degrees + 22.0 * degrees * swing - 7.0 * degrees * vigour,
                                  .abduction = style.abduction,
                                  .inward = 0.15 + 0.2 * forward,
-                                 .elbow = style.elbow + 8.0 * degrees * vigour + 22.0 * degrees * forward,
+                                 .elbow = style.elbow + 4.0 * degrees * vigour + 18.0 * degrees * forward,
                                  .supination = 0.0});
     const Limb limb = arm(arm_side);
     posture.rotations[index(limb.upper)] = upper;
@@ -140,6 +140,10 @@ void add_bow(double angle, Posture& posture) {
   turn(posture, Bone::chest, about_x(0.25 * angle));
   turn(posture, Bone::neck, about_x(-0.2 * angle));
   turn(posture, Bone::head, about_x(-0.3 * angle));
+  for (const Side side : {Side::left, Side::right}) {
+    Quaterniond& upper = posture.rotations[index(arm(side).upper)];
+    upper = about_x(-0.95 * angle) * upper;
+  }
 }
 
 }  // namespace holdfast::simulation

@@ -75,7 +75,7 @@ void reach(const Skeleton& skeleton, const Eigen::Isometry3d& T_person_chest, Si
   if (weight <= 0.0) return;
   const Limb limb = arm(side);
   const Vector3d shoulder = T_person_chest * skeleton.joint(limb.upper);
-  const Vector3d pole = T_person_chest.linear() * Vector3d(0.55 * sign(side), 0.5, 0.0) - Vector3d(0, 0, 1.0);
+  const Vector3d pole = T_person_chest.linear() * Vector3d(0.3 * sign(side), 0.5, 0.0) - Vector3d(0, 0, 1.0);
   const Bent bent = bend(shoulder, hand.wrist, skeleton.length(limb.upper), skeleton.length(limb.lower), pole, 1.0);
   // The forearm takes half of the hand's twist, as radius and ulna do.
   const Quaterniond wrist = Quaterniond(bent.lower).conjugate() * hand.rotation;

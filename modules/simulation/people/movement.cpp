@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 namespace {
 constexpr double height_step = 0.02;  // of the table of the pelvis' heights [s]
-constexpr int smoothed = 6;           // to both sides [height_step]
+constexpr int smoothed = 4;           // to both sides [height_step]
 constexpr double most_stretch = 0.9965;
 
 Isometry3d placed(const Stance& stance) {
@@ -111,7 +111,7 @@ void Movement::finish(double duration) {
     const Stance now = stance(time);
     const Posture posture = trunk(time, now);
     const Isometry3d T_person_world = placed(now).inverse(), T_person_pelvis = pelvis_pose(posture);
-    double height = standing_height() - 0.012 * now.gait.amplitude;
+    double height = standing_height() - 0.004 * now.gait.amplitude;
     if (const Seat* seat = current(seats, time, own_window)) height -= seat->drop * seat->window.weight(time);
     if (const Bend* bend = current(bends, time, own_window)) height -= bend->drop * bend->window.weight(time);
     for (const Side side : {Side::left, Side::right}) {
@@ -166,16 +166,16 @@ Posture Movement::posture(double time) const {
     const Isometry3d& thigh = poses[index(leg(side).upper)];
     Vector3d point =
         thigh * Vector3d(0, -0.042 * skeleton_.physique().height, -0.68 * skeleton_.length(leg(side).upper));
-    point.x() = sign(side) * std::max(0.09, std::abs(point.x()));
+    point.x() = sign(side) * std::max(0.12, std::abs(point.x()));
     Vector3d palm = thigh.linear().col(1);
-    Vector3d fingers(-0.35 * sign(side), -1.0, -0.2);
+    Vector3d fingers(-0.2 * sign(side), -1.0, -0.2);
     if (seat->table > 0) {
       point = Vector3d(0.15 * sign(side), -0.26 * skeleton_.physique().height, seat->table);
       palm = -Vector3d::UnitZ();
       fingers.z() = 0.0;
     }
     reach(skeleton_, chest, side, hand_on(skeleton_, side, point, palm, fingers),
-          ease(1.6 * seat->window.raw(time) - 0.6), posture);
+          ease((seat->window.raw(time) - 0.2) / 0.8), posture);
   }
   if (gesture != nullptr) add_gesture(time, style_, gesture->weight(time), posture);
   if (hold != nullptr) {

@@ -92,7 +92,7 @@ class Movement {
   std::vector<Window> gestures;
   std::map<std::string, ThingTrack> things;
 
-  /// Finds the pelvis' height over time: as high as the legs reach, smoothed over 0.25 s.
+  /// Finds the pelvis' height over time: as high as the legs reach, smoothed over 0.16 s.
   void finish(double duration);
 
   // Asking.

@@ -103,7 +103,7 @@ void Movement::walk(const Travel& travel, double length, double speed, const std
           .heading = there.heading,
           .push = (opening ? 0.35 : 0.66) * vigour,
           .strike = (closing ? 0.05 : 0.33) * vigour,
-          .lift = opening || closing ? 0.03 : 0.012 + 0.02 * (1.0 - vigour)},
+          .lift = opening || closing ? 0.03 : 0.005 + 0.025 * (1.0 - vigour)},
          place < count ? walking_width : standing_width);
   }
 }

@@ -30,12 +30,12 @@ std::vector<Vector2d> without_repetition(const std::vector<Vector2d>& points) {
 struct Corner {
   double angle = 0.0, cut = 0.0, radius = 0.0;
 };
-Corner corner(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
+Corner corner(const Vector2d& a, const Vector2d& b, const Vector2d& c, double radius) {
   Corner result;
   result.angle = wrapped(heading_of(c - b) - heading_of(b - a));
   const double tangent = std::tan(0.5 * std::abs(result.angle));
-  result.cut = std::min({Route::corner_radius * tangent, 0.5 * (b - a).norm(), 0.5 * (c - b).norm()});
-  result.radius = tangent > 0 ? result.cut / tangent : Route::corner_radius;
+  result.cut = std::min({radius * tangent, 0.5 * (b - a).norm(), 0.5 * (c - b).norm()});
+  result.radius = tangent > 0 ? result.cut / tangent : radius;
   return result;
 }
 }  // namespace
@@ -43,7 +43,7 @@ Corner corner(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
 double heading_of(const Vector2d& direction) { return std::atan2(direction.x(), -direction.y()); }
 Vector2d direction_of(double heading) { return {std::sin(heading), -std::cos(heading)}; }
 
-Route::Route(const std::vector<Vector2d>& all_points) {
+Route::Route(const std::vector<Vector2d>& all_points, double radius) {
   const std::vector<Vector2d> points = without_repetition(all_points);
   pieces_.push_back({0.0, 0.0, points.empty() ? Vector2d::Zero() : points.front(), 0.0, 0.0, 0.0});
   if (points.size() < 2) return;
@@ -51,7 +51,7 @@ Route::Route(const std::vector<Vector2d>& all_points) {
   double used = 0.0;  // of the leg, by the corner at its beginning
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     const bool last = i + 2 == points.size();
-    const Corner bend = last ? Corner{} : corner(points[i], points[i + 1], points[i + 2]);
+    const Corner bend = last ? Corner{} : corner(points[i], points[i + 1], points[i + 2], radius);
     add((points[i + 1] - points[i]).norm() - used - bend.cut, 0.0);
     if (!last && std::abs(bend.angle) > 1e-9)
       add(bend.radius * std::abs(bend.angle), (bend.angle > 0 ? 1.0 : -1.0) / bend.radius);
@@ -114,7 +114,7 @@ std::vector<std::vector<Vector2d>> Route::legs(const std::vector<Vector2d>& all_
   for (std::size_t i = 1; i < points.size(); ++i) {
     result.back().push_back(points[i]);
     if (i + 1 == points.size()) break;
-    const Corner bend = corner(points[i - 1], points[i], points[i + 1]);
+    const Corner bend = corner(points[i - 1], points[i], points[i + 1], usual_radius);
     if (std::abs(bend.angle) > sharpest_corner || (bend.radius < least_radius && std::abs(bend.angle) > 0.3))
       result.push_back({points[i]});
   }

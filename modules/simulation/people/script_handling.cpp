@@ -81,8 +81,8 @@ std::optional<Movement::Bend> ScriptBuilder::bend_to_reach(const Grips& grips, c
   const double arm_length = skeleton.length(Bone::left_upper_arm) + skeleton.length(Bone::left_forearm);
   const auto bend = [&](double share) {
     return Movement::Bend{.window = {},
-                          .bow = 78.0 * degrees * share,
-                          .drop = knees ? 0.26 * skeleton.physique().height * share * share : 0.0,
+                          .bow = 85.0 * degrees * share,
+                          .drop = knees ? 0.3 * skeleton.physique().height * share * share : 0.0,
                           .back = knees ? 0.16 * share : 0.0};
   };
   const auto reaches = [&](double share) {
@@ -93,7 +93,7 @@ std::optional<Movement::Bend> ScriptBuilder::bend_to_reach(const Grips& grips, c
           hand_on(skeleton, side, T_person_thing * grips.points[i], T_person_thing.linear() * grips.palms[i],
                   T_person_thing.linear() * grips.fingers[i]);
       const Vector3d shoulder = movement_.bent_shoulder(side, tried.bow, tried.drop, tried.back);
-      if ((hand.wrist - shoulder).norm() > 0.94 * arm_length) return false;
+      if ((hand.wrist - shoulder).norm() > 0.97 * arm_length) return false;
     }
     return true;
   };
@@ -132,7 +132,7 @@ void ScriptBuilder::push(const Push& action) {
       Eigen::Translation3d(T_world_thing.translation()) * turned(swivel) * Isometry3d(T_world_thing.linear());
   const Seen seen = see(swivelled, place.extents, heading);
   const double rear = seen.half_depth - seen.forward.dot(seen.centre),
-               gap = rear + 0.27 * movement_.skeleton().physique().height;
+               gap = rear + 0.32 * movement_.skeleton().physique().height;
   const Vector3d back = seen.centre - seen.forward * (seen.half_depth);
   const Grips grips = push_grips(back, seen.left, seen.forward, seen.half_width, place.extents.max().z());
 
@@ -147,7 +147,7 @@ void ScriptBuilder::push(const Push& action) {
   movement_.wait(grip - touch);
   std::vector<Vector2d> points{behind, start};
   points.insert(points.end(), action.to.begin(), action.to.end());
-  const Route route(points);
+  const Route route(points, 1.0);
   const double length = route.length() - gap;
   const double turned_off = movement_.last().heading - route.heading(0.0);
   // The thing goes ahead on the same line; the person faces it.
@@ -161,7 +161,7 @@ void ScriptBuilder::push(const Push& action) {
   movement_.walk(travel, length, action.speed, pose);
   const double arrived = movement_.end();
   movement_.wait(0.7);
-  const Window window{touch, grip, arrived + 0.1, arrived + 0.7};
+  const Window window{grip - 0.8, grip, arrived + 0.1, arrived + 0.7};
   bend->window = window;
   movement_.bends.push_back(*bend);
   movement_.holds.push_back({window, action.thing, grips});
@@ -248,7 +248,7 @@ void ScriptBuilder::carry(const Carry& action) {
   };
 
   Movement::Bend bend = bend_at(T_world_thing);
-  const double pace = 0.75 + 0.6 * bend.bow / (78.0 * degrees), lower = movement_.end(), grip = lower + pace,
+  const double pace = 0.75 + 0.6 * bend.bow / (85.0 * degrees), lower = movement_.end(), grip = lower + pace,
                lift = grip + 0.1, lifted = lift + 1.2 * pace;
   movement_.wait(lifted - lower + 0.1);
   bend.window = {lower, grip, lift, lifted};
@@ -279,7 +279,7 @@ void ScriptBuilder::carry(const Carry& action) {
   movement_.turn(destination->heading);
 
   bend = bend_at(T_world_put);
-  const double slow = 0.75 + 0.6 * bend.bow / (78.0 * degrees), sink = movement_.end() + 0.1, put = sink + 1.2 * slow,
+  const double slow = 0.75 + 0.6 * bend.bow / (85.0 * degrees), sink = movement_.end() + 0.1, put = sink + 1.2 * slow,
                release = put + 0.1, upright = release + slow;
   movement_.wait(upright - movement_.end());
   bend.window = {sink, put, release, upright};
