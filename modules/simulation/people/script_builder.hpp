@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "holdfast/simulation/person_script.hpp"
+#include "movement.hpp"
+
+namespace holdfast::simulation {
+
+/// Turns a plan's actions into a movement, one after the other.
+class ScriptBuilder {
+ public:
+  ScriptBuilder(Movement& movement, const PersonPlan& plan, ThingPlaces& things)
+      : movement_(movement), plan_(plan), things_(things) {}
+
+  void play(const Action& action);
+  /// Goes back to where the plan began.
+  void return_to_start();
+
+ private:
+  struct Obstacle {
+    Eigen::Vector2d centre;
+    double radius;
+  };
+  /// Where to stand before a thing so that its sides are left and right.
+  struct Standpoint {
+    Eigen::Vector2d position;
+    double heading;
+  };
+  /// A thing as somebody sees it who faces it with a heading.
+  struct Seen {
+    double half_width, half_depth;
+    Eigen::Vector3d centre;  ///< of the extents, in the thing's frame
+    Eigen::Vector3d left, forward;
+  };
+
+  void walk(const Walk& action);
+  void stand(const Stand& action);
+  void sit(const Sit& action);
+  void push(const Push& action);
+  void carry(const Carry& action);
+
+  /// Walks to a place, past others, round what must not be walked through.
+  void go(std::vector<Eigen::Vector2d> points, double speed, const std::optional<Obstacle>& obstacle);
+  ThingPlace& thing(const std::string& name, const std::string& doing);
+  ThingPlace& claim(const std::string& name, const std::string& doing);
+  Eigen::Isometry3d rest(const std::string& name) const;
+  void check_positive(double value, const std::string& what) const;
+  void check_route(const std::vector<Eigen::Vector2d>& to, const std::string& doing) const;
+  [[noreturn]] void refuse(const std::string& problem) const;
+  bool free_to_stand(const Eigen::Vector2d& position, const std::string& except) const;
+  double table_before(const Eigen::Isometry3d& T_world_chair) const;
+
+  Seen see(const Eigen::Isometry3d& T_world_thing, const Eigen::AlignedBox3d& extents, double heading) const;
+  /// How far to bow (and with `knees`, to squat) so that both wrists reach these palms; nothing when too far.
+  std::optional<Movement::Bend> bend_to_reach(const Grips& grips, const Eigen::Isometry3d& T_person_thing,
+                                              bool knees) const;
+  /// The free place nearest to the body from which the grips can be reached, facing along a heading.
+  std::optional<Standpoint> place_before(const Eigen::Isometry3d& T_world_thing, const std::string& name,
+                                         double heading, const Grips& grips) const;
+
+  Movement& movement_;
+  const PersonPlan& plan_;
+  ThingPlaces& things_;
+  std::optional<Obstacle> behind_;  ///< what the person has just let go of
+};
+
+/// Heading of an upright thing [rad].
+inline double yaw_of(const Eigen::Isometry3d& pose) { return std::atan2(pose.linear()(1, 0), pose.linear()(0, 0)); }
+inline Eigen::Isometry3d turned(double yaw) {
+  return Eigen::Isometry3d(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()));
+}
+
+}  // namespace holdfast::simulation
