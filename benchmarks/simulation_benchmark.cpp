@@ -42,7 +42,7 @@ BENCHMARK_CAPTURE(simulated_frames, rpy_640x480_distorted, PathKind::rpy, "tum_f
     ->Unit(benchmark::kMillisecond);
 
 void build_room(benchmark::State& state) {
-  for (auto _ : state) benchmark::DoNotOptimize(make_room(1).objects.size());
+  for (auto _ : state) benchmark::DoNotOptimize(make_room(RoomKind::office, 1).world.objects.size());
 }
 BENCHMARK(build_room)->Unit(benchmark::kMillisecond);
 

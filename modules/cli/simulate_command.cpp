@@ -26,6 +26,7 @@ namespace {
 
 struct SimulateOptions {
   fs::path output;
+  std::string room = "office";
   std::string path = "xyz";
   std::string camera = "tum_fr1";
   std::string colour_format = "png";
@@ -72,6 +73,7 @@ Json describe_scene(const simulation::Simulator& simulator) {
   const simulation::DepthSensorSettings& depth = settings.depth_sensor;
   Json scene = {{"generator", "holdfast " HOLDFAST_VERSION},
                 {"seed", settings.seed},
+                {"room", simulation::to_string(settings.room)},
                 {"path", simulation::to_string(settings.path)},
                 {"duration_s", settings.duration},
                 {"frame_rate_hz", settings.frame_rate},
@@ -110,6 +112,7 @@ Json describe_scene(const simulation::Simulator& simulator) {
 
 void simulate(const SimulateOptions& options) {
   simulation::SimulationSettings settings = options.settings;
+  settings.room = simulation::room_kind(options.room);
   settings.path = simulation::path_kind(options.path);
   if (options.no_sensor_effects) {
     settings.colour_sensor.noise = 0.0;
@@ -165,6 +168,9 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("simulate", "Write a sequence from the simulated room, in TUM layout with truth");
   command->add_option("--output", options->output, "folder to write to")->required();
+  command->add_option("--room", options->room, "where the camera moves")
+      ->check(CLI::IsMember(simulation::room_names()))
+      ->capture_default_str();
   command->add_option("--path", options->path, "how the camera moves")
       ->check(CLI::IsMember(simulation::path_names()))
       ->capture_default_str();

@@ -6,9 +6,12 @@
 #include <algorithm>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/simulation/room.hpp"
 
 namespace holdfast::simulation {
 namespace {
+
+Stage office() { return make_stage(RoomKind::office); }
 
 double angle_between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
   return Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle();
@@ -22,7 +25,7 @@ TEST(CameraPath, NamesAndKindsBelongTogether) {
 TEST(CameraPath, StartsAtRestAndMovesSmoothlyAtTheSpeedOfAHand) {
   for (const std::string& name : path_names())
     for (const std::uint64_t seed : {1, 2, 7}) {
-      const CameraPath path(path_kind(name), seed);
+      const CameraPath path(path_kind(name), office(), seed);
       EXPECT_LT((path.pose(0.001).translation() - path.pose(0).translation()).norm(), 1e-6) << name;
       constexpr double step = 1.0 / 30.0;
       double fastest = 0, fastest_turn = 0, way = 0, largest_change = 0;
@@ -63,7 +66,7 @@ TEST(CameraPath, KeepsToItsPlace) {
                                             {PathKind::xyz, 0.4, 0.95},
                                             {PathKind::rpy, 0.0, 0.12},
                                             {PathKind::halfsphere, 0.5, 3.0}}) {
-      const CameraPath path(kind, seed);
+      const CameraPath path(kind, office(), seed);
       low.setConstant(1e9), high.setConstant(-1e9);
       for (double time = 0; time < 40; time += 0.1) {
         const Eigen::Vector3d position = path.pose(time).translation();
@@ -78,9 +81,10 @@ TEST(CameraPath, KeepsToItsPlace) {
 }
 
 TEST(CameraPath, SeedChangesTheMotion) {
-  EXPECT_GT(
-      (CameraPath(PathKind::xyz, 1).pose(3).translation() - CameraPath(PathKind::xyz, 2).pose(3).translation()).norm(),
-      0.01);
+  EXPECT_GT((CameraPath(PathKind::xyz, office(), 1).pose(3).translation() -
+             CameraPath(PathKind::xyz, office(), 2).pose(3).translation())
+                .norm(),
+            0.01);
 }
 
 TEST(CameraPath, LookAtPutsTheTargetOnTheOpticalAxisAndTheHorizonLevel) {

@@ -10,6 +10,7 @@
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/simulation/camera_path.hpp"
 #include "holdfast/simulation/renderer.hpp"
+#include "holdfast/simulation/room.hpp"
 #include "holdfast/simulation/sensor.hpp"
 #include "holdfast/simulation/world.hpp"
 
@@ -17,10 +18,11 @@ namespace holdfast::simulation {
 
 /// What to simulate.
 struct SimulationSettings {
-  PathKind path = PathKind::xyz;
-  double duration = 20.0;    ///< [s]; frames from 0 up to, not including, this time
-  double frame_rate = 30.0;  ///< [1/s]
-  std::uint64_t seed = 1;    ///< of room, path and noise
+  RoomKind room = RoomKind::office;
+  PathKind path = PathKind::xyz;  ///< any but waypoints
+  double duration = 20.0;         ///< [s]; frames from 0 up to, not including, this time
+  double frame_rate = 30.0;       ///< [1/s]
+  std::uint64_t seed = 1;         ///< of room, path and noise
   DepthSensorSettings depth_sensor;
   ColourSensorSettings colour_sensor;
 };
@@ -44,7 +46,8 @@ class Simulator {
   /// The same without sensor effects.
   RenderedFrame render(std::uint64_t index);
 
-  const World& world() const { return world_; }
+  const World& world() const { return room_.world; }
+  const Stage& stage() const { return room_.stage; }
   const Camera& camera() const { return camera_; }
   const SimulationSettings& settings() const { return settings_; }
   const std::vector<std::string>& class_names() const { return class_names_; }
@@ -52,7 +55,7 @@ class Simulator {
  private:
   SimulationSettings settings_;
   Camera camera_;
-  World world_;
+  Room room_;
   CameraPath path_;
   Renderer renderer_;
   std::uint64_t frame_count_ = 0;

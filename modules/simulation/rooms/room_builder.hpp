@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
 #include <opencv2/core/mat.hpp>
 #include <string>
 
@@ -15,6 +17,14 @@ struct Place {
   double x = 0, y = 0, z = 0, yaw = 0;
 };
 
+/// Walls, floor and ceiling, with a doorway if there is a door.
+struct Shell {
+  float width = 6.0F, depth = 5.0F, height = 2.6F;                              ///< along x, y, z [m]
+  double wall_density = 200.0, floor_density = 200.0, ceiling_density = 120.0;  ///< [texels/m]
+  float door_from = 0.0F, door_to = 0.0F;  ///< x of the doorway's sides in the wall y = depth; equal: none
+};
+inline constexpr float door_height = 2.0F;
+
 /// Puts furniture into a world. Things are built with their front to -y and their origin on the ground below the
 /// middle, then put in place. Every thing draws its random numbers from a stream of its own name, so adding one leaves
 /// the others as they were.
@@ -22,7 +32,14 @@ class RoomBuilder {
  public:
   RoomBuilder(World& world, std::uint64_t seed) : world_(world), seed_(seed) {}
 
-  void shell();
+  void shell(const Shell& shell);
+  /// A section of a corridor along x: both walls (y = 0 and y = depth), floor and ceiling, that can be repeated.
+  void corridor_section(double from, double to, double depth, double height);
+  /// The walls x = 0 and x = width.
+  void end_walls(double width, double depth, double height);
+  /// The frame, and the leaf as an object of its own: its z axis is the hinge at the right end, its x axis points away
+  /// from the doorway, so that a turn about z by a positive angle swings it into the room. `place` is the hinge.
+  void door(const Place& place, double width);
   void rug(const Place& place, double width, double depth);
   void desk(const Place& place, double width, double depth);
   void monitor(const Place& place, double width);
@@ -45,10 +62,24 @@ class RoomBuilder {
   void painting(const Place& place, double width, double height);
   void clock(const Place& place);
   void plant(const Place& place, double height);
+  /// A table on four legs; `stool`: any low one.
+  void table(const Place& place, double width, double depth, double height = 0.73);
+  void stool(const Place& place, double width, double depth, double height);
+  /// A screen between workplaces, covered with cloth, with papers pinned to both sides.
+  void partition(const Place& place, double width, double height);
+  /// A board with papers pinned to it.
+  void notice_board(const Place& place, double width, double height);
+
+  /// Number of the next object.
+  std::size_t mark() const { return world_.objects.size(); }
+  /// Copies the objects from one mark up to another, moved by `offset`: the same meshes and light on the same textures.
+  void repeat(std::size_t from, std::size_t to, const Eigen::Vector3d& offset);
 
  private:
   /// A new object at a place; the reference is valid until the next call.
   Object& add(const std::string& class_name, const Place& place);
+  /// Legs and board of a table.
+  void four_legs(Object& object, double width, double depth, double height);
   /// A picture painted for the object that was added last.
   TextureArea paint(cv::Mat picture) { return world_.add_texture(picture); }
   /// The random stream of the object that was added last.
@@ -65,5 +96,23 @@ class RoomBuilder {
   std::uint64_t seed_;
   Random random_{0};
 };
+
+template <class Painter>
+BoxSkin RoomBuilder::skin(const Eigen::AlignedBox3f& shape, double density, Painter&& painter) {
+  const auto texels = [](float length, double per_metre) {
+    return std::max(4, static_cast<int>(std::lround(length * per_metre)));
+  };
+  const Eigen::Vector3f size = shape.sizes();
+  BoxSkin result;
+  for (const BoxSide side : {front, back, left, right, top, bottom}) {
+    const bool flat = side == top || side == bottom, narrow = side == left || side == right;
+    const double fineness = side == bottom ? 20.0 : density;
+    const cv::Size texture_size(texels(narrow ? size.y() : size.x(), fineness),
+                                texels(flat ? size.y() : size.z(), fineness));
+    result[side] = paint(painter(texture_size, random_.fork(static_cast<std::uint64_t>(side) + 1)));
+  }
+  random_.next();
+  return result;
+}
 
 }  // namespace holdfast::simulation

@@ -38,51 +38,10 @@ Object& RoomBuilder::add(const std::string& class_name, const Place& place) {
   return object;
 }
 
-template <class Painter>
-BoxSkin RoomBuilder::skin(const AlignedBox3f& shape, double density, Painter&& painter) {
-  const Vector3f size = shape.sizes();
-  BoxSkin result;
-  for (const BoxSide side : {front, back, left, right, top, bottom}) {
-    const bool flat = side == top || side == bottom, narrow = side == left || side == right;
-    const cv::Size texture_size =
-        texels(narrow ? size.y() : size.x(), flat ? size.y() : size.z(), side == bottom ? 20.0 : density);
-    result[side] = paint(painter(texture_size, random_.fork(static_cast<std::uint64_t>(side) + 1)));
-  }
-  random_.next();
-  return result;
-}
-
 BoxSkin RoomBuilder::plain_skin(const cv::Scalar& colour) {
   const TextureArea area = paint(pictures::plain({96, 96}, colour, random_.fork(77)));
   random_.next();
   return {area, area, area, area, area, area};
-}
-
-void RoomBuilder::shell() {
-  constexpr float width = 6.0F, depth = 5.0F, height = 2.6F;
-  constexpr double density = 200.0;
-  Object& walls = add("wall", {});
-  const Vector3f x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
-  const cv::Scalar colours[] = {{205, 215, 218}, {190, 208, 205}, {208, 205, 195}, {185, 200, 212}};
-  const auto wall = [&](int number, const Vector3f& origin, const Vector3f& along, float length) {
-    const TextureArea area =
-        paint(pictures::plaster(texels(length, height, density), colours[number], random_.fork(number + 1U)));
-    add_rectangle(walls.mesh, origin, along * length, -z * height, area, 0.2F);
-    const TextureArea strip =
-        paint(pictures::wood(texels(length, 0.09, density), dark_wood, 0, random_.fork(number + 11U)));
-    add_rectangle(walls.mesh, origin - z * (height - 0.09F) + 0.012F * (-z).cross(along), along * length, -z * 0.09F,
-                  strip, 0.25F);
-  };
-  wall(0, {0, depth, height}, x, width);  // seen from inside, +y wall: left to right is +x
-  wall(1, {width, depth, height}, -y, depth);
-  wall(2, {width, 0, height}, -x, width);
-  wall(3, {0, 0, height}, y, depth);
-  Object& floor = add("floor", {});
-  add_rectangle(floor.mesh, {0, depth, 0}, x * width, -y * depth,
-                paint(pictures::wood(texels(width, depth, density), {85, 125, 172}, 26, random())), 0.2F);
-  Object& ceiling = add("ceiling", {});
-  add_rectangle(ceiling.mesh, {0, 0, height}, x * width, y * depth,
-                paint(pictures::plaster(texels(width, depth, 120.0), {225, 228, 228}, random())), 0.4F);
 }
 
 void RoomBuilder::rug(const Place& place, double width, double depth) {
@@ -243,6 +202,73 @@ void RoomBuilder::painting(const Place& place, double width, double height) {
   BoxSkin sides = plain_skin({28, 45, 70});
   sides[front] = paint(pictures::painting(texels(width, height, 450.0), random_));
   add_box(object.mesh, canvas, sides, 0.2F, false);
+}
+
+void RoomBuilder::four_legs(Object& object, double width, double depth, double height) {
+  const auto wooden = [](cv::Size size, Random random) { return pictures::wood(size, light_wood, 0, random); };
+  const AlignedBox3f board = box(-width / 2, -depth / 2, height - 0.03, width / 2, depth / 2, height);
+  add_box(object.mesh, board, skin(board, 350.0, wooden), 0.08F);
+  const BoxSkin metal = plain_skin(grey_plastic);
+  for (const double side : {-1.0, 1.0})
+    for (const double end : {-1.0, 1.0}) {
+      const double x = side * (width / 2 - 0.05), y = end * (depth / 2 - 0.05);
+      add_box(object.mesh, box(x - 0.025, y - 0.025, 0, x + 0.025, y + 0.025, height - 0.03), metal, 0.2F);
+    }
+}
+
+void RoomBuilder::table(const Place& place, double width, double depth, double height) {
+  four_legs(add("table", place), width, depth, height);
+}
+
+void RoomBuilder::stool(const Place& place, double width, double depth, double height) {
+  four_legs(add("stool", place), width, depth, height);
+}
+
+void RoomBuilder::partition(const Place& place, double width, double height) {
+  Object& object = add("partition", place);
+  const cv::Scalar cloth(random_.uniform(70, 150), random_.uniform(60, 130), random_.uniform(50, 130));
+  const auto covered = [&](cv::Size size, Random random) { return pictures::fabric(size, cloth, random); };
+  const AlignedBox3f panel = box(-width / 2, -0.025, 0.08, width / 2, 0.025, height);
+  add_box(object.mesh, panel, skin(panel, 200.0, covered), 0.15F);
+  const BoxSkin metal = plain_skin(grey_plastic);
+  for (const double x : {-width / 2 + 0.08, width / 2 - 0.08})
+    add_box(object.mesh, box(x - 0.03, -0.2, 0, x + 0.03, 0.2, 0.04), metal, 0.2F, false);
+  for (const float side : {-1.0F, 1.0F})
+    for (double x = -width / 2 + 0.08; x < width / 2 - 0.30;) {
+      const bool printed = random_.uniform() < 0.6;
+      const double wide = printed ? 0.21 : random_.uniform(0.22, 0.34), high = wide * 1.414;
+      const double z = random_.uniform(std::max(0.3, height - 0.75), height - 0.04 - high);
+      const std::uint64_t stream = random_.next();
+      const TextureArea sheet = paint(printed ? pictures::page(texels(wide, high, 1000.0), Random(stream))
+                                              : pictures::poster(texels(wide, high, 800.0), Random(stream)));
+      const auto left_x = static_cast<float>(side < 0 ? x : x + wide);
+      add_rectangle(object.mesh, {left_x, side * 0.028F, static_cast<float>(z + high)},
+                    {-side * static_cast<float>(wide), 0, 0}, {0, 0, static_cast<float>(-high)}, sheet, 0.2F);
+      x += wide + random_.uniform(0.03, 0.22);
+    }
+}
+
+void RoomBuilder::notice_board(const Place& place, double width, double height) {
+  Object& object = add("notice board", place);
+  const AlignedBox3f board = box(-width / 2, -0.02, -height / 2, width / 2, 0, height / 2);
+  BoxSkin sides = plain_skin({70, 110, 150});
+  cv::Mat cork = pictures::fabric(texels(width, height, 400.0), {85, 130, 175}, random_.fork(1));
+  for (int x = 12; x + 100 < cork.cols;) {
+    const int wide = 84 + static_cast<int>(random_.below(40));
+    int y = 10 + static_cast<int>(random_.below(30));
+    while (true) {
+      const bool printed = random_.uniform() < 0.7;
+      const int high = static_cast<int>(wide * (printed ? 1.41 : random_.uniform(0.6, 1.2)));
+      if (x + wide + 6 > cork.cols || y + high + 6 > cork.rows) break;
+      const Random own(random_.next());
+      (printed ? pictures::page({wide, high}, own) : pictures::poster({wide, high}, own))
+          .copyTo(cork(cv::Rect(x, y, wide, high)));
+      y += high + 6 + static_cast<int>(random_.below(24));
+    }
+    x += wide + 6 + static_cast<int>(random_.below(20));
+  }
+  sides[front] = paint(cork);
+  add_box(object.mesh, board, sides, 0.2F, false);
 }
 
 }  // namespace holdfast::simulation

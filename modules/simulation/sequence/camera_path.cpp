@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/random.hpp"
@@ -13,10 +14,6 @@ using Eigen::Vector3d;
 
 namespace {
 constexpr double turn = 2.0 * std::numbers::pi;
-// In front of the desks of make_room, about 2 m away.
-const Vector3d home(3.0, 2.45, 1.38);
-const Vector3d desk(3.05, 4.3, 0.88);
-
 // Time as the motion feels it: speed rises smoothly from 0 to 1 within `ramp` seconds.
 double eased(double time) {
   constexpr double ramp = 1.0;
@@ -25,33 +22,55 @@ double eased(double time) {
   return ramp * (t * t * t - 0.5 * t * t * t * t);  // the integral of smoothstep
 }
 
-Vector3d rotated_eye(double azimuth, double elevation, double radius) {
-  return desk + radius * Vector3d(std::sin(azimuth) * std::cos(elevation), -std::cos(azimuth) * std::cos(elevation),
-                                  std::sin(elevation));
+constexpr std::pair<PathKind, const char*> kinds[] = {{PathKind::fixed, "static"},
+                                                      {PathKind::xyz, "xyz"},
+                                                      {PathKind::halfsphere, "halfsphere"},
+                                                      {PathKind::rpy, "rpy"},
+                                                      {PathKind::loop, "loop"},
+                                                      {PathKind::corridor, "corridor"},
+                                                      {PathKind::table_edge, "table_edge"},
+                                                      {PathKind::rotation, "rotation"},
+                                                      {PathKind::square, "square"},
+                                                      {PathKind::waypoints, "waypoints"}};
+
+constexpr double edge_stroke = 0.075, edge_period = 8.0;                 // of table_edge [m], [s]
+constexpr double rotation_period = 20.0, rotation_radius = 0.12;         // the camera is held before the body
+constexpr double step_length = 0.36, bob_up = 0.014, bob_aside = 0.012;  // of a walker [m]
+
+Vector3d rotated_eye(const Vector3d& centre, double azimuth, double elevation, double radius) {
+  return centre + radius * Vector3d(std::sin(azimuth) * std::cos(elevation), -std::cos(azimuth) * std::cos(elevation),
+                                    std::sin(elevation));
+}
+
+std::optional<WaypointPath> walk_of(PathKind kind, const Stage& stage) {
+  if (kind == PathKind::loop) return WaypointPath(stage.loop);
+  if (kind == PathKind::corridor) return WaypointPath(stage.corridor);
+  if (kind == PathKind::square) return WaypointPath(stage.square);
+  return std::nullopt;
 }
 }  // namespace
 
 const char* to_string(PathKind kind) {
-  switch (kind) {
-    case PathKind::fixed:
-      return "static";
-    case PathKind::xyz:
-      return "xyz";
-    case PathKind::halfsphere:
-      return "halfsphere";
-    case PathKind::rpy:
-      return "rpy";
-  }
+  for (const auto& [known, name] : kinds)
+    if (known == kind) return name;
   return "";
 }
 
-std::vector<std::string> path_names() { return {"static", "xyz", "halfsphere", "rpy"}; }
+std::vector<std::string> path_names() {
+  std::vector<std::string> names;
+  for (const auto& [kind, name] : kinds)
+    if (kind != PathKind::waypoints) names.emplace_back(name);
+  return names;
+}
 
 PathKind path_kind(const std::string& name) {
-  for (PathKind kind : {PathKind::fixed, PathKind::xyz, PathKind::halfsphere, PathKind::rpy})
-    if (name == to_string(kind)) return kind;
+  std::string expected;
+  for (const auto& [kind, known] : kinds) {
+    if (name == known) return kind;
+    expected += (expected.empty() ? "" : kind == PathKind::waypoints ? " or " : ", ") + std::string(known);
+  }
   std::vector<Diagnostic> problems(1);
-  problems[0].message = "camera path '" + name + "' is not known; expected static, xyz, halfsphere or rpy";
+  problems[0].message = "camera path '" + name + "' is not known; expected " + expected;
   throw ConfigurationError(std::move(problems));
 }
 
@@ -66,26 +85,42 @@ Eigen::Isometry3d look_at(const Vector3d& eye, const Vector3d& target) {
   return pose;
 }
 
-CameraPath::CameraPath(PathKind kind, std::uint64_t seed) : kind_(kind) {
+CameraPath::CameraPath(PathKind kind, const Stage& stage, std::uint64_t seed, const PathStyle& style)
+    : CameraPath(kind, stage, walk_of(kind, stage), seed, style) {
+  HOLDFAST_CHECK(kind != PathKind::waypoints, "a path along waypoints needs them");
+}
+
+CameraPath::CameraPath(const Waypoints& waypoints, std::uint64_t seed, const PathStyle& style)
+    : CameraPath(PathKind::waypoints, Stage(), WaypointPath(waypoints), seed, style) {}
+
+CameraPath::CameraPath(PathKind kind, const Stage& stage, std::optional<WaypointPath> walk, std::uint64_t seed,
+                       const PathStyle& style)
+    : kind_(kind), stage_(stage), style_(style), walk_(std::move(walk)) {
   Random random = Random(seed).fork(0x9a7);
   for (double& phase : phases_) phase = random.uniform(0.0, turn);
+  // On the table's edge the hand rests.
+  const double steadiness = kind == PathKind::table_edge ? 0.3 : 1.0;
   for (int axis = 0; axis < 6; ++axis)
     for (int i = 0; i < 5; ++i) {
       // A hand trembles most below 1 Hz; amplitudes fall with frequency so that no frame jumps.
       const double frequency = random.uniform(0.4, 1.0) * (1.0 + 0.9 * i);
-      const double size = (axis < 3 ? 0.0035 : 0.0045) / (1.0 + i);
+      const double size = (axis < 3 ? 0.0035 : 0.0045) / (1.0 + i) * steadiness * style.shake;
       tremors_[axis].push_back({size * random.uniform(0.5, 1.0), frequency, random.uniform(0.0, turn)});
     }
 }
 
-Eigen::Isometry3d CameraPath::pose(double time) const {
-  const double t = eased(time);
+double CameraPath::cycle() const {
+  if (walk_) return walk_->cycle() / style_.speed;
+  if (kind_ == PathKind::table_edge) return edge_period / style_.speed;
+  if (kind_ == PathKind::rotation) return rotation_period / style_.speed;
+  return 20.0 / style_.speed;
+}
+
+Eigen::Isometry3d CameraPath::hand_pose(double t) const {
+  const Vector3d &home = stage_.home, &target = stage_.target;
   const auto wave = [&](int phase, double period) { return std::sin(turn * t / period + phases_[phase]); };
   Eigen::Isometry3d pose;
   switch (kind_) {
-    case PathKind::fixed:
-      pose = look_at(home, desk);
-      break;
     case PathKind::xyz: {
       // One axis after the other comes to the fore.
       const auto swell = [&](int phase, double shift) {
@@ -93,15 +128,16 @@ Eigen::Isometry3d CameraPath::pose(double time) const {
       };
       const Vector3d offset(0.42 * swell(0, 0.0) * wave(0, 6.1), 0.36 * swell(1, 1.0 / 3) * wave(1, 7.3),
                             0.30 * swell(2, 2.0 / 3) * wave(2, 5.3));
-      pose = look_at(home, desk);
+      pose = look_at(home, target);
       pose.translation() += offset;
       break;
     }
     case PathKind::halfsphere:
-      pose = look_at(rotated_eye(0.85 * wave(0, 13.0), 0.62 + 0.38 * wave(1, 8.9), 1.7 + 0.1 * wave(2, 7.7)), desk);
+      pose = look_at(rotated_eye(target, 0.85 * wave(0, 13.0), 0.62 + 0.38 * wave(1, 8.9), 1.7 + 0.1 * wave(2, 7.7)),
+                     target);
       break;
     case PathKind::rpy: {
-      pose = look_at(home, desk);
+      pose = look_at(home, target);
       const Eigen::Quaterniond rotation = Eigen::AngleAxisd(0.42 * wave(0, 7.9), Vector3d::UnitY()) *
                                           Eigen::AngleAxisd(0.28 * wave(1, 6.1), Vector3d::UnitX()) *
                                           Eigen::AngleAxisd(0.45 * wave(2, 6.9), Vector3d::UnitZ());
@@ -109,11 +145,38 @@ Eigen::Isometry3d CameraPath::pose(double time) const {
       pose.translation() += 0.03 * Vector3d(wave(3, 4.1), wave(4, 5.3), wave(5, 4.7));
       break;
     }
+    case PathKind::table_edge:
+      pose = look_at(stage_.table_edge, stage_.table_edge_target);
+      pose.translation().x() -= 0.5 * edge_stroke * std::cos(turn * t / edge_period);
+      break;
+    case PathKind::rotation: {
+      const double heading = 0.25 * turn + turn * t / rotation_period;
+      const Vector3d out(std::cos(heading), std::sin(heading), 0.0);
+      pose = look_along(stage_.spot + rotation_radius * out, heading, 0.2);
+      break;
+    }
+    default:
+      pose = look_at(home, target);
   }
+  return pose;
+}
+
+Eigen::Isometry3d CameraPath::walk_pose(double t) const {
+  Eigen::Isometry3d pose = walk_->pose(t);
+  // The body rises with every step and sways with every other.
+  const double steps = walk_->walked(t) / step_length;
+  pose.translation() += style_.shake * (bob_up * std::sin(turn * steps + phases_[0]) * Vector3d::UnitZ() +
+                                        bob_aside * std::sin(0.5 * turn * steps + phases_[1]) * pose.linear().col(0));
+  return pose;
+}
+
+Eigen::Isometry3d CameraPath::pose(double time) const {
+  const double hand_time = eased(time), t = style_.speed * hand_time;
+  Eigen::Isometry3d pose = walk_ ? walk_pose(t) : hand_pose(t);
   double shake[6] = {};
   for (int axis = 0; axis < 6; ++axis)
     for (const Tremor& tremor : tremors_[axis])
-      shake[axis] += tremor.amplitude * std::sin(turn * tremor.frequency * t + tremor.phase);
+      shake[axis] += tremor.amplitude * std::sin(turn * tremor.frequency * hand_time + tremor.phase);
   const Vector3d angles(shake[3], shake[4], shake[5]);
   const double angle = angles.norm();
   pose.translate(Vector3d(shake[0], shake[1], shake[2]));

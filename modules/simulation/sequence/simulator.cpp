@@ -7,7 +7,6 @@
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/random.hpp"
-#include "holdfast/simulation/room.hpp"
 
 namespace holdfast::simulation {
 
@@ -26,9 +25,9 @@ cv::Mat look_up(const cv::Mat& object_ids, const std::vector<std::uint8_t>& valu
 Simulator::Simulator(const SimulationSettings& settings, const Camera& camera)
     : settings_(settings),
       camera_(camera),
-      world_(make_room(settings.seed)),
-      path_(settings.path, settings.seed),
-      renderer_(world_, camera_) {
+      room_(make_room(settings.room, settings.seed)),
+      path_(settings.path, room_.stage, settings.seed),
+      renderer_(room_.world, camera_) {
   const double count = std::ceil(settings.duration * settings.frame_rate - 1e-9);
   if (!(count >= 1.0) || !(count < 1e9)) {
     std::ostringstream text;
@@ -39,11 +38,11 @@ Simulator::Simulator(const SimulationSettings& settings, const Camera& camera)
     throw ConfigurationError(std::move(problems));
   }
   frame_count_ = static_cast<std::uint64_t>(count);
-  class_names_ = simulation::class_names(world_);
+  class_names_ = simulation::class_names(room_.world);
   mask_values_ = {0};
   class_values_ = {0};
   std::uint8_t moving = 0;
-  for (const Object& object : world_.objects) {
+  for (const Object& object : room_.world.objects) {
     mask_values_.push_back(object.moves() ? ++moving : 0);
     const auto name = std::find(class_names_.begin(), class_names_.end(), object.class_name);
     class_values_.push_back(static_cast<std::uint8_t>(name - class_names_.begin()));

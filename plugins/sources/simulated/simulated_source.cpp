@@ -9,6 +9,7 @@ namespace holdfast {
 namespace {
 
 struct SimulatedSourceSettings {
+  std::string room = "office";
   std::string path = "xyz";
   double duration = 20.0;
   double frame_rate = 30.0;
@@ -22,8 +23,10 @@ struct SimulatedSourceSettings {
 
   static void describe(ParameterTable<SimulatedSourceSettings>& table) {
     using S = SimulatedSourceSettings;
+    table.add("room", &S::room, "where: a furnished office, a large hall, or a corridor of look-alike desks")
+        .one_of({"office", "hall", "corridor"});
     table.add("path", &S::path, "how the camera moves, after the TUM fr3 sequences")
-        .one_of({"static", "xyz", "halfsphere", "rpy"});
+        .one_of({"static", "xyz", "halfsphere", "rpy", "loop", "corridor", "table_edge", "rotation", "square"});
     table.add("duration", &S::duration, "length of the sequence").range(0.001, 36000.0).unit("s");
     table.add("frame_rate", &S::frame_rate, "frames per second").range(0.1, 1000.0).unit("1/s");
     table.add("seed", &S::seed, "of room, path and noise; 0 = the run's seed").at_least(0.0);
@@ -45,7 +48,8 @@ class SimulatedSource final : public FrameSource {
 
   SourceDescription describe() const override {
     SourceDescription description;
-    description.name = std::string("simulated room, ") + simulation::to_string(simulator_.settings().path) + ", seed " +
+    description.name = std::string("simulated ") + simulation::to_string(simulator_.settings().room) + ", " +
+                       simulation::to_string(simulator_.settings().path) + ", seed " +
                        std::to_string(simulator_.settings().seed);
     description.has_depth = true;
     description.has_object_masks = true;
@@ -66,6 +70,7 @@ class SimulatedSource final : public FrameSource {
   static simulation::SimulationSettings translate(const SimulatedSourceSettings& settings,
                                                   const CreationContext& context) {
     simulation::SimulationSettings result;
+    result.room = simulation::room_kind(settings.room);
     result.path = simulation::path_kind(settings.path);
     result.duration = settings.duration;
     result.frame_rate = settings.frame_rate;
