@@ -31,12 +31,23 @@ struct TextureArea {
   float width = 1.0F, height = 1.0F;
 };
 
+/// What carries a vertex of a mesh that bends: at most four bones, their numbers and shares, which are not negative and
+/// add up to one.
+struct SkinWeights {
+  std::array<std::uint8_t, 4> bones{};
+  std::array<float, 4> weights{1.0F, 0.0F, 0.0F, 0.0F};
+};
+
 /// Textured triangles, and boxes that stand for them when light is traced.
 struct Mesh {
   std::vector<Vertex> vertices;
   std::vector<Triangle> triangles;
   std::vector<Eigen::AlignedBox3f> solids;
   std::uint32_t surface_count = 0;
+  /// For a mesh that bends: one for each vertex, and T_object_bone of each bone (by number) in the rest pose, in which
+  /// the vertices are given. Empty for a rigid mesh.
+  std::vector<SkinWeights> skin;
+  std::vector<Eigen::Isometry3d> rest;
 };
 
 /// The sides of a box, in the order in which add_box takes their textures. The box stands with z up and is looked at

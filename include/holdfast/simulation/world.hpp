@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "holdfast/simulation/mesh.hpp"
+#include "holdfast/simulation/skeleton.hpp"
 #include "holdfast/simulation/texture.hpp"
 
 namespace holdfast::simulation {
@@ -21,10 +22,27 @@ struct Object {
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();  ///< at rest
   /// T_world_object at a time [s] for a thing that moves; empty for one that stands still.
   std::function<Eigen::Isometry3d(double)> motion;
+  /// For a mesh with a skin: T_object_bone of each bone at a time [s]; empty for a rigid mesh.
+  std::function<BonePoses(double)> bones;
 
-  bool moves() const { return static_cast<bool>(motion); }
+  bool moves() const { return motion || bones; }
   Eigen::Isometry3d pose(double time) const { return motion ? motion(time) : T_world_object; }
 };
+
+/// A corner of a mesh where it is at a moment, in the world's frame.
+struct PosedVertex {
+  Eigen::Vector3f position;  ///< [m]
+  Eigen::Vector3f normal;    ///< unit
+};
+
+/// Where every `stride`-th vertex of an object is at a time [s]: vertex i stride in place i of `posed`, which is
+/// resized. A mesh with a skin bends by linear blending: the sum over its bones of weight * T_object_bone(time) *
+/// T_bone_object(rest) is applied to the vertex (Magnenat-Thalmann, Laperriere and Thalmann, Graphics Interface 1988).
+void pose_vertices(const Object& object, double time, std::vector<PosedVertex>& posed, std::size_t stride = 1);
+
+/// Whether the object's surface moves faster than 3 cm/s around a time [s]: a part of its vertices is compared between
+/// a sixtieth of a second before and after.
+bool moves_at(const Object& object, double time);
 
 /// A lamp that shines from a point in all directions.
 struct Lamp {
