@@ -14,7 +14,7 @@ struct Vertex {
   Eigen::Vector3f normal;  ///< unit, outwards
   float u = 0.0F;          ///< texture position [texels of level 0]
   float v = 0.0F;
-  float light = 1.0F;  ///< brightness, set by Lighting
+  float light = 1.0F;  ///< brightness; see bake_light
 };
 
 /// Seen from outside, a, b, c run clockwise in the image (x right, y down).

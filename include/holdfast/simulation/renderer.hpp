@@ -37,7 +37,6 @@ class Renderer {
   struct Buffers;
   void shade(RenderedFrame& frame) const;
 
-  const World& world_;
   Camera camera_;
   std::unique_ptr<Buffers> buffers_;
 };

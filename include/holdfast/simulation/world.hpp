@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <opencv2/core/mat.hpp>
@@ -48,6 +49,14 @@ bool moves_at(const Object& object, double time);
 struct Lamp {
   Eigen::Vector3f position;
   float brightness = 1.0F;  ///< of a white surface at 1 m that faces it; falls with 1 / (0.5 + 0.5 distance^2)
+
+  /// What a surface at `point` gets that nothing hides from the lamp (Lambert's law).
+  float light(const Eigen::Vector3f& point, const Eigen::Vector3f& normal) const {
+    const Eigen::Vector3f to_lamp = position - point;
+    const float distance2 = to_lamp.squaredNorm();
+    const float along = normal.dot(to_lamp);
+    return along > 0.0F ? brightness * along / (std::sqrt(distance2) * (0.5F + 0.5F * distance2)) : 0.0F;
+  }
 };
 
 /// All there is: z up, floor at z = 0 [m].
@@ -61,8 +70,10 @@ struct World {
   TextureArea add_texture(const cv::Mat& picture);
 };
 
-/// Sets Vertex::light of every object, for the poses at rest: Lambert's law for each lamp, with shadows, and ambient
-/// light dimmed by what stands near (ambient occlusion; Zhukov et al. 1998). Mesh::solids stand for the objects.
+/// Sets Vertex::light of every object that stands still: Lambert's law for each lamp, with shadows, and ambient light
+/// dimmed by what stands near (ambient occlusion; Zhukov et al. 1998). Mesh::solids stand for the objects. An object
+/// that moves is lit anew in each frame: Vertex::light becomes the share of ambient light (0 to 1) that its own solids
+/// leave, and stays what it was without solids.
 void bake_light(World& world);
 
 /// Names of the object classes in the world, sorted, after "background" at 0.

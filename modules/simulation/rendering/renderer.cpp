@@ -46,7 +46,7 @@ struct Renderer::Buffers {
     std::int32_t sample;   // nearest sample of the grid: column + row * columns
   };
 
-  Buffers(const Camera& camera) : visibility(ray_grid(camera)) {
+  Buffers(const World& rendered, const Camera& camera) : world(rendered), visibility(ray_grid(camera)) {
     const RayGrid& grid = visibility.grid();
     rays.reserve(static_cast<std::size_t>(camera.width) * camera.height);
     for (int y = 0; y < camera.height; ++y)
@@ -60,6 +60,7 @@ struct Renderer::Buffers {
       }
   }
 
+  PosedWorld world;
   VisibilityBuffer visibility;
   std::vector<PixelRay> rays;
 };
@@ -147,14 +148,15 @@ std::uint8_t to_byte(float value) { return static_cast<std::uint8_t>(std::min(va
 }  // namespace
 
 Renderer::Renderer(const World& world, const Camera& camera)
-    : world_(world), camera_(camera), buffers_(std::make_unique<Buffers>(camera)) {
+    : camera_(camera), buffers_(std::make_unique<Buffers>(world, camera)) {
   HOLDFAST_CHECK(world.objects.size() < 65535, "objects " << world.objects.size());
 }
 
 Renderer::~Renderer() = default;
 
 RenderedFrame Renderer::render(const Eigen::Isometry3d& T_world_camera, double time) {
-  buffers_->visibility.draw(world_, T_world_camera, time);
+  buffers_->world.pose(time);
+  buffers_->visibility.draw(buffers_->world, T_world_camera);
   RenderedFrame frame;
   frame.colour.create(camera_.height, camera_.width, CV_8UC3);
   frame.depth.create(camera_.height, camera_.width, CV_32FC1);

@@ -42,22 +42,30 @@ VisibilityBuffer::VisibilityBuffer(const RayGrid& grid) : grid_(grid) {
   const std::size_t count = static_cast<std::size_t>(grid.columns) * grid.rows;
   nearest_.resize(count);
   numbers_.resize(count);
+  const double x1 = grid.x0 + grid.columns * grid.step_x, y1 = grid.y0 + grid.rows * grid.step_y;
+  sides_ = {Vector3d(1, 0, -grid.x0), Vector3d(-1, 0, x1), Vector3d(0, 1, -grid.y0), Vector3d(0, -1, y1)};
+  for (Vector3d& side : sides_) side.normalize();
 }
 
-void VisibilityBuffer::draw(const World& world, const Eigen::Isometry3d& T_world_camera, double time) {
+void VisibilityBuffer::draw(const PosedWorld& world, const Eigen::Isometry3d& T_world_camera) {
   std::fill(nearest_.begin(), nearest_.end(), 0.0F);
   std::fill(numbers_.begin(), numbers_.end(), nothing);
   triangles_.clear();
 
   const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
-  std::uint32_t first_surface = 0;
-  for (std::size_t index = 0; index < world.objects.size(); ++index) {
-    const Object& object = world.objects[index];
-    const Mesh& mesh = object.mesh;
-    const Eigen::Isometry3d T_camera_object = T_camera_world * object.pose(time);
-    corners_.resize(mesh.vertices.size());
-    for (std::size_t i = 0; i < corners_.size(); ++i)
-      corners_[i] = T_camera_object * mesh.vertices[i].position.cast<double>();
+  order_.clear();
+  for (std::uint32_t index = 0; index < world.objects().size(); ++index) {
+    const PosedObject& posed = world.objects()[index];
+    const Vector3d centre = T_camera_world * posed.centre;
+    if (!outside(centre, posed.radius)) order_.emplace_back(centre.norm(), index);
+  }
+  std::sort(order_.begin(), order_.end());  // near things first, so that what they hide is turned down early
+
+  for (const auto& [distance, index] : order_) {
+    const PosedObject& posed = world.objects()[index];
+    const Mesh& mesh = posed.object->mesh;
+    corners_.resize(posed.corners.size());
+    for (std::size_t i = 0; i < corners_.size(); ++i) corners_[i] = T_camera_world * posed.corners[i];
 
     for (const Triangle& triangle : mesh.triangles) {
       const Vector3d corners[3] = {corners_[triangle.a], corners_[triangle.b], corners_[triangle.c]};
@@ -80,15 +88,21 @@ void VisibilityBuffer::draw(const World& world, const Eigen::Isometry3d& T_world
       };
       visible.u = gradient(a.u, b.u, c.u);
       visible.v = gradient(a.v, b.v, c.v);
-      visible.light = gradient(a.light, b.light, c.light);
-      visible.texture = &world.textures[triangle.texture];
-      visible.surface = first_surface + triangle.surface;
+      visible.light = gradient(posed.light[triangle.a], posed.light[triangle.b], posed.light[triangle.c]);
+      visible.texture = &world.world().textures[triangle.texture];
+      visible.surface = posed.first_surface + triangle.surface;
       visible.object = static_cast<std::uint16_t>(index + 1);
       visible.inverse_norm = static_cast<float>(1.0 / visible.inverse_depth.norm());
       draw_triangle(corners, edges, static_cast<std::uint32_t>(before));
     }
-    first_surface += mesh.surface_count;
   }
+}
+
+bool VisibilityBuffer::outside(const Vector3d& centre, double radius) const {
+  constexpr double margin = 1e-6;  // for rounding [m]
+  if (centre.z() + radius + margin < near_plane) return true;
+  return std::any_of(sides_.begin(), sides_.end(),
+                     [&](const Vector3d& side) { return side.dot(centre) + radius + margin < 0.0; });
 }
 
 bool VisibilityBuffer::outside(const Vector3d corners[3]) const {
