@@ -3,17 +3,25 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+
+#include "vectors.hpp"
 
 namespace holdfast::simulation {
 
 using Eigen::Vector3d;
 
 namespace {
-// Four samples at once with the compiler's vectors: a branch on each sample would be guessed wrongly too often.
-using Floats4 = float __attribute__((vector_size(16)));
-using Integers4 = std::int32_t __attribute__((vector_size(16)));
+// Rounding without a call into the library, for values of a size that fits.
+inline int floor_of(double value) {
+  const int whole = static_cast<int>(value);
+  return whole - (value < whole);
+}
+inline int ceiling_of(double value) {
+  const int whole = static_cast<int>(value);
+  return whole + (value > whole);
+}
 
+// Four samples at once: a branch on each would be guessed wrongly too often.
 void draw_span(float* nearest, std::uint32_t* numbers, int count, float start, float step, std::uint32_t number) {
   const auto name = static_cast<std::int32_t>(number);
   const Integers4 names = {name, name, name, name};
@@ -21,15 +29,10 @@ void draw_span(float* nearest, std::uint32_t* numbers, int count, float start, f
   int i = 0;
   for (; i + 4 <= count; i += 4) {
     const Floats4 value = start + static_cast<float>(i) * step + offsets;
-    Floats4 old_value;
-    Integers4 old_name;
-    std::memcpy(&old_value, nearest + i, sizeof(old_value));
-    std::memcpy(&old_name, numbers + i, sizeof(old_name));
+    const auto old_value = load<Floats4>(nearest + i);
     const Integers4 nearer = value > old_value;
-    old_value = nearer ? value : old_value;
-    old_name = nearer ? names : old_name;
-    std::memcpy(nearest + i, &old_value, sizeof(old_value));
-    std::memcpy(numbers + i, &old_name, sizeof(old_name));
+    store(nearest + i, nearer ? value : old_value);
+    store(numbers + i, nearer ? names : load<Integers4>(numbers + i));
   }
   for (; i < count; ++i) {
     const float value = start + static_cast<float>(i) * step;
@@ -51,6 +54,7 @@ void VisibilityBuffer::draw(const PosedWorld& world, const Eigen::Isometry3d& T_
   std::fill(nearest_.begin(), nearest_.end(), 0.0F);
   std::fill(numbers_.begin(), numbers_.end(), nothing);
   triangles_.clear();
+  surfaces_.clear();
 
   const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
   order_.clear();
@@ -90,7 +94,7 @@ void VisibilityBuffer::draw(const PosedWorld& world, const Eigen::Isometry3d& T_
       visible.v = gradient(a.v, b.v, c.v);
       visible.light = gradient(posed.light[triangle.a], posed.light[triangle.b], posed.light[triangle.c]);
       visible.texture = &world.world().textures[triangle.texture];
-      visible.surface = posed.first_surface + triangle.surface;
+      surfaces_.push_back(posed.first_surface + triangle.surface);
       visible.object = static_cast<std::uint16_t>(index + 1);
       visible.inverse_norm = static_cast<float>(1.0 / visible.inverse_depth.norm());
       draw_triangle(corners, edges, static_cast<std::uint32_t>(before));
@@ -159,15 +163,15 @@ void VisibilityBuffer::draw_triangle(const Vector3d corners[3], const Eigen::Mat
   if (!all_in_front) add_half_plane(Vector3d(0, 0, 1.0 / near_plane) - inverse_depth);
 
   constexpr double tolerance = 1e-6;  // triangles that share an edge both take samples on it: no gaps
-  const int begin_row = static_cast<int>(std::ceil(first_row - tolerance));
-  const int end_row = static_cast<int>(std::floor(last_row + tolerance));
+  const int begin_row = ceiling_of(first_row - tolerance);
+  const int end_row = floor_of(last_row + tolerance);
   const double step = inverse_depth.x() * grid_.step_x;
   for (int j = std::max(0, begin_row); j <= std::min(end_row, grid_.rows - 1); ++j) {
     double low = left, high = right;
     for (int k = 0; k < lowers; ++k) low = std::max(low, lower[k].offset + lower[k].slope * j);
     for (int k = 0; k < uppers; ++k) high = std::min(high, upper[k].offset + upper[k].slope * j);
-    const int begin = std::max(0, static_cast<int>(std::ceil(low - tolerance)));
-    const int end = std::min(grid_.columns - 1, static_cast<int>(std::floor(high + tolerance)));
+    const int begin = std::max(0, ceiling_of(low - tolerance));
+    const int end = std::min(grid_.columns - 1, floor_of(high + tolerance));
     if (begin > end) continue;
     const double start = inverse_depth.x() * (grid_.x0 + begin * grid_.step_x) +
                          inverse_depth.y() * (grid_.y0 + j * grid_.step_y) + inverse_depth.z();

@@ -17,7 +17,6 @@ struct VisibleTriangle {
   Eigen::Vector3d inverse_depth;
   Eigen::Vector3f u, v, light;
   const Texture* texture = nullptr;
-  std::uint32_t surface = 0;  ///< one number for all triangles of a smooth surface
   std::uint16_t object = 0;   ///< index plus one
   float inverse_norm = 1.0F;  ///< 1 / |inverse_depth|, which points along the normal
 };
@@ -41,6 +40,8 @@ class VisibilityBuffer {
 
   const RayGrid& grid() const { return grid_; }
   const std::vector<VisibleTriangle>& triangles() const { return triangles_; }
+  /// Of each triangle: one number for all triangles of a smooth surface.
+  const std::vector<std::uint32_t>& surfaces() const { return surfaces_; }
   /// Number into triangles() or `nothing`.
   const std::uint32_t* row(int j) const { return numbers_.data() + static_cast<std::size_t>(j) * grid_.columns; }
   /// 1 / depth [1/m], 0 where nothing is.
@@ -57,6 +58,7 @@ class VisibilityBuffer {
   std::vector<float> nearest_;
   std::vector<std::uint32_t> numbers_;
   std::vector<VisibleTriangle> triangles_;
+  std::vector<std::uint32_t> surfaces_;
   std::array<Eigen::Vector3d, 4> sides_;  // unit normals of the planes through the eye that bound the view, inwards
   std::vector<Eigen::Vector3d> corners_;  // of the object being drawn, camera frame
   std::vector<std::pair<double, std::uint32_t>> order_;  // of the objects in view: distance and index
