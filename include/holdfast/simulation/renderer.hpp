@@ -34,12 +34,8 @@ class Renderer {
   RenderedFrame render(const Eigen::Isometry3d& T_world_camera, double time);
 
  private:
-  struct Buffers;
-  void shade(RenderedFrame& frame) const;
-
-  const World& world_;
-  Camera camera_;
-  std::unique_ptr<Buffers> buffers_;
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
 };
 
 }  // namespace holdfast::simulation

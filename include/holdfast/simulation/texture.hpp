@@ -19,9 +19,16 @@ class Texture {
   int width() const { return levels_[0].width; }
   int height() const { return levels_[0].height; }
 
-  /// Trilinear sample at (u, v) [texels of level 0]; `level` is the base-2 logarithm of the footprint. The result holds
-  /// blue, green, red in 16-bit lanes, lowest first, each 0 to 255.
-  std::uint64_t sample(float u, float v, float level) const;
+  /// The area that a pixel sees of a texture.
+  struct Footprint {
+    float along_u = 0.0F, along_v = 0.0F;  ///< its length [texels of level 0]
+    int taps = 1;                          ///< 1 to 4 samples spread over its length (anisotropic filtering)
+    float level = 0.0F;                    ///< base-2 logarithm of its width [texels of level 0]
+  };
+
+  /// Trilinear samples around (u[k], v[k]) [texels of level 0], k < count <= 4, with a common footprint. Both arrays
+  /// have room for four values, the result for sixteen: blue, green, red from 0 to 255 and 0 for each place.
+  void sample(const float* u, const float* v, int count, const Footprint& footprint, float* colours) const;
 
  private:
   struct Level {
@@ -29,7 +36,8 @@ class Texture {
     std::int32_t height = 0;
     std::uint32_t begin = 0;  // of its texels in texels_
   };
-  std::uint64_t bilinear(const Level& level, float u, float v) const;
+  template <int count>
+  void sample_some(const float* u, const float* v, const Footprint& footprint, float* colours) const;
 
   int last_level_ = 0;
   std::array<Level, 16> levels_;

@@ -65,6 +65,20 @@ float openness(const Vector3f& point, const Vector3f& normal, const std::vector<
 }
 }  // namespace
 
+namespace {
+// An object that moves takes its own shade along, nothing else's.
+void bake_openness(Object& object, const std::vector<Vector3f>& directions) {
+  std::vector<Occluder> occluders;
+  for (const Eigen::AlignedBox3f& box : object.mesh.solids)
+    occluders.push_back({box, Eigen::Isometry3f::Identity(), box.center(), 0.5F * box.diagonal().norm()});
+  std::vector<const Occluder*> all;
+  for (const Occluder& occluder : occluders) all.push_back(&occluder);
+  if (all.empty()) return;
+  for (Vertex& vertex : object.mesh.vertices)
+    vertex.light = openness(vertex.position + 0.004F * vertex.normal, vertex.normal, all, directions);
+}
+}  // namespace
+
 void bake_light(World& world) {
   std::vector<Occluder> occluders;
   for (const Object& object : world.objects) {
@@ -77,6 +91,10 @@ void bake_light(World& world) {
 
   std::vector<const Occluder*> near;
   for (Object& object : world.objects) {
+    if (object.moves()) {
+      bake_openness(object, directions);
+      continue;
+    }
     const Eigen::Isometry3f T_world_object = object.T_world_object.cast<float>();
     for (Vertex& vertex : object.mesh.vertices) {
       const Vector3f normal = T_world_object.linear() * vertex.normal;
@@ -86,15 +104,14 @@ void bake_light(World& world) {
         if ((occluder.centre - point).norm() < occluder.radius + reach) near.push_back(&occluder);
       float light = world.ambient * openness(point, normal, near, directions);
       for (const Lamp& lamp : world.lamps) {
+        const float unhidden = lamp.light(point, normal);
+        if (unhidden <= 0.0F) continue;
         const Vector3f to_lamp = lamp.position - point;
-        const float distance2 = to_lamp.squaredNorm();
-        const float cosine = normal.dot(to_lamp) / std::sqrt(distance2);
-        if (cosine <= 0.0F) continue;
         // A lamp has an extent: an occluder near the ray's middle takes all light, one that ends at the lamp none.
         const bool lit = std::none_of(occluders.begin(), occluders.end(), [&](const Occluder& occluder) {
           return first_hit(occluder, point, 0.95F * to_lamp) < 1.0F;
         });
-        light += lamp.brightness * cosine / (0.5F + 0.5F * distance2) * (lit ? 1.0F : 0.25F);
+        light += unhidden * (lit ? 1.0F : 0.25F);
       }
       vertex.light = light;
     }

@@ -2,9 +2,10 @@
 #include "holdfast/simulation/texture.hpp"
 
 #include <algorithm>
-#include <cstring>
+#include <array>
 
 #include "holdfast/core/error.hpp"
+#include "vectors.hpp"
 
 namespace holdfast::simulation {
 
@@ -13,22 +14,51 @@ namespace {
 inline std::uint64_t spread(std::uint32_t texel) {
   return (texel & 0xffULL) | ((texel & 0xff00ULL) << 8) | ((texel & 0xff0000ULL) << 16);
 }
-// Two neighbouring texels as eight 16-bit lanes; the compiler's vectors, so that any processor's are used.
+// Two neighbouring texels as eight 16-bit lanes.
 using Bytes8 = std::uint8_t __attribute__((vector_size(8)));
-using Longs2 = std::uint64_t __attribute__((vector_size(16)));
-using Lanes8 = std::uint16_t __attribute__((vector_size(16)));
-inline Lanes8 load_pair(const std::uint32_t* texels) {
-  Bytes8 bytes;
-  std::memcpy(&bytes, texels, sizeof(bytes));
-  return __builtin_convertvector(bytes, Lanes8);
+inline Lanes8 load_pair(const std::uint32_t* texels) { return __builtin_convertvector(load<Bytes8>(texels), Lanes8); }
+
+// Weights of interpolation by 256ths of the way: down over all lanes, and across from the first texel to the second.
+struct Weights {
+  alignas(16) std::array<std::array<std::uint16_t, 8>, 256> down{}, across{};
+  constexpr Weights() {
+    for (std::uint16_t f = 0; f < 256; ++f) {
+      const auto rest = static_cast<std::uint16_t>(256 - f);
+      down[f] = {f, f, f, f, f, f, f, f};
+      across[f] = {rest, rest, rest, rest, f, f, f, f};
+    }
+  }
+};
+constexpr Weights interpolation;
+
+// Adds `weight` 256ths of `count` bilinear samples.
+template <int count>
+inline void add_bilinear(const std::uint32_t* texels, int width, int height, Floats4 u, Floats4 v, int weight,
+                         Lanes8* sums) {
+  const Floats4 zero = {0, 0, 0, 0};
+  const Floats4 x = smaller(larger(u - 0.5F, zero), zero + static_cast<float>(width - 1)) * 256.0F;
+  const Floats4 y = smaller(larger(v - 0.5F, zero), zero + static_cast<float>(height - 1)) * 256.0F;
+  const Integers4 fixed_x = __builtin_convertvector(x, Integers4), fixed_y = __builtin_convertvector(y, Integers4);
+  alignas(16) std::int32_t offsets[4], across[4], down[4];
+  store(offsets, (fixed_y >> 8) * width + (fixed_x >> 8));
+  store(across, fixed_x & 255);
+  store(down, fixed_y & 255);
+  const auto share = static_cast<std::uint16_t>(weight);
+  const Lanes8 shares = {share, share, share, share, share, share, share, share};
+  for (int k = 0; k < count; ++k) {
+    // In the last column `across` is 0: the texel after it, which may be of another row, has no weight.
+    const std::uint32_t* corner = texels + offsets[k];
+    const Lanes8 above = load_pair(corner), below = load_pair(corner + width);
+    // Modulo 65536 on the way, within 255 * 256 at its end.
+    const Lanes8 columns =
+        ((above << 8) + (below - above) * load<Lanes8>(interpolation.down[down[k]].data()) + 128) >> 8;
+    const Lanes8 parts = columns * load<Lanes8>(interpolation.across[across[k]].data());
+    const Lanes8 value = (parts + __builtin_shufflevector(parts, parts, 4, 5, 6, 7, 0, 1, 2, 3) + 128) >> 8;
+    sums[k] += value * shares;
+  }
 }
-inline Lanes8 weights(std::uint64_t first, std::uint64_t second) {
-  constexpr std::uint64_t each = 0x0001000100010001ULL;
-  const Longs2 pair = {first * each, second * each};
-  return reinterpret_cast<Lanes8>(pair);
-}
+
 constexpr std::uint64_t lanes = 0x00ff00ff00ffULL;
-constexpr std::uint64_t half = 0x008000800080ULL;
 }  // namespace
 
 Texture::Texture(const cv::Mat& picture) {
@@ -39,11 +69,12 @@ Texture::Texture(const cv::Mat& picture) {
   for (;; ++last_level_) {
     level.begin = total;
     levels_[last_level_] = level;
-    total += static_cast<std::uint32_t>(level.width) * static_cast<std::uint32_t>(level.height);
+    // The last row twice: interpolation in it reads one row on.
+    total += static_cast<std::uint32_t>(level.width) * static_cast<std::uint32_t>(level.height + 1);
     if (level.width == 1 && level.height == 1) break;
     level.width = std::max(1, level.width / 2), level.height = std::max(1, level.height / 2);
   }
-  texels_.resize(total + 1);  // bilinear() reads one texel beyond the last
+  texels_.resize(total + 1);  // interpolation in the last column reads one texel on
 
   for (int y = 0; y < picture.rows; ++y) {
     const std::uint8_t* in = picture.ptr<std::uint8_t>(y);
@@ -65,34 +96,50 @@ Texture::Texture(const cv::Mat& picture) {
       }
     }
   }
+  for (int number = 0; number <= last_level_; ++number) {
+    const Level& each = levels_[number];
+    const auto end = texels_.begin() + each.begin + static_cast<std::ptrdiff_t>(each.width) * each.height;
+    std::copy(end - each.width, end, end);
+  }
 }
 
-inline std::uint64_t Texture::bilinear(const Level& level, float u, float v) const {
-  u = std::clamp(u - 0.5F, 0.0F, static_cast<float>(level.width - 1));
-  v = std::clamp(v - 0.5F, 0.0F, static_cast<float>(level.height - 1));
-  const int x = static_cast<int>(u), y = static_cast<int>(v);
-  const auto fx = static_cast<std::uint32_t>((u - static_cast<float>(x)) * 256.0F);
-  const auto fy = static_cast<std::uint32_t>((v - static_cast<float>(y)) * 256.0F);
-  const std::uint32_t w11 = (fx * fy + 128) >> 8, w10 = fx - w11, w01 = fy - w11, w00 = 256 + w11 - fx - fy;
-  // In the last column fx is 0: the texel after it, which may be of another row or level, has no weight.
-  const std::uint32_t* above = texels_.data() + level.begin + static_cast<std::size_t>(y) * level.width + x;
-  const std::uint32_t* below = y + 1 < level.height ? above + level.width : above;
-  const Lanes8 top = weights(w00, w10), bottom = weights(w01, w11);
-  const Lanes8 sum = load_pair(above) * top + load_pair(below) * bottom;  // at most 255 * 256
-  const Longs2 halves = reinterpret_cast<Longs2>(sum);
-  return ((halves[0] + halves[1] + half) >> 8) & lanes;
-}
-
-std::uint64_t Texture::sample(float u, float v, float level) const {
-  if (level <= 0.0F) return bilinear(levels_[0], u, v);
-  const int fine = std::min(static_cast<int>(level), last_level_);
+template <int count>
+void Texture::sample_some(const float* at_u, const float* at_v, const Footprint& footprint, float* colours) const {
+  int fine = 0, coarse_share = 0;
+  if (footprint.level > 0.0F) {
+    fine = std::min(static_cast<int>(footprint.level), last_level_);
+    if (fine < last_level_) coarse_share = static_cast<int>((footprint.level - static_cast<float>(fine)) * 256.0F);
+  }
   // Halving drops an odd last row or column, so that texels of level k cover exactly 2^k of level 0.
   const float scale = 1.0F / static_cast<float>(1U << fine);
-  const std::uint64_t below = bilinear(levels_[fine], u * scale, v * scale);
-  if (fine == last_level_) return below;
-  const auto weight = static_cast<std::uint64_t>((level - static_cast<float>(fine)) * 256.0F);
-  const std::uint64_t above = bilinear(levels_[fine + 1], u * scale * 0.5F, v * scale * 0.5F);
-  return ((below * (256 - weight) + above * weight + half) >> 8) & lanes;
+  const Floats4 u = load<Floats4>(at_u) * scale, v = load<Floats4>(at_v) * scale;
+  Lanes8 sums[count] = {};
+  for (int tap = 0; tap < footprint.taps; ++tap) {
+    const float share = ((static_cast<float>(tap) + 0.5F) / static_cast<float>(footprint.taps) - 0.5F) * scale;
+    const Floats4 tap_u = u + share * footprint.along_u, tap_v = v + share * footprint.along_v;
+    const int weight = 256 * (tap + 1) / footprint.taps - 256 * tap / footprint.taps;
+    const int coarse_weight = (weight * coarse_share) >> 8;
+    const auto add = [&](const Level& level, float factor, int part) {
+      add_bilinear<count>(texels_.data() + level.begin, level.width, level.height, tap_u * factor, tap_v * factor, part,
+                          sums);
+    };
+    add(levels_[fine], 1.0F, weight - coarse_weight);
+    if (coarse_weight > 0) add(levels_[fine + 1], 0.5F, coarse_weight);
+  }
+  for (int k = 0; k < count; ++k) {
+    const Lanes8 zero = {};
+    const auto lower = reinterpret_cast<Integers4>(__builtin_shufflevector(sums[k], zero, 0, 8, 1, 9, 2, 10, 3, 11));
+    store(colours + 4 * k, __builtin_convertvector(lower, Floats4) * (1.0F / 256.0F));
+  }
+}
+
+void Texture::sample(const float* u, const float* v, int count, const Footprint& footprint, float* colours) const {
+  if (count == 1)
+    sample_some<1>(u, v, footprint, colours);
+  else if (count == 2)
+    sample_some<2>(u, v, footprint, colours);
+  else
+    sample_some<4>(u, v, footprint, colours);
 }
 
 }  // namespace holdfast::simulation

@@ -3,17 +3,25 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
+
+#include "vectors.hpp"
 
 namespace holdfast::simulation {
 
 using Eigen::Vector3d;
 
 namespace {
-// Four samples at once with the compiler's vectors: a branch on each sample would be guessed wrongly too often.
-using Floats4 = float __attribute__((vector_size(16)));
-using Integers4 = std::int32_t __attribute__((vector_size(16)));
+// Rounding without a call into the library, for values of a size that fits.
+inline int floor_of(double value) {
+  const int whole = static_cast<int>(value);
+  return whole - (value < whole);
+}
+inline int ceiling_of(double value) {
+  const int whole = static_cast<int>(value);
+  return whole + (value > whole);
+}
 
+// Four samples at once: a branch on each would be guessed wrongly too often.
 void draw_span(float* nearest, std::uint32_t* numbers, int count, float start, float step, std::uint32_t number) {
   const auto name = static_cast<std::int32_t>(number);
   const Integers4 names = {name, name, name, name};
@@ -21,15 +29,10 @@ void draw_span(float* nearest, std::uint32_t* numbers, int count, float start, f
   int i = 0;
   for (; i + 4 <= count; i += 4) {
     const Floats4 value = start + static_cast<float>(i) * step + offsets;
-    Floats4 old_value;
-    Integers4 old_name;
-    std::memcpy(&old_value, nearest + i, sizeof(old_value));
-    std::memcpy(&old_name, numbers + i, sizeof(old_name));
+    const auto old_value = load<Floats4>(nearest + i);
     const Integers4 nearer = value > old_value;
-    old_value = nearer ? value : old_value;
-    old_name = nearer ? names : old_name;
-    std::memcpy(nearest + i, &old_value, sizeof(old_value));
-    std::memcpy(numbers + i, &old_name, sizeof(old_name));
+    store(nearest + i, nearer ? value : old_value);
+    store(numbers + i, nearer ? names : load<Integers4>(numbers + i));
   }
   for (; i < count; ++i) {
     const float value = start + static_cast<float>(i) * step;
@@ -42,22 +45,31 @@ VisibilityBuffer::VisibilityBuffer(const RayGrid& grid) : grid_(grid) {
   const std::size_t count = static_cast<std::size_t>(grid.columns) * grid.rows;
   nearest_.resize(count);
   numbers_.resize(count);
+  const double x1 = grid.x0 + grid.columns * grid.step_x, y1 = grid.y0 + grid.rows * grid.step_y;
+  sides_ = {Vector3d(1, 0, -grid.x0), Vector3d(-1, 0, x1), Vector3d(0, 1, -grid.y0), Vector3d(0, -1, y1)};
+  for (Vector3d& side : sides_) side.normalize();
 }
 
-void VisibilityBuffer::draw(const World& world, const Eigen::Isometry3d& T_world_camera, double time) {
+void VisibilityBuffer::draw(const PosedWorld& world, const Eigen::Isometry3d& T_world_camera) {
   std::fill(nearest_.begin(), nearest_.end(), 0.0F);
   std::fill(numbers_.begin(), numbers_.end(), nothing);
   triangles_.clear();
+  surfaces_.clear();
 
   const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
-  std::uint32_t first_surface = 0;
-  for (std::size_t index = 0; index < world.objects.size(); ++index) {
-    const Object& object = world.objects[index];
-    const Mesh& mesh = object.mesh;
-    const Eigen::Isometry3d T_camera_object = T_camera_world * object.pose(time);
-    corners_.resize(mesh.vertices.size());
-    for (std::size_t i = 0; i < corners_.size(); ++i)
-      corners_[i] = T_camera_object * mesh.vertices[i].position.cast<double>();
+  order_.clear();
+  for (std::uint32_t index = 0; index < world.objects().size(); ++index) {
+    const PosedObject& posed = world.objects()[index];
+    const Vector3d centre = T_camera_world * posed.centre;
+    if (!outside(centre, posed.radius)) order_.emplace_back(centre.norm(), index);
+  }
+  std::sort(order_.begin(), order_.end());  // near things first, so that what they hide is turned down early
+
+  for (const auto& [distance, index] : order_) {
+    const PosedObject& posed = world.objects()[index];
+    const Mesh& mesh = posed.object->mesh;
+    corners_.resize(posed.corners.size());
+    for (std::size_t i = 0; i < corners_.size(); ++i) corners_[i] = T_camera_world * posed.corners[i];
 
     for (const Triangle& triangle : mesh.triangles) {
       const Vector3d corners[3] = {corners_[triangle.a], corners_[triangle.b], corners_[triangle.c]};
@@ -80,15 +92,21 @@ void VisibilityBuffer::draw(const World& world, const Eigen::Isometry3d& T_world
       };
       visible.u = gradient(a.u, b.u, c.u);
       visible.v = gradient(a.v, b.v, c.v);
-      visible.light = gradient(a.light, b.light, c.light);
-      visible.texture = &world.textures[triangle.texture];
-      visible.surface = first_surface + triangle.surface;
+      visible.light = gradient(posed.light[triangle.a], posed.light[triangle.b], posed.light[triangle.c]);
+      visible.texture = &world.world().textures[triangle.texture];
+      surfaces_.push_back(posed.first_surface + triangle.surface);
       visible.object = static_cast<std::uint16_t>(index + 1);
       visible.inverse_norm = static_cast<float>(1.0 / visible.inverse_depth.norm());
       draw_triangle(corners, edges, static_cast<std::uint32_t>(before));
     }
-    first_surface += mesh.surface_count;
   }
+}
+
+bool VisibilityBuffer::outside(const Vector3d& centre, double radius) const {
+  constexpr double margin = 1e-6;  // for rounding [m]
+  if (centre.z() + radius + margin < near_plane) return true;
+  return std::any_of(sides_.begin(), sides_.end(),
+                     [&](const Vector3d& side) { return side.dot(centre) + radius + margin < 0.0; });
 }
 
 bool VisibilityBuffer::outside(const Vector3d corners[3]) const {
@@ -145,15 +163,15 @@ void VisibilityBuffer::draw_triangle(const Vector3d corners[3], const Eigen::Mat
   if (!all_in_front) add_half_plane(Vector3d(0, 0, 1.0 / near_plane) - inverse_depth);
 
   constexpr double tolerance = 1e-6;  // triangles that share an edge both take samples on it: no gaps
-  const int begin_row = static_cast<int>(std::ceil(first_row - tolerance));
-  const int end_row = static_cast<int>(std::floor(last_row + tolerance));
+  const int begin_row = ceiling_of(first_row - tolerance);
+  const int end_row = floor_of(last_row + tolerance);
   const double step = inverse_depth.x() * grid_.step_x;
   for (int j = std::max(0, begin_row); j <= std::min(end_row, grid_.rows - 1); ++j) {
     double low = left, high = right;
     for (int k = 0; k < lowers; ++k) low = std::max(low, lower[k].offset + lower[k].slope * j);
     for (int k = 0; k < uppers; ++k) high = std::min(high, upper[k].offset + upper[k].slope * j);
-    const int begin = std::max(0, static_cast<int>(std::ceil(low - tolerance)));
-    const int end = std::min(grid_.columns - 1, static_cast<int>(std::floor(high + tolerance)));
+    const int begin = std::max(0, ceiling_of(low - tolerance));
+    const int end = std::min(grid_.columns - 1, floor_of(high + tolerance));
     if (begin > end) continue;
     const double start = inverse_depth.x() * (grid_.x0 + begin * grid_.step_x) +
                          inverse_depth.y() * (grid_.y0 + j * grid_.step_y) + inverse_depth.z();

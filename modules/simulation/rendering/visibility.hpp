@@ -2,10 +2,12 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
-#include "holdfast/simulation/world.hpp"
+#include "posed_world.hpp"
 
 namespace holdfast::simulation {
 
@@ -15,7 +17,6 @@ struct VisibleTriangle {
   Eigen::Vector3d inverse_depth;
   Eigen::Vector3f u, v, light;
   const Texture* texture = nullptr;
-  std::uint32_t surface = 0;  ///< one number for all triangles of a smooth surface
   std::uint16_t object = 0;   ///< index plus one
   float inverse_norm = 1.0F;  ///< 1 / |inverse_depth|, which points along the normal
 };
@@ -34,17 +35,21 @@ class VisibilityBuffer {
 
   explicit VisibilityBuffer(const RayGrid& grid);
 
-  /// Finds what is visible from T_world_camera at a time. Faces turned away are not drawn.
-  void draw(const World& world, const Eigen::Isometry3d& T_world_camera, double time);
+  /// Finds what is visible from T_world_camera. Faces turned away are not drawn.
+  void draw(const PosedWorld& world, const Eigen::Isometry3d& T_world_camera);
 
   const RayGrid& grid() const { return grid_; }
   const std::vector<VisibleTriangle>& triangles() const { return triangles_; }
+  /// Of each triangle: one number for all triangles of a smooth surface.
+  const std::vector<std::uint32_t>& surfaces() const { return surfaces_; }
   /// Number into triangles() or `nothing`.
   const std::uint32_t* row(int j) const { return numbers_.data() + static_cast<std::size_t>(j) * grid_.columns; }
   /// 1 / depth [1/m], 0 where nothing is.
   const float* inverse_depths(int j) const { return nearest_.data() + static_cast<std::size_t>(j) * grid_.columns; }
 
  private:
+  /// The sphere [camera frame, m] lies beyond one side of the view or before the near plane.
+  bool outside(const Eigen::Vector3d& centre, double radius) const;
   /// All corners lie beyond one side of the view: a plane through the eye, so this holds behind the camera too.
   bool outside(const Eigen::Vector3d corners[3]) const;
   void draw_triangle(const Eigen::Vector3d corners[3], const Eigen::Matrix3d& edges, std::uint32_t number);
@@ -53,7 +58,10 @@ class VisibilityBuffer {
   std::vector<float> nearest_;
   std::vector<std::uint32_t> numbers_;
   std::vector<VisibleTriangle> triangles_;
+  std::vector<std::uint32_t> surfaces_;
+  std::array<Eigen::Vector3d, 4> sides_;  // unit normals of the planes through the eye that bound the view, inwards
   std::vector<Eigen::Vector3d> corners_;  // of the object being drawn, camera frame
+  std::vector<std::pair<double, std::uint32_t>> order_;  // of the objects in view: distance and index
 };
 
 }  // namespace holdfast::simulation
