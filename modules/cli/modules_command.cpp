@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "holdfast/cli/terminal.hpp"
@@ -14,6 +15,7 @@
 #include "holdfast/pipeline/pipeline_builder.hpp"
 #include "holdfast/plugin/builtin.hpp"
 #include "holdfast/plugin/loader.hpp"
+#include "holdfast/simulation/scene_file.hpp"
 
 namespace holdfast {
 
@@ -33,8 +35,10 @@ int print_modules(const Arguments& arguments) {
   const ReferenceFormat format = arguments.json       ? ReferenceFormat::json
                                  : arguments.markdown ? ReferenceFormat::markdown
                                                       : ReferenceFormat::text;
+  std::vector<SectionDescription> sections = pipeline_sections();
+  for (SectionDescription& section : simulation::scene_sections()) sections.push_back(std::move(section));
   try {
-    std::fputs(reference(registry, pipeline_sections(), arguments.name, format).c_str(), stdout);
+    std::fputs(reference(registry, sections, arguments.name, format).c_str(), stdout);
   } catch (const Error& error) {
     std::fprintf(stderr, "%s %s\n", red("error:", STDERR_FILENO).c_str(), error.what());
     constexpr int usage_error = 2;
@@ -54,6 +58,7 @@ void add_modules_command(CLI::App& app, int& exit_code) {
       "  holdfast modules                 all names, one line each\n"
       "  holdfast modules orb             one module with its parameters\n"
       "  holdfast modules source          all modules of a section\n"
+      "  holdfast modules scene           what a scene file can say\n"
       "  holdfast modules --plugin ./libmine.so mine");
   command->add_option("NAME", arguments->name, "A module, a section, or a kind of module");
   command->add_option("--plugin", arguments->plugins, "Load this plugin first; may be repeated")

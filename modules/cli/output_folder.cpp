@@ -7,7 +7,7 @@ namespace holdfast {
 
 namespace fs = std::filesystem;
 
-void prepare_output_folder(const fs::path& folder, bool overwrite, std::initializer_list<const char*> ours) {
+void prepare_output_folder(const fs::path& folder, bool overwrite, const std::vector<std::string>& ours) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (!fs::is_directory(folder))
@@ -15,7 +15,7 @@ void prepare_output_folder(const fs::path& folder, bool overwrite, std::initiali
   if (fs::is_empty(folder)) return;
   if (!overwrite)
     throw InputError({folder.string()}, "the output folder is not empty; name another one or add --overwrite");
-  for (const char* name : ours) fs::remove_all(folder / name);
+  for (const std::string& name : ours) fs::remove_all(folder / name);
 }
 
 }  // namespace holdfast

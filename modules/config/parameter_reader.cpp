@@ -33,6 +33,17 @@ std::optional<double> as_real(const ConfigurationNode& node) {
   return number && std::isfinite(*number) ? number : std::nullopt;
 }
 
+std::optional<std::vector<double>> as_reals(const ConfigurationNode& node) {
+  std::vector<double> numbers;
+  if (node.kind != Kind::list) return std::nullopt;
+  for (const ConfigurationNode& item : node.items) {
+    const auto number = as_real(item);
+    if (!number) return std::nullopt;
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
 std::optional<ParameterValue> as_type(const ConfigurationNode& node, ParameterType type) {
   switch (type) {
     case ParameterType::boolean:
@@ -63,15 +74,18 @@ std::optional<ParameterValue> as_type(const ConfigurationNode& node, ParameterTy
       }
       return texts;
     }
-    case ParameterType::real_list: {
-      std::vector<double> numbers;
+    case ParameterType::real_list:
+      if (auto numbers = as_reals(node)) return *numbers;
+      return std::nullopt;
+    case ParameterType::real_table: {
+      RealTable rows;
       if (node.kind != Kind::list) return std::nullopt;
       for (const ConfigurationNode& item : node.items) {
-        const auto number = as_real(item);
-        if (!number) return std::nullopt;
-        numbers.push_back(*number);
+        auto row = as_reals(item);
+        if (!row) return std::nullopt;
+        rows.push_back(std::move(*row));
       }
-      return numbers;
+      return rows;
     }
     case ParameterType::text_map: {
       TextMap map;

@@ -12,7 +12,8 @@ namespace {
 
 /// One entry of the reference: a module, or a plain section.
 struct Entry {
-  std::string kind;  // "section" for plain ones
+  std::string kind;  // "section" for plain ones, "scene" for those of scene files
+  bool is_module() const { return kind != "section" && kind != "scene"; }
   ModuleDescription description;
   std::string origin;
   std::vector<Parameter> parameters;
@@ -23,15 +24,22 @@ std::vector<Entry> all_entries(const Registry& registry, const std::vector<Secti
   for (const std::string& kind : registry.kinds())
     for (const ModuleEntry* module : registry.of_kind(kind))
       entries.push_back({kind, module->description, module->origin, module->parameters});
-  const auto add_section = [&](const std::string& name, const std::string& help, std::vector<Parameter> parameters) {
-    entries.push_back({"section", {.name = name, .summary = help}, "built in", std::move(parameters)});
+  const auto add_section = [&](const std::string& name, const std::string& help, std::vector<Parameter> parameters,
+                               const std::string& kind = "section") {
+    entries.push_back({kind, {.name = name, .summary = help}, "built in", std::move(parameters)});
   };
   std::string cameras;
   for (const std::string& camera : camera_names()) cameras += (cameras.empty() ? "" : ", ") + camera;
   add_section("camera", "The camera: one of the names " + cameras + ", or by numbers.",
               ParameterTable<CameraSettings>().parameters());
-  for (const SectionDescription& section : sections) add_section(section.name, section.help, section.parameters);
+  const auto add_sections = [&](bool plain) {
+    for (const SectionDescription& section : sections)
+      if ((section.kind == "section") == plain)
+        add_section(section.name, section.help, section.parameters, section.kind);
+  };
+  add_sections(true);
   add_section("run", "How the pipeline runs.", ParameterTable<RunSettings>().parameters());
+  add_sections(false);
   return entries;
 }
 
@@ -59,7 +67,7 @@ std::string brief_text(const std::vector<Entry>& entries) {
 std::string full_text(const Entry& entry) {
   std::string text = entry.kind + ": " + entry.description.name + "\n  " + entry.description.summary + "\n";
   if (!entry.description.paper.empty()) text += "  Paper: " + entry.description.paper + "\n";
-  if (entry.kind != "section") text += "  Licence: " + entry.description.licence + "; " + entry.origin + "\n";
+  if (entry.is_module()) text += "  Licence: " + entry.description.licence + "; " + entry.origin + "\n";
   std::size_t width = 0;
   for (const Parameter& parameter : entry.parameters) width = std::max(width, parameter.name.size());
   for (const Parameter& parameter : entry.parameters) {
@@ -85,11 +93,14 @@ std::string markdown(const std::vector<Entry>& entries) {
     if (entry.kind != kind) {
       kind = entry.kind;
       text += (text.empty() ? "## " : "\n## ") +
-              (kind == "section" ? std::string("Plain sections") : "`" + kind + "`") + "\n";
+              (kind == "section" ? "Plain sections"
+               : kind == "scene" ? "Scene files"
+                                 : "`" + kind + "`") +
+              "\n";
     }
     text += "\n### `" + entry.description.name + "`\n\n" + entry.description.summary + "\n";
     if (!entry.description.paper.empty()) text += "\nPaper: " + entry.description.paper + "\n";
-    if (kind != "section") text += "\nLicence: " + entry.description.licence + "\n";
+    if (entry.is_module()) text += "\nLicence: " + entry.description.licence + "\n";
     if (entry.parameters.empty()) continue;
     text += "\n| parameter | type | default | range | unit | meaning |\n|---|---|---|---|---|---|\n";
     for (const Parameter& p : entry.parameters)

@@ -73,6 +73,9 @@ struct YamlText {
   std::string operator()(const std::string& value) const { return yaml_text(value); }
   std::string operator()(const std::vector<std::string>& value) const { return '[' + joined(value, yaml_text) + ']'; }
   std::string operator()(const std::vector<double>& value) const { return '[' + joined(value, yaml_real) + ']'; }
+  std::string operator()(const RealTable& value) const {
+    return '[' + joined(value, [this](const std::vector<double>& row) { return (*this)(row); }) + ']';
+  }
   std::string operator()(const TextMap& value) const {
     return '{' + joined(value, [](const auto& pair) { return yaml_text(pair.first) + ": " + yaml_text(pair.second); }) +
            '}';
@@ -98,6 +101,8 @@ bool has_type(const ParameterValue& value, ParameterType type) {
       return std::holds_alternative<std::vector<double>>(value);
     case ParameterType::text_map:
       return std::holds_alternative<TextMap>(value);
+    case ParameterType::real_table:
+      return std::holds_alternative<RealTable>(value);
   }
   return false;
 }
@@ -122,6 +127,8 @@ const char* to_string(ParameterType type) {
       return "list of reals";
     case ParameterType::text_map:
       return "map of texts";
+    case ParameterType::real_table:
+      return "list of lists of reals";
   }
   return "unknown";
 }
@@ -172,9 +179,12 @@ std::string Parameter::expectation() const {
     case ParameterType::text_map:
       text = "a map from text to text";
       break;
+    case ParameterType::real_table:
+      text = "a list of lists of numbers";
+      break;
   }
   if (const std::string range = range_text(); !range.empty())
-    text += (type == ParameterType::real_list ? ", each " : " ") + range;
+    text += (type == ParameterType::real_list || type == ParameterType::real_table ? ", each " : " ") + range;
   if (!unit_name.empty()) text += " [" + unit_name + "]";
   return text;
 }
@@ -202,6 +212,11 @@ std::optional<std::string> Parameter::reject(const ParameterValue& value) const 
   if (const auto* numbers = std::get_if<std::vector<double>>(&value)) {
     for (double number : *numbers)
       if (auto reason = check_number(number)) return reason;
+  }
+  if (const auto* table = std::get_if<RealTable>(&value)) {
+    for (const std::vector<double>& row : *table)
+      for (double number : row)
+        if (auto reason = check_number(number)) return reason;
   }
   if (const auto* texts = std::get_if<std::vector<std::string>>(&value)) {
     for (const std::string& text : *texts)

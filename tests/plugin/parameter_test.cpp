@@ -19,6 +19,7 @@ struct Settings {
   std::vector<std::string> classes{"person"};
   std::vector<double> weights{1, 0.5};
   TextMap names{{"b", "2"}, {"a", "1"}};
+  RealTable places{{1, 2}, {3.5, 4}};
 
   static void describe(ParameterTable<Settings>& table) {
     using S = Settings;
@@ -32,6 +33,7 @@ struct Settings {
     table.add("classes", &S::classes, "").one_of({"person", "cat"});
     table.add("weights", &S::weights, "").at_most(1);
     table.add("names", &S::names, "");
+    table.add("places", &S::places, "").at_least(-9).unit("m");
   }
 };
 
@@ -54,6 +56,7 @@ TEST(ParameterTable, GoesThroughValuesAndBack) {
   written.classes = {"cat", "person"};
   written.weights = {};
   written.names = {{"x", "y"}};
+  written.places = {{0.5}, {}};
   const Settings read = table.settings(table.values(written));
   EXPECT_EQ(read.on, written.on);
   EXPECT_EQ(read.count, written.count);
@@ -65,6 +68,7 @@ TEST(ParameterTable, GoesThroughValuesAndBack) {
   EXPECT_EQ(read.classes, written.classes);
   EXPECT_EQ(read.weights, written.weights);
   EXPECT_EQ(read.names, written.names);
+  EXPECT_EQ(read.places, written.places);
 }
 
 TEST(ParameterTable, WhatIsNotGivenKeepsItsDefault) {
@@ -80,6 +84,7 @@ TEST(Parameter, SaysWhatIsExpected) {
   EXPECT_EQ(parameter("sigma").expectation(), "a number of at least 0 [px]");
   EXPECT_EQ(parameter("mode").expectation(), "one of fast, exact");
   EXPECT_EQ(parameter("weights").expectation(), "a list of numbers, each of at most 1");
+  EXPECT_EQ(parameter("places").expectation(), "a list of lists of numbers, each of at least -9 [m]");
   EXPECT_TRUE(parameter("model").is_required);
 }
 
@@ -91,6 +96,7 @@ TEST(Parameter, RejectsWhatIsOutOfRange) {
   EXPECT_EQ(parameter("sigma").reject(std::numeric_limits<double>::quiet_NaN()), ".nan is not finite");
   EXPECT_EQ(parameter("mode").reject(std::string("slow")), "'slow' is not among them");
   EXPECT_EQ(parameter("weights").reject(std::vector<double>{0.5, 7}), "7 is above 1");
+  EXPECT_EQ(parameter("places").reject(RealTable{{1, 2}, {3, -10}}), "-10 is below -9");
   EXPECT_EQ(parameter("classes").reject(std::vector<std::string>{"person", "dog"}), "'dog' is not among them");
 }
 
@@ -111,6 +117,7 @@ TEST(ParameterValue, IsWrittenAsYaml) {
   EXPECT_EQ(to_string(ParameterValue(std::string("person"))), "person");
   EXPECT_EQ(to_string(ParameterValue(std::string("../data/fr1"))), "../data/fr1");
   EXPECT_EQ(to_string(parameter("weights").default_value), "[1.0, 0.5]");
+  EXPECT_EQ(to_string(parameter("places").default_value), "[[1.0, 2.0], [3.5, 4.0]]");
   EXPECT_EQ(to_string(parameter("names").default_value), "{b: \"2\", a: \"1\"}");
 }
 

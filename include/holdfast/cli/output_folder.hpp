@@ -2,13 +2,13 @@
 #pragma once
 
 #include <filesystem>
-#include <initializer_list>
+#include <string>
+#include <vector>
 
 namespace holdfast {
 
 /// Makes a folder for results. One that is not empty is refused (InputError) unless `overwrite`; then only the entries
 /// named in `ours` are removed, in this order, and what else lies there stays.
-void prepare_output_folder(const std::filesystem::path& folder, bool overwrite,
-                           std::initializer_list<const char*> ours);
+void prepare_output_folder(const std::filesystem::path& folder, bool overwrite, const std::vector<std::string>& ours);
 
 }  // namespace holdfast

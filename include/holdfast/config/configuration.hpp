@@ -19,6 +19,7 @@ struct SectionDescription {
   std::string name;
   std::string help;
   std::vector<Parameter> parameters;
+  std::string kind = "section";  ///< heading that the reference lists it under
 };
 
 /// The `run` section.

@@ -6,6 +6,7 @@
 #include <memory>
 #include <opencv2/core/mat.hpp>
 #include <optional>
+#include <vector>
 
 namespace holdfast {
 
@@ -14,6 +15,8 @@ struct FrameTruth {
   std::optional<Eigen::Isometry3d> T_world_camera;
   cv::Mat object_mask;   ///< 8UC1, 0 = static world, k = object k; empty when unknown
   cv::Mat class_labels;  ///< 8UC1, index into the source's class names; empty when unknown
+  /// Numbers in object_mask, rising, of the objects whose surface moves at this moment; the others could but do not.
+  std::vector<std::uint8_t> moving_objects;
 };
 
 /// One pair of images from a camera. The images are shared, never copied, and must not be written to.

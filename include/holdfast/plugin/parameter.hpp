@@ -16,11 +16,14 @@ namespace holdfast {
 /// Text by text, in the order of the file.
 using TextMap = std::vector<std::pair<std::string, std::string>>;
 
-/// The value of a parameter, as it stands in a configuration.
-using ParameterValue =
-    std::variant<bool, std::int64_t, double, std::string, std::vector<std::string>, std::vector<double>, TextMap>;
+/// Rows of numbers, such as the places of a path.
+using RealTable = std::vector<std::vector<double>>;
 
-enum class ParameterType { boolean, integer, real, text, path, text_list, real_list, text_map };
+/// The value of a parameter, as it stands in a configuration.
+using ParameterValue = std::variant<bool, std::int64_t, double, std::string, std::vector<std::string>,
+                                    std::vector<double>, TextMap, RealTable>;
+
+enum class ParameterType { boolean, integer, real, text, path, text_list, real_list, text_map, real_table };
 const char* to_string(ParameterType type);
 /// As it would stand in YAML, on one line.
 std::string to_string(const ParameterValue& value);

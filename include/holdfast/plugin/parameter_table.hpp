@@ -33,6 +33,8 @@ constexpr ParameterType parameter_type_of() {
     return ParameterType::text_list;
   else if constexpr (std::is_same_v<Member, std::vector<double>>)
     return ParameterType::real_list;
+  else if constexpr (std::is_same_v<Member, RealTable>)
+    return ParameterType::real_table;
   else {
     static_assert(std::is_same_v<Member, TextMap>, "no parameter type for this member");
     return ParameterType::text_map;

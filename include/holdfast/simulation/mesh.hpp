@@ -31,18 +31,11 @@ struct TextureArea {
   float width = 1.0F, height = 1.0F;
 };
 
-<<<<<<< HEAD
-/// Which bones carry a vertex, and how much of it (linear blend skinning). The weights sum to 1; unused ones are 0.
-struct BoneWeights {
-  std::array<std::uint8_t, 4> bones{};
-  std::array<float, 4> weights = {1.0F, 0.0F, 0.0F, 0.0F};
-=======
 /// What carries a vertex of a mesh that bends: at most four bones, their numbers and shares, which are not negative and
 /// add up to one.
 struct SkinWeights {
   std::array<std::uint8_t, 4> bones{};
   std::array<float, 4> weights{1.0F, 0.0F, 0.0F, 0.0F};
->>>>>>> render
 };
 
 /// Textured triangles, and boxes that stand for them when light is traced.
@@ -51,14 +44,10 @@ struct Mesh {
   std::vector<Triangle> triangles;
   std::vector<Eigen::AlignedBox3f> solids;
   std::uint32_t surface_count = 0;
-<<<<<<< HEAD
-  std::vector<BoneWeights> skin;  ///< by vertex, for a mesh that bends; empty = rigid
-=======
   /// For a mesh that bends: one for each vertex, and T_object_bone of each bone (by number) in the rest pose, in which
   /// the vertices are given. Empty for a rigid mesh.
   std::vector<SkinWeights> skin;
   std::vector<Eigen::Isometry3d> rest;
->>>>>>> render
 };
 
 /// The sides of a box, in the order in which add_box takes their textures. The box stands with z up and is looked at

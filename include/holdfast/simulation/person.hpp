@@ -44,8 +44,4 @@ PersonLook random_look(Random random);
 Object make_person(World& world, const std::string& name, const Skeleton& skeleton, const PersonLook& look,
                    Random random);
 
-/// What carries a vertex of a person from the rest posture to another, in the person's frame, by Bone:
-/// T_person_bone(posture) T_person_bone(standing)^-1.
-std::vector<Eigen::Isometry3f> skin_transforms(const Skeleton& skeleton, const Posture& posture);
-
 }  // namespace holdfast::simulation

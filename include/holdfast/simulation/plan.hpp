@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "holdfast/plugin/parameter_table.hpp"
 #include "holdfast/simulation/skeleton.hpp"
 
 /// What the people in a scene set out to do. Places are in the room's frame [m], things are named as in
@@ -69,6 +70,8 @@ struct SwingPlan {
   double opening = 1.5;  ///< time to open, and to close [s]
   double open = 2.0;     ///< stays open [s]
   double shut = 3.0;     ///< stays shut before it opens again [s]
+
+  static void describe(ParameterTable<SwingPlan>& table);
 };
 
 }  // namespace holdfast::simulation

@@ -37,6 +37,9 @@ struct Room {
 /// The seed changes every texture and the places of small things, not the furniture.
 Room make_room(RoomKind kind, std::uint64_t seed);
 
+/// The same before bake_light: for those who set things in motion first, which then leave no shadow where they stood.
+Room furnish_room(RoomKind kind, std::uint64_t seed);
+
 /// The places of a room alone: the same for every seed.
 Stage make_stage(RoomKind kind);
 

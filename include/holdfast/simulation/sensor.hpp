@@ -5,6 +5,7 @@
 #include <opencv2/core/mat.hpp>
 
 #include "holdfast/core/camera.hpp"
+#include "holdfast/plugin/parameter_table.hpp"
 
 namespace holdfast::simulation {
 
@@ -21,11 +22,15 @@ struct DepthSensorSettings {
   bool holes = true;
   double minimum_depth = 0.4;  ///< no value nearer [m]
   double maximum_depth = 8.0;  ///< no value farther [m]
+
+  static void describe(ParameterTable<DepthSensorSettings>& table);
 };
 
 /// What the colour camera adds.
 struct ColourSensorSettings {
   double noise = 2.0;  ///< standard deviation per channel [grey levels]; 0 = none
+
+  static void describe(ParameterTable<ColourSensorSettings>& table);
 };
 
 /// The depth that the sensor reports: 32FC1 [m], 0 = no value. `depth` and `cosine` are those of RenderedFrame. The

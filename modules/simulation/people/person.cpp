@@ -101,14 +101,9 @@ Object make_person(World& world, const std::string& name, const Skeleton& skelet
   builder.legs();
   builder.head();
   builder.hair();
+  const BonePoses rest = skeleton.place(skeleton.standing());
+  person.mesh.rest.assign(rest.begin(), rest.end());
   return person;
-}
-
-std::vector<Eigen::Isometry3f> skin_transforms(const Skeleton& skeleton, const Posture& posture) {
-  const BonePoses now = skeleton.place(posture), rest = skeleton.place(skeleton.standing());
-  std::vector<Eigen::Isometry3f> transforms;
-  for (int i = 0; i < bone_count; ++i) transforms.push_back((now[i] * rest[i].inverse(Eigen::Isometry)).cast<float>());
-  return transforms;
 }
 
 PersonBuilder::PersonBuilder(World& world, Mesh& mesh, const Skeleton& skeleton, const PersonLook& look, Random random)

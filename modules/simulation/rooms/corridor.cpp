@@ -87,7 +87,6 @@ World make_corridor(std::uint64_t seed) {
   const std::size_t to = room.mark();
   for (int i = 0; i < modules; ++i) world.lamps.push_back({{static_cast<float>(pitch * (i + 0.5)), 1.2F, 2.4F}, 0.42F});
   world.ambient = 0.58F;
-  bake_light(world);
   // Copied with its light: lamps hang alike over all.
   Random random = Random(seed).fork(0xc0);
   for (int i = 0; i < modules; ++i) {

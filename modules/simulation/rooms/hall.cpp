@@ -202,7 +202,6 @@ World make_hall(std::uint64_t seed) {
   for (const float x : {2.2F, 5.5F, 8.8F})
     for (const float y : {1.9F, 4.6F, 7.2F}) world.lamps.push_back({{x, y, 2.7F}, 0.55F});
   world.ambient = 0.58F;
-  bake_light(world);
   return world;
 }
 

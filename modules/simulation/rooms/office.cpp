@@ -145,7 +145,6 @@ World make_office(std::uint64_t seed) {
   room.door({door_right, 5.0, 0, 0}, door_right - door_left);
   world.lamps = {{{1.6F, 3.0F, 2.45F}, 0.85F}, {{4.4F, 3.1F, 2.45F}, 0.80F}, {{3.0F, 1.0F, 2.4F}, 0.75F}};
   world.ambient = 0.62F;
-  bake_light(world);
   return world;
 }
 

@@ -45,7 +45,7 @@ Stage make_stage(RoomKind kind) {
   return {};
 }
 
-Room make_room(RoomKind kind, std::uint64_t seed) {
+Room furnish_room(RoomKind kind, std::uint64_t seed) {
   switch (kind) {
     case RoomKind::office:
       return {make_office(seed), office_stage()};
@@ -55,6 +55,12 @@ Room make_room(RoomKind kind, std::uint64_t seed) {
       return {make_corridor(seed), corridor_stage()};
   }
   return {};
+}
+
+Room make_room(RoomKind kind, std::uint64_t seed) {
+  Room room = furnish_room(kind, seed);
+  bake_light(room.world);
+  return room;
 }
 
 }  // namespace holdfast::simulation

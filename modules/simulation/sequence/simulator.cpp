@@ -20,33 +20,41 @@ cv::Mat look_up(const cv::Mat& object_ids, const std::vector<std::uint8_t>& valu
   }
   return result;
 }
+
+CameraPath make_path(const Scene& scene, const Stage& stage) {
+  const CameraPlan& plan = scene.camera;
+  if (plan.path == PathKind::waypoints) return {plan.waypoints, scene.seed, plan.style};
+  return {plan.path, stage, scene.seed, plan.style};
+}
 }  // namespace
 
-Simulator::Simulator(const SimulationSettings& settings, const Camera& camera)
-    : settings_(settings),
+Simulator::Simulator(const Scene& scene, const Camera& camera)
+    : scene_(scene),
       camera_(camera),
-      room_(make_room(settings.room, settings.seed)),
-      path_(settings.path, room_.stage, settings.seed),
-      renderer_(room_.world, camera_) {
-  const double count = std::ceil(settings.duration * settings.frame_rate - 1e-9);
+      scene_world_(make_scene_world(scene)),
+      path_(make_path(scene, scene_world_.stage)),
+      renderer_(scene_world_.world, camera_) {
+  const double count = std::ceil(scene.duration * scene.frame_rate - 1e-9);
   if (!(count >= 1.0) || !(count < 1e9)) {
     std::ostringstream text;
-    text << "a simulation of " << settings.duration << " s at " << settings.frame_rate
+    text << "a simulation of " << scene.duration << " s at " << scene.frame_rate
          << " frames/s has no frame (or no end); expected both to be positive";
-    std::vector<Diagnostic> problems(1);
-    problems[0].message = text.str();
-    throw ConfigurationError(std::move(problems));
+    throw ConfigurationError(SourceLocation{}, text.str());
   }
   frame_count_ = static_cast<std::uint64_t>(count);
-  class_names_ = simulation::class_names(room_.world);
-  mask_values_ = {0};
+  class_names_ = simulation::class_names(world());
+  mask_values_.assign(world().objects.size() + 1, 0);
   class_values_ = {0};
-  std::uint8_t moving = 0;
-  for (const Object& object : room_.world.objects) {
-    mask_values_.push_back(object.moves() ? ++moving : 0);
+  for (const NumberedObject& numbered : numbered_objects()) mask_values_[numbered.index + 1] = numbered.number;
+  for (const Object& object : world().objects) {
     const auto name = std::find(class_names_.begin(), class_names_.end(), object.class_name);
     class_values_.push_back(static_cast<std::uint8_t>(name - class_names_.begin()));
   }
+}
+
+bool Simulator::is_dark(double time) const {
+  return std::any_of(scene_.lights_out.begin(), scene_.lights_out.end(),
+                     [&](const LightsOut& dark) { return time >= dark.from && time < dark.to; });
 }
 
 Trajectory Simulator::truth() const {
@@ -62,20 +70,22 @@ RenderedFrame Simulator::render(std::uint64_t index) {
 SensorFrame Simulator::frame(std::uint64_t index) {
   HOLDFAST_CHECK(index < frame_count_, "index " << index << " of " << frame_count_);
   RenderedFrame rendered = render(index);
-  Random random = Random(settings_.seed).fork(0x5e4503).fork(index);
+  Random random = Random(scene_.seed).fork(0x5e4503).fork(index);
   const std::uint64_t depth_seed = random.next(), colour_seed = random.next();
 
   auto truth = std::make_shared<FrameTruth>();
   truth->T_world_camera = T_world_camera(index);
   truth->object_mask = look_up(rendered.object_ids, mask_values_);
   truth->class_labels = look_up(rendered.object_ids, class_values_);
+  for (const NumberedObject& numbered : numbered_objects())
+    if (moves_at(object(numbered), timestamp(index))) truth->moving_objects.push_back(numbered.number);
 
   SensorFrame frame;
   frame.index = index;
   frame.timestamp = timestamp(index);
-  frame.depth = sense_depth(rendered.depth, rendered.cosine, camera_, settings_.depth_sensor, depth_seed);
+  frame.depth = sense_depth(rendered.depth, rendered.cosine, camera_, scene_.depth_sensor, depth_seed);
   frame.colour = rendered.colour;
-  add_colour_noise(frame.colour, settings_.colour_sensor, colour_seed);
+  add_colour_noise(frame.colour, scene_.colour_sensor, colour_seed);
   frame.truth = std::move(truth);
   return frame;
 }

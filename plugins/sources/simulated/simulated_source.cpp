@@ -1,56 +1,47 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <filesystem>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "holdfast/interfaces/frame_source.hpp"
 #include "holdfast/plugin/plugin.hpp"
+#include "holdfast/simulation/scene_file.hpp"
 #include "holdfast/simulation/simulator.hpp"
 
 namespace holdfast {
 namespace {
 
 struct SimulatedSourceSettings {
-  std::string room = "office";
-  std::string path = "xyz";
-  double duration = 20.0;
-  double frame_rate = 30.0;
+  std::filesystem::path scene;
+  std::string path = "as_scene";
+  double duration = 0.0;
   std::int64_t seed = 0;
-  double colour_noise = simulation::ColourSensorSettings{}.noise;
-  double depth_noise = simulation::DepthSensorSettings{}.noise;
-  bool depth_quantisation = simulation::DepthSensorSettings{}.quantisation;
-  bool depth_holes = simulation::DepthSensorSettings{}.holes;
-  double minimum_depth = simulation::DepthSensorSettings{}.minimum_depth;
-  double maximum_depth = simulation::DepthSensorSettings{}.maximum_depth;
+  std::vector<std::string> set;
 
   static void describe(ParameterTable<SimulatedSourceSettings>& table) {
     using S = SimulatedSourceSettings;
-    table.add("room", &S::room, "where: a furnished office, a large hall, or a corridor of look-alike desks")
-        .one_of({"office", "hall", "corridor"});
-    table.add("path", &S::path, "how the camera moves, after the TUM fr3 sequences")
-        .one_of({"static", "xyz", "halfsphere", "rpy", "loop", "corridor", "table_edge", "rotation", "square"});
-    table.add("duration", &S::duration, "length of the sequence").range(0.001, 36000.0).unit("s");
-    table.add("frame_rate", &S::frame_rate, "frames per second").range(0.1, 1000.0).unit("1/s");
-    table.add("seed", &S::seed, "of room, path and noise; 0 = the run's seed").at_least(0.0);
-    table.add("colour_noise", &S::colour_noise, "standard deviation of each colour value; 0 = none")
-        .range(0.0, 64.0)
-        .unit("grey levels");
-    table.add("depth_noise", &S::depth_noise, "factor on a Kinect's depth noise; 0 = none").range(0.0, 10.0);
-    table.add("depth_quantisation", &S::depth_quantisation, "round disparity to eighths of a pixel, as a Kinect does");
-    table.add("depth_holes", &S::depth_holes, "no depth in the projector's shadow, at ragged edges and on flat sights");
-    table.add("minimum_depth", &S::minimum_depth, "no depth nearer").range(0.0, 100.0).unit("m");
-    table.add("maximum_depth", &S::maximum_depth, "no depth farther").range(0.1, 100.0).unit("m");
+    table.add("scene", &S::scene, "scene file (YAML); empty = the empty office");
+    table.add("path", &S::path, "how the camera moves; as_scene = as the scene says")
+        .one_of({"as_scene", "static", "xyz", "halfsphere", "rpy", "loop", "corridor", "table_edge", "rotation",
+                 "square", "waypoints"});
+    table.add("duration", &S::duration, "length of the sequence; 0 = as the scene says").range(0.0, 36000.0).unit("s");
+    table.add("seed", &S::seed, "of textures, small things, people, path and noise; 0 = the scene's, else the run's")
+        .at_least(0.0);
+    table.add("set", &S::set, "values of the scene to override, each \"key.path=value\"");
   }
 };
 
 class SimulatedSource final : public FrameSource {
  public:
   SimulatedSource(const SimulatedSourceSettings& settings, const CreationContext& context)
-      : simulator_(translate(settings, context), context.camera) {}
+      : simulator_(scene_of(settings, context), context.camera) {}
 
   SourceDescription describe() const override {
+    const simulation::Scene& scene = simulator_.scene();
     SourceDescription description;
-    description.name = std::string("simulated ") + simulation::to_string(simulator_.settings().room) + ", " +
-                       simulation::to_string(simulator_.settings().path) + ", seed " +
-                       std::to_string(simulator_.settings().seed);
+    description.name = "simulated " + scene.name + ", " + simulation::to_string(scene.room) + ", path " +
+                       simulation::to_string(scene.camera.path) + ", seed " + std::to_string(scene.seed);
     description.has_depth = true;
     description.has_object_masks = true;
     description.class_names = simulator_.class_names();
@@ -67,18 +58,15 @@ class SimulatedSource final : public FrameSource {
   Trajectory truth() const override { return simulator_.truth(); }
 
  private:
-  static simulation::SimulationSettings translate(const SimulatedSourceSettings& settings,
-                                                  const CreationContext& context) {
-    simulation::SimulationSettings result;
-    result.room = simulation::room_kind(settings.room);
-    result.path = simulation::path_kind(settings.path);
-    result.duration = settings.duration;
-    result.frame_rate = settings.frame_rate;
-    result.seed = settings.seed == 0 ? context.seed : static_cast<std::uint64_t>(settings.seed);
-    result.colour_sensor.noise = settings.colour_noise;
-    result.depth_sensor = {settings.depth_noise, settings.depth_quantisation, settings.depth_holes,
-                           settings.minimum_depth, settings.maximum_depth};
-    return result;
+  static simulation::Scene scene_of(const SimulatedSourceSettings& settings, const CreationContext& context) {
+    std::vector<std::string> overrides;
+    if (settings.path != "as_scene") overrides.push_back("camera.path=" + settings.path);
+    overrides.insert(overrides.end(), settings.set.begin(), settings.set.end());
+    simulation::Scene scene = simulation::read_scene(settings.scene, overrides);
+    if (settings.duration > 0.0) scene.duration = settings.duration;
+    if (settings.seed != 0) scene.seed = static_cast<std::uint64_t>(settings.seed);
+    if (scene.seed == 0) scene.seed = context.seed;
+    return scene;
   }
 
   simulation::Simulator simulator_;
@@ -91,6 +79,6 @@ class SimulatedSource final : public FrameSource {
 HOLDFAST_PLUGIN(simulated, registry) {
   registry.add<holdfast::FrameSource, holdfast::SimulatedSource, holdfast::SimulatedSourceSettings>(
       {.name = "simulated",
-       .summary = "A furnished room seen by a Kinect-like camera, drawn on the fly with exact truth.",
-       .paper = "Depth noise after Nguyen, Izadi and Lovell 2012; paths after Sturm et al. 2012"});
+       .summary = "A simulated scene with people and things that move, drawn on the fly with exact truth.",
+       .paper = "Depth noise after Nguyen, Izadi and Lovell 2012; paths after Sturm et al. 2012 and Zeng et al. 2023"});
 }

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/cli/sequence_writer.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <utility>
+
+#include "holdfast/core/error.hpp"
+#include "holdfast/core/version.hpp"
+
+namespace holdfast {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+constexpr double depth_units_per_metre = 5000.0;  // of the TUM benchmark
+
+cv::Mat to_depth_units(const cv::Mat& depth) {
+  cv::Mat units(depth.size(), CV_16UC1);
+  for (int y = 0; y < depth.rows; ++y)
+    for (int x = 0; x < depth.cols; ++x) {
+      const double value = std::round(depth.at<float>(y, x) * depth_units_per_metre);
+      units.at<std::uint16_t>(y, x) = value <= 65535.0 ? static_cast<std::uint16_t>(value) : 0;  // farther than 13 m
+    }
+  return units;
+}
+
+Json to_json(const Eigen::Isometry3d& pose) {
+  const Eigen::Vector3d t = pose.translation();
+  const Eigen::Quaterniond q(pose.linear());
+  return {{"translation", {t.x(), t.y(), t.z()}}, {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
+}
+
+Json to_json(const Camera& camera) {
+  const Distortion& d = camera.distortion;
+  return {{"name", camera.name},     {"width", camera.width},
+          {"height", camera.height}, {"fx", camera.fx},
+          {"fy", camera.fy},         {"cx", camera.cx},
+          {"cy", camera.cy},         {"distortion_k1_k2_p1_p2_k3", {d.k1, d.k2, d.p1, d.p2, d.k3}}};
+}
+
+/// Values of a parameter table, as a scene file would name them.
+template <class Settings>
+Json to_json(const Settings& settings, const ParameterTable<Settings>& table) {
+  Json json = Json::object();
+  for (const auto& [name, value] : table.values(settings))
+    std::visit(
+        [&json, &name = name](const auto& v) {
+          if constexpr (!std::is_same_v<std::decay_t<decltype(v)>, TextMap>) json[name] = v;
+        },
+        value);
+  return json;
+}
+
+}  // namespace
+
+void write_image_atomically(const fs::path& file, const cv::Mat& image, const std::vector<int>& parameters) {
+  std::vector<std::uint8_t> bytes;
+  if (!cv::haveImageWriter(file.string()) || !cv::imencode(file.extension().string(), image, bytes, parameters))
+    throw InputError({file.string()}, "the image cannot be encoded; expected a name that ends with .png or .jpg");
+  write_file_atomically(file, std::string(bytes.begin(), bytes.end()));
+}
+
+const std::vector<std::string>& SequenceWriter::entries() {
+  static const std::vector<std::string> names = {"rgb.txt",
+                                                 "depth.txt",
+                                                 "mask.txt",
+                                                 "labels.txt",
+                                                 "associations.txt",
+                                                 "groundtruth.txt",
+                                                 "scene.json",
+                                                 "objects.json",
+                                                 "rgb",
+                                                 "depth",
+                                                 "mask",
+                                                 "labels"};
+  return names;
+}
+
+SequenceWriter::SequenceWriter(const simulation::Simulator& simulator, fs::path folder, std::string colour_format)
+    : simulator_(simulator),
+      folder_(std::move(folder)),
+      colour_format_(std::move(colour_format)),
+      colour_list_("# color images\n# timestamp filename\n"),
+      depth_list_("# depth maps\n# timestamp filename\n"),
+      mask_list_("# object masks: 0 = static world, k = object k of objects.json\n# timestamp filename\n"),
+      label_list_("# class labels: index into the classes of scene.json\n# timestamp filename\n") {
+  for (const char* name : {"rgb", "depth", "mask", "labels"}) fs::create_directories(folder_ / name);
+}
+
+void SequenceWriter::write(const SensorFrame& frame) {
+  char stamp[32];
+  std::snprintf(stamp, sizeof(stamp), "%.6f", frame.timestamp);
+  const std::string name = stamp, png = name + ".png";
+  const std::string colour_name = "rgb/" + name + "." + colour_format_;
+  write_image_atomically(folder_ / colour_name, frame.colour,
+                         colour_format_ == "png" ? std::vector<int>{cv::IMWRITE_PNG_COMPRESSION, 1}
+                                                 : std::vector<int>{cv::IMWRITE_JPEG_QUALITY, 95});
+  write_image_atomically(folder_ / "depth" / png, to_depth_units(frame.depth), {cv::IMWRITE_PNG_COMPRESSION, 3});
+  const FrameTruth& truth = *frame.truth;
+  write_image_atomically(folder_ / "mask" / png, truth.object_mask, {cv::IMWRITE_PNG_COMPRESSION, 3});
+  write_image_atomically(folder_ / "labels" / png, truth.class_labels, {cv::IMWRITE_PNG_COMPRESSION, 3});
+  colour_list_ += name + " " + colour_name + "\n";
+  depth_list_ += name + " depth/" + png + "\n";
+  mask_list_ += name + " mask/" + png + "\n";
+  label_list_ += name + " labels/" + png + "\n";
+  associations_ += name + " " + colour_name + " " + name + " depth/" + png + "\n";
+  truth_.push_back({frame.timestamp, *truth.T_world_camera});
+
+  std::array<int, 256> pixels{};
+  for (int y = 0; y < truth.object_mask.rows; ++y) {
+    const auto* numbers = truth.object_mask.ptr<std::uint8_t>(y);
+    for (int x = 0; x < truth.object_mask.cols; ++x) ++pixels[numbers[x]];
+  }
+  std::vector<ObjectState>& states = states_.emplace_back();
+  for (const simulation::NumberedObject& numbered : simulator_.numbered_objects()) {
+    const bool moving = std::binary_search(truth.moving_objects.begin(), truth.moving_objects.end(), numbered.number);
+    states.push_back({simulator_.object(numbered).pose(frame.timestamp), moving, pixels[numbered.number]});
+  }
+}
+
+std::string SequenceWriter::objects_json() const {
+  // A row of numbers for each frame, on one line: easy to read for people and for programs.
+  const std::vector<simulation::NumberedObject>& numbered = simulator_.numbered_objects();
+  std::string text =
+      "{\n  \"columns\": [\"timestamp\", \"x\", \"y\", \"z\", \"qx\", \"qy\", \"qz\", \"qw\", \"moving\", "
+      "\"pixels\"],\n";
+  text +=
+      "  \"pose\": \"T_world_object [m]; the origin stands on the ground below the object (a door: on its hinge)\",\n";
+  text += "  \"objects\": [";
+  for (std::size_t k = 0; k < numbered.size(); ++k) {
+    const simulation::Object& object = simulator_.object(numbered[k]);
+    const std::vector<std::string>& names = simulator_.class_names();
+    const auto label = std::find(names.begin(), names.end(), object.class_name) - names.begin();
+    text += std::string(k == 0 ? "" : ",") + "\n    {\"number\": " + std::to_string(numbered[k].number) +
+            ", \"name\": " + Json(object.name).dump() + ", \"class\": " + Json(object.class_name).dump() +
+            ", \"label\": " + std::to_string(label) + ", \"rows\": [";
+    for (std::size_t i = 0; i < states_.size(); ++i) {
+      const ObjectState& state = states_[i][k];
+      const Eigen::Vector3d t = state.pose.translation();
+      const Eigen::Quaterniond q(state.pose.linear());
+      char row[256];
+      std::snprintf(row, sizeof(row), "%s\n      [%.6f, %.6f, %.6f, %.6f, %.8f, %.8f, %.8f, %.8f, %d, %d]",
+                    i == 0 ? "" : ",", truth_[i].timestamp, t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w(),
+                    state.moving ? 1 : 0, state.pixels);
+      text += row;
+    }
+    text += "\n    ]}";
+  }
+  return text + "\n  ]\n}\n";
+}
+
+std::string SequenceWriter::scene_json() const {
+  const simulation::Scene& scene = simulator_.scene();
+  Json json = {{"generator", "holdfast " HOLDFAST_VERSION},
+               {"scene", scene.name},
+               {"seed", scene.seed},
+               {"room", simulation::to_string(scene.room)},
+               {"path", simulation::to_string(scene.camera.path)},
+               {"duration_s", scene.duration},
+               {"frame_rate_hz", scene.frame_rate},
+               {"frames", truth_.size()},
+               {"depth_units_per_metre", depth_units_per_metre},
+               {"camera", to_json(simulator_.camera())},
+               {"colour_sensor", to_json(scene.colour_sensor, {})},
+               {"depth_sensor", to_json(scene.depth_sensor, {})},
+               {"classes", simulator_.class_names()}};
+  Json& dark = json["lights_out"] = Json::array();
+  for (const simulation::LightsOut& lights : scene.lights_out)
+    dark.push_back({{"from", lights.from}, {"to", lights.to}});
+  const simulation::World& world = simulator_.world();
+  Json& lamps = json["lamps"] = Json::array();
+  for (const simulation::Lamp& lamp : world.lamps)
+    lamps.push_back(
+        {{"position", {lamp.position.x(), lamp.position.y(), lamp.position.z()}}, {"brightness", lamp.brightness}});
+  Json& objects = json["objects"] = Json::array();
+  for (std::size_t i = 0; i < world.objects.size(); ++i) {
+    const simulation::Object& object = world.objects[i];
+    Eigen::AlignedBox3f box;
+    for (const simulation::Vertex& vertex : object.mesh.vertices) box.extend(vertex.position);
+    const auto numbered =
+        std::find_if(simulator_.numbered_objects().begin(), simulator_.numbered_objects().end(),
+                     [&](const simulation::NumberedObject& candidate) { return candidate.index == i; });
+    objects.push_back({{"name", object.name},
+                       {"class", object.class_name},
+                       {"number", numbered == simulator_.numbered_objects().end() ? 0 : numbered->number},
+                       {"T_world_object", to_json(object.pose(0.0))},
+                       {"box_minimum", {box.min().x(), box.min().y(), box.min().z()}},
+                       {"box_maximum", {box.max().x(), box.max().y(), box.max().z()}},
+                       {"triangles", object.mesh.triangles.size()}});
+  }
+  return json.dump(2) + "\n";
+}
+
+void SequenceWriter::finish() {
+  write_trajectory(folder_ / "groundtruth.txt", truth_);
+  write_file_atomically(folder_ / "scene.json", scene_json());
+  write_file_atomically(folder_ / "objects.json", objects_json());
+  write_file_atomically(folder_ / "associations.txt", associations_);
+  write_file_atomically(folder_ / "labels.txt", label_list_);
+  write_file_atomically(folder_ / "mask.txt", mask_list_);
+  write_file_atomically(folder_ / "depth.txt", depth_list_);
+  write_file_atomically(folder_ / "rgb.txt", colour_list_);
+}
+
+}  // namespace holdfast

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/simulation/scene_world.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "holdfast/core/error.hpp"
+#include "holdfast/core/random.hpp"
+#include "holdfast/plugin/did_you_mean.hpp"
+#include "holdfast/simulation/person.hpp"
+#include "holdfast/simulation/person_script.hpp"
+#include "holdfast/simulation/swing.hpp"
+
+namespace holdfast::simulation {
+
+namespace {
+
+[[noreturn]] void fail(const std::string& message) { throw ConfigurationError(SourceLocation{}, message); }
+
+/// The room's things as plans see them.
+ThingPlaces things_of(const World& world) {
+  ThingPlaces things;
+  for (const Object& object : world.objects) {
+    Eigen::AlignedBox3d extents;
+    for (const Vertex& vertex : object.mesh.vertices) extents.extend(vertex.position.cast<double>());
+    things[object.name] = {object.T_world_object, extents, object.class_name, ""};
+  }
+  return things;
+}
+
+Physique physique_of(const PersonPlan& plan, Random random) {
+  Physique physique;
+  const double height = 1.72 + 0.085 * std::clamp(random.normal(), -2.0, 2.0);
+  const double girth = 1.0 + 0.13 * std::clamp(random.normal(), -1.5, 2.0);
+  physique.height = plan.height.value_or(height);
+  physique.girth = plan.girth.value_or(girth);
+  return physique;
+}
+
+class SceneBuilder {
+ public:
+  explicit SceneBuilder(const Scene& scene)
+      : scene_(scene), room_(furnish_room(scene.room, scene.seed)), things_(things_of(room_.world)) {}
+
+  SceneWorld build() {
+    for (std::size_t k = 0; k < scene_.people.size(); ++k) add_person(k);
+    for (const SwingPlan& plan : scene_.doors) add_door(plan);
+    bake_light(room_.world);  // now that it is known what moves and leaves no lasting shadow
+    SceneWorld result{std::move(room_.world), std::move(room_.stage), {}};
+    number(result);
+    return result;
+  }
+
+ private:
+  void add_person(std::size_t k) {
+    PersonPlan plan = scene_.people[k];
+    if (plan.name.empty()) plan.name = "person " + std::to_string(k + 1);
+    if (!names_.insert(plan.name).second)
+      fail("two people are called '" + plan.name + "'; give each a name of its own");
+    if (things_.contains(plan.name)) fail("a person is called '" + plan.name + "', as a thing in the room");
+    const Random random = Random(scene_.seed).fork(0x9e0913).fork(k);
+    auto skeleton = std::make_shared<const Skeleton>(physique_of(plan, random.fork(1)));
+    Object person = make_person(room_.world, plan.name, *skeleton, random_look(random.fork(2)), random.fork(3));
+    auto script = std::make_shared<const PersonScript>(*skeleton, plan, things_, scene_.duration, random.fork(4));
+    person.motion = [script](double time) { return script->T_world_person(time); };
+    person.bones = [script, skeleton](double time) { return skeleton->place(script->posture(time)); };
+    person.T_world_object = person.motion(0.0);
+    room_.world.objects.push_back(std::move(person));
+    for (const std::string& thing : script->moved_things()) set_in_motion(thing, script->thing_motion(thing));
+  }
+
+  void add_door(const SwingPlan& plan) {
+    const auto place = things_.find(plan.thing);
+    if (place == things_.end() || place->second.class_name != "door") {
+      std::vector<std::string> doors;
+      for (const auto& [name, thing] : things_)
+        if (thing.class_name == "door") doors.push_back(name);
+      fail("there is no door '" + plan.thing + "' in the " + to_string(scene_.room) + "; " +
+           did_you_mean(plan.thing, doors));
+    }
+    if (!swinging_.insert(plan.thing).second) fail("'" + plan.thing + "' stands twice in 'doors'; keep one of them");
+    set_in_motion(plan.thing, swing_motion(plan, place->second.T_world_thing));
+  }
+
+  void set_in_motion(const std::string& thing, std::function<Eigen::Isometry3d(double)> motion) {
+    const auto object = std::find_if(room_.world.objects.begin(), room_.world.objects.end(),
+                                     [&](const Object& candidate) { return candidate.name == thing; });
+    object->motion = std::move(motion);
+  }
+
+  /// People first: number k is the k-th person of the scene.
+  static void number(SceneWorld& result) {
+    for (const bool people : {true, false})
+      for (std::size_t i = 0; i < result.world.objects.size(); ++i) {
+        const Object& object = result.world.objects[i];
+        if (!object.moves() || (object.class_name == "person") != people) continue;
+        if (result.numbered.size() >= 255) fail("more than 255 people and things move; masks hold no more");
+        result.numbered.push_back({static_cast<std::uint8_t>(result.numbered.size() + 1), i});
+      }
+  }
+
+  const Scene& scene_;
+  Room room_;
+  ThingPlaces things_;
+  std::set<std::string> names_;     // of people
+  std::set<std::string> swinging_;  // doors
+};
+
+}  // namespace
+
+SceneWorld make_scene_world(const Scene& scene) { return SceneBuilder(scene).build(); }
+
+}  // namespace holdfast::simulation
