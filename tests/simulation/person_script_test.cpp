@@ -251,6 +251,13 @@ TEST(PersonScript, PushesTheChairFromBehind) {
   }
 }
 
+TEST(PersonScript, DoesNotPushAgainWhatIsWhereItBelongs) {
+  PersonPlan again = plan({Push{.thing = "chair 2", .to = {{4.5, 2.5}}}, Stand{1.0, false, {}}});
+  again.repeat = true;
+  EXPECT_EQ(script(again, 60.0).holding_times("chair 2").size(), 1U);
+  EXPECT_NE(refusal({Push{.thing = "chair 2", .to = {{4.0, 1.0}}}}).find("where it stands"), std::string::npos);
+}
+
 TEST(PersonScript, SameSeedSameBytes) {
   const PersonPlan moving = plan({Walk{{{3, 1}}, 1.2}, Stand{3.0, true, {}}, carry});
   const PersonScript first = script(moving), second = script(moving), other = script(moving, 40.0, 4);

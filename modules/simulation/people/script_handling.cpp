@@ -121,9 +121,13 @@ void ScriptBuilder::push(const Push& action) {
   check_positive(action.speed, "speed of pushing");
   claim(action.thing, "push");
   std::vector<Vector2d> places{rest(action.thing).translation().head<2>()};
-  if ((action.to.front() - places.front()).norm() < 0.05)
+  for (const Vector2d& place : action.to)
+    if ((place - places.back()).norm() >= 0.05) places.push_back(place);
+  // When the plan repeats, the thing may be where it belongs.
+  const bool moved = std::any_of(movement_.holds.begin(), movement_.holds.end(),
+                                 [&](const Movement::Hold& hold) { return hold.thing == action.thing; });
+  if (places.size() < 2 && !moved)
     refuse("is to push '" + action.thing + "' to where it stands; expected a place at least 0.05 m away");
-  places.insert(places.end(), action.to.begin(), action.to.end());
   for (const std::vector<Vector2d>& leg : Route::legs(places)) push_along(action, leg);
 }
 
