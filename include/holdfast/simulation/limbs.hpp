@@ -48,7 +48,8 @@ HandPose hand_on(const Skeleton& skeleton, Side side, const Eigen::Vector3d& poi
 Eigen::Vector3d palm_of(const Skeleton& skeleton, Side side, const Eigen::Isometry3d& hand);
 
 /// Turns an arm towards a hand pose: with weight 1 the wrist is there, in between the joints are turned part of the
-/// way from what they were (slerp). The elbow points down, back and outwards.
+/// way from what they were (slerp). The elbow points down, back and outwards. Beyond 93 % of the arm's length the wrist
+/// falls short, by 0.2 % of the length at 95 % and 1 % at 97 %.
 void reach(const Skeleton& skeleton, const Eigen::Isometry3d& T_person_chest, Side side, const HandPose& hand,
            double weight, Posture& posture);
 

@@ -32,7 +32,10 @@ void FootTrack::step(const Step& step) {
   HOLDFAST_CHECK(step.lifted >= last.from && step.landed > step.lifted,
                  "lifted " << step.lifted << " landed " << step.landed << " last landing " << last.from);
   last.to = step.lifted;
-  last.push = step.push;
+  // A short stand leaves no time to roll.
+  const double share = std::min(1.0, (last.to - last.from) / 0.35);
+  last.push = share * step.push;
+  last.strike *= share;
   // The shorter way round from the heading before.
   const double heading = last.heading + std::remainder(step.heading - last.heading, 2.0 * std::numbers::pi);
   stands_.push_back(

@@ -12,6 +12,8 @@ using Eigen::Vector3d;
 
 namespace {
 
+constexpr double easy_stretch = 0.93;  // of an arm's length
+
 /// Rotations of both bones, which extend along their -z and bend about their common x.
 struct Bent {
   Matrix3d upper, lower;
@@ -75,8 +77,14 @@ void reach(const Skeleton& skeleton, const Eigen::Isometry3d& T_person_chest, Si
   if (weight <= 0.0) return;
   const Limb limb = arm(side);
   const Vector3d shoulder = T_person_chest * skeleton.joint(limb.upper);
+  // Near full stretch the elbow would snap straight; the arm yields a little before.
+  const Vector3d span = hand.wrist - shoulder;
+  const double whole = skeleton.length(limb.upper) + skeleton.length(limb.lower), firm = easy_stretch * whole,
+               distance = span.norm(), spare = 0.998 * whole - firm;
+  const double reached = distance <= firm ? distance : firm + spare * (1.0 - std::exp((firm - distance) / spare));
+  const Vector3d wrist_place = shoulder + span * (reached / distance);
   const Vector3d pole = T_person_chest.linear() * Vector3d(0.3 * sign(side), 0.5, 0.0) - Vector3d(0, 0, 1.0);
-  const Bent bent = bend(shoulder, hand.wrist, skeleton.length(limb.upper), skeleton.length(limb.lower), pole, 1.0);
+  const Bent bent = bend(shoulder, wrist_place, skeleton.length(limb.upper), skeleton.length(limb.lower), pole, 1.0);
   // The forearm takes half of the hand's twist, as radius and ulna do.
   const Quaterniond wrist = Quaterniond(bent.lower).conjugate() * hand.rotation;
   const double twist = 2.0 * std::atan2(wrist.z(), wrist.w());

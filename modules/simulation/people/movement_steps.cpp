@@ -14,6 +14,7 @@ Side other(Side side) { return side == Side::left ? Side::right : Side::left; }
 Vector2d to_the_left(double heading) { return {std::cos(heading), std::sin(heading)}; }
 constexpr double walking_width = 0.028;   // from the line of travel to an ankle, as a share of the height
 constexpr double standing_width = 0.052;  // the hips' width
+constexpr double widening = 0.25;         // of steps in bends, per step's length and turn [1/rad]
 }  // namespace
 
 Movement::Movement(const Skeleton& skeleton, const Style& style, const Vector2d& at, double heading)
@@ -40,7 +41,7 @@ void Movement::wait(double duration) {
 
 /// `step.position` is the place on the line of travel, its heading that of the body.
 void Movement::step(Side side, FootTrack::Step step, double width) {
-  step.position += sign(side) * width * skeleton_.physique().height * to_the_left(step.heading);
+  step.position += sign(side) * width * to_the_left(step.heading);
   step.heading += sign(side) * style_.toes_out;
   feet_[side == Side::right].step(step);
   next_foot_ = other(side);
@@ -58,8 +59,7 @@ void Movement::turn(double heading) {
     return stance;
   });
   last_.heading += angle;
-  // The foot on the inner side of the turn goes first.
-  Side side = angle > 0 ? Side::left : Side::right;
+  Side side = next_foot_;
   const int rounds = static_cast<int>(std::ceil(std::abs(angle) / (75.0 * degrees)));
   const double beat = duration / (2.0 * rounds);
   for (int k = 0; k < 2 * rounds; ++k, side = other(side))
@@ -71,7 +71,7 @@ void Movement::turn(double heading) {
           .push = 0.12,
           .strike = 0.0,
           .lift = 0.045},
-         standing_width);
+         standing_width * skeleton_.physique().height);
 }
 
 void Movement::walk(const Travel& travel, double length, double speed, const std::function<Stance(double)>& pose) {
@@ -96,6 +96,9 @@ void Movement::walk(const Travel& travel, double length, double speed, const std
     const bool opening = i == 0, closing = i == count;
     const double place = std::min(i + 1, count);
     const Stance there = pose(place * stride);
+    const double bend =
+        pose(std::min(place + 0.5, 1.0 * count) * stride).heading - pose(std::max(place - 0.5, 0.0) * stride).heading;
+    const double height = skeleton_.physique().height;
     step(i % 2 == 0 ? first : other(first),
          {.lifted = when(opening ? 0.08 : i - 0.22),
           .landed = when(closing ? i : i + 0.54),
@@ -104,7 +107,7 @@ void Movement::walk(const Travel& travel, double length, double speed, const std
           .push = (opening ? 0.35 : 0.66) * vigour,
           .strike = (closing ? 0.05 : 0.33) * vigour,
           .lift = opening || closing ? 0.03 : 0.005 + 0.025 * (1.0 - vigour)},
-         place < count ? walking_width : standing_width);
+         place < count ? walking_width * height + widening * stride * std::abs(bend) : standing_width * height);
   }
 }
 

@@ -41,6 +41,8 @@ class ScriptBuilder {
   void stand(const Stand& action);
   void sit(const Sit& action);
   void push(const Push& action);
+  /// Past places between which no corner is too sharp to push round.
+  void push_along(const Push& action, const std::vector<Eigen::Vector2d>& places);
   void carry(const Carry& action);
 
   /// Walks to a place, past others, round what must not be walked through.

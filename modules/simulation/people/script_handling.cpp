@@ -93,7 +93,7 @@ std::optional<Movement::Bend> ScriptBuilder::bend_to_reach(const Grips& grips, c
           hand_on(skeleton, side, T_person_thing * grips.points[i], T_person_thing.linear() * grips.palms[i],
                   T_person_thing.linear() * grips.fingers[i]);
       const Vector3d shoulder = movement_.bent_shoulder(side, tried.bow, tried.drop, tried.back);
-      if ((hand.wrist - shoulder).norm() > 0.97 * arm_length) return false;
+      if ((hand.wrist - shoulder).norm() > 0.95 * arm_length) return false;
     }
     return true;
   };
@@ -119,12 +119,23 @@ std::optional<ScriptBuilder::Standpoint> ScriptBuilder::place_before(const Isome
 void ScriptBuilder::push(const Push& action) {
   check_route(action.to, "push '" + action.thing + "'");
   check_positive(action.speed, "speed of pushing");
-  const ThingPlace& place = claim(action.thing, "push");
-  const Isometry3d T_world_thing = rest(action.thing);
-  const Vector2d start = T_world_thing.translation().head<2>();
-  if ((action.to.front() - start).norm() < 0.05)
+  claim(action.thing, "push");
+  std::vector<Vector2d> places{rest(action.thing).translation().head<2>()};
+  for (const Vector2d& place : action.to)
+    if ((place - places.back()).norm() >= 0.05) places.push_back(place);
+  // When the plan repeats, the thing may be where it belongs.
+  const bool moved = std::any_of(movement_.holds.begin(), movement_.holds.end(),
+                                 [&](const Movement::Hold& hold) { return hold.thing == action.thing; });
+  if (places.size() < 2 && !moved)
     refuse("is to push '" + action.thing + "' to where it stands; expected a place at least 0.05 m away");
-  const double heading = heading_of(action.to.front() - start);
+  for (const std::vector<Vector2d>& leg : Route::legs(places)) push_along(action, leg);
+}
+
+void ScriptBuilder::push_along(const Push& action, const std::vector<Vector2d>& places) {
+  const ThingPlace& place = things_.at(action.thing);
+  const Isometry3d T_world_thing = rest(action.thing);
+  const Vector2d& start = places[0];
+  const double heading = heading_of(places[1] - start);
   // A chair is swivelled until its back comes into the hands; other things are pushed as they stand.
   const double swivel =
       place.class_name == "chair" ? std::remainder(heading - yaw_of(T_world_thing), 2.0 * std::numbers::pi) : 0.0;
@@ -145,8 +156,8 @@ void ScriptBuilder::push(const Push& action) {
 
   const double touch = movement_.end(), grip = touch + 0.8 + 0.5 * std::abs(swivel);
   movement_.wait(grip - touch);
-  std::vector<Vector2d> points{behind, start};
-  points.insert(points.end(), action.to.begin(), action.to.end());
+  std::vector<Vector2d> points{behind};
+  points.insert(points.end(), places.begin(), places.end());
   const Route route(points, 1.0);
   const double length = route.length() - gap;
   const double turned_off = movement_.last().heading - route.heading(0.0);
@@ -175,7 +186,7 @@ void ScriptBuilder::push(const Push& action) {
     return result;
   };
   Isometry3d rest_after = at(length);
-  rest_after.translation() << action.to.back(), height;
+  rest_after.translation() << places.back(), height;
   ThingTrack& track = movement_.things.at(action.thing);
   if (swivel != 0.0)
     track.move(
@@ -187,7 +198,7 @@ void ScriptBuilder::push(const Push& action) {
         swivelled);
   track.move(
       grip, arrived, [=](const Movement&, double time) { return at(travel.distance(time - grip)); }, rest_after);
-  behind_ = Obstacle{action.to.back(), seen.half_depth + 0.4};
+  behind_ = Obstacle{places.back(), seen.half_depth + 0.4};
 }
 
 void ScriptBuilder::carry(const Carry& action) {
@@ -250,8 +261,9 @@ void ScriptBuilder::carry(const Carry& action) {
   Movement::Bend bend = bend_at(T_world_thing);
   const double pace = 0.75 + 0.6 * bend.bow / (85.0 * degrees), lower = movement_.end(), grip = lower + pace,
                lift = grip + 0.1, lifted = lift + 1.2 * pace;
-  movement_.wait(lifted - lower + 0.1);
-  bend.window = {lower, grip, lift, lifted};
+  movement_.wait(lifted - lower + 0.25 * pace);
+  // The body follows the load, so that the arms need not stretch.
+  bend.window = {lower, grip, lift + 0.15 * pace, lifted + 0.2 * pace};
   movement_.bends.push_back(bend);
   ThingTrack& track = movement_.things.at(action.thing);
 
@@ -279,10 +291,10 @@ void ScriptBuilder::carry(const Carry& action) {
   movement_.turn(destination->heading);
 
   bend = bend_at(T_world_put);
-  const double slow = 0.75 + 0.6 * bend.bow / (85.0 * degrees), sink = movement_.end() + 0.1, put = sink + 1.2 * slow,
-               release = put + 0.1, upright = release + slow;
+  const double slow = 0.75 + 0.6 * bend.bow / (85.0 * degrees), sink = movement_.end() + 0.25 * slow,
+               put = sink + 1.2 * slow, release = put + 0.1, upright = release + slow;
   movement_.wait(upright - movement_.end());
-  bend.window = {sink, put, release, upright};
+  bend.window = {sink - 0.2 * slow, put - 0.15 * slow, release, upright};
   movement_.bends.push_back(bend);
   movement_.holds.push_back({{lower, grip, release, upright}, action.thing, grips});
   track.move(

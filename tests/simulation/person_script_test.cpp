@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/simulation/person_script.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "holdfast/core/error.hpp"
+
+namespace holdfast::simulation {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+const Skeleton skeleton({1.75, 1.0});
+
+ThingPlace thing(const std::string& class_name, const Vector3d& place, double yaw, const Vector3d& low,
+                 const Vector3d& high) {
+  ThingPlace result;
+  result.class_name = class_name;
+  result.T_world_thing = Eigen::Translation3d(place) * Eigen::AngleAxisd(yaw, Vector3d::UnitZ());
+  result.extents = {low, high};
+  return result;
+}
+
+ThingPlaces room() {
+  ThingPlaces things;
+  const Vector3d chair_low(-0.31, -0.28, 0), chair_high(0.31, 0.28, 1.05), box_low(-0.2, -0.15, 0),
+      box_high(0.2, 0.15, 0.28);
+  things["chair 1"] = thing("chair", {2, 1, 0}, 1.0, chair_low, chair_high);
+  things["chair 2"] = thing("chair", {4, 1, 0}, 0.3, chair_low, chair_high);
+  things["box 1"] = thing("box", {2, 3, 0}, 0.4, box_low, box_high);
+  things["desk 1"] = thing("desk", {5, 4.6, 0}, 0.0, {-0.8, -0.35, 0}, {0.8, 0.35, 0.73});
+  things["cupboard 1"] = thing("cupboard", {0.5, 4.6, 0}, 0.0, {-0.5, -0.45, 0}, {0.5, 0.45, 1.0});
+  return things;
+}
+
+PersonPlan plan(std::vector<Action> actions) {
+  PersonPlan result;
+  result.name = "person 1";
+  result.at = {0.5, 0.5};
+  result.repeat = false;
+  result.actions = std::move(actions);
+  return result;
+}
+
+const Carry carry{.thing = "box 1", .to = {{4.0, 2.0}}, .put_at = {5, 4.45, 0.73}};
+const Push push{.thing = "chair 2", .to = {{4.5, 2.5}, {3, 3.3}}};
+
+PersonScript script(const PersonPlan& plan, double duration = 40.0, std::uint64_t seed = 3) {
+  ThingPlaces things = room();
+  return {skeleton, plan, things, duration, Random(seed)};
+}
+
+BonePoses in_world(const PersonScript& script, double time) {
+  BonePoses poses = skeleton.place(script.posture(time));
+  for (Isometry3d& pose : poses) pose = script.T_world_person(time) * pose;
+  return poses;
+}
+
+double lowest_sole(const BonePoses& poses, Bone foot) {
+  const double length = skeleton.length(foot), depth = skeleton.ankle_height();
+  return std::min((poses[index(foot)] * Vector3d(0, 0.25 * length, -depth)).z(),
+                  (poses[index(foot)] * Vector3d(0, -0.75 * length, -depth)).z());
+}
+
+double knee(const Posture& posture, Bone shin) {
+  const Eigen::Matrix3d turn = posture.rotations[index(shin)].toRotationMatrix();
+  return std::atan2(turn(2, 1), turn(1, 1));
+}
+
+std::string refusal(std::vector<Action> actions) {
+  try {
+    script(plan(std::move(actions)));
+  } catch (const ConfigurationError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(PersonScript, EverythingIsSmoothAndOnTheFloor) {
+  PersonPlan everything =
+      plan({Walk{{{3, 0.3}, {5, 2}, {3, 2}}, 1.1}, Stand{2.0, true, {}}, Sit{"chair 1", 3.0, true}, push, carry});
+  everything.repeat = true;
+  const PersonScript person = script(everything, 80.0);
+  BonePoses before = in_world(person, 0.0), at = in_world(person, 0.001);
+  for (int i = 0; i < 80000; ++i) {
+    if (i % 50 >= 5) continue;  // five milliseconds in fifty, for the test to be quick
+    const double time = 0.001 * i;
+    if (i % 50 == 0) before = in_world(person, time), at = in_world(person, time + 0.001);
+    const BonePoses after = in_world(person, time + 0.002);
+    for (int bone = 0; bone < bone_count; ++bone) {
+      const Vector3d first = at[bone].translation() - before[bone].translation(),
+                     second = after[bone].translation() - at[bone].translation();
+      ASSERT_LT(second.norm(), 0.006) << "bone " << bone << " at " << time;
+      ASSERT_LT((second - first).norm(), 3e-4) << "bone " << bone << " at " << time;
+      const double turn = Eigen::AngleAxisd(at[bone].linear().transpose() * after[bone].linear()).angle();
+      ASSERT_LT(turn, 0.02) << "bone " << bone << " at " << time;
+    }
+    const double sole = std::min(lowest_sole(after, Bone::left_foot), lowest_sole(after, Bone::right_foot));
+    ASSERT_NEAR(sole, 0.0, 0.002) << time;
+    ASSERT_LT((person.T_world_person(time).translation().head<2>() - before[0].translation().head<2>()).norm(), 0.2);
+    before = at;
+    at = after;
+  }
+  for (const std::string& name : person.moved_things()) {
+    const auto motion = person.thing_motion(name);
+    for (double time = 0.0; time < 80.0; time += 0.01) {
+      const Isometry3d a = motion(time), b = motion(time + 0.001), c = motion(time + 0.002);
+      ASSERT_LT((b.translation() - a.translation()).norm(), 0.003) << name << " at " << time;
+      ASSERT_LT((c.translation() - 2.0 * b.translation() + a.translation()).norm(), 1e-4) << name << " at " << time;
+      ASSERT_LT(Eigen::AngleAxisd(a.linear().transpose() * b.linear()).angle(), 0.005) << name << " at " << time;
+    }
+  }
+}
+
+TEST(PersonScript, WalksLikePeopleDo) {
+  const PersonScript person = script(plan({Walk{{{6.5, 0.5}}, 1.1}}), 10.0);
+  EXPECT_NEAR((person.T_world_person(4.0).translation() - person.T_world_person(2.0).translation()).norm(), 2.2, 1e-6);
+  EXPECT_TRUE(person.T_world_person(9.0).translation().isApprox(Vector3d(6.5, 0.5, 0), 1e-9));
+  EXPECT_LT((person.T_world_person(3.0).linear() * -Vector3d::UnitY() - Vector3d::UnitX()).norm(), 1e-9);
+  double most_knee = 0.0, least_knee = 9.0, least_height = 9.0, most_height = 0.0, forward = 0.0, back = 0.0;
+  for (double time = 2.0; time < 4.0; time += 0.01) {
+    const Posture posture = person.posture(time);
+    for (const Bone shin : {Bone::left_shin, Bone::right_shin}) {
+      most_knee = std::max(most_knee, knee(posture, shin));
+      least_knee = std::min(least_knee, knee(posture, shin));
+    }
+    const Vector3d thigh = posture.rotations[index(Bone::left_thigh)] * -Vector3d::UnitZ();
+    forward = std::max(forward, std::atan2(-thigh.y(), -thigh.z()));
+    back = std::min(back, std::atan2(-thigh.y(), -thigh.z()));
+    least_height = std::min(least_height, posture.pelvis.z());
+    most_height = std::max(most_height, posture.pelvis.z());
+  }
+  constexpr double degree = 0.0174533;
+  EXPECT_NEAR(most_knee, 62 * degree, 8 * degree);  // Winter 1991: 60 to 65 degrees in the swing
+  EXPECT_GT(least_knee, 3 * degree);
+  EXPECT_NEAR(forward, 30 * degree, 8 * degree);
+  EXPECT_NEAR(back, -12 * degree, 5 * degree);
+  EXPECT_GT(most_height - least_height, 0.005);
+  EXPECT_LT(most_height - least_height, 0.05);
+}
+
+TEST(PersonScript, FeetDoNotSlideAndKneesDoNotBendBack) {
+  const PersonScript person =
+      script(plan({Walk{{{4, 0.5}, {5, 3}, {1, 3}}, 1.1}, Stand{2.0, false, Vector2d(0, 0)}}), 20.0);
+  for (const Side side : {Side::left, Side::right}) {
+    const Bone foot = leg(side).end;
+    const double length = skeleton.length(foot), depth = skeleton.ankle_height();
+    for (double time = 0.0; time < 15.0; time += 0.01) {
+      const BonePoses poses = in_world(person, time);
+      ASSERT_GT(knee(person.posture(time), leg(side).lower), 0.0) << time;
+      const FootPose wanted = person.foot(side, time);
+      ASSERT_LT((poses[index(foot)].translation() - wanted.ankle).norm(), 0.003) << "the leg reaches its foot " << time;
+      if (!wanted.planted || !person.foot(side, time + 0.01).planted) continue;
+      // What rests on the floor stays: the heel, the toes or both.
+      const BonePoses next = in_world(person, time + 0.01);
+      double least = 1.0;
+      for (const double y : {0.25 * length, -0.75 * length})
+        least = std::min(
+            least,
+            ((next[index(foot)] * Vector3d(0, y, -depth)) - (poses[index(foot)] * Vector3d(0, y, -depth))).norm());
+      ASSERT_LT(least, 0.0005) << time;
+    }
+  }
+}
+
+TEST(PersonScript, SitsOnTheChairWithFeetOnTheFloor) {
+  const PersonScript person = script(plan({Sit{"chair 1", 5.0, false}}));
+  double seated = 0.0;
+  while (seated < 30.0 && person.posture(seated).pelvis.z() > 0.7) seated += 0.1;
+  const double time = seated + 3.0;
+  const ThingPlaces things = room();
+  const Isometry3d& chair = things.at("chair 1").T_world_thing;
+  EXPECT_LT((person.T_world_person(time).translation() - chair.translation()).norm(), 0.01);
+  EXPECT_TRUE(person.T_world_person(time).linear().isApprox(chair.linear(), 1e-9)) << "the back to the chair's back";
+  const BonePoses poses = in_world(person, time);
+  EXPECT_NEAR(poses[0].translation().z(), 0.50 + 0.095, 0.02);
+  EXPECT_NEAR(lowest_sole(poses, Bone::left_foot), 0.0, 0.001);
+  EXPECT_NEAR(lowest_sole(poses, Bone::right_foot), 0.0, 0.001);
+  EXPECT_GT(knee(person.posture(time), Bone::left_shin), 1.2);
+  // The palms are on the thighs.
+  for (const Side side : {Side::left, Side::right}) {
+    const Vector3d palm =
+        poses[index(leg(side).upper)].inverse() * palm_of(skeleton, side, poses[index(arm(side).end)]);
+    EXPECT_NEAR(palm.z(), -0.29, 0.08);
+    EXPECT_NEAR(palm.y(), -0.074, 0.03);
+  }
+  EXPECT_NEAR(person.posture(30.0).pelvis.z(), 0.53 * 1.75, 0.02) << "stands again";
+}
+
+TEST(PersonScript, CarriesTheBoxInBothHands) {
+  const PersonScript person = script(plan({carry}));
+  const auto motion = person.thing_motion("box 1");
+  const ThingPlaces things = room();
+  const auto times = person.holding_times("box 1");
+  ASSERT_EQ(times.size(), 1U);
+  const auto [grip, release] = times[0];
+  for (double time = 0.0; time <= grip; time += 0.1)
+    ASSERT_TRUE(motion(time).matrix() == things.at("box 1").T_world_thing.matrix()) << time;
+  for (double time = release; time < 40.0; time += 0.1) ASSERT_TRUE(motion(time).translation() == carry.put_at) << time;
+  EXPECT_TRUE(motion(release).linear().col(2).isApprox(Vector3d::UnitZ(), 1e-9)) << "stands upright";
+  double highest = 0.0;
+  for (double time = grip; time <= release; time += 0.02) {
+    const BonePoses poses = in_world(person, time);
+    for (const Side side : {Side::left, Side::right}) {
+      const Vector3d palm = motion(time).inverse() * palm_of(skeleton, side, poses[index(arm(side).end)]);
+      const double outside = things.at("box 1").extents.exteriorDistance(palm);
+      ASSERT_LT(outside, 0.03) << time;
+      // On a side, not within.
+      const double to_side = std::min(0.2 - std::abs(palm.x()), 0.15 - std::abs(palm.y()));
+      ASSERT_LT(to_side, 0.03) << time;
+    }
+    highest = std::max(highest, motion(time).translation().z());
+  }
+  EXPECT_NEAR(highest, 0.91, 0.1) << "before the chest";
+}
+
+TEST(PersonScript, PutsTheBoxBackWhenThePlanRepeats) {
+  PersonPlan again = plan({carry});
+  again.repeat = true;
+  const PersonScript person = script(again, 60.0);
+  const auto times = person.holding_times("box 1");
+  ASSERT_GE(times.size(), 2U);
+  const auto motion = person.thing_motion("box 1");
+  EXPECT_TRUE(motion(times[1].first).translation() == carry.put_at) << "lies where it was put";
+  EXPECT_GT(motion(0.5 * (times[1].first + times[1].second)).translation().z(), 0.8);
+  EXPECT_TRUE(motion(times[1].second).translation() == carry.put_at);
+}
+
+TEST(PersonScript, PushesTheChairFromBehind) {
+  const PersonScript person = script(plan({push}));
+  const auto motion = person.thing_motion("chair 2");
+  const auto [grip, release] = person.holding_times("chair 2").at(0);
+  EXPECT_TRUE(motion(0.0).translation() == Vector3d(4, 1, 0));
+  EXPECT_TRUE(motion(40.0).translation() == Vector3d(3, 3.3, 0));
+  for (double time = grip; time <= release; time += 0.02) {
+    const Isometry3d chair = motion(time);
+    EXPECT_EQ(chair.translation().z(), 0.0);
+    const Vector3d person_in_chair = chair.inverse() * person.T_world_person(time).translation();
+    ASSERT_NEAR(person_in_chair.y(), 0.84, 0.12) << time << ": behind the back, which is at +y";
+    ASSERT_NEAR(person_in_chair.x(), 0.0, 0.01) << time;
+    const BonePoses poses = in_world(person, time);
+    for (const Side side : {Side::left, Side::right}) {
+      const Vector3d palm = chair.inverse() * palm_of(skeleton, side, poses[index(arm(side).end)]);
+      ASSERT_LT((palm - Vector3d(0.15 * sign(side), 0.25, 1.05)).norm(), 0.03) << time;
+    }
+  }
+}
+
+TEST(PersonScript, DoesNotPushAgainWhatIsWhereItBelongs) {
+  PersonPlan again = plan({Push{.thing = "chair 2", .to = {{4.5, 2.5}}}, Stand{1.0, false, {}}});
+  again.repeat = true;
+  EXPECT_EQ(script(again, 60.0).holding_times("chair 2").size(), 1U);
+  EXPECT_NE(refusal({Push{.thing = "chair 2", .to = {{4.0, 1.0}}}}).find("where it stands"), std::string::npos);
+}
+
+TEST(PersonScript, SameSeedSameBytes) {
+  const PersonPlan moving = plan({Walk{{{3, 1}}, 1.2}, Stand{3.0, true, {}}, carry});
+  const PersonScript first = script(moving), second = script(moving), other = script(moving, 40.0, 4);
+  bool differs = false;
+  for (const double time : {7.3, 1.0, 30.0, 5.5, 1.0}) {
+    const Posture a = first.posture(time), b = second.posture(time), c = other.posture(time);
+    for (int i = 0; i < bone_count; ++i) {
+      ASSERT_EQ(std::memcmp(&a.rotations[i], &b.rotations[i], sizeof(a.rotations[i])), 0);
+      differs |= !a.rotations[i].isApprox(c.rotations[i], 1e-3);
+    }
+  }
+  EXPECT_TRUE(differs) << "another seed, another style";
+}
+
+TEST(PersonScript, RefusesWhatCannotBeDone) {
+  EXPECT_NE(refusal({Sit{"chair 9", 3.0, false}}).find("person 1 wants to sit on 'chair 9'"), std::string::npos);
+  EXPECT_NE(refusal({Sit{"chair 9", 3.0, false}}).find("chair 1, chair 2"), std::string::npos);
+  EXPECT_NE(refusal({Sit{"box 1", 3.0, false}}).find("expected a chair"), std::string::npos);
+  EXPECT_NE(refusal({Walk{{}, 1.0}}).find("without places"), std::string::npos);
+  EXPECT_NE(refusal({Walk{{{1, 1}}, 0.0}}).find("speed"), std::string::npos);
+  EXPECT_NE(refusal({Carry{.thing = "cupboard 1", .to = {}}}).find("at most 0.8 m"), std::string::npos);
+  EXPECT_NE(refusal({Carry{.thing = "box 1", .to = {}, .put_at = {3, 3, 2.4}}}).find("put down"), std::string::npos);
+  ThingPlaces things = room();
+  PersonPlan mine = plan({push}), yours = plan({Sit{"chair 2", 2.0, false}});
+  yours.name = "person 2";
+  const PersonScript first(skeleton, mine, things, 20.0, Random(1));
+  EXPECT_EQ(things.at("chair 2").moved_by, "person 1");
+  EXPECT_THROW(PersonScript(skeleton, yours, things, 20.0, Random(1)), ConfigurationError);
+}
+
+}  // namespace
+}  // namespace holdfast::simulation
