@@ -59,8 +59,11 @@ PersonLook random_look(Random random) {
   PersonLook look;
   const bool woman = random.uniform() < 0.5;
   look.figure = woman ? random.uniform(0.75, 1.0) : random.uniform(0.0, 0.2);
-  look.skin = varied(any(skins, random), 0.05, random);
-  look.hair = varied(any(hairs, random), 0.15, random);
+  const std::uint32_t complexion = random.below(std::size(skins));
+  look.skin = varied(skins[complexion], 0.05, random);
+  // Dark skin goes with dark hair; grey comes seldom.
+  const std::uint32_t shades = complexion >= 3 ? 2 : random.uniform() < 0.15 ? 6 : 5;
+  look.hair = varied(hairs[random.below(shades)], 0.15, random);
   static constexpr HairStyle of_women[] = {HairStyle::shoulder_length, HairStyle::shoulder_length, HairStyle::bun,
                                            HairStyle::curly, HairStyle::parted};
   static constexpr HairStyle of_men[] = {HairStyle::cropped, HairStyle::parted, HairStyle::cropped,

@@ -11,7 +11,7 @@ using Eigen::Vector3f;
 
 namespace {
 constexpr float full_turn = 2.0F * std::numbers::pi_v<float>;
-constexpr float chin = 0.878F, crown = 0.993F;  // of the bald skull, as shares of the height
+constexpr float chin = 0.868F, crown = 0.993F;  // of the bald skull, as shares of the height
 constexpr float head_texels = 640.0F, hair_texels = 420.0F;
 constexpr float head_centre = -0.008F;  // y of the head's axis
 
@@ -87,11 +87,11 @@ Vector3f PersonBuilder::head_point(float share, float rise, float outwards, bool
 }
 
 void PersonBuilder::head() {
-  constexpr int facets = 22;
+  constexpr int facets = 20;
   Grid grid;
   grid.columns = facets + 1;
-  static constexpr float rises[] = {1.0F,  0.97F, 0.90F, 0.80F, 0.70F, 0.62F, 0.55F,  0.47F,
-                                    0.40F, 0.34F, 0.28F, 0.21F, 0.13F, 0.05F, -0.01F, -0.035F};
+  static constexpr float rises[] = {1.0F,  0.97F, 0.88F, 0.76F, 0.63F, 0.55F,  0.47F,  0.40F,
+                                    0.34F, 0.28F, 0.21F, 0.13F, 0.04F, -0.01F, -0.035F};
   for (const float rise : rises) {
     grid.rows.push_back(1.0F - rise);
     for (int i = 0; i <= facets; ++i)
@@ -139,8 +139,8 @@ void PersonBuilder::hair() {
   const auto weights = [this](const Vector3f& position) {
     return chain_weights(-position.z(), Bone::head, {{-0.850F * height_, 0.030F * height_, Bone::chest}});
   };
-  constexpr int facets = 22;
-  const int rows = lengthy ? 13 : 9;
+  constexpr int facets = 20;
+  const int rows = lengthy ? 12 : 9;
   const float scale = (crown - chin) * height_;
   // How far down hair goes, by the distance from the middle of the face.
   const auto hairline = [&](float side) {
@@ -163,7 +163,7 @@ void PersonBuilder::hair() {
                    side);
   };
   const float thickness = style == HairStyle::cropped ? 0.008F
-                          : style == HairStyle::curly ? 0.026F
+                          : style == HairStyle::curly ? 0.019F
                           : style == HairStyle::bun   ? 0.009F
                                                       : 0.017F;
   const float top = (1.0F - crown) * height_;  // ends at the full height
@@ -178,11 +178,13 @@ void PersonBuilder::hair() {
     for (int i = 0; i < facets; ++i) {
       const float share = dense_before(static_cast<float>(i) / facets), side = from_front(share);
       const float edge = hairline(side);
-      const float rise = row == 0 ? 1.0F : 1.0F + (edge - 1.0F) * std::pow(std::min(down, 1.0F), 0.85F);
+      // Rows close at the crown, where it is round.
+      const float bend = lengthy ? 1.9F : 1.35F;
+      const float rise = row == 0 ? 1.0F : 1.0F + (edge - 1.0F) * std::pow(std::min(down, 1.0F), bend);
       // Thin at the hairline before, full above and behind.
       const float rim = smooth_step(1.05F, 0.55F, down), behind = smooth_step(0.10F, 0.30F, side);
       float out = thickness * (0.45F + 0.55F * std::max(rim, lengthy ? behind : 0.35F * behind));
-      out = out * smooth_step(0.98F, 0.80F, rise) + std::min(top, 1.3F * thickness) * smooth_step(0.80F, 0.98F, rise);
+      out = out * smooth_step(0.97F, 0.62F, rise) + std::min(top, 1.3F * thickness) * smooth_step(0.62F, 0.97F, rise);
       if (style == HairStyle::parted) out += 0.010F * smooth_step(0.72F, 0.88F, rise) * smooth_step(0.3F, 0.0F, side);
       const float lump = style == HairStyle::curly ? 0.006F : style == HairStyle::cropped ? 0.0015F : 0.003F;
       if (row > 0) out += lump * static_cast<float>(lumps.uniform(-1.0, 1.0)) * smooth_step(1.0F, 0.93F, rise);

@@ -19,16 +19,16 @@ struct LimbSection {
 
 // Straight arm; 0 at the shoulder, the elbow at 0.186, the wrist at 0.332.
 constexpr LimbSection arm_sections[] = {
-    {-0.004F, 0.026F, 0.029F, 0.029F, 0.0F},   {0.018F, 0.0305F, 0.034F, 0.033F, 0.0F},
-    {0.050F, 0.0285F, 0.033F, 0.031F, 0.0F},   {0.090F, 0.0265F, 0.030F, 0.029F, 0.0F},
+    {-0.004F, 0.025F, 0.027F, 0.027F, 0.0F},   {0.018F, 0.0285F, 0.033F, 0.032F, 0.0F},
+    {0.050F, 0.0285F, 0.0325F, 0.031F, 0.0F},  {0.090F, 0.0265F, 0.030F, 0.029F, 0.0F},
     {0.130F, 0.0245F, 0.027F, 0.027F, 0.0F},   {0.165F, 0.0230F, 0.0235F, 0.025F, 0.0F},
     {0.186F, 0.0230F, 0.0225F, 0.025F, 0.0F},  {0.207F, 0.0240F, 0.0240F, 0.0235F, 0.0F},
     {0.240F, 0.0235F, 0.0245F, 0.0225F, 0.0F}, {0.280F, 0.0190F, 0.0205F, 0.0190F, 0.0F},
     {0.315F, 0.0150F, 0.0175F, 0.0165F, 0.0F}, {0.335F, 0.0140F, 0.0175F, 0.0165F, 0.0F}};
 // Straight leg; 0 at the hip, the knee at 0.245, the ankle at 0.491.
 constexpr LimbSection leg_sections[] = {
-    {-0.020F, 0.034F, 0.036F, 0.042F, 0.0F},      {0.005F, 0.045F, 0.048F, 0.058F, 0.0F},
-    {0.040F, 0.0490F, 0.051F, 0.060F, 0.0F},      {0.080F, 0.0475F, 0.051F, 0.055F, 0.0F},
+    {-0.020F, 0.034F, 0.036F, 0.042F, 0.0F},      {0.005F, 0.042F, 0.046F, 0.056F, 0.0F},
+    {0.040F, 0.0460F, 0.051F, 0.060F, 0.0F},      {0.080F, 0.0455F, 0.051F, 0.055F, 0.0F},
     {0.130F, 0.0430F, 0.047F, 0.047F, 0.0F},      {0.180F, 0.0370F, 0.041F, 0.039F, 0.0F},
     {0.220F, 0.0325F, 0.0365F, 0.0325F, 0.0F},    {0.245F, 0.0315F, 0.0355F, 0.0315F, 0.0F},
     {0.270F, 0.0300F, 0.0310F, 0.0340F, 0.0F},    {0.315F, 0.0310F, 0.0280F, 0.0390F, -0.002F},
@@ -115,11 +115,12 @@ void PersonBuilder::arm(bool left) {
     ring.centre.x() += inwards * lean * height_;
     sleeve.rings.push_back(ring);
   };
-  cap(-0.0185F, 0.0F, 0.0F, 0.014F);
-  cap(-0.0160F, 0.0120F, 0.0140F, 0.011F);
-  cap(-0.0080F, 0.0220F, 0.0245F, 0.005F);
+  cap(-0.0100F, 0.0F, 0.0F, 0.020F);
+  cap(-0.0090F, 0.0100F, 0.0130F, 0.016F);
+  cap(-0.0030F, 0.0200F, 0.0220F, 0.009F);
+  cap(0.0060F, 0.0255F, 0.0285F, 0.003F);
   for (const LimbSection& section : arm_sections)
-    if (section.down > 0.0F && section.down < hem - 0.008F) {
+    if (section.down > 0.010F && section.down < hem - 0.008F) {
       const float flare = look_.long_sleeves ? 0.004F * smooth_step(0.20F, 0.28F, section.down) : 0.0F;
       sleeve.rings.push_back(limb_ring(section, shoulder, height_, grow, loose + flare));
     }
@@ -221,12 +222,12 @@ void PersonBuilder::leg(bool left) {
       if (section.down < hem - 0.010F) loft.rings.push_back(ring(section.down));
     loft.rings.push_back(ring(hem));
     close_hem(loft.rings, 0.010F);
-    loft.facets = 12;
+    loft.facets = 11;
     loft.seam = seam;
     loft.weights = weights;
     loft.bulge = wrinkles(random_.fork(left ? 701 : 702), loft.rings.size(), loft.facets, 0.0035F);
     add(loft, cloth_texels, [&](cv::Size size, double texels, Random random) {
-      return pictures::trouser_leg(size, look_.bottom_cloth, !trousers, texels, random);
+      return pictures::trouser_leg(size, look_.bottom_cloth, !trousers, left ? 0.25 : 0.75, texels, random);
     });
   }
   if (trousers) return;
@@ -260,15 +261,14 @@ void PersonBuilder::shoe(bool left) {
   ring(-0.270F, 0.0F, 0.016F, 0.016F);
   ring(-0.262F, 0.0110F, 0.003F, 0.036F);
   ring(-0.215F, 0.0180F, 0.0F, 0.047F);
-  ring(-0.090F, 0.0210F, 0.0F, 0.052F);
-  ring(0.060F, 0.0215F, 0.0F, 0.050F);
+  ring(-0.020F, 0.0213F, 0.0F, 0.052F);
   ring(0.190F, 0.0230F, 0.0F, 0.042F);
   ring(0.370F, 0.0265F, 0.0F, 0.032F);
   ring(0.550F, 0.0275F, 0.0F, 0.026F);
   ring(0.690F, 0.0235F, 0.0F, 0.022F);
   ring(0.755F, 0.0140F, 0.002F, 0.018F);
   ring(0.770F, 0.0F, 0.010F, 0.010F);
-  loft.facets = 10;
+  loft.facets = 8;
   loft.weights = [bone](const Vector3f&) { return chain_weights(0.0F, bone, {}); };
   add(loft, shoe_texels, [&](cv::Size size, double texels, Random random) {
     return pictures::shoe(size, look_.shoes, look_.soles, texels, random);

@@ -20,21 +20,21 @@ struct TrunkSection {
 };
 constexpr TrunkSection sections[] = {
     {0.860F, 0.036F, 0.036F, 0.034F, -0.005F, -0.004F, 0.5F, 2.0F},
-    {0.847F, 0.040F, 0.037F, 0.038F, -0.005F, -0.004F, 0.5F, 2.0F},
-    {0.838F, 0.056F, 0.040F, 0.044F, -0.005F, -0.003F, 0.4F, 2.0F},
-    {0.829F, 0.083F, 0.044F, 0.050F, -0.005F, -0.003F, 0.3F, 2.0F},
-    {0.818F, 0.104F, 0.049F, 0.056F, -0.005F, -0.003F, 0.3F, 2.1F},
-    {0.800F, 0.111F, 0.055F, 0.061F, -0.006F, -0.002F, 0.3F, 2.3F},
-    {0.770F, 0.101F, 0.064F, 0.064F, -0.008F, 0.000F, 0.5F, 2.4F},
+    {0.847F, 0.039F, 0.036F, 0.037F, -0.005F, -0.004F, 0.5F, 2.0F},
+    {0.839F, 0.054F, 0.040F, 0.043F, -0.005F, -0.003F, 0.4F, 2.0F},
+    {0.831F, 0.082F, 0.044F, 0.050F, -0.005F, -0.003F, 0.3F, 2.0F},
+    {0.821F, 0.104F, 0.048F, 0.054F, -0.005F, -0.003F, 0.3F, 2.1F},
+    {0.800F, 0.113F, 0.055F, 0.060F, -0.006F, -0.002F, 0.3F, 2.3F},
+    {0.770F, 0.103F, 0.064F, 0.064F, -0.008F, 0.000F, 0.5F, 2.4F},
     {0.735F, 0.095F, 0.069F, 0.062F, -0.008F, 0.008F, 0.6F, 2.4F},
     {0.700F, 0.091F, 0.067F, 0.057F, -0.009F, 0.004F, 0.7F, 2.4F},
     {0.660F, 0.086F, 0.063F, 0.051F, -0.012F, -0.003F, 0.9F, 2.3F},
     {0.620F, 0.084F, 0.061F, 0.049F, -0.012F, -0.003F, 1.0F, 2.3F},
     {0.585F, 0.087F, 0.060F, 0.053F, -0.002F, -0.002F, 1.0F, 2.3F},
     {0.550F, 0.092F, 0.057F, 0.062F, 0.004F, -0.001F, 0.8F, 2.3F},
-    {0.515F, 0.096F, 0.054F, 0.069F, 0.005F, -0.001F, 0.7F, 2.4F},
-    {0.488F, 0.097F, 0.052F, 0.067F, 0.004F, -0.001F, 0.7F, 2.4F},
-    {0.462F, 0.097F, 0.051F, 0.062F, 0.003F, -0.001F, 0.7F, 2.3F},
+    {0.515F, 0.098F, 0.054F, 0.069F, 0.005F, -0.001F, 0.7F, 2.4F},
+    {0.488F, 0.099F, 0.052F, 0.067F, 0.004F, -0.001F, 0.7F, 2.4F},
+    {0.462F, 0.098F, 0.051F, 0.062F, 0.003F, -0.001F, 0.7F, 2.3F},
 };
 constexpr std::size_t section_count = std::size(sections);
 
@@ -66,6 +66,8 @@ Ring trunk_ring(float z, float height, float girth, float figure, float loose) {
   ring.front += std::max(0.0F, girth - 1.0F) * 0.05F * height * std::exp(-std::pow((z - 0.61F) / 0.06F, 2.0F));
   ring.back = section.back * grow * height + loose;
   ring.power = section.power;
+  // The neck leaves the shoulders leaning forward, so that necklines lie lower before than behind.
+  ring.behind = Vector3f(0.0F, 1.0F, 0.32F * neck).normalized();
   return ring;
 }
 
@@ -95,14 +97,15 @@ std::vector<Ring> PersonBuilder::trunk_rings() const {
   const bool jacket = look_.top == Top::jacket;
   const float loose = jacket ? 0.016F : look_.top == Top::t_shirt ? 0.007F : 0.010F;
   const float hem = look_.tucked_in ? 0.575F : jacket ? 0.482F : 0.497F;
+  const float over_trousers = look_.tucked_in ? 0.0F : 0.009F;
   std::vector<Ring> rings;
   // The neckline: what is worn above ends as an edge around the neck.
   const float neckline = look_.top == Top::t_shirt ? 0.8385F : 0.846F;
   const auto ring = [&](float z, float extra) {
-    return trunk_ring(z, height_, girth_, figure_, loose * (z > 0.83F ? 0.5F : 1.0F) + extra);
+    return trunk_ring(z, height_, girth_, figure_, loose * (z > 0.83F ? 0.5F : 1.0F) + over_trousers * smooth_step(0.60F, 0.52F, z) + extra);
   };
-  Ring inner = ring(neckline, -0.008F);
-  inner.centre.z() -= 0.004F;
+  Ring inner = ring(neckline, -0.020F);
+  inner.centre.z() -= 0.006F;
   rings.push_back(inner);
   rings.push_back(ring(neckline, 0.0F));
   for (const TrunkSection& section : sections)
@@ -118,11 +121,11 @@ std::vector<Ring> PersonBuilder::trunk_rings() const {
 void PersonBuilder::trunk() {
   Loft loft;
   loft.rings = trunk_rings();
-  loft.facets = 18;
+  loft.facets = 16;
   loft.weights = [this](const Vector3f& position) { return trunk_weights(position); };
   const float bust = figure_ * 0.012F * height_;
   const Random waves = random_.fork(501);
-  std::vector<float> wave(loft.rings.size() * 18);
+  std::vector<float> wave(loft.rings.size() * 16);
   Random draw = waves;
   for (float& value : wave) value = static_cast<float>(draw.uniform(-1.0, 1.0));
   loft.bulge = [&, bust](float share, std::size_t k) {
@@ -134,10 +137,10 @@ void PersonBuilder::trunk() {
     const float buttock = std::exp(-std::pow((z - 0.505F) / 0.03F, 2.0F)) *
                           std::exp(-std::pow(apart(share, share < 0.5F ? 0.10F : 0.90F) / 0.07F, 2.0F));
     // Cloth hangs and gathers above the waist.
-    const auto column = static_cast<std::size_t>(share * 18.0F + 0.5F) % 18;
-    const float slack = 0.005F * smooth_step(0.80F, 0.70F, z) * wave[k * 18 + column];
+    const auto column = static_cast<std::size_t>(share * 16.0F + 0.5F) % 16;
+    const float slack = (z < 0.57F ? 0.003F : 0.005F) * smooth_step(0.80F, 0.70F, z) * wave[k * 16 + column];
     return bust * breast + 0.004F * height_ * (1.0F - 0.5F * figure_) * breast + 0.003F * height_ * blade +
-           0.004F * height_ * buttock + slack;
+           0.006F * height_ * buttock + slack;
   };
   const std::vector<float> rows = ring_rows(loft.rings);
   pictures::ShirtCut cut;
@@ -159,12 +162,12 @@ void PersonBuilder::trunk() {
   collar();
 
   Loft neck;
-  for (const auto& [z, width, depth, y] : {std::array{0.900F, 0.032F, 0.036F, -0.004F},
-                                           {0.880F, 0.0325F, 0.035F, 0.000F},
-                                           {0.862F, 0.0325F, 0.034F, 0.004F},
-                                           {0.848F, 0.034F, 0.034F, 0.005F},
-                                           {0.834F, 0.041F, 0.036F, 0.004F},
-                                           {0.822F, 0.055F, 0.041F, 0.002F}}) {
+  for (const auto& [z, width, depth, y] : {std::array{0.900F, 0.0290F, 0.033F, 0.000F},
+                                           {0.880F, 0.0300F, 0.032F, 0.002F},
+                                           {0.862F, 0.0300F, 0.031F, 0.005F},
+                                           {0.848F, 0.0315F, 0.032F, 0.006F},
+                                           {0.834F, 0.0400F, 0.036F, 0.004F},
+                                           {0.822F, 0.0550F, 0.041F, 0.002F}}) {
     Ring ring;
     const float grow = (1.0F - 0.12F * figure_) * (1.0F + 0.5F * (girth_ - 1.0F)) * height_;
     ring.centre = {0.0F, y * height_, z * height_};
@@ -184,21 +187,15 @@ void PersonBuilder::trunk() {
 
 void PersonBuilder::collar() {
   if (look_.top == Top::t_shirt) return;
-  const float rise = look_.top == Top::pullover ? 0.006F : 0.016F;
+  const float rise = look_.top == Top::pullover ? 0.004F : 0.012F;
   Loft loft;
   const auto ring = [&](float z, float extra) {
     Ring result = trunk_ring(0.847F, height_, girth_, figure_, extra);
     result.centre.z() = z * height_;
     return result;
   };
-  loft.rings = {ring(0.850F, 0.000F), ring(0.847F + rise, 0.002F), ring(0.847F + rise, 0.006F), ring(0.838F, 0.017F),
-                ring(0.835F, 0.010F)};
-  // Lower before than behind, as collars are.
-  for (Ring& edge : loft.rings) {
-    const float drop = 0.35F;
-    edge.behind = Vector3f(0.0F, 1.0F, drop).normalized();
-    edge.centre.z() += 0.002F * height_;
-  }
+  loft.rings = {ring(0.843F, -0.020F), ring(0.845F + rise, -0.004F), ring(0.847F + rise, 0.002F), ring(0.840F, 0.014F),
+                ring(0.836F, 0.009F)};
   loft.facets = 14;
   loft.weights = [this](const Vector3f& position) {
     return chain_weights(-position.z(), Bone::neck, {{-0.850F * height_, 0.022F * height_, Bone::chest}});
@@ -220,7 +217,7 @@ std::vector<Ring> PersonBuilder::seat_rings() const {
 void PersonBuilder::seat() {
   Loft loft;
   loft.rings = seat_rings();
-  loft.facets = 16;
+  loft.facets = 14;
   const bool skirt = look_.bottom == Bottom::skirt;
   if (skirt) {
     const float flare = 0.035F;

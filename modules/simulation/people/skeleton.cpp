@@ -29,7 +29,7 @@ Skeleton::Skeleton(const Physique& physique) : physique_(physique) {
   set(Bone::chest, up(waist, chest), (neck - chest) * height);
   set(Bone::neck, up(chest, neck), (chin - neck) * height);
   set(Bone::head, up(neck, chin), (1.0 - chin) * height);
-  const double half_shoulder = 0.115 * height * (0.75 + 0.25 * girth), half_hip = 0.052 * height;
+  const double half_shoulder = 0.106 * height * (0.75 + 0.25 * girth), half_hip = 0.052 * height;
   for (const double side : {1.0, -1.0}) {
     const bool left = side > 0;
     const auto shoulder_joint = Vector3d(side * half_shoulder, 0, (shoulder - chest - 0.012) * height);

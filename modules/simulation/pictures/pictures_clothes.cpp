@@ -49,8 +49,9 @@ std::vector<float> bands(int length, double period, Random random) {
   return result;
 }
 
-void weave_plaid(cv::Mat& picture, const Cloth& cloth, double texels, const Random& random) {
-  const double period = 0.085 * cloth.scale * texels;
+void weave_plaid(cv::Mat& picture, const Cloth& cloth, int cloth_width, double texels, const Random& random) {
+  double period = 0.085 * cloth.scale * texels;
+  period = cloth_width / std::max(1.0, std::round(cloth_width / period));  // goes on across the seam
   const std::vector<float> across = bands(picture.cols, period, random.fork(1));
   const std::vector<float> down = bands(picture.rows, period, random.fork(2));
   NoiseField drift(picture.cols, picture.rows);  // cloth never hangs straight
@@ -149,10 +150,11 @@ void twill(cv::Mat& picture, double texels, const Random& random) {
 }
 
 cv::Mat cloth_ground(cv::Size size, const Cloth& cloth, double texels, const Random& random) {
-  cv::Mat picture(size, CV_8UC3, cloth.colour);
+  const int overlap = std::min(size.width / 4, static_cast<int>(0.03 * texels));
+  cv::Mat picture(size.height, size.width + overlap, CV_8UC3, cloth.colour);
   switch (cloth.weave) {
     case Weave::plaid:
-      weave_plaid(picture, cloth, texels, random.fork(11));
+      weave_plaid(picture, cloth, size.width, texels, random.fork(11));
       break;
     case Weave::striped:
       weave_stripes(picture, cloth, texels, random.fork(11));
@@ -174,7 +176,7 @@ cv::Mat cloth_ground(cv::Size size, const Cloth& cloth, double texels, const Ran
       break;
   }
   add_grain(picture, texels, 0.06F, random.fork(12));
-  return picture;
+  return joined(picture, overlap);
 }
 
 // A row of stitches.
@@ -266,8 +268,8 @@ void print_front(cv::Mat& picture, cv::Point2d centre, double width, const Cloth
     }
     line_of_text(centre.y + 0.56 * height, 0.16 * width);
   }
-  if (kind < 0.65) line_of_text(centre.y + 0.10 * height, 0.30 * width);
-  if (kind < 0.35) line_of_text(centre.y + 0.42 * height, 0.18 * width);
+  if (kind < 0.65) line_of_text(centre.y + (kind < 0.35 ? -0.02 : 0.10) * width, 0.30 * width);
+  if (kind < 0.35) line_of_text(centre.y + 0.22 * width, 0.16 * width);
 }
 }  // namespace
 
@@ -414,9 +416,6 @@ cv::Mat sleeve(cv::Size size, const Cloth& cloth, bool lengthy, double texels, R
         random.fork(4));
   shade.spot({0.0F, 0.35F * height}, 0.35F * width, 0.6F * height, 0.26F);
   shade.uneven(0.08F * static_cast<float>(texels), 0.06F * static_cast<float>(texels), 0.06F, 2, random.fork(5));
-  // The seam that joins it to the shoulder, and the cuff or hem.
-  const double shoulder = 0.012 * texels + 0.05 * height * (lengthy ? 0.4 : 1.0);
-  seam_line(picture, {0, shoulder}, {width, shoulder}, cloth.colour, texels);
   const double end = height - 0.012 * texels, cuff = end - (lengthy ? 0.06 : 0.022) * texels;
   seam_line(picture, {0, cuff}, {width, cuff}, cloth.colour, texels);
   if (lengthy)
@@ -493,7 +492,7 @@ cv::Mat trouser_seat(cv::Size size, const Cloth& cloth, bool belt, double texels
   return picture;
 }
 
-cv::Mat trouser_leg(cv::Size size, const Cloth& cloth, bool shorts, double texels, Random random) {
+cv::Mat trouser_leg(cv::Size size, const Cloth& cloth, bool shorts, double front, double texels, Random random) {
   cv::Mat picture = cloth_ground(size, cloth, texels, random.fork(1));
   const double width = size.width, height = size.height;
   const auto w = static_cast<float>(width), h = static_cast<float>(height);
@@ -514,12 +513,11 @@ cv::Mat trouser_leg(cv::Size size, const Cloth& cloth, bool shorts, double texel
   shade.spot({0.0F, 0.15F * h}, 0.25F * w, 0.5F * h, 0.30F);
   shade.spot({0.0F, 0.8F * h}, 0.2F * w, 0.5F * h, 0.15F);
   if (denim) {  // faded where it rubs
-    shade.spot({0.5F * w, 0.25F * h}, 0.20F * w, 0.25F * h, -0.30F);
-    shade.spot({0.5F * w, knee * h}, 0.18F * w, 0.08F * h, -0.22F);
+    shade.spot({static_cast<float>(front) * w, 0.25F * h}, 0.20F * w, 0.25F * h, -0.30F);
+    shade.spot({static_cast<float>(front) * w, knee * h}, 0.18F * w, 0.08F * h, -0.22F);
   }
   shade.uneven(0.08F * static_cast<float>(texels), 0.10F * static_cast<float>(texels), 0.06F, 2, random.fork(7));
-  seam_line(picture, {0.5 * width + (0.25 * width), 0}, {0.75 * width, height}, cloth.colour, texels);
-  seam_line(picture, {0.25 * width, 0}, {0.25 * width, height}, cloth.colour, texels);
+  for (const double x : {0.004, 0.5}) seam_line(picture, {x * width, 0}, {x * width, height}, cloth.colour, texels);
   const double end = height - 0.012 * texels;
   seam_line(picture, {0, end - 0.02 * texels}, {width, end - 0.02 * texels}, cloth.colour, texels);
   shade.apply(picture);

@@ -77,13 +77,13 @@ class FacePainter {
   }
 
   void nose() {
-    const cv::Scalar shadow = mix(face_.skin, {25, 30, 60}, 0.38), nostril = mix(face_.skin, {15, 15, 30}, 0.75);
+    const cv::Scalar shadow = mix(face_.skin, {35, 40, 75}, 0.24), nostril = mix(face_.skin, {25, 25, 45}, 0.62);
     for (const double side : {-1.0, 1.0}) {
       line(side * 0.035, 0.50, side * 0.045, 0.40, mix(face_.skin, shadow, 0.45), 0.012);
       ellipse(side * 0.082, 0.352, 0.024, 0.030, shadow, side > 0 ? -70 : 110, side > 0 ? 70 : 250, 2);
-      ellipse(side * 0.040, 0.322, 0.022, 0.011, nostril);
+      ellipse(side * 0.040, 0.322, 0.017, 0.008, nostril);
     }
-    ellipse(0.0, 0.312, 0.055, 0.012, shadow);
+    ellipse(0.0, 0.312, 0.045, 0.008, shadow);
     ellipse(0.0, 0.375, 0.022, 0.022, mix(face_.skin, {255, 255, 255}, 0.14));
     ellipse(0.0, 0.450, 0.012, 0.060, mix(face_.skin, {255, 255, 255}, 0.10));
   }
@@ -152,7 +152,7 @@ cv::Mat head(cv::Size size, const Face& face, Random random) {
     spot(side * 0.42, 0.20, 0.45F, 0.22F, 0.17F);   // below them
     spot(side * 0.17, 0.30, 0.08F, 0.14F, 0.10F);   // from nose to mouth
   }
-  spot(0.0, 0.29, 0.16F, 0.05F, 0.14F);
+  spot(0.0, 0.29, 0.16F, 0.05F, 0.07F);
   spot(0.0, 0.75, 0.7F, 0.15F, -0.07F);
   spot(0.0, 0.07, 0.25F, 0.07F, -0.05F);
   spot(0.0, -0.03, 2.0F, 0.10F, 0.42F);  // under the chin
@@ -203,8 +203,9 @@ cv::Mat ear(cv::Size size, const cv::Scalar& skin, double texels, Random random)
 }
 
 cv::Mat hair(cv::Size size, const cv::Scalar& colour, bool curly, double texels, Random random) {
-  cv::Mat picture(size, CV_8UC3, colour);
-  NoiseField strands(size.width, size.height);
+  const int overlap = size.width / 8;
+  cv::Mat picture(size.height, size.width + overlap, CV_8UC3, colour);
+  NoiseField strands(picture.cols, picture.rows);
   const auto scale = static_cast<float>(texels);
   if (curly) {
     add_value_noise(strands, 0.014F * scale, 0.014F * scale, 0.55F, random.fork(1));
@@ -212,16 +213,16 @@ cv::Mat hair(cv::Size size, const cv::Scalar& colour, bool curly, double texels,
   } else {
     add_strands(strands, 0.007F * scale, 0.10F * scale, random.fork(1));
   }
-  for (int y = 0; y < size.height; ++y) {
+  for (int y = 0; y < picture.rows; ++y) {
     auto* out = picture.ptr<std::uint8_t>(y);
-    for (int x = 0; x < size.width; ++x)
+    for (int x = 0; x < picture.cols; ++x)
       for (int channel = 0; channel < 3; ++channel, ++out) {
         // Dark hair shines too.
         const float value = static_cast<float>(colour[channel]);
         *out = cv::saturate_cast<std::uint8_t>(value + (0.55F * value + 16.0F) * strands.row(y)[x]);
       }
   }
-  return picture;
+  return joined(picture, overlap);
 }
 
 cv::Mat bare_neck(cv::Size size, const cv::Scalar& skin, double texels, Random random) {

@@ -65,7 +65,15 @@ void Shade::spot(cv::Point2f centre, float radius_x, float radius_y, float stren
 }
 
 void Shade::uneven(float cell_x, float cell_y, float amplitude, int octaves, const Random& random) {
-  add_fractal_noise(field_, cell_x, cell_y, amplitude, octaves, 0.7F, random);
+  const int overlap = field_.width / 5;
+  NoiseField wide(field_.width + overlap, field_.height);
+  add_fractal_noise(wide, cell_x, cell_y, amplitude, octaves, 0.7F, random);
+  for (int y = 0; y < field_.height; ++y)
+    for (int x = 0; x < field_.width; ++x) {
+      const float share = std::min(1.0F, static_cast<float>(x) / static_cast<float>(overlap));
+      const float beyond = x < overlap ? wide.row(y)[field_.width + x] : 0.0F;
+      field_.row(y)[x] += share * wide.row(y)[x] + (1.0F - share) * beyond;
+    }
 }
 
 void Shade::apply(cv::Mat& picture) const {
@@ -78,6 +86,20 @@ void Shade::apply(cv::Mat& picture) const {
         out[channel] = static_cast<std::uint8_t>(std::min(static_cast<float>(out[channel]) * factor + 0.5F, 255.0F));
     }
   }
+}
+
+cv::Mat joined(const cv::Mat& picture, int overlap) {
+  const int width = picture.cols - overlap;
+  cv::Mat result = picture.colRange(0, width).clone();
+  for (int y = 0; y < picture.rows; ++y) {
+    const auto* beyond = picture.ptr<std::uint8_t>(y) + 3 * width;
+    auto* out = result.ptr<std::uint8_t>(y);
+    for (int i = 0; i < 3 * overlap; ++i) {
+      const int share = 256 * (i / 3) / overlap;
+      out[i] = static_cast<std::uint8_t>((beyond[i] * (256 - share) + out[i] * share) >> 8);
+    }
+  }
+  return result;
 }
 
 cv::Scalar mix(const cv::Scalar& a, const cv::Scalar& b, double t) { return a * (1.0 - t) + b * t; }

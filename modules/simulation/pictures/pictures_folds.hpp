@@ -35,6 +35,9 @@ class Shade {
   NoiseField field_;
 };
 
+/// Makes the left and right borders of a picture meet: its last `overlap` columns fade into the first and are cut off.
+cv::Mat joined(const cv::Mat& picture, int overlap);
+
 /// `a` to the share 1 - t and `b` to the share t.
 cv::Scalar mix(const cv::Scalar& a, const cv::Scalar& b, double t);
 
