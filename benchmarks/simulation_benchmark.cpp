@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "holdfast/simulation/pictures.hpp"
 #include "holdfast/simulation/room.hpp"
 #include "holdfast/simulation/simulator.hpp"
 
@@ -48,8 +49,7 @@ BENCHMARK_CAPTURE(simulated_frames, rpy_640x480_distorted, PathKind::rpy, "tum_f
 
 // Stands in for a person: ten limbs of 256 triangles each, bent by two bones.
 Object stand_in(World& world, int number) {
-  cv::Mat cloth(512, 512, CV_8UC3);
-  cv::randu(cloth, cv::Scalar::all(20), cv::Scalar::all(220));
+  const cv::Mat cloth = pictures::fabric({512, 512}, {60.0 + 50.0 * number, 120, 90}, Random(7));
   const TextureArea area = world.add_texture(cloth);
   Object person;
   person.name = "person " + std::to_string(number);
@@ -77,7 +77,7 @@ Object stand_in(World& world, int number) {
   person.mesh.surface_count = 10;
   person.mesh.rest.resize(bone_count, Eigen::Isometry3d::Identity());
   person.motion = [number](double time) {
-    return Eigen::Isometry3d(Eigen::Translation3d(2.0 + 1.0 * number + 0.2 * std::sin(time), 2.9, 0.0) *
+    return Eigen::Isometry3d(Eigen::Translation3d(2.2 + 0.8 * number + 0.2 * std::sin(time), 3.4, 0.0) *
                              Eigen::AngleAxisd(time, Eigen::Vector3d::UnitZ()));
   };
   person.bones = [](double time) {
