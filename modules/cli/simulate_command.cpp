@@ -49,7 +49,8 @@ std::vector<std::string> all_overrides(const Arguments& arguments) {
   if (arguments.no_sensor_effects) {
     overrides.emplace_back("colour_sensor={ noise: 0 }");
     overrides.emplace_back(
-        "depth_sensor={ noise: 0, quantisation: false, holes: false, minimum_depth: 0, maximum_depth: 13 }");
+        "depth_sensor={ noise: 0, quantisation: false, holes: false, edge_holes: 0, minimum_depth: 0, "
+        "maximum_depth: 13 }");
   }
   overrides.insert(overrides.end(), arguments.overrides.begin(), arguments.overrides.end());
   return overrides;

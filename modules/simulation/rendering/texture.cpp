@@ -39,8 +39,9 @@ inline void add_bilinear(const std::uint32_t* texels, int width, int height, Flo
   const Floats4 x = smaller(larger(u - 0.5F, zero), zero + static_cast<float>(width - 1)) * 256.0F;
   const Floats4 y = smaller(larger(v - 0.5F, zero), zero + static_cast<float>(height - 1)) * 256.0F;
   const Integers4 fixed_x = __builtin_convertvector(x, Integers4), fixed_y = __builtin_convertvector(y, Integers4);
+  const Integers4 widths = {width, width, width, width};
   alignas(16) std::int32_t offsets[4], across[4], down[4];
-  store(offsets, (fixed_y >> 8) * width + (fixed_x >> 8));
+  store(offsets, product_of_shorts(fixed_y >> 8, widths) + (fixed_x >> 8));
   store(across, fixed_x & 255);
   store(down, fixed_y & 255);
   const auto share = static_cast<std::uint16_t>(weight);
@@ -113,11 +114,12 @@ void Texture::sample_some(const float* at_u, const float* at_v, const Footprint&
   // Halving drops an odd last row or column, so that texels of level k cover exactly 2^k of level 0.
   const float scale = 1.0F / static_cast<float>(1U << fine);
   const Floats4 u = load<Floats4>(at_u) * scale, v = load<Floats4>(at_v) * scale;
+  const float inverse_taps = 1.0F / static_cast<float>(footprint.taps);
   Lanes8 sums[count] = {};
   for (int tap = 0; tap < footprint.taps; ++tap) {
-    const float share = ((static_cast<float>(tap) + 0.5F) / static_cast<float>(footprint.taps) - 0.5F) * scale;
+    const float share = ((static_cast<float>(tap) + 0.5F) * inverse_taps - 0.5F) * scale;
     const Floats4 tap_u = u + share * footprint.along_u, tap_v = v + share * footprint.along_v;
-    const int weight = 256 * (tap + 1) / footprint.taps - 256 * tap / footprint.taps;
+    const int weight = footprint.taps == 3 ? 85 + (tap == 1) : static_cast<int>(256.0F * inverse_taps);
     const int coarse_weight = (weight * coarse_share) >> 8;
     const auto add = [&](const Level& level, float factor, int part) {
       add_bilinear<count>(texels_.data() + level.begin, level.width, level.height, tap_u * factor, tap_v * factor, part,

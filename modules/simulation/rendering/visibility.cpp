@@ -34,17 +34,21 @@ void draw_span(float* nearest, std::uint32_t* numbers, int count, float start, f
     store(nearest + i, nearer ? value : old_value);
     store(numbers + i, nearer ? names : load<Integers4>(numbers + i));
   }
-  for (; i < count; ++i) {
-    const float value = start + static_cast<float>(i) * step;
-    if (value > nearest[i]) nearest[i] = value, numbers[i] = number;
-  }
+  if (i == count) return;
+  const std::int32_t rest = count - i;
+  const Integers4 inside = Integers4{0, 1, 2, 3} < Integers4{rest, rest, rest, rest};
+  const Floats4 value = start + static_cast<float>(i) * step + offsets;
+  const auto old_value = load<Floats4>(nearest + i);
+  const Integers4 nearer = (value > old_value) & inside;
+  store(nearest + i, nearer ? value : old_value);
+  store(numbers + i, nearer ? names : load<Integers4>(numbers + i));
 }
 }  // namespace
 
 VisibilityBuffer::VisibilityBuffer(const RayGrid& grid) : grid_(grid) {
   const std::size_t count = static_cast<std::size_t>(grid.columns) * grid.rows;
-  nearest_.resize(count);
-  numbers_.resize(count);
+  nearest_.resize(count + 3);  // rows are drawn by fours
+  numbers_.resize(count + 3);
   const double x1 = grid.x0 + grid.columns * grid.step_x, y1 = grid.y0 + grid.rows * grid.step_y;
   sides_ = {Vector3d(1, 0, -grid.x0), Vector3d(-1, 0, x1), Vector3d(0, 1, -grid.y0), Vector3d(0, -1, y1)};
   for (Vector3d& side : sides_) side.normalize();
@@ -163,6 +167,7 @@ void VisibilityBuffer::draw_triangle(const Vector3d corners[3], const Eigen::Mat
   if (!all_in_front) add_half_plane(Vector3d(0, 0, 1.0 / near_plane) - inverse_depth);
 
   constexpr double tolerance = 1e-6;  // triangles that share an edge both take samples on it: no gaps
+  if (first_row > last_row + 2.0 * tolerance) return;
   const int begin_row = ceiling_of(first_row - tolerance);
   const int end_row = floor_of(last_row + tolerance);
   const double step = inverse_depth.x() * grid_.step_x;
@@ -170,6 +175,7 @@ void VisibilityBuffer::draw_triangle(const Vector3d corners[3], const Eigen::Mat
     double low = left, high = right;
     for (int k = 0; k < lowers; ++k) low = std::max(low, lower[k].offset + lower[k].slope * j);
     for (int k = 0; k < uppers; ++k) high = std::min(high, upper[k].offset + upper[k].slope * j);
+    if (low > high + 2.0 * tolerance) continue;
     const int begin = std::max(0, ceiling_of(low - tolerance));
     const int end = std::min(grid_.columns - 1, floor_of(high + tolerance));
     if (begin > end) continue;

@@ -89,13 +89,24 @@ void ColourSensorSettings::describe(ParameterTable<ColourSensorSettings>& table)
   table.add("noise", &S::noise, "standard deviation of each colour value; 0 = none")
       .range(0.0, 64.0)
       .unit("grey levels");
+  table
+      .add("exposure_change", &S::exposure_change,
+           "how far the exposure wanders: gain up to 1 + this, down to 1 / that")
+      .range(0.0, 1.0);
+  table.add("exposure_period", &S::exposure_period, "of the exposure's swings").range(0.1, 1000.0).unit("s");
+  table.add("vignetting", &S::vignetting, "share of the light that is lost in the corners").range(0.0, 1.0);
+  table.add("shutter", &S::shutter, "how long it is open, which blurs what moves; 0 = sharp").range(0.0, 0.5).unit("s");
 }
 
 void DepthSensorSettings::describe(ParameterTable<DepthSensorSettings>& table) {
   using S = DepthSensorSettings;
   table.add("noise", &S::noise, "factor on a Kinect's depth noise; 0 = none").range(0.0, 10.0);
   table.add("quantisation", &S::quantisation, "round disparity to eighths of a pixel, as a Kinect does");
-  table.add("holes", &S::holes, "no depth in the projector's shadow, at ragged edges and on flat sights");
+  table.add("holes", &S::holes, "no depth in the projector's shadow and on surfaces seen flat");
+  table.add("edge_holes", &S::edge_holes, "widest band without depth along depth edges, rolling on with time; 0 = none")
+      .range(0.0, 16.0)
+      .unit("px");
+  table.add("dropout", &S::dropout, "share of pixels without depth by chance").range(0.0, 1.0);
   table.add("minimum_depth", &S::minimum_depth, "no depth nearer").range(0.0, 100.0).unit("m");
   table.add("maximum_depth", &S::maximum_depth, "no depth farther").range(0.1, 100.0).unit("m");
 }

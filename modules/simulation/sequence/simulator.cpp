@@ -64,13 +64,16 @@ Trajectory Simulator::truth() const {
 }
 
 RenderedFrame Simulator::render(std::uint64_t index) {
-  return renderer_.render(T_world_camera(index), timestamp(index));
+  const double shutter = scene_.colour_sensor.shutter;
+  // The first frames see the time before the start as the start.
+  const auto pose = [this](double time) { return path_.pose(std::max(time, 0.0)); };
+  return renderer_.render(pose, timestamp(index), shutter);
 }
 
 SensorFrame Simulator::frame(std::uint64_t index) {
   HOLDFAST_CHECK(index < frame_count_, "index " << index << " of " << frame_count_);
   RenderedFrame rendered = render(index);
-  Random random = Random(scene_.seed).fork(0x5e4503).fork(index);
+  Random random = Random(scene_.seed).fork(0x5e4503);
   const std::uint64_t depth_seed = random.next(), colour_seed = random.next();
 
   auto truth = std::make_shared<FrameTruth>();
@@ -83,9 +86,9 @@ SensorFrame Simulator::frame(std::uint64_t index) {
   SensorFrame frame;
   frame.index = index;
   frame.timestamp = timestamp(index);
-  frame.depth = sense_depth(rendered.depth, rendered.cosine, camera_, scene_.depth_sensor, depth_seed);
+  frame.depth = sense_depth(rendered.depth, rendered.cosine, camera_, scene_.depth_sensor, depth_seed, frame.timestamp);
   frame.colour = rendered.colour;
-  add_colour_noise(frame.colour, scene_.colour_sensor, colour_seed);
+  sense_colour(frame.colour, scene_.colour_sensor, colour_seed, frame.timestamp, is_dark(frame.timestamp) ? 0.0 : 1.0);
   frame.truth = std::move(truth);
   return frame;
 }
