@@ -27,6 +27,14 @@ struct Stage {
   Eigen::Vector3d home;            ///< where the camera of static, xyz and rpy is held
   Eigen::Vector3d target;          ///< what it looks at, to +y of home; the middle of halfsphere
 
+  /// Where halfsphere goes: each swings by its second number to either side of its first.
+  struct HalfSphere {
+    double radius = 1.7, radius_swing = 0.1;          ///< from the target [m]
+    double azimuth_swing = 0.85;                      ///< about the direction to home [rad]
+    double elevation = 0.62, elevation_swing = 0.38;  ///< [rad]
+  };
+  HalfSphere half_sphere;
+
   /// The table of the paper's experiments, square to the walls.
   struct Table {
     Eigen::Vector2d centre;

@@ -118,6 +118,7 @@ double CameraPath::cycle() const {
 
 Eigen::Isometry3d CameraPath::hand_pose(double t) const {
   const Vector3d &home = stage_.home, &target = stage_.target;
+  const Stage::HalfSphere& sphere = stage_.half_sphere;
   const auto wave = [&](int phase, double period) { return std::sin(turn * t / period + phases_[phase]); };
   Eigen::Isometry3d pose;
   switch (kind_) {
@@ -133,7 +134,9 @@ Eigen::Isometry3d CameraPath::hand_pose(double t) const {
       break;
     }
     case PathKind::halfsphere:
-      pose = look_at(rotated_eye(target, 0.85 * wave(0, 13.0), 0.62 + 0.38 * wave(1, 8.9), 1.7 + 0.1 * wave(2, 7.7)),
+      pose = look_at(rotated_eye(target, sphere.azimuth_swing * wave(0, 13.0),
+                                 sphere.elevation + sphere.elevation_swing * wave(1, 8.9),
+                                 sphere.radius + sphere.radius_swing * wave(2, 7.7)),
                      target);
       break;
     case PathKind::rpy: {
