@@ -50,8 +50,8 @@ void add_idle(double time, const Style& style, double amount, Posture& posture);
 /// to where they were. Weight 0 ... 1.
 void add_gesture(double time, const Style& style, double weight, Posture& posture);
 
-/// Bows the trunk forward by an angle, spread over pelvis, abdomen and chest; the head follows by half and the arms keep
-/// hanging.
+/// Bows the trunk forward by an angle, spread over pelvis, abdomen and chest; the head follows by half and the arms
+/// keep hanging.
 void add_bow(double angle, Posture& posture);
 
 }  // namespace holdfast::simulation

@@ -14,7 +14,7 @@
 /// World::objects ("chair 2").
 namespace holdfast::simulation {
 
-/// Walks past the given places to the last one, rounding corners.
+/// Walks past the given places to the last one, rounding corners; where they are too sharp for that, stops and turns.
 struct Walk {
   std::vector<Eigen::Vector2d> to;
   double speed = 1.1;  ///< [m/s]
@@ -27,21 +27,26 @@ struct Stand {
   std::optional<Eigen::Vector2d> facing;
 };
 
-/// Goes to a chair, sits down, stays, and stands up again. The chair's front is where the legs go.
+/// Goes to a chair, sits down, stays, and stands up again. The chair's front is where the legs go; it needs 0.5 m of
+/// free floor there. Under a desk's edge the hands lie on the desk, else on the thighs.
 struct Sit {
   std::string on;
   double duration = 6.0;  ///< from seated to rising [s]
   bool gesture = false;
 };
 
-/// Goes behind a thing on the floor and pushes it past the given places to the last one.
+/// Goes behind a thing on the floor and pushes it past the given places to the last one. A chair is swivelled so that
+/// its back comes into the hands, other things keep the side that they have. Where a corner is too sharp the person
+/// lets go and walks round the thing to push from there. Places where the thing is already are left out.
 struct Push {
   std::string thing;
   std::vector<Eigen::Vector2d> to;  ///< of the thing
   double speed = 0.7;               ///< [m/s]
 };
 
-/// Goes to a thing, lifts it, carries it before the chest past the given places (of the person) and puts it down.
+/// Goes to a thing at most 0.8 m wide, on the floor or on a table, lifts it with both hands, carries it before the
+/// chest past the given places (of the person) and puts it down, from the side where the last of them is if there is
+/// room to stand, turned to the person as it was when lifted.
 struct Carry {
   std::string thing;
   std::vector<Eigen::Vector2d> to;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace holdfast::simulation {
 
@@ -88,7 +89,7 @@ void reach(const Skeleton& skeleton, const Eigen::Isometry3d& T_person_chest, Si
   // The forearm takes half of the hand's twist, as radius and ulna do.
   const Quaterniond wrist = Quaterniond(bent.lower).conjugate() * hand.rotation;
   const double twist = 2.0 * std::atan2(wrist.z(), wrist.w());
-  const double half = 0.5 * std::remainder(twist, 2.0 * 3.14159265358979323846);
+  const double half = 0.5 * std::remainder(twist, 2.0 * std::numbers::pi);
   const Quaterniond forearm = Quaterniond(bent.lower) * Quaterniond(Eigen::AngleAxisd(half, Vector3d::UnitZ()));
   const auto turn = [&](Bone bone, const Quaterniond& rotation) {
     Quaterniond& current = posture.rotations[index(bone)];

@@ -76,8 +76,11 @@ void Movement::turn(double heading) {
 
 void Movement::walk(const Travel& travel, double length, double speed, const std::function<Stance(double)>& pose) {
   if (length <= 0.0) return;
-  const double wanted = style_.step * step_length(skeleton_.physique().height, speed), start = end_;
-  const int count = std::max(1, static_cast<int>(std::lround(length / wanted)));
+  // As long as befits the speed that bends and short ways leave.
+  const double height = skeleton_.physique().height, start = end_;
+  const double usual_speed = std::min(speed, length / std::max(0.1, travel.duration() - 0.5 * speed));
+  const double longest = 1.08 * style_.step * step_length(height, usual_speed);
+  const int count = std::max(1, static_cast<int>(std::ceil(length / longest)));
   const double stride = length / count, vigour = std::min(1.0, stride / 0.6);
   const Side first = next_foot_;
   add(travel.duration(), [=](double time) {
@@ -98,16 +101,18 @@ void Movement::walk(const Travel& travel, double length, double speed, const std
     const Stance there = pose(place * stride);
     const double bend =
         pose(std::min(place + 0.5, 1.0 * count) * stride).heading - pose(std::max(place - 0.5, 0.0) * stride).heading;
-    const double height = skeleton_.physique().height;
     step(i % 2 == 0 ? first : other(first),
-         {.lifted = when(opening ? 0.08 : i - 0.22),
+         {.lifted = when(opening   ? 0.08
+                         : closing ? i - 0.4
+                                   : i - 0.22),
           .landed = when(closing ? i : i + 0.54),
           .position = there.position,
           .heading = there.heading,
           .push = (opening ? 0.35 : 0.66) * vigour,
           .strike = (closing ? 0.05 : 0.33) * vigour,
           .lift = opening || closing ? 0.03 : 0.005 + 0.025 * (1.0 - vigour)},
-         place < count ? walking_width * height + widening * stride * std::abs(bend) : standing_width * height);
+         place < count ? walking_width * height + std::min(0.06, widening * stride * std::abs(bend))
+                       : standing_width * height);
   }
 }
 

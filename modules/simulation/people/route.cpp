@@ -11,7 +11,7 @@ using Eigen::Vector2d;
 
 namespace {
 constexpr double averaged = 0.25;        // to both sides, for the heading [m]
-constexpr double least_radius = 0.3;     // below it one turns on the spot [m]
+constexpr double least_radius = 0.5;     // below it one turns on the spot [m]
 constexpr double sharpest_corner = 1.8;  // above it one turns on the spot [rad]
 constexpr double acceleration = 1.0;     // [m/s^2]
 constexpr double fastest_turn = 1.9;     // [rad/s]

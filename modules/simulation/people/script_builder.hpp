@@ -60,7 +60,8 @@ class ScriptBuilder {
   /// How far to bow (and with `knees`, to squat) so that both wrists reach these palms; nothing when too far.
   std::optional<Movement::Bend> bend_to_reach(const Grips& grips, const Eigen::Isometry3d& T_person_thing,
                                               bool knees) const;
-  /// The free place nearest to the body from which the grips can be reached, facing along a heading.
+  /// The first free place, the most comfortable distance first, from which the grips can be reached, facing along a
+  /// heading.
   std::optional<Standpoint> place_before(const Eigen::Isometry3d& T_world_thing, const std::string& name,
                                          double heading, const Grips& grips) const;
 

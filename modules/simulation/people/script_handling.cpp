@@ -18,13 +18,14 @@ constexpr double widest_load = 0.8;  // [m]
 
 Vector3d flat(const Vector2d& v) { return {v.x(), v.y(), 0.0}; }
 
-/// Both palms against the sides of a thing, fingers forward and a little down.
+/// Both palms against the sides of a thing, not too far from its near face, fingers forward and a little down.
 Grips side_grips(const Vector3d& centre, const Vector3d& left, const Vector3d& forward, double half_width,
                  double half_depth) {
+  const double nearer = std::max(std::min(0.05, 0.3 * half_depth), half_depth - 0.18);
   Grips grips;
   for (const Side side : {Side::left, Side::right}) {
     const auto i = static_cast<std::size_t>(side);
-    grips.points[i] = centre + sign(side) * half_width * left - std::min(0.05, 0.3 * half_depth) * forward;
+    grips.points[i] = centre + sign(side) * half_width * left - nearer * forward;
     grips.palms[i] = -sign(side) * left;
     grips.fingers[i] = forward - 0.45 * Vector3d::UnitZ();
   }
@@ -107,7 +108,7 @@ std::optional<ScriptBuilder::Standpoint> ScriptBuilder::place_before(const Isome
                                                                      const Grips& grips) const {
   const Seen seen = see(T_world_thing, things_.at(name).extents, heading);
   const Vector2d centre = (T_world_thing * seen.centre).head<2>();
-  for (double gap = 0.32; gap < 0.75; gap += 0.06) {
+  for (const double gap : {0.36, 0.42, 0.48, 0.54, 0.6, 0.66, 0.72, 0.3, 0.25}) {
     const Standpoint place{centre - (seen.half_depth + gap) * direction_of(heading), heading};
     const Isometry3d T_person_thing =
         (Eigen::Translation3d(flat(place.position)) * turned(heading)).inverse() * T_world_thing;
@@ -253,7 +254,7 @@ void ScriptBuilder::carry(const Carry& action) {
   const auto between = [held](const Movement& movement, const Isometry3d& rest, double time, double share) {
     Isometry3d result = held(movement, time);
     const Vector3d low = rest.translation(), high = result.translation();
-    const double across = ease(1.15 * share - 0.15), up = ease(share);
+    const double across = ease(1.5 * share - 0.5), up = ease(share);
     result.translation() = low + Vector3d(across, across, up).cwiseProduct(high - low);
     return result;
   };
