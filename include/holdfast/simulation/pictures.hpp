@@ -44,6 +44,7 @@ struct Cloth {
   Weave weave = Weave::plain;
   cv::Scalar colour, second;  ///< the ground, and what is woven in or printed on
   double scale = 1.0;         ///< of the pattern
+  std::uint64_t pattern = 1;  ///< seed of what all parts of a garment have in common: the order of stripes, ...
 };
 
 /// Where things are on a shirt that lies flat, its middle in front and its halves meeting in the back: shares of the

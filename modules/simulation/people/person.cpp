@@ -42,6 +42,7 @@ pictures::Cloth upper_cloth(Top top, Random& random) {
   do cloth.second = varied(any(inks, random), 0.1, random);
   while (std::abs(brightness(cloth.second) - brightness(cloth.colour)) < 45.0);
   cloth.scale = random.uniform(0.75, 1.35);
+  cloth.pattern = random.next();
   return cloth;
 }
 }  // namespace

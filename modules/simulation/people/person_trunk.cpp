@@ -165,9 +165,10 @@ void PersonBuilder::trunk() {
   for (const auto& [z, width, depth, y] : {std::array{0.900F, 0.0290F, 0.033F, 0.000F},
                                            {0.880F, 0.0300F, 0.032F, 0.002F},
                                            {0.862F, 0.0300F, 0.031F, 0.005F},
-                                           {0.848F, 0.0315F, 0.032F, 0.006F},
-                                           {0.834F, 0.0400F, 0.036F, 0.004F},
-                                           {0.822F, 0.0550F, 0.041F, 0.002F}}) {
+                                           {0.850F, 0.0315F, 0.032F, 0.006F},
+                                           {0.840F, 0.0430F, 0.035F, 0.004F},
+                                           {0.832F, 0.0570F, 0.039F, 0.003F},
+                                           {0.822F, 0.0680F, 0.042F, 0.002F}}) {
     Ring ring;
     const float grow = (1.0F - 0.12F * figure_) * (1.0F + 0.5F * (girth_ - 1.0F)) * height_;
     ring.centre = {0.0F, y * height_, z * height_};

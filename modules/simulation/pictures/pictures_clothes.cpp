@@ -52,8 +52,8 @@ std::vector<float> bands(int length, double period, Random random) {
 void weave_plaid(cv::Mat& picture, const Cloth& cloth, int cloth_width, double texels, const Random& random) {
   double period = 0.085 * cloth.scale * texels;
   period = cloth_width / std::max(1.0, std::round(cloth_width / period));  // goes on across the seam
-  const std::vector<float> across = bands(picture.cols, period, random.fork(1));
-  const std::vector<float> down = bands(picture.rows, period, random.fork(2));
+  const std::vector<float> across = bands(picture.cols, period, Random(cloth.pattern).fork(1));
+  const std::vector<float> down = bands(picture.rows, period, Random(cloth.pattern).fork(2));
   NoiseField drift(picture.cols, picture.rows);  // cloth never hangs straight
   add_value_noise(drift, 0.16F * static_cast<float>(texels), 0.16F * static_cast<float>(texels),
                   0.012F * static_cast<float>(texels), random.fork(3));
@@ -73,7 +73,8 @@ void weave_plaid(cv::Mat& picture, const Cloth& cloth, int cloth_width, double t
 }
 
 void weave_stripes(cv::Mat& picture, const Cloth& cloth, double texels, Random random) {
-  const double period = random.uniform(0.025, 0.065) * cloth.scale * texels, share = random.uniform(0.3, 0.55);
+  Random pattern(cloth.pattern);
+  const double period = pattern.uniform(0.025, 0.065) * cloth.scale * texels, share = pattern.uniform(0.3, 0.55);
   NoiseField drift(picture.cols, 1);
   add_value_noise(drift, 0.10F * static_cast<float>(texels), 1.0F, 0.010F * static_cast<float>(texels), random.fork(3));
   for (int x = 0; x < picture.cols; ++x)
@@ -86,7 +87,8 @@ void weave_stripes(cv::Mat& picture, const Cloth& cloth, double texels, Random r
 }
 
 void print_dots(cv::Mat& picture, const Cloth& cloth, double texels, Random random) {
-  const double step = random.uniform(0.022, 0.04) * cloth.scale * texels, radius = step * random.uniform(0.16, 0.27);
+  Random pattern(cloth.pattern);
+  const double step = pattern.uniform(0.022, 0.04) * cloth.scale * texels, radius = step * pattern.uniform(0.16, 0.27);
   int row = 0;
   for (double y = 0.3 * step; y < picture.rows; y += 0.85 * step, ++row)
     for (double x = (row % 2) * 0.5 * step; x < picture.cols; x += step)
@@ -228,9 +230,9 @@ void buttons(cv::Mat& picture, double x, double from, double to, const cv::Scala
   const cv::Scalar button = brightness(cloth) > 110 ? cv::Scalar(70, 75, 80) : cv::Scalar(210, 220, 225);
   for (double y = from + 0.035 * texels; y < to; y += 0.085 * texels) {
     const cv::Point2d centre(x, y);
-    cv::circle(picture, centre + cv::Point2d(1, 1), static_cast<int>(0.0065 * texels) + 1, darker(cloth, 0.4),
+    cv::circle(picture, centre + cv::Point2d(1, 1), static_cast<int>(0.0055 * texels) + 1, darker(cloth, 0.4),
                cv::FILLED, cv::LINE_AA);
-    cv::circle(picture, centre, static_cast<int>(0.0058 * texels) + 1, button, cv::FILLED, cv::LINE_AA);
+    cv::circle(picture, centre, static_cast<int>(0.0045 * texels) + 1, button, cv::FILLED, cv::LINE_AA);
   }
 }
 
