@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <opencv2/core.hpp>
@@ -98,7 +99,7 @@ TEST(Person, WeightsSumToOneAndNameNearBones) {
 
 TEST(Person, StandsOnTheFloorAsTallAsAsked) {
   for (const double height : {1.55, 1.75, 1.95})
-    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       const Made made(seed, {height, 1.0});
       float low = 10.0F, high = 0.0F;
       for (const Vertex& vertex : made.object.mesh.vertices)
@@ -226,8 +227,8 @@ TEST(Person, ShowsCornersToTrack) {
     densities.push_back(1e4 * static_cast<double>(count) / area);
   }
   std::sort(densities.begin(), densities.end());
-  EXPECT_GT(densities[2], 3.0);
-  EXPECT_LT(densities[2], 120.0);
+  EXPECT_GT(densities[2], 8.0);
+  EXPECT_LT(densities[2], 90.0);
 }
 
 }  // namespace

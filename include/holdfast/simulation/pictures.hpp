@@ -65,7 +65,8 @@ cv::Mat collar(cv::Size size, const Cloth& cloth, bool open, double texels, Rand
 cv::Mat trouser_seat(cv::Size size, const Cloth& cloth, bool belt, double texels, Random random);
 /// From the hip down; the borders left and right meet at the inner seam, `front` is the share of the width in front.
 cv::Mat trouser_leg(cv::Size size, const Cloth& cloth, bool shorts, double front, double texels, Random random);
-cv::Mat skirt(cv::Size size, const Cloth& cloth, double texels, Random random);
+/// `hem`: the share of the height where it ends; below lies its dark inside.
+cv::Mat skirt(cv::Size size, const Cloth& cloth, double hem, double texels, Random random);
 /// Heel at the top, toe at the bottom, the laces in the middle, the soles' edges left and right.
 cv::Mat shoe(cv::Size size, const cv::Scalar& colour, const cv::Scalar& sole, double texels, Random random);
 

@@ -139,7 +139,7 @@ void PersonBuilder::hair() {
   const auto weights = [this](const Vector3f& position) {
     return chain_weights(-position.z(), Bone::head, {{-0.850F * height_, 0.030F * height_, Bone::chest}});
   };
-  constexpr int facets = 20;
+  constexpr int facets = 18;
   const int rows = lengthy ? 12 : 9;
   const float scale = (crown - chin) * height_;
   // How far down hair goes, by the distance from the middle of the face.

@@ -121,8 +121,7 @@ void add_strands(NoiseField& field, float across, float along, const Random& ran
   add_value_noise(field, 4.0F * across, 1.5F * along, 0.30F, random.fork(3));
 }
 
-cv::Mat skin_ground(cv::Size size, const cv::Scalar& skin, float texels, const Random& random,
-                    float stretch = 1.0F) {
+cv::Mat skin_ground(cv::Size size, const cv::Scalar& skin, float texels, const Random& random, float stretch = 1.0F) {
   cv::Mat picture(size, CV_8UC3, skin);
   Shade shade(size);
   shade.uneven(stretch * 0.05F * texels, 0.05F * texels, 0.04F, 3, random.fork(1));
