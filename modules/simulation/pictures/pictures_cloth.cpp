@@ -100,10 +100,10 @@ void print_dots(cv::Mat& picture, const Cloth& cloth, double texels, Random rand
 }
 
 void print_flowers(cv::Mat& picture, const Cloth& cloth, double texels, Random random) {
-  const int count = static_cast<int>(picture.total() / (0.0016 * cloth.scale * texels * texels));
+  const int count = static_cast<int>(picture.total() / (0.0026 * cloth.scale * texels * texels));
   for (int i = 0; i < count; ++i) {
     const cv::Point2d centre(random.uniform(0, picture.cols), random.uniform(0, picture.rows));
-    const double size = 0.012 * texels * random.uniform(0.6, 1.3);
+    const double size = 0.013 * texels * random.uniform(0.6, 1.3);
     const cv::Scalar petal =
         mix(cloth.second, {random.uniform(40, 240), random.uniform(40, 240), random.uniform(90, 250)}, 0.45);
     const double turned = random.uniform(0, 1.2);
