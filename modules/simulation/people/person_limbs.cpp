@@ -125,7 +125,7 @@ void PersonBuilder::arm(bool left) {
     }
   sleeve.rings.push_back(
       limb_ring(limb_at(arm_sections, hem), shoulder, height_, grow, loose + (look_.long_sleeves ? 0.003F : 0.006F)));
-  close_hem(sleeve.rings, look_.long_sleeves ? 0.009F : 0.012F);
+  close_hem(sleeve.rings, look_.long_sleeves ? 0.012F : 0.017F);
   sleeve.facets = 9;
   sleeve.seam = left ? inner_seam_of_left : inner_seam_of_right;
   sleeve.weights = [this, left](const Vector3f& position) { return arm_weights(left, position); };
@@ -220,7 +220,7 @@ void PersonBuilder::leg(bool left) {
     for (const LimbSection& section : leg_sections)
       if (section.down < hem - 0.010F) loft.rings.push_back(ring(section.down));
     loft.rings.push_back(ring(hem));
-    close_hem(loft.rings, 0.010F);
+    close_hem(loft.rings, trousers ? 0.010F : 0.026F);
     loft.facets = 11;
     loft.seam = seam;
     loft.weights = weights;

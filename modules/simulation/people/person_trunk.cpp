@@ -110,8 +110,10 @@ std::vector<Ring> PersonBuilder::trunk_rings() const {
   rings.push_back(inner);
   rings.push_back(ring(neckline, 0.0F));
   for (const TrunkSection& section : sections)
-    if (section.z < neckline - 0.004F && section.z > hem + 0.012F) rings.push_back(ring(section.z, 0.0F));
-  rings.push_back(ring(hem, look_.tucked_in ? -0.004F : 0.003F));
+    if (section.z < neckline - 0.004F && section.z > hem + (look_.tucked_in ? 0.035F : 0.012F))
+      rings.push_back(ring(section.z, 0.0F));
+  if (look_.tucked_in) rings.push_back(ring(0.600F, 0.002F));  // blouses over the belt
+  rings.push_back(ring(hem, look_.tucked_in ? -0.020F : 0.003F));
   if (!look_.tucked_in) {
     rings.push_back(ring(hem, -0.012F));
     rings.back().centre.z() += 0.004F;
@@ -139,7 +141,8 @@ void PersonBuilder::trunk() {
                           std::exp(-std::pow(apart(share, share < 0.5F ? 0.10F : 0.90F) / 0.07F, 2.0F));
     // Cloth hangs and gathers above the waist.
     const auto column = static_cast<std::size_t>(share * 16.0F + 0.5F) % 16;
-    const float slack = (z < 0.57F ? 0.003F : 0.005F) * smooth_step(0.80F, 0.70F, z) * wave[k * 16 + column];
+    const float slack = (z < 0.57F ? 0.003F : 0.005F) * smooth_step(0.80F, 0.70F, z) *
+                        (look_.tucked_in && z < 0.61F ? 0.0F : 1.0F) * wave[k * 16 + column];
     return bust * breast + 0.004F * height_ * (1.0F - 0.5F * figure_) * breast + 0.003F * height_ * blade +
            0.006F * height_ * buttock + slack;
   };

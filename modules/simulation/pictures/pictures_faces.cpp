@@ -103,7 +103,7 @@ class FacePainter {
     const cv::Scalar rim(28, 26, 28);
     for (const double side : {-1.0, 1.0}) {
       ellipse(side * 0.155, 0.515, 0.110, 0.072, rim, 0, 360, std::max(2, static_cast<int>(0.016 * unit_y_)));
-      line(side * 0.265, 0.530, side * 0.62, 0.535, rim, 0.016);
+      line(side * 0.265, 0.530, side * 0.385, 0.535, rim, 0.016);  // to the ear
     }
     line(-0.045, 0.528, 0.045, 0.528, rim, 0.014);
   }
@@ -166,10 +166,10 @@ cv::Mat head(cv::Size size, const Face& face, Random random) {
         const double right = (x - painter.x(0.0)) / (painter.x(1.0) - painter.x(0.0)), up = 1.0 - y / painter.unit();
         const double side = std::abs(right);
         double cover = 0.0;
-        if (face.beard && side < 0.62 && up < 0.36) {
+        if (face.beard && side < 0.40 && up < 0.48) {
           // Below the mouth, rising over the jaw to the ears.
-          const double edge = 0.178 + 1.0 * std::max(0.0, side - 0.17) + (side > 0.45 ? 1.2 * (side - 0.45) : 0.0);
-          cover = std::clamp((edge - up) / 0.05, 0.0, 0.85);
+          const double edge = 0.178 + 1.0 * std::max(0.0, side - 0.17) + (side > 0.30 ? 1.5 * (side - 0.30) : 0.0);
+          cover = std::clamp(std::min((edge - up) / 0.05, (0.40 - side) / 0.03), 0.0, 0.85);
           if (side < 0.21 && up > 0.245 && up < 0.290 - 0.2 * side) cover = std::max(cover, 0.75);
           const double mouth = (right / 0.16) * (right / 0.16) + ((up - 0.213) / 0.034) * ((up - 0.213) / 0.034);
           cover *= std::clamp((mouth - 1.0) / 0.5, 0.0, 1.0);
