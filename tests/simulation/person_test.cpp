@@ -76,6 +76,7 @@ TEST(Person, WeightsSumToOneAndNameNearBones) {
     const Made made(seed);
     const Mesh& mesh = made.object.mesh;
     ASSERT_EQ(mesh.skin.size(), mesh.vertices.size());
+    ASSERT_EQ(mesh.rest.size(), bone_count);
     EXPECT_TRUE(mesh.solids.empty());
     EXPECT_EQ(made.object.class_name, "person");
     const BonePoses rest = made.skeleton.place(made.skeleton.standing());

@@ -14,7 +14,7 @@ struct Vertex {
   Eigen::Vector3f normal;  ///< unit, outwards
   float u = 0.0F;          ///< texture position [texels of level 0]
   float v = 0.0F;
-  float light = 1.0F;  ///< brightness, set by Lighting
+  float light = 1.0F;  ///< brightness; see bake_light
 };
 
 /// Seen from outside, a, b, c run clockwise in the image (x right, y down).
@@ -31,10 +31,11 @@ struct TextureArea {
   float width = 1.0F, height = 1.0F;
 };
 
-/// Which bones carry a vertex, and how much of it (linear blend skinning). The weights sum to 1; unused ones are 0.
-struct BoneWeights {
+/// What carries a vertex of a mesh that bends: at most four bones, their numbers and shares, which are not negative and
+/// add up to one.
+struct SkinWeights {
   std::array<std::uint8_t, 4> bones{};
-  std::array<float, 4> weights = {1.0F, 0.0F, 0.0F, 0.0F};
+  std::array<float, 4> weights{1.0F, 0.0F, 0.0F, 0.0F};
 };
 
 /// Textured triangles, and boxes that stand for them when light is traced.
@@ -43,7 +44,10 @@ struct Mesh {
   std::vector<Triangle> triangles;
   std::vector<Eigen::AlignedBox3f> solids;
   std::uint32_t surface_count = 0;
-  std::vector<BoneWeights> skin;  ///< by vertex, for a mesh that bends; empty = rigid
+  /// For a mesh that bends: one for each vertex, and T_object_bone of each bone (by number) in the rest pose, in which
+  /// the vertices are given. Empty for a rigid mesh.
+  std::vector<SkinWeights> skin;
+  std::vector<Eigen::Isometry3d> rest;
 };
 
 /// The sides of a box, in the order in which add_box takes their textures. The box stands with z up and is looked at

@@ -109,6 +109,8 @@ Object make_person(World& world, const std::string& name, const Skeleton& skelet
   builder.legs();
   builder.head();
   builder.hair();
+  const BonePoses rest = skeleton.place(skeleton.standing());
+  person.mesh.rest.assign(rest.begin(), rest.end());
   return person;
 }
 

@@ -46,10 +46,10 @@ class PersonBuilder {
     return world_.add_texture(painter(whole, static_cast<double>(texels), random_.fork(++painted_)));
   }
 
-  BoneWeights trunk_weights(const Eigen::Vector3f& position) const;
-  BoneWeights arm_weights(bool left, const Eigen::Vector3f& position) const;
-  BoneWeights leg_weights(bool left, const Eigen::Vector3f& position) const;
-  BoneWeights skirt_weights(const Eigen::Vector3f& position) const;
+  SkinWeights trunk_weights(const Eigen::Vector3f& position) const;
+  SkinWeights arm_weights(bool left, const Eigen::Vector3f& position) const;
+  SkinWeights leg_weights(bool left, const Eigen::Vector3f& position) const;
+  SkinWeights skirt_weights(const Eigen::Vector3f& position) const;
 
   World& world_;
   Mesh& mesh_;

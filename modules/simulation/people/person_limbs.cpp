@@ -72,7 +72,7 @@ std::function<float(float, std::size_t)> wrinkles(Random random, std::size_t rin
 }
 }  // namespace
 
-BoneWeights PersonBuilder::arm_weights(bool left, const Vector3f& position) const {
+SkinWeights PersonBuilder::arm_weights(bool left, const Vector3f& position) const {
   const float h = height_, shoulder = joint(Bone::left_upper_arm).z();
   const auto bone = [&](Bone of_left, Bone of_right) { return left ? of_left : of_right; };
   return chain_weights(shoulder - position.z(), Bone::chest,
@@ -81,7 +81,7 @@ BoneWeights PersonBuilder::arm_weights(bool left, const Vector3f& position) cons
                         {0.332F * h, 0.012F * h, bone(Bone::left_hand, Bone::right_hand)}});
 }
 
-BoneWeights PersonBuilder::leg_weights(bool left, const Vector3f& position) const {
+SkinWeights PersonBuilder::leg_weights(bool left, const Vector3f& position) const {
   const float h = height_, hip = joint(Bone::left_thigh).z();
   const auto bone = [&](Bone of_left, Bone of_right) { return left ? of_left : of_right; };
   return chain_weights(hip - position.z(), Bone::pelvis,

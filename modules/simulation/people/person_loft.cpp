@@ -81,7 +81,7 @@ Eigen::Vector2f flat_size(const std::vector<Ring>& rings) {
 }
 
 void add_grid(Mesh& mesh, const Grid& grid, const TextureArea& area,
-              const std::function<BoneWeights(const Vector3f&)>& weights) {
+              const std::function<SkinWeights(const Vector3f&)>& weights) {
   const std::uint32_t surface = mesh.surface_count++;
   const auto first_vertex = static_cast<std::uint32_t>(mesh.vertices.size());
   const std::size_t first_triangle = mesh.triangles.size();
@@ -126,15 +126,15 @@ void add_loft(Mesh& mesh, const Loft& loft, const TextureArea& area) {
   add_grid(mesh, grid, area, loft.weights);
 }
 
-BoneWeights chain_weights(float position, Bone first, std::initializer_list<ChainJoint> joints) {
-  BoneWeights result;
+SkinWeights chain_weights(float position, Bone first, std::initializer_list<ChainJoint> joints) {
+  SkinWeights result;
   result.bones[0] = static_cast<std::uint8_t>(first);
   std::size_t last = 0;
   for (const ChainJoint& joint : joints) {
     const float share = smooth_step(joint.position - joint.half_blend, joint.position + joint.half_blend, position);
     if (share <= 0.0F) break;
     if (share >= 1.0F) {
-      result = BoneWeights{};
+      result = SkinWeights{};
       result.bones[0] = static_cast<std::uint8_t>(joint.after), last = 0;
       continue;
     }

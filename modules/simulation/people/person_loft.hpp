@@ -33,14 +33,14 @@ struct Grid {
 
 /// Adds the grid with `area` spread over it and smooth normals.
 void add_grid(Mesh& mesh, const Grid& grid, const TextureArea& area,
-              const std::function<BoneWeights(const Eigen::Vector3f&)>& weights);
+              const std::function<SkinWeights(const Eigen::Vector3f&)>& weights);
 
 /// A skin over rings from top to bottom (against across x behind), with smooth normals.
 struct Loft {
   std::vector<Ring> rings;
   int facets = 12;
   float seam = 0.0F;  ///< where the texture's left and right meet, as a share of a turn
-  std::function<BoneWeights(const Eigen::Vector3f&)> weights;
+  std::function<SkinWeights(const Eigen::Vector3f&)> weights;
   /// Moves a vertex outwards [m]; arguments: share of a turn in [0, 1) and number of the ring. May be empty.
   std::function<float(float, std::size_t)> bulge;
 };
@@ -59,7 +59,7 @@ struct ChainJoint {
   float half_blend;
   Bone after;
 };
-BoneWeights chain_weights(float position, Bone first, std::initializer_list<ChainJoint> joints);
+SkinWeights chain_weights(float position, Bone first, std::initializer_list<ChainJoint> joints);
 
 /// 0 at `from`, 1 at `to`, smooth between.
 float smooth_step(float from, float to, float value);

@@ -75,9 +75,9 @@ Ring trunk_ring(float z, float height, float girth, float figure, float loose) {
 float apart(float share, float from) { return std::abs(share - from - std::round(share - from)); }
 }  // namespace
 
-BoneWeights PersonBuilder::trunk_weights(const Vector3f& position) const {
+SkinWeights PersonBuilder::trunk_weights(const Vector3f& position) const {
   const float h = height_;
-  BoneWeights weights = chain_weights(-position.z(), Bone::neck,
+  SkinWeights weights = chain_weights(-position.z(), Bone::neck,
                                       {{-0.842F * h, 0.016F * h, Bone::chest},
                                        {-0.690F * h, 0.045F * h, Bone::abdomen},
                                        {-0.600F * h, 0.040F * h, Bone::pelvis}});
@@ -271,11 +271,11 @@ void PersonBuilder::seat() {
   });
 }
 
-BoneWeights PersonBuilder::skirt_weights(const Vector3f& position) const {
+SkinWeights PersonBuilder::skirt_weights(const Vector3f& position) const {
   const float h = height_;
   const float left = smooth_step(-0.045F * h, 0.045F * h, position.x());
   const float thighs = smooth_step(0.54F * h, 0.46F * h, position.z());
-  BoneWeights weights;
+  SkinWeights weights;
   weights.bones = {static_cast<std::uint8_t>(Bone::pelvis), static_cast<std::uint8_t>(Bone::left_thigh),
                    static_cast<std::uint8_t>(Bone::right_thigh), 0};
   weights.weights = {1.0F - thighs, thighs * left, thighs * (1.0F - left), 0.0F};
