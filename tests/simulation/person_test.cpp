@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <opencv2/core.hpp>
@@ -75,6 +76,7 @@ TEST(Person, WeightsSumToOneAndNameNearBones) {
     const Made made(seed);
     const Mesh& mesh = made.object.mesh;
     ASSERT_EQ(mesh.skin.size(), mesh.vertices.size());
+    ASSERT_EQ(mesh.rest.size(), bone_count);
     EXPECT_TRUE(mesh.solids.empty());
     EXPECT_EQ(made.object.class_name, "person");
     const BonePoses rest = made.skeleton.place(made.skeleton.standing());
@@ -98,7 +100,7 @@ TEST(Person, WeightsSumToOneAndNameNearBones) {
 
 TEST(Person, StandsOnTheFloorAsTallAsAsked) {
   for (const double height : {1.55, 1.75, 1.95})
-    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       const Made made(seed, {height, 1.0});
       float low = 10.0F, high = 0.0F;
       for (const Vertex& vertex : made.object.mesh.vertices)
@@ -203,12 +205,14 @@ TEST(Person, SameSeedSamePersonOtherSeedOther) {
   EXPECT_NE(fingerprint(Made(7)), fingerprint(Made(8)));
 }
 
-// The person as a still, evenly lit thing, 2 m before a camera.
+// The person as a still, evenly lit thing, 2 m before a camera. People in photographs of that scale have about 100
+// corners in 10,000 pixels, a man recorded by a Kinect 65.
 TEST(Person, ShowsCornersToTrack) {
   std::vector<double> densities;
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     Made made(seed);
     made.object.mesh.skin.clear();
+    for (Vertex& vertex : made.object.mesh.vertices) vertex.light = 0.85F;  // as in a lit room
     made.world.objects.push_back(made.object);
     const Camera camera = *find_camera("tum_fr3");
     Renderer renderer(made.world, camera);
@@ -226,8 +230,8 @@ TEST(Person, ShowsCornersToTrack) {
     densities.push_back(1e4 * static_cast<double>(count) / area);
   }
   std::sort(densities.begin(), densities.end());
-  EXPECT_GT(densities[2], 3.0);
-  EXPECT_LT(densities[2], 120.0);
+  EXPECT_GT(densities[2], 8.0);
+  EXPECT_LT(densities[2], 110.0);
 }
 
 }  // namespace

@@ -44,6 +44,7 @@ struct Cloth {
   Weave weave = Weave::plain;
   cv::Scalar colour, second;  ///< the ground, and what is woven in or printed on
   double scale = 1.0;         ///< of the pattern
+  std::uint64_t pattern = 1;  ///< seed of what all parts of a garment have in common: the order of stripes, ...
 };
 
 /// Where things are on a shirt that lies flat, its middle in front and its halves meeting in the back: shares of the
@@ -64,7 +65,8 @@ cv::Mat collar(cv::Size size, const Cloth& cloth, bool open, double texels, Rand
 cv::Mat trouser_seat(cv::Size size, const Cloth& cloth, bool belt, double texels, Random random);
 /// From the hip down; the borders left and right meet at the inner seam, `front` is the share of the width in front.
 cv::Mat trouser_leg(cv::Size size, const Cloth& cloth, bool shorts, double front, double texels, Random random);
-cv::Mat skirt(cv::Size size, const Cloth& cloth, double texels, Random random);
+/// `hem`: the share of the height where it ends; below lies its dark inside.
+cv::Mat skirt(cv::Size size, const Cloth& cloth, double hem, double texels, Random random);
 /// Heel at the top, toe at the bottom, the laces in the middle, the soles' edges left and right.
 cv::Mat shoe(cv::Size size, const cv::Scalar& colour, const cv::Scalar& sole, double texels, Random random);
 

@@ -28,8 +28,10 @@ pictures::Cloth upper_cloth(Top top, Random& random) {
   static const cv::Scalar inks[] = {{235, 238, 240}, {30, 30, 32},  {40, 35, 150},  {130, 70, 30},
                                     {50, 170, 215},  {70, 120, 40}, {160, 150, 150}};
   using Weave = pictures::Cloth::Weave;
-  static constexpr Weave t_shirts[] = {Weave::printed, Weave::printed, Weave::striped, Weave::dotted, Weave::plain};
-  static constexpr Weave shirts[] = {Weave::plaid, Weave::plaid, Weave::striped, Weave::dotted, Weave::plain};
+  static constexpr Weave t_shirts[] = {Weave::printed, Weave::printed, Weave::striped,
+                                       Weave::dotted,  Weave::plain,   Weave::plain};
+  static constexpr Weave shirts[] = {Weave::plaid,  Weave::plaid, Weave::striped,
+                                     Weave::dotted, Weave::plain, Weave::plain};
   static constexpr Weave pullovers[] = {Weave::knitted, Weave::knitted, Weave::striped, Weave::printed};
   static constexpr Weave jackets[] = {Weave::plain, Weave::denim, Weave::knitted};
   pictures::Cloth cloth;
@@ -41,7 +43,10 @@ pictures::Cloth upper_cloth(Top top, Random& random) {
   // A pattern in a colour too like its ground would not be seen.
   do cloth.second = varied(any(inks, random), 0.1, random);
   while (std::abs(brightness(cloth.second) - brightness(cloth.colour)) < 45.0);
-  cloth.scale = random.uniform(0.75, 1.35);
+  // What is woven in is seldom as strong as what is printed on.
+  if (cloth.weave != Weave::printed) cloth.second = cloth.second * 0.75 + cloth.colour * 0.25;
+  cloth.scale = random.uniform(0.8, 1.4);
+  cloth.pattern = random.next();
   return cloth;
 }
 }  // namespace

@@ -139,7 +139,7 @@ void PersonBuilder::hair() {
   const auto weights = [this](const Vector3f& position) {
     return chain_weights(-position.z(), Bone::head, {{-0.850F * height_, 0.030F * height_, Bone::chest}});
   };
-  constexpr int facets = 20;
+  constexpr int facets = 18;
   const int rows = lengthy ? 12 : 9;
   const float scale = (crown - chin) * height_;
   // How far down hair goes, by the distance from the middle of the face.
@@ -167,7 +167,17 @@ void PersonBuilder::hair() {
                           : style == HairStyle::bun   ? 0.009F
                                                       : 0.017F;
   const float top = (1.0F - crown) * height_;  // ends at the full height
-  Random lumps = random_.fork(801);
+  Random lumps = random_.fork(801), edges = random_.fork(802);
+  const float receding = style == HairStyle::cropped ? static_cast<float>(edges.uniform(-0.02, 0.05)) : 0.0F;
+  std::vector<float> line;
+  for (int i = 0; i < facets; ++i) {
+    const float share = dense_before(static_cast<float>(i) / facets), side = from_front(share);
+    float edge = hairline(side) + static_cast<float>(edges.uniform(-0.018, 0.018));
+    edge += receding * smooth_step(0.16F, 0.10F, side) * (0.4F + smooth_step(0.02F, 0.08F, side));
+    // A parting: hair falls over the forehead to one side.
+    if (style == HairStyle::parted) edge -= 0.5F * (share - 0.47F) * smooth_step(0.13F, 0.07F, side);
+    line.push_back(edge);
+  }
   Grid grid;
   grid.columns = facets + 1;
   for (int row = 0; row <= rows; ++row) {
@@ -177,7 +187,7 @@ void PersonBuilder::hair() {
     std::vector<Vector3f> points;
     for (int i = 0; i < facets; ++i) {
       const float share = dense_before(static_cast<float>(i) / facets), side = from_front(share);
-      const float edge = hairline(side);
+      const float edge = line[static_cast<std::size_t>(i)];
       // Rows close at the crown, where it is round.
       const float bend = lengthy ? 1.9F : 1.35F;
       const float rise = row == 0 ? 1.0F : 1.0F + (edge - 1.0F) * std::pow(std::min(down, 1.0F), bend);
@@ -201,6 +211,21 @@ void PersonBuilder::hair() {
   };
   const TextureArea area = paint({2.7F * scale * hair_texels, rows_long * scale * hair_texels}, hair_texels, painter);
   add_grid(mesh_, grid, area, weights);
+  if (lengthy) {  // fills the room behind the neck, which would be seen to be hollow
+    Loft filling;
+    for (const auto& [rise, width, depth] : {std::array{0.35F, 0.0F, 0.0F}, std::array{0.33F, 0.28F, 0.24F},
+                                             std::array{-0.42F, 0.29F, 0.20F}, std::array{-0.44F, 0.0F, 0.0F}}) {
+      Ring ring;
+      ring.centre = Vector3f(0.0F, head_centre * height_ + 0.23F * scale, chin * height_ + rise * scale);
+      ring.width = width * scale, ring.front = ring.back = depth * scale;
+      filling.rings.push_back(ring);
+    }
+    filling.facets = 8;
+    filling.weights = weights;
+    add(filling, 0.5F * hair_texels, [&](cv::Size size, double texels, Random random) {
+      return pictures::hair(size, look_.hair * 0.55, false, texels, random);
+    });
+  }
   if (style != HairStyle::bun) return;
   Loft bun;
   const Vector3f centre(0.0F, (0.50F * (crown - chin) + head_centre + 0.012F) * height_,

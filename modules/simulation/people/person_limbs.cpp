@@ -29,11 +29,10 @@ constexpr LimbSection arm_sections[] = {
 constexpr LimbSection leg_sections[] = {
     {-0.020F, 0.034F, 0.036F, 0.042F, 0.0F},      {0.005F, 0.042F, 0.046F, 0.056F, 0.0F},
     {0.040F, 0.0460F, 0.051F, 0.060F, 0.0F},      {0.080F, 0.0455F, 0.051F, 0.055F, 0.0F},
-    {0.130F, 0.0430F, 0.047F, 0.047F, 0.0F},      {0.180F, 0.0370F, 0.041F, 0.039F, 0.0F},
-    {0.220F, 0.0325F, 0.0365F, 0.0325F, 0.0F},    {0.245F, 0.0315F, 0.0355F, 0.0315F, 0.0F},
-    {0.270F, 0.0300F, 0.0310F, 0.0340F, 0.0F},    {0.315F, 0.0310F, 0.0280F, 0.0390F, -0.002F},
-    {0.360F, 0.0285F, 0.0255F, 0.0355F, -0.003F}, {0.410F, 0.0225F, 0.0220F, 0.0270F, -0.004F},
-    {0.455F, 0.0190F, 0.0200F, 0.0220F, -0.004F}, {0.490F, 0.0190F, 0.0210F, 0.0220F, -0.003F}};
+    {0.130F, 0.0430F, 0.047F, 0.047F, 0.0F},      {0.220F, 0.0325F, 0.0365F, 0.0325F, 0.0F},
+    {0.245F, 0.0315F, 0.0355F, 0.0315F, 0.0F},    {0.270F, 0.0300F, 0.0310F, 0.0340F, 0.0F},
+    {0.315F, 0.0310F, 0.0280F, 0.0390F, -0.002F}, {0.360F, 0.0285F, 0.0255F, 0.0355F, -0.003F},
+    {0.410F, 0.0225F, 0.0220F, 0.0270F, -0.004F}, {0.490F, 0.0190F, 0.0210F, 0.0220F, -0.003F}};
 
 template <std::size_t count>
 LimbSection limb_at(const LimbSection (&sections)[count], float down) {
@@ -126,8 +125,8 @@ void PersonBuilder::arm(bool left) {
     }
   sleeve.rings.push_back(
       limb_ring(limb_at(arm_sections, hem), shoulder, height_, grow, loose + (look_.long_sleeves ? 0.003F : 0.006F)));
-  close_hem(sleeve.rings, look_.long_sleeves ? 0.009F : 0.012F);
-  sleeve.facets = 10;
+  close_hem(sleeve.rings, look_.long_sleeves ? 0.012F : 0.017F);
+  sleeve.facets = 9;
   sleeve.seam = left ? inner_seam_of_left : inner_seam_of_right;
   sleeve.weights = [this, left](const Vector3f& position) { return arm_weights(left, position); };
   sleeve.bulge = wrinkles(random_.fork(left ? 601 : 602), sleeve.rings.size(), sleeve.facets,
@@ -140,7 +139,7 @@ void PersonBuilder::arm(bool left) {
   Loft bare;
   for (const LimbSection& section : arm_sections)
     if (section.down > hem - 0.045F) bare.rings.push_back(limb_ring(section, shoulder, height_, grow, 0.0F));
-  bare.facets = 10;
+  bare.facets = 9;
   bare.seam = sleeve.seam;
   bare.weights = sleeve.weights;
   add(bare, skin_texels, [&](cv::Size size, double texels, Random random) {
@@ -188,7 +187,7 @@ void PersonBuilder::hand(bool left) {
     result.width = result.front = result.back = radius * size_factor;
     thumb.rings.push_back(result);
   }
-  thumb.facets = 6;
+  thumb.facets = 5;
   thumb.seam = palm.seam;
   thumb.weights = weights;
   add(thumb, skin_texels, [&](cv::Size size, double texels, Random random) {
@@ -221,7 +220,7 @@ void PersonBuilder::leg(bool left) {
     for (const LimbSection& section : leg_sections)
       if (section.down < hem - 0.010F) loft.rings.push_back(ring(section.down));
     loft.rings.push_back(ring(hem));
-    close_hem(loft.rings, 0.010F);
+    close_hem(loft.rings, trousers ? 0.010F : 0.026F);
     loft.facets = 11;
     loft.seam = seam;
     loft.weights = weights;
@@ -235,7 +234,7 @@ void PersonBuilder::leg(bool left) {
   for (const LimbSection& section : leg_sections)
     if (section.down > (skirt ? 0.12F : hem - 0.05F))
       bare.rings.push_back(limb_ring(section, hip, height_, 0.97F * grow, 0.0F));
-  bare.facets = 10;
+  bare.facets = 9;
   bare.seam = seam;
   bare.weights = weights;
   add(bare, skin_texels, [&](cv::Size size, double texels, Random random) {

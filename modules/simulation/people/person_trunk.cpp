@@ -102,15 +102,18 @@ std::vector<Ring> PersonBuilder::trunk_rings() const {
   // The neckline: what is worn above ends as an edge around the neck.
   const float neckline = look_.top == Top::t_shirt ? 0.8385F : 0.846F;
   const auto ring = [&](float z, float extra) {
-    return trunk_ring(z, height_, girth_, figure_, loose * (z > 0.83F ? 0.5F : 1.0F) + over_trousers * smooth_step(0.60F, 0.52F, z) + extra);
+    return trunk_ring(z, height_, girth_, figure_,
+                      loose * (z > 0.83F ? 0.5F : 1.0F) + over_trousers * smooth_step(0.64F, 0.57F, z) + extra);
   };
   Ring inner = ring(neckline, -0.020F);
   inner.centre.z() -= 0.006F;
   rings.push_back(inner);
   rings.push_back(ring(neckline, 0.0F));
   for (const TrunkSection& section : sections)
-    if (section.z < neckline - 0.004F && section.z > hem + 0.012F) rings.push_back(ring(section.z, 0.0F));
-  rings.push_back(ring(hem, look_.tucked_in ? -0.004F : 0.003F));
+    if (section.z < neckline - 0.004F && section.z > hem + (look_.tucked_in ? 0.035F : 0.012F))
+      rings.push_back(ring(section.z, 0.0F));
+  if (look_.tucked_in) rings.push_back(ring(0.600F, 0.002F));  // blouses over the belt
+  rings.push_back(ring(hem, look_.tucked_in ? -0.020F : 0.003F));
   if (!look_.tucked_in) {
     rings.push_back(ring(hem, -0.012F));
     rings.back().centre.z() += 0.004F;
@@ -138,7 +141,8 @@ void PersonBuilder::trunk() {
                           std::exp(-std::pow(apart(share, share < 0.5F ? 0.10F : 0.90F) / 0.07F, 2.0F));
     // Cloth hangs and gathers above the waist.
     const auto column = static_cast<std::size_t>(share * 16.0F + 0.5F) % 16;
-    const float slack = (z < 0.57F ? 0.003F : 0.005F) * smooth_step(0.80F, 0.70F, z) * wave[k * 16 + column];
+    const float slack = (z < 0.57F ? 0.003F : 0.005F) * smooth_step(0.80F, 0.70F, z) *
+                        (look_.tucked_in && z < 0.61F ? 0.0F : 1.0F) * wave[k * 16 + column];
     return bust * breast + 0.004F * height_ * (1.0F - 0.5F * figure_) * breast + 0.003F * height_ * blade +
            0.006F * height_ * buttock + slack;
   };
@@ -165,9 +169,10 @@ void PersonBuilder::trunk() {
   for (const auto& [z, width, depth, y] : {std::array{0.900F, 0.0290F, 0.033F, 0.000F},
                                            {0.880F, 0.0300F, 0.032F, 0.002F},
                                            {0.862F, 0.0300F, 0.031F, 0.005F},
-                                           {0.848F, 0.0315F, 0.032F, 0.006F},
-                                           {0.834F, 0.0400F, 0.036F, 0.004F},
-                                           {0.822F, 0.0550F, 0.041F, 0.002F}}) {
+                                           {0.850F, 0.0315F, 0.032F, 0.006F},
+                                           {0.840F, 0.0430F, 0.035F, 0.004F},
+                                           {0.832F, 0.0570F, 0.039F, 0.003F},
+                                           {0.822F, 0.0680F, 0.042F, 0.002F}}) {
     Ring ring;
     const float grow = (1.0F - 0.12F * figure_) * (1.0F + 0.5F * (girth_ - 1.0F)) * height_;
     ring.centre = {0.0F, y * height_, z * height_};
@@ -196,7 +201,7 @@ void PersonBuilder::collar() {
   };
   loft.rings = {ring(0.843F, -0.020F), ring(0.845F + rise, -0.004F), ring(0.847F + rise, 0.002F), ring(0.840F, 0.014F),
                 ring(0.836F, 0.009F)};
-  loft.facets = 14;
+  loft.facets = 12;
   loft.weights = [this](const Vector3f& position) {
     return chain_weights(-position.z(), Bone::neck, {{-0.850F * height_, 0.022F * height_, Bone::chest}});
   };
@@ -220,7 +225,7 @@ void PersonBuilder::seat() {
   loft.facets = 14;
   const bool skirt = look_.bottom == Bottom::skirt;
   if (skirt) {
-    const float flare = 0.035F;
+    const float flare = 0.026F;
     for (int k = 1; k <= 6; ++k) {
       const float down = static_cast<float>(k) / 6.0F;
       Ring ring = loft.rings.back();
@@ -229,9 +234,14 @@ void PersonBuilder::seat() {
       ring.width += flare / 6.0F * height_ * 0.5F, ring.front += flare / 6.0F * height_, ring.back += 0.004F * height_;
       loft.rings.push_back(ring);
     }
-    Ring under = loft.rings.back();
-    under.width -= 0.02F, under.front -= 0.02F, under.back -= 0.02F, under.centre.z() += 0.01F;
-    loft.rings.push_back(under);
+    // Closed below, so that between the legs of somebody who sits no hollow is seen.
+    const Ring hem = loft.rings.back();
+    for (const float inside : {0.90F, 0.55F, 0.0F}) {
+      Ring under = hem;
+      under.width *= inside, under.front *= inside, under.back *= inside;
+      under.centre.z() += inside > 0.8F ? 0.008F : 0.03F;
+      loft.rings.push_back(under);
+    }
   } else {
     Ring low = trunk_ring(0.472F, height_, girth_, figure_, 0.0F);
     low.width *= 0.88F, low.front *= 0.85F, low.back *= 0.85F;
@@ -254,8 +264,9 @@ void PersonBuilder::seat() {
     return 0.006F * height_ * buttock + fold;
   };
   const std::vector<float> rows = ring_rows(loft.rings);
+  const double hem = static_cast<double>(rows[rows.size() - std::min<std::size_t>(rows.size(), 4)] / rows.back());
   add(loft, cloth_texels, [&](cv::Size size, double texels, Random random) {
-    if (skirt) return pictures::skirt(size, look_.bottom_cloth, texels, random);
+    if (skirt) return pictures::skirt(size, look_.bottom_cloth, hem, texels, random);
     return pictures::trouser_seat(size, look_.bottom_cloth, look_.tucked_in, texels, random);
   });
 }
@@ -264,12 +275,10 @@ SkinWeights PersonBuilder::skirt_weights(const Vector3f& position) const {
   const float h = height_;
   const float left = smooth_step(-0.045F * h, 0.045F * h, position.x());
   const float thighs = smooth_step(0.54F * h, 0.46F * h, position.z());
-  const float shins = 0.5F * smooth_step(0.32F * h, 0.25F * h, position.z());
   SkinWeights weights;
   weights.bones = {static_cast<std::uint8_t>(Bone::pelvis), static_cast<std::uint8_t>(Bone::left_thigh),
-                   static_cast<std::uint8_t>(Bone::right_thigh), static_cast<std::uint8_t>(Bone::left_shin)};
+                   static_cast<std::uint8_t>(Bone::right_thigh), 0};
   weights.weights = {1.0F - thighs, thighs * left, thighs * (1.0F - left), 0.0F};
-  static_cast<void>(shins);
   return weights;
 }
 

@@ -103,7 +103,7 @@ class FacePainter {
     const cv::Scalar rim(28, 26, 28);
     for (const double side : {-1.0, 1.0}) {
       ellipse(side * 0.155, 0.515, 0.110, 0.072, rim, 0, 360, std::max(2, static_cast<int>(0.016 * unit_y_)));
-      line(side * 0.265, 0.530, side * 0.62, 0.535, rim, 0.016);
+      line(side * 0.265, 0.530, side * 0.385, 0.535, rim, 0.016);  // to the ear
     }
     line(-0.045, 0.528, 0.045, 0.528, rim, 0.014);
   }
@@ -121,18 +121,18 @@ void add_strands(NoiseField& field, float across, float along, const Random& ran
   add_value_noise(field, 4.0F * across, 1.5F * along, 0.30F, random.fork(3));
 }
 
-cv::Mat skin_ground(cv::Size size, const cv::Scalar& skin, float texels, const Random& random) {
+cv::Mat skin_ground(cv::Size size, const cv::Scalar& skin, float texels, const Random& random, float stretch = 1.0F) {
   cv::Mat picture(size, CV_8UC3, skin);
   Shade shade(size);
-  shade.uneven(0.05F * texels, 0.05F * texels, 0.05F, 3, random.fork(1));
-  shade.uneven(0.008F * texels, 0.008F * texels, 0.03F, 2, random.fork(2));
+  shade.uneven(stretch * 0.05F * texels, 0.05F * texels, 0.04F, 3, random.fork(1));
+  shade.uneven(stretch * 0.008F * texels, 0.008F * texels, 0.025F, 2, random.fork(2));
   shade.apply(picture);
   return picture;
 }
 }  // namespace
 
 cv::Mat head(cv::Size size, const Face& face, Random random) {
-  cv::Mat picture = skin_ground(size, face.skin, 640.0F, random.fork(1));
+  cv::Mat picture = skin_ground(size, face.skin, 640.0F, random.fork(1), 1.0F / (1.0F - face_density));
   FacePainter painter(picture, face);
   Random own = random.fork(2);
   const double openness = own.uniform(0.8, 1.15);
@@ -160,18 +160,18 @@ cv::Mat head(cv::Size size, const Face& face, Random random) {
   // Beard and the shadow of cropped hair: dark noise where hair grows.
   if (face.beard || !face.bald) {
     NoiseField strands(size.width, size.height);
-    add_strands(strands, 3.0F, 7.0F, random.fork(4));
+    add_strands(strands, 5.0F, 7.0F, random.fork(4));
     for (int y = 0; y < size.height; ++y)
       for (int x = 0; x < size.width; ++x) {
         const double right = (x - painter.x(0.0)) / (painter.x(1.0) - painter.x(0.0)), up = 1.0 - y / painter.unit();
         const double side = std::abs(right);
         double cover = 0.0;
-        if (face.beard && side < 0.62 && up < 0.36) {
-          const double edge =
-              std::max(0.0, 0.30 - 0.9 * std::max(0.0, 0.28 - side)) + (side > 0.45 ? 1.2 * (side - 0.45) : 0.0);
-          cover = std::clamp((edge - up) / 0.05, 0.0, 0.85);
-          if (side < 0.22 && up > 0.245 && up < 0.305) cover = std::max(cover, 0.75);
-          const double mouth = (right / 0.16) * (right / 0.16) + ((up - 0.213) / 0.038) * ((up - 0.213) / 0.038);
+        if (face.beard && side < 0.40 && up < 0.48) {
+          // Below the mouth, rising over the jaw to the ears.
+          const double edge = 0.178 + 1.0 * std::max(0.0, side - 0.17) + (side > 0.30 ? 1.5 * (side - 0.30) : 0.0);
+          cover = std::clamp(std::min((edge - up) / 0.05, (0.40 - side) / 0.03), 0.0, 0.85);
+          if (side < 0.21 && up > 0.245 && up < 0.290 - 0.2 * side) cover = std::max(cover, 0.75);
+          const double mouth = (right / 0.16) * (right / 0.16) + ((up - 0.213) / 0.034) * ((up - 0.213) / 0.034);
           cover *= std::clamp((mouth - 1.0) / 0.5, 0.0, 1.0);
         }
         if (!face.bald) {
