@@ -195,6 +195,34 @@ TEST(MovingThings, LightChangesAsAThingTurns) {
   EXPECT_GT(greys.front(), greys.back() + 15);
 }
 
+TEST(MovingThings, ShadeTheFloorBelowThem) {
+  World world;
+  const TextureArea area = white(world);
+  world.ambient = 1.0F;
+  Object& floor = world.objects.emplace_back();
+  floor.name = floor.class_name = "floor";
+  add_rectangle(floor.mesh, {-3, 5, 0}, {6, 0, 0}, {0, -5, 0}, area);
+  Object& box = world.objects.emplace_back();
+  box.name = box.class_name = "box";
+  add_box(box.mesh, {Vector3f(-0.2F, -0.2F, 0.02F), Vector3f(0.2F, 0.2F, 0.4F)}, {area, area, area, area, area, area});
+  box.motion = [](double time) { return Isometry3d(Translation3d(time, 2.0, time < 1.5 ? 0.0 : 0.5)); };
+  const Camera camera = *find_camera("icl_nuim");
+  Renderer renderer(world, camera);
+  const Isometry3d T_world_camera = look_at({0, 0, 1.2}, {0, 2, 0});
+  const auto grey_before_it = [&](double time, double place) {
+    const Vector2d pixel = camera.project(T_world_camera.inverse() * Vector3d(place, 1.77, 0.0));
+    const cv::Point where(static_cast<int>(std::lround(pixel.x())), static_cast<int>(std::lround(pixel.y())));
+    const RenderedFrame frame = renderer.render(T_world_camera, time);
+    EXPECT_EQ(frame.object_ids.at<std::uint16_t>(where), 1);
+    return static_cast<int>(frame.colour.at<cv::Vec3b>(where)[1]);
+  };
+  EXPECT_LT(grey_before_it(0.0, 0.0), 95);
+  EXPECT_EQ(grey_before_it(0.0, 0.8), 100);
+  EXPECT_LT(grey_before_it(0.8, 0.8), 95);  // it goes along
+  EXPECT_EQ(grey_before_it(0.8, 0.0), 100);
+  EXPECT_EQ(grey_before_it(1.6, 0.8), 100);  // lifted
+}
+
 TEST(MovingThings, OwnSolidsDimTheAmbientLight) {
   World world;
   const TextureArea area = white(world);

@@ -37,6 +37,7 @@ PosedWorld::PosedWorld(const World& world) : world_(world) {
 }
 
 void PosedWorld::pose(double time) {
+  shadows_.clear();
   for (PosedObject& object : objects_) {
     if (!object.object->moves()) continue;
     pose_vertices(*object.object, time, posed_);
@@ -44,6 +45,7 @@ void PosedWorld::pose(double time) {
     for (std::size_t i = 0; i < posed_.size(); ++i) object.corners[i] = posed_[i].position.cast<double>();
     bound(object);
     light(object, posed_);
+    add_contact_shadows(*object.object, posed_, shadows_);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "contact_shadow.hpp"
 #include "holdfast/simulation/world.hpp"
 
 namespace holdfast::simulation {
@@ -33,12 +34,15 @@ class PosedWorld {
   const World& world() const { return world_; }
   /// In the order of World::objects.
   const std::vector<PosedObject>& objects() const { return objects_; }
+  /// Of all that moves.
+  const std::vector<ContactShadow>& shadows() const { return shadows_; }
 
  private:
   void light(PosedObject& object, const std::vector<PosedVertex>& posed) const;
 
   const World& world_;
   std::vector<PosedObject> objects_;
+  std::vector<ContactShadow> shadows_;
   std::vector<PosedVertex> posed_;  // of the object at hand
 };
 

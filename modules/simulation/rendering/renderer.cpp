@@ -43,7 +43,7 @@ Renderer::~Renderer() = default;
 RenderedFrame Renderer::render(const Isometry3d& T_world_camera, double time) {
   parts_->draw(T_world_camera, time);
   RenderedFrame frame;
-  parts_->shader.shade(parts_->visibility, frame);
+  parts_->shader.shade(parts_->visibility, parts_->world.shadows(), T_world_camera, frame);
   return frame;
 }
 
@@ -61,8 +61,9 @@ RenderedFrame Renderer::render(const std::function<Isometry3d(double)>& T_world_
     const bool middle = 2 * k + 1 == count;
     if (!middle) {
       const double then = time + exposure * ((k + 0.5) / count - 0.5);
-      parts_->draw(T_world_camera(then), then);
-      parts_->shader.shade_colour(parts_->visibility, parts_->part);
+      const Isometry3d T_world_then = T_world_camera(then);
+      parts_->draw(T_world_then, then);
+      parts_->shader.shade_colour(parts_->visibility, parts_->world.shadows(), T_world_then, parts_->part);
     }
     const std::uint8_t* values = middle ? frame.colour.data : parts_->part.data;
     for (std::size_t i = 0; i < sums.size(); ++i) sums[i] = static_cast<std::uint16_t>(sums[i] + values[i]);

@@ -45,15 +45,22 @@ Texture::Footprint footprint_of(const VisibleTriangle& triangle, float u, float 
 }
 
 // Colours of a triangle where up to four rays (x, y, 1) meet it; neighbours, so that their footprint is one.
-inline void shade_four(const VisibleTriangle& triangle, Floats4 x, Floats4 y, Floats4 depth, int count, float pixel_x,
-                       float pixel_y, float* colours) {
+inline void shade_four(const VisibleTriangle& triangle, const FloorShade& floor, Floats4 x, Floats4 y, Floats4 depth,
+                       int count, float pixel_x, float pixel_y, float* colours) {
   const auto at = [&](const Vector3f& gradient) {
     return (gradient.x() * x + gradient.y() * y + gradient.z()) * depth;
   };
   alignas(16) float u[4], v[4];
   store(u, at(triangle.u));
   store(v, at(triangle.v));
-  const Floats4 light = at(triangle.light);
+  Floats4 light = at(triangle.light);
+  if (triangle.floor && !floor.shadows.empty()) {
+    const auto world = [&](int row) {
+      const auto& from = floor.xy_of_ray;
+      return (from(row, 0) * x + from(row, 1) * y + from(row, 2)) * depth + from(row, 3);
+    };
+    light *= unshaded(floor.shadows, world(0), world(1));
+  }
   const int middle = count >> 1;
   triangle.texture->sample(u, v, count, footprint_of(triangle, u[middle], v[middle], depth[middle], pixel_x, pixel_y),
                            colours);
@@ -98,7 +105,14 @@ Shader::Shader(const Camera& camera, const RayGrid& grid) : camera_(camera), str
     }
 }
 
-void Shader::shade(const VisibilityBuffer& visibility, RenderedFrame& frame) {
+void Shader::take_shadows(const std::vector<ContactShadow>& shadows, const Eigen::Isometry3d& T_world_camera) {
+  floor_.shadows = shadows;
+  floor_.xy_of_ray = T_world_camera.matrix().topRows<2>().cast<float>();
+}
+
+void Shader::shade(const VisibilityBuffer& visibility, const std::vector<ContactShadow>& shadows,
+                   const Eigen::Isometry3d& T_world_camera, RenderedFrame& frame) {
+  take_shadows(shadows, T_world_camera);
   frame.colour.create(camera_.height, camera_.width, CV_8UC3);
   frame.depth.create(camera_.height, camera_.width, CV_32FC1);
   frame.object_ids.create(camera_.height, camera_.width, CV_16UC1);
@@ -114,7 +128,9 @@ void Shader::shade(const VisibilityBuffer& visibility, RenderedFrame& frame) {
   }
 }
 
-void Shader::shade_colour(const VisibilityBuffer& visibility, cv::Mat& colour) {
+void Shader::shade_colour(const VisibilityBuffer& visibility, const std::vector<ContactShadow>& shadows,
+                          const Eigen::Isometry3d& T_world_camera, cv::Mat& colour) {
+  take_shadows(shadows, T_world_camera);
   colour.create(camera_.height, camera_.width, CV_8UC3);
   for (int y = 0; y < camera_.height; ++y) {
     shade_row(visibility, y);
@@ -158,7 +174,7 @@ void Shader::shade_row(const VisibilityBuffer& visibility, int y) {
     const Floats4 depth = 1.0F / inverse_depth;
     store(&depth_[x], depth);
     store(&cosine_[x], inverse_depth * triangle.inverse_norm * load<Floats4>(&inverse_length_[row + x]));
-    shade_four(triangle, ray_x, ray_y, depth, count, pixel_x, pixel_y, &colours_[4 * x]);
+    shade_four(triangle, floor_, ray_x, ray_y, depth, count, pixel_x, pixel_y, &colours_[4 * x]);
     x += count;
   }
 }
@@ -218,8 +234,8 @@ void Shader::blend_edge(const VisibilityBuffer& visibility, std::int32_t sample,
       const Floats4 x = zero + static_cast<float>(grid.x0 + there % grid.columns * grid.step_x);
       const Floats4 y = zero + static_cast<float>(grid.y0 + there / grid.columns * grid.step_y);
       alignas(16) float colours[4];
-      shade_four(visibility.triangles()[around[k]], x, y, 1.0F / (zero + visibility.inverse_depths(0)[there]), 1,
-                 pixel_x, pixel_y, colours);
+      shade_four(visibility.triangles()[around[k]], floor_, x, y, 1.0F / (zero + visibility.inverse_depths(0)[there]),
+                 1, pixel_x, pixel_y, colours);
       part = load<Floats4>(colours);
     }
     blend += part * (static_cast<float>(weight) / 16.0F);

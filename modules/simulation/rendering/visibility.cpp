@@ -21,6 +21,12 @@ inline int ceiling_of(double value) {
   return whole + (value > whole);
 }
 
+bool lies_on_floor(const PosedObject& object, const Triangle& triangle) {
+  constexpr double highest = 0.03;  // [m]
+  return std::max({object.corners[triangle.a].z(), object.corners[triangle.b].z(), object.corners[triangle.c].z()}) <
+         highest;
+}
+
 // Four samples at once: a branch on each would be guessed wrongly too often.
 void draw_span(float* nearest, std::uint32_t* numbers, int count, float start, float step, std::uint32_t number) {
   const auto name = static_cast<std::int32_t>(number);
@@ -100,6 +106,7 @@ void VisibilityBuffer::draw(const PosedWorld& world, const Eigen::Isometry3d& T_
       visible.texture = &world.world().textures[triangle.texture];
       surfaces_.push_back(posed.first_surface + triangle.surface);
       visible.object = static_cast<std::uint16_t>(index + 1);
+      visible.floor = !posed.object->moves() && lies_on_floor(posed, triangle);
       visible.inverse_norm = static_cast<float>(1.0 / visible.inverse_depth.norm());
       draw_triangle(corners, edges, static_cast<std::uint32_t>(before));
     }

@@ -18,6 +18,7 @@ struct VisibleTriangle {
   Eigen::Vector3f u, v, light;
   const Texture* texture = nullptr;
   std::uint16_t object = 0;   ///< index plus one
+  bool floor = false;         ///< of a floor or rug that stands still: contact shadows fall on it
   float inverse_norm = 1.0F;  ///< 1 / |inverse_depth|, which points along the normal
 };
 
