@@ -47,7 +47,7 @@ void furnish_module(RoomBuilder& room, double middle) {
 Stage corridor_stage() {
   Stage stage;
   stage.walls = {Eigen::Vector3d::Zero(), Eigen::Vector3d(width, depth, height)};
-  stage.free_floor = {Eigen::Vector2d(0.3, 0.55), Eigen::Vector2d(width - 0.3, 1.80)};
+  stage.free_floor = {Eigen::Vector2d(0.5, 0.60), Eigen::Vector2d(width - 0.5, 1.75)};
   stage.home = {9.0, 1.02, 1.40};
   stage.target = {9.0, 2.35, 0.82};
   stage.table = {{9.0, 2.2}, {1.60, 0.75}, table_top};

@@ -183,7 +183,7 @@ Stage hall_stage() {
   stage.loop.places = {{5.5, 1.4, 1.45}, {9.55, 1.4, 1.45}, {9.55, 7.6, 1.45}, {1.45, 7.6, 1.45}, {1.45, 1.4, 1.45}};
   stage.loop.aside = -0.35;
   stage.loop.glance = 0.25;
-  stage.corridor.places = {{2.2, 7.55, 1.45}, {8.9, 7.55, 1.45}};
+  stage.corridor.places = {{2.4, 7.45, 1.45}, {8.8, 7.45, 1.45}};
   stage.corridor.closed = false;
   stage.corridor.aside = 0.6;
   stage.square.places = {

@@ -139,8 +139,8 @@ void RoomBuilder::row_of_books(Object& object, double from, double to, double fr
   random_.next();
   const BoxSkin pages = plain_skin({170, 195, 205});
   for (double x = from; x < to - 0.015;) {
-    if (random.uniform() < 0.06) {
-      x += random.uniform(0.03, 0.12);
+    if (random.uniform() < 0.12) {
+      x += random.uniform(0.04, 0.18);
       continue;
     }
     const double thick = std::min(random.uniform(0.022, 0.062), to - x),
