@@ -85,7 +85,7 @@ class Solids {
   std::vector<Solid> solids_;
 };
 
-TEST(Room, NoCameraPathPassesThroughFurnitureOrWalls) {
+void expect_clear_paths() {
   for (const RoomKind kind : all_rooms()) {
     const auto& [world, stage] = room(kind);
     const Solids solids(world);
@@ -104,7 +104,7 @@ TEST(Room, NoCameraPathPassesThroughFurnitureOrWalls) {
   }
 }
 
-TEST(Room, NothingStandsOnTheFreeFloor) {
+void expect_free_floor() {
   for (const RoomKind kind : all_rooms()) {
     const auto& [world, stage] = room(kind);
     const Solids solids(world);
@@ -122,7 +122,7 @@ TEST(Room, NothingStandsOnTheFreeFloor) {
   }
 }
 
-TEST(Room, TheTableOfTheStageIsThere) {
+void expect_table() {
   for (const RoomKind kind : all_rooms()) {
     const auto& [world, stage] = room(kind);
     const Vector3d top(stage.table.centre.x(), stage.table.centre.y(), stage.table.height - 0.01);
@@ -134,6 +134,13 @@ TEST(Room, TheTableOfTheStageIsThere) {
       EXPECT_EQ(inside, share < 0.5) << to_string(kind) << ' ' << share;
     }
   }
+}
+
+// One test, for tests run in processes of their own and furnishing costs time.
+TEST(Room, StagesFitTheirRooms) {
+  expect_clear_paths();  // no camera passes through furniture or walls
+  expect_free_floor();
+  expect_table();
 }
 
 TEST(Room, TheDoorOfTheOfficeSwingsIntoTheRoomAndHitsNothing) {
