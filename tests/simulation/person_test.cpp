@@ -34,18 +34,15 @@ struct Made {
 
   // The mesh in a posture, as plain triangles.
   Mesh posed(const Posture& posture) const {
-    const std::vector<Eigen::Isometry3f> transforms = skin_transforms(skeleton, posture);
-    Mesh mesh = object.mesh;
-    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-      Vector3f position = Vector3f::Zero(), normal = Vector3f::Zero();
-      for (int k = 0; k < 4; ++k) {
-        const Eigen::Isometry3f& transform = transforms[mesh.skin[i].bones[k]];
-        position += mesh.skin[i].weights[k] * (transform * mesh.vertices[i].position);
-        normal += mesh.skin[i].weights[k] * (transform.linear() * mesh.vertices[i].normal);
-      }
-      mesh.vertices[i].position = position, mesh.vertices[i].normal = normal.normalized();
+    Object person = object;
+    person.bones = [&](double) { return skeleton.place(posture); };
+    std::vector<PosedVertex> corners;
+    pose_vertices(person, 0.0, corners);
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      person.mesh.vertices[i].position = corners[i].position;
+      person.mesh.vertices[i].normal = corners[i].normal;
     }
-    return mesh;
+    return person.mesh;
   }
 };
 
@@ -193,8 +190,12 @@ std::uint64_t fingerprint(const Made& made) {
   const auto add = [&](std::uint64_t value) { sum = (sum ^ value) * 1099511628211ULL; };
   for (const Texture& texture : made.world.textures)
     for (int y = 0; y < texture.height(); ++y)
-      for (int x = 0; x < texture.width(); ++x)
-        add(texture.sample(static_cast<float>(x) + 0.5F, static_cast<float>(y) + 0.5F, 0.0F));
+      for (int x = 0; x < texture.width(); ++x) {
+        const float u[4] = {static_cast<float>(x) + 0.5F}, v[4] = {static_cast<float>(y) + 0.5F};
+        float colours[16];
+        texture.sample(u, v, 1, {}, colours);
+        for (int channel = 0; channel < 3; ++channel) add(std::bit_cast<std::uint32_t>(colours[channel]));
+      }
   for (const Vertex& vertex : made.object.mesh.vertices)
     for (int axis = 0; axis < 3; ++axis) add(std::bit_cast<std::uint32_t>(vertex.position[axis]));
   return sum;

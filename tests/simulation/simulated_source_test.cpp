@@ -16,13 +16,14 @@ TEST(SimulatedSource, DeliversItsFramesInOrderAndThenEnds) {
   context.camera = *find_camera("tum_fr1");
   context.camera.width = 320, context.camera.height = 240;
   context.seed = 9;
-  const ParameterValues values = {{"path", std::string("rpy")}, {"duration", 0.1}, {"colour_noise", 0.0}};
+  const ParameterValues values = {
+      {"path", std::string("rpy")}, {"duration", 0.1}, {"set", std::vector<std::string>{"colour_sensor.noise=0"}}};
   const auto source = registry.create<FrameSource>("simulated", values, context);
 
   const SourceDescription description = source->describe();
   EXPECT_TRUE(description.has_depth);
   EXPECT_EQ(description.frame_count, 3U);
-  EXPECT_NE(description.name.find("rpy, seed 9"), std::string::npos) << description.name;
+  EXPECT_NE(description.name.find("office, path rpy, seed 9"), std::string::npos) << description.name;
   const Trajectory truth = source->truth();
   ASSERT_EQ(truth.size(), 3U);
   for (std::uint64_t i = 0; i < 3; ++i) {

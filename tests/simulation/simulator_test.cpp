@@ -22,12 +22,12 @@ bool same_bytes(const cv::Mat& a, const cv::Mat& b) {
   return std::equal(a.datastart, a.dataend, b.datastart);
 }
 
-SimulationSettings settings_of(PathKind path, std::uint64_t seed = 1) {
-  SimulationSettings settings;
-  settings.path = path;
-  settings.seed = seed;
-  settings.duration = 4.0;
-  return settings;
+Scene scene_of(PathKind path, std::uint64_t seed = 1) {
+  Scene scene;
+  scene.camera.path = path;
+  scene.seed = seed;
+  scene.duration = 4.0;
+  return scene;
 }
 
 template <class T>
@@ -38,7 +38,7 @@ T median(std::vector<T> values) {
 
 TEST(Simulator, SameSeedSameBytesInAnyOrder) {
   const Camera camera = *find_camera("tum_fr1");
-  Simulator first(settings_of(PathKind::halfsphere), camera), second(settings_of(PathKind::halfsphere), camera);
+  Simulator first(scene_of(PathKind::halfsphere), camera), second(scene_of(PathKind::halfsphere), camera);
   const SensorFrame early = first.frame(5), late = first.frame(80);
   const SensorFrame late_again = second.frame(80), early_again = second.frame(5);
   EXPECT_TRUE(same_bytes(early.colour, early_again.colour));
@@ -48,12 +48,12 @@ TEST(Simulator, SameSeedSameBytesInAnyOrder) {
   EXPECT_EQ(early.truth->T_world_camera->matrix(), early_again.truth->T_world_camera->matrix());
   EXPECT_FALSE(same_bytes(early.depth, late.depth));
 
-  Simulator other(settings_of(PathKind::halfsphere, 2), camera);
+  Simulator other(scene_of(PathKind::halfsphere, 2), camera);
   EXPECT_FALSE(same_bytes(other.render(5).colour, first.render(5).colour));
 }
 
 TEST(Simulator, FramesCarryTimeTruthAndLabels) {
-  Simulator simulator(settings_of(PathKind::xyz), *find_camera("tum_fr3"));
+  Simulator simulator(scene_of(PathKind::xyz), *find_camera("tum_fr3"));
   ASSERT_EQ(simulator.frame_count(), 120U);
   const SensorFrame frame = simulator.frame(33);
   EXPECT_EQ(frame.index, 33U);
@@ -77,7 +77,7 @@ TEST(Simulator, FramesCarryTimeTruthAndLabels) {
   EXPECT_GT(cv::countNonZero(frame.depth), 0.85 * 640 * 480);
   EXPECT_LT(cv::countNonZero(frame.depth), 0.999 * 640 * 480);
 
-  SimulationSettings nothing;
+  Scene nothing;
   nothing.duration = 0.0;
   EXPECT_THROW(Simulator(nothing, Camera()), ConfigurationError);
 }
@@ -86,7 +86,7 @@ TEST(Simulator, FramesCarryTimeTruthAndLabels) {
 TEST(Simulator, DepthColourAndPosesAgreeBetweenFrames) {
   const Camera camera = *find_camera("tum_fr1");
   for (const PathKind path : {PathKind::xyz, PathKind::rpy}) {
-    Simulator simulator(settings_of(path), camera);
+    Simulator simulator(scene_of(path), camera);
     const std::uint64_t one = 40, other = 70;
     const RenderedFrame from = simulator.render(one), to = simulator.render(other);
     const Eigen::Isometry3d T_to_from = simulator.T_world_camera(other).inverse() * simulator.T_world_camera(one);
@@ -128,7 +128,7 @@ double distance_to_triangle(const Vector3d& point, const Vector3d& a, const Vect
 
 TEST(Simulator, EveryPixelLiesOnTheSurfaceOfItsObject) {
   const Camera camera = *find_camera("tum_fr1");
-  Simulator simulator(settings_of(PathKind::halfsphere), camera);
+  Simulator simulator(scene_of(PathKind::halfsphere), camera);
   const std::uint64_t index = 100;
   const RenderedFrame frame = simulator.render(index);
   const Eigen::Isometry3d T_world_camera = simulator.T_world_camera(index);
@@ -159,7 +159,7 @@ TEST(Simulator, EveryPixelLiesOnTheSurfaceOfItsObject) {
 TEST(Simulator, OffersAsManyCornersAsARealDesk) {
   const Camera camera = *find_camera("tum_fr1");
   for (const PathKind path : {PathKind::xyz, PathKind::halfsphere}) {
-    Simulator simulator(settings_of(path, 3), camera);
+    Simulator simulator(scene_of(path, 3), camera);
     for (const std::uint64_t index : {0, 60, 119}) {
       cv::Mat grey;
       cv::cvtColor(simulator.frame(index).colour, grey, cv::COLOR_BGR2GRAY);

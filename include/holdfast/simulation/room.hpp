@@ -19,7 +19,7 @@ namespace holdfast::simulation {
 /// hall: 11 m by 9 m by 2.8 m. Furniture along all walls, islands of desks, shelves and partitions, and a table with
 /// free floor around, so that a walk around the islands shows something else everywhere.
 ///
-/// corridor: 20 m by 2.6 m by 2.5 m. The same desk group every 2 m along y = 2.6 and the same cabinet and pictures
+/// corridor: 20 m by 2.6 m by 2.6 m. The same desk group every 2 m along y = 2.6 and the same cabinet and pictures
 /// across, copied to the texel; nothing but a mug on some of the desks tells one from another.
 enum class RoomKind { office, hall, corridor };
 

@@ -58,9 +58,4 @@ void sense_colour(cv::Mat& colour, const ColourSensorSettings& settings, std::ui
 /// The gain of the wandering exposure at a time [s].
 double exposure_gain(const ColourSensorSettings& settings, std::uint64_t seed, double time);
 
-/// sense_colour at time 0 under full light.
-inline void add_colour_noise(cv::Mat& colour, const ColourSensorSettings& settings, std::uint64_t seed) {
-  sense_colour(colour, settings, seed);
-}
-
 }  // namespace holdfast::simulation

@@ -23,7 +23,7 @@ struct Waypoints {
 /// Places of a room that camera paths and scenes refer to, in the room's frame (z up, floor at z = 0) [m].
 struct Stage {
   Eigen::AlignedBox3d walls;       ///< from wall to wall, floor to ceiling
-  Eigen::AlignedBox2d free_floor;  ///< nothing higher than a rug stands there: people may walk, things be pushed
+  Eigen::AlignedBox2d free_floor;  ///< where people may walk and things be pushed: nothing but rugs and `table` there
   Eigen::Vector3d home;            ///< where the camera of static, xyz and rpy is held
   Eigen::Vector3d target;          ///< what it looks at, to +y of home; the middle of halfsphere
 

@@ -103,9 +103,9 @@ void PersonBuilder::head() {
   const float scale = (crown - chin) * height_;
   const pictures::Face face{look_.skin,  look_.hair,    look_.figure < 0.5 ? 0.35 : 0.6,
                             look_.beard, look_.glasses, look_.hair_style == HairStyle::bald};
-  const TextureArea area =
-      paint({2.45F * scale * head_texels, 1.035F * scale * head_texels}, head_texels,
-            [&](cv::Size size, double, Random random) { return pictures::head(size, face, random); });
+  const TextureArea area = paint(
+      {2.45F * scale * head_texels, 1.035F * scale * head_texels}, head_texels,
+      [&](cv::Size size, double, Random random) { return pictures::head(size, face, random); }, face_softness);
   add_grid(mesh_, grid, area, weights);
   for (const bool left : {true, false}) ear(left);
 }
@@ -209,7 +209,8 @@ void PersonBuilder::hair() {
   const auto painter = [&](cv::Size size, double texels, Random random) {
     return pictures::hair(size, look_.hair, style == HairStyle::curly, texels, random);
   };
-  const TextureArea area = paint({2.7F * scale * hair_texels, rows_long * scale * hair_texels}, hair_texels, painter);
+  const TextureArea area =
+      paint({2.7F * scale * hair_texels, rows_long * scale * hair_texels}, hair_texels, painter, face_softness);
   add_grid(mesh_, grid, area, weights);
   if (lengthy) {  // fills the room behind the neck, which would be seen to be hollow
     Loft filling;

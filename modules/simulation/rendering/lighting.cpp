@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "holdfast/simulation/world.hpp"
@@ -37,6 +39,13 @@ float first_hit(const Occluder& occluder, const Vector3f& from, const Vector3f& 
   return enter < leave ? enter : 1.0F;
 }
 
+// Whether no part of the box lies before the plane through the point.
+bool lies_behind(const Occluder& occluder, const Vector3f& point, const Vector3f& normal) {
+  const Vector3f along = occluder.T_object_world.linear() * normal;
+  const Vector3f to_centre = occluder.box.center() - occluder.T_object_world * point;
+  return along.dot(to_centre) + 0.5F * along.cwiseAbs().dot(occluder.box.sizes()) <= 0.0F;
+}
+
 // Directions over the hemisphere, denser towards the normal as Lambert's law weighs them (Malley's method on a
 // Fibonacci spiral).
 std::vector<Vector3f> hemisphere(int count) {
@@ -63,9 +72,51 @@ float openness(const Vector3f& point, const Vector3f& normal, const std::vector<
   }
   return open / static_cast<float>(directions.size());
 }
-}  // namespace
 
-namespace {
+// Space in cubes, each with the occluders that may matter to points in it, so that baking a large room costs no more
+// per vertex than a small one. What is left out could not be hit: light is the same as with all of them.
+class Neighbourhood {
+ public:
+  Neighbourhood(const std::vector<Occluder>& occluders, const std::vector<Lamp>& lamps)
+      : occluders_(occluders), lamps_(lamps) {}
+
+  struct Cell {
+    std::vector<const Occluder*> near;                   // for ambient occlusion
+    std::vector<std::vector<const Occluder*>> to_lamps;  // on the way to each lamp
+  };
+
+  const Cell& at(const Vector3f& point) {
+    const std::array<int, 3> key = {static_cast<int>(std::floor(point.x() / side)),
+                                    static_cast<int>(std::floor(point.y() / side)),
+                                    static_cast<int>(std::floor(point.z() / side))};
+    const auto [entry, is_new] = cells_.try_emplace(key);
+    if (is_new) fill(entry->second, side * (Vector3f(key[0], key[1], key[2]) + Vector3f::Constant(0.5F)));
+    return entry->second;
+  }
+
+ private:
+  static constexpr float side = 0.5F;
+
+  void fill(Cell& cell, const Vector3f& centre) const {
+    const float cell_radius = 0.5F * side * std::sqrt(3.0F) + 1e-4F;
+    cell.to_lamps.resize(lamps_.size());
+    for (const Occluder& occluder : occluders_) {
+      const Vector3f to_occluder = occluder.centre - centre;
+      if (to_occluder.norm() < occluder.radius + cell_radius + reach) cell.near.push_back(&occluder);
+      for (std::size_t i = 0; i < lamps_.size(); ++i) {
+        const Vector3f to_lamp = lamps_[i].position - centre;
+        const float share = std::clamp(to_occluder.dot(to_lamp) / to_lamp.squaredNorm(), 0.0F, 1.0F);
+        if ((to_occluder - share * to_lamp).norm() < occluder.radius + cell_radius)
+          cell.to_lamps[i].push_back(&occluder);
+      }
+    }
+  }
+
+  const std::vector<Occluder>& occluders_;
+  const std::vector<Lamp>& lamps_;
+  std::map<std::array<int, 3>, Cell> cells_;
+};
+
 // An object that moves takes its own shade along, nothing else's.
 void bake_openness(Object& object, const std::vector<Vector3f>& directions) {
   std::vector<Occluder> occluders;
@@ -88,6 +139,7 @@ void bake_light(World& world) {
       occluders.push_back({box, T_world_object.inverse(), T_world_object * box.center(), 0.5F * box.diagonal().norm()});
   }
   const std::vector<Vector3f> directions = hemisphere(20);
+  Neighbourhood neighbourhood(occluders, world.lamps);
 
   std::vector<const Occluder*> near;
   for (Object& object : world.objects) {
@@ -99,17 +151,19 @@ void bake_light(World& world) {
     for (Vertex& vertex : object.mesh.vertices) {
       const Vector3f normal = T_world_object.linear() * vertex.normal;
       const Vector3f point = T_world_object * vertex.position + 0.004F * normal;  // clear of its own solid
+      const Neighbourhood::Cell& cell = neighbourhood.at(point);
       near.clear();
-      for (const Occluder& occluder : occluders)
-        if ((occluder.centre - point).norm() < occluder.radius + reach) near.push_back(&occluder);
+      for (const Occluder* occluder : cell.near)
+        if ((occluder->centre - point).norm() < occluder->radius + reach && !lies_behind(*occluder, point, normal))
+          near.push_back(occluder);
       float light = world.ambient * openness(point, normal, near, directions);
-      for (const Lamp& lamp : world.lamps) {
-        const float unhidden = lamp.light(point, normal);
+      for (std::size_t i = 0; i < world.lamps.size(); ++i) {
+        const float unhidden = world.lamps[i].light(point, normal);
         if (unhidden <= 0.0F) continue;
-        const Vector3f to_lamp = lamp.position - point;
+        const Vector3f to_lamp = world.lamps[i].position - point;
         // A lamp has an extent: an occluder near the ray's middle takes all light, one that ends at the lamp none.
-        const bool lit = std::none_of(occluders.begin(), occluders.end(), [&](const Occluder& occluder) {
-          return first_hit(occluder, point, 0.95F * to_lamp) < 1.0F;
+        const bool lit = std::none_of(cell.to_lamps[i].begin(), cell.to_lamps[i].end(), [&](const Occluder* occluder) {
+          return first_hit(*occluder, point, 0.95F * to_lamp) < 1.0F;
         });
         light += unhidden * (lit ? 1.0F : 0.25F);
       }

@@ -7,7 +7,7 @@ namespace holdfast::simulation {
 namespace {
 constexpr double table_top = 0.73;
 constexpr double quarter_turn = 1.57079632679;
-constexpr double width = 20.0, depth = 2.6, height = 2.5, pitch = 2.0;
+constexpr double width = 20.0, depth = 2.6, height = 2.6, pitch = 2.0;
 constexpr int modules = 10;
 constexpr int built = 5;  // the module that is furnished and copied
 
@@ -47,9 +47,9 @@ void furnish_module(RoomBuilder& room, double middle) {
 Stage corridor_stage() {
   Stage stage;
   stage.walls = {Eigen::Vector3d::Zero(), Eigen::Vector3d(width, depth, height)};
-  stage.free_floor = {Eigen::Vector2d(0.3, 0.55), Eigen::Vector2d(width - 0.3, 1.80)};
+  stage.free_floor = {Eigen::Vector2d(0.5, 0.60), Eigen::Vector2d(width - 0.5, 1.75)};
   stage.home = {9.0, 1.02, 1.40};
-  stage.target = {9.0, 2.35, 0.90};
+  stage.target = {9.0, 2.35, 0.82};
   stage.table = {{9.0, 2.2}, {1.60, 0.75}, table_top};
   stage.table_edge = {9.0, 1.48, 1.12};
   stage.table_edge_target = {9.0, 2.35, 0.85};
@@ -60,6 +60,7 @@ Stage corridor_stage() {
   stage.corridor.glance = 0.15;
   stage.loop.places = {{3.0, 0.85, 1.45}, {17.0, 0.85, 1.45}, {17.0, 1.40, 1.45}, {3.0, 1.40, 1.45}};
   stage.loop.rounding = 0.4;
+  stage.loop.speed = 0.4;
   stage.loop.aside = 0.5;
   stage.square.places = {{9.0, 0.80, 1.4}, {9.9, 0.80, 1.4}, {9.9, 1.45, 1.4}, {8.1, 1.45, 1.4}, {8.1, 0.80, 1.4}};
   stage.square.speed = 0.25;

@@ -69,6 +69,7 @@ void furnish_walls(RoomBuilder& room, const Random& random) {
 
   // East, from south to north.
   const auto east = [](double y, double off) { return Place{width - off, y, 0, from_east}; };
+  room.painting(on_wall(east(0.75, 0), 1.45), 0.8, 0.6);
   work(east(2.0, 0.40), 3);
   room.notice_board(on_wall(east(2.0, 0), 1.60), 1.4, 0.9);
   room.cabinet(east(3.5, 0.25), 1.0, 0.45, 0.9);
@@ -82,6 +83,8 @@ void furnish_walls(RoomBuilder& room, const Random& random) {
   room.cardboard_box({10.55, 7.6, 0, 0.3}, 0.5, 0.5, 0.55);
   room.cardboard_box({10.6, 7.6, 0.55, 0.8}, 0.4, 0.36, 0.33);
   room.poster(on_wall(east(7.7, 0), 1.65), 0.6, 0.84);
+
+  room.notice_board(on_wall(east(8.45, 0), 1.50), 0.8, 0.9);
 
   // North, from east to west.
   const auto north = [](double x, double off) { return Place{x, depth - off, 0, from_north}; };
@@ -103,8 +106,11 @@ void furnish_walls(RoomBuilder& room, const Random& random) {
   room.poster(on_wall(north(1.7, 0), 1.75), 0.7, 0.95);
   room.plant({0.6, 8.4, 0, 0}, 1.5);
 
+  room.notice_board(on_wall(north(0.75, 0), 1.50), 0.9, 0.8);
+
   // West, from north to south.
   const auto west = [](double y, double off) { return Place{off, y, 0, from_west}; };
+  room.poster(on_wall(west(8.25, 0), 1.50), 0.75, 1.05);
   work(west(7.0, 0.40), 7);
   room.painting(on_wall(west(7.3, 0), 1.75), 0.7, 0.9);
   room.poster(on_wall(west(6.6, 0), 1.60), 0.42, 0.6);
@@ -130,9 +136,9 @@ void furnish_islands(RoomBuilder& room, const Random& random) {
   room.chair({4.45, 3.6, 0, -1.2});
   room.chair({4.50, 5.5, 0, -1.9});
 
-  // Shelves back to back in the north, cabinets in the south.
+  // Shelves with screens behind them in the north, cabinets in the south.
   for (const double x : {6.15, 7.50}) {
-    room.bookcase({x, 6.42, 0, from_north}, 1.3, 1.55);
+    room.partition({x, 6.50, 0, 0}, 1.32, 1.50);
     room.bookcase({x, 6.73, 0, from_south}, 1.3, 1.55);
   }
   room.plant({8.5, 6.55, 0, 0}, 1.2);
@@ -144,7 +150,6 @@ void furnish_islands(RoomBuilder& room, const Random& random) {
   room.book_pile({5.0, 2.22, 1.0, 0.4}, 4);
 
   // The table of the experiments, with free floor around.
-  room.rug({7.1, 4.5, 0, 0}, 3.6, 2.6);
   room.table({7.1, 4.5, 0, 0}, 1.60, 0.90, table_top);
   const Place table{7.1, 4.5, table_top, 0};
   room.monitor(at(table, -0.35, 0.15, 0, 0.3), 0.46);
@@ -178,7 +183,7 @@ Stage hall_stage() {
   stage.loop.places = {{5.5, 1.4, 1.45}, {9.55, 1.4, 1.45}, {9.55, 7.6, 1.45}, {1.45, 7.6, 1.45}, {1.45, 1.4, 1.45}};
   stage.loop.aside = -0.35;
   stage.loop.glance = 0.25;
-  stage.corridor.places = {{1.45, 1.9, 1.45}, {1.45, 7.2, 1.45}};
+  stage.corridor.places = {{2.4, 7.45, 1.45}, {8.8, 7.45, 1.45}};
   stage.corridor.closed = false;
   stage.corridor.aside = 0.6;
   stage.square.places = {
@@ -200,8 +205,8 @@ World make_hall(std::uint64_t seed) {
               .ceiling_density = 60.0});
   furnish_walls(room, Random(seed).fork(0x4a11));
   furnish_islands(room, Random(seed).fork(0x151a));
-  for (const float x : {2.2F, 5.5F, 8.8F})
-    for (const float y : {1.9F, 4.6F, 7.2F}) world.lamps.push_back({{x, y, 2.7F}, 0.55F});
+  for (const float x : {2.0F, 5.5F, 9.0F})
+    for (const float y : {2.3F, 6.7F}) world.lamps.push_back({{x, y, 2.7F}, 0.78F});
   world.ambient = 0.58F;
   return world;
 }

@@ -122,9 +122,9 @@ Stage office_stage() {
   stage.spot = {3.0, 2.40, 1.40};
   stage.loop.places = {{3.1, 1.85, 1.4}, {4.9, 1.85, 1.4}, {4.9, 2.95, 1.4}, {1.3, 2.95, 1.4}, {1.3, 1.85, 1.4}};
   stage.loop.speed = 0.45;
-  stage.loop.aside = -0.4;
+  stage.loop.aside = 0.3;
   stage.loop.glance = 0.2;
-  stage.corridor.places = {{1.2, 2.6, 1.4}, {5.0, 2.6, 1.4}};
+  stage.corridor.places = {{1.6, 2.5, 1.4}, {4.6, 2.5, 1.4}};
   stage.corridor.closed = false;
   stage.corridor.speed = 0.45;
   stage.corridor.aside = 0.8;

@@ -84,9 +84,10 @@ class RoomBuilder {
   TextureArea paint(cv::Mat picture) { return world_.add_texture(picture); }
   /// The random stream of the object that was added last.
   Random random() const { return random_; }
-  /// A box with a picture of each side's own, `density` texels per metre; painter(size, random) makes it.
+  /// Pictures for the sides of a box, `density` texels per metre, made by painter(size, random). Opposite sides share
+  /// one unless `all_different`.
   template <class Painter>
-  BoxSkin skin(const Eigen::AlignedBox3f& box, double density, Painter&& painter);
+  BoxSkin skin(const Eigen::AlignedBox3f& box, double density, Painter&& painter, bool all_different = false);
   /// One plain colour for all sides.
   BoxSkin plain_skin(const cv::Scalar& colour);
   /// Books side by side between two ends, standing on `ground`, backs at y = front.
@@ -98,19 +99,23 @@ class RoomBuilder {
 };
 
 template <class Painter>
-BoxSkin RoomBuilder::skin(const Eigen::AlignedBox3f& shape, double density, Painter&& painter) {
+BoxSkin RoomBuilder::skin(const Eigen::AlignedBox3f& shape, double density, Painter&& painter, bool all_different) {
   const auto texels = [](float length, double per_metre) {
     return std::max(4, static_cast<int>(std::lround(length * per_metre)));
   };
   const Eigen::Vector3f size = shape.sizes();
+  const auto painted = [&](BoxSide side, float width, float height, double fineness) {
+    const cv::Size texture_size(texels(width, fineness), texels(height, fineness));
+    return paint(painter(texture_size, random_.fork(static_cast<std::uint64_t>(side) + 1)));
+  };
   BoxSkin result;
-  for (const BoxSide side : {front, back, left, right, top, bottom}) {
-    const bool flat = side == top || side == bottom, narrow = side == left || side == right;
-    const double fineness = side == bottom ? 20.0 : density;
-    const cv::Size texture_size(texels(narrow ? size.y() : size.x(), fineness),
-                                texels(flat ? size.y() : size.z(), fineness));
-    result[side] = paint(painter(texture_size, random_.fork(static_cast<std::uint64_t>(side) + 1)));
-  }
+  result[front] = painted(front, size.x(), size.z(), density);
+  result[left] = painted(left, size.y(), size.z(), density);
+  result[top] = painted(top, size.x(), size.y(), density);
+  result[bottom] = painted(bottom, size.x(), size.y(), 20.0);
+  // Opposite sides are never seen at once.
+  result[back] = all_different ? painted(back, size.x(), size.z(), density) : result[front];
+  result[right] = all_different ? painted(right, size.y(), size.z(), density) : result[left];
   random_.next();
   return result;
 }

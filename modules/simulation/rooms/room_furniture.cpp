@@ -128,31 +128,35 @@ void RoomBuilder::cardboard_box(const Place& place, double width, double depth, 
   Object& object = add("box", place);
   const AlignedBox3f shape = box(-width / 2, -depth / 2, 0, width / 2, depth / 2, height);
   add_box(object.mesh, shape,
-          skin(shape, 450.0, [](cv::Size size, Random random) { return pictures::cardboard(size, random); }), 0.1F);
+          skin(
+              shape, 450.0, [](cv::Size size, Random random) { return pictures::cardboard(size, random); }, true),
+          0.1F);
 }
 
 void RoomBuilder::row_of_books(Object& object, double from, double to, double front_y, double ground,
                                double most_height) {
   Random random = random_.fork(0xb00c);
   random_.next();
+  const BoxSkin pages = plain_skin({170, 195, 205});
   for (double x = from; x < to - 0.015;) {
-    if (random.uniform() < 0.06) {
-      x += random.uniform(0.03, 0.12);
+    if (random.uniform() < 0.12) {
+      x += random.uniform(0.04, 0.18);
       continue;
     }
-    const double thick = std::min(random.uniform(0.015, 0.055), to - x),
+    const double thick = std::min(random.uniform(0.022, 0.062), to - x),
                  height = most_height * random.uniform(0.72, 0.97);
     const double back_off = random.uniform(0.0, 0.03), deep = random.uniform(0.13, 0.19);
     const TextureArea spine =
         paint(pictures::book_spine(texels(thick, height, 700.0), random.fork(static_cast<std::uint64_t>(x * 1e4))));
-    BoxSkin sides = plain_skin({170, 195, 205});
-    sides[front] = spine;
-    // Covers continue the colour of the spine's upper end.
+    // Covers continue the colour of the spine's upper end. Backs and undersides are never seen.
     const TextureArea cover{spine.texture, 0.3F * spine.width, 2.0F, 0.4F * spine.width, 0.1F * spine.height};
-    sides[left] = sides[right] = cover;
-    add_box(object.mesh,
-            box(x, front_y + back_off, ground, x + thick - 0.001, front_y + back_off + deep, ground + height), sides,
-            0.15F, false);
+    const Vector3f low(Eigen::Vector3d(x, front_y + back_off, ground).cast<float>());
+    const auto w = static_cast<float>(thick - 0.001), d = static_cast<float>(deep), h = static_cast<float>(height);
+    const Vector3f right_way(w, 0, 0), back_way(0, d, 0), up(0, 0, h);
+    add_rectangle(object.mesh, low + up, right_way, -up, spine, 0.3F);
+    add_rectangle(object.mesh, low + up + back_way, -back_way, -up, cover, 0.3F);
+    add_rectangle(object.mesh, low + up + right_way, back_way, -up, cover, 0.3F);
+    add_rectangle(object.mesh, low + up + back_way, right_way, -back_way, pages[front], 0.3F);
     x += thick;
     random.next();
   }
@@ -169,13 +173,27 @@ void RoomBuilder::bookcase(const Place& place, double width, double height) {
   const AlignedBox3f panel = box(-width / 2, depth / 2 - 0.01, 0, width / 2, depth / 2, height);
   add_box(object.mesh, panel, skin(panel, 200.0, wooden), 0.15F);
   const int boards = std::max(2, static_cast<int>(height / 0.34));
+  const int closed = boards / 3;  // lower rows behind doors
+  const auto row = [&](int i) { return 0.05 + (height - 0.05 - thick) * i / boards; };
   for (int i = 0; i <= boards; ++i) {
-    const double z = 0.05 + (height - 0.05 - thick) * i / boards;
+    const double z = row(i);
     const AlignedBox3f board = box(-width / 2 + thick, -depth / 2, z, width / 2 - thick, depth / 2 - 0.01, z + thick);
-    add_box(object.mesh, board, skin(board, 250.0, wooden), 0.15F);
-    if (i < boards)
+    if (i == 0 || i >= closed) add_box(object.mesh, board, skin(board, 250.0, wooden), 0.15F);
+    if (i >= closed && i < boards)
       row_of_books(object, -width / 2 + thick + 0.005, width / 2 - thick - 0.005, -depth / 2 + 0.02, z + thick,
                    height / boards - 0.05);
+  }
+  if (closed == 0) return;
+  const BoxSkin metal = plain_skin(grey_plastic);
+  for (const double side : {-1.0, 1.0}) {
+    const double from = side < 0 ? -width / 2 + thick : 0.002, to = side < 0 ? -0.002 : width / 2 - thick;
+    const AlignedBox3f leaf = box(from, -depth / 2 - 0.012, row(0), to, -depth / 2, row(closed));
+    add_box(object.mesh, leaf, skin(leaf, 250.0, wooden), 0.15F, false);
+    const double handle = side * 0.06;
+    add_box(object.mesh,
+            box(handle - 0.008, -depth / 2 - 0.035, row(closed) - 0.22, handle + 0.008, -depth / 2 - 0.012,
+                row(closed) - 0.1),
+            metal, 0.2F, false);
   }
 }
 

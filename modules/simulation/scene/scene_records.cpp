@@ -33,7 +33,9 @@ void PersonRecord::describe(ParameterTable<PersonRecord>& table) {
   table.add("height", &S::height, "0 = chosen by the seed").range(0.0, 2.3).unit("m");
   table.add("girth", &S::girth, "breadth as a factor on the average for the height; 0 = chosen by the seed")
       .range(0.0, 2.0);
-  table.add("start", &S::start, "stands still until then").range(0.0, 36000.0).unit("s");
+  table.add("start", &S::start, "stands still until then; below 0 = has begun that long before the first frame")
+      .range(-36000.0, 36000.0)
+      .unit("s");
   table.add("repeat", &S::repeat, "begins anew after the last action; otherwise stays there, standing");
 }
 

@@ -64,12 +64,18 @@ class SceneBuilder {
     const Random random = Random(scene_.seed).fork(0x9e0913).fork(k);
     auto skeleton = std::make_shared<const Skeleton>(physique_of(plan, random.fork(1)));
     Object person = make_person(room_.world, plan.name, *skeleton, random_look(random.fork(2)), random.fork(3));
-    auto script = std::make_shared<const PersonScript>(*skeleton, plan, things_, scene_.duration, random.fork(4));
-    person.motion = [script](double time) { return script->T_world_person(time); };
-    person.bones = [script, skeleton](double time) { return skeleton->place(script->posture(time)); };
+    // A plan that began before the first frame is played from its own beginning.
+    const double before = std::max(0.0, -plan.start);
+    plan.start = std::max(0.0, plan.start);
+    auto script =
+        std::make_shared<const PersonScript>(*skeleton, plan, things_, scene_.duration + before, random.fork(4));
+    person.motion = [script, before](double time) { return script->T_world_person(time + before); };
+    person.bones = [script, skeleton, before](double time) { return skeleton->place(script->posture(time + before)); };
     person.T_world_object = person.motion(0.0);
     room_.world.objects.push_back(std::move(person));
-    for (const std::string& thing : script->moved_things()) set_in_motion(thing, script->thing_motion(thing));
+    for (const std::string& thing : script->moved_things())
+      set_in_motion(thing,
+                    [motion = script->thing_motion(thing), before](double time) { return motion(time + before); });
   }
 
   void add_door(const SwingPlan& plan) {
