@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/random.hpp"
@@ -117,6 +118,15 @@ class SceneBuilder {
 
 }  // namespace
 
-SceneWorld make_scene_world(const Scene& scene) { return SceneBuilder(scene).build(); }
+SceneWorld make_scene_world(const Scene& scene) {
+  try {
+    return SceneBuilder(scene).build();
+  } catch (const ConfigurationError& error) {  // plans do not know which file they come from
+    std::vector<Diagnostic> diagnostics = error.diagnostics();
+    for (Diagnostic& diagnostic : diagnostics)
+      if (diagnostic.location.file.empty()) diagnostic.location.file = scene.file;
+    throw ConfigurationError(std::move(diagnostics));
+  }
+}
 
 }  // namespace holdfast::simulation
