@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "../rendering/vectors.hpp"
+#include "rendering/vectors.hpp"
 #include "holdfast/core/random.hpp"
 
 namespace holdfast::simulation {
