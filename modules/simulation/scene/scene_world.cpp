@@ -40,8 +40,8 @@ Physique physique_of(const PersonPlan& plan, Random random) {
 
 class SceneBuilder {
  public:
-  explicit SceneBuilder(const Scene& scene)
-      : scene_(scene), room_(furnish_room(scene.room, scene.seed)), things_(things_of(room_.world)) {}
+  SceneBuilder(const Scene& scene, Room furnished)
+      : scene_(scene), room_(std::move(furnished)), things_(things_of(room_.world)) {}
 
   SceneWorld build() {
     for (std::size_t k = 0; k < scene_.people.size(); ++k) add_person(k);
@@ -70,7 +70,6 @@ class SceneBuilder {
       fail(element, ".name: '" + plan.name + "' is a thing in the room; choose another name");
     const Random random = Random(scene_.seed).fork(0x9e0913).fork(k);
     auto skeleton = std::make_shared<const Skeleton>(physique_of(plan, random.fork(1)));
-    Object person = make_person(room_.world, plan.name, *skeleton, random_look(random.fork(2)), random.fork(3));
     // A plan that began before the first frame is played from its own beginning.
     const double before = std::max(0.0, -plan.start);
     plan.start = std::max(0.0, plan.start);
@@ -81,6 +80,7 @@ class SceneBuilder {
         fail(element + ".", error.what());
       }
     }();
+    Object person = make_person(room_.world, plan.name, *skeleton, random_look(random.fork(2)), random.fork(3));
     person.motion = [script, before](double time) { return script->T_world_person(time + before); };
     person.bones = [script, skeleton, before](double time) { return skeleton->place(script->posture(time + before)); };
     person.T_world_object = person.motion(0.0);
@@ -140,6 +140,12 @@ class SceneBuilder {
 
 }  // namespace
 
-SceneWorld make_scene_world(const Scene& scene) { return SceneBuilder(scene).build(); }
+SceneWorld make_scene_world(const Scene& scene) {
+  return make_scene_world(scene, furnish_room(scene.room, scene.seed));
+}
+
+SceneWorld make_scene_world(const Scene& scene, Room furnished) {
+  return SceneBuilder(scene, std::move(furnished)).build();
+}
 
 }  // namespace holdfast::simulation
