@@ -141,7 +141,7 @@ lights_out:
                   HasSubstr("2:17: found 'circle' for 'path' of the camera: 'circle' is not among them"),
                   HasSubstr("4:11: found 1 numbers; expected a place of 2"),
                   "4:23: there is no action 'wlak'; did you mean 'walk'?",
-                  HasSubstr("4:65: found 3 numbers; expected a place of 2"), HasSubstr("the action 'walk' needs 'to'"),
+                  HasSubstr("4:64: found 3 numbers; expected a place of 2"), HasSubstr("the action 'walk' needs 'to'"),
                   HasSubstr("the action 'sit' has no parameter 'walk'"), HasSubstr("a person needs 'at'"),
                   HasSubstr("a person has no parameter 'dio'; did you mean 'do'?"),
                   HasSubstr("7:5: the light comes back before it goes out")));

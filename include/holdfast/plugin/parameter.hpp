@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <initializer_list>
 #include <limits>
 #include <map>
 #include <optional>
@@ -59,8 +58,8 @@ struct Parameter {
     unit_name = std::move(name_of_unit);
     return *this;
   }
-  Parameter& one_of(std::initializer_list<std::string> texts) {
-    allowed = texts;
+  Parameter& one_of(std::vector<std::string> texts) {
+    allowed = std::move(texts);
     return *this;
   }
   /// Has no default: a configuration without it is an error.

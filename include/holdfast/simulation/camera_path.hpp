@@ -24,8 +24,8 @@ enum class PathKind { fixed, xyz, halfsphere, rpy, loop, corridor, table_edge, r
 const char* to_string(PathKind kind);
 /// The kind of that name; throws ConfigurationError naming the known ones.
 PathKind path_kind(const std::string& name);
-/// The names of all kinds that a stage alone defines: all but "waypoints".
-std::vector<std::string> path_names();
+/// The names of all kinds; those that a stage alone defines: all but "waypoints", which comes last.
+std::vector<std::string> path_names(bool of_stage_alone = true);
 
 /// Factors on a camera path.
 struct PathStyle {

@@ -40,7 +40,7 @@ class PersonScript {
   /// name in `things`.
   /// \throws ConfigurationError for an unknown or unsuitable thing, an empty route, a speed or time that is not
   /// positive, a thing that somebody else moves, a thing too wide or too far away to be lifted, and where no place is
-  /// free to stand.
+  /// free to stand. The message begins with the action's number in the plan: "do.1: Anna wants to ...".
   PersonScript(const Skeleton& skeleton, const PersonPlan& plan, ThingPlaces& things, double duration, Random style);
 
   /// Of the person's root: on the floor below the pelvis, z up, face to -y.

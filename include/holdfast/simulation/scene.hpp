@@ -28,7 +28,8 @@ struct CameraPlan {
 /// All that makes a simulated sequence: a room, who and what moves in it, the camera's way and its sensors.
 struct Scene {
   std::string name = "empty";
-  std::string file;  ///< that it was read from, for messages; empty = none
+  std::string file;                    ///< that it was read from, for messages and records; empty = none
+  std::vector<std::string> overrides;  ///< of the file's values, for records
   RoomKind room = RoomKind::office;
   CameraPlan camera;
   double duration = 20.0;    ///< [s]; frames from 0 up to, not including, this time

@@ -40,7 +40,7 @@ PersonScript::PersonScript(const Skeleton& skeleton, const PersonPlan& plan, Thi
   movement->wait(plan.start);
   do {
     const double before = movement->end();
-    for (const Action& action : plan.actions) builder.play(action);
+    for (std::size_t i = 0; i < plan.actions.size(); ++i) builder.play(plan.actions[i], i);
     if (!plan.repeat) break;
     builder.return_to_start();
     if (movement->end() <= before) break;  // nothing to do, or to go to where one is

@@ -18,7 +18,8 @@ constexpr double seat_height = 0.50;
 constexpr double approaching = 1.0;  // speed on ways that the plan does not tell [m/s]
 }  // namespace
 
-void ScriptBuilder::play(const Action& action) {
+void ScriptBuilder::play(const Action& action, std::size_t number) {
+  action_number_ = number;
   if (const auto* walking = std::get_if<Walk>(&action)) walk(*walking);
   if (const auto* standing = std::get_if<Stand>(&action)) stand(*standing);
   if (const auto* sitting = std::get_if<Sit>(&action)) sit(*sitting);
@@ -153,7 +154,8 @@ void ScriptBuilder::check_route(const std::vector<Vector2d>& to, const std::stri
 }
 
 void ScriptBuilder::refuse(const std::string& problem) const {
-  throw ConfigurationError({}, (plan_.name.empty() ? "a person" : plan_.name) + " " + problem);
+  throw ConfigurationError({}, "do." + std::to_string(action_number_) + ": " +
+                                   (plan_.name.empty() ? "a person" : plan_.name) + " " + problem);
 }
 
 }  // namespace holdfast::simulation

@@ -16,7 +16,9 @@ class ScriptBuilder {
   ScriptBuilder(Movement& movement, const PersonPlan& plan, ThingPlaces& things)
       : movement_(movement), plan_(plan), things_(things) {}
 
-  void play(const Action& action);
+  /// Plays an action of the plan, which has this number there (from 0). What it refuses, it refuses as "do.NUMBER:
+  /// ...".
+  void play(const Action& action, std::size_t number);
   /// Goes back to where the plan began.
   void return_to_start();
 
@@ -68,6 +70,7 @@ class ScriptBuilder {
   Movement& movement_;
   const PersonPlan& plan_;
   ThingPlaces& things_;
+  std::size_t action_number_ = 0;
   std::optional<Obstacle> behind_;  ///< what the person has just let go of
 };
 

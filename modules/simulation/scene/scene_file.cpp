@@ -92,7 +92,7 @@ class SceneReader {
                                             const std::vector<double>& numbers) {
     const ConfigurationNode* node = map.find(key);
     // Without the key, or with one of the wrong type, the table has complained.
-    if (node == nullptr || numbers.empty()) return Eigen::Matrix<double, dimension, 1>::Zero();
+    if (node == nullptr || node->items.size() != numbers.size()) return Eigen::Matrix<double, dimension, 1>::Zero();
     return place<dimension>(numbers, *node);
   }
 
@@ -108,7 +108,7 @@ class SceneReader {
   }
 
   std::optional<Eigen::Vector2d> facing(const ConfigurationNode& map, const std::vector<double>& numbers) {
-    if (numbers.empty()) return std::nullopt;
+    if (map.find("facing") == nullptr) return std::nullopt;
     return place<2>(map, "facing", numbers);
   }
 
@@ -120,15 +120,18 @@ class SceneReader {
     plan.waypoints.places = places<3>(node, "along", record.along);
     plan.waypoints.closed = record.closed;
     plan.waypoints.speed = record.walking_speed;
-    if (!record.look_at.empty()) plan.waypoints.target = place<3>(node, "look_at", record.look_at);
+    if (node.find("look_at") != nullptr) plan.waypoints.target = place<3>(node, "look_at", record.look_at);
     const std::size_t least = record.closed ? 3 : 2;
     if (plan.path == PathKind::waypoints && node.find("along") == nullptr)
       complain(node.location, "the camera path waypoints needs 'along: [[x, y, z], ...]'");
     else if (plan.path == PathKind::waypoints && !record.along.empty() && record.along.size() < least)
       complain(node.find("along")->location,
                "found " + std::to_string(record.along.size()) + " places; expected at least " + std::to_string(least));
+    // A path from the command line leaves the waypoints of the file unused.
+    const ConfigurationNode* path = node.find("path");
+    const bool overridden = path != nullptr && path->location.file != node.location.file;
     for (const char* key : {"along", "closed", "walking_speed", "look_at"})
-      if (plan.path != PathKind::waypoints && node.find(key) != nullptr)
+      if (plan.path != PathKind::waypoints && !overridden && node.find(key) != nullptr)
         complain(node.find(key)->location,
                  "'" + std::string(key) + "' belongs to the path waypoints, not to '" + record.path + "'");
     return plan;
@@ -218,6 +221,7 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
   for (const std::string& text : overrides) apply_override(root, text, {});
   Scene scene = SceneReader(root).read();
   if (!file.empty()) scene.name = file.stem().string(), scene.file = file.string();
+  scene.overrides = overrides;
   return scene;
 }
 

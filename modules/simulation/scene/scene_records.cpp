@@ -47,7 +47,7 @@ void WalkRecord::describe(ParameterTable<WalkRecord>& table) {
 
 void StandRecord::describe(ParameterTable<StandRecord>& table) {
   using S = StandRecord;
-  table.add("for", &S::duration, "how long").range(0.0, 36000.0).unit("s");
+  table.add("for", &S::duration, "how long").range(0.01, 36000.0).unit("s");
   table.add("gesture", &S::gesture, "talks with the hands");
   table.add("facing", &S::facing, "place [x, y] to turn to first; empty = as before").unit("m");
 }
@@ -55,7 +55,7 @@ void StandRecord::describe(ParameterTable<StandRecord>& table) {
 void SitRecord::describe(ParameterTable<SitRecord>& table) {
   using S = SitRecord;
   table.add("on", &S::on, "name of a chair, such as \"chair 1\"").required();
-  table.add("for", &S::duration, "how long, from sitting to rising").range(0.0, 36000.0).unit("s");
+  table.add("for", &S::duration, "how long, from sitting to rising").range(0.01, 36000.0).unit("s");
   table.add("gesture", &S::gesture, "talks with the hands");
 }
 

@@ -56,10 +56,10 @@ const char* to_string(PathKind kind) {
   return "";
 }
 
-std::vector<std::string> path_names() {
+std::vector<std::string> path_names(bool of_stage_alone) {
   std::vector<std::string> names;
   for (const auto& [kind, name] : kinds)
-    if (kind != PathKind::waypoints) names.emplace_back(name);
+    if (kind != PathKind::waypoints || !of_stage_alone) names.emplace_back(name);
   return names;
 }
 
@@ -69,12 +69,11 @@ PathKind path_kind(const std::string& name) {
     if (name == known) return kind;
     expected += (expected.empty() ? "" : kind == PathKind::waypoints ? " or " : ", ") + std::string(known);
   }
-  std::vector<Diagnostic> problems(1);
-  problems[0].message = "camera path '" + name + "' is not known; expected " + expected;
-  throw ConfigurationError(std::move(problems));
+  throw ConfigurationError(SourceLocation{}, "camera path '" + name + "' is not known; expected " + expected);
 }
 
 Eigen::Isometry3d look_at(const Vector3d& eye, const Vector3d& target) {
+  HOLDFAST_CHECK((target - eye).head<2>().norm() > 1e-6, "target " << target.transpose() << " eye " << eye.transpose());
   const Vector3d forward = (target - eye).normalized();
   const Vector3d right = forward.cross(Vector3d::UnitZ()).normalized();
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();

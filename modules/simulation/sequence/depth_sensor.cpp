@@ -163,7 +163,7 @@ cv::Mat sense_depth(const cv::Mat& depth, const cv::Mat& cosine, const Camera& c
       const Words4 chance = random.next(), bits = random.next();
       Floats4 z = load<Floats4>(&in[x]);
       const Floats4 cosines = load<Floats4>(&facing[x]);
-      Integers4 valid = (z >= nearest) & (z <= farthest);
+      Integers4 valid = (z > 0.0F) & (z >= nearest) & (z <= farthest);
       valid &= Integers4{hole[x], hole[x + 1], hole[x + 2], hole[x + 3]} == 0;
       if (lost > 0) valid &= reinterpret_cast<Integers4>(chance & 0xffffU) >= lost;
       if (settings.holes) {

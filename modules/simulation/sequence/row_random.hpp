@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "../rendering/vectors.hpp"
 #include "holdfast/core/random.hpp"
+#include "rendering/vectors.hpp"
 
 namespace holdfast::simulation {
 

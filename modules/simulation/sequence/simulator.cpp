@@ -65,7 +65,7 @@ Trajectory Simulator::truth() const {
 
 RenderedFrame Simulator::render(std::uint64_t index) {
   const double shutter = scene_.colour_sensor.shutter;
-  // The first frames see the time before the start as the start.
+  // Before the first frame the camera stands still, for half a shutter's time.
   const auto pose = [this](double time) { return path_.pose(std::max(time, 0.0)); };
   return renderer_.render(pose, timestamp(index), shutter);
 }

@@ -84,11 +84,7 @@ T interpolate(const T& before, const T& from, const T& to, const T& after, doubl
                                             t * (3.0 * (from - to) + after - before))));
 }
 
-[[noreturn]] void refuse(const std::string& message) {
-  std::vector<Diagnostic> problems(1);
-  problems[0].message = message;
-  throw ConfigurationError(std::move(problems));
-}
+[[noreturn]] void refuse(const std::string& message) { throw ConfigurationError(SourceLocation{}, message); }
 }  // namespace
 
 Eigen::Isometry3d look_along(const Vector3d& eye, double heading, double down) {
@@ -124,6 +120,15 @@ WaypointPath::WaypointPath(const Waypoints& waypoints) : waypoints_(waypoints) {
   const Vector3d still = Vector3d::Zero();
   const long half = std::min<long>(std::lround(0.5 * waypoints_.rounding / spacing), static_cast<long>(points.size()));
   for (int pass = 0; pass < 2; ++pass) points = moving_average(points, half, closed, still);
+
+  if (waypoints_.target)
+    for (const Vector3d& point : points)
+      if ((point - *waypoints_.target).head<2>().norm() < 0.1) {
+        text << "a camera path passes less than 10 cm from above or below the place that it looks at, where level has "
+                "no "
+                "meaning; expected a target beside the way";
+        refuse(text.str());
+      }
 
   // Rounding shortens the way at corners: samples at equal distances again.
   if (closed) points.push_back(points.front());
