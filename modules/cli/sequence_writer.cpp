@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <utility>
@@ -56,6 +58,12 @@ Json to_json(const Settings& settings, const ParameterTable<Settings>& table) {
         },
         value);
   return json;
+}
+
+/// So that the sequence can be made again; "" where there is no file.
+std::string content_of(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
 }  // namespace
@@ -131,8 +139,7 @@ std::string SequenceWriter::objects_json() const {
   std::string text =
       "{\n  \"columns\": [\"timestamp\", \"x\", \"y\", \"z\", \"qx\", \"qy\", \"qz\", \"qw\", \"moving\", "
       "\"pixels\"],\n";
-  text +=
-      "  \"pose\": \"T_world_object [m]; the origin stands on the ground below the object (a door: on its hinge)\",\n";
+  text += "  \"pose\": \"T_world_object [m]; the origin is the middle of the underside (a door: on its hinge)\",\n";
   text += "  \"objects\": [";
   for (std::size_t k = 0; k < numbered.size(); ++k) {
     const simulation::Object& object = simulator_.object(numbered[k]);
@@ -160,6 +167,9 @@ std::string SequenceWriter::scene_json() const {
   const simulation::Scene& scene = simulator_.scene();
   Json json = {{"generator", "holdfast " HOLDFAST_VERSION},
                {"scene", scene.name},
+               {"file", scene.file},
+               {"file_content", content_of(scene.file)},
+               {"overrides", scene.overrides},
                {"seed", scene.seed},
                {"room", simulation::to_string(scene.room)},
                {"path", simulation::to_string(scene.camera.path)},

@@ -122,7 +122,7 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember(camera_names()))
       ->capture_default_str();
   command->add_flag("--no-sensor-effects", arguments->no_sensor_effects,
-                    "exact depth without holes, colour without noise");
+                    "exact depth without holes, colour without noise; depth files end at 13 m");
   command->add_option("--colour-format", arguments->colour_format, "of the colour images")
       ->check(CLI::IsMember({"png", "jpg"}))
       ->capture_default_str();

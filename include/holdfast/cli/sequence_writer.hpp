@@ -24,7 +24,7 @@ void write_image_atomically(const std::filesystem::path& file, const cv::Mat& im
 /// cannot be written.
 class SequenceWriter {
  public:
-  /// `colour_format`: "png" or "jpg". The folder must exist.
+  /// `colour_format`: "png" or "jpg". Makes the folder where it is missing.
   SequenceWriter(const simulation::Simulator& simulator, std::filesystem::path folder, std::string colour_format);
 
   /// The images of a frame; frames come in order.

@@ -5,7 +5,7 @@ namespace holdfast::simulation {
 
 void SceneRecord::describe(ParameterTable<SceneRecord>& table) {
   using S = SceneRecord;
-  table.add("room", &S::room, "where it plays").one_of({"office", "hall", "corridor"});
+  table.add("room", &S::room, "where it plays").one_of(room_names());
   table.add("duration", &S::duration, "length of the sequence").range(0.001, 36000.0).unit("s");
   table.add("frame_rate", &S::frame_rate, "frames per second").range(0.1, 1000.0).unit("1/s");
   table.add("seed", &S::seed, "of textures, small things, people, path and noise; 0 = the run's seed");
@@ -13,9 +13,7 @@ void SceneRecord::describe(ParameterTable<SceneRecord>& table) {
 
 void CameraRecord::describe(ParameterTable<CameraRecord>& table) {
   using S = CameraRecord;
-  table.add("path", &S::path, "how the camera moves; waypoints: past the places in `along`")
-      .one_of(
-          {"static", "xyz", "halfsphere", "rpy", "loop", "corridor", "table_edge", "rotation", "square", "waypoints"});
+  table.add("path", &S::path, "how the camera moves; waypoints: past the places in `along`").one_of(path_names(false));
   table.add("speed", &S::speed, "factor on the speed of the path").range(0.01, 10.0);
   table.add("shake", &S::shake, "factor on the tremor of the hand; 0 = none").range(0.0, 10.0);
   table.add("along", &S::along, "waypoints: places [x, y, z] to pass").unit("m");

@@ -19,12 +19,16 @@ struct SimulatedSourceSettings {
   std::int64_t seed = 0;
   std::vector<std::string> set;
 
+  static std::vector<std::string> paths() {
+    std::vector<std::string> names = simulation::path_names();
+    names.insert(names.begin(), "as_scene");
+    return names;
+  }
+
   static void describe(ParameterTable<SimulatedSourceSettings>& table) {
     using S = SimulatedSourceSettings;
     table.add("scene", &S::scene, "scene file (YAML); empty = the empty office");
-    table.add("path", &S::path, "how the camera moves; as_scene = as the scene says")
-        .one_of({"as_scene", "static", "xyz", "halfsphere", "rpy", "loop", "corridor", "table_edge", "rotation",
-                 "square", "waypoints"});
+    table.add("path", &S::path, "how the camera moves; as_scene = as the scene says").one_of(paths());
     table.add("duration", &S::duration, "length of the sequence; 0 = as the scene says").range(0.0, 36000.0).unit("s");
     table.add("seed", &S::seed, "of textures, small things, people, path and noise; 0 = the scene's, else the run's")
         .at_least(0.0);
