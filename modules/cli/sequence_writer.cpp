@@ -167,7 +167,6 @@ std::string SequenceWriter::scene_json() const {
   const simulation::Scene& scene = simulator_.scene();
   Json json = {{"generator", "holdfast " HOLDFAST_VERSION},
                {"scene", scene.name},
-               {"file", scene.file},
                {"file_content", content_of(scene.file)},
                {"overrides", scene.overrides},
                {"seed", scene.seed},
