@@ -15,7 +15,8 @@ namespace {
 using simulation::NumberedObject;
 using simulation::Simulator;
 
-constexpr int tile_width = 320;
+constexpr int tile_width = 240;
+constexpr double plan_margin = 0.35;  // around the walls [m]
 constexpr int letters = cv::FONT_HERSHEY_SIMPLEX;
 
 /// A colour of its own for every number.
@@ -59,8 +60,8 @@ class FloorPlan {
  public:
   FloorPlan(Simulator& simulator, cv::Size size) {
     const Eigen::AlignedBox3d& walls = simulator.stage().walls;
-    constexpr double height = 60.0, margin = 0.35;
-    const Eigen::Vector3d extent = walls.sizes() + Eigen::Vector3d::Constant(2.0 * margin);
+    constexpr double height = 60.0;
+    const Eigen::Vector3d extent = walls.sizes() + Eigen::Vector3d::Constant(2.0 * plan_margin);
     const double pixels_per_metre = std::min(size.width / extent.x(), size.height / extent.y());
     camera_.width = size.width, camera_.height = size.height;
     camera_.fx = camera_.fy = pixels_per_metre * height;
@@ -134,19 +135,19 @@ cv::Mat floor_plan(Simulator& simulator, cv::Size size) {
 }  // namespace
 
 cv::Mat scene_preview(Simulator& simulator, int columns, int rows) {
-  const int tiles = columns * rows;
-  cv::Mat picture;
-  for (int k = 0; k < tiles; ++k) {
-    const std::uint64_t index =
-        simulator.frame_count() * static_cast<std::uint64_t>(2 * k + 1) / (2U * static_cast<unsigned>(tiles));
-    const cv::Mat one = tile(simulator, index);
-    if (picture.empty()) {
-      const int width = columns * one.cols, height = rows * one.rows;
-      picture.create(height + width / 2, width, CV_8UC3);
-      floor_plan(simulator, {width, width / 2}).copyTo(picture.rowRange(height, height + width / 2));
-    }
-    one.copyTo(picture(cv::Rect(k % columns * one.cols, k / columns * one.rows, one.cols, one.rows)));
+  const auto tiles = static_cast<std::uint64_t>(columns) * static_cast<std::uint64_t>(rows);
+  const Camera& camera = simulator.camera();
+  const cv::Size one(tile_width, camera.height * tile_width / camera.width);
+  const int width = columns * one.width, height = rows * one.height;
+  const Eigen::Vector3d room = simulator.stage().walls.sizes() + Eigen::Vector3d::Constant(2.0 * plan_margin);
+  const int plan_height = static_cast<int>(width * std::min(0.5, room.y() / room.x()));
+  cv::Mat picture(height + plan_height, width, CV_8UC3);
+  for (std::uint64_t k = 0; k < tiles; ++k) {
+    const std::uint64_t index = simulator.frame_count() * (2 * k + 1) / (2 * tiles);
+    const cv::Point corner(static_cast<int>(k) % columns * one.width, static_cast<int>(k) / columns * one.height);
+    tile(simulator, index).copyTo(picture(cv::Rect(corner, one)));
   }
+  floor_plan(simulator, {width, plan_height}).copyTo(picture.rowRange(height, height + plan_height));
   return picture;
 }
 

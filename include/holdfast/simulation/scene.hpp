@@ -28,6 +28,7 @@ struct CameraPlan {
 /// All that makes a simulated sequence: a room, who and what moves in it, the camera's way and its sensors.
 struct Scene {
   std::string name = "empty";
+  std::string file;  ///< that it was read from, for messages; empty = none
   RoomKind room = RoomKind::office;
   CameraPlan camera;
   double duration = 20.0;    ///< [s]; frames from 0 up to, not including, this time

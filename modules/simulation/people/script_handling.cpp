@@ -208,8 +208,8 @@ void ScriptBuilder::carry(const Carry& action) {
   const Isometry3d T_world_thing = rest(action.thing);
   const Vector3d size = place.extents.sizes();
   if (std::min(size.x(), size.y()) > widest_load)
-    refuse("cannot carry '" + action.thing + "', which is " + std::to_string(std::min(size.x(), size.y())) +
-           " m wide; expected at most 0.8 m");
+    refuse("cannot carry '" + action.thing + "', which is " +
+           std::to_string(std::lround(100.0 * std::min(size.x(), size.y()))) + " cm wide; expected at most 80 cm");
 
   // Of the four sides the nearest from which it can be had.
   std::optional<Standpoint> stand;

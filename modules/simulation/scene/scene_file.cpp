@@ -217,7 +217,7 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
                              "found " + root.found() + "; expected a map with room, camera, people, ...");
   for (const std::string& text : overrides) apply_override(root, text, {});
   Scene scene = SceneReader(root).read();
-  if (!file.empty()) scene.name = file.stem().string();
+  if (!file.empty()) scene.name = file.stem().string(), scene.file = file.string();
   return scene;
 }
 
