@@ -278,7 +278,7 @@ TEST(PersonScript, RefusesWhatCannotBeDone) {
   EXPECT_NE(refusal({Sit{"box 1", 3.0, false}}).find("expected a chair"), std::string::npos);
   EXPECT_NE(refusal({Walk{{}, 1.0}}).find("without places"), std::string::npos);
   EXPECT_NE(refusal({Walk{{{1, 1}}, 0.0}}).find("speed"), std::string::npos);
-  EXPECT_NE(refusal({Carry{.thing = "cupboard 1", .to = {}}}).find("at most 0.8 m"), std::string::npos);
+  EXPECT_NE(refusal({Carry{.thing = "cupboard 1", .to = {}}}).find("at most 80 cm"), std::string::npos);
   EXPECT_NE(refusal({Carry{.thing = "box 1", .to = {}, .put_at = {3, 3, 2.4}}}).find("put down"), std::string::npos);
   ThingPlaces things = room();
   PersonPlan mine = plan({push}), yours = plan({Sit{"chair 2", 2.0, false}});

@@ -25,7 +25,7 @@ struct SceneWorld {
 
 /// Furnishes the room, makes the people and sets what they and the doors move in motion. Throws ConfigurationError for
 /// a plan that the room does not allow: things that are not there, two who move the same one, ... The message names the
-/// scene and the element ("people.0.do.1").
+/// scene's file and the element ("people.0.do.1").
 SceneWorld make_scene_world(const Scene& scene);
 
 /// The same in a room from furnish_room(scene.room, scene.seed), for those who need it more than once: painting its

@@ -55,8 +55,7 @@ class SceneBuilder {
  private:
   /// `element` of the scene, as overrides name it, does not suit the room.
   [[noreturn]] void fail(const std::string& element, const std::string& message) const {
-    const std::string scene = scene_.file.empty() ? "scene '" + scene_.name + "', " : "";
-    throw ConfigurationError(SourceLocation{scene_.file}, scene + element + message);
+    throw ConfigurationError(SourceLocation{scene_.file}, element + message);
   }
 
   void add_person(std::size_t k) {
