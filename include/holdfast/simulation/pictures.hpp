@@ -12,6 +12,8 @@ namespace holdfast::simulation::pictures {
 
 /// A word of two to four syllables that means nothing.
 std::string word(Random& random, bool capital);
+/// A colour (blue green red) with each channel uniform between those of two others.
+cv::Scalar colour_between(const cv::Scalar& low, const cv::Scalar& high, Random& random);
 
 cv::Mat plaster(cv::Size size, const cv::Scalar& colour, Random random);
 /// Boards along the x axis, `board` texels high; 0 = one piece.

@@ -102,7 +102,8 @@ void print_dots(cv::Mat& picture, const Cloth& cloth, double texels, Random rand
 void print_flowers(cv::Mat& picture, const Cloth& cloth, double texels, Random random) {
   const int count = static_cast<int>(picture.total() / (0.0026 * cloth.scale * texels * texels));
   for (int i = 0; i < count; ++i) {
-    const cv::Point2d centre(random.uniform(0, picture.cols), random.uniform(0, picture.rows));
+    const double centre_y = random.uniform(0, picture.rows), centre_x = random.uniform(0, picture.cols);
+    const cv::Point2d centre(centre_x, centre_y);
     const double size = 0.013 * texels * random.uniform(0.6, 1.3);
     const cv::Scalar petal =
         mix(cloth.second, {random.uniform(40, 240), random.uniform(40, 240), random.uniform(90, 250)}, 0.45);
@@ -204,16 +205,17 @@ void print_front(cv::Mat& picture, cv::Point2d centre, double width, const Cloth
       cv::rectangle(picture, cv::Rect2d(centre.x - 0.5 * width, centre.y - 0.42 * height, width, 0.84 * height), other,
                     cv::FILLED);
     for (int i = 0; i < 22; ++i) {
-      const cv::Point2d spot =
-          centre + cv::Point2d(random.uniform(-0.36, 0.36) * width, random.uniform(-0.30, 0.30) * height);
+      const double down = random.uniform(-0.30, 0.30) * height, aside = random.uniform(-0.36, 0.36) * width;
+      const cv::Point2d spot = centre + cv::Point2d(aside, down);
       const cv::Scalar paint = i % 3 == 0 ? cloth.colour : i % 3 == 1 ? ink : darker(other, random.uniform(0.3, 0.8));
-      if (i % 2 == 0)
-        cv::ellipse(picture, spot, cv::Size2d(width * random.uniform(0.02, 0.12), width * random.uniform(0.02, 0.08)),
-                    random.uniform(0, 180), 0, 360, paint, cv::FILLED, cv::LINE_AA);
-      else
-        cv::line(picture, spot,
-                 spot + cv::Point2d(random.uniform(-0.2, 0.2) * width, random.uniform(-0.2, 0.2) * height), paint,
-                 1 + static_cast<int>(0.015 * width), cv::LINE_AA);
+      if (i % 2 == 0) {
+        const double turned = random.uniform(0, 180), high = width * random.uniform(0.02, 0.08),
+                     wide = width * random.uniform(0.02, 0.12);
+        cv::ellipse(picture, spot, cv::Size2d(wide, high), turned, 0, 360, paint, cv::FILLED, cv::LINE_AA);
+      } else {
+        const double rise = random.uniform(-0.2, 0.2) * height, run = random.uniform(-0.2, 0.2) * width;
+        cv::line(picture, spot, spot + cv::Point2d(run, rise), paint, 1 + static_cast<int>(0.015 * width), cv::LINE_AA);
+      }
     }
     line_of_text(centre.y + 0.56 * height, 0.16 * width);
   }

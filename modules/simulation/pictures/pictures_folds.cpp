@@ -40,15 +40,16 @@ void Shade::fold(cv::Point2f from, cv::Point2f to, float bow, float width, float
 
 void Shade::folds(const Folding& folding, Random random) {
   for (int i = 0; i < folding.count; ++i) {
-    const cv::Point2f centre(folding.area.x + static_cast<float>(random.uniform()) * folding.area.width,
-                             folding.area.y + static_cast<float>(random.uniform()) * folding.area.height);
+    const auto down = static_cast<float>(random.uniform()), along = static_cast<float>(random.uniform());
+    const cv::Point2f centre(folding.area.x + along * folding.area.width, folding.area.y + down * folding.area.height);
     const double angle = folding.direction + folding.spread * random.uniform(-1.0, 1.0);
     const double half = 0.5 * folding.length * random.uniform(0.5, 1.5);
     const cv::Point2f way(static_cast<float>(half * std::cos(angle)), static_cast<float>(half * std::sin(angle)));
     const float side = random.uniform() < 0.5 ? -1.0F : 1.0F;  // which flank is lit
-    fold(centre - side * way, centre + side * way, static_cast<float>(random.uniform(-0.12, 0.12)),
-         static_cast<float>(folding.width * random.uniform(0.6, 1.5)),
-         static_cast<float>(folding.strength * random.uniform(0.45, 1.2)));
+    const auto strength = static_cast<float>(folding.strength * random.uniform(0.45, 1.2)),
+               width = static_cast<float>(folding.width * random.uniform(0.6, 1.5)),
+               bow = static_cast<float>(random.uniform(-0.12, 0.12));
+    fold(centre - side * way, centre + side * way, bow, width, strength);
   }
 }
 

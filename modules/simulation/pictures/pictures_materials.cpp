@@ -29,7 +29,20 @@ cv::Mat coloured(const NoiseField& field, const cv::Scalar& colour, const NoiseF
 }
 
 float smallest_side(cv::Size size) { return static_cast<float>(std::min(size.width, size.height)); }
+
+cv::Point any_texel(cv::Size size, Random& random) {
+  const auto y = static_cast<int>(random.below(size.height)), x = static_cast<int>(random.below(size.width));
+  return {x, y};
+}
 }  // namespace
+
+// Channel by channel in statements of their own: in which order a call's arguments are evaluated is left to the
+// compiler, and the same seed shall give the same picture with all of them.
+cv::Scalar colour_between(const cv::Scalar& low, const cv::Scalar& high, Random& random) {
+  cv::Scalar colour;
+  for (int channel = 2; channel >= 0; --channel) colour[channel] = random.uniform(low[channel], high[channel]);
+  return colour;
+}
 
 cv::Mat plaster(cv::Size size, const cv::Scalar& colour, Random random) {
   NoiseField field(size.width, size.height);
@@ -39,18 +52,20 @@ cv::Mat plaster(cv::Size size, const cv::Scalar& colour, Random random) {
   // Scuffs, drill holes and repairs, as on every office wall.
   const int marks = size.area() / 9000;
   for (int i = 0; i < marks; ++i) {
-    const cv::Point centre(static_cast<int>(random.below(size.width)), static_cast<int>(random.below(size.height)));
+    const cv::Point centre = any_texel(size, random);
     const double shade = random.uniform(0.45, 1.08);
     const double kind = random.uniform();
     if (kind < 0.5) {
       cv::circle(picture, centre, 1 + static_cast<int>(random.below(3)), colour * shade, cv::FILLED, cv::LINE_AA);
     } else if (kind < 0.8) {
-      const cv::Point end =
-          centre + cv::Point(static_cast<int>(random.uniform(-25, 25)), static_cast<int>(random.uniform(-12, 12)));
-      cv::line(picture, centre, end, colour * std::max(0.7, shade), 1 + static_cast<int>(random.below(2)), cv::LINE_AA);
+      const int down = static_cast<int>(random.uniform(-12, 12)), aside = static_cast<int>(random.uniform(-25, 25));
+      cv::line(picture, centre, centre + cv::Point(aside, down), colour * std::max(0.7, shade),
+               1 + static_cast<int>(random.below(2)), cv::LINE_AA);
     } else {
-      cv::ellipse(picture, centre, {3 + static_cast<int>(random.below(9)), 2 + static_cast<int>(random.below(6))},
-                  random.uniform(0, 180), 0, 360, colour * random.uniform(0.8, 1.1), cv::FILLED, cv::LINE_AA);
+      const cv::Scalar filler = colour * random.uniform(0.8, 1.1);
+      const double turned = random.uniform(0, 180);
+      const cv::Size axes{3 + static_cast<int>(random.below(9)), 2 + static_cast<int>(random.below(6))};
+      cv::ellipse(picture, centre, axes, turned, 0, 360, filler, cv::FILLED, cv::LINE_AA);
     }
   }
   return picture;
@@ -74,7 +89,7 @@ cv::Mat wood(cv::Size size, const cv::Scalar& colour, int board, Random random) 
       cv::Mat part = coloured(field, colour, &tint);
       const int knots = static_cast<int>(own.below(board > 0 ? 3 : 14));
       for (int i = 0; i < knots; ++i) {
-        const cv::Point centre(static_cast<int>(own.below(columns)), static_cast<int>(own.below(rows)));
+        const cv::Point centre = any_texel({columns, rows}, own);
         const int radius = 3 + static_cast<int>(own.below(5));
         for (int ring = 3; ring > 0; --ring)
           cv::ellipse(part, centre, {radius * ring / 2 + 1, radius * ring / 3 + 1}, own.uniform(-10, 10), 0, 360,
@@ -108,15 +123,15 @@ cv::Mat painting(cv::Size size, Random random) {
   NoiseField height(size.width, size.height), tint(size.width, size.height);
   add_fractal_noise(height, 0.35F * smallest_side(size), 0.2F * smallest_side(size), 0.55F, 6, 0.62F, random.fork(1));
   add_fractal_noise(tint, 0.3F * smallest_side(size), 0.15F * smallest_side(size), 0.5F, 4, 0.65F, random.fork(2));
-  const cv::Scalar colour(random.uniform(70, 160), random.uniform(70, 160), random.uniform(70, 160));
+  const cv::Scalar colour = colour_between(cv::Scalar::all(70), cv::Scalar::all(160), random);
   cv::Mat picture = coloured(height, colour, &tint);
   const int strokes = 60 + static_cast<int>(random.below(80));
   for (int i = 0; i < strokes; ++i) {
-    const cv::Point from(static_cast<int>(random.below(size.width)), static_cast<int>(random.below(size.height)));
-    const cv::Point to = from + cv::Point(static_cast<int>(random.uniform(-0.1, 0.1) * size.width),
-                                          static_cast<int>(random.uniform(-0.08, 0.08) * size.height));
-    const cv::Scalar paint(random.uniform(10, 245), random.uniform(10, 245), random.uniform(10, 245));
-    cv::line(picture, from, to, paint, 1 + static_cast<int>(random.below(5)), cv::LINE_AA);
+    const cv::Point from = any_texel(size, random);
+    const double down = random.uniform(-0.08, 0.08) * size.height, aside = random.uniform(-0.1, 0.1) * size.width;
+    const cv::Scalar paint = colour_between(cv::Scalar::all(10), cv::Scalar::all(245), random);
+    cv::line(picture, from, from + cv::Point(static_cast<int>(aside), static_cast<int>(down)), paint,
+             1 + static_cast<int>(random.below(5)), cv::LINE_AA);
   }
   const int frame = std::max(3, size.height / 22);
   cv::rectangle(picture, {0, 0, size.width, size.height}, {28, 45, 70}, 2 * frame);
@@ -129,7 +144,8 @@ cv::Mat rug(cv::Size size, Random random) {
   const auto colour = [&] {
     static const cv::Scalar wools[] = {{40, 30, 60},  {190, 210, 225}, {60, 150, 200},
                                        {120, 80, 40}, {90, 120, 50},   {160, 170, 190}};
-    return wools[random.below(6)] * random.uniform(0.75, 1.1);
+    const double shade = random.uniform(0.75, 1.1);
+    return wools[random.below(6)] * shade;
   };
   const int side = std::min(size.width, size.height);
   for (int ring = 0; ring < 4; ++ring) {
@@ -139,11 +155,12 @@ cv::Mat rug(cv::Size size, Random random) {
   }
   const int figures = size.area() / 700;
   for (int i = 0; i < figures; ++i) {
-    const cv::Point centre(static_cast<int>(random.below(size.width)), static_cast<int>(random.below(size.height)));
+    const cv::Point centre = any_texel(size, random);
     const int radius = side / 90 + static_cast<int>(random.below(static_cast<std::uint32_t>(side / 35 + 1)));
     const double kind = random.uniform();
     if (kind < 0.35) {
-      cv::ellipse(picture, centre, {radius, 1 + radius / 2}, random.uniform(0, 180), 0, 360, colour(), cv::FILLED,
+      const cv::Scalar wool = colour();
+      cv::ellipse(picture, centre, {radius, 1 + radius / 2}, random.uniform(0, 180), 0, 360, wool, cv::FILLED,
                   cv::LINE_AA);
     } else if (kind < 0.7) {
       std::vector<cv::Point> corners;
@@ -155,9 +172,9 @@ cv::Mat rug(cv::Size size, Random random) {
       }
       cv::fillConvexPoly(picture, corners, colour(), cv::LINE_AA);
     } else {
-      const cv::Point end = centre + cv::Point(static_cast<int>(random.uniform(-3, 3) * radius),
-                                               static_cast<int>(random.uniform(-3, 3) * radius));
-      cv::line(picture, centre, end, colour(), std::max(1, radius / 4), cv::LINE_AA);
+      const int down = static_cast<int>(random.uniform(-3, 3) * radius),
+                aside = static_cast<int>(random.uniform(-3, 3) * radius);
+      cv::line(picture, centre, centre + cv::Point(aside, down), colour(), std::max(1, radius / 4), cv::LINE_AA);
     }
   }
   return picture;

@@ -19,8 +19,15 @@ cv::Scalar any_colour(Random& random) {
 // Dark on light and light on dark.
 cv::Scalar contrasting(const cv::Scalar& ground, Random& random) {
   const bool light = 0.114 * ground[0] + 0.587 * ground[1] + 0.299 * ground[2] > 120.0;
-  return light ? cv::Scalar(random.uniform(0, 80), random.uniform(0, 60), random.uniform(0, 80))
-               : cv::Scalar(random.uniform(170, 255), random.uniform(190, 255), random.uniform(170, 255));
+  return light ? colour_between({0, 0, 0}, {80, 60, 80}, random)
+               : colour_between({170, 190, 170}, {255, 255, 255}, random);
+}
+
+// Two words, or three with a small one in the middle; the last is drawn first.
+std::string title_of(int words, Random& random) {
+  std::string text = word(random, true);
+  for (int i = words - 2; i >= 0; --i) text.insert(0, word(random, i == 0) + " ");
+  return text;
 }
 
 // Letters `height` texels high with the base line's left end at `position`.
@@ -49,12 +56,14 @@ void draw_figure(cv::Mat& picture, cv::Rect area, Random& random) {
   const cv::Point centre(area.x + area.width / 2, area.y + area.height / 2);
   const int radius = std::max(2, std::min(area.width, area.height) / 2);
   switch (random.below(6)) {
-    case 0:
+    case 0: {
       cv::circle(picture, centre, radius, colour, cv::FILLED, cv::LINE_AA);
       cv::circle(picture, centre, std::max(1, radius * 2 / 3), any_colour(random), cv::FILLED, cv::LINE_AA);
-      cv::circle(picture, centre + cv::Point(whole(random, -radius, radius) / 3, whole(random, -radius, radius) / 3),
-                 std::max(1, radius / 3), any_colour(random), cv::FILLED, cv::LINE_AA);
+      const cv::Scalar inner = any_colour(random);
+      const int down = whole(random, -radius, radius) / 3, aside = whole(random, -radius, radius) / 3;
+      cv::circle(picture, centre + cv::Point(aside, down), std::max(1, radius / 3), inner, cv::FILLED, cv::LINE_AA);
       break;
+    }
     case 1:
       cv::rectangle(picture, area, colour, cv::FILLED);
       break;
@@ -72,10 +81,13 @@ void draw_figure(cv::Mat& picture, cv::Rect area, Random& random) {
       break;
     }
     case 4:
-      for (int i = 0; i < 7; ++i)
-        cv::line(picture, {area.x + whole(random, 0, area.width), area.y + whole(random, 0, area.height)},
-                 {area.x + whole(random, 0, area.width), area.y + whole(random, 0, area.height)}, any_colour(random),
-                 1 + static_cast<int>(random.below(3)), cv::LINE_AA);
+      for (int i = 0; i < 7; ++i) {
+        const int thickness = 1 + static_cast<int>(random.below(3));
+        const cv::Scalar ink = any_colour(random);
+        const cv::Point to{area.x + whole(random, 0, area.width), area.y + whole(random, 0, area.height)};
+        const cv::Point from{area.x + whole(random, 0, area.width), area.y + whole(random, 0, area.height)};
+        cv::line(picture, from, to, ink, thickness, cv::LINE_AA);
+      }
       break;
     default:
       cv::ellipse(picture, centre, {radius, std::max(1, radius / 2)}, random.uniform(0, 180), 0, 360, colour,
@@ -116,12 +128,11 @@ std::string word(Random& random, bool capital) {
 }
 
 cv::Mat page(cv::Size size, Random random) {
-  cv::Mat picture(size, CV_8UC3,
-                  cv::Scalar(random.uniform(205, 235), random.uniform(215, 240), random.uniform(215, 240)));
+  cv::Mat picture(size, CV_8UC3, colour_between({205, 215, 215}, {235, 240, 240}, random));
   const int margin = size.width / 12;
   const double height = std::max(5.0, size.width * random.uniform(0.022, 0.032));
-  write(picture, word(random, true) + " " + word(random, true), {margin, margin + static_cast<int>(2 * height)},
-        2.2 * height, any_colour(random) * 0.4, random);
+  const cv::Scalar ink = any_colour(random) * 0.4;
+  write(picture, title_of(2, random), {margin, margin + static_cast<int>(2 * height)}, 2.2 * height, ink, random);
   int y = margin + static_cast<int>(3.0 * height);
   while (y < size.height - margin) {
     const int part = std::min(static_cast<int>(size.height * random.uniform(0.12, 0.3)), size.height - margin - y);
@@ -147,12 +158,14 @@ cv::Mat poster(cv::Size size, Random random) {
   const cv::Scalar ground = any_colour(random);
   cv::Mat picture(size, CV_8UC3, ground);
   const int areas = 3 + static_cast<int>(random.below(4));
-  for (int i = 0; i < areas; ++i)
-    cv::rectangle(picture,
-                  {whole(random, -0.2 * size.width, size.width), whole(random, -0.2 * size.height, size.height),
-                   whole(random, 0.2, 0.8) + static_cast<int>(size.width * random.uniform(0.2, 0.7)),
-                   static_cast<int>(size.height * random.uniform(0.1, 0.5))},
-                  any_colour(random), cv::FILLED);
+  for (int i = 0; i < areas; ++i) {
+    const cv::Scalar colour = any_colour(random);
+    const int left = whole(random, -0.2 * size.width, size.width), top = whole(random, -0.2 * size.height, size.height);
+    random.next();  // to spare
+    const int width = static_cast<int>(size.width * random.uniform(0.2, 0.7)),
+              height = static_cast<int>(size.height * random.uniform(0.1, 0.5));
+    cv::rectangle(picture, {left, top, width, height}, colour, cv::FILLED);
+  }
   const int figures = 14 + static_cast<int>(random.below(16));
   const double side = std::min(size.width, size.height);
   for (int i = 0; i < figures; ++i) {
@@ -166,8 +179,8 @@ cv::Mat poster(cv::Size size, Random random) {
     const int y = static_cast<int>(size.height * (i == 0 ? random.uniform(0.12, 0.3) : random.uniform(0.6, 0.9)));
     cv::rectangle(picture, {0, y - static_cast<int>(1.4 * title), size.width, static_cast<int>(1.9 * title)}, ground,
                   cv::FILLED);
-    write(picture, word(random, true) + " " + word(random, false) + " " + word(random, true), {size.width / 20, y},
-          title, contrasting(ground, random), random);
+    const cv::Scalar ink = contrasting(ground, random);
+    write(picture, title_of(3, random), {size.width / 20, y}, title, ink, random);
   }
   const int small = size.height / 6;
   cv::rectangle(picture, {0, size.height - small, size.width, small}, ground * 0.9, cv::FILLED);
@@ -178,16 +191,19 @@ cv::Mat poster(cv::Size size, Random random) {
 }
 
 cv::Mat book_spine(cv::Size size, Random random) {
-  const cv::Scalar ground = any_colour(random) * random.uniform(0.4, 1.0);
+  const double darkness = random.uniform(0.4, 1.0);
+  const cv::Scalar ground = any_colour(random) * darkness;
   cv::Mat lying(size.width, size.height, CV_8UC3, ground);  // written along, then turned upright
   const int length = lying.cols, across = lying.rows;
   const int bands = static_cast<int>(random.below(4));
-  for (int i = 0; i < bands; ++i)
+  for (int i = 0; i < bands; ++i) {
+    const cv::Scalar colour = any_colour(random);
     cv::rectangle(lying, {whole(random, 0, length), 0, 2 + static_cast<int>(random.below(length / 10 + 1)), across},
-                  any_colour(random), cv::FILLED);
+                  colour, cv::FILLED);
+  }
   const double height = across * random.uniform(0.3, 0.55);
-  write(lying, word(random, true) + " " + word(random, true),
-        {length / 12, static_cast<int>(0.5 * across + 0.45 * height)}, height, contrasting(ground, random), random);
+  const cv::Scalar ink = contrasting(ground, random);
+  write(lying, title_of(2, random), {length / 12, static_cast<int>(0.5 * across + 0.45 * height)}, height, ink, random);
   if (random.uniform() < 0.6) draw_figure(lying, {length - across, across / 5, across * 3 / 5, across * 3 / 5}, random);
   cv::rectangle(lying, {0, 0, length, across}, ground * 0.45, 1);
   blend_noise(lying, 6.0, random.fork(9));
@@ -197,14 +213,14 @@ cv::Mat book_spine(cv::Size size, Random random) {
 }
 
 cv::Mat cardboard(cv::Size size, Random random) {
-  const cv::Scalar ground(random.uniform(70, 100), random.uniform(115, 145), random.uniform(155, 185));
+  const cv::Scalar ground = colour_between({70, 115, 155}, {100, 145, 185}, random);
   cv::Mat picture(size, CV_8UC3, ground);
   blend_noise(picture, 10.0, random.fork(9));
   const int tape = size.height / 8, tape_y = size.height / 2 - tape / 2 + whole(random, -3, 3);
   cv::rectangle(picture, {0, tape_y, size.width, tape}, ground * 0.8, cv::FILLED);
-  const cv::Rect label_area(whole(random, 0.08 * size.width, 0.5 * size.width),
-                            whole(random, 0.1 * size.height, 0.5 * size.height), size.width * 2 / 5,
-                            size.height * 2 / 5);
+  const int label_top = whole(random, 0.1 * size.height, 0.5 * size.height),
+            label_left = whole(random, 0.08 * size.width, 0.5 * size.width);
+  const cv::Rect label_area(label_left, label_top, size.width * 2 / 5, size.height * 2 / 5);
   cv::rectangle(picture, label_area, {225, 230, 230}, cv::FILLED);
   write_lines(picture, {label_area.x + 4, label_area.y, label_area.width - 8, label_area.height / 2},
               std::max(5.0, label_area.height / 12.0), cv::Scalar::all(25), random);
@@ -248,17 +264,18 @@ cv::Mat keyboard(cv::Size size, Random random) {
 }
 
 cv::Mat screen(cv::Size size, Random random) {
-  cv::Mat picture(size, CV_8UC3, cv::Scalar(random.uniform(40, 110), random.uniform(30, 80), random.uniform(20, 60)));
+  cv::Mat picture(size, CV_8UC3, colour_between({40, 30, 20}, {110, 80, 60}, random));
   for (int i = 0; i < 14; ++i)
     draw_figure(
         picture,
         {whole(random, 0, 0.8 * size.width), whole(random, 0, 0.8 * size.height), size.width / 5, size.height / 5},
         random);
   for (int window = 0; window < 3; ++window) {
-    const cv::Rect area(whole(random, 0.02 * size.width, 0.45 * size.width),
-                        whole(random, 0.03 * size.height, 0.4 * size.height),
-                        static_cast<int>(size.width * random.uniform(0.35, 0.5)),
-                        static_cast<int>(size.height * random.uniform(0.35, 0.55)));
+    const int height = static_cast<int>(size.height * random.uniform(0.35, 0.55)),
+              width = static_cast<int>(size.width * random.uniform(0.35, 0.5)),
+              top = whole(random, 0.03 * size.height, 0.4 * size.height),
+              left = whole(random, 0.02 * size.width, 0.45 * size.width);
+    const cv::Rect area(left, top, width, height);
     const bool dark = random.uniform() < 0.5;
     cv::rectangle(picture, area, cv::Scalar::all(dark ? 35 : 235), cv::FILLED);
     cv::rectangle(picture, {area.x, area.y, area.width, size.height / 24}, any_colour(random), cv::FILLED);

@@ -94,7 +94,8 @@ World make_corridor(std::uint64_t seed) {
     const Eigen::Vector3d offset(pitch * (i + 1 - built), 0, 0);
     if (i + 1 != built) room.repeat(from, mug, offset);
     const double share = random.uniform();
-    const Eigen::Vector3d moved(random.uniform(-0.05, 0.08), random.uniform(-0.05, 0.04), 0);
+    const double moved_y = random.uniform(-0.05, 0.04), moved_x = random.uniform(-0.05, 0.08);
+    const Eigen::Vector3d moved(moved_x, moved_y, 0);
     if (i + 1 != built && share < 0.7) room.repeat(mug, to, offset + moved);
   }
   return world;

@@ -18,23 +18,32 @@ Place at(const Place& frame, double x, double y, double z, double yaw = 0.0) {
   return {frame.x + c * x - s * y, frame.y + s * x + c * y, frame.z + z, frame.yaw + yaw};
 }
 
-// A desk of 1.6 m by 0.75 m with somebody's things, no two alike.
+// A desk of 1.6 m by 0.75 m with somebody's things, no two alike. Each number is drawn in a statement of its own: in
+// which order a call's arguments are evaluated is left to the compiler.
 void workplace(RoomBuilder& room, const Place& desk, Random random) {
   room.desk(desk, 1.60, 0.75);
   const double side = random.uniform() < 0.5 ? -1.0 : 1.0;
   const auto near = [&](double x, double y) {
-    return at(desk, side * x + random.uniform(-0.05, 0.05), y + random.uniform(-0.03, 0.03), table_top,
-              random.uniform(-0.4, 0.4));
+    const double yaw = random.uniform(-0.4, 0.4), back = random.uniform(-0.03, 0.03),
+                 aside = random.uniform(-0.05, 0.05);
+    return at(desk, side * x + aside, y + back, table_top, yaw);
   };
-  room.monitor(at(desk, side * random.uniform(0.0, 0.15), 0.18, table_top, random.uniform(-0.2, 0.2)),
-               random.uniform(0.44, 0.56));
+  const double screen = random.uniform(0.44, 0.56), turned = random.uniform(-0.2, 0.2),
+               aside = side * random.uniform(0.0, 0.15);
+  room.monitor(at(desk, aside, 0.18, table_top, turned), screen);
   room.keyboard_and_mouse(at(desk, side * 0.05, -0.17, table_top, random.uniform(-0.1, 0.1)));
-  room.book_pile(near(-0.58, 0.12), 2 + static_cast<int>(random.below(5)));
-  room.package(near(0.62, 0.22), random.uniform(0.09, 0.18), random.uniform(0.07, 0.12), random.uniform(0.14, 0.27));
+  const int books = 2 + static_cast<int>(random.below(5));
+  room.book_pile(near(-0.58, 0.12), books);
+  const double height = random.uniform(0.14, 0.27), thick = random.uniform(0.07, 0.12),
+               wide = random.uniform(0.09, 0.18);
+  room.package(near(0.62, 0.22), wide, thick, height);
   room.mug(near(-0.36, -0.12));
   room.page(near(-0.52, -0.18));
   room.page(near(0.55, -0.15));
-  if (random.uniform() < 0.6) room.package(near(-0.38, 0.27), 0.10, 0.08, random.uniform(0.15, 0.25));
+  if (random.uniform() < 0.6) {
+    const double high = random.uniform(0.15, 0.25);
+    room.package(near(-0.38, 0.27), 0.10, 0.08, high);
+  }
   if (random.uniform() < 0.5) room.pen_holder(near(0.42, 0.0));
   if (random.uniform() < 0.4) room.telephone(near(0.60, 0.0));
   if (random.uniform() < 0.4) room.lamp(near(-0.68, 0.22));

@@ -41,12 +41,15 @@ void furnish_desks(RoomBuilder& room, Random random) {
     room.page(on_desk(x, y));
   for (int i = 0; i < 7; ++i) {
     const double x = random.uniform(2.55, 4.1);
-    room.cable({x, random.uniform(4.3, 4.7), table_top, 0},
-               {x + random.uniform(-0.5, 0.5), random.uniform(4.2, 4.75), table_top, 0});
+    const Place to{x + random.uniform(-0.5, 0.5), random.uniform(4.2, 4.75), table_top, 0};
+    const Place from{x, random.uniform(4.3, 4.7), table_top, 0};
+    room.cable(from, to);
   }
-  for (int i = 0; i < 3; ++i)
-    room.cable({random.uniform(4.58, 5.18), random.uniform(4.3, 4.7), table_top, 0},
-               {random.uniform(5.08, 5.78), random.uniform(4.3, 4.7), table_top, 0});
+  for (int i = 0; i < 3; ++i) {
+    const Place to{random.uniform(5.08, 5.78), random.uniform(4.3, 4.7), table_top, 0};
+    const Place from{random.uniform(4.58, 5.18), random.uniform(4.3, 4.7), table_top, 0};
+    room.cable(from, to);
+  }
 }
 
 void furnish_desk_wall(RoomBuilder& room) {

@@ -79,7 +79,7 @@ void RoomBuilder::desk(const Place& place, double width, double depth) {
 
 void RoomBuilder::chair(const Place& place) {
   Object& object = add("chair", place);
-  const cv::Scalar cloth(random_.uniform(60, 140), random_.uniform(40, 90), random_.uniform(30, 110));
+  const cv::Scalar cloth = pictures::colour_between({60, 40, 30}, {140, 90, 110}, random_);
   const auto covered = [&](cv::Size size, Random random) { return pictures::fabric(size, cloth, random); };
   const AlignedBox3f seat = box(-0.24, -0.24, 0.43, 0.24, 0.23, 0.50);
   add_box(object.mesh, seat, skin(seat, 350.0, covered), 0.1F);
@@ -244,7 +244,7 @@ void RoomBuilder::stool(const Place& place, double width, double depth, double h
 
 void RoomBuilder::partition(const Place& place, double width, double height) {
   Object& object = add("partition", place);
-  const cv::Scalar cloth(random_.uniform(70, 150), random_.uniform(60, 130), random_.uniform(50, 130));
+  const cv::Scalar cloth = pictures::colour_between({70, 60, 50}, {150, 130, 130}, random_);
   const auto covered = [&](cv::Size size, Random random) { return pictures::fabric(size, cloth, random); };
   const AlignedBox3f panel = box(-width / 2, -0.025, 0.08, width / 2, 0.025, height);
   add_box(object.mesh, panel, skin(panel, 200.0, covered), 0.15F);

@@ -55,10 +55,11 @@ void RoomBuilder::pen_holder(const Place& place) {
   add_cylinder(object.mesh, {0, 0, 0}, 0.04F, 0.04F, 0.10F, side,
                paint(pictures::plain({32, 32}, {20, 20, 20}, random_.fork(2))), 16);
   for (int i = 0; i < 9; ++i) {
-    const Vector3f foot(static_cast<float>(random_.uniform(-0.022, 0.022)),
-                        static_cast<float>(random_.uniform(-0.022, 0.022)), 0.09F);
+    const auto y = static_cast<float>(random_.uniform(-0.022, 0.022)),
+               x = static_cast<float>(random_.uniform(-0.022, 0.022));
+    const Vector3f foot(x, y, 0.09F);
     const Vector3f tip = foot + Vector3f(foot.x(), foot.y(), static_cast<float>(random_.uniform(0.05, 0.1)));
-    const cv::Scalar paint_colour(random_.uniform(20, 240), random_.uniform(20, 240), random_.uniform(20, 240));
+    const cv::Scalar paint_colour = pictures::colour_between(cv::Scalar::all(20), cv::Scalar::all(240), random_);
     add_bar(object.mesh, {foot, tip}, 0.0045F, plain_skin(paint_colour)[front], 5);
   }
 }
@@ -105,7 +106,7 @@ void RoomBuilder::book_pile(const Place& place, int count) {
 
 void RoomBuilder::lamp(const Place& place) {
   Object& object = add("lamp", place);
-  const cv::Scalar colour(random_.uniform(30, 200), random_.uniform(30, 200), random_.uniform(30, 200));
+  const cv::Scalar colour = pictures::colour_between(cv::Scalar::all(30), cv::Scalar::all(200), random_);
   const TextureArea metal = plain_skin(colour)[front];
   add_cylinder(object.mesh, {0, 0, 0}, 0.09F, 0.085F, 0.025F, metal, metal, 20);
   add_bar(object.mesh, {{0, 0, 0.02F}, {0.06F, 0, 0.25F}, {-0.08F, 0, 0.45F}}, 0.010F, metal, 6);
