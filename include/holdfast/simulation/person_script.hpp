@@ -37,11 +37,12 @@ using ThingPlaces = std::map<std::string, ThingPlace>;
 class PersonScript {
  public:
   /// Plays `plan` up to `duration` at least; afterwards (and before 0) the person stands still. Enters the person's
-  /// name in `things`.
+  /// name in `things`. To lift and put down things the person stands between the `walls` (Stage::walls).
   /// \throws ConfigurationError for an unknown or unsuitable thing, an empty route, a speed or time that is not
   /// positive, a thing that somebody else moves, a thing too wide or too far away to be lifted, and where no place is
   /// free to stand.
-  PersonScript(const Skeleton& skeleton, const PersonPlan& plan, ThingPlaces& things, double duration, Random style);
+  PersonScript(const Skeleton& skeleton, const PersonPlan& plan, ThingPlaces& things, const Eigen::AlignedBox3d& walls,
+               double duration, Random style);
 
   /// Of the person's root: on the floor below the pelvis, z up, face to -y.
   Eigen::Isometry3d T_world_person(double time) const;

@@ -68,8 +68,8 @@ class SceneBuilder {
     // A plan that began before the first frame is played from its own beginning.
     const double before = std::max(0.0, -plan.start);
     plan.start = std::max(0.0, plan.start);
-    auto script =
-        std::make_shared<const PersonScript>(*skeleton, plan, things_, scene_.duration + before, random.fork(4));
+    auto script = std::make_shared<const PersonScript>(*skeleton, plan, things_, room_.stage.walls,
+                                                       scene_.duration + before, random.fork(4));
     person.motion = [script, before](double time) { return script->T_world_person(time + before); };
     person.bones = [script, skeleton, before](double time) { return skeleton->place(script->posture(time + before)); };
     person.T_world_object = person.motion(0.0);
