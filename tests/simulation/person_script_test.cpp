@@ -314,12 +314,28 @@ TEST(PersonScript, RefusesWhatCannotBeDone) {
   EXPECT_NE(refusal({Walk{{{1, 1}}, 0.0}}).find("speed"), std::string::npos);
   EXPECT_NE(refusal({Carry{.thing = "cupboard 1", .to = {}}}).find("at most 80 cm"), std::string::npos);
   EXPECT_NE(refusal({Carry{.thing = "box 1", .to = {}, .put_at = {3, 3, 2.4}}}).find("put down"), std::string::npos);
-  ThingPlaces things = room();
-  PersonPlan mine = plan({push}), yours = plan({Sit{"chair 2", 2.0, false}});
-  yours.name = "person 2";
-  const PersonScript first(skeleton, mine, things, walls, 20.0, Random(1));
-  EXPECT_EQ(things.at("chair 2").moved_by, "person 1");
-  EXPECT_THROW(PersonScript(skeleton, yours, things, walls, 20.0, Random(1)), ConfigurationError);
+}
+
+TEST(PersonScript, OnePersonHasAThingWhoeverComesFirst) {
+  const Sit sit{"chair 2", 2.0, false};
+  const auto conflict = [](const Action& mine, const Action& yours) {
+    ThingPlaces things = room();
+    PersonPlan first = plan({mine}), second = plan({yours});
+    second.name = "person 2";
+    PersonScript(skeleton, first, things, walls, 20.0, Random(1));
+    try {
+      PersonScript(skeleton, second, things, walls, 20.0, Random(1));
+    } catch (const ConfigurationError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(conflict(push, sit).find("person 2 wants to sit on 'chair 2', which person 1 moves"), std::string::npos);
+  EXPECT_NE(conflict(sit, push).find("person 2 wants to push 'chair 2', which person 1 uses"), std::string::npos);
+  EXPECT_NE(conflict(sit, sit).find("person 2 wants to sit on 'chair 2', which person 1 uses"), std::string::npos);
+  EXPECT_NE(conflict(push, push).find("which person 1 moves"), std::string::npos);
+  EXPECT_EQ(conflict(Sit{"chair 1", 2.0, false}, sit), "");
+  EXPECT_EQ(refusal({sit, push, sit}), "") << "one person may do both";
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ ThingPlaces things_of(const World& world) {
   for (const Object& object : world.objects) {
     Eigen::AlignedBox3d extents;
     for (const Vertex& vertex : object.mesh.vertices) extents.extend(vertex.position.cast<double>());
-    things[object.name] = {object.T_world_object, extents, object.class_name, ""};
+    things[object.name] = {object.T_world_object, extents, object.class_name, "", ""};
   }
   return things;
 }
