@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/simulation/room.hpp"
 
 namespace holdfast::simulation {
 namespace {
@@ -16,6 +17,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 const Skeleton skeleton({1.75, 1.0});
+const Eigen::AlignedBox3d walls(Vector3d(-1, -1, 0), Vector3d(8, 6, 2.6));
 
 ThingPlace thing(const std::string& class_name, const Vector3d& place, double yaw, const Vector3d& low,
                  const Vector3d& high) {
@@ -52,7 +54,7 @@ const Push push{.thing = "chair 2", .to = {{4.5, 2.5}, {3, 3.3}}};
 
 PersonScript script(const PersonPlan& plan, double duration = 40.0, std::uint64_t seed = 3) {
   ThingPlaces things = room();
-  return {skeleton, plan, things, duration, Random(seed)};
+  return {skeleton, plan, things, walls, duration, Random(seed)};
 }
 
 BonePoses in_world(const PersonScript& script, double time) {
@@ -219,6 +221,38 @@ TEST(PersonScript, CarriesTheBoxInBothHands) {
   EXPECT_NEAR(highest, 0.91, 0.1) << "before the chest";
 }
 
+TEST(PersonScript, StandsBetweenTheWallsOfACorridorToLift) {
+  // Its sections of wall have boxes around them that fill it from floor to ceiling.
+  const Room corridor = furnish_room(RoomKind::corridor, 1);
+  for (const std::string box : {"box 1", "box 3"}) {  // at either wall
+    ThingPlaces things;
+    for (const Object& object : corridor.world.objects) {
+      ThingPlace& place = things[object.name];
+      place.T_world_thing = object.T_world_object;
+      place.class_name = object.class_name;
+      for (const Vertex& vertex : object.mesh.vertices) place.extents.extend(vertex.position.cast<double>());
+    }
+    PersonPlan carrying = plan({Carry{.thing = box, .to = {{9.0, 1.1}}, .put_at = {9.5, 1.2, 0}}});
+    carrying.at = {8.5, 1.1};
+    const PersonScript person(skeleton, carrying, things, corridor.stage.walls, 20.0, Random(3));
+    EXPECT_TRUE(person.thing_motion(box)(40.0).translation() == Vector3d(9.5, 1.2, 0));
+    for (double time = 0.0; time < 40.0; time += 0.1) {
+      const Vector3d at = person.T_world_person(time).translation();
+      ASSERT_GT(std::min(at.y(), 2.6 - at.y()), 0.199) << "within a wall at " << time;
+    }
+  }
+  // Beside a wall that nothing marks there is no place behind it.
+  ThingPlaces things;
+  things["box 1"] = thing("box", {0.3, 1.0, 0}, 0.0, {-0.2, -0.2, 0}, {0.2, 0.2, 0.3});
+  PersonPlan carrying = plan({Carry{.thing = "box 1", .to = {}, .put_at = {0.3, 2.0, 0}}});
+  carrying.at = {-1.0, 1.5};
+  const Eigen::AlignedBox3d bare(Vector3d::Zero(), Vector3d(4, 4, 2.6));
+  const PersonScript person(skeleton, carrying, things, bare, 20.0, Random(3));
+  const auto [grip, release] = person.holding_times("box 1").at(0);
+  EXPECT_GT(person.T_world_person(grip).translation().x(), 0.199);
+  EXPECT_GT(person.T_world_person(release).translation().x(), 0.199);
+}
+
 TEST(PersonScript, PutsTheBoxBackWhenThePlanRepeats) {
   PersonPlan again = plan({carry});
   again.repeat = true;
@@ -280,12 +314,28 @@ TEST(PersonScript, RefusesWhatCannotBeDone) {
   EXPECT_NE(refusal({Walk{{{1, 1}}, 0.0}}).find("speed"), std::string::npos);
   EXPECT_NE(refusal({Carry{.thing = "cupboard 1", .to = {}}}).find("at most 80 cm"), std::string::npos);
   EXPECT_NE(refusal({Carry{.thing = "box 1", .to = {}, .put_at = {3, 3, 2.4}}}).find("put down"), std::string::npos);
-  ThingPlaces things = room();
-  PersonPlan mine = plan({push}), yours = plan({Sit{"chair 2", 2.0, false}});
-  yours.name = "person 2";
-  const PersonScript first(skeleton, mine, things, 20.0, Random(1));
-  EXPECT_EQ(things.at("chair 2").moved_by, "person 1");
-  EXPECT_THROW(PersonScript(skeleton, yours, things, 20.0, Random(1)), ConfigurationError);
+}
+
+TEST(PersonScript, OnePersonHasAThingWhoeverComesFirst) {
+  const Sit sit{"chair 2", 2.0, false};
+  const auto conflict = [](const Action& mine, const Action& yours) {
+    ThingPlaces things = room();
+    PersonPlan first = plan({mine}), second = plan({yours});
+    second.name = "person 2";
+    PersonScript(skeleton, first, things, walls, 20.0, Random(1));
+    try {
+      PersonScript(skeleton, second, things, walls, 20.0, Random(1));
+    } catch (const ConfigurationError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(conflict(push, sit).find("person 2 wants to sit on 'chair 2', which person 1 moves"), std::string::npos);
+  EXPECT_NE(conflict(sit, push).find("person 2 wants to push 'chair 2', which person 1 uses"), std::string::npos);
+  EXPECT_NE(conflict(sit, sit).find("person 2 wants to sit on 'chair 2', which person 1 uses"), std::string::npos);
+  EXPECT_NE(conflict(push, push).find("which person 1 moves"), std::string::npos);
+  EXPECT_EQ(conflict(Sit{"chair 1", 2.0, false}, sit), "");
+  EXPECT_EQ(refusal({sit, push, sit}), "") << "one person may do both";
 }
 
 }  // namespace

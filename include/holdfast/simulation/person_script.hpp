@@ -23,7 +23,8 @@ struct ThingPlace {
   Eigen::Isometry3d T_world_thing = Eigen::Isometry3d::Identity();  ///< at rest, at time 0
   Eigen::AlignedBox3d extents;                                      ///< in the thing's frame [m]
   std::string class_name;
-  std::string moved_by;  ///< the person who moves it; set by PersonScript
+  std::string moved_by;  ///< the person who pushes or carries it; set by PersonScript
+  std::string used_by;   ///< the person who sits on it; set by PersonScript
 };
 using ThingPlaces = std::map<std::string, ThingPlace>;
 
@@ -31,17 +32,18 @@ using ThingPlaces = std::map<std::string, ThingPlace>;
 /// any time [s], in any order of asking. Everything is C1 in time: feet stand still on the floor while they bear
 /// (FootTrack), legs and arms follow by inverse kinematics, the pelvis is as high as the legs allow.
 ///
-/// Who pushes or carries a thing has it for himself; after that others may neither move it nor sit on it. People do not
-/// evade one another, nor furniture on the way to places in their plan; they do go round the thing they want to use.
-/// Cheap to copy; may be asked from several threads at once.
+/// Who pushes, carries or sits on a thing has it for himself: others may neither move it nor sit on it, whoever's
+/// script is made first. People do not evade one another, nor furniture on the way to places in their plan; they do go
+/// round the thing they want to use. Cheap to copy; may be asked from several threads at once.
 class PersonScript {
  public:
   /// Plays `plan` up to `duration` at least; afterwards (and before 0) the person stands still. Enters the person's
-  /// name in `things`.
+  /// name in `things`. To lift and put down things the person stands between the `walls` (Stage::walls).
   /// \throws ConfigurationError for an unknown or unsuitable thing, an empty route, a speed or time that is not
-  /// positive, a thing that somebody else moves, a thing too wide or too far away to be lifted, and where no place is
-  /// free to stand. The message begins with the action's number in the plan: "do.1: Anna wants to ...".
-  PersonScript(const Skeleton& skeleton, const PersonPlan& plan, ThingPlaces& things, double duration, Random style);
+  /// positive, a thing that somebody else moves or sits on, a thing too wide or too far away to be lifted, and where no
+  /// place is free to stand. The message begins with the action's number in the plan: "do.1: Anna wants to ...".
+  PersonScript(const Skeleton& skeleton, const PersonPlan& plan, ThingPlaces& things, const Eigen::AlignedBox3d& walls,
+               double duration, Random style);
 
   /// Of the person's root: on the floor below the pelvis, z up, face to -y.
   Eigen::Isometry3d T_world_person(double time) const;

@@ -31,12 +31,12 @@ Vector2d first_aim(const PersonPlan& plan, const ThingPlaces& things) {
 
 }  // namespace
 
-PersonScript::PersonScript(const Skeleton& skeleton, const PersonPlan& plan, ThingPlaces& things, double duration,
-                           Random style) {
+PersonScript::PersonScript(const Skeleton& skeleton, const PersonPlan& plan, ThingPlaces& things,
+                           const Eigen::AlignedBox3d& walls, double duration, Random style) {
   const Vector2d aim = first_aim(plan, things) - plan.at;
   const double heading = aim.norm() > 1e-6 ? heading_of(aim) : 0.0;
   auto movement = std::make_shared<Movement>(skeleton, Style(style), plan.at, heading);
-  ScriptBuilder builder(*movement, plan, things);
+  ScriptBuilder builder(*movement, plan, things, walls);
   movement->wait(plan.start);
   do {
     const double before = movement->end();

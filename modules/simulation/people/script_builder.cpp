@@ -74,10 +74,11 @@ void ScriptBuilder::stand(const Stand& action) {
 }
 
 void ScriptBuilder::sit(const Sit& action) {
-  const ThingPlace& chair = thing(action.on, "sit on");
+  ThingPlace& chair = thing(action.on, "sit on");
   if (chair.class_name != "chair")
     refuse("wants to sit on '" + action.on + "', which is a " + chair.class_name + "; expected a chair");
   check_positive(action.duration, "time to sit");
+  chair.used_by = plan_.name;
   const Isometry3d T_world_chair = rest(action.on);
   const double yaw = yaw_of(T_world_chair), height = movement_.skeleton().physique().height;
   const Vector2d seat = T_world_chair.translation().head<2>(), ahead = 0.235 * height * direction_of(yaw);
@@ -127,9 +128,11 @@ ThingPlace& ScriptBuilder::thing(const std::string& name, const std::string& doi
                              : "there is nothing in the room"));
   }
   ThingPlace& place = found->second;
-  if (!place.moved_by.empty() && place.moved_by != plan_.name)
-    refuse("wants to " + doing + " '" + name + "', which " + place.moved_by +
-           " moves; let one person do it, or take different things");
+  const auto others = [&](const std::string& person) { return !person.empty() && person != plan_.name; };
+  if (others(place.moved_by) || others(place.used_by))
+    refuse("wants to " + doing + " '" + name + "', which " +
+           (others(place.moved_by) ? place.moved_by + " moves" : place.used_by + " uses") +
+           "; let one person do it, or take different things");
   return place;
 }
 

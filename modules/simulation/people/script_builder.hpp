@@ -13,8 +13,8 @@ namespace holdfast::simulation {
 /// Turns a plan's actions into a movement, one after the other.
 class ScriptBuilder {
  public:
-  ScriptBuilder(Movement& movement, const PersonPlan& plan, ThingPlaces& things)
-      : movement_(movement), plan_(plan), things_(things) {}
+  ScriptBuilder(Movement& movement, const PersonPlan& plan, ThingPlaces& things, const Eigen::AlignedBox3d& walls)
+      : movement_(movement), plan_(plan), things_(things), walls_(walls) {}
 
   /// Plays an action of the plan, which has this number there (from 0). What it refuses, it refuses as "do.NUMBER:
   /// ...".
@@ -70,6 +70,7 @@ class ScriptBuilder {
   Movement& movement_;
   const PersonPlan& plan_;
   ThingPlaces& things_;
+  const Eigen::AlignedBox3d& walls_;
   std::size_t action_number_ = 0;
   std::optional<Obstacle> behind_;  ///< what the person has just let go of
 };

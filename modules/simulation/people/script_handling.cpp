@@ -15,6 +15,7 @@ using Eigen::Vector3d;
 namespace {
 constexpr double approaching = 1.0;  // [m/s]
 constexpr double widest_load = 0.8;  // [m]
+constexpr double from_wall = 0.2;    // the middle of one who stands [m]
 
 Vector3d flat(const Vector2d& v) { return {v.x(), v.y(), 0.0}; }
 
@@ -63,12 +64,15 @@ ScriptBuilder::Seen ScriptBuilder::see(const Isometry3d& T_world_thing, const Ei
 }
 
 bool ScriptBuilder::free_to_stand(const Vector2d& position, const std::string& except) const {
+  const Vector2d from_low = position - walls_.min().head<2>(), from_high = walls_.max().head<2>() - position;
+  if (std::min(from_low.minCoeff(), from_high.minCoeff()) < from_wall) return false;
   for (const auto& [name, place] : things_) {
-    const Vector3d size = place.extents.sizes();
+    // The boxes around these enclose the room.
+    const bool shell = place.class_name == "wall" || place.class_name == "floor" || place.class_name == "ceiling";
+    if (name == except || shell) continue;
     const Isometry3d pose = rest(name);
     const double ground = pose.translation().z() + place.extents.min().z();
-    const bool shell = size.x() > 2.5 && size.y() > 2.5, flat_or_high = ground + size.z() < 0.05 || ground > 1.8;
-    if (name == except || shell || flat_or_high) continue;
+    if (ground + place.extents.sizes().z() < 0.05 || ground > 1.8) continue;
     Vector3d local = pose.inverse() * flat(position);
     local.z() = place.extents.center().z();
     if (place.extents.exteriorDistance(local) < 0.12) return false;

@@ -24,7 +24,7 @@ ThingPlaces things_of(const World& world) {
   for (const Object& object : world.objects) {
     Eigen::AlignedBox3d extents;
     for (const Vertex& vertex : object.mesh.vertices) extents.extend(vertex.position.cast<double>());
-    things[object.name] = {object.T_world_object, extents, object.class_name, ""};
+    things[object.name] = {object.T_world_object, extents, object.class_name, "", ""};
   }
   return things;
 }
@@ -75,7 +75,8 @@ class SceneBuilder {
     plan.start = std::max(0.0, plan.start);
     const auto script = [&] {
       try {
-        return std::make_shared<const PersonScript>(*skeleton, plan, things_, scene_.duration + before, random.fork(4));
+        return std::make_shared<const PersonScript>(*skeleton, plan, things_, room_.stage.walls,
+                                                    scene_.duration + before, random.fork(4));
       } catch (const ConfigurationError& error) {
         fail(element + ".", error.what());
       }
