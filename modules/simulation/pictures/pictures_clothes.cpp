@@ -72,15 +72,8 @@ void buttons(cv::Mat& picture, double x, double from, double to, const cv::Scala
 struct ShirtLines {
   double width, height, middle, neckline, shoulder, chest, waist, hem;
 };
-ShirtLines lines_of(const ShirtCut& cut, double width, double height) {
-  return {width,
-          height,
-          0.5 * width,
-          cut.neckline * height,
-          cut.shoulder * height,
-          cut.chest * height,
-          cut.waist * height,
-          cut.hem * height};
+ShirtLines lines_of(const ShirtCut& cut, double w, double h) {
+  return {w, h, 0.5 * w, cut.neckline * h, cut.shoulder * h, cut.chest * h, cut.waist * h, cut.hem * h};
 }
 
 // The first `columns` moved to the right end.
