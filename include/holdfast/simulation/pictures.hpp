@@ -12,7 +12,9 @@ namespace holdfast::simulation::pictures {
 
 /// A word of two to four syllables that means nothing.
 std::string word(Random& random, bool capital);
-/// A colour (blue green red) with each channel uniform between those of two others.
+/// Of a colour (blue green red), as the eye weighs channels: 0 to 255.
+double brightness(const cv::Scalar& colour);
+/// A colour with each channel uniform between those of two others.
 cv::Scalar colour_between(const cv::Scalar& low, const cv::Scalar& high, Random& random);
 
 cv::Mat plaster(cv::Size size, const cv::Scalar& colour, Random random);

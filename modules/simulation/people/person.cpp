@@ -19,8 +19,6 @@ cv::Scalar varied(const cv::Scalar& colour, double by, Random& random) {
   return result;
 }
 
-double brightness(const cv::Scalar& colour) { return 0.114 * colour[0] + 0.587 * colour[1] + 0.299 * colour[2]; }
-
 pictures::Cloth upper_cloth(Top top, Random& random) {
   static const cv::Scalar dyes[] = {{225, 228, 230}, {205, 200, 190}, {45, 42, 40},    {110, 60, 35},  {150, 100, 60},
                                     {60, 45, 150},   {60, 90, 45},    {70, 120, 170},  {120, 70, 110}, {180, 165, 120},
@@ -42,7 +40,7 @@ pictures::Cloth upper_cloth(Top top, Random& random) {
   cloth.colour = varied(any(dyes, random), 0.15, random);
   // A pattern in a colour too like its ground would not be seen.
   do cloth.second = varied(any(inks, random), 0.1, random);
-  while (std::abs(brightness(cloth.second) - brightness(cloth.colour)) < 45.0);
+  while (std::abs(pictures::brightness(cloth.second) - pictures::brightness(cloth.colour)) < 45.0);
   // What is woven in is seldom as strong as what is printed on.
   if (cloth.weave != Weave::printed) cloth.second = cloth.second * 0.75 + cloth.colour * 0.25;
   cloth.scale = random.uniform(0.8, 1.4);

@@ -11,8 +11,6 @@
 
 namespace holdfast::simulation::pictures {
 
-double brightness(const cv::Scalar& colour) { return 0.114 * colour[0] + 0.587 * colour[1] + 0.299 * colour[2]; }
-
 cv::Scalar darker(const cv::Scalar& colour, double factor) { return colour * factor; }
 
 namespace {

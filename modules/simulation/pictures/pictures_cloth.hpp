@@ -8,8 +8,6 @@
 /// What clothes are cut from, and what is sewn and printed on them.
 namespace holdfast::simulation::pictures {
 
-/// As the eye weighs channels, 0 to 255.
-double brightness(const cv::Scalar& colour);
 cv::Scalar darker(const cv::Scalar& colour, double factor = 0.55);
 
 /// Cloth before it is sewn, its left and right borders meeting; `texels` per metre.

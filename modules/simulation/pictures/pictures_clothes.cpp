@@ -67,34 +67,38 @@ void buttons(cv::Mat& picture, double x, double from, double to, const cv::Scala
     cv::circle(picture, centre, static_cast<int>(0.0045 * texels) + 1, button, cv::FILLED, cv::LINE_AA);
   }
 }
-}  // namespace
 
-cv::Mat shirt(cv::Size size, const Cloth& cloth, const ShirtCut& cut, double texels, Random random) {
-  cv::Mat picture = cloth_ground(size, cloth, texels, random.fork(1));
-  const double width = size.width, height = size.height, middle = 0.5 * width;
-  const double neckline = cut.neckline * height, shoulder = cut.shoulder * height, chest = cut.chest * height,
-               waist = cut.waist * height, hem = cut.hem * height;
-  Random own = random.fork(2);
+// A shirt's cut in texels.
+struct ShirtLines {
+  double width, height, middle, neckline, shoulder, chest, waist, hem;
+};
+ShirtLines lines_of(const ShirtCut& cut, double w, double h) {
+  return {w, h, 0.5 * w, cut.neckline * h, cut.shoulder * h, cut.chest * h, cut.waist * h, cut.hem * h};
+}
 
-  if (cloth.weave == Weave::printed) {
-    print_front(picture, {middle, chest + 0.03 * texels}, 0.24 * texels * own.uniform(0.7, 1.1), cloth, own.fork(1));
-    // Half a print each at the left and right border: one on the back.
-    if (own.uniform() < 0.6) {
-      cv::Mat back(size, CV_8UC3);
-      const int half = size.width / 2;
-      picture(cv::Rect(0, 0, half, size.height)).copyTo(back(cv::Rect(size.width - half, 0, half, size.height)));
-      picture(cv::Rect(half, 0, size.width - half, size.height))
-          .copyTo(back(cv::Rect(0, 0, size.width - half, size.height)));
-      print_front(back, {middle, chest}, 0.26 * texels, cloth, own.fork(2));
-      back(cv::Rect(size.width - half, 0, half, size.height)).copyTo(picture(cv::Rect(0, 0, half, size.height)));
-      back(cv::Rect(0, 0, size.width - half, size.height))
-          .copyTo(picture(cv::Rect(half, 0, size.width - half, size.height)));
-    }
-  }
+// The first `columns` moved to the right end.
+cv::Mat rolled(const cv::Mat& picture, int columns) {
+  cv::Mat result;
+  cv::hconcat(picture.colRange(columns, picture.cols), picture.colRange(0, columns), result);
+  return result;
+}
 
-  // Folds: drawn from the armpits, hanging from the chest, gathered at the waist.
+void print_shirt(cv::Mat& picture, const Cloth& cloth, const ShirtLines& at, double texels, Random& random) {
+  const Random front = random.fork(1);
+  const double wide = 0.24 * texels * random.uniform(0.7, 1.1);
+  print_front(picture, {at.middle, at.chest + 0.03 * texels}, wide, cloth, front);
+  if (random.uniform() >= 0.6) return;
+  // One on the back, half each at the left and right border.
+  const int half = picture.cols / 2;
+  cv::Mat back = rolled(picture, half);
+  print_front(back, {at.middle, at.chest}, 0.26 * texels, cloth, random.fork(2));
+  picture = rolled(back, picture.cols - half);
+}
+
+// Drawn from the armpits, hanging from the chest, gathered at the waist.
+Shade shirt_folds(cv::Size size, const Cloth& cloth, const ShirtLines& at, double texels, const Random& random) {
   Shade shade(size);
-  const auto w = static_cast<float>(width), h = static_cast<float>(height);
+  const auto w = static_cast<float>(at.width), h = static_cast<float>(at.height);
   const double strength = cloth.weave == Weave::knitted ? 0.20 : 0.34;
   const auto fold = [&](double x, double y, double wide, double high, int count, double direction, double spread,
                         double length, double thick, double factor) {
@@ -105,83 +109,103 @@ cv::Mat shirt(cv::Size size, const Cloth& cloth, const ShirtCut& cut, double tex
                  length * texels,
                  thick * texels,
                  factor * strength},
-                own.fork(static_cast<std::uint64_t>(100.0 + x + 7.0 * y + count)));
+                random.fork(static_cast<std::uint64_t>(100.0 + x + 7.0 * y + count)));
   };
   for (const double side : {0.25, 0.75}) {
     for (const double towards : {-1.0, 1.0})
-      fold((side + 0.06 * towards - 0.05) * width, shoulder + 0.02 * height, 0.10 * width, chest - shoulder, 6,
-           towards * (side < 0.5 ? 0.75 : 0.75), 0.45, 0.14, 0.010, 1.0);
-    fold((side - 0.10) * width, chest + 0.3 * (waist - chest), 0.2 * width, waist - chest, 9, side < 0.5 ? 0.4 : -0.4,
-         0.5, 0.13, 0.010, 1.0);
-    shade.spot({static_cast<float>(side) * w, static_cast<float>(chest)}, 0.10F * w,
-               static_cast<float>(0.5 * (waist - shoulder)), 0.30F);
+      fold((side + 0.06 * towards - 0.05) * at.width, at.shoulder + 0.02 * at.height, 0.10 * at.width,
+           at.chest - at.shoulder, 6, 0.75 * towards, 0.45, 0.14, 0.010, 1.0);
+    fold((side - 0.10) * at.width, at.chest + 0.3 * (at.waist - at.chest), 0.2 * at.width, at.waist - at.chest, 9,
+         side < 0.5 ? 0.4 : -0.4, 0.5, 0.13, 0.010, 1.0);
+    shade.spot({static_cast<float>(side) * w, static_cast<float>(at.chest)}, 0.10F * w,
+               static_cast<float>(0.5 * (at.waist - at.shoulder)), 0.30F);
   }
-  fold(0.0, chest, width, waist - chest, 14, 1.57, 0.5, 0.16, 0.013, 0.8);
-  fold(0.0, waist - 0.06 * texels, width, 0.10 * texels, 20, 0.0, 0.55, 0.12, 0.009, 1.1);
-  fold(0.0, shoulder, width, chest - shoulder, 8, 1.57, 0.7, 0.12, 0.012, 0.6);
-  if (hem < height || cut.waist < 0.9) fold(0.0, waist, width, hem - waist, 12, 1.3, 0.6, 0.10, 0.011, 0.9);
-  shade.uneven(0.09F * static_cast<float>(texels), 0.07F * static_cast<float>(texels), 0.07F, 2, own.fork(9));
-  shade.spot({static_cast<float>(middle), static_cast<float>(neckline)}, 0.20F * w, 0.10F * h, 0.18F);
-  shade.spot({static_cast<float>(middle), static_cast<float>(chest + 0.06 * texels)}, 0.22F * w,
+  fold(0.0, at.chest, at.width, at.waist - at.chest, 14, 1.57, 0.5, 0.16, 0.013, 0.8);
+  fold(0.0, at.waist - 0.06 * texels, at.width, 0.10 * texels, 20, 0.0, 0.55, 0.12, 0.009, 1.1);
+  fold(0.0, at.shoulder, at.width, at.chest - at.shoulder, 8, 1.57, 0.7, 0.12, 0.012, 0.6);
+  if (at.hem < at.height || at.waist < 0.9 * at.height)
+    fold(0.0, at.waist, at.width, at.hem - at.waist, 12, 1.3, 0.6, 0.10, 0.011, 0.9);
+  shade.uneven(0.09F * static_cast<float>(texels), 0.07F * static_cast<float>(texels), 0.07F, 2, random.fork(9));
+  shade.spot({static_cast<float>(at.middle), static_cast<float>(at.neckline)}, 0.20F * w, 0.10F * h, 0.18F);
+  shade.spot({static_cast<float>(at.middle), static_cast<float>(at.chest + 0.06 * texels)}, 0.22F * w,
              static_cast<float>(0.05 * texels), 0.10F);
+  return shade;
+}
 
-  if (cut.front == ShirtCut::Front::open) {
-    // What is worn under it shows between the edges.
-    const Cloth& under = cut.under;
-    cv::Mat beneath = cloth_ground(size, under, texels, random.fork(3));
-    buttons(beneath, middle, neckline, height, under.colour, texels);
-    const double at_neck = 0.060 * texels, at_chest = 0.028 * texels, at_hem = 0.050 * texels;
-    const auto edge = [&](double y) {
-      if (y < chest) return at_neck + (at_chest - at_neck) * std::clamp((y - neckline) / (chest - neckline), 0.0, 1.0);
-      return at_chest + (at_hem - at_chest) * std::clamp((y - chest) / (hem - chest), 0.0, 1.0);
-    };
-    for (int y = 0; y < size.height; ++y) {
-      const double half = edge(y);
-      for (int x = static_cast<int>(middle - half); x <= static_cast<int>(middle + half); ++x) {
-        if (x < 0 || x >= size.width) continue;
-        const double inside = std::min(x - (middle - half), middle + half - x) / (0.02 * texels);
-        const double shadow = 0.45 + 0.5 * std::clamp(inside, 0.0, 1.0);
-        const cv::Vec3b colour = beneath.at<cv::Vec3b>(y, x);
-        for (int channel = 0; channel < 3; ++channel)
-          picture.at<cv::Vec3b>(y, x)[channel] = cv::saturate_cast<std::uint8_t>(shadow * colour[channel]);
-      }
+void open_front(cv::Mat& picture, const Cloth& cloth, const Cloth& under, const ShirtLines& at, double texels,
+                const Random& random) {
+  // What is worn under it shows between the edges.
+  cv::Mat beneath = cloth_ground(picture.size(), under, texels, random);
+  buttons(beneath, at.middle, at.neckline, at.height, under.colour, texels);
+  const double at_neck = 0.060 * texels, at_chest = 0.028 * texels, at_hem = 0.050 * texels;
+  const auto edge = [&](double y) {
+    if (y < at.chest)
+      return at_neck + (at_chest - at_neck) * std::clamp((y - at.neckline) / (at.chest - at.neckline), 0.0, 1.0);
+    return at_chest + (at_hem - at_chest) * std::clamp((y - at.chest) / (at.hem - at.chest), 0.0, 1.0);
+  };
+  for (int y = 0; y < picture.rows; ++y) {
+    const double half = edge(y);
+    for (int x = static_cast<int>(at.middle - half); x <= static_cast<int>(at.middle + half); ++x) {
+      if (x < 0 || x >= picture.cols) continue;
+      const double inside = std::min(x - (at.middle - half), at.middle + half - x) / (0.02 * texels);
+      const double shadow = 0.45 + 0.5 * std::clamp(inside, 0.0, 1.0);
+      const cv::Vec3b colour = beneath.at<cv::Vec3b>(y, x);
+      for (int channel = 0; channel < 3; ++channel)
+        picture.at<cv::Vec3b>(y, x)[channel] = cv::saturate_cast<std::uint8_t>(shadow * colour[channel]);
     }
-    for (const double side : {-1.0, 1.0}) {
-      for (int y = 0; y + 4 < size.height; y += 4) {
-        const cv::Point2d a(middle + side * edge(y), y), b(middle + side * edge(y + 4), y + 4);
-        cv::line(picture, a, b, darker(cloth.colour, 0.4), 2, cv::LINE_AA);
-        const cv::Point2d aside(side * 0.012 * texels, 0);
-        if (y % 8 == 0)
-          cv::line(picture, a + aside, b + aside, mix(cloth.colour, cv::Scalar::all(150), 0.5), 1, cv::LINE_AA);
-      }
-      seam_line(picture, {middle + side * 0.10 * texels, waist + 0.02 * texels},
-                {middle + side * 0.16 * texels, waist + 0.10 * texels}, cloth.colour, texels);
-      patch_pocket(
-          picture,
-          {middle + side * 0.115 * texels - 0.05 * texels, chest - 0.01 * texels, 0.10 * texels, 0.12 * texels},
-          cloth.colour, texels, true);
-    }
-  } else if (cut.front == ShirtCut::Front::buttons) {
-    buttons(picture, middle, neckline, hem, cloth.colour, texels);
-    const double pocket = 0.105 * texels;
-    patch_pocket(picture, {middle + 0.045 * texels, chest - 0.03 * texels, pocket, 1.15 * pocket}, cloth.colour, texels,
-                 own.uniform() < 0.5);
-    if (own.uniform() < 0.5)
-      patch_pocket(picture, {middle - 0.045 * texels - pocket, chest - 0.03 * texels, pocket, 1.15 * pocket},
-                   cloth.colour, texels, true);
   }
-  // Seams: shoulders, sides, hem; a ribbed neckline where there is no collar.
+  for (const double side : {-1.0, 1.0}) {
+    for (int y = 0; y + 4 < picture.rows; y += 4) {
+      const cv::Point2d a(at.middle + side * edge(y), y), b(at.middle + side * edge(y + 4), y + 4);
+      cv::line(picture, a, b, darker(cloth.colour, 0.4), 2, cv::LINE_AA);
+      const cv::Point2d aside(side * 0.012 * texels, 0);
+      if (y % 8 == 0)
+        cv::line(picture, a + aside, b + aside, mix(cloth.colour, cv::Scalar::all(150), 0.5), 1, cv::LINE_AA);
+    }
+    seam_line(picture, {at.middle + side * 0.10 * texels, at.waist + 0.02 * texels},
+              {at.middle + side * 0.16 * texels, at.waist + 0.10 * texels}, cloth.colour, texels);
+    const double left = at.middle + side * 0.115 * texels - 0.05 * texels;
+    patch_pocket(picture, {left, at.chest - 0.01 * texels, 0.10 * texels, 0.12 * texels}, cloth.colour, texels, true);
+  }
+}
+
+void buttoned_front(cv::Mat& picture, const Cloth& cloth, const ShirtLines& at, double texels, Random& random) {
+  buttons(picture, at.middle, at.neckline, at.hem, cloth.colour, texels);
+  const double pocket = 0.105 * texels;
+  patch_pocket(picture, {at.middle + 0.045 * texels, at.chest - 0.03 * texels, pocket, 1.15 * pocket}, cloth.colour,
+               texels, random.uniform() < 0.5);
+  if (random.uniform() < 0.5)
+    patch_pocket(picture, {at.middle - 0.045 * texels - pocket, at.chest - 0.03 * texels, pocket, 1.15 * pocket},
+                 cloth.colour, texels, true);
+}
+
+// Shoulders, sides, hem; `ribbed`: the neckline of what has no collar.
+void shirt_seams(cv::Mat& picture, const Cloth& cloth, const ShirtLines& at, bool ribbed, double texels) {
   for (const double side : {0.25, 0.75})
-    seam_line(picture, {side * width, chest}, {side * width, height}, cloth.colour, texels);
-  if (cut.hem < 1.0) {
-    seam_line(picture, {0, hem - 0.022 * texels}, {width, hem - 0.022 * texels}, cloth.colour, texels);
-    cv::rectangle(picture, cv::Rect2d(0, hem, width, height - hem), darker(cloth.colour, 0.25), cv::FILLED);
+    seam_line(picture, {side * at.width, at.chest}, {side * at.width, at.height}, cloth.colour, texels);
+  if (at.hem < at.height) {
+    seam_line(picture, {0, at.hem - 0.022 * texels}, {at.width, at.hem - 0.022 * texels}, cloth.colour, texels);
+    cv::rectangle(picture, cv::Rect2d(0, at.hem, at.width, at.height - at.hem), darker(cloth.colour, 0.25), cv::FILLED);
   }
-  if (cut.front == ShirtCut::Front::closed)
-    cv::rectangle(picture, cv::Rect2d(0, 0, width, neckline + 0.014 * texels), darker(cloth.colour, 0.8), cv::FILLED);
-  seam_line(picture, {0, neckline + 0.016 * texels}, {width, neckline + 0.016 * texels}, cloth.colour, texels);
-  if (neckline > 1.0) cv::rectangle(picture, cv::Rect2d(0, 0, width, neckline), darker(cloth.colour, 0.35), cv::FILLED);
-  shade.apply(picture);
+  if (ribbed)
+    cv::rectangle(picture, cv::Rect2d(0, 0, at.width, at.neckline + 0.014 * texels), darker(cloth.colour, 0.8),
+                  cv::FILLED);
+  seam_line(picture, {0, at.neckline + 0.016 * texels}, {at.width, at.neckline + 0.016 * texels}, cloth.colour, texels);
+  if (at.neckline > 1.0)
+    cv::rectangle(picture, cv::Rect2d(0, 0, at.width, at.neckline), darker(cloth.colour, 0.35), cv::FILLED);
+}
+}  // namespace
+
+cv::Mat shirt(cv::Size size, const Cloth& cloth, const ShirtCut& cut, double texels, Random random) {
+  cv::Mat picture = cloth_ground(size, cloth, texels, random.fork(1));
+  const ShirtLines at = lines_of(cut, size.width, size.height);
+  Random own = random.fork(2);
+  if (cloth.weave == Weave::printed) print_shirt(picture, cloth, at, texels, own);
+  const Shade folds = shirt_folds(size, cloth, at, texels, own);
+  if (cut.front == ShirtCut::Front::open) open_front(picture, cloth, cut.under, at, texels, random.fork(3));
+  if (cut.front == ShirtCut::Front::buttons) buttoned_front(picture, cloth, at, texels, own);
+  shirt_seams(picture, cloth, at, cut.front == ShirtCut::Front::closed, texels);
+  folds.apply(picture);
   return picture;
 }
 

@@ -36,6 +36,8 @@ cv::Point any_texel(cv::Size size, Random& random) {
 }
 }  // namespace
 
+double brightness(const cv::Scalar& colour) { return 0.114 * colour[0] + 0.587 * colour[1] + 0.299 * colour[2]; }
+
 // Channel by channel in statements of their own: in which order a call's arguments are evaluated is left to the
 // compiler, and the same seed shall give the same picture with all of them.
 cv::Scalar colour_between(const cv::Scalar& low, const cv::Scalar& high, Random& random) {

@@ -18,7 +18,7 @@ cv::Scalar any_colour(Random& random) {
 
 // Dark on light and light on dark.
 cv::Scalar contrasting(const cv::Scalar& ground, Random& random) {
-  const bool light = 0.114 * ground[0] + 0.587 * ground[1] + 0.299 * ground[2] > 120.0;
+  const bool light = brightness(ground) > 120.0;
   return light ? colour_between({0, 0, 0}, {80, 60, 80}, random)
                : colour_between({170, 190, 170}, {255, 255, 255}, random);
 }

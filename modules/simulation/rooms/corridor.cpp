@@ -5,8 +5,6 @@
 namespace holdfast::simulation {
 
 namespace {
-constexpr double table_top = 0.73;
-constexpr double quarter_turn = 1.57079632679;
 constexpr double width = 20.0, depth = 2.6, height = 2.6, pitch = 2.0;
 constexpr int modules = 10;
 constexpr int built = 5;  // the module that is furnished and copied

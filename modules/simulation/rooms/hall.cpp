@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+
 #include "room_builder.hpp"
 #include "rooms.hpp"
 
 namespace holdfast::simulation {
 
 namespace {
-constexpr double table_top = 0.73;
-constexpr double quarter_turn = 1.57079632679;
 constexpr double width = 11.0, depth = 9.0;
 
 // Facing into the hall from its walls, and the same for things that stand free.

@@ -5,8 +5,6 @@
 namespace holdfast::simulation {
 
 namespace {
-constexpr double table_top = 0.73;
-constexpr double quarter_turn = 1.57079632679;
 constexpr double stool_height = 0.40;
 constexpr double door_left = 1.40, door_right = 2.25;
 

@@ -28,9 +28,7 @@ std::vector<std::string> room_names() {
 RoomKind room_kind(const std::string& name) {
   for (const auto& [kind, known] : kinds)
     if (name == known) return kind;
-  std::vector<Diagnostic> problems(1);
-  problems[0].message = "room '" + name + "' is not known; expected office, hall or corridor";
-  throw ConfigurationError(std::move(problems));
+  throw ConfigurationError(SourceLocation{}, "room '" + name + "' is not known; expected office, hall or corridor");
 }
 
 Stage make_stage(RoomKind kind) {

@@ -2,13 +2,12 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <cmath>
 #include <opencv2/core/mat.hpp>
 #include <string>
 
 #include "holdfast/core/random.hpp"
 #include "holdfast/simulation/world.hpp"
+#include "measures.hpp"
 
 namespace holdfast::simulation {
 
@@ -63,7 +62,7 @@ class RoomBuilder {
   void clock(const Place& place);
   void plant(const Place& place, double height);
   /// A table on four legs; `stool`: any low one.
-  void table(const Place& place, double width, double depth, double height = 0.73);
+  void table(const Place& place, double width, double depth, double height = table_top);
   void stool(const Place& place, double width, double depth, double height);
   /// A screen between workplaces, covered with cloth, with papers pinned to both sides.
   void partition(const Place& place, double width, double height);
@@ -100,13 +99,9 @@ class RoomBuilder {
 
 template <class Painter>
 BoxSkin RoomBuilder::skin(const Eigen::AlignedBox3f& shape, double density, Painter&& painter, bool all_different) {
-  const auto texels = [](float length, double per_metre) {
-    return std::max(4, static_cast<int>(std::lround(length * per_metre)));
-  };
   const Eigen::Vector3f size = shape.sizes();
   const auto painted = [&](BoxSide side, float width, float height, double fineness) {
-    const cv::Size texture_size(texels(width, fineness), texels(height, fineness));
-    return paint(painter(texture_size, random_.fork(static_cast<std::uint64_t>(side) + 1)));
+    return paint(painter(texels(width, height, fineness), random_.fork(static_cast<std::uint64_t>(side) + 1)));
   };
   BoxSkin result;
   result[front] = painted(front, size.x(), size.z(), density);

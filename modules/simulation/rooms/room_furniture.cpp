@@ -11,15 +11,6 @@ using Eigen::AlignedBox3f;
 using Eigen::Vector3f;
 
 namespace {
-AlignedBox3f box(double x0, double y0, double z0, double x1, double y1, double z1) {
-  return {Vector3f(Eigen::Vector3d(x0, y0, z0).cast<float>()), Vector3f(Eigen::Vector3d(x1, y1, z1).cast<float>())};
-}
-
-cv::Size texels(double width, double height, double density) {
-  return {std::max(4, static_cast<int>(std::lround(width * density))),
-          std::max(4, static_cast<int>(std::lround(height * density)))};
-}
-
 const cv::Scalar light_wood(120, 165, 205), dark_wood(60, 95, 140), grey_plastic(150, 152, 155),
     black_plastic(38, 36, 36);
 }  // namespace

@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
-#include <cmath>
-
 #include "holdfast/simulation/pictures.hpp"
 #include "room_builder.hpp"
 
@@ -11,15 +8,6 @@ using Eigen::AlignedBox3f;
 using Eigen::Vector3f;
 
 namespace {
-AlignedBox3f box(double x0, double y0, double z0, double x1, double y1, double z1) {
-  return {Vector3f(Eigen::Vector3d(x0, y0, z0).cast<float>()), Vector3f(Eigen::Vector3d(x1, y1, z1).cast<float>())};
-}
-
-cv::Size texels(double width, double height, double density) {
-  return {std::max(4, static_cast<int>(std::lround(width * density))),
-          std::max(4, static_cast<int>(std::lround(height * density)))};
-}
-
 // The part of an area that a part of its rectangle shows; shares of its width and height.
 TextureArea part(const TextureArea& area, float left, float top, float right, float bottom) {
   return {area.texture, area.u + left * area.width, area.v + top * area.height, (right - left) * area.width,

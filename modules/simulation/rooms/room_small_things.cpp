@@ -10,12 +10,6 @@ namespace holdfast::simulation {
 using Eigen::AlignedBox3f;
 using Eigen::Vector3f;
 
-namespace {
-AlignedBox3f box(double x0, double y0, double z0, double x1, double y1, double z1) {
-  return {Vector3f(Eigen::Vector3d(x0, y0, z0).cast<float>()), Vector3f(Eigen::Vector3d(x1, y1, z1).cast<float>())};
-}
-}  // namespace
-
 void RoomBuilder::monitor(const Place& place, double width) {
   Object& object = add("monitor", place);
   const double height = 0.6 * width, foot = 0.12;
