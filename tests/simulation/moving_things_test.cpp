@@ -296,16 +296,16 @@ TEST(MotionBlur, FollowsTheCamera) {
   EXPECT_EQ(cv::norm(sharp.colour, renderer.render(turning(0.0), 0.0).colour, cv::NORM_INF), 0.0);
 }
 
-TEST(MovesAt, TellsWhatMovesFasterThanThreeCentimetresPerSecond) {
+TEST(MovesAt, TellsWhatMovesFasterThanTenCentimetresPerSecond) {
   World world;
   Object object = tube(white(world));
   EXPECT_TRUE(moves_at(object, 0.4));
   const auto rest = object.bones(0.3);
   object.bones = [rest](double) { return rest; };
-  object.motion = [](double time) { return Isometry3d(Translation3d(0, 0.05 * std::min(time, 2.0), 0)); };
+  object.motion = [](double time) { return Isometry3d(Translation3d(0, 0.12 * std::min(time, 2.0), 0)); };
   EXPECT_TRUE(moves_at(object, 1.0));
   EXPECT_FALSE(moves_at(object, 3.0));
-  object.motion = [](double time) { return Isometry3d(Translation3d(0, 0.02 * time, 0)); };
+  object.motion = [](double time) { return Isometry3d(Translation3d(0, 0.08 * time, 0)); };
   EXPECT_FALSE(moves_at(object, 1.0));
   object.motion = nullptr;
   EXPECT_FALSE(moves_at(object, 1.0));

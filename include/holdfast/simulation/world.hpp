@@ -41,8 +41,8 @@ struct PosedVertex {
 /// T_bone_object(rest) is applied to the vertex (Magnenat-Thalmann, Laperriere and Thalmann, Graphics Interface 1988).
 void pose_vertices(const Object& object, double time, std::vector<PosedVertex>& posed, std::size_t stride = 1);
 
-/// Whether the object's surface moves faster than 3 cm/s around a time [s]: a part of its vertices is compared between
-/// a sixtieth of a second before and after.
+/// Whether any of the object's surface moves faster than 10 cm/s around a time [s]: a part of its vertices is compared
+/// between a sixtieth of a second before and after. People who sit or stand breathe, sway and look about more slowly.
 bool moves_at(const Object& object, double time);
 
 /// A lamp that shines from a point in all directions.

@@ -49,7 +49,7 @@ void pose_vertices(const Object& object, double time, std::vector<PosedVertex>& 
 bool moves_at(const Object& object, double time) {
   if (!object.moves() || object.mesh.vertices.empty()) return false;
   constexpr double half_interval = 1.0 / 60.0;
-  constexpr float fastest = 0.03F * 2.0F * static_cast<float>(half_interval);  // that counts as still [m]
+  constexpr float fastest = 0.1F * 2.0F * static_cast<float>(half_interval);  // that counts as still [m]
   const std::size_t stride = std::max<std::size_t>(1, object.mesh.vertices.size() / 64);
   std::vector<PosedVertex> before, after;
   pose_vertices(object, time - half_interval, before, stride);
