@@ -36,7 +36,7 @@ ThingPlaces room() {
   things["chair 2"] = thing("chair", {4, 1, 0}, 0.3, chair_low, chair_high);
   things["box 1"] = thing("box", {2, 3, 0}, 0.4, box_low, box_high);
   things["desk 1"] = thing("desk", {5, 4.6, 0}, 0.0, {-0.8, -0.35, 0}, {0.8, 0.35, 0.73});
-  things["cupboard 1"] = thing("cupboard", {0.5, 4.6, 0}, 0.0, {-0.5, -0.45, 0}, {0.5, 0.45, 1.0});
+  things["box 2"] = thing("box", {0.5, 4.6, 0}, 0.0, {-0.5, -0.45, 0}, {0.5, 0.45, 1.0});
   return things;
 }
 
@@ -312,8 +312,62 @@ TEST(PersonScript, RefusesWhatCannotBeDone) {
   EXPECT_NE(refusal({Sit{"box 1", 3.0, false}}).find("expected a chair"), std::string::npos);
   EXPECT_NE(refusal({Walk{{}, 1.0}}).find("without places"), std::string::npos);
   EXPECT_NE(refusal({Walk{{{1, 1}}, 0.0}}).find("speed"), std::string::npos);
-  EXPECT_NE(refusal({Carry{.thing = "cupboard 1", .to = {}}}).find("at most 80 cm"), std::string::npos);
+  EXPECT_NE(refusal({Carry{.thing = "box 2", .to = {}}}).find("at most 80 cm"), std::string::npos);
   EXPECT_NE(refusal({Carry{.thing = "box 1", .to = {}, .put_at = {3, 3, 2.4}}}).find("put down"), std::string::npos);
+}
+
+TEST(PersonScript, MovesOnlyLooseThingsOnWhichNothingStands) {
+  const auto carried = [](const std::string& name) {
+    return Carry{.thing = name, .to = {{4.0, 2.0}}, .put_at = {5, 4.45, 0.73}};
+  };
+  const auto pushed = [](const std::string& name) { return Push{.thing = name, .to = {{3.0, 3.0}}}; };
+  const std::string desk = refusal({pushed("desk 1")});
+  EXPECT_NE(desk.find("which is a desk and stays where it is"), std::string::npos) << desk;
+  EXPECT_NE(desk.find("box 1, chair 2, box 2, chair 1"), std::string::npos) << "the nearest first: " << desk;
+  EXPECT_NE(refusal({carried("desk 1")}).find("stays where it is"), std::string::npos);
+
+  const auto stacked = [](std::vector<Action> actions) {
+    ThingPlaces things = room();
+    things["box 3"] = thing("box", {2.05, 2.95, 0.28}, 0.9, {-0.15, -0.12, 0}, {0.15, 0.12, 0.2});
+    things["mug 1"] = thing("mug", {4.05, 1.05, 0.5}, 0.0, {-0.04, -0.04, 0}, {0.04, 0.04, 0.1});
+    try {
+      PersonScript(skeleton, plan(std::move(actions)), things, walls, 20.0, Random(1));
+    } catch (const ConfigurationError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const std::string lower = stacked({carried("box 1")});
+  EXPECT_NE(lower.find("on which 'box 3' stands"), std::string::npos) << lower;
+  EXPECT_EQ(lower.find("box 2"), std::string::npos) << "is too wide: " << lower;
+  EXPECT_NE(stacked({pushed("chair 2")}).find("on which 'mug 1' stands"), std::string::npos);
+  EXPECT_NE(stacked({Sit{"chair 2", 2.0, false}}).find("on which 'mug 1' stands"), std::string::npos);
+  EXPECT_NE(stacked({pushed("box 3")}).find("28 cm above the floor"), std::string::npos);
+  const Carry away{.thing = "box 3", .to = {{4.0, 2.0}}, .put_at = {5.3, 4.45, 0.73}};
+  EXPECT_EQ(stacked({away, carried("box 1")}), "") << "one after the other";
+}
+
+TEST(PersonScript, PutsThingsDownWhereSomethingBearsThem) {
+  const auto put = [](double x, double y, double z) {
+    return Carry{.thing = "box 1", .to = {{4.0, 2.0}}, .put_at = {x, y, z}};
+  };
+  const std::string in_air = refusal({put(5, 4.45, 0.5)});
+  EXPECT_NE(in_air.find("0.50 m, where nothing bears it; expected 0.73 m, the top of 'desk 1'"), std::string::npos)
+      << in_air;
+  EXPECT_NE(refusal({put(3, 3, 0.1)}).find("expected 0.00 m, the floor"), std::string::npos);
+  EXPECT_NE(refusal({put(3, 7, 0.0)}).find("outside the room"), std::string::npos);
+  EXPECT_EQ(refusal({put(3, 3, 0.0)}), "");
+  EXPECT_EQ(refusal({put(5, 4.45, 0.74)}), "");
+
+  // What bears it cannot be taken away by others, before or afterwards.
+  const Carry on_seat = put(4, 1, 0.5);
+  for (const bool first : {true, false}) {
+    ThingPlaces things = room();
+    PersonPlan putting = plan({on_seat}), pushing = plan({push});
+    pushing.name = "person 2";
+    PersonScript(skeleton, first ? putting : pushing, things, walls, 20.0, Random(1));
+    EXPECT_THROW(PersonScript(skeleton, first ? pushing : putting, things, walls, 20.0, Random(1)), ConfigurationError);
+  }
 }
 
 TEST(PersonScript, OnePersonHasAThingWhoeverComesFirst) {

@@ -24,7 +24,7 @@ struct ThingPlace {
   Eigen::AlignedBox3d extents;                                      ///< in the thing's frame [m]
   std::string class_name;
   std::string moved_by;  ///< the person who pushes or carries it; set by PersonScript
-  std::string used_by;   ///< the person who sits on it; set by PersonScript
+  std::string used_by;   ///< the person who sits on it or puts a thing on it; set by PersonScript
 };
 using ThingPlaces = std::map<std::string, ThingPlace>;
 
@@ -32,9 +32,12 @@ using ThingPlaces = std::map<std::string, ThingPlace>;
 /// any time [s], in any order of asking. Everything is C1 in time: feet stand still on the floor while they bear
 /// (FootTrack), legs and arms follow by inverse kinematics, the pelvis is as high as the legs allow.
 ///
-/// Who pushes, carries or sits on a thing has it for himself: others may neither move it nor sit on it, whoever's
-/// script is made first. People do not evade one another, nor furniture on the way to places in their plan; they do go
-/// round the thing they want to use. Cheap to copy; may be asked from several threads at once.
+/// Who pushes, carries or sits on a thing, or puts something on it, has it for himself: others may neither move it nor
+/// sit on it, whoever's script is made first. Boxes, chairs, stools and plants that stand on the floor can be pushed;
+/// these and the small things on desks can be carried; neither while something else stands on them. Things are put down
+/// on the floor or on another thing (on a chair's seat, else on its highest point), at its height to 2 cm. People do
+/// not evade one another, nor furniture on the way to places in their plan; they do go round the thing they want to
+/// use. Cheap to copy; may be asked from several threads at once.
 class PersonScript {
  public:
   /// Plays `plan` up to `duration` at least; afterwards (and before 0) the person stands still. Enters the person's

@@ -5,18 +5,11 @@
 #include <cmath>
 #include <utility>
 
-#include "holdfast/core/error.hpp"
-
 namespace holdfast::simulation {
 
 using Eigen::Isometry3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-namespace {
-constexpr double seat_height = 0.50;
-constexpr double approaching = 1.0;  // speed on ways that the plan does not tell [m/s]
-}  // namespace
 
 void ScriptBuilder::play(const Action& action, std::size_t number) {
   action_number_ = number;
@@ -77,6 +70,8 @@ void ScriptBuilder::sit(const Sit& action) {
   ThingPlace& chair = thing(action.on, "sit on");
   if (chair.class_name != "chair")
     refuse("wants to sit on '" + action.on + "', which is a " + chair.class_name + "; expected a chair");
+  if (const std::string above = thing_on(action.on); !above.empty())
+    refuse("wants to sit on '" + action.on + "', on which '" + above + "' stands; let it be taken away first");
   check_positive(action.duration, "time to sit");
   chair.used_by = plan_.name;
   const Isometry3d T_world_chair = rest(action.on);
@@ -110,55 +105,6 @@ double ScriptBuilder::table_before(const Isometry3d& T_world_chair) const {
     if (above && top > 0.6 && top < 0.85) return top;
   }
   return 0.0;
-}
-
-ThingPlace& ScriptBuilder::thing(const std::string& name, const std::string& doing) {
-  const auto found = things_.find(name);
-  if (found == things_.end()) {
-    // Those of the same class, or all.
-    const std::string wanted = name.substr(0, name.find(' '));
-    std::string similar, all;
-    for (const auto& [known, place] : things_) {
-      if (place.class_name == wanted) similar += (similar.empty() ? "" : ", ") + known;
-      all += (all.empty() ? "" : ", ") + known;
-    }
-    refuse("wants to " + doing + " '" + name + "', which is not in the room; " +
-           (!similar.empty() ? "there are " + similar
-            : !all.empty()   ? "known are " + all
-                             : "there is nothing in the room"));
-  }
-  ThingPlace& place = found->second;
-  const auto others = [&](const std::string& person) { return !person.empty() && person != plan_.name; };
-  if (others(place.moved_by) || others(place.used_by))
-    refuse("wants to " + doing + " '" + name + "', which " +
-           (others(place.moved_by) ? place.moved_by + " moves" : place.used_by + " uses") +
-           "; let one person do it, or take different things");
-  return place;
-}
-
-ThingPlace& ScriptBuilder::claim(const std::string& name, const std::string& doing) {
-  ThingPlace& place = thing(name, doing);
-  place.moved_by = plan_.name;
-  movement_.things.try_emplace(name, place.T_world_thing);
-  return place;
-}
-
-Isometry3d ScriptBuilder::rest(const std::string& name) const {
-  const auto moved = movement_.things.find(name);
-  return moved != movement_.things.end() ? moved->second.rest() : things_.at(name).T_world_thing;
-}
-
-void ScriptBuilder::check_positive(double value, const std::string& what) const {
-  if (!(value > 0.0)) refuse("has " + std::to_string(value) + " as " + what + "; expected more than 0");
-}
-
-void ScriptBuilder::check_route(const std::vector<Vector2d>& to, const std::string& doing) const {
-  if (to.empty()) refuse("is to " + doing + " along a route without places; expected at least one");
-}
-
-void ScriptBuilder::refuse(const std::string& problem) const {
-  throw ConfigurationError({}, "do." + std::to_string(action_number_) + ": " +
-                                   (plan_.name.empty() ? "a person" : plan_.name) + " " + problem);
 }
 
 }  // namespace holdfast::simulation

@@ -27,6 +27,7 @@ class ScriptBuilder {
     Eigen::Vector2d centre;
     double radius;
   };
+  enum class Handling { push, carry };
   /// Where to stand before a thing so that its sides are left and right.
   struct Standpoint {
     Eigen::Vector2d position;
@@ -50,7 +51,18 @@ class ScriptBuilder {
   /// Walks to a place, past others, round what must not be walked through.
   void go(std::vector<Eigen::Vector2d> points, double speed, const std::optional<Obstacle>& obstacle);
   ThingPlace& thing(const std::string& name, const std::string& doing);
-  ThingPlace& claim(const std::string& name, const std::string& doing);
+  ThingPlace& claim(const std::string& name, Handling handling);
+  bool others(const std::string& person) const;
+  bool of_another(const ThingPlace& place) const { return others(place.moved_by) || others(place.used_by); }
+  /// Why a thing cannot be pushed or carried, as a relative clause; empty if it can.
+  std::string hindrance(const std::string& name, Handling handling) const;
+  /// Whether a point is above or below a thing's footprint.
+  bool in_footprint(const std::string& name, const Eigen::Vector3d& point) const;
+  /// How high something lies on a thing [m].
+  double bearing_height(const std::string& name) const;
+  /// What stands on a thing; empty = nothing.
+  std::string thing_on(const std::string& name) const;
+  void check_put_down(const Carry& action);
   Eigen::Isometry3d rest(const std::string& name) const;
   void check_positive(double value, const std::string& what) const;
   void check_route(const std::vector<Eigen::Vector2d>& to, const std::string& doing) const;
@@ -75,6 +87,11 @@ class ScriptBuilder {
   std::optional<Obstacle> behind_;  ///< what the person has just let go of
 };
 
+constexpr double seat_height = 0.50;  // of chairs [m]
+constexpr double widest_load = 0.8;   // [m]
+constexpr double approaching = 1.0;   // speed on ways that the plan does not tell [m/s]
+
+inline Eigen::Vector3d flat(const Eigen::Vector2d& v) { return {v.x(), v.y(), 0.0}; }
 /// Heading of an upright thing [rad].
 inline double yaw_of(const Eigen::Isometry3d& pose) { return std::atan2(pose.linear()(1, 0), pose.linear()(0, 0)); }
 inline Eigen::Isometry3d turned(double yaw) {

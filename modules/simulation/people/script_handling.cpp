@@ -13,12 +13,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 namespace {
-constexpr double approaching = 1.0;  // [m/s]
-constexpr double widest_load = 0.8;  // [m]
-constexpr double from_wall = 0.2;    // the middle of one who stands [m]
-
-Vector3d flat(const Vector2d& v) { return {v.x(), v.y(), 0.0}; }
-
 /// Both palms against the sides of a thing, not too far from its near face, fingers forward and a little down.
 Grips side_grips(const Vector3d& centre, const Vector3d& left, const Vector3d& forward, double half_width,
                  double half_depth) {
@@ -61,23 +55,6 @@ ScriptBuilder::Seen ScriptBuilder::see(const Isometry3d& T_world_thing, const Ei
   seen.half_width = seen.left.cwiseAbs().dot(half);
   seen.half_depth = seen.forward.cwiseAbs().dot(half);
   return seen;
-}
-
-bool ScriptBuilder::free_to_stand(const Vector2d& position, const std::string& except) const {
-  const Vector2d from_low = position - walls_.min().head<2>(), from_high = walls_.max().head<2>() - position;
-  if (std::min(from_low.minCoeff(), from_high.minCoeff()) < from_wall) return false;
-  for (const auto& [name, place] : things_) {
-    // The boxes around these enclose the room.
-    const bool shell = place.class_name == "wall" || place.class_name == "floor" || place.class_name == "ceiling";
-    if (name == except || shell) continue;
-    const Isometry3d pose = rest(name);
-    const double ground = pose.translation().z() + place.extents.min().z();
-    if (ground + place.extents.sizes().z() < 0.05 || ground > 1.8) continue;
-    Vector3d local = pose.inverse() * flat(position);
-    local.z() = place.extents.center().z();
-    if (place.extents.exteriorDistance(local) < 0.12) return false;
-  }
-  return true;
 }
 
 std::optional<Movement::Bend> ScriptBuilder::bend_to_reach(const Grips& grips, const Isometry3d& T_person_thing,
@@ -124,7 +101,7 @@ std::optional<ScriptBuilder::Standpoint> ScriptBuilder::place_before(const Isome
 void ScriptBuilder::push(const Push& action) {
   check_route(action.to, "push '" + action.thing + "'");
   check_positive(action.speed, "speed of pushing");
-  claim(action.thing, "push");
+  claim(action.thing, Handling::push);
   std::vector<Vector2d> places{rest(action.thing).translation().head<2>()};
   for (const Vector2d& place : action.to)
     if ((place - places.back()).norm() >= 0.05) places.push_back(place);
@@ -208,12 +185,9 @@ void ScriptBuilder::push_along(const Push& action, const std::vector<Vector2d>& 
 
 void ScriptBuilder::carry(const Carry& action) {
   check_positive(action.speed, "speed of carrying");
-  const ThingPlace& place = claim(action.thing, "carry");
+  const ThingPlace& place = claim(action.thing, Handling::carry);
   const Isometry3d T_world_thing = rest(action.thing);
-  const Vector3d size = place.extents.sizes();
-  if (std::min(size.x(), size.y()) > widest_load)
-    refuse("cannot carry '" + action.thing + "', which is " +
-           std::to_string(std::lround(100.0 * std::min(size.x(), size.y()))) + " cm wide; expected at most 80 cm");
+  check_put_down(action);
 
   // Of the four sides the nearest from which it can be had.
   std::optional<Standpoint> stand;
