@@ -180,19 +180,15 @@ TEST_F(SimulateScene, WritesMasksLabelsAndObjectsThatAgree) {
   }
 }
 
-TEST_F(SimulateScene, SameSeedSameBytesInEveryFileAndOtherwiseNot) {
+TEST_F(SimulateScene, SameSeedSameBytesInEveryFile) {
   const std::string short_one = "--duration 1 --camera tum_fr3 --set depth_sensor.noise=0.5 --output ";
-  for (const auto& [name, seed] : {std::pair("a", 7), {"b", 7}, {"c", 8}})
-    ASSERT_EQ(run(command("--seed " + std::to_string(seed) + " " + short_one + (root_ / name).string())), 0);
+  for (const char* name : {"a", "b"}) ASSERT_EQ(run(command("--seed 7 " + short_one + (root_ / name).string())), 0);
   int files = 0;
   for (const auto& entry : fs::recursive_directory_iterator(root_ / "a")) {
     if (entry.is_directory()) continue;
     ++files;
     const fs::path name = fs::relative(entry.path(), root_ / "a");
     EXPECT_TRUE(content(entry.path()) == content(root_ / "b" / name)) << name;
-    if (entry.path().extension() == ".png") {
-      EXPECT_FALSE(content(entry.path()) == content(root_ / "c" / name)) << name;
-    }
   }
   EXPECT_EQ(files, 12);  // four images, four lists of them, associations, poses, objects, scene
   const nlohmann::json about = nlohmann::json::parse(content(root_ / "a" / "scene.json"));

@@ -406,17 +406,17 @@ TEST(Truth, TellsWhatMovesAtTheMoment) {
 
 TEST(Truth, FramesAreTheSameBytesInAnyOrder) {
   Scene scene = busy_office();
-  scene.colour_sensor = {.noise = 2.0, .exposure_change = 0.4, .vignetting = 0.2, .shutter = 0.02};
+  scene.colour_sensor = {.noise = 2.0, .exposure_change = 0.4, .vignetting = 0.2, .shutter = 0.01};
   scene.depth_sensor = {};
   Simulator one(scene, small("tum_fr1", 4)), other(scene, small("tum_fr1", 4));
   std::vector<SensorFrame> frames;
-  for (const std::uint64_t index : {0, 150, 151, 720}) frames.push_back(one.frame(index));
+  for (const std::uint64_t index : {150, 151, 720}) frames.push_back(one.frame(index));
   for (auto frame = frames.rbegin(); frame != frames.rend(); ++frame) {
     const SensorFrame again = other.frame(frame->index);
     EXPECT_TRUE(same_bytes(again.colour, frame->colour)) << frame->index;
     EXPECT_TRUE(same_truth(again, *frame)) << frame->index;
   }
-  EXPECT_FALSE(same_bytes(frames[1].truth->object_mask, frames[2].truth->object_mask));
+  EXPECT_FALSE(same_bytes(frames[0].truth->object_mask, frames[1].truth->object_mask));
 }
 
 double sharpness(const cv::Mat& colour) {
@@ -434,10 +434,10 @@ TEST(Truth, DarknessAndAnOpenShutterChangeColourAlone) {
   scene.camera.style.speed = 2.0;
   Simulator plain(scene, small("tum_fr3", 4));
   scene.lights_out = {{.from = 10.0, .to = 11.0}};
-  scene.colour_sensor.shutter = 0.1;
+  scene.colour_sensor.shutter = 0.06;
   Simulator special(scene, small("tum_fr3", 4));
   double sharp_edges = 0.0, blurred_edges = 0.0;
-  for (const std::uint64_t index : {200, 299, 300, 329, 330}) {
+  for (const std::uint64_t index : {200, 300, 329, 330}) {
     const SensorFrame sharp = plain.frame(index), frame = special.frame(index);
     EXPECT_TRUE(same_truth(sharp, frame)) << index;
     EXPECT_GT(cv::countNonZero(frame.depth), 0.7 * 160 * 120) << index;
