@@ -49,6 +49,27 @@ TEST(Reference, JsonHoldsTheTable) {
   EXPECT_EQ(count["minimum"], 50);
 }
 
+TEST(Reference, ListsTheSectionsOfSceneFilesUnderTheirOwnHeading) {
+  std::vector<SectionDescription> sections = test::test_sections();
+  for (const char* name : {"scene", "scene.people.do.walk"})
+    sections.push_back(
+        {name, std::string("About ") + name + ".", ParameterTable<test::TrackingSettings>().parameters(), "scene"});
+  const Registry registry = test::test_registry();
+  const auto of = [&](const char* name, ReferenceFormat format) { return reference(registry, sections, name, format); };
+
+  EXPECT_THAT(of("", ReferenceFormat::text),
+              testing::AllOf(HasSubstr("\nscene:\n  scene "), HasSubstr("\n  scene.people.do.walk ")));
+  EXPECT_THAT(of("scene", ReferenceFormat::text),
+              testing::AllOf(HasSubstr("About scene."), HasSubstr("About scene.people.do.walk."), HasSubstr("window"),
+                             testing::Not(HasSubstr("Licence")), testing::Not(HasSubstr("How frames are followed"))));
+  EXPECT_THAT(of("scene.people.do.walk", ReferenceFormat::text),
+              testing::AllOf(HasSubstr("scene.people.do.walk"), testing::Not(HasSubstr("About scene.\n"))));
+  const std::string markdown = of("", ReferenceFormat::markdown);
+  EXPECT_THAT(markdown, testing::AllOf(HasSubstr("\n## Scene files\n\n### `scene`\n\nAbout scene.\n"),
+                                       HasSubstr("\n### `scene.people.do.walk`\n")));
+  EXPECT_LT(markdown.find("### `tracking`"), markdown.find("## Scene files"));
+}
+
 TEST(Reference, SuggestsAName) {
   try {
     reference_of("opencv_obr", ReferenceFormat::text);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "holdfast/config/reference.hpp"
 #include "holdfast/core/error.hpp"
 
 namespace holdfast::simulation {
@@ -153,6 +154,21 @@ lights_out:
   EXPECT_THAT(problems("people: [{ at: [1, 2], do: [{ walk: { to: [] } }] }]\n"), ElementsAre(HasSubstr("empty list")));
   EXPECT_THAT(problems("- office\n"), ElementsAre(HasSubstr("expected a map with room")));
   EXPECT_THROW(read_scene("no_such_scene.yaml"), ConfigurationError);
+}
+
+TEST(SceneSections, TellAllThatASceneCanSay) {
+  const std::vector<SectionDescription> sections = scene_sections();
+  const Registry registry;
+  const std::string text = reference(registry, sections, "scene", ReferenceFormat::text),
+                    markdown = reference(registry, sections, "scene", ReferenceFormat::markdown);
+  for (const char* name : {"scene", "scene.camera", "scene.people", "scene.people.do.walk", "scene.people.do.stand",
+                           "scene.people.do.sit", "scene.people.do.push", "scene.people.do.carry", "scene.doors",
+                           "scene.lights_out", "scene.colour_sensor", "scene.depth_sensor"}) {
+    EXPECT_THAT(text, HasSubstr(std::string("scene: ") + name + "\n"));
+    EXPECT_THAT(markdown, HasSubstr(std::string("### `") + name + "`\n"));
+  }
+  EXPECT_THAT(text, testing::AllOf(HasSubstr("office | hall | corridor"), HasSubstr("shutter"), HasSubstr("put_at")));
+  EXPECT_THAT(markdown, HasSubstr("| `room` | text | office | office \\| hall \\| corridor |"));
 }
 
 }  // namespace

@@ -78,9 +78,10 @@ bool same_truth(const SensorFrame& a, const SensorFrame& b) {
          a.truth->T_world_camera->matrix() == b.truth->T_world_camera->matrix();
 }
 
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<long>(values.size() / 2), values.end());
-  return values[values.size() / 2];
+double quantile(std::vector<double> values, double share) {
+  const auto nth = values.begin() + static_cast<long>(share * static_cast<double>(values.size()));
+  std::nth_element(values.begin(), nth, values.end());
+  return *nth;
 }
 
 const NumberedObject& numbered(const Simulator& simulator, const std::string& name) {
@@ -312,16 +313,17 @@ TEST(Truth, DepthOfOneFrameAgreesWithAnotherOnWhatIsStaticAndOnWhatMovesRigidly)
 
     const std::vector<double> still = warped_differences(camera, from, to, 0, T_to_world * T_world_from);
     ASSERT_GT(still.size(), 20000U);
-    EXPECT_LT(median(still), 2e-4) << thing;
+    EXPECT_LT(quantile(still, 0.5), 1e-5) << thing;
+    EXPECT_LT(quantile(still, 0.9), 1e-4) << thing;  // surfaces of all directions: a wrong pose shows in some
 
     const Isometry3d motion = moved.pose(to.timestamp) * moved.pose(from.timestamp).inverse();
     EXPECT_GT((motion.translation()).norm(), 0.05) << thing;
     const int number = numbered(simulator, thing).number;
     const std::vector<double> rigid = warped_differences(camera, from, to, number, T_to_world * motion * T_world_from);
     ASSERT_GT(rigid.size(), 200U) << thing;
-    EXPECT_LT(median(rigid), 1e-3) << thing;
+    EXPECT_LT(quantile(rigid, 0.5), 1e-5) << thing;
     if (moved.class_name == "chair") {  // it rolls towards the camera: without its motion there would be no agreement
-      EXPECT_GT(median(warped_differences(camera, from, to, number, T_to_world * T_world_from)), 2e-2);
+      EXPECT_GT(quantile(warped_differences(camera, from, to, number, T_to_world * T_world_from), 0.5), 2e-2);
     }
   }
 }
@@ -404,17 +406,17 @@ TEST(Truth, TellsWhatMovesAtTheMoment) {
 
 TEST(Truth, FramesAreTheSameBytesInAnyOrder) {
   Scene scene = busy_office();
-  scene.colour_sensor = {.noise = 2.0, .exposure_change = 0.4, .vignetting = 0.2, .shutter = 0.02};
+  scene.colour_sensor = {.noise = 2.0, .exposure_change = 0.4, .vignetting = 0.2, .shutter = 0.01};
   scene.depth_sensor = {};
   Simulator one(scene, small("tum_fr1", 4)), other(scene, small("tum_fr1", 4));
   std::vector<SensorFrame> frames;
-  for (const std::uint64_t index : {0, 150, 151, 720}) frames.push_back(one.frame(index));
+  for (const std::uint64_t index : {150, 151, 720}) frames.push_back(one.frame(index));
   for (auto frame = frames.rbegin(); frame != frames.rend(); ++frame) {
     const SensorFrame again = other.frame(frame->index);
     EXPECT_TRUE(same_bytes(again.colour, frame->colour)) << frame->index;
     EXPECT_TRUE(same_truth(again, *frame)) << frame->index;
   }
-  EXPECT_FALSE(same_bytes(frames[1].truth->object_mask, frames[2].truth->object_mask));
+  EXPECT_FALSE(same_bytes(frames[0].truth->object_mask, frames[1].truth->object_mask));
 }
 
 double sharpness(const cv::Mat& colour) {
@@ -432,10 +434,10 @@ TEST(Truth, DarknessAndAnOpenShutterChangeColourAlone) {
   scene.camera.style.speed = 2.0;
   Simulator plain(scene, small("tum_fr3", 4));
   scene.lights_out = {{.from = 10.0, .to = 11.0}};
-  scene.colour_sensor.shutter = 0.1;
+  scene.colour_sensor.shutter = 0.06;
   Simulator special(scene, small("tum_fr3", 4));
   double sharp_edges = 0.0, blurred_edges = 0.0;
-  for (const std::uint64_t index : {200, 299, 300, 329, 330}) {
+  for (const std::uint64_t index : {200, 300, 329, 330}) {
     const SensorFrame sharp = plain.frame(index), frame = special.frame(index);
     EXPECT_TRUE(same_truth(sharp, frame)) << index;
     EXPECT_GT(cv::countNonZero(frame.depth), 0.7 * 160 * 120) << index;
