@@ -184,7 +184,7 @@ Stage hall_stage() {
   stage.free_floor = {Eigen::Vector2d(5.0, 2.75), Eigen::Vector2d(9.9, 6.15)};
   stage.home = {7.1, 2.50, 1.38};
   stage.target = {7.1, 4.55, 0.85};
-  stage.half_sphere = {2.2, 0.1, 0.85, 0.36, 0.20};
+  stage.half_sphere = {2.5, 0.1, 0.50, 0.36, 0.20};
   stage.table = {{7.1, 4.5}, {1.60, 0.90}, table_top};
   stage.table_edge = {7.1, 3.80, 1.12};
   stage.table_edge_target = {7.1, 4.65, 0.85};
