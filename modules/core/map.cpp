@@ -136,6 +136,7 @@ void Map::clear() {
   points_.clear();
   removed_keyframes_.clear();
   next_sequence_ = 0;
+  ++version_;
 }
 
 }  // namespace holdfast

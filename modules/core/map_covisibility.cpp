@@ -86,9 +86,20 @@ void Map::remove_keyframe(KeyFrameId id) {
   }
   find_new_parents(id);
   for (const CovisibilityEdge& edge : keyframe.covisible) erase_edge(keyframes_.at(edge.keyframe), id);
+  for (const KeyFrameId other : keyframe.loop_edges) std::erase(keyframes_.at(other).loop_edges, id);
   removed_keyframes_[id] = {keyframe.parent,
                             keyframe.frame.T_camera_world * keyframes_.at(keyframe.parent).frame.T_world_camera()};
   keyframes_.erase(id);
+}
+
+void Map::add_loop_edge(KeyFrameId first, KeyFrameId second) {
+  HOLDFAST_CHECK(first != second, "keyframe " << first.slot << " closes a loop with itself");
+  const auto link = [this](KeyFrameId from, KeyFrameId to) {
+    std::vector<KeyFrameId>& edges = keyframes_.at(from).loop_edges;
+    if (std::find(edges.begin(), edges.end(), to) == edges.end()) edges.push_back(to);
+  };
+  link(first, second);
+  link(second, first);
 }
 
 std::vector<KeyFrameId> Map::best_covisible(KeyFrameId id, int most) const {

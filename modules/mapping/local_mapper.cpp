@@ -78,7 +78,7 @@ void LocalMapper::remove_redundant_keyframes(KeyFrameId id) {
   const std::vector<CovisibilityEdge> neighbours = map_.keyframe(id).covisible;
   for (const CovisibilityEdge& edge : neighbours) {
     const KeyFrame& keyframe = map_.keyframe(edge.keyframe);
-    if (!keyframe.parent.valid()) continue;
+    if (!keyframe.parent.valid() || !keyframe.loop_edges.empty()) continue;
     const Frame& frame = keyframe.frame;
     const float close = static_cast<float>(settings_.close_depth_factor * frame.camera->baseline);
     int points = 0, redundant = 0;

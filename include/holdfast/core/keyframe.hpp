@@ -22,6 +22,7 @@ struct KeyFrame {
   std::vector<CovisibilityEdge> covisible;  ///< by falling weight, equal weights by rising sequence
   KeyFrameId parent;                        ///< in the spanning tree; invalid for the first keyframe
   std::vector<KeyFrameId> children;         ///< in the spanning tree, by time of adding
+  std::vector<KeyFrameId> loop_edges;       ///< keyframes at the other end of closed loops; never culled
 };
 
 }  // namespace holdfast

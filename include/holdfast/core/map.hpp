@@ -13,7 +13,7 @@
 namespace holdfast {
 
 /// Keyframes and map points, named by ids, with everything that links them kept consistent: a feature of a keyframe
-/// names a point exactly when the point lists that observation. Not synchronised; the pipeline decides who may call.
+/// names a point exactly when the point lists that observation. Not synchronised; see MapMutex.
 class Map {
  public:
   using KeyFrames = SlotMap<KeyFrame, KeyFrameTag>;
@@ -58,8 +58,11 @@ class Map {
   /// `minimum_weight` shared points, the best neighbour is kept in any case. Gives a new keyframe its parent.
   void update_covisibility(KeyFrameId keyframe, int minimum_weight = 15);
   /// Removes a keyframe, its observations and edges; its children find new parents among their neighbours, and its pose
-  /// stays available through its parent (see pose_of).
+  /// stays available through its parent (see pose_of). Its loop edges go with it.
   void remove_keyframe(KeyFrameId keyframe);
+
+  /// Remembers that a loop was closed between two keyframes, on both sides; twice is once.
+  void add_loop_edge(KeyFrameId first, KeyFrameId second);
 
   /// The up to `most` strongest neighbours.
   std::vector<KeyFrameId> best_covisible(KeyFrameId keyframe, int most) const;
@@ -69,6 +72,11 @@ class Map {
 
   /// Sequence number that the next keyframe will get.
   std::uint64_t next_sequence() const { return next_sequence_; }
+
+  /// Rises with touch(): whoever copies from the map sees by it whether the copy is old.
+  std::uint64_t version() const { return version_; }
+  /// To be called after a change that others should notice: new keyframes, moved poses or points.
+  void touch() { ++version_; }
 
   void clear();
 
@@ -85,6 +93,7 @@ class Map {
   MapPoints points_;
   std::map<KeyFrameId, Removed> removed_keyframes_;
   std::uint64_t next_sequence_ = 0;
+  std::uint64_t version_ = 0;
 };
 
 }  // namespace holdfast

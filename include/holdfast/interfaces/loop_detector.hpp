@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -33,6 +34,30 @@ class NullLoopDetector final : public LoopDetector {
   void add(KeyFrameId, std::span<const Descriptor>) override {}
   void remove(KeyFrameId) override {}
   std::vector<PlaceMatch> query(std::span<const Descriptor>, int) const override { return {}; }
+};
+
+/// Another detector behind a mutex, so that tracking can ask while loop closing adds.
+class SharedLoopDetector final : public LoopDetector {
+ public:
+  /// The detector must outlive this one.
+  explicit SharedLoopDetector(LoopDetector& detector) : detector_(detector) {}
+
+  void add(KeyFrameId keyframe, std::span<const Descriptor> descriptors) override {
+    const std::lock_guard lock(mutex_);
+    detector_.add(keyframe, descriptors);
+  }
+  void remove(KeyFrameId keyframe) override {
+    const std::lock_guard lock(mutex_);
+    detector_.remove(keyframe);
+  }
+  std::vector<PlaceMatch> query(std::span<const Descriptor> descriptors, int most) const override {
+    const std::lock_guard lock(mutex_);
+    return detector_.query(descriptors, most);
+  }
+
+ private:
+  LoopDetector& detector_;
+  mutable std::mutex mutex_;
 };
 
 }  // namespace holdfast
