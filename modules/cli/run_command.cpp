@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "holdfast/cli/frame_loop.hpp"
 #include "holdfast/cli/output_folder.hpp"
 #include "holdfast/cli/run_results.hpp"
 #include "holdfast/cli/terminal.hpp"
@@ -38,28 +39,6 @@ std::size_t peak_memory() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
-}
-
-/// Feeds frames until the source ends, a signal comes or something throws; what was found until then is kept.
-void feed_frames(BuiltPipeline& built, bool quiet, const Stopwatch& since_start, RunRecord& record) {
-  Progress progress(record.source.frame_count, quiet);
-  std::uint64_t fed = 0;
-  try {
-    while (!interrupted()) {
-      const Stopwatch decoding;
-      const std::optional<SensorFrame> frame = built.source->next();
-      if (!frame) break;
-      const double decode_seconds = decoding.seconds();
-      record.frame_stamps.push_back(frame->timestamp);
-      const FrameResult result = built.pipeline.feed(*frame);
-      record.summary.add(result, decode_seconds);
-      if (record.start_seconds == 0.0 && result.T_world_camera) record.start_seconds = since_start.seconds();
-      progress.update(++fed, to_string(result.status));
-    }
-  } catch (const std::exception& error) {  // whatever it is, what was found until then is the user's
-    record.failure = error.what();
-  }
-  record.was_interrupted = interrupted();
 }
 
 /// A run that ended before its time has frames whose stamps nobody saw; they count as missing, in a gap at the end.
@@ -114,7 +93,6 @@ void run(const Arguments& arguments, int& exit_code) {
   record.source = built.source->describe();
   record.camera = built.pipeline.camera();
   feed_frames(built, arguments.quiet, since_start, record);
-  built.pipeline.finish();
 
   record.skipped = built.source->skipped();
   record.frames_expected = record.source.frame_count ? static_cast<std::size_t>(*record.source.frame_count)

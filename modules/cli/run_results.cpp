@@ -12,6 +12,7 @@
 #include "holdfast/core/simd.hpp"
 #include "holdfast/core/version.hpp"
 #include "holdfast/evaluation/report.hpp"
+#include "holdfast/evaluation/statistics.hpp"
 
 namespace holdfast {
 
@@ -49,8 +50,8 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& r
                         (record.skipped.empty() ? "" : ", " + std::to_string(record.skipped.size()) + " skipped"));
   rows.emplace_back("coverage",
                     percent(record.coverage()) + " (" + std::to_string(record.trajectory.size()) + " poses)");
-  rows.emplace_back("lost",
-                    std::to_string(s.lost()) + " frames, recovered " + std::to_string(s.recovered()) + " times");
+  rows.emplace_back("lost", std::to_string(s.lost()) + " frames, recovered " + std::to_string(s.recovered()) +
+                                " times, relocalised " + std::to_string(s.relocalised()));
   rows.emplace_back("map", std::to_string(record.map_keyframes) + " keyframes, " + std::to_string(record.map_points) +
                                " points; " + number(s.mean_inliers(), 0) + " inliers a frame");
   if (record.evaluation) {
@@ -66,6 +67,13 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& r
   const StageRow tracking = s.tracking();
   rows.emplace_back("tracking", number(tracking.median * 1e3, 2) + " ms a frame (median), " +
                                     number(tracking.p95 * 1e3, 2) + " ms (p95)");
+  if (record.threads) {
+    const ThreadRecord& threads = *record.threads;
+    rows.emplace_back("frame to result", number(median(threads.delays) * 1e3, 2) + " ms (median), " +
+                                             number(percentile(threads.delays, 95.0) * 1e3, 2) + " ms (p95); " +
+                                             std::to_string(threads.frames.dropped) + " dropped, " +
+                                             std::to_string(threads.keyframes_deferred) + " keyframes put off");
+  }
   rows.emplace_back("start to first pose", number(record.start_seconds, 3) + " s");
   rows.emplace_back("whole run", number(record.total_seconds, 1) + " s, peak memory " +
                                      number(static_cast<double>(record.peak_memory) / 1e6, 0) + " MB");
@@ -75,6 +83,30 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& r
 Json stage_json(const StageRow& row) {
   return {{"stage", row.stage},       {"frames", row.frames}, {"median_s", row.median}, {"p95_s", row.p95},
           {"maximum_s", row.maximum}, {"total_s", row.total}, {"share", row.share}};
+}
+
+Json queue_json(const QueueCounts& queue) {
+  return {{"capacity", queue.capacity},
+          {"taken", queue.taken},
+          {"dropped", queue.dropped},
+          {"longest", queue.longest},
+          {"mean_wait_s", queue.taken == 0 ? 0.0 : queue.wait_total / static_cast<double>(queue.taken)},
+          {"longest_wait_s", queue.wait_longest}};
+}
+
+Json threads_json(const ThreadRecord& threads) {
+  Json json = {{"frames", queue_json(threads.frames)},
+               {"late_frames", threads.late},
+               {"latest_s", threads.latest},
+               {"keyframes_deferred", threads.keyframes_deferred}};
+  if (!threads.delays.empty())
+    json["frame_to_result"] = {{"median_s", median(threads.delays)},
+                               {"p95_s", percentile(threads.delays, 95.0)},
+                               {"maximum_s", percentile(threads.delays, 100.0)}};
+  Json& workers = json["workers"] = Json::array();
+  for (const WorkerCounts& worker : threads.workers)
+    workers.push_back({{"name", worker.name}, {"busy_s", worker.busy_seconds}, {"queue", queue_json(worker.queue)}});
+  return json;
 }
 
 Json run_json(const RunRecord& record) {
@@ -99,6 +131,7 @@ Json run_json(const RunRecord& record) {
                     {"tracked", s.tracked()},
                     {"lost", s.lost()},
                     {"recovered", s.recovered()},
+                    {"relocalised", s.relocalised()},
                     {"poses", record.trajectory.size()},
                     {"coverage", record.coverage()}};
   Json& troubles = json["troubles"] = Json::object();
@@ -120,6 +153,7 @@ Json run_json(const RunRecord& record) {
   json["tracking"] = stage_json(s.tracking());
   Json& stages = json["stages"] = Json::array();
   for (const StageRow& row : s.stages()) stages.push_back(stage_json(row));
+  json["threads"] = record.threads ? threads_json(*record.threads) : Json(nullptr);
   json["start_to_first_pose_s"] = record.start_seconds;
   json["total_s"] = record.total_seconds;
   json["peak_memory_bytes"] = record.peak_memory;
@@ -151,6 +185,22 @@ ReportTable error_report(const Evaluation& evaluation) {
   add("RPE per second [deg]", time.rotation, time.pairs, 4);
   add("RPE per metre [m]", way.translation, way.pairs, 6);
   add("RPE per metre [deg]", way.rotation, way.pairs, 4);
+  return table;
+}
+
+ReportTable thread_report(const ThreadRecord& threads) {
+  ReportTable table{"Queues between threads",
+                    {"before", "taken", "dropped", "longest", "of", "mean wait ms", "longest wait ms", "busy s"},
+                    {},
+                    {}};
+  const auto add = [&](const std::string& name, const QueueCounts& queue, const std::string& busy) {
+    const double mean = queue.taken == 0 ? 0.0 : queue.wait_total / static_cast<double>(queue.taken);
+    table.rows.push_back({name, std::to_string(queue.taken), std::to_string(queue.dropped),
+                          std::to_string(queue.longest), std::to_string(queue.capacity), number(mean * 1e3, 2),
+                          number(queue.wait_longest * 1e3, 2), busy});
+  };
+  add("tracking", threads.frames, "");
+  for (const WorkerCounts& worker : threads.workers) add(worker.name, worker.queue, number(worker.busy_seconds, 2));
   return table;
 }
 
@@ -191,6 +241,15 @@ std::string report_html(const RunRecord& record) {
                              .tables = {stage_report(record.summary)},
                              .figures = {},
                              .preformatted = {}});
+  if (record.threads)
+    report.sections.push_back({.heading = "Threads",
+                               .text = "Late frames: " + std::to_string(record.threads->late) + ", at most by " +
+                                       number(record.threads->latest * 1e3, 1) + " ms; keyframes put off: " +
+                                       std::to_string(record.threads->keyframes_deferred) + ".",
+                               .values = {},
+                               .tables = {thread_report(*record.threads)},
+                               .figures = {},
+                               .preformatted = {}});
   if (!record.skipped.empty()) {
     ReportTable table{"Frames left out", {"stamp", "reason"}, {}, {}};
     for (const SkippedFrame& frame : record.skipped) table.rows.push_back({number(frame.timestamp, 6), frame.reason});

@@ -13,9 +13,26 @@ namespace holdfast {
 void RunSettings::describe(ParameterTable<RunSettings>& table) {
   table
       .add("mode", &RunSettings::mode,
-           "sequential: one thread, the same bits on every run; threaded: not in this version")
+           "sequential: one thread, the same bits on every run; threaded: tracking beside local mapping, loop closing "
+           "and segmentation, each in its own thread")
       .one_of({"sequential", "threaded"});
   table.add("seed", &RunSettings::seed, "the only source of chance").at_least(0);
+  table
+      .add(
+          "pace", &RunSettings::pace,
+          "threaded mode; none: frames as fast as they can be read and tracked; timestamps: as fast as they were taken")
+      .one_of({"none", "timestamps"});
+  table
+      .add("late_frames", &RunSettings::late_frames,
+           "threaded mode, paced; queue: a frame that tracking has no time for waits, and the camera waits with it; "
+           "drop: the oldest one that waits is left out")
+      .one_of({"queue", "drop"});
+  table.add("frame_queue", &RunSettings::frame_queue, "threaded mode: frames that wait for tracking, at most")
+      .range(1, 1000);
+  table
+      .add("keyframe_queue", &RunSettings::keyframe_queue,
+           "threaded mode: keyframes that wait for local mapping, at most; paced, one that finds no room is put off")
+      .range(1, 1000);
 }
 
 void CameraSettings::describe(ParameterTable<CameraSettings>& table) {
@@ -233,9 +250,10 @@ class Resolver {
     const ParameterTable<RunSettings> table;
     const ConfigurationNode& node = at("run");
     result_.run = table.settings(read_parameters(node, table.parameters(), "section 'run'", diagnostics_));
-    if (result_.run.mode == "threaded")
-      complain(node.find("mode")->location,
-               "found 'threaded' for 'mode' of section 'run'; this version runs in sequential mode only");
+    if (result_.run.mode == "sequential" && result_.run.pace == "timestamps")
+      complain(node.find("pace")->location,
+               "found 'timestamps' for 'pace' of section 'run', which sequential mode cannot keep; expected 'none', or "
+               "'threaded' for 'mode'");
   }
 
   const ConfigurationNode& root_;

@@ -27,6 +27,8 @@ const char* to_string(TrackingMethod method) {
       return "reference keyframe";
     case TrackingMethod::recovered:
       return "recovered";
+    case TrackingMethod::relocalised:
+      return "relocalised";
   }
   return "?";
 }

@@ -16,11 +16,15 @@ void RunSummary::add(const FrameResult& result, double decode_seconds) {
   if (result.status == TrackingStatus::tracked) {
     inliers_ += static_cast<std::uint64_t>(result.inliers);
     if (result.method == TrackingMethod::recovered) ++recovered_;
+    if (result.method == TrackingMethod::relocalised) ++relocalised_;
   }
   stage("decode").push_back(decode_seconds);
-  for (const StageTimes::Entry& entry : result.times.entries())
-    stage(std::string(entry.stage)).push_back(entry.seconds);
+  add(result.times);
   tracking_seconds_.push_back(result.tracking_seconds);
+}
+
+void RunSummary::add(const StageTimes& background) {
+  for (const StageTimes::Entry& entry : background.entries()) stage(std::string(entry.stage)).push_back(entry.seconds);
 }
 
 std::uint64_t RunSummary::count(TrackingStatus status) const {

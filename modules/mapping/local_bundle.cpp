@@ -6,9 +6,21 @@
 namespace holdfast {
 
 void LocalMapper::adjust_bundle(KeyFrameId id) {
+  {
+    const std::lock_guard lock(mutex_);
+    state_bundle(id);
+  }
+  const BundleSummary summary = optimizer_.optimize_bundle(problem_, stop_);
+  if (!summary.usable) return;
+  const std::lock_guard lock(mutex_);
+  apply_bundle();
+}
+
+void LocalMapper::state_bundle(KeyFrameId id) {
   // The keyframe and its strongest neighbours move, with all points that they see; other keyframes that see these
   // points hold them in place.
-  std::vector<KeyFrameId> keyframes = {id};
+  std::vector<KeyFrameId>& keyframes = problem_keyframes_;
+  keyframes = {id};
   for (const KeyFrameId neighbour : map_.best_covisible(id, settings_.bundle_keyframes - 1))
     keyframes.push_back(neighbour);
   const std::size_t moving = keyframes.size();
@@ -16,7 +28,8 @@ void LocalMapper::adjust_bundle(KeyFrameId id) {
   std::vector<std::int32_t> pose_of_slot(map_.keyframes().slot_count(), -1);
   for (std::size_t i = 0; i < moving; ++i) pose_of_slot[keyframes[i].slot] = static_cast<std::int32_t>(i);
   std::vector<std::uint8_t> taken(map_.points().slot_count(), 0);
-  std::vector<MapPointId> points;
+  std::vector<MapPointId>& points = problem_points_;
+  points.clear();
   for (std::size_t i = 0; i < moving; ++i)
     for (const MapPointId point : map_.keyframe(keyframes[i]).frame.map_points)
       if (point.valid() && taken[point.slot] == 0) {
@@ -30,7 +43,7 @@ void LocalMapper::adjust_bundle(KeyFrameId id) {
   problem_.observations.clear();
   problem_.robust_iterations = settings_.bundle_robust_iterations;
   problem_.final_iterations = settings_.bundle_final_iterations;
-  std::vector<std::pair<MapPointId, KeyFrameId>> observation_names;
+  problem_observations_.clear();
   for (std::uint32_t p = 0; p < points.size(); ++p) {
     const MapPoint& point = map_.point(points[p]);
     problem_.points.push_back(point.position);
@@ -49,7 +62,7 @@ void LocalMapper::adjust_bundle(KeyFrameId id) {
                                        .right_x = frame.right_x[feature],
                                        .inverse_sigma2 = frame.pyramid->inverse_sigma2[frame.features.octave[feature]],
                                        .weight = frame.static_probability[feature]});
-      observation_names.emplace_back(points[p], observation.keyframe);
+      problem_observations_.emplace_back(points[p], observation.keyframe);
     }
   }
   for (std::size_t i = 0; i < keyframes.size(); ++i) {
@@ -63,21 +76,24 @@ void LocalMapper::adjust_bundle(KeyFrameId id) {
       if (map_.keyframe(keyframes[i]).sequence < map_.keyframe(keyframes[oldest]).sequence) oldest = i;
     problem_.poses[oldest].fixed = true;
   }
+}
 
-  const BundleSummary summary = optimizer_.optimize_bundle(problem_, stop_);
-  if (!summary.usable) return;
-  for (std::size_t i = 0; i < moving; ++i)
-    if (!problem_.poses[i].fixed) map_.keyframe(keyframes[i]).frame.T_camera_world = problem_.poses[i].T_camera_world;
-  for (std::size_t p = 0; p < points.size(); ++p) map_.point(points[p]).position = problem_.points[p];
+void LocalMapper::apply_bundle() {
+  // Everything is still there: others only add while this thread refines.
+  for (std::size_t i = 0; i < problem_keyframes_.size(); ++i)
+    if (!problem_.poses[i].fixed)
+      map_.keyframe(problem_keyframes_[i]).frame.T_camera_world = problem_.poses[i].T_camera_world;
+  for (std::size_t p = 0; p < problem_points_.size(); ++p) map_.point(problem_points_[p]).position = problem_.points[p];
   for (std::size_t o = 0; o < problem_.observations.size(); ++o) {
     if (!problem_.observations[o].outlier) continue;
-    const auto& [point, keyframe] = observation_names[o];
+    const auto& [point, keyframe] = problem_observations_[o];
     if (map_.find_point(point) == nullptr) continue;
     map_.remove_observation(point, keyframe);
     ++counts_.observations_removed;
   }
-  for (const MapPointId point : points)
+  for (const MapPointId point : problem_points_)
     if (map_.find_point(point) != nullptr) map_.update_point_geometry(point);
+  map_.touch();
 }
 
 }  // namespace holdfast

@@ -6,20 +6,33 @@
 
 namespace holdfast {
 
-KeyFrameId LocalMapper::add_keyframe(const Frame& frame, StageTimes& times) {
-  KeyFrameId keyframe;
+KeyFrameId LocalMapper::insert(const Frame& frame, StageTimes& times) {
+  const StageTimer timer(times, "mapping: insertion");
+  const KeyFrameId keyframe = map_.add_keyframe(frame);
+  ++counts_.keyframes_made;
+  make_points_from_depth(keyframe);
+  for (const MapPointId point : map_.keyframe(keyframe).frame.map_points)
+    if (point.valid()) map_.update_point(point);
+  map_.update_covisibility(keyframe, settings_.covisibility_minimum);
+  map_.touch();
+  return keyframe;
+}
+
+std::vector<KeyFrameId> LocalMapper::refine(KeyFrameId keyframe, StageTimes& times) {
+  stop_ = false;
   {
     const StageTimer timer(times, "mapping: points");
-    keyframe = map_.add_keyframe(frame);
-    ++counts_.keyframes_made;
-    make_points_from_depth(keyframe);
-    for (const MapPointId point : map_.keyframe(keyframe).frame.map_points)
-      if (point.valid()) map_.update_point(point);
-    map_.update_covisibility(keyframe, settings_.covisibility_minimum);
-    remove_weak_points(keyframe);
+    {
+      const std::lock_guard lock(mutex_);
+      if (map_.find_keyframe(keyframe) == nullptr) return {};
+      remove_weak_points(keyframe);
+    }
     triangulate_points(keyframe);
   }
-  if (map_.keyframes().size() < 2) return keyframe;
+  {
+    const std::lock_guard lock(mutex_);
+    if (map_.keyframes().size() < 2) return {};
+  }
   {
     const StageTimer timer(times, "mapping: fusion");
     fuse_with_neighbours(keyframe);
@@ -29,8 +42,10 @@ KeyFrameId LocalMapper::add_keyframe(const Frame& frame, StageTimes& times) {
     adjust_bundle(keyframe);
   }
   const StageTimer timer(times, "mapping: culling");
-  remove_redundant_keyframes(keyframe);
-  return keyframe;
+  const std::lock_guard lock(mutex_);
+  std::vector<KeyFrameId> removed = remove_redundant_keyframes(keyframe);
+  map_.touch();
+  return removed;
 }
 
 void LocalMapper::make_points_from_depth(KeyFrameId id) {
@@ -73,12 +88,15 @@ void LocalMapper::remove_weak_points(KeyFrameId id) {
   });
 }
 
-void LocalMapper::remove_redundant_keyframes(KeyFrameId id) {
-  if (settings_.redundant_share >= 1.0) return;
+std::vector<KeyFrameId> LocalMapper::remove_redundant_keyframes(KeyFrameId id) {
+  std::vector<KeyFrameId> removed;
+  if (settings_.redundant_share >= 1.0) return removed;
   const std::vector<CovisibilityEdge> neighbours = map_.keyframe(id).covisible;
+  const std::uint64_t sequence = map_.keyframe(id).sequence;
   for (const CovisibilityEdge& edge : neighbours) {
     const KeyFrame& keyframe = map_.keyframe(edge.keyframe);
     if (!keyframe.parent.valid() || !keyframe.loop_edges.empty()) continue;
+    if (keyframe.sequence > sequence) continue;  // waits to be refined itself
     const Frame& frame = keyframe.frame;
     const float close = static_cast<float>(settings_.close_depth_factor * frame.camera->baseline);
     int points = 0, redundant = 0;
@@ -98,8 +116,10 @@ void LocalMapper::remove_redundant_keyframes(KeyFrameId id) {
     }
     if (redundant <= settings_.redundant_share * points) continue;
     map_.remove_keyframe(edge.keyframe);
+    removed.push_back(edge.keyframe);
     ++counts_.keyframes_removed;
   }
+  return removed;
 }
 
 }  // namespace holdfast

@@ -13,7 +13,7 @@ constexpr int maximum_distance = 50;  // bits
 constexpr float window = 3.0F;        // px at level 0
 }  // namespace
 
-void LocalMapper::fuse_with_neighbours(KeyFrameId id) {
+std::vector<KeyFrameId> LocalMapper::fusion_targets(KeyFrameId id) const {
   std::vector<std::uint8_t> taken(map_.keyframes().slot_count(), 0);
   taken[id.slot] = 1;
   std::vector<KeyFrameId> targets;
@@ -26,24 +26,35 @@ void LocalMapper::fuse_with_neighbours(KeyFrameId id) {
   for (const KeyFrameId neighbour : neighbours) take(neighbour);
   for (const KeyFrameId neighbour : neighbours)
     for (const KeyFrameId second : map_.best_covisible(neighbour, settings_.second_neighbours)) take(second);
+  return targets;
+}
 
-  const auto points_of = [&](KeyFrameId keyframe, std::vector<MapPointId>& points, std::vector<std::uint8_t>& known) {
+std::vector<MapPointId> LocalMapper::points_seen_by(const std::vector<KeyFrameId>& keyframes) const {
+  std::vector<MapPointId> points;
+  std::vector<std::uint8_t> known(map_.points().slot_count(), 0);
+  for (const KeyFrameId keyframe : keyframes)
     for (const MapPointId point : map_.keyframe(keyframe).frame.map_points)
       if (point.valid() && known[point.slot] == 0) {
         known[point.slot] = 1;
         points.push_back(point);
       }
-  };
+  return points;
+}
+
+void LocalMapper::fuse_with_neighbours(KeyFrameId id) {
+  std::vector<KeyFrameId> targets;
   std::vector<MapPointId> points;
-  std::vector<std::uint8_t> known(map_.points().slot_count(), 0);
-  points_of(id, points, known);
-  for (const KeyFrameId target : targets) fuse_into(target, points);
-
-  points.clear();
-  known.assign(map_.points().slot_count(), 0);
-  for (const KeyFrameId target : targets) points_of(target, points, known);
-  fuse_into(id, points);
-
+  {
+    const std::lock_guard lock(mutex_);
+    targets = fusion_targets(id);
+    points = points_seen_by({id});
+  }
+  for (const KeyFrameId target : targets) {
+    const std::lock_guard lock(mutex_);
+    fuse_into(target, points);
+  }
+  const std::lock_guard lock(mutex_);
+  fuse_into(id, points_seen_by(targets));
   for (const MapPointId point : map_.keyframe(id).frame.map_points)
     if (point.valid()) map_.update_point(point);
   map_.update_covisibility(id, settings_.covisibility_minimum);

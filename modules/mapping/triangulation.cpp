@@ -38,7 +38,15 @@ std::vector<std::uint32_t> free_features(const Frame& frame) {
 }  // namespace
 
 void LocalMapper::triangulate_points(KeyFrameId id) {
-  for (const KeyFrameId neighbour : map_.best_covisible(id, settings_.neighbours)) triangulate_with(id, neighbour);
+  std::vector<KeyFrameId> neighbours;
+  {
+    const std::lock_guard lock(mutex_);
+    neighbours = map_.best_covisible(id, settings_.neighbours);
+  }
+  for (const KeyFrameId neighbour : neighbours) {
+    const std::lock_guard lock(mutex_);
+    triangulate_with(id, neighbour);
+  }
 }
 
 void LocalMapper::triangulate_with(KeyFrameId id, KeyFrameId neighbour_id) {

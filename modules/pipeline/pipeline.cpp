@@ -3,30 +3,22 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <mutex>
+#include <optional>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/map_mutex.hpp"
 
 namespace holdfast {
 
-struct Pipeline::State {
-  explicit State(PipelineParts given)
-      : parts(std::move(given)),
-        tracker(parts.tracking, parts.camera, *parts.features, *parts.optimizer, filters, map, parts.seed),
-        mapper(parts.mapping, map, *parts.optimizer) {
-    for (auto& [name, filter] : parts.filters) filters.add(name, std::move(filter));
-  }
+namespace {
 
-  PipelineParts parts;
-  Map map;
-  FilterChain filters;
-  Tracker tracker;
-  LocalMapper mapper;
-  std::uint64_t map_version = 0;
-  bool has_frame = false;
-  double last_timestamp = 0.0;
+/// What the segmentation thread works on.
+struct SegmentationJob {
+  SensorFrame frame;
+  KeyFrameId keyframe;
 };
 
-namespace {
 PipelineParts checked(PipelineParts parts) {
   HOLDFAST_CHECK(parts.features != nullptr && parts.optimizer != nullptr,
                  "features " << (parts.features != nullptr) << " optimizer " << (parts.optimizer != nullptr));
@@ -34,45 +26,215 @@ PipelineParts checked(PipelineParts parts) {
   if (parts.loop_detector == nullptr) parts.loop_detector = std::make_unique<NullLoopDetector>();
   return parts;
 }
+
+FilterChain chain_of(PipelineParts& parts) {
+  FilterChain chain;
+  for (auto& [name, filter] : parts.filters) chain.add(name, std::move(filter));
+  return chain;
+}
+
 }  // namespace
 
+struct Pipeline::State {
+  explicit State(PipelineParts given)
+      : parts(std::move(given)),
+        map(std::move(parts.map)),
+        filters(chain_of(parts)),
+        detector(*parts.loop_detector),
+        tracker(parts.tracking, parts.camera, *parts.features, *parts.optimizer, filters, detector, map, parts.seed),
+        mapper(parts.mapping, map, map_mutex, *parts.optimizer) {
+    for (const KeyFrameId keyframe : keyframes_by_age())
+      detector.add(keyframe, map.keyframe(keyframe).frame.features.descriptors);
+    if (parts.localise_only)
+      tracker.localise_only();
+    else if (parts.threads.threaded)
+      start_threads();
+  }
+
+  std::vector<KeyFrameId> keyframes_by_age() const {
+    std::vector<KeyFrameId> ids = map.keyframes().ids();
+    std::sort(ids.begin(), ids.end(),
+              [this](KeyFrameId a, KeyFrameId b) { return map.keyframe(a).sequence < map.keyframe(b).sequence; });
+    return ids;
+  }
+
+  void start_threads();
+  void check_stamp(const SensorFrame& frame);
+  void refine(KeyFrameId keyframe, StageTimes& times);
+  void close_loops(KeyFrameId keyframe, StageTimes& times);
+  void segment(const SegmentationJob& job, StageTimes& times);
+  void keep_times(StageTimes times) {
+    const std::lock_guard lock(times_mutex);
+    background_times.push_back(std::move(times));
+  }
+  void rethrow_failures();
+
+  PipelineParts parts;
+  Map map;
+  MapMutex map_mutex;
+  std::mutex surgery;  // held by whoever moves or removes things in the map; before map_mutex
+  FilterChain filters;
+  SharedLoopDetector detector;
+  Tracker tracker;
+  LocalMapper mapper;
+  bool has_frame = false;
+  double last_timestamp = 0.0;
+  std::uint64_t keyframes_deferred = 0;
+
+  std::mutex times_mutex;
+  std::vector<StageTimes> background_times;
+
+  // Threads last: they use everything above, and each hands its work on to the one before it here.
+  std::optional<Worker<SegmentationJob>> segmentation;
+  std::optional<Worker<KeyFrameId>> loop_closing;
+  std::optional<Worker<KeyFrameId>> mapping;
+};
+
+void Pipeline::State::start_threads() {
+  const std::size_t capacity = parts.threads.keyframe_queue;
+  if (dynamic_cast<NullSegmenter*>(parts.segmenter.get()) == nullptr)
+    segmentation.emplace("segmentation", 1, [this](SegmentationJob& job) {
+      StageTimes times;
+      segment(job, times);
+      keep_times(std::move(times));
+    });
+  loop_closing.emplace("loop closing", capacity, [this](KeyFrameId& keyframe) {
+    StageTimes times;
+    close_loops(keyframe, times);
+    keep_times(std::move(times));
+  });
+  mapping.emplace("local mapping", capacity, [this](KeyFrameId& keyframe) {
+    StageTimes times;
+    refine(keyframe, times);
+    keep_times(std::move(times));
+    loop_closing->queue().push(keyframe);
+  });
+}
+
+void Pipeline::State::rethrow_failures() {
+  if (mapping) mapping->rethrow();
+  if (loop_closing) loop_closing->rethrow();
+  if (segmentation) segmentation->rethrow();
+}
+
+void Pipeline::State::check_stamp(const SensorFrame& frame) {
+  if (has_frame && !(frame.timestamp > last_timestamp)) {
+    char text[128];
+    std::snprintf(text, sizeof(text), "time stamp %.6f does not follow %.6f; stamps must rise strictly",
+                  frame.timestamp, last_timestamp);
+    throw InputError({"frame " + std::to_string(frame.index)}, text);
+  }
+  has_frame = true;
+  last_timestamp = frame.timestamp;
+}
+
+void Pipeline::State::refine(KeyFrameId keyframe, StageTimes& times) {
+  std::vector<KeyFrameId> removed;
+  {
+    const std::lock_guard surgeon(surgery);
+    removed = mapper.refine(keyframe, times);
+  }
+  for (const KeyFrameId id : removed) detector.remove(id);
+  if (parts.observers.empty()) return;
+  const std::lock_guard lock(map_mutex);
+  if (map.find_keyframe(keyframe) == nullptr) return;
+  for (const auto& observer : parts.observers) observer->on_keyframe(keyframe, map);
+}
+
+void Pipeline::State::close_loops(KeyFrameId keyframe, StageTimes&) {
+  std::vector<Descriptor> descriptors;
+  {
+    const std::lock_guard lock(map_mutex);
+    if (const KeyFrame* found = map.find_keyframe(keyframe)) descriptors = found->frame.features.descriptors;
+  }
+  detector.add(keyframe, descriptors);
+}
+
+void Pipeline::State::segment(const SegmentationJob& job, StageTimes& times) {
+  const StageTimer timer(times, "segmentation");
+  parts.segmenter->segment(job.frame);
+}
+
 Pipeline::Pipeline(PipelineParts parts) : state_(std::make_unique<State>(checked(std::move(parts)))) {}
-Pipeline::~Pipeline() = default;
+Pipeline::~Pipeline() {
+  if (state_) interrupt();
+}
 Pipeline::Pipeline(Pipeline&&) noexcept = default;
 Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
 
 FrameResult Pipeline::feed(const SensorFrame& frame) {
   State& s = *state_;
-  if (s.has_frame && !(frame.timestamp > s.last_timestamp)) {
-    char text[128];
-    std::snprintf(text, sizeof(text), "time stamp %.6f does not follow %.6f; stamps must rise strictly",
-                  frame.timestamp, s.last_timestamp);
-    throw InputError({"frame " + std::to_string(frame.index)}, text);
-  }
-  s.has_frame = true;
-  s.last_timestamp = frame.timestamp;
+  s.check_stamp(frame);
+  s.rethrow_failures();
+  if (s.mapping && s.parts.threads.unpaced) s.mapping->queue().wait_for_room();
 
-  FrameResult result = s.tracker.track(frame, s.map_version);
+  FrameResult result;
+  const Stopwatch watch;
+  s.tracker.begin(frame, result);
+  {
+    const TrackingLock lock(s.map_mutex);
+    s.tracker.locate(frame, result);
+    result.tracking_seconds = watch.seconds();
+    if (result.is_keyframe && s.mapping && !s.mapping->queue().has_room()) {
+      result.is_keyframe = false;
+      ++s.keyframes_deferred;
+    }
+    if (result.is_keyframe) {
+      result.keyframe = s.mapper.insert(s.tracker.frame(), result.times);
+      if (s.mapping) s.tracker.keyframe_added(result.keyframe);
+    }
+  }
   if (result.is_keyframe) {
-    const KeyFrameId keyframe = s.mapper.add_keyframe(s.tracker.frame(), result.times);
-    ++s.map_version;
-    s.tracker.keyframe_added(keyframe);
-    result.keyframe = keyframe;
+    if (s.mapping) {
+      // Tracking needs the points of this keyframe adjusted soon; an older adjustment has done most of its good.
+      if (!s.parts.threads.unpaced) s.mapper.request_stop();
+      s.mapping->queue().push(result.keyframe);
+      if (s.segmentation) s.segmentation->queue().push_newest({frame, result.keyframe});
+    } else {
+      s.refine(result.keyframe, result.times);
+      s.close_loops(result.keyframe, result.times);
+      s.tracker.keyframe_added(result.keyframe);
+    }
     result.T_world_camera = s.tracker.frame().T_world_camera();
-    s.parts.loop_detector->add(keyframe, s.map.keyframe(keyframe).frame.features.descriptors);
-    for (const auto& observer : s.parts.observers) observer->on_keyframe(keyframe, s.map);
   }
   for (const auto& observer : s.parts.observers) observer->on_frame(frame, s.tracker.frame(), result);
   return result;
 }
 
 void Pipeline::finish() {
-  for (const auto& observer : state_->parts.observers) observer->on_finish(state_->map);
+  State& s = *state_;
+  // In the order in which work is handed on, so that nothing is left behind.
+  if (s.mapping) s.mapping->finish();
+  if (s.loop_closing) s.loop_closing->finish();
+  if (s.segmentation) s.segmentation->finish();
+  s.rethrow_failures();
+  for (const auto& observer : s.parts.observers) observer->on_finish(s.map);
 }
 
-Trajectory Pipeline::trajectory() const { return state_->tracker.trajectory(); }
+void Pipeline::interrupt() { state_->mapper.request_stop(); }
+
+std::vector<StageTimes> Pipeline::take_background_times() {
+  const std::lock_guard lock(state_->times_mutex);
+  return std::exchange(state_->background_times, {});
+}
+
+std::uint64_t Pipeline::keyframes_deferred() const { return state_->keyframes_deferred; }
+
+std::vector<WorkerCounts> Pipeline::worker_counts() const {
+  std::vector<WorkerCounts> counts;
+  if (state_->mapping) counts.push_back(state_->mapping->counts());
+  if (state_->loop_closing) counts.push_back(state_->loop_closing->counts());
+  if (state_->segmentation) counts.push_back(state_->segmentation->counts());
+  return counts;
+}
+
+Trajectory Pipeline::trajectory() const {
+  const TrackingLock lock(state_->map_mutex);
+  return state_->tracker.trajectory();
+}
 
 Trajectory Pipeline::keyframe_trajectory() const {
+  const TrackingLock lock(state_->map_mutex);
   Trajectory trajectory;
   state_->map.keyframes().for_each([&](KeyFrameId, const KeyFrame& keyframe) {
     trajectory.push_back({keyframe.frame.timestamp, keyframe.frame.T_world_camera()});

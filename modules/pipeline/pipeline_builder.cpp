@@ -87,6 +87,9 @@ BuiltPipeline build_pipeline(const Configuration& configuration, const Registry&
     parts.observers.push_back(create.operator()<Observer>(choice));
   parts.tracking = section<TrackingSettings>(configuration, "tracking");
   parts.mapping = section<MappingSettings>(configuration, "mapping");
+  parts.threads.threaded = !context.sequential;
+  parts.threads.keyframe_queue = static_cast<std::size_t>(configuration.run.keyframe_queue);
+  parts.threads.unpaced = configuration.run.pace == "none";
   if (!description.has_depth)
     diagnostics.push_back(
         {configuration.source.location,

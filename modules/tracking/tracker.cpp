@@ -7,62 +7,64 @@
 namespace holdfast {
 
 Tracker::Tracker(const TrackingSettings& settings, const Camera& camera, FeatureExtractor& extractor,
-                 Optimizer& optimizer, FilterChain& filters, Map& map, std::uint64_t seed)
+                 Optimizer& optimizer, FilterChain& filters, const LoopDetector& detector, Map& map, std::uint64_t seed)
     : settings_(settings),
       builder_(camera, extractor, settings.depth_edge_ratio),
       optimizer_(optimizer),
       filters_(filters),
+      detector_(detector),
       map_(map),
       random_(Random(seed).fork(1)),
+      state_(map.keyframes().empty() ? State::waiting : State::lost),
       local_map_(settings.local_keyframes) {}
 
-FrameResult Tracker::track(const SensorFrame& sensor_frame, std::uint64_t map_version) {
-  FrameResult result;
+void Tracker::begin(const SensorFrame& sensor_frame, FrameResult& result) {
   result.index = sensor_frame.index;
   result.timestamp = sensor_frame.timestamp;
-  const Stopwatch watch;
-
   std::swap(current_, previous_);
   builder_.build(sensor_frame, current_, result.times);
   result.features = static_cast<int>(current_.size());
+}
 
+void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
   if (state_ == State::waiting) {
     if (start_map(result)) {
       state_ = State::tracking;
       result.status = TrackingStatus::initialised;
     }
-  } else {
-    map_version_ = map_version;
-    bool found = false;
-    {
-      const StageTimer timer(result.times, "predict");
-      if (has_previous_) previous_.T_camera_world = T_previous_reference_ * map_.pose_of(reference_keyframe_);
-      if (state_ == State::tracking)
-        found = predict_with_velocity(result) || predict_with_keyframe(reference_keyframe_, result);
-      if (!found) found = recover(result);
-    }
-    if (found && !filters_.empty()) {
-      const StageTimer timer(result.times, "filters");
-      filters_.apply({.sensor_frame = sensor_frame,
-                      .frame = current_,
-                      .previous = has_previous_ ? &previous_ : nullptr,
-                      .map = map_,
-                      .T_camera_world = &current_.T_camera_world},
-                     current_);
-    }
-    found = found && track_local_map(result);
-    state_ = found ? State::tracking : State::lost;
-    result.status = found ? TrackingStatus::tracked : TrackingStatus::lost;
-    if (found) {
-      const StageTimer timer(result.times, "keyframe");
-      result.is_keyframe = needs_keyframe(result);
-      result.trouble = TrackingTrouble::none;
-      if (result.is_keyframe) local_map_.write_counts(map_);  // local mapping judges points by them
-    }
+    remember(result);
+    return;
+  }
+  bool found = false;
+  {
+    const StageTimer timer(result.times, "predict");
+    if (has_previous_) previous_.T_camera_world = T_previous_reference_ * map_.pose_of(reference_keyframe_);
+    if (state_ == State::tracking)
+      found = predict_with_velocity(result) || predict_with_keyframe(reference_keyframe_, result);
+  }
+  if (!found) {
+    const StageTimer timer(result.times, "relocalisation");
+    found = recover(result) || relocalise(result);
+  }
+  if (found && !filters_.empty()) {
+    const StageTimer timer(result.times, "filters");
+    filters_.apply({.sensor_frame = sensor_frame,
+                    .frame = current_,
+                    .previous = has_previous_ ? &previous_ : nullptr,
+                    .map = map_,
+                    .T_camera_world = &current_.T_camera_world},
+                   current_);
+  }
+  found = found && track_local_map(result);
+  state_ = found ? State::tracking : State::lost;
+  result.status = found ? TrackingStatus::tracked : TrackingStatus::lost;
+  if (found) {
+    const StageTimer timer(result.times, "keyframe");
+    result.is_keyframe = !localises_only_ && needs_keyframe(result);
+    result.trouble = TrackingTrouble::none;
+    if (result.is_keyframe) local_map_.write_counts(map_);  // local mapping judges points by them
   }
   remember(result);
-  result.tracking_seconds = watch.seconds();
-  return result;
 }
 
 bool Tracker::start_map(FrameResult& result) {
@@ -79,18 +81,21 @@ bool Tracker::start_map(FrameResult& result) {
   return true;
 }
 
-bool Tracker::track_local_map(FrameResult& result) {
-  const StageTimer timer(result.times, "local map");
-  local_map_.update(map_, current_, map_version_);
+int Tracker::match_local_map(float window) {
+  local_map_.update(map_, current_, map_.version());
   windows_.clear();
-  local_map_.project(current_, static_cast<float>(settings_.local_map_window), windows_);
+  local_map_.project(current_, window, windows_);
   MatchRule rule;
   rule.maximum_distance = settings_.possible_distance;
   rule.ratio = static_cast<float>(settings_.descriptor_ratio);
   for (const ProjectionMatch& match : search_.match(windows_, local_map_.descriptors().data(), current_, rule))
     current_.map_points[match.feature] = local_map_.points()[match.source];
+  return adjust_pose();
+}
 
-  result.inliers = adjust_pose();
+bool Tracker::track_local_map(FrameResult& result) {
+  const StageTimer timer(result.times, "local map");
+  result.inliers = match_local_map(static_cast<float>(settings_.local_map_window));
   result.matches = static_cast<int>(problem_.size());
   result.static_features = static_cast<int>(std::count_if(
       current_.static_probability.begin(), current_.static_probability.end(), [](float p) { return p >= 0.5F; }));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How a frame gets its first pose: by velocity, from the reference keyframe, or, when lost, from one of the last ones.
+// How a frame gets its first pose: by velocity, or from the reference keyframe.
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +10,7 @@
 
 namespace holdfast {
 
-int Tracker::adjust_pose() {
+void Tracker::state_problem() {
   problem_.clear();
   problem_features_.clear();
   problem_.camera = current_.camera.get();
@@ -31,6 +31,10 @@ int Tracker::adjust_pose() {
     problem_features_.push_back(static_cast<std::uint32_t>(i));
   }
   problem_.inlier.assign(problem_.size(), 0);
+}
+
+int Tracker::adjust_pose() {
+  state_problem();
   const PoseSummary summary = optimizer_.optimize_pose(problem_);
   if (!summary.usable) {
     std::fill(problem_.inlier.begin(), problem_.inlier.end(), std::uint8_t{0});
@@ -157,27 +161,6 @@ bool Tracker::predict_with_keyframe(KeyFrameId keyframe, FrameResult& result) {
   }
   result.method = TrackingMethod::reference_keyframe;
   return true;
-}
-
-bool Tracker::recover(FrameResult& result) {
-  constexpr int most_keyframes = 5;
-  std::vector<KeyFrameId> candidates;
-  if (map_.find_keyframe(last_keyframe_) != nullptr) candidates.push_back(last_keyframe_);
-  for (const KeyFrameId id : {last_keyframe_, reference_keyframe_}) {
-    if (map_.find_keyframe(id) == nullptr) continue;
-    for (const KeyFrameId neighbour : map_.best_covisible(id, most_keyframes)) candidates.push_back(neighbour);
-  }
-  has_previous_ = has_velocity_ = false;
-  std::vector<KeyFrameId> tried;
-  for (const KeyFrameId candidate : candidates) {
-    if (std::find(tried.begin(), tried.end(), candidate) != tried.end()) continue;
-    if (static_cast<int>(tried.size()) >= most_keyframes) break;
-    tried.push_back(candidate);
-    if (!predict_with_keyframe(candidate, result)) continue;
-    result.method = TrackingMethod::recovered;
-    return true;
-  }
-  return false;
 }
 
 }  // namespace holdfast

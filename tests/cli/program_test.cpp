@@ -98,14 +98,14 @@ TEST_F(ProgramTest, TheExamplesAreRight) {
 TEST_F(ProgramTest, CheckTellsAllMistakes) {
   program_.write("bad.yaml",
                  "source: { tum: {} }\ncamera: tum_fr7\nfeatures: { orb: { cuont: 500, levels: many } }\noptimizer: "
-                 "ceres\nrun: { mode: threaded }\n");
+                 "ceres\nrun: { pace: timestamps }\n");
   const Outcome bad = program_.run({"check", "bad.yaml", "--set", "tracking.nothing=1"});
   EXPECT_EQ(bad.exit_code, 2);
   EXPECT_EQ(bad.output, "");
   for (const char* line :
        {"error: bad.yaml:1:16: source 'tum' needs 'path'", "error: bad.yaml:2:9: there is no known camera 'tum_fr7'",
         "error: bad.yaml:3:20: features 'orb' has no parameter 'cuont'; did you mean 'count'?\n",
-        "error: bad.yaml:3:40: found 'many' for 'levels'", "error: bad.yaml:5:14: found 'threaded'",
+        "error: bad.yaml:3:40: found 'many' for 'levels'", "error: bad.yaml:5:14: found 'timestamps'",
         "error: --set tracking.nothing=1: section 'tracking' has no parameter 'nothing'"})
     EXPECT_THAT(bad.errors, HasSubstr(line));
   EXPECT_EQ(std::count(bad.errors.begin(), bad.errors.end(), '\n'), 6);

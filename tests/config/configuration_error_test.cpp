@@ -103,10 +103,11 @@ TEST(ConfigurationErrors, Camera) {
                           StartsWith("c.yaml:4:63: section 'camera' has no parameter 'c'")));
 }
 
-TEST(ConfigurationErrors, ThreadedModeIsRefused) {
-  EXPECT_THAT(problems(test::good + "run: { mode: threaded }\n"),
-              ElementsAre("c.yaml:5:14: found 'threaded' for 'mode' of section 'run'; this version runs in sequential "
-                          "mode only"));
+TEST(ConfigurationErrors, SequentialModeKeepsNoPace) {
+  EXPECT_THAT(problems(test::good + "run: { mode: threaded, pace: timestamps }\n"), ElementsAre());
+  EXPECT_THAT(problems(test::good + "run: { pace: timestamps }\n"),
+              ElementsAre("c.yaml:5:14: found 'timestamps' for 'pace' of section 'run', which sequential mode cannot "
+                          "keep; expected 'none', or 'threaded' for 'mode'"));
 }
 
 TEST(ConfigurationErrors, Plugins) {

@@ -20,7 +20,7 @@ class LocalMapperTest : public testing::Test {
     Registry registry;
     holdfast_register_plugin_ceres(registry);
     optimizer = registry.create<Optimizer>("ceres", {}, {});
-    mapper = std::make_unique<LocalMapper>(MappingSettings{}, map, *optimizer);
+    mapper = std::make_unique<LocalMapper>(MappingSettings{}, map, mutex, *optimizer);
   }
 
   Frame frame_at(const Eigen::Isometry3d& T_world_camera) {
@@ -39,12 +39,18 @@ class LocalMapperTest : public testing::Test {
           frame.map_points[i] = id;
       });
   }
+  KeyFrameId add_keyframe(const Frame& frame) {
+    const KeyFrameId keyframe = mapper->insert(frame, times);
+    mapper->refine(keyframe, times);
+    return keyframe;
+  }
   static Eigen::Isometry3d beside(double x) { return Eigen::Isometry3d(Eigen::Translation3d(x, 0, 0)); }
 
   test::PointWorld world;
   test::PointExtractor extractor;
   FrameBuilder builder;
   Map map;
+  MapMutex mutex;
   std::unique_ptr<Optimizer> optimizer;
   std::unique_ptr<LocalMapper> mapper;
   StageTimes times;
@@ -53,7 +59,7 @@ class LocalMapperTest : public testing::Test {
 
 TEST_F(LocalMapperTest, FirstKeyframeMakesItsClosePointsFromDepth) {
   const Frame frame = frame_at(beside(0));
-  mapper->add_keyframe(frame, times);
+  add_keyframe(frame);
   std::size_t close = 0;
   for (std::size_t i = 0; i < frame.size(); ++i) close += frame.has_depth(i) && frame.depth[i] <= 3.2F ? 1 : 0;
   ASSERT_GT(close, 100U);
@@ -65,11 +71,11 @@ TEST_F(LocalMapperTest, FirstKeyframeMakesItsClosePointsFromDepth) {
 }
 
 TEST_F(LocalMapperTest, PointsSeenTwiceBecomeOne) {
-  mapper->add_keyframe(frame_at(beside(0)), times);
+  add_keyframe(frame_at(beside(0)));
   const std::size_t first = map.points().size();
   Frame frame = frame_at(beside(0.05));
   match(frame, 3);  // a third is tracked, the others are made again from depth
-  mapper->add_keyframe(frame, times);
+  add_keyframe(frame);
   EXPECT_GT(mapper->counts().points_fused, first / 3);
   EXPECT_LT(map.points().size(), first * 12 / 10);
   std::size_t seen_twice = 0;
@@ -84,10 +90,10 @@ TEST_F(LocalMapperTest, FeaturesWithoutDepthAreTriangulated) {
       if (frame.depth[i] > 2.5F) frame.depth[i] = 0.0F, frame.right_x[i] = std::numeric_limits<float>::quiet_NaN();
     return frame;
   };
-  mapper->add_keyframe(without_far_depth(frame_at(beside(0))), times);
+  add_keyframe(without_far_depth(frame_at(beside(0))));
   Frame frame = frame_at(beside(0.3));
   match(frame, 1);
-  mapper->add_keyframe(without_far_depth(frame), times);
+  add_keyframe(without_far_depth(frame));
   EXPECT_GT(mapper->counts().points_triangulated, 50U);
   int beyond = 0;
   map.points().for_each([&](MapPointId, const MapPoint& point) {
@@ -99,11 +105,11 @@ TEST_F(LocalMapperTest, FeaturesWithoutDepthAreTriangulated) {
 }
 
 TEST_F(LocalMapperTest, APoseThatIsOffIsPulledBack) {
-  mapper->add_keyframe(frame_at(beside(0)), times);
+  add_keyframe(frame_at(beside(0)));
   Frame frame = frame_at(beside(0.1));
   match(frame, 1);
   frame.T_camera_world = beside(0.115).inverse();  // 15 mm off
-  const KeyFrameId id = mapper->add_keyframe(frame, times);
+  const KeyFrameId id = add_keyframe(frame);
   EXPECT_NEAR(map.keyframe(id).frame.T_world_camera().translation().x(), 0.1, 0.002);
 }
 
@@ -112,7 +118,7 @@ TEST_F(LocalMapperTest, KeyframesThatShowNothingNewAreRemovedButNeverTheFirst) {
   for (int k = 0; k < 12; ++k) {
     Frame frame = frame_at(beside(0.01 * k));
     match(frame, 1);
-    const KeyFrameId id = mapper->add_keyframe(frame, times);
+    const KeyFrameId id = add_keyframe(frame);
     if (k == 0) first = id;
   }
   EXPECT_LT(map.keyframes().size(), 8U);
@@ -121,7 +127,7 @@ TEST_F(LocalMapperTest, KeyframesThatShowNothingNewAreRemovedButNeverTheFirst) {
 }
 
 TEST_F(LocalMapperTest, PointsThatNobodyFindsAgainLeave) {
-  mapper->add_keyframe(frame_at(beside(0)), times);
+  add_keyframe(frame_at(beside(0)));
   std::vector<MapPointId> missed;
   map.points().for_each([&](MapPointId id, const MapPoint&) {
     if (id.slot % 10 == 0) missed.push_back(id);
@@ -129,7 +135,7 @@ TEST_F(LocalMapperTest, PointsThatNobodyFindsAgainLeave) {
   for (const MapPointId id : missed) map.point(id).visible_count = 20;
   Frame frame = frame_at(beside(0.02));
   match(frame, 1);
-  mapper->add_keyframe(frame, times);
+  add_keyframe(frame);
   for (const MapPointId id : missed) EXPECT_EQ(map.find_point(id), nullptr);
   EXPECT_GE(mapper->counts().points_removed, missed.size());
 }

@@ -15,6 +15,16 @@
 
 namespace holdfast {
 
+/// What the threads of a run did.
+struct ThreadRecord {
+  QueueCounts frames;          ///< between the source and tracking
+  std::uint64_t late = 0;      ///< paced: frames that the source gave after they were due
+  double latest = 0.0;         ///< by how much at most [s]
+  std::vector<double> delays;  ///< from when a frame was due (unpaced: read) until it had its result [s]
+  std::vector<WorkerCounts> workers;
+  std::uint64_t keyframes_deferred = 0;  ///< due, but local mapping had no room for them
+};
+
 /// All that is known at the end of a run.
 struct RunRecord {
   const Configuration* configuration = nullptr;
@@ -27,6 +37,7 @@ struct RunRecord {
   Trajectory trajectory, keyframes;
   std::size_t map_keyframes = 0, map_points = 0;
   MappingCounts mapping;
+  std::optional<ThreadRecord> threads;  ///< in threaded mode
   std::optional<Evaluation> evaluation;
   std::string no_evaluation;   ///< why there is none
   double start_seconds = 0.0;  ///< from the start of the program to the first pose

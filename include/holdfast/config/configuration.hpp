@@ -26,6 +26,10 @@ struct SectionDescription {
 struct RunSettings {
   std::string mode = "sequential";
   std::uint64_t seed = 1;
+  std::string pace = "none";
+  std::string late_frames = "queue";
+  int frame_queue = 4;
+  int keyframe_queue = 4;
 
   static void describe(ParameterTable<RunSettings>& table);
 };

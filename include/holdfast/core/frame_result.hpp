@@ -19,7 +19,13 @@ enum class TrackingStatus {
 };
 
 /// How the pose was first found, before the local map refined it.
-enum class TrackingMethod { none, motion_model, reference_keyframe, recovered };
+enum class TrackingMethod {
+  none,
+  motion_model,        ///< from the previous frame
+  reference_keyframe,  ///< by comparing with the reference keyframe
+  recovered,           ///< after a loss, from one of the last keyframes
+  relocalised,         ///< after a loss or in a loaded map, at a place that the loop detector recognised
+};
 
 /// Why a frame has no pose.
 enum class TrackingTrouble { none, no_depth, few_features, few_matches, few_inliers };

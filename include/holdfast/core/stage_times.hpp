@@ -11,7 +11,10 @@ namespace holdfast {
 class Stopwatch {
  public:
   double seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
-  void restart() { begin_ = Clock::now(); }
+  /// Begins anew, as if `already` seconds had passed.
+  void restart(double already = 0.0) {
+    begin_ = Clock::now() - std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(already));
+  }
 
  private:
   using Clock = std::chrono::steady_clock;

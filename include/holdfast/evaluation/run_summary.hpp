@@ -26,11 +26,15 @@ class RunSummary {
  public:
   /// `decode_seconds`: time the source took for the frame's images.
   void add(const FrameResult& result, double decode_seconds);
+  /// Stages that ran beside tracking, in another thread.
+  void add(const StageTimes& background);
 
   std::uint64_t frames() const { return frames_; }
   std::uint64_t tracked() const { return count(TrackingStatus::tracked) + count(TrackingStatus::initialised); }
   std::uint64_t lost() const { return count(TrackingStatus::lost); }
+  /// Times that a lost camera found its place: among the last keyframes, or by place recognition.
   std::uint64_t recovered() const { return recovered_; }
+  std::uint64_t relocalised() const { return relocalised_; }
   std::uint64_t count(TrackingStatus status) const;
   const std::map<TrackingTrouble, std::uint64_t>& troubles() const { return troubles_; }
   double mean_inliers() const;
@@ -48,7 +52,7 @@ class RunSummary {
   };
   std::vector<double>& stage(const std::string& name);
 
-  std::uint64_t frames_ = 0, recovered_ = 0, inliers_ = 0;
+  std::uint64_t frames_ = 0, recovered_ = 0, relocalised_ = 0, inliers_ = 0;
   std::map<TrackingStatus, std::uint64_t> statuses_;
   std::map<TrackingTrouble, std::uint64_t> troubles_;
   std::vector<Stage> stages_;

@@ -14,11 +14,21 @@
 #include "holdfast/interfaces/all.hpp"
 #include "holdfast/mapping/local_mapper.hpp"
 #include "holdfast/mapping/mapping_settings.hpp"
+#include "holdfast/pipeline/worker.hpp"
 #include "holdfast/tracking/filter_chain.hpp"
 #include "holdfast/tracking/tracker.hpp"
 #include "holdfast/tracking/tracking_settings.hpp"
 
 namespace holdfast {
+
+/// How a pipeline uses threads.
+struct ThreadSettings {
+  bool threaded = false;
+  std::size_t keyframe_queue = 4;  ///< keyframes that wait for local mapping, at most
+  /// Frames come as fast as they can be read: tracking waits for room in the queue of keyframes. Otherwise it never
+  /// waits, and a keyframe that finds no room is put off.
+  bool unpaced = true;
+};
 
 /// Everything a pipeline is made of; PipelineBuilder checks and fills it.
 struct PipelineParts {
@@ -32,32 +42,52 @@ struct PipelineParts {
   TrackingSettings tracking;
   MappingSettings mapping;
   std::uint64_t seed = 1;
+  ThreadSettings threads;
+  Map map;                     ///< to continue; empty = begin a new one
+  bool localise_only = false;  ///< find poses in the map and leave it as it is
 };
 
-/// Visual SLAM from frames to poses and a map, in sequential mode: feed() does all the work of a frame, local mapping
-/// included, in the calling thread, and gives the same bits on every run. Pipelines share nothing: any number may live
-/// in one process. One thread at a time.
+/// Visual SLAM from frames to poses and a map. Pipelines share nothing: any number may live in one process.
+///
+/// Sequential mode: feed() does all the work of a frame, mapping and loop closing included, in the calling thread, and
+/// gives the same bits on every run. Threaded mode: feed() tracks the frame and inserts keyframes; local mapping, loop
+/// closing, full bundle adjustment and segmentation have threads of their own, and tracking waits for none of them
+/// except, unpaced, for room in the queue of keyframes. One thread at a time calls feed(), finish() and the rest, all
+/// but interrupt().
 class Pipeline {
  public:
   /// Throws CheckError when a required part is missing.
   explicit Pipeline(PipelineParts parts);
+  /// Ends the threads: waits for the jobs in progress, which are asked to end early; what waits is abandoned.
   ~Pipeline();
   Pipeline(Pipeline&&) noexcept;
   Pipeline& operator=(Pipeline&&) noexcept;
 
   /// Processes one frame; time stamps must rise strictly (InputError otherwise). Trouble with the frame is a typed
-  /// result.
+  /// result. Throws what a thread of the pipeline threw.
   FrameResult feed(const SensorFrame& frame);
-  /// Ends the run: tells the observers. feed() must not be called any more.
+  /// Ends the run: waits until the threads have done what waits for them, and tells the observers. feed() must not be
+  /// called any more. Throws what a thread of the pipeline threw.
   void finish();
+  /// Makes long adjustments in progress end after their current iteration. From any thread.
+  void interrupt();
 
-  /// Poses of all tracked frames, in order, as corrected by all that came later. World frame: the first camera's.
+  /// Poses of all tracked frames, in order, as corrected by all that came later. World frame: the first camera's, or
+  /// that of the map that was continued.
   Trajectory trajectory() const;
   /// Poses of the keyframes in the map, by time.
   Trajectory keyframe_trajectory() const;
+  /// In threaded mode only after finish().
   const Map& map() const;
   const MappingCounts& mapping_counts() const;
   const Camera& camera() const;
+
+  /// Stage times of background work done since the last call; in sequential mode they are in each FrameResult.
+  std::vector<StageTimes> take_background_times();
+  /// Keyframes that were due but found the mapping thread too busy.
+  std::uint64_t keyframes_deferred() const;
+  /// One entry per thread of the pipeline; empty in sequential mode.
+  std::vector<WorkerCounts> worker_counts() const;
 
  private:
   struct State;

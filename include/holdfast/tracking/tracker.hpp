@@ -13,6 +13,7 @@
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/interfaces/dynamic_filter.hpp"
 #include "holdfast/interfaces/feature_extractor.hpp"
+#include "holdfast/interfaces/loop_detector.hpp"
 #include "holdfast/interfaces/optimizer.hpp"
 #include "holdfast/tracking/filter_chain.hpp"
 #include "holdfast/tracking/frame_builder.hpp"
@@ -24,25 +25,31 @@ namespace holdfast {
 
 /// Finds the pose of every frame against the map (Mur-Artal and Tardos 2017, section III): prediction with constant
 /// velocity, or the reference keyframe when that fails, then the local map, then a keyframe decision. When lost, the
-/// last keyframes are tried until one fits. Changes the map only by starting it and by counting how often points are
-/// found. One thread.
+/// last keyframes are tried, then the places that the loop detector recognises. Changes the map only by counting how
+/// often points are found. One thread.
 class Tracker {
  public:
-  /// Extractor, optimizer and map must outlive the tracker.
+  /// Extractor, optimizer, filters, detector and map must outlive the tracker. With keyframes in the map it begins lost
+  /// and has to find its place among them first.
   Tracker(const TrackingSettings& settings, const Camera& camera, FeatureExtractor& extractor, Optimizer& optimizer,
-          FilterChain& filters, Map& map, std::uint64_t seed);
+          FilterChain& filters, const LoopDetector& detector, Map& map, std::uint64_t seed);
 
-  /// Tracks one frame. When the result says is_keyframe, hand take_keyframe() to local mapping and tell the outcome
-  /// with keyframe_added().
-  FrameResult track(const SensorFrame& sensor_frame, std::uint64_t map_version);
+  /// From now on no frame becomes a keyframe.
+  void localise_only() { localises_only_ = true; }
+
+  /// First half of a frame: finds its features. Does not look at the map.
+  void begin(const SensorFrame& sensor_frame, FrameResult& result);
+  /// Second half: finds its pose; the caller holds the lock of the map. When the result says is_keyframe, hand frame()
+  /// to local mapping and call keyframe_added() before the lock is given back.
+  void locate(const SensorFrame& sensor_frame, FrameResult& result);
 
   /// The frame last tracked, as features, matches and pose.
   const Frame& frame() const { return current_; }
-  /// The keyframe that the tracked frame became, after local mapping had its turn: its matches and its pose are taken
-  /// over.
+  /// The keyframe that the tracked frame became: its matches and its pose, as local mapping left them, are taken over.
   void keyframe_added(KeyFrameId keyframe);
 
-  /// Every tracked frame's pose as the map knows it now: frames follow the keyframes that they were tracked against.
+  /// Every tracked frame's pose as the map knows it now; the caller holds the lock of the map. Frames follow the
+  /// keyframes that they were tracked against.
   Trajectory trajectory() const;
 
  private:
@@ -52,9 +59,14 @@ class Tracker {
   bool predict_with_velocity(FrameResult& result);
   bool predict_with_keyframe(KeyFrameId keyframe, FrameResult& result);
   bool recover(FrameResult& result);
+  bool relocalise(FrameResult& result);
+  bool fits_surroundings(FrameResult& result);
+  bool could_have_come_here() const;
   bool track_local_map(FrameResult& result);
   bool needs_keyframe(const FrameResult& result) const;
+  void state_problem();
   int adjust_pose();
+  int match_local_map(float window);
   void drop_outliers();
   int match_previous(float radius_factor);
   void match_descriptors(const Frame& keyframe_frame);
@@ -71,11 +83,12 @@ class Tracker {
   FrameBuilder builder_;
   Optimizer& optimizer_;
   FilterChain& filters_;
+  const LoopDetector& detector_;
   Map& map_;
   Random random_;
 
-  std::uint64_t map_version_ = 0;
-  State state_ = State::waiting;
+  State state_;
+  bool localises_only_ = false;
   Frame current_, previous_;
   bool has_previous_ = false;  // previous_ has a pose
   Eigen::Isometry3d T_previous_reference_ = Eigen::Isometry3d::Identity();

@@ -22,6 +22,9 @@ struct TrackingSettings {
   int keyframe_close_tracked = 100;
   int keyframe_close_possible = 70;
   double depth_edge_ratio = 0.0;
+  int relocalisation_candidates = 5;
+  int relocalisation_inliers = 50;
+  double relocalisation_speed = 3.0;
 
   static void describe(ParameterTable<TrackingSettings>& table) {
     using S = TrackingSettings;
@@ -67,6 +70,19 @@ struct TrackingSettings {
         .add("depth_edge_ratio", &S::depth_edge_ratio,
              "depth is not trusted where it varies around a feature by more than this share of itself; 0 = trust all")
         .range(0, 1);
+    table
+        .add("relocalisation_candidates", &S::relocalisation_candidates,
+             "places that a lost camera compares itself with in each frame, at most; 0 = the last keyframes only")
+        .range(0, 100);
+    table
+        .add("relocalisation_inliers", &S::relocalisation_inliers,
+             "map points that must agree before a recognised place is believed")
+        .range(6, 10000);
+    table
+        .add("relocalisation_speed", &S::relocalisation_speed,
+             "a lost camera is not believed to have moved faster than this, plus 1 m")
+        .range(0.01, 1000)
+        .unit("m/s");
   }
 };
 
