@@ -77,6 +77,7 @@ struct Pipeline::State {
   SharedLoopDetector detector;
   Tracker tracker;
   LocalMapper mapper;
+  bool finished = false;
   bool has_frame = false;
   double last_timestamp = 0.0;
   std::uint64_t keyframes_deferred = 0;
@@ -207,6 +208,7 @@ void Pipeline::finish() {
   if (s.mapping) s.mapping->finish();
   if (s.loop_closing) s.loop_closing->finish();
   if (s.segmentation) s.segmentation->finish();
+  s.finished = true;
   s.rethrow_failures();
   for (const auto& observer : s.parts.observers) observer->on_finish(s.map);
 }
@@ -245,6 +247,10 @@ Trajectory Pipeline::keyframe_trajectory() const {
 }
 
 const Map& Pipeline::map() const { return state_->map; }
+Map Pipeline::take_map() {
+  HOLDFAST_CHECK(!state_->mapping || state_->finished, "the threads still use the map; call finish() first");
+  return std::exchange(state_->map, Map());
+}
 const MappingCounts& Pipeline::mapping_counts() const { return state_->mapper.counts(); }
 const Camera& Pipeline::camera() const { return state_->parts.camera; }
 

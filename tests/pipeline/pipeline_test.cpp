@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/hamming.hpp"
 #include "holdfast/plugin/registry.hpp"
 #include "support/point_world.hpp"
 
@@ -80,6 +81,123 @@ TEST(Pipeline, LostInTheDarkIsAResultAndLightBringsItBack) {
   EXPECT_EQ(recovered, 1);
   EXPECT_EQ(pipeline.trajectory().size(), 70U);
   EXPECT_LT(largest_error(pipeline.trajectory()), 0.006);
+}
+
+/// Compares descriptors with those of every keyframe, one by one.
+class PlainDetector final : public LoopDetector {
+ public:
+  void add(KeyFrameId keyframe, std::span<const Descriptor> descriptors) override {
+    places_.emplace_back(keyframe, std::vector<Descriptor>(descriptors.begin(), descriptors.end()));
+  }
+  void remove(KeyFrameId keyframe) override {
+    std::erase_if(places_, [&](const auto& place) { return place.first == keyframe; });
+  }
+  std::vector<PlaceMatch> query(std::span<const Descriptor> descriptors, int most) const override {
+    std::vector<PlaceMatch> matches;
+    for (const auto& [keyframe, known] : places_) {
+      int near = 0;
+      for (const Descriptor& a : descriptors)
+        near +=
+            std::any_of(known.begin(), known.end(), [&](const Descriptor& b) { return hamming_distance(a, b) < 40; });
+      matches.push_back({keyframe, static_cast<double>(near)});
+    }
+    std::stable_sort(matches.begin(), matches.end(), [](auto& a, auto& b) { return a.score > b.score; });
+    matches.resize(std::min(matches.size(), static_cast<std::size_t>(most)));
+    return matches;
+  }
+
+ private:
+  std::vector<std::pair<KeyFrameId, std::vector<Descriptor>>> places_;
+};
+
+TEST(Pipeline, ThreadsDoTheSameWork) {
+  for (const bool unpaced : {true, false}) {
+    test::PointWorld world(find_camera("tum_fr1").value());
+    PipelineParts parts = parts_for(world, 0.3);
+    parts.loop_detector = std::make_unique<PlainDetector>();
+    parts.threads = {.threaded = true, .keyframe_queue = 2, .unpaced = unpaced};
+    Pipeline pipeline(std::move(parts));
+    constexpr int frames = 120;
+    for (int i = 0; i < frames; ++i) {
+      const double time = i / 30.0;
+      const bool dark = i >= 50 && i < 55;
+      const FrameResult result =
+          pipeline.feed(world.frame(static_cast<std::uint64_t>(i), time, test::path_pose(time), !dark));
+      EXPECT_EQ(result.T_world_camera.has_value(), !dark) << i;
+    }
+    pipeline.finish();
+    EXPECT_EQ(pipeline.trajectory().size(), 115U);
+    EXPECT_LT(largest_error(pipeline.trajectory()), 0.006);
+    EXPECT_FALSE(pipeline.take_background_times().empty());
+    const std::vector<WorkerCounts> workers = pipeline.worker_counts();
+    ASSERT_EQ(workers.size(), 2U);
+    EXPECT_EQ(workers[0].queue.taken, pipeline.mapping_counts().keyframes_made);
+    EXPECT_TRUE(!unpaced || pipeline.keyframes_deferred() == 0);
+  }
+}
+
+TEST(Pipeline, ThreadsEndCleanlyInTheMiddleOfARun) {
+  test::PointWorld world(find_camera("tum_fr1").value());
+  for (int frames = 0; frames < 12; ++frames) {
+    PipelineParts parts = parts_for(world, 0.3);
+    parts.threads.threaded = true;
+    Pipeline pipeline(std::move(parts));
+    for (int i = 0; i < frames; ++i)
+      pipeline.feed(world.frame(static_cast<std::uint64_t>(i), i / 10.0, test::path_pose(i / 10.0)));
+  }
+}
+
+/// Throws when it is told of the second keyframe.
+class Thrower final : public Observer {
+ public:
+  void on_keyframe(KeyFrameId, const Map&) override {
+    if (++keyframes_ == 2) throw InputError({"disk"}, "is full");
+  }
+
+ private:
+  int keyframes_ = 0;
+};
+
+TEST(Pipeline, WhatAThreadThrowsComesBack) {
+  test::PointWorld world(find_camera("tum_fr1").value());
+  PipelineParts parts = parts_for(world, 0.3);
+  parts.threads.threaded = true;
+  parts.observers.push_back(std::make_unique<Thrower>());
+  Pipeline pipeline(std::move(parts));
+  const auto run = [&] {
+    for (int i = 0; i < 120; ++i)
+      pipeline.feed(world.frame(static_cast<std::uint64_t>(i), i / 30.0, test::path_pose(i / 30.0)));
+    pipeline.finish();
+  };
+  EXPECT_THROW(run(), InputError);
+}
+
+TEST(Pipeline, FindsItsPlaceInALoadedMap) {
+  test::PointWorld world(find_camera("tum_fr1").value());
+  Map map;
+  {
+    Pipeline pipeline(parts_for(world, 0.3));
+    for (int i = 0; i < 60; ++i)
+      pipeline.feed(world.frame(static_cast<std::uint64_t>(i), i / 30.0, test::path_pose(i / 30.0)));
+    map = pipeline.take_map();
+  }
+  const std::size_t keyframes = map.keyframes().size(), points = map.points().size();
+  PipelineParts parts = parts_for(world, 0.3);
+  parts.loop_detector = std::make_unique<PlainDetector>();
+  parts.map = std::move(map);
+  parts.localise_only = true;
+  Pipeline pipeline(std::move(parts));
+  for (int i = 0; i < 30; ++i) {
+    const double time = 1.51 - i / 30.0;  // backwards, and between the frames that made the map
+    const FrameResult result = pipeline.feed(world.frame(static_cast<std::uint64_t>(i), i, test::path_pose(time)));
+    EXPECT_EQ(result.status, TrackingStatus::tracked) << i;
+    EXPECT_EQ(result.method, i == 0 ? TrackingMethod::relocalised : result.method);
+    ASSERT_TRUE(result.T_world_camera);
+    EXPECT_LT((result.T_world_camera->translation() - test::path_pose(time).translation()).norm(), 0.006) << i;
+    EXPECT_FALSE(result.is_keyframe);
+  }
+  EXPECT_EQ(pipeline.map().keyframes().size(), keyframes);
+  EXPECT_EQ(pipeline.map().points().size(), points);
 }
 
 TEST(Pipeline, WaitsForAFrameWithDepth) {

@@ -79,6 +79,8 @@ class Pipeline {
   Trajectory keyframe_trajectory() const;
   /// In threaded mode only after finish().
   const Map& map() const;
+  /// Hands the map over and leaves an empty one; nothing else may be called but the destructor.
+  Map take_map();
   const MappingCounts& mapping_counts() const;
   const Camera& camera() const;
 
