@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flann_detector.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "holdfast/core/error.hpp"
+#include "holdfast/core/random.hpp"
+
+namespace holdfast::flann_plugin {
+
+namespace {
+
+constexpr std::uint64_t seed_stream = 0x706c616365;  // of this plugin among those that fork the run's seed
+constexpr std::uint32_t most_count = 255;
+
+/// Sorts and merges equal neighbours: words with how often they occur.
+template <class WordCount>
+void count_words(std::vector<WordId>& words, std::vector<WordCount>& counts) {
+  std::sort(words.begin(), words.end());
+  for (const WordId word : words) {
+    if (counts.empty() || counts.back().word != word) counts.push_back({word, 0});
+    ++counts.back().count;
+  }
+}
+
+}  // namespace
+
+FlannDetector::FlannDetector(const FlannSettings& settings, const CreationContext& context)
+    : settings_(settings),
+      vocabulary_(Random(context.seed).fork(seed_stream).next(), settings.probes, settings.checks) {}
+
+void FlannDetector::add(KeyFrameId keyframe, std::span<const Descriptor> descriptors) {
+  HOLDFAST_CHECK(!slots_.contains(keyframe),
+                 "keyframe " << keyframe.slot << "." << keyframe.generation << " was added before");
+  look_up(descriptors);
+  looked_up_ = false;
+
+  // All were looked up before the first is inserted: whether the lookups come from query() makes no difference.
+  std::vector<WordId> words;
+  words.reserve(lookups_.size());
+  for (std::size_t i = 0; i < lookups_.size(); ++i) {
+    const Lookup& lookup = lookups_[i];
+    words.push_back(lookup.distance <= settings_.radius ? lookup.word
+                                                        : vocabulary_.insert(looked_up_descriptors_[i], lookup.bucket));
+  }
+  vocabulary_.split_full_buckets();
+  std::vector<WordCount> counts;
+  count_words(words, counts);
+
+  std::uint32_t slot = static_cast<std::uint32_t>(entries_.size());
+  if (free_slots_.empty()) {
+    HOLDFAST_CHECK(slot < most_keyframes, "keyframes " << slot);
+    entries_.emplace_back();
+  } else {
+    slot = free_slots_.back();
+    free_slots_.pop_back();
+  }
+  slots_.emplace(keyframe, slot);
+  Entry& entry = entries_[slot];
+  entry.keyframe = keyframe;
+  entry.words.reserve(counts.size());
+  for (const WordCount& word : counts) {
+    entry.words.push_back(word.word);
+    inverted_.add(word.word, {slot, std::min(word.count, most_count)});
+  }
+}
+
+void FlannDetector::remove(KeyFrameId keyframe) {
+  const auto found = slots_.find(keyframe);
+  if (found == slots_.end()) return;
+  looked_up_ = false;
+  const std::uint32_t slot = found->second;
+  for (const WordId word : entries_[slot].words)
+    if (inverted_.remove(word, slot)) vocabulary_.erase(word);
+  entries_[slot] = {};
+  free_slots_.push_back(slot);
+  slots_.erase(found);
+}
+
+std::vector<PlaceMatch> FlannDetector::query(std::span<const Descriptor> descriptors, int most) const {
+  if (most <= 0 || slots_.empty()) return {};
+  look_up(descriptors);
+  std::vector<WordId> words;
+  std::uint64_t total = 0;
+  const std::uint64_t weight_of_unknown = weight(1);
+  for (const Lookup& lookup : lookups_) {
+    if (lookup.distance <= settings_.radius)
+      words.push_back(lookup.word);
+    else
+      total += weight_of_unknown;
+  }
+  std::vector<WordCount> counts;
+  count_words(words, counts);
+
+  votes_.assign(entries_.size(), 0);
+  for (const WordCount& word : counts) {
+    const auto postings = inverted_.postings(word.word);
+    const std::uint64_t word_weight = weight(postings.size());
+    total += word_weight * word.count;
+    for (const Posting& posting : postings)
+      votes_[posting.keyframe] += word_weight * std::min<std::uint32_t>(word.count, posting.count);
+  }
+
+  std::vector<PlaceMatch> matches;
+  for (std::size_t slot = 0; slot < votes_.size(); ++slot)
+    if (votes_[slot] > 0)
+      matches.push_back({entries_[slot].keyframe, static_cast<double>(votes_[slot]) / static_cast<double>(total)});
+  const auto wanted = matches.begin() + std::min<std::ptrdiff_t>(most, std::ssize(matches));
+  std::partial_sort(matches.begin(), wanted, matches.end(), [](const PlaceMatch& a, const PlaceMatch& b) {
+    return a.score != b.score ? a.score > b.score : a.keyframe < b.keyframe;
+  });
+  matches.erase(wanted, matches.end());
+  return matches;
+}
+
+/// Fills looked_up_descriptors_, which are those used of the given ones, and their lookups_.
+void FlannDetector::look_up(std::span<const Descriptor> descriptors) const {
+  std::vector<Descriptor> used;
+  const std::size_t most = static_cast<std::size_t>(settings_.descriptors);
+  const std::size_t count = std::min(descriptors.size(), most);
+  used.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) used.push_back(descriptors[i * descriptors.size() / count]);
+  if (looked_up_ && used == looked_up_descriptors_) return;
+
+  looked_up_descriptors_ = std::move(used);
+  lookups_.clear();
+  for (const Descriptor& descriptor : looked_up_descriptors_) lookups_.push_back(vocabulary_.find(descriptor));
+  looked_up_ = true;
+}
+
+/// log(1 + N / n) in 1/1024.
+std::uint64_t FlannDetector::weight(std::size_t keyframes_with_word) const {
+  const double ratio = static_cast<double>(slots_.size()) / static_cast<double>(keyframes_with_word);
+  return static_cast<std::uint64_t>(std::lround(1024.0 * std::log1p(ratio)));
+}
+
+}  // namespace holdfast::flann_plugin

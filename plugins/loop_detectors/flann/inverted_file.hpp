@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <vector>
+
+namespace holdfast::flann_plugin {
+
+/// That a keyframe has a word, and how often. Keyframes are small numbers here, below most_keyframes.
+struct Posting {
+  std::uint32_t keyframe : 24;
+  std::uint32_t count : 8;  ///< 255 stands for 255 and more
+};
+static_assert(sizeof(Posting) == 4);
+inline constexpr std::uint32_t most_keyframes = 1U << 24;
+
+/// Who has a word: for each word its postings, side by side in one pool. A single posting, the most frequent case by
+/// far, lies in the word's own entry; longer lists have a room of 2, 4, 8, ... in the pool, and rooms are used again.
+class InvertedFile {
+ public:
+  /// The word must not have a posting of that keyframe yet.
+  void add(std::uint32_t word, Posting posting);
+  /// Returns whether that was the word's last one. Throws CheckError when there is none of that keyframe.
+  bool remove(std::uint32_t word, std::uint32_t keyframe);
+  /// In no particular order. Valid until the next change.
+  std::span<const Posting> postings(std::uint32_t word) const;
+
+ private:
+  struct Entry {
+    std::uint32_t length = 0;
+    union {
+      std::uint32_t room = 0;  ///< length > 1: where in pool_
+      Posting only;            ///< length 1
+    };
+  };
+
+  std::uint32_t take_room(std::uint32_t capacity);
+  void give_back(std::uint32_t room, std::uint32_t capacity);
+  void move_to_room(Entry& entry, std::uint32_t old_capacity, std::uint32_t new_capacity, std::uint32_t length);
+
+  std::deque<Entry> entries_;  // by word
+  std::vector<Posting> pool_;
+  std::vector<std::vector<std::uint32_t>> free_rooms_;  // by the logarithm of their capacity
+};
+
+}  // namespace holdfast::flann_plugin

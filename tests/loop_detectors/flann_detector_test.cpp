@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "flann_detector.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <memory>
+#include <vector>
+
+#include "holdfast/core/error.hpp"
+#include "holdfast/plugin/builtin.hpp"
+#include "loop_detectors/descriptors.hpp"
+
+namespace holdfast::flann_plugin {
+namespace {
+
+using test::disturbed;
+using test::random_descriptors;
+using test::seen_again;
+using Descriptors = std::vector<Descriptor>;
+
+constexpr int size_of_keyframe = 200;
+
+KeyFrameId id(std::uint32_t slot) { return {slot, 1}; }
+
+/// Some places that share nothing.
+std::vector<Descriptors> make_places(int count, std::uint64_t seed = 11) {
+  Random random(seed);
+  std::vector<Descriptors> places;
+  for (int i = 0; i < count; ++i) places.push_back(random_descriptors(random, size_of_keyframe));
+  return places;
+}
+
+std::vector<std::pair<std::uint32_t, double>> plain(const std::vector<PlaceMatch>& matches) {
+  std::vector<std::pair<std::uint32_t, double>> result;
+  for (const PlaceMatch& match : matches) result.emplace_back(match.keyframe.slot, match.score);
+  return result;
+}
+
+TEST(FlannDetector, FindsTheSamePlaceAmongMany) {
+  FlannDetector detector({});
+  const auto places = make_places(150);
+  for (std::uint32_t i = 0; i < places.size(); ++i) detector.add(id(i), places[i]);
+  Random random(1);
+  for (std::uint32_t i = 0; i < places.size(); i += 10) {
+    const auto matches = detector.query(seen_again(places[i], 0.4, 25, random), 5);
+    ASSERT_FALSE(matches.empty());
+    EXPECT_EQ(matches[0].keyframe, id(i));
+    EXPECT_GT(matches[0].score, 0.15);
+    if (matches.size() > 1) {
+      EXPECT_LT(matches[1].score, 0.5 * matches[0].score);
+    }
+  }
+}
+
+TEST(FlannDetector, RanksByWhatIsShared) {
+  FlannDetector detector({});
+  const auto place = make_places(1)[0];
+  Random random(2);
+  detector.add(id(3), seen_again(place, 0.2, 0, random));
+  detector.add(id(1), seen_again(place, 0.8, 0, random));
+  detector.add(id(2), seen_again(place, 0.5, 0, random));
+  const auto matches = detector.query(place, 10);
+  ASSERT_EQ(matches.size(), 3U);
+  EXPECT_EQ(matches[0].keyframe, id(1));
+  EXPECT_EQ(matches[1].keyframe, id(2));
+  EXPECT_EQ(matches[2].keyframe, id(3));
+  EXPECT_EQ(detector.query(place, 2).size(), 2U);
+  EXPECT_EQ(detector.query(place, 0).size(), 0U);
+}
+
+TEST(FlannDetector, ScoreIsTheShareOfTheQuery) {
+  FlannDetector detector({});
+  const auto places = make_places(2);
+  detector.add(id(0), places[0]);
+  // Alone in the map, all weights are log(2): half of the descriptors, half of the score.
+  Descriptors half(places[0].begin(), places[0].begin() + size_of_keyframe / 2);
+  half.insert(half.end(), places[1].begin(), places[1].begin() + size_of_keyframe / 2);
+  EXPECT_DOUBLE_EQ(detector.query(places[0], 1)[0].score, 1.0);
+  EXPECT_DOUBLE_EQ(detector.query(half, 1)[0].score, 0.5);
+}
+
+TEST(FlannDetector, RareWordsWeighMore) {
+  FlannDetector detector({});
+  const auto places = make_places(12);
+  const Descriptors& common = places[0];
+  for (std::uint32_t i = 1; i < 10; ++i) {
+    Descriptors view = places[i];
+    view.insert(view.end(), common.begin(), common.end());
+    detector.add(id(i), view);
+  }
+  // Half of the query is what all have, half is what only keyframe 5 has: by numbers 5 has all and others half.
+  Descriptors query = places[5];
+  query.insert(query.end(), common.begin(), common.end());
+  const auto matches = detector.query(query, 10);
+  ASSERT_EQ(matches.size(), 9U);
+  EXPECT_EQ(matches[0].keyframe, id(5));
+  EXPECT_DOUBLE_EQ(matches[0].score, 1.0);
+  EXPECT_LT(matches[1].score, 0.3);
+}
+
+TEST(FlannDetector, CountsOfAWordLimitEachOther) {
+  FlannDetector detector({});
+  const Descriptors one{Descriptor{}};
+  const Descriptors four(4, Descriptor{});
+  detector.add(id(0), one);
+  EXPECT_DOUBLE_EQ(detector.query(four, 1)[0].score, 0.25);
+  EXPECT_DOUBLE_EQ(detector.query(one, 1)[0].score, 1.0);
+}
+
+TEST(FlannDetector, EqualScoresByRisingId) {
+  FlannDetector detector({});
+  const auto place = make_places(1)[0];
+  for (const std::uint32_t i : {7U, 2U, 9U, 4U}) detector.add(id(i), place);
+  detector.add({2, 0}, place);
+  const auto matches = detector.query(place, 5);
+  ASSERT_EQ(matches.size(), 5U);
+  EXPECT_EQ(matches[0].keyframe, (KeyFrameId{2, 0}));
+  EXPECT_EQ(matches[1].keyframe, id(2));
+  EXPECT_EQ(matches[2].keyframe, id(4));
+  EXPECT_EQ(matches[3].keyframe, id(7));
+  EXPECT_EQ(matches[4].keyframe, id(9));
+  EXPECT_EQ(matches[0].score, matches[4].score);
+}
+
+TEST(FlannDetector, RemovedKeyframesAreNotFound) {
+  FlannDetector detector({});
+  const auto places = make_places(20);
+  for (std::uint32_t i = 0; i < places.size(); ++i) detector.add(id(i), places[i]);
+  detector.remove(id(7));
+  for (const PlaceMatch& match : detector.query(places[7], 100)) EXPECT_NE(match.keyframe, id(7));
+  EXPECT_EQ(detector.query(places[8], 1)[0].keyframe, id(8));
+  detector.remove(id(7));
+  detector.remove(id(99));
+  EXPECT_EQ(detector.keyframes(), 19U);
+  detector.add(id(7), places[7]);
+  EXPECT_EQ(detector.query(places[7], 1)[0].keyframe, id(7));
+}
+
+TEST(FlannDetector, WordsOfRemovedKeyframesAreForgotten) {
+  FlannDetector detector({});
+  const auto places = make_places(10);
+  for (std::uint32_t i = 0; i < places.size(); ++i) detector.add(id(i), places[i]);
+  const std::size_t words = detector.words();
+  for (std::uint32_t cycle = 0; cycle < 5; ++cycle) {
+    const auto others = make_places(10, 100 + cycle);
+    for (std::uint32_t i = 0; i < others.size(); ++i) detector.add(id(100 + i), others[i]);
+    EXPECT_GT(detector.words(), words + 1000);
+    for (std::uint32_t i = 0; i < others.size(); ++i) detector.remove(id(100 + i));
+    EXPECT_EQ(detector.words(), words);
+  }
+  for (std::uint32_t i = 0; i < places.size(); ++i) detector.remove(id(i));
+  EXPECT_EQ(detector.words(), 0U);
+  EXPECT_TRUE(detector.query(places[0], 3).empty());
+}
+
+TEST(FlannDetector, AddingTwiceIsRefused) {
+  FlannDetector detector({});
+  const auto place = make_places(1)[0];
+  detector.add(id(1), place);
+  EXPECT_THROW(detector.add(id(1), place), CheckError);
+}
+
+TEST(FlannDetector, KeyframesWithoutDescriptors) {
+  FlannDetector detector({});
+  EXPECT_TRUE(detector.query({}, 3).empty());
+  detector.add(id(0), {});
+  EXPECT_TRUE(detector.query({}, 3).empty());
+  const auto place = make_places(1)[0];
+  EXPECT_TRUE(detector.query(place, 3).empty());
+  detector.add(id(1), place);
+  EXPECT_TRUE(detector.query({}, 3).empty());
+  EXPECT_EQ(detector.query(place, 3).size(), 1U);
+  detector.remove(id(0));
+}
+
+TEST(FlannDetector, UsesNoMoreDescriptorsThanAllowed) {
+  FlannSettings settings;
+  settings.descriptors = 50;
+  FlannDetector detector(settings);
+  const auto place = make_places(1)[0];
+  detector.add(id(0), place);
+  EXPECT_EQ(detector.words(), 50U);
+  EXPECT_DOUBLE_EQ(detector.query(place, 1)[0].score, 1.0);
+}
+
+/// Queries and additions as loop closing makes them; every answer, one after the other.
+std::vector<std::pair<std::uint32_t, double>> session(bool query_before_add, bool host_draws,
+                                                      FlannDetector* other = nullptr) {
+  FlannDetector detector({});
+  const auto places = make_places(60, 5);
+  Random random(9);
+  std::vector<std::pair<std::uint32_t, double>> answers;
+  for (std::uint32_t i = 0; i < 120; ++i) {
+    const auto view = seen_again(places[(i * 7) % places.size()], 0.5, 20, random);
+    if (query_before_add) detector.query(view, 10);
+    if (other) other->add(id(i), seen_again(places[i % 60], 0.3, 10, random));
+    detector.add(id(i), view);
+    if (i % 5 == 4) detector.remove(id(i - 3));
+    if (host_draws) std::srand(static_cast<unsigned>(i));
+    const auto matches = plain(detector.query(places[i % places.size()], 10));
+    answers.insert(answers.end(), matches.begin(), matches.end());
+    if (other) other->query(places[i % 60], 4);
+  }
+  return answers;
+}
+
+TEST(FlannDetector, SameCallsSameAnswers) {
+  const auto answers = session(true, false);
+  ASSERT_GT(answers.size(), 300U);
+  EXPECT_EQ(answers, session(true, false));
+  EXPECT_EQ(answers, session(true, true)) << "the host's random numbers matter";
+  EXPECT_EQ(answers, session(false, false)) << "a query before an addition matters";
+}
+
+TEST(FlannDetector, DetectorsInOneProcessDoNotDisturbEachOther) {
+  // The other one draws from the same generator of views, so both sessions have one.
+  FlannDetector one({});
+  CreationContext context;
+  context.seed = 77;
+  FlannDetector another({}, context);
+  EXPECT_EQ(session(true, false, &one), session(true, false, &another));
+}
+
+TEST(FlannDetector, ScoresLieBetweenZeroAndOne) {
+  FlannDetector detector({});
+  Random random(4);
+  const auto places = make_places(10);
+  for (std::uint32_t i = 0; i < 200; ++i) {
+    auto view = seen_again(places[random.below(10)], random.uniform(), 30, random);
+    view.insert(view.end(), view.begin(), view.begin() + 20);
+    for (const PlaceMatch& match : detector.query(view, 300)) {
+      EXPECT_GT(match.score, 0.0);
+      EXPECT_LE(match.score, 1.0);
+    }
+    detector.add(id(i), view);
+  }
+}
+
+TEST(FlannDetector, IsFoundByItsNameInConfigurations) {
+  Registry registry;
+  register_builtin_plugins(registry);
+  const auto detector = registry.create<LoopDetector>("flann", {}, {});
+  const auto place = make_places(1)[0];
+  detector->add(id(0), place);
+  EXPECT_EQ(detector->query(place, 1).size(), 1U);
+}
+
+}  // namespace
+}  // namespace holdfast::flann_plugin

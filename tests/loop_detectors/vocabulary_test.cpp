@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "vocabulary.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <vector>
+
+#include "holdfast/core/error.hpp"
+#include "loop_detectors/descriptors.hpp"
+
+namespace holdfast::flann_plugin {
+namespace {
+
+std::map<WordId, Descriptor> fill(Vocabulary& vocabulary, int count, Random& random) {
+  std::map<WordId, Descriptor> words;
+  for (int i = 0; i < count; ++i) {
+    const Descriptor descriptor = test::random_descriptor(random);
+    words[vocabulary.insert(descriptor, vocabulary.find(descriptor).bucket)] = descriptor;
+    vocabulary.split_full_buckets();
+  }
+  return words;
+}
+
+TEST(Vocabulary, KnowsNoWordAtFirst) {
+  const Vocabulary vocabulary(1, 4, 64);
+  EXPECT_EQ(vocabulary.find({}).word, no_word);
+  EXPECT_EQ(vocabulary.size(), 0U);
+}
+
+TEST(Vocabulary, FindsWordsAmongMany) {
+  Random random(2);
+  Vocabulary vocabulary(1, 4, 64);
+  const auto words = fill(vocabulary, 5000, random);
+  EXPECT_EQ(vocabulary.size(), 5000U);
+  EXPECT_EQ(words.size(), 5000U) << "an id was given twice";
+  EXPECT_GT(vocabulary.buckets(), 30U);
+  int found_exactly = 0;
+  int found_disturbed = 0;
+  for (const auto& [word, descriptor] : words) {
+    const Lookup lookup = vocabulary.find(descriptor);
+    if (lookup.word == word && lookup.distance == 0) ++found_exactly;
+    if (vocabulary.find(test::disturbed(descriptor, 15, random)).word == word) ++found_disturbed;
+  }
+  EXPECT_GT(found_exactly, 4500);
+  EXPECT_GT(found_disturbed, 3000);
+}
+
+TEST(Vocabulary, ErasedWordsAreGoneAndTheirRoomIsUsedAgain) {
+  Random random(3);
+  Vocabulary vocabulary(1, 64, 10000);
+  const auto words = fill(vocabulary, 2000, random);
+  const std::size_t buckets = vocabulary.buckets();
+  for (const auto& [word, descriptor] : words)
+    if (word % 2 == 0) vocabulary.erase(word);
+  EXPECT_EQ(vocabulary.size(), 1000U);
+  for (const auto& [word, descriptor] : words) {
+    const Lookup lookup = vocabulary.find(descriptor);
+    if (word % 2 == 0)
+      EXPECT_NE(lookup.word, word);
+    else
+      EXPECT_EQ(lookup.word, word);
+  }
+  const auto more = fill(vocabulary, 1000, random);
+  for (const auto& [word, descriptor] : more) EXPECT_LT(word, 2000U);
+  EXPECT_LT(vocabulary.buckets(), buckets + buckets / 2);
+  EXPECT_THROW(vocabulary.erase(5000), CheckError);
+}
+
+TEST(Vocabulary, ErasingTwiceIsRefused) {
+  Vocabulary vocabulary(1, 4, 64);
+  const WordId word = vocabulary.insert({}, 0);
+  vocabulary.erase(word);
+  EXPECT_THROW(vocabulary.erase(word), CheckError);
+}
+
+TEST(Vocabulary, BucketsThatCannotBeSplitStillWork) {
+  Vocabulary vocabulary(1, 4, 64);
+  for (int i = 0; i < 500; ++i) {
+    vocabulary.insert({}, vocabulary.find({}).bucket);
+    vocabulary.split_full_buckets();
+  }
+  EXPECT_EQ(vocabulary.size(), 500U);
+  EXPECT_EQ(vocabulary.find({}).distance, 0);
+}
+
+}  // namespace
+}  // namespace holdfast::flann_plugin
