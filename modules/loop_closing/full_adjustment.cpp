@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/loop_closing/full_adjustment.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "holdfast/geometry/bundle_observation.hpp"
+#include "map_motion.hpp"
+
+namespace holdfast {
+namespace {
+
+std::int64_t now_in_nanoseconds() {
+  using std::chrono::duration_cast, std::chrono::nanoseconds, std::chrono::steady_clock;
+  return duration_cast<nanoseconds>(steady_clock::now().time_since_epoch()).count();
+}
+
+/// Calls function(index) for 0 ... count - 1 and lets go of the map's lock after every 1000 of them.
+template <class Function>
+void in_portions(MapMutex& mutex, std::size_t count, Function&& function) {
+  constexpr std::size_t portion = 1000;
+  for (std::size_t begin = 0; begin < count; begin += portion) {
+    const std::lock_guard lock(mutex);
+    for (std::size_t i = begin; i < std::min(count, begin + portion); ++i) function(i);
+  }
+}
+
+}  // namespace
+
+FullAdjustment::FullAdjustment(const LoopClosingSettings& settings, Map& map, MapMutex& map_mutex, std::mutex& work,
+                               Optimizer& optimizer)
+    : settings_(settings), map_(map), map_mutex_(map_mutex), work_(work), optimizer_(optimizer) {}
+
+void FullAdjustment::request_stop() {
+  std::int64_t not_asked = 0;
+  stop_time_.compare_exchange_strong(not_asked, now_in_nanoseconds());
+  stop_ = true;
+}
+
+void FullAdjustment::prepare() {
+  stop_ = false;
+  stop_time_ = 0;
+  summary_ = {};
+  problem_ = {};
+  points_.clear();
+  problem_.robust_iterations = settings_.full_robust_iterations;
+  problem_.final_iterations = settings_.full_final_iterations;
+
+  const std::lock_guard lock(map_mutex_);
+  keyframes_ = keyframes_by_age(map_);
+  std::vector<std::uint32_t> pose_of_slot(map_.keyframes().slot_count(), 0);
+  for (std::uint32_t i = 0; i < keyframes_.size(); ++i) {
+    const Frame& frame = map_.keyframe(keyframes_[i]).frame;
+    if (i == 0) problem_.camera = frame.camera.get();
+    pose_of_slot[keyframes_[i].slot] = i;
+    problem_.poses.push_back({frame.T_camera_world, i == 0});
+  }
+  points_.reserve(map_.points().size());
+  problem_.points.reserve(map_.points().size());
+  map_.points().for_each([&](MapPointId id, const MapPoint& point) {
+    const auto index = static_cast<std::uint32_t>(points_.size());
+    points_.push_back(id);
+    problem_.points.push_back(point.position);
+    for (const Observation& observation : point.observations)
+      problem_.observations.push_back(geometry::bundle_observation(map_.keyframe(observation.keyframe).frame,
+                                                                   observation.feature,
+                                                                   pose_of_slot[observation.keyframe.slot], index));
+  });
+  before_ = problem_.points;
+}
+
+void FullAdjustment::solve() {
+  summary_.keyframes = static_cast<int>(problem_.poses.size());
+  summary_.points = static_cast<int>(problem_.points.size());
+  summary_.observations = static_cast<int>(problem_.observations.size());
+  if (problem_.camera == nullptr) return;
+  summary_.bundle = optimizer_.optimize_bundle(problem_, stop_);
+  summary_.seconds_per_iteration = summary_.bundle.seconds / std::max(1, summary_.bundle.iterations);
+  if (const std::int64_t asked = stop_time_)
+    summary_.stop_seconds = static_cast<double>(now_in_nanoseconds() - asked) * 1e-9;
+}
+
+FullAdjustmentSummary FullAdjustment::apply() {
+  const std::lock_guard surgery(work_);
+  summary_.stop_requested = stop_;
+  if (!summary_.bundle.usable || summary_.stop_requested) return summary_;
+  move_map();
+  remove_outliers();
+  in_portions(map_mutex_, points_.size(), [this](std::size_t i) {
+    if (map_.find_point(points_[i]) != nullptr) map_.update_point_geometry(points_[i]);
+  });
+  const std::lock_guard lock(map_mutex_);
+  map_.touch();
+  summary_.applied = true;
+  return summary_;
+}
+
+void FullAdjustment::move_map() {
+  std::vector<Eigen::Isometry3d> poses;
+  for (const BundleProblem::Pose& pose : problem_.poses) poses.push_back(pose.T_camera_world);
+
+  // Poses and points in one go: nobody may see the one without the other.
+  const std::lock_guard lock(map_mutex_);
+  const MapMotion motion(map_, keyframes_, poses);
+  summary_.keyframes_carried = motion.move_keyframes(map_);
+  std::vector<std::uint8_t> is_placed(map_.points().slot_count(), 0);
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    MapPoint* point = map_.find_point(points_[i]);
+    // A point that the solver left out moves with its reference keyframe, like the new ones.
+    if (point == nullptr || problem_.points[i] == before_[i]) continue;
+    point->position = problem_.points[i];
+    is_placed[points_[i].slot] = 1;
+  }
+  for (const MapPointId id : map_.points().ids()) {
+    if (is_placed[id.slot] != 0) continue;
+    motion.move_point(map_.point(id));
+    ++summary_.points_carried;
+  }
+  map_.touch();
+}
+
+void FullAdjustment::remove_outliers() {
+  in_portions(map_mutex_, problem_.observations.size(), [this](std::size_t i) {
+    const BundleProblem::Observation& observation = problem_.observations[i];
+    if (!observation.outlier) return;
+    const MapPointId point = points_[observation.point];
+    const KeyFrameId keyframe = keyframes_[observation.pose];
+    if (map_.find_point(point) == nullptr || map_.find_keyframe(keyframe) == nullptr) return;
+    map_.remove_observation(point, keyframe);
+  });
+}
+
+}  // namespace holdfast

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "loop_correction.hpp"
+
+#include <algorithm>
+
+#include "map_motion.hpp"
+#include "place_points.hpp"
+
+namespace holdfast {
+namespace {
+
+std::vector<KeyFrameId> with_neighbours(const Map& map, KeyFrameId keyframe, int most) {
+  std::vector<KeyFrameId> side = {keyframe};
+  for (const KeyFrameId neighbour : map.best_covisible(keyframe, most)) side.push_back(neighbour);
+  return side;
+}
+
+}  // namespace
+
+bool LoopCorrection::run() {
+  {
+    const std::lock_guard lock(map_mutex_);
+    current_side_ = with_neighbours(map_, loop_.keyframe, settings_.neighbours);
+    place_side_ = with_neighbours(map_, loop_.candidate, settings_.neighbours);
+    build_graph();
+    add_loop_edges();
+  }
+  if (!optimizer_.optimize_pose_graph(graph_).usable) return false;
+  {
+    const std::lock_guard lock(map_mutex_);
+    move_map();
+    fuse_matches();
+    // Tracking may have added keyframes around this one while the graph was solved; they see the same points.
+    current_side_ = with_neighbours(map_, loop_.keyframe, 2 * settings_.neighbours);
+  }
+  for (const KeyFrameId target : current_side_) {
+    const std::lock_guard lock(map_mutex_);
+    fuse_into(target);
+  }
+  for (const KeyFrameId target : current_side_) {
+    const std::lock_guard lock(map_mutex_);
+    map_.update_covisibility(target);
+  }
+  const std::lock_guard lock(map_mutex_);
+  map_.add_loop_edge(loop_.keyframe, loop_.candidate);
+  map_.touch();
+  return true;
+}
+
+void LoopCorrection::build_graph() {
+  nodes_ = keyframes_by_age(map_);
+  node_of_slot_.assign(map_.keyframes().slot_count(), 0);
+  for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
+    node_of_slot_[nodes_[i].slot] = i;
+    graph_.nodes.push_back({map_.keyframe(nodes_[i]).frame.T_camera_world, i == 0});
+  }
+  graph_.iterations = settings_.graph_iterations;
+
+  // Edges keep what the poses say now; each pair once, from the younger keyframe to the older one.
+  std::vector<std::uint32_t> linked;
+  for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
+    const KeyFrame& keyframe = map_.keyframe(nodes_[i]);
+    linked.clear();
+    if (keyframe.parent.valid()) linked.push_back(node_of_slot_[keyframe.parent.slot]);
+    for (const CovisibilityEdge& edge : keyframe.covisible)
+      if (edge.weight >= settings_.essential_weight) linked.push_back(node_of_slot_[edge.keyframe.slot]);
+    for (const KeyFrameId other : keyframe.loop_edges) linked.push_back(node_of_slot_[other.slot]);
+    std::sort(linked.begin(), linked.end());
+    linked.erase(std::unique(linked.begin(), linked.end()), linked.end());
+    for (const std::uint32_t other : linked)
+      if (other < i)
+        graph_.edges.push_back(
+            {i, other, graph_.nodes[other].T_camera_world * graph_.nodes[i].T_camera_world.inverse(), 1.0});
+  }
+}
+
+void LoopCorrection::add_loop_edges() {
+  // The surroundings of the keyframe move with it, as rigidly as they hang together. An edge to each of them, and from
+  // the keyframe to each of the place, holds the loop against the many edges along the way.
+  const auto node = [&](KeyFrameId id) { return node_of_slot_[id.slot]; };
+  const auto pose = [&](KeyFrameId id) -> const Eigen::Isometry3d& { return graph_.nodes[node(id)].T_camera_world; };
+  const Eigen::Isometry3d motion = loop_.T_camera_world.inverse() * pose(loop_.keyframe);  // new world from old
+  const auto add = [&](KeyFrameId current, KeyFrameId place) {
+    const bool is_same = std::find(current_side_.begin(), current_side_.end(), place) != current_side_.end();
+    if (is_same || current == place) return;
+    graph_.edges.push_back({node(current), node(place), pose(place) * motion * pose(current).inverse(), 1.0});
+  };
+  for (const KeyFrameId place : place_side_) add(loop_.keyframe, place);
+  for (std::size_t i = 1; i < current_side_.size(); ++i) add(current_side_[i], loop_.candidate);
+}
+
+void LoopCorrection::move_map() {
+  std::vector<Eigen::Isometry3d> poses;
+  for (const PoseGraphProblem::Node& node : graph_.nodes) poses.push_back(node.T_camera_world);
+  const MapMotion motion(map_, nodes_, poses);
+  motion.move_keyframes(map_);
+  for (const MapPointId id : map_.points().ids()) motion.move_point(map_.point(id));
+}
+
+void LoopCorrection::fuse_matches() {
+  for (const auto& [point, feature] : loop_.points) unite(point, loop_.keyframe, feature);
+}
+
+void LoopCorrection::fuse_into(KeyFrameId target) {
+  const Frame& frame = map_.keyframe(target).frame;
+  const PlacePoints points = points_seen_by(map_, place_side_);
+  const double radius = 0.5 * settings_.search_radius;
+  for (const PointMatch& match :
+       find_points(points, frame, frame.T_camera_world, radius, settings_.match_distance).matches)
+    unite(points.ids[match.point], target, match.feature);
+}
+
+void LoopCorrection::unite(MapPointId place_point, KeyFrameId keyframe, std::uint32_t feature) {
+  if (map_.find_point(place_point) == nullptr || map_.feature_of(place_point, keyframe) >= 0) return;
+  const MapPointId shown = map_.keyframe(keyframe).frame.map_points[feature];
+  if (!shown.valid()) {
+    map_.add_observation(place_point, keyframe, feature);
+    map_.update_point(place_point);
+    return;
+  }
+  map_.fuse_points(shown, place_point);
+  ++points_fused_;
+}
+
+}  // namespace holdfast

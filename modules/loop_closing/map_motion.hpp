@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <span>
+#include <vector>
+
+#include "holdfast/core/map.hpp"
+
+namespace holdfast {
+
+/// Ids of all keyframes, oldest first.
+std::vector<KeyFrameId> keyframes_by_age(const Map& map);
+
+/// New poses for some keyframes of a map, and what they mean for the rest: a keyframe without one of its own moves with
+/// its parent (or with the keyframe before it, should it have none), as rigidly as if bolted to it, and a point moves
+/// with its reference keyframe. The caller holds the map's lock.
+class MapMotion {
+ public:
+  /// `poses[i]` is the new T_camera_world of `keyframes[i]`; those that left the map are passed over.
+  MapMotion(const Map& map, std::span<const KeyFrameId> keyframes, std::span<const Eigen::Isometry3d> poses);
+
+  /// Sets the poses of all keyframes; returns how many were carried along.
+  int move_keyframes(Map& map) const;
+  /// The motion of the world around a keyframe, new from old.
+  const Eigen::Isometry3d& around(KeyFrameId keyframe) const { return motion_[keyframe.slot]; }
+  /// Moves a point and its viewing direction with its reference keyframe.
+  void move_point(MapPoint& point) const;
+
+ private:
+  struct Pose {
+    KeyFrameId keyframe;
+    Eigen::Isometry3d T_camera_world;
+    bool carried = false;
+  };
+  std::vector<Pose> poses_;                // of all keyframes
+  std::vector<Eigen::Isometry3d> motion_;  // by slot
+};
+
+}  // namespace holdfast

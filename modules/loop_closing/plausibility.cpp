@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "plausibility.hpp"
+
+#include <limits>
+#include <numbers>
+#include <queue>
+#include <tuple>
+
+#include "holdfast/geometry/so3.hpp"
+
+namespace holdfast {
+namespace {
+constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
+
+double turn_between(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+  return geometry::log_so3(Eigen::Matrix3d(a.linear() * b.linear().transpose())).norm();
+}
+Eigen::Vector3d centre_of(const Eigen::Isometry3d& T_camera_world) {
+  return -(T_camera_world.linear().transpose() * T_camera_world.translation());
+}
+}  // namespace
+
+double way_between(const Map& map, KeyFrameId from, KeyFrameId to) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  std::vector<double> way(map.keyframes().slot_count(), infinite);
+  using Entry = std::pair<double, KeyFrameId>;  // ids break ties, so that the order is the same in every run
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  way[from.slot] = 0.0;
+  queue.emplace(0.0, from);
+  while (!queue.empty()) {
+    const auto [length, id] = queue.top();
+    queue.pop();
+    if (id == to) return length;
+    if (length > way[id.slot]) continue;
+    const KeyFrame& keyframe = map.keyframe(id);
+    const Eigen::Isometry3d& pose = keyframe.frame.T_camera_world;
+    const auto visit = [&](KeyFrameId next) {
+      const Eigen::Isometry3d& other = map.keyframe(next).frame.T_camera_world;
+      const double metres = (centre_of(pose) - centre_of(other)).norm();
+      const double next_length = length + metres + turn_between(pose, other);
+      if (next_length >= way[next.slot]) return;
+      way[next.slot] = next_length;
+      queue.emplace(next_length, next);
+    };
+    for (const CovisibilityEdge& edge : keyframe.covisible) visit(edge.keyframe);
+    for (const KeyFrameId child : keyframe.children) visit(child);
+    for (const KeyFrameId other : keyframe.loop_edges) visit(other);
+    if (keyframe.parent.valid()) visit(keyframe.parent);
+  }
+  return infinite;
+}
+
+PoseChange pose_change(const Eigen::Isometry3d& before, const Eigen::Isometry3d& after) {
+  return {(centre_of(before) - centre_of(after)).norm(), turn_between(before, after) * degrees_per_radian};
+}
+
+PoseChange believed_drift(const LoopClosingSettings& settings, double way) {
+  return {settings.drift_constant + settings.drift_per_metre * way,
+          settings.turn_constant + settings.turn_per_metre * way};
+}
+
+PlacePoints old_points_in_view(const LoopClosingSettings& settings, const Map& map, KeyFrameId id) {
+  const KeyFrame& keyframe = map.keyframe(id);
+  const std::vector<std::uint8_t> near = [&] {
+    std::vector<std::uint8_t> marks(map.keyframes().slot_count(), 0);
+    marks[id.slot] = 1;
+    for (const CovisibilityEdge& edge : keyframe.covisible) marks[edge.keyframe.slot] = 1;
+    map.keyframes().for_each([&](KeyFrameId other, const KeyFrame& value) {
+      if (value.sequence + static_cast<std::uint64_t>(settings.minimum_gap) > keyframe.sequence) marks[other.slot] = 1;
+    });
+    return marks;
+  }();
+  PlacePoints points;
+  map.points().for_each([&](MapPointId point_id, const MapPoint& point) {
+    if (!expected_view(keyframe.frame, keyframe.frame.T_camera_world, point.position, point.viewing_direction,
+                       point.minimum_distance, point.maximum_distance))
+      return;
+    for (const Observation& observation : point.observations)
+      if (near[observation.keyframe.slot] != 0) return;
+    points.add(point_id, point);
+  });
+  return points;
+}
+
+bool present_pose_is_confirmed(const LoopClosingSettings& settings, Optimizer& optimizer, const Frame& frame,
+                               const PlacePoints& old_points, const Eigen::Isometry3d& T_camera_world_loop) {
+  // Where the loop moves the keyframe by little, its points and the old points in view are the same.
+  constexpr double agreeing_metres = 0.05, agreeing_degrees = 2.0;
+  Eigen::Isometry3d T_camera_world = frame.T_camera_world;
+  int inliers = 0;
+  for (const double radius : {3.0 * settings.search_radius, settings.search_radius}) {
+    const PointSearch search = find_points(old_points, frame, T_camera_world, radius, settings.match_distance);
+    PoseProblem problem = pose_problem_of(old_points, frame, search.matches, T_camera_world);
+    const PoseSummary summary = optimizer.optimize_pose(problem);
+    if (!summary.usable) return false;
+    T_camera_world = problem.T_camera_world;
+    inliers = summary.inliers;
+  }
+  // No share is asked for: most of what lies in view from afar may be hidden behind something nearer.
+  if (inliers < settings.minimum_inliers) return false;
+  const PoseChange difference = pose_change(T_camera_world, T_camera_world_loop);
+  return difference.metres > agreeing_metres || difference.degrees > agreeing_degrees;
+}
+
+}  // namespace holdfast
