@@ -10,6 +10,7 @@
 
 #include "holdfast/cli/check_command.hpp"
 #include "holdfast/cli/evaluate_command.hpp"
+#include "holdfast/cli/map_command.hpp"
 #include "holdfast/cli/modules_command.hpp"
 #include "holdfast/cli/run_command.hpp"
 #include "holdfast/cli/simulate_command.hpp"
@@ -64,6 +65,7 @@ int main(int argc, char** argv) {
   int exit_code = 0;
   add_run_command(app, exit_code);
   add_evaluate_command(app, exit_code);
+  add_map_command(app, exit_code);
   add_simulate_command(app, exit_code);
   add_check_command(app, exit_code);
   add_modules_command(app, exit_code);

@@ -20,6 +20,8 @@
 #include "holdfast/cli/run_results.hpp"
 #include "holdfast/cli/terminal.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/map_io/map_export.hpp"
+#include "holdfast/map_io/map_file.hpp"
 #include "holdfast/pipeline/pipeline_builder.hpp"
 #include "holdfast/plugin/builtin.hpp"
 
@@ -31,6 +33,8 @@ struct Arguments {
   std::string configuration;
   std::vector<std::string> overrides;
   std::filesystem::path output;
+  std::filesystem::path map;
+  bool localise = false;
   bool overwrite = false;
   bool quiet = false;
 };
@@ -82,10 +86,12 @@ void run(const Arguments& arguments, int& exit_code) {
   register_builtin_plugins(registry);
   const Configuration configuration =
       load_configuration(arguments.configuration, arguments.overrides, registry, pipeline_sections());
-  BuiltPipeline built = build_pipeline(configuration, registry, arguments.output);
+  BuiltPipeline built = build_pipeline(
+      configuration, registry,
+      {.output_directory = arguments.output, .map_file = arguments.map, .localise_only = arguments.localise});
   prepare_output_folder(arguments.output, arguments.overwrite,
                         {"report.html", "run.json", "trajectory.txt", "keyframes.txt", "evaluation.json",
-                         "trajectory.svg", "error.svg", "config.yaml"});
+                         "trajectory.svg", "error.svg", "config.yaml", "map.hfm", "static_map.ply"});
   write_file_atomically(arguments.output / "config.yaml", to_yaml(configuration));
 
   RunRecord record;
@@ -102,10 +108,16 @@ void run(const Arguments& arguments, int& exit_code) {
   record.map_keyframes = built.pipeline.map().keyframes().size();
   record.map_points = built.pipeline.map().points().size();
   record.mapping = built.pipeline.mapping_counts();
+  record.loops = built.pipeline.loop_record();
   evaluate_run(*built.source, record);
   record.total_seconds = since_start.seconds();
   record.peak_memory = peak_memory();
   write_run_results(arguments.output, record);
+  // A map that was only localised in has not changed.
+  if (!arguments.localise && !built.pipeline.map().keyframes().empty()) {
+    write_map(arguments.output / "map.hfm", built.pipeline.map());
+    write_points_ply(arguments.output / "static_map.ply", built.pipeline.map());
+  }
 
   if (!arguments.quiet && record.summary.frames() > 0) std::fputs(run_summary_text(record).c_str(), stdout);
   if (!record.failure.empty())
@@ -129,14 +141,21 @@ void add_run_command(CLI::App& app, int& exit_code) {
       "  trajectory.txt  every frame with a pose, TUM format      keyframes.txt  those of the map\n"
       "  report.html     summary, plots and stage times           run.json       the same for programs\n"
       "  config.yaml     the configuration with every default     evaluation.json, *.svg  where there is truth\n"
+      "  map.hfm         the map, for --map and `holdfast map`    static_map.ply  its points\n"
       "Exits 0 when the run reached its end with a trajectory, 130 on Ctrl-C (what was done is kept), 2 when the\n"
       "configuration is wrong, 1 for anything else.\n\n"
       "Examples\n"
       "  holdfast run examples/configs/demo.yaml --output out/demo\n"
       "  holdfast run examples/configs/rgbd.yaml --set source.tum.path=rgbd_dataset_freiburg1_xyz --output out/xyz\n"
-      "  holdfast run rgbd.yaml --set features.opencv_orb.count=1500 --set run.seed=2 --output out/swap");
+      "  holdfast run rgbd.yaml --set features.opencv_orb.count=1500 --set run.seed=2 --output out/swap\n"
+      "  holdfast run rgbd.yaml --map out/xyz/map.hfm --output out/more              continue that map\n"
+      "  holdfast run rgbd.yaml --map out/xyz/map.hfm --localise --output out/where  find the camera in it");
   command->add_option("CONFIG", arguments->configuration, "Configuration in YAML")->required();
   command->add_option("--output", arguments->output, "Folder for the results")->required();
+  CLI::Option* map =
+      command->add_option("--map", arguments->map, "A map.hfm of an earlier run, to continue; the file stays as it is");
+  command->add_flag("--localise", arguments->localise, "Only find the camera in the map, and leave the map as it is")
+      ->needs(map);
   command->add_option("--set", arguments->overrides, "key.path=value: as if the file said so; may be repeated")
       ->allow_extra_args(false);
   command->add_flag("--overwrite", arguments->overwrite, "Replace the results of an earlier run in the folder");

@@ -54,6 +54,8 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& r
                                 " times, relocalised " + std::to_string(s.relocalised()));
   rows.emplace_back("map", std::to_string(record.map_keyframes) + " keyframes, " + std::to_string(record.map_points) +
                                " points; " + number(s.mean_inliers(), 0) + " inliers a frame");
+  if (record.configuration->loop_detector.name != "none")
+    rows.emplace_back("loops", std::to_string(record.loops.loops.size()) + " closed");
   if (record.evaluation) {
     const Evaluation& e = *record.evaluation;
     rows.emplace_back("ATE RMSE", number(e.absolute_error.rmse, 6) + " m (se3, " + std::to_string(e.poses.size()) +
@@ -109,6 +111,37 @@ Json threads_json(const ThreadRecord& threads) {
   return json;
 }
 
+Json loops_json(const LoopRecord& record) {
+  Json json;
+  json["keyframes"] = record.counts.keyframes;
+  json["points_fused"] = record.counts.points_fused;
+  Json& verdicts = json["verdicts"] = Json::object();
+  for (std::size_t i = 0; i < loop_verdicts; ++i)
+    verdicts[loop_verdict_name(static_cast<LoopVerdict>(i))] = record.counts.verdicts[i];
+  Json& loops = json["closed"] = Json::array();
+  for (const LoopEvent& event : record.loops)
+    loops.push_back({{"timestamp", event.timestamp},
+                     {"candidate_timestamp", event.candidate_timestamp},
+                     {"inliers", event.loop.inliers},
+                     {"points_fused", event.loop.points_fused},
+                     {"way_m", event.loop.way},
+                     {"correction_m", event.loop.correction_metres},
+                     {"correction_deg", event.loop.correction_degrees},
+                     {"seconds", event.loop.seconds}});
+  Json& adjustments = json["full_adjustments"] = Json::array();
+  for (const FullAdjustmentSummary& summary : record.adjustments)
+    adjustments.push_back({{"applied", summary.applied},
+                           {"stopped", summary.stop_requested},
+                           {"stop_s", summary.stop_seconds},
+                           {"keyframes", summary.keyframes},
+                           {"points", summary.points},
+                           {"observations", summary.observations},
+                           {"iterations", summary.bundle.iterations},
+                           {"seconds", summary.bundle.seconds},
+                           {"seconds_per_iteration", summary.seconds_per_iteration}});
+  return json;
+}
+
 Json run_json(const RunRecord& record) {
   const RunSummary& s = record.summary;
   Json json = {{"holdfast", HOLDFAST_VERSION},
@@ -148,6 +181,7 @@ Json run_json(const RunRecord& record) {
                  {"points_removed", record.mapping.points_removed},
                  {"points_fused", record.mapping.points_fused},
                  {"observations_removed", record.mapping.observations_removed}};
+  json["loops"] = loops_json(record.loops);
   json["mean_inliers"] = s.mean_inliers();
   json["evaluation"] = record.evaluation ? Json::parse(to_json(*record.evaluation)) : Json(nullptr);
   json["tracking"] = stage_json(s.tracking());
@@ -204,6 +238,32 @@ ReportTable thread_report(const ThreadRecord& threads) {
   return table;
 }
 
+ReportTable loop_report(const LoopRecord& record) {
+  ReportTable table{"Loops",
+                    {"at s", "saw again s", "points found", "fused", "way m", "moved by m", "turned by deg", "took ms"},
+                    {},
+                    {}};
+  for (const LoopEvent& event : record.loops)
+    table.rows.push_back({number(event.timestamp, 2), number(event.candidate_timestamp, 2),
+                          std::to_string(event.loop.inliers), std::to_string(event.loop.points_fused),
+                          number(event.loop.way, 2), number(event.loop.correction_metres, 4),
+                          number(event.loop.correction_degrees, 2), number(event.loop.seconds * 1e3, 0)});
+  return table;
+}
+
+ReportTable adjustment_report(const LoopRecord& record) {
+  ReportTable table{
+      "Full adjustments", {"keyframes", "points", "iterations", "seconds", "ms an iteration", "outcome"}, {}, {}};
+  for (const FullAdjustmentSummary& summary : record.adjustments)
+    table.rows.push_back({std::to_string(summary.keyframes), std::to_string(summary.points),
+                          std::to_string(summary.bundle.iterations), number(summary.bundle.seconds, 2),
+                          number(summary.seconds_per_iteration * 1e3, 0),
+                          summary.applied          ? "applied"
+                          : summary.stop_requested ? "stopped"
+                                                   : "no solution"});
+  return table;
+}
+
 std::string report_html(const RunRecord& record) {
   Report report;
   report.title = record.source.name.empty() ? "Holdfast run" : "Holdfast: " + record.source.name;
@@ -241,6 +301,13 @@ std::string report_html(const RunRecord& record) {
                              .tables = {stage_report(record.summary)},
                              .figures = {},
                              .preformatted = {}});
+  if (!record.loops.loops.empty())
+    report.sections.push_back({.heading = "Loops",
+                               .text = {},
+                               .values = {},
+                               .tables = {loop_report(record.loops), adjustment_report(record.loops)},
+                               .figures = {},
+                               .preformatted = {}});
   if (record.threads)
     report.sections.push_back({.heading = "Threads",
                                .text = "Late frames: " + std::to_string(record.threads->late) + ", at most by " +

@@ -90,7 +90,7 @@ Trajectory read_trajectory(const std::filesystem::path& file) {
   return sort_and_clean(std::move(trajectory));
 }
 
-void write_trajectory(const std::filesystem::path& file, const Trajectory& trajectory) {
+std::string trajectory_text(const Trajectory& trajectory) {
   std::string text;
   for (const TimedPose& pose : trajectory) {
     const Eigen::Vector3d t = pose.T_world_camera.translation();
@@ -104,7 +104,11 @@ void write_trajectory(const std::filesystem::path& file, const Trajectory& traje
     }
     text += '\n';
   }
-  write_file_atomically(file, text);
+  return text;
+}
+
+void write_trajectory(const std::filesystem::path& file, const Trajectory& trajectory) {
+  write_file_atomically(file, trajectory_text(trajectory));
 }
 
 void write_file_atomically(const std::filesystem::path& file, const std::string& content) {

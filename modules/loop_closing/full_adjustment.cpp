@@ -38,6 +38,7 @@ void FullAdjustment::request_stop() {
 }
 
 void FullAdjustment::prepare() {
+  const std::lock_guard surgery(work_);  // no correction is half done, and no request is for one to come
   stop_ = false;
   stop_time_ = 0;
   summary_ = {};

@@ -13,6 +13,12 @@ namespace holdfast {
 
 namespace {
 
+/// What the loop closing thread works on: a keyframe that local mapping is done with, and those that it removed.
+struct LoopJob {
+  KeyFrameId keyframe;
+  std::vector<KeyFrameId> removed;
+};
+
 /// What the segmentation thread works on.
 struct SegmentationJob {
   SensorFrame frame;
@@ -42,7 +48,10 @@ struct Pipeline::State {
         filters(chain_of(parts)),
         detector(*parts.loop_detector),
         tracker(parts.tracking, parts.camera, *parts.features, *parts.optimizer, filters, detector, map, parts.seed),
-        mapper(parts.mapping, map, map_mutex, *parts.optimizer) {
+        mapper(parts.mapping, map, map_mutex, *parts.optimizer),
+        closer(parts.loop_closing, map, map_mutex, surgery, detector, *parts.optimizer, parts.seed),
+        adjustment(parts.loop_closing, map, map_mutex, surgery, *parts.optimizer) {
+    closer.set_full_adjustment(&adjustment);
     for (const KeyFrameId keyframe : keyframes_by_age())
       detector.add(keyframe, map.keyframe(keyframe).frame.features.descriptors);
     if (parts.localise_only)
@@ -60,11 +69,13 @@ struct Pipeline::State {
 
   void start_threads();
   void check_stamp(const SensorFrame& frame);
-  void refine(KeyFrameId keyframe, StageTimes& times);
-  void close_loops(KeyFrameId keyframe, StageTimes& times);
+  LoopJob refine(KeyFrameId keyframe, StageTimes& times);
+  /// True when a loop was closed and the whole map should be adjusted.
+  bool close_loops(const LoopJob& job, StageTimes& times);
+  void adjust_map(StageTimes& times);
   void segment(const SegmentationJob& job, StageTimes& times);
   void keep_times(StageTimes times) {
-    const std::lock_guard lock(times_mutex);
+    const std::lock_guard lock(record_mutex);
     background_times.push_back(std::move(times));
   }
   void rethrow_failures();
@@ -77,17 +88,21 @@ struct Pipeline::State {
   SharedLoopDetector detector;
   Tracker tracker;
   LocalMapper mapper;
+  LoopCloser closer;
+  FullAdjustment adjustment;
   bool finished = false;
   bool has_frame = false;
   double last_timestamp = 0.0;
   std::uint64_t keyframes_deferred = 0;
 
-  std::mutex times_mutex;
+  mutable std::mutex record_mutex;
   std::vector<StageTimes> background_times;
+  LoopRecord loop_record;
 
   // Threads last: they use everything above, and each hands its work on to the one before it here.
   std::optional<Worker<SegmentationJob>> segmentation;
-  std::optional<Worker<KeyFrameId>> loop_closing;
+  std::optional<Worker<char>> full_adjustment;
+  std::optional<Worker<LoopJob>> loop_closing;
   std::optional<Worker<KeyFrameId>> mapping;
 };
 
@@ -99,22 +114,29 @@ void Pipeline::State::start_threads() {
       segment(job, times);
       keep_times(std::move(times));
     });
-  loop_closing.emplace("loop closing", capacity, [this](KeyFrameId& keyframe) {
+  full_adjustment.emplace("full adjustment", 1, [this](char&) {
     StageTimes times;
-    close_loops(keyframe, times);
+    adjust_map(times);
     keep_times(std::move(times));
+  });
+  loop_closing.emplace("loop closing", capacity, [this](LoopJob& job) {
+    StageTimes times;
+    const bool closed = close_loops(job, times);
+    keep_times(std::move(times));
+    if (closed) full_adjustment->queue().push_newest(0);
   });
   mapping.emplace("local mapping", capacity, [this](KeyFrameId& keyframe) {
     StageTimes times;
-    refine(keyframe, times);
+    LoopJob job = refine(keyframe, times);
     keep_times(std::move(times));
-    loop_closing->queue().push(keyframe);
+    loop_closing->queue().push(std::move(job));
   });
 }
 
 void Pipeline::State::rethrow_failures() {
   if (mapping) mapping->rethrow();
   if (loop_closing) loop_closing->rethrow();
+  if (full_adjustment) full_adjustment->rethrow();
   if (segmentation) segmentation->rethrow();
 }
 
@@ -129,26 +151,49 @@ void Pipeline::State::check_stamp(const SensorFrame& frame) {
   last_timestamp = frame.timestamp;
 }
 
-void Pipeline::State::refine(KeyFrameId keyframe, StageTimes& times) {
-  std::vector<KeyFrameId> removed;
+LoopJob Pipeline::State::refine(KeyFrameId keyframe, StageTimes& times) {
+  LoopJob job{keyframe, {}};
   {
     const std::lock_guard surgeon(surgery);
-    removed = mapper.refine(keyframe, times);
+    job.removed = mapper.refine(keyframe, times);
   }
-  for (const KeyFrameId id : removed) detector.remove(id);
-  if (parts.observers.empty()) return;
+  if (parts.observers.empty()) return job;
   const std::lock_guard lock(map_mutex);
-  if (map.find_keyframe(keyframe) == nullptr) return;
+  if (map.find_keyframe(keyframe) == nullptr) return job;
   for (const auto& observer : parts.observers) observer->on_keyframe(keyframe, map);
+  return job;
 }
 
-void Pipeline::State::close_loops(KeyFrameId keyframe, StageTimes&) {
-  std::vector<Descriptor> descriptors;
+bool Pipeline::State::close_loops(const LoopJob& job, StageTimes& times) {
+  const std::optional<ClosedLoop> loop = closer.process(job.keyframe, times);
+  for (const KeyFrameId id : job.removed) closer.forget(id);
+  if (!loop) {
+    const std::lock_guard lock(record_mutex);
+    loop_record.counts = closer.counts();
+    return false;
+  }
+  LoopEvent event{.loop = *loop};
   {
     const std::lock_guard lock(map_mutex);
-    if (const KeyFrame* found = map.find_keyframe(keyframe)) descriptors = found->frame.features.descriptors;
+    const auto stamp_of = [this](KeyFrameId id) {
+      const KeyFrame* keyframe = map.find_keyframe(id);
+      return keyframe == nullptr ? 0.0 : keyframe->frame.timestamp;
+    };
+    event.timestamp = stamp_of(loop->keyframe);
+    event.candidate_timestamp = stamp_of(loop->candidate);
+    for (const auto& observer : parts.observers) observer->on_loop(loop->keyframe, loop->candidate, map);
   }
-  detector.add(keyframe, descriptors);
+  const std::lock_guard lock(record_mutex);
+  loop_record.counts = closer.counts();
+  loop_record.loops.push_back(std::move(event));
+  return parts.loop_closing.full_adjustment;
+}
+
+void Pipeline::State::adjust_map(StageTimes& times) {
+  const StageTimer timer(times, "loops: full adjustment");
+  const FullAdjustmentSummary summary = adjustment.run();
+  const std::lock_guard lock(record_mutex);
+  loop_record.adjustments.push_back(summary);
 }
 
 void Pipeline::State::segment(const SegmentationJob& job, StageTimes& times) {
@@ -192,8 +237,7 @@ FrameResult Pipeline::feed(const SensorFrame& frame) {
       s.mapping->queue().push(result.keyframe);
       if (s.segmentation) s.segmentation->queue().push_newest({frame, result.keyframe});
     } else {
-      s.refine(result.keyframe, result.times);
-      s.close_loops(result.keyframe, result.times);
+      if (s.close_loops(s.refine(result.keyframe, result.times), result.times)) s.adjust_map(result.times);
       s.tracker.keyframe_added(result.keyframe);
     }
     result.T_world_camera = s.tracker.frame().T_world_camera();
@@ -207,16 +251,20 @@ void Pipeline::finish() {
   // In the order in which work is handed on, so that nothing is left behind.
   if (s.mapping) s.mapping->finish();
   if (s.loop_closing) s.loop_closing->finish();
+  if (s.full_adjustment) s.full_adjustment->finish();
   if (s.segmentation) s.segmentation->finish();
   s.finished = true;
   s.rethrow_failures();
   for (const auto& observer : s.parts.observers) observer->on_finish(s.map);
 }
 
-void Pipeline::interrupt() { state_->mapper.request_stop(); }
+void Pipeline::interrupt() {
+  state_->mapper.request_stop();
+  state_->adjustment.request_stop();
+}
 
 std::vector<StageTimes> Pipeline::take_background_times() {
-  const std::lock_guard lock(state_->times_mutex);
+  const std::lock_guard lock(state_->record_mutex);
   return std::exchange(state_->background_times, {});
 }
 
@@ -226,6 +274,7 @@ std::vector<WorkerCounts> Pipeline::worker_counts() const {
   std::vector<WorkerCounts> counts;
   if (state_->mapping) counts.push_back(state_->mapping->counts());
   if (state_->loop_closing) counts.push_back(state_->loop_closing->counts());
+  if (state_->full_adjustment) counts.push_back(state_->full_adjustment->counts());
   if (state_->segmentation) counts.push_back(state_->segmentation->counts());
   return counts;
 }
@@ -252,6 +301,10 @@ Map Pipeline::take_map() {
   return std::exchange(state_->map, Map());
 }
 const MappingCounts& Pipeline::mapping_counts() const { return state_->mapper.counts(); }
+LoopRecord Pipeline::loop_record() const {
+  const std::lock_guard lock(state_->record_mutex);
+  return state_->loop_record;
+}
 const Camera& Pipeline::camera() const { return state_->parts.camera; }
 
 }  // namespace holdfast

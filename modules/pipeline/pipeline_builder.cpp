@@ -3,13 +3,18 @@
 
 #include <utility>
 
+#include "holdfast/core/error.hpp"
+#include "holdfast/map_io/map_file.hpp"
+
 namespace holdfast {
 
 std::vector<SectionDescription> pipeline_sections() {
   return {{"tracking", "How poses are found, and when a frame becomes a keyframe.",
            ParameterTable<TrackingSettings>().parameters()},
           {"mapping", "How the map around a new keyframe is made and kept.",
-           ParameterTable<MappingSettings>().parameters()}};
+           ParameterTable<MappingSettings>().parameters()},
+          {"loop_closing", "When a place counts as seen again, and how the map is corrected then.",
+           ParameterTable<LoopClosingSettings>().parameters()}};
 }
 
 namespace {
@@ -20,13 +25,14 @@ Settings section(const Configuration& configuration, const std::string& name) {
   return found == configuration.sections.end() ? Settings{} : ParameterTable<Settings>().settings(found->second);
 }
 
+bool differ(Camera a, const Camera& b) {
+  a.name = b.name;  // only the numbers matter
+  return a != b;
+}
+
 /// The camera of the run: the configuration's or the source's; when both name one, they must agree.
 Camera resolve_camera(const Configuration& configuration, const SourceDescription& source,
                       std::vector<Diagnostic>& diagnostics) {
-  const auto differ = [](Camera a, const Camera& b) {
-    a.name = b.name;  // only the numbers matter
-    return a != b;
-  };
   if (source.camera && configuration.camera && differ(*source.camera, *configuration.camera))
     diagnostics.push_back(
         {configuration.source.location,
@@ -53,15 +59,26 @@ void check_needs(const ModuleChoice& choice, const Needs& needs, const SourceDes
          "the filter '" + choice.name + "' needs a segmentation, but the segmenter is 'none'; choose a segmenter"});
 }
 
+/// A map can only be continued by the camera that made it: bundle adjustment knows one camera.
+void check_map(const Map& map, const Camera& camera, const std::filesystem::path& file) {
+  if (map.keyframes().empty())
+    throw InputError({file.string()}, "is a map without keyframes; expected one that a run has saved");
+  map.keyframes().for_each([&](KeyFrameId, const KeyFrame& keyframe) {
+    if (differ(*keyframe.frame.camera, camera))
+      throw InputError({file.string()}, "was made with the camera '" + keyframe.frame.camera->name +
+                                            "', and the run has '" + camera.name +
+                                            "' with other numbers; expected the same camera");
+  });
+}
+
 }  // namespace
 
-BuiltPipeline build_pipeline(const Configuration& configuration, const Registry& registry,
-                             const std::filesystem::path& output_directory) {
+BuiltPipeline build_pipeline(const Configuration& configuration, const Registry& registry, const RunOptions& options) {
   CreationContext context;
   if (configuration.camera) context.camera = *configuration.camera;
   context.seed = configuration.run.seed;
   context.sequential = configuration.run.mode == "sequential";
-  context.output_directory = output_directory;
+  context.output_directory = options.output_directory;
   const auto create = [&]<class Interface>(const ModuleChoice& choice) {
     return registry.create<Interface>(choice.name, choice.values, context);
   };
@@ -87,6 +104,7 @@ BuiltPipeline build_pipeline(const Configuration& configuration, const Registry&
     parts.observers.push_back(create.operator()<Observer>(choice));
   parts.tracking = section<TrackingSettings>(configuration, "tracking");
   parts.mapping = section<MappingSettings>(configuration, "mapping");
+  parts.loop_closing = section<LoopClosingSettings>(configuration, "loop_closing");
   parts.threads.threaded = !context.sequential;
   parts.threads.keyframe_queue = static_cast<std::size_t>(configuration.run.keyframe_queue);
   parts.threads.unpaced = configuration.run.pace == "none";
@@ -94,7 +112,17 @@ BuiltPipeline build_pipeline(const Configuration& configuration, const Registry&
     diagnostics.push_back(
         {configuration.source.location,
          "the source '" + configuration.source.name + "' has no depth; this version tracks colour with depth only"});
+  if (!options.map_file.empty() && configuration.loop_detector.name == "none")
+    diagnostics.push_back({configuration.loop_detector.location,
+                           "a camera in a loaded map finds its place by place recognition, but the loop detector is "
+                           "'none'; choose one, such as 'loop_detector: { flann: {} }'"});
   if (!diagnostics.empty()) throw ConfigurationError(std::move(diagnostics));
+  parts.localise_only = options.localise_only;
+  HOLDFAST_CHECK(!options.localise_only || !options.map_file.empty(), "localising needs a map");
+  if (!options.map_file.empty()) {
+    read_map(options.map_file, parts.map);
+    check_map(parts.map, parts.camera, options.map_file);
+  }
   return {std::move(source), Pipeline(std::move(parts))};
 }
 

@@ -37,6 +37,7 @@ struct RunRecord {
   Trajectory trajectory, keyframes;
   std::size_t map_keyframes = 0, map_points = 0;
   MappingCounts mapping;
+  LoopRecord loops;
   std::optional<ThreadRecord> threads;  ///< in threaded mode
   std::optional<Evaluation> evaluation;
   std::string no_evaluation;   ///< why there is none

@@ -12,6 +12,14 @@
 
 namespace holdfast {
 
+/// A whole map as plain values, for Map::restore(). Ids inside it name entries by position: slot i, generation 0 is
+/// entry i.
+struct MapContent {
+  std::vector<KeyFrame> keyframes;  ///< by rising sequence; Frame::grid is left out
+  std::vector<MapPoint> points;
+  std::uint64_t next_sequence = 0;  ///< greater than every keyframe's sequence
+};
+
 /// Keyframes and map points, named by ids, with everything that links them kept consistent: a feature of a keyframe
 /// names a point exactly when the point lists that observation. Not synchronised; see MapMutex.
 class Map {
@@ -79,6 +87,12 @@ class Map {
   void touch() { ++version_; }
 
   void clear();
+
+  /// Replaces everything by `content`, whose positions become the ids. Feature grids are built anew. The content must
+  /// keep what Map keeps: observations agree on both sides, every point has some and its reference keyframe is among
+  /// them, edges are symmetric and sorted, parents are older than their children and list them. Throws Error, which
+  /// says what is wrong, and leaves the map as it was. Positions of features must be finite.
+  void restore(MapContent content);
 
  private:
   struct Removed {

@@ -25,8 +25,10 @@ Trajectory sort_and_clean(Trajectory trajectory);
 /// are left out. Throws InputError (file and line) for a file that cannot be read or a line that is no pose.
 Trajectory read_trajectory(const std::filesystem::path& file);
 
-/// Writes TUM format, stamps with 6 decimals and values with 9; to a temporary name first, then renamed. Throws
-/// InputError when the file cannot be written. The same bytes whatever the process's locale.
+/// TUM format, stamps with 6 decimals and values with 9. The same bytes whatever the process's locale.
+std::string trajectory_text(const Trajectory& trajectory);
+
+/// Writes trajectory_text() to a temporary name first, then renames. Throws InputError when the file cannot be written.
 void write_trajectory(const std::filesystem::path& file, const Trajectory& trajectory);
 
 /// Replaces the content of a file in one step: written to a temporary name beside it, then renamed.

@@ -27,7 +27,7 @@ struct FullAdjustmentSummary {
 };
 
 /// Bundle adjustment of the whole map after a loop (Mur-Artal and Tardos 2017, section III-E), beside tracking and
-/// mapping: prepare() copies the map under its lock, solve() works on the copy without any lock, apply() brings the
+/// mapping: prepare() copies the map under `work` and its lock, solve() works on the copy without any lock, apply() brings the
 /// result into the map under `work` and the map's lock. What the map gained in between follows: keyframes their
 /// parents, points their reference keyframes; what it lost is passed over. The oldest keyframe stays where it is.
 ///
@@ -41,7 +41,7 @@ class FullAdjustment {
   FullAdjustment(const LoopClosingSettings& settings, Map& map, MapMutex& map_mutex, std::mutex& work,
                  Optimizer& optimizer);
 
-  /// Copies the map. Takes the map's lock.
+  /// Copies the map. Takes `work` and the map's lock.
   void prepare();
   /// Takes no lock; looks at the request to stop between iterations.
   void solve();

@@ -12,6 +12,7 @@
 #include "holdfast/core/map.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/interfaces/all.hpp"
+#include "holdfast/loop_closing/loop_closer.hpp"
 #include "holdfast/mapping/local_mapper.hpp"
 #include "holdfast/mapping/mapping_settings.hpp"
 #include "holdfast/pipeline/worker.hpp"
@@ -41,10 +42,25 @@ struct PipelineParts {
   std::vector<std::unique_ptr<Observer>> observers;
   TrackingSettings tracking;
   MappingSettings mapping;
+  LoopClosingSettings loop_closing;
   std::uint64_t seed = 1;
   ThreadSettings threads;
   Map map;                     ///< to continue; empty = begin a new one
   bool localise_only = false;  ///< find poses in the map and leave it as it is
+};
+
+/// A loop that was closed, with the stamps of both its ends [s].
+struct LoopEvent {
+  double timestamp = 0.0;
+  double candidate_timestamp = 0.0;
+  ClosedLoop loop;
+};
+
+/// What loop closing did so far.
+struct LoopRecord {
+  LoopCounts counts;
+  std::vector<LoopEvent> loops;
+  std::vector<FullAdjustmentSummary> adjustments;
 };
 
 /// Visual SLAM from frames to poses and a map. Pipelines share nothing: any number may live in one process.
@@ -82,6 +98,7 @@ class Pipeline {
   /// Hands the map over and leaves an empty one; nothing else may be called but the destructor.
   Map take_map();
   const MappingCounts& mapping_counts() const;
+  LoopRecord loop_record() const;
   const Camera& camera() const;
 
   /// Stage times of background work done since the last call; in sequential mode they are in each FrameResult.

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/cli/map_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include "holdfast/core/error.hpp"
+#include "holdfast/map_io/map_export.hpp"
+#include "holdfast/map_io/map_file.hpp"
+#include "holdfast/map_io/map_info.hpp"
+
+namespace holdfast {
+
+namespace {
+
+struct MapArguments {
+  std::string file;
+  bool json = false;
+  std::string points_to, trajectory_to, json_to;
+};
+
+constexpr const char* explanation = R"(
+A map (.hfm) is written by `holdfast run` into its results folder. Its layout and the members of
+the JSON are described in docs/map_format.md.
+
+Examples
+  holdfast map info out/map.hfm
+  holdfast map export out/map.hfm --points points.ply --trajectory keyframes.txt
+)";
+
+constexpr const char* info_explanation = R"(
+Every checksum in the file is verified; a file that is cut off, damaged or of a newer format is an
+error that says so.
+
+Examples
+  holdfast map info out/map.hfm
+  holdfast map info out/map.hfm --json
+)";
+
+constexpr const char* export_explanation = R"(
+  points      binary PLY: x y z [m], nx ny nz towards the cameras, observations, static_log_odds
+  trajectory  poses of the keyframes in TUM format: timestamp tx ty tz qx qy qz qw
+  json        cameras, keyframes, covisibility edges, loops, points with their observations
+
+'-' in place of a file: to standard output; at most one of them.
+
+Examples
+  holdfast map export out/map.hfm --points points.ply
+  holdfast map export out/map.hfm --trajectory keyframes.txt --json map.json
+  holdfast map export out/map.hfm --json - | jq '.points | length'
+)";
+
+void show_info(const MapArguments& arguments) {
+  const MapInfo info = read_map_info(arguments.file);
+  std::cout << (arguments.json ? to_json(info) : to_text(info));
+}
+
+void export_to(const std::string& target, const std::string& content) {
+  if (target == "-")
+    std::cout << content;
+  else
+    write_file_atomically(target, content);
+}
+
+void export_map(const MapArguments& arguments) {
+  int given = 0, to_output = 0;
+  for (const std::string* target : {&arguments.points_to, &arguments.trajectory_to, &arguments.json_to}) {
+    given += target->empty() ? 0 : 1;
+    to_output += *target == "-" ? 1 : 0;
+  }
+  if (given == 0) throw Error("nothing to export; name at least one of --points, --trajectory, --json");
+  if (to_output > 1) throw Error("only one export can go to standard output; give the others a file");
+  const Map map = read_map(arguments.file);
+  if (!arguments.points_to.empty()) export_to(arguments.points_to, points_ply(map));
+  if (!arguments.trajectory_to.empty()) export_to(arguments.trajectory_to, trajectory_text(keyframe_trajectory(map)));
+  if (!arguments.json_to.empty()) export_to(arguments.json_to, map_json(map));
+}
+
+template <class Function>
+void answer(CLI::App* command, const std::shared_ptr<MapArguments>& arguments, int& exit_code, Function function) {
+  command->add_option("FILE", arguments->file, "The map")->required();
+  command->callback([name = command->get_name(), arguments, &exit_code, function] {
+    try {
+      function(*arguments);
+      std::cout.flush();
+      if (!std::cout) throw Error("standard output could not be written");
+      exit_code = 0;
+    } catch (const Error& error) {
+      std::cerr << "holdfast map " << name << ": " << error.what() << '\n';
+      exit_code = 1;
+    }
+  });
+}
+
+}  // namespace
+
+void add_map_command(CLI::App& app, int& exit_code) {
+  const auto arguments = std::make_shared<MapArguments>();
+  CLI::App* command = app.add_subcommand("map", "Show what a saved map holds, or export it for other programs");
+  command->require_subcommand(1);
+  command->footer(explanation);
+
+  CLI::App* info = command->add_subcommand("info", "Print cameras, counts, time span and extent of a map");
+  info->footer(info_explanation);
+  info->add_flag("--json", arguments->json, "Print them as JSON");
+  answer(info, arguments, exit_code, show_info);
+
+  CLI::App* exporting = command->add_subcommand("export", "Write points as PLY, keyframes in TUM format, all as JSON");
+  exporting->footer(export_explanation);
+  exporting->add_option("--points", arguments->points_to, "Points as PLY")->type_name("FILE");
+  exporting->add_option("--trajectory", arguments->trajectory_to, "Poses of the keyframes")->type_name("FILE");
+  exporting->add_option("--json", arguments->json_to, "Keyframes, edges and points")->type_name("FILE");
+  answer(exporting, arguments, exit_code, export_map);
+}
+
+}  // namespace holdfast

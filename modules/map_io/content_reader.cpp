@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "content_reader.hpp"
+
+#include <string>
+#include <utility>
+
+namespace holdfast::map_io {
+
+namespace {
+
+/// Takes sections as they come: tables, keyframes, features of each keyframe, points.
+class ContentReader {
+ public:
+  ContentReader(ContainerReader& container, FeatureReading features) : container_(container), features_(features) {}
+
+  FileContent read() {
+    while (container_.next()) take_section();
+    if (!has_points_ || features_read_ != feature_counts_.size())
+      fail("the file ends after " + std::to_string(features_read_) + " keyframes; expected " +
+           std::to_string(feature_counts_.size()) + " and a section '" + point_section + "'");
+    check_header();
+    content_.map.next_sequence = container_.header().next_sequence;
+    return std::move(content_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& message) const {
+    container_.fail(message + "; the file was written wrongly: make the map again");
+  }
+
+  void take_section() {
+    const std::string& type = container_.type();
+    if (type == camera_section) {
+      expect(!has_tables_);
+      has_tables_ = true;
+      content_.tables = read_tables(container_.payload());
+    } else if (type == keyframe_section) {
+      expect(has_tables_ && !has_keyframes_);
+      content_.map.keyframes = read_keyframes(container_.payload(), content_.tables, feature_counts_);
+      has_keyframes_ = true;
+    } else if (type == feature_section) {
+      expect(has_keyframes_ && features_read_ < feature_counts_.size());
+      if (features_ == FeatureReading::all)
+        read_features(container_.payload(), features_read_, feature_counts_[features_read_],
+                      content_.map.keyframes[features_read_].frame);
+      ++features_read_;
+    } else if (type == point_section) {
+      expect(has_keyframes_ && !has_points_);
+      content_.map.points = read_points(container_.payload());
+      has_points_ = true;
+    } else if (container_.required()) {
+      container_.fail("found a section '" + type +
+                      "' that this Holdfast does not know and cannot leave out: use a newer Holdfast");
+    }
+  }
+
+  void expect(bool right_place) const {
+    if (!right_place)
+      fail("found section '" + container_.type() + "' where it does not belong; expected '" + camera_section + "', '" +
+           keyframe_section + "', one '" + feature_section + "' for each keyframe, '" + point_section +
+           "', in this order");
+  }
+
+  void check_header() {
+    const FileHeader& header = container_.header();
+    std::uint64_t observations = 0;
+    for (const MapPoint& point : content_.map.points) observations += point.observations.size();
+    const auto compare = [&](const char* what, std::uint64_t found, std::uint64_t said) {
+      if (found != said)
+        fail(std::string("found ") + std::to_string(found) + " " + what + "; the header says " + std::to_string(said));
+    };
+    for (const std::uint32_t count : feature_counts_) content_.features += count;
+    compare("keyframes", content_.map.keyframes.size(), header.keyframes);
+    compare("points", content_.map.points.size(), header.points);
+    compare("observations", observations, header.observations);
+  }
+
+  ContainerReader& container_;
+  FeatureReading features_;
+  FileContent content_;
+  std::vector<std::uint32_t> feature_counts_;
+  std::uint32_t features_read_ = 0;
+  bool has_tables_ = false, has_keyframes_ = false, has_points_ = false;
+};
+
+}  // namespace
+
+FileContent read_content(ContainerReader& container, FeatureReading features) {
+  return ContentReader(container, features).read();
+}
+
+}  // namespace holdfast::map_io

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <concepts>
+#include <string>
+#include <string_view>
+
+#include "holdfast/core/camera.hpp"
+
+namespace holdfast::map_io {
+
+/// Appends JSON to a text. A map has millions of numbers: they go straight into the text, not through a document.
+class JsonText {
+ public:
+  /// As they stand: brackets, commas, keys.
+  JsonText& operator<<(std::string_view text) {
+    text_ += text;
+    return *this;
+  }
+  /// The shortest text that gives the same number again; null for what is not finite, which JSON cannot say.
+  template <class T>
+  requires std::integral<T> || std::floating_point<T> JsonText& operator<<(T value) {
+    if constexpr (std::floating_point<T>)
+      if (!std::isfinite(value)) return *this << "null";
+    std::array<char, 32> digits;
+    text_.append(digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr);
+    return *this;
+  }
+  JsonText& operator<<(const Eigen::Vector3d& v) {
+    return *this << "[" << v.x() << "," << v.y() << "," << v.z() << "]";
+  }
+  /// A string with its quotes.
+  JsonText& quote(std::string_view string) {
+    text_ += '"';
+    for (const char letter : string) {
+      constexpr const char* digits = "0123456789abcdef";
+      if (letter == '"' || letter == '\\') text_ += '\\';
+      if (static_cast<unsigned char>(letter) < 0x20)
+        (text_ += "\\u00") += {digits[letter >> 4], digits[letter & 15]};
+      else
+        text_ += letter;
+    }
+    text_ += '"';
+    return *this;
+  }
+  JsonText& operator<<(const Camera& camera) {
+    *this << R"({"name":)";
+    quote(camera.name) << R"(,"width":)" << camera.width << R"(,"height":)" << camera.height << R"(,"fx":)" << camera.fx
+                       << R"(,"fy":)" << camera.fy << R"(,"cx":)" << camera.cx << R"(,"cy":)" << camera.cy;
+    const Distortion& d = camera.distortion;
+    return *this << R"(,"k1":)" << d.k1 << R"(,"k2":)" << d.k2 << R"(,"p1":)" << d.p1 << R"(,"p2":)" << d.p2
+                 << R"(,"k3":)" << d.k3 << R"(,"baseline":)" << camera.baseline << R"(,"frame_rate":)"
+                 << camera.frame_rate << "}";
+  }
+  template <class Values>
+  JsonText& list(const Values& values, std::string_view separator) {
+    bool first = true;
+    for (const auto& value : values) {
+      if (!first) text_ += separator;
+      first = false;
+      *this << value;
+    }
+    return *this;
+  }
+
+  std::string& text() { return text_; }
+
+ private:
+  std::string text_;
+};
+
+}  // namespace holdfast::map_io

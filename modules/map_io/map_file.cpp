@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/map_io/map_file.hpp"
+
+#include <fstream>
+#include <utility>
+
+#include "container.hpp"
+#include "content_reader.hpp"
+#include "holdfast/core/error.hpp"
+#include "holdfast/core/version.hpp"
+#include "records.hpp"
+
+namespace holdfast {
+
+namespace {
+
+using namespace map_io;
+
+std::uint64_t observation_count(const Map& map) {
+  std::uint64_t count = 0;
+  map.points().for_each([&](MapPointId, const MapPoint& point) { count += point.observations.size(); });
+  return count;
+}
+
+void write_section(std::ostream& stream, const char* type, const std::string& payload) {
+  const std::string header = encode_section_header(type, payload);
+  stream.write(header.data(), static_cast<std::streamsize>(header.size()));
+  stream.write(payload.data(), static_cast<std::streamsize>(payload.size()));
+}
+
+/// Features, by far the most, go out keyframe by keyframe; all sizes are known before, for the header comes first.
+void write_content(std::ostream& stream, const Map& map) {
+  const DenseIndex index(map);
+  const SharedTables shared = tables_of(map, index);
+  ByteWriter tables, keyframes, points;
+  write_tables(shared, tables);
+  write_keyframes(map, index, shared, keyframes);
+  write_points(map, index, points);
+
+  FileHeader header;
+  header.library_version = HOLDFAST_VERSION;
+  header.sections = static_cast<std::uint32_t>(3 + index.keyframes().size());
+  header.keyframes = static_cast<std::uint32_t>(index.keyframes().size());
+  header.points = static_cast<std::uint32_t>(index.points().size());
+  header.observations = observation_count(map);
+  header.next_sequence = map.next_sequence();
+  header.file_size =
+      header_size + header.sections * section_header_size + tables.size() + keyframes.size() + points.size();
+  for (const KeyFrameId id : index.keyframes()) header.file_size += features_size(map.keyframe(id).frame.size());
+
+  const std::string start = encode(header);
+  stream.write(start.data(), static_cast<std::streamsize>(start.size()));
+  write_section(stream, camera_section, tables.bytes());
+  write_section(stream, keyframe_section, keyframes.bytes());
+  ByteWriter features;
+  for (std::uint32_t i = 0; i < index.keyframes().size(); ++i) {
+    features.clear();
+    write_features(map.keyframe(index.keyframes()[i]).frame, i, index, features);
+    write_section(stream, feature_section, features.bytes());
+  }
+  write_section(stream, point_section, points.bytes());
+}
+
+/// Removes a file when it goes out of scope, unless told to keep it.
+struct TemporaryFile {
+  std::filesystem::path path;
+  bool keep = false;
+  ~TemporaryFile() {
+    std::error_code ignored;
+    if (!keep) std::filesystem::remove(path, ignored);
+  }
+};
+
+}  // namespace
+
+void write_map(const std::filesystem::path& file, const Map& map) {
+  if (std::error_code ignored; std::filesystem::is_directory(file, ignored))
+    throw InputError({file.string()}, "found a folder; expected the name of the map file to write");
+  std::filesystem::path temporary_name = file;
+  temporary_name += ".tmp";
+  std::ofstream stream(temporary_name, std::ios::binary | std::ios::trunc);
+  const char* cannot = "cannot be written; is the folder there, writable and not full?";
+  if (!stream) throw InputError({file.string()}, cannot);
+  TemporaryFile temporary{temporary_name};
+  write_content(stream, map);
+  stream.close();
+  if (!stream) throw InputError({file.string()}, cannot);
+  std::error_code error;
+  std::filesystem::rename(temporary_name, file, error);
+  if (error) throw InputError({file.string()}, "cannot be replaced: " + error.message());
+  temporary.keep = true;
+}
+
+void read_map(const std::filesystem::path& file, Map& map) {
+  ContainerReader container(file);
+  FileContent content = read_content(container, FeatureReading::all);
+  try {
+    map.restore(std::move(content.map));
+  } catch (const InputError&) {
+    throw;
+  } catch (const Error& error) {
+    throw InputError({file.string()}, std::string(error.what()) + "; the file was written wrongly: make the map again");
+  }
+}
+
+Map read_map(const std::filesystem::path& file) {
+  Map map;
+  read_map(file, map);
+  return map;
+}
+
+}  // namespace holdfast

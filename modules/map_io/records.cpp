@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "records.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace holdfast::map_io {
+
+namespace {
+
+constexpr std::size_t bytes_per_camera = 2 + 4 + 4 + 11 * 8;
+constexpr std::size_t bytes_per_pyramid = 4 + 8;
+constexpr std::size_t bytes_per_keyframe = 8 + 8 + 8 + 12 * 8 + 7 * 4;
+constexpr std::size_t bytes_per_feature = 10 * 4 + 32 + 1;
+constexpr std::size_t bytes_per_point = 3 * 8 + 3 * 8 + 2 * 4 + 32 + 4 + 8 + 3 * 4 + 4;
+constexpr std::size_t bytes_per_observation = 8;
+
+template <class Shared>
+std::uint32_t position_in(const std::vector<Shared>& table, const Shared& entry, auto&& same) {
+  const auto found = std::find_if(table.begin(), table.end(),
+                                  [&](const Shared& other) { return other == entry || same(*other, *entry); });
+  return static_cast<std::uint32_t>(found - table.begin());
+}
+std::uint32_t position_of(const SharedTables& tables, const std::shared_ptr<const Camera>& camera) {
+  return position_in(tables.cameras, camera, [](const Camera& a, const Camera& b) { return a == b; });
+}
+std::uint32_t position_of(const SharedTables& tables, const std::shared_ptr<const ScalePyramid>& pyramid) {
+  return position_in(tables.pyramids, pyramid, [](const ScalePyramid& a, const ScalePyramid& b) {
+    return a.factor == b.factor && a.levels() == b.levels();
+  });
+}
+
+void put(const Descriptor& descriptor, ByteWriter& writer) {
+  for (const std::uint64_t word : descriptor.words) writer.put(word);
+}
+Descriptor get_descriptor(ByteReader& reader) {
+  Descriptor descriptor;
+  for (std::uint64_t& word : descriptor.words) word = reader.get<std::uint64_t>();
+  return descriptor;
+}
+
+void put(const Eigen::Vector3d& vector, ByteWriter& writer) {
+  for (int i = 0; i < 3; ++i) writer.put(vector[i]);
+}
+Eigen::Vector3d get_vector(ByteReader& reader) {
+  Eigen::Vector3d vector;
+  for (int i = 0; i < 3; ++i) vector[i] = reader.get<double>();
+  return vector;
+}
+
+/// Rows of [R | t].
+void put(const Eigen::Isometry3d& pose, ByteWriter& writer) {
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 4; ++column) writer.put(pose.matrix()(row, column));
+}
+Eigen::Isometry3d get_pose(ByteReader& reader) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 4; ++column) pose.matrix()(row, column) = reader.get<double>();
+  return pose;
+}
+
+/// Ids of a map that is made of the file: the position, generation 0.
+template <class IdType>
+IdType get_id(ByteReader& reader) {
+  const auto position = reader.get<std::uint32_t>();
+  return position == no_index ? IdType() : IdType{position, 0};
+}
+
+void refuse(const ByteReader& reader, const char* kind, std::size_t position, const std::string& trouble) {
+  if (!trouble.empty()) reader.fail(kind + (" " + std::to_string(position)) + ": " + trouble);
+}
+
+}  // namespace
+
+DenseIndex::DenseIndex(const Map& map) : keyframes_(map.keyframes().ids()), points_(map.points().ids()) {
+  std::sort(keyframes_.begin(), keyframes_.end(),
+            [&](KeyFrameId a, KeyFrameId b) { return map.keyframe(a).sequence < map.keyframe(b).sequence; });
+  keyframe_positions_.assign(map.keyframes().slot_count(), no_index);
+  for (std::uint32_t i = 0; i < keyframes_.size(); ++i) keyframe_positions_[keyframes_[i].slot] = i;
+  point_positions_.assign(map.points().slot_count(), no_index);
+  for (std::uint32_t i = 0; i < points_.size(); ++i) point_positions_[points_[i].slot] = i;
+}
+
+std::uint32_t DenseIndex::of(KeyFrameId id) const {
+  if (!id.valid()) return no_index;
+  const std::uint32_t position = id.slot < keyframe_positions_.size() ? keyframe_positions_[id.slot] : no_index;
+  HOLDFAST_CHECK(position != no_index && keyframes_[position] == id, "keyframe " << id.slot << " is gone");
+  return position;
+}
+
+std::uint32_t DenseIndex::of(MapPointId id) const {
+  if (!id.valid()) return no_index;
+  const std::uint32_t position = id.slot < point_positions_.size() ? point_positions_[id.slot] : no_index;
+  HOLDFAST_CHECK(position != no_index && points_[position] == id, "point " << id.slot << " is gone");
+  return position;
+}
+
+SharedTables tables_of(const Map& map, const DenseIndex& index) {
+  SharedTables tables;
+  for (const KeyFrameId id : index.keyframes()) {
+    const Frame& frame = map.keyframe(id).frame;
+    HOLDFAST_CHECK(frame.camera != nullptr && frame.pyramid != nullptr, "keyframe " << id.slot);
+    if (position_of(tables, frame.camera) == tables.cameras.size()) tables.cameras.push_back(frame.camera);
+    if (position_of(tables, frame.pyramid) == tables.pyramids.size()) tables.pyramids.push_back(frame.pyramid);
+  }
+  return tables;
+}
+
+void write_tables(const SharedTables& tables, ByteWriter& writer) {
+  writer.put(static_cast<std::uint32_t>(tables.cameras.size()));
+  for (const auto& shared : tables.cameras) {
+    const Camera& camera = *shared;
+    const std::string trouble = trouble_of(camera);
+    HOLDFAST_CHECK(trouble.empty(), "camera: " << trouble);
+    writer.put(static_cast<std::uint16_t>(camera.name.size()));
+    writer.put_bytes(camera.name);
+    writer.put(static_cast<std::int32_t>(camera.width));
+    writer.put(static_cast<std::int32_t>(camera.height));
+    const Distortion& d = camera.distortion;
+    for (const double value :
+         {camera.fx, camera.fy, camera.cx, camera.cy, d.k1, d.k2, d.p1, d.p2, d.k3, camera.baseline, camera.frame_rate})
+      writer.put(value);
+  }
+  writer.put(static_cast<std::uint32_t>(tables.pyramids.size()));
+  for (const auto& pyramid : tables.pyramids) {
+    const std::string trouble = trouble_of(*pyramid);
+    HOLDFAST_CHECK(trouble.empty(), "pyramid: " << trouble);
+    writer.put(static_cast<std::uint32_t>(pyramid->levels()));
+    writer.put(pyramid->factor);
+  }
+}
+
+SharedTables read_tables(ByteReader reader) {
+  SharedTables tables;
+  const std::uint32_t cameras = reader.get_count(bytes_per_camera, "cameras");
+  for (std::uint32_t i = 0; i < cameras; ++i) {
+    Camera camera;
+    camera.name = std::string(reader.get_bytes(reader.get<std::uint16_t>()));
+    camera.width = reader.get<std::int32_t>();
+    camera.height = reader.get<std::int32_t>();
+    Distortion& d = camera.distortion;
+    for (double* value : {&camera.fx, &camera.fy, &camera.cx, &camera.cy, &d.k1, &d.k2, &d.p1, &d.p2, &d.k3,
+                          &camera.baseline, &camera.frame_rate})
+      *value = reader.get<double>();
+    refuse(reader, "camera", i, trouble_of(camera));
+    tables.cameras.push_back(std::make_shared<const Camera>(std::move(camera)));
+  }
+  const std::uint32_t pyramids = reader.get_count(bytes_per_pyramid, "pyramids");
+  for (std::uint32_t i = 0; i < pyramids; ++i) {
+    const auto levels = reader.get<std::uint32_t>();
+    const auto factor = reader.get<double>();
+    // The constructor takes only what makes sense; the rest is checked on what it made.
+    if (levels < 1 || levels > 64 || !(factor > 1.0))
+      reader.fail("pyramid " + std::to_string(i) + ": found " + std::to_string(levels) + " levels and a factor of " +
+                  std::to_string(factor) + "; expected 1 to 64 and more than 1");
+    const auto pyramid = std::make_shared<const ScalePyramid>(static_cast<int>(levels), factor);
+    refuse(reader, "pyramid", i, trouble_of(*pyramid));
+    tables.pyramids.push_back(pyramid);
+  }
+  reader.expect_end();
+  return tables;
+}
+
+void write_keyframes(const Map& map, const DenseIndex& index, const SharedTables& tables, ByteWriter& writer) {
+  writer.put(static_cast<std::uint32_t>(index.keyframes().size()));
+  for (const KeyFrameId id : index.keyframes()) {
+    const KeyFrame& keyframe = map.keyframe(id);
+    const std::string trouble = trouble_of(keyframe);
+    HOLDFAST_CHECK(trouble.empty(), "keyframe " << keyframe.sequence << ": " << trouble);
+    const Frame& frame = keyframe.frame;
+    writer.put(keyframe.sequence);
+    writer.put(frame.index);
+    writer.put(frame.timestamp);
+    put(frame.T_camera_world, writer);
+    writer.put(position_of(tables, frame.camera));
+    writer.put(position_of(tables, frame.pyramid));
+    writer.put(static_cast<std::uint32_t>(frame.size()));
+    writer.put(index.of(keyframe.parent));
+    writer.put(static_cast<std::uint32_t>(keyframe.children.size()));
+    writer.put(static_cast<std::uint32_t>(keyframe.covisible.size()));
+    writer.put(static_cast<std::uint32_t>(keyframe.loop_edges.size()));
+    for (const KeyFrameId child : keyframe.children) writer.put(index.of(child));
+    for (const CovisibilityEdge& edge : keyframe.covisible) {
+      writer.put(index.of(edge.keyframe));
+      writer.put(static_cast<std::int32_t>(edge.weight));
+    }
+    for (const KeyFrameId end : keyframe.loop_edges) writer.put(index.of(end));
+  }
+}
+
+std::vector<KeyFrame> read_keyframes(ByteReader reader, const SharedTables& tables,
+                                     std::vector<std::uint32_t>& feature_counts) {
+  const std::uint32_t count = reader.get_count(bytes_per_keyframe, "keyframes");
+  std::vector<KeyFrame> keyframes;
+  keyframes.reserve(count);
+  feature_counts.clear();
+  for (std::uint32_t i = 0; i < count; ++i) {
+    KeyFrame& keyframe = keyframes.emplace_back();
+    Frame& frame = keyframe.frame;
+    keyframe.sequence = reader.get<std::uint64_t>();
+    frame.index = reader.get<std::uint64_t>();
+    frame.timestamp = reader.get<double>();
+    frame.T_camera_world = get_pose(reader);
+    const auto camera = reader.get<std::uint32_t>(), pyramid = reader.get<std::uint32_t>();
+    if (camera >= tables.cameras.size() || pyramid >= tables.pyramids.size())
+      reader.fail("keyframe " + std::to_string(i) + ": found camera " + std::to_string(camera) + " and pyramid " +
+                  std::to_string(pyramid) + "; expected less than " + std::to_string(tables.cameras.size()) + " and " +
+                  std::to_string(tables.pyramids.size()));
+    frame.camera = tables.cameras[camera];
+    frame.pyramid = tables.pyramids[pyramid];
+    feature_counts.push_back(reader.get<std::uint32_t>());
+    keyframe.parent = get_id<KeyFrameId>(reader);
+    const auto children = reader.get<std::uint32_t>(), edges = reader.get<std::uint32_t>(),
+               loops = reader.get<std::uint32_t>();
+    if (children > reader.remaining() / 4 || edges > reader.remaining() / 8 || loops > reader.remaining() / 4)
+      reader.fail("keyframe " + std::to_string(i) + ": found " + std::to_string(children) + " children, " +
+                  std::to_string(edges) + " neighbours and " + std::to_string(loops) +
+                  " loops, for which the section is too short");
+    keyframe.children.resize(children);
+    for (KeyFrameId& child : keyframe.children) child = get_id<KeyFrameId>(reader);
+    keyframe.covisible.resize(edges);
+    for (CovisibilityEdge& edge : keyframe.covisible) {
+      edge.keyframe = get_id<KeyFrameId>(reader);
+      edge.weight = reader.get<std::int32_t>();
+    }
+    keyframe.loop_edges.resize(loops);
+    for (KeyFrameId& end : keyframe.loop_edges) end = get_id<KeyFrameId>(reader);
+    refuse(reader, "keyframe", i, trouble_of(keyframe));
+  }
+  reader.expect_end();
+  return keyframes;
+}
+
+std::uint64_t features_size(std::size_t features) {
+  return 8 + static_cast<std::uint64_t>(features) * bytes_per_feature;
+}
+
+void write_features(const Frame& frame, std::uint32_t position, const DenseIndex& index, ByteWriter& writer) {
+  const std::string trouble = trouble_of_features(frame);
+  HOLDFAST_CHECK(trouble.empty(), "keyframe of frame " << frame.index << ": " << trouble);
+  const Features& f = frame.features;
+  writer.put(position);
+  writer.put(static_cast<std::uint32_t>(frame.size()));
+  for (const std::vector<float>* values :
+       {&f.x, &f.y, &frame.x, &frame.y, &frame.depth, &frame.right_x, &f.angle, &f.response, &frame.static_probability})
+    writer.put_array(*values);
+  for (const MapPointId point : frame.map_points) writer.put(index.of(point));
+  for (const Descriptor& descriptor : f.descriptors) put(descriptor, writer);
+  writer.put_array(f.octave);
+}
+
+void read_features(ByteReader reader, std::uint32_t position, std::uint32_t count, Frame& frame) {
+  const auto found_position = reader.get<std::uint32_t>();
+  const std::uint32_t found_count = reader.get_count(bytes_per_feature, "features");
+  if (found_position != position || found_count != count)
+    reader.fail("found " + std::to_string(found_count) + " features of keyframe " + std::to_string(found_position) +
+                "; expected " + std::to_string(count) + " of keyframe " + std::to_string(position));
+  Features& f = frame.features;
+  for (std::vector<float>* values :
+       {&f.x, &f.y, &frame.x, &frame.y, &frame.depth, &frame.right_x, &f.angle, &f.response, &frame.static_probability})
+    reader.get_array(*values, count);
+  frame.map_points.resize(count);
+  for (MapPointId& point : frame.map_points) point = get_id<MapPointId>(reader);
+  f.descriptors.resize(count);
+  for (Descriptor& descriptor : f.descriptors) descriptor = get_descriptor(reader);
+  reader.get_array(f.octave, count);
+  reader.expect_end();
+  refuse(reader, "keyframe", position, trouble_of_features(frame));
+}
+
+void write_points(const Map& map, const DenseIndex& index, ByteWriter& writer) {
+  writer.put(static_cast<std::uint32_t>(index.points().size()));
+  for (const MapPointId id : index.points()) {
+    const MapPoint& point = map.point(id);
+    const std::string trouble = trouble_of(point);
+    HOLDFAST_CHECK(trouble.empty(), "point " << id.slot << ": " << trouble);
+    put(point.position, writer);
+    put(point.viewing_direction, writer);
+    writer.put(point.minimum_distance);
+    writer.put(point.maximum_distance);
+    put(point.descriptor, writer);
+    writer.put(index.of(point.reference_keyframe));
+    writer.put(point.created_at);
+    writer.put(point.visible_count);
+    writer.put(point.found_count);
+    writer.put(point.static_log_odds);
+    writer.put(static_cast<std::uint32_t>(point.observations.size()));
+    for (const Observation& observation : point.observations) {
+      writer.put(index.of(observation.keyframe));
+      writer.put(observation.feature);
+    }
+  }
+}
+
+std::vector<MapPoint> read_points(ByteReader reader) {
+  const std::uint32_t count = reader.get_count(bytes_per_point, "points");
+  std::vector<MapPoint> points;
+  points.reserve(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    MapPoint& point = points.emplace_back();
+    point.position = get_vector(reader);
+    point.viewing_direction = get_vector(reader);
+    point.minimum_distance = reader.get<float>();
+    point.maximum_distance = reader.get<float>();
+    point.descriptor = get_descriptor(reader);
+    point.reference_keyframe = get_id<KeyFrameId>(reader);
+    point.created_at = reader.get<std::uint64_t>();
+    point.visible_count = reader.get<std::uint32_t>();
+    point.found_count = reader.get<std::uint32_t>();
+    point.static_log_odds = reader.get<float>();
+    point.observations.resize(reader.get_count(bytes_per_observation, "observations"));
+    for (Observation& observation : point.observations) {
+      observation.keyframe = get_id<KeyFrameId>(reader);
+      observation.feature = reader.get<std::uint32_t>();
+    }
+    refuse(reader, "point", i, trouble_of(point));
+  }
+  reader.expect_end();
+  return points;
+}
+
+}  // namespace holdfast::map_io

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bytes.hpp"
+#include "holdfast/core/map.hpp"
+
+/// The content of the sections; docs/map_format.md has the layout. Every read_ function checks each number by itself
+/// (finite, within its range); whether references agree is checked by Map::restore().
+namespace holdfast::map_io {
+
+/// Section types.
+inline constexpr const char* camera_section = "CAMS";
+inline constexpr const char* keyframe_section = "KEYF";
+inline constexpr const char* feature_section = "FEAT";
+inline constexpr const char* point_section = "POIN";
+
+/// Cameras and pyramids that keyframes share; keyframes name them by position.
+struct SharedTables {
+  std::vector<std::shared_ptr<const Camera>> cameras;
+  std::vector<std::shared_ptr<const ScalePyramid>> pyramids;
+};
+
+/// Positions in the file of the entries of a map: keyframes by rising sequence, points in slot order.
+class DenseIndex {
+ public:
+  explicit DenseIndex(const Map& map);
+  /// By position.
+  const std::vector<KeyFrameId>& keyframes() const { return keyframes_; }
+  const std::vector<MapPointId>& points() const { return points_; }
+  /// The position; no_index for an invalid id; throws CheckError for an id that names nothing.
+  std::uint32_t of(KeyFrameId id) const;
+  std::uint32_t of(MapPointId id) const;
+
+ private:
+  std::vector<KeyFrameId> keyframes_;
+  std::vector<MapPointId> points_;
+  std::vector<std::uint32_t> keyframe_positions_, point_positions_;  // by slot
+};
+inline constexpr std::uint32_t no_index = 0xFFFFFFFFU;
+
+/// What a map file cannot hold in an entry, such as a number that is not finite; "" when all is well.
+std::string trouble_of(const Camera& camera);
+std::string trouble_of(const ScalePyramid& pyramid);
+std::string trouble_of(const KeyFrame& keyframe);  ///< without its features
+std::string trouble_of_features(const Frame& frame);
+std::string trouble_of(const MapPoint& point);
+
+/// Writing throws CheckError, with the entry's trouble, for a map that no reader would take.
+SharedTables tables_of(const Map& map, const DenseIndex& index);
+void write_tables(const SharedTables& tables, ByteWriter& writer);
+void write_keyframes(const Map& map, const DenseIndex& index, const SharedTables& tables, ByteWriter& writer);
+void write_features(const Frame& frame, std::uint32_t position, const DenseIndex& index, ByteWriter& writer);
+void write_points(const Map& map, const DenseIndex& index, ByteWriter& writer);
+/// Length of the payload of write_features.
+std::uint64_t features_size(std::size_t features);
+
+/// Reading throws InputError.
+SharedTables read_tables(ByteReader reader);
+/// All of the keyframes but their features. `feature_counts`: of each keyframe.
+std::vector<KeyFrame> read_keyframes(ByteReader reader, const SharedTables& tables,
+                                     std::vector<std::uint32_t>& feature_counts);
+/// Fills the features of keyframe `position`; `count` as the keyframe says.
+void read_features(ByteReader reader, std::uint32_t position, std::uint32_t count, Frame& frame);
+std::vector<MapPoint> read_points(ByteReader reader);
+
+}  // namespace holdfast::map_io

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "holdfast/map_io/map_info.hpp"
+#include "map_io/map_files.hpp"
+
+namespace holdfast {
+namespace {
+
+using test::find_section;
+using test::number_at;
+using test::put_at;
+using test::random_map;
+using test::repair_checksums;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+using MapDamage = test::MapFileTest;
+
+TEST_F(MapDamage, EveryTruncation) {
+  const std::string bytes = bytes_of(random_map(3, 10, 1));
+  for (std::size_t length = 0; length < bytes.size(); ++length)
+    ASSERT_NE(refusal_of(bytes.substr(0, length)), "") << length << " of " << bytes.size() << " bytes";
+  EXPECT_EQ(refusal_of(bytes), "");
+}
+
+TEST_F(MapDamage, EveryFlippedBit) {
+  std::string bytes = bytes_of(random_map(3, 10, 2));
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    const char mask = static_cast<char>(1 << (i % 8));
+    bytes[i] = static_cast<char>(bytes[i] ^ mask);
+    ASSERT_NE(refusal_of(bytes), "") << "byte " << i;
+    bytes[i] = static_cast<char>(~(bytes[i] ^ mask));
+    ASSERT_NE(refusal_of(bytes), "") << "byte " << i;
+    bytes[i] = static_cast<char>(~bytes[i]);
+  }
+  EXPECT_EQ(refusal_of(bytes), "");
+}
+
+/// Changes behind fitting checksums: refused, or read as a map that can be used and written, but never a crash.
+TEST_F(MapDamage, RandomChangesNeverCrash) {
+  const std::string original = bytes_of(random_map(5, 12, 3));
+  Random random(17);
+  int refused = 0, taken = 0;
+  for (int i = 0; i < 3000; ++i) {
+    std::string bytes = original;
+    const std::uint32_t changes = 1 + random.below(3);
+    for (std::uint32_t c = 0; c < changes; ++c) {
+      const std::size_t at = random.below(static_cast<std::uint32_t>(bytes.size() - 8));
+      switch (random.below(4)) {
+        case 0:
+          bytes[at] = static_cast<char>(random.next());
+          break;
+        case 1:
+          put_at(bytes, at & ~std::size_t{3}, static_cast<std::uint32_t>(random.below(40)));
+          break;
+        case 2:
+          put_at(bytes, at & ~std::size_t{3}, 0xFFFFFFFFU - random.below(2));
+          break;
+        default:
+          bytes.erase(at, random.below(40));
+      }
+    }
+    if (random.below(2) == 0) put_at(bytes, 32, static_cast<std::uint64_t>(bytes.size()));
+    if (number_at<std::uint32_t>(bytes, 12) != 76) put_at(bytes, 12, 76U);
+    repair_checksums(bytes);
+    write("read.hfm", bytes);
+    try {
+      Map map = read_map(path("read.hfm"));
+      for (const MapPointId point : map.points().ids()) map.update_point(point);
+      for (const KeyFrameId keyframe : map.keyframes().ids()) map.update_covisibility(keyframe, 3);
+      ++taken;
+    } catch (const InputError&) {
+      ++refused;
+    }
+    try {
+      read_map_info(path("read.hfm"));
+    } catch (const InputError&) {
+    }
+  }
+  EXPECT_GT(refused, 500);
+  EXPECT_GT(taken, 100);
+}
+
+TEST_F(MapDamage, FilesOfOtherKinds) {
+  EXPECT_THAT(refusal_of(""), HasSubstr("the file is empty"));
+  EXPECT_THAT(refusal_of("ply\nformat ascii 1.0\n"), HasSubstr("found a file of another kind"));
+  EXPECT_THAT(refusal_of("x"), HasSubstr("found a file of another kind"));
+  EXPECT_THAT(refusal_of(std::string(10000, '\0')), HasSubstr("found a file of another kind"));
+  // Line ends changed on the way, as by a transfer in text mode.
+  std::string text = bytes_of(random_map(2, 10, 4));
+  text.erase(4, 1);
+  EXPECT_THAT(refusal_of(text), HasSubstr("found a file of another kind"));
+  EXPECT_THAT(refusal_of("\x89HFM"), HasSubstr("cut off"));
+  EXPECT_THROW(
+      {
+        try {
+          read_map(path("nothing.hfm"));
+        } catch (const InputError& error) {
+          EXPECT_THAT(error.what(), AllOf(HasSubstr("nothing.hfm"), HasSubstr("no such file"), HasSubstr(".hfm")));
+          throw;
+        }
+      },
+      InputError);
+  EXPECT_THROW(read_map(folder_), InputError);
+  EXPECT_THROW(read_map("/dev/null"), InputError);
+}
+
+TEST_F(MapDamage, ANewerVersion) {
+  std::string bytes = bytes_of(random_map(3, 10, 5));
+  put_at(bytes, 8, 2U);
+  EXPECT_THAT(refusal_of(bytes), HasSubstr("checksum of the header"));
+  repair_checksums(bytes);
+  EXPECT_THAT(refusal_of(bytes), AllOf(HasSubstr("found format version 2"), HasSubstr("up to 1"), HasSubstr("newer")));
+  put_at(bytes, 8, 0U);
+  repair_checksums(bytes);
+  EXPECT_THAT(refusal_of(bytes), HasSubstr("version 0"));
+}
+
+TEST_F(MapDamage, SaysWhereAndWhat) {
+  const std::string bytes = bytes_of(random_map(4, 10, 6));
+  EXPECT_THAT(refusal_of(bytes.substr(0, bytes.size() - 5)),
+              AllOf(HasSubstr("has " + std::to_string(bytes.size() - 5)),
+                    HasSubstr("expected " + std::to_string(bytes.size())), HasSubstr("cut off")));
+  EXPECT_THAT(refusal_of(bytes + "more"), HasSubstr("something was added"));
+  std::string flipped = bytes;
+  const std::size_t features = find_section(bytes, "FEAT", 1);
+  flipped[features + 100] ^= 1;
+  EXPECT_THAT(refusal_of(flipped),
+              AllOf(HasSubstr("checksum of section 'FEAT' at byte " + std::to_string(features)), HasSubstr("0x")));
+}
+
+/// A file with a section of another type put in before the points.
+std::string with_section(std::string bytes, const std::string& type, std::uint32_t flags) {
+  std::string section(24, '\0');
+  section.replace(0, 4, type);
+  put_at(section, 4, flags);
+  put_at(section, 8, std::uint64_t{5});
+  bytes.insert(find_section(bytes, "POIN"), section + "hello");
+  put_at(bytes, 32, static_cast<std::uint64_t>(bytes.size()));
+  put_at(bytes, 40, number_at<std::uint32_t>(bytes, 40) + 1);
+  repair_checksums(bytes);
+  return bytes;
+}
+
+TEST_F(MapDamage, UnknownSections) {
+  const std::string bytes = bytes_of(random_map(4, 10, 7));
+  write("more.hfm", with_section(bytes, "BOOK", 0));
+  const Map map = read_map(path("more.hfm"));
+  EXPECT_TRUE(bytes_of(map) == bytes) << "an optional section changed what was read";
+  EXPECT_THAT(refusal_of(with_section(bytes, "BOOK", 1)), AllOf(HasSubstr("'BOOK'"), HasSubstr("newer Holdfast")));
+  EXPECT_THAT(refusal_of(with_section(bytes, "CAMS", 1)), HasSubstr("where it does not belong"));
+}
+
+/// Values at places of the layout, behind fitting checksums.
+TEST_F(MapDamage, InconsistentContent) {
+  const std::string bytes = bytes_of(random_map(6, 12, 8));
+  const std::size_t tables = find_section(bytes, "CAMS") + 24, keyframes = find_section(bytes, "KEYF") + 24,
+                    features = find_section(bytes, "FEAT", 2) + 24, points = find_section(bytes, "POIN") + 24;
+  const auto refusal_with = [&](std::size_t offset, auto value) {
+    std::string changed = bytes;
+    put_at(changed, offset, value);
+    repair_checksums(changed);
+    return refusal_of(changed);
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  constexpr std::size_t count = 12;
+  EXPECT_THAT(refusal_with(tables, 0x40000000U), HasSubstr("count of 1073741824 cameras"));
+  EXPECT_THAT(refusal_with(tables + 4 + 2 + 7, -640), HasSubstr("width is -640"));
+  EXPECT_THAT(refusal_with(tables + 4 + 2 + 7 + 8, nan), HasSubstr("focal length is nan"));
+  EXPECT_THAT(refusal_with(keyframes, 0xFFFFFFF0U), HasSubstr("keyframes, for which the section is too short"));
+  EXPECT_THAT(refusal_with(keyframes + 4, std::uint64_t{1000}), HasSubstr("sequence number"));
+  EXPECT_THAT(refusal_with(keyframes + 4 + 16, nan), HasSubstr("keyframe 0: time stamp is nan"));
+  EXPECT_THAT(refusal_with(keyframes + 4 + 24, 2.0), HasSubstr("departure of the pose from a rotation"));
+  EXPECT_THAT(refusal_with(keyframes + 4 + 120, 9U), HasSubstr("found camera 9"));
+  EXPECT_THAT(refusal_with(keyframes + 4 + 128, 7U), HasSubstr("section 'FEAT'"));
+  EXPECT_THAT(refusal_with(keyframes + 4 + 132, 3U), HasSubstr("keyframe 0 is older than its parent 3"));
+  EXPECT_THAT(refusal_with(keyframes + 4 + 136, 0x30000000U), HasSubstr("805306368 children"));
+  EXPECT_THAT(refusal_with(features, 1U), HasSubstr("of keyframe 1; expected 12 of keyframe 2"));
+  EXPECT_THAT(refusal_with(features + 8 + 4 * 4 * count, std::numeric_limits<float>::infinity()),
+              HasSubstr("feature 0: depth is inf"));
+  EXPECT_THAT(refusal_with(features + 8 + 9 * 4 * count, 5000U), HasSubstr("shows point 5000"));
+  EXPECT_THAT(refusal_with(features + 8 + 9 * 4 * count, 0xFFFFFFFFU), HasSubstr("which does not show it"));
+  EXPECT_THAT(refusal_with(features + 8 + 72 * count, std::uint8_t{8}), HasSubstr("octave is 8"));
+  EXPECT_THAT(refusal_with(points + 4, nan), HasSubstr("point 0: position is nan"));
+  EXPECT_THAT(refusal_with(points + 4 + 88, 77U), HasSubstr("reference keyframe 77, which does not see it"));
+  EXPECT_THAT(refusal_with(points + 4 + 112, 0U), HasSubstr("number of observations is 0"));
+  EXPECT_THAT(refusal_with(points + 4 + 116, 99U), HasSubstr("point 0 is seen by keyframe 99"));
+  EXPECT_THAT(refusal_with(points + 4 + 120, 99U), HasSubstr("as feature 99, which does not show it"));
+  EXPECT_THAT(refusal_with(44, 5U), HasSubstr("the header says 5"));
+  EXPECT_THAT(refusal_with(64, std::uint64_t{0}), HasSubstr("expected less than the next, 0"));
+}
+
+}  // namespace
+}  // namespace holdfast

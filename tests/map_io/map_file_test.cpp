@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/map_io/map_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <map>
+
+#include "map_io/map_files.hpp"
+
+namespace holdfast {
+namespace {
+
+using test::random_map;
+using MapFile = test::MapFileTest;
+
+/// Positions that ids get in a file.
+struct Positions {
+  explicit Positions(const Map& map) {
+    std::map<std::uint64_t, KeyFrameId> by_sequence;
+    map.keyframes().for_each([&](KeyFrameId id, const KeyFrame& entry) { by_sequence[entry.sequence] = id; });
+    for (const auto& [sequence, id] : by_sequence)
+      keyframe[id] = static_cast<int>(keyframes.size()), keyframes.push_back(id);
+    for (const MapPointId id : map.points().ids()) point[id] = static_cast<int>(points.size()), points.push_back(id);
+  }
+  int of(KeyFrameId id) const { return id.valid() ? keyframe.at(id) : -1; }
+  int of(MapPointId id) const { return id.valid() ? point.at(id) : -1; }
+  std::vector<int> of(const std::vector<KeyFrameId>& ids) const { return all(ids); }
+  std::vector<int> of(const std::vector<MapPointId>& ids) const { return all(ids); }
+
+  std::vector<KeyFrameId> keyframes;
+  std::vector<MapPointId> points;
+
+ private:
+  template <class IdType>
+  std::vector<int> all(const std::vector<IdType>& ids) const {
+    std::vector<int> positions;
+    for (const IdType id : ids) positions.push_back(of(id));
+    return positions;
+  }
+  std::map<KeyFrameId, int> keyframe;
+  std::map<MapPointId, int> point;
+};
+
+template <class T>
+void expect_same_bits(const std::vector<T>& a, const std::vector<T>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size() * sizeof(T)), 0);
+}
+
+void expect_same_frame(const Frame& a, const Frame& b) {
+  EXPECT_EQ(a.index, b.index);
+  EXPECT_EQ(a.timestamp, b.timestamp);
+  EXPECT_EQ(*a.camera, *b.camera);
+  EXPECT_EQ(a.pyramid->factor, b.pyramid->factor);
+  expect_same_bits(a.pyramid->scale, b.pyramid->scale);
+  expect_same_bits(a.pyramid->inverse_sigma2, b.pyramid->inverse_sigma2);
+  EXPECT_EQ(a.T_camera_world.matrix(), b.T_camera_world.matrix());
+  expect_same_bits(a.features.x, b.features.x);
+  expect_same_bits(a.features.y, b.features.y);
+  expect_same_bits(a.features.angle, b.features.angle);
+  expect_same_bits(a.features.response, b.features.response);
+  expect_same_bits(a.features.octave, b.features.octave);
+  expect_same_bits(a.features.descriptors, b.features.descriptors);
+  expect_same_bits(a.x, b.x);
+  expect_same_bits(a.y, b.y);
+  expect_same_bits(a.depth, b.depth);
+  expect_same_bits(a.right_x, b.right_x);
+  expect_same_bits(a.static_probability, b.static_probability);
+}
+
+void expect_same(const Map& a, const Map& b) {
+  const Positions in_a(a), in_b(b);
+  EXPECT_EQ(a.next_sequence(), b.next_sequence());
+  ASSERT_EQ(in_a.keyframes.size(), in_b.keyframes.size());
+  ASSERT_EQ(in_a.points.size(), in_b.points.size());
+  for (std::size_t i = 0; i < in_a.keyframes.size(); ++i) {
+    const KeyFrame &k = a.keyframe(in_a.keyframes[i]), &l = b.keyframe(in_b.keyframes[i]);
+    EXPECT_EQ(k.sequence, l.sequence);
+    expect_same_frame(k.frame, l.frame);
+    EXPECT_EQ(in_a.of(k.frame.map_points), in_b.of(l.frame.map_points));
+    EXPECT_EQ(in_a.of(k.parent), in_b.of(l.parent));
+    EXPECT_EQ(in_a.of(k.children), in_b.of(l.children));
+    EXPECT_EQ(in_a.of(k.loop_edges), in_b.of(l.loop_edges));
+    ASSERT_EQ(k.covisible.size(), l.covisible.size());
+    for (std::size_t e = 0; e < k.covisible.size(); ++e) {
+      EXPECT_EQ(in_a.of(k.covisible[e].keyframe), in_b.of(l.covisible[e].keyframe));
+      EXPECT_EQ(k.covisible[e].weight, l.covisible[e].weight);
+    }
+  }
+  for (std::size_t i = 0; i < in_a.points.size(); ++i) {
+    const MapPoint &p = a.point(in_a.points[i]), &q = b.point(in_b.points[i]);
+    EXPECT_EQ(p.position, q.position);
+    EXPECT_EQ(p.viewing_direction, q.viewing_direction);
+    EXPECT_EQ(p.minimum_distance, q.minimum_distance);
+    EXPECT_EQ(p.maximum_distance, q.maximum_distance);
+    EXPECT_EQ(p.descriptor, q.descriptor);
+    EXPECT_EQ(in_a.of(p.reference_keyframe), in_b.of(q.reference_keyframe));
+    EXPECT_EQ(p.created_at, q.created_at);
+    EXPECT_EQ(p.visible_count, q.visible_count);
+    EXPECT_EQ(p.found_count, q.found_count);
+    EXPECT_EQ(p.static_log_odds, q.static_log_odds);
+    ASSERT_EQ(p.observations.size(), q.observations.size());
+    for (std::size_t o = 0; o < p.observations.size(); ++o) {
+      EXPECT_EQ(in_a.of(p.observations[o].keyframe), in_b.of(q.observations[o].keyframe));
+      EXPECT_EQ(p.observations[o].feature, q.observations[o].feature);
+    }
+  }
+}
+
+TEST_F(MapFile, HoldsEverything) {
+  const Map map = random_map(24, 60, 1);
+  // The example must be worth it: holes in the slots, slots used twice, keyframes out of order of slots, loops.
+  ASSERT_GT(map.points().slot_count(), map.points().size());
+  std::uint32_t reused = 0;
+  map.keyframes().for_each([&](KeyFrameId id, const KeyFrame&) { reused += id.generation; });
+  ASSERT_GT(reused, 0U);
+  write_map(path("map.hfm"), map);
+  const Map again = read_map(path("map.hfm"));
+  expect_same(map, again);
+  EXPECT_FALSE(std::filesystem::exists(path("map.hfm.tmp")));
+}
+
+TEST_F(MapFile, IdsAreGivenAnewInOrder) {
+  write_map(path("map.hfm"), random_map(20, 40, 2));
+  const Map map = read_map(path("map.hfm"));
+  EXPECT_EQ(map.keyframes().slot_count(), map.keyframes().size());
+  EXPECT_EQ(map.points().slot_count(), map.points().size());
+  std::uint64_t next = 0;
+  map.keyframes().for_each([&](KeyFrameId id, const KeyFrame& keyframe) {
+    EXPECT_EQ(id.generation, 0U);
+    EXPECT_GE(keyframe.sequence, next);
+    next = keyframe.sequence + 1;
+  });
+}
+
+TEST_F(MapFile, SameBytesTwiceAndAfterARoundTrip) {
+  const Map map = random_map(20, 40, 3);
+  const std::string bytes = bytes_of(map);
+  EXPECT_TRUE(bytes_of(map) == bytes);
+  write("map.hfm", bytes);
+  const Map again = read_map(path("map.hfm"));
+  EXPECT_TRUE(bytes_of(again) == bytes);
+  EXPECT_TRUE(bytes_of(random_map(20, 40, 3)) == bytes);
+}
+
+TEST_F(MapFile, AMapThatWasReadGoesOn) {
+  write_map(path("map.hfm"), random_map(12, 40, 4));
+  Map map = read_map(path("map.hfm"));
+  const auto ids = map.keyframes().ids();
+  // Windows are found through the grid, which is built anew.
+  const Frame& first = map.keyframe(ids.front()).frame;
+  for (std::uint32_t f = 0; f < first.size(); ++f) {
+    std::vector<std::uint32_t> found;
+    first.grid.query(first.x[f], first.y[f], 0.5F, first.x, first.y, found);
+    EXPECT_THAT(found, ::testing::Contains(f));
+  }
+  Frame frame = map.keyframe(ids.back()).frame;
+  const KeyFrameId added = map.add_keyframe(frame);
+  map.update_covisibility(added, 3);
+  EXPECT_GT(map.keyframe(added).covisible.size(), 0U);
+  EXPECT_TRUE(map.keyframe(added).parent.valid());
+  map.remove_keyframe(added);
+  for (const MapPointId point : map.points().ids()) map.update_point(point);
+  write_map(path("more.hfm"), map);
+  expect_same(map, read_map(path("more.hfm")));
+}
+
+TEST_F(MapFile, SharedCamerasStayShared) {
+  write_map(path("map.hfm"), random_map(15, 30, 5));
+  const Map map = read_map(path("map.hfm"));
+  std::map<const Camera*, int> cameras;
+  map.keyframes().for_each([&](KeyFrameId, const KeyFrame& keyframe) { ++cameras[keyframe.frame.camera.get()]; });
+  EXPECT_EQ(cameras.size(), 2U);
+}
+
+TEST_F(MapFile, AnEmptyMap) {
+  write_map(path("map.hfm"), Map());
+  EXPECT_TRUE(read_map(path("map.hfm")).keyframes().empty());
+  expect_same(Map(), read_map(path("map.hfm")));
+}
+
+TEST_F(MapFile, ReadingIntoAMapReplacesItAndRaisesItsVersion) {
+  const Map map = random_map(8, 30, 6);
+  write_map(path("map.hfm"), map);
+  Map other = random_map(5, 20, 7);
+  const std::uint64_t version = other.version();
+  read_map(path("map.hfm"), other);
+  expect_same(map, other);
+  EXPECT_GT(other.version(), version);
+}
+
+TEST_F(MapFile, AFailedReadingLeavesTheMapAlone) {
+  Map map = random_map(6, 20, 8);
+  const std::string before = bytes_of(map);
+  std::string bytes = bytes_of(random_map(6, 20, 9));
+  bytes.resize(bytes.size() - 1);
+  write("cut.hfm", bytes);
+  EXPECT_THROW(read_map(path("cut.hfm"), map), InputError);
+  EXPECT_TRUE(bytes_of(map) == before);
+}
+
+TEST_F(MapFile, AFailedWritingLeavesTheOldFile) {
+  const Map map = random_map(5, 20, 10);
+  write_map(path("map.hfm"), map);
+  const std::string before = content(path("map.hfm"));
+  // A map that no file may hold.
+  Map bad = random_map(5, 20, 10);
+  bad.point(bad.points().ids().back()).position.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(write_map(path("map.hfm"), bad), CheckError);
+  EXPECT_TRUE(content(path("map.hfm")) == before);
+  EXPECT_FALSE(std::filesystem::exists(path("map.hfm.tmp")));
+  // A temporary name that cannot be written.
+  std::filesystem::create_directories(path("map.hfm.tmp"));
+  EXPECT_THROW(write_map(path("map.hfm"), map), InputError);
+  EXPECT_TRUE(content(path("map.hfm")) == before);
+}
+
+TEST_F(MapFile, ADiskThatIsFull) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full on this system";
+  std::filesystem::create_symlink("/dev/full", path("map.hfm.tmp"));
+  EXPECT_THROW(write_map(path("map.hfm"), random_map(5, 20, 11)), InputError);
+  EXPECT_FALSE(std::filesystem::exists(path("map.hfm")));
+}
+
+TEST_F(MapFile, PlacesThatCannotBeWritten) {
+  const Map map = random_map(3, 20, 12);
+  EXPECT_THROW(write_map(path("nowhere/map.hfm"), map), InputError);
+  EXPECT_THROW(write_map(folder_, map), InputError);
+  EXPECT_THROW(write_map("/proc/map.hfm", map), InputError);
+  if (geteuid() == 0) return;  // root writes everywhere
+  std::filesystem::permissions(folder_, std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  EXPECT_THROW(write_map(path("map.hfm"), map), InputError);
+}
+
+}  // namespace
+}  // namespace holdfast
