@@ -85,8 +85,8 @@ namespace holdfast::flann_plugin {
 
 namespace {
 
-constexpr int branching = 16;
-constexpr int trees = 2;
+constexpr int branching = 32;
+constexpr int trees = 1;
 constexpr int leaf_size = 32;
 constexpr float rebuild_growth = 2.0F;
 

@@ -24,6 +24,8 @@ class CentreIndex {
 
   /// The number of the new one, counted from 0. Now and then, whenever their number has doubled, rebuilds the index.
   std::uint32_t add(const Descriptor& centre);
+  /// Puts another descriptor in a centre's place. The clusters follow at the next rebuild, so let it be near.
+  void move(std::uint32_t number, const Descriptor& centre) { centres_[number] = centre; }
   std::uint32_t size() const { return static_cast<std::uint32_t>(centres_.size()); }
   const Descriptor& operator[](std::uint32_t number) const { return centres_[number]; }
 

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <span>
+#include <utility>
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/hamming.hpp"
@@ -12,8 +14,33 @@ namespace holdfast::flann_plugin {
 
 namespace {
 
-constexpr std::size_t most_words_of_bucket = 96;
+constexpr std::size_t most_words_of_bucket = 256;
 constexpr std::size_t most_probes = 64;
+constexpr int rounds_of_split = 4;
+
+/// How often each bit is set in some descriptors.
+class BitCounts {
+ public:
+  void add(const Descriptor& descriptor) {
+    ++descriptors_;
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::uint64_t rest = descriptor.words[i]; rest != 0; rest &= rest - 1)
+        ++counts_[64 * i + static_cast<std::size_t>(std::countr_zero(rest))];
+  }
+  /// The descriptor with the least sum of distances to them; `otherwise` where there are as many zeros as ones.
+  Descriptor majority(Descriptor otherwise) const {
+    for (std::size_t bit = 0; bit < 256; ++bit) {
+      const std::uint64_t mask = std::uint64_t{1} << (bit % 64);
+      if (2 * counts_[bit] > descriptors_) otherwise.words[bit / 64] |= mask;
+      if (2 * counts_[bit] < descriptors_) otherwise.words[bit / 64] &= ~mask;
+    }
+    return otherwise;
+  }
+
+ private:
+  std::array<std::uint32_t, 256> counts_{};
+  std::uint32_t descriptors_ = 0;
+};
 
 /// A quarter more, so that not half of the memory of ten thousands of buckets lies idle.
 template <class T>
@@ -31,9 +58,10 @@ void swap_out(std::vector<T>& values, std::size_t position) {
 
 }  // namespace
 
-Vocabulary::Vocabulary(std::uint64_t seed, int probes, int checks)
+Vocabulary::Vocabulary(std::uint64_t seed, int radius, int probes, int checks)
     : centres_(Random(seed).fork(1).next(), checks),
       random_(Random(seed).fork(2)),
+      radius_(radius),
       probes_(std::min(static_cast<std::size_t>(std::max(probes, 1)), most_probes)) {}
 
 Lookup Vocabulary::find(const Descriptor& descriptor) const {
@@ -41,13 +69,25 @@ Lookup Vocabulary::find(const Descriptor& descriptor) const {
   const std::size_t count = centres_.find(descriptor, std::span(nearest).first(probes_));
   Lookup lookup;
   if (count > 0) lookup.bucket = nearest[0];
+  std::array<int, Lookup::most_words> distances{};
   for (std::size_t i = 0; i < count; ++i) {
     const Bucket& bucket = buckets_[nearest[i]];
-    const NearestDescriptors best = nearest_descriptors(descriptor, bucket.descriptors.data(),
-                                                        std::span(positions_).first(bucket.descriptors.size()));
-    if (best.best_index < 0 || best.best_distance >= lookup.distance) continue;
-    lookup.word = bucket.words[static_cast<std::size_t>(best.best_index)];
-    lookup.distance = best.best_distance;
+    const std::size_t size = bucket.words.size();
+    hamming_distances(descriptor, bucket.descriptors.data(), std::span(positions_).first(size), distances_.data());
+    for (std::size_t k = 0; k < size; ++k) {
+      const int distance = distances_[k];
+      if (distance > radius_) continue;
+      std::size_t place = lookup.count;
+      while (place > 0 && distance < distances[place - 1]) --place;
+      if (place == Lookup::most_words) continue;
+      if (lookup.count < Lookup::most_words) ++lookup.count;
+      for (std::size_t j = lookup.count - 1; j > place; --j) {
+        distances[j] = distances[j - 1];
+        lookup.words[j] = lookup.words[j - 1];
+      }
+      distances[place] = distance;
+      lookup.words[place] = bucket.words[k];
+    }
   }
   return lookup;
 }
@@ -90,6 +130,7 @@ void Vocabulary::append(const Descriptor& descriptor, WordId word, std::uint32_t
   bucket_of_word_[word] = bucket;
   while (positions_.size() < buckets_[bucket].words.size())
     positions_.push_back(static_cast<std::uint32_t>(positions_.size()));
+  distances_.resize(positions_.size());
 }
 
 void Vocabulary::take_out(Bucket& bucket, std::size_t position) {
@@ -98,17 +139,27 @@ void Vocabulary::take_out(Bucket& bucket, std::size_t position) {
 }
 
 void Vocabulary::split(std::uint32_t number) {
-  Bucket old = std::move(buckets_[number]);
-  buckets_[number] = {};
-  const Descriptor old_centre = centres_[number];
-  const Descriptor new_centre = old.descriptors[random_.below(static_cast<std::uint32_t>(old.descriptors.size()))];
-  const std::uint32_t other = centres_.add(new_centre);
-  buckets_.emplace_back();
-  for (std::size_t i = 0; i < old.words.size(); ++i) {
-    const Descriptor& descriptor = old.descriptors[i];
-    const bool moves = hamming_distance(descriptor, new_centre) < hamming_distance(descriptor, old_centre);
-    append(descriptor, old.words[i], moves ? other : number);
+  const Bucket old = std::exchange(buckets_[number], {});
+  const std::vector<Descriptor>& descriptors = old.descriptors;
+  const Descriptor& any = descriptors[random_.below(static_cast<std::uint32_t>(descriptors.size()))];
+  const auto farther = [&](const Descriptor& a, const Descriptor& b) {
+    return hamming_distance(a, any) < hamming_distance(b, any);
+  };
+  std::array<Descriptor, 2> centres{any, *std::max_element(descriptors.begin(), descriptors.end(), farther)};
+  std::vector<bool> second(descriptors.size());
+  for (int round = 0; round < rounds_of_split; ++round) {
+    std::array<BitCounts, 2> counts;
+    for (std::size_t i = 0; i < descriptors.size(); ++i) {
+      second[i] = hamming_distance(descriptors[i], centres[1]) < hamming_distance(descriptors[i], centres[0]);
+      counts[second[i]].add(descriptors[i]);
+    }
+    for (std::size_t k = 0; k < 2; ++k) centres[k] = counts[k].majority(centres[k]);
   }
+
+  const std::uint32_t other = centres_.add(centres[1]);
+  centres_.move(number, centres[0]);
+  buckets_.emplace_back();
+  for (std::size_t i = 0; i < old.words.size(); ++i) append(descriptors[i], old.words[i], second[i] ? other : number);
   for (const std::uint32_t half : {number, other})
     if (buckets_[half].words.size() > most_words_of_bucket && buckets_[half].words.size() < old.words.size())
       full_.push_back(half);

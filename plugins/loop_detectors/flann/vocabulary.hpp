@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <vector>
@@ -12,13 +13,14 @@
 namespace holdfast::flann_plugin {
 
 using WordId = std::uint32_t;
-inline constexpr WordId no_word = ~WordId{0};
 
 /// Where a descriptor falls in the vocabulary.
 struct Lookup {
-  WordId word = no_word;     ///< the nearest word of those compared, whatever its distance
-  int distance = 256;        ///< to that word [bits]
-  std::uint32_t bucket = 0;  ///< where it would be inserted
+  static constexpr std::size_t most_words = 4;
+
+  std::array<WordId, most_words> words{};  ///< the nearest within the radius, nearest first; equal ones as met
+  std::uint32_t count = 0;                 ///< how many there are
+  std::uint32_t bucket = 0;                ///< where the descriptor would be inserted
 };
 
 /// Words that come and go: descriptors that stand for what looks like them. They lie in buckets around centres; FLANN
@@ -27,8 +29,9 @@ struct Lookup {
 /// nothing is ever rebuilt but the small index of centres, and a search costs about the same at any size.
 class Vocabulary {
  public:
-  /// `probes`: buckets searched, at most 64; `checks`: see CentreIndex.
-  Vocabulary(std::uint64_t seed, int probes, int checks);
+  /// `radius`: how far a descriptor may be from its word [bits]; `probes`: buckets searched, at most 64; `checks`: see
+  /// CentreIndex.
+  Vocabulary(std::uint64_t seed, int radius, int probes, int checks);
 
   Lookup find(const Descriptor& descriptor) const;
   /// A new word, in the bucket that find() named. Its id may have been that of an erased word.
@@ -56,8 +59,10 @@ class Vocabulary {
   std::deque<std::uint32_t> bucket_of_word_;  // by WordId
   std::vector<WordId> free_words_;
   std::vector<std::uint32_t> full_;
-  std::vector<std::uint32_t> positions_;  // 0, 1, 2, ...: the candidates of a comparison with a whole bucket
+  std::vector<std::uint32_t> positions_;          // 0, 1, 2, ...: the candidates of a comparison with a whole bucket
+  mutable std::vector<std::uint16_t> distances_;  // of such a comparison
   Random random_;
+  int radius_;
   std::size_t probes_;
 };
 
