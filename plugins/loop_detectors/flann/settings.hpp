@@ -8,8 +8,8 @@ namespace holdfast::flann_plugin {
 struct FlannSettings {
   int radius = 32;
   int descriptors = 1000;
-  int probes = 4;
-  int checks = 48;
+  int probes = 3;
+  int checks = 24;
 
   static void describe(ParameterTable<FlannSettings>& table) {
     table

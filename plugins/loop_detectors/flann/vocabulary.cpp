@@ -8,13 +8,12 @@
 #include <utility>
 
 #include "holdfast/core/error.hpp"
-#include "holdfast/core/hamming.hpp"
 
 namespace holdfast::flann_plugin {
 
 namespace {
 
-constexpr std::size_t most_words_of_bucket = 256;
+constexpr std::size_t most_words_of_bucket = 128;
 constexpr std::size_t most_probes = 64;
 constexpr int rounds_of_split = 4;
 
@@ -73,7 +72,8 @@ Lookup Vocabulary::find(const Descriptor& descriptor) const {
   for (std::size_t i = 0; i < count; ++i) {
     const Bucket& bucket = buckets_[nearest[i]];
     const std::size_t size = bucket.words.size();
-    hamming_distances(descriptor, bucket.descriptors.data(), std::span(positions_).first(size), distances_.data());
+    if (i + 1 < count) __builtin_prefetch(buckets_[nearest[i + 1]].descriptors.data());
+    kernels_.of_row(descriptor, bucket.descriptors.data(), size, distances_.data());
     for (std::size_t k = 0; k < size; ++k) {
       const int distance = distances_[k];
       if (distance > radius_) continue;
@@ -128,9 +128,7 @@ void Vocabulary::append(const Descriptor& descriptor, WordId word, std::uint32_t
   push_tightly(buckets_[bucket].descriptors, descriptor);
   push_tightly(buckets_[bucket].words, word);
   bucket_of_word_[word] = bucket;
-  while (positions_.size() < buckets_[bucket].words.size())
-    positions_.push_back(static_cast<std::uint32_t>(positions_.size()));
-  distances_.resize(positions_.size());
+  distances_.resize(std::max(distances_.size(), buckets_[bucket].words.size()));
 }
 
 void Vocabulary::take_out(Bucket& bucket, std::size_t position) {
@@ -143,14 +141,14 @@ void Vocabulary::split(std::uint32_t number) {
   const std::vector<Descriptor>& descriptors = old.descriptors;
   const Descriptor& any = descriptors[random_.below(static_cast<std::uint32_t>(descriptors.size()))];
   const auto farther = [&](const Descriptor& a, const Descriptor& b) {
-    return hamming_distance(a, any) < hamming_distance(b, any);
+    return kernels_.of_two(a, any) < kernels_.of_two(b, any);
   };
   std::array<Descriptor, 2> centres{any, *std::max_element(descriptors.begin(), descriptors.end(), farther)};
   std::vector<bool> second(descriptors.size());
   for (int round = 0; round < rounds_of_split; ++round) {
     std::array<BitCounts, 2> counts;
     for (std::size_t i = 0; i < descriptors.size(); ++i) {
-      second[i] = hamming_distance(descriptors[i], centres[1]) < hamming_distance(descriptors[i], centres[0]);
+      second[i] = kernels_.of_two(descriptors[i], centres[1]) < kernels_.of_two(descriptors[i], centres[0]);
       counts[second[i]].add(descriptors[i]);
     }
     for (std::size_t k = 0; k < 2; ++k) centres[k] = counts[k].majority(centres[k]);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "centre_index.hpp"
+#include "distances.hpp"
 #include "holdfast/core/descriptor.hpp"
 #include "holdfast/core/random.hpp"
 
@@ -59,8 +60,8 @@ class Vocabulary {
   std::deque<std::uint32_t> bucket_of_word_;  // by WordId
   std::vector<WordId> free_words_;
   std::vector<std::uint32_t> full_;
-  std::vector<std::uint32_t> positions_;          // 0, 1, 2, ...: the candidates of a comparison with a whole bucket
   mutable std::vector<std::uint16_t> distances_;  // of such a comparison
+  DistanceKernels kernels_ = distance_kernels();
   Random random_;
   int radius_;
   std::size_t probes_;
