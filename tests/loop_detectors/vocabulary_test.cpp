@@ -82,6 +82,30 @@ TEST(Vocabulary, ErasedWordsAreGoneAndTheirRoomIsUsedAgain) {
   EXPECT_THROW(vocabulary.erase(5000), CheckError);
 }
 
+TEST(Vocabulary, EmptyBucketsAreGivenUp) {
+  Random random(4);
+  Vocabulary vocabulary(1, 32, 64, 10000);
+  std::map<WordId, Descriptor> kept = fill(vocabulary, 300, random);
+  std::size_t most_buckets = 0;
+  for (int cycle = 0; cycle < 6; ++cycle) {
+    for (const auto& [word, descriptor] : fill(vocabulary, 4000, random)) vocabulary.erase(word);
+    most_buckets = std::max(most_buckets, vocabulary.buckets());
+    vocabulary.drop_empty_buckets();
+  }
+  EXPECT_LT(most_buckets, 4 * 4300 / 64U);
+  for (const auto& [word, descriptor] : kept) {
+    const Lookup lookup = vocabulary.find(descriptor);
+    ASSERT_GT(lookup.count, 0U);
+    EXPECT_EQ(lookup.words[0], word);
+  }
+  for (const auto& [word, descriptor] : kept) vocabulary.erase(word);
+  vocabulary.drop_empty_buckets();
+  EXPECT_EQ(vocabulary.buckets(), 0U);
+  EXPECT_EQ(vocabulary.find({}).count, 0U);
+  fill(vocabulary, 10, random);
+  EXPECT_EQ(vocabulary.size(), 10U);
+}
+
 TEST(Vocabulary, ErasingTwiceIsRefused) {
   Vocabulary vocabulary(1, 32, 4, 64);
   const WordId word = vocabulary.insert({}, 0);

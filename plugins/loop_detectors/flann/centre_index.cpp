@@ -85,6 +85,8 @@ struct CentreIndex::Tree {
 CentreIndex::CentreIndex(std::uint64_t seed, int checks) : seed_(seed), checks_(checks) {}
 
 CentreIndex::~CentreIndex() = default;
+CentreIndex::CentreIndex(CentreIndex&& other) noexcept = default;
+CentreIndex& CentreIndex::operator=(CentreIndex&& other) noexcept = default;
 
 std::uint32_t CentreIndex::add(const Descriptor& centre) {
   centres_.push_back(centre);

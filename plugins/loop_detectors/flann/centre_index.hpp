@@ -21,6 +21,8 @@ class CentreIndex {
   /// `checks`: how many centres a search compares with before it stops, at least.
   CentreIndex(std::uint64_t seed, int checks);
   ~CentreIndex();
+  CentreIndex(CentreIndex&& other) noexcept;
+  CentreIndex& operator=(CentreIndex&& other) noexcept;
 
   /// The number of the new one, counted from 0. Now and then, whenever their number has doubled, rebuilds the index.
   std::uint32_t add(const Descriptor& centre);

@@ -57,6 +57,7 @@ void FlannDetector::remove(KeyFrameId keyframe) {
   const std::uint32_t slot = found->second;
   for (const WordId word : entries_[slot].words)
     if (inverted_.remove(word, slot)) vocabulary_.erase(word);
+  vocabulary_.drop_empty_buckets();
   entries_[slot] = {};
   free_slots_.push_back(slot);
   slots_.erase(found);

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t most_words_of_bucket = 128;
 constexpr std::size_t most_probes = 64;
+constexpr std::size_t least_buckets_to_drop = 16;
 constexpr int rounds_of_split = 4;
 
 /// How often each bit is set in some descriptors.
@@ -58,7 +59,9 @@ void swap_out(std::vector<T>& values, std::size_t position) {
 }  // namespace
 
 Vocabulary::Vocabulary(std::uint64_t seed, int radius, int probes, int checks)
-    : centres_(Random(seed).fork(1).next(), checks),
+    : seed_(seed),
+      checks_(checks),
+      centres_(empty_index()),
       random_(Random(seed).fork(2)),
       radius_(radius),
       probes_(std::min(static_cast<std::size_t>(std::max(probes, 1)), most_probes)) {}
@@ -96,6 +99,7 @@ WordId Vocabulary::insert(const Descriptor& descriptor, std::uint32_t bucket) {
   if (buckets_.empty()) {
     centres_.add(descriptor);
     buckets_.emplace_back();
+    ++empty_buckets_;
   }
   HOLDFAST_CHECK(bucket < buckets_.size(), "bucket " << bucket << " of " << buckets_.size());
   WordId word = static_cast<WordId>(bucket_of_word_.size());
@@ -105,6 +109,7 @@ WordId Vocabulary::insert(const Descriptor& descriptor, std::uint32_t bucket) {
     word = free_words_.back();
     free_words_.pop_back();
   }
+  if (buckets_[bucket].words.empty()) --empty_buckets_;
   append(descriptor, word, bucket);
   if (buckets_[bucket].words.size() == most_words_of_bucket + 1) full_.push_back(bucket);
   return word;
@@ -115,7 +120,10 @@ void Vocabulary::erase(WordId word) {
   Bucket& bucket = buckets_[bucket_of_word_[word]];
   const auto found = std::find(bucket.words.begin(), bucket.words.end(), word);
   HOLDFAST_CHECK(found != bucket.words.end(), "word " << word << " was erased before");
-  take_out(bucket, static_cast<std::size_t>(found - bucket.words.begin()));
+  const auto position = static_cast<std::size_t>(found - bucket.words.begin());
+  swap_out(bucket.descriptors, position);
+  swap_out(bucket.words, position);
+  if (bucket.words.empty()) ++empty_buckets_;
   free_words_.push_back(word);
 }
 
@@ -131,10 +139,22 @@ void Vocabulary::append(const Descriptor& descriptor, WordId word, std::uint32_t
   distances_.resize(std::max(distances_.size(), buckets_[bucket].words.size()));
 }
 
-void Vocabulary::take_out(Bucket& bucket, std::size_t position) {
-  swap_out(bucket.descriptors, position);
-  swap_out(bucket.words, position);
+void Vocabulary::drop_empty_buckets() {
+  if (2 * empty_buckets_ <= buckets_.size() || buckets_.size() < least_buckets_to_drop) return;
+  CentreIndex centres = empty_index();
+  std::deque<Bucket> buckets;
+  for (std::uint32_t number = 0; number < buckets_.size(); ++number) {
+    if (buckets_[number].words.empty()) continue;
+    const std::uint32_t renumbered = centres.add(centres_[number]);
+    for (const WordId word : buckets_[number].words) bucket_of_word_[word] = renumbered;
+    buckets.push_back(std::move(buckets_[number]));
+  }
+  centres_ = std::move(centres);
+  buckets_ = std::move(buckets);
+  empty_buckets_ = 0;
 }
+
+CentreIndex Vocabulary::empty_index() const { return {Random(seed_).fork(1).next(), checks_}; }
 
 void Vocabulary::split(std::uint32_t number) {
   const Bucket old = std::exchange(buckets_[number], {});
@@ -158,6 +178,7 @@ void Vocabulary::split(std::uint32_t number) {
   centres_.move(number, centres[0]);
   buckets_.emplace_back();
   for (std::size_t i = 0; i < old.words.size(); ++i) append(descriptors[i], old.words[i], second[i] ? other : number);
+  for (const std::uint32_t half : {number, other}) empty_buckets_ += buckets_[half].words.empty() ? 1 : 0;
   for (const std::uint32_t half : {number, other})
     if (buckets_[half].words.size() > most_words_of_bucket && buckets_[half].words.size() < old.words.size())
       full_.push_back(half);

@@ -25,9 +25,11 @@ struct Lookup {
 };
 
 /// Words that come and go: descriptors that stand for what looks like them. They lie in buckets around centres; FLANN
-/// finds the nearest centres, and the words of these buckets are compared one by one. A bucket that grows too full
-/// gives about half of its words to a new one, whose centre is one of them. So an erased word leaves nothing behind,
-/// nothing is ever rebuilt but the small index of centres, and a search costs about the same at any size.
+/// finds the nearest centres, and the words of these buckets are compared one by one, so a search costs about the same
+/// at any size. A bucket that grows too full is split in two, around the bitwise majorities of its halves (k-means with
+/// Hamming distance: Grana et al., "A fast approach for integrating ORB descriptors in the bag of words model", SPIE
+/// 8667, 2013): a majority is nearer to all of its words than any word is, so that the same thing seen again falls on
+/// the same side. An erased word leaves nothing behind, and nothing is ever rebuilt but the small index of centres.
 class Vocabulary {
  public:
   /// `radius`: how far a descriptor may be from its word [bits]; `probes`: buckets searched, at most 64; `checks`: see
@@ -42,6 +44,9 @@ class Vocabulary {
   /// nearest; that costs a little recall, nothing else.
   void split_full_buckets();
 
+  /// Gives up the empty buckets once they are the larger part. No lookup made before may be used afterwards.
+  void drop_empty_buckets();
+
   std::size_t size() const { return bucket_of_word_.size() - free_words_.size(); }
   std::size_t buckets() const { return buckets_.size(); }
 
@@ -52,14 +57,18 @@ class Vocabulary {
   };
 
   void append(const Descriptor& descriptor, WordId word, std::uint32_t bucket);
-  void take_out(Bucket& bucket, std::size_t position);
   void split(std::uint32_t bucket);
 
+  CentreIndex empty_index() const;
+
+  std::uint64_t seed_;
+  int checks_;
   CentreIndex centres_;
   std::deque<Bucket> buckets_;                // one per centre
   std::deque<std::uint32_t> bucket_of_word_;  // by WordId
   std::vector<WordId> free_words_;
   std::vector<std::uint32_t> full_;
+  std::size_t empty_buckets_ = 0;
   mutable std::vector<std::uint16_t> distances_;  // of such a comparison
   DistanceKernels kernels_ = distance_kernels();
   Random random_;
