@@ -19,7 +19,8 @@ inline std::vector<Descriptor> random_descriptors(Random& random, int count) {
 }
 
 /// With `flips` draws of a bit to flip; a bit drawn twice flips back.
-inline Descriptor disturbed(Descriptor descriptor, int flips, Random& random) {
+inline Descriptor disturbed(const Descriptor& original, int flips, Random& random) {
+  Descriptor descriptor = original;
   for (int i = 0; i < flips; ++i) {
     const std::uint32_t bit = random.below(256);
     descriptor.words[bit / 64] ^= std::uint64_t{1} << (bit % 64);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <memory>
 #include <vector>
@@ -19,7 +20,7 @@ using test::random_descriptors;
 using test::seen_again;
 using Descriptors = std::vector<Descriptor>;
 
-constexpr int size_of_keyframe = 200;
+constexpr int size_of_keyframe = 100;
 
 KeyFrameId id(std::uint32_t slot) { return {slot, 1}; }
 
@@ -43,10 +44,10 @@ TEST(FlannDetector, FindsTheSamePlaceAmongMany) {
   for (std::uint32_t i = 0; i < places.size(); ++i) detector.add(id(i), places[i]);
   Random random(1);
   for (std::uint32_t i = 0; i < places.size(); i += 10) {
-    const auto matches = detector.query(seen_again(places[i], 0.4, 25, random), 5);
+    const auto matches = detector.query(seen_again(places[i], 0.5, 15, random), 5);
     ASSERT_FALSE(matches.empty());
     EXPECT_EQ(matches[0].keyframe, id(i));
-    EXPECT_GT(matches[0].score, 0.15);
+    EXPECT_GT(matches[0].score, 0.1);
     if (matches.size() > 1) {
       EXPECT_LT(matches[1].score, 0.5 * matches[0].score);
     }
@@ -95,17 +96,23 @@ TEST(FlannDetector, RareWordsWeighMore) {
   const auto matches = detector.query(query, 10);
   ASSERT_EQ(matches.size(), 9U);
   EXPECT_EQ(matches[0].keyframe, id(5));
-  EXPECT_DOUBLE_EQ(matches[0].score, 1.0);
+  EXPECT_GT(matches[0].score, 0.95);
   EXPECT_LT(matches[1].score, 0.3);
 }
 
-TEST(FlannDetector, CountsOfAWordLimitEachOther) {
+TEST(FlannDetector, ScoreIsTheShareOfTheWeightsThatVoted) {
   FlannDetector detector({});
-  const Descriptors one{Descriptor{}};
-  const Descriptors four(4, Descriptor{});
-  detector.add(id(0), one);
-  EXPECT_DOUBLE_EQ(detector.query(four, 1)[0].score, 0.25);
-  EXPECT_DOUBLE_EQ(detector.query(one, 1)[0].score, 1.0);
+  const auto places = make_places(3);
+  detector.add(id(0), {{places[0][0], places[1][0]}});
+  detector.add(id(1), {{places[0][0], places[2][0]}});
+  // Of two keyframes both have the first, one has the second, none has the third.
+  const Descriptors query{places[0][0], places[1][0], places[0][1]};
+  const double both = std::log(2.0), one = std::log(3.0);
+  const auto matches = detector.query(query, 5);
+  ASSERT_EQ(matches.size(), 2U);
+  EXPECT_EQ(matches[0].keyframe, id(0));
+  EXPECT_NEAR(matches[0].score, (both + one) / (both + one + one), 1e-3);
+  EXPECT_NEAR(matches[1].score, both / (both + one + one), 1e-3);
 }
 
 TEST(FlannDetector, EqualScoresByRisingId) {
@@ -145,7 +152,7 @@ TEST(FlannDetector, WordsOfRemovedKeyframesAreForgotten) {
   for (std::uint32_t cycle = 0; cycle < 5; ++cycle) {
     const auto others = make_places(10, 100 + cycle);
     for (std::uint32_t i = 0; i < others.size(); ++i) detector.add(id(100 + i), others[i]);
-    EXPECT_GT(detector.words(), words + 1000);
+    EXPECT_GT(detector.words(), words + 500);
     for (std::uint32_t i = 0; i < others.size(); ++i) detector.remove(id(100 + i));
     EXPECT_EQ(detector.words(), words);
   }
@@ -207,7 +214,7 @@ std::vector<std::pair<std::uint32_t, double>> session(bool query_before_add, boo
 
 TEST(FlannDetector, SameCallsSameAnswers) {
   const auto answers = session(true, false);
-  ASSERT_GT(answers.size(), 300U);
+  ASSERT_GT(answers.size(), 80U);
   EXPECT_EQ(answers, session(true, false));
   EXPECT_EQ(answers, session(true, true)) << "the host's random numbers matter";
   EXPECT_EQ(answers, session(false, false)) << "a query before an addition matters";

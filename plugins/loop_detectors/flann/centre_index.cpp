@@ -13,31 +13,10 @@
 #include <flann/algorithms/hierarchical_clustering_index.h>
 // clang-format on
 
+#include "distances.hpp"
 #include "holdfast/core/random.hpp"
-#include "holdfast/core/simd.hpp"
 
 namespace holdfast::flann_plugin {
-
-namespace {
-
-using DistanceKernel = int (*)(const Descriptor&, const Descriptor&);
-
-#if defined(__x86_64__)
-__attribute__((target("popcnt"))) int distance_popcnt(const Descriptor& a, const Descriptor& b) {
-  return static_cast<int>(
-      __builtin_popcountll(a.words[0] ^ b.words[0]) + __builtin_popcountll(a.words[1] ^ b.words[1]) +
-      __builtin_popcountll(a.words[2] ^ b.words[2]) + __builtin_popcountll(a.words[3] ^ b.words[3]));
-}
-#endif
-
-DistanceKernel distance_kernel() {
-#if defined(__x86_64__)
-  if (simd_level() >= SimdLevel::sse4) return distance_popcnt;
-#endif
-  return hamming_distance;
-}
-
-}  // namespace
 
 /// FLANN's distance type: an element is a whole descriptor, a vector has one of them.
 struct DescriptorDistance {
@@ -45,7 +24,7 @@ struct DescriptorDistance {
   using ResultType = int;
 
   std::uint64_t seed = 1;
-  DistanceKernel kernel = distance_kernel();
+  int (*kernel)(const Descriptor&, const Descriptor&) = distance_kernels().of_two;
 
   int operator()(const Descriptor* a, const Descriptor* b, std::size_t, int = -1) const { return kernel(*a, *b); }
 };
@@ -85,8 +64,8 @@ namespace holdfast::flann_plugin {
 
 namespace {
 
-constexpr int branching = 16;
-constexpr int trees = 2;
+constexpr int branching = 32;
+constexpr int trees = 1;
 constexpr int leaf_size = 32;
 constexpr float rebuild_growth = 2.0F;
 
@@ -106,6 +85,8 @@ struct CentreIndex::Tree {
 CentreIndex::CentreIndex(std::uint64_t seed, int checks) : seed_(seed), checks_(checks) {}
 
 CentreIndex::~CentreIndex() = default;
+CentreIndex::CentreIndex(CentreIndex&& other) noexcept = default;
+CentreIndex& CentreIndex::operator=(CentreIndex&& other) noexcept = default;
 
 std::uint32_t CentreIndex::add(const Descriptor& centre) {
   centres_.push_back(centre);

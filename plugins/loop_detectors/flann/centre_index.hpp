@@ -21,9 +21,13 @@ class CentreIndex {
   /// `checks`: how many centres a search compares with before it stops, at least.
   CentreIndex(std::uint64_t seed, int checks);
   ~CentreIndex();
+  CentreIndex(CentreIndex&& other) noexcept;
+  CentreIndex& operator=(CentreIndex&& other) noexcept;
 
   /// The number of the new one, counted from 0. Now and then, whenever their number has doubled, rebuilds the index.
   std::uint32_t add(const Descriptor& centre);
+  /// Puts another descriptor in a centre's place. The clusters follow at the next rebuild, so let it be near.
+  void move(std::uint32_t number, const Descriptor& centre) { centres_[number] = centre; }
   std::uint32_t size() const { return static_cast<std::uint32_t>(centres_.size()); }
   const Descriptor& operator[](std::uint32_t number) const { return centres_[number]; }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/random.hpp"
@@ -12,23 +13,11 @@ namespace holdfast::flann_plugin {
 namespace {
 
 constexpr std::uint64_t seed_stream = 0x706c616365;  // of this plugin among those that fork the run's seed
-constexpr std::uint32_t most_count = 255;
-
-/// Sorts and merges equal neighbours: words with how often they occur.
-template <class WordCount>
-void count_words(std::vector<WordId>& words, std::vector<WordCount>& counts) {
-  std::sort(words.begin(), words.end());
-  for (const WordId word : words) {
-    if (counts.empty() || counts.back().word != word) counts.push_back({word, 0});
-    ++counts.back().count;
-  }
-}
-
 }  // namespace
 
 FlannDetector::FlannDetector(const FlannSettings& settings, const CreationContext& context)
     : settings_(settings),
-      vocabulary_(Random(context.seed).fork(seed_stream).next(), settings.probes, settings.checks) {}
+      vocabulary_(Random(context.seed).fork(seed_stream).next(), settings.radius, settings.probes, settings.checks) {}
 
 void FlannDetector::add(KeyFrameId keyframe, std::span<const Descriptor> descriptors) {
   HOLDFAST_CHECK(!slots_.contains(keyframe),
@@ -41,16 +30,14 @@ void FlannDetector::add(KeyFrameId keyframe, std::span<const Descriptor> descrip
   words.reserve(lookups_.size());
   for (std::size_t i = 0; i < lookups_.size(); ++i) {
     const Lookup& lookup = lookups_[i];
-    words.push_back(lookup.distance <= settings_.radius ? lookup.word
-                                                        : vocabulary_.insert(looked_up_descriptors_[i], lookup.bucket));
+    words.push_back(lookup.count > 0 ? lookup.words[0] : vocabulary_.insert(looked_up_descriptors_[i], lookup.bucket));
   }
   vocabulary_.split_full_buckets();
-  std::vector<WordCount> counts;
-  count_words(words, counts);
+  std::sort(words.begin(), words.end());
+  words.erase(std::unique(words.begin(), words.end()), words.end());
 
   std::uint32_t slot = static_cast<std::uint32_t>(entries_.size());
   if (free_slots_.empty()) {
-    HOLDFAST_CHECK(slot < most_keyframes, "keyframes " << slot);
     entries_.emplace_back();
   } else {
     slot = free_slots_.back();
@@ -59,11 +46,8 @@ void FlannDetector::add(KeyFrameId keyframe, std::span<const Descriptor> descrip
   slots_.emplace(keyframe, slot);
   Entry& entry = entries_[slot];
   entry.keyframe = keyframe;
-  entry.words.reserve(counts.size());
-  for (const WordCount& word : counts) {
-    entry.words.push_back(word.word);
-    inverted_.add(word.word, {slot, std::min(word.count, most_count)});
-  }
+  entry.words.assign(words.begin(), words.end());
+  for (const WordId word : entry.words) inverted_.add(word, slot);
 }
 
 void FlannDetector::remove(KeyFrameId keyframe) {
@@ -73,6 +57,7 @@ void FlannDetector::remove(KeyFrameId keyframe) {
   const std::uint32_t slot = found->second;
   for (const WordId word : entries_[slot].words)
     if (inverted_.remove(word, slot)) vocabulary_.erase(word);
+  vocabulary_.drop_empty_buckets();
   entries_[slot] = {};
   free_slots_.push_back(slot);
   slots_.erase(found);
@@ -81,31 +66,22 @@ void FlannDetector::remove(KeyFrameId keyframe) {
 std::vector<PlaceMatch> FlannDetector::query(std::span<const Descriptor> descriptors, int most) const {
   if (most <= 0 || slots_.empty()) return {};
   look_up(descriptors);
-  std::vector<WordId> words;
+  tallies_.assign(entries_.size(), {});
   std::uint64_t total = 0;
-  const std::uint64_t weight_of_unknown = weight(1);
-  for (const Lookup& lookup : lookups_) {
-    if (lookup.distance <= settings_.radius)
-      words.push_back(lookup.word);
-    else
-      total += weight_of_unknown;
-  }
-  std::vector<WordCount> counts;
-  count_words(words, counts);
-
-  votes_.assign(entries_.size(), 0);
-  for (const WordCount& word : counts) {
-    const auto postings = inverted_.postings(word.word);
-    const std::uint64_t word_weight = weight(postings.size());
-    total += word_weight * word.count;
-    for (const Posting& posting : postings)
-      votes_[posting.keyframe] += word_weight * std::min<std::uint32_t>(word.count, posting.count);
+  for (std::uint32_t i = 0; i < lookups_.size(); ++i) {
+    voted_.clear();
+    for (std::uint32_t k = 0; k < lookups_[i].count; ++k)
+      for (const std::uint32_t slot : inverted_.keyframes(lookups_[i].words[k]))
+        if (std::exchange(tallies_[slot].last_voter, i + 1) != i + 1) voted_.push_back(slot);
+    const std::uint64_t vote = weight(std::max<std::size_t>(voted_.size(), 1));
+    total += vote;
+    for (const std::uint32_t slot : voted_) tallies_[slot].votes += vote;
   }
 
   std::vector<PlaceMatch> matches;
-  for (std::size_t slot = 0; slot < votes_.size(); ++slot)
-    if (votes_[slot] > 0)
-      matches.push_back({entries_[slot].keyframe, static_cast<double>(votes_[slot]) / static_cast<double>(total)});
+  for (std::size_t slot = 0; slot < tallies_.size(); ++slot)
+    if (const std::uint64_t votes = tallies_[slot].votes; votes > 0)
+      matches.push_back({entries_[slot].keyframe, static_cast<double>(votes) / static_cast<double>(total)});
   const auto wanted = matches.begin() + std::min<std::ptrdiff_t>(most, std::ssize(matches));
   std::partial_sort(matches.begin(), wanted, matches.end(), [](const PlaceMatch& a, const PlaceMatch& b) {
     return a.score != b.score ? a.score > b.score : a.keyframe < b.keyframe;
@@ -130,8 +106,8 @@ void FlannDetector::look_up(std::span<const Descriptor> descriptors) const {
 }
 
 /// log(1 + N / n) in 1/1024.
-std::uint64_t FlannDetector::weight(std::size_t keyframes_with_word) const {
-  const double ratio = static_cast<double>(slots_.size()) / static_cast<double>(keyframes_with_word);
+std::uint64_t FlannDetector::weight(std::size_t voted_for) const {
+  const double ratio = static_cast<double>(slots_.size()) / static_cast<double>(voted_for);
   return static_cast<std::uint64_t>(std::lround(1024.0 * std::log1p(ratio)));
 }
 

@@ -17,16 +17,17 @@ namespace holdfast::flann_plugin {
 /// vocabulary file, no training (after Garcia-Fidalgo and Ortiz, "iBoW-LCD: An appearance-based loop-closure detection
 /// approach using incremental bags of binary words", RA-L 3(4), 2018).
 ///
-/// Score of keyframe d for query q, with counts q_w and d_w of word w, N keyframes, n_w of them with word w:
+/// Every descriptor i of a query votes for the n_i of N keyframes that have a word within the radius of it, with a
+/// weight that falls with their number (the inverse document frequency of Nister and Stewenius, "Scalable recognition
+/// with a vocabulary tree", CVPR 2006, equation 4; the one is added so that it is never zero, n_i is 1 when there are
+/// none):
 ///
-///     score = sum_w weight_w min(q_w, d_w) / sum_w weight_w q_w,     weight_w = log(1 + N / n_w)
+///     weight_i = log(1 + N / n_i),     score of a keyframe = sum of the weights that voted for it / sum of all weights
 ///
-/// This is the L1 similarity of term-frequency, inverse-document-frequency vectors (Nister and Stewenius, "Scalable
-/// recognition with a vocabulary tree", CVPR 2006, equation 5; Galvez-Lopez and Tardos, "Bags of binary words for fast
-/// place recognition in image sequences", T-RO 28(5), 2012, equation 2), with the query's length taken for both: the
-/// share of the query, rare things counting more, that the keyframe has too. It lies in 0 to 1. Descriptors of the
-/// query that are no known word count in the denominator with n_w = 1. Weights are rounded to whole 1/1024, so that
-/// sums are exact in any order. Keyframes without a common word are left out.
+/// So a score is the share of what is seen, rare things counting more, that the keyframe has too; it lies in 0 to 1 and
+/// does not depend on how many descriptors the keyframe has. Up to four words count for a descriptor: words of the same
+/// thing that an approximate search did not find when it was seen before. Weights are rounded to 1/1024, so that sums
+/// are exact in any order. Keyframes without a vote are left out.
 ///
 /// Results depend on the settings, the seed and the sequence of add() and remove() only. Costs: see README.md.
 class FlannDetector final : public LoopDetector {
@@ -48,13 +49,13 @@ class FlannDetector final : public LoopDetector {
     KeyFrameId keyframe;
     std::vector<WordId> words;  // each once
   };
-  struct WordCount {
-    WordId word;
-    std::uint32_t count;
+  struct Tally {
+    std::uint64_t votes = 0;
+    std::uint32_t last_voter = 0;  // number of the descriptor that voted last, from 1
   };
 
   void look_up(std::span<const Descriptor> descriptors) const;
-  std::uint64_t weight(std::size_t keyframes_with_word) const;
+  std::uint64_t weight(std::size_t voted_for) const;
 
   FlannSettings settings_;
   Vocabulary vocabulary_;
@@ -67,7 +68,8 @@ class FlannDetector final : public LoopDetector {
   mutable bool looked_up_ = false;
   mutable std::vector<Descriptor> looked_up_descriptors_;
   mutable std::vector<Lookup> lookups_;
-  mutable std::vector<std::uint64_t> votes_;  // by slot
+  mutable std::vector<Tally> tallies_;        // by slot
+  mutable std::vector<std::uint32_t> voted_;  // slots that one descriptor votes for
 };
 
 }  // namespace holdfast::flann_plugin

@@ -8,40 +8,39 @@
 
 namespace holdfast::flann_plugin {
 
-void InvertedFile::add(std::uint32_t word, Posting posting) {
+void InvertedFile::add(std::uint32_t word, std::uint32_t keyframe) {
   if (word >= entries_.size()) entries_.resize(word + 1);
   Entry& entry = entries_[word];
   if (entry.length == 0) {
-    entry.only = posting;
+    entry.value = keyframe;
     entry.length = 1;
     return;
   }
   if (entry.length == 1) {
-    const Posting first = entry.only;
-    entry.room = take_room(2);
-    pool_[entry.room] = first;
+    const std::uint32_t first = entry.value;
+    entry.value = take_room(2);
+    pool_[entry.value] = first;
   } else if (std::has_single_bit(entry.length)) {
     move_to_room(entry, entry.length, 2 * entry.length, entry.length);
   }
-  pool_[entry.room + entry.length++] = posting;
+  pool_[entry.value + entry.length++] = keyframe;
 }
 
 bool InvertedFile::remove(std::uint32_t word, std::uint32_t keyframe) {
   HOLDFAST_CHECK(word < entries_.size(), "word " << word << " of " << entries_.size());
   Entry& entry = entries_[word];
-  const auto list = postings(word);
-  const auto found =
-      std::find_if(list.begin(), list.end(), [keyframe](const Posting& p) { return p.keyframe == keyframe; });
+  const auto list = keyframes(word);
+  const auto found = std::find(list.begin(), list.end(), keyframe);
   HOLDFAST_CHECK(found != list.end(), "keyframe " << keyframe << " does not have word " << word);
   if (entry.length == 1) {
     entry = {};
     return true;
   }
-  pool_[entry.room + static_cast<std::uint32_t>(found - list.begin())] = list.back();
+  pool_[entry.value + static_cast<std::uint32_t>(found - list.begin())] = list.back();
   const std::uint32_t capacity = std::bit_ceil(entry.length--);
   if (entry.length == 1) {
-    const std::uint32_t room = entry.room;
-    entry.only = pool_[room];
+    const std::uint32_t room = entry.value;
+    entry.value = pool_[room];
     give_back(room, capacity);
   } else if (std::bit_ceil(entry.length) < capacity) {
     move_to_room(entry, capacity, capacity / 2, entry.length);
@@ -49,11 +48,11 @@ bool InvertedFile::remove(std::uint32_t word, std::uint32_t keyframe) {
   return false;
 }
 
-std::span<const Posting> InvertedFile::postings(std::uint32_t word) const {
+std::span<const std::uint32_t> InvertedFile::keyframes(std::uint32_t word) const {
   if (word >= entries_.size()) return {};
   const Entry& entry = entries_[word];
-  if (entry.length <= 1) return {&entry.only, entry.length};
-  return {pool_.data() + entry.room, entry.length};
+  if (entry.length <= 1) return {&entry.value, entry.length};
+  return {pool_.data() + entry.value, entry.length};
 }
 
 std::uint32_t InvertedFile::take_room(std::uint32_t capacity) {
@@ -77,9 +76,9 @@ void InvertedFile::give_back(std::uint32_t room, std::uint32_t capacity) {
 
 void InvertedFile::move_to_room(Entry& entry, std::uint32_t old_capacity, std::uint32_t new_capacity,
                                 std::uint32_t length) {
-  const std::uint32_t old_room = entry.room;
-  entry.room = take_room(new_capacity);
-  std::copy_n(pool_.begin() + old_room, length, pool_.begin() + entry.room);
+  const std::uint32_t old_room = entry.value;
+  entry.value = take_room(new_capacity);
+  std::copy_n(pool_.begin() + old_room, length, pool_.begin() + entry.value);
   give_back(old_room, old_capacity);
 }
 

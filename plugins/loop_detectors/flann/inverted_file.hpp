@@ -20,20 +20,17 @@ inline constexpr std::uint32_t most_keyframes = 1U << 24;
 /// far, lies in the word's own entry; longer lists have a room of 2, 4, 8, ... in the pool, and rooms are used again.
 class InvertedFile {
  public:
-  /// The word must not have a posting of that keyframe yet.
-  void add(std::uint32_t word, Posting posting);
-  /// Returns whether that was the word's last one. Throws CheckError when there is none of that keyframe.
+  /// The keyframe must not have the word yet.
+  void add(std::uint32_t word, std::uint32_t keyframe);
+  /// Returns whether that was the word's last keyframe. Throws CheckError when the keyframe does not have it.
   bool remove(std::uint32_t word, std::uint32_t keyframe);
   /// In no particular order. Valid until the next change.
-  std::span<const Posting> postings(std::uint32_t word) const;
+  std::span<const std::uint32_t> keyframes(std::uint32_t word) const;
 
  private:
   struct Entry {
     std::uint32_t length = 0;
-    union {
-      std::uint32_t room = 0;  ///< length > 1: where in pool_
-      Posting only;            ///< length 1
-    };
+    std::uint32_t value = 0;  ///< length 1: the keyframe; more: where in pool_
   };
 
   std::uint32_t take_room(std::uint32_t capacity);
@@ -41,7 +38,7 @@ class InvertedFile {
   void move_to_room(Entry& entry, std::uint32_t old_capacity, std::uint32_t new_capacity, std::uint32_t length);
 
   std::deque<Entry> entries_;  // by word
-  std::vector<Posting> pool_;
+  std::vector<std::uint32_t> pool_;
   std::vector<std::vector<std::uint32_t>> free_rooms_;  // by the logarithm of their capacity
 };
 

@@ -6,10 +6,10 @@
 namespace holdfast::flann_plugin {
 
 struct FlannSettings {
-  int radius = 48;
+  int radius = 32;
   int descriptors = 1000;
-  int probes = 4;
-  int checks = 96;
+  int probes = 3;
+  int checks = 24;
 
   static void describe(ParameterTable<FlannSettings>& table) {
     table

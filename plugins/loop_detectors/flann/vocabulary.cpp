@@ -3,17 +3,44 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <span>
+#include <utility>
 
 #include "holdfast/core/error.hpp"
-#include "holdfast/core/hamming.hpp"
 
 namespace holdfast::flann_plugin {
 
 namespace {
 
-constexpr std::size_t most_words_of_bucket = 96;
+constexpr std::size_t most_words_of_bucket = 128;
 constexpr std::size_t most_probes = 64;
+constexpr std::size_t least_buckets_to_drop = 16;
+constexpr int rounds_of_split = 4;
+
+/// How often each bit is set in some descriptors.
+class BitCounts {
+ public:
+  void add(const Descriptor& descriptor) {
+    ++descriptors_;
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::uint64_t rest = descriptor.words[i]; rest != 0; rest &= rest - 1)
+        ++counts_[64 * i + static_cast<std::size_t>(std::countr_zero(rest))];
+  }
+  /// The descriptor with the least sum of distances to them; `otherwise` where there are as many zeros as ones.
+  Descriptor majority(Descriptor otherwise) const {
+    for (std::size_t bit = 0; bit < 256; ++bit) {
+      const std::uint64_t mask = std::uint64_t{1} << (bit % 64);
+      if (2 * counts_[bit] > descriptors_) otherwise.words[bit / 64] |= mask;
+      if (2 * counts_[bit] < descriptors_) otherwise.words[bit / 64] &= ~mask;
+    }
+    return otherwise;
+  }
+
+ private:
+  std::array<std::uint32_t, 256> counts_{};
+  std::uint32_t descriptors_ = 0;
+};
 
 /// A quarter more, so that not half of the memory of ten thousands of buckets lies idle.
 template <class T>
@@ -31,9 +58,12 @@ void swap_out(std::vector<T>& values, std::size_t position) {
 
 }  // namespace
 
-Vocabulary::Vocabulary(std::uint64_t seed, int probes, int checks)
-    : centres_(Random(seed).fork(1).next(), checks),
+Vocabulary::Vocabulary(std::uint64_t seed, int radius, int probes, int checks)
+    : seed_(seed),
+      checks_(checks),
+      centres_(empty_index()),
       random_(Random(seed).fork(2)),
+      radius_(radius),
       probes_(std::min(static_cast<std::size_t>(std::max(probes, 1)), most_probes)) {}
 
 Lookup Vocabulary::find(const Descriptor& descriptor) const {
@@ -41,13 +71,26 @@ Lookup Vocabulary::find(const Descriptor& descriptor) const {
   const std::size_t count = centres_.find(descriptor, std::span(nearest).first(probes_));
   Lookup lookup;
   if (count > 0) lookup.bucket = nearest[0];
+  std::array<int, Lookup::most_words> distances{};
   for (std::size_t i = 0; i < count; ++i) {
     const Bucket& bucket = buckets_[nearest[i]];
-    const NearestDescriptors best = nearest_descriptors(descriptor, bucket.descriptors.data(),
-                                                        std::span(positions_).first(bucket.descriptors.size()));
-    if (best.best_index < 0 || best.best_distance >= lookup.distance) continue;
-    lookup.word = bucket.words[static_cast<std::size_t>(best.best_index)];
-    lookup.distance = best.best_distance;
+    const std::size_t size = bucket.words.size();
+    if (i + 1 < count) __builtin_prefetch(buckets_[nearest[i + 1]].descriptors.data());
+    kernels_.of_row(descriptor, bucket.descriptors.data(), size, distances_.data());
+    for (std::size_t k = 0; k < size; ++k) {
+      const int distance = distances_[k];
+      if (distance > radius_) continue;
+      std::size_t place = lookup.count;
+      while (place > 0 && distance < distances[place - 1]) --place;
+      if (place == Lookup::most_words) continue;
+      if (lookup.count < Lookup::most_words) ++lookup.count;
+      for (std::size_t j = lookup.count - 1; j > place; --j) {
+        distances[j] = distances[j - 1];
+        lookup.words[j] = lookup.words[j - 1];
+      }
+      distances[place] = distance;
+      lookup.words[place] = bucket.words[k];
+    }
   }
   return lookup;
 }
@@ -56,6 +99,7 @@ WordId Vocabulary::insert(const Descriptor& descriptor, std::uint32_t bucket) {
   if (buckets_.empty()) {
     centres_.add(descriptor);
     buckets_.emplace_back();
+    ++empty_buckets_;
   }
   HOLDFAST_CHECK(bucket < buckets_.size(), "bucket " << bucket << " of " << buckets_.size());
   WordId word = static_cast<WordId>(bucket_of_word_.size());
@@ -65,6 +109,7 @@ WordId Vocabulary::insert(const Descriptor& descriptor, std::uint32_t bucket) {
     word = free_words_.back();
     free_words_.pop_back();
   }
+  if (buckets_[bucket].words.empty()) --empty_buckets_;
   append(descriptor, word, bucket);
   if (buckets_[bucket].words.size() == most_words_of_bucket + 1) full_.push_back(bucket);
   return word;
@@ -75,7 +120,10 @@ void Vocabulary::erase(WordId word) {
   Bucket& bucket = buckets_[bucket_of_word_[word]];
   const auto found = std::find(bucket.words.begin(), bucket.words.end(), word);
   HOLDFAST_CHECK(found != bucket.words.end(), "word " << word << " was erased before");
-  take_out(bucket, static_cast<std::size_t>(found - bucket.words.begin()));
+  const auto position = static_cast<std::size_t>(found - bucket.words.begin());
+  swap_out(bucket.descriptors, position);
+  swap_out(bucket.words, position);
+  if (bucket.words.empty()) ++empty_buckets_;
   free_words_.push_back(word);
 }
 
@@ -88,27 +136,49 @@ void Vocabulary::append(const Descriptor& descriptor, WordId word, std::uint32_t
   push_tightly(buckets_[bucket].descriptors, descriptor);
   push_tightly(buckets_[bucket].words, word);
   bucket_of_word_[word] = bucket;
-  while (positions_.size() < buckets_[bucket].words.size())
-    positions_.push_back(static_cast<std::uint32_t>(positions_.size()));
+  distances_.resize(std::max(distances_.size(), buckets_[bucket].words.size()));
 }
 
-void Vocabulary::take_out(Bucket& bucket, std::size_t position) {
-  swap_out(bucket.descriptors, position);
-  swap_out(bucket.words, position);
+void Vocabulary::drop_empty_buckets() {
+  if (2 * empty_buckets_ <= buckets_.size() || buckets_.size() < least_buckets_to_drop) return;
+  CentreIndex centres = empty_index();
+  std::deque<Bucket> buckets;
+  for (std::uint32_t number = 0; number < buckets_.size(); ++number) {
+    if (buckets_[number].words.empty()) continue;
+    const std::uint32_t renumbered = centres.add(centres_[number]);
+    for (const WordId word : buckets_[number].words) bucket_of_word_[word] = renumbered;
+    buckets.push_back(std::move(buckets_[number]));
+  }
+  centres_ = std::move(centres);
+  buckets_ = std::move(buckets);
+  empty_buckets_ = 0;
 }
+
+CentreIndex Vocabulary::empty_index() const { return {Random(seed_).fork(1).next(), checks_}; }
 
 void Vocabulary::split(std::uint32_t number) {
-  Bucket old = std::move(buckets_[number]);
-  buckets_[number] = {};
-  const Descriptor old_centre = centres_[number];
-  const Descriptor new_centre = old.descriptors[random_.below(static_cast<std::uint32_t>(old.descriptors.size()))];
-  const std::uint32_t other = centres_.add(new_centre);
-  buckets_.emplace_back();
-  for (std::size_t i = 0; i < old.words.size(); ++i) {
-    const Descriptor& descriptor = old.descriptors[i];
-    const bool moves = hamming_distance(descriptor, new_centre) < hamming_distance(descriptor, old_centre);
-    append(descriptor, old.words[i], moves ? other : number);
+  const Bucket old = std::exchange(buckets_[number], {});
+  const std::vector<Descriptor>& descriptors = old.descriptors;
+  const Descriptor& any = descriptors[random_.below(static_cast<std::uint32_t>(descriptors.size()))];
+  const auto farther = [&](const Descriptor& a, const Descriptor& b) {
+    return kernels_.of_two(a, any) < kernels_.of_two(b, any);
+  };
+  std::array<Descriptor, 2> centres{any, *std::max_element(descriptors.begin(), descriptors.end(), farther)};
+  std::vector<bool> second(descriptors.size());
+  for (int round = 0; round < rounds_of_split; ++round) {
+    std::array<BitCounts, 2> counts;
+    for (std::size_t i = 0; i < descriptors.size(); ++i) {
+      second[i] = kernels_.of_two(descriptors[i], centres[1]) < kernels_.of_two(descriptors[i], centres[0]);
+      counts[second[i]].add(descriptors[i]);
+    }
+    for (std::size_t k = 0; k < 2; ++k) centres[k] = counts[k].majority(centres[k]);
   }
+
+  const std::uint32_t other = centres_.add(centres[1]);
+  centres_.move(number, centres[0]);
+  buckets_.emplace_back();
+  for (std::size_t i = 0; i < old.words.size(); ++i) append(descriptors[i], old.words[i], second[i] ? other : number);
+  for (const std::uint32_t half : {number, other}) empty_buckets_ += buckets_[half].words.empty() ? 1 : 0;
   for (const std::uint32_t half : {number, other})
     if (buckets_[half].words.size() > most_words_of_bucket && buckets_[half].words.size() < old.words.size())
       full_.push_back(half);
