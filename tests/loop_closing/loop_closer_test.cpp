@@ -95,23 +95,21 @@ TEST_F(LoopCloserTest, LookAlikePlaceIsRefused) {
   EXPECT_EQ(closer->counts().of(LoopVerdict::closed), 0U);
 }
 
-TEST_F(LoopCloserTest, LookAlikePlaceIsRefusedWhereAnyDriftIsBelieved) {
-  // The second time round, the old points lie where the present pose expects them: that speaks for the pose.
+TEST_F(LoopCloserTest, LookAlikePlaceIsRefusedWhereOldPointsConfirmThePose) {
+  // Any drift is believed, and the detector knows the copy only. But the second time round, the points of the original
+  // lie where the present pose expects them.
   settings.drift_constant = 100.0;
   settings.turn_constant = 180.0;
-  settings.minimum_gap = 5;
   make_closer();
   test::RingWorld world(0.0);
   world.add_wall(0, 0.5 * round_trip, 1250);
-  // Known from both sides before the closer sees the first keyframe.
-  for (int i = 0; i < 30; ++i) {
-    const KeyFrameId id = world.add_keyframe(map, 0.5 * round_trip * i / 30);
-    detector.add(id, map.keyframe(id).frame.features.descriptors);
-  }
   world.repeat_wall(0, 0.5 * round_trip, 0.5 * round_trip);
-  for (int i = 0; i < 30; ++i) world.add_keyframe(map, 0.5 * round_trip * (1.0 + i / 30.0));
-  EXPECT_FALSE(walk(world, 1.1 * round_trip, 1.3 * round_trip, 12) &&
-               closer->counts().of(LoopVerdict::pose_confirmed) == 0);
+  for (int i = 0; i < 60; ++i) {
+    const KeyFrameId id = world.add_keyframe(map, round_trip * i / 60);
+    if (i >= 30) detector.add(id, map.keyframe(id).frame.features.descriptors);
+  }
+  EXPECT_FALSE(walk(world, 1.1 * round_trip, 1.3 * round_trip, 12));
+  EXPECT_GT(closer->counts().of(LoopVerdict::pose_confirmed), 3U);
 }
 
 TEST_F(LoopCloserTest, PlaceWithoutGeometricAgreementIsRefused) {
