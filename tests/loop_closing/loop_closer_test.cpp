@@ -54,7 +54,7 @@ TEST_F(LoopCloserTest, DriftedRingIsPulledTogether) {
   EXPECT_GT(error_before, 0.15);
   EXPECT_LT(world.largest_error(map), error_before / 5);
   EXPECT_LT(map.keyframe(loop->candidate).sequence, 15U);
-  EXPECT_GT(loop->correction_metres, 0.1);
+  EXPECT_GT(loop->correction.metres, 0.1);
   EXPECT_GT(loop->points_fused, 100);
   EXPECT_LT(map.points().size(), points_before);
   EXPECT_EQ(closer->counts().of(LoopVerdict::closed), 1U);
