@@ -55,7 +55,9 @@ std::optional<ClosedLoop> LoopCloser::process(KeyFrameId keyframe, StageTimes& t
   const std::lock_guard surgery(work_);
   std::optional<ClosedLoop> closed;
   for (const KeyFrameId candidate : chosen) {
-    LoopTrial& trial = trials_.emplace_back(LoopTrial{keyframe, candidate});
+    LoopTrial& trial = trials_.emplace_back();
+    trial.keyframe = keyframe;
+    trial.candidate = candidate;
     std::optional<LoopMeasurement> measurement;
     {
       const StageTimer timer(times, "loops: check");

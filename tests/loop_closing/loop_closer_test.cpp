@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "holdfast/plugin/registry.hpp"
 #include "loop_closing/map_checks.hpp"
 #include "loop_closing/ring_world.hpp"
@@ -14,12 +16,33 @@ namespace {
 
 constexpr double round_trip = 2.0 * std::numbers::pi;
 
+/// Ceres, with something happening while the pose graph is solved, or a pose graph without a solution.
+class InterruptedOptimizer final : public Optimizer {
+ public:
+  explicit InterruptedOptimizer(Optimizer& optimizer) : optimizer_(optimizer) {}
+  PoseSummary optimize_pose(PoseProblem& problem) override { return optimizer_.optimize_pose(problem); }
+  BundleSummary optimize_bundle(BundleProblem& problem, const std::atomic<bool>& stop) override {
+    return optimizer_.optimize_bundle(problem, stop);
+  }
+  GraphSummary optimize_pose_graph(PoseGraphProblem& problem) override {
+    if (meanwhile) meanwhile();
+    return solvable ? optimizer_.optimize_pose_graph(problem) : GraphSummary{};
+  }
+
+  std::function<void()> meanwhile;
+  bool solvable = true;
+
+ private:
+  Optimizer& optimizer_;
+};
+
 class LoopCloserTest : public testing::Test {
  protected:
   LoopCloserTest() {
     Registry registry;
     holdfast_register_plugin_ceres(registry);
-    optimizer = registry.create<Optimizer>("ceres", {}, {});
+    ceres = registry.create<Optimizer>("ceres", {}, {});
+    optimizer = std::make_unique<InterruptedOptimizer>(*ceres);
     make_closer();
   }
   void make_closer() { closer = std::make_unique<LoopCloser>(settings, map, map_mutex, work, detector, *optimizer, 1); }
@@ -39,7 +62,8 @@ class LoopCloserTest : public testing::Test {
   MapMutex map_mutex;
   std::mutex work;
   test::BruteForceDetector detector;
-  std::unique_ptr<Optimizer> optimizer;
+  std::unique_ptr<Optimizer> ceres;
+  std::unique_ptr<InterruptedOptimizer> optimizer;
   std::unique_ptr<LoopCloser> closer;
   StageTimes times;
   double error_before = 0.0;
@@ -134,6 +158,62 @@ TEST_F(LoopCloserTest, CameraThatStaysHasNoLoop) {
   std::uint64_t looked_at = 0;
   for (const std::uint64_t count : closer->counts().verdicts) looked_at += count;
   EXPECT_EQ(looked_at, 0U);
+}
+
+TEST_F(LoopCloserTest, KeyframeAddedWhileTheGraphIsSolvedComesAlong) {
+  test::RingWorld world;
+  world.add_wall(0, round_trip, 2500);
+  KeyFrameId added, parent;
+  Eigen::Isometry3d T_added_parent;
+  optimizer->meanwhile = [&] {
+    const std::lock_guard lock(map_mutex);  // the map must be free for tracking
+    const double angle = round_trip * 1.2 / 72 * static_cast<double>(map.next_sequence());
+    added = world.add_keyframe(map, angle);
+    parent = map.keyframe(added).parent;
+    ASSERT_TRUE(parent.valid());
+    T_added_parent = map.pose_of(added) * map.pose_of(parent).inverse();
+  };
+  const auto loop = walk(world, 0, 1.2 * round_trip, 72);
+  ASSERT_TRUE(loop);
+  ASSERT_TRUE(added.valid());
+  EXPECT_TRUE(T_added_parent.isApprox(map.pose_of(added) * map.pose_of(parent).inverse(), 1e-9));
+  EXPECT_LT(world.error_of(map, added), error_before / 5);
+  EXPECT_LT(world.largest_error(map), error_before / 5);
+  test::expect_consistent(map);
+}
+
+TEST_F(LoopCloserTest, UnsolvedGraphLeavesTheMapAlone) {
+  optimizer->solvable = false;
+  settings.pause = 0;
+  make_closer();
+  test::RingWorld world;
+  world.add_wall(0, round_trip, 2500);
+  EXPECT_FALSE(walk(world, 0, 1.05 * round_trip, 63));
+  EXPECT_GT(closer->counts().of(LoopVerdict::not_solved), 0U);
+  EXPECT_EQ(closer->counts().points_fused, 0U);
+  map.keyframes().for_each([](KeyFrameId, const KeyFrame& keyframe) { EXPECT_TRUE(keyframe.loop_edges.empty()); });
+  EXPECT_GT(world.largest_error(map), 0.2);
+}
+
+TEST_F(LoopCloserTest, NewLoopStopsAFullAdjustment) {
+  FullAdjustment adjustment(settings, map, map_mutex, work, *optimizer);
+  closer->set_full_adjustment(&adjustment);
+  test::RingWorld world;
+  world.add_wall(0, round_trip, 2500);
+  bool prepared = false;
+  for (int i = 0; i < 72; ++i) {
+    const KeyFrameId id = world.add_keyframe(map, 1.2 * round_trip * i / 72);
+    if (i == 40) adjustment.prepare(), adjustment.solve(), prepared = true;
+    if (closer->process(id, times)) break;
+  }
+  ASSERT_TRUE(prepared);
+  ASSERT_EQ(closer->counts().of(LoopVerdict::closed), 1U);
+  const Eigen::Matrix4d pose = map.pose_of(map.keyframes().ids()[20]).matrix();
+  EXPECT_FALSE(adjustment.apply().applied);
+  EXPECT_TRUE(pose == map.pose_of(map.keyframes().ids()[20]).matrix());
+  const double error = world.largest_error(map);
+  EXPECT_TRUE(adjustment.run().applied);
+  EXPECT_LT(world.largest_error(map), error);
 }
 
 TEST_F(LoopCloserTest, KeyframesThatAreGoneArePassedOver) {

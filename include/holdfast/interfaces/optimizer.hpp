@@ -98,8 +98,9 @@ struct GraphSummary {
   double final_cost = 0.0;
 };
 
-/// Solves the least-squares problems of the pipeline. Each method may be called from its own thread, never the same
-/// method from two at once. With CreationContext::sequential the results are bit-identical from run to run.
+/// Solves the least-squares problems of the pipeline. Every method may be called by several threads at once, each with
+/// a problem of its own: local mapping and a full adjustment of the map, say. With CreationContext::sequential the
+/// results are bit-identical from run to run.
 class Optimizer : public Module {
  public:
   static constexpr const char* kind = "optimizer";
