@@ -44,16 +44,30 @@ LoopCloser::LoopCloser(const LoopClosingSettings& settings, Map& map, MapMutex& 
       candidates_(settings) {}
 
 std::optional<ClosedLoop> LoopCloser::process(KeyFrameId keyframe, StageTimes& times) {
+  trials_.clear();
   std::vector<KeyFrameId> chosen;
   {
     const StageTimer timer(times, "loops: candidates");
     chosen = find_candidates(keyframe);
   }
   if (chosen.empty()) return std::nullopt;
+
   const std::lock_guard surgery(work_);
   std::optional<ClosedLoop> closed;
   for (const KeyFrameId candidate : chosen) {
-    closed = close(keyframe, candidate, times);
+    LoopTrial& trial = trials_.emplace_back();
+    trial.keyframe = keyframe;
+    trial.candidate = candidate;
+    std::optional<LoopMeasurement> measurement;
+    {
+      const StageTimer timer(times, "loops: check");
+      measurement = check(trial);
+    }
+    if (measurement) {
+      const StageTimer timer(times, "loops: correction");
+      closed = correct(trial, *measurement);
+    }
+    ++counts_.verdicts[static_cast<std::size_t>(trial.verdict)];
     if (closed) break;
   }
   return closed;
@@ -84,72 +98,70 @@ std::vector<KeyFrameId> LoopCloser::find_candidates(KeyFrameId id) {
   return candidates_.choose(map_, id, matches);
 }
 
-std::optional<ClosedLoop> LoopCloser::close(KeyFrameId keyframe_id, KeyFrameId candidate, StageTimes& times) {
+std::optional<LoopMeasurement> LoopCloser::check(LoopTrial& trial) {
   // `work` is held: keyframes stay, and so do the poses and features that are read without the map's lock.
-  const auto verdict = [this](LoopVerdict value) {
-    ++counts_.verdicts[static_cast<std::size_t>(value)];
-    return value;
-  };
-  LoopMeasurement measurement{keyframe_id, candidate, Eigen::Isometry3d::Identity(), {}};
-  ClosedLoop loop;
+  const Frame* frame = nullptr;
+  PlacePoints place;
+  std::uint64_t sequence = 0;
   {
-    const StageTimer timer(times, "loops: check");
-    const Frame* frame = nullptr;
-    PlacePoints place;
-    std::uint64_t sequence = 0;
-    {
-      const std::lock_guard lock(map_mutex_);
-      const KeyFrame* keyframe = map_.find_keyframe(keyframe_id);
-      if (keyframe == nullptr || map_.find_keyframe(candidate) == nullptr) return std::nullopt;
-      frame = &keyframe->frame;
-      sequence = keyframe->sequence;
-      std::vector<KeyFrameId> side = {candidate};
-      for (const KeyFrameId neighbour : map_.best_covisible(candidate, settings_.neighbours)) side.push_back(neighbour);
-      place = points_seen_by(map_, side);
-    }
-    const CheckedPlace checked = check_place(settings_, optimizer_, *frame, place, Random(seed_).fork(sequence).next());
-    if (checked.verdict != LoopVerdict::closed) {
-      verdict(checked.verdict);
-      return std::nullopt;
-    }
-    measurement.T_camera_world = checked.T_camera_world;
-    for (const PointMatch& match : checked.inliers)
-      measurement.points.emplace_back(place.ids[match.point], match.feature);
-
-    const PoseChange change = pose_change(frame->T_camera_world, checked.T_camera_world);
-    PlacePoints old_points;
-    {
-      const std::lock_guard lock(map_mutex_);
-      loop.way = way_between(map_, keyframe_id, candidate);
-      loop.T_keyframe_candidate = checked.T_camera_world * map_.keyframe(candidate).frame.T_camera_world.inverse();
-      old_points = old_points_in_view(settings_, map_, keyframe_id);
-    }
-    const PoseChange believed = believed_drift(settings_, loop.way);
-    if (change.metres > believed.metres || change.degrees > believed.degrees) {
-      verdict(LoopVerdict::implausible_correction);
-      return std::nullopt;
-    }
-    if (present_pose_is_confirmed(settings_, optimizer_, *frame, old_points, checked.T_camera_world)) {
-      verdict(LoopVerdict::pose_confirmed);
-      return std::nullopt;
-    }
-    loop.keyframe = keyframe_id;
-    loop.candidate = candidate;
-    loop.inliers = static_cast<int>(checked.inliers.size());
-    loop.correction_metres = change.metres;
-    loop.correction_degrees = change.degrees;
-    last_loop_ = sequence;
+    const std::lock_guard lock(map_mutex_);
+    const KeyFrame* keyframe = map_.find_keyframe(trial.keyframe);
+    if (keyframe == nullptr || map_.find_keyframe(trial.candidate) == nullptr) return std::nullopt;
+    frame = &keyframe->frame;
+    sequence = keyframe->sequence;
+    std::vector<KeyFrameId> side = {trial.candidate};
+    for (const KeyFrameId neighbour : map_.best_covisible(trial.candidate, settings_.neighbours))
+      side.push_back(neighbour);
+    place = points_seen_by(map_, side);
   }
+  const CheckedPlace checked = check_place(settings_, optimizer_, *frame, place, Random(seed_).fork(sequence).next());
+  trial.verdict = checked.verdict;
+  trial.matches = checked.matches;
+  trial.aligned = checked.aligned;
+  trial.inliers = static_cast<int>(checked.inliers.size());
+  trial.expected = checked.expected;
+  trial.cells = checked.cells;
+  if (checked.verdict != LoopVerdict::closed) return std::nullopt;
 
-  const StageTimer timer(times, "loops: correction");
+  PlacePoints old_points;
+  {
+    const std::lock_guard lock(map_mutex_);
+    trial.way = way_between(map_, trial.keyframe, trial.candidate);
+    old_points = old_points_in_view(settings_, map_, trial.keyframe);
+  }
+  trial.correction = pose_change(frame->T_camera_world, checked.T_camera_world);
+  const PoseChange believed = believed_drift(settings_, trial.way);
+  if (trial.correction.metres > believed.metres || trial.correction.degrees > believed.degrees)
+    trial.verdict = LoopVerdict::implausible_correction;
+  else if (present_pose_is_confirmed(settings_, optimizer_, *frame, old_points, checked.T_camera_world))
+    trial.verdict = LoopVerdict::pose_confirmed;
+  if (trial.verdict != LoopVerdict::closed) return std::nullopt;
+
+  LoopMeasurement measurement{trial.keyframe, trial.candidate, checked.T_camera_world, {}};
+  for (const PointMatch& match : checked.inliers)
+    measurement.points.emplace_back(place.ids[match.point], match.feature);
+  return measurement;
+}
+
+std::optional<ClosedLoop> LoopCloser::correct(LoopTrial& trial, const LoopMeasurement& measurement) {
   const Stopwatch watch;
   if (adjustment_ != nullptr) adjustment_->request_stop();
+  ClosedLoop loop{.keyframe = trial.keyframe,
+                  .candidate = trial.candidate,
+                  .inliers = trial.inliers,
+                  .way = trial.way,
+                  .correction = trial.correction};
+  {
+    const std::lock_guard lock(map_mutex_);
+    const Eigen::Isometry3d T_world_candidate = map_.keyframe(trial.candidate).frame.T_world_camera();
+    loop.T_keyframe_candidate = measurement.T_camera_world * T_world_candidate;
+    last_loop_ = map_.keyframe(trial.keyframe).sequence;
+  }
   LoopCorrection correction(settings_, map_, map_mutex_, optimizer_, measurement);
   if (!correction.run()) {
-    verdict(LoopVerdict::not_solved);
+    trial.verdict = LoopVerdict::not_solved;
     return std::nullopt;
   }
-  verdict(LoopVerdict::closed);
   candidates_.clear();
   loop.points_fused = correction.points_fused();
   counts_.points_fused += static_cast<std::uint64_t>(loop.points_fused);

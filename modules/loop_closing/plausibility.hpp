@@ -2,6 +2,7 @@
 #pragma once
 
 #include "holdfast/loop_closing/loop_closing_settings.hpp"
+#include "holdfast/loop_closing/loop_verdict.hpp"
 #include "place_points.hpp"
 
 namespace holdfast {
@@ -12,11 +13,7 @@ namespace holdfast {
 /// Infinite when nothing leads there.
 double way_between(const Map& map, KeyFrameId from, KeyFrameId to);
 
-/// Size of a correction: how far the camera's centre moves and how far it turns.
-struct PoseChange {
-  double metres = 0.0;
-  double degrees = 0.0;
-};
+/// How far a camera moves and turns from one pose to another.
 PoseChange pose_change(const Eigen::Isometry3d& T_camera_world_before, const Eigen::Isometry3d& T_camera_world_after);
 
 /// What odometry may have drifted on a way.

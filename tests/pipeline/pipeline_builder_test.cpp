@@ -186,7 +186,7 @@ TEST_F(PipelineBuilder, DescribesItsSections) {
       EXPECT_FALSE(parameter.reject(parameter.default_value).has_value()) << parameter.name;
     }
   }
-  EXPECT_THAT(names, ::testing::ElementsAre("tracking", "mapping"));
+  EXPECT_THAT(names, ::testing::ElementsAre("tracking", "mapping", "loop_closing"));
 }
 
 }  // namespace

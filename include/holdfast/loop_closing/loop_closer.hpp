@@ -18,15 +18,16 @@
 
 namespace holdfast {
 
+struct LoopMeasurement;
+
 /// A loop that was found and corrected.
 struct ClosedLoop {
   KeyFrameId keyframe;   ///< at the end of the loop
   KeyFrameId candidate;  ///< the place that it saw again
   int inliers = 0;       ///< points of the place found in the keyframe
   int points_fused = 0;
-  double way = 0.0;                 ///< shortest way between the two through the map before [m], see below
-  double correction_metres = 0.0;   ///< how far the keyframe's camera moved
-  double correction_degrees = 0.0;  ///< how far it turned
+  double way = 0.0;       ///< shortest way between the two through the map before [m], see below
+  PoseChange correction;  ///< of the keyframe, as measured
   /// Measured by the check, as maps points of the candidate's camera to the keyframe's.
   Eigen::Isometry3d T_keyframe_candidate = Eigen::Isometry3d::Identity();
   double seconds = 0.0;  ///< of the correction
@@ -69,11 +70,14 @@ class LoopCloser {
   /// Removes a keyframe that left the map from the detector; harmless for one that was never added.
   void forget(KeyFrameId keyframe) { detector_.remove(keyframe); }
 
+  /// The candidates that the last process() looked at closely, the closed one last.
+  const std::vector<LoopTrial>& trials() const { return trials_; }
   const LoopCounts& counts() const { return counts_; }
 
  private:
   std::vector<KeyFrameId> find_candidates(KeyFrameId keyframe);
-  std::optional<ClosedLoop> close(KeyFrameId keyframe, KeyFrameId candidate, StageTimes& times);
+  std::optional<LoopMeasurement> check(LoopTrial& trial);
+  std::optional<ClosedLoop> correct(LoopTrial& trial, const LoopMeasurement& measurement);
 
   LoopClosingSettings settings_;
   Map& map_;
@@ -84,6 +88,7 @@ class LoopCloser {
   std::uint64_t seed_;
   FullAdjustment* adjustment_ = nullptr;
   LoopCandidates candidates_;
+  std::vector<LoopTrial> trials_;
   LoopCounts counts_;
   std::optional<std::uint64_t> last_loop_;  // sequence of the keyframe
 };

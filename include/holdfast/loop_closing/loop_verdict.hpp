@@ -5,6 +5,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "holdfast/core/id.hpp"
+
 namespace holdfast {
 
 /// What became of a candidate that was looked at closely; all but the first refuse it.
@@ -21,8 +23,28 @@ enum class LoopVerdict {
 };
 inline constexpr std::size_t loop_verdicts = 9;
 
+/// Size of a correction: how far the camera's centre moves and how far it turns.
+struct PoseChange {
+  double metres = 0.0;
+  double degrees = 0.0;
+};
+
 /// Name of a verdict as in the report, such as "few inliers".
 const char* loop_verdict_name(LoopVerdict verdict);
+
+/// What was found when a candidate was looked at closely; zero for what its verdict did not need.
+struct LoopTrial {
+  KeyFrameId keyframe;
+  KeyFrameId candidate;
+  LoopVerdict verdict = LoopVerdict::few_matches;
+  int matches = 0;        ///< descriptors that agree
+  int aligned = 0;        ///< of these, such as fit one rigid motion
+  int inliers = 0;        ///< points of the place found in the keyframe
+  int expected = 0;       ///< points of the place that the keyframe should show
+  int cells = 0;          ///< of 16 over the image that hold two inliers
+  double way = 0.0;       ///< between the two through the map [m], with a metre for each radian
+  PoseChange correction;  ///< that the loop asks for
+};
 
 /// What loop closing did so far; for the report.
 struct LoopCounts {

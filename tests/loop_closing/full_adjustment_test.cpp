@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/loop_closing/full_adjustment.hpp"
+
+#include <gtest/gtest.h>
+
+#include "holdfast/plugin/registry.hpp"
+#include "loop_closing/map_checks.hpp"
+#include "loop_closing/ring_world.hpp"
+
+extern "C" void holdfast_register_plugin_ceres(holdfast::Registry&);
+
+namespace holdfast {
+namespace {
+
+std::unique_ptr<Optimizer> make_optimizer() {
+  Registry registry;
+  holdfast_register_plugin_ceres(registry);
+  return registry.create<Optimizer>("ceres", {}, {});
+}
+
+class FullAdjustmentTest : public testing::Test {
+ protected:
+  FullAdjustmentTest() {
+    world.add_wall(0, 2.0 * std::numbers::pi, 1500);
+    for (int i = 0; i < 20; ++i) last = world.add_keyframe(map, 0.1 * i);
+  }
+  double mean_error() const {
+    double sum = 0.0;
+    map.keyframes().for_each([&](KeyFrameId id, const KeyFrame&) { sum += world.error_of(map, id); });
+    return sum / static_cast<double>(map.keyframes().size());
+  }
+
+  test::RingWorld world;
+  Map map;
+  MapMutex map_mutex;
+  std::mutex work;
+  std::unique_ptr<Optimizer> optimizer = make_optimizer();
+  FullAdjustment adjustment{LoopClosingSettings{}, map, map_mutex, work, *optimizer};
+  KeyFrameId last;
+};
+
+TEST_F(FullAdjustmentTest, LowersTheErrorOfTheMap) {
+  const double before = mean_error();
+  const std::uint64_t version = map.version();
+  const FullAdjustmentSummary summary = adjustment.run();
+  EXPECT_TRUE(summary.applied);
+  EXPECT_FALSE(summary.stop_requested);
+  EXPECT_EQ(summary.keyframes, 20);
+  EXPECT_EQ(summary.points, static_cast<int>(map.points().size()));
+  EXPECT_LT(summary.bundle.final_cost, summary.bundle.initial_cost);
+  EXPECT_LT(mean_error(), before / 3);
+  EXPECT_GT(map.version(), version);
+  EXPECT_TRUE(map.keyframe(map.keyframes().ids().front())
+                  .frame.T_camera_world.isApprox(test::RingWorld::pose_at(0).inverse(), 1e-12));
+  test::expect_consistent(map);
+}
+
+TEST_F(FullAdjustmentTest, StoppedOneChangesNothing) {
+  const Eigen::Matrix4d before = map.pose_of(last).matrix();
+  adjustment.prepare();
+  adjustment.request_stop();
+  adjustment.solve();
+  const FullAdjustmentSummary summary = adjustment.apply();
+  EXPECT_TRUE(summary.stop_requested);
+  EXPECT_FALSE(summary.applied);
+  EXPECT_TRUE(map.pose_of(last).matrix() == before);
+  EXPECT_TRUE(adjustment.run().applied);  // and the next one starts afresh
+}
+
+TEST_F(FullAdjustmentTest, StopAfterTheSolverStillCounts) {
+  // A loop that was closed in between has moved the map: the result belongs to the map of before.
+  const Eigen::Matrix4d before = map.pose_of(last).matrix();
+  adjustment.prepare();
+  adjustment.solve();
+  adjustment.request_stop();
+  EXPECT_FALSE(adjustment.apply().applied);
+  EXPECT_TRUE(map.pose_of(last).matrix() == before);
+}
+
+TEST_F(FullAdjustmentTest, WhatCameMeanwhileFollowsAndWhatLeftIsPassedOver) {
+  adjustment.prepare();
+  adjustment.solve();
+
+  const KeyFrameId added = world.add_keyframe(map, 2.0);
+  const KeyFrameId parent = map.keyframe(added).parent;
+  ASSERT_TRUE(parent.valid());
+  MapPointId new_point;
+  Eigen::Vector3d new_point_in_camera;
+  map.points().for_each([&](MapPointId id, const MapPoint& point) {
+    if (point.reference_keyframe != added) return;
+    new_point = id;
+    new_point_in_camera = map.pose_of(added) * point.position;
+  });
+  ASSERT_TRUE(new_point.valid());
+  const Eigen::Isometry3d T_added_parent = map.pose_of(added) * map.pose_of(parent).inverse();
+  const Eigen::Matrix4d parent_before = map.pose_of(parent).matrix();
+
+  const KeyFrameId removed = map.keyframes().ids()[10];
+  ASSERT_NE(removed, parent);
+  map.remove_keyframe(removed);
+  for (const MapPointId id : map.points().ids())
+    if (id.slot % 7 == 0 && id != new_point) map.remove_point(id);
+
+  const FullAdjustmentSummary summary = adjustment.apply();
+  EXPECT_TRUE(summary.applied);
+  EXPECT_EQ(summary.keyframes_carried, 1);
+  EXPECT_FALSE(map.pose_of(parent).matrix() == parent_before);
+  EXPECT_TRUE(T_added_parent.isApprox(map.pose_of(added) * map.pose_of(parent).inverse(), 1e-9));
+  EXPECT_LT((map.pose_of(added) * map.point(new_point).position - new_point_in_camera).norm(), 1e-9);
+  EXPECT_LT(world.error_of(map, added), 0.03);
+  test::expect_consistent(map);
+}
+
+TEST_F(FullAdjustmentTest, OutlyingObservationsLeaveTheMap) {
+  // A feature that shows something else than its point.
+  const MapPointId point = [&] {
+    MapPointId found;
+    map.points().for_each([&](MapPointId id, const MapPoint& p) {
+      if (p.observations.size() >= 5 && !found.valid()) found = id;
+    });
+    return found;
+  }();
+  ASSERT_TRUE(point.valid());
+  const Observation wrong = map.point(point).observations.back();
+  map.keyframe(wrong.keyframe).frame.x[wrong.feature] += 25.0F;
+  EXPECT_GE(adjustment.run().bundle.outliers, 1);
+  ASSERT_NE(map.find_point(point), nullptr);
+  EXPECT_EQ(map.feature_of(point, wrong.keyframe), -1);
+  test::expect_consistent(map);
+}
+
+TEST_F(FullAdjustmentTest, EmptyMapIsLeftAlone) {
+  map.clear();
+  EXPECT_FALSE(adjustment.run().applied);
+}
+
+}  // namespace
+}  // namespace holdfast
