@@ -52,6 +52,8 @@ TEST_F(ProgramTest, WrongArguments) {
     EXPECT_EQ(outcome.output, "");
   };
   expect_error({"rnu"}, "error: there is no command 'rnu'; did you mean 'run'?");
+  expect_error({"map", "inof", "map.hfm"}, "error: there is no command 'inof'; did you mean 'info'?");
+  expect_error({"map", "info"}, "error: FILE is required; see `holdfast map --help`");
   expect_error({"run"}, "error: CONFIG is required; see `holdfast run --help`");
   expect_error({"run", "good.yaml"}, "error: --output is required; see `holdfast run --help`");
   expect_error({"check", "good.yaml", "--fast"}, "--fast");
