@@ -36,12 +36,16 @@ void print_error(const std::string& message) {
   std::fprintf(stderr, "%s %s\n", holdfast::red("error:", STDERR_FILENO).c_str(), message.c_str());
 }
 
-/// A word where a command should stand: CLI11 would only say that a command is required.
-bool is_unknown_command(const CLI::App& app, const std::string& word) {
+/// A word where a command should stand, or one of a command's own: CLI11 would only say that a command is required.
+bool is_unknown_command(const CLI::App& app, const std::vector<std::string>& words) {
+  if (words.empty()) return false;
+  const std::string& word = words.front();
   std::vector<std::string> names;
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
     names.push_back(command->get_name());
-  if (word.starts_with('-') || std::find(names.begin(), names.end(), word) != names.end()) return false;
+  if (names.empty() || word.starts_with('-')) return false;
+  if (std::find(names.begin(), names.end(), word) != names.end())
+    return is_unknown_command(*app.get_subcommand(word), {words.begin() + 1, words.end()});
   print_error("there is no command '" + word + "'; " + holdfast::did_you_mean(word, names));
   return true;
 }
@@ -73,7 +77,7 @@ int main(int argc, char** argv) {
     std::fputs(app.help().c_str(), stderr);
     return 2;
   }
-  if (is_unknown_command(app, argv[1])) return 2;
+  if (is_unknown_command(app, {argv + 1, argv + argc})) return 2;
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -18,7 +18,7 @@ constexpr std::size_t library_version_size = 16;
 constexpr std::size_t largest_header = 4096;
 
 constexpr const char* expected = "expected a map file (.hfm) as `holdfast run` writes it";
-constexpr const char* damaged = "the file is damaged: take a copy of it, or make the map again";
+constexpr const char* damaged = "the file is damaged: use another copy of it, or make the map again";
 
 std::string hexadecimal(std::uint32_t value) {
   constexpr const char* digits = "0123456789abcdef";
@@ -95,7 +95,7 @@ void ContainerReader::read_header() {
   if (std::string_view(bytes).substr(0, compared) != magic.substr(0, compared))
     fail(std::string("found a file of another kind, which does not begin as a map does; ") + expected);
   const auto too_short = [&] {
-    fail("the file ends after " + std::to_string(size_) + " bytes, in its header; it was cut off: " + damaged);
+    fail("the file ends after " + std::to_string(size_) + " bytes, in its header: it was cut off; " + damaged);
   };
   if (bytes.size() < start_size) too_short();
   const auto version = from_little_endian<std::uint32_t>(bytes.data() + 8);
@@ -131,7 +131,7 @@ void ContainerReader::read_header() {
   header_.next_sequence = reader.get<std::uint64_t>();
   if (header_.file_size != size_)
     fail("the file has " + std::to_string(size_) + " bytes; expected " + std::to_string(header_.file_size) +
-         (size_ < header_.file_size ? "; it was cut off: " : "; something was added: ") + damaged);
+         (size_ < header_.file_size ? ": it was cut off; " : ": something was added; ") + damaged);
 }
 
 bool ContainerReader::next() {

@@ -26,7 +26,7 @@ class ProgramTest : public ::testing::Test {
 TEST_F(ProgramTest, HelpAndVersion) {
   const Outcome help = program_.run({"--help"});
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* command : {"run", "evaluate", "simulate", "check", "modules"})
+  for (const char* command : {"run", "evaluate", "map", "simulate", "check", "modules"})
     EXPECT_THAT(help.output, HasSubstr(std::string("\n  ") + command + " "));
   EXPECT_EQ(help.errors, "");
   const Outcome version = program_.run({"--version"});
@@ -52,6 +52,8 @@ TEST_F(ProgramTest, WrongArguments) {
     EXPECT_EQ(outcome.output, "");
   };
   expect_error({"rnu"}, "error: there is no command 'rnu'; did you mean 'run'?");
+  expect_error({"map", "inof", "map.hfm"}, "error: there is no command 'inof'; did you mean 'info'?");
+  expect_error({"map", "info"}, "error: FILE is required; see `holdfast map --help`");
   expect_error({"run"}, "error: CONFIG is required; see `holdfast run --help`");
   expect_error({"run", "good.yaml"}, "error: --output is required; see `holdfast run --help`");
   expect_error({"check", "good.yaml", "--fast"}, "--fast");
