@@ -13,6 +13,8 @@
 #include "holdfast/core/version.hpp"
 #include "holdfast/evaluation/evaluation.hpp"
 #include "holdfast/interfaces/all.hpp"
+#include "holdfast/map_io/map_export.hpp"
+#include "holdfast/map_io/map_file.hpp"
 #include "holdfast/pipeline/pipeline.hpp"
 #include "holdfast/pipeline/pipeline_builder.hpp"
 #include "holdfast/plugin/builtin.hpp"

@@ -125,8 +125,8 @@ Json loops_json(const LoopRecord& record) {
                      {"inliers", event.loop.inliers},
                      {"points_fused", event.loop.points_fused},
                      {"way_m", event.loop.way},
-                     {"correction_m", event.loop.correction_metres},
-                     {"correction_deg", event.loop.correction_degrees},
+                     {"correction_m", event.loop.correction.metres},
+                     {"correction_deg", event.loop.correction.degrees},
                      {"seconds", event.loop.seconds}});
   Json& adjustments = json["full_adjustments"] = Json::array();
   for (const FullAdjustmentSummary& summary : record.adjustments)
@@ -246,8 +246,8 @@ ReportTable loop_report(const LoopRecord& record) {
   for (const LoopEvent& event : record.loops)
     table.rows.push_back({number(event.timestamp, 2), number(event.candidate_timestamp, 2),
                           std::to_string(event.loop.inliers), std::to_string(event.loop.points_fused),
-                          number(event.loop.way, 2), number(event.loop.correction_metres, 4),
-                          number(event.loop.correction_degrees, 2), number(event.loop.seconds * 1e3, 0)});
+                          number(event.loop.way, 2), number(event.loop.correction.metres, 4),
+                          number(event.loop.correction.degrees, 2), number(event.loop.seconds * 1e3, 0)});
   return table;
 }
 
