@@ -21,7 +21,7 @@ struct LoopClosingSettings {
   int minimum_aligned = 15;
   double search_radius = 8.0;
   int minimum_inliers = 40;
-  double minimum_share = 0.2;
+  double minimum_share = 0.12;
   int minimum_cells = 5;
   double drift_constant = 0.15;
   double drift_per_metre = 0.02;

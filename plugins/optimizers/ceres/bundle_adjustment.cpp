@@ -191,6 +191,8 @@ bool Bundle::solve(int iterations, const std::atomic<bool>& stop, BundleSummary&
     if (pose_is_used_[i]) ordering->AddElementToGroup(states_[i].parameters, 1), ++free_poses;
   options.linear_solver_ordering = std::move(ordering);
   options.linear_solver_type = free_poses <= settings_.dense_poses ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
+  // CHOLMOD starts threads of its own through OpenMP and BLAS, whatever num_threads says.
+  options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
   options.max_num_iterations = iterations;
   options.function_tolerance = settings_.function_tolerance;
   options.jacobi_scaling = false;  // the damping is scaled by the columns anyway

@@ -50,6 +50,8 @@ GraphSummary adjust_pose_graph(PoseGraphProblem& problem, const CeresSettings& s
 
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  // CHOLMOD starts threads of its own through OpenMP and BLAS, whatever num_threads says.
+  options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
   options.max_num_iterations = problem.iterations;
   options.function_tolerance = settings.function_tolerance;
   options.num_threads = 1;
