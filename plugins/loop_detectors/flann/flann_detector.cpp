@@ -100,8 +100,7 @@ void FlannDetector::look_up(std::span<const Descriptor> descriptors) const {
   if (looked_up_ && used == looked_up_descriptors_) return;
 
   looked_up_descriptors_ = std::move(used);
-  lookups_.clear();
-  for (const Descriptor& descriptor : looked_up_descriptors_) lookups_.push_back(vocabulary_.find(descriptor));
+  vocabulary_.find(looked_up_descriptors_, lookups_);
   looked_up_ = true;
 }
 

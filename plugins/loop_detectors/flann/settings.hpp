@@ -9,7 +9,7 @@ struct FlannSettings {
   int radius = 32;
   int descriptors = 1000;
   int probes = 3;
-  int checks = 24;
+  int checks = 48;
 
   static void describe(ParameterTable<FlannSettings>& table) {
     table

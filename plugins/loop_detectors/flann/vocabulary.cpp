@@ -17,6 +17,10 @@ constexpr std::size_t most_words_of_bucket = 128;
 constexpr std::size_t most_probes = 64;
 constexpr std::size_t least_buckets_to_drop = 16;
 constexpr int rounds_of_split = 4;
+constexpr std::uint32_t no_bucket = ~0U;
+constexpr std::size_t cache_line = 64;
+constexpr std::size_t rows_ahead = 2;     // buckets
+constexpr std::size_t headers_ahead = 8;  // buckets
 
 /// How often each bit is set in some descriptors.
 class BitCounts {
@@ -28,13 +32,14 @@ class BitCounts {
         ++counts_[64 * i + static_cast<std::size_t>(std::countr_zero(rest))];
   }
   /// The descriptor with the least sum of distances to them; `otherwise` where there are as many zeros as ones.
-  Descriptor majority(Descriptor otherwise) const {
+  Descriptor majority(const Descriptor& otherwise) const {
+    Descriptor result = otherwise;
     for (std::size_t bit = 0; bit < 256; ++bit) {
       const std::uint64_t mask = std::uint64_t{1} << (bit % 64);
-      if (2 * counts_[bit] > descriptors_) otherwise.words[bit / 64] |= mask;
-      if (2 * counts_[bit] < descriptors_) otherwise.words[bit / 64] &= ~mask;
+      if (2 * counts_[bit] > descriptors_) result.words[bit / 64] |= mask;
+      if (2 * counts_[bit] < descriptors_) result.words[bit / 64] &= ~mask;
     }
-    return otherwise;
+    return result;
   }
 
  private:
@@ -66,33 +71,58 @@ Vocabulary::Vocabulary(std::uint64_t seed, int radius, int probes, int checks)
       radius_(radius),
       probes_(std::min(static_cast<std::size_t>(std::max(probes, 1)), most_probes)) {}
 
-Lookup Vocabulary::find(const Descriptor& descriptor) const {
-  std::array<std::uint32_t, most_probes> nearest;
-  const std::size_t count = centres_.find(descriptor, std::span(nearest).first(probes_));
-  Lookup lookup;
-  if (count > 0) lookup.bucket = nearest[0];
-  std::array<int, Lookup::most_words> distances{};
-  for (std::size_t i = 0; i < count; ++i) {
-    const Bucket& bucket = buckets_[nearest[i]];
-    const std::size_t size = bucket.words.size();
-    if (i + 1 < count) __builtin_prefetch(buckets_[nearest[i + 1]].descriptors.data());
-    kernels_.of_row(descriptor, bucket.descriptors.data(), size, distances_.data());
-    for (std::size_t k = 0; k < size; ++k) {
-      const int distance = distances_[k];
-      if (distance > radius_) continue;
-      std::size_t place = lookup.count;
-      while (place > 0 && distance < distances[place - 1]) --place;
-      if (place == Lookup::most_words) continue;
-      if (lookup.count < Lookup::most_words) ++lookup.count;
-      for (std::size_t j = lookup.count - 1; j > place; --j) {
-        distances[j] = distances[j - 1];
-        lookup.words[j] = lookup.words[j - 1];
-      }
-      distances[place] = distance;
-      lookup.words[place] = bucket.words[k];
+void Vocabulary::find(std::span<const Descriptor> descriptors, std::vector<Lookup>& lookups) const {
+  // First all centres, then all buckets: so the centres stay in the cache, and buckets are fetched ahead of their use.
+  // In a large map each is a miss of the cache, and waiting for one after the other would be most of the time.
+  nearest_.assign(descriptors.size() * probes_, no_bucket);
+  for (std::size_t i = 0; i < descriptors.size(); ++i)
+    centres_.find(descriptors[i], std::span(nearest_).subspan(i * probes_, probes_));
+
+  lookups.assign(descriptors.size(), {});
+  Nearest nearest;
+  for (std::size_t i = 0; i < nearest_.size(); ++i) {
+    if (i + headers_ahead < nearest_.size() && nearest_[i + headers_ahead] != no_bucket)
+      __builtin_prefetch(&buckets_[nearest_[i + headers_ahead]]);
+    if (i + rows_ahead < nearest_.size() && nearest_[i + rows_ahead] != no_bucket) prefetch(nearest_[i + rows_ahead]);
+    Lookup& lookup = lookups[i / probes_];
+    if (i % probes_ == 0) {
+      nearest.distances.fill(0);
+      lookup.bucket = nearest_[i] != no_bucket ? nearest_[i] : 0;
     }
+    if (nearest_[i] != no_bucket) compare(descriptors[i / probes_], buckets_[nearest_[i]], lookup, nearest);
   }
-  return lookup;
+}
+
+Lookup Vocabulary::find(const Descriptor& descriptor) const {
+  std::vector<Lookup> lookups;
+  find(std::span(&descriptor, 1), lookups);
+  return lookups[0];
+}
+
+void Vocabulary::prefetch(std::uint32_t bucket) const {
+  const auto* bytes = reinterpret_cast<const char*>(buckets_[bucket].descriptors.data());
+  const std::size_t size = buckets_[bucket].descriptors.size() * sizeof(Descriptor);
+  for (std::size_t offset = 0; offset < size; offset += cache_line) __builtin_prefetch(bytes + offset);
+}
+
+/// Puts the words of a bucket that are within the radius where they belong among those found so far.
+void Vocabulary::compare(const Descriptor& descriptor, const Bucket& bucket, Lookup& lookup, Nearest& nearest) const {
+  const std::size_t size = bucket.words.size();
+  kernels_.of_row(descriptor, bucket.descriptors.data(), size, distances_.data());
+  for (std::size_t k = 0; k < size; ++k) {
+    const int distance = distances_[k];
+    if (distance > radius_) continue;
+    std::size_t place = lookup.count;
+    while (place > 0 && distance < nearest.distances[place - 1]) --place;
+    if (place == Lookup::most_words) continue;
+    if (lookup.count < Lookup::most_words) ++lookup.count;
+    for (std::size_t j = lookup.count - 1; j > place; --j) {
+      nearest.distances[j] = nearest.distances[j - 1];
+      lookup.words[j] = lookup.words[j - 1];
+    }
+    nearest.distances[place] = distance;
+    lookup.words[place] = bucket.words[k];
+  }
 }
 
 WordId Vocabulary::insert(const Descriptor& descriptor, std::uint32_t bucket) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <span>
 #include <vector>
 
 #include "centre_index.hpp"
@@ -37,6 +38,8 @@ class Vocabulary {
   Vocabulary(std::uint64_t seed, int radius, int probes, int checks);
 
   Lookup find(const Descriptor& descriptor) const;
+  /// The same for many, which is quicker than one by one.
+  void find(std::span<const Descriptor> descriptors, std::vector<Lookup>& lookups) const;
   /// A new word, in the bucket that find() named. Its id may have been that of an erased word.
   WordId insert(const Descriptor& descriptor, std::uint32_t bucket);
   void erase(WordId word);
@@ -56,6 +59,12 @@ class Vocabulary {
     std::vector<WordId> words;
   };
 
+  struct Nearest {
+    std::array<int, Lookup::most_words> distances{};  // of Lookup::words
+  };
+
+  void prefetch(std::uint32_t bucket) const;
+  void compare(const Descriptor& descriptor, const Bucket& bucket, Lookup& lookup, Nearest& nearest) const;
   void append(const Descriptor& descriptor, WordId word, std::uint32_t bucket);
   void split(std::uint32_t bucket);
 
@@ -69,6 +78,7 @@ class Vocabulary {
   std::vector<WordId> free_words_;
   std::vector<std::uint32_t> full_;
   std::size_t empty_buckets_ = 0;
+  mutable std::vector<std::uint32_t> nearest_;    // buckets of many descriptors, probes_ each
   mutable std::vector<std::uint16_t> distances_;  // of such a comparison
   DistanceKernels kernels_ = distance_kernels();
   Random random_;
