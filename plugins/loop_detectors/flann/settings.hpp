@@ -7,7 +7,7 @@ namespace holdfast::flann_plugin {
 
 struct FlannSettings {
   int radius = 32;
-  int descriptors = 1000;
+  int descriptors = 700;
   int probes = 3;
   int checks = 48;
 

@@ -13,7 +13,7 @@ namespace holdfast::flann_plugin {
 
 namespace {
 
-constexpr std::size_t most_words_of_bucket = 128;
+constexpr std::size_t most_words_of_bucket = 256;
 constexpr std::size_t most_probes = 64;
 constexpr std::size_t least_buckets_to_drop = 16;
 constexpr int rounds_of_split = 4;
