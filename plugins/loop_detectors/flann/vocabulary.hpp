@@ -30,7 +30,8 @@ struct Lookup {
 /// at any size. A bucket that grows too full is split in two, around the bitwise majorities of its halves (k-means with
 /// Hamming distance: Grana et al., "A fast approach for integrating ORB descriptors in the bag of words model", SPIE
 /// 8667, 2013): of all descriptors a majority has the least sum of distances to its words, so that the same thing seen
-/// again mostly falls on the same side. An erased word leaves nothing behind, and nothing is ever rebuilt but the small index of centres.
+/// again mostly falls on the same side. An erased word leaves nothing behind, and nothing is ever rebuilt but the small
+/// index of centres.
 class Vocabulary {
  public:
   /// `radius`: how far a descriptor may be from its word [bits]; `probes`: buckets searched, at most 64; `checks`: see
