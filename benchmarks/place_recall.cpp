@@ -90,14 +90,14 @@ PlotLine precision_recall(const PlaceRecording& recording, const Judgement& judg
   }
   std::printf("%s: %zu keyframes, %ld with a place to find\n", recording.name.c_str(), judgement.answers.size(),
               static_cast<long>(possible));
-  if (!judgement.true_scores.empty() && !judgement.other_scores.empty()) {
+  if (!judgement.true_scores.empty())
     std::printf("  candidates that show half of the query: %zu, score 10 %% %.4f, median %.4f, 90 %% %.4f\n",
-                judgement.true_scores.size(), percentile(judgement.true_scores, 10.0),
-                percentile(judgement.true_scores, 50.0), percentile(judgement.true_scores, 90.0));
+                judgement.true_scores.size(), percentile(judgement.true_scores, 10.0), median(judgement.true_scores),
+                percentile(judgement.true_scores, 90.0));
+  if (!judgement.other_scores.empty())
     std::printf("  candidates that show nothing of it: %zu, score median %.4f, 99 %% %.4f, largest %.4f\n",
-                judgement.other_scores.size(), percentile(judgement.other_scores, 50.0),
-                percentile(judgement.other_scores, 99.0), percentile(judgement.other_scores, 100.0));
-  }
+                judgement.other_scores.size(), median(judgement.other_scores), percentile(judgement.other_scores, 99.0),
+                percentile(judgement.other_scores, 100.0));
   return line;
 }
 
@@ -131,7 +131,7 @@ void write_cost(const std::filesystem::path& folder, std::uint32_t keyframes) {
     both_times.clear();
   }
   Plot plot;
-  plot.title = "Cost of place recognition as the map grows (drawn tour, 1000 descriptors per keyframe)";
+  plot.title = "Cost as the map grows (drawn tour, 1000 descriptors given per keyframe)";
   plot.x_label = "keyframes in the map";
   plot.y_label = "processor time, median [ms]";
   plot.y_from_zero = true;
@@ -152,7 +152,7 @@ int run(int count, char** arguments) {
     return 0;
   }
   Plot plot;
-  plot.title = "Place recognition: precision over recall as the score threshold falls";
+  plot.title = "Precision over recall as the score threshold falls";
   plot.x_label = "recall";
   plot.y_label = "precision";
   plot.y_from_zero = true;

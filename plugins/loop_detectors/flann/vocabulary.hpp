@@ -29,8 +29,9 @@ struct Lookup {
 /// finds the nearest centres, and the words of these buckets are compared one by one, so a search costs about the same
 /// at any size. A bucket that grows too full is split in two, around the bitwise majorities of its halves (k-means with
 /// Hamming distance: Grana et al., "A fast approach for integrating ORB descriptors in the bag of words model", SPIE
-/// 8667, 2013): a majority is nearer to all of its words than any word is, so that the same thing seen again falls on
-/// the same side. An erased word leaves nothing behind, and nothing is ever rebuilt but the small index of centres.
+/// 8667, 2013): of all descriptors a majority has the least sum of distances to its words, so that the same thing seen
+/// again mostly falls on the same side. An erased word leaves nothing behind, and nothing is ever rebuilt but the small
+/// index of centres.
 class Vocabulary {
  public:
   /// `radius`: how far a descriptor may be from its word [bits]; `probes`: buckets searched, at most 64; `checks`: see
