@@ -57,11 +57,11 @@ TEST_F(RunTest, WritesItsResults) {
   EXPECT_EQ(outcome.errors, "");
   EXPECT_THAT(outcome.output, AllOf(HasSubstr("coverage"), HasSubstr("ATE RMSE"), HasSubstr("median ms")));
   for (const char* name : {"trajectory.txt", "keyframes.txt", "run.json", "report.html", "config.yaml",
-                           "evaluation.json", "trajectory.svg", "error.svg"})
+                           "evaluation.json", "trajectory.svg", "error.svg", "map.hfm", "static_map.ply"})
     EXPECT_GT(fs::file_size(program_.path(std::string("deep/out/") + name)), 20U) << name;
   std::size_t files = 0;
   for ([[maybe_unused]] const auto& entry : fs::directory_iterator(program_.path("deep/out"))) ++files;
-  EXPECT_EQ(files, 8U);  // nothing half-written is left
+  EXPECT_EQ(files, 10U);  // nothing half-written is left
 
   const nlohmann::json run = summary("deep/out");
   EXPECT_EQ(run.at("frames").at("coverage"), 1.0);
@@ -177,6 +177,96 @@ TEST_F(RunTest, KeepsWhatWasDoneWhenInterrupted) {
   EXPECT_GT(poses, 0U);
   EXPECT_LT(poses, 18000U);
   EXPECT_GE(lines(program_.text("out/trajectory.txt")), poses);
+}
+
+TEST_F(RunTest, ThreadsTrackEveryFrameAndTellWhatTheyDid) {
+  const Outcome outcome =
+      program_.run({"run", "room.yaml", "--set", "run.mode=threaded", "--set", "loop_detector=flann", "--set",
+                    "source.simulated.duration=2", "--output", "out"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("frame to result"), HasSubstr("mapping: bundle adjustment")));
+  const nlohmann::json run = summary("out");
+  EXPECT_EQ(run.at("mode"), "threaded");
+  EXPECT_EQ(run.at("frames").at("poses"), 60);
+  EXPECT_LT(run.at("evaluation").at("ate_m").at("rmse"), 0.006);
+  EXPECT_EQ(run.at("threads").at("frames").at("taken"), 60);
+  EXPECT_EQ(run.at("threads").at("workers").at(0).at("name"), "local mapping");
+  EXPECT_EQ(run.at("threads").at("workers").at(0).at("queue").at("taken"), run.at("map").at("keyframes_made"));
+  EXPECT_TRUE(summary("out").at("loops").at("closed").empty());
+  EXPECT_THAT(program_.text("out/report.html"), HasSubstr("Queues between threads"));
+}
+
+TEST_F(RunTest, ThreadsStopWhenInterrupted) {
+  const pid_t process =
+      program_.start({"run", "room.yaml", "--set", "source.simulated.duration=600", "--set", "run.mode=threaded",
+                      "--set", "run.pace=timestamps", "--set", "run.late_frames=drop", "--output", "out"});
+  for (int i = 0; i < 3000 && !fs::exists(program_.path("out/config.yaml")); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  std::this_thread::sleep_for(std::chrono::seconds(2));
+  kill(process, SIGINT);
+  const Outcome outcome = program_.finish(process);
+  EXPECT_EQ(outcome.exit_code, 130) << outcome.errors;
+  EXPECT_EQ(summary("out").at("interrupted"), true);
+  EXPECT_GT(summary("out").at("frames").at("poses"), 0U);
+  EXPECT_TRUE(fs::exists(program_.path("out/map.hfm")));
+}
+
+TEST_F(RunTest, AMapIsLocalisedInAndContinued) {
+  ASSERT_EQ(program_
+                .run({"run", "room.yaml", "--set", "loop_detector=flann", "--set", "source.simulated.duration=3",
+                      "--output", "made", "--quiet"})
+                .exit_code,
+            0);
+  const std::string map = program_.text("made/map.hfm");
+  const auto run = [&](const std::string& folder, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"run",      "room.yaml",
+                                          "--set",    "loop_detector=flann",
+                                          "--set",    "source.simulated.path=rpy",
+                                          "--map",    "made/map.hfm",
+                                          "--output", folder,
+                                          "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return program_.run(arguments);
+  };
+  Outcome outcome = run("where", {"--localise"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  nlohmann::json result = summary("where");
+  EXPECT_EQ(result.at("frames").at("poses"), 15);
+  EXPECT_EQ(result.at("frames").at("relocalised"), 1);
+  EXPECT_LT(result.at("evaluation").at("ate_m").at("rmse"), 0.006);
+  EXPECT_EQ(result.at("map").at("keyframes_made"), 0);
+  EXPECT_FALSE(fs::exists(program_.path("where/map.hfm")));
+
+  outcome = run("more", {"--set", "source.simulated.duration=3"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  result = summary("more");
+  EXPECT_EQ(result.at("frames").at("poses"), 90);
+  EXPECT_GT(result.at("map").at("keyframes_made"), 0);
+  EXPECT_TRUE(fs::exists(program_.path("more/map.hfm")));
+  EXPECT_EQ(program_.text("made/map.hfm"), map);  // nobody has touched it
+  // The same again, to the byte.
+  ASSERT_EQ(run("again", {"--set", "source.simulated.duration=3"}).exit_code, 0);
+  EXPECT_EQ(program_.text("again/trajectory.txt"), program_.text("more/trajectory.txt"));
+  EXPECT_EQ(program_.text("again/map.hfm"), program_.text("more/map.hfm"));
+}
+
+TEST_F(RunTest, AMapThatCannotBeUsedIsAClearError) {
+  ASSERT_EQ(program_.run({"run", "room.yaml", "--output", "made", "--quiet"}).exit_code, 0);
+  const std::vector<std::string> run = {"run", "room.yaml", "--output", "out", "--map"};
+  const auto errors = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = run;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = program_.run(arguments);
+    EXPECT_NE(outcome.exit_code, 0);
+    return outcome.errors;
+  };
+  EXPECT_THAT(errors({"made/map.hfm"}), HasSubstr("the loop detector is 'none'"));
+  EXPECT_THAT(errors({"absent.hfm", "--set", "loop_detector=flann"}), HasSubstr("absent.hfm"));
+  EXPECT_THAT(errors({"room.yaml", "--set", "loop_detector=flann"}), HasSubstr("room.yaml"));
+  EXPECT_THAT(errors({"made/map.hfm", "--set", "loop_detector=flann", "--set", "camera=tum_fr2"}),
+              AllOf(HasSubstr("made/map.hfm: was made with the camera 'tum_fr1'"), HasSubstr("'tum_fr2'")));
+  EXPECT_FALSE(fs::exists(program_.path("out")));
+  EXPECT_THAT(program_.run({"run", "room.yaml", "--localise", "--output", "out"}).errors, HasSubstr("--map"));
 }
 
 TEST_F(RunTest, FailsWhenNothingCanBeSeen) {

@@ -12,9 +12,10 @@ TEST(TumRun, TracksFr1XyzAsWellAsOthersAndTwiceTheSame) {
   const char* data = std::getenv("HOLDFAST_DATA");
   if (data == nullptr) GTEST_SKIP() << "HOLDFAST_DATA does not name the folder with tum_fr1_xyz";
   const test::Program program;
-  const auto run = [&](const std::string& output) {
+  const auto run = [&](const std::string& output, const std::string& mode = "sequential") {
     return program.run({"run", std::string(HOLDFAST_EXAMPLE_CONFIGURATIONS) + "/rgbd.yaml", "--set",
-                        std::string("source.tum.path=") + data + "/tum_fr1_xyz", "--output", output, "--quiet"});
+                        std::string("source.tum.path=") + data + "/tum_fr1_xyz", "--set", "run.mode=" + mode,
+                        "--output", output, "--quiet"});
   };
   const test::Outcome first = run("a");
   ASSERT_EQ(first.exit_code, 0) << first.errors;
@@ -25,6 +26,14 @@ TEST(TumRun, TracksFr1XyzAsWellAsOthersAndTwiceTheSame) {
   EXPECT_LE(summary.at("evaluation").at("ate_m").at("rmse"), 0.0105);
   ASSERT_EQ(run("b").exit_code, 0);
   EXPECT_EQ(program.text("a/trajectory.txt"), program.text("b/trajectory.txt"));
+  EXPECT_TRUE(summary.at("loops").at("closed").empty());  // the camera never leaves its first view
+
+  ASSERT_EQ(run("threads", "threaded").exit_code, 0);
+  const auto threaded = nlohmann::json::parse(program.text("threads/run.json"));
+  EXPECT_EQ(threaded.at("frames").at("poses"), 792);
+  EXPECT_TRUE(threaded.at("loops").at("closed").empty());
+  EXPECT_LE(threaded.at("evaluation").at("ate_m").at("rmse").get<double>(),
+            1.2 * summary.at("evaluation").at("ate_m").at("rmse").get<double>());
 }
 
 }  // namespace
