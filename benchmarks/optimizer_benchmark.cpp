@@ -3,9 +3,15 @@
 // local mapping pose.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <thread>
+#include <vector>
+
+#include "geometry/synthetic.hpp"
 #include "holdfast/geometry/pose_adjustment.hpp"
 #include "holdfast/plugin/plugin.hpp"
-#include "geometry/synthetic.hpp"
 
 extern "C" void holdfast_register_plugin_ceres(holdfast::Registry& registry);
 
@@ -50,6 +56,49 @@ BENCHMARK(optimize_bundle)
     ->Args({12, 13, 3000, 10})
     ->Args({1, 60, 6000, 10})
     ->Unit(benchmark::kMillisecond);
+
+/// How long an adjustment goes on after it was asked to stop, at moments spread over its whole time; the counters are
+/// in milliseconds. Arguments as above.
+void stop_bundle(benchmark::State& state) {
+  const Camera camera = synthetic::camera();
+  const synthetic::BundleCase original =
+      synthetic::bundle_case(camera, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)),
+                             static_cast<int>(state.range(2)), static_cast<int>(state.range(3)), 1.0, 0.03, 1);
+  Registry registry;
+  holdfast_register_plugin_ceres(registry);
+  const auto optimizer = registry.create<Optimizer>("ceres", {}, {});
+  using Clock = std::chrono::steady_clock;
+  const auto seconds_since = [](Clock::time_point begin) {
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+  };
+  std::vector<double> delays;
+  for (auto _ : state) {
+    BundleProblem problem = original.problem;
+    std::atomic<bool> stop = false;
+    const Clock::time_point begin = Clock::now();
+    optimizer->optimize_bundle(problem, stop);
+    const double whole = seconds_since(begin);
+    for (int i = 0; i < 10; ++i) {
+      problem = original.problem;
+      stop = false;
+      Clock::time_point asked;
+      std::jthread asking([&] {
+        std::this_thread::sleep_for(std::chrono::duration<double>(whole * (i + 0.5) / 10));
+        asked = Clock::now();
+        stop = true;
+      });
+      optimizer->optimize_bundle(problem, stop);
+      const Clock::time_point end = Clock::now();
+      asking.join();
+      if (end > asked) delays.push_back(std::chrono::duration<double>(end - asked).count());
+    }
+  }
+  std::sort(delays.begin(), delays.end());
+  if (delays.empty()) return;
+  state.counters["stop_median_ms"] = delays[delays.size() / 2] * 1e3;
+  state.counters["stop_longest_ms"] = delays.back() * 1e3;
+}
+BENCHMARK(stop_bundle)->Args({12, 20, 3000, 12})->Args({1, 60, 6000, 10})->Iterations(3)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace holdfast

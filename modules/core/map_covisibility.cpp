@@ -102,6 +102,13 @@ void Map::add_loop_edge(KeyFrameId first, KeyFrameId second) {
   link(second, first);
 }
 
+std::vector<KeyFrameId> Map::keyframes_by_age() const {
+  std::vector<KeyFrameId> ids = keyframes_.ids();
+  std::sort(ids.begin(), ids.end(),
+            [this](KeyFrameId a, KeyFrameId b) { return keyframes_.at(a).sequence < keyframes_.at(b).sequence; });
+  return ids;
+}
+
 std::vector<KeyFrameId> Map::best_covisible(KeyFrameId id, int most) const {
   std::vector<KeyFrameId> best;
   for (const CovisibilityEdge& edge : keyframes_.at(id).covisible) {

@@ -48,7 +48,7 @@ void FullAdjustment::prepare() {
   problem_.final_iterations = settings_.full_final_iterations;
 
   const std::lock_guard lock(map_mutex_);
-  keyframes_ = keyframes_by_age(map_);
+  keyframes_ = map_.keyframes_by_age();
   std::vector<std::uint32_t> pose_of_slot(map_.keyframes().slot_count(), 0);
   for (std::uint32_t i = 0; i < keyframes_.size(); ++i) {
     const Frame& frame = map_.keyframe(keyframes_[i]).frame;

@@ -48,7 +48,7 @@ bool LoopCorrection::run() {
 }
 
 void LoopCorrection::build_graph() {
-  nodes_ = keyframes_by_age(map_);
+  nodes_ = map_.keyframes_by_age();
   node_of_slot_.assign(map_.keyframes().slot_count(), 0);
   for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
     node_of_slot_[nodes_[i].slot] = i;

@@ -1,18 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "map_motion.hpp"
 
-#include <algorithm>
-
 #include "holdfast/geometry/se3.hpp"
 
 namespace holdfast {
-
-std::vector<KeyFrameId> keyframes_by_age(const Map& map) {
-  std::vector<KeyFrameId> ids = map.keyframes().ids();
-  std::sort(ids.begin(), ids.end(),
-            [&](KeyFrameId a, KeyFrameId b) { return map.keyframe(a).sequence < map.keyframe(b).sequence; });
-  return ids;
-}
 
 MapMotion::MapMotion(const Map& map, std::span<const KeyFrameId> keyframes, std::span<const Eigen::Isometry3d> poses)
     : motion_(map.keyframes().slot_count(), Eigen::Isometry3d::Identity()) {
@@ -22,7 +13,7 @@ MapMotion::MapMotion(const Map& map, std::span<const KeyFrameId> keyframes, std:
 
   // Parents are older than their children, so their motion is known when the children's turn comes.
   Eigen::Isometry3d before = Eigen::Isometry3d::Identity();
-  for (const KeyFrameId id : keyframes_by_age(map)) {
+  for (const KeyFrameId id : map.keyframes_by_age()) {
     const KeyFrame& keyframe = map.keyframe(id);
     const Eigen::Isometry3d& old_pose = keyframe.frame.T_camera_world;
     Eigen::Isometry3d& motion = motion_[id.slot];

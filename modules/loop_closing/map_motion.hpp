@@ -9,9 +9,6 @@
 
 namespace holdfast {
 
-/// Ids of all keyframes, oldest first.
-std::vector<KeyFrameId> keyframes_by_age(const Map& map);
-
 /// New poses for some keyframes of a map, and what they mean for the rest: a keyframe without one of its own moves with
 /// its parent (or with the keyframe before it, should it have none), as rigidly as if bolted to it, and a point moves
 /// with its reference keyframe. The caller holds the map's lock.

@@ -73,9 +73,7 @@ void refuse(const ByteReader& reader, const char* kind, std::size_t position, co
 
 }  // namespace
 
-DenseIndex::DenseIndex(const Map& map) : keyframes_(map.keyframes().ids()), points_(map.points().ids()) {
-  std::sort(keyframes_.begin(), keyframes_.end(),
-            [&](KeyFrameId a, KeyFrameId b) { return map.keyframe(a).sequence < map.keyframe(b).sequence; });
+DenseIndex::DenseIndex(const Map& map) : keyframes_(map.keyframes_by_age()), points_(map.points().ids()) {
   keyframe_positions_.assign(map.keyframes().slot_count(), no_index);
   for (std::uint32_t i = 0; i < keyframes_.size(); ++i) keyframe_positions_[keyframes_[i].slot] = i;
   point_positions_.assign(map.points().slot_count(), no_index);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
+#include "holdfast/geometry/bundle_observation.hpp"
 #include "holdfast/mapping/local_mapper.hpp"
 
 namespace holdfast {
@@ -53,15 +54,8 @@ void LocalMapper::state_bundle(KeyFrameId id) {
         pose = static_cast<std::int32_t>(keyframes.size());
         keyframes.push_back(observation.keyframe);
       }
-      const Frame& frame = map_.keyframe(observation.keyframe).frame;
-      const std::uint32_t feature = observation.feature;
-      problem_.observations.push_back({.pose = static_cast<std::uint32_t>(pose),
-                                       .point = p,
-                                       .x = frame.x[feature],
-                                       .y = frame.y[feature],
-                                       .right_x = frame.right_x[feature],
-                                       .inverse_sigma2 = frame.pyramid->inverse_sigma2[frame.features.octave[feature]],
-                                       .weight = frame.static_probability[feature]});
+      problem_.observations.push_back(geometry::bundle_observation(
+          map_.keyframe(observation.keyframe).frame, observation.feature, static_cast<std::uint32_t>(pose), p));
       problem_observations_.emplace_back(points[p], observation.keyframe);
     }
   }

@@ -8,6 +8,7 @@
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/map_mutex.hpp"
+#include "holdfast/map_io/map_export.hpp"
 
 namespace holdfast {
 
@@ -52,19 +53,12 @@ struct Pipeline::State {
         closer(parts.loop_closing, map, map_mutex, surgery, detector, *parts.optimizer, parts.seed),
         adjustment(parts.loop_closing, map, map_mutex, surgery, *parts.optimizer) {
     closer.set_full_adjustment(&adjustment);
-    for (const KeyFrameId keyframe : keyframes_by_age())
+    for (const KeyFrameId keyframe : map.keyframes_by_age())
       detector.add(keyframe, map.keyframe(keyframe).frame.features.descriptors);
     if (parts.localise_only)
       tracker.localise_only();
     else if (parts.threads.threaded)
       start_threads();
-  }
-
-  std::vector<KeyFrameId> keyframes_by_age() const {
-    std::vector<KeyFrameId> ids = map.keyframes().ids();
-    std::sort(ids.begin(), ids.end(),
-              [this](KeyFrameId a, KeyFrameId b) { return map.keyframe(a).sequence < map.keyframe(b).sequence; });
-    return ids;
   }
 
   void start_threads();
@@ -286,13 +280,7 @@ Trajectory Pipeline::trajectory() const {
 
 Trajectory Pipeline::keyframe_trajectory() const {
   const TrackingLock lock(state_->map_mutex);
-  Trajectory trajectory;
-  state_->map.keyframes().for_each([&](KeyFrameId, const KeyFrame& keyframe) {
-    trajectory.push_back({keyframe.frame.timestamp, keyframe.frame.T_world_camera()});
-  });
-  std::sort(trajectory.begin(), trajectory.end(),
-            [](const TimedPose& a, const TimedPose& b) { return a.timestamp < b.timestamp; });
-  return trajectory;
+  return holdfast::keyframe_trajectory(state_->map);
 }
 
 const Map& Pipeline::map() const { return state_->map; }

@@ -2,6 +2,7 @@
 #include "holdfast/tracking/frame_builder.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <opencv2/imgproc.hpp>
 #include <string>
@@ -61,7 +62,7 @@ void FrameBuilder::read_depth(const cv::Mat& depth, Frame& frame) const {
     const int column = std::clamp(static_cast<int>(frame.features.x[i] + 0.5F), 0, depth.cols - 1);
     const int row = std::clamp(static_cast<int>(frame.features.y[i] + 0.5F), 0, depth.rows - 1);
     const float value = depth.at<float>(row, column);
-    if (!(value > 0.0F)) continue;
+    if (!(value > 0.0F) || !std::isfinite(value)) continue;
     if (depth_edge_ratio_ > 0.0) {
       // At an edge of depth the feature may lie on either side: its depth would be a guess.
       float nearest = value, farthest = value;

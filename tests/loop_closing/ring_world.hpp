@@ -8,43 +8,12 @@
 #include <numbers>
 #include <vector>
 
-#include "holdfast/core/hamming.hpp"
 #include "holdfast/core/map.hpp"
 #include "holdfast/core/random.hpp"
 #include "holdfast/geometry/se3.hpp"
-#include "holdfast/interfaces/loop_detector.hpp"
+#include "support/brute_force_detector.hpp"
 
 namespace holdfast::test {
-
-/// Compares the query with all it knows: slow, and right by definition.
-class BruteForceDetector final : public LoopDetector {
- public:
-  void add(KeyFrameId keyframe, std::span<const Descriptor> descriptors) override {
-    places_.emplace_back(keyframe, std::vector<Descriptor>(descriptors.begin(), descriptors.end()));
-  }
-  void remove(KeyFrameId keyframe) override {
-    std::erase_if(places_, [&](const auto& place) { return place.first == keyframe; });
-  }
-  std::vector<PlaceMatch> query(std::span<const Descriptor> descriptors, int most) const override {
-    std::vector<PlaceMatch> matches;
-    for (const auto& [keyframe, known] : places_) {
-      std::vector<std::uint32_t> all(known.size());
-      for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
-      int alike = 0;
-      for (std::size_t i = 0; i < descriptors.size(); i += 3)
-        alike += nearest_descriptors(descriptors[i], known.data(), all).best_distance < 40 ? 1 : 0;
-      matches.push_back({keyframe, static_cast<double>(alike) / static_cast<double>(descriptors.size())});
-    }
-    std::stable_sort(matches.begin(), matches.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
-    if (static_cast<int>(matches.size()) > most) matches.resize(static_cast<std::size_t>(most));
-    return matches;
-  }
-  std::size_t size() const { return places_.size(); }
-  void clear() { places_.clear(); }
-
- private:
-  std::vector<std::pair<KeyFrameId, std::vector<Descriptor>>> places_;
-};
 
 /// A camera that walks inside a ring of walls and looks outwards, an odometry that drifts, and the map that tracking
 /// and mapping would make of it: points are matched with those of the last few keyframes only, so that a place seen

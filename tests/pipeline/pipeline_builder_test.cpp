@@ -95,8 +95,9 @@ class PipelineBuilder : public ::testing::Test {
   BuiltPipeline build(const std::string& more) {
     const std::string text = "source: fake\nfeatures: fake\noptimizer: fake\n" + more;
     const ConfigurationNode root = parse_yaml(text, "c.yaml", "/");
-    return build_pipeline(resolve_configuration(root, "c.yaml", registry_, pipeline_sections()), registry_,
-                          {.output_directory = "/out"});
+    RunOptions options;
+    options.output_directory = "/out";
+    return build_pipeline(resolve_configuration(root, "c.yaml", registry_, pipeline_sections()), registry_, options);
   }
   std::string complaints(const std::string& more) {
     try {

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "holdfast/core/error.hpp"
-#include "holdfast/core/hamming.hpp"
 #include "holdfast/plugin/registry.hpp"
+#include "support/brute_force_detector.hpp"
 #include "support/point_world.hpp"
 
 extern "C" void holdfast_register_plugin_ceres(holdfast::Registry&);
@@ -83,38 +83,11 @@ TEST(Pipeline, LostInTheDarkIsAResultAndLightBringsItBack) {
   EXPECT_LT(largest_error(pipeline.trajectory()), 0.006);
 }
 
-/// Compares descriptors with those of every keyframe, one by one.
-class PlainDetector final : public LoopDetector {
- public:
-  void add(KeyFrameId keyframe, std::span<const Descriptor> descriptors) override {
-    places_.emplace_back(keyframe, std::vector<Descriptor>(descriptors.begin(), descriptors.end()));
-  }
-  void remove(KeyFrameId keyframe) override {
-    std::erase_if(places_, [&](const auto& place) { return place.first == keyframe; });
-  }
-  std::vector<PlaceMatch> query(std::span<const Descriptor> descriptors, int most) const override {
-    std::vector<PlaceMatch> matches;
-    for (const auto& [keyframe, known] : places_) {
-      int near = 0;
-      for (const Descriptor& a : descriptors)
-        near +=
-            std::any_of(known.begin(), known.end(), [&](const Descriptor& b) { return hamming_distance(a, b) < 40; });
-      matches.push_back({keyframe, static_cast<double>(near)});
-    }
-    std::stable_sort(matches.begin(), matches.end(), [](auto& a, auto& b) { return a.score > b.score; });
-    matches.resize(std::min(matches.size(), static_cast<std::size_t>(most)));
-    return matches;
-  }
-
- private:
-  std::vector<std::pair<KeyFrameId, std::vector<Descriptor>>> places_;
-};
-
 TEST(Pipeline, ThreadsDoTheSameWork) {
   for (const bool unpaced : {true, false}) {
     test::PointWorld world(find_camera("tum_fr1").value());
     PipelineParts parts = parts_for(world, 0.3);
-    parts.loop_detector = std::make_unique<PlainDetector>();
+    parts.loop_detector = std::make_unique<test::BruteForceDetector>();
     parts.threads = {.threaded = true, .keyframe_queue = 2, .unpaced = unpaced};
     Pipeline pipeline(std::move(parts));
     constexpr int frames = 120;
@@ -183,7 +156,7 @@ TEST(Pipeline, FindsItsPlaceInALoadedMap) {
   }
   const std::size_t keyframes = map.keyframes().size(), points = map.points().size();
   PipelineParts parts = parts_for(world, 0.3);
-  parts.loop_detector = std::make_unique<PlainDetector>();
+  parts.loop_detector = std::make_unique<test::BruteForceDetector>();
   parts.map = std::move(map);
   parts.localise_only = true;
   Pipeline pipeline(std::move(parts));

@@ -72,6 +72,8 @@ class Map {
   /// Remembers that a loop was closed between two keyframes, on both sides; twice is once.
   void add_loop_edge(KeyFrameId first, KeyFrameId second);
 
+  /// Ids of all keyframes, oldest first.
+  std::vector<KeyFrameId> keyframes_by_age() const;
   /// The up to `most` strongest neighbours.
   std::vector<KeyFrameId> best_covisible(KeyFrameId keyframe, int most) const;
 
