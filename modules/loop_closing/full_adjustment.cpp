@@ -46,6 +46,7 @@ void FullAdjustment::prepare() {
   points_.clear();
   problem_.robust_iterations = settings_.full_robust_iterations;
   problem_.final_iterations = settings_.full_final_iterations;
+  problem_.function_tolerance = settings_.full_tolerance;
 
   const std::lock_guard lock(map_mutex_);
   keyframes_ = map_.keyframes_by_age();

@@ -2,6 +2,7 @@
 #include "holdfast/pipeline/pipeline.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cstdio>
 #include <mutex>
 #include <optional>
@@ -85,6 +86,8 @@ struct Pipeline::State {
   LoopCloser closer;
   FullAdjustment adjustment;
   bool finished = false;
+  std::atomic<bool> interrupted = false;
+  int keyframes_since_adjustment = 0;  // of the whole map; none before the first loop
   bool has_frame = false;
   double last_timestamp = 0.0;
   std::uint64_t keyframes_deferred = 0;
@@ -164,6 +167,7 @@ bool Pipeline::State::close_loops(const LoopJob& job, StageTimes& times) {
   if (!loop) {
     const std::lock_guard lock(record_mutex);
     loop_record.counts = closer.counts();
+    if (!loop_record.loops.empty() && parts.loop_closing.full_adjustment) ++keyframes_since_adjustment;
     return false;
   }
   LoopEvent event{.loop = *loop};
@@ -180,6 +184,7 @@ bool Pipeline::State::close_loops(const LoopJob& job, StageTimes& times) {
   const std::lock_guard lock(record_mutex);
   loop_record.counts = closer.counts();
   loop_record.loops.push_back(std::move(event));
+  keyframes_since_adjustment = 0;
   return parts.loop_closing.full_adjustment;
 }
 
@@ -249,10 +254,17 @@ void Pipeline::finish() {
   if (s.segmentation) s.segmentation->finish();
   s.finished = true;
   s.rethrow_failures();
+  // What was seen after the last loop ties its two ends together further: the result deserves it.
+  if (s.keyframes_since_adjustment > 0 && !s.interrupted) {
+    StageTimes times;
+    s.adjust_map(times);
+    s.keep_times(std::move(times));
+  }
   for (const auto& observer : s.parts.observers) observer->on_finish(s.map);
 }
 
 void Pipeline::interrupt() {
+  state_->interrupted = true;
   state_->mapper.request_stop();
   state_->adjustment.request_stop();
 }

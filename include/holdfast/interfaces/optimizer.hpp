@@ -62,6 +62,8 @@ struct BundleProblem {
   std::vector<Observation> observations;
   int robust_iterations = 5;  ///< with Huber's cost, then outliers are set aside
   int final_iterations = 10;  ///< without it, on what is left; 0 = skip
+  /// Both end when an iteration lowers the cost by less than this share; 0 = as the optimizer thinks fit.
+  double function_tolerance = 0.0;
 };
 
 struct BundleSummary {

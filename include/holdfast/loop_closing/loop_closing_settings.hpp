@@ -30,8 +30,9 @@ struct LoopClosingSettings {
   int essential_weight = 100;
   int graph_iterations = 30;
   bool full_adjustment = true;
-  int full_robust_iterations = 8;
-  int full_final_iterations = 12;
+  int full_robust_iterations = 20;
+  int full_final_iterations = 40;
+  double full_tolerance = 1e-7;
 
   static void describe(ParameterTable<LoopClosingSettings>& table) {
     using S = LoopClosingSettings;
@@ -113,6 +114,11 @@ struct LoopClosingSettings {
         .range(1, 100);
     table.add("full_final_iterations", &S::full_final_iterations, "its iterations after outliers were set aside")
         .range(0, 100);
+    table
+        .add("full_tolerance", &S::full_tolerance,
+             "it ends when an iteration lowers the cost by less than this share: the bend of a long loop costs little, "
+             "and straightens slowly")
+        .range(1e-12, 0.1);
   }
 };
 

@@ -82,7 +82,8 @@ class Pipeline {
   /// Processes one frame; time stamps must rise strictly (InputError otherwise). Trouble with the frame is a typed
   /// result. Throws what a thread of the pipeline threw.
   FrameResult feed(const SensorFrame& frame);
-  /// Ends the run: waits until the threads have done what waits for them, and tells the observers. feed() must not be
+  /// Ends the run: waits until the threads have done what waits for them, adjusts the whole map once more when it grew
+  /// after a loop and nobody interrupted, and tells the observers. feed() must not be
   /// called any more. Throws what a thread of the pipeline threw.
   void finish();
   /// Makes long adjustments in progress end after their current iteration. From any thread.

@@ -194,7 +194,8 @@ bool Bundle::solve(int iterations, const std::atomic<bool>& stop, BundleSummary&
   // CHOLMOD starts threads of its own through OpenMP and BLAS, whatever num_threads says.
   options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
   options.max_num_iterations = iterations;
-  options.function_tolerance = settings_.function_tolerance;
+  options.function_tolerance =
+      problem_.function_tolerance > 0.0 ? problem_.function_tolerance : settings_.function_tolerance;
   options.jacobi_scaling = false;  // the damping is scaled by the columns anyway
   options.num_threads = 1;
   options.logging_type = ceres::SILENT;
