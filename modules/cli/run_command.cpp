@@ -77,10 +77,20 @@ void evaluate_run(const FrameSource& source, RunRecord& record) {
   if (record.evaluation->coverage) count_frames_that_never_came(record, *record.evaluation->coverage);
 }
 
+/// Results would take the place of the map that the run begins with.
+void keep_map_out_of_results(const Arguments& arguments) {
+  std::error_code ignored;
+  if (arguments.map.empty() || !std::filesystem::exists(arguments.map, ignored)) return;
+  if (std::filesystem::equivalent(std::filesystem::absolute(arguments.map).parent_path(), arguments.output, ignored))
+    throw InputError({arguments.map.string()},
+                     "lies in the output folder, where this run's results would replace it; choose another --output");
+}
+
 void run(const Arguments& arguments, int& exit_code) {
   const Stopwatch since_start;
   cv::setNumThreads(1);  // OpenCV's own threads would change neither result nor, at this size, time for the better
   catch_interrupts();
+  keep_map_out_of_results(arguments);
 
   Registry registry;
   register_builtin_plugins(registry);

@@ -266,6 +266,10 @@ TEST_F(RunTest, AMapThatCannotBeUsedIsAClearError) {
   EXPECT_THAT(errors({"made/map.hfm", "--set", "loop_detector=flann", "--set", "camera=tum_fr2"}),
               AllOf(HasSubstr("made/map.hfm: was made with the camera 'tum_fr1'"), HasSubstr("'tum_fr2'")));
   EXPECT_FALSE(fs::exists(program_.path("out")));
+  const std::string map = program_.text("made/map.hfm");
+  EXPECT_THAT(program_.run({"run", "room.yaml", "--map", "made/map.hfm", "--output", "made", "--overwrite"}).errors,
+              HasSubstr("made/map.hfm: lies in the output folder"));
+  EXPECT_EQ(program_.text("made/map.hfm"), map);
   EXPECT_THAT(program_.run({"run", "room.yaml", "--localise", "--output", "out"}).errors, HasSubstr("--map"));
 }
 
