@@ -2,6 +2,7 @@
 #include "holdfast/cli/frame_loop.hpp"
 
 #include <exception>
+#include <optional>
 #include <utility>
 
 #include "holdfast/cli/terminal.hpp"
@@ -47,46 +48,36 @@ void feed_in_turn(FrameSource& source, FrameLoop& loop, RunRecord& record) {
   }
 }
 
-void feed_beside(FrameSource& source, const RunSettings& run, FrameLoop& loop, RunRecord& record) {
-  FrameFeeder feeder(source, {.by_timestamps = run.pace == "timestamps",
-                              .drop_late = run.late_frames == "drop",
-                              .frame_queue = static_cast<std::size_t>(run.frame_queue)});
-  ThreadRecord& threads = record.threads.emplace();
-  const auto note = [&] {
-    threads.frames = feeder.counts();
-    threads.late = feeder.late();
-    threads.latest = feeder.latest();
-    record.frame_stamps = feeder.stamps();
-  };
-  try {
-    while (!interrupted()) {
-      const std::optional<FedFrame> fed = feeder.next();
-      if (!fed) break;
-      loop.feed(fed->frame, fed->decode_seconds);
-      threads.delays.push_back(fed->since_due.seconds());
-    }
-  } catch (...) {
-    feeder.stop();
-    note();
-    throw;
+void feed_beside(FrameFeeder& feeder, FrameLoop& loop, ThreadRecord& threads) {
+  while (!interrupted()) {
+    const std::optional<FedFrame> fed = feeder.next();
+    if (!fed) break;
+    loop.feed(fed->frame, fed->decode_seconds);
+    threads.delays.push_back(fed->since_due.seconds());
   }
-  feeder.stop();
-  note();
 }
 
 }  // namespace
 
 void feed_frames(BuiltPipeline& built, bool quiet, const Stopwatch& since_start, RunRecord& record) {
   FrameLoop loop(built.pipeline, quiet, since_start, record);
+  const RunSettings& run = record.configuration->run;
+  std::optional<FrameFeeder> feeder;
+  if (run.mode == "threaded") {
+    record.threads.emplace();
+    feeder.emplace(*built.source, PaceSettings{.by_timestamps = run.pace == "timestamps",
+                                               .drop_late = run.late_frames == "drop",
+                                               .frame_queue = static_cast<std::size_t>(run.frame_queue)});
+  }
   try {
-    const RunSettings& run = record.configuration->run;
-    if (run.mode == "threaded")
-      feed_beside(*built.source, run, loop, record);
+    if (feeder)
+      feed_beside(*feeder, loop, *record.threads);
     else
       feed_in_turn(*built.source, loop, record);
   } catch (const std::exception& error) {  // whatever it is, what was found until then is the user's
     record.failure = error.what();
   }
+  if (feeder) feeder->stop();
   record.was_interrupted = interrupted();
   if (record.was_interrupted) built.pipeline.interrupt();
   try {
@@ -95,7 +86,11 @@ void feed_frames(BuiltPipeline& built, bool quiet, const Stopwatch& since_start,
     if (record.failure.empty()) record.failure = error.what();
   }
   loop.take_background_times();
-  if (!record.threads) return;
+  if (!feeder) return;
+  record.frame_stamps = feeder->stamps();
+  record.threads->frames = feeder->counts();
+  record.threads->late = feeder->late();
+  record.threads->latest = feeder->latest();
   record.threads->workers = built.pipeline.worker_counts();
   record.threads->keyframes_deferred = built.pipeline.keyframes_deferred();
 }

@@ -88,12 +88,9 @@ Json stage_json(const StageRow& row) {
 }
 
 Json queue_json(const QueueCounts& queue) {
-  return {{"capacity", queue.capacity},
-          {"taken", queue.taken},
-          {"dropped", queue.dropped},
-          {"longest", queue.longest},
-          {"mean_wait_s", queue.taken == 0 ? 0.0 : queue.wait_total / static_cast<double>(queue.taken)},
-          {"longest_wait_s", queue.wait_longest}};
+  return {{"capacity", queue.capacity},       {"taken", queue.taken},
+          {"dropped", queue.dropped},         {"longest", queue.longest},
+          {"mean_wait_s", queue.mean_wait()}, {"longest_wait_s", queue.wait_longest}};
 }
 
 Json threads_json(const ThreadRecord& threads) {
@@ -228,10 +225,9 @@ ReportTable thread_report(const ThreadRecord& threads) {
                     {},
                     {}};
   const auto add = [&](const std::string& name, const QueueCounts& queue, const std::string& busy) {
-    const double mean = queue.taken == 0 ? 0.0 : queue.wait_total / static_cast<double>(queue.taken);
     table.rows.push_back({name, std::to_string(queue.taken), std::to_string(queue.dropped),
-                          std::to_string(queue.longest), std::to_string(queue.capacity), number(mean * 1e3, 2),
-                          number(queue.wait_longest * 1e3, 2), busy});
+                          std::to_string(queue.longest), std::to_string(queue.capacity),
+                          number(queue.mean_wait() * 1e3, 2), number(queue.wait_longest * 1e3, 2), busy});
   };
   add("tracking", threads.frames, "");
   for (const WorkerCounts& worker : threads.workers) add(worker.name, worker.queue, number(worker.busy_seconds, 2));

@@ -4,6 +4,8 @@
 #include <limits>
 
 #include "holdfast/core/hamming.hpp"
+#include "holdfast/geometry/expected_view.hpp"
+#include "holdfast/geometry/pose_observation.hpp"
 
 namespace holdfast {
 
@@ -28,24 +30,6 @@ PlacePoints points_seen_by(const Map& map, std::span<const KeyFrameId> keyframes
   return points;
 }
 
-std::optional<ExpectedView> expected_view(const Frame& frame, const Eigen::Isometry3d& T_camera_world,
-                                          const Eigen::Vector3d& position, const Eigen::Vector3d& direction,
-                                          float minimum_distance, float maximum_distance) {
-  constexpr double nearest = 0.05;      // m
-  constexpr double least_cosine = 0.5;  // of the angle to the mean viewing direction
-  const Eigen::Vector3d in_camera = T_camera_world * position;
-  if (!(in_camera.z() > nearest)) return std::nullopt;
-  ExpectedView view;
-  view.pixel = frame.camera->project(in_camera);
-  if (!frame.grid.covers(static_cast<float>(view.pixel.x()), static_cast<float>(view.pixel.y()))) return std::nullopt;
-  const double distance = in_camera.norm();
-  if (distance < 0.8 * minimum_distance || distance > 1.2 * maximum_distance) return std::nullopt;
-  if (in_camera.dot(T_camera_world.linear() * direction) < least_cosine * distance) return std::nullopt;
-  view.right_x = frame.camera->right_x(view.pixel.x(), in_camera.z());
-  view.level = frame.pyramid->predict_level(maximum_distance, distance);
-  return view;
-}
-
 PointSearch find_points(const PlacePoints& points, const Frame& frame, const Eigen::Isometry3d& T_camera_world,
                         double radius, int maximum_distance) {
   constexpr int unmatched = std::numeric_limits<int>::max();
@@ -53,8 +37,8 @@ PointSearch find_points(const PlacePoints& points, const Frame& frame, const Eig
   std::vector<PointMatch> best_of_feature(frame.size(), PointMatch{0, 0, unmatched});
   std::vector<std::uint32_t> candidates;
   for (std::uint32_t i = 0; i < points.size(); ++i) {
-    const auto view = expected_view(frame, T_camera_world, points.positions[i], points.directions[i],
-                                    points.minimum_distance[i], points.maximum_distance[i]);
+    const auto view = geometry::expected_view(frame, T_camera_world, points.positions[i], points.directions[i],
+                                              points.minimum_distance[i], points.maximum_distance[i]);
     if (!view) continue;
     ++search.expected;
     const float window = static_cast<float>(radius) * frame.pyramid->scale[static_cast<std::size_t>(view->level)];
@@ -83,15 +67,8 @@ PoseProblem pose_problem_of(const PlacePoints& points, const Frame& frame, std::
   PoseProblem problem;
   problem.camera = frame.camera.get();
   problem.T_camera_world = T_camera_world;
-  for (const PointMatch& match : matches) {
-    const std::uint32_t feature = match.feature;
-    problem.points.push_back(points.positions[match.point]);
-    problem.x.push_back(frame.x[feature]);
-    problem.y.push_back(frame.y[feature]);
-    problem.right_x.push_back(frame.right_x[feature]);
-    problem.inverse_sigma2.push_back(frame.pyramid->inverse_sigma2[frame.features.octave[feature]]);
-    problem.weight.push_back(frame.static_probability[feature]);
-  }
+  for (const PointMatch& match : matches)
+    geometry::add_observation(problem, frame, match.feature, points.positions[match.point]);
   return problem;
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,17 +25,6 @@ struct PlacePoints {
 
 /// All points that the keyframes see, each once, in the order of the keyframes and their features.
 PlacePoints points_seen_by(const Map& map, std::span<const KeyFrameId> keyframes);
-
-/// Where a point is expected in a frame. Nothing outside the image, at a distance from which its descriptor is not
-/// found, or seen from more than 60 degrees off its mean viewing direction (Mur-Artal et al. 2015, section V-D).
-struct ExpectedView {
-  Eigen::Vector2d pixel;
-  double right_x = 0.0;
-  int level = 0;
-};
-std::optional<ExpectedView> expected_view(const Frame& frame, const Eigen::Isometry3d& T_camera_world,
-                                          const Eigen::Vector3d& position, const Eigen::Vector3d& direction,
-                                          float minimum_distance, float maximum_distance);
 
 /// A point of PlacePoints and the feature of the frame that shows it.
 struct PointMatch {

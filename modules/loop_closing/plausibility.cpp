@@ -6,6 +6,7 @@
 #include <queue>
 #include <tuple>
 
+#include "holdfast/geometry/expected_view.hpp"
 #include "holdfast/geometry/so3.hpp"
 
 namespace holdfast {
@@ -72,8 +73,8 @@ PlacePoints old_points_in_view(const LoopClosingSettings& settings, const Map& m
   }();
   PlacePoints points;
   map.points().for_each([&](MapPointId point_id, const MapPoint& point) {
-    if (!expected_view(keyframe.frame, keyframe.frame.T_camera_world, point.position, point.viewing_direction,
-                       point.minimum_distance, point.maximum_distance))
+    if (!geometry::expected_view(keyframe.frame, keyframe.frame.T_camera_world, point.position, point.viewing_direction,
+                                 point.minimum_distance, point.maximum_distance))
       return;
     for (const Observation& observation : point.observations)
       if (near[observation.keyframe.slot] != 0) return;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "holdfast/core/hamming.hpp"
+#include "holdfast/geometry/expected_view.hpp"
 #include "holdfast/mapping/local_mapper.hpp"
 #include "reprojection.hpp"
 
@@ -62,31 +63,22 @@ void LocalMapper::fuse_with_neighbours(KeyFrameId id) {
 
 void LocalMapper::fuse_into(KeyFrameId target, const std::vector<MapPointId>& points) {
   const Frame& frame = map_.keyframe(target).frame;
-  const Camera& camera = *frame.camera;
-  const ScalePyramid& pyramid = *frame.pyramid;
-  const Eigen::Vector3d centre = frame.T_world_camera().translation();
   std::vector<std::uint32_t> candidates;
   for (const MapPointId id : points) {
     const MapPoint* point = map_.find_point(id);
     if (point == nullptr || map_.feature_of(id, target) >= 0) continue;
-    const Eigen::Vector3d in_camera = frame.T_camera_world * point->position;
-    if (in_camera.z() <= 0.05) continue;
-    const Eigen::Vector2d pixel = camera.project(in_camera);
-    const float x = static_cast<float>(pixel.x()), y = static_cast<float>(pixel.y());
-    if (!frame.grid.covers(x, y)) continue;
-    const Eigen::Vector3d ray = point->position - centre;
-    const double distance = ray.norm();
-    if (distance < 0.8 * point->minimum_distance || distance > 1.2 * point->maximum_distance) continue;
-    if (ray.dot(point->viewing_direction) < 0.5 * distance) continue;
-    const double right_x = camera.right_x(pixel.x(), in_camera.z());
-    const int level = pyramid.predict_level(point->maximum_distance, distance);
+    const auto view = geometry::expected_view(frame, frame.T_camera_world, point->position, point->viewing_direction,
+                                              point->minimum_distance, point->maximum_distance);
+    if (!view) continue;
 
     candidates.clear();
-    frame.grid.query(x, y, window * pyramid.scale[static_cast<std::size_t>(level)], frame.x, frame.y, candidates);
+    frame.grid.query(static_cast<float>(view->pixel.x()), static_cast<float>(view->pixel.y()),
+                     window * frame.pyramid->scale[static_cast<std::size_t>(view->level)], frame.x, frame.y,
+                     candidates);
     std::erase_if(candidates, [&](std::uint32_t feature) {
       const int octave = frame.features.octave[feature];
-      if (octave < level - 1 || octave > level) return true;
-      return !reprojects_onto(frame, feature, pixel, right_x);
+      if (octave < view->level - 1 || octave > view->level) return true;
+      return !reprojects_onto(frame, feature, view->pixel, view->right_x);
     });
     const NearestDescriptors nearest =
         nearest_descriptors(point->descriptor, frame.features.descriptors.data(), candidates);

@@ -21,6 +21,9 @@ struct LoopJob {
   std::vector<KeyFrameId> removed;
 };
 
+/// What the full adjustment thread works on: the whole map.
+struct AdjustmentJob {};
+
 /// What the segmentation thread works on.
 struct SegmentationJob {
   SensorFrame frame;
@@ -69,7 +72,11 @@ struct Pipeline::State {
   bool close_loops(const LoopJob& job, StageTimes& times);
   void adjust_map(StageTimes& times);
   void segment(const SegmentationJob& job, StageTimes& times);
-  void keep_times(StageTimes times) {
+  /// Does work that fills stage times, and keeps them for take_background_times().
+  template <class Work>
+  void in_background(const Work& work) {
+    StageTimes times;
+    work(times);
     const std::lock_guard lock(record_mutex);
     background_times.push_back(std::move(times));
   }
@@ -98,7 +105,7 @@ struct Pipeline::State {
 
   // Threads last: they use everything above, and each hands its work on to the one before it here.
   std::optional<Worker<SegmentationJob>> segmentation;
-  std::optional<Worker<char>> full_adjustment;
+  std::optional<Worker<AdjustmentJob>> full_adjustment;
   std::optional<Worker<LoopJob>> loop_closing;
   std::optional<Worker<KeyFrameId>> mapping;
 };
@@ -107,25 +114,18 @@ void Pipeline::State::start_threads() {
   const std::size_t capacity = parts.threads.keyframe_queue;
   if (dynamic_cast<NullSegmenter*>(parts.segmenter.get()) == nullptr)
     segmentation.emplace("segmentation", 1, [this](SegmentationJob& job) {
-      StageTimes times;
-      segment(job, times);
-      keep_times(std::move(times));
+      in_background([&](StageTimes& times) { segment(job, times); });
     });
-  full_adjustment.emplace("full adjustment", 1, [this](char&) {
-    StageTimes times;
-    adjust_map(times);
-    keep_times(std::move(times));
-  });
+  full_adjustment.emplace("full adjustment", 1,
+                          [this](AdjustmentJob&) { in_background([&](StageTimes& times) { adjust_map(times); }); });
   loop_closing.emplace("loop closing", capacity, [this](LoopJob& job) {
-    StageTimes times;
-    const bool closed = close_loops(job, times);
-    keep_times(std::move(times));
-    if (closed) full_adjustment->queue().push_newest(0);
+    bool closed = false;
+    in_background([&](StageTimes& times) { closed = close_loops(job, times); });
+    if (closed) full_adjustment->queue().push_newest({});
   });
   mapping.emplace("local mapping", capacity, [this](KeyFrameId& keyframe) {
-    StageTimes times;
-    LoopJob job = refine(keyframe, times);
-    keep_times(std::move(times));
+    LoopJob job;
+    in_background([&](StageTimes& times) { job = refine(keyframe, times); });
     loop_closing->queue().push(std::move(job));
   });
 }
@@ -255,11 +255,8 @@ void Pipeline::finish() {
   s.finished = true;
   s.rethrow_failures();
   // What was seen after the last loop ties its two ends together further: the result deserves it.
-  if (s.keyframes_since_adjustment > 0 && !s.interrupted) {
-    StageTimes times;
-    s.adjust_map(times);
-    s.keep_times(std::move(times));
-  }
+  if (s.keyframes_since_adjustment > 0 && !s.interrupted)
+    s.in_background([&](StageTimes& times) { s.adjust_map(times); });
   for (const auto& observer : s.parts.observers) observer->on_finish(s.map);
 }
 

@@ -5,6 +5,7 @@
 
 #include "holdfast/core/hamming.hpp"
 #include "holdfast/geometry/alignment.hpp"
+#include "holdfast/geometry/pose_observation.hpp"
 #include "holdfast/geometry/se3.hpp"
 #include "holdfast/tracking/tracker.hpp"
 
@@ -22,12 +23,7 @@ void Tracker::state_problem() {
       current_.map_points[i] = MapPointId();
       continue;
     }
-    problem_.points.push_back(point->position);
-    problem_.x.push_back(current_.x[i]);
-    problem_.y.push_back(current_.y[i]);
-    problem_.right_x.push_back(current_.right_x[i]);
-    problem_.inverse_sigma2.push_back(current_.pyramid->inverse_sigma2[current_.features.octave[i]]);
-    problem_.weight.push_back(current_.static_probability[i]);
+    geometry::add_observation(problem_, current_, i, point->position);
     problem_features_.push_back(static_cast<std::uint32_t>(i));
   }
   problem_.inlier.assign(problem_.size(), 0);

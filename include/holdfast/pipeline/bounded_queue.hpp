@@ -22,6 +22,9 @@ struct QueueCounts {
   std::size_t longest = 0;    ///< most values that waited at one time
   double wait_total = 0.0;    ///< sum over the values that came out [s]
   double wait_longest = 0.0;  ///< [s]
+
+  /// Of the values that came out [s].
+  double mean_wait() const { return taken == 0 ? 0.0 : wait_total / static_cast<double>(taken); }
 };
 
 /// First in, first out, between threads, and never longer than its capacity. Waits without spinning.
