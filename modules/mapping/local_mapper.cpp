@@ -4,13 +4,16 @@
 #include <algorithm>
 #include <utility>
 
+#include "static_features.hpp"
+
 namespace holdfast {
 
-KeyFrameId LocalMapper::insert(const Frame& frame, StageTimes& times) {
+KeyFrameId LocalMapper::insert(const Frame& frame, bool points_wait, StageTimes& times) {
   const StageTimer timer(times, "mapping: insertion");
   const KeyFrameId keyframe = map_.add_keyframe(frame);
   ++counts_.keyframes_made;
-  make_points_from_depth(keyframe);
+  drop_moving_features(keyframe);
+  if (!points_wait) make_points_from_depth(keyframe);
   for (const MapPointId point : map_.keyframe(keyframe).frame.map_points)
     if (point.valid()) map_.update_point(point);
   map_.update_covisibility(keyframe, settings_.covisibility_minimum);
@@ -25,6 +28,10 @@ std::vector<KeyFrameId> LocalMapper::refine(KeyFrameId keyframe, StageTimes& tim
     {
       const std::lock_guard lock(mutex_);
       if (map_.find_keyframe(keyframe) == nullptr) return {};
+      // Its mask may have come since it was inserted.
+      drop_moving_features(keyframe);
+      make_points_from_depth(keyframe);
+      remove_moving_points();
       remove_weak_points(keyframe);
     }
     triangulate_points(keyframe);
@@ -62,13 +69,28 @@ void LocalMapper::make_points_from_depth(KeyFrameId id) {
   for (const auto& [depth, feature] : by_depth) {
     if (depth > close && rank >= settings_.minimum_depth_points) break;
     ++rank;
-    if (frame.map_points[feature].valid()) continue;
+    if (frame.map_points[feature].valid() || !is_static(frame, feature)) continue;
     const MapPointId point = map_.add_point(T_world_camera * frame.camera_point(feature), keyframe.sequence);
     map_.add_observation(point, id, feature);
     map_.update_point(point);
     recent_points_.push_back(point);
     ++counts_.points_from_depth;
   }
+}
+
+void LocalMapper::drop_moving_features(KeyFrameId id) {
+  const Frame& frame = map_.keyframe(id).frame;
+  for (std::uint32_t i = 0; i < frame.size(); ++i)
+    if (frame.map_points[i].valid() && !is_static(frame, i)) map_.remove_observation(frame.map_points[i], id);
+}
+
+void LocalMapper::remove_moving_points() {
+  std::vector<MapPointId> moving;
+  map_.points().for_each([&](MapPointId id, const MapPoint& point) {
+    if (point.static_log_odds < static_cast<float>(settings_.moving_log_odds)) moving.push_back(id);
+  });
+  for (const MapPointId id : moving) map_.remove_point(id);
+  counts_.points_moving += moving.size();
 }
 
 void LocalMapper::remove_weak_points(KeyFrameId id) {

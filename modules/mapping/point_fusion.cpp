@@ -6,6 +6,7 @@
 #include "holdfast/geometry/expected_view.hpp"
 #include "holdfast/mapping/local_mapper.hpp"
 #include "reprojection.hpp"
+#include "static_features.hpp"
 
 namespace holdfast {
 
@@ -77,7 +78,7 @@ void LocalMapper::fuse_into(KeyFrameId target, const std::vector<MapPointId>& po
                      candidates);
     std::erase_if(candidates, [&](std::uint32_t feature) {
       const int octave = frame.features.octave[feature];
-      if (octave < view->level - 1 || octave > view->level) return true;
+      if (octave < view->level - 1 || octave > view->level || !is_static(frame, feature)) return true;
       return !reprojects_onto(frame, feature, view->pixel, view->right_x);
     });
     const NearestDescriptors nearest =

@@ -7,6 +7,7 @@
 #include "holdfast/geometry/triangulation.hpp"
 #include "holdfast/mapping/local_mapper.hpp"
 #include "reprojection.hpp"
+#include "static_features.hpp"
 
 namespace holdfast {
 
@@ -31,7 +32,7 @@ bool agrees(const Frame& frame, std::uint32_t feature, const Eigen::Vector3d& in
 std::vector<std::uint32_t> free_features(const Frame& frame) {
   std::vector<std::uint32_t> free;
   for (std::uint32_t i = 0; i < frame.size(); ++i)
-    if (!frame.map_points[i].valid()) free.push_back(i);
+    if (!frame.map_points[i].valid() && is_static(frame, i)) free.push_back(i);
   return free;
 }
 

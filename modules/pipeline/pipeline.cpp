@@ -10,6 +10,7 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/map_mutex.hpp"
 #include "holdfast/map_io/map_export.hpp"
+#include "holdfast/pipeline/segmentation_desk.hpp"
 
 namespace holdfast {
 
@@ -24,12 +25,6 @@ struct LoopJob {
 /// What the full adjustment thread works on: the whole map.
 struct AdjustmentJob {};
 
-/// What the segmentation thread works on.
-struct SegmentationJob {
-  SensorFrame frame;
-  KeyFrameId keyframe;
-};
-
 PipelineParts checked(PipelineParts parts) {
   HOLDFAST_CHECK(parts.features != nullptr && parts.optimizer != nullptr,
                  "features " << (parts.features != nullptr) << " optimizer " << (parts.optimizer != nullptr));
@@ -39,7 +34,7 @@ PipelineParts checked(PipelineParts parts) {
 }
 
 FilterChain chain_of(PipelineParts& parts) {
-  FilterChain chain;
+  FilterChain chain(parts.evidence);
   for (auto& [name, filter] : parts.filters) chain.add(name, std::move(filter));
   return chain;
 }
@@ -59,6 +54,10 @@ struct Pipeline::State {
     closer.set_full_adjustment(&adjustment);
     for (const KeyFrameId keyframe : map.keyframes_by_age())
       detector.add(keyframe, map.keyframe(keyframe).frame.features.descriptors);
+    if (dynamic_cast<NullSegmenter*>(parts.segmenter.get()) == nullptr) {
+      tracker.expect_masks(parts.segmenter->classes(), parts.segmentation.memory);
+      segmentation.emplace(*parts.segmenter, parts.segmentation, parts.threads.threaded);
+    }
     if (parts.localise_only)
       tracker.localise_only();
     else if (parts.threads.threaded)
@@ -71,7 +70,12 @@ struct Pipeline::State {
   /// True when a loop was closed and the whole map should be adjusted.
   bool close_loops(const LoopJob& job, StageTimes& times);
   void adjust_map(StageTimes& times);
-  void segment(const SegmentationJob& job, StageTimes& times);
+  /// Gives the masks that have come to the tracker, and the keyframes that waited for them to mapping.
+  void take_masks(StageTimes& times);
+  /// Asks for the mask of the frame last tracked, if it should have one. A keyframe that cannot be segmented now goes
+  /// on without.
+  void ask_for_mask(const SensorFrame& frame, const FrameResult& result, StageTimes& times);
+  void hand_to_mapping(KeyFrameId keyframe, StageTimes& times);
   /// Does work that fills stage times, and keeps them for take_background_times().
   template <class Work>
   void in_background(const Work& work) {
@@ -98,24 +102,22 @@ struct Pipeline::State {
   bool has_frame = false;
   double last_timestamp = 0.0;
   std::uint64_t keyframes_deferred = 0;
+  std::uint64_t frames_fed = 0;
+  std::vector<double> mask_latencies;
 
   mutable std::mutex record_mutex;
   std::vector<StageTimes> background_times;
   LoopRecord loop_record;
 
   // Threads last: they use everything above, and each hands its work on to the one before it here.
-  std::optional<Worker<SegmentationJob>> segmentation;
   std::optional<Worker<AdjustmentJob>> full_adjustment;
   std::optional<Worker<LoopJob>> loop_closing;
   std::optional<Worker<KeyFrameId>> mapping;
+  std::optional<SegmentationDesk> segmentation;
 };
 
 void Pipeline::State::start_threads() {
   const std::size_t capacity = parts.threads.keyframe_queue;
-  if (dynamic_cast<NullSegmenter*>(parts.segmenter.get()) == nullptr)
-    segmentation.emplace("segmentation", 1, [this](SegmentationJob& job) {
-      in_background([&](StageTimes& times) { segment(job, times); });
-    });
   full_adjustment.emplace("full adjustment", 1,
                           [this](AdjustmentJob&) { in_background([&](StageTimes& times) { adjust_map(times); }); });
   loop_closing.emplace("loop closing", capacity, [this](LoopJob& job) {
@@ -195,9 +197,39 @@ void Pipeline::State::adjust_map(StageTimes& times) {
   loop_record.adjustments.push_back(summary);
 }
 
-void Pipeline::State::segment(const SegmentationJob& job, StageTimes& times) {
-  const StageTimer timer(times, "segmentation");
-  parts.segmenter->segment(job.frame);
+void Pipeline::State::hand_to_mapping(KeyFrameId keyframe, StageTimes& times) {
+  if (mapping) {
+    // Tracking needs the points of this keyframe adjusted soon; an older adjustment has done most of its good.
+    if (!parts.threads.unpaced) mapper.request_stop();
+    mapping->queue().push(keyframe);
+    return;
+  }
+  if (close_loops(refine(keyframe, times), times)) adjust_map(times);
+}
+
+void Pipeline::State::take_masks(StageTimes& times) {
+  if (!segmentation) return;
+  while (std::optional<SegmentedFrame> segmented = segmentation->fetch(frames_fed)) {
+    tracker.mask_came(segmented->frame.index, segmented->segmentation);
+    mask_latencies.push_back(last_timestamp - segmented->frame.timestamp);
+    if (!segmented->keyframe.valid()) continue;
+    {
+      const TrackingLock lock(map_mutex);
+      tracker.judge_keyframe(segmented->frame, segmented->segmentation, segmented->keyframe);
+    }
+    hand_to_mapping(segmented->keyframe, times);
+  }
+  tracker.hold_keyframes(segmentation->keyframes_inside() > 0);
+}
+
+void Pipeline::State::ask_for_mask(const SensorFrame& frame, const FrameResult& result, StageTimes& times) {
+  if (segmentation && (result.is_keyframe || segmentation->wants(frames_fed)) && segmentation->has_room()) {
+    tracker.await_mask();
+    segmentation->hand_in(frame, result.is_keyframe ? result.keyframe : KeyFrameId(), times);
+    tracker.hold_keyframes(segmentation->keyframes_inside() > 0);
+  } else if (result.is_keyframe) {
+    hand_to_mapping(result.keyframe, times);
+  }
 }
 
 Pipeline::Pipeline(PipelineParts parts) : state_(std::make_unique<State>(checked(std::move(parts)))) {}
@@ -214,6 +246,8 @@ FrameResult Pipeline::feed(const SensorFrame& frame) {
   if (s.mapping && s.parts.threads.unpaced) s.mapping->queue().wait_for_room();
 
   FrameResult result;
+  s.take_masks(result.times);
+  ++s.frames_fed;
   const Stopwatch watch;
   s.tracker.begin(frame, result);
   {
@@ -225,20 +259,15 @@ FrameResult Pipeline::feed(const SensorFrame& frame) {
       ++s.keyframes_deferred;
     }
     if (result.is_keyframe) {
-      result.keyframe = s.mapper.insert(s.tracker.frame(), result.times);
-      if (s.mapping) s.tracker.keyframe_added(result.keyframe);
+      // Without a map there is nothing to track by until the mask comes: the first keyframe's points cannot wait.
+      const bool wait_for_mask = s.segmentation && result.status != TrackingStatus::initialised;
+      result.keyframe = s.mapper.insert(s.tracker.frame(), wait_for_mask, result.times);
+      if (s.mapping || s.segmentation) s.tracker.keyframe_added(result.keyframe);
     }
   }
+  s.ask_for_mask(frame, result, result.times);
   if (result.is_keyframe) {
-    if (s.mapping) {
-      // Tracking needs the points of this keyframe adjusted soon; an older adjustment has done most of its good.
-      if (!s.parts.threads.unpaced) s.mapper.request_stop();
-      s.mapping->queue().push(result.keyframe);
-      if (s.segmentation) s.segmentation->queue().push_newest({frame, result.keyframe});
-    } else {
-      if (s.close_loops(s.refine(result.keyframe, result.times), result.times)) s.adjust_map(result.times);
-      s.tracker.keyframe_added(result.keyframe);
-    }
+    if (!s.mapping && !s.segmentation) s.tracker.keyframe_added(result.keyframe);
     result.T_world_camera = s.tracker.frame().T_world_camera();
   }
   for (const auto& observer : s.parts.observers) observer->on_frame(frame, s.tracker.frame(), result);
@@ -248,10 +277,14 @@ FrameResult Pipeline::feed(const SensorFrame& frame) {
 void Pipeline::finish() {
   State& s = *state_;
   // In the order in which work is handed on, so that nothing is left behind.
+  if (s.segmentation) {
+    s.segmentation->finish();
+    s.segmentation->rethrow();
+    s.in_background([&](StageTimes& times) { s.take_masks(times); });
+  }
   if (s.mapping) s.mapping->finish();
   if (s.loop_closing) s.loop_closing->finish();
   if (s.full_adjustment) s.full_adjustment->finish();
-  if (s.segmentation) s.segmentation->finish();
   s.finished = true;
   s.rethrow_failures();
   // What was seen after the last loop ties its two ends together further: the result deserves it.
@@ -268,8 +301,13 @@ void Pipeline::interrupt() {
 
 std::vector<StageTimes> Pipeline::take_background_times() {
   const std::lock_guard lock(state_->record_mutex);
-  return std::exchange(state_->background_times, {});
+  std::vector<StageTimes> times = std::exchange(state_->background_times, {});
+  if (state_->segmentation)
+    for (StageTimes& more : state_->segmentation->take_times()) times.push_back(std::move(more));
+  return times;
 }
+
+const std::vector<double>& Pipeline::mask_latencies() const { return state_->mask_latencies; }
 
 std::uint64_t Pipeline::keyframes_deferred() const { return state_->keyframes_deferred; }
 
@@ -278,7 +316,8 @@ std::vector<WorkerCounts> Pipeline::worker_counts() const {
   if (state_->mapping) counts.push_back(state_->mapping->counts());
   if (state_->loop_closing) counts.push_back(state_->loop_closing->counts());
   if (state_->full_adjustment) counts.push_back(state_->full_adjustment->counts());
-  if (state_->segmentation) counts.push_back(state_->segmentation->counts());
+  if (state_->segmentation)
+    if (const auto segmentation = state_->segmentation->worker_counts()) counts.push_back(*segmentation);
   return counts;
 }
 

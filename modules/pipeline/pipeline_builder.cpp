@@ -11,6 +11,10 @@ namespace holdfast {
 std::vector<SectionDescription> pipeline_sections() {
   return {{"tracking", "How poses are found, and when a frame becomes a keyframe.",
            ParameterTable<TrackingSettings>().parameters()},
+          {"segmentation", "Which frames the segmenter sees, and when its answer counts.",
+           ParameterTable<SegmentationSettings>().parameters()},
+          {"evidence", "What becomes of the evidence that filters give.",
+           ParameterTable<EvidenceSettings>().parameters()},
           {"mapping", "How the map around a new keyframe is made and kept.",
            ParameterTable<MappingSettings>().parameters()},
           {"loop_closing", "When a place counts as seen again, and how the map is corrected then.",
@@ -103,6 +107,8 @@ BuiltPipeline build_pipeline(const Configuration& configuration, const Registry&
   for (const ModuleChoice& choice : configuration.observers)
     parts.observers.push_back(create.operator()<Observer>(choice));
   parts.tracking = section<TrackingSettings>(configuration, "tracking");
+  parts.segmentation = section<SegmentationSettings>(configuration, "segmentation");
+  parts.evidence = section<EvidenceSettings>(configuration, "evidence");
   parts.mapping = section<MappingSettings>(configuration, "mapping");
   parts.loop_closing = section<LoopClosingSettings>(configuration, "loop_closing");
   parts.threads.threaded = !context.sequential;

@@ -1,20 +1,73 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/tracking/filter_chain.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace holdfast {
 
-void FilterChain::apply(const FilterContext& context, Frame& frame) {
-  evidence_.reset(frame.size());
+bool FilterChain::has(Stage stage) const {
+  return std::any_of(filters_.begin(), filters_.end(), [&](const auto& filter) {
+    return filter->needs().matches == (stage == Stage::after_matching);
+  });
+}
+
+void FilterChain::apply(std::size_t filter, const FilterContext& context) {
+  evidence_.begin_stage(names_[filter]);
+  filters_[filter]->apply(context, evidence_);
+}
+
+void FilterChain::judge(Stage stage, const FilterContext& context) {
   for (std::size_t i = 0; i < filters_.size(); ++i) {
-    evidence_.begin_stage(names_[i]);
-    filters_[i]->apply(context, evidence_);
+    const Needs needs = filters_[i]->needs();
+    if (needs.matches != (stage == Stage::after_matching)) continue;
+    if (needs.pose_prior && context.T_camera_world == nullptr) continue;
+    apply(i, context);
   }
-  for (const StaticEvidence::Statement& statement : evidence_.statements()) {
-    const float log_odds = evidence_.log_odds(statement.feature);
-    frame.static_probability[statement.feature] = 1.0F / (1.0F + std::exp(-log_odds));
+}
+
+float FilterChain::probability(float log_odds) const {
+  const float p = 1.0F / (1.0F + std::exp(-log_odds));
+  if (settings_.removal == "hard") return p < static_cast<float>(settings_.threshold) ? 0.0F : 1.0F;
+  return p < static_cast<float>(settings_.ignore_below) ? 0.0F : p;
+}
+
+void FilterChain::weigh(const Map& map, Frame& frame) const {
+  if (filters_.empty()) return;
+  frame.static_probability.resize(frame.size());
+  frame.measured_log_odds.resize(frame.size());
+  const float start = static_cast<float>(settings_.static_log_odds);
+  for (std::size_t i = 0; i < frame.size(); ++i) {
+    float measured = evidence_.measurement(i);
+    if (frame.map_points[i].valid())
+      if (const MapPoint* point = map.find_point(frame.map_points[i])) measured += point->static_log_odds;
+    frame.measured_log_odds[i] = measured;
+    frame.static_probability[i] = probability(start + evidence_.prior(i) + measured);
   }
+  frame.coarse.static_log_odds = evidence_.cells();
+}
+
+void FilterChain::carry(const Frame& frame, Map& map) const {
+  const float limit = static_cast<float>(settings_.limit);
+  const float kept = static_cast<float>(settings_.carried_share), share = static_cast<float>(settings_.measured_share);
+  for (std::size_t i = 0; i < frame.size(); ++i) {
+    MapPoint* point = map.find_point(frame.map_points[i]);
+    if (point == nullptr) continue;
+    point->static_log_odds =
+        std::clamp(kept * point->static_log_odds + share * evidence_.measurement(i), -limit, limit);
+  }
+  for (const StaticEvidence::PointStatement& statement : evidence_.point_statements())
+    if (MapPoint* point = map.find_point(statement.point))
+      point->static_log_odds = std::clamp(point->static_log_odds + share * statement.log_odds, -limit, limit);
+}
+
+void FilterChain::judge_segmented(const FilterContext& context, Frame& frame) {
+  begin(frame);
+  for (std::size_t i = 0; i < filters_.size(); ++i)
+    if (filters_[i]->needs().segmentation) apply(i, context);
+  const float start = static_cast<float>(settings_.static_log_odds);
+  for (std::size_t i = 0; i < frame.size(); ++i)
+    frame.static_probability[i] = probability(start + evidence_.prior(i) + frame.measured_log_odds[i]);
 }
 
 }  // namespace holdfast

@@ -16,7 +16,8 @@ FrameBuilder::FrameBuilder(const Camera& camera, FeatureExtractor& extractor, do
       pyramid_(std::make_shared<const ScalePyramid>(extractor.pyramid())),
       extractor_(extractor),
       depth_edge_ratio_(depth_edge_ratio),
-      undistortion_(camera) {
+      undistortion_(camera),
+      coarse_sampler_(camera) {
   camera.undistorted_bounds(minimum_, maximum_);
 }
 
@@ -45,8 +46,10 @@ void FrameBuilder::build(const SensorFrame& sensor_frame, Frame& frame, StageTim
   frame.pyramid = pyramid_;
   undistortion_.undistort(frame.features.x, frame.features.y, frame.x, frame.y);
   read_depth(depth, frame);
+  coarse_sampler_.sample_depth(depth, frame.coarse);
   frame.map_points.assign(frame.size(), MapPointId());
   frame.static_probability.assign(frame.size(), 1.0F);
+  frame.measured_log_odds.assign(frame.size(), 0.0F);
   frame.grid.build(frame.x, frame.y, static_cast<float>(minimum_.x()), static_cast<float>(minimum_.y()),
                    static_cast<float>(maximum_.x()), static_cast<float>(maximum_.y()));
   frame.T_camera_world.setIdentity();

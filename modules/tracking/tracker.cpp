@@ -24,6 +24,10 @@ void Tracker::begin(const SensorFrame& sensor_frame, FrameResult& result) {
   std::swap(current_, previous_);
   builder_.build(sensor_frame, current_, result.times);
   result.features = static_cast<int>(current_.size());
+  if (!propagator_) return;
+  const StageTimer timer(result.times, "masks");
+  propagator_->advance(builder_.grey(), current_, predicted_step());
+  current_.coarse.labels = propagator_->mask().labels;
 }
 
 void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
@@ -36,26 +40,26 @@ void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
     return;
   }
   bool found = false;
-  {
+  if (has_previous_) previous_.T_camera_world = T_previous_reference_ * map_.pose_of(reference_keyframe_);
+  filters_.begin(current_);
+  if (state_ == State::tracking) {
+    if (has_previous_) {
+      const Eigen::Isometry3d T_camera_world = predicted_step() * previous_.T_camera_world;
+      judge_before_matching(sensor_frame, &T_camera_world, result);
+    }
     const StageTimer timer(result.times, "predict");
-    if (has_previous_) previous_.T_camera_world = T_previous_reference_ * map_.pose_of(reference_keyframe_);
-    if (state_ == State::tracking)
-      found = predict_with_velocity(result) || predict_with_keyframe(reference_keyframe_, result);
+    found = predict_with_velocity(result) || predict_with_keyframe(reference_keyframe_, result);
   }
   if (!found) {
     const StageTimer timer(result.times, "relocalisation");
+    filters_.begin(current_);  // what was said of the frame may stand on the wrong pose
     found = recover(result) || relocalise(result);
   }
-  if (found && !filters_.empty()) {
-    const StageTimer timer(result.times, "filters");
-    filters_.apply({.sensor_frame = sensor_frame,
-                    .frame = current_,
-                    .previous = has_previous_ ? &previous_ : nullptr,
-                    .map = map_,
-                    .T_camera_world = &current_.T_camera_world},
-                   current_);
+  if (found && result.method != TrackingMethod::motion_model) {
+    filters_.begin(current_);
+    judge_before_matching(sensor_frame, &current_.T_camera_world, result);
   }
-  found = found && track_local_map(result);
+  found = found && track_local_map(sensor_frame, result);
   state_ = found ? State::tracking : State::lost;
   result.status = found ? TrackingStatus::tracked : TrackingStatus::lost;
   if (found) {
@@ -93,9 +97,40 @@ int Tracker::match_local_map(float window) {
   return adjust_pose();
 }
 
-bool Tracker::track_local_map(FrameResult& result) {
+FilterContext Tracker::filter_context(const SensorFrame& sensor_frame, const Eigen::Isometry3d* T_camera_world) const {
+  const bool has_mask = propagator_ && !propagator_->mask().empty();
+  return {.sensor_frame = sensor_frame,
+          .frame = current_,
+          .previous = has_previous_ ? &previous_ : nullptr,
+          .map = map_,
+          .T_camera_world = T_camera_world,
+          .carried_mask = has_mask ? &propagator_->mask() : nullptr,
+          .classes = classes_};
+}
+
+void Tracker::judge_before_matching(const SensorFrame& sensor_frame, const Eigen::Isometry3d* T_camera_world,
+                                    FrameResult& result) {
+  if (!filters_.has(FilterChain::Stage::before_matching)) return;
+  const StageTimer timer(result.times, "filters");
+  filters_.judge(FilterChain::Stage::before_matching, filter_context(sensor_frame, T_camera_world));
+}
+
+int Tracker::judge_after_matching(const SensorFrame& sensor_frame, int inliers, FrameResult& result) {
+  if (!filters_.has(FilterChain::Stage::after_matching)) return inliers;
+  const StageTimer timer(result.times, "filters");
+  filters_.judge(FilterChain::Stage::after_matching, filter_context(sensor_frame, &current_.T_camera_world));
+  return adjust_pose();
+}
+
+bool Tracker::track_local_map(const SensorFrame& sensor_frame, FrameResult& result) {
+  {
+    const StageTimer timer(result.times, "local map");
+    result.inliers = match_local_map(static_cast<float>(settings_.local_map_window));
+  }
+  if (result.inliers >= settings_.minimum_inliers)
+    result.inliers = judge_after_matching(sensor_frame, result.inliers, result);
   const StageTimer timer(result.times, "local map");
-  result.inliers = match_local_map(static_cast<float>(settings_.local_map_window));
+  filters_.carry(current_, map_);
   result.matches = static_cast<int>(problem_.size());
   result.static_features = static_cast<int>(std::count_if(
       current_.static_probability.begin(), current_.static_probability.end(), [](float p) { return p >= 0.5F; }));
@@ -131,6 +166,7 @@ bool Tracker::needs_keyframe(const FrameResult& result) const {
       close_tracked < settings_.keyframe_close_tracked && close_possible > settings_.keyframe_close_possible;
   const double ratio =
       map_.keyframes().size() < 2 ? std::min(0.4, settings_.keyframe_tracked_ratio) : settings_.keyframe_tracked_ratio;
+  if (holds_keyframes_) return result.inliers < 2 * settings_.minimum_inliers;
   const bool weak = result.inliers < ratio * reference_points;
   const bool due = since_last >= settings_.keyframe_maximum_interval;
   return wants_close || weak || (due && result.inliers < 0.9 * reference_points);
@@ -147,7 +183,36 @@ void Tracker::keyframe_added(KeyFrameId keyframe) {
     records_.back() = {current_.timestamp, keyframe, Eigen::Isometry3d::Identity()};
 }
 
+void Tracker::expect_masks(const std::vector<std::string>& classes, double memory) {
+  classes_ = &classes;
+  propagator_.emplace(*builder_.camera(), builder_.coarse_sampler(), memory);
+}
+
+void Tracker::await_mask() {
+  if (propagator_) propagator_->remember();
+}
+
+void Tracker::mask_came(std::uint64_t frame_index, const Segmentation& segmentation) {
+  if (propagator_) propagator_->apply(frame_index, segmentation);
+}
+
+void Tracker::judge_keyframe(const SensorFrame& sensor_frame, const Segmentation& segmentation, KeyFrameId id) {
+  KeyFrame* keyframe = map_.find_keyframe(id);
+  if (keyframe == nullptr || segmentation.empty()) return;
+  filters_.judge_segmented({.sensor_frame = sensor_frame,
+                            .frame = keyframe->frame,
+                            .map = map_,
+                            .T_camera_world = &keyframe->frame.T_camera_world,
+                            .segmentation = &segmentation,
+                            .classes = classes_},
+                           keyframe->frame);
+}
+
 void Tracker::remember(FrameResult& result) {
+  if (propagator_)
+    propagator_->located(result.status == TrackingStatus::lost || result.status == TrackingStatus::waiting
+                             ? std::nullopt
+                             : std::optional(current_.T_camera_world));
   const bool has_pose = result.status == TrackingStatus::initialised || result.status == TrackingStatus::tracked;
   if (!has_pose) {
     has_previous_ = has_velocity_ = false;

@@ -12,6 +12,7 @@
 namespace holdfast {
 
 void Tracker::state_problem() {
+  filters_.weigh(map_, current_);
   problem_.clear();
   problem_features_.clear();
   problem_.camera = current_.camera.get();
@@ -37,7 +38,12 @@ int Tracker::adjust_pose() {
     return 0;
   }
   current_.T_camera_world = problem_.T_camera_world;
-  return summary.inliers;
+  if (filters_.empty()) return summary.inliers;
+  // What does not stand still may agree by chance, and is no reason to believe a pose.
+  int inliers = 0;
+  for (std::size_t i = 0; i < problem_.size(); ++i)
+    inliers += problem_.inlier[i] != 0 && problem_.weight[i] >= 0.5F ? 1 : 0;
+  return inliers;
 }
 
 void Tracker::drop_outliers() {
@@ -80,14 +86,16 @@ int Tracker::match_previous(float radius_factor) {
   return static_cast<int>(matches.size());
 }
 
+Eigen::Isometry3d Tracker::predicted_step() const {
+  if (!has_velocity_ || velocity_interval_ <= 0.0) return Eigen::Isometry3d::Identity();
+  // Recordings leave frames out: the same speed over the time that really passed.
+  const double ratio = std::clamp((current_.timestamp - previous_.timestamp) / velocity_interval_, 0.0, 4.0);
+  return std::abs(ratio - 1.0) < 0.05 ? velocity_ : geometry::exp_se3(ratio * geometry::log_se3(velocity_));
+}
+
 bool Tracker::predict_with_velocity(FrameResult& result) {
   if (!has_previous_) return false;
-  Eigen::Isometry3d step = Eigen::Isometry3d::Identity();
-  if (has_velocity_ && velocity_interval_ > 0.0) {
-    // Recordings leave frames out: the same speed over the time that really passed.
-    const double ratio = std::clamp((current_.timestamp - previous_.timestamp) / velocity_interval_, 0.0, 4.0);
-    step = std::abs(ratio - 1.0) < 0.05 ? velocity_ : geometry::exp_se3(ratio * geometry::log_se3(velocity_));
-  }
+  const Eigen::Isometry3d step = predicted_step();
   const float window = static_cast<float>(settings_.motion_window);
   for (const float radius : {window, 2.0F * window}) {
     current_.T_camera_world = step * previous_.T_camera_world;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
 
 namespace holdfast {
@@ -11,48 +12,93 @@ namespace {
 /// Says one thing about every feature whose index is a multiple of a number.
 class EveryNth final : public DynamicFilter {
  public:
-  EveryNth(std::size_t n, float log_odds) : n_(n), log_odds_(log_odds) {}
+  EveryNth(std::size_t n, float log_odds, StaticEvidence::Sort sort = StaticEvidence::Sort::measurement)
+      : n_(n), log_odds_(log_odds), sort_(sort) {}
   Needs needs() const override { return {}; }
   void apply(const FilterContext& context, StaticEvidence& evidence) override {
-    for (std::size_t i = 0; i < context.frame.size(); i += n_) evidence.add(i, log_odds_);
+    for (std::size_t i = 0; i < context.frame.size(); i += n_) evidence.add(i, log_odds_, sort_);
   }
 
  private:
   std::size_t n_;
   float log_odds_;
+  StaticEvidence::Sort sort_;
 };
 
 Frame six_features() {
   Frame frame;
   frame.features.resize(6);
   frame.static_probability.assign(6, 1.0F);
+  frame.measured_log_odds.assign(6, 0.0F);
+  frame.map_points.assign(6, MapPointId());
   return frame;
+}
+
+EvidenceSettings plain_settings() {
+  EvidenceSettings settings;
+  settings.static_log_odds = 0.0;
+  settings.ignore_below = 0.0;
+  return settings;
+}
+
+void judge(FilterChain& chain, const Map& map, Frame& frame) {
+  const SensorFrame sensor_frame;
+  const FilterContext context{.sensor_frame = sensor_frame, .frame = frame, .map = map};
+  chain.begin(frame);
+  chain.judge(FilterChain::Stage::before_matching, context);
+  chain.judge(FilterChain::Stage::after_matching, context);
+  chain.weigh(map, frame);
 }
 
 TEST(FilterChain, EmptyChainLeavesFullWeight) {
   FilterChain chain;
   Frame frame = six_features();
-  const Map map;
-  const SensorFrame sensor_frame;
-  chain.apply({.sensor_frame = sensor_frame, .frame = frame, .map = map}, frame);
+  judge(chain, Map(), frame);
   for (const float probability : frame.static_probability) EXPECT_EQ(probability, 1.0F);
 }
 
 TEST(FilterChain, EvidenceAddsUpAndNamesItsStage) {
-  FilterChain chain;
+  FilterChain chain(plain_settings());
   chain.add("even", std::make_unique<EveryNth>(2, -2.0F));
   chain.add("third", std::make_unique<EveryNth>(3, 1.0F));
   Frame frame = six_features();
-  const Map map;
-  const SensorFrame sensor_frame;
-  chain.apply({.sensor_frame = sensor_frame, .frame = frame, .map = map}, frame);
+  judge(chain, Map(), frame);
   EXPECT_NEAR(frame.static_probability[0], 1.0 / (1.0 + std::exp(1.0)), 1e-6);   // -2 + 1
-  EXPECT_EQ(frame.static_probability[1], 1.0F);                                  // nothing said
+  EXPECT_EQ(frame.static_probability[1], 0.5F);                                  // nothing said
   EXPECT_NEAR(frame.static_probability[2], 1.0 / (1.0 + std::exp(2.0)), 1e-6);   // -2
   EXPECT_NEAR(frame.static_probability[3], 1.0 / (1.0 + std::exp(-1.0)), 1e-6);  // +1
   ASSERT_EQ(chain.evidence().stages(), (std::vector<std::string>{"even", "third"}));
   for (const auto& statement : chain.evidence().statements())
     EXPECT_EQ(statement.stage, statement.log_odds < 0 ? 0 : 1);
+}
+
+TEST(FilterChain, HardRemovalLeavesAllOrNothing) {
+  EvidenceSettings settings = plain_settings();
+  settings.removal = "hard";
+  settings.static_log_odds = 1.0;
+  FilterChain chain(settings);
+  chain.add("even", std::make_unique<EveryNth>(2, -2.0F));
+  Frame frame = six_features();
+  judge(chain, Map(), frame);
+  for (std::size_t i = 0; i < frame.size(); ++i) EXPECT_EQ(frame.static_probability[i], i % 2 == 0 ? 0.0F : 1.0F);
+}
+
+TEST(FilterChain, MapPointsCarryMeasurementsButNotPriors) {
+  Map map;
+  Frame frame = six_features();
+  for (MapPointId& id : frame.map_points) id = map.add_point(Eigen::Vector3d::Zero(), 0);
+  FilterChain chain(plain_settings());
+  chain.add("measured", std::make_unique<EveryNth>(2, -2.0F));
+  chain.add("prior", std::make_unique<EveryNth>(3, -1.0F, StaticEvidence::Sort::prior));
+  judge(chain, map, frame);
+  chain.carry(frame, map);
+  const float share = static_cast<float>(chain.settings().measured_share);
+  for (std::size_t i = 0; i < frame.size(); ++i)
+    EXPECT_FLOAT_EQ(map.point(frame.map_points[i]).static_log_odds, i % 2 == 0 ? -2.0F * share : 0.0F);
+  // In the next frame they begin with what is carried.
+  judge(chain, map, frame);
+  EXPECT_NEAR(frame.static_probability[2], 1.0 / (1.0 + std::exp(2.0 + 2.0 * share)), 1e-6);
+  EXPECT_FLOAT_EQ(frame.measured_log_odds[2], -2.0F - 2.0F * share);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "holdfast/core/camera.hpp"
+#include "holdfast/core/coarse_view.hpp"
 #include "holdfast/core/feature_grid.hpp"
 #include "holdfast/core/features.hpp"
 #include "holdfast/core/id.hpp"
@@ -29,7 +30,10 @@ struct Frame {
   std::vector<float> right_x;             ///< column in the virtual right image [px], NaN = none
   std::vector<MapPointId> map_points;     ///< the map point that the feature shows, or an invalid id
   std::vector<float> static_probability;  ///< 1 = certainly part of the static world
+  /// What was measured of each feature's standing still, now and earlier; priors of classes apart. 0 = nothing.
+  std::vector<float> measured_log_odds;
   FeatureGrid grid;                       ///< of the undistorted positions
+  CoarseView coarse;                      ///< the depth image on a coarse grid, and what is known of its parts
 
   Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();
 

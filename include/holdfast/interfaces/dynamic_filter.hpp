@@ -11,6 +11,7 @@
 #include "holdfast/core/map.hpp"
 #include "holdfast/core/module.hpp"
 #include "holdfast/core/sensor_frame.hpp"
+#include "holdfast/interfaces/carried_mask.hpp"
 #include "holdfast/interfaces/segmenter.hpp"
 
 namespace holdfast {
@@ -21,18 +22,24 @@ struct Needs {
   bool segmentation = false;  ///< a segmenter other than none
   bool pose_prior = false;    ///< FilterContext::T_camera_world
   bool map = false;
+  /// Features with map points and the pose that they gave. A filter without this need speaks before features are
+  /// matched, so that what it judges to be moving cannot lead the pose astray.
+  bool matches = false;
 };
 
 /// What filters may look at when a frame is judged. References are valid during apply() only.
 struct FilterContext {
   const SensorFrame& sensor_frame;
-  const Frame& frame;               ///< features with map points where they were matched
+  const Frame& frame;               ///< its features, coarse view, and map points where they were matched
   const Frame* previous = nullptr;  ///< the frame before, nullptr for the first
   const Map& map;
-  /// Best guess of the frame's pose so far, nullptr when there is none.
+  /// Best guess of the frame's pose so far, nullptr when there is none: predicted from the camera's velocity before
+  /// features are matched, found from the matches after.
   const Eigen::Isometry3d* T_camera_world = nullptr;
-  const Segmentation* segmentation = nullptr;         ///< of the sensor frame, or carried to it; nullptr = none
-  const std::vector<std::string>* classes = nullptr;  ///< of the segmenter; never nullptr when segmentation is set
+  /// Of this very frame: set when a keyframe is judged again because its segmentation has come.
+  const Segmentation* segmentation = nullptr;
+  const CarriedMask* carried_mask = nullptr;          ///< carried to this frame from an earlier one; nullptr = none
+  const std::vector<std::string>* classes = nullptr;  ///< of the segmenter; never nullptr when one of the masks is set
 };
 
 /// Log-odds of being part of the static world for every feature of a frame, with which stage said what. 0 = unknown;
@@ -48,11 +55,22 @@ class StaticEvidence {
     std::uint16_t stage;  ///< index into stages()
     Sort sort;
   };
+  /// One thing measured of a map point, whether or not the frame shows it.
+  struct PointStatement {
+    MapPointId point;
+    float log_odds;
+    std::uint16_t stage;
+  };
 
-  explicit StaticEvidence(std::size_t feature_count = 0) { reset(feature_count); }
-  void reset(std::size_t feature_count) {
-    log_odds_.assign(feature_count, 0.0F);
+  explicit StaticEvidence(std::size_t feature_count = 0, std::size_t cell_count = 0) {
+    reset(feature_count, cell_count);
+  }
+  void reset(std::size_t feature_count, std::size_t cell_count = 0) {
+    prior_.assign(feature_count, 0.0F);
+    measurement_.assign(feature_count, 0.0F);
+    cells_.assign(cell_count, 0.0F);
     statements_.clear();
+    point_statements_.clear();
     stages_.clear();
   }
 
@@ -60,19 +78,29 @@ class StaticEvidence {
   void begin_stage(std::string_view name) { stages_.emplace_back(name); }
   /// Adds evidence about a feature. Never takes anything away: filters do not delete.
   void add(std::size_t feature, float log_odds, Sort sort = Sort::measurement) {
-    log_odds_[feature] += log_odds;
-    statements_.push_back({static_cast<std::uint32_t>(feature), log_odds,
-                           static_cast<std::uint16_t>(stages_.empty() ? 0 : stages_.size() - 1), sort});
+    (sort == Sort::prior ? prior_ : measurement_)[feature] += log_odds;
+    statements_.push_back({static_cast<std::uint32_t>(feature), log_odds, stage(), sort});
   }
+  /// Adds a measurement of a map point: that it is not where it was, or that it is.
+  void add_point(MapPointId point, float log_odds) { point_statements_.push_back({point, log_odds, stage()}); }
+  /// Adds evidence about what a cell of the frame's coarse view shows; it serves the dense results, not the pose.
+  void add_cell(std::size_t cell, float log_odds) { cells_[cell] += log_odds; }
 
-  std::size_t size() const { return log_odds_.size(); }
-  float log_odds(std::size_t feature) const { return log_odds_[feature]; }
+  std::size_t size() const { return prior_.size(); }
+  float log_odds(std::size_t feature) const { return prior_[feature] + measurement_[feature]; }
+  float prior(std::size_t feature) const { return prior_[feature]; }
+  float measurement(std::size_t feature) const { return measurement_[feature]; }
+  const std::vector<float>& cells() const { return cells_; }
   const std::vector<Statement>& statements() const { return statements_; }
+  const std::vector<PointStatement>& point_statements() const { return point_statements_; }
   const std::vector<std::string>& stages() const { return stages_; }
 
  private:
-  std::vector<float> log_odds_;
+  std::uint16_t stage() const { return static_cast<std::uint16_t>(stages_.empty() ? 0 : stages_.size() - 1); }
+
+  std::vector<float> prior_, measurement_, cells_;
   std::vector<Statement> statements_;
+  std::vector<PointStatement> point_statements_;
   std::vector<std::string> stages_;
 };
 

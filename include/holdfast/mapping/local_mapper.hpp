@@ -22,6 +22,7 @@ struct MappingCounts {
   std::uint64_t points_from_depth = 0;
   std::uint64_t points_triangulated = 0;
   std::uint64_t points_removed = 0;
+  std::uint64_t points_moving = 0;  ///< removed because they were found to move
   std::uint64_t points_fused = 0;
   std::uint64_t observations_removed = 0;  ///< outliers of bundle adjustments
 };
@@ -38,9 +39,10 @@ class LocalMapper {
   LocalMapper(const MappingSettings& settings, Map& map, MapMutex& mutex, Optimizer& optimizer)
       : settings_(settings), map_(map), mutex_(mutex), optimizer_(optimizer) {}
 
-  /// Takes a tracked frame into the map as a keyframe, with points from its depth. Quick; the caller holds the lock of
+  /// Takes a tracked frame into the map as a keyframe, with points from its depth, or without when these have to wait
+  /// for refine(). Only features that are more likely static than not make points. Quick; the caller holds the lock of
   /// the map. Adds the stage "mapping: insertion".
-  KeyFrameId insert(const Frame& frame, StageTimes& times);
+  KeyFrameId insert(const Frame& frame, bool points_wait, StageTimes& times);
 
   /// Works on the map around a keyframe that was inserted, and returns the keyframes that it removed. Takes the lock of
   /// the map for short pieces of work and not while it adjusts. Does nothing for a keyframe that is gone. Adds stages
@@ -55,6 +57,8 @@ class LocalMapper {
 
  private:
   void make_points_from_depth(KeyFrameId keyframe);
+  void drop_moving_features(KeyFrameId keyframe);
+  void remove_moving_points();
   void remove_weak_points(KeyFrameId keyframe);
   void triangulate_points(KeyFrameId keyframe);
   void triangulate_with(KeyFrameId keyframe, KeyFrameId neighbour);

@@ -13,6 +13,7 @@ struct MappingSettings {
   int second_neighbours = 5;
   double weak_found_ratio = 0.25;
   int probation_keyframes = 3;
+  double moving_log_odds = -2.0;
   double redundant_share = 0.9;
   int bundle_keyframes = 20;
   int bundle_robust_iterations = 5;
@@ -36,6 +37,10 @@ struct MappingSettings {
         .add("weak_found_ratio", &S::weak_found_ratio,
              "a new point found in less than this share of the frames that should see it is removed")
         .range(0, 1);
+    table
+        .add("moving_log_odds", &S::moving_log_odds,
+             "a map point whose measured log-odds of standing still are lower than this moves and is removed")
+        .range(-100, 0);
     table.add("probation_keyframes", &S::probation_keyframes, "keyframes during which a new point can be removed")
         .range(1, 100);
     table

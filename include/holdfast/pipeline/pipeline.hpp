@@ -16,6 +16,8 @@
 #include "holdfast/mapping/local_mapper.hpp"
 #include "holdfast/mapping/mapping_settings.hpp"
 #include "holdfast/pipeline/worker.hpp"
+#include "holdfast/segmentation/segmentation_settings.hpp"
+#include "holdfast/tracking/evidence_settings.hpp"
 #include "holdfast/tracking/filter_chain.hpp"
 #include "holdfast/tracking/tracker.hpp"
 #include "holdfast/tracking/tracking_settings.hpp"
@@ -41,6 +43,8 @@ struct PipelineParts {
   std::unique_ptr<LoopDetector> loop_detector;
   std::vector<std::unique_ptr<Observer>> observers;
   TrackingSettings tracking;
+  EvidenceSettings evidence;
+  SegmentationSettings segmentation;
   MappingSettings mapping;
   LoopClosingSettings loop_closing;
   std::uint64_t seed = 1;
@@ -104,6 +108,8 @@ class Pipeline {
 
   /// Stage times of background work done since the last call; in sequential mode they are in each FrameResult.
   std::vector<StageTimes> take_background_times();
+  /// From the stamp of each segmented frame to that of the last frame before its mask counted [s].
+  const std::vector<double>& mask_latencies() const;
   /// Keyframes that were due but found the mapping thread too busy.
   std::uint64_t keyframes_deferred() const;
   /// One entry per thread of the pipeline; empty in sequential mode.

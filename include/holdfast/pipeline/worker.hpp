@@ -34,6 +34,7 @@ class Worker {
   Worker& operator=(const Worker&) = delete;
 
   BoundedQueue<Job>& queue() { return queue_; }
+  const BoundedQueue<Job>& queue() const { return queue_; }
   /// Does what waits, then ends.
   void finish() {
     queue_.close();

@@ -7,27 +7,52 @@
 
 #include "holdfast/core/frame.hpp"
 #include "holdfast/interfaces/dynamic_filter.hpp"
+#include "holdfast/tracking/evidence_settings.hpp"
 
 namespace holdfast {
 
-/// The dynamic filters of a run, one after the other. Empty, it says nothing and every feature keeps full weight.
+/// The dynamic filters of a run, one after the other, and what becomes of their evidence. For each frame: begin(),
+/// judge(before_matching), weigh() as often as matches change, judge(after_matching), weigh(), carry(). An empty chain
+/// says nothing: every feature keeps full weight. One thread.
+///
+/// The log-odds of a feature are the sum of what holds before anything is known (settings), the priors of this frame's
+/// filters, what they measured, and what is carried by the map point that the feature shows. A map point remembers
+/// measurements only: "movable" is said anew in every frame, "moving" lasts.
 class FilterChain {
  public:
+  /// Filters that need matches speak after matching, all others before.
+  enum class Stage { before_matching, after_matching };
+
+  explicit FilterChain(const EvidenceSettings& settings = {}) : settings_(settings) {}
   void add(std::string name, std::unique_ptr<DynamicFilter> filter) {
     names_.push_back(std::move(name));
     filters_.push_back(std::move(filter));
   }
   bool empty() const { return filters_.empty(); }
+  bool has(Stage stage) const;
   std::size_t size() const { return filters_.size(); }
   const std::string& name(std::size_t i) const { return names_[i]; }
   const DynamicFilter& filter(std::size_t i) const { return *filters_[i]; }
 
-  /// Collects the evidence of all filters and sets frame.static_probability: 1 where nothing was said, otherwise the
-  /// logistic function of the log-odds.
-  void apply(const FilterContext& context, Frame& frame);
+  void begin(const Frame& frame) { evidence_.reset(frame.size(), frame.coarse.depth.size()); }
+  /// Lets the filters of a stage speak, in their order. Those that need a pose are silent without one.
+  void judge(Stage stage, const FilterContext& context);
+  /// Sets static_probability, measured_log_odds and the log-odds of the coarse cells.
+  void weigh(const Map& map, Frame& frame) const;
+  /// Adds what was measured to the map points that the frame shows, and to those that filters spoke of.
+  void carry(const Frame& frame, Map& map) const;
+  /// Judges a keyframe again by its own segmentation (context.segmentation): priors anew, measurements as they were.
+  void judge_segmented(const FilterContext& context, Frame& frame);
+
+  /// Of the last frame that was judged, keyframes judged again included.
   const StaticEvidence& evidence() const { return evidence_; }
+  const EvidenceSettings& settings() const { return settings_; }
 
  private:
+  void apply(std::size_t filter, const FilterContext& context);
+  float probability(float log_odds) const;
+
+  EvidenceSettings settings_;
   std::vector<std::string> names_;
   std::vector<std::unique_ptr<DynamicFilter>> filters_;
   StaticEvidence evidence_;

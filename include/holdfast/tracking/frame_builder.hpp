@@ -5,6 +5,7 @@
 #include <memory>
 #include <opencv2/core/mat.hpp>
 
+#include "holdfast/core/coarse_view.hpp"
 #include "holdfast/core/frame.hpp"
 #include "holdfast/core/sensor_frame.hpp"
 #include "holdfast/core/stage_times.hpp"
@@ -25,6 +26,10 @@ class FrameBuilder {
   void build(const SensorFrame& sensor_frame, Frame& frame, StageTimes& times);
 
   const std::shared_ptr<const Camera>& camera() const { return camera_; }
+  const UndistortionTable& undistortion() const { return undistortion_; }
+  const CoarseSampler& coarse_sampler() const { return coarse_sampler_; }
+  /// The grey image of the last frame that was built (8UC1); valid until the next.
+  const cv::Mat& grey() const { return grey_; }
 
  private:
   void read_depth(const cv::Mat& depth, Frame& frame) const;
@@ -34,6 +39,7 @@ class FrameBuilder {
   FeatureExtractor& extractor_;
   double depth_edge_ratio_;
   UndistortionTable undistortion_;
+  CoarseSampler coarse_sampler_;
   Eigen::Vector2d minimum_, maximum_;
   cv::Mat grey_;
 };

@@ -4,6 +4,8 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "holdfast/core/frame.hpp"
@@ -15,6 +17,7 @@
 #include "holdfast/interfaces/feature_extractor.hpp"
 #include "holdfast/interfaces/loop_detector.hpp"
 #include "holdfast/interfaces/optimizer.hpp"
+#include "holdfast/segmentation/mask_propagator.hpp"
 #include "holdfast/tracking/filter_chain.hpp"
 #include "holdfast/tracking/frame_builder.hpp"
 #include "holdfast/tracking/local_map.hpp"
@@ -48,6 +51,20 @@ class Tracker {
   /// The keyframe that the tracked frame became: its matches and its pose, as local mapping left them, are taken over.
   void keyframe_added(KeyFrameId keyframe);
 
+  /// From now on masks are carried from frame to frame; `classes` must outlive the tracker. `memory`: see MaskPropagator.
+  void expect_masks(const std::vector<std::string>& classes, double memory);
+  /// The frame last tracked is going to be segmented.
+  void await_mask();
+  /// The segmentation of an awaited frame has come.
+  void mask_came(std::uint64_t frame_index, const Segmentation& segmentation);
+  /// Judges a keyframe by its own segmentation; the caller holds the lock of the map.
+  void judge_keyframe(const SensorFrame& sensor_frame, const Segmentation& segmentation, KeyFrameId keyframe);
+  /// nullptr when no masks are expected.
+  const CarriedMask* carried_mask() const { return propagator_ ? &propagator_->mask() : nullptr; }
+  const StaticEvidence& evidence() const { return filters_.evidence(); }
+  /// While keyframes wait for their masks, only a frame that is about to lose its place may become one.
+  void hold_keyframes(bool hold) { holds_keyframes_ = hold; }
+
   /// Every tracked frame's pose as the map knows it now; the caller holds the lock of the map. Frames follow the
   /// keyframes that they were tracked against.
   Trajectory trajectory() const;
@@ -62,8 +79,13 @@ class Tracker {
   bool relocalise(FrameResult& result);
   bool fits_surroundings(FrameResult& result);
   bool could_have_come_here() const;
-  bool track_local_map(FrameResult& result);
+  bool track_local_map(const SensorFrame& sensor_frame, FrameResult& result);
   bool needs_keyframe(const FrameResult& result) const;
+  Eigen::Isometry3d predicted_step() const;
+  FilterContext filter_context(const SensorFrame& sensor_frame, const Eigen::Isometry3d* T_camera_world) const;
+  void judge_before_matching(const SensorFrame& sensor_frame, const Eigen::Isometry3d* T_camera_world,
+                             FrameResult& result);
+  int judge_after_matching(const SensorFrame& sensor_frame, int inliers, FrameResult& result);
   void state_problem();
   int adjust_pose();
   int match_local_map(float window);
@@ -89,6 +111,9 @@ class Tracker {
 
   State state_;
   bool localises_only_ = false;
+  bool holds_keyframes_ = false;
+  std::optional<MaskPropagator> propagator_;
+  const std::vector<std::string>* classes_ = nullptr;
   Frame current_, previous_;
   bool has_previous_ = false;  // previous_ has a pose
   Eigen::Isometry3d T_previous_reference_ = Eigen::Isometry3d::Identity();

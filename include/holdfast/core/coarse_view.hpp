@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "holdfast/core/camera.hpp"
+
+namespace holdfast {
+
+/// Where the cells of a coarse view lie: squares of `step` undistorted pixels that cover all that the camera sees.
+struct CoarseGrid {
+  static constexpr int step = 4;  ///< [px]
+
+  int columns = 0, rows = 0;
+  float left = 0, top = 0;  ///< undistorted pixel at the outer corner of cell (0, 0)
+
+  int size() const { return columns * rows; }
+  /// Undistorted pixel at the centre of a cell.
+  float x_of(int column) const { return left + static_cast<float>(step) * (static_cast<float>(column) + 0.5F); }
+  float y_of(int row) const { return top + static_cast<float>(step) * (static_cast<float>(row) + 0.5F); }
+  /// The column or row that holds an undistorted pixel; outside the grid it is negative or too large.
+  int column_of(float x) const { return to_cell(x - left); }
+  int row_of(float y) const { return to_cell(y - top); }
+  /// Index of the cell that holds an undistorted pixel, or -1.
+  int cell_of(float x, float y) const {
+    const int column = column_of(x), row = row_of(y);
+    return column < 0 || row < 0 || column >= columns || row >= rows ? -1 : row * columns + column;
+  }
+  friend bool operator==(const CoarseGrid&, const CoarseGrid&) = default;
+
+ private:
+  static int to_cell(float offset) {
+    return offset < 0.0F ? -1 : static_cast<int>(std::min(offset, 1e6F) * (1.0F / static_cast<float>(step)));
+  }
+};
+
+/// A frame seen coarsely, without distortion: what dense judgements work on. Cell (column, row) is entry
+/// row * columns + column.
+struct CoarseView {
+  CoarseGrid grid;
+  std::vector<float> depth;            ///< along the optical axis at the cell's centre [m], 0 = none
+  std::vector<float> static_log_odds;  ///< of what the cell shows: positive = stands still, 0 = unknown; may be empty
+  /// Index into the segmenter's classes, as segmented or carried here; 255 = unknown. Empty without a mask.
+  std::vector<std::uint8_t> labels;
+
+  bool empty() const { return depth.empty(); }
+};
+
+/// Looks images up at the cells of a camera's coarse view. Immutable after construction; any thread.
+class CoarseSampler {
+ public:
+  explicit CoarseSampler(const Camera& camera);
+
+  const CoarseGrid& grid() const { return grid_; }
+  /// Replaces view.depth by values of a depth image of the camera's size (32FC1 [m]; empty = no depth anywhere): the
+  /// one at the cell's centre, or the nearest within a pixel when that one is missing. Clears the log-odds.
+  void sample_depth(const cv::Mat& depth, CoarseView& view) const;
+  /// Labels (8UC1 of the camera's size) at the cells' centres; `outside` where a cell lies outside the image.
+  void sample_labels(const cv::Mat& labels, std::uint8_t outside, std::vector<std::uint8_t>& cells) const;
+  /// Raw pixel at the centre of a cell as row * width + column, or -1 outside the image.
+  std::int32_t raw_pixel(int cell) const { return raw_[static_cast<std::size_t>(cell)]; }
+
+ private:
+  int width_, height_;
+  CoarseGrid grid_;
+  std::vector<std::int32_t> raw_;
+};
+
+}  // namespace holdfast

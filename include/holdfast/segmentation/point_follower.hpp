@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "holdfast/core/frame.hpp"
+
+namespace holdfast {
+
+/// Image points followed from frame to frame by pyramidal Lucas-Kanade flow at half resolution (Bouguet 2000). Points
+/// are added where the caller wants them and keep rising ids; those that are lost disappear. One thread.
+class PointFollower {
+ public:
+  /// Entry i of each array belongs to point i; ordered by id.
+  struct Points {
+    std::vector<std::uint64_t> id;
+    std::vector<float> raw_x, raw_y;  ///< raw pixel of the full image
+    std::vector<float> x, y;          ///< undistorted pixel
+    std::vector<float> depth;         ///< [m], 0 = none
+    std::vector<std::uint8_t> label;  ///< as the caller sees fit
+
+    std::size_t size() const { return id.size(); }
+  };
+
+  /// Moves the points to a new image (8UC1) of `camera`; `frame` gives the depth.
+  void advance(const cv::Mat& grey, const Frame& frame);
+  /// Adds a point at a raw pixel of the last image.
+  void add(const Frame& frame, float raw_x, float raw_y, std::uint8_t label);
+  /// Keeps the points for which `keep` says so.
+  template <class Keep>
+  void filter(const Keep& keep);
+
+  const Points& points() const { return points_; }
+  std::uint8_t& label(std::size_t point) { return points_.label[point]; }
+
+ private:
+  void compact(const std::vector<std::uint8_t>& keep);
+
+  Points points_;
+  std::uint64_t next_id_ = 0;
+  cv::Mat half_;
+  std::vector<cv::Mat> pyramid_, previous_pyramid_;
+  std::vector<cv::Point2f> before_, after_, step_;
+  std::vector<std::uint8_t> found_;
+  std::vector<float> error_;
+};
+
+template <class Keep>
+void PointFollower::filter(const Keep& keep) {
+  std::vector<std::uint8_t> kept(points_.size());
+  for (std::size_t i = 0; i < points_.size(); ++i) kept[i] = keep(i) ? 1 : 0;
+  compact(kept);
+}
+
+}  // namespace holdfast

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/core/coarse_view.hpp"
+
+#include <cmath>
+
+#include "holdfast/core/error.hpp"
+
+namespace holdfast {
+
+CoarseSampler::CoarseSampler(const Camera& camera) : width_(camera.width), height_(camera.height) {
+  Eigen::Vector2d minimum, maximum;
+  camera.undistorted_bounds(minimum, maximum);
+  grid_.left = static_cast<float>(minimum.x() - 0.5);
+  grid_.top = static_cast<float>(minimum.y() - 0.5);
+  const auto cells = [](double extent) { return static_cast<int>(std::ceil((extent + 1.0) / CoarseGrid::step)); };
+  grid_.columns = cells(maximum.x() - minimum.x());
+  grid_.rows = cells(maximum.y() - minimum.y());
+  raw_.reserve(static_cast<std::size_t>(grid_.size()));
+  for (int row = 0; row < grid_.rows; ++row)
+    for (int column = 0; column < grid_.columns; ++column) {
+      const Eigen::Vector2d raw = camera.distort({grid_.x_of(column), grid_.y_of(row)});
+      const int x = static_cast<int>(std::lround(raw.x())), y = static_cast<int>(std::lround(raw.y()));
+      raw_.push_back(x < 0 || y < 0 || x >= width_ || y >= height_ ? -1 : y * width_ + x);
+    }
+}
+
+void CoarseSampler::sample_depth(const cv::Mat& depth, CoarseView& view) const {
+  view.grid = grid_;
+  view.static_log_odds.clear();
+  view.labels.clear();
+  view.depth.assign(raw_.size(), 0.0F);
+  if (depth.empty()) return;
+  HOLDFAST_CHECK(depth.type() == CV_32FC1 && depth.cols == width_ && depth.rows == height_,
+                 depth.cols << "x" << depth.rows << ", type " << depth.type());
+  for (std::size_t i = 0; i < raw_.size(); ++i) {
+    if (raw_[i] < 0) continue;
+    const int x = raw_[i] % width_, y = raw_[i] / width_;
+    const auto value_at = [&](int column, int row) {
+      if (column < 0 || row < 0 || column >= width_ || row >= height_) return 0.0F;
+      const float value = depth.ptr<float>(row)[column];
+      return value > 0.0F && std::isfinite(value) ? value : 0.0F;
+    };
+    float value = value_at(x, y);
+    for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
+      if (value > 0.0F) break;
+      value = value_at(x + dx, y + dy);
+    }
+    view.depth[i] = value;
+  }
+}
+
+void CoarseSampler::sample_labels(const cv::Mat& labels, std::uint8_t outside, std::vector<std::uint8_t>& cells) const {
+  HOLDFAST_CHECK(labels.type() == CV_8UC1 && labels.cols == width_ && labels.rows == height_,
+                 labels.cols << "x" << labels.rows << ", type " << labels.type());
+  cells.resize(raw_.size());
+  for (std::size_t i = 0; i < raw_.size(); ++i)
+    cells[i] = raw_[i] < 0 ? outside : labels.ptr<std::uint8_t>(raw_[i] / width_)[raw_[i] % width_];
+}
+
+}  // namespace holdfast

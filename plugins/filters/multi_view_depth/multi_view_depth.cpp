@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "multi_view_depth.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace holdfast {
+
+namespace {
+
+/// Depths that differ by less show the same surface [m]: noise of the sensor, and a pose that is only predicted.
+float noise(float depth) { return 0.02F + 0.02F * depth; }
+/// Depths of neighbouring blocks of one surface differ by less [m].
+float continuity(float depth) { return 0.03F + 0.02F * depth; }
+
+}  // namespace
+
+MultiViewDepth::MultiViewDepth(const MultiViewDepthSettings& settings, const CreationContext&) : settings_(settings) {}
+
+void MultiViewDepth::choose_keyframes(const FilterContext& context) {
+  // The best overlapping keyframes of every age: what stood still for long is certain, what moves slowly is only told
+  // by those that are not too young.
+  struct Age {
+    double least;   // s
+    float through;  // weight of a sight through what is there now
+    float same;     // weight of a sight of the same surface
+  };
+  static constexpr std::array<Age, 4> ages{{{10.0, 0.6F, 1.0F}, {3.0, 1.0F, 1.0F}, {1.0, 1.0F, 0.6F}, {0.0, 1.0F, 0.2F}}};
+  const int most_of_age = std::max(1, settings_.keyframes / static_cast<int>(ages.size()));
+  const Eigen::Isometry3d& T_camera_world = *context.T_camera_world;
+  const Eigen::Vector3d centre = T_camera_world.inverse().translation();
+  const Eigen::Vector3d direction = T_camera_world.linear().row(2);
+
+  candidates_.clear();
+  context.map.keyframes().for_each([&](KeyFrameId id, const KeyFrame& keyframe) {
+    const Frame& frame = keyframe.frame;
+    if (frame.coarse.empty() || !(frame.coarse.grid == context.frame.coarse.grid)) return;
+    const double cosine = direction.dot(frame.T_camera_world.linear().row(2));
+    const double distance = (frame.T_world_camera().translation() - centre).norm();
+    constexpr double least_cosine = 0.866;  // 30 degrees, as Bescos et al. allow
+    if (cosine < least_cosine || distance > settings_.reach) return;
+    const double age = context.frame.timestamp - frame.timestamp;
+    std::size_t group = 0;
+    while (group + 1 < ages.size() && age < ages[group].least) ++group;
+    candidates_.push_back({id, group, (1.0 - cosine) / (1.0 - least_cosine) + distance / settings_.reach});
+  });
+  std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
+    if (a.group != b.group) return a.group < b.group;
+    return a.cost != b.cost ? a.cost < b.cost : a.id < b.id;
+  });
+  views_.clear();
+  int of_age = 0;
+  for (std::size_t i = 0; i < candidates_.size(); ++i) {
+    of_age = i > 0 && candidates_[i].group == candidates_[i - 1].group ? of_age + 1 : 0;
+    if (of_age >= most_of_age) continue;
+    const Age& age = ages[candidates_[i].group];
+    views_.push_back({&context.map.keyframe(candidates_[i].id).frame, age.through, age.same});
+  }
+}
+
+void MultiViewDepth::compare(const FilterContext& context) {
+  const CoarseView& view = context.frame.coarse;
+  const CoarseGrid& grid = view.grid;
+  const Camera& camera = *context.frame.camera;
+  const float fx = static_cast<float>(camera.fx), fy = static_cast<float>(camera.fy);
+  const float cx = static_cast<float>(camera.cx), cy = static_cast<float>(camera.cy);
+  columns_ = grid.columns / stride;
+  rows_ = grid.rows / stride;
+  const std::size_t size = static_cast<std::size_t>(columns_ * rows_);
+  depth_.resize(size);
+  through_.assign(size, 0.0F);
+  same_.assign(size, 0.0F);
+  for (int row = 0; row < rows_; ++row)
+    for (int column = 0; column < columns_; ++column)
+      depth_[static_cast<std::size_t>(row * columns_ + column)] =
+          view.depth[static_cast<std::size_t>(row * stride * grid.columns + column * stride)];
+
+  const float margin = static_cast<float>(settings_.margin), slope = static_cast<float>(settings_.margin_slope);
+  for (const View& other : views_) {
+    const Eigen::Isometry3d motion = other.frame->T_camera_world * context.T_camera_world->inverse();
+    const Eigen::Matrix3f R = motion.linear().cast<float>();
+    const Eigen::Vector3f t = motion.translation().cast<float>();
+    const std::vector<float>& there = other.frame->coarse.depth;
+    const std::vector<float>& known = other.frame->coarse.static_log_odds;
+    for (int row = 0; row < rows_; ++row) {
+      const float ray_y = (grid.y_of(row * stride) - cy) / fy;
+      for (int column = 0; column < columns_; ++column) {
+        const std::size_t block = static_cast<std::size_t>(row * columns_ + column);
+        const float depth = depth_[block];
+        if (depth == 0.0F) continue;
+        const float ray_x = (grid.x_of(column * stride) - cx) / fx;
+        const float z = depth * (R(2, 0) * ray_x + R(2, 1) * ray_y + R(2, 2)) + t.z();
+        if (z < 0.1F) continue;
+        const float inverse = 1.0F / z;
+        const float x = fx * (depth * (R(0, 0) * ray_x + R(0, 1) * ray_y + R(0, 2)) + t.x()) * inverse + cx;
+        const float y = fy * (depth * (R(1, 0) * ray_x + R(1, 1) * ray_y + R(1, 2)) + t.y()) * inverse + cy;
+        const int c = grid.column_of(x), r = grid.row_of(y);
+        if (c < 1 || r < 1 || c + 1 >= grid.columns || r + 1 >= grid.rows) continue;
+        const std::size_t cell = static_cast<std::size_t>(r * grid.columns + c);
+        const float seen = there[cell];
+        if (seen == 0.0F) continue;
+        if (std::abs(seen - z) < noise(z)) {
+          if (known.empty() || known[cell] >= 0.0F) same_[block] += other.same;
+          continue;
+        }
+        const float limit = z + margin + slope * z;
+        if (seen < limit) continue;
+        // Near an edge of depth a small error of the pose looks like a sight through.
+        int farther = 0;
+        bool edge = false;
+        for (int dr = -1; dr <= 1; ++dr)
+          for (int dc = -1; dc <= 1; ++dc) {
+            const float neighbour = there[static_cast<std::size_t>((r + dr) * grid.columns + c + dc)];
+            if (neighbour >= limit)
+              ++farther;
+            else if (neighbour > 0.0F)
+              edge = true;
+          }
+        if (!edge && farther >= 6) through_[block] += other.through;
+      }
+    }
+  }
+}
+
+void MultiViewDepth::grow() {
+  const std::size_t size = static_cast<std::size_t>(columns_ * rows_);
+  score_.resize(size);
+  moving_.assign(size, 0);
+  for (std::size_t i = 0; i < size; ++i) score_[i] = same_[i] - 2.0F * through_[i];
+  front_.clear();
+  for (int row = 1; row + 1 < rows_; ++row)
+    for (int column = 1; column + 1 < columns_; ++column) {
+      const int block = row * columns_ + column;
+      if (score_[static_cast<std::size_t>(block)] > -1.0F) continue;
+      int beside = 0;
+      for (int dr = -1; dr <= 1; ++dr)
+        for (int dc = -1; dc <= 1; ++dc)
+          beside += score_[static_cast<std::size_t>(block + dr * columns_ + dc)] <= -1.0F ? 1 : 0;
+      if (beside >= 4) front_.push_back(block);  // itself and three more
+    }
+  for (const int block : front_) moving_[static_cast<std::size_t>(block)] = 1;
+  for (int step = 0; step < settings_.growth && !front_.empty(); ++step) {
+    next_front_.clear();
+    for (const int block : front_) {
+      const int column = block % columns_, row = block / columns_;
+      const float depth = depth_[static_cast<std::size_t>(block)];
+      for (const auto& [dc, dr] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+        const int c = column + dc, r = row + dr;
+        if (c < 0 || r < 0 || c >= columns_ || r >= rows_) continue;
+        const std::size_t other = static_cast<std::size_t>(r * columns_ + c);
+        if (moving_[other] != 0 || depth_[other] == 0.0F) continue;
+        if (score_[other] >= static_cast<float>(settings_.sure)) continue;
+        if (std::abs(depth_[other] - depth) > continuity(depth)) continue;
+        moving_[other] = 1;
+        next_front_.push_back(r * columns_ + c);
+      }
+    }
+    front_.swap(next_front_);
+  }
+}
+
+void MultiViewDepth::judge_features(const Frame& frame, StaticEvidence& evidence) const {
+  const CoarseGrid& grid = frame.coarse.grid;
+  const float moving = static_cast<float>(settings_.moving_log_odds);
+  const float standing = static_cast<float>(settings_.static_log_odds);
+  for (std::size_t i = 0; i < frame.size(); ++i) {
+    const int column = grid.column_of(frame.x[i]) / stride, row = grid.row_of(frame.y[i]) / stride;
+    if (frame.x[i] < grid.left || frame.y[i] < grid.top || column >= columns_ || row >= rows_) continue;
+    // The block at the feature's own depth, when the feature lies at an edge.
+    int best = row * columns_ + column;
+    if (frame.has_depth(i)) {
+      float least = std::abs(depth_[static_cast<std::size_t>(best)] - frame.depth[i]) - noise(frame.depth[i]);
+      for (int r = std::max(0, row - 1); r <= std::min(rows_ - 1, row + 1) && least > 0.0F; ++r)
+        for (int c = std::max(0, column - 1); c <= std::min(columns_ - 1, column + 1); ++c) {
+          const float difference =
+              std::abs(depth_[static_cast<std::size_t>(r * columns_ + c)] - frame.depth[i]) - noise(frame.depth[i]);
+          if (difference < least) least = difference, best = r * columns_ + c;
+        }
+    }
+    const std::size_t block = static_cast<std::size_t>(best);
+    if (moving_[block] != 0)
+      evidence.add(i, moving);
+    else if (score_[block] > 0.0F)
+      evidence.add(i, standing * std::min(1.0F, score_[block] / 2.0F));
+    else if (through_[block] > 0.0F)
+      evidence.add(i, 0.25F * moving);
+  }
+}
+
+void MultiViewDepth::judge_points(const FilterContext& context, StaticEvidence& evidence) {
+  // A point in front of what the frame sees at its place is not there any more.
+  const Frame& frame = context.frame;
+  const CoarseGrid& grid = frame.coarse.grid;
+  const Camera& camera = *frame.camera;
+  const float margin = static_cast<float>(settings_.margin), slope = static_cast<float>(settings_.margin_slope);
+  judged_.assign(context.map.points().slot_count(), 0);
+  int left = settings_.point_keyframes;
+  for (auto view = views_.rbegin(); view != views_.rend() && left > 0; ++view, --left)
+    for (const MapPointId id : view->frame->map_points) {
+      if (!id.valid() || judged_[id.slot] != 0) continue;
+      judged_[id.slot] = 1;
+      const MapPoint* point = context.map.find_point(id);
+      if (point == nullptr) continue;
+      const Eigen::Vector3d in_camera = *context.T_camera_world * point->position;
+      if (in_camera.z() < 0.1) continue;
+      const Eigen::Vector2d pixel = camera.project(in_camera);
+      const int c = grid.column_of(static_cast<float>(pixel.x())), r = grid.row_of(static_cast<float>(pixel.y()));
+      if (c < 1 || r < 1 || c + 1 >= grid.columns || r + 1 >= grid.rows) continue;
+      const float z = static_cast<float>(in_camera.z());
+      const float limit = z + margin + slope * z;
+      int farther = 0;
+      bool edge = false;
+      for (int dr = -1; dr <= 1; ++dr)
+        for (int dc = -1; dc <= 1; ++dc) {
+          const float seen = frame.coarse.depth[static_cast<std::size_t>((r + dr) * grid.columns + c + dc)];
+          if (seen >= limit)
+            ++farther;
+          else if (seen > 0.0F)
+            edge = true;
+        }
+      if (!edge && farther >= 6) evidence.add_point(id, static_cast<float>(settings_.moving_log_odds));
+    }
+}
+
+void MultiViewDepth::apply(const FilterContext& context, StaticEvidence& evidence) {
+  if (context.T_camera_world == nullptr || context.frame.coarse.empty()) return;
+  choose_keyframes(context);
+  if (views_.empty()) return;
+  compare(context);
+  grow();
+  judge_features(context.frame, evidence);
+  judge_points(context, evidence);
+  const CoarseGrid& grid = context.frame.coarse.grid;
+  if (evidence.cells().size() != static_cast<std::size_t>(grid.size())) return;
+  for (int row = 0; row < rows_ * stride; ++row)
+    for (int column = 0; column < columns_ * stride; ++column) {
+      const std::size_t block = static_cast<std::size_t>((row / stride) * columns_ + column / stride);
+      const std::size_t cell = static_cast<std::size_t>(row * grid.columns + column);
+      if (moving_[block] != 0)
+        evidence.add_cell(cell, static_cast<float>(settings_.moving_log_odds));
+      else if (score_[block] > 0.0F)
+        evidence.add_cell(cell, static_cast<float>(settings_.static_log_odds) * std::min(1.0F, score_[block] / 2.0F));
+    }
+}
+
+}  // namespace holdfast
+
+HOLDFAST_PLUGIN(multi_view_depth, registry) {
+  registry.add<holdfast::DynamicFilter, holdfast::MultiViewDepth, holdfast::MultiViewDepthSettings>(
+      {.name = "multi_view_depth",
+       .summary = "Compares the depth of the frame with that of keyframes: what stands where others saw through moves.",
+       .paper = "Bescos, Facil, Civera, Neira: DynaSLAM: Tracking, Mapping and Inpainting in Dynamic Scenes. IEEE "
+                "Robotics and Automation Letters 3(4), 2018, section III-B"});
+}

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+
+#include "holdfast/interfaces/dynamic_filter.hpp"
+#include "holdfast/plugin/plugin.hpp"
+
+namespace holdfast {
+
+namespace {
+
+struct SemanticMaskSettings {
+  std::vector<std::string> classes = {"person"};
+  int dilate = 10;
+  int edge = 4;
+  double depth_margin = 0.15;
+  double movable_log_odds = -4.0;
+  double background_log_odds = 0.5;
+
+  static void describe(ParameterTable<SemanticMaskSettings>& table) {
+    using S = SemanticMaskSettings;
+    table.add("classes", &S::classes, "names of the segmenter's classes that can move");
+    table
+        .add("dilate", &S::dilate,
+             "features this near to a mask belong to it, unless their depth says that they lie behind")
+        .range(0, 40)
+        .unit("px");
+    table.add("edge", &S::edge, "features this near to a mask belong to it, whatever their depth").range(0, 40).unit("px");
+    table.add("depth_margin", &S::depth_margin, "what is this much farther than the mask beside it lies behind")
+        .range(0, 10)
+        .unit("m");
+    table.add("movable_log_odds", &S::movable_log_odds, "said of a feature on a mask, times the mask's confidence")
+        .range(-20, 0);
+    table.add("background_log_odds", &S::background_log_odds, "said of all others, times the mask's confidence")
+        .range(0, 20);
+  }
+};
+
+/// "Movable" as a prior: features on masks of classes that can move.
+class SemanticMask final : public DynamicFilter {
+ public:
+  SemanticMask(const SemanticMaskSettings& settings, const CreationContext&) : settings_(settings) {}
+
+  Needs needs() const override { return {.segmentation = true}; }
+
+  void apply(const FilterContext& context, StaticEvidence& evidence) override {
+    if (context.classes == nullptr) return;
+    find_movable(*context.classes);
+    if (context.segmentation != nullptr && !context.segmentation->empty())
+      apply_exact(context, evidence);
+    else if (context.carried_mask != nullptr && !context.carried_mask->empty())
+      apply_carried(context, evidence);
+  }
+
+ private:
+  void find_movable(const std::vector<std::string>& classes) {
+    movable_.fill(0);
+    for (std::size_t i = 0; i < std::min<std::size_t>(classes.size(), 255); ++i)
+      movable_[i] = std::find(settings_.classes.begin(), settings_.classes.end(), classes[i]) != settings_.classes.end();
+  }
+
+  void say(StaticEvidence& evidence, std::size_t feature, bool movable, std::uint8_t confidence) const {
+    const double log_odds = movable ? settings_.movable_log_odds : settings_.background_log_odds;
+    evidence.add(feature, static_cast<float>(log_odds * confidence / 255.0), StaticEvidence::Sort::prior);
+  }
+
+  void apply_exact(const FilterContext& context, StaticEvidence& evidence) const {
+    const cv::Mat& labels = context.segmentation->labels;
+    const cv::Mat& confidence = context.segmentation->confidence;
+    const cv::Mat& depth = context.sensor_frame.depth;
+    const Frame& frame = context.frame;
+    constexpr int stride = 2;
+    for (std::size_t i = 0; i < frame.size(); ++i) {
+      const int x = static_cast<int>(std::lround(frame.features.x[i]));
+      const int y = static_cast<int>(std::lround(frame.features.y[i]));
+      if (x < 0 || y < 0 || x >= labels.cols || y >= labels.rows) continue;
+      const auto sure = [&](int column, int row) {
+        return confidence.empty() ? std::uint8_t{255} : confidence.at<std::uint8_t>(row, column);
+      };
+      std::uint8_t label = labels.at<std::uint8_t>(y, x);
+      bool movable = movable_[label] != 0;
+      std::uint8_t certainty = sure(x, y);
+      for (int dy = -settings_.dilate; dy <= settings_.dilate && !movable; dy += stride)
+        for (int dx = -settings_.dilate; dx <= settings_.dilate && !movable; dx += stride) {
+          const int column = x + dx, row = y + dy;
+          if (column < 0 || row < 0 || column >= labels.cols || row >= labels.rows) continue;
+          if (movable_[labels.at<std::uint8_t>(row, column)] == 0) continue;
+          const float there = depth.empty() ? 0.0F : depth.at<float>(row, column);
+          if (std::max(std::abs(dx), std::abs(dy)) > settings_.edge && lies_behind(frame.depth[i], there)) continue;
+          movable = true;
+          certainty = sure(column, row);
+        }
+      if (movable || label != unknown) say(evidence, i, movable, certainty);
+    }
+  }
+
+  void apply_carried(const FilterContext& context, StaticEvidence& evidence) const {
+    const CarriedMask& mask = *context.carried_mask;
+    const Frame& frame = context.frame;
+    const CoarseGrid& grid = frame.coarse.grid;
+    const auto cells = [](int pixels) { return (pixels + CoarseGrid::step / 2) / CoarseGrid::step; };
+    const int reach = cells(settings_.dilate), edge = cells(settings_.edge);
+    for (std::size_t i = 0; i < frame.size(); ++i) {
+      const int column = grid.column_of(frame.x[i]), row = grid.row_of(frame.y[i]);
+      if (column < 0 || row < 0 || column >= grid.columns || row >= grid.rows) continue;
+      const std::size_t cell = static_cast<std::size_t>(row * grid.columns + column);
+      bool movable = movable_[mask.labels[cell]] != 0;
+      std::uint8_t certainty = mask.confidence[cell];
+      for (int dr = -reach; dr <= reach && !movable; ++dr)
+        for (int dc = -reach; dc <= reach && !movable; ++dc) {
+          const int c = column + dc, r = row + dr;
+          if (c < 0 || r < 0 || c >= grid.columns || r >= grid.rows) continue;
+          const std::size_t other = static_cast<std::size_t>(r * grid.columns + c);
+          if (movable_[mask.labels[other]] == 0) continue;
+          if (std::max(std::abs(dc), std::abs(dr)) > edge && lies_behind(frame.depth[i], frame.coarse.depth[other]))
+            continue;
+          movable = true;
+          certainty = mask.confidence[other];
+        }
+      if (movable || mask.labels[cell] != unknown) say(evidence, i, movable, certainty);
+    }
+    for (std::size_t cell = 0; cell < mask.labels.size() && cell < evidence.cells().size(); ++cell)
+      if (movable_[mask.labels[cell]] != 0)
+        evidence.add_cell(cell, static_cast<float>(settings_.movable_log_odds * mask.confidence[cell] / 255.0));
+  }
+
+  bool lies_behind(float depth, float mask_depth) const {
+    return depth > 0.0F && mask_depth > 0.0F && depth > mask_depth + static_cast<float>(settings_.depth_margin);
+  }
+
+  static constexpr std::uint8_t unknown = 255;
+  SemanticMaskSettings settings_;
+  std::array<std::uint8_t, 256> movable_{};
+};
+
+}  // namespace
+
+}  // namespace holdfast
+
+HOLDFAST_PLUGIN(semantic_mask, registry) {
+  registry.add<holdfast::DynamicFilter, holdfast::SemanticMask, holdfast::SemanticMaskSettings>(
+      {.name = "semantic_mask",
+       .summary = "What belongs to a class that can move is suspect; a prior, which measurements may overrule.",
+       .paper = "Zeng et al.: A Semantics-Guided Visual SLAM with U-Net for Complex Dynamic Indoor Environments. Remote "
+                "Sensing 15, 5479, 2023, section 3.2"});
+}
