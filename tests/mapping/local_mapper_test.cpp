@@ -40,7 +40,7 @@ class LocalMapperTest : public testing::Test {
       });
   }
   KeyFrameId add_keyframe(const Frame& frame) {
-    const KeyFrameId keyframe = mapper->insert(frame, times);
+    const KeyFrameId keyframe = mapper->insert(frame, false, times);
     mapper->refine(keyframe, times);
     return keyframe;
   }
