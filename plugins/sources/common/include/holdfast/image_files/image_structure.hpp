@@ -18,8 +18,8 @@ struct ImageStructure {
   int height = 0;        ///< [px]
   int channels = 0;      ///< as stored; 3 for a palette image
   int bits = 0;          ///< of a channel; 8 for a palette image
-  bool palette = false;  ///< a PNG whose pixels are indices into a palette; of 8 bits unless `index_bits` says less
-  int index_bits = 8;    ///< of a pixel of a palette image
+  bool palette = false;  ///< a PNG whose pixels are indices into a palette
+  int index_bits = 8;    ///< of such an index
   std::string problem;   ///< why the file cannot be decoded to its end; empty when it can
 
   /// "640x480, 3 channels of 8 bits".
