@@ -47,10 +47,10 @@ std::vector<std::string> files_of_earlier_run(const fs::path& folder) {
 
 /// The values of the images with their meaning: { 0: background, 1: person, 255: unknown }.
 std::string meaning_of_values(const std::vector<std::string>& classes) {
-  TextMap values;
-  for (std::size_t i = 0; i < classes.size(); ++i) values.emplace_back(std::to_string(i), classes[i]);
-  values.emplace_back("255", "unknown");
-  return to_string(ParameterValue(values));
+  std::string text = "{ ";
+  for (std::size_t i = 0; i < classes.size(); ++i)
+    text += std::to_string(i) + ": " + to_string(ParameterValue(classes[i])) + ", ";
+  return text + "255: unknown }";
 }
 
 }  // namespace

@@ -76,23 +76,20 @@ int segment(const Arguments& arguments) {
     failure = error.what();
   }
   writer.finish();
-  const std::string done = std::to_string(writer.count()) + " label images written to " + arguments.output.string();
+  const auto done = static_cast<std::size_t>(counts.asked);
+  const std::string written = std::to_string(writer.count()) + " label images are in " + arguments.output.string();
   if (!failure.empty())
-    std::fprintf(stderr, "%s %s\n%s\n", red("error:", STDERR_FILENO).c_str(), failure.c_str(), done.c_str());
+    std::fprintf(stderr, "%s %s\n%s\n", red("error:", STDERR_FILENO).c_str(), failure.c_str(), written.c_str());
   else if (interrupted())
-    std::fprintf(stderr, "interrupted; %s\n", done.c_str());
+    std::fprintf(stderr, "interrupted; %s\n", written.c_str());
   else if (writer.count() == 0)
-    std::fprintf(stderr, "%s the segmenter '%s' had nothing for any of %llu frames; is it of this recording?\n",
-                 red("error:", STDERR_FILENO).c_str(), configuration.segmenter.name.c_str(),
-                 static_cast<unsigned long long>(counts.asked));
-  if (!arguments.quiet && writer.count() > 0) {
-    if (failure.empty() && !interrupted()) std::printf("%s", done.c_str());
-    if (failure.empty() && !interrupted() && counts.asked > writer.count())
-      std::printf(", nothing for %zu frames", static_cast<std::size_t>(counts.asked) - writer.count());
-    if (failure.empty() && !interrupted())
-      std::printf(", %.1f ms a frame\n", 1e3 * counts.seconds / static_cast<double>(counts.asked));
-    std::printf("To use them:\n\n%s", writer.configuration(arguments.every == 1).c_str());
-  }
+    std::fprintf(stderr, "%s the segmenter '%s' had nothing for any of %zu frames; is it of this recording?\n",
+                 red("error:", STDERR_FILENO).c_str(), configuration.segmenter.name.c_str(), done);
+  else if (!arguments.quiet)
+    std::printf("%s, for %zu frames, at %.1f ms a frame\n", written.c_str(), done,
+                1e3 * counts.seconds / static_cast<double>(done));
+  if (!arguments.quiet && writer.count() > 0)
+    std::printf("\nTo use them:\n\n%s", writer.configuration(arguments.every == 1).c_str());
   constexpr int interrupted_code = 130;
   return interrupted() ? interrupted_code : failure.empty() && writer.count() > 0 ? 0 : 1;
 }
