@@ -2,7 +2,6 @@
 #include "holdfast/inference/segmentation_output.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 
@@ -80,16 +79,15 @@ void check_values(const cv::Mat& output, const OutputForm& form) {
                    "; expected probabilities, 0 to 1; is it `output: logits`?");
 }
 
-/// e^x for x <= 0, to 1e-6 of its value: 2^(x / ln 2) with the integer part in the exponent and a polynomial (Taylor)
-/// for the rest. Plain arithmetic, so that compilers make vectors of it and every processor gives the same bits.
+/// e^x for x <= 0, to 4e-6: (e^(x / 256))^256, the inner power by its series. Plain arithmetic without branches, so
+/// that compilers make vectors of it and every processor gives the same bits.
 float exponential(float x) {
-  const float t = std::max(x * 1.44269504F, -120.0F);
-  const int whole = static_cast<int>(t - 0.5F);
-  const float r = (t - static_cast<float>(whole)) * 0.693147181F;
-  const float polynomial =
-      1.0F +
-      r * (1.0F + r * (0.5F + r * (0.166666667F + r * (0.0416666667F + r * (0.00833333333F + r * 0.00138888889F)))));
-  return polynomial * std::bit_cast<float>((whole + 127) << 23);
+  const float y = std::max(x, -20.0F) * (1.0F / 256.0F);
+  const float power_1 = 1.0F + y * (1.0F + 0.5F * y);
+  const float power_2 = power_1 * power_1, power_4 = power_2 * power_2, power_8 = power_4 * power_4;
+  const float power_16 = power_8 * power_8, power_32 = power_16 * power_16, power_64 = power_32 * power_32;
+  const float power_128 = power_64 * power_64;
+  return power_128 * power_128;
 }
 
 std::uint8_t to_byte(float probability) { return static_cast<std::uint8_t>(probability * 255.0F + 0.5F); }
@@ -181,19 +179,15 @@ void decode_classes(const Scores& scores, OutputKind kind, Segmentation& result)
   const auto columns = static_cast<std::size_t>(width);
   RowResizer resizer(scores, width, height);
   std::vector<float> rows(columns * static_cast<std::size_t>(scores.channels)), best(columns), sum(columns);
+  std::vector<float> winner(columns);  // a number of the same width as the scores: loops become vectors
   for (int y = 0; y < height; ++y) {
-    auto* label = result.labels.ptr<std::uint8_t>(y);
     for (int channel = 0; channel < scores.channels; ++channel) {
       float* row = &rows[columns * static_cast<std::size_t>(channel)];
       resizer.row(channel, y, row);
-      if (channel == 0) {
-        std::copy(row, row + columns, best.begin());
-        std::fill(label, label + columns, std::uint8_t{0});
-        continue;
-      }
+      const auto number = static_cast<float>(channel);
       for (std::size_t x = 0; x < columns; ++x) {
-        const bool wins = row[x] > best[x];
-        label[x] = wins ? static_cast<std::uint8_t>(channel) : label[x];
+        const bool wins = channel == 0 || row[x] > best[x];
+        winner[x] = wins ? number : winner[x];
         best[x] = wins ? row[x] : best[x];
       }
     }
@@ -205,10 +199,12 @@ void decode_classes(const Scores& scores, OutputKind kind, Segmentation& result)
       else
         for (std::size_t x = 0; x < columns; ++x) sum[x] += std::max(row[x], 0.0F);
     }
+    auto* label = result.labels.ptr<std::uint8_t>(y);
     auto* confidence = result.confidence.ptr<std::uint8_t>(y);
     for (std::size_t x = 0; x < columns; ++x) {
-      const float winner = kind == OutputKind::logits ? 1.0F : std::max(best[x], 0.0F);
-      confidence[x] = to_byte(std::min(winner / std::max(sum[x], 1e-6F), 1.0F));
+      const float share = kind == OutputKind::logits ? 1.0F : std::max(best[x], 0.0F);
+      label[x] = static_cast<std::uint8_t>(winner[x]);
+      confidence[x] = to_byte(std::min(share / std::max(sum[x], 1e-6F), 1.0F));
     }
   }
 }
