@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/inference/onnx_signature.hpp"
@@ -109,31 +110,50 @@ struct Axis {
   }
 };
 
-/// Rows of the resized scores, one channel after the other.
+/// Rows of the resized scores, from top to bottom. Each row of the scores is widened once and kept while it is needed.
 class RowResizer {
  public:
   RowResizer(const Scores& scores, int width, int height)
-      : scores_(scores), x_(scores.width, width), y_(scores.height, height), blended_(scores.width) {}
+      : scores_(scores),
+        x_(scores.width, width),
+        y_(scores.height, height),
+        columns_(static_cast<std::size_t>(width)),
+        kept_(2 * static_cast<std::size_t>(scores.channels)) {}
 
   void row(int channel, int y, float* to) {
     const auto row = static_cast<std::size_t>(y);
-    const float* above = scores_.row(channel, y_.first[row]);
-    const float* below = scores_.row(channel, y_.second[row]);
-    const float weight = y_.weight[row];
-    const std::ptrdiff_t step = scores_.pixel_step;
-    for (int x = 0; x < scores_.width; ++x)
-      blended_[static_cast<std::size_t>(x)] = above[x * step] + weight * (below[x * step] - above[x * step]);
-    for (std::size_t x = 0; x < x_.first.size(); ++x) {
-      const float left = blended_[static_cast<std::size_t>(x_.first[x])];
-      const float right = blended_[static_cast<std::size_t>(x_.second[x])];
-      to[x] = left + x_.weight[x] * (right - left);
-    }
+    Kept& above = kept_[2 * static_cast<std::size_t>(channel)];
+    Kept& below = kept_[2 * static_cast<std::size_t>(channel) + 1];
+    if (above.row != y_.first[row]) std::swap(above, below);
+    widen(channel, y_.first[row], above);
+    widen(channel, y_.second[row], below);
+    blend(above.scores.data(), below.scores.data(), y_.weight[row], to);
   }
 
  private:
+  struct Kept {
+    int row = -1;
+    std::vector<float> scores;
+  };
+
+  void widen(int channel, int y, Kept& kept) const {
+    if (kept.row == y) return;
+    kept.row = y;
+    kept.scores.resize(columns_);
+    const float* from = scores_.row(channel, y);
+    for (std::size_t x = 0; x < columns_; ++x) {
+      const float left = from[x_.first[x] * scores_.pixel_step], right = from[x_.second[x] * scores_.pixel_step];
+      kept.scores[x] = left + x_.weight[x] * (right - left);
+    }
+  }
+  void blend(const float* above, const float* below, float weight, float* to) const {
+    for (std::size_t x = 0; x < columns_; ++x) to[x] = above[x] + weight * (below[x] - above[x]);
+  }
+
   const Scores& scores_;
   Axis x_, y_;
-  std::vector<float> blended_;
+  std::size_t columns_;
+  std::vector<Kept> kept_;  // two for each channel
 };
 
 /// Background against one class. Of two scores only the difference matters, so that one plane is resized.
@@ -153,23 +173,20 @@ void decode_binary(const Scores& scores, OutputKind kind, Segmentation& result) 
     plane = {difference.data(), 1, scores.height, scores.width, 0, scores.width, 1};
   }
   RowResizer resizer(plane, width, height);
-  std::vector<float> row(static_cast<std::size_t>(width));
+  const auto columns = static_cast<std::size_t>(width);
+  const float boundary = kind == OutputKind::logits ? 0.0F : 0.5F;
+  std::vector<float> row(columns), certainty(columns);
   for (int y = 0; y < height; ++y) {
     resizer.row(0, y, row.data());
     auto* label = result.labels.ptr<std::uint8_t>(y);
     auto* confidence = result.confidence.ptr<std::uint8_t>(y);
-    if (kind == OutputKind::logits) {
-      for (int x = 0; x < width; ++x) {
-        const float score = row[static_cast<std::size_t>(x)];
-        label[x] = score > 0.0F ? 1 : 0;
-        confidence[x] = to_byte(1.0F / (1.0F + exponential(-std::abs(score))));
-      }
-    } else {
-      for (int x = 0; x < width; ++x) {
-        const float probability = std::clamp(row[static_cast<std::size_t>(x)], 0.0F, 1.0F);
-        label[x] = probability > 0.5F ? 1 : 0;
-        confidence[x] = to_byte(std::max(probability, 1.0F - probability));
-      }
+    if (kind == OutputKind::logits)
+      for (std::size_t x = 0; x < columns; ++x) certainty[x] = 1.0F / (1.0F + exponential(-std::abs(row[x])));
+    else
+      for (std::size_t x = 0; x < columns; ++x) certainty[x] = std::min(0.5F + std::abs(row[x] - 0.5F), 1.0F);
+    for (std::size_t x = 0; x < columns; ++x) {
+      label[x] = row[x] > boundary ? 1 : 0;
+      confidence[x] = to_byte(certainty[x]);
     }
   }
 }
