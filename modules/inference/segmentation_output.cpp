@@ -2,9 +2,9 @@
 #include "holdfast/inference/segmentation_output.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/inference/onnx_signature.hpp"
@@ -80,16 +80,15 @@ void check_values(const cv::Mat& output, const OutputForm& form) {
                    "; expected probabilities, 0 to 1; is it `output: logits`?");
 }
 
-/// e^x for x <= 0, to 1e-6 of its value: 2^(x / ln 2) with the integer part in the exponent and a polynomial (Taylor)
-/// for the rest. Plain arithmetic, so that compilers make vectors of it and every processor gives the same bits.
+/// e^x for x <= 0, to 4e-6: (e^(x / 256))^256, the inner power by its series. Plain arithmetic without branches, so
+/// that compilers make vectors of it and every processor gives the same bits.
 float exponential(float x) {
-  const float t = std::max(x * 1.44269504F, -120.0F);
-  const int whole = static_cast<int>(t - 0.5F);
-  const float r = (t - static_cast<float>(whole)) * 0.693147181F;
-  const float polynomial =
-      1.0F +
-      r * (1.0F + r * (0.5F + r * (0.166666667F + r * (0.0416666667F + r * (0.00833333333F + r * 0.00138888889F)))));
-  return polynomial * std::bit_cast<float>((whole + 127) << 23);
+  const float y = std::max(x, -20.0F) * (1.0F / 256.0F);
+  const float power_1 = 1.0F + y * (1.0F + 0.5F * y);
+  const float power_2 = power_1 * power_1, power_4 = power_2 * power_2, power_8 = power_4 * power_4;
+  const float power_16 = power_8 * power_8, power_32 = power_16 * power_16, power_64 = power_32 * power_32;
+  const float power_128 = power_64 * power_64;
+  return power_128 * power_128;
 }
 
 std::uint8_t to_byte(float probability) { return static_cast<std::uint8_t>(probability * 255.0F + 0.5F); }
@@ -111,31 +110,50 @@ struct Axis {
   }
 };
 
-/// Rows of the resized scores, one channel after the other.
+/// Rows of the resized scores, from top to bottom. Each row of the scores is widened once and kept while it is needed.
 class RowResizer {
  public:
   RowResizer(const Scores& scores, int width, int height)
-      : scores_(scores), x_(scores.width, width), y_(scores.height, height), blended_(scores.width) {}
+      : scores_(scores),
+        x_(scores.width, width),
+        y_(scores.height, height),
+        columns_(static_cast<std::size_t>(width)),
+        kept_(2 * static_cast<std::size_t>(scores.channels)) {}
 
   void row(int channel, int y, float* to) {
     const auto row = static_cast<std::size_t>(y);
-    const float* above = scores_.row(channel, y_.first[row]);
-    const float* below = scores_.row(channel, y_.second[row]);
-    const float weight = y_.weight[row];
-    const std::ptrdiff_t step = scores_.pixel_step;
-    for (int x = 0; x < scores_.width; ++x)
-      blended_[static_cast<std::size_t>(x)] = above[x * step] + weight * (below[x * step] - above[x * step]);
-    for (std::size_t x = 0; x < x_.first.size(); ++x) {
-      const float left = blended_[static_cast<std::size_t>(x_.first[x])];
-      const float right = blended_[static_cast<std::size_t>(x_.second[x])];
-      to[x] = left + x_.weight[x] * (right - left);
-    }
+    Kept& above = kept_[2 * static_cast<std::size_t>(channel)];
+    Kept& below = kept_[2 * static_cast<std::size_t>(channel) + 1];
+    if (above.row != y_.first[row]) std::swap(above, below);
+    widen(channel, y_.first[row], above);
+    widen(channel, y_.second[row], below);
+    blend(above.scores.data(), below.scores.data(), y_.weight[row], to);
   }
 
  private:
+  struct Kept {
+    int row = -1;
+    std::vector<float> scores;
+  };
+
+  void widen(int channel, int y, Kept& kept) const {
+    if (kept.row == y) return;
+    kept.row = y;
+    kept.scores.resize(columns_);
+    const float* from = scores_.row(channel, y);
+    for (std::size_t x = 0; x < columns_; ++x) {
+      const float left = from[x_.first[x] * scores_.pixel_step], right = from[x_.second[x] * scores_.pixel_step];
+      kept.scores[x] = left + x_.weight[x] * (right - left);
+    }
+  }
+  void blend(const float* above, const float* below, float weight, float* to) const {
+    for (std::size_t x = 0; x < columns_; ++x) to[x] = above[x] + weight * (below[x] - above[x]);
+  }
+
   const Scores& scores_;
   Axis x_, y_;
-  std::vector<float> blended_;
+  std::size_t columns_;
+  std::vector<Kept> kept_;  // two for each channel
 };
 
 /// Background against one class. Of two scores only the difference matters, so that one plane is resized.
@@ -155,23 +173,20 @@ void decode_binary(const Scores& scores, OutputKind kind, Segmentation& result) 
     plane = {difference.data(), 1, scores.height, scores.width, 0, scores.width, 1};
   }
   RowResizer resizer(plane, width, height);
-  std::vector<float> row(static_cast<std::size_t>(width));
+  const auto columns = static_cast<std::size_t>(width);
+  const float boundary = kind == OutputKind::logits ? 0.0F : 0.5F;
+  std::vector<float> row(columns), certainty(columns);
   for (int y = 0; y < height; ++y) {
     resizer.row(0, y, row.data());
     auto* label = result.labels.ptr<std::uint8_t>(y);
     auto* confidence = result.confidence.ptr<std::uint8_t>(y);
-    if (kind == OutputKind::logits) {
-      for (int x = 0; x < width; ++x) {
-        const float score = row[static_cast<std::size_t>(x)];
-        label[x] = score > 0.0F ? 1 : 0;
-        confidence[x] = to_byte(1.0F / (1.0F + exponential(-std::abs(score))));
-      }
-    } else {
-      for (int x = 0; x < width; ++x) {
-        const float probability = std::clamp(row[static_cast<std::size_t>(x)], 0.0F, 1.0F);
-        label[x] = probability > 0.5F ? 1 : 0;
-        confidence[x] = to_byte(std::max(probability, 1.0F - probability));
-      }
+    if (kind == OutputKind::logits)
+      for (std::size_t x = 0; x < columns; ++x) certainty[x] = 1.0F / (1.0F + exponential(-std::abs(row[x])));
+    else
+      for (std::size_t x = 0; x < columns; ++x) certainty[x] = std::min(0.5F + std::abs(row[x] - 0.5F), 1.0F);
+    for (std::size_t x = 0; x < columns; ++x) {
+      label[x] = row[x] > boundary ? 1 : 0;
+      confidence[x] = to_byte(certainty[x]);
     }
   }
 }
@@ -181,19 +196,15 @@ void decode_classes(const Scores& scores, OutputKind kind, Segmentation& result)
   const auto columns = static_cast<std::size_t>(width);
   RowResizer resizer(scores, width, height);
   std::vector<float> rows(columns * static_cast<std::size_t>(scores.channels)), best(columns), sum(columns);
+  std::vector<float> winner(columns);  // a number of the same width as the scores: loops become vectors
   for (int y = 0; y < height; ++y) {
-    auto* label = result.labels.ptr<std::uint8_t>(y);
     for (int channel = 0; channel < scores.channels; ++channel) {
       float* row = &rows[columns * static_cast<std::size_t>(channel)];
       resizer.row(channel, y, row);
-      if (channel == 0) {
-        std::copy(row, row + columns, best.begin());
-        std::fill(label, label + columns, std::uint8_t{0});
-        continue;
-      }
+      const auto number = static_cast<float>(channel);
       for (std::size_t x = 0; x < columns; ++x) {
-        const bool wins = row[x] > best[x];
-        label[x] = wins ? static_cast<std::uint8_t>(channel) : label[x];
+        const bool wins = channel == 0 || row[x] > best[x];
+        winner[x] = wins ? number : winner[x];
         best[x] = wins ? row[x] : best[x];
       }
     }
@@ -205,10 +216,12 @@ void decode_classes(const Scores& scores, OutputKind kind, Segmentation& result)
       else
         for (std::size_t x = 0; x < columns; ++x) sum[x] += std::max(row[x], 0.0F);
     }
+    auto* label = result.labels.ptr<std::uint8_t>(y);
     auto* confidence = result.confidence.ptr<std::uint8_t>(y);
     for (std::size_t x = 0; x < columns; ++x) {
-      const float winner = kind == OutputKind::logits ? 1.0F : std::max(best[x], 0.0F);
-      confidence[x] = to_byte(std::min(winner / std::max(sum[x], 1e-6F), 1.0F));
+      const float share = kind == OutputKind::logits ? 1.0F : std::max(best[x], 0.0F);
+      label[x] = static_cast<std::uint8_t>(winner[x]);
+      confidence[x] = to_byte(std::min(share / std::max(sum[x], 1e-6F), 1.0F));
     }
   }
 }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
+#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <thread>
 
@@ -24,7 +26,24 @@ class SegmentTest : public ::testing::Test {
     program_.write("scene.yaml",
                    "room: office\nduration: 0.3\nframe_rate: 10\ncamera: { path: static }\n"
                    "people:\n  - { at: [2.5, 3.0] }\n");
-    program_.write("truth.yaml", configuration("truth: { classes: [person, notice board] }"));
+    program_.write("truth.yaml", configuration("truth: { classes: [person, pen holder] }"));
+  }
+  /// Three tiny images at 0, 0.1 and 0.2 s, and labels of them with a 7 in each.
+  void write_recording() const {
+    for (const char* folder : {"images", "masks"}) fs::create_directory(program_.path(folder));
+    cv::Mat labels(6, 8, CV_8UC1, cv::Scalar(0));
+    labels.at<std::uint8_t>(2, 3) = 7;
+    for (int i = 0; i < 3; ++i) {
+      const std::string number = std::to_string(i);
+      cv::imwrite(program_.path("images/" + number + ".png").string(), cv::Mat(6, 8, CV_8UC3, cv::Scalar(9, 9, i)));
+      cv::imwrite(program_.path("masks/0." + number + "00000.png").string(), labels);
+    }
+  }
+  /// Of the recording.
+  static std::string recorded(const std::string& segmenter) {
+    return "source: { folder: { path: ., colour: images, frame_rate: 10 } }\n"
+           "camera: { width: 8, height: 6, fx: 8, fy: 8, cx: 3.5, cy: 2.5 }\nfeatures: orb\noptimizer: ceres\n" +
+           (segmenter.empty() ? "" : "segmenter: { " + segmenter + " }\n");
   }
   static std::string configuration(const std::string& segmenter, const std::string& source = "scene: scene.yaml") {
     return "source: { simulated: { " + source +
@@ -46,7 +65,7 @@ TEST_F(SegmentTest, WritesWhatPrecomputedReadsBackAsItWas) {
   EXPECT_EQ(program_.text("labels/labels.txt"),
             "# label images; classes.yaml says what the values mean\n# timestamp filename\n"
             "0.000000 0.000000.png\n0.100000 0.100000.png\n0.200000 0.200000.png\n");
-  const std::string meaning = "labels: { 0: background, 1: notice board, 2: person, 255: unknown }\n";
+  const std::string meaning = "labels: { 0: background, 1: \"pen holder\", 2: person, 255: unknown }\n";
   EXPECT_EQ(program_.text("labels/classes.yaml"), meaning);
   EXPECT_EQ(std::distance(fs::directory_iterator(program_.path("labels")), {}), 5);  // nothing half-written is left
 
@@ -63,7 +82,9 @@ TEST_F(SegmentTest, WritesWhatPrecomputedReadsBackAsItWas) {
 }
 
 TEST_F(SegmentTest, EveryNthFrameComesWithATolerance) {
-  const Outcome outcome = program_.run({"segment", "truth.yaml", "--output", "labels", "--every", "2"});
+  write_recording();
+  program_.write("recorded.yaml", recorded("precomputed: { path: masks, labels: { 7: person } }"));
+  const Outcome outcome = program_.run({"segment", "recorded.yaml", "--output", "labels", "--every", "2"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_TRUE(fs::exists(program_.path("labels/0.200000.png")));
   EXPECT_EQ(images_in("labels"), 2U);
@@ -71,45 +92,63 @@ TEST_F(SegmentTest, EveryNthFrameComesWithATolerance) {
 }
 
 TEST_F(SegmentTest, OverwritesOnlyWhatItWrote) {
-  ASSERT_EQ(program_.run({"segment", "truth.yaml", "--output", "labels"}).exit_code, 0);
+  write_recording();
+  program_.write("recorded.yaml", recorded("precomputed: { path: masks, labels: { 7: person } }"));
+  const std::vector<std::string> command = {"segment", "recorded.yaml", "--output", "labels"};
+  ASSERT_EQ(program_.run(command).exit_code, 0);
+  EXPECT_EQ(images_in("labels"), 3U);
   program_.write("labels/notes.txt", "mine");
-  EXPECT_THAT(program_.run({"segment", "truth.yaml", "--output", "labels"}).errors, HasSubstr("is not empty"));
-  const std::vector<std::string> again = {
-      "segment", "truth.yaml", "--output", "labels", "--overwrite", "--set", "source.simulated.duration=0.1"};
+  EXPECT_THAT(program_.run(command).errors, HasSubstr("is not empty"));
+  std::vector<std::string> again = command;
+  again.insert(again.end(), {"--overwrite", "--set", "source.folder.frames=1"});
   ASSERT_EQ(program_.run(again).exit_code, 0);
   EXPECT_EQ(images_in("labels"), 1U);
   EXPECT_EQ(program_.text("labels/notes.txt"), "mine");
 
-  fs::create_directory(program_.path("recording"));
-  program_.write("recording/1.000000.png", "a picture");
-  const Outcome outcome = program_.run({"segment", "truth.yaml", "--output", "recording", "--overwrite"});
+  const std::string before = program_.text("masks/0.100000.png");
+  const Outcome outcome = program_.run({"segment", "recorded.yaml", "--output", "masks", "--overwrite"});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.errors, HasSubstr("no classes.yaml of an earlier run; name another folder"));
-  EXPECT_EQ(program_.text("recording/1.000000.png"), "a picture");
+  EXPECT_EQ(program_.text("masks/0.100000.png"), before);
 }
 
 TEST_F(SegmentTest, SaysWhatIsWrong) {
-  program_.write("none.yaml",
-                 "source: { simulated: { scene: scene.yaml } }\ncamera: tum_fr1\nfeatures: orb\n"
-                 "optimizer: ceres\n");
-  const Outcome none = program_.run({"segment", "none.yaml", "--output", "out"});
+  write_recording();
+  const auto run = [&](const std::string& segmenter) {
+    program_.write("wrong.yaml", recorded(segmenter));
+    return program_.run({"segment", "wrong.yaml", "--output", "out"});
+  };
+  const Outcome none = run("");
   EXPECT_EQ(none.exit_code, 2);
-  EXPECT_THAT(none.errors, AllOf(HasSubstr("none.yaml"), HasSubstr("the segmenter is 'none'")));
-  program_.write("missing.yaml", configuration("precomputed: { path: nowhere, labels: { 1: person } }"));
-  const Outcome missing = program_.run({"segment", "missing.yaml", "--output", "out"});
+  EXPECT_THAT(none.errors, AllOf(HasSubstr("wrong.yaml"), HasSubstr("the segmenter is 'none'")));
+  const Outcome missing = run("precomputed: { path: nowhere, labels: { 7: person } }");
   EXPECT_EQ(missing.exit_code, 1);
   EXPECT_THAT(missing.errors, HasSubstr("nowhere: is missing; expected a folder of label images"));
-  program_.write("overlap.yaml", configuration("precomputed: { path: nowhere, labels: { 1: person, 1-2: chair } }"));
-  EXPECT_EQ(program_.run({"segment", "overlap.yaml", "--output", "out"}).exit_code, 2);
+  EXPECT_EQ(run("precomputed: { path: masks, labels: { 1: person, 1-2: chair } }").exit_code, 2);
+  const Outcome truth = run("truth: {}");
+  EXPECT_EQ(truth.exit_code, 2);
+  EXPECT_THAT(truth.errors, HasSubstr("only a simulation does"));
   EXPECT_FALSE(fs::exists(program_.path("out")));
 
-  // A value that nobody named: what was done before is kept.
-  ASSERT_EQ(program_.run({"segment", "truth.yaml", "--output", "labels", "--quiet"}).exit_code, 0);
-  fs::remove(program_.path("labels/0.000000.png"));
-  program_.write("unmapped.yaml", configuration("precomputed: { path: labels, labels: { 9: person } }"));
-  const Outcome unmapped = program_.run({"segment", "unmapped.yaml", "--output", "kept"});
-  EXPECT_EQ(unmapped.exit_code, 1);
-  EXPECT_THAT(unmapped.errors, AllOf(HasSubstr("0.100000.png: has the value"), HasSubstr("0 label images are in")));
+  // Masks of another recording.
+  for (int i = 0; i < 3; ++i) {
+    const std::string name = "." + std::to_string(i) + "00000.png";
+    fs::rename(program_.path("masks/0" + name), program_.path("masks/500" + name));
+  }
+  const Outcome other = run("precomputed: { path: masks, labels: { 7: person } }");
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_THAT(other.errors, HasSubstr("'precomputed' had nothing for any of 3 frames"));
+}
+
+TEST_F(SegmentTest, AFailureKeepsWhatIsDone) {
+  write_recording();
+  cv::imwrite(program_.path("masks/0.200000.png").string(), cv::Mat(6, 8, CV_8UC1, cv::Scalar(9)));
+  program_.write("unmapped.yaml", recorded("precomputed: { path: masks, labels: { 7: person } }"));
+  const Outcome outcome = program_.run({"segment", "unmapped.yaml", "--output", "kept"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.errors, AllOf(HasSubstr("0.200000.png: has the value 9 at pixel (0, 0)"),
+                                    HasSubstr("2 label images are in kept")));
+  EXPECT_THAT(program_.text("kept/labels.txt"), HasSubstr("0.100000 0.100000.png\n"));
 }
 
 TEST_F(SegmentTest, AnInterruptKeepsWhatIsDone) {

@@ -144,7 +144,12 @@ TEST_F(PrecomputedTest, IndicesOfAPaletteAreReadNotItsColours) {
 TEST_F(PrecomputedTest, ImagesThatAreNoLabelsAreRefused) {
   write("1.png", 1, CV_8UC3);
   write("3.png", 1);
+  cv::imwrite((folder_ / "2.jpg").string(), cv::Mat::ones(height, width, CV_8UC1));
+  fs::rename(folder_ / "2.jpg", folder_ / "2.png");
+  cv::imwrite((folder_ / "4.png").string(), cv::Mat::ones(height, width, CV_8UC1), {cv::IMWRITE_PNG_BILEVEL, 1});
   const auto segmenter = make({{"1", "person"}});
+  EXPECT_THAT(error_of([&] { label_at(*segmenter, 2.0); }), HasSubstr("is a JPEG image of 8x6, 1 channel of 8 bits"));
+  EXPECT_THAT(error_of([&] { label_at(*segmenter, 4.0); }), HasSubstr("1 channel of 1 bits; expected a label image"));
   EXPECT_THAT(
       error_of([&] { label_at(*segmenter, 1.0); }),
       AllOf(StartsWith((folder_ / "1.png").string()), HasSubstr("3 channels of 8 bits; expected a label image")));
