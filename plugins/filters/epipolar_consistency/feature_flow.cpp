@@ -10,11 +10,11 @@ namespace holdfast::epipolar_plugin {
 
 namespace {
 constexpr double longest_pause = 0.25;  // s
-constexpr int top_level = 3;
+constexpr int top_level = 2;
 constexpr float most_difference = 12.0F;  // grey levels, mean over the window: another surface, or covered
 constexpr float most_return = 0.5F;       // px of the half image
 const cv::Size window(9, 9);
-const cv::TermCriteria stop(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 10, 0.02);
+const cv::TermCriteria stop(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 6, 0.03);
 
 cv::Point2f halved(float x, float y) { return {0.5F * x - 0.25F, 0.5F * y - 0.25F}; }
 float doubled(float value) { return 2.0F * value + 0.5F; }

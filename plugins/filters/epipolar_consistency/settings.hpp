@@ -7,13 +7,13 @@ namespace holdfast::epipolar_plugin {
 
 struct EpipolarSettings {
   double threshold = 1.5;
-  double parallax = 1.5;
-  double parallax_share = 0.3;
-  double support = 0.6;
-  int gap = 2;
-  int features = 1000;
-  double moving = 1.5;
-  double fixed = 0.2;
+  double parallax = 0.7;
+  double parallax_share = 0.35;
+  double support = 0.5;
+  int gap = 3;
+  int features = 500;
+  double moving = 2.0;
+  double fixed = 0.1;
 
   static void describe(ParameterTable<EpipolarSettings>& table) {
     using S = EpipolarSettings;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "holdfast/geometry/ransac.hpp"
@@ -16,6 +17,7 @@ namespace {
 constexpr std::size_t fewest_pairs = 30;  // below, the support of a fundamental matrix proves nothing
 constexpr std::size_t most_chosen = 250;  // more do not make the estimate better, only slower
 constexpr int homography_iterations = 100;
+constexpr int most_refits = 4;
 
 using Row = Eigen::Matrix<double, 9, 1>;
 using System = Eigen::Matrix<double, 8, 9, Eigen::RowMajor>;
@@ -96,24 +98,32 @@ int count_within(const std::vector<float>& distance2, float threshold2) {
   return count;
 }
 
-/// RANSAC with local refinement of every new best (Chum, Matas and Kittler, DAGM 2003).
+float truncated_sum(const std::vector<float>& distance2, float threshold2) {
+  float sum = 0.0F;
+  for (const float value : distance2) sum += std::min(value, threshold2);
+  return sum;
+}
+
+/// RANSAC that prefers close fits to many loose ones (MSAC; Torr and Zisserman, CVIU 78, 2000, equation 17), with local
+/// refinement of every new best (Chum, Matas and Kittler, DAGM 2003). How many pairs the best one fits.
 template <std::size_t sample_size, class Solve, class Measure, class Refit>
 int search(const PointPairs& pairs, float threshold2, int most_iterations, double confidence, Random& random,
            std::vector<float>& distance2, Eigen::Matrix3d& best, const Solve& solve, const Measure& measure,
            const Refit& refit) {
   int best_count = 0, needed = most_iterations;
+  float best_cost = std::numeric_limits<float>::infinity();
   const auto keep_if_better = [&](const Eigen::Matrix3d& model) {
     measure(model, pairs, distance2);
-    const int count = count_within(distance2, threshold2);
-    if (count <= best_count) return false;
-    best_count = count, best = model;
+    const float cost = truncated_sum(distance2, threshold2);
+    if (!(cost < best_cost)) return false;
+    best_cost = cost, best_count = count_within(distance2, threshold2), best = model;
     return true;
   };
   for (int iteration = 0; iteration < needed; ++iteration) {
     const auto sample = geometry::sample_without_repeat<sample_size>(random, static_cast<std::uint32_t>(pairs.size()));
     const std::optional<Row> solution = solve(sample);
     if (!solution || !keep_if_better(as_matrix(*solution))) continue;
-    for (int k = 0; k < 4 && keep_if_better(refit(pairs, distance2, threshold2)); ++k) {
+    for (int k = 0; k < most_refits && keep_if_better(refit(pairs, distance2, threshold2)); ++k) {
     }
     needed = std::min(needed, geometry::ransac_iterations(best_count / static_cast<double>(pairs.size()),
                                                           static_cast<int>(sample_size), confidence, most_iterations));

@@ -37,12 +37,12 @@ enum class Verdict : std::uint8_t {
 };
 
 struct TwoViewOptions {
-  double threshold = 0.003;     ///< distance from the epipolar line
-  double parallax = 0.003;      ///< distance from the homography's transfer
-  double parallax_share = 0.3;  ///< of the supporting pairs that must have parallax
-  double support = 0.6;         ///< of the trusted pairs that must lie on their lines
-  int iterations = 300;         ///< at most
-  double confidence = 0.99;
+  double threshold = 0.0029;     ///< distance from the epipolar line
+  double parallax = 0.0013;      ///< distance from the homography's transfer
+  double parallax_share = 0.35;  ///< of the supporting pairs that must have parallax
+  double support = 0.5;          ///< of the trusted pairs that must lie on their lines
+  int iterations = 500;          ///< at most
+  double confidence = 0.9999;
 };
 
 /// The fundamental matrix of the trusted pairs and whether it can be believed. RANSAC with eight-point samples (solved
