@@ -88,11 +88,12 @@ void MaskCarrier::carry(const CoarseView& from_view, const CellLabels& from, con
         const float before = source < 0 ? 0.0F : from_view.depth[static_cast<std::size_t>(source)];
         if (before == 0.0F) {
           past_[cell] = Past::unseen;
-        } else if (std::abs(before - z) < same_place(z)) {
+        } else if (std::abs(before - z) < apart(z)) {
           past_[cell] = Past::same;
           to.labels[cell] = from.labels[static_cast<std::size_t>(source)];
           to.quality[cell] = from.quality[static_cast<std::size_t>(source)];
-          continue;
+          // Almost the same place may still be an object that has just come there.
+          if (to.labels[cell] != 0 || std::abs(before - z) < same_place(z)) continue;
         } else if (before > z + apart(z)) {
           past_[cell] = Past::free;
         }
@@ -123,11 +124,16 @@ void MaskCarrier::grow(const CoarseView& to_view, CellLabels& to) {
   // What stands where there was free space has come with the object; what was not seen before may be anything, so the
   // object takes only a little of it; what was hidden before is what the object uncovered.
   const CoarseGrid& grid = to_view.grid;
-  constexpr int most_unseen_steps = 6, most_steps = 60;
+  constexpr int most_unseen_steps = 15, most_steps = 60;
+  constexpr float most_depth_change = 0.1F;  // m, over what was not seen before
   constexpr std::array<std::pair<int, int>, 4> neighbours{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
   front_.clear();
+  start_depth_.resize(to.labels.size());
   for (std::int32_t cell = 0; cell < grid.size(); ++cell)
-    if (is_object(to.labels[static_cast<std::size_t>(cell)])) front_.push_back(cell);
+    if (is_object(to.labels[static_cast<std::size_t>(cell)])) {
+      front_.push_back(cell);
+      start_depth_[static_cast<std::size_t>(cell)] = to_view.depth[static_cast<std::size_t>(cell)];
+    }
   for (int step = 0; step < most_steps && !front_.empty(); ++step) {
     next_front_.clear();
     for (const std::int32_t cell : front_) {
@@ -139,9 +145,14 @@ void MaskCarrier::grow(const CoarseView& to_view, CellLabels& to) {
         if (c < 0 || r < 0 || c >= grid.columns || r >= grid.rows) continue;
         const std::size_t other = static_cast<std::size_t>(r * grid.columns + c);
         if (to.labels[other] != 0) continue;
-        if (past_[other] != Past::free && (past_[other] != Past::unseen || step >= most_unseen_steps)) continue;
         const float there = to_view.depth[other];
         if (there == 0.0F || std::abs(there - depth) > continues_surface(depth)) continue;
+        const float start = start_depth_[static_cast<std::size_t>(cell)];
+        const bool may_be_object = past_[other] == Past::free ||
+                                   (past_[other] == Past::unseen && step < most_unseen_steps &&
+                                    std::abs(there - start) < most_depth_change);
+        if (!may_be_object) continue;
+        start_depth_[other] = start;
         to.labels[other] = to.labels[static_cast<std::size_t>(cell)];
         to.quality[other] = static_cast<std::uint8_t>(to.quality[static_cast<std::size_t>(cell)] * 15 / 16);
         next_front_.push_back(static_cast<std::int32_t>(other));

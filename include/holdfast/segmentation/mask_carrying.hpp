@@ -62,6 +62,7 @@ class MaskCarrier {
   /// nothing known.
   enum class Past : std::uint8_t { same, free, hidden, unseen };
   std::vector<Past> past_;
+  std::vector<float> start_depth_;  // of the part of an object that grew here [m]
   std::vector<std::int32_t> front_, next_front_;
 };
 
