@@ -53,7 +53,7 @@ void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
   if (!found) {
     const StageTimer timer(result.times, "relocalisation");
     filters_.begin(current_);  // what was said of the frame may stand on the wrong pose
-    found = recover(result) || relocalise(result);
+    found = coast(sensor_frame, result) || recover(result) || relocalise(result);
   }
   if (found && result.method != TrackingMethod::motion_model) {
     filters_.begin(current_);
@@ -219,6 +219,7 @@ void Tracker::remember(FrameResult& result) {
     has_previous_ = has_velocity_ = false;
     return;
   }
+  coasts_until_ = current_.timestamp + settings_.coasting_time;
   result.T_world_camera = current_.T_world_camera();
   if (has_previous_) {
     velocity_ = current_.T_camera_world * previous_.T_world_camera();

@@ -3,9 +3,33 @@
 #include <algorithm>
 
 #include "holdfast/geometry/pnp.hpp"
+#include "holdfast/geometry/se3.hpp"
 #include "holdfast/tracking/tracker.hpp"
 
 namespace holdfast {
+
+bool Tracker::coast(const SensorFrame& sensor_frame, FrameResult& result) {
+  // A short loss, such as when somebody walks past the lens, leaves the camera near where its velocity takes it.
+  if (records_.empty() || current_.timestamp > coasts_until_) return false;
+  const Record& last = records_.back();
+  const Eigen::Isometry3d T_last_world = last.T_camera_reference * map_.pose_of(last.reference);
+  const double steps = velocity_interval_ > 0.0 ? (current_.timestamp - last.timestamp) / velocity_interval_ : 0.0;
+  for (const double share : {1.0, 0.5, 0.0}) {
+    current_.T_camera_world = geometry::exp_se3(share * steps * geometry::log_se3(velocity_)) * T_last_world;
+    std::fill(current_.map_points.begin(), current_.map_points.end(), MapPointId());
+    filters_.begin(current_);
+    judge_before_matching(sensor_frame, &current_.T_camera_world, result);
+    match_local_map(static_cast<float>(3.0 * settings_.local_map_window));
+    drop_outliers();
+    const int inliers = match_local_map(static_cast<float>(settings_.local_map_window));
+    drop_outliers();
+    if (inliers < settings_.minimum_inliers) continue;
+    result.method = TrackingMethod::recovered;
+    return true;
+  }
+  result.trouble = TrackingTrouble::few_inliers;
+  return false;
+}
 
 bool Tracker::recover(FrameResult& result) {
   constexpr int most_keyframes = 5;

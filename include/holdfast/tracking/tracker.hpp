@@ -75,6 +75,7 @@ class Tracker {
   bool start_map(FrameResult& result);
   bool predict_with_velocity(FrameResult& result);
   bool predict_with_keyframe(KeyFrameId keyframe, FrameResult& result);
+  bool coast(const SensorFrame& sensor_frame, FrameResult& result);
   bool recover(FrameResult& result);
   bool relocalise(FrameResult& result);
   bool fits_surroundings(FrameResult& result);
@@ -120,6 +121,7 @@ class Tracker {
   bool has_velocity_ = false;
   Eigen::Isometry3d velocity_ = Eigen::Isometry3d::Identity();  // T_current_previous of the last step
   double velocity_interval_ = 0.0;                              // [s]
+  double coasts_until_ = 0.0;  // while lost: how long the last velocity is a guess worth trying [s]
   KeyFrameId reference_keyframe_;
   KeyFrameId last_keyframe_;
   double last_keyframe_time_ = 0.0;

@@ -23,6 +23,7 @@ struct TrackingSettings {
   int keyframe_close_tracked = 100;
   int keyframe_close_possible = 70;
   double depth_edge_ratio = 0.0;
+  double coasting_time = 1.0;
   int relocalisation_candidates = 5;
   int relocalisation_inliers = 50;
   double relocalisation_speed = 3.0;
@@ -76,6 +77,11 @@ struct TrackingSettings {
         .add("depth_edge_ratio", &S::depth_edge_ratio,
              "depth is not trusted where it varies around a feature by more than this share of itself; 0 = trust all")
         .range(0, 1);
+    table
+        .add("coasting_time", &S::coasting_time,
+             "a lost camera is looked for where its last velocity takes it for this long")
+        .range(0, 100)
+        .unit("s");
     table
         .add("relocalisation_candidates", &S::relocalisation_candidates,
              "places that a lost camera compares itself with in each frame, at most; 0 = the last keyframes only")
