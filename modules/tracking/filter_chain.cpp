@@ -6,10 +6,13 @@
 
 namespace holdfast {
 
+FilterChain::Stage FilterChain::stage_of(const DynamicFilter& filter) {
+  const Needs needs = filter.needs();
+  return needs.matches ? Stage::after_matching : needs.pose_prior ? Stage::with_pose : Stage::before_matching;
+}
+
 bool FilterChain::has(Stage stage) const {
-  return std::any_of(filters_.begin(), filters_.end(), [&](const auto& filter) {
-    return filter->needs().matches == (stage == Stage::after_matching);
-  });
+  return std::any_of(filters_.begin(), filters_.end(), [&](const auto& filter) { return stage_of(*filter) == stage; });
 }
 
 void FilterChain::apply(std::size_t filter, const FilterContext& context) {
@@ -18,12 +21,8 @@ void FilterChain::apply(std::size_t filter, const FilterContext& context) {
 }
 
 void FilterChain::judge(Stage stage, const FilterContext& context) {
-  for (std::size_t i = 0; i < filters_.size(); ++i) {
-    const Needs needs = filters_[i]->needs();
-    if (needs.matches != (stage == Stage::after_matching)) continue;
-    if (needs.pose_prior && context.T_camera_world == nullptr) continue;
-    apply(i, context);
-  }
+  for (std::size_t i = 0; i < filters_.size(); ++i)
+    if (stage_of(*filters_[i]) == stage) apply(i, context);
 }
 
 float FilterChain::probability(float log_odds) const {

@@ -42,23 +42,16 @@ void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
   bool found = false;
   if (has_previous_) previous_.T_camera_world = T_previous_reference_ * map_.pose_of(reference_keyframe_);
   filters_.begin(current_);
+  judge(FilterChain::Stage::before_matching, sensor_frame, result);
   if (state_ == State::tracking) {
-    if (has_previous_) {
-      const Eigen::Isometry3d T_camera_world = predicted_step() * previous_.T_camera_world;
-      judge_before_matching(sensor_frame, &T_camera_world, result);
-    }
     const StageTimer timer(result.times, "predict");
     found = predict_with_velocity(result) || predict_with_keyframe(reference_keyframe_, result);
   }
   if (!found) {
     const StageTimer timer(result.times, "relocalisation");
-    filters_.begin(current_);  // what was said of the frame may stand on the wrong pose
-    found = coast(sensor_frame, result) || recover(result) || relocalise(result);
+    found = coast(result) || recover(result) || relocalise(result);
   }
-  if (found && result.method != TrackingMethod::motion_model) {
-    filters_.begin(current_);
-    judge_before_matching(sensor_frame, &current_.T_camera_world, result);
-  }
+  if (found) judge_with_pose(sensor_frame, result);
   found = found && track_local_map(sensor_frame, result);
   state_ = found ? State::tracking : State::lost;
   result.status = found ? TrackingStatus::tracked : TrackingStatus::lost;
@@ -108,17 +101,36 @@ FilterContext Tracker::filter_context(const SensorFrame& sensor_frame, const Eig
           .classes = classes_};
 }
 
-void Tracker::judge_before_matching(const SensorFrame& sensor_frame, const Eigen::Isometry3d* T_camera_world,
-                                    FrameResult& result) {
-  if (!filters_.has(FilterChain::Stage::before_matching)) return;
+void Tracker::judge(FilterChain::Stage stage, const SensorFrame& sensor_frame, FrameResult& result) {
+  if (!filters_.has(stage)) return;
   const StageTimer timer(result.times, "filters");
-  filters_.judge(FilterChain::Stage::before_matching, filter_context(sensor_frame, T_camera_world));
+  const bool has_pose = stage != FilterChain::Stage::before_matching;
+  filters_.judge(stage, filter_context(sensor_frame, has_pose ? &current_.T_camera_world : nullptr));
+}
+
+void Tracker::judge_with_pose(const SensorFrame& sensor_frame, FrameResult& result) {
+  if (!filters_.has(FilterChain::Stage::with_pose)) return;
+  {
+    // When movers led the matches astray, the camera is rather where its velocity takes it.
+    const StageTimer timer(result.times, "filters");
+    if (result.method == TrackingMethod::motion_model && has_velocity_ &&
+        depth_agreement_.choose(map_, reference_keyframe_, current_.timestamp)) {
+      constexpr double clear_lead = 0.03;
+      const Eigen::Isometry3d predicted = predicted_step() * previous_.T_camera_world;
+      if (depth_agreement_.share(current_, predicted) >
+          depth_agreement_.share(current_, current_.T_camera_world) + clear_lead)
+        current_.T_camera_world = predicted;
+    }
+  }
+  judge(FilterChain::Stage::with_pose, sensor_frame, result);
+  const Eigen::Isometry3d judged_with = current_.T_camera_world;
+  if (adjust_pose() < settings_.minimum_matches / 2) current_.T_camera_world = judged_with;
+  drop_outliers();
 }
 
 int Tracker::judge_after_matching(const SensorFrame& sensor_frame, int inliers, FrameResult& result) {
   if (!filters_.has(FilterChain::Stage::after_matching)) return inliers;
-  const StageTimer timer(result.times, "filters");
-  filters_.judge(FilterChain::Stage::after_matching, filter_context(sensor_frame, &current_.T_camera_world));
+  judge(FilterChain::Stage::after_matching, sensor_frame, result);
   return adjust_pose();
 }
 

@@ -8,7 +8,7 @@
 
 namespace holdfast {
 
-bool Tracker::coast(const SensorFrame& sensor_frame, FrameResult& result) {
+bool Tracker::coast(FrameResult& result) {
   // A short loss, such as when somebody walks past the lens, leaves the camera near where its velocity takes it.
   if (records_.empty() || current_.timestamp > coasts_until_) return false;
   const Record& last = records_.back();
@@ -17,8 +17,6 @@ bool Tracker::coast(const SensorFrame& sensor_frame, FrameResult& result) {
   for (const double share : {1.0, 0.5, 0.0}) {
     current_.T_camera_world = geometry::exp_se3(share * steps * geometry::log_se3(velocity_)) * T_last_world;
     std::fill(current_.map_points.begin(), current_.map_points.end(), MapPointId());
-    filters_.begin(current_);
-    judge_before_matching(sensor_frame, &current_.T_camera_world, result);
     match_local_map(static_cast<float>(3.0 * settings_.local_map_window));
     drop_outliers();
     const int inliers = match_local_map(static_cast<float>(settings_.local_map_window));

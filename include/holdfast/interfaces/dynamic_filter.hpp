@@ -20,11 +20,11 @@ namespace holdfast {
 struct Needs {
   bool depth = false;
   bool segmentation = false;  ///< a segmenter other than none
-  bool pose_prior = false;    ///< FilterContext::T_camera_world
+  /// FilterContext::T_camera_world. Filters without this need and the next speak before features are matched, so that
+  /// what they suspect cannot lead the pose astray.
+  bool pose_prior = false;
   bool map = false;
-  /// Features with map points and the pose that they gave. A filter without this need speaks before features are
-  /// matched, so that what it judges to be moving cannot lead the pose astray.
-  bool matches = false;
+  bool matches = false;  ///< features matched with the local map, and the pose that they gave
 };
 
 /// What filters may look at when a frame is judged. References are valid during apply() only.
@@ -33,8 +33,7 @@ struct FilterContext {
   const Frame& frame;               ///< its features, coarse view, and map points where they were matched
   const Frame* previous = nullptr;  ///< the frame before, nullptr for the first
   const Map& map;
-  /// Best guess of the frame's pose so far, nullptr when there is none: predicted from the camera's velocity before
-  /// features are matched, found from the matches after.
+  /// Best guess of the frame's pose so far, nullptr when there is none.
   const Eigen::Isometry3d* T_camera_world = nullptr;
   /// Of this very frame: set when a keyframe is judged again because its segmentation has come.
   const Segmentation* segmentation = nullptr;

@@ -11,17 +11,18 @@
 
 namespace holdfast {
 
-/// The dynamic filters of a run, one after the other, and what becomes of their evidence. For each frame: begin(),
-/// judge(before_matching), weigh() as often as matches change, judge(after_matching), weigh(), carry(). An empty chain
-/// says nothing: every feature keeps full weight. One thread.
+/// The dynamic filters of a run, one after the other, and what becomes of their evidence. For each frame: begin(), then
+/// judge() for each stage, with weigh() as often as matches or evidence change, then carry(). An empty chain says
+/// nothing: every feature keeps full weight. One thread.
 ///
 /// The log-odds of a feature are the sum of what holds before anything is known (settings), the priors of this frame's
 /// filters, what they measured, and what is carried by the map point that the feature shows. A map point remembers
 /// measurements only: "movable" is said anew in every frame, "moving" lasts.
 class FilterChain {
  public:
-  /// Filters that need matches speak after matching, all others before.
-  enum class Stage { before_matching, after_matching };
+  /// When a filter speaks: before features are matched, so that what it suspects cannot lead the pose astray; once
+  /// there is a first pose, when it needs one; or once the local map is matched, when it needs matches.
+  enum class Stage { before_matching, with_pose, after_matching };
 
   explicit FilterChain(const EvidenceSettings& settings = {}) : settings_(settings) {}
   void add(std::string name, std::unique_ptr<DynamicFilter> filter) {
@@ -35,7 +36,7 @@ class FilterChain {
   const DynamicFilter& filter(std::size_t i) const { return *filters_[i]; }
 
   void begin(const Frame& frame) { evidence_.reset(frame.size(), frame.coarse.depth.size()); }
-  /// Lets the filters of a stage speak, in their order. Those that need a pose are silent without one.
+  /// Lets the filters of a stage speak, in their order.
   void judge(Stage stage, const FilterContext& context);
   /// Sets static_probability, measured_log_odds and the log-odds of the coarse cells.
   void weigh(const Map& map, Frame& frame) const;
@@ -49,6 +50,7 @@ class FilterChain {
   const EvidenceSettings& settings() const { return settings_; }
 
  private:
+  static Stage stage_of(const DynamicFilter& filter);
   void apply(std::size_t filter, const FilterContext& context);
   float probability(float log_odds) const;
 

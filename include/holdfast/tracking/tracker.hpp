@@ -18,6 +18,7 @@
 #include "holdfast/interfaces/loop_detector.hpp"
 #include "holdfast/interfaces/optimizer.hpp"
 #include "holdfast/segmentation/mask_propagator.hpp"
+#include "holdfast/tracking/depth_agreement.hpp"
 #include "holdfast/tracking/filter_chain.hpp"
 #include "holdfast/tracking/frame_builder.hpp"
 #include "holdfast/tracking/local_map.hpp"
@@ -75,7 +76,7 @@ class Tracker {
   bool start_map(FrameResult& result);
   bool predict_with_velocity(FrameResult& result);
   bool predict_with_keyframe(KeyFrameId keyframe, FrameResult& result);
-  bool coast(const SensorFrame& sensor_frame, FrameResult& result);
+  bool coast(FrameResult& result);
   bool recover(FrameResult& result);
   bool relocalise(FrameResult& result);
   bool fits_surroundings(FrameResult& result);
@@ -84,8 +85,8 @@ class Tracker {
   bool needs_keyframe(const FrameResult& result) const;
   Eigen::Isometry3d predicted_step() const;
   FilterContext filter_context(const SensorFrame& sensor_frame, const Eigen::Isometry3d* T_camera_world) const;
-  void judge_before_matching(const SensorFrame& sensor_frame, const Eigen::Isometry3d* T_camera_world,
-                             FrameResult& result);
+  void judge(FilterChain::Stage stage, const SensorFrame& sensor_frame, FrameResult& result);
+  void judge_with_pose(const SensorFrame& sensor_frame, FrameResult& result);
   int judge_after_matching(const SensorFrame& sensor_frame, int inliers, FrameResult& result);
   void state_problem();
   int adjust_pose();
@@ -127,6 +128,7 @@ class Tracker {
   double last_keyframe_time_ = 0.0;
   std::vector<Record> records_;
 
+  DepthAgreement depth_agreement_;
   LocalMap local_map_;
   ProjectionSearch search_;
   SearchWindows windows_;

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/tracking/depth_agreement.hpp"
+
+#include <cmath>
+
+namespace holdfast {
+
+bool DepthAgreement::choose(const Map& map, KeyFrameId reference, double timestamp) {
+  constexpr std::size_t most = 3;
+  constexpr int neighbours = 20;
+  constexpr double old = 0.7;  // s
+  keyframes_.clear();
+  const KeyFrame* first = map.find_keyframe(reference);
+  if (first == nullptr) return false;
+  const auto take = [&](const Frame& frame) {
+    if (keyframes_.size() < most && !frame.coarse.empty()) keyframes_.push_back(&frame);
+  };
+  const std::vector<KeyFrameId> covisible = map.best_covisible(reference, neighbours);
+  for (const bool want_old : {true, false}) {
+    if (!keyframes_.empty()) break;
+    if (timestamp - first->frame.timestamp >= old || !want_old) take(first->frame);
+    for (const KeyFrameId id : covisible)
+      if (const Frame& frame = map.keyframe(id).frame; timestamp - frame.timestamp >= old || !want_old) take(frame);
+  }
+  return !keyframes_.empty();
+}
+
+double DepthAgreement::share(const Frame& frame, const Eigen::Isometry3d& T_camera_world) const {
+  constexpr int stride = 4;  // cells
+  const CoarseGrid& grid = frame.coarse.grid;
+  const Camera& camera = *frame.camera;
+  const float fx = static_cast<float>(camera.fx), fy = static_cast<float>(camera.fy);
+  const float cx = static_cast<float>(camera.cx), cy = static_cast<float>(camera.cy);
+  int compared = 0, agreeing = 0;
+  for (const Frame* keyframe : keyframes_) {
+    if (!(keyframe->coarse.grid == grid)) continue;
+    const Eigen::Isometry3d motion = keyframe->T_camera_world * T_camera_world.inverse();
+    const Eigen::Matrix3f R = motion.linear().cast<float>();
+    const Eigen::Vector3f t = motion.translation().cast<float>();
+    const std::vector<float>& known = keyframe->coarse.static_log_odds;
+    for (int row = stride / 2; row < grid.rows; row += stride)
+      for (int column = stride / 2; column < grid.columns; column += stride) {
+        const float depth = frame.coarse.depth[static_cast<std::size_t>(row * grid.columns + column)];
+        if (depth == 0.0F) continue;
+        const Eigen::Vector3f ray((grid.x_of(column) - cx) / fx, (grid.y_of(row) - cy) / fy, 1.0F);
+        const Eigen::Vector3f there = R * (depth * ray) + t;
+        if (there.z() < 0.1F) continue;
+        const int cell = grid.cell_of(fx * there.x() / there.z() + cx, fy * there.y() / there.z() + cy);
+        if (cell < 0) continue;
+        const std::size_t index = static_cast<std::size_t>(cell);
+        if (!known.empty() && known[index] < 0.0F) continue;
+        const float seen = keyframe->coarse.depth[index];
+        if (seen == 0.0F) continue;
+        ++compared;
+        agreeing += std::abs(seen - there.z()) < 0.01F + 0.01F * there.z() ? 1 : 0;
+      }
+  }
+  constexpr int enough = 50;
+  return compared < enough ? 0.0 : static_cast<double>(agreeing) / compared;
+}
+
+}  // namespace holdfast
