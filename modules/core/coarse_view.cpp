@@ -26,6 +26,7 @@ CoarseSampler::CoarseSampler(const Camera& camera) : width_(camera.width), heigh
 
 void CoarseSampler::sample_depth(const cv::Mat& depth, CoarseView& view) const {
   view.grid = grid_;
+  view.T_view_camera.setIdentity();
   view.static_log_odds.clear();
   view.labels.clear();
   view.depth.assign(raw_.size(), 0.0F);

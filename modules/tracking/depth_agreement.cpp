@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "holdfast/geometry/se3.hpp"
+
 namespace holdfast {
 
 bool DepthAgreement::choose(const Map& map, KeyFrameId reference, double timestamp) {
@@ -25,7 +27,25 @@ bool DepthAgreement::choose(const Map& map, KeyFrameId reference, double timesta
   return !keyframes_.empty();
 }
 
-double DepthAgreement::share(const Frame& frame, const Eigen::Isometry3d& T_camera_world) const {
+Eigen::Isometry3d DepthAgreement::find_view(const Frame& frame, const Eigen::Isometry3d& T_camera_world,
+                                            const Eigen::Isometry3d& step) const {
+  // Along the way from the last frame to the next: the best of some places, then of two between it and its neighbours.
+  const auto motion = geometry::log_se3(step);
+  const auto view_at = [&](double steps) { return geometry::exp_se3(steps * motion); };
+  double best_steps = 0.0, best_share = share(frame, T_camera_world);
+  const auto try_at = [&](double steps) {
+    const double there = share(frame, view_at(steps) * T_camera_world);
+    if (there <= best_share) return;
+    best_share = there;
+    best_steps = steps;
+  };
+  for (const double steps : {-0.4, 0.4, -0.8, 0.8}) try_at(steps);
+  const double middle = best_steps;
+  for (const double steps : {middle - 0.2, middle + 0.2}) try_at(steps);
+  return view_at(best_steps);
+}
+
+double DepthAgreement::share(const Frame& frame, const Eigen::Isometry3d& T_view_world) const {
   constexpr int stride = 4;  // cells
   const CoarseGrid& grid = frame.coarse.grid;
   const Camera& camera = *frame.camera;
@@ -34,7 +54,7 @@ double DepthAgreement::share(const Frame& frame, const Eigen::Isometry3d& T_came
   int compared = 0, agreeing = 0;
   for (const Frame* keyframe : keyframes_) {
     if (!(keyframe->coarse.grid == grid)) continue;
-    const Eigen::Isometry3d motion = keyframe->T_camera_world * T_camera_world.inverse();
+    const Eigen::Isometry3d motion = keyframe->coarse.T_view_camera * keyframe->T_camera_world * T_view_world.inverse();
     const Eigen::Matrix3f R = motion.linear().cast<float>();
     const Eigen::Vector3f t = motion.translation().cast<float>();
     const std::vector<float>& known = keyframe->coarse.static_log_odds;

@@ -113,13 +113,15 @@ void Tracker::judge_with_pose(const SensorFrame& sensor_frame, FrameResult& resu
   {
     // When movers led the matches astray, the camera is rather where its velocity takes it.
     const StageTimer timer(result.times, "filters");
-    if (result.method == TrackingMethod::motion_model && has_velocity_ &&
+    if (has_previous_ && has_velocity_ &&
         depth_agreement_.choose(map_, reference_keyframe_, current_.timestamp)) {
       constexpr double clear_lead = 0.03;
       const Eigen::Isometry3d predicted = predicted_step() * previous_.T_camera_world;
       if (depth_agreement_.share(current_, predicted) >
           depth_agreement_.share(current_, current_.T_camera_world) + clear_lead)
         current_.T_camera_world = predicted;
+      current_.coarse.T_view_camera = depth_agreement_.find_view(
+          current_, current_.T_camera_world, current_.T_camera_world * previous_.T_world_camera());
     }
   }
   judge(FilterChain::Stage::with_pose, sensor_frame, result);

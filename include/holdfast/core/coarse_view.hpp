@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -42,6 +43,9 @@ struct CoarseGrid {
 /// row * columns + column.
 struct CoarseView {
   CoarseGrid grid;
+  /// Where the depth image was taken relative to the camera's pose: sensors expose colour and depth some milliseconds
+  /// apart. T_view_world = T_view_camera * T_camera_world.
+  Eigen::Isometry3d T_view_camera = Eigen::Isometry3d::Identity();
   std::vector<float> depth;            ///< along the optical axis at the cell's centre [m], 0 = none
   std::vector<float> static_log_odds;  ///< of what the cell shows: positive = stands still, 0 = unknown; may be empty
   /// Index into the segmenter's classes, as segmented or carried here; 255 = unknown. Empty without a mask.

@@ -18,7 +18,10 @@ class DepthAgreement {
   /// are still where they were. False when there are none.
   bool choose(const Map& map, KeyFrameId reference, double timestamp);
   /// Share of the compared cells whose depth agrees with a keyframe's, 0 to 1.
-  double share(const Frame& frame, const Eigen::Isometry3d& T_camera_world) const;
+  double share(const Frame& frame, const Eigen::Isometry3d& T_view_world) const;
+  /// Where on the camera's way the depth image was taken: T_view_camera. `step` is the motion T_frame_previous.
+  Eigen::Isometry3d find_view(const Frame& frame, const Eigen::Isometry3d& T_camera_world,
+                              const Eigen::Isometry3d& step) const;
 
  private:
   std::vector<const Frame*> keyframes_;  // valid until the map changes

@@ -76,9 +76,11 @@ void MultiViewDepth::compare(const FilterContext& context) {
       depth_[static_cast<std::size_t>(row * columns_ + column)] =
           view.depth[static_cast<std::size_t>(row * stride * grid.columns + column * stride)];
 
+  const Eigen::Isometry3d T_view_world = view.T_view_camera * *context.T_camera_world;
   const float margin = static_cast<float>(settings_.margin), slope = static_cast<float>(settings_.margin_slope);
   for (const View& other : views_) {
-    const Eigen::Isometry3d motion = other.frame->T_camera_world * context.T_camera_world->inverse();
+    const Eigen::Isometry3d motion =
+        other.frame->coarse.T_view_camera * other.frame->T_camera_world * T_view_world.inverse();
     const Eigen::Matrix3f R = motion.linear().cast<float>();
     const Eigen::Vector3f t = motion.translation().cast<float>();
     const std::vector<float>& there = other.frame->coarse.depth;
@@ -193,6 +195,7 @@ void MultiViewDepth::judge_points(const FilterContext& context, StaticEvidence& 
   const Frame& frame = context.frame;
   const CoarseGrid& grid = frame.coarse.grid;
   const Camera& camera = *frame.camera;
+  const Eigen::Isometry3d T_view_world = frame.coarse.T_view_camera * *context.T_camera_world;
   const float margin = static_cast<float>(settings_.margin), slope = static_cast<float>(settings_.margin_slope);
   judged_.assign(context.map.points().slot_count(), 0);
   int left = settings_.point_keyframes;
@@ -202,7 +205,7 @@ void MultiViewDepth::judge_points(const FilterContext& context, StaticEvidence& 
       judged_[id.slot] = 1;
       const MapPoint* point = context.map.find_point(id);
       if (point == nullptr) continue;
-      const Eigen::Vector3d in_camera = *context.T_camera_world * point->position;
+      const Eigen::Vector3d in_camera = T_view_world * point->position;
       if (in_camera.z() < 0.1) continue;
       const Eigen::Vector2d pixel = camera.project(in_camera);
       const int c = grid.column_of(static_cast<float>(pixel.x())), r = grid.row_of(static_cast<float>(pixel.y()));
