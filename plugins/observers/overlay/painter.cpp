@@ -104,7 +104,7 @@ const cv::Mat& Painter::paint(const SensorFrame& sensor_frame, const Frame& fram
   }
   cv::Mat line = picture_.rowRange(colour.rows, picture_.rows);
   line.setTo(cv::Scalar(32, 32, 32));
-  cv::putText(line, status_text(result), {8, text_height - 8}, cv::FONT_HERSHEY_SIMPLEX, 0.45, {255, 255, 255}, 1,
+  cv::putText(line, status_text(result), {8, text_height - 8}, cv::FONT_HERSHEY_SIMPLEX, 0.42, {255, 255, 255}, 1,
               cv::LINE_AA);
   return picture_;
 }
