@@ -48,7 +48,7 @@ void look_through(const StaticScene& scene, std::size_t number, const Eigen::Iso
   const Camera& camera = scene.camera();
   // The nearest depth around each pixel, or none where one is missing: edges look through nothing.
   cv::Mat nearest = scene.views()[number].depth & cv::Scalar(KeptView::depth_bits);
-  cv::erode(nearest, nearest, cv::Mat::ones(3, 3, CV_8U), {-1, -1}, 1, cv::BORDER_CONSTANT, cv::Scalar(0));
+  cv::erode(nearest, nearest, cv::Mat::ones(3, 3, CV_8U));
   const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
   const Eigen::Matrix3f rotation = T_camera_world.linear().cast<float>();
   const Eigen::Vector3f centre =
