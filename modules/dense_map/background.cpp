@@ -36,14 +36,16 @@ BackgroundPainter::BackgroundPainter(const StaticScene& scene, const Map& map)
   const Camera& camera = scene.camera();
   for (std::size_t i = 0; i < scene.views().size(); ++i) {
     const KeptView& view = scene.views()[i];
-    cv::Mat& usable = usable_.emplace_back(camera.height, camera.width, CV_8UC1, cv::Scalar(0));
+    cv::Mat& uses = uses_.emplace_back(camera.height, camera.width, CV_8UC1, cv::Scalar(as_it_is));
     for (int y = 0; y < camera.height; ++y)
       for (int x = 0; x < camera.width; ++x) {
-        if (view.moves(x, y) || view.depth_at(x, y) == 0.0) continue;
+        auto& use = uses.at<std::uint8_t>(y, x);
+        if (view.moves(x, y)) use = replaced;
+        if (use == replaced || view.depth_at(x, y) == 0.0) continue;
         const Eigen::Vector3d point = T_world_camera_[i] * camera.back_project(x, y, view.depth_at(x, y));
         // What lies beyond the cloud's depth has no voxel, and serves as far background.
         const dense_map::Voxel* voxel = grid.find(grid.key_of(point));
-        usable.at<std::uint8_t>(y, x) = voxel == nullptr || !voxel->has_left() ? 1 : 0;
+        use = voxel != nullptr && voxel->has_left() ? replaced : source;
       }
   }
 }
@@ -51,15 +53,15 @@ BackgroundPainter::BackgroundPainter(const StaticScene& scene, const Map& map)
 BackgroundPainter::~BackgroundPainter() = default;
 
 void BackgroundPainter::project(std::size_t from, std::size_t into, Canvas& canvas) const {
-  const KeptView &source = scene_.views()[from], &target = scene_.views()[into];
+  const KeptView& view = scene_.views()[from];
   const Camera& camera = scene_.camera();
   const Eigen::Isometry3f T_target_source = (T_world_camera_[into].inverse() * T_world_camera_[from]).cast<float>();
   const auto fx = static_cast<float>(camera.fx), fy = static_cast<float>(camera.fy);
   const auto cx = static_cast<float>(camera.cx), cy = static_cast<float>(camera.cy);
   for (int y = 0; y < camera.height; ++y)
     for (int x = 0; x < camera.width; ++x) {
-      if (usable_[from].ptr<std::uint8_t>(y)[x] == 0) continue;
-      const auto depth = static_cast<float>(source.depth_at(x, y));
+      if (uses_[from].ptr<std::uint8_t>(y)[x] != source) continue;
+      const auto depth = static_cast<float>(view.depth_at(x, y));
       const Eigen::Vector3f point = T_target_source * Eigen::Vector3f((static_cast<float>(x) - cx) / fx * depth,
                                                                       (static_cast<float>(y) - cy) / fy * depth, depth);
       if (point.z() < 0.05F) continue;
@@ -69,12 +71,14 @@ void BackgroundPainter::project(std::size_t from, std::size_t into, Canvas& canv
       const int left = static_cast<int>(std::floor(u)), top = static_cast<int>(std::floor(v));
       for (int row = std::max(top, 0); row <= std::min(top + 1, camera.height - 1); ++row)
         for (int column = std::max(left, 0); column <= std::min(left + 1, camera.width - 1); ++column) {
-          if (!target.moves(column, row) || point.z() < canvas.nearest.ptr<float>(row)[column]) continue;
+          if (uses_[into].ptr<std::uint8_t>(row)[column] != replaced ||
+              point.z() < canvas.nearest.ptr<float>(row)[column])
+            continue;
           float& known = canvas.depth.ptr<float>(row)[column];
           // Views come by falling likeness: a later one only brings what hides the earlier.
           if (known != 0.0F && point.z() > known - same_surface * std::max(1.0F, known)) continue;
           known = point.z();
-          canvas.colour.ptr<cv::Vec3b>(row)[column] = source.colour.ptr<cv::Vec3b>(y)[x];
+          canvas.colour.ptr<cv::Vec3b>(row)[column] = view.colour.ptr<cv::Vec3b>(y)[x];
         }
     }
 }
@@ -83,11 +87,12 @@ BackgroundPicture BackgroundPainter::paint(std::size_t number) const {
   HOLDFAST_CHECK(number < scene_.views().size(), "view " << number << " of " << scene_.views().size());
   const KeptView& view = scene_.views()[number];
   const Camera& camera = scene_.camera();
+  const auto is_replaced = [&](int x, int y) { return uses_[number].at<std::uint8_t>(y, x) == replaced; };
   Canvas canvas{view.colour.clone(), cv::Mat::zeros(camera.height, camera.width, CV_32FC1),
                 cv::Mat::zeros(camera.height, camera.width, CV_32FC1)};
   for (int y = 0; y < camera.height; ++y)
     for (int x = 0; x < camera.width; ++x)
-      if (view.moves(x, y)) canvas.nearest.at<float>(y, x) = static_cast<float>(view.depth_at(x, y));
+      if (is_replaced(x, y)) canvas.nearest.at<float>(y, x) = static_cast<float>(view.depth_at(x, y));
 
   std::vector<std::size_t> others(scene_.views().size());
   std::iota(others.begin(), others.end(), std::size_t{0});
@@ -102,8 +107,8 @@ BackgroundPicture BackgroundPainter::paint(std::size_t number) const {
   BackgroundPicture picture;
   picture.before = view.colour.clone();
   picture.after.create(camera.height, camera.width, CV_8UC4);
-  const auto is_known = [&](int x, int y) { return !view.moves(x, y) || canvas.depth.at<float>(y, x) != 0.0F; };
-  int replaced = 0, unknown = 0;
+  const auto is_known = [&](int x, int y) { return !is_replaced(x, y) || canvas.depth.at<float>(y, x) != 0.0F; };
+  int replaced_pixels = 0, unknown_pixels = 0;
   for (int y = 0; y < camera.height; ++y)
     for (int x = 0; x < camera.width; ++x) {
       cv::Vec3i sum(0, 0, 0);
@@ -113,16 +118,16 @@ BackgroundPicture BackgroundPainter::paint(std::size_t number) const {
       if (!known) {  // a crack has most of its neighbours
         for (int r = std::max(y - 1, 0); r <= std::min(y + 1, camera.height - 1); ++r)
           for (int c = std::max(x - 1, 0); c <= std::min(x + 1, camera.width - 1); ++c)
-            if (view.moves(c, r) && is_known(c, r)) sum += cv::Vec3i(canvas.colour.at<cv::Vec3b>(r, c)), ++around;
+            if (is_replaced(c, r) && is_known(c, r)) sum += cv::Vec3i(canvas.colour.at<cv::Vec3b>(r, c)), ++around;
         known = around >= 5;
         colour = known ? cv::Vec3b(sum / around) : unknown_colour;
       }
-      if (view.moves(x, y)) ++(known ? replaced : unknown);
+      if (is_replaced(x, y)) ++(known ? replaced_pixels : unknown_pixels);
       picture.after.at<cv::Vec4b>(y, x) = {colour[0], colour[1], colour[2], static_cast<std::uint8_t>(known ? 255 : 0)};
     }
   const double pixels = static_cast<double>(camera.width) * camera.height;
-  picture.replaced = replaced / pixels;
-  picture.unknown = unknown / pixels;
+  picture.replaced = replaced_pixels / pixels;
+  picture.unknown = unknown_pixels / pixels;
   return picture;
 }
 

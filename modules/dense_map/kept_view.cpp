@@ -29,7 +29,8 @@ ViewSampler::ViewSampler(const Camera& camera, const DenseMapSettings& settings)
     : raw_(camera),
       small_(camera),
       step_(settings.step),
-      reach_((settings.dilate + settings.step - 1) / settings.step),
+      reach_((std::max(settings.dilate, settings.edge) + settings.step - 1) / settings.step),
+      edge_((settings.edge + settings.step - 1) / settings.step),
       margin_(static_cast<int>(std::lround(settings.depth_margin / KeptView::depth_unit))),
       grid_(CoarseSampler(camera).grid()) {
   small_.distortion = {};
@@ -113,8 +114,9 @@ void ViewSampler::spread(cv::Mat& depth) const {
     for (int r = std::max(row - reach_, 0); r <= bottom; ++r)
       for (int c = std::max(column - reach_, 0); c <= right; ++c) {
         auto& other = depth.at<std::uint16_t>(r, c);
+        const bool is_edge = std::abs(r - row) <= edge_ && std::abs(c - column) <= edge_;
         // Without a depth of its own a moving pixel says nothing about where it ends.
-        if (other == 0 || (own != 0 && std::abs(other - own) <= margin_)) other |= KeptView::moves_bit;
+        if (is_edge || other == 0 || (own != 0 && std::abs(other - own) <= margin_)) other |= KeptView::moves_bit;
       }
   };
   // From the rim only: what lies inside is marked already.

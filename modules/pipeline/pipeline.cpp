@@ -80,9 +80,9 @@ struct Pipeline::State {
   /// Asks for the mask of the frame last tracked, if it should have one. A keyframe that cannot be segmented now goes
   /// on without.
   void ask_for_mask(const SensorFrame& frame, const FrameResult& result, StageTimes& times);
-  /// `coarse` and `segmentation` (may be empty) are the last that will be known of what moves in the keyframe.
-  void keep_view(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse,
-                 const Segmentation& segmentation, StageTimes& times);
+  /// `coarse` and `labels` (may be empty) are the last that will be known of what moves in the keyframe.
+  void keep_view(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse, const cv::Mat& labels,
+                 StageTimes& times);
   void hand_to_mapping(KeyFrameId keyframe, StageTimes& times);
   /// Does work that fills stage times, and keeps them for take_background_times().
   template <class Work>
@@ -218,10 +218,10 @@ void Pipeline::State::hand_to_mapping(KeyFrameId keyframe, StageTimes& times) {
 }
 
 void Pipeline::State::keep_view(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse,
-                                const Segmentation& segmentation, StageTimes& times) {
+                                const cv::Mat& labels, StageTimes& times) {
   if (!scene) return;
   const StageTimer timer(times, "dense map: keep");
-  scene->add(keyframe, frame, coarse, segmentation.labels, left_out);
+  scene->add(keyframe, frame, coarse, labels, left_out);
 }
 
 void Pipeline::State::take_masks(StageTimes& times) {
@@ -234,7 +234,7 @@ void Pipeline::State::take_masks(StageTimes& times) {
       const TrackingLock lock(map_mutex);
       tracker.judge_keyframe(segmented->frame, segmented->segmentation, segmented->keyframe);
       if (const KeyFrame* keyframe = map.find_keyframe(segmented->keyframe))
-        keep_view(segmented->keyframe, segmented->frame, keyframe->frame.coarse, segmented->segmentation, times);
+        keep_view(segmented->keyframe, segmented->frame, keyframe->frame.coarse, segmented->segmentation.labels, times);
     }
     hand_to_mapping(segmented->keyframe, times);
   }

@@ -56,6 +56,7 @@ TEST(KeptView, SpreadsWhatMovesAtItsDepthOnly) {
   DenseMapSettings settings;
   settings.step = 1;
   settings.dilate = 6;
+  settings.edge = 1;
   const ViewSampler sampler(world.camera, settings);
   cv::Mat labels;
   SensorFrame frame = world.images(0.0, 0, 0.0, &labels);
@@ -68,13 +69,15 @@ TEST(KeptView, SpreadsWhatMovesAtItsDepthOnly) {
   EXPECT_FALSE(view.moves(45, 60));   // the wall beside it
   EXPECT_TRUE(view.moves(115, 60));   // no depth
   EXPECT_FALSE(view.moves(117, 60));  // the wall
+  EXPECT_TRUE(view.moves(80, 92));    // the wall at the mask's edge; the square ends at row 91
+  EXPECT_FALSE(view.moves(80, 93));
   EXPECT_NEAR(view.depth_at(80, 60), WallWorld::square_z, KeptView::depth_unit);
 }
 
 TEST(KeptView, TakesLabelsBeforeTheCoarseOnes) {
   const WallWorld world;
   DenseMapSettings settings;
-  settings.dilate = 0;
+  settings.dilate = settings.edge = 0;
   const ViewSampler sampler(world.camera, settings);
   const SensorFrame frame = world.images(0.0, 0, std::nullopt);
   CoarseView coarse = blank_coarse(world.camera);

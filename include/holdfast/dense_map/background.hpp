@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <opencv2/core/mat.hpp>
 #include <vector>
@@ -21,8 +22,9 @@ struct BackgroundPicture {
 
 /// Fills what moves in keyframes' pictures with what other keyframes saw behind it: their static pixels with depth are
 /// projected into the view, the nearest surface wins (z-buffer), and of several views of one surface the one that is
-/// most alike in direction, place and time. Pixels whose voxel has left (StaticScene::cloud) and those in front of what
-/// is to be replaced are not used. Cracks between projected pixels are closed.
+/// most alike in direction, place and time. Pixels whose voxel has left (StaticScene::cloud) count as moving, in the
+/// view and in the others; what would lie in front of what is to be replaced is not used. Cracks between projected
+/// pixels are closed.
 class BackgroundPainter {
  public:
   /// The scene must outlive the painter; the poses are those that the map has now.
@@ -38,7 +40,8 @@ class BackgroundPainter {
 
   const StaticScene& scene_;
   std::vector<Eigen::Isometry3d> T_world_camera_;
-  std::vector<cv::Mat> usable_;  // per view: 8UC1, 1 = static, has depth, has not left
+  enum Use : std::uint8_t { as_it_is, source, replaced };
+  std::vector<cv::Mat> uses_;  // per view: 8UC1, what each pixel is good for; a source also stays as it is
 };
 
 }  // namespace holdfast

@@ -15,6 +15,7 @@ struct DenseMapSettings {
   int keyframes = 250;
   std::vector<std::string> classes = {"person"};
   int dilate = 12;
+  int edge = 4;
   double depth_margin = 0.15;
   double maximum_depth = 4.0;
   double voxel_size = 0.01;
@@ -35,6 +36,7 @@ struct DenseMapSettings {
              "what is this near to something that is left out, at its depth or without one, is left out too")
         .range(0, 64)
         .unit("px");
+    table.add("edge", &S::edge, "what is this near is left out, whatever its depth").range(0, 64).unit("px");
     table.add("depth_margin", &S::depth_margin, "difference of depths up to which things are at one depth")
         .range(0, 10)
         .unit("m");

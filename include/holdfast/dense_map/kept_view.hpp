@@ -39,7 +39,7 @@ class ViewSampler {
 
   /// Not static is what `labels` (8UC1 of the image's size, empty = none) gives a class of `left_out` (by label) or
   /// calls unknown (255), without labels what coarse.labels says so, what coarse.static_log_odds says to move (< 0),
-  /// what is near it (DenseMapSettings::dilate), and what lies outside the image.
+  /// what is near it (DenseMapSettings::dilate, edge), and what lies outside the image.
   KeptView sample(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse, const cv::Mat& labels,
                   const std::vector<bool>& left_out) const;
 
@@ -47,7 +47,7 @@ class ViewSampler {
   void spread(cv::Mat& depth) const;
 
   Camera raw_, small_;
-  int step_, reach_;
+  int step_, reach_, edge_;
   int margin_;                           // [depth units]
   std::vector<std::int32_t> raw_pixel_;  // of each kept pixel, -1 = outside
   std::vector<std::int32_t> cell_;       // of the coarse view, -1 = none
