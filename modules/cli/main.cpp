@@ -14,6 +14,7 @@
 #include "holdfast/cli/map_command.hpp"
 #include "holdfast/cli/modules_command.hpp"
 #include "holdfast/cli/run_command.hpp"
+#include "holdfast/cli/segment_command.hpp"
 #include "holdfast/cli/simulate_command.hpp"
 #include "holdfast/cli/terminal.hpp"
 #include "holdfast/core/error.hpp"
@@ -73,6 +74,7 @@ int main(int argc, char** argv) {
   add_map_command(app, exit_code);
   add_background_command(app, exit_code);
   add_simulate_command(app, exit_code);
+  add_segment_command(app, exit_code);
   add_check_command(app, exit_code);
   add_modules_command(app, exit_code);
   if (argc == 1) {

@@ -77,13 +77,19 @@ void check_map(const Map& map, const Camera& camera, const std::filesystem::path
   });
 }
 
-}  // namespace
-
-BuiltPipeline build_pipeline(const Configuration& configuration, const Registry& registry, const RunOptions& options) {
+/// What the source is told; the camera and the classes that it knows come afterwards.
+CreationContext context_of_source(const Configuration& configuration) {
   CreationContext context;
   if (configuration.camera) context.camera = *configuration.camera;
   context.seed = configuration.run.seed;
   context.sequential = configuration.run.mode == "sequential";
+  return context;
+}
+
+}  // namespace
+
+BuiltPipeline build_pipeline(const Configuration& configuration, const Registry& registry, const RunOptions& options) {
+  CreationContext context = context_of_source(configuration);
   context.output_directory = options.output_directory;
   const auto create = [&]<class Interface>(const ModuleChoice& choice) {
     return registry.create<Interface>(choice.name, choice.values, context);
@@ -93,6 +99,7 @@ BuiltPipeline build_pipeline(const Configuration& configuration, const Registry&
   const SourceDescription description = source->describe();
   std::vector<Diagnostic> diagnostics;
   context.camera = resolve_camera(configuration, description, diagnostics);
+  context.class_names = description.class_names;
 
   PipelineParts parts;
   parts.camera = context.camera;
@@ -133,6 +140,23 @@ BuiltPipeline build_pipeline(const Configuration& configuration, const Registry&
     check_map(parts.map, parts.camera, options.map_file);
   }
   return {std::move(source), Pipeline(std::move(parts))};
+}
+
+BuiltSegmenter build_segmenter(const Configuration& configuration, const Registry& registry) {
+  if (configuration.segmenter.name == "none")
+    throw ConfigurationError(
+        configuration.segmenter.location.file.empty() ? SourceLocation{configuration.file}
+                                                      : configuration.segmenter.location,
+        "the segmenter is 'none', which finds nothing; choose one under 'segmenter:', such as 'onnx'");
+  CreationContext context = context_of_source(configuration);
+  auto source = registry.create<FrameSource>(configuration.source.name, configuration.source.values, context);
+  const SourceDescription description = source->describe();
+  std::vector<Diagnostic> diagnostics;
+  context.camera = resolve_camera(configuration, description, diagnostics);
+  context.class_names = description.class_names;
+  if (!diagnostics.empty()) throw ConfigurationError(std::move(diagnostics));
+  auto segmenter = registry.create<Segmenter>(configuration.segmenter.name, configuration.segmenter.values, context);
+  return {std::move(source), std::move(segmenter)};
 }
 
 }  // namespace holdfast

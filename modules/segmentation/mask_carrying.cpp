@@ -12,9 +12,13 @@ namespace {
 constexpr std::uint8_t unknown = 255;
 bool is_object(std::uint8_t label) { return label != 0 && label != unknown; }
 
-/// Depths of one surface in two frames may differ by this much: noise, and motion within a cell [m].
-float same_surface(float depth) { return 0.04F + 0.04F * depth; }
-/// Depths of neighbouring cells of one surface may differ by this much [m].
+/// Depths of a surface that stands still, seen from two places, differ by less [m].
+float same_place(float depth) { return 0.01F + 0.012F * depth; }
+/// Depths of a surface that moved differ by less, when its motion is known [m].
+float same_surface(float depth) { return 0.015F + 0.02F * depth; }
+/// What lies behind or before something else differs by more [m].
+float apart(float depth) { return 0.02F + 0.03F * depth; }
+/// Depths of neighbouring cells of one surface differ by less [m].
 float continues_surface(float depth) { return 0.02F + 0.015F * depth; }
 
 }  // namespace
@@ -61,7 +65,7 @@ void MaskCarrier::carry(const CoarseView& from_view, const CellLabels& from, con
   const std::size_t size = static_cast<std::size_t>(grid.size());
   to.labels.assign(size, 0);
   to.quality.assign(size, 255);
-  background_.assign(size, 0);
+  past_.assign(size, Past::hidden);
   const Eigen::Isometry3d T_from_to = T_to_from.inverse();
   const Eigen::Matrix3f R = T_from_to.linear().cast<float>();
   const Eigen::Vector3f t = T_from_to.translation().cast<float>();
@@ -72,8 +76,30 @@ void MaskCarrier::carry(const CoarseView& from_view, const CellLabels& from, con
     const float ray_y = (grid.y_of(row) - cy) / fy;
     for (int column = 0; column < grid.columns; ++column) {
       const std::size_t cell = static_cast<std::size_t>(row * grid.columns + column);
-      const std::size_t place = static_cast<std::size_t>((row / block) * block_columns_ + column / block);
       const float depth = to_view.depth[cell];
+      if (depth > 0.0F) {
+        // Where the camera's motion alone says that this surface was.
+        const float ray_x = (grid.x_of(column) - cx) / fx;
+        const float z = depth * (R(2, 0) * ray_x + R(2, 1) * ray_y + R(2, 2)) + t.z();
+        int source = -1;
+        if (z > 0.05F)
+          source = grid.cell_of(fx * (depth * (R(0, 0) * ray_x + R(0, 1) * ray_y + R(0, 2)) + t.x()) / z + cx,
+                                fy * (depth * (R(1, 0) * ray_x + R(1, 1) * ray_y + R(1, 2)) + t.y()) / z + cy);
+        const float before = source < 0 ? 0.0F : from_view.depth[static_cast<std::size_t>(source)];
+        if (before == 0.0F) {
+          past_[cell] = Past::unseen;
+        } else if (std::abs(before - z) < apart(z)) {
+          past_[cell] = Past::same;
+          to.labels[cell] = from.labels[static_cast<std::size_t>(source)];
+          to.quality[cell] = from.quality[static_cast<std::size_t>(source)];
+          // Almost the same place may still be an object that has just come there.
+          if (to.labels[cell] != 0 || std::abs(before - z) < same_place(z)) continue;
+        } else if (before > z + apart(z)) {
+          past_[cell] = Past::free;
+        }
+      }
+      // Where a part of an object nearby moved from.
+      const std::size_t place = static_cast<std::size_t>((row / block) * block_columns_ + column / block);
       for (std::size_t k = 0; k < mover_count_[place]; ++k) {
         const Mover& mover = movers_[place * most_movers + k];
         const int source_column = column + mover.columns, source_row = row + mover.rows;
@@ -81,32 +107,13 @@ void MaskCarrier::carry(const CoarseView& from_view, const CellLabels& from, con
         const std::size_t source = static_cast<std::size_t>(source_row * grid.columns + source_column);
         if (!is_object(from.labels[source])) continue;
         const float before = from_view.depth[source];
-        const bool agrees = depth == 0.0F || (before > 0.0F && std::abs(before - depth - mover.depth_change) <
-                                                                   same_surface(depth));
-        if (!agrees) continue;
+        if (depth > 0.0F &&
+            (before == 0.0F || std::abs(before - depth - mover.depth_change) > same_surface(depth)))
+          continue;
         to.labels[cell] = from.labels[source];
         to.quality[cell] = from.quality[source];
         break;
       }
-      if (is_object(to.labels[cell]) || depth == 0.0F) continue;
-
-      // Where the camera's motion alone says that this surface was seen.
-      const float ray_x = (grid.x_of(column) - cx) / fx;
-      const float z = depth * (R(2, 0) * ray_x + R(2, 1) * ray_y + R(2, 2)) + t.z();
-      if (z < 0.05F) continue;
-      const float x = fx * (depth * (R(0, 0) * ray_x + R(0, 1) * ray_y + R(0, 2)) + t.x()) / z + cx;
-      const float y = fy * (depth * (R(1, 0) * ray_x + R(1, 1) * ray_y + R(1, 2)) + t.y()) / z + cy;
-      const int source = grid.cell_of(x, y);
-      if (source < 0) continue;
-      const float before = from_view.depth[static_cast<std::size_t>(source)];
-      if (before == 0.0F || std::abs(before - z) > same_surface(z)) continue;
-      const std::uint8_t label = from.labels[static_cast<std::size_t>(source)];
-      if (label == 0) {
-        background_[cell] = 1;
-        continue;
-      }
-      to.labels[cell] = label;
-      to.quality[cell] = from.quality[static_cast<std::size_t>(source)];
     }
   }
   grow(to_view, to);
@@ -114,12 +121,19 @@ void MaskCarrier::carry(const CoarseView& from_view, const CellLabels& from, con
 }
 
 void MaskCarrier::grow(const CoarseView& to_view, CellLabels& to) {
+  // What stands where there was free space has come with the object; what was not seen before may be anything, so the
+  // object takes only a little of it; what was hidden before is what the object uncovered.
   const CoarseGrid& grid = to_view.grid;
-  constexpr int most_steps = 6;
+  constexpr int most_unseen_steps = 15, most_steps = 60;
+  constexpr float most_depth_change = 0.1F;  // m, over what was not seen before
   constexpr std::array<std::pair<int, int>, 4> neighbours{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
   front_.clear();
+  start_depth_.resize(to.labels.size());
   for (std::int32_t cell = 0; cell < grid.size(); ++cell)
-    if (is_object(to.labels[static_cast<std::size_t>(cell)])) front_.push_back(cell);
+    if (is_object(to.labels[static_cast<std::size_t>(cell)])) {
+      front_.push_back(cell);
+      start_depth_[static_cast<std::size_t>(cell)] = to_view.depth[static_cast<std::size_t>(cell)];
+    }
   for (int step = 0; step < most_steps && !front_.empty(); ++step) {
     next_front_.clear();
     for (const std::int32_t cell : front_) {
@@ -130,9 +144,15 @@ void MaskCarrier::grow(const CoarseView& to_view, CellLabels& to) {
         const int c = column + dc, r = row + dr;
         if (c < 0 || r < 0 || c >= grid.columns || r >= grid.rows) continue;
         const std::size_t other = static_cast<std::size_t>(r * grid.columns + c);
-        if (to.labels[other] != 0 || background_[other] != 0) continue;
+        if (to.labels[other] != 0) continue;
         const float there = to_view.depth[other];
         if (there == 0.0F || std::abs(there - depth) > continues_surface(depth)) continue;
+        const float start = start_depth_[static_cast<std::size_t>(cell)];
+        const bool may_be_object = past_[other] == Past::free ||
+                                   (past_[other] == Past::unseen && step < most_unseen_steps &&
+                                    std::abs(there - start) < most_depth_change);
+        if (!may_be_object) continue;
+        start_depth_[other] = start;
         to.labels[other] = to.labels[static_cast<std::size_t>(cell)];
         to.quality[other] = static_cast<std::uint8_t>(to.quality[static_cast<std::size_t>(cell)] * 15 / 16);
         next_front_.push_back(static_cast<std::int32_t>(other));

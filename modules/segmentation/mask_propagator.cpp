@@ -111,7 +111,10 @@ void MaskPropagator::remember() {
   if (frame_ == nullptr) return;
   const std::optional<Eigen::Isometry3d> pose = current_.T_camera_world;
   remembered_.push_back({});
-  if (labels_.labels.empty()) labels_.labels.assign(current_.coarse.depth.size(), unknown);
+  if (labels_.labels.empty()) {
+    labels_.labels.assign(current_.coarse.depth.size(), unknown);
+    labels_.quality.assign(labels_.labels.size(), 0);
+  }
   renew_points(*frame_);
   take_view(*frame_, current_);
   current_.T_camera_world = pose;

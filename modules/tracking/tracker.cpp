@@ -169,6 +169,7 @@ bool Tracker::needs_keyframe(const FrameResult& result) const {
   if (holds_keyframes_) return result.inliers < 2 * settings_.minimum_inliers;
   const bool weak = result.inliers < ratio * reference_points;
   const bool due = since_last >= settings_.keyframe_maximum_interval;
+  if (propagator_ && propagator_->mask().age >= settings_.keyframe_mask_age) return true;
   return wants_close || weak || (due && result.inliers < 0.9 * reference_points);
 }
 

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "holdfast/core/camera.hpp"
 
@@ -25,6 +27,8 @@ struct CreationContext {
   std::uint64_t seed = 1;                       ///< the run's only seed; derive your own with Random::fork
   bool sequential = true;                       ///< results must be bit-identical from run to run
   std::filesystem::path output_directory = {};  ///< for observers that write files; empty when nothing is written
+  /// Of the source's FrameTruth::class_labels, by index; empty when the source knows none, and for the source itself.
+  std::vector<std::string> class_names = {};
 };
 
 }  // namespace holdfast

@@ -25,6 +25,8 @@ class Segmenter : public Module {
 
   /// Class names by label; label 0 is the background. Empty for a segmenter that never finds anything.
   virtual const std::vector<std::string>& classes() const = 0;
+  /// Of the classes, those that can move or be moved; empty when the segmenter does not say.
+  virtual std::vector<std::string> movable() const { return {}; }
   /// The segmentation of a frame; empty when it has none for this frame (a result, not an error).
   virtual Segmentation segment(const SensorFrame& frame) = 0;
 };

@@ -7,6 +7,7 @@
 
 #include "holdfast/config/configuration.hpp"
 #include "holdfast/interfaces/frame_source.hpp"
+#include "holdfast/interfaces/segmenter.hpp"
 #include "holdfast/pipeline/pipeline.hpp"
 #include "holdfast/plugin/registry.hpp"
 
@@ -35,5 +36,15 @@ struct RunOptions {
 /// module throws when it is made. The registry is not needed afterwards.
 BuiltPipeline build_pipeline(const Configuration& configuration, const Registry& registry,
                              const RunOptions& options = {});
+
+/// A source and the segmenter that its frames are given to.
+struct BuiltSegmenter {
+  std::unique_ptr<FrameSource> source;
+  std::unique_ptr<Segmenter> segmenter;
+};
+
+/// Makes only these two of what a configuration chose: for `holdfast segment`. Throws as build_pipeline() does, and
+/// ConfigurationError when the segmenter is 'none'.
+BuiltSegmenter build_segmenter(const Configuration& configuration, const Registry& registry);
 
 }  // namespace holdfast

@@ -27,10 +27,10 @@ struct CellLabels {
   std::vector<std::uint8_t> quality;
 };
 
-/// Carries labels from one frame to another on their coarse views. A cell takes the label of the place that the points
-/// of an object moved here from, when depth agrees; or of the place that the camera's motion moves it from. Then the
-/// objects grow over surface that continues theirs in depth and that was not background before, so that what comes into
-/// view is found, and a person does not flow into the floor. After the idea of NGD-SLAM (Zhang et al. 2024, section
+/// Carries labels from one frame to another on their coarse views. A cell takes the label of the place that the
+/// camera's motion moves it from, when the same surface was there; or of the place that the points of an object moved
+/// here from, when depth agrees. Then the objects grow over surface that continues theirs in depth where there was free
+/// space before, so that what comes into view is found, and a person does not flow into the floor. After the idea of NGD-SLAM (Zhang et al. 2024, section
 /// III-B: points of the last mask followed by flow, mask rebuilt by depth), with the background as a second witness.
 /// Keeps its buffers; one thread.
 class MaskCarrier {
@@ -58,7 +58,11 @@ class MaskCarrier {
   int block_columns_ = 0, block_rows_ = 0;
   std::vector<Mover> movers_;           // most_movers for each block
   std::vector<std::uint8_t> mover_count_;
-  std::vector<std::uint8_t> background_;  // 1 where a cell shows what was background before
+  /// What was at a cell's place before, by the camera's motion: the same surface, free space, something nearer, or
+  /// nothing known.
+  enum class Past : std::uint8_t { same, free, hidden, unseen };
+  std::vector<Past> past_;
+  std::vector<float> start_depth_;  // of the part of an object that grew here [m]
   std::vector<std::int32_t> front_, next_front_;
 };
 

@@ -19,6 +19,7 @@ struct TrackingSettings {
   int local_keyframes = 80;
   double keyframe_maximum_interval = 1.0;
   double keyframe_tracked_ratio = 0.8;
+  double keyframe_mask_age = 0.5;
   int keyframe_close_tracked = 100;
   int keyframe_close_possible = 70;
   double depth_edge_ratio = 0.0;
@@ -60,6 +61,11 @@ struct TrackingSettings {
         .add("keyframe_tracked_ratio", &S::keyframe_tracked_ratio,
              "a keyframe is due when less than this share of the reference keyframe's points is tracked")
         .range(0, 1);
+    table
+        .add("keyframe_mask_age", &S::keyframe_mask_age,
+             "with a segmenter, a keyframe is due when the mask carried along is this old")
+        .range(0.03, 1000)
+        .unit("s");
     table
         .add("keyframe_close_tracked", &S::keyframe_close_tracked,
              "a keyframe is due when fewer close points are tracked, and ...")

@@ -68,6 +68,8 @@ void examine_png(Bytes bytes, ImageStructure& image) {
       image.height = static_cast<int>(std::min<std::uint32_t>(big_endian_32(data + 4), 0x7fffffffu));
       const int colour_type = data[9];
       const bool palette = colour_type == 3;
+      image.palette = palette;
+      image.index_bits = palette ? data[8] : 8;
       image.bits = palette ? 8 : data[8];
       image.channels = palette || colour_type == 2 ? 3 : colour_type == 6 ? 4 : colour_type == 4 ? 2 : 1;
     }
@@ -132,6 +134,29 @@ ImageStructure examine_image(std::span<const std::uint8_t> bytes) {
   else
     image.problem = "is neither a PNG nor a JPEG image";
   return image;
+}
+
+std::vector<std::uint8_t> palette_indices_as_grey(Bytes bytes) {
+  std::vector<std::uint8_t> grey(png_signature.begin(), png_signature.end());
+  grey.reserve(bytes.size());
+  for (std::size_t at = png_signature.size(); bytes.size() - at >= 12;) {
+    const std::size_t length = big_endian_32(&bytes[at]) + 12;
+    const std::string name(reinterpret_cast<const char*>(&bytes[at + 4]), 4);
+    if (name == "IHDR" || name == "IDAT" || name == "IEND") {  // the others may speak of the palette
+      const std::size_t begin = grey.size();
+      grey.insert(grey.end(), bytes.begin() + static_cast<std::ptrdiff_t>(at),
+                  bytes.begin() + static_cast<std::ptrdiff_t>(at + length));
+      if (name == "IHDR") {
+        grey[begin + 17] = 0;  // colour type: grey
+        const std::uint32_t checksum = png_checksum(Bytes(grey).subspan(begin + 4, length - 8));
+        for (std::size_t i = 0; i < 4; ++i)
+          grey[begin + length - 4 + i] = static_cast<std::uint8_t>(checksum >> (24 - 8 * i));
+      }
+    }
+    if (name == "IEND") break;
+    at += length;
+  }
+  return grey;
 }
 
 }  // namespace holdfast

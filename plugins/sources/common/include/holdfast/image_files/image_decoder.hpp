@@ -17,6 +17,9 @@ class ImageDecoder {
   cv::Mat read_colour(const std::filesystem::path& file);
   /// A 16-bit PNG with one channel, as 32FC1 [m]: value / depth_factor, 0 = no value.
   cv::Mat read_depth(const std::filesystem::path& file, double depth_factor);
+  /// A PNG of labels, as stored: 8UC1 or 16UC1. Of a PNG with a palette (8 bits, such as those of Pascal VOC) the
+  /// indices, not the colours.
+  cv::Mat read_labels(const std::filesystem::path& file);
 
  private:
   void load(const std::filesystem::path& file);

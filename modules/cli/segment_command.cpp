@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/cli/segment_command.hpp"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <memory>
+#include <opencv2/core/utility.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "holdfast/cli/label_writer.hpp"
+#include "holdfast/cli/terminal.hpp"
+#include "holdfast/config/configuration.hpp"
+#include "holdfast/core/error.hpp"
+#include "holdfast/core/stage_times.hpp"
+#include "holdfast/pipeline/pipeline_builder.hpp"
+#include "holdfast/plugin/builtin.hpp"
+
+namespace holdfast {
+
+namespace {
+
+struct Arguments {
+  std::string configuration;
+  std::vector<std::string> overrides;
+  std::filesystem::path output;
+  std::uint64_t every = 1;
+  bool overwrite = false;
+  bool quiet = false;
+};
+
+struct Counts {
+  std::uint64_t asked = 0;  ///< frames that the segmenter was given
+  double seconds = 0.0;     ///< that it took for them
+};
+
+/// Until the source ends, a signal comes or something throws.
+void segment_frames(BuiltSegmenter& built, const Arguments& arguments, LabelWriter& writer, Counts& counts) {
+  Progress progress(built.source->describe().frame_count, arguments.quiet);
+  std::uint64_t done = 0;
+  while (!interrupted()) {
+    const std::optional<SensorFrame> frame = built.source->next();
+    if (!frame) return;
+    if (done++ % arguments.every == 0) {
+      const Stopwatch watch;
+      const Segmentation segmentation = built.segmenter->segment(*frame);
+      counts.seconds += watch.seconds();
+      ++counts.asked;
+      if (!segmentation.empty()) writer.write(frame->timestamp, segmentation.labels);
+    }
+    progress.update(done);
+  }
+}
+
+int segment(const Arguments& arguments) {
+  cv::setNumThreads(1);  // as `run` does; the segmenter may ask for more
+  catch_interrupts();
+  Registry registry;
+  register_builtin_plugins(registry);
+  const Configuration configuration =
+      load_configuration(arguments.configuration, arguments.overrides, registry, pipeline_sections());
+  BuiltSegmenter built = build_segmenter(configuration, registry);
+  LabelWriter writer(arguments.output, built.segmenter->classes(), arguments.overwrite);
+
+  Counts counts;
+  std::string failure;
+  try {
+    segment_frames(built, arguments, writer, counts);
+  } catch (const std::exception& error) {
+    failure = error.what();
+  }
+  writer.finish();
+  const auto done = static_cast<std::size_t>(counts.asked);
+  const std::string written = std::to_string(writer.count()) + " label images are in " + arguments.output.string();
+  if (!failure.empty())
+    std::fprintf(stderr, "%s %s\n%s\n", red("error:", STDERR_FILENO).c_str(), failure.c_str(), written.c_str());
+  else if (interrupted())
+    std::fprintf(stderr, "interrupted; %s\n", written.c_str());
+  else if (writer.count() == 0)
+    std::fprintf(stderr, "%s the segmenter '%s' had nothing for any of %zu frames; is it of this recording?\n",
+                 red("error:", STDERR_FILENO).c_str(), configuration.segmenter.name.c_str(), done);
+  else if (!arguments.quiet)
+    std::printf("%s, for %zu frames, at %.1f ms a frame\n", written.c_str(), done,
+                1e3 * counts.seconds / static_cast<double>(done));
+  if (!arguments.quiet && writer.count() > 0)
+    std::printf("\nTo use them:\n\n%s", writer.configuration(arguments.every == 1).c_str());
+  constexpr int interrupted_code = 130;
+  return interrupted() ? interrupted_code : failure.empty() && writer.count() > 0 ? 0 : 1;
+}
+
+}  // namespace
+
+void add_segment_command(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("segment", "Segment a recording once, for the segmenter 'precomputed'");
+  command->footer(
+      "\nRuns the source and the segmenter of a configuration, nothing else, so that a slow network works once and "
+      "every\n"
+      "run after it is fast. Writes into the output folder:\n"
+      "  STAMP.png     labels of a frame: index into the classes, 255 = unknown\n"
+      "  labels.txt    the list of them          classes.yaml  what the values mean\n"
+      "and prints what to put into a configuration to use them. Exits 0 when the source came to its end, 130 on "
+      "Ctrl-C\n"
+      "(what was done is kept), 2 when the configuration is wrong, 1 for anything else.\n\n"
+      "Examples\n"
+      "  holdfast segment rgbd.yaml --set 'segmenter={onnx: {model: net.onnx, classes: [background, person]}}' \\\n"
+      "    --output out/labels\n"
+      "  holdfast segment simulated.yaml --set segmenter=truth --output out/labels --every 5");
+  command->add_option("CONFIG", arguments->configuration, "Configuration in YAML")->required();
+  command->add_option("--output", arguments->output, "Folder for the label images")->required();
+  command->add_option("--set", arguments->overrides, "key.path=value: as if the file said so; may be repeated")
+      ->allow_extra_args(false);
+  command->add_option("--every", arguments->every, "Segment every N-th frame only")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1000000}))
+      ->capture_default_str();
+  command->add_flag("--overwrite", arguments->overwrite, "Replace the label images of an earlier run in the folder");
+  command->add_flag("--quiet", arguments->quiet, "No progress, no summary");
+  command->callback([arguments, &exit_code] { exit_code = segment(*arguments); });
+}
+
+}  // namespace holdfast

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/inference/network.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <opencv2/core/utility.hpp>
+#include <opencv2/core/utils/logger.hpp>
+#include <opencv2/dnn.hpp>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+#include <utility>
+
+#include "holdfast/core/error.hpp"
+#include "holdfast/inference/onnx_signature.hpp"
+#include "holdfast/plugin/did_you_mean.hpp"
+
+namespace holdfast {
+
+namespace {
+
+/// OpenCV prints what it then throws; the message of the exception is enough.
+class QuietLibrary {
+ public:
+  QuietLibrary() : before_(cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT)) {}
+  ~QuietLibrary() { cv::utils::logging::setLogLevel(before_); }
+  QuietLibrary(const QuietLibrary&) = delete;
+  QuietLibrary& operator=(const QuietLibrary&) = delete;
+
+ private:
+  cv::utils::logging::LogLevel before_;
+};
+
+std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error))
+    throw InputError({file.string()},
+                     std::string(std::filesystem::exists(file, error) ? "is not a file" : "is missing") +
+                         "; expected a network in ONNX format; correct `model`");
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError({file.string()}, "cannot be read; check its permissions");
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+std::string names(const std::vector<OnnxTensor>& tensors) {
+  std::string text;
+  for (const OnnxTensor& tensor : tensors)
+    text += (text.empty() ? "'" : ", '") + tensor.name + "' (" + tensor.shape_text() + ")";
+  return text;
+}
+
+/// The size of the input, from the options and from what the model declares, which must agree.
+cv::Size input_size(const NetworkOptions& options, const OnnxSignature& signature) {
+  const auto fail = [&](const std::string& message) { throw InputError({options.model.string()}, message); };
+  if (signature.inputs.size() != 1)
+    fail("has " + std::to_string(signature.inputs.size()) + " inputs, " + names(signature.inputs) +
+         "; expected a network with one, an image");
+  const OnnxTensor& input = signature.inputs.front();
+  const char* expected =
+      options.channels_last ? "1 x height x width x 3 (layout nhwc)" : "1 x 3 x height x width (layout nchw)";
+  std::array<std::int64_t, 4> shape = {-1, -1, -1, -1};
+  if (!input.shape.empty()) {
+    if (input.shape.size() != 4) fail("has an input of " + input.shape_text() + "; expected " + expected);
+    std::copy(input.shape.begin(), input.shape.end(), shape.begin());
+  }
+  const std::int64_t channels = shape[options.channels_last ? 3 : 1];
+  if ((shape[0] != -1 && shape[0] != 1) || (channels != -1 && channels != 3))
+    fail("has an input of " + input.shape_text() + "; expected " + expected + "; correct `layout`, or export the " +
+         "network for one colour image");
+  const auto agree = [&](int configured, std::int64_t declared, const char* name) {
+    if (configured == 0 && declared == -1)
+      fail("has an input of " + input.shape_text() + ", of any " + name + "; set `" + name + "`");
+    if (configured != 0 && declared != -1 && configured != declared)
+      fail("has an input of " + input.shape_text() + ", but `" + name + "` is " + std::to_string(configured) +
+           "; expected " + std::to_string(declared) + ", or leave `" + name + "` out");
+    return configured != 0 ? configured : static_cast<int>(declared);
+  };
+  const std::size_t row = options.channels_last ? 1 : 2;
+  const int height = agree(options.height, shape[row], "height");
+  return {agree(options.width, shape[row + 1], "width"), height};
+}
+
+std::string chosen_output(const NetworkOptions& options, const OnnxSignature& signature) {
+  std::vector<std::string> known;
+  for (const OnnxTensor& output : signature.outputs) known.push_back(output.name);
+  if (options.output_name.empty()) {
+    if (known.size() > 1)
+      throw InputError({options.model.string()}, "has " + std::to_string(known.size()) + " outputs, " +
+                                                     names(signature.outputs) + "; name one in `output_name`");
+    return known.front();
+  }
+  if (std::find(known.begin(), known.end(), options.output_name) == known.end())
+    throw InputError({options.model.string()}, "has no output '" + options.output_name + "'; " +
+                                                   did_you_mean(options.output_name, known) + "; it has " +
+                                                   names(signature.outputs));
+  return options.output_name;
+}
+
+void require_three(const NetworkOptions& options) {
+  const auto fail = [](const char* name, const std::string& message) {
+    throw ConfigurationError(SourceLocation{}, std::string(name) + ": " + message);
+  };
+  for (const auto& [name, values] :
+       {std::pair("mean", &options.mean), std::pair("standard_deviation", &options.standard_deviation)})
+    if (values->size() != 3)
+      fail(name, "found " + std::to_string(values->size()) + " numbers; expected 3, one for each channel");
+  for (const double value : options.standard_deviation)
+    if (!(value > 0.0)) fail("standard_deviation", "found " + std::to_string(value) + "; expected numbers above 0");
+}
+
+}  // namespace
+
+struct Network::Parts {
+  NetworkOptions options;
+  cv::Size size;
+  std::string output;
+  cv::dnn::Net net;
+  cv::Mat resized, input;
+  bool has_run = false;
+  std::array<std::array<float, 256>, 3> value;  ///< of a pixel's value, by channel of the network
+
+  void fill_input(const cv::Mat& colour) {
+    const cv::Mat* image = &colour;
+    if (colour.size() != size) {
+      const bool shrinks = colour.cols >= size.width && colour.rows >= size.height;
+      cv::resize(colour, resized, size, 0, 0, shrinks ? cv::INTER_AREA : cv::INTER_LINEAR);
+      image = &resized;
+    }
+    const auto area = static_cast<std::ptrdiff_t>(size.area());
+    auto* to = input.ptr<float>();
+    const std::ptrdiff_t next_pixel = options.channels_last ? 3 : 1, next_channel = options.channels_last ? 1 : area;
+    for (int y = 0; y < image->rows; ++y) {
+      const auto* from = image->ptr<std::uint8_t>(y);
+      for (int x = 0; x < image->cols; ++x, from += 3, to += next_pixel)
+        for (std::size_t channel = 0; channel < 3; ++channel)
+          to[static_cast<std::ptrdiff_t>(channel) * next_channel] =
+              value[channel][from[options.rgb ? 2 - channel : channel]];
+    }
+  }
+};
+
+Network::Network(const NetworkOptions& options) : parts_(std::make_unique<Parts>()) {
+  require_three(options);
+  parts_->options = options;
+  const std::vector<std::uint8_t> bytes = read_bytes(options.model);
+  const OnnxSignature signature = read_onnx_signature(bytes, options.model);
+  if (signature.has_half_precision)
+    throw InputError({options.model.string()},
+                     "has float16 numbers, which OpenCV cannot read; expected float32; export the network without "
+                     "half precision");
+  parts_->size = input_size(options, signature);
+  parts_->output = chosen_output(options, signature);
+  for (std::size_t channel = 0; channel < 3; ++channel)
+    for (std::size_t value = 0; value < 256; ++value)
+      parts_->value[channel][value] = static_cast<float>(
+          (static_cast<double>(value) * options.scale - options.mean[channel]) / options.standard_deviation[channel]);
+  if (options.threads > 0) cv::setNumThreads(options.threads);
+  const QuietLibrary quiet;
+  try {
+    parts_->net = cv::dnn::readNetFromONNX(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    parts_->net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
+    parts_->net.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
+  } catch (const cv::Exception& error) {
+    throw InputError({options.model.string()}, "cannot be loaded by OpenCV " CV_VERSION " (" + one_line(error.err) +
+                                                   "); expected layers that it knows; export with a lower opset, or "
+                                                   "simplify the network");
+  }
+  const int h = parts_->size.height, w = parts_->size.width;
+  const int channels_first[] = {1, 3, h, w}, channels_last[] = {1, h, w, 3};
+  parts_->input.create(4, options.channels_last ? channels_last : channels_first, CV_32F);
+}
+
+Network::~Network() = default;
+
+cv::Mat Network::run(const cv::Mat& colour) {
+  HOLDFAST_CHECK(colour.type() == CV_8UC3 && !colour.empty(), "type " << colour.type());
+  parts_->fill_input(colour);
+  std::optional<QuietLibrary> quiet;
+  if (!parts_->has_run) quiet.emplace();  // what does not fit shows in the first run
+  try {
+    parts_->net.setInput(parts_->input);
+    cv::Mat output = parts_->net.forward(parts_->output);
+    if (output.depth() != CV_32F) output.convertTo(output, CV_32F);
+    parts_->has_run = true;
+    return output;
+  } catch (const cv::Exception& error) {
+    throw InputError({parts_->options.model.string()},
+                     "cannot be run on an input of " + input_text() + " (" + one_line(error.err) +
+                         "); expected a network for such an image; check width, height and layout");
+  }
+}
+
+int Network::width() const { return parts_->size.width; }
+int Network::height() const { return parts_->size.height; }
+
+std::string Network::input_text() const {
+  std::vector<std::int64_t> shape(parts_->input.size.p, parts_->input.size.p + parts_->input.dims);
+  return shape_text(shape);
+}
+
+}  // namespace holdfast

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/plugin/plugin.hpp"
+
+#include "epipolar_consistency.hpp"
+
+HOLDFAST_PLUGIN(epipolar_consistency, registry) {
+  using namespace holdfast;
+  registry.add<DynamicFilter, epipolar_plugin::EpipolarConsistency, epipolar_plugin::EpipolarSettings>(
+      {.name = "epipolar_consistency",
+       .summary =
+           "Features that leave their epipolar lines move; silent where the camera's motion gives no such lines.",
+       .paper = "Yu, Liu, Liu, Xie, Yang, Wei, Fei: DS-SLAM: A semantic visual SLAM towards dynamic environments. IROS "
+                "2018, section II-C"});
+}

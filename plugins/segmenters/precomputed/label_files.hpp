@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+namespace holdfast {
+
+/// A label image and the moment it belongs to.
+struct LabelFile {
+  double timestamp = 0.0;  ///< [s]
+  std::filesystem::path path;
+};
+
+/// The PNG files of a folder by the time stamps that their names are (1305031102.175304.png), sorted; other files are
+/// left alone. Throws InputError for a folder that is missing or holds none, a name that is no stamp, and two names of
+/// the same stamp.
+std::vector<LabelFile> find_label_files(const std::filesystem::path& folder);
+
+/// Those that a list names, lines "timestamp filename", names relative to the folder. Throws as read_image_list().
+std::vector<LabelFile> listed_label_files(const std::filesystem::path& folder, const std::filesystem::path& list);
+
+/// The file nearest in time, at most `tolerance` seconds away; nullptr when there is none. Of two equally near ones the
+/// earlier.
+const LabelFile* nearest_label_file(const std::vector<LabelFile>& files, double timestamp, double tolerance);
+
+}  // namespace holdfast

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "holdfast/core/error.hpp"
+#include "holdfast/image_files/image_decoder.hpp"
+#include "holdfast/interfaces/segmenter.hpp"
+#include "holdfast/plugin/plugin.hpp"
+#include "label_files.hpp"
+#include "label_map.hpp"
+
+namespace holdfast {
+
+namespace {
+
+struct PrecomputedSettings {
+  std::filesystem::path path;
+  std::filesystem::path list;
+  double tolerance = 0.0;
+  TextMap labels;
+
+  static void describe(ParameterTable<PrecomputedSettings>& table) {
+    using S = PrecomputedSettings;
+    table.add("path", &S::path, "folder of label images (PNG, 1 channel of 8 or 16 bits, or indices into a palette)")
+        .required();
+    table.add("list", &S::list,
+              "file with lines 'timestamp filename', names relative to path; empty = the name of each PNG in path is "
+              "its time stamp");
+    table
+        .add("tolerance", &S::tolerance,
+             "a frame takes the image nearest in time, at most this far away; 0 = the image of that very stamp")
+        .range(0.0, 3600.0)
+        .unit("s");
+    table
+        .add("labels", &S::labels,
+             "what values or ranges mean, such as { 1-254: person, 255: unknown }; 0 is the background unless named; "
+             "'unknown' is reserved for pixels that nobody is sure of")
+        .required();
+  }
+};
+
+/// Stamps in file names and lists have six decimals.
+constexpr double least_tolerance = 1e-6;
+
+/// Label images that were made before.
+class PrecomputedSegmenter final : public Segmenter {
+ public:
+  PrecomputedSegmenter(const PrecomputedSettings& settings, const CreationContext&)
+      : labels_(settings.labels),
+        files_(settings.list.empty() ? find_label_files(settings.path)
+                                     : listed_label_files(settings.path, settings.list)),
+        tolerance_(std::max(settings.tolerance, least_tolerance)) {}
+
+  const std::vector<std::string>& classes() const override { return labels_.classes(); }
+
+  Segmentation segment(const SensorFrame& frame) override {
+    const LabelFile* file = nearest_label_file(files_, frame.timestamp, tolerance_);
+    if (file == nullptr) return {};
+    const cv::Mat values = decoder_.read_labels(file->path);
+    if (values.size() != frame.colour.size())
+      throw InputError({file->path.string()},
+                       "is " + size_text(values) + " pixels, but the frame is " + size_text(frame.colour) +
+                           "; expected labels of the frame's size; scale them without interpolation");
+    return {labels_.apply(values, file->path), {}};
+  }
+
+ private:
+  static std::string size_text(const cv::Mat& image) {
+    return std::to_string(image.cols) + "x" + std::to_string(image.rows);
+  }
+
+  LabelMap labels_;
+  std::vector<LabelFile> files_;
+  double tolerance_;
+  ImageDecoder decoder_;
+};
+
+}  // namespace
+
+HOLDFAST_PLUGIN(precomputed, registry) {
+  registry.add<Segmenter, PrecomputedSegmenter, PrecomputedSettings>(
+      {.name = "precomputed", .summary = "Label images from a folder, found by time stamp."});
+}
+
+}  // namespace holdfast

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "holdfast/core/error.hpp"
+#include "holdfast/interfaces/segmenter.hpp"
+#include "holdfast/plugin/did_you_mean.hpp"
+#include "holdfast/plugin/plugin.hpp"
+
+namespace holdfast {
+
+namespace {
+
+struct TruthSettings {
+  std::vector<std::string> classes;
+
+  static void describe(ParameterTable<TruthSettings>& table) {
+    table.add("classes", &TruthSettings::classes,
+              "classes of the source to find, all others are background; empty = every class that the source knows");
+  }
+};
+
+constexpr const char* remedy =
+    "choose a segmenter that needs no truth: 'precomputed' for label images in a folder, 'onnx' for a network";
+
+/// The exact classes that a simulated source knows.
+class TruthSegmenter final : public Segmenter {
+ public:
+  TruthSegmenter(const TruthSettings& settings, const CreationContext& context) {
+    const std::vector<std::string>& known = context.class_names;
+    if (known.empty())
+      throw ConfigurationError(SourceLocation{},
+                               std::string("segmenter.truth: the source does not know the classes of its pixels, only "
+                                           "a simulation does; ") +
+                                   remedy);
+    classes_.push_back(known.front());
+    std::vector<Diagnostic> diagnostics;
+    for (const std::string& name : settings.classes)
+      if (std::find(known.begin() + 1, known.end(), name) == known.end())
+        diagnostics.push_back({{},
+                               "segmenter.truth.classes: the source has no class '" + name + "'; " +
+                                   did_you_mean(name, {known.begin() + 1, known.end()})});
+    if (!diagnostics.empty()) throw ConfigurationError(std::move(diagnostics));
+    label_of_.fill(unknown);
+    label_of_[0] = 0;
+    for (std::size_t i = 1; i < std::min<std::size_t>(known.size(), unknown); ++i) {
+      const bool wanted = settings.classes.empty() || std::find(settings.classes.begin(), settings.classes.end(),
+                                                                known[i]) != settings.classes.end();
+      label_of_[i] = static_cast<std::uint8_t>(wanted ? classes_.size() : 0);
+      if (wanted) classes_.push_back(known[i]);
+    }
+  }
+
+  const std::vector<std::string>& classes() const override { return classes_; }
+
+  Segmentation segment(const SensorFrame& frame) override {
+    if (!frame.truth || frame.truth->class_labels.empty())
+      throw InputError({}, "frame " + std::to_string(frame.index) +
+                               " comes without the true classes of its pixels, which the segmenter 'truth' hands on; " +
+                               remedy);
+    const cv::Mat& truth = frame.truth->class_labels;
+    Segmentation result{cv::Mat(truth.size(), CV_8UC1), {}};
+    for (int y = 0; y < truth.rows; ++y)
+      std::transform(truth.ptr<std::uint8_t>(y), truth.ptr<std::uint8_t>(y) + truth.cols,
+                     result.labels.ptr<std::uint8_t>(y), [this](std::uint8_t value) { return label_of_[value]; });
+    return result;
+  }
+
+ private:
+  static constexpr std::uint8_t unknown = 255;
+
+  std::vector<std::string> classes_;
+  std::array<std::uint8_t, 256> label_of_{};  // by the source's label
+};
+
+}  // namespace
+
+HOLDFAST_PLUGIN(simulated_truth, registry) {
+  registry.add<Segmenter, TruthSegmenter, TruthSettings>(
+      {.name = "truth", .summary = "The exact classes of every pixel that a simulated source knows."});
+}
+
+}  // namespace holdfast

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <iterator>
+#include <opencv2/imgcodecs.hpp>
+#include <vector>
+
+#include "segmenters/segmenter_fixture.hpp"
+
+extern "C" void holdfast_register_plugin_precomputed(holdfast::Registry& registry);
+
+namespace holdfast {
+namespace {
+
+using test::error_of;
+using test::frame_of;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+namespace fs = std::filesystem;
+
+constexpr int width = 8, height = 6;
+
+/// An 8-bit palette PNG of 2 x 1 pixels with the indices 15 and 255, whose palette gives both the same colour.
+std::vector<std::uint8_t> palette_image() {
+  std::vector<std::uint8_t> bytes = {
+      0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48,
+      0x44, 0x52, 0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00, 0x01, 0x08, 0x03, 0x00, 0x00,
+      0x00, 0xc3, 0xfc, 0x8f, 0xb8, 0x00, 0x00, 0x03, 0x00, 0x50, 0x4c, 0x54, 0x45};  // signature, IHDR, length and
+                                                                                      // name of PLTE
+  bytes.insert(bytes.end(), 3 * 256, 9);
+  const std::uint8_t rest[] = {
+      0x9c, 0xc5, 0x40, 0x57, 0x00, 0x00, 0x00, 0x0b, 0x49, 0x44, 0x41, 0x54, 0x78,
+      0x9c, 0x63, 0xe0, 0xff, 0x0f, 0x00, 0x01, 0x20, 0x01, 0x0f, 0x7f, 0x54, 0x88,
+      0x23, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};  // checksum, IDAT, IEND
+  bytes.insert(bytes.end(), std::begin(rest), std::end(rest));
+  return bytes;
+}
+
+class PrecomputedTest : public testing::Test {
+ protected:
+  PrecomputedTest() {
+    std::string name = (fs::temp_directory_path() / "holdfast_labels_XXXXXX").string();
+    folder_ = mkdtemp(name.data());
+  }
+  ~PrecomputedTest() override { fs::remove_all(folder_); }
+
+  void write(const std::string& name, int value, int type = CV_8UC1) const {
+    fs::create_directories((folder_ / name).parent_path());
+    cv::Mat image(height, width, type, cv::Scalar::all(0));
+    image(cv::Rect(2, 1, 3, 2)).setTo(cv::Scalar::all(value));
+    ASSERT_TRUE(cv::imwrite((folder_ / name).string(), image));
+  }
+  std::unique_ptr<Segmenter> make(const TextMap& labels, double tolerance = 0.0, const std::string& list = "") const {
+    return test::make_segmenter(holdfast_register_plugin_precomputed, "precomputed",
+                                {{"path", folder_.string()},
+                                 {"list", list.empty() ? "" : (folder_ / list).string()},
+                                 {"tolerance", tolerance},
+                                 {"labels", labels}});
+  }
+  /// The label where the image has its value, or -1 when there is no image; the rest must be background.
+  static int label_at(Segmenter& segmenter, double timestamp) {
+    const Segmentation result = segmenter.segment(frame_of(timestamp, width, height));
+    if (result.empty()) return -1;
+    EXPECT_EQ(result.labels.type(), CV_8UC1);
+    EXPECT_EQ(result.labels.at<std::uint8_t>(0, 0), 0);
+    EXPECT_EQ(result.labels.at<std::uint8_t>(3, 2), 0);
+    EXPECT_TRUE(result.confidence.empty());
+    return result.labels.at<std::uint8_t>(2, 4);
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(PrecomputedTest, ValuesAndRangesBecomeClasses) {
+  write("1.000000.png", 3);
+  write("2.000000.png", 254);
+  write("3.000000.png", 255);
+  write("4.000000.png", 300, CV_16UC1);
+  const auto segmenter = make({{"1-253", "person"}, {"254", "chair"}, {"255", "unknown"}, {"256 - 400", "person"}});
+  EXPECT_THAT(segmenter->classes(), ElementsAre("background", "person", "chair"));
+  EXPECT_EQ(label_at(*segmenter, 1.0), 1);
+  EXPECT_EQ(label_at(*segmenter, 2.0), 2);
+  EXPECT_EQ(label_at(*segmenter, 3.0), 255);
+  EXPECT_EQ(label_at(*segmenter, 4.0), 1);
+}
+
+TEST_F(PrecomputedTest, ZeroAndBackgroundCanBeNamed) {
+  write("1.png", 7);
+  const Segmentation result = make({{"0", "wall"}, {"7", "background"}})->segment(frame_of(1.0, width, height));
+  EXPECT_EQ(result.labels.at<std::uint8_t>(0, 0), 1);
+  EXPECT_EQ(result.labels.at<std::uint8_t>(1, 2), 0);
+}
+
+TEST_F(PrecomputedTest, TheImageOfThatStampOrTheNearest) {
+  write("1305031102.175304.png", 1);
+  write("1305031102.375304.png", 2);
+  const TextMap labels = {{"1", "first"}, {"2", "second"}};
+  const auto exact = make(labels), near = make(labels, 0.15);
+  EXPECT_EQ(label_at(*exact, 1305031102.175304), 1);
+  EXPECT_EQ(label_at(*exact, 1305031102.1753044), 1);  // stamps have six decimals
+  EXPECT_EQ(label_at(*exact, 1305031102.175314), -1);
+  EXPECT_EQ(label_at(*near, 1305031102.27), 1);
+  EXPECT_EQ(label_at(*near, 1305031102.28), 2);
+  EXPECT_EQ(label_at(*near, 1305031102.52), 2);
+  EXPECT_EQ(label_at(*near, 1305031102.53), -1);
+  EXPECT_EQ(label_at(*near, 1305031102.03), 1);
+  EXPECT_EQ(label_at(*near, 1305031102.02), -1);
+}
+
+TEST_F(PrecomputedTest, AListNamesTheFiles) {
+  write("mask/a.png", 1);
+  write("mask/b.png", 2);
+  std::ofstream(folder_ / "mask.txt") << "# timestamp filename\n10.5 mask/b.png\n11.5 mask/a.png\n";
+  const auto segmenter = make({{"1", "first"}, {"2", "second"}}, 0.0, "mask.txt");
+  EXPECT_EQ(label_at(*segmenter, 10.5), 2);
+  EXPECT_EQ(label_at(*segmenter, 11.5), 1);
+  std::ofstream(folder_ / "mask.txt") << "10.5 mask/none.png\n";
+  const auto missing = make({{"1", "first"}}, 0.0, "mask.txt");
+  EXPECT_THAT(error_of([&] { label_at(*missing, 10.5); }), HasSubstr("none.png: is missing"));
+}
+
+TEST_F(PrecomputedTest, AnUnmappedValueNamesFileValueAndPixel) {
+  write("1.png", 9);
+  const auto segmenter = make({{"1-8", "person"}});
+  EXPECT_EQ(error_of([&] { label_at(*segmenter, 1.0); }),
+            (folder_ / "1.png").string() +
+                ": has the value 9 at pixel (2, 1), which `labels` does not name; say what it means, such as "
+                "`labels: { 9: person }`, or `9: unknown`");
+}
+
+TEST_F(PrecomputedTest, IndicesOfAPaletteAreReadNotItsColours) {
+  const std::vector<std::uint8_t> bytes = palette_image();
+  std::ofstream(folder_ / "1.png", std::ios::binary) << std::string(bytes.begin(), bytes.end());
+  const auto segmenter = make({{"15", "person"}, {"255", "unknown"}});
+  const Segmentation result = segmenter->segment(frame_of(1.0, 2, 1));
+  EXPECT_EQ(result.labels.at<std::uint8_t>(0, 0), 1);
+  EXPECT_EQ(result.labels.at<std::uint8_t>(0, 1), 255);
+}
+
+TEST_F(PrecomputedTest, ImagesThatAreNoLabelsAreRefused) {
+  write("1.png", 1, CV_8UC3);
+  write("3.png", 1);
+  cv::imwrite((folder_ / "2.jpg").string(), cv::Mat::ones(height, width, CV_8UC1));
+  fs::rename(folder_ / "2.jpg", folder_ / "2.png");
+  cv::imwrite((folder_ / "4.png").string(), cv::Mat::ones(height, width, CV_8UC1), {cv::IMWRITE_PNG_BILEVEL, 1});
+  const auto segmenter = make({{"1", "person"}});
+  EXPECT_THAT(error_of([&] { label_at(*segmenter, 2.0); }), HasSubstr("is a JPEG image of 8x6, 1 channel of 8 bits"));
+  EXPECT_THAT(error_of([&] { label_at(*segmenter, 4.0); }), HasSubstr("1 channel of 1 bits; expected a label image"));
+  EXPECT_THAT(
+      error_of([&] { label_at(*segmenter, 1.0); }),
+      AllOf(StartsWith((folder_ / "1.png").string()), HasSubstr("3 channels of 8 bits; expected a label image")));
+  EXPECT_THAT(error_of([&] { segmenter->segment(frame_of(3.0, 9, 6)); }),
+              HasSubstr("is 8x6 pixels, but the frame is 9x6"));
+}
+
+TEST_F(PrecomputedTest, FoldersWithoutLabels) {
+  EXPECT_THAT(error_of([&] { make({{"1", "person"}}); }), HasSubstr("holds no label image"));
+  write("1.0.png", 1);
+  write("1.00.png", 1);
+  EXPECT_THAT(error_of([&] { make({{"1", "person"}}); }), HasSubstr("has the same time stamp as"));
+  fs::rename(folder_ / "1.0.png", folder_ / "frame_1.png");
+  EXPECT_THAT(error_of([&] { make({{"1", "person"}}); }), HasSubstr("frame_1.png: has no time stamp as its name"));
+  const fs::path folder = folder_;
+  folder_ /= "none";
+  EXPECT_THAT(error_of([&] { make({{"1", "person"}}); }), HasSubstr("none: is missing; expected a folder"));
+  folder_ = folder;
+}
+
+TEST_F(PrecomputedTest, EveryWrongLabelIsToldAtOnce) {
+  write("1.png", 1);
+  const std::string error = error_of([&] {
+    make({{"5", "a"}, {"1-9", "b"}, {"70000", "c"}, {"9-1", "d"}, {"x", "e"}, {"-3", "f"}, {"11", ""}});
+  });
+  EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 5);
+  EXPECT_THAT(error, HasSubstr("labels: '1-9' and '5' both name the value 5"));
+  for (const char* key : {"70000", "9-1", "x", "-3"})
+    EXPECT_THAT(error, HasSubstr(std::string("found '") + key + "'; expected a value from 0 to 65535 or a range"));
+  EXPECT_THAT(error, HasSubstr("'11' has no class name"));
+  EXPECT_THROW(make({}), ConfigurationError);
+}
+
+}  // namespace
+}  // namespace holdfast
