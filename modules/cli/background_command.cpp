@@ -75,6 +75,8 @@ void run(const Arguments& arguments, int& exit_code) {
       load_configuration(arguments.configuration, overrides, registry, pipeline_sections());
   BuiltPipeline built = build_pipeline(configuration, registry,
                                        {.output_directory = arguments.output, .map_file = {}, .localise_only = false});
+  const StaticScene* scene = built.pipeline.static_scene();
+  if (scene == nullptr) throw Error("dense_map.enabled was set to false; pictures need what it keeps");
   prepare_output_folder(arguments.output, arguments.overwrite, {"config.yaml", pictures_folder, "overlay"});
   write_file_atomically(arguments.output / "config.yaml", to_yaml(configuration));
 
@@ -83,8 +85,6 @@ void run(const Arguments& arguments, int& exit_code) {
   record.source = built.source->describe();
   record.camera = built.pipeline.camera();
   feed_frames(built, arguments.quiet, since_start, record);
-  const StaticScene* scene = built.pipeline.static_scene();
-  if (scene == nullptr) throw Error("dense_map.enabled was set to false; pictures need what it keeps");
   const std::size_t count = write_pictures(*scene, built.pipeline.map(), arguments);
 
   if (!record.failure.empty())
