@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "holdfast/cli/background_command.hpp"
 #include "holdfast/cli/check_command.hpp"
 #include "holdfast/cli/evaluate_command.hpp"
 #include "holdfast/cli/map_command.hpp"
@@ -71,6 +72,7 @@ int main(int argc, char** argv) {
   add_run_command(app, exit_code);
   add_evaluate_command(app, exit_code);
   add_map_command(app, exit_code);
+  add_background_command(app, exit_code);
   add_simulate_command(app, exit_code);
   add_segment_command(app, exit_code);
   add_check_command(app, exit_code);

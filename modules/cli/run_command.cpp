@@ -101,7 +101,7 @@ void run(const Arguments& arguments, int& exit_code) {
       {.output_directory = arguments.output, .map_file = arguments.map, .localise_only = arguments.localise});
   prepare_output_folder(arguments.output, arguments.overwrite,
                         {"report.html", "run.json", "trajectory.txt", "keyframes.txt", "evaluation.json",
-                         "trajectory.svg", "error.svg", "config.yaml", "map.hfm", "static_map.ply"});
+                         "trajectory.svg", "error.svg", "config.yaml", "map.hfm", "static_map.ply", "overlay"});
   write_file_atomically(arguments.output / "config.yaml", to_yaml(configuration));
 
   RunRecord record;
@@ -126,7 +126,10 @@ void run(const Arguments& arguments, int& exit_code) {
   // A map that was only localised in has not changed.
   if (!arguments.localise && !built.pipeline.map().keyframes().empty()) {
     write_map(arguments.output / "map.hfm", built.pipeline.map());
-    write_points_ply(arguments.output / "static_map.ply", built.pipeline.map());
+    if (const StaticScene* scene = built.pipeline.static_scene())
+      write_cloud_ply(arguments.output / "static_map.ply", scene->cloud(built.pipeline.map()));
+    else
+      write_points_ply(arguments.output / "static_map.ply", built.pipeline.map());
   }
 
   if (!arguments.quiet && record.summary.frames() > 0) std::fputs(run_summary_text(record).c_str(), stdout);
@@ -151,7 +154,8 @@ void add_run_command(CLI::App& app, int& exit_code) {
       "  trajectory.txt  every frame with a pose, TUM format      keyframes.txt  those of the map\n"
       "  report.html     summary, plots and stage times           run.json       the same for programs\n"
       "  config.yaml     the configuration with every default     evaluation.json, *.svg  where there is truth\n"
-      "  map.hfm         the map, for --map and `holdfast map`    static_map.ply  its points\n"
+      "  map.hfm         the map, for --map and `holdfast map`    static_map.ply  its points, or with\n"
+      "                                                           dense_map.enabled a dense cloud\n"
       "Exits 0 when the run reached its end with a trajectory, 130 on Ctrl-C (what was done is kept), 2 when the\n"
       "configuration is wrong, 1 for anything else.\n\n"
       "Examples\n"

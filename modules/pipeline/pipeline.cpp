@@ -58,6 +58,11 @@ struct Pipeline::State {
       tracker.expect_masks(parts.segmenter->classes(), parts.segmentation.memory);
       segmentation.emplace(*parts.segmenter, parts.segmentation, parts.threads.threaded);
     }
+    if (parts.dense_map.enabled && !parts.localise_only) scene.emplace(parts.camera, parts.dense_map);
+    for (const std::string& name : parts.segmenter->classes()) {
+      const std::vector<std::string>& out = parts.dense_map.classes;
+      left_out.push_back(std::find(out.begin(), out.end(), name) != out.end());
+    }
     if (parts.localise_only)
       tracker.localise_only();
     else if (parts.threads.threaded)
@@ -75,6 +80,9 @@ struct Pipeline::State {
   /// Asks for the mask of the frame last tracked, if it should have one. A keyframe that cannot be segmented now goes
   /// on without.
   void ask_for_mask(const SensorFrame& frame, const FrameResult& result, StageTimes& times);
+  /// `coarse` and `labels` (may be empty) are the last that will be known of what moves in the keyframe.
+  void keep_view(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse, const cv::Mat& labels,
+                 StageTimes& times);
   void hand_to_mapping(KeyFrameId keyframe, StageTimes& times);
   /// Does work that fills stage times, and keeps them for take_background_times().
   template <class Work>
@@ -104,6 +112,8 @@ struct Pipeline::State {
   std::uint64_t keyframes_deferred = 0;
   std::uint64_t frames_fed = 0;
   std::vector<double> mask_latencies;
+  std::optional<StaticScene> scene;
+  std::vector<bool> left_out;  // of the static scene, by label
 
   mutable std::mutex record_mutex;
   std::vector<StageTimes> background_times;
@@ -207,6 +217,13 @@ void Pipeline::State::hand_to_mapping(KeyFrameId keyframe, StageTimes& times) {
   if (close_loops(refine(keyframe, times), times)) adjust_map(times);
 }
 
+void Pipeline::State::keep_view(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse,
+                                const cv::Mat& labels, StageTimes& times) {
+  if (!scene) return;
+  const StageTimer timer(times, "dense map: keep");
+  scene->add(keyframe, frame, coarse, labels, left_out);
+}
+
 void Pipeline::State::take_masks(StageTimes& times) {
   if (!segmentation) return;
   while (std::optional<SegmentedFrame> segmented = segmentation->fetch(frames_fed)) {
@@ -216,6 +233,8 @@ void Pipeline::State::take_masks(StageTimes& times) {
     {
       const TrackingLock lock(map_mutex);
       tracker.judge_keyframe(segmented->frame, segmented->segmentation, segmented->keyframe);
+      if (const KeyFrame* keyframe = map.find_keyframe(segmented->keyframe))
+        keep_view(segmented->keyframe, segmented->frame, keyframe->frame.coarse, segmented->segmentation.labels, times);
     }
     hand_to_mapping(segmented->keyframe, times);
   }
@@ -228,6 +247,7 @@ void Pipeline::State::ask_for_mask(const SensorFrame& frame, const FrameResult& 
     segmentation->hand_in(frame, result.is_keyframe ? result.keyframe : KeyFrameId(), times);
     tracker.hold_keyframes(segmentation->keyframes_inside() > 0);
   } else if (result.is_keyframe) {
+    keep_view(result.keyframe, frame, tracker.frame().coarse, {}, times);
     hand_to_mapping(result.keyframe, times);
   }
 }
@@ -336,6 +356,7 @@ Map Pipeline::take_map() {
   HOLDFAST_CHECK(!state_->mapping || state_->finished, "the threads still use the map; call finish() first");
   return std::exchange(state_->map, Map());
 }
+const StaticScene* Pipeline::static_scene() const { return state_->scene ? &*state_->scene : nullptr; }
 const MappingCounts& Pipeline::mapping_counts() const { return state_->mapper.counts(); }
 LoopRecord Pipeline::loop_record() const {
   const std::lock_guard lock(state_->record_mutex);

@@ -18,7 +18,9 @@ std::vector<SectionDescription> pipeline_sections() {
           {"mapping", "How the map around a new keyframe is made and kept.",
            ParameterTable<MappingSettings>().parameters()},
           {"loop_closing", "When a place counts as seen again, and how the map is corrected then.",
-           ParameterTable<LoopClosingSettings>().parameters()}};
+           ParameterTable<LoopClosingSettings>().parameters()},
+          {"dense_map", "A dense cloud of the static scene, of what keyframes saw.",
+           ParameterTable<DenseMapSettings>().parameters()}};
 }
 
 namespace {
@@ -118,6 +120,7 @@ BuiltPipeline build_pipeline(const Configuration& configuration, const Registry&
   parts.evidence = section<EvidenceSettings>(configuration, "evidence");
   parts.mapping = section<MappingSettings>(configuration, "mapping");
   parts.loop_closing = section<LoopClosingSettings>(configuration, "loop_closing");
+  parts.dense_map = section<DenseMapSettings>(configuration, "dense_map");
   parts.threads.threaded = !context.sequential;
   parts.threads.keyframe_queue = static_cast<std::size_t>(configuration.run.keyframe_queue);
   parts.threads.unpaced = configuration.run.pace == "none";

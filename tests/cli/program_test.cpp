@@ -26,7 +26,7 @@ class ProgramTest : public ::testing::Test {
 TEST_F(ProgramTest, HelpAndVersion) {
   const Outcome help = program_.run({"--help"});
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* command : {"run", "evaluate", "map", "simulate", "segment", "check", "modules"})
+  for (const char* command : {"run", "evaluate", "map", "background", "simulate", "segment", "check", "modules"})
     EXPECT_THAT(help.output, HasSubstr(std::string("\n  ") + command + " "));
   EXPECT_EQ(help.errors, "");
   const Outcome version = program_.run({"--version"});
@@ -64,8 +64,8 @@ TEST_F(ProgramTest, WrongArguments) {
 TEST_F(ProgramTest, ModulesPrintsTheReference) {
   const Outcome all = program_.run({"modules"});
   EXPECT_EQ(all.exit_code, 0);
-  for (const char* name :
-       {"orb", "opencv_orb", "ceres", "tum", "folder", "simulated", "none", "precomputed", "truth", "onnx", "tracking", "mapping", "camera", "run"})
+  for (const char* name : {"orb", "opencv_orb", "ceres", "tum", "folder", "simulated", "none", "precomputed", "truth",
+                           "onnx", "tracking", "mapping", "camera", "run"})
     EXPECT_THAT(all.output, HasSubstr(std::string("\n  ") + name + " "));
   const Outcome orb = program_.run({"modules", "orb"});
   EXPECT_THAT(orb.output, AllOf(HasSubstr("features: orb"), HasSubstr("count"), HasSubstr("Paper: ")));

@@ -187,7 +187,8 @@ TEST_F(PipelineBuilder, DescribesItsSections) {
       EXPECT_FALSE(parameter.reject(parameter.default_value).has_value()) << parameter.name;
     }
   }
-  EXPECT_THAT(names, ::testing::ElementsAre("tracking", "mapping", "loop_closing"));
+  EXPECT_THAT(names,
+              ::testing::ElementsAre("tracking", "segmentation", "evidence", "mapping", "loop_closing", "dense_map"));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "holdfast/core/frame_result.hpp"
 #include "holdfast/core/map.hpp"
 #include "holdfast/core/trajectory.hpp"
+#include "holdfast/dense_map/static_scene.hpp"
 #include "holdfast/interfaces/all.hpp"
 #include "holdfast/loop_closing/loop_closer.hpp"
 #include "holdfast/mapping/local_mapper.hpp"
@@ -47,6 +48,7 @@ struct PipelineParts {
   SegmentationSettings segmentation;
   MappingSettings mapping;
   LoopClosingSettings loop_closing;
+  DenseMapSettings dense_map;
   std::uint64_t seed = 1;
   ThreadSettings threads;
   Map map;                     ///< to continue; empty = begin a new one
@@ -102,6 +104,8 @@ class Pipeline {
   const Map& map() const;
   /// Hands the map over and leaves an empty one; nothing else may be called but the destructor.
   Map take_map();
+  /// What keyframes saw of the static scene; nullptr unless DenseMapSettings::enabled. Not while feed() runs.
+  const StaticScene* static_scene() const;
   const MappingCounts& mapping_counts() const;
   LoopRecord loop_record() const;
   const Camera& camera() const;

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "holdfast/core/camera.hpp"
+#include "holdfast/core/coarse_view.hpp"
+#include "holdfast/core/id.hpp"
+#include "holdfast/core/sensor_frame.hpp"
+#include "holdfast/dense_map/dense_map_settings.hpp"
+
+namespace holdfast {
+
+/// What is kept of a keyframe's images: a smaller image without distortion, 5 bytes a pixel.
+struct KeptView {
+  static constexpr std::uint16_t moves_bit = 0x8000, depth_bits = 0x7FFF;
+  static constexpr double depth_unit = 0.0005;  ///< [m]; so depth ends at 16.38 m
+
+  KeyFrameId keyframe;
+  std::uint64_t frame_index = 0;
+  double timestamp = 0.0;  ///< [s]
+  cv::Mat colour;          ///< 8UC3
+  cv::Mat depth;           ///< 16UC1: depth_bits in depth_units, 0 = none; moves_bit where no static scene is seen
+
+  bool moves(int x, int y) const { return (depth.at<std::uint16_t>(y, x) & moves_bit) != 0; }
+  /// Of whatever is seen there, static or not [m]; 0 = none.
+  double depth_at(int x, int y) const { return (depth.at<std::uint16_t>(y, x) & depth_bits) * depth_unit; }
+};
+
+/// Makes kept views of a camera's images. Immutable after construction.
+class ViewSampler {
+ public:
+  ViewSampler(const Camera& camera, const DenseMapSettings& settings);
+
+  /// The pinhole camera of the kept views.
+  const Camera& camera() const { return small_; }
+
+  /// Not static is what `labels` (8UC1 of the image's size, empty = none) gives a class of `left_out` (by label) or
+  /// calls unknown (255), without labels what coarse.labels says so, what coarse.static_log_odds says to move (< 0),
+  /// what is near it (DenseMapSettings::dilate, edge), and what lies outside the image.
+  KeptView sample(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse, const cv::Mat& labels,
+                  const std::vector<bool>& left_out) const;
+
+ private:
+  void spread(cv::Mat& depth) const;
+
+  Camera raw_, small_;
+  int step_, reach_, edge_;
+  int margin_;                           // [depth units]
+  std::vector<std::int32_t> raw_pixel_;  // of each kept pixel, -1 = outside
+  std::vector<std::int32_t> cell_;       // of the coarse view, -1 = none
+  CoarseGrid grid_;
+};
+
+}  // namespace holdfast

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/cli/background_command.hpp"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <opencv2/core/utility.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <vector>
+
+#include "holdfast/cli/frame_loop.hpp"
+#include "holdfast/cli/output_folder.hpp"
+#include "holdfast/cli/terminal.hpp"
+#include "holdfast/core/error.hpp"
+#include "holdfast/dense_map/background.hpp"
+#include "holdfast/pipeline/pipeline_builder.hpp"
+#include "holdfast/plugin/builtin.hpp"
+
+namespace holdfast {
+
+namespace {
+
+struct Arguments {
+  std::string configuration;
+  std::vector<std::string> overrides;
+  std::filesystem::path output;
+  int every = 1;
+  bool overwrite = false;
+  bool quiet = false;
+};
+
+constexpr const char* pictures_folder = "background";
+
+void write_png(const std::filesystem::path& file, const cv::Mat& picture) {
+  std::vector<std::uint8_t> bytes;
+  if (!cv::imencode(".png", picture, bytes)) throw InputError({file.string()}, "this OpenCV cannot write PNG files");
+  write_file_atomically(file, std::string(bytes.begin(), bytes.end()));
+}
+
+/// Pictures of every n-th kept keyframe, and a table of what was replaced in them.
+std::size_t write_pictures(const StaticScene& scene, const Map& map, const Arguments& arguments) {
+  const BackgroundPainter painter(scene, map);
+  const std::filesystem::path folder = arguments.output / pictures_folder;
+  std::filesystem::create_directories(folder);
+  std::string table = "# timestamp frame replaced unknown (shares of the picture)\n";
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < scene.views().size() && !interrupted(); i += static_cast<std::size_t>(arguments.every)) {
+    const KeptView& view = scene.views()[i];
+    const BackgroundPicture picture = painter.paint(i);
+    char name[64], row[128];
+    std::snprintf(name, sizeof(name), "%06llu", static_cast<unsigned long long>(view.frame_index));
+    write_png(folder / (std::string(name) + "_before.png"), picture.before);
+    write_png(folder / (std::string(name) + "_after.png"), picture.after);
+    std::snprintf(row, sizeof(row), "%.6f %s %.4f %.4f\n", view.timestamp, name, picture.replaced, picture.unknown);
+    table += row;
+    ++count;
+  }
+  write_file_atomically(folder / "pictures.txt", table);
+  return count;
+}
+
+void run(const Arguments& arguments, int& exit_code) {
+  const Stopwatch since_start;
+  cv::setNumThreads(1);
+  catch_interrupts();
+  Registry registry;
+  register_builtin_plugins(registry);
+  std::vector<std::string> overrides = {"dense_map.enabled=true"};
+  overrides.insert(overrides.end(), arguments.overrides.begin(), arguments.overrides.end());
+  const Configuration configuration =
+      load_configuration(arguments.configuration, overrides, registry, pipeline_sections());
+  BuiltPipeline built = build_pipeline(configuration, registry,
+                                       {.output_directory = arguments.output, .map_file = {}, .localise_only = false});
+  const StaticScene* scene = built.pipeline.static_scene();
+  if (scene == nullptr) throw Error("dense_map.enabled was set to false; pictures need what it keeps");
+  prepare_output_folder(arguments.output, arguments.overwrite, {"config.yaml", pictures_folder, "overlay"});
+  write_file_atomically(arguments.output / "config.yaml", to_yaml(configuration));
+
+  RunRecord record;
+  record.configuration = &configuration;
+  record.source = built.source->describe();
+  record.camera = built.pipeline.camera();
+  feed_frames(built, arguments.quiet, since_start, record);
+  const std::size_t count = write_pictures(*scene, built.pipeline.map(), arguments);
+
+  if (!record.failure.empty())
+    std::fprintf(stderr, "%s %s\n", red("error:", STDERR_FILENO).c_str(), record.failure.c_str());
+  else if (record.was_interrupted || interrupted())
+    std::fprintf(stderr, "interrupted; what was done is in %s\n", arguments.output.c_str());
+  else if (!arguments.quiet)
+    std::printf("%zu keyframes, each before and after, in %s\n", count, (arguments.output / pictures_folder).c_str());
+  constexpr int interrupted_code = 130;
+  exit_code = record.was_interrupted || interrupted() ? interrupted_code : record.failure.empty() && count > 0 ? 0 : 1;
+}
+
+}  // namespace
+
+void add_background_command(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("background", "Draw keyframes with what moves replaced by what is behind it");
+  command->footer(
+      "\nRuns the pipeline with `dense_map.enabled: true` and writes into DIR/background, per keyframe:\n"
+      "  000120_before.png   the picture without lens distortion\n"
+      "  000120_after.png    people and other moving things replaced by what other keyframes saw behind them;\n"
+      "                      transparent (magenta below) where none has seen it\n"
+      "  pictures.txt        timestamp, frame, replaced and unknown share of each picture\n"
+      "What counts as moving is decided by the configuration's segmenter, filters and section dense_map.\n\n"
+      "Examples\n"
+      "  holdfast background dynamic.yaml --output out/empty_room\n"
+      "  holdfast background dynamic.yaml --every 10 --set dense_map.step=1 --output out/full_size");
+  command->add_option("CONFIG", arguments->configuration, "Configuration in YAML")->required();
+  command->add_option("--output", arguments->output, "Folder for the results")->required();
+  command->add_option("--every", arguments->every, "Draw every N-th of the kept keyframes")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  command->add_option("--set", arguments->overrides, "key.path=value: as if the file said so; may be repeated")
+      ->allow_extra_args(false);
+  command->add_flag("--overwrite", arguments->overwrite, "Replace the results of an earlier run in the folder");
+  command->add_flag("--quiet", arguments->quiet, "No progress, no summary");
+  command->callback([arguments, &exit_code] { run(*arguments, exit_code); });
+}
+
+}  // namespace holdfast

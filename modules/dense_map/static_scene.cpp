@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/dense_map/static_scene.hpp"
+
+#include <algorithm>
+
+#include "voxel_grid.hpp"
+
+namespace holdfast {
+
+StaticScene::StaticScene(const Camera& camera, const DenseMapSettings& settings)
+    : settings_(settings), sampler_(camera, settings) {}
+
+std::size_t StaticScene::view_bytes() const {
+  return static_cast<std::size_t>(camera().width) * static_cast<std::size_t>(camera().height) * 5;
+}
+
+void StaticScene::add(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse, const cv::Mat& labels,
+                      const std::vector<bool>& left_out) {
+  if (static_cast<int>(views_.size()) >= settings_.keyframes) make_room();
+  const auto next = std::upper_bound(views_.begin(), views_.end(), frame.index,
+                                     [](std::uint64_t index, const KeptView& v) { return index < v.frame_index; });
+  views_.insert(next, sampler_.sample(keyframe, frame, coarse, labels, left_out));
+}
+
+void StaticScene::make_room() {
+  // Gives up the view without which the gap in time is smallest.
+  std::size_t least = views_.size() - 1;
+  double smallest = 1e300;
+  for (std::size_t i = 1; i + 1 < views_.size(); ++i) {
+    const double gap = views_[i + 1].timestamp - views_[i - 1].timestamp;
+    if (gap < smallest) smallest = gap, least = i;
+  }
+  views_.erase(views_.begin() + static_cast<std::ptrdiff_t>(least));
+}
+
+std::vector<CloudPoint> StaticScene::cloud(const Map& map) const {
+  dense_map::VoxelGrid grid = dense_map::fuse(*this, dense_map::poses_of(*this, map), settings_.minimum_views);
+  std::vector<dense_map::Voxel>& voxels = grid.voxels();
+  std::erase_if(voxels, [&](const dense_map::Voxel& v) { return v.views < settings_.minimum_views || v.has_left(); });
+  std::sort(voxels.begin(), voxels.end(), [](const auto& a, const auto& b) { return a.key < b.key; });
+  std::vector<CloudPoint> points;
+  points.reserve(voxels.size());
+  for (const dense_map::Voxel& voxel : voxels) {
+    const auto count = static_cast<double>(voxel.points);
+    const Eigen::Vector3d place = grid.corner_of(voxel.key) + Eigen::Vector3d(voxel.x, voxel.y, voxel.z) / count;
+    const auto mean = [&](std::uint32_t sum) {
+      return static_cast<std::uint8_t>((sum + voxel.points / 2) / voxel.points);
+    };
+    points.push_back({static_cast<float>(place.x()), static_cast<float>(place.y()), static_cast<float>(place.z()),
+                      mean(voxel.red), mean(voxel.green), mean(voxel.blue)});
+  }
+  return points;
+}
+
+}  // namespace holdfast

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "holdfast/interfaces/observer.hpp"
+#include "holdfast/plugin/plugin.hpp"
+#include "painter.hpp"
+#include "picture_files.hpp"
+
+namespace holdfast {
+
+namespace {
+
+struct OverlaySettings {
+  int every = 1;
+  std::string format = "jpg";
+  std::string layout = "single";
+  int quality = 90;
+
+  static void describe(ParameterTable<OverlaySettings>& table) {
+    using S = OverlaySettings;
+    table.add("every", &S::every, "one picture for this many frames, those whose index it divides").range(1, 100000);
+    table.add("format", &S::format, "single files (png, jpg) or one video (avi, mp4)")
+        .one_of({"png", "jpg", "avi", "mp4"});
+    table.add("layout", &S::layout, "the painted image alone, or the image as it came to its left")
+        .one_of({"single", "side_by_side"});
+    table.add("quality", &S::quality, "of jpg").range(1, 100);
+  }
+};
+
+/// Pictures of what the pipeline believes about each frame. Needs an output folder, and does nothing without one.
+class Overlay final : public Observer {
+ public:
+  Overlay(const OverlaySettings& settings, const CreationContext& context)
+      : every_(static_cast<std::uint64_t>(settings.every)),
+        is_on_(!context.output_directory.empty()),
+        painter_(context.camera, settings.layout == "side_by_side"),
+        files_({.folder = context.output_directory / "overlay",
+                .format = settings.format,
+                .quality = settings.quality,
+                .frame_rate = std::max(1.0, context.camera.frame_rate / settings.every)}) {}
+
+  void on_frame(const SensorFrame& sensor_frame, const Frame& frame, const FrameResult& result) override {
+    if (is_on_ && sensor_frame.index % every_ == 0)
+      files_.write(sensor_frame.index, painter_.paint(sensor_frame, frame, result));
+  }
+  void on_finish(const Map&) override { files_.close(); }
+
+ private:
+  std::uint64_t every_;
+  bool is_on_;
+  overlay::Painter painter_;
+  overlay::PictureFiles files_;
+};
+
+}  // namespace
+
+HOLDFAST_PLUGIN(overlay, registry) {
+  registry.add<Observer, Overlay, OverlaySettings>(
+      {.name = "overlay",
+       .summary = "Writes pictures of the frames with masks, what moves, and the features' static probability."});
+}
+
+}  // namespace holdfast

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+#include <string>
+#include <vector>
+
+#include "holdfast/core/frame.hpp"
+#include "holdfast/core/frame_result.hpp"
+#include "holdfast/core/sensor_frame.hpp"
+
+namespace holdfast::overlay {
+
+/// Paints what is known of a frame over its colour image. One thread.
+class Painter {
+ public:
+  /// `side_by_side`: the image as it came stands to the left.
+  Painter(const Camera& camera, bool side_by_side);
+
+  /// 8UC3, valid until the next call. The colour image, its classes tinted blue (class 1; further classes in other
+  /// colours), darkened where a mask exists and says "unknown", tinted red where the coarse view says "moves", the
+  /// features from green (static) over yellow to red (moving), filled when they show a map point; below it a line of
+  /// text.
+  const cv::Mat& paint(const SensorFrame& sensor_frame, const Frame& frame, const FrameResult& result);
+  cv::Size size() const { return picture_.size(); }
+
+  static constexpr int text_height = 24;  ///< of the line below the image [px]
+
+ private:
+  void tint(const cv::Mat& colour, const CoarseView& coarse, cv::Mat& out) const;
+
+  Camera camera_;
+  CoarseGrid grid_;
+  std::vector<std::int32_t> cell_;  // of each raw pixel, -1 = none
+  cv::Mat picture_;
+};
+
+/// Blue, green, red of a feature with this probability of being static.
+cv::Scalar feature_colour(float static_probability);
+/// "frame 12   4.033 s   tracked   inliers 310   static 801 of 1000".
+std::string status_text(const FrameResult& result);
+
+}  // namespace holdfast::overlay

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/dense_map/kept_view.hpp"
+
+#include <gtest/gtest.h>
+
+#include "dense_map/wall_world.hpp"
+#include "holdfast/core/error.hpp"
+
+namespace holdfast {
+namespace {
+
+using test::WallWorld;
+
+CoarseView blank_coarse(const Camera& camera) {
+  CoarseView coarse;
+  coarse.grid = CoarseSampler(camera).grid();
+  coarse.depth.assign(static_cast<std::size_t>(coarse.grid.size()), 1.0F);
+  return coarse;
+}
+
+int count_moving(const KeptView& view) {
+  int count = 0;
+  for (int y = 0; y < view.depth.rows; ++y)
+    for (int x = 0; x < view.depth.cols; ++x) count += view.moves(x, y) ? 1 : 0;
+  return count;
+}
+
+TEST(KeptView, HasNoDistortionAndTheColourOfThePlace) {
+  const WallWorld world(0.2);
+  for (const int step : {1, 2, 3}) {
+    DenseMapSettings settings;
+    settings.step = step;
+    const ViewSampler sampler(world.camera, settings);
+    const KeptView view = sampler.sample({}, world.images(0.3, 7, std::nullopt), {}, {}, {});
+    ASSERT_EQ(view.colour.cols, 160 / step);
+    EXPECT_EQ(view.frame_index, 7U);
+    int seen = 0;
+    for (int y = 0; y < view.depth.rows; ++y)
+      for (int x = 0; x < view.depth.cols; ++x) {
+        if (view.depth_at(x, y) == 0.0) {
+          EXPECT_TRUE(view.moves(x, y));  // outside the image
+          continue;
+        }
+        ++seen;
+        EXPECT_NEAR(view.depth_at(x, y), WallWorld::wall_z, KeptView::depth_unit);
+        const Eigen::Vector3d point = sampler.camera().back_project(x, y, WallWorld::wall_z);
+        const cv::Vec3b expected = WallWorld::wall_colour(0.3 + point.x(), point.y());
+        for (int c = 0; c < 3; ++c) ASSERT_NEAR(view.colour.at<cv::Vec3b>(y, x)[c], expected[c], 2) << x << " " << y;
+      }
+    EXPECT_GT(seen, view.depth.rows * view.depth.cols * 8 / 10);
+  }
+}
+
+TEST(KeptView, SpreadsWhatMovesAtItsDepthOnly) {
+  WallWorld world;
+  DenseMapSettings settings;
+  settings.step = 1;
+  settings.dilate = 6;
+  settings.edge = 1;
+  const ViewSampler sampler(world.camera, settings);
+  cv::Mat labels;
+  SensorFrame frame = world.images(0.0, 0, 0.0, &labels);
+  // The square spans columns 47 to 112. The mask misses its left end by 4 px; on the right depth is missing.
+  labels.colRange(0, 52) = 0;
+  frame.depth(cv::Rect(113, 55, 3, 10)) = 0.0F;
+  const KeptView view = sampler.sample({}, frame, {}, labels, {false, true});
+  EXPECT_TRUE(view.moves(80, 60));
+  EXPECT_TRUE(view.moves(48, 60));    // the square's own depth
+  EXPECT_FALSE(view.moves(45, 60));   // the wall beside it
+  EXPECT_TRUE(view.moves(115, 60));   // no depth
+  EXPECT_FALSE(view.moves(117, 60));  // the wall
+  EXPECT_TRUE(view.moves(80, 92));    // the wall at the mask's edge; the square ends at row 91
+  EXPECT_FALSE(view.moves(80, 93));
+  EXPECT_NEAR(view.depth_at(80, 60), WallWorld::square_z, KeptView::depth_unit);
+}
+
+TEST(KeptView, TakesLabelsBeforeTheCoarseOnes) {
+  const WallWorld world;
+  DenseMapSettings settings;
+  settings.dilate = settings.edge = 0;
+  const ViewSampler sampler(world.camera, settings);
+  const SensorFrame frame = world.images(0.0, 0, std::nullopt);
+  CoarseView coarse = blank_coarse(world.camera);
+  EXPECT_EQ(count_moving(sampler.sample({}, frame, coarse, {}, {false, true})), 0);
+  coarse.labels.assign(coarse.depth.size(), 0);
+  coarse.labels[static_cast<std::size_t>(coarse.grid.cell_of(40, 40))] = 1;
+  coarse.labels[static_cast<std::size_t>(coarse.grid.cell_of(80, 40))] = 255;
+  coarse.labels[static_cast<std::size_t>(coarse.grid.cell_of(120, 40))] = 2;
+  const KeptView carried = sampler.sample({}, frame, coarse, {}, {false, true, false});
+  EXPECT_TRUE(carried.moves(20, 20));
+  EXPECT_TRUE(carried.moves(40, 20));  // unknown
+  EXPECT_FALSE(carried.moves(60, 20));
+  const cv::Mat clean = cv::Mat::zeros(120, 160, CV_8UC1);
+  EXPECT_EQ(count_moving(sampler.sample({}, frame, coarse, clean, {false, true, false})), 0);
+  coarse.static_log_odds.assign(coarse.depth.size(), 0.0F);
+  coarse.static_log_odds[static_cast<std::size_t>(coarse.grid.cell_of(100, 80))] = -0.1F;
+  const KeptView measured = sampler.sample({}, frame, coarse, clean, {false, true, false});
+  EXPECT_TRUE(measured.moves(50, 40));
+  EXPECT_EQ(count_moving(measured), 4);  // one cell of 4 x 4 px
+}
+
+TEST(KeptView, RefusesImagesOfAnotherSize) {
+  const WallWorld world;
+  const ViewSampler sampler(world.camera, {});
+  SensorFrame frame = world.images(0.0, 0, std::nullopt);
+  EXPECT_THROW(sampler.sample({}, frame, {}, cv::Mat::zeros(60, 80, CV_8UC1), {}), CheckError);
+  frame.colour = frame.colour.colRange(0, 80);
+  EXPECT_THROW(sampler.sample({}, frame, {}, {}, {}), CheckError);
+}
+
+}  // namespace
+}  // namespace holdfast
