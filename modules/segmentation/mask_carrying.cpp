@@ -65,6 +65,12 @@ void MaskCarrier::carry(const CoarseView& from_view, const CellLabels& from, con
   const std::size_t size = static_cast<std::size_t>(grid.size());
   to.labels.assign(size, 0);
   to.quality.assign(size, 255);
+  to.moving.assign(size, 0);
+  const auto take = [&](std::size_t cell, std::size_t source) {
+    to.labels[cell] = from.labels[source];
+    to.quality[cell] = from.quality[source];
+    to.moving[cell] = from.moving[source];
+  };
   past_.assign(size, Past::hidden);
   const Eigen::Isometry3d T_from_to = T_to_from.inverse();
   const Eigen::Matrix3f R = T_from_to.linear().cast<float>();
@@ -90,8 +96,7 @@ void MaskCarrier::carry(const CoarseView& from_view, const CellLabels& from, con
           past_[cell] = Past::unseen;
         } else if (std::abs(before - z) < apart(z)) {
           past_[cell] = Past::same;
-          to.labels[cell] = from.labels[static_cast<std::size_t>(source)];
-          to.quality[cell] = from.quality[static_cast<std::size_t>(source)];
+          take(cell, static_cast<std::size_t>(source));
           // Almost the same place may still be an object that has just come there.
           if (to.labels[cell] != 0 || std::abs(before - z) < same_place(z)) continue;
         } else if (before > z + apart(z)) {
@@ -110,8 +115,7 @@ void MaskCarrier::carry(const CoarseView& from_view, const CellLabels& from, con
         if (depth > 0.0F &&
             (before == 0.0F || std::abs(before - depth - mover.depth_change) > same_surface(depth)))
           continue;
-        to.labels[cell] = from.labels[source];
-        to.quality[cell] = from.quality[source];
+        take(cell, source);
         break;
       }
     }
@@ -153,6 +157,7 @@ void MaskCarrier::grow(const CoarseView& to_view, CellLabels& to) {
                                     std::abs(there - start) < most_depth_change);
         if (!may_be_object) continue;
         start_depth_[other] = start;
+        to.moving[other] = to.moving[static_cast<std::size_t>(cell)];
         to.labels[other] = to.labels[static_cast<std::size_t>(cell)];
         to.quality[other] = static_cast<std::uint8_t>(to.quality[static_cast<std::size_t>(cell)] * 15 / 16);
         next_front_.push_back(static_cast<std::int32_t>(other));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace holdfast {
 
@@ -67,8 +68,28 @@ void MaskPropagator::pair_with(const View& view, const std::vector<std::uint8_t>
   }
 }
 
-void MaskPropagator::located(const std::optional<Eigen::Isometry3d>& T_camera_world) {
+void MaskPropagator::located(const std::optional<Eigen::Isometry3d>& T_camera_world, const CoarseView& judged,
+                             float moving) {
   current_.T_camera_world = T_camera_world;
+  if (!T_camera_world || labels_.labels.empty() || judged.static_log_odds.size() != labels_.labels.size()) return;
+  for (std::size_t i = 0; i < labels_.labels.size(); ++i)
+    labels_.moving[i] = is_object(labels_.labels[i]) && judged.static_log_odds[i] < moving ? 1 : 0;
+}
+
+const cv::Mat& MaskPropagator::moving_pixels() {
+  constexpr int half = CoarseGrid::step / 2;
+  moving_pixels_.release();
+  for (std::size_t i = 0; i < labels_.moving.size(); ++i) {
+    if (labels_.moving[i] == 0) continue;
+    const std::int32_t raw = sampler_.raw_pixel(static_cast<int>(i));
+    if (raw < 0) continue;
+    if (moving_pixels_.empty()) moving_pixels_ = cv::Mat::zeros(camera_.height, camera_.width, CV_8UC1);
+    const int x = raw % camera_.width, y = raw / camera_.width;
+    for (int row = std::max(0, y - half); row <= std::min(camera_.height - 1, y + half); ++row)
+      std::fill_n(moving_pixels_.ptr<std::uint8_t>(row) + std::max(0, x - half),
+                  std::min(camera_.width - 1, x + half) - std::max(0, x - half) + 1, std::uint8_t{255});
+  }
+  return moving_pixels_;
 }
 
 void MaskPropagator::renew_points(const Frame& frame) {
@@ -76,35 +97,36 @@ void MaskPropagator::renew_points(const Frame& frame) {
   const CoarseGrid& grid = frame.coarse.grid;
   const PointFollower::Points& points = follower_.points();
   const int columns = (grid.columns + bucket - 1) / bucket, rows = (grid.rows + bucket - 1) / bucket;
-  const auto bucket_of = [&](float x, float y) {
-    const int cell = grid.cell_of(x, y);
-    if (cell < 0) return -1;
-    return (cell / grid.columns / bucket) * columns + cell % grid.columns / bucket;
+  const auto is_wanted = [&](int cell) {
+    return !remembered_.empty() || is_object(labels_.labels[static_cast<std::size_t>(cell)]);
   };
-  if (remembered_.empty())
-    follower_.filter([&](std::size_t i) {
-      const int cell = grid.cell_of(points.x[i], points.y[i]);
-      return cell >= 0 && is_object(labels_.labels[static_cast<std::size_t>(cell)]);
-    });
-  bucket_feature_.assign(static_cast<std::size_t>(columns * rows), -1);
-  bucket_response_.assign(static_cast<std::size_t>(columns * rows), -1.0F);
-  for (std::size_t i = 0; i < frame.size(); ++i) {
-    const int cell = grid.cell_of(frame.x[i], frame.y[i]);
-    if (cell < 0) continue;
-    if (remembered_.empty() && !is_object(labels_.labels[static_cast<std::size_t>(cell)])) continue;
-    const int place = bucket_of(frame.x[i], frame.y[i]);
-    const float response = frame.features.response[i];
-    if (place < 0 || response <= bucket_response_[static_cast<std::size_t>(place)]) continue;
-    bucket_response_[static_cast<std::size_t>(place)] = response;
-    bucket_feature_[static_cast<std::size_t>(place)] = static_cast<std::int32_t>(i);
-  }
+  const auto bucket_of = [&](int cell) {
+    return static_cast<std::size_t>((cell / grid.columns / bucket) * columns + cell % grid.columns / bucket);
+  };
+  follower_.filter([&](std::size_t i) {
+    const int cell = grid.cell_of(points.x[i], points.y[i]);
+    return cell >= 0 && is_wanted(cell);
+  });
+  constexpr int least_strength = 200;  // of Scharr derivatives
+  bucket_cell_.assign(static_cast<std::size_t>(columns * rows), -1);
+  bucket_strength_.assign(static_cast<std::size_t>(columns * rows), least_strength);
   for (std::size_t i = 0; i < points.size(); ++i)
-    if (const int place = bucket_of(points.x[i], points.y[i]); place >= 0)
-      bucket_feature_[static_cast<std::size_t>(place)] = -1;
-  for (const std::int32_t feature : bucket_feature_)
-    if (feature >= 0)
-      follower_.add(frame, frame.features.x[static_cast<std::size_t>(feature)],
-                    frame.features.y[static_cast<std::size_t>(feature)], 0);
+    bucket_strength_[bucket_of(grid.cell_of(points.x[i], points.y[i]))] = std::numeric_limits<int>::max();
+  for (int cell = 0; cell < grid.size(); ++cell) {
+    const std::size_t place = bucket_of(cell);
+    const std::int32_t raw = sampler_.raw_pixel(cell);
+    if (raw < 0 || bucket_strength_[place] == std::numeric_limits<int>::max() || !is_wanted(cell)) continue;
+    const int strength = follower_.corner_strength(static_cast<float>(raw % camera_.width),
+                                                   static_cast<float>(raw / camera_.width));
+    if (strength <= bucket_strength_[place]) continue;
+    bucket_strength_[place] = strength;
+    bucket_cell_[place] = cell;
+  }
+  for (const std::int32_t cell : bucket_cell_) {
+    if (cell < 0) continue;
+    const std::int32_t raw = sampler_.raw_pixel(cell);
+    follower_.add(frame, static_cast<float>(raw % camera_.width), static_cast<float>(raw / camera_.width), 0);
+  }
 }
 
 void MaskPropagator::remember() {
@@ -114,6 +136,7 @@ void MaskPropagator::remember() {
   if (labels_.labels.empty()) {
     labels_.labels.assign(current_.coarse.depth.size(), unknown);
     labels_.quality.assign(labels_.labels.size(), 0);
+    labels_.moving.assign(labels_.labels.size(), 0);
   }
   renew_points(*frame_);
   take_view(*frame_, current_);
@@ -134,6 +157,7 @@ void MaskPropagator::apply(std::uint64_t frame_index, const Segmentation& segmen
     exact.quality.assign(exact.labels.size(), 255);
   else
     sampler_.sample_labels(segmentation.confidence, 0, exact.quality);
+  exact.moving.assign(exact.labels.size(), 0);
   labels_from_ = there.timestamp;
   if (current_.frame_index == frame_index) {
     labels_ = std::move(exact);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/segmentation/point_follower.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
 
@@ -62,6 +64,15 @@ void PointFollower::advance(const cv::Mat& grey, const Frame& frame) {
     if (depth > 0.0F) points_.depth[i] = depth;
   }
   compact(found_);
+}
+
+int PointFollower::corner_strength(float raw_x, float raw_y) const {
+  // The finest level of the pyramid is followed by its derivatives.
+  const cv::Mat& derivatives = pyramid_[1];
+  const int column = static_cast<int>(raw_x * 0.5F), row = static_cast<int>(raw_y * 0.5F);
+  if (column < 0 || row < 0 || column >= derivatives.cols || row >= derivatives.rows) return 0;
+  const cv::Vec2s gradient = derivatives.at<cv::Vec2s>(row, column);
+  return std::min(std::abs(gradient[0]), std::abs(gradient[1]));
 }
 
 void PointFollower::add(const Frame& frame, float raw_x, float raw_y, std::uint8_t label) {

@@ -21,7 +21,7 @@ FrameBuilder::FrameBuilder(const Camera& camera, FeatureExtractor& extractor, do
   camera.undistorted_bounds(minimum_, maximum_);
 }
 
-void FrameBuilder::build(const SensorFrame& sensor_frame, Frame& frame, StageTimes& times) {
+void FrameBuilder::begin(const SensorFrame& sensor_frame, Frame& frame, StageTimes& times) {
   const cv::Mat& colour = sensor_frame.colour;
   const auto size_text = [](int width, int height) { return std::to_string(width) + "x" + std::to_string(height); };
   if (colour.type() != CV_8UC3 || colour.cols != camera_->width || colour.rows != camera_->height)
@@ -34,25 +34,30 @@ void FrameBuilder::build(const SensorFrame& sensor_frame, Frame& frame, StageTim
     throw InputError({"frame " + std::to_string(sensor_frame.index)},
                      "the depth image is " + size_text(depth.cols, depth.rows) +
                          "; expected one 32 bit float channel [m] of the colour image's size");
-  {
-    const StageTimer timer(times, "features");
-    cv::cvtColor(colour, grey_, cv::COLOR_BGR2GRAY);
-    extractor_.extract(grey_, cv::Mat(), frame.features);
-  }
   const StageTimer timer(times, "frame");
   frame.index = sensor_frame.index;
   frame.timestamp = sensor_frame.timestamp;
   frame.camera = camera_;
   frame.pyramid = pyramid_;
-  undistortion_.undistort(frame.features.x, frame.features.y, frame.x, frame.y);
-  read_depth(depth, frame);
+  frame.T_camera_world.setIdentity();
+  cv::cvtColor(colour, grey_, cv::COLOR_BGR2GRAY);
   coarse_sampler_.sample_depth(depth, frame.coarse);
+}
+
+void FrameBuilder::find_features(const SensorFrame& sensor_frame, const cv::Mat& ignore, Frame& frame,
+                                 StageTimes& times) {
+  {
+    const StageTimer timer(times, "features");
+    extractor_.extract(grey_, ignore, frame.features);
+  }
+  const StageTimer timer(times, "frame");
+  undistortion_.undistort(frame.features.x, frame.features.y, frame.x, frame.y);
+  read_depth(sensor_frame.depth, frame);
   frame.map_points.assign(frame.size(), MapPointId());
   frame.static_probability.assign(frame.size(), 1.0F);
   frame.measured_log_odds.assign(frame.size(), 0.0F);
   frame.grid.build(frame.x, frame.y, static_cast<float>(minimum_.x()), static_cast<float>(minimum_.y()),
                    static_cast<float>(maximum_.x()), static_cast<float>(maximum_.y()));
-  frame.T_camera_world.setIdentity();
 }
 
 void FrameBuilder::read_depth(const cv::Mat& depth, Frame& frame) const {

@@ -22,12 +22,16 @@ void Tracker::begin(const SensorFrame& sensor_frame, FrameResult& result) {
   result.index = sensor_frame.index;
   result.timestamp = sensor_frame.timestamp;
   std::swap(current_, previous_);
-  builder_.build(sensor_frame, current_, result.times);
+  builder_.begin(sensor_frame, current_, result.times);
+  cv::Mat moving;
+  if (propagator_) {
+    const StageTimer timer(result.times, "masks");
+    propagator_->advance(builder_.grey(), current_, predicted_step());
+    current_.coarse.labels = propagator_->mask().labels;
+    if (filters_.settings().skip_moving) moving = propagator_->moving_pixels();
+  }
+  builder_.find_features(sensor_frame, moving, current_, result.times);
   result.features = static_cast<int>(current_.size());
-  if (!propagator_) return;
-  const StageTimer timer(result.times, "masks");
-  propagator_->advance(builder_.grey(), current_, predicted_step());
-  current_.coarse.labels = propagator_->mask().labels;
 }
 
 void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
@@ -150,7 +154,7 @@ bool Tracker::track_local_map(const SensorFrame& sensor_frame, FrameResult& resu
       current_.static_probability.begin(), current_.static_probability.end(), [](float p) { return p >= 0.5F; }));
   drop_outliers();
   local_map_.count_found(current_);
-  if (result.inliers < settings_.minimum_inliers) {
+  if (result.inliers < settings_.minimum_inliers || pose_deviation_ > settings_.maximum_deviation) {
     result.trouble = TrackingTrouble::few_inliers;
     return false;
   }
@@ -227,7 +231,8 @@ void Tracker::remember(FrameResult& result) {
   if (propagator_)
     propagator_->located(result.status == TrackingStatus::lost || result.status == TrackingStatus::waiting
                              ? std::nullopt
-                             : std::optional(current_.T_camera_world));
+                             : std::optional(current_.T_camera_world),
+                         current_.coarse, -static_cast<float>(filters_.settings().static_log_odds) - 1.0F);
   const bool has_pose = result.status == TrackingStatus::initialised || result.status == TrackingStatus::tracked;
   if (!has_pose) {
     has_previous_ = has_velocity_ = false;

@@ -33,6 +33,7 @@ void Tracker::state_problem() {
 int Tracker::adjust_pose() {
   state_problem();
   const PoseSummary summary = optimizer_.optimize_pose(problem_);
+  pose_deviation_ = summary.usable ? std::sqrt(summary.covariance.topLeftCorner<3, 3>().trace()) : 0.0;
   if (!summary.usable) {
     std::fill(problem_.inlier.begin(), problem_.inlier.end(), std::uint8_t{0});
     return 0;

@@ -25,6 +25,7 @@ struct FollowedPairs {
 struct CellLabels {
   std::vector<std::uint8_t> labels;
   std::vector<std::uint8_t> quality;
+  std::vector<std::uint8_t> moving;  ///< 1 where an object was last judged to move
 };
 
 /// Carries labels from one frame to another on their coarse views. A cell takes the label of the place that the

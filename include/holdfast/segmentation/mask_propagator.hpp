@@ -31,8 +31,10 @@ class MaskPropagator {
   MaskPropagator(const Camera& camera, const CoarseSampler& sampler, double memory);
 
   /// `T_frame_previous` is the camera's motion since the last frame as far as it can be guessed.
+  /// The frame's features are not needed yet.
   void advance(const cv::Mat& grey, const Frame& frame, const Eigen::Isometry3d& T_frame_previous);
-  void located(const std::optional<Eigen::Isometry3d>& T_camera_world);
+  /// Takes the pose and what filters said of the cells (frame.coarse.static_log_odds; below `moving` an object moves).
+  void located(const std::optional<Eigen::Isometry3d>& T_camera_world, const CoarseView& judged, float moving);
   void remember();
   /// Forgets what was kept for that frame and older ones; an empty segmentation changes no mask.
   void apply(std::uint64_t frame_index, const Segmentation& segmentation);
@@ -40,6 +42,9 @@ class MaskPropagator {
   /// The mask of the last frame; empty before the first segmentation.
   const CarriedMask& mask() const { return mask_; }
   const PointFollower::Points& points() const { return follower_.points(); }
+  /// Marks the raw pixels (8UC1, not 0) of what moved when it was last judged; empty when nothing did. Features there
+  /// are a waste.
+  const cv::Mat& moving_pixels();
 
  private:
   /// What must be known of a frame to carry labels away from it.
@@ -68,8 +73,9 @@ class MaskPropagator {
   CellLabels labels_, next_labels_;
   double labels_from_ = 0.0;  // time of the segmented frame [s]
   FollowedPairs pairs_;
-  std::vector<float> bucket_response_;
-  std::vector<std::int32_t> bucket_feature_;
+  std::vector<int> bucket_strength_;
+  std::vector<std::int32_t> bucket_cell_;
+  cv::Mat moving_pixels_;
   CarriedMask mask_;
 };
 

@@ -26,6 +26,8 @@ class PointFollower {
 
   /// Moves the points to a new image (8UC1) of `camera`; `frame` gives the depth.
   void advance(const cv::Mat& grey, const Frame& frame);
+  /// How much of a corner the last image has at a raw pixel; 0 = nothing to follow.
+  int corner_strength(float raw_x, float raw_y) const;
   /// Adds a point at a raw pixel of the last image.
   void add(const Frame& frame, float raw_x, float raw_y, std::uint8_t label);
   /// Keeps the points for which `keep` says so.

@@ -16,6 +16,7 @@ struct EvidenceSettings {
   double carried_share = 0.95;
   double measured_share = 0.3;
   double limit = 4.0;
+  bool skip_moving = true;
 
   static void describe(ParameterTable<EvidenceSettings>& table) {
     using S = EvidenceSettings;
@@ -35,6 +36,8 @@ struct EvidenceSettings {
         .range(0, 1);
     table.add("measured_share", &S::measured_share, "share of what a frame measures that its map points keep")
         .range(0, 1);
+    table.add("skip_moving", &S::skip_moving,
+              "find no features on masked objects that moved in the last frame; all the others lie where they serve");
     table.add("limit", &S::limit, "what is known of a map point never exceeds these log-odds").range(0.1, 100);
   }
 };

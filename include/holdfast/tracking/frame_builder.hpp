@@ -23,7 +23,14 @@ class FrameBuilder {
 
   /// Replaces the content of `frame`; poses and map points are reset. The images must have the camera's size
   /// (InputError otherwise). Adds the stages "features" and "frame".
-  void build(const SensorFrame& sensor_frame, Frame& frame, StageTimes& times);
+  void build(const SensorFrame& sensor_frame, Frame& frame, StageTimes& times) {
+    begin(sensor_frame, frame, times);
+    find_features(sensor_frame, cv::Mat(), frame, times);
+  }
+  /// The first half: all but features.
+  void begin(const SensorFrame& sensor_frame, Frame& frame, StageTimes& times);
+  /// The second half; no features where `ignore` (8UC1 of the image's size, or empty) is not 0.
+  void find_features(const SensorFrame& sensor_frame, const cv::Mat& ignore, Frame& frame, StageTimes& times);
 
   const std::shared_ptr<const Camera>& camera() const { return camera_; }
   const UndistortionTable& undistortion() const { return undistortion_; }

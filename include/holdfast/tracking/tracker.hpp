@@ -133,6 +133,7 @@ class Tracker {
   ProjectionSearch search_;
   SearchWindows windows_;
   PoseProblem problem_;
+  double pose_deviation_ = 0.0;  // of the position that was last adjusted [m]
   std::vector<std::uint32_t> problem_features_;
 };
 

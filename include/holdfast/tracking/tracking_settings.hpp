@@ -16,6 +16,7 @@ struct TrackingSettings {
   int possible_distance = 100;
   int minimum_matches = 20;
   int minimum_inliers = 30;
+  double maximum_deviation = 0.02;
   int local_keyframes = 80;
   double keyframe_maximum_interval = 1.0;
   double keyframe_tracked_ratio = 0.8;
@@ -53,6 +54,11 @@ struct TrackingSettings {
         .range(4, 10000);
     table.add("minimum_inliers", &S::minimum_inliers, "map points that must agree with a pose for it to be believed")
         .range(6, 10000);
+    table
+        .add("maximum_deviation", &S::maximum_deviation,
+             "standard deviation of the position, as the inliers determine it, above which a pose is not believed")
+        .range(1e-4, 1000)
+        .unit("m");
     table.add("local_keyframes", &S::local_keyframes, "keyframes whose points make the local map, at most")
         .range(1, 1000);
     table.add("keyframe_maximum_interval", &S::keyframe_maximum_interval, "time after which a keyframe is due")
