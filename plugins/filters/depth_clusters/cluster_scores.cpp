@@ -6,12 +6,19 @@
 
 namespace holdfast::cluster_plugin {
 
+namespace {
+
+constexpr float largest_shift = 6.0F, unknown_shift = 1e3F;
+
+}  // namespace
+
 void ClusterScores::compare(const BlockGrid& grid, const DepthView& now, const DepthView& past,
                             const Eigen::Isometry3d& T_past_now, const DepthNoise& noise) {
   const Eigen::Matrix3f R = T_past_now.linear().cast<float>();
   const Eigen::Vector3f t = T_past_now.translation().cast<float>();
   moving_.assign(now.depth.size(), 0.0F);
   standing_.assign(now.depth.size(), 0.0F);
+  shift_.assign(now.depth.size(), unknown_shift);
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column) {
       const std::size_t block = static_cast<std::size_t>(row * grid.columns + column);
@@ -30,6 +37,7 @@ void ClusterScores::compare(const BlockGrid& grid, const DepthView& now, const D
       if (!there.smooth)
         residual = p.z() < there.nearest ? there.nearest - p.z() : p.z() > there.farthest ? there.farthest - p.z() : 0;
       const float in_noise = residual / noise.at(p.z());
+      if (there.smooth && std::abs(in_noise) < largest_shift) shift_[block] = in_noise;
       const float surely = std::clamp(0.5F * (std::abs(in_noise) - 1.0F), 0.0F, 1.0F);
       if (in_noise > 1.0F) {
         moving_[block] = surely;  // there was free space
@@ -54,7 +62,7 @@ void ClusterScores::compare(const BlockGrid& grid, const DepthView& now, const D
 float ClusterScores::support(const DepthView& now, const std::vector<float>& trust) const {
   float still = 0.0F, all = 0.0F;
   for (std::size_t i = 0; i < now.depth.size(); ++i) {
-    const float weight = trust[i] * std::min(now.depth[i], 4.0F);
+    const float weight = trust[i] * surface_of(now.depth[i]);
     still += weight * standing_[i];
     all += weight * (standing_[i] + moving_[i]);
   }
@@ -85,13 +93,14 @@ void ClusterScores::score(const BlockGrid& grid, const DepthView& now, const KMe
                           const std::vector<float>& inherited, const Weights& weights) {
   const std::size_t count = static_cast<std::size_t>(clusters.count());
   const std::vector<std::uint8_t>& cluster = clusters.cluster_of();
-  std::vector<float> moving(count, 0.0F), standing(count, 0.0F);
+  std::vector<float> moving(count, 0.0F), standing(count, 0.0F), shift(count, 0.0F), shifted(count, 0.0F);
   inherited_.assign(count, 0.0F);
   for (std::size_t i = 0; i < cluster.size(); ++i) {
     if (cluster[i] == KMeans::none) continue;
     moving[cluster[i]] += moving_[i];
     standing[cluster[i]] += standing_[i];
     inherited_[cluster[i]] += inherited[i];
+    if (shift_[i] != unknown_shift) shift[cluster[i]] += shift_[i], shifted[cluster[i]] += 1.0F;
   }
   data_.assign(count, 1.0F);
   confidence_.assign(count, 0.0F);
@@ -103,6 +112,11 @@ void ClusterScores::score(const BlockGrid& grid, const DepthView& now, const KMe
     if (judged <= 0.0F) continue;
     constexpr float still = 0.12F, sure = 0.45F;  // share that moves of a cluster that does not, and of one that does
     data_[k] = 1.0F - std::clamp((moving[k] / judged - still) / (sure - still), 0.0F, 1.0F);
+    // Less than noise in every block, but the same in all.
+    constexpr float least_blocks = 20.0F, little = 0.5F, much = 1.2F;
+    if (shifted[k] >= least_blocks)
+      data_[k] = std::min(data_[k],
+                          1.0F - std::clamp((std::abs(shift[k] / shifted[k]) - little) / (much - little), 0.0F, 1.0F));
   }
   find_contacts(grid, now, clusters);
   // Least squares of a few unknowns, by Gauss and Seidel: strictly dominant, so it converges from anywhere.

@@ -40,7 +40,7 @@ class ClusterScores {
  private:
   void find_contacts(const BlockGrid& grid, const DepthView& now, const KMeans& clusters);
 
-  std::vector<float> moving_, standing_;
+  std::vector<float> moving_, standing_, shift_;
   std::vector<float> scores_, confidence_, data_, inherited_;
   std::vector<float> contacts_;  // matrix: length of the border of two clusters where depth goes on [blocks]
 };

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "depth_clusters.hpp"
 
+// DUMP{
+#include <cstdio>
+#include <cstdlib>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+// DUMP}
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -11,6 +17,7 @@ DepthClusters::DepthClusters(const ClusterSettings& settings, const CreationCont
     : settings_(settings),
       maker_(context.camera),
       noise_{static_cast<float>(settings.noise), static_cast<float>(settings.noise_growth)},
+      correction_(maker_.grid(), noise_, settings.correction),
       clusters_(settings.clusters, settings.iterations) {}
 
 void DepthClusters::keep_up(const FilterContext& context) {
@@ -120,7 +127,7 @@ void DepthClusters::apply(const FilterContext& context, StaticEvidence& evidence
   clusters_.divide(grid, now);
   if (const DepthView* past = reference(now.timestamp)) {
     Eigen::Isometry3d T_past_now = past->T_camera_world * context.T_camera_world->inverse();
-    correct_motion(grid, now, *past, inherited_, noise_, settings_.correction, T_past_now);
+    correction_.correct(now, *past, inherited_, T_past_now);
     scores_.compare(grid, now, *past, T_past_now, noise_);
     judged_ = scores_.support(now, inherited_) >= static_cast<float>(settings_.support);
   }
@@ -132,6 +139,44 @@ void DepthClusters::apply(const FilterContext& context, StaticEvidence& evidence
       now.static_score[i] = cluster[i] == KMeans::none ? 1.0F : scores_.scores()[cluster[i]];
     say(context.frame, now, evidence);
   }
+  // DUMP{
+  if (const char* folder = std::getenv("DC_DUMP"); folder && context.frame.index % 15 == 0) {
+    const int s = 4;
+    const auto paint = [&](auto value) {
+      cv::Mat image(grid.rows * s, grid.columns * s, CV_8UC3);
+      for (int y = 0; y < image.rows; ++y)
+        for (int x = 0; x < image.cols; ++x)
+          image.at<cv::Vec3b>(y, x) = value(static_cast<std::size_t>((y / s) * grid.columns + x / s));
+      return image;
+    };
+    const auto grey8 = [](float v) {
+      const auto g = static_cast<uchar>(std::clamp(v, 0.0F, 255.0F));
+      return cv::Vec3b(g, g, g);
+    };
+    cv::Mat a = paint([&](std::size_t i) { return grey8(now.grey[i]); });
+    cv::Mat b = paint([&](std::size_t i) { return grey8(now.depth[i] * 50); });
+    cv::Mat c = paint([&](std::size_t i) {
+      if (scores_.moving().empty()) return cv::Vec3b();
+      return cv::Vec3b(0, cv::saturate_cast<uchar>(255 * scores_.standing()[i]),
+                       cv::saturate_cast<uchar>(255 * scores_.moving()[i]));
+    });
+    cv::Mat d = paint([&](std::size_t i) {
+      const float v = now.static_score[i];
+      const int k = clusters_.cluster_of()[i];
+      if (k == 255) return cv::Vec3b(80, 0, 0);
+      const float f = 0.6F + 0.4F * static_cast<float>((k * 37) % 24) / 24.0F;
+      return cv::Vec3b(0, cv::saturate_cast<uchar>(255 * f * v), cv::saturate_cast<uchar>(255 * f * (1 - v)));
+    });
+    if (!judged_) cv::putText(d, "silent", {10, 20}, 0, 0.6, {255, 255, 255});
+    cv::Mat top, bottom, all;
+    cv::hconcat(a, b, top);
+    cv::hconcat(c, d, bottom);
+    cv::vconcat(top, bottom, all);
+    char name[300];
+    std::snprintf(name, sizeof name, "%s/%05d.png", folder, static_cast<int>(context.frame.index));
+    cv::imwrite(name, all);
+  }
+  // DUMP}
   views_.push_back(std::move(now));
 }
 

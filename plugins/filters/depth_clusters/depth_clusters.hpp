@@ -39,6 +39,7 @@ class DepthClusters final : public DynamicFilter {
   ClusterSettings settings_;
   ViewMaker maker_;
   DepthNoise noise_;
+  MotionCorrection correction_;
   KMeans clusters_;
   ClusterScores scores_;
   std::deque<DepthView> views_;   // oldest first; all but the last have their final pose
