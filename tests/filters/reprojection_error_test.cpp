@@ -68,11 +68,19 @@ class Sights {
   Frame frame_;
 };
 
+ReprojectionErrorSettings settings() {
+  ReprojectionErrorSettings settings;
+  settings.support = 0.5;
+  settings.moving_log_odds = -4.0;
+  settings.static_log_odds = 0.3;
+  return settings;
+}
+
 const Eigen::Vector3d step(0.06, 0.01, 0.02);
 
 TEST(ReprojectionError, DoubtGrowsWithEveryFrameThatFails) {
   Sights sights;
-  ReprojectionError filter({}, {});
+  ReprojectionError filter(settings(), {});
   float before = 0.0F;
   for (int k = 1; k <= 3; ++k) {
     sights.show(7, k * step);
@@ -91,7 +99,7 @@ TEST(ReprojectionError, DoubtGrowsWithEveryFrameThatFails) {
 
 TEST(ReprojectionError, NoiseWithinTheVarianceOfTheLevelPasses) {
   Sights sights;
-  ReprojectionError filter({}, {});
+  ReprojectionError filter(settings(), {});
   for (std::size_t i = 0; i < sights.frame().size(); ++i)
     sights.frame().x[i] += 1.4F * sights.frame().pyramid->scale[sights.frame().features.octave[i]];
   sights.frame().x[2] += 6.0F;
@@ -102,7 +110,7 @@ TEST(ReprojectionError, NoiseWithinTheVarianceOfTheLevelPasses) {
 TEST(ReprojectionError, DepthAloneTellsWhatComesNearer) {
   for (const bool with_depth : {true, false}) {
     Sights sights(with_depth);
-    ReprojectionError filter({}, {});
+    ReprojectionError filter(settings(), {});
     const float x = sights.frame().x[5], y = sights.frame().y[5];
     sights.show(5, Eigen::Vector3d(0, 0, -0.4), with_depth);
     sights.frame().x[5] = x, sights.frame().y[5] = y;
@@ -112,7 +120,7 @@ TEST(ReprojectionError, DepthAloneTellsWhatComesNearer) {
 
 TEST(ReprojectionError, DisplacementsThatDisagreeCountLess) {
   Sights sights;
-  ReprojectionError filter({}, {});
+  ReprojectionError filter(settings(), {});
   StaticEvidence evidence;
   for (int k = 0; k < 6; ++k) {
     sights.show(3, 4 * step);
@@ -125,7 +133,7 @@ TEST(ReprojectionError, DisplacementsThatDisagreeCountLess) {
 
 TEST(ReprojectionError, IsSilentWhenThePoseIsWrong) {
   Sights sights;
-  ReprojectionError filter({}, {});
+  ReprojectionError filter(settings(), {});
   for (std::size_t i = 0; i < 60; ++i) sights.show(i, step);
   EXPECT_TRUE(sights.judge(filter).statements().empty());
   // Unless other evidence speaks against those that fail.
@@ -137,7 +145,7 @@ TEST(ReprojectionError, IsSilentWhenThePoseIsWrong) {
 
 TEST(ReprojectionError, ANewPointInAnOldSlotBeginsAnew) {
   Sights sights;
-  ReprojectionError filter({}, {});
+  ReprojectionError filter(settings(), {});
   StaticEvidence evidence;
   for (int k = 1; k <= 4; ++k) {
     sights.show(7, k * step);

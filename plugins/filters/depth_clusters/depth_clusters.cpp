@@ -7,11 +7,23 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 // DUMP}
+// DUMP{
+#include <cstdio>
+#include <cstdlib>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+// DUMP}
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 namespace holdfast::cluster_plugin {
+
+namespace {
+
+constexpr double least_share = 0.35;  // of the interval: in less time little moves
+
+}  // namespace
 
 DepthClusters::DepthClusters(const ClusterSettings& settings, const CreationContext& context)
     : settings_(settings),
@@ -34,10 +46,20 @@ void DepthClusters::keep_up(const FilterContext& context) {
   while (views_.size() > 1 && views_[1].timestamp <= context.frame.timestamp - settings_.interval) views_.pop_front();
 }
 
-const DepthView* DepthClusters::reference(double timestamp) const {
-  // The first is the youngest that is old enough, once there is one; half the age will do.
-  if (views_.empty() || timestamp - views_.front().timestamp < 0.5 * settings_.interval) return nullptr;
-  return &views_.front();
+const DepthView* DepthClusters::reference(double timestamp, const Eigen::Isometry3d& T_camera_world) const {
+  // The oldest that still shows much of the same; the first is the youngest that is old enough.
+  for (std::size_t i = 0; i < views_.size(); ++i) {
+    if (timestamp - views_[i].timestamp < least_share * settings_.interval) return nullptr;
+    const Eigen::Isometry3d motion = views_[i].T_camera_world * T_camera_world.inverse();
+    const double turned = std::hypot(motion.linear()(0, 2), motion.linear()(1, 2));
+    constexpr double middle_depth = 1.5;  // m
+    const double moved = std::hypot(motion.translation().x(), motion.translation().y()) / middle_depth;
+    constexpr double most = 0.12;  // of the focal length
+    const bool is_last =
+        i + 1 == views_.size() || timestamp - views_[i + 1].timestamp < least_share * settings_.interval;
+    if (turned + moved <= most || is_last) return &views_[i];
+  }
+  return nullptr;
 }
 
 void DepthClusters::inherit(const DepthView& now, const Eigen::Isometry3d& T_camera_world) {
@@ -125,7 +147,7 @@ void DepthClusters::apply(const FilterContext& context, StaticEvidence& evidence
   inherit(now, *context.T_camera_world);
   now.static_score = inherited_;
   clusters_.divide(grid, now);
-  if (const DepthView* past = reference(now.timestamp)) {
+  if (const DepthView* past = reference(now.timestamp, now.T_camera_world)) {
     Eigen::Isometry3d T_past_now = past->T_camera_world * context.T_camera_world->inverse();
     correction_.correct(now, *past, inherited_, T_past_now);
     scores_.compare(grid, now, *past, T_past_now, noise_);
@@ -139,6 +161,44 @@ void DepthClusters::apply(const FilterContext& context, StaticEvidence& evidence
       now.static_score[i] = cluster[i] == KMeans::none ? 1.0F : scores_.scores()[cluster[i]];
     say(context.frame, now, evidence);
   }
+  // DUMP{
+  if (const char* folder = std::getenv("DC_DUMP"); folder && context.frame.index % 15 == 0) {
+    const int s = 4;
+    const auto paint = [&](auto value) {
+      cv::Mat image(grid.rows * s, grid.columns * s, CV_8UC3);
+      for (int y = 0; y < image.rows; ++y)
+        for (int x = 0; x < image.cols; ++x)
+          image.at<cv::Vec3b>(y, x) = value(static_cast<std::size_t>((y / s) * grid.columns + x / s));
+      return image;
+    };
+    const auto grey8 = [](float v) {
+      const auto g = static_cast<uchar>(std::clamp(v, 0.0F, 255.0F));
+      return cv::Vec3b(g, g, g);
+    };
+    cv::Mat a = paint([&](std::size_t i) { return grey8(now.grey[i]); });
+    cv::Mat b = paint([&](std::size_t i) { return grey8(now.depth[i] * 50); });
+    cv::Mat c = paint([&](std::size_t i) {
+      if (scores_.moving().empty()) return cv::Vec3b();
+      return cv::Vec3b(0, cv::saturate_cast<uchar>(255 * scores_.standing()[i]),
+                       cv::saturate_cast<uchar>(255 * scores_.moving()[i]));
+    });
+    cv::Mat d = paint([&](std::size_t i) {
+      const float v = now.static_score[i];
+      const int k = clusters_.cluster_of()[i];
+      if (k == 255) return cv::Vec3b(80, 0, 0);
+      const float f = 0.6F + 0.4F * static_cast<float>((k * 37) % 24) / 24.0F;
+      return cv::Vec3b(0, cv::saturate_cast<uchar>(255 * f * v), cv::saturate_cast<uchar>(255 * f * (1 - v)));
+    });
+    if (!judged_) cv::putText(d, "silent", {10, 20}, 0, 0.6, {255, 255, 255});
+    cv::Mat top, bottom, all;
+    cv::hconcat(a, b, top);
+    cv::hconcat(c, d, bottom);
+    cv::vconcat(top, bottom, all);
+    char name[300];
+    std::snprintf(name, sizeof name, "%s/%05d.png", folder, static_cast<int>(context.frame.index));
+    cv::imwrite(name, all);
+  }
+  // DUMP}
   // DUMP{
   if (const char* folder = std::getenv("DC_DUMP"); folder && context.frame.index % 15 == 0) {
     const int s = 4;

@@ -32,7 +32,7 @@ class DepthClusters final : public DynamicFilter {
 
  private:
   void keep_up(const FilterContext& context);
-  const DepthView* reference(double timestamp) const;
+  const DepthView* reference(double timestamp, const Eigen::Isometry3d& T_camera_world) const;
   void inherit(const DepthView& now, const Eigen::Isometry3d& T_camera_world);
   void say(const Frame& frame, const DepthView& now, StaticEvidence& evidence) const;
 
