@@ -25,7 +25,7 @@ float MotionCorrection::sum_up(const DepthView& now, const DepthView& past, cons
     for (int column = 1; column < grid_.columns; column += 2) {
       const std::size_t block = static_cast<std::size_t>(row * grid_.columns + column);
       const float depth = now.depth[block];
-      if (depth <= 0.0F) continue;
+      if (depth <= 0.0F || trust[block] < 0.05F) continue;
       const Eigen::Vector3f ray(grid_.ray_x[static_cast<std::size_t>(column)],
                                 grid_.ray_y[static_cast<std::size_t>(row)], 1.0F);
       const Eigen::Vector3f p = depth * (R * ray) + t;
@@ -38,8 +38,7 @@ float MotionCorrection::sum_up(const DepthView& now, const DepthView& past, cons
       const float noise = noise_.at(p.z());
       const float grey_sigma = grey_noise + grey_slope * (std::abs(there.grey_x) + std::abs(there.grey_y));
       const float grey_residual = there.grey - now.grey[block];
-      // Distrust may rest on the very thing that is to be found out, so the surface keeps a part of its say.
-      const float surface = (0.2F + 0.8F * trust[block]) * surface_of(p.z());
+      const float surface = trust[block] * surface_of(p.z());
       {
         const float r = 2.0F * residual / noise, rg = grey_residual / grey_sigma;
         const float r2 = r * r + rg * rg;
@@ -57,9 +56,12 @@ float MotionCorrection::sum_up(const DepthView& now, const DepthView& past, cons
       du *= block_x;
       dv *= block_y;
       const float r = residual / sigma, rg = grey_residual / grey_sigma;
-      const float weight = weighting == Weighting::by_surface ? surface * p.z() : trust[block] * p.z();
-      const float w = weight / ((1.0F + r * r) * sigma * sigma);
-      const float wg = weight / ((1.0F + r * r) * (1.0F + rg * rg) * grey_sigma * grey_sigma);
+      constexpr float middle_noise = 0.02F;  // m
+      const float depth_weight = weighting == Weighting::by_surface ? surface / (middle_noise * middle_noise)
+                                                                    : trust[block] * p.z() / (sigma * sigma);
+      const float grey_weight = weighting == Weighting::by_surface ? surface : trust[block] * p.z();
+      const float w = depth_weight / (1.0F + r * r);
+      const float wg = grey_weight / ((1.0F + r * r) * (1.0F + rg * rg) * grey_sigma * grey_sigma);
       const Vector6f jacobian = there.depth_x * du + there.depth_y * dv - dz;
       const Vector6f grey_jacobian = there.grey_x * du + there.grey_y * dv;
       for (int i = 0; i < 6; ++i) {
@@ -74,8 +76,7 @@ float MotionCorrection::sum_up(const DepthView& now, const DepthView& past, cons
 bool MotionCorrection::descend(const DepthView& now, const DepthView& past, const std::vector<float>& trust,
                                Weighting weighting, Eigen::Isometry3d& motion, float& cost) {
   const Eigen::Isometry3d start = motion;
-  // By surface, what is far must be found from where a near thing led the prediction.
-  const std::array<float, 3> scales{weighting == Weighting::by_surface ? 3.0F : 1.5F, 1.0F, 1.0F};
+  constexpr std::array<float, 3> scales{1.5F, 1.0F, 1.0F};
   for (const float scale : scales) {
     sum_up(now, past, trust, weighting, scale, motion);
     // What the images do not show stays as predicted.
@@ -97,7 +98,7 @@ bool MotionCorrection::correct(const DepthView& now, const DepthView& past, cons
   float cost_by_noise = 1.0F, cost_by_surface = 1.0F;
   const bool first = descend(now, past, trust, Weighting::by_noise, by_noise, cost_by_noise);
   const bool second = descend(now, past, trust, Weighting::by_surface, by_surface, cost_by_surface);
-  constexpr float clearly = 0.88F;
+  constexpr float clearly = 0.8F;
   if (second && (!first || cost_by_surface < clearly * cost_by_noise))
     motion = by_surface;
   else if (first)
