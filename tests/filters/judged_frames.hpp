@@ -30,21 +30,43 @@ class JudgedFrames {
   const CreationContext& context() const { return context_; }
 
   /// Applies the filter to every frame that is left and hands what it said to `judged`.
-  void run(DynamicFilter& filter,
-           const std::function<void(const SensorFrame&, const Frame&, const StaticEvidence&)>& judged) {
-    const Map map;
-    Frame frame;
-    while (const std::optional<SensorFrame> image = source_->next()) {
-      StageTimes times;
-      builder_->build(*image, frame, times);
-      StaticEvidence evidence(frame.size());
-      evidence.begin_stage("filter");
-      filter.apply({.sensor_frame = *image, .frame = frame, .map = map}, evidence);
-      judged(*image, frame, evidence);
-    }
+  using Judged = std::function<void(const SensorFrame&, const Frame&, const StaticEvidence&)>;
+  void run(DynamicFilter& filter, const Judged& judged) { run(filter, nullptr, judged); }
+
+  /// The same with the frame before, and with the true pose after an error that may depend on the frame.
+  using PoseError = std::function<Eigen::Isometry3d(std::uint64_t index)>;
+  void run_with_poses(DynamicFilter& filter, const PoseError& error, const Judged& judged) {
+    run(filter, &error, judged);
   }
 
  private:
+  void run(DynamicFilter& filter, const PoseError* error, const Judged& judged) {
+    const Map map;
+    Frame frame, previous;
+    bool has_previous = false;
+    while (const std::optional<SensorFrame> image = source_->next()) {
+      StageTimes times;
+      builder_->build(*image, frame, times);
+      StaticEvidence evidence(frame.size(), frame.coarse.depth.size());
+      evidence.begin_stage("filter");
+      if (error == nullptr) {
+        filter.apply({.sensor_frame = *image, .frame = frame, .map = map}, evidence);
+      } else {
+        frame.T_camera_world = image->truth->T_world_camera->inverse();
+        const Eigen::Isometry3d T_camera_world = (*error)(image->index) * frame.T_camera_world;
+        filter.apply({.sensor_frame = *image,
+                      .frame = frame,
+                      .previous = has_previous ? &previous : nullptr,
+                      .map = map,
+                      .T_camera_world = &T_camera_world},
+                     evidence);
+      }
+      judged(*image, frame, evidence);
+      std::swap(frame, previous);
+      has_previous = true;
+    }
+  }
+
   Registry registry_;
   CreationContext context_;
   std::unique_ptr<FrameSource> source_;

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "depth_clusters.hpp"
+
+// DUMP{
+#include <cstdio>
+#include <cstdlib>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+// DUMP}
+// DUMP{
+#include <cstdio>
+#include <cstdlib>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+// DUMP}
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace holdfast::cluster_plugin {
+
+namespace {
+
+constexpr double least_share = 0.35;  // of the interval: in less time little moves
+
+}  // namespace
+
+DepthClusters::DepthClusters(const ClusterSettings& settings, const CreationContext& context)
+    : settings_(settings),
+      maker_(context.camera),
+      noise_{static_cast<float>(settings.noise), static_cast<float>(settings.noise_growth)},
+      correction_(maker_.grid(), noise_, settings.correction),
+      clusters_(settings.clusters, settings.iterations) {}
+
+void DepthClusters::keep_up(const FilterContext& context) {
+  // A frame is judged again when its pose was found another way; then its first judgement is forgotten.
+  if (!views_.empty() && views_.back().frame_index == context.frame.index) views_.pop_back();
+  if (views_.empty()) return;
+  if (context.previous == nullptr || context.previous->index < views_.back().frame_index ||
+      context.frame.timestamp <= views_.back().timestamp) {
+    views_.clear();
+    return;
+  }
+  if (context.previous->index == views_.back().frame_index)
+    views_.back().T_camera_world = context.previous->T_camera_world;
+  while (views_.size() > 1 && views_[1].timestamp <= context.frame.timestamp - settings_.interval) views_.pop_front();
+}
+
+const DepthView* DepthClusters::reference(double timestamp, const Eigen::Isometry3d& T_camera_world) const {
+  // The oldest that still shows much of the same; the first is the youngest that is old enough.
+  for (std::size_t i = 0; i < views_.size(); ++i) {
+    if (timestamp - views_[i].timestamp < least_share * settings_.interval) return nullptr;
+    const Eigen::Isometry3d motion = views_[i].T_camera_world * T_camera_world.inverse();
+    const double turned = std::hypot(motion.linear()(0, 2), motion.linear()(1, 2));
+    constexpr double middle_depth = 1.5;  // m
+    const double moved = std::hypot(motion.translation().x(), motion.translation().y()) / middle_depth;
+    constexpr double most = 0.12;  // of the focal length
+    const bool is_last =
+        i + 1 == views_.size() || timestamp - views_[i + 1].timestamp < least_share * settings_.interval;
+    if (turned + moved <= most || is_last) return &views_[i];
+  }
+  return nullptr;
+}
+
+void DepthClusters::inherit(const DepthView& now, const Eigen::Isometry3d& T_camera_world) {
+  const BlockGrid& grid = maker_.grid();
+  inherited_.assign(now.depth.size(), 1.0F);
+  if (views_.empty()) return;
+  const DepthView& last = views_.back();
+  const Eigen::Isometry3d T_last_now = last.T_camera_world * T_camera_world.inverse();
+  const Eigen::Matrix3f R = T_last_now.linear().cast<float>();
+  const Eigen::Vector3f t = T_last_now.translation().cast<float>();
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) {
+      const std::size_t block = static_cast<std::size_t>(row * grid.columns + column);
+      const float depth = now.depth[block];
+      if (depth <= 0.0F) continue;
+      const Eigen::Vector3f p = depth * (R * Eigen::Vector3f(grid.ray_x[static_cast<std::size_t>(column)],
+                                                             grid.ray_y[static_cast<std::size_t>(row)], 1.0F)) +
+                                t;
+      if (p.z() < 0.1F) continue;
+      const int c = static_cast<int>(grid.column_of(grid.fx * p.x() / p.z() + grid.cx) + 0.5F);
+      const int r = static_cast<int>(grid.row_of(grid.fy * p.y() / p.z() + grid.cy) + 0.5F);
+      if (c < 0 || r < 0 || c >= grid.columns || r >= grid.rows) continue;
+      const std::size_t there = static_cast<std::size_t>(r * grid.columns + c);
+      if (last.depth[there] > 0.0F && std::abs(last.depth[there] - p.z()) < 0.1F * p.z())
+        inherited_[block] = last.static_score[there];
+    }
+}
+
+void DepthClusters::say(const Frame& frame, const DepthView& now, StaticEvidence& evidence) const {
+  const BlockGrid& grid = maker_.grid();
+  const CoarseGrid& coarse = frame.coarse.grid;
+  const std::vector<std::uint8_t>& cluster = clusters_.cluster_of();
+  std::vector<float> log_odds(static_cast<std::size_t>(clusters_.count()));
+  for (std::size_t k = 0; k < log_odds.size(); ++k) {
+    const float score = scores_.scores()[k];
+    constexpr float moves = 0.3F, doubtful = 0.6F, stands = 0.9F;
+    log_odds[k] = static_cast<float>(settings_.moving_log_odds) *
+                      std::clamp((doubtful - score) / (doubtful - moves), 0.0F, 1.0F) +
+                  static_cast<float>(settings_.static_log_odds) * scores_.confidence()[k] *
+                      std::clamp((score - doubtful) / (stands - doubtful), 0.0F, 1.0F);
+  }
+  for (std::size_t i = 0; i < frame.size(); ++i) {
+    const float x = grid.column_of(frame.x[i]) + 0.5F, y = grid.row_of(frame.y[i]) + 0.5F;
+    if (!(x >= 0.0F) || !(y >= 0.0F)) continue;
+    const int column = static_cast<int>(x), row = static_cast<int>(y);
+    if (column >= grid.columns || row >= grid.rows) continue;
+    // The block at the feature's own depth: at an edge the block below it may show what is beside.
+    int best = -1;
+    float least = 0.15F * std::max(frame.depth[i], 0.1F);
+    for (int r = std::max(0, row - 1); r <= std::min(grid.rows - 1, row + 1); ++r)
+      for (int c = std::max(0, column - 1); c <= std::min(grid.columns - 1, column + 1); ++c) {
+        const int block = r * grid.columns + c;
+        const float depth = now.depth[static_cast<std::size_t>(block)];
+        if (depth <= 0.0F) continue;
+        const bool centre = r == row && c == column;
+        if (!frame.has_depth(i)) {
+          if (centre) best = block;
+          continue;
+        }
+        const float difference = std::abs(depth - frame.depth[i]) - (centre ? 0.02F * depth : 0.0F);
+        if (difference < least) least = difference, best = block;
+      }
+    if (best < 0) continue;
+    const std::uint8_t name = cluster[static_cast<std::size_t>(best)];
+    if (name != KMeans::none && log_odds[name] != 0.0F) evidence.add(i, log_odds[name]);
+  }
+  if (evidence.cells().size() != static_cast<std::size_t>(coarse.size())) return;
+  for (int row = 0; row < grid.rows * BlockGrid::stride; ++row)
+    for (int column = 0; column < grid.columns * BlockGrid::stride; ++column) {
+      const std::uint8_t name =
+          cluster[static_cast<std::size_t>((row / BlockGrid::stride) * grid.columns + column / BlockGrid::stride)];
+      if (name != KMeans::none)
+        evidence.add_cell(static_cast<std::size_t>(row * coarse.columns + column), log_odds[name]);
+    }
+}
+
+void DepthClusters::apply(const FilterContext& context, StaticEvidence& evidence) {
+  judged_ = false;
+  if (context.T_camera_world == nullptr || context.frame.coarse.empty()) return;
+  keep_up(context);
+  DepthView now;
+  maker_.make(context.frame, context.sensor_frame.colour, now);
+  now.T_camera_world = *context.T_camera_world;
+  const BlockGrid& grid = maker_.grid();
+  inherit(now, *context.T_camera_world);
+  now.static_score = inherited_;
+  clusters_.divide(grid, now);
+  if (const DepthView* past = reference(now.timestamp, now.T_camera_world)) {
+    Eigen::Isometry3d T_past_now = past->T_camera_world * context.T_camera_world->inverse();
+    correction_.correct(now, *past, inherited_, T_past_now);
+    scores_.compare(grid, now, *past, T_past_now, noise_);
+    judged_ = scores_.support(now, inherited_) >= static_cast<float>(settings_.support);
+  }
+  if (judged_) {
+    scores_.score(grid, now, clusters_, inherited_,
+                  {static_cast<float>(settings_.neighbours), static_cast<float>(settings_.memory)});
+    const std::vector<std::uint8_t>& cluster = clusters_.cluster_of();
+    for (std::size_t i = 0; i < cluster.size(); ++i)
+      now.static_score[i] = cluster[i] == KMeans::none ? 1.0F : scores_.scores()[cluster[i]];
+    say(context.frame, now, evidence);
+  }
+  // DUMP{
+  if (const char* folder = std::getenv("DC_DUMP"); folder && context.frame.index % 15 == 0) {
+    const int s = 4;
+    const auto paint = [&](auto value) {
+      cv::Mat image(grid.rows * s, grid.columns * s, CV_8UC3);
+      for (int y = 0; y < image.rows; ++y)
+        for (int x = 0; x < image.cols; ++x)
+          image.at<cv::Vec3b>(y, x) = value(static_cast<std::size_t>((y / s) * grid.columns + x / s));
+      return image;
+    };
+    const auto grey8 = [](float v) {
+      const auto g = static_cast<uchar>(std::clamp(v, 0.0F, 255.0F));
+      return cv::Vec3b(g, g, g);
+    };
+    cv::Mat a = paint([&](std::size_t i) { return grey8(now.grey[i]); });
+    cv::Mat b = paint([&](std::size_t i) { return grey8(now.depth[i] * 50); });
+    cv::Mat c = paint([&](std::size_t i) {
+      if (scores_.moving().empty()) return cv::Vec3b();
+      return cv::Vec3b(0, cv::saturate_cast<uchar>(255 * scores_.standing()[i]),
+                       cv::saturate_cast<uchar>(255 * scores_.moving()[i]));
+    });
+    cv::Mat d = paint([&](std::size_t i) {
+      const float v = now.static_score[i];
+      const int k = clusters_.cluster_of()[i];
+      if (k == 255) return cv::Vec3b(80, 0, 0);
+      const float f = 0.6F + 0.4F * static_cast<float>((k * 37) % 24) / 24.0F;
+      return cv::Vec3b(0, cv::saturate_cast<uchar>(255 * f * v), cv::saturate_cast<uchar>(255 * f * (1 - v)));
+    });
+    if (!judged_) cv::putText(d, "silent", {10, 20}, 0, 0.6, {255, 255, 255});
+    cv::Mat top, bottom, all;
+    cv::hconcat(a, b, top);
+    cv::hconcat(c, d, bottom);
+    cv::vconcat(top, bottom, all);
+    char name[300];
+    std::snprintf(name, sizeof name, "%s/%05d.png", folder, static_cast<int>(context.frame.index));
+    cv::imwrite(name, all);
+  }
+  // DUMP}
+  // DUMP{
+  if (const char* folder = std::getenv("DC_DUMP"); folder && context.frame.index % 15 == 0) {
+    const int s = 4;
+    const auto paint = [&](auto value) {
+      cv::Mat image(grid.rows * s, grid.columns * s, CV_8UC3);
+      for (int y = 0; y < image.rows; ++y)
+        for (int x = 0; x < image.cols; ++x)
+          image.at<cv::Vec3b>(y, x) = value(static_cast<std::size_t>((y / s) * grid.columns + x / s));
+      return image;
+    };
+    const auto grey8 = [](float v) {
+      const auto g = static_cast<uchar>(std::clamp(v, 0.0F, 255.0F));
+      return cv::Vec3b(g, g, g);
+    };
+    cv::Mat a = paint([&](std::size_t i) { return grey8(now.grey[i]); });
+    cv::Mat b = paint([&](std::size_t i) { return grey8(now.depth[i] * 50); });
+    cv::Mat c = paint([&](std::size_t i) {
+      if (scores_.moving().empty()) return cv::Vec3b();
+      return cv::Vec3b(0, cv::saturate_cast<uchar>(255 * scores_.standing()[i]),
+                       cv::saturate_cast<uchar>(255 * scores_.moving()[i]));
+    });
+    cv::Mat d = paint([&](std::size_t i) {
+      const float v = now.static_score[i];
+      const int k = clusters_.cluster_of()[i];
+      if (k == 255) return cv::Vec3b(80, 0, 0);
+      const float f = 0.6F + 0.4F * static_cast<float>((k * 37) % 24) / 24.0F;
+      return cv::Vec3b(0, cv::saturate_cast<uchar>(255 * f * v), cv::saturate_cast<uchar>(255 * f * (1 - v)));
+    });
+    if (!judged_) cv::putText(d, "silent", {10, 20}, 0, 0.6, {255, 255, 255});
+    cv::Mat top, bottom, all;
+    cv::hconcat(a, b, top);
+    cv::hconcat(c, d, bottom);
+    cv::vconcat(top, bottom, all);
+    char name[300];
+    std::snprintf(name, sizeof name, "%s/%05d.png", folder, static_cast<int>(context.frame.index));
+    cv::imwrite(name, all);
+  }
+  // DUMP}
+  views_.push_back(std::move(now));
+}
+
+}  // namespace holdfast::cluster_plugin
