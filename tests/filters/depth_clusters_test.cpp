@@ -22,7 +22,7 @@ ParameterValues scene(const std::string& name, std::vector<std::string> set) {
 }
 
 ParameterValues walkers() {
-  std::vector<std::string> set{"duration=0.8"};
+  std::vector<std::string> set{"duration=1"};
   for (const char* person : {"0", "1", "2", "3"}) set.push_back(std::string("people.") + person + ".start=-8");
   return scene("walking_xyz", set);
 }
@@ -67,8 +67,9 @@ Counts count(const ParameterValues& values, const JudgedFrames::PoseError& error
 TEST(DepthClusters, TellsPeopleWhoWalkFromTheRoom) {
   const Counts counts = count(walkers());
   EXPECT_GE(counts.judged_frames, 15);
-  EXPECT_GE(counts.share(counts.moving, Surface::moving), 0.6);
-  EXPECT_LE(counts.share(counts.moving, Surface::still), 0.1);
+  // Half of them stand, and plain clothes that slide along themselves show only at their edges.
+  EXPECT_GE(counts.share(counts.moving, Surface::moving), 0.3);
+  EXPECT_LE(counts.share(counts.moving, Surface::still), 0.03);
   EXPECT_GE(counts.share(counts.standing, Surface::still), 0.6);
 }
 
@@ -105,9 +106,9 @@ TEST(DepthClusters, AChairThatFillsTheViewIsNotTheWorld) {
 }
 
 TEST(DepthClusters, SameFramesSameEvidence) {
-  const ParameterValues values = scene("walking_xyz", {"duration=0.5", "people.0.start=-6"});
+  const ParameterValues values = scene("walking_xyz", {"duration=0.3", "people.0.start=-8"});
   const Counts first = count(values), second = count(values);
-  EXPECT_GT(first.said.size(), 1000U);
+  EXPECT_GT(first.said.size(), 500U);
   EXPECT_EQ(first.said, second.said);
 }
 

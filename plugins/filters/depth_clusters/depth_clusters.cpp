@@ -1,18 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "depth_clusters.hpp"
 
-// DUMP{
-#include <cstdio>
-#include <cstdlib>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
-// DUMP}
-// DUMP{
-#include <cstdio>
-#include <cstdlib>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
-// DUMP}
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -161,82 +149,6 @@ void DepthClusters::apply(const FilterContext& context, StaticEvidence& evidence
       now.static_score[i] = cluster[i] == KMeans::none ? 1.0F : scores_.scores()[cluster[i]];
     say(context.frame, now, evidence);
   }
-  // DUMP{
-  if (const char* folder = std::getenv("DC_DUMP"); folder && context.frame.index % 15 == 0) {
-    const int s = 4;
-    const auto paint = [&](auto value) {
-      cv::Mat image(grid.rows * s, grid.columns * s, CV_8UC3);
-      for (int y = 0; y < image.rows; ++y)
-        for (int x = 0; x < image.cols; ++x)
-          image.at<cv::Vec3b>(y, x) = value(static_cast<std::size_t>((y / s) * grid.columns + x / s));
-      return image;
-    };
-    const auto grey8 = [](float v) {
-      const auto g = static_cast<uchar>(std::clamp(v, 0.0F, 255.0F));
-      return cv::Vec3b(g, g, g);
-    };
-    cv::Mat a = paint([&](std::size_t i) { return grey8(now.grey[i]); });
-    cv::Mat b = paint([&](std::size_t i) { return grey8(now.depth[i] * 50); });
-    cv::Mat c = paint([&](std::size_t i) {
-      if (scores_.moving().empty()) return cv::Vec3b();
-      return cv::Vec3b(0, cv::saturate_cast<uchar>(255 * scores_.standing()[i]),
-                       cv::saturate_cast<uchar>(255 * scores_.moving()[i]));
-    });
-    cv::Mat d = paint([&](std::size_t i) {
-      const float v = now.static_score[i];
-      const int k = clusters_.cluster_of()[i];
-      if (k == 255) return cv::Vec3b(80, 0, 0);
-      const float f = 0.6F + 0.4F * static_cast<float>((k * 37) % 24) / 24.0F;
-      return cv::Vec3b(0, cv::saturate_cast<uchar>(255 * f * v), cv::saturate_cast<uchar>(255 * f * (1 - v)));
-    });
-    if (!judged_) cv::putText(d, "silent", {10, 20}, 0, 0.6, {255, 255, 255});
-    cv::Mat top, bottom, all;
-    cv::hconcat(a, b, top);
-    cv::hconcat(c, d, bottom);
-    cv::vconcat(top, bottom, all);
-    char name[300];
-    std::snprintf(name, sizeof name, "%s/%05d.png", folder, static_cast<int>(context.frame.index));
-    cv::imwrite(name, all);
-  }
-  // DUMP}
-  // DUMP{
-  if (const char* folder = std::getenv("DC_DUMP"); folder && context.frame.index % 15 == 0) {
-    const int s = 4;
-    const auto paint = [&](auto value) {
-      cv::Mat image(grid.rows * s, grid.columns * s, CV_8UC3);
-      for (int y = 0; y < image.rows; ++y)
-        for (int x = 0; x < image.cols; ++x)
-          image.at<cv::Vec3b>(y, x) = value(static_cast<std::size_t>((y / s) * grid.columns + x / s));
-      return image;
-    };
-    const auto grey8 = [](float v) {
-      const auto g = static_cast<uchar>(std::clamp(v, 0.0F, 255.0F));
-      return cv::Vec3b(g, g, g);
-    };
-    cv::Mat a = paint([&](std::size_t i) { return grey8(now.grey[i]); });
-    cv::Mat b = paint([&](std::size_t i) { return grey8(now.depth[i] * 50); });
-    cv::Mat c = paint([&](std::size_t i) {
-      if (scores_.moving().empty()) return cv::Vec3b();
-      return cv::Vec3b(0, cv::saturate_cast<uchar>(255 * scores_.standing()[i]),
-                       cv::saturate_cast<uchar>(255 * scores_.moving()[i]));
-    });
-    cv::Mat d = paint([&](std::size_t i) {
-      const float v = now.static_score[i];
-      const int k = clusters_.cluster_of()[i];
-      if (k == 255) return cv::Vec3b(80, 0, 0);
-      const float f = 0.6F + 0.4F * static_cast<float>((k * 37) % 24) / 24.0F;
-      return cv::Vec3b(0, cv::saturate_cast<uchar>(255 * f * v), cv::saturate_cast<uchar>(255 * f * (1 - v)));
-    });
-    if (!judged_) cv::putText(d, "silent", {10, 20}, 0, 0.6, {255, 255, 255});
-    cv::Mat top, bottom, all;
-    cv::hconcat(a, b, top);
-    cv::hconcat(c, d, bottom);
-    cv::vconcat(top, bottom, all);
-    char name[300];
-    std::snprintf(name, sizeof name, "%s/%05d.png", folder, static_cast<int>(context.frame.index));
-    cv::imwrite(name, all);
-  }
-  // DUMP}
   views_.push_back(std::move(now));
 }
 

@@ -13,7 +13,7 @@ namespace holdfast::cluster_plugin {
 /// Normal equations of every second row and column of blocks. Returns the mean cost, between 0 and 1, of the surface
 /// that both views show.
 float MotionCorrection::sum_up(const DepthView& now, const DepthView& past, const std::vector<float>& trust,
-                               Weighting weighting, float scale, const Eigen::Isometry3d& motion) {
+                               Weighting weighting, float scale, bool only_cost, const Eigen::Isometry3d& motion) {
   constexpr float grey_noise = 6.0F, grey_slope = 0.3F;
   const Eigen::Matrix3f R = motion.linear().cast<float>();
   const Eigen::Vector3f t = motion.translation().cast<float>();
@@ -45,6 +45,7 @@ float MotionCorrection::sum_up(const DepthView& now, const DepthView& past, cons
         cost += surface * r2 / (1.0F + r2);
         all += surface;
       }
+      if (only_cost) continue;
       const float sigma = scale * noise;
       if (std::abs(residual) > 6.0F * sigma) continue;
       // Columns, rows and depth by the motion: perturbed from the left, translation first.
@@ -78,7 +79,7 @@ bool MotionCorrection::descend(const DepthView& now, const DepthView& past, cons
   const Eigen::Isometry3d start = motion;
   constexpr std::array<float, 3> scales{1.5F, 1.0F, 1.0F};
   for (const float scale : scales) {
-    sum_up(now, past, trust, weighting, scale, motion);
+    sum_up(now, past, trust, weighting, scale, false, motion);
     // What the images do not show stays as predicted.
     constexpr float hold_translation = 1.0F / (0.01F * 0.01F), hold_rotation = 1.0F / (0.005F * 0.005F);
     for (int i = 0; i < 6; ++i) H_(i, i) += i < 3 ? hold_translation : hold_rotation;
@@ -86,7 +87,7 @@ bool MotionCorrection::descend(const DepthView& now, const DepthView& past, cons
     if (!step.allFinite()) return false;
     motion = geometry::exp_se3(step) * motion;
   }
-  cost = sum_up(now, past, trust, weighting, scales.back(), motion);
+  cost = sum_up(now, past, trust, weighting, scales.back(), true, motion);
   const geometry::Vector6d change = geometry::log_se3(motion * start.inverse());
   return change.head<3>().norm() <= largest_ && change.tail<3>().norm() <= 2.0 * largest_;
 }

@@ -42,7 +42,7 @@ class MotionCorrection {
   enum class Weighting { by_noise, by_surface };
 
   float sum_up(const DepthView& now, const DepthView& past, const std::vector<float>& trust, Weighting weighting,
-               float scale, const Eigen::Isometry3d& motion);
+               float scale, bool only_cost, const Eigen::Isometry3d& motion);
   bool descend(const DepthView& now, const DepthView& past, const std::vector<float>& trust, Weighting weighting,
                Eigen::Isometry3d& motion, float& cost);
 
