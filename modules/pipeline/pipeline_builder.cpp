@@ -9,18 +9,18 @@
 namespace holdfast {
 
 std::vector<SectionDescription> pipeline_sections() {
-  return {{"tracking", "How poses are found, and when a frame becomes a keyframe.",
-           ParameterTable<TrackingSettings>().parameters()},
-          {"segmentation", "Which frames the segmenter sees, and when its answer counts.",
-           ParameterTable<SegmentationSettings>().parameters()},
-          {"evidence", "What becomes of the evidence that filters give.",
-           ParameterTable<EvidenceSettings>().parameters()},
-          {"mapping", "How the map around a new keyframe is made and kept.",
-           ParameterTable<MappingSettings>().parameters()},
-          {"loop_closing", "When a place counts as seen again, and how the map is corrected then.",
-           ParameterTable<LoopClosingSettings>().parameters()},
-          {"dense_map", "A dense cloud of the static scene, of what keyframes saw.",
-           ParameterTable<DenseMapSettings>().parameters()}};
+  return {
+      {"tracking", "How poses are found, and when a frame becomes a keyframe.",
+       ParameterTable<TrackingSettings>().parameters()},
+      {"segmentation", "Which frames the segmenter sees, and when its answer counts.",
+       ParameterTable<SegmentationSettings>().parameters()},
+      {"evidence", "What becomes of the evidence that filters give.", ParameterTable<EvidenceSettings>().parameters()},
+      {"mapping", "How the map around a new keyframe is made and kept.",
+       ParameterTable<MappingSettings>().parameters()},
+      {"loop_closing", "When a place counts as seen again, and how the map is corrected then.",
+       ParameterTable<LoopClosingSettings>().parameters()},
+      {"dense_map", "A dense cloud of the static scene, of what keyframes saw.",
+       ParameterTable<DenseMapSettings>().parameters()}};
 }
 
 namespace {

@@ -44,8 +44,8 @@ void MaskCarrier::find_movers(const CoarseGrid& grid, const FollowedPairs& pairs
         for (; place > 0 && nearest[place - 1].first > distance; --place) nearest[place] = nearest[place - 1];
         nearest[place] = {distance, i};
       }
-      const std::size_t index = static_cast<std::size_t>(row) * static_cast<std::size_t>(block_columns_) +
-                                static_cast<std::size_t>(column);
+      const std::size_t index =
+          static_cast<std::size_t>(row) * static_cast<std::size_t>(block_columns_) + static_cast<std::size_t>(column);
       mover_count_[index] = static_cast<std::uint8_t>(count);
       for (std::size_t k = 0; k < count; ++k) {
         const std::size_t i = nearest[k].second;
@@ -112,8 +112,7 @@ void MaskCarrier::carry(const CoarseView& from_view, const CellLabels& from, con
         const std::size_t source = static_cast<std::size_t>(source_row * grid.columns + source_column);
         if (!is_object(from.labels[source])) continue;
         const float before = from_view.depth[source];
-        if (depth > 0.0F &&
-            (before == 0.0F || std::abs(before - depth - mover.depth_change) > same_surface(depth)))
+        if (depth > 0.0F && (before == 0.0F || std::abs(before - depth - mover.depth_change) > same_surface(depth)))
           continue;
         take(cell, source);
         break;
@@ -152,9 +151,9 @@ void MaskCarrier::grow(const CoarseView& to_view, CellLabels& to) {
         const float there = to_view.depth[other];
         if (there == 0.0F || std::abs(there - depth) > continues_surface(depth)) continue;
         const float start = start_depth_[static_cast<std::size_t>(cell)];
-        const bool may_be_object = past_[other] == Past::free ||
-                                   (past_[other] == Past::unseen && step < most_unseen_steps &&
-                                    std::abs(there - start) < most_depth_change);
+        const bool may_be_object =
+            past_[other] == Past::free ||
+            (past_[other] == Past::unseen && step < most_unseen_steps && std::abs(there - start) < most_depth_change);
         if (!may_be_object) continue;
         start_depth_[other] = start;
         to.moving[other] = to.moving[static_cast<std::size_t>(cell)];

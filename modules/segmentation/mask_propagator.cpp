@@ -116,8 +116,8 @@ void MaskPropagator::renew_points(const Frame& frame) {
     const std::size_t place = bucket_of(cell);
     const std::int32_t raw = sampler_.raw_pixel(cell);
     if (raw < 0 || bucket_strength_[place] == std::numeric_limits<int>::max() || !is_wanted(cell)) continue;
-    const int strength = follower_.corner_strength(static_cast<float>(raw % camera_.width),
-                                                   static_cast<float>(raw / camera_.width));
+    const int strength =
+        follower_.corner_strength(static_cast<float>(raw % camera_.width), static_cast<float>(raw / camera_.width));
     if (strength <= bucket_strength_[place]) continue;
     bucket_strength_[place] = strength;
     bucket_cell_[place] = cell;

@@ -117,15 +117,14 @@ void Tracker::judge_with_pose(const SensorFrame& sensor_frame, FrameResult& resu
   {
     // When movers led the matches astray, the camera is rather where its velocity takes it.
     const StageTimer timer(result.times, "filters");
-    if (has_previous_ && has_velocity_ &&
-        depth_agreement_.choose(map_, reference_keyframe_, current_.timestamp)) {
+    if (has_previous_ && has_velocity_ && depth_agreement_.choose(map_, reference_keyframe_, current_.timestamp)) {
       constexpr double clear_lead = 0.03;
       const Eigen::Isometry3d predicted = predicted_step() * previous_.T_camera_world;
       if (depth_agreement_.share(current_, predicted) >
           depth_agreement_.share(current_, current_.T_camera_world) + clear_lead)
         current_.T_camera_world = predicted;
-      current_.coarse.T_view_camera = depth_agreement_.find_view(
-          current_, current_.T_camera_world, current_.T_camera_world * previous_.T_world_camera());
+      current_.coarse.T_view_camera = depth_agreement_.find_view(current_, current_.T_camera_world,
+                                                                 current_.T_camera_world * previous_.T_world_camera());
     }
   }
   judge(FilterChain::Stage::with_pose, sensor_frame, result);
@@ -184,7 +183,8 @@ bool Tracker::needs_keyframe(const FrameResult& result) const {
       close_tracked < settings_.keyframe_close_tracked && close_possible > settings_.keyframe_close_possible;
   const double ratio =
       map_.keyframes().size() < 2 ? std::min(0.4, settings_.keyframe_tracked_ratio) : settings_.keyframe_tracked_ratio;
-  if (holds_keyframes_) return result.inliers < 2 * settings_.minimum_inliers;
+  if (holds_keyframes_ || since_last < settings_.keyframe_minimum_interval)
+    return result.inliers < 2 * settings_.minimum_inliers;
   const bool weak = result.inliers < ratio * reference_points;
   const bool due = since_last >= settings_.keyframe_maximum_interval;
   if (propagator_ && propagator_->mask().age >= settings_.keyframe_mask_age) return true;

@@ -31,9 +31,9 @@ struct CellLabels {
 /// Carries labels from one frame to another on their coarse views. A cell takes the label of the place that the
 /// camera's motion moves it from, when the same surface was there; or of the place that the points of an object moved
 /// here from, when depth agrees. Then the objects grow over surface that continues theirs in depth where there was free
-/// space before, so that what comes into view is found, and a person does not flow into the floor. After the idea of NGD-SLAM (Zhang et al. 2024, section
-/// III-B: points of the last mask followed by flow, mask rebuilt by depth), with the background as a second witness.
-/// Keeps its buffers; one thread.
+/// space before, so that what comes into view is found, and a person does not flow into the floor. After the idea of
+/// NGD-SLAM (Zhang et al. 2024, section III-B: points of the last mask followed by flow, mask rebuilt by depth), with
+/// the background as a second witness. Keeps its buffers; one thread.
 class MaskCarrier {
  public:
   explicit MaskCarrier(const Camera& camera) : camera_(camera) {}
@@ -57,7 +57,7 @@ class MaskCarrier {
 
   Camera camera_;
   int block_columns_ = 0, block_rows_ = 0;
-  std::vector<Mover> movers_;           // most_movers for each block
+  std::vector<Mover> movers_;  // most_movers for each block
   std::vector<std::uint8_t> mover_count_;
   /// What was at a cell's place before, by the camera's motion: the same surface, free space, something nearer, or
   /// nothing known.

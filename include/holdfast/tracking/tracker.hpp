@@ -52,7 +52,8 @@ class Tracker {
   /// The keyframe that the tracked frame became: its matches and its pose, as local mapping left them, are taken over.
   void keyframe_added(KeyFrameId keyframe);
 
-  /// From now on masks are carried from frame to frame; `classes` must outlive the tracker. `memory`: see MaskPropagator.
+  /// From now on masks are carried from frame to frame; `classes` must outlive the tracker. `memory`: see
+  /// MaskPropagator.
   void expect_masks(const std::vector<std::string>& classes, double memory);
   /// The frame last tracked is going to be segmented.
   void await_mask();

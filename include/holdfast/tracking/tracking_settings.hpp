@@ -18,6 +18,7 @@ struct TrackingSettings {
   int minimum_inliers = 30;
   double maximum_deviation = 0.02;
   int local_keyframes = 80;
+  double keyframe_minimum_interval = 0.0;
   double keyframe_maximum_interval = 1.0;
   double keyframe_tracked_ratio = 0.8;
   double keyframe_mask_age = 0.5;
@@ -61,6 +62,11 @@ struct TrackingSettings {
         .unit("m");
     table.add("local_keyframes", &S::local_keyframes, "keyframes whose points make the local map, at most")
         .range(1, 1000);
+    table
+        .add("keyframe_minimum_interval", &S::keyframe_minimum_interval,
+             "time between keyframes, at least, unless tracking is about to be lost")
+        .range(0, 1000)
+        .unit("s");
     table.add("keyframe_maximum_interval", &S::keyframe_maximum_interval, "time after which a keyframe is due")
         .range(0.03, 1000)
         .unit("s");

@@ -26,7 +26,8 @@ void MultiViewDepth::choose_keyframes(const FilterContext& context) {
     float through;  // weight of a sight through what is there now
     float same;     // weight of a sight of the same surface
   };
-  static constexpr std::array<Age, 4> ages{{{10.0, 0.6F, 1.0F}, {3.0, 1.0F, 1.0F}, {1.0, 1.0F, 0.6F}, {0.0, 1.0F, 0.2F}}};
+  static constexpr std::array<Age, 4> ages{
+      {{10.0, 0.6F, 1.0F}, {3.0, 1.0F, 1.0F}, {1.0, 1.0F, 0.6F}, {0.0, 1.0F, 0.2F}}};
   const int most_of_age = std::max(1, settings_.keyframes / static_cast<int>(ages.size()));
   const Eigen::Isometry3d& T_camera_world = *context.T_camera_world;
   const Eigen::Vector3d centre = T_camera_world.inverse().translation();
@@ -162,7 +163,16 @@ void MultiViewDepth::grow() {
   }
 }
 
-void MultiViewDepth::judge_features(const Frame& frame, StaticEvidence& evidence) const {
+void MultiViewDepth::judge_features(const FilterContext& context, StaticEvidence& evidence) const {
+  const Frame& frame = context.frame;
+  // Where much moves, what nobody has seen before is likely to move, too.
+  std::size_t deep = 0, moved = 0;
+  for (std::size_t i = 0; i < depth_.size(); ++i) {
+    deep += depth_[i] > 0.0F ? 1 : 0;
+    moved += moving_[i];
+  }
+  const float share = deep == 0 ? 0.0F : static_cast<float>(moved) / static_cast<float>(deep);
+  const float crowd = context.carried_mask == nullptr ? static_cast<float>(settings_.crowd_log_odds) * share : 0.0F;
   const CoarseGrid& grid = frame.coarse.grid;
   const float moving = static_cast<float>(settings_.moving_log_odds);
   const float standing = static_cast<float>(settings_.static_log_odds);
@@ -181,13 +191,27 @@ void MultiViewDepth::judge_features(const Frame& frame, StaticEvidence& evidence
         }
     }
     const std::size_t block = static_cast<std::size_t>(best);
+    const float reach = static_cast<float>(settings_.edge) * frame.pyramid->scale[frame.features.octave[i]];
     if (moving_[block] != 0)
       evidence.add(i, moving);
+    else if (is_at_edge(grid, frame.x[i], frame.y[i], reach))
+      evidence.add(i, static_cast<float>(settings_.edge_log_odds), StaticEvidence::Sort::prior);
     else if (score_[block] > 0.0F)
       evidence.add(i, standing * std::min(1.0F, score_[block] / 2.0F));
     else if (through_[block] > 0.0F)
       evidence.add(i, 0.25F * moving);
+    if (crowd < -0.1F && moving_[block] == 0 && score_[block] < static_cast<float>(settings_.sure))
+      evidence.add(i, crowd, StaticEvidence::Sort::prior);
   }
+}
+
+bool MultiViewDepth::is_at_edge(const CoarseGrid& grid, float x, float y, float reach) const {
+  const int left = std::max(0, grid.column_of(x - reach) / stride), right = grid.column_of(x + reach) / stride;
+  const int top = std::max(0, grid.row_of(y - reach) / stride), bottom = grid.row_of(y + reach) / stride;
+  for (int row = top; row <= std::min(bottom, rows_ - 1); ++row)
+    for (int column = left; column <= std::min(right, columns_ - 1); ++column)
+      if (moving_[static_cast<std::size_t>(row * columns_ + column)] != 0) return true;
+  return false;
 }
 
 void MultiViewDepth::judge_points(const FilterContext& context, StaticEvidence& evidence) {
@@ -232,7 +256,7 @@ void MultiViewDepth::apply(const FilterContext& context, StaticEvidence& evidenc
   if (views_.empty()) return;
   compare(context);
   grow();
-  judge_features(context.frame, evidence);
+  judge_features(context, evidence);
   judge_points(context, evidence);
   const CoarseGrid& grid = context.frame.coarse.grid;
   if (evidence.cells().size() != static_cast<std::size_t>(grid.size())) return;

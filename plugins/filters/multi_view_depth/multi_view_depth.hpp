@@ -19,6 +19,9 @@ struct MultiViewDepthSettings {
   int growth = 12;
   double moving_log_odds = -4.0;
   double static_log_odds = 1.0;
+  double edge = 4.0;
+  double edge_log_odds = -3.0;
+  double crowd_log_odds = -5.0;
 
   static void describe(ParameterTable<MultiViewDepthSettings>& table) {
     using S = MultiViewDepthSettings;
@@ -36,6 +39,17 @@ struct MultiViewDepthSettings {
         .range(0, 10);
     table.add("growth", &S::growth, "steps of 8 px that a moving region grows where depth goes on").range(0, 100);
     table.add("moving_log_odds", &S::moving_log_odds, "said of what moves").range(-20, 0);
+    table
+        .add("edge", &S::edge,
+             "features this near to what moves, times the scale of their octave, are seen against its outline")
+        .range(0, 40)
+        .unit("px");
+    table.add("edge_log_odds", &S::edge_log_odds, "said of these").range(-20, 0);
+    table
+        .add("crowd_log_odds", &S::crowd_log_odds,
+             "said, times the share of the view that moves, of what no keyframe of some age confirms, when no mask "
+             "tells people from things")
+        .range(-50, 0);
     table.add("static_log_odds", &S::static_log_odds, "said of what keyframes of all ages confirm").range(0, 20);
   }
 };
@@ -70,7 +84,8 @@ class MultiViewDepth final : public DynamicFilter {
   void choose_keyframes(const FilterContext& context);
   void compare(const FilterContext& context);
   void grow();
-  void judge_features(const Frame& frame, StaticEvidence& evidence) const;
+  void judge_features(const FilterContext& context, StaticEvidence& evidence) const;
+  bool is_at_edge(const CoarseGrid& grid, float x, float y, float reach) const;
   void judge_points(const FilterContext& context, StaticEvidence& evidence);
 
   MultiViewDepthSettings settings_;
