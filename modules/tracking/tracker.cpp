@@ -153,12 +153,23 @@ bool Tracker::track_local_map(const SensorFrame& sensor_frame, FrameResult& resu
       current_.static_probability.begin(), current_.static_probability.end(), [](float p) { return p >= 0.5F; }));
   drop_outliers();
   local_map_.count_found(current_);
-  if (result.inliers < settings_.minimum_inliers || pose_deviation_ > settings_.maximum_deviation) {
+  if (result.inliers < settings_.minimum_inliers || pose_deviation_ > settings_.maximum_deviation ||
+      contradicts_depth(result)) {
     result.trouble = TrackingTrouble::few_inliers;
     return false;
   }
   reference_keyframe_ = local_map_.reference_keyframe();
   return true;
+}
+
+bool Tracker::contradicts_depth(const FrameResult& result) {
+  // Few inliers may agree by chance, above all when a lost camera tries many poses among people who fill the view. The
+  // room itself, where it shows at all, does not.
+  const bool was_lost = result.method == TrackingMethod::recovered || result.method == TrackingMethod::relocalised;
+  if (filters_.empty() || result.inliers >= (was_lost ? 60 : 50)) return false;
+  if (!depth_agreement_.choose(map_, reference_keyframe_, current_.timestamp)) return false;
+  const Eigen::Isometry3d T_view_world = current_.coarse.T_view_camera * current_.T_camera_world;
+  return depth_agreement_.share(current_, T_view_world) < (was_lost ? 0.08 : 0.05);
 }
 
 bool Tracker::needs_keyframe(const FrameResult& result) const {

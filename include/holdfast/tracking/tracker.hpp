@@ -83,6 +83,7 @@ class Tracker {
   bool fits_surroundings(FrameResult& result);
   bool could_have_come_here() const;
   bool track_local_map(const SensorFrame& sensor_frame, FrameResult& result);
+  bool contradicts_depth(const FrameResult& result);
   bool needs_keyframe(const FrameResult& result) const;
   Eigen::Isometry3d predicted_step() const;
   FilterContext filter_context(const SensorFrame& sensor_frame, const Eigen::Isometry3d* T_camera_world) const;
