@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "segmentation/overlap.hpp"
 #include "support/box_world.hpp"
 
@@ -132,6 +134,54 @@ TEST(MaskCarrier, WhatAnObjectUncoversIsBackground) {
   ASSERT_GE(uncovered, 300);
   EXPECT_EQ(labelled, 0);
   EXPECT_GE(overlap(labels, after.truth), 0.9);
+}
+
+TEST(MaskCarrier, DoesNotFlowOverWhatItUncoversThoughDepthGoesOn) {
+  // A slanting surface comes out behind the object and touches it.
+  const CoarseGrid grid = CoarseSampler(Camera()).grid();
+  const auto view_with_object = [&](int from_column, std::vector<std::uint8_t>& labels) {
+    CoarseView view;
+    view.grid = grid;
+    labels.clear();
+    for (int cell = 0; cell < grid.size(); ++cell) {
+      const int column = cell % grid.columns;
+      const bool object = column >= from_column && column < from_column + 20;
+      const float behind = column < 60 ? 1.52F + 0.02F * static_cast<float>(59 - column) : 3.0F;
+      view.depth.push_back(object ? 1.5F : behind);
+      labels.push_back(object ? 1 : 0);
+    }
+    return view;
+  };
+  CellLabels from, to;
+  std::vector<std::uint8_t> truth;
+  const CoarseView before = view_with_object(40, from.labels), after = view_with_object(60, truth);
+  from.quality.assign(truth.size(), 255);
+  from.moving.assign(truth.size(), 0);
+  FollowedPairs pairs;
+  for (float y = 20; y < 460; y += 40) {
+    pairs.from_x.push_back(200), pairs.from_y.push_back(y), pairs.from_depth.push_back(1.5F);
+    pairs.to_x.push_back(280), pairs.to_y.push_back(y), pairs.to_depth.push_back(1.5F);
+  }
+  MaskCarrier carrier{Camera()};
+  carrier.carry(before, from, after, Isometry3d::Identity(), pairs, to);
+  for (int cell = 0; cell < grid.size(); ++cell) {
+    const int column = cell % grid.columns;
+    if (column >= 60 && column < 80) {
+      EXPECT_EQ(to.labels[static_cast<std::size_t>(cell)], 1) << column;
+    } else if (column < 55) {
+      EXPECT_EQ(to.labels[static_cast<std::size_t>(cell)], 0) << column;
+    }
+  }
+}
+
+TEST(MaskCarrier, WhatComesBeforeAnObjectIsNotPartOfIt) {
+  const BoxWorld::Box from = box_at(-0.3), to = box_at(0.3);
+  BoxWorld world;
+  world.boxes = {from};
+  const Sight before(world, at_origin);
+  world.boxes = {to, BoxWorld::box({0.2, 0, 1.0}, {0.1, 0.05, 0.02}, 0)};
+  const Sight after(world, at_origin);
+  EXPECT_GE(overlap(carry(world, before, after, follow(from, to, before, after, world.camera)), after.truth), 0.93);
 }
 
 TEST(MaskCarrier, GrowsOverAnArmThatReachesIntoFreeSpace) {
