@@ -124,6 +124,52 @@ TEST_F(MultiViewDepthTest, AnErrorOfThePredictedPoseMakesNoMovement) {
   }
 }
 
+TEST_F(MultiViewDepthTest, EdgesOfThinThingsDoNotMoveWithASmallErrorOfThePose) {
+  BoxWorld world;
+  world.wall_z = 4.0;
+  for (int i = -4; i <= 4; ++i) world.boxes.push_back(BoxWorld::box({0.3 * i, 0, 2.0}, {0.03, 2.0, 0.03}));
+  remember(world);
+  const Frame frame = world.frame(Isometry3d::Identity(), now, 4);
+  for (const double sign : {-1.0, 1.0}) {
+    const Isometry3d predicted = pose(0.15 * sign, {0.003 * sign, 0, 0}) * frame.T_camera_world;
+    EXPECT_EQ(shares(frame, world, judge(frame, &predicted)).room_moves, 0.0);
+  }
+}
+
+TEST_F(MultiViewDepthTest, PartsThatNoKeyframeSawBelongToWhatTheyGoOnFrom) {
+  // Keyframes see half of where the person stands.
+  for (const double age : {12.0, 5.0, 2.0, 0.4}) keyframe(furnished_room(), age, pose(13, {0, 0, 0}));
+  BoxWorld world = furnished_room();
+  world.boxes.push_back(BoxWorld::box({-0.5, 0.0, 1.6}, {0.2, 0.6, 0.12}, person));
+  const Frame frame = world.frame(Isometry3d::Identity(), now);
+  EXPECT_GE(shares(frame, world, judge(frame, &frame.T_camera_world)).person_moves, 0.95);
+  EXPECT_LE(shares(frame, world, judge(frame, &frame.T_camera_world, {.growth = 0})).person_moves, 0.8);
+}
+
+TEST_F(MultiViewDepthTest, WhatAPersonTouchesIsNotTakenAlong) {
+  // A sideboard whose front goes on from the person's without a gap.
+  const auto with_sideboard = [](BoxWorld world) {
+    world.boxes.push_back(BoxWorld::box({0.65, 0.3, 1.6}, {0.3, 0.3, 0.12}, 3));
+    return world;
+  };
+  remember(with_sideboard(furnished_room()));
+  const BoxWorld world = with_sideboard(with_person());
+  const Frame frame = world.frame(Isometry3d::Identity(), now);
+  const auto share_of_sideboard = [&](const MultiViewDepthSettings& settings) {
+    const StaticEvidence evidence = judge(frame, &frame.T_camera_world, settings);
+    int all = 0, moves = 0;
+    for (std::size_t i = 0; i < frame.size(); ++i) {
+      if (world.look(Isometry3d::Identity(), frame.x[i], frame.y[i]).label != 3) continue;
+      ++all;
+      moves += evidence.measurement(i) < 0.0F ? 1 : 0;
+    }
+    return static_cast<double>(moves) / all;
+  };
+  EXPECT_LE(share_of_sideboard({}), 0.08);
+  EXPECT_GE(share_of_sideboard({.sure = 10.0}), 0.35);
+  EXPECT_GE(shares(frame, world, judge(frame, &frame.T_camera_world)).person_moves, 0.95);
+}
+
 TEST_F(MultiViewDepthTest, APersonIsStillFoundWithAnErrorOfThePredictedPose) {
   remember(furnished_room());
   const BoxWorld world = with_person();
