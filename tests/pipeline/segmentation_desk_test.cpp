@@ -168,7 +168,9 @@ TEST(SegmentationDesk, AThreadsAnswerDoesNotWaitForTheLatency) {
   StageTimes times;
   desk.hand_in(frame_at(3), keyframe_at(3), times);
   std::optional<SegmentedFrame> segmented;
-  while (!(segmented = desk.fetch(4))) std::this_thread::yield();
+  const Stopwatch watch;
+  while (!(segmented = desk.fetch(4)) && watch.seconds() < 60.0) std::this_thread::yield();
+  ASSERT_TRUE(segmented);
   EXPECT_EQ(segmented->segmentation.labels.at<std::uint8_t>(3, 5), 3);
 }
 
