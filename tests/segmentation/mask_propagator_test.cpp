@@ -103,15 +103,19 @@ TEST_F(MaskPropagatorTest, WithoutASegmentationThereIsNoMask) {
   EXPECT_EQ(masks.points().size(), 0U);
 }
 
-TEST_F(MaskPropagatorTest, BeforeTheFirstSegmentationNobodyIsAnywhere) {
+TEST_F(MaskPropagatorTest, WhileTheFirstSegmentationIsAwaitedThereIsNoMaskEither) {
   MaskPropagator masks = propagator();
   go(masks, 0);
   masks.remember();
   EXPECT_GE(masks.points().size(), 100U);  // anything may turn out to be an object
   for (std::size_t i = 1; i < 4; ++i) {
     go(masks, i);
-    for (const std::uint8_t label : masks.mask().labels) EXPECT_TRUE(label == 0 || label == 255);
+    EXPECT_TRUE(masks.mask().empty());
+    EXPECT_EQ(masks.mask().age, 0.0);
   }
+  masks.apply(0, {});
+  go(masks, 4);
+  EXPECT_TRUE(masks.mask().empty());
 }
 
 TEST_F(MaskPropagatorTest, AMaskThatComesAtOnceIsExact) {
