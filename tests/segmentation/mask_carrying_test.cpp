@@ -246,6 +246,22 @@ TEST(MaskCarrier, TheFloorUnderAnObjectIsNotEaten) {
   }
 }
 
+TEST(MaskCarrier, WhatIsTooNearForDepthKeepsItsLabelAndOtherHolesGetNone) {
+  BoxWorld world;
+  world.boxes = {BoxWorld::box({0.1, 0, 0.6}, {0.2, 0.2, 0.1}), BoxWorld::box({-0.6, 0, 2.0}, {0.2, 0.2, 0.1}, 0)};
+  const auto without_depth = [](Sight sight) {
+    for (std::size_t i = 0; i < sight.view.depth.size(); ++i)
+      if (sight.view.depth[i] < 0.55F || (sight.truth[i] == 0 && sight.view.depth[i] < 2.5F))
+        sight.view.depth[i] = 0.0F;
+    return sight;
+  };
+  const Sight before = without_depth(Sight(world, at_origin)), after = without_depth(Sight(world, turned(6)));
+  ASSERT_LE(overlap(before.truth, after.truth), 0.75);
+  const std::vector<std::uint8_t> labels = carry(world, before, after, {});
+  EXPECT_GE(overlap(labels, after.truth), 0.85);  // all but its border
+  for (std::size_t i = 0; i < labels.size(); ++i) EXPECT_LE(labels[i], after.truth[i]) << i;
+}
+
 TEST(MaskCarrier, HolesInTheDepthOfAnObjectAreFilled) {
   BoxWorld world;
   world.boxes = {box_at(0.0)};
