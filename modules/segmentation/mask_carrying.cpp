@@ -117,6 +117,22 @@ void MaskCarrier::carry(const CoarseView& from_view, const CellLabels& from, con
         take(cell, source);
         break;
       }
+      // What is too near to have depth, as people before the camera are, shows how the camera turned and no more. Not
+      // at the border of an object: there, depth is missing for other reasons.
+      if (depth > 0.0F || to.labels[cell] != 0) continue;
+      const Eigen::Vector3f ray = R * Eigen::Vector3f((grid.x_of(column) - cx) / fx, ray_y, 1.0F);
+      if (ray.z() < 0.05F) continue;
+      const int c = grid.column_of(fx * ray.x() / ray.z() + cx), r = grid.row_of(fy * ray.y() / ray.z() + cy);
+      constexpr int border = 3;  // cells
+      const auto is_near_object = [&](int dc, int dr) {
+        if (c < 0 || r < 0 || c >= grid.columns || r >= grid.rows) return false;
+        const int there = std::clamp(r + dr, 0, grid.rows - 1) * grid.columns + std::clamp(c + dc, 0, grid.columns - 1);
+        return is_object(from.labels[static_cast<std::size_t>(there)]);
+      };
+      if (is_near_object(0, 0) && from_view.depth[static_cast<std::size_t>(r * grid.columns + c)] == 0.0F &&
+          is_near_object(-border, 0) && is_near_object(border, 0) && is_near_object(0, -border) &&
+          is_near_object(0, border))
+        take(cell, static_cast<std::size_t>(r * grid.columns + c));
     }
   }
   grow(to_view, to);

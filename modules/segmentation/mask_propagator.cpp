@@ -159,6 +159,7 @@ void MaskPropagator::apply(std::uint64_t frame_index, const Segmentation& segmen
     sampler_.sample_labels(segmentation.confidence, 0, exact.quality);
   exact.moving.assign(exact.labels.size(), 0);
   labels_from_ = there.timestamp;
+  segmented_ = true;
   if (current_.frame_index == frame_index) {
     labels_ = std::move(exact);
   } else {
@@ -172,6 +173,7 @@ void MaskPropagator::apply(std::uint64_t frame_index, const Segmentation& segmen
 }
 
 void MaskPropagator::publish() {
+  if (!segmented_) return;
   const double age = current_.timestamp - labels_from_;
   const double share = std::exp2(-std::max(0.0, age) / memory_);
   mask_.age = age;

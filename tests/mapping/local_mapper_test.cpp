@@ -140,5 +140,79 @@ TEST_F(LocalMapperTest, PointsThatNobodyFindsAgainLeave) {
   EXPECT_GE(mapper->counts().points_removed, missed.size());
 }
 
+TEST_F(LocalMapperTest, WhatProbablyMovesMakesNoPoints) {
+  const auto judged = [](Frame frame) {
+    for (std::size_t i = 0; i < frame.size(); ++i) {
+      frame.static_probability[i] = i % 2 == 0 ? 0.49F : 0.5F;
+      if (frame.depth[i] > 2.5F) frame.depth[i] = 0.0F, frame.right_x[i] = std::numeric_limits<float>::quiet_NaN();
+    }
+    return frame;
+  };
+  const Frame first = judged(frame_at(beside(0)));
+  const KeyFrameId id = add_keyframe(first);
+  std::size_t with_depth = 0;
+  for (std::size_t i = 1; i < first.size(); i += 2) with_depth += first.has_depth(i) ? 1 : 0;
+  EXPECT_EQ(map.points().size(), with_depth);
+  // Nor by triangulation, nor by being taken for points of others.
+  Frame second = frame_at(beside(0.3));
+  match(second, 1);
+  const KeyFrameId next = add_keyframe(judged(second));
+  EXPECT_GT(mapper->counts().points_triangulated, 20U);
+  for (const KeyFrameId keyframe : {id, next}) {
+    const Frame& kept = map.keyframe(keyframe).frame;
+    for (std::size_t i = 0; i < kept.size(); i += 2) EXPECT_FALSE(kept.map_points[i].valid()) << i;
+  }
+}
+
+TEST_F(LocalMapperTest, PointsThatWaitComeWithTheirMask) {
+  const Frame frame = frame_at(beside(0));
+  const KeyFrameId id = mapper->insert(frame, true, times);
+  EXPECT_EQ(map.points().size(), 0U);
+  // The mask comes between insertion and refinement.
+  for (std::size_t i = 0; i < frame.size(); i += 3) map.keyframe(id).frame.static_probability[i] = 0.1F;
+  mapper->refine(id, times);
+  ASSERT_GT(map.points().size(), 100U);
+  for (std::size_t i = 0; i < frame.size(); ++i)
+    EXPECT_EQ(map.keyframe(id).frame.map_points[i].valid(), i % 3 != 0 && frame.depth[i] <= 3.2F && frame.has_depth(i));
+}
+
+TEST_F(LocalMapperTest, AMaskTakesMatchesOfMovingFeaturesBack) {
+  add_keyframe(frame_at(beside(0)));
+  Frame frame = frame_at(beside(0.05));
+  match(frame, 1);
+  const KeyFrameId id = mapper->insert(frame, true, times);
+  std::vector<std::pair<std::uint32_t, MapPointId>> masked;
+  for (std::uint32_t i = 0; i < frame.size(); i += 4)
+    if (frame.map_points[i].valid()) {
+      masked.emplace_back(i, frame.map_points[i]);
+      map.keyframe(id).frame.static_probability[i] = 0.1F;
+    }
+  ASSERT_GT(masked.size(), 20U);
+  mapper->refine(id, times);
+  for (const auto& [feature, point] : masked) {
+    EXPECT_FALSE(map.keyframe(id).frame.map_points[feature].valid());
+    EXPECT_NE(map.find_point(point), nullptr);  // the first keyframe saw it stand still
+  }
+}
+
+TEST_F(LocalMapperTest, PointsThatWereFoundToMoveLeave) {
+  add_keyframe(frame_at(beside(0)));
+  std::vector<MapPointId> moving, doubtful;
+  map.points().for_each([&](MapPointId id, const MapPoint&) {
+    if (id.slot % 7 == 0) moving.push_back(id);
+    if (id.slot % 7 == 1) doubtful.push_back(id);
+  });
+  for (const MapPointId id : moving) map.point(id).static_log_odds = -2.01F;
+  for (const MapPointId id : doubtful) map.point(id).static_log_odds = -1.99F;
+  Frame frame = frame_at(beside(0.02));
+  match(frame, 1);
+  add_keyframe(frame);
+  for (const MapPointId id : moving) EXPECT_EQ(map.find_point(id), nullptr);
+  EXPECT_EQ(mapper->counts().points_moving, moving.size());
+  std::size_t left = 0;
+  for (const MapPointId id : doubtful) left += map.find_point(id) != nullptr ? 1 : 0;
+  EXPECT_GT(left, doubtful.size() * 9 / 10);
+}
+
 }  // namespace
 }  // namespace holdfast

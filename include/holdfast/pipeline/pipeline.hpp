@@ -112,7 +112,8 @@ class Pipeline {
 
   /// Stage times of background work done since the last call; in sequential mode they are in each FrameResult.
   std::vector<StageTimes> take_background_times();
-  /// From the stamp of each segmented frame to that of the last frame before its mask counted [s].
+  /// From the stamp of each segmented frame to that of the first frame for which its mask counted, or of the last frame
+  /// of the run [s].
   const std::vector<double>& mask_latencies() const;
   /// Keyframes that were due but found the mapping thread too busy.
   std::uint64_t keyframes_deferred() const;

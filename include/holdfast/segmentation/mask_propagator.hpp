@@ -71,6 +71,7 @@ class MaskPropagator {
   View current_, previous_;
   std::deque<View> remembered_;
   CellLabels labels_, next_labels_;
+  bool segmented_ = false;    // once
   double labels_from_ = 0.0;  // time of the segmented frame [s]
   FollowedPairs pairs_;
   std::vector<int> bucket_strength_;

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "holdfast/interfaces/dynamic_filter.hpp"
+#include "holdfast/plugin/registry.hpp"
+
+extern "C" void holdfast_register_plugin_semantic_mask(holdfast::Registry&);
+
+namespace holdfast {
+namespace {
+
+constexpr float movable = -4.0F, background = 0.5F, nothing = 0.0F;
+constexpr float person_depth = 1.5F, wall_depth = 3.0F;
+
+/// A person of 200 x 300 px before a wall; pixels 200 to 399 in x, 100 to 399 in y. A chair from x = 500 on, and what
+/// is left of x = 100 is unknown.
+class SemanticMaskTest : public testing::Test {
+ protected:
+  SemanticMaskTest() {
+    camera = std::make_shared<Camera>();
+    frame.camera = camera;
+    const CoarseSampler sampler(*camera);
+    exact.labels = cv::Mat::zeros(480, 640, CV_8UC1);
+    image.depth = cv::Mat(480, 640, CV_32FC1, cv::Scalar(wall_depth));
+    const cv::Rect person(200, 100, 200, 300);
+    exact.labels(person).setTo(2);
+    exact.labels.colRange(500, 640).setTo(1);
+    exact.labels.colRange(0, 100).setTo(255);
+    image.depth(person).setTo(person_depth);
+    sampler.sample_depth(image.depth, frame.coarse);
+    sampler.sample_labels(exact.labels, 0, carried.labels);
+    carried.confidence.assign(carried.labels.size(), 255);
+  }
+
+  std::size_t add_feature(float x, float y, float depth) {
+    frame.x.push_back(x), frame.y.push_back(y), frame.depth.push_back(depth);
+    frame.features.resize(frame.x.size());
+    frame.features.x = frame.x, frame.features.y = frame.y;
+    return frame.x.size() - 1;
+  }
+  /// What the filter says of one feature; it must be a prior.
+  float said(std::size_t feature, bool by_exact, const std::vector<std::string>& movable_classes = {"person"}) {
+    const StaticEvidence evidence = judge(by_exact ? &exact : nullptr, by_exact ? nullptr : &carried, movable_classes);
+    EXPECT_EQ(evidence.measurement(feature), 0.0F);
+    return evidence.prior(feature);
+  }
+  StaticEvidence judge(const Segmentation* segmentation, const CarriedMask* mask,
+                       const std::vector<std::string>& movable_classes = {"person"}) {
+    Registry registry;
+    holdfast_register_plugin_semantic_mask(registry);
+    const auto filter = registry.create<DynamicFilter>("semantic_mask", {{"classes", movable_classes}}, {});
+    EXPECT_TRUE(filter->needs().segmentation);
+    StaticEvidence evidence(frame.size(), frame.coarse.depth.size());
+    evidence.begin_stage("semantic_mask");
+    filter->apply({.sensor_frame = image,
+                   .frame = frame,
+                   .map = map,
+                   .segmentation = segmentation,
+                   .carried_mask = mask,
+                   .classes = &classes},
+                  evidence);
+    return evidence;
+  }
+
+  const std::vector<std::string> classes{"background", "chair", "person"};
+  std::shared_ptr<Camera> camera;
+  Map map;
+  SensorFrame image;
+  Frame frame;
+  Segmentation exact;
+  CarriedMask carried;
+};
+
+TEST_F(SemanticMaskTest, FeaturesOnAPersonAreSuspectAndAllOthersAreNot) {
+  const std::size_t person = add_feature(300, 200, person_depth), wall = add_feature(440, 200, wall_depth),
+                    chair = add_feature(560, 200, wall_depth), unknown = add_feature(50, 200, wall_depth);
+  for (const bool by_exact : {true, false}) {
+    EXPECT_EQ(said(person, by_exact), movable);
+    EXPECT_EQ(said(wall, by_exact), background);
+    EXPECT_EQ(said(chair, by_exact), background);
+    EXPECT_EQ(said(unknown, by_exact), nothing);
+  }
+}
+
+TEST_F(SemanticMaskTest, TheClassesThatCanMoveAreChosenByName) {
+  const std::size_t person = add_feature(300, 200, person_depth), chair = add_feature(560, 200, wall_depth);
+  for (const bool by_exact : {true, false}) {
+    EXPECT_EQ(said(person, by_exact, {"chair"}), background);
+    EXPECT_EQ(said(chair, by_exact, {"chair"}), movable);
+    EXPECT_EQ(said(person, by_exact, {"chair", "person"}), movable);
+    // A name that this segmenter does not know changes nothing for those that it knows.
+    EXPECT_EQ(said(person, by_exact, {"dragon", "person"}), movable);
+    EXPECT_EQ(said(person, by_exact, {"dragon"}), background);
+  }
+}
+
+TEST_F(SemanticMaskTest, TheBorderBelongsToTheMaskUnlessItLiesBehind) {
+  // The person ends at x = 399. Within 4 px depth does not count, within 10 px it decides, beyond nothing is said.
+  struct Case {
+    float x, depth, said;
+  };
+  for (const Case& each :
+       {Case{402, wall_depth, movable}, Case{402, person_depth, movable}, Case{408, person_depth, movable},
+        Case{408, person_depth + 0.1F, movable}, Case{408, wall_depth, background}, Case{408, 0.0F, movable},
+        Case{416, person_depth, background}, Case{416, 0.0F, background}}) {
+    const std::size_t feature = add_feature(each.x, 250, each.depth);
+    for (const bool by_exact : {true, false})
+      EXPECT_EQ(said(feature, by_exact), each.said) << each.x << " " << each.depth << " " << by_exact;
+  }
+  // Above and below it is the same.
+  for (const float y : {91.0F, 408.0F}) {
+    const std::size_t near = add_feature(300, y, person_depth), behind = add_feature(300, y, wall_depth);
+    for (const bool by_exact : {true, false}) {
+      EXPECT_EQ(said(near, by_exact), movable);
+      EXPECT_EQ(said(behind, by_exact), background);
+    }
+  }
+}
+
+TEST_F(SemanticMaskTest, FeaturesAtTheImageBorderAreJudged) {
+  for (const auto& [x, y] : {std::pair{639.0F, 0.0F}, {639.0F, 479.0F}, {300.0F, 0.0F}}) {
+    const std::size_t feature = add_feature(x, y, wall_depth);
+    for (const bool by_exact : {true, false}) EXPECT_EQ(said(feature, by_exact), background);
+  }
+  const std::size_t outside = add_feature(-30, 200, wall_depth);
+  for (const bool by_exact : {true, false}) EXPECT_EQ(said(outside, by_exact), nothing);
+}
+
+TEST_F(SemanticMaskTest, WhatIsSaidWeighsByTheMasksConfidence) {
+  const std::size_t person = add_feature(300, 200, person_depth), wall = add_feature(440, 200, wall_depth),
+                    border = add_feature(402, 200, wall_depth);
+  exact.confidence = cv::Mat(480, 640, CV_8UC1, cv::Scalar(102));
+  exact.confidence(cv::Rect(200, 100, 200, 300)).setTo(51);
+  CoarseSampler(*camera).sample_labels(exact.confidence, 0, carried.confidence);
+  for (const bool by_exact : {true, false}) {
+    EXPECT_FLOAT_EQ(said(person, by_exact), movable * 0.2F);
+    EXPECT_FLOAT_EQ(said(border, by_exact), movable * 0.2F);
+    EXPECT_FLOAT_EQ(said(wall, by_exact), background * 0.4F);
+  }
+}
+
+TEST_F(SemanticMaskTest, CellsOfTheMaskAreSuspectToo) {
+  std::fill(carried.confidence.begin(), carried.confidence.end(), 51);
+  const StaticEvidence evidence = judge(nullptr, &carried);
+  ASSERT_EQ(evidence.cells().size(), carried.labels.size());
+  for (std::size_t i = 0; i < carried.labels.size(); ++i)
+    EXPECT_FLOAT_EQ(evidence.cells()[i], carried.labels[i] == 2 ? movable * 0.2F : 0.0F);
+}
+
+TEST_F(SemanticMaskTest, TheFramesOwnSegmentationCountsBeforeACarriedMask) {
+  const std::size_t person = add_feature(300, 200, person_depth);
+  std::fill(carried.labels.begin(), carried.labels.end(), 0);
+  EXPECT_EQ(judge(&exact, &carried).prior(person), movable);
+  EXPECT_EQ(judge(nullptr, &carried).prior(person), background);
+  const Segmentation empty;
+  EXPECT_EQ(judge(&empty, &carried).prior(person), background);
+}
+
+TEST_F(SemanticMaskTest, WithoutAMaskNothingIsSaid) {
+  add_feature(300, 200, person_depth);
+  const CarriedMask no_mask;
+  const Segmentation no_segmentation;
+  EXPECT_TRUE(judge(nullptr, nullptr).statements().empty());
+  EXPECT_TRUE(judge(&no_segmentation, &no_mask).statements().empty());
+}
+
+}  // namespace
+}  // namespace holdfast

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/pipeline/segmentation_desk.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <future>
+#include <thread>
+
+#include "holdfast/core/error.hpp"
+
+namespace holdfast {
+namespace {
+
+/// Labels every pixel with the index of the frame; may wait, throw or answer in the wrong size.
+class Stamper final : public Segmenter {
+ public:
+  const std::vector<std::string>& classes() const override { return names_; }
+  Segmentation segment(const SensorFrame& frame) override {
+    if (frame.index == bad) throw InputError({"mask.png"}, "is broken");
+    if (frame.index == held) gate.get_future().wait();
+    thread = std::this_thread::get_id();
+    ++count;
+    if (frame.index == nothing_for) return {};
+    return {cv::Mat(frame.colour.rows + more_rows, frame.colour.cols, type, cv::Scalar(double(frame.index))), {}};
+  }
+
+  static constexpr std::uint64_t none = ~std::uint64_t{0};
+  std::uint64_t bad = none, held = none, nothing_for = none;
+  int more_rows = 0, type = CV_8UC1;
+  std::promise<void> gate;
+  std::atomic<int> count = 0;
+  std::thread::id thread;
+
+ private:
+  std::vector<std::string> names_{"background", "person"};
+};
+
+SensorFrame frame_at(std::uint64_t index) {
+  SensorFrame frame;
+  frame.index = index;
+  frame.colour = cv::Mat::zeros(4, 6, CV_8UC3);
+  return frame;
+}
+KeyFrameId keyframe_at(std::uint64_t index) { return {static_cast<std::uint32_t>(index), 0}; }
+
+/// The desk as the pipeline uses it: fetch before a frame, hand it in after. Gives the frames fed when each frame that
+/// was handed in came back, by index.
+std::vector<std::pair<std::uint64_t, std::uint64_t>> returns(SegmentationDesk& desk, int frames, int every) {
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> returned;
+  StageTimes times;
+  for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(frames); ++i) {
+    while (const auto segmented = desk.fetch(i)) {
+      returned.emplace_back(segmented->frame.index, i);
+      EXPECT_EQ(segmented->segmentation.labels.at<std::uint8_t>(0, 0), segmented->frame.index);
+      EXPECT_EQ(segmented->keyframe, keyframe_at(segmented->frame.index));
+    }
+    if (i % static_cast<std::uint64_t>(every) == 0) desk.hand_in(frame_at(i), keyframe_at(i), times);
+  }
+  return returned;
+}
+
+TEST(SegmentationDesk, SequentialAnswersCountAfterExactlyTheLatency) {
+  for (const int latency : {1, 5, 7}) {
+    Stamper segmenter;
+    SegmentationDesk desk(segmenter, {.latency = latency}, false);
+    const auto returned = returns(desk, 30, 3);
+    ASSERT_EQ(returned.size(), static_cast<std::size_t>((29 - latency) / 3 + 1));
+    for (std::size_t i = 0; i < returned.size(); ++i) {
+      EXPECT_EQ(returned[i].first, 3 * i);
+      EXPECT_EQ(returned[i].second, 3 * i + static_cast<std::uint64_t>(latency));
+    }
+    EXPECT_EQ(desk.keyframes_inside(), 10 - static_cast<int>(returned.size()));
+  }
+}
+
+TEST(SegmentationDesk, WithoutLatencyTheAnswerIsThereBeforeTheNextFrame) {
+  Stamper segmenter;
+  SegmentationDesk desk(segmenter, {.latency = 0}, false);
+  const auto returned = returns(desk, 10, 1);
+  ASSERT_EQ(returned.size(), 9U);
+  for (const auto& [index, fed] : returned) EXPECT_EQ(fed, index + 1);
+}
+
+TEST(SegmentationDesk, SequentialWorkIsDoneInTheCallersThreadAndTimed) {
+  Stamper segmenter;
+  SegmentationDesk desk(segmenter, {}, false);
+  StageTimes times;
+  EXPECT_TRUE(desk.has_room());
+  desk.hand_in(frame_at(0), keyframe_at(0), times);
+  EXPECT_EQ(segmenter.thread, std::this_thread::get_id());
+  EXPECT_FALSE(times.entries().empty());
+  EXPECT_TRUE(desk.has_room());
+  EXPECT_TRUE(desk.take_times().empty());
+  EXPECT_FALSE(desk.worker_counts().has_value());
+}
+
+TEST(SegmentationDesk, WantsEveryNthFrameOnlyWhenAsked) {
+  Stamper segmenter;
+  const SegmentationDesk keyframes(segmenter, {.on = "keyframes", .every = 4}, false);
+  const SegmentationDesk every(segmenter, {.on = "every_n", .every = 4}, false);
+  int wanted = 0;
+  for (std::uint64_t i = 0; i < 40; ++i) {
+    EXPECT_FALSE(keyframes.wants(i));
+    wanted += every.wants(i) ? 1 : 0;
+    EXPECT_EQ(every.wants(i), every.wants(i + 4));
+  }
+  EXPECT_EQ(wanted, 10);
+}
+
+TEST(SegmentationDesk, OnlyKeyframesAreCountedAsKeyframes) {
+  Stamper segmenter;
+  SegmentationDesk desk(segmenter, {.latency = 2}, false);
+  StageTimes times;
+  desk.fetch(0);
+  desk.hand_in(frame_at(0), KeyFrameId(), times);
+  EXPECT_EQ(desk.keyframes_inside(), 0);
+  desk.hand_in(frame_at(1), keyframe_at(1), times);
+  EXPECT_EQ(desk.keyframes_inside(), 1);
+  EXPECT_FALSE(desk.fetch(2)->keyframe.valid());
+  EXPECT_EQ(desk.keyframes_inside(), 1);
+  EXPECT_TRUE(desk.fetch(2)->keyframe.valid());
+  EXPECT_EQ(desk.keyframes_inside(), 0);
+}
+
+TEST(SegmentationDesk, FinishMakesAllDue) {
+  Stamper segmenter;
+  segmenter.nothing_for = 2;
+  SegmentationDesk desk(segmenter, {.latency = 1000}, false);
+  StageTimes times;
+  for (std::uint64_t i = 0; i < 4; ++i) desk.hand_in(frame_at(i), keyframe_at(i), times);
+  EXPECT_FALSE(desk.fetch(4));
+  desk.finish();
+  for (std::uint64_t i = 0; i < 4; ++i) {
+    const auto segmented = desk.fetch(4);
+    ASSERT_TRUE(segmented);
+    EXPECT_EQ(segmented->frame.index, i);
+    EXPECT_EQ(segmented->segmentation.empty(), i == 2);  // an empty answer is an answer
+  }
+  EXPECT_FALSE(desk.fetch(4));
+}
+
+TEST(SegmentationDesk, AThreadSegmentsWhileOneFrameWaits) {
+  Stamper segmenter;
+  segmenter.held = 0;
+  SegmentationDesk desk(segmenter, {.latency = 1000}, true);
+  StageTimes times;
+  desk.hand_in(frame_at(0), keyframe_at(0), times);
+  while (!desk.has_room()) std::this_thread::yield();  // until the thread took it
+  desk.hand_in(frame_at(1), keyframe_at(1), times);
+  EXPECT_FALSE(desk.has_room());
+  EXPECT_FALSE(desk.fetch(1));
+  EXPECT_EQ(desk.keyframes_inside(), 2);
+  segmenter.gate.set_value();
+  desk.finish();
+  EXPECT_NE(segmenter.thread, std::this_thread::get_id());
+  for (std::uint64_t i = 0; i < 2; ++i) EXPECT_EQ(desk.fetch(2)->frame.index, i);
+  EXPECT_FALSE(desk.fetch(2));
+  EXPECT_EQ(desk.keyframes_inside(), 0);
+  EXPECT_TRUE(times.entries().empty());
+  EXPECT_EQ(desk.take_times().size(), 2U);
+  EXPECT_EQ(desk.worker_counts()->queue.taken, 2U);
+}
+
+TEST(SegmentationDesk, AThreadsAnswerDoesNotWaitForTheLatency) {
+  Stamper segmenter;
+  SegmentationDesk desk(segmenter, {.latency = 1000}, true);
+  StageTimes times;
+  desk.hand_in(frame_at(3), keyframe_at(3), times);
+  std::optional<SegmentedFrame> segmented;
+  const Stopwatch watch;
+  while (!(segmented = desk.fetch(4)) && watch.seconds() < 60.0) std::this_thread::yield();
+  ASSERT_TRUE(segmented);
+  EXPECT_EQ(segmented->segmentation.labels.at<std::uint8_t>(3, 5), 3);
+}
+
+TEST(SegmentationDesk, WhatTheSegmenterThrowsComesBack) {
+  Stamper segmenter;
+  segmenter.bad = 1;
+  StageTimes times;
+  SegmentationDesk sequential(segmenter, {}, false);
+  sequential.hand_in(frame_at(0), keyframe_at(0), times);
+  EXPECT_THROW(sequential.hand_in(frame_at(1), keyframe_at(1), times), InputError);
+
+  SegmentationDesk threaded(segmenter, {}, true);
+  threaded.hand_in(frame_at(0), keyframe_at(0), times);
+  EXPECT_NO_THROW(threaded.rethrow());
+  threaded.hand_in(frame_at(1), keyframe_at(1), times);
+  threaded.finish();
+  EXPECT_THROW(threaded.rethrow(), InputError);
+  EXPECT_EQ(threaded.fetch(1)->frame.index, 0U);
+  EXPECT_FALSE(threaded.fetch(1));
+}
+
+TEST(SegmentationDesk, LabelsOfAnotherSizeOrTypeAreAnError) {
+  for (const bool wrong_size : {true, false}) {
+    Stamper segmenter;
+    (wrong_size ? segmenter.more_rows : segmenter.type) = wrong_size ? 1 : CV_16UC1;
+    StageTimes times;
+    SegmentationDesk sequential(segmenter, {}, false);
+    EXPECT_THROW(sequential.hand_in(frame_at(0), keyframe_at(0), times), CheckError);
+    SegmentationDesk threaded(segmenter, {}, true);
+    threaded.hand_in(frame_at(0), keyframe_at(0), times);
+    threaded.finish();
+    EXPECT_THROW(threaded.rethrow(), CheckError);
+  }
+}
+
+}  // namespace
+}  // namespace holdfast
