@@ -93,9 +93,15 @@ TEST_F(DepthAgreementTest, OldKeyframesAreBelievedRatherThanYoungOnes) {
   const Frame frame = with_person(0.0).frame(origin, 2.0);
   ASSERT_TRUE(agreement.choose(map, young, 2.0));
   EXPECT_GE(agreement.share(frame, origin), 0.99);  // there is no other
-  keyframe(furnished_room(), 1.0);
+  const KeyFrameId old = keyframe(furnished_room(), 1.0);
   ASSERT_TRUE(agreement.choose(map, young, 2.0));
-  EXPECT_LE(agreement.share(frame, origin), 0.9);
+  const double share = agreement.share(frame, origin);
+  EXPECT_LE(share, 0.9);
+  // The young one had no part in it.
+  Map without;
+  const KeyFrameId alone = without.add_keyframe(map.keyframe(old).frame);
+  ASSERT_TRUE(agreement.choose(without, alone, 2.0));
+  EXPECT_EQ(agreement.share(frame, origin), share);
 }
 
 TEST_F(DepthAgreementTest, WhatMovedInAKeyframeDoesNotCount) {
@@ -131,8 +137,8 @@ TEST_F(DepthAgreementTest, FindsWhereOnTheWayTheDepthWasTaken) {
     const Frame frame = furnished_room().frame((T_view_camera * T_camera_world).inverse(), 2.0);
     const Isometry3d found = agreement.find_view(frame, T_camera_world, step);
     const double found_steps = geometry::log_se3(found).norm() / geometry::log_se3(step).norm();
-    EXPECT_NEAR(found_steps, std::abs(steps), 0.21);
-    EXPECT_LE((found.translation() - T_view_camera.translation()).norm(), 0.21 * step.translation().norm()) << steps;
+    EXPECT_NEAR(found_steps, std::abs(steps), 0.05) << steps;
+    EXPECT_LE((found.translation() - T_view_camera.translation()).norm(), 0.05 * step.translation().norm()) << steps;
   }
 }
 
