@@ -69,7 +69,6 @@ class MultiViewDepthTest : public testing::Test {
       const bool is_person = world.look(frame.T_world_camera(), frame.x[i], frame.y[i]).label == person;
       ++(is_person ? on_person : on_room);
       const float said = evidence.measurement(i);
-      EXPECT_EQ(evidence.prior(i), 0.0F);
       if (said < 0) ++counts[is_person ? 0 : 2];
       if (said > 0) ++counts[is_person ? 1 : 3];
     }
@@ -80,6 +79,23 @@ class MultiViewDepthTest : public testing::Test {
 
   Map map;
 };
+
+TEST_F(MultiViewDepthTest, OutlinesAreSuspectAndSoIsTheUnknownInACrowd) {
+  remember(furnished_room());
+  const BoxWorld world = with_person();
+  const Frame frame = world.frame(pose(0, {0, 0, 0}), now);
+  const auto suspects = [&](const MultiViewDepthSettings& settings) {
+    const StaticEvidence evidence = judge(frame, &frame.T_camera_world, settings);
+    int count = 0;
+    for (std::size_t i = 0; i < frame.size(); ++i) count += evidence.prior(i) < 0.0F ? 1 : 0;
+    return count;
+  };
+  EXPECT_EQ(suspects({.edge_log_odds = 0.0, .crowd_log_odds = 0.0}), 0);
+  const int at_outline = suspects({.crowd_log_odds = 0.0});
+  EXPECT_GT(at_outline, 0);
+  EXPECT_LT(at_outline, static_cast<int>(frame.size() / 4));
+  EXPECT_GT(suspects({.edge = 12.0, .crowd_log_odds = 0.0}), at_outline);
+}
 
 TEST_F(MultiViewDepthTest, WhatStandsWhereOthersSawThroughMoves) {
   remember(furnished_room());
