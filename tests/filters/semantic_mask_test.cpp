@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "holdfast/core/error.hpp"
 #include "holdfast/interfaces/dynamic_filter.hpp"
 #include "holdfast/plugin/registry.hpp"
 
@@ -92,9 +93,8 @@ TEST_F(SemanticMaskTest, TheClassesThatCanMoveAreChosenByName) {
     EXPECT_EQ(said(person, by_exact, {"chair"}), background);
     EXPECT_EQ(said(chair, by_exact, {"chair"}), movable);
     EXPECT_EQ(said(person, by_exact, {"chair", "person"}), movable);
-    // A name that this segmenter does not know changes nothing for those that it knows.
-    EXPECT_EQ(said(person, by_exact, {"dragon", "person"}), movable);
-    EXPECT_EQ(said(person, by_exact, {"dragon"}), background);
+    // A name that this segmenter does not know is a mistake, not something that never moves.
+    EXPECT_THROW(said(person, by_exact, {"dragon", "person"}), InputError);
   }
 }
 

@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "holdfast/core/error.hpp"
 #include "holdfast/interfaces/dynamic_filter.hpp"
+#include "holdfast/plugin/did_you_mean.hpp"
 #include "holdfast/plugin/plugin.hpp"
 
 namespace holdfast {
@@ -25,7 +27,9 @@ struct SemanticMaskSettings {
              "features this near to a mask belong to it, unless their depth says that they lie behind")
         .range(0, 40)
         .unit("px");
-    table.add("edge", &S::edge, "features this near to a mask belong to it, whatever their depth").range(0, 40).unit("px");
+    table.add("edge", &S::edge, "features this near to a mask belong to it, whatever their depth")
+        .range(0, 40)
+        .unit("px");
     table.add("depth_margin", &S::depth_margin, "what is this much farther than the mask beside it lies behind")
         .range(0, 10)
         .unit("m");
@@ -53,10 +57,16 @@ class SemanticMask final : public DynamicFilter {
   }
 
  private:
+  /// Throws InputError for a class that the segmenter does not know.
   void find_movable(const std::vector<std::string>& classes) {
     movable_.fill(0);
-    for (std::size_t i = 0; i < std::min<std::size_t>(classes.size(), 255); ++i)
-      movable_[i] = std::find(settings_.classes.begin(), settings_.classes.end(), classes[i]) != settings_.classes.end();
+    for (const std::string& name : settings_.classes) {
+      const auto found = std::find(classes.begin(), classes.end(), name);
+      if (found == classes.end())
+        throw InputError({"filters: semantic_mask: classes"},
+                         "the segmenter has no class '" + name + "'; " + did_you_mean(name, classes));
+      movable_[static_cast<std::size_t>(found - classes.begin())] = 1;
+    }
   }
 
   void say(StaticEvidence& evidence, std::size_t feature, bool movable, std::uint8_t confidence) const {
@@ -141,6 +151,7 @@ HOLDFAST_PLUGIN(semantic_mask, registry) {
   registry.add<holdfast::DynamicFilter, holdfast::SemanticMask, holdfast::SemanticMaskSettings>(
       {.name = "semantic_mask",
        .summary = "What belongs to a class that can move is suspect; a prior, which measurements may overrule.",
-       .paper = "Zeng et al.: A Semantics-Guided Visual SLAM with U-Net for Complex Dynamic Indoor Environments. Remote "
-                "Sensing 15, 5479, 2023, section 3.2"});
+       .paper =
+           "Zeng et al.: A Semantics-Guided Visual SLAM with U-Net for Complex Dynamic Indoor Environments. Remote "
+           "Sensing 15, 5479, 2023, section 3.2"});
 }
