@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "holdfast/cli/configured_command.hpp"
 #include "holdfast/cli/frame_loop.hpp"
 #include "holdfast/cli/output_folder.hpp"
 #include "holdfast/cli/terminal.hpp"
@@ -24,13 +25,8 @@ namespace holdfast {
 
 namespace {
 
-struct Arguments {
-  std::string configuration;
-  std::vector<std::string> overrides;
-  std::filesystem::path output;
+struct Arguments : ConfiguredArguments {
   int every = 1;
-  bool overwrite = false;
-  bool quiet = false;
 };
 
 constexpr const char* pictures_folder = "background";
@@ -93,8 +89,9 @@ void run(const Arguments& arguments, int& exit_code) {
     std::fprintf(stderr, "interrupted; what was done is in %s\n", arguments.output.c_str());
   else if (!arguments.quiet)
     std::printf("%zu keyframes, each before and after, in %s\n", count, (arguments.output / pictures_folder).c_str());
-  constexpr int interrupted_code = 130;
-  exit_code = record.was_interrupted || interrupted() ? interrupted_code : record.failure.empty() && count > 0 ? 0 : 1;
+  exit_code = record.was_interrupted || interrupted() ? interrupted_exit_code
+              : record.failure.empty() && count > 0   ? 0
+                                                      : 1;
 }
 
 }  // namespace
@@ -112,15 +109,10 @@ void add_background_command(CLI::App& app, int& exit_code) {
       "Examples\n"
       "  holdfast background dynamic.yaml --output out/empty_room\n"
       "  holdfast background dynamic.yaml --every 10 --set dense_map.step=1 --output out/full_size");
-  command->add_option("CONFIG", arguments->configuration, "Configuration in YAML")->required();
-  command->add_option("--output", arguments->output, "Folder for the results")->required();
+  add_configured_options(*command, *arguments);
   command->add_option("--every", arguments->every, "Draw every N-th of the kept keyframes")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  command->add_option("--set", arguments->overrides, "key.path=value: as if the file said so; may be repeated")
-      ->allow_extra_args(false);
-  command->add_flag("--overwrite", arguments->overwrite, "Replace the results of an earlier run in the folder");
-  command->add_flag("--quiet", arguments->quiet, "No progress, no summary");
   command->callback([arguments, &exit_code] { run(*arguments, exit_code); });
 }
 

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "holdfast/cli/configured_command.hpp"
 #include "holdfast/cli/frame_loop.hpp"
 #include "holdfast/cli/output_folder.hpp"
 #include "holdfast/cli/run_results.hpp"
@@ -29,14 +30,9 @@ namespace holdfast {
 
 namespace {
 
-struct Arguments {
-  std::string configuration;
-  std::vector<std::string> overrides;
-  std::filesystem::path output;
+struct Arguments : ConfiguredArguments {
   std::filesystem::path map;
   bool localise = false;
-  bool overwrite = false;
-  bool quiet = false;
 };
 
 std::size_t peak_memory() {
@@ -140,8 +136,9 @@ void run(const Arguments& arguments, int& exit_code) {
   else if (record.trajectory.empty())
     std::fprintf(stderr, "%s no frame got a pose; is there depth, and enough to see?\n",
                  red("error:", STDERR_FILENO).c_str());
-  constexpr int interrupted_code = 130;
-  exit_code = record.was_interrupted ? interrupted_code : record.failure.empty() && !record.trajectory.empty() ? 0 : 1;
+  exit_code = record.was_interrupted                                 ? interrupted_exit_code
+              : record.failure.empty() && !record.trajectory.empty() ? 0
+                                                                     : 1;
 }
 
 }  // namespace
@@ -164,16 +161,11 @@ void add_run_command(CLI::App& app, int& exit_code) {
       "  holdfast run rgbd.yaml --set features.opencv_orb.count=1500 --set run.seed=2 --output out/swap\n"
       "  holdfast run rgbd.yaml --map out/xyz/map.hfm --output out/more              continue that map\n"
       "  holdfast run rgbd.yaml --map out/xyz/map.hfm --localise --output out/where  find the camera in it");
-  command->add_option("CONFIG", arguments->configuration, "Configuration in YAML")->required();
-  command->add_option("--output", arguments->output, "Folder for the results")->required();
+  add_configured_options(*command, *arguments);
   CLI::Option* map =
       command->add_option("--map", arguments->map, "A map.hfm of an earlier run, to continue; the file stays as it is");
   command->add_flag("--localise", arguments->localise, "Only find the camera in the map, and leave the map as it is")
       ->needs(map);
-  command->add_option("--set", arguments->overrides, "key.path=value: as if the file said so; may be repeated")
-      ->allow_extra_args(false);
-  command->add_flag("--overwrite", arguments->overwrite, "Replace the results of an earlier run in the folder");
-  command->add_flag("--quiet", arguments->quiet, "No progress, no summary");
   command->callback([arguments, &exit_code] { run(*arguments, exit_code); });
 }
 

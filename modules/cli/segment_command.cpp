@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "holdfast/cli/configured_command.hpp"
 #include "holdfast/cli/label_writer.hpp"
 #include "holdfast/cli/terminal.hpp"
 #include "holdfast/config/configuration.hpp"
@@ -26,13 +27,8 @@ namespace holdfast {
 
 namespace {
 
-struct Arguments {
-  std::string configuration;
-  std::vector<std::string> overrides;
-  std::filesystem::path output;
+struct Arguments : ConfiguredArguments {
   std::uint64_t every = 1;
-  bool overwrite = false;
-  bool quiet = false;
 };
 
 struct Counts {
@@ -90,8 +86,7 @@ int segment(const Arguments& arguments) {
                 1e3 * counts.seconds / static_cast<double>(done));
   if (!arguments.quiet && writer.count() > 0)
     std::printf("\nTo use them:\n\n%s", writer.configuration(arguments.every == 1).c_str());
-  constexpr int interrupted_code = 130;
-  return interrupted() ? interrupted_code : failure.empty() && writer.count() > 0 ? 0 : 1;
+  return interrupted() ? interrupted_exit_code : failure.empty() && writer.count() > 0 ? 0 : 1;
 }
 
 }  // namespace
@@ -112,15 +107,11 @@ void add_segment_command(CLI::App& app, int& exit_code) {
       "  holdfast segment rgbd.yaml --set 'segmenter={onnx: {model: net.onnx, classes: [background, person]}}' \\\n"
       "    --output out/labels\n"
       "  holdfast segment simulated.yaml --set segmenter=truth --output out/labels --every 5");
-  command->add_option("CONFIG", arguments->configuration, "Configuration in YAML")->required();
-  command->add_option("--output", arguments->output, "Folder for the label images")->required();
-  command->add_option("--set", arguments->overrides, "key.path=value: as if the file said so; may be repeated")
-      ->allow_extra_args(false);
+  add_configured_options(*command, *arguments, "Folder for the label images",
+                         "Replace the label images of an earlier run in the folder");
   command->add_option("--every", arguments->every, "Segment every N-th frame only")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1000000}))
       ->capture_default_str();
-  command->add_flag("--overwrite", arguments->overwrite, "Replace the label images of an earlier run in the folder");
-  command->add_flag("--quiet", arguments->quiet, "No progress, no summary");
   command->callback([arguments, &exit_code] { exit_code = segment(*arguments); });
 }
 

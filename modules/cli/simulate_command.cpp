@@ -86,8 +86,7 @@ int simulate(const Arguments& arguments) {
   if (!arguments.quiet || interrupted())
     std::cout << (interrupted() ? "interrupted: " : "") << writer.frame_count() << " of " << simulator.frame_count()
               << " frames written to " << arguments.output.string() << '\n';
-  constexpr int interrupted_code = 130;
-  return interrupted() ? interrupted_code : 0;
+  return interrupted() ? interrupted_exit_code : 0;
 }
 
 }  // namespace

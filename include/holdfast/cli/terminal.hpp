@@ -38,5 +38,7 @@ class Progress {
 /// Turns SIGINT and SIGTERM into a question that long work asks; a second signal ends the program at once.
 void catch_interrupts();
 bool interrupted();
+/// What a program exits with after SIGINT, by custom.
+constexpr int interrupted_exit_code = 130;
 
 }  // namespace holdfast

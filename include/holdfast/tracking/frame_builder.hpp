@@ -33,7 +33,6 @@ class FrameBuilder {
   void find_features(const SensorFrame& sensor_frame, const cv::Mat& ignore, Frame& frame, StageTimes& times);
 
   const std::shared_ptr<const Camera>& camera() const { return camera_; }
-  const UndistortionTable& undistortion() const { return undistortion_; }
   const CoarseSampler& coarse_sampler() const { return coarse_sampler_; }
   /// The grey image of the last frame that was built (8UC1); valid until the next.
   const cv::Mat& grey() const { return grey_; }

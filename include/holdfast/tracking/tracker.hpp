@@ -61,9 +61,6 @@ class Tracker {
   void mask_came(std::uint64_t frame_index, const Segmentation& segmentation);
   /// Judges a keyframe by its own segmentation; the caller holds the lock of the map.
   void judge_keyframe(const SensorFrame& sensor_frame, const Segmentation& segmentation, KeyFrameId keyframe);
-  /// nullptr when no masks are expected.
-  const CarriedMask* carried_mask() const { return propagator_ ? &propagator_->mask() : nullptr; }
-  const StaticEvidence& evidence() const { return filters_.evidence(); }
   /// While keyframes wait for their masks, only a frame that is about to lose its place may become one.
   void hold_keyframes(bool hold) { holds_keyframes_ = hold; }
 
