@@ -238,14 +238,14 @@ void Pipeline::State::take_masks(StageTimes& times) {
     }
     hand_to_mapping(segmented->keyframe, times);
   }
-  tracker.hold_keyframes(segmentation->keyframes_inside() > 0);
+  tracker.hold_keyframes(segmentation->is_full());
 }
 
 void Pipeline::State::ask_for_mask(const SensorFrame& frame, const FrameResult& result, StageTimes& times) {
   if (segmentation && (result.is_keyframe || segmentation->wants(frames_fed)) && segmentation->has_room()) {
     tracker.await_mask();
     segmentation->hand_in(frame, result.is_keyframe ? result.keyframe : KeyFrameId(), times);
-    tracker.hold_keyframes(segmentation->keyframes_inside() > 0);
+    tracker.hold_keyframes(segmentation->is_full());
   } else if (result.is_keyframe) {
     keep_view(result.keyframe, frame, tracker.frame().coarse, {}, times);
     hand_to_mapping(result.keyframe, times);
@@ -267,7 +267,6 @@ FrameResult Pipeline::feed(const SensorFrame& frame) {
 
   FrameResult result;
   s.take_masks(result.times);
-  ++s.frames_fed;
   const Stopwatch watch;
   s.tracker.begin(frame, result);
   {
@@ -290,6 +289,8 @@ FrameResult Pipeline::feed(const SensorFrame& frame) {
     if (!s.mapping && !s.segmentation) s.tracker.keyframe_added(result.keyframe);
     result.T_world_camera = s.tracker.frame().T_world_camera();
   }
+  s.take_masks(result.times);  // this frame's own, when there is no latency
+  ++s.frames_fed;
   for (const auto& observer : s.parts.observers) observer->on_frame(frame, s.tracker.frame(), result);
   return result;
 }

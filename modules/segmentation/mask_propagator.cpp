@@ -15,6 +15,15 @@ bool is_object(std::uint8_t label) { return label != 0 && label != unknown; }
 
 }  // namespace
 
+void sample_segmentation(const CoarseSampler& sampler, const Segmentation& segmentation,
+                         std::vector<std::uint8_t>& labels, std::vector<std::uint8_t>& confidence) {
+  sampler.sample_labels(segmentation.labels, 0, labels);
+  if (segmentation.confidence.empty())
+    confidence.assign(labels.size(), 255);
+  else
+    sampler.sample_labels(segmentation.confidence, 0, confidence);
+}
+
 MaskPropagator::MaskPropagator(const Camera& camera, const CoarseSampler& sampler, double memory)
     : camera_(camera), sampler_(sampler), memory_(memory), carrier_(camera) {}
 
@@ -152,11 +161,7 @@ void MaskPropagator::apply(std::uint64_t frame_index, const Segmentation& segmen
   if (segmentation.empty()) return;
 
   CellLabels exact;
-  sampler_.sample_labels(segmentation.labels, 0, exact.labels);
-  if (segmentation.confidence.empty())
-    exact.quality.assign(exact.labels.size(), 255);
-  else
-    sampler_.sample_labels(segmentation.confidence, 0, exact.quality);
+  sample_segmentation(sampler_, segmentation, exact.labels, exact.quality);
   exact.moving.assign(exact.labels.size(), 0);
   labels_from_ = there.timestamp;
   segmented_ = true;

@@ -67,6 +67,11 @@ void FilterChain::judge_segmented(const FilterContext& context, Frame& frame) {
   const float start = static_cast<float>(settings_.static_log_odds);
   for (std::size_t i = 0; i < frame.size(); ++i)
     frame.static_probability[i] = probability(start + evidence_.prior(i) + frame.measured_log_odds[i]);
+  const std::vector<float>& cells = evidence_.cells();
+  std::vector<float>& known = frame.coarse.static_log_odds;
+  if (known.empty()) known.assign(cells.size(), 0.0F);
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (cells[i] < 0.0F) known[i] = std::min(known[i], cells[i]);
 }
 
 }  // namespace holdfast

@@ -229,11 +229,15 @@ void Tracker::mask_came(std::uint64_t frame_index, const Segmentation& segmentat
 void Tracker::judge_keyframe(const SensorFrame& sensor_frame, const Segmentation& segmentation, KeyFrameId id) {
   KeyFrame* keyframe = map_.find_keyframe(id);
   if (keyframe == nullptr || segmentation.empty()) return;
+  CarriedMask mask;
+  sample_segmentation(builder_.coarse_sampler(), segmentation, mask.labels, mask.confidence);
+  keyframe->frame.coarse.labels = mask.labels;
   filters_.judge_segmented({.sensor_frame = sensor_frame,
                             .frame = keyframe->frame,
                             .map = map_,
                             .T_camera_world = &keyframe->frame.T_camera_world,
                             .segmentation = &segmentation,
+                            .carried_mask = &mask,
                             .classes = classes_},
                            keyframe->frame);
 }

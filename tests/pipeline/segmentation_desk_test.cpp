@@ -70,16 +70,20 @@ TEST(SegmentationDesk, SequentialAnswersCountAfterExactlyTheLatency) {
       EXPECT_EQ(returned[i].first, 3 * i);
       EXPECT_EQ(returned[i].second, 3 * i + static_cast<std::uint64_t>(latency));
     }
-    EXPECT_EQ(desk.keyframes_inside(), 10 - static_cast<int>(returned.size()));
   }
 }
 
-TEST(SegmentationDesk, WithoutLatencyTheAnswerIsThereBeforeTheNextFrame) {
+TEST(SegmentationDesk, WithoutLatencyTheAnswerIsThereAtOnce) {
   Stamper segmenter;
   SegmentationDesk desk(segmenter, {.latency = 0}, false);
-  const auto returned = returns(desk, 10, 1);
-  ASSERT_EQ(returned.size(), 9U);
-  for (const auto& [index, fed] : returned) EXPECT_EQ(fed, index + 1);
+  StageTimes times;
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    EXPECT_FALSE(desk.fetch(i));
+    desk.hand_in(frame_at(i), keyframe_at(i), times);
+    const auto segmented = desk.fetch(i);
+    ASSERT_TRUE(segmented);
+    EXPECT_EQ(segmented->frame.index, i);
+  }
 }
 
 TEST(SegmentationDesk, SequentialWorkIsDoneInTheCallersThreadAndTimed) {
@@ -108,19 +112,21 @@ TEST(SegmentationDesk, WantsEveryNthFrameOnlyWhenAsked) {
   EXPECT_EQ(wanted, 10);
 }
 
-TEST(SegmentationDesk, OnlyKeyframesAreCountedAsKeyframes) {
+TEST(SegmentationDesk, IsFullWithTwoKeyframesAndOtherFramesDoNotCount) {
   Stamper segmenter;
   SegmentationDesk desk(segmenter, {.latency = 2}, false);
   StageTimes times;
   desk.fetch(0);
-  desk.hand_in(frame_at(0), KeyFrameId(), times);
-  EXPECT_EQ(desk.keyframes_inside(), 0);
-  desk.hand_in(frame_at(1), keyframe_at(1), times);
-  EXPECT_EQ(desk.keyframes_inside(), 1);
-  EXPECT_FALSE(desk.fetch(2)->keyframe.valid());
-  EXPECT_EQ(desk.keyframes_inside(), 1);
+  for (std::uint64_t i = 0; i < 3; ++i) desk.hand_in(frame_at(i), KeyFrameId(), times);
+  EXPECT_FALSE(desk.is_full());
+  desk.hand_in(frame_at(3), keyframe_at(3), times);
+  EXPECT_FALSE(desk.is_full());
+  desk.hand_in(frame_at(4), keyframe_at(4), times);
+  EXPECT_TRUE(desk.is_full());
+  for (int i = 0; i < 3; ++i) EXPECT_FALSE(desk.fetch(2)->keyframe.valid());
+  EXPECT_TRUE(desk.is_full());
   EXPECT_TRUE(desk.fetch(2)->keyframe.valid());
-  EXPECT_EQ(desk.keyframes_inside(), 0);
+  EXPECT_FALSE(desk.is_full());
 }
 
 TEST(SegmentationDesk, FinishMakesAllDue) {
@@ -150,13 +156,13 @@ TEST(SegmentationDesk, AThreadSegmentsWhileOneFrameWaits) {
   desk.hand_in(frame_at(1), keyframe_at(1), times);
   EXPECT_FALSE(desk.has_room());
   EXPECT_FALSE(desk.fetch(1));
-  EXPECT_EQ(desk.keyframes_inside(), 2);
+  EXPECT_TRUE(desk.is_full());
   segmenter.gate.set_value();
   desk.finish();
   EXPECT_NE(segmenter.thread, std::this_thread::get_id());
   for (std::uint64_t i = 0; i < 2; ++i) EXPECT_EQ(desk.fetch(2)->frame.index, i);
   EXPECT_FALSE(desk.fetch(2));
-  EXPECT_EQ(desk.keyframes_inside(), 0);
+  EXPECT_FALSE(desk.is_full());
   EXPECT_TRUE(times.entries().empty());
   EXPECT_EQ(desk.take_times().size(), 2U);
   EXPECT_EQ(desk.worker_counts()->queue.taken, 2U);

@@ -101,5 +101,43 @@ TEST(FilterChain, MapPointsCarryMeasurementsButNotPriors) {
   EXPECT_FLOAT_EQ(frame.measured_log_odds[2], -2.0F - 2.0F * share);
 }
 
+/// Says of every feature and cell what it says, when there is a mask.
+class OfMask final : public DynamicFilter {
+ public:
+  Needs needs() const override { return {.segmentation = true}; }
+  void apply(const FilterContext& context, StaticEvidence& evidence) override {
+    if (context.segmentation == nullptr) return;
+    for (std::size_t i = 0; i < evidence.size(); ++i) evidence.add(i, -2.0F, StaticEvidence::Sort::prior);
+    for (std::size_t cell = 0; cell < evidence.cells().size(); cell += 2) evidence.add_cell(cell, -3.0F);
+  }
+};
+
+TEST(FilterChain, AKeyframeLearnsFromItsOwnSegmentationAndKeepsItsMeasurements) {
+  for (const bool judged_before : {false, true}) {
+    FilterChain chain(plain_settings());
+    chain.add("mask", std::make_unique<OfMask>());
+    chain.add("even", std::make_unique<EveryNth>(2, -1.0F));
+    Frame frame = six_features();
+    frame.coarse.depth.assign(4, 1.0F);
+    Map map;
+    if (judged_before) {
+      judge(chain, map, frame);
+      frame.coarse.static_log_odds = {-5.0F, -1.0F, 0.0F, 2.0F};
+    }
+    const SensorFrame sensor_frame;
+    const Segmentation segmentation;
+    chain.judge_segmented({.sensor_frame = sensor_frame, .frame = frame, .map = map, .segmentation = &segmentation},
+                          frame);
+    for (std::size_t i = 0; i < frame.size(); ++i) {
+      const double measured = judged_before && i % 2 == 0 ? -1.0 : 0.0;
+      EXPECT_NEAR(frame.static_probability[i], 1.0 / (1.0 + std::exp(2.0 - measured)), 1e-6);
+    }
+    // Cells become more suspect by it, never less.
+    const std::vector<float> expected =
+        judged_before ? std::vector<float>{-5.0F, -1.0F, -3.0F, 2.0F} : std::vector<float>{-3.0F, 0.0F, -3.0F, 0.0F};
+    EXPECT_EQ(frame.coarse.static_log_odds, expected);
+  }
+}
+
 }  // namespace
 }  // namespace holdfast

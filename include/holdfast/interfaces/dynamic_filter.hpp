@@ -37,7 +37,9 @@ struct FilterContext {
   const Eigen::Isometry3d* T_camera_world = nullptr;
   /// Of this very frame: set when a keyframe is judged again because its segmentation has come.
   const Segmentation* segmentation = nullptr;
-  const CarriedMask* carried_mask = nullptr;          ///< carried to this frame from an earlier one; nullptr = none
+  /// Carried to this frame from an earlier one, or its own segmentation on its cells when it is judged again; nullptr =
+  /// none.
+  const CarriedMask* carried_mask = nullptr;
   const std::vector<std::string>* classes = nullptr;  ///< of the segmenter; never nullptr when one of the masks is set
 };
 

@@ -43,8 +43,9 @@ class SegmentationDesk {
   /// Waits until all is done: the next calls of fetch() return everything.
   void finish();
 
-  /// Keyframes handed in and not fetched yet.
-  int keyframes_inside() const { return keyframes_inside_; }
+  /// Whether no more keyframes should be made: there is no room, or two of them, one in work and one that waits, have
+  /// not been fetched yet, and the next would wait longer than it is worth.
+  bool is_full() const { return keyframes_inside_ >= 2 || !has_room(); }
   std::vector<StageTimes> take_times();
   /// Throws what the segmenter threw in its thread.
   void rethrow() {

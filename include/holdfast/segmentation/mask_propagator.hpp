@@ -16,6 +16,10 @@
 
 namespace holdfast {
 
+/// A segmentation on the cells of a coarse view; background outside the image.
+void sample_segmentation(const CoarseSampler& sampler, const Segmentation& segmentation,
+                         std::vector<std::uint8_t>& labels, std::vector<std::uint8_t>& confidence);
+
 /// Has a mask for every frame although only few are segmented, and those late. For each frame:
 ///
 ///     advance(...)          the points and the mask follow to the frame

@@ -42,7 +42,8 @@ class FilterChain {
   void weigh(const Map& map, Frame& frame) const;
   /// Adds what was measured to the map points that the frame shows, and to those that filters spoke of.
   void carry(const Frame& frame, Map& map) const;
-  /// Judges a keyframe again by its own segmentation (context.segmentation): priors anew, measurements as they were.
+  /// Judges a keyframe again by its own segmentation (context.segmentation and context.carried_mask): priors of its
+  /// features anew, measurements as they were; its coarse cells learn what they did not know to be suspect.
   void judge_segmented(const FilterContext& context, Frame& frame);
 
   /// Of the last frame that was judged, keyframes judged again included.

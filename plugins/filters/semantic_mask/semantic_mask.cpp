@@ -54,6 +54,7 @@ class SemanticMask final : public DynamicFilter {
       apply_exact(context, evidence);
     else if (context.carried_mask != nullptr && !context.carried_mask->empty())
       apply_carried(context, evidence);
+    if (context.carried_mask != nullptr) judge_cells(*context.carried_mask, evidence);
   }
 
  private:
@@ -129,6 +130,9 @@ class SemanticMask final : public DynamicFilter {
         }
       if (movable || mask.labels[cell] != unknown) say(evidence, i, movable, certainty);
     }
+  }
+
+  void judge_cells(const CarriedMask& mask, StaticEvidence& evidence) const {
     for (std::size_t cell = 0; cell < mask.labels.size() && cell < evidence.cells().size(); ++cell)
       if (movable_[mask.labels[cell]] != 0)
         evidence.add_cell(cell, static_cast<float>(settings_.movable_log_odds * mask.confidence[cell] / 255.0));
