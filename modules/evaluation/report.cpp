@@ -29,6 +29,7 @@ caption { text-align: left; color: #666; padding-bottom: 6px; }
 th, td { padding: 4px 10px; text-align: right; border-bottom: 1px solid #e8e8e3; }
 thead th { border-bottom: 2px solid #bbb; font-weight: 600; }
 th:first-child, td:first-child { text-align: left; padding-left: 0; }
+table:not(.values) td:not(:first-child) { white-space: nowrap; }
 table.values th { width: 32%; font-weight: normal; color: #666; vertical-align: top; }
 table.values td { text-align: left; overflow-wrap: anywhere; }
 td.bar { width: 22%; padding-right: 0; }
