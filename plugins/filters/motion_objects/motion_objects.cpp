@@ -82,20 +82,22 @@ bool MotionObjects::keep_up(const FilterContext& context) {
       const Eigen::Vector3d step = -interval_ * track.velocity();
       predictions_.push_back({sight.track, (last.T_view_world.linear() * step).cast<float>(),
                               (last.T_view_world * (track.position() + step)).cast<float>(),
-                              track.box().isEmpty() ? 0.0F : 0.5F * track.box().diagonal().norm() + 0.1F});
+                              track.box().isEmpty() ? 0.0F : 0.5F * track.box().diagonal().norm() + 0.1F,
+                              track.label()});
     }
   }
   views_.push_back(std::move(view));
   return true;
 }
 
-std::uint32_t MotionObjects::track_before(const Eigen::Vector3f& in_view) const {
+std::uint32_t MotionObjects::track_before(const Eigen::Vector3f& in_view, std::uint8_t label) const {
   const BlockGrid& grid = maker_.grid();
   const View& last = views_[views_.size() - 2];
   const Eigen::Vector3f stood = T_last_now_ * in_view;
   std::uint32_t best = BlockHint::unknown;
   float least = 1e3F;
   for (const Prediction& prediction : predictions_) {
+    if (label != 255 && prediction.label >= 0 && prediction.label != label) continue;
     const Eigen::Vector3f p = stood + prediction.back;
     if (p.z() < 0.1F || (p - prediction.centre).squaredNorm() > prediction.radius * prediction.radius) continue;
     const float x = grid.column_of(grid.fx * p.x() / p.z() + grid.cx) + 0.5F;
@@ -128,7 +130,7 @@ void MotionObjects::give_hints(const FilterContext& context, const StaticEvidenc
       if (said >= 0.0F || now.image.depth[static_cast<std::size_t>(block)] <= 0.0F) continue;
       BlockHint& hint = hints_[static_cast<std::size_t>(block)];
       if (has_mask) hint.label = context.carried_mask->labels[cell];
-      if (!predictions_.empty()) hint.track = track_before(point(block));
+      if (!predictions_.empty()) hint.track = track_before(point(block), hint.label);
       // What belonged to a thing stays with it on less suspicion.
       if (predictions_.empty() || hint.track == BlockHint::unknown)
         hint.track = said <= static_cast<float>(settings_.suspicion) ? BlockHint::unknown : BlockHint::background;
@@ -158,6 +160,22 @@ void MotionObjects::claim(std::size_t track, std::size_t region) {
       return;
     }
   parts_.push_back({track, {region}});
+}
+
+bool MotionObjects::resembles(const ObjectTrack& track, const Region& region) const {
+  if (track.box().isEmpty()) return true;
+  const float before = track.box().diagonal().norm(), now = region.box.diagonal().norm();
+  constexpr float most = 1.6F;
+  if (now > most * before || before > most * now) return false;
+  // Labels, where they tell.
+  int named = 0, same = 0;
+  const int label = track.label();
+  for (const int block : regions_.blocks(region)) {
+    const std::uint8_t other = hints_[static_cast<std::size_t>(block)].label;
+    named += other != 255 ? 1 : 0;
+    same += other == label ? 1 : 0;
+  }
+  return label < 0 || 2 * named < region.size || 2 * same >= named;
 }
 
 void MotionObjects::assign_regions() {
@@ -199,8 +217,8 @@ void MotionObjects::assign_regions() {
     for (std::size_t k = 0; k < known; ++k) {
       if (part_of(k) != nullptr) continue;
       const ObjectTrack& track = tracks_[k];
-      const double hidden_for = timestamp - track.last_seen();
-      const double reach = 0.3 + 0.5 * hidden_for;
+      if (!resembles(track, region)) continue;
+      const double reach = 0.25 + 0.25 * (timestamp - track.last_seen());  // m
       const double away = (track.position() - middle).norm() / reach;
       if (away < least) least = away, nearest = k;
     }
@@ -264,9 +282,11 @@ void MotionObjects::align(ObjectTrack& track, const Part& part, const Sight& sig
   RigidAlignment::Prior prior;
   prior.translation = (R_then_world * (then->middle - sight.middle)).cast<float>();
   const float change = std::abs(std::log(sight.surface / then->surface));
-  const Eigen::Vector3f extent = track.box().isEmpty() ? Eigen::Vector3f(0.5F, 0.5F, 0.5F) : Eigen::Vector3f(track.box().sizes());
-  prior.deviation =
-      (sight.deviation + then->deviation).cast<float>() + Eigen::Vector3f::Constant(0.3F * change * extent.maxCoeff());
+  const Eigen::Vector3f extent =
+      track.box().isEmpty() ? Eigen::Vector3f(0.5F, 0.5F, 0.5F) : Eigen::Vector3f(track.box().sizes());
+  const double differs = 0.3 * change * extent.maxCoeff();
+  for (int axis = 0; axis < 3; ++axis)
+    prior.deviation[axis] = static_cast<float>(std::hypot(sight.deviation[axis], then->deviation[axis], differs));
   RigidMotion start;
   start.translation = track.is_object() || track.moving()
                           ? (R_then_world * (-interval * track.velocity())).cast<float>()
@@ -275,12 +295,17 @@ void MotionObjects::align(ObjectTrack& track, const Part& part, const Sight& sig
   constexpr float farthest = 0.6F;  // m
   if (!(result.motion.translation.norm() < farthest)) return;
   const Eigen::Matrix3d R_world_then = R_then_world.transpose();
-  constexpr double pose_noise = 0.006;  // m, of two poses of the camera
-  const Eigen::Matrix3d covariance = R_world_then * result.covariance.cast<double>() * R_then_world +
-                                     pose_noise * pose_noise * Eigen::Matrix3d::Identity();
-  const Eigen::Vector3d displacement = R_world_then * -result.motion.translation.cast<double>();
-  const Eigen::Vector3d turned = R_world_then * -geometry::log_so3(result.motion.rotation.cast<double>());
-  track.measure_motion(displacement, covariance, turned, interval, std::max(1.0, interval / interval_));
+  constexpr double pose_noise = 0.006, turning_noise = 0.01;  // m and rad, of two poses of the camera
+  ObjectTrack::Motion motion;
+  motion.displacement = R_world_then * -result.motion.translation.cast<double>();
+  motion.covariance = R_world_then * result.covariance.cast<double>() * R_then_world +
+                      pose_noise * pose_noise * Eigen::Matrix3d::Identity();
+  motion.turned = R_world_then * -geometry::log_so3(Eigen::Matrix3d(result.motion.rotation.cast<double>()));
+  motion.rotation_covariance = R_world_then * result.rotation_covariance.cast<double>() * R_then_world +
+                               turning_noise * turning_noise * Eigen::Matrix3d::Identity();
+  motion.interval = interval;
+  motion.repeats = std::max(1.0, interval / interval_);
+  track.measure_motion(motion);
 }
 
 void MotionObjects::follow(const Part& part) {
@@ -311,8 +336,10 @@ void MotionObjects::follow(const Part& part) {
   sight.middle = T_world_view * (sight.middle / size);
   cut /= size;
   const Eigen::Vector3f extent = box.sizes();
-  sight.deviation = Eigen::Vector3d(0.02 + 0.5 * cut.x() * extent.x(), 0.02 + 0.5 * cut.y() * extent.y(),
-                                    0.03 + 0.2 * (cut.x() + cut.y()) * extent.z());
+  // Of a middle of blocks; more where the thing is cut, and another part of it shows in every frame.
+  const double coarse = 0.004 * (T_world_view.inverse() * sight.middle).z();
+  sight.deviation = Eigen::Vector3d(coarse + 2.0 * cut.x() * extent.x(), coarse + 2.0 * cut.y() * extent.y(),
+                                    coarse + 0.2 * (cut.x() + cut.y()) * extent.z());
   if (interval_ > 0.0) align(track, part, sight);
   track.see(now.image.timestamp, {sight.middle, sight.deviation, T_world_view.linear()});
   track.count_labels(label_counts_);

@@ -56,10 +56,11 @@ class MotionObjects final : public DynamicFilter {
 
   bool keep_up(const FilterContext& context);
   void give_hints(const FilterContext& context, const StaticEvidence& evidence);
-  std::uint32_t track_before(const Eigen::Vector3f& in_view) const;
+  std::uint32_t track_before(const Eigen::Vector3f& in_view, std::uint8_t label) const;
   bool may_join(int block, std::uint32_t name) const;
   void assign_regions();
   void claim(std::size_t track, std::size_t region);
+  bool resembles(const ObjectTrack& track, const Region& region) const;
   bool belongs_to(const Region& region, const Part& part) const;
   void follow(const Part& part);
   void align(ObjectTrack& track, const Part& part, const Sight& sight);
@@ -92,6 +93,7 @@ class MotionObjects final : public DynamicFilter {
     Eigen::Vector3f back;  // from where a point of it is now to where it was in the last view, in that view's frame
     Eigen::Vector3f centre;
     float radius;
+    int label;
   };
   std::vector<Prediction> predictions_;
   Eigen::Isometry3f T_last_now_ = Eigen::Isometry3f::Identity();

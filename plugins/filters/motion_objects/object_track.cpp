@@ -12,27 +12,45 @@ namespace {
 
 constexpr double unknown_speed = 0.5;      // standard deviation of a velocity before it is measured [m/s]
 constexpr double restlessness = 0.5;       // growth of a velocity's variance [(m/s)^2/s]
+constexpr double forgetting_time = 5.0;    // in which a velocity that is not measured falls to 1/e [s]
 constexpr double fading_time = 0.5;        // in which the velocity of what is hidden falls to 1/e [s]
-constexpr double turning_gain = 0.1;       // of the angular velocity, by measurement
+constexpr double unknown_turning = 0.3;    // standard deviation of an angular velocity before it is measured [rad/s]
+constexpr double unsteadiness = 0.2;       // growth of its variance [(rad/s)^2/s]
 constexpr double middle_gain = 0.15;       // of the position, by sight, when all of the thing shows
-constexpr double middle_deviation = 0.02;  // of a middle then [m]
+constexpr double middle_deviation = 0.01;  // of a middle then [m]
+
+/// Kalman's update of a state that is measured itself.
+void update(const Eigen::Vector3d& measured, const Eigen::Matrix3d& noise, Eigen::Vector3d& state,
+            Eigen::Matrix3d& covariance) {
+  const Eigen::Matrix3d gain = covariance * (covariance + noise).inverse();
+  state += gain * (measured - state);
+  covariance -= (gain * covariance).eval();
+  covariance = (0.5 * (covariance + covariance.transpose())).eval();
+}
 
 }  // namespace
 
 ObjectTrack::ObjectTrack(std::uint32_t name, double timestamp, const ObjectSight& sight)
-    : name_(name), velocity_covariance_(unknown_speed * unknown_speed * Eigen::Matrix3d::Identity()) {
+    : name_(name),
+      velocity_covariance_(unknown_speed * unknown_speed * Eigen::Matrix3d::Identity()),
+      angular_covariance_(unknown_turning * unknown_turning * Eigen::Matrix3d::Identity()) {
   object_.T_world_object.translation() = sight.middle;
   object_.first_seen = object_.last_seen = timestamp;
 }
 
 void ObjectTrack::predict(double interval) {
-  if (!seen_) object_.velocity *= std::exp(-interval / fading_time), object_.angular_velocity.setZero();
+  if (!seen_) object_.angular_velocity.setZero();
+  const double kept = std::exp(-interval / (seen_ ? forgetting_time : fading_time));
+  object_.velocity *= kept;
   object_.T_world_object.translation() += interval * object_.velocity;
   const Eigen::Matrix3d turn =
       geometry::exp_so3(Eigen::Vector3d(interval * object_.angular_velocity)).toRotationMatrix();
   object_.T_world_object.linear() = turn * object_.T_world_object.linear();
   object_.T_world_object = geometry::orthonormalised(object_.T_world_object);
+  velocity_covariance_ *= kept * kept;
   velocity_covariance_ += restlessness * interval * Eigen::Matrix3d::Identity();
+  angular_covariance_ *= kept * kept;
+  angular_covariance_ += unsteadiness * interval * Eigen::Matrix3d::Identity();
   seen_ = false;
 }
 
@@ -46,14 +64,11 @@ void ObjectTrack::see(double timestamp, const ObjectSight& sight) {
   seen_ = true;
 }
 
-void ObjectTrack::measure_motion(const Eigen::Vector3d& displacement, const Eigen::Matrix3d& covariance,
-                                 const Eigen::Vector3d& turned, double interval, double repeats) {
-  const Eigen::Matrix3d noise = covariance * (repeats / (interval * interval));
-  const Eigen::Matrix3d gain = velocity_covariance_ * (velocity_covariance_ + noise).inverse();
-  object_.velocity += gain * (displacement / interval - object_.velocity);
-  velocity_covariance_ -= gain * velocity_covariance_;
-  velocity_covariance_ = 0.5 * (velocity_covariance_ + velocity_covariance_.transpose().eval());
-  object_.angular_velocity += turning_gain * (turned / interval - object_.angular_velocity);
+void ObjectTrack::measure_motion(const Motion& motion) {
+  const double scale = motion.repeats / (motion.interval * motion.interval);
+  update(motion.displacement / motion.interval, scale * motion.covariance, object_.velocity, velocity_covariance_);
+  update(motion.turned / motion.interval, scale * motion.rotation_covariance, object_.angular_velocity,
+         angular_covariance_);
 }
 
 void ObjectTrack::measure_box(const Eigen::AlignedBox3f& box) {
@@ -115,6 +130,7 @@ void ObjectTrack::transform(const Eigen::Isometry3d& T_new_old) {
   object_.velocity = T_new_old.linear() * object_.velocity;
   object_.angular_velocity = T_new_old.linear() * object_.angular_velocity;
   velocity_covariance_ = T_new_old.linear() * velocity_covariance_ * T_new_old.linear().transpose();
+  angular_covariance_ = T_new_old.linear() * angular_covariance_ * T_new_old.linear().transpose();
   travelled_ = T_new_old.linear() * travelled_;
 }
 

@@ -23,9 +23,9 @@ struct ObjectSight {
   Eigen::Matrix3d R_world_camera;
 };
 
-/// A thing over time. Its velocity is a random walk that is measured by alignment (Kalman filter); its position follows
-/// the velocity and is drawn to the middle of what is seen of it, the less the less of it is seen; its orientation
-/// follows the angular velocity.
+/// A thing over time. Its velocity and angular velocity are random walks that alignment measures (Kalman filters); its
+/// position follows the velocity and is drawn to the middle of what is seen of it, the less the less of it is seen; its
+/// orientation follows the angular velocity.
 ///
 /// A track begins as a candidate. It becomes an object, and gets an id, once it has moved faster than the rule says,
 /// three standard deviations at least, for long enough.
@@ -37,10 +37,16 @@ class ObjectTrack {
   void predict(double interval);
   /// Seen in the frame that was predicted, at `timestamp`.
   void see(double timestamp, const ObjectSight& sight);
-  /// Its displacement over `interval` seconds, with covariance, and its rotation vector over them. `repeats`: how many
-  /// frames share most of the interval, and so its errors.
-  void measure_motion(const Eigen::Vector3d& displacement, const Eigen::Matrix3d& covariance,
-                      const Eigen::Vector3d& turned, double interval, double repeats);
+  /// A motion over some seconds, in the world.
+  struct Motion {
+    Eigen::Vector3d displacement;         ///< [m]
+    Eigen::Matrix3d covariance;           ///< [m^2]
+    Eigen::Vector3d turned;               ///< rotation vector [rad]
+    Eigen::Matrix3d rotation_covariance;  ///< [rad^2]
+    double interval;                      ///< [s]
+    double repeats;                       ///< how many frames share most of the interval, and so its errors
+  };
+  void measure_motion(const Motion& motion);
   /// Extent of what is seen: box in the object frame.
   void measure_box(const Eigen::AlignedBox3f& box);
   /// Labels of the blocks that it shows: how many of each; `all` is their sum.
@@ -66,7 +72,7 @@ class ObjectTrack {
  private:
   std::uint32_t name_;
   MovingObject object_;
-  Eigen::Matrix3d velocity_covariance_;
+  Eigen::Matrix3d velocity_covariance_, angular_covariance_;
   Eigen::Vector3d travelled_ = Eigen::Vector3d::Zero();  // since it began to move
   double moving_for_ = 0.0, resting_for_ = 0.0;          // [s]
   bool seen_ = true;                                     // in the frame predicted last

@@ -87,8 +87,9 @@ AlignmentResult RigidAlignment::align(const ObjectPoints& now, const DepthView& 
     motion.rotation =
         geometry::exp_so3(step.tail<3>().cast<double>()).toRotationMatrix().cast<float>() * motion.rotation;
   }
-  const Matrix6f full = H.selfadjointView<Eigen::Lower>();
-  result.covariance = full.inverse().topLeftCorner<3, 3>();
+  const Matrix6f covariance = Matrix6f(H.selfadjointView<Eigen::Lower>()).inverse();
+  result.covariance = covariance.topLeftCorner<3, 3>();
+  result.rotation_covariance = covariance.bottomRightCorner<3, 3>();
   return result;
 }
 

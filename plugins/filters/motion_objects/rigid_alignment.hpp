@@ -28,14 +28,16 @@ struct ObjectPoints {
 
 struct AlignmentResult {
   RigidMotion motion;
-  Eigen::Matrix3f covariance = Eigen::Matrix3f::Zero();  ///< of the translation [m^2]
-  int inliers = 0;                                       ///< points whose depth agrees then
+  Eigen::Matrix3f covariance = Eigen::Matrix3f::Zero();           ///< of the translation [m^2]
+  Eigen::Matrix3f rotation_covariance = Eigen::Matrix3f::Zero();  ///< [rad^2]
+  int inliers = 0;                                                ///< points whose depth agrees then
 };
 
-/// Finds the rigid motion that takes the points of a thing back to where an earlier view shows them: point-to-plane
-/// distances and differences of brightness to the points at which they project (Co-Fusion, Ruenz and Agapito 2017,
-/// section V-A, equations 2 to 4: E = E_icp + lambda E_rgb, by Gauss and Newton), with Cauchy weights, since things
-/// bend. Distances are taken along the ray and weighed by the noise of depth.
+/// Finds the rigid motion that takes the points of a thing back to where an earlier view shows them: the joint energy
+/// of Co-Fusion (Ruenz and Agapito 2017, section on tracking: for each model the least E_icp + lambda E_rgb, squared
+/// distances from points to the planes, and squared differences of brightness to the pixels, that they project to), by
+/// Gauss and Newton, with Cauchy weights, since things bend. Distances are taken along the ray and weighed by the noise
+/// of depth.
 class RigidAlignment {
  public:
   /// What is expected of the motion; it decides where the surface does not.
