@@ -130,6 +130,40 @@ TEST(OverlayPainter, DrawsFeaturesByProbabilityAndMapPoint) {
   EXPECT_EQ(pixel(picture, 123, 30), cv::Vec3b(0, 255, 0));
 }
 
+TEST(OverlayPainter, DrawsWhatMovesWithItsVelocity) {
+  Camera camera = wide_camera();
+  camera.distortion = {};
+  Scene scene(camera);
+  MovingObject object;
+  object.id = 2;  // white
+  object.class_name = "person";
+  object.velocity = Eigen::Vector3d(0.6, 0, 0);
+  object.box = Eigen::AlignedBox3f(Eigen::Vector3f(-0.3F, -0.5F, -0.1F), Eigen::Vector3f(0.3F, 0.5F, 0.1F));
+  object.moving = true;
+  scene.result.timestamp = object.last_seen = 5.0;
+  scene.result.T_world_camera = Eigen::Isometry3d(Eigen::Translation3d(1, 0, 0));
+  object.T_world_object.translation() = Eigen::Vector3d(1, 0, 2);  // two metres before the camera
+  scene.result.objects = {object};
+  EXPECT_EQ(overlay::object_text(object), "2 person 0.60 m/s");
+  overlay::Painter painter(camera, false);
+  const auto bright = [](const cv::Mat& picture, int x, int y) { return pixel(picture, x, y)[1] > grey + 60; };
+  const auto differs = [](const cv::Mat& picture, int x, int y) {
+    return pixel(picture, x, y) != cv::Vec3b(grey, grey, grey);
+  };
+  const cv::Mat moving = painter.paint(scene.sensor_frame, scene.frame, scene.result).clone();
+  EXPECT_TRUE(bright(moving, 95, 60));  // the arrow, 33 px to the right
+  EXPECT_TRUE(bright(moving, 97, 50) || bright(moving, 98, 50) || bright(moving, 96, 50));  // the nearer right edge
+  EXPECT_FALSE(differs(moving, 120, 60));
+  scene.result.objects.front().moving = false;
+  const cv::Mat standing = painter.paint(scene.sensor_frame, scene.frame, scene.result).clone();
+  EXPECT_LT(cv::countNonZero(standing.reshape(1) != grey), cv::countNonZero(moving.reshape(1) != grey));
+  // What lies behind the camera is not drawn.
+  scene.result.objects.front().T_world_object.translation().z() = -2.0;
+  const cv::Mat behind = painter.paint(scene.sensor_frame, scene.frame, scene.result).clone();
+  EXPECT_FALSE(differs(behind, 97, 50));
+  EXPECT_FALSE(differs(behind, 95, 60));
+}
+
 TEST(OverlayPainter, PaintsFramesWithoutACoarseView) {
   const Camera camera = wide_camera();
   Scene scene(camera);

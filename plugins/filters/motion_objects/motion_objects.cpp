@@ -295,14 +295,13 @@ void MotionObjects::align(ObjectTrack& track, const Part& part, const Sight& sig
   constexpr float farthest = 0.6F;  // m
   if (!(result.motion.translation.norm() < farthest)) return;
   const Eigen::Matrix3d R_world_then = R_then_world.transpose();
-  constexpr double pose_noise = 0.006, turning_noise = 0.01;  // m and rad, of two poses of the camera
   ObjectTrack::Motion motion;
   motion.displacement = R_world_then * -result.motion.translation.cast<double>();
-  motion.covariance = R_world_then * result.covariance.cast<double>() * R_then_world +
-                      pose_noise * pose_noise * Eigen::Matrix3d::Identity();
   motion.turned = R_world_then * -geometry::log_so3(Eigen::Matrix3d(result.motion.rotation.cast<double>()));
-  motion.rotation_covariance = R_world_then * result.rotation_covariance.cast<double>() * R_then_world +
-                               turning_noise * turning_noise * Eigen::Matrix3d::Identity();
+  motion.covariance = R_world_then * result.covariance.cast<double>() * R_then_world;
+  motion.rotation_covariance = R_world_then * result.rotation_covariance.cast<double>() * R_then_world;
+  motion.pose_noise = 0.006;
+  motion.turning_noise = 0.01;
   motion.interval = interval;
   motion.repeats = std::max(1.0, interval / interval_);
   track.measure_motion(motion);

@@ -65,9 +65,13 @@ void ObjectTrack::see(double timestamp, const ObjectSight& sight) {
 }
 
 void ObjectTrack::measure_motion(const Motion& motion) {
-  const double scale = motion.repeats / (motion.interval * motion.interval);
-  update(motion.displacement / motion.interval, scale * motion.covariance, object_.velocity, velocity_covariance_);
-  update(motion.turned / motion.interval, scale * motion.rotation_covariance, object_.angular_velocity,
+  const double per_second = 1.0 / motion.interval;
+  const auto noise = [&](const Eigen::Matrix3d& covariance, double own) -> Eigen::Matrix3d {
+    return (motion.repeats * covariance + own * own * Eigen::Matrix3d::Identity()) * (per_second * per_second);
+  };
+  update(per_second * motion.displacement, noise(motion.covariance, motion.pose_noise), object_.velocity,
+         velocity_covariance_);
+  update(per_second * motion.turned, noise(motion.rotation_covariance, motion.turning_noise), object_.angular_velocity,
          angular_covariance_);
 }
 

@@ -40,9 +40,10 @@ class ObjectTrack {
   /// A motion over some seconds, in the world.
   struct Motion {
     Eigen::Vector3d displacement;         ///< [m]
-    Eigen::Matrix3d covariance;           ///< [m^2]
     Eigen::Vector3d turned;               ///< rotation vector [rad]
-    Eigen::Matrix3d rotation_covariance;  ///< [rad^2]
+    Eigen::Matrix3d covariance;           ///< of the displacement, as far as frames share it [m^2]
+    Eigen::Matrix3d rotation_covariance;  ///< the same of the rotation [rad^2]
+    double pose_noise, turning_noise;     ///< of the camera's own motion, new in every frame [m, rad]
     double interval;                      ///< [s]
     double repeats;                       ///< how many frames share most of the interval, and so its errors
   };
