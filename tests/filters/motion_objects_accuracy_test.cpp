@@ -48,7 +48,7 @@ TEST(MotionObjectsAccuracy, APushedChairIsFollowedWithoutMasks) {
     return simulator.object(each).name == "chair 1";
   });
   ASSERT_NE(chair, numbered.end());
-  const auto truth_at = [&](double time) { return simulator.object(*chair).pose(time).translation(); };
+  const auto truth_at = [&](double time) -> Vector3d { return simulator.object(*chair).pose(time).translation(); };
 
   CreationContext context;
   context.camera = camera;
