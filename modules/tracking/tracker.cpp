@@ -63,6 +63,7 @@ void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
     const StageTimer timer(result.times, "keyframe");
     result.is_keyframe = !localises_only_ && needs_keyframe(result);
     result.trouble = TrackingTrouble::none;
+    result.objects = filters_.evidence().objects();
     if (result.is_keyframe) local_map_.write_counts(map_);  // local mapping judges points by them
   }
   remember(result);

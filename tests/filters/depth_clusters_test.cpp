@@ -14,6 +14,7 @@
 namespace holdfast::cluster_plugin {
 namespace {
 
+using depth_blocks::ViewMaker;
 using test::JudgedFrames;
 using test::Surface;
 

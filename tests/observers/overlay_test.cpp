@@ -130,6 +130,39 @@ TEST(OverlayPainter, DrawsFeaturesByProbabilityAndMapPoint) {
   EXPECT_EQ(pixel(picture, 123, 30), cv::Vec3b(0, 255, 0));
 }
 
+TEST(OverlayPainter, DrawsWhatMovesWithItsVelocity) {
+  Camera camera = wide_camera();
+  camera.distortion = {};
+  Scene scene(camera);
+  MovingObject object;
+  object.id = 2;  // white
+  object.class_name = "person";
+  object.velocity = Eigen::Vector3d(0.6, 0, 0);
+  object.box = Eigen::AlignedBox3f(Eigen::Vector3f(-0.3F, -0.5F, -0.1F), Eigen::Vector3f(0.3F, 0.5F, 0.1F));
+  object.moving = true;
+  scene.result.timestamp = object.last_seen = 5.0;
+  scene.result.T_world_camera = Eigen::Isometry3d(Eigen::Translation3d(1, 0, 0));
+  object.T_world_object.translation() = Eigen::Vector3d(1, 0, 2);  // two metres before the camera
+  scene.result.objects = {object};
+  EXPECT_EQ(overlay::object_text(object), "2 person 0.60 m/s");
+  overlay::Painter painter(camera, false);
+  const auto bright = [](const cv::Mat& picture, int x, int y) { return pixel(picture, x, y)[1] > grey + 60; };
+  const auto differs = [](const cv::Mat& picture, int x, int y) {
+    return pixel(picture, x, y) != cv::Vec3b(grey, grey, grey);
+  };
+  const cv::Mat moving = painter.paint(scene.sensor_frame, scene.frame, scene.result).clone();
+  // The nearer right edge of the box, above the text.
+  EXPECT_TRUE(bright(moving, 96, 45) || bright(moving, 97, 45) || bright(moving, 98, 45));
+  EXPECT_FALSE(differs(moving, 120, 45));
+  scene.result.objects.front().moving = false;
+  const cv::Mat standing = painter.paint(scene.sensor_frame, scene.frame, scene.result).clone();
+  EXPECT_LT(cv::countNonZero(standing.reshape(1) != grey), cv::countNonZero(moving.reshape(1) != grey));
+  // What lies behind the camera is not drawn.
+  scene.result.objects.front().T_world_object.translation().z() = -2.0;
+  const cv::Mat behind = painter.paint(scene.sensor_frame, scene.frame, scene.result).clone();
+  EXPECT_FALSE(differs(behind, 96, 45) || differs(behind, 97, 45) || differs(behind, 98, 45));
+}
+
 TEST(OverlayPainter, PaintsFramesWithoutACoarseView) {
   const Camera camera = wide_camera();
   Scene scene(camera);

@@ -4,8 +4,10 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "holdfast/core/id.hpp"
+#include "holdfast/core/moving_object.hpp"
 #include "holdfast/core/stage_times.hpp"
 
 namespace holdfast {
@@ -49,6 +51,8 @@ struct FrameResult {
   int inliers = 0;          ///< of those, after the motion-only adjustment
   bool is_keyframe = false;
   KeyFrameId keyframe;            ///< the keyframe made of this frame, or the reference keyframe
+  /// What moves or has moved, in the order of ids, when a filter tracks it (`motion_objects`); empty for a lost frame.
+  std::vector<MovingObject> objects;
   double tracking_seconds = 0.0;  ///< from the images to the pose: all but decoding them and local mapping
   StageTimes times;
 };

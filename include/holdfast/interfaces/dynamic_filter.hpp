@@ -10,6 +10,7 @@
 #include "holdfast/core/frame.hpp"
 #include "holdfast/core/map.hpp"
 #include "holdfast/core/module.hpp"
+#include "holdfast/core/moving_object.hpp"
 #include "holdfast/core/sensor_frame.hpp"
 #include "holdfast/interfaces/carried_mask.hpp"
 #include "holdfast/interfaces/segmenter.hpp"
@@ -73,6 +74,7 @@ class StaticEvidence {
     statements_.clear();
     point_statements_.clear();
     stages_.clear();
+    objects_.clear();
   }
 
   /// Names the stage whose statements follow; the chain calls it before each filter.
@@ -87,6 +89,9 @@ class StaticEvidence {
   /// Adds evidence about what a cell of the frame's coarse view shows; it serves the dense results, not the pose.
   void add_cell(std::size_t cell, float log_odds) { cells_[cell] += log_odds; }
 
+  /// Tells of a thing that moves; it reaches the observers with the frame's result and is no evidence by itself.
+  void report(const MovingObject& object) { objects_.push_back(object); }
+
   std::size_t size() const { return prior_.size(); }
   float log_odds(std::size_t feature) const { return prior_[feature] + measurement_[feature]; }
   float prior(std::size_t feature) const { return prior_[feature]; }
@@ -94,6 +99,7 @@ class StaticEvidence {
   const std::vector<float>& cells() const { return cells_; }
   const std::vector<Statement>& statements() const { return statements_; }
   const std::vector<PointStatement>& point_statements() const { return point_statements_; }
+  const std::vector<MovingObject>& objects() const { return objects_; }
   const std::vector<std::string>& stages() const { return stages_; }
 
  private:
@@ -103,6 +109,7 @@ class StaticEvidence {
   std::vector<Statement> statements_;
   std::vector<PointStatement> point_statements_;
   std::vector<std::string> stages_;
+  std::vector<MovingObject> objects_;
 };
 
 /// Judges which features belong to the static world by adding evidence. An empty chain says nothing, so every feature

@@ -6,6 +6,8 @@
 
 namespace holdfast::cluster_plugin {
 
+using depth_blocks::Surface;
+
 namespace {
 
 constexpr float largest_shift = 6.0F, unknown_shift = 1e3F;

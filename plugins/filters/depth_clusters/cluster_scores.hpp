@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "depth_view.hpp"
+#include "holdfast/depth_blocks/depth_view.hpp"
 #include "k_means.hpp"
 #include "motion_correction.hpp"
 

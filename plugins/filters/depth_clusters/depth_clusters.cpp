@@ -90,26 +90,7 @@ void DepthClusters::say(const Frame& frame, const DepthView& now, StaticEvidence
                       std::clamp((score - doubtful) / (stands - doubtful), 0.0F, 1.0F);
   }
   for (std::size_t i = 0; i < frame.size(); ++i) {
-    const float x = grid.column_of(frame.x[i]) + 0.5F, y = grid.row_of(frame.y[i]) + 0.5F;
-    if (!(x >= 0.0F) || !(y >= 0.0F)) continue;
-    const int column = static_cast<int>(x), row = static_cast<int>(y);
-    if (column >= grid.columns || row >= grid.rows) continue;
-    // The block at the feature's own depth: at an edge the block below it may show what is beside.
-    int best = -1;
-    float least = 0.15F * std::max(frame.depth[i], 0.1F);
-    for (int r = std::max(0, row - 1); r <= std::min(grid.rows - 1, row + 1); ++r)
-      for (int c = std::max(0, column - 1); c <= std::min(grid.columns - 1, column + 1); ++c) {
-        const int block = r * grid.columns + c;
-        const float depth = now.depth[static_cast<std::size_t>(block)];
-        if (depth <= 0.0F) continue;
-        const bool centre = r == row && c == column;
-        if (!frame.has_depth(i)) {
-          if (centre) best = block;
-          continue;
-        }
-        const float difference = std::abs(depth - frame.depth[i]) - (centre ? 0.02F * depth : 0.0F);
-        if (difference < least) least = difference, best = block;
-      }
+    const int best = block_of(grid, now, frame, i);
     if (best < 0) continue;
     const std::uint8_t name = cluster[static_cast<std::size_t>(best)];
     if (name != KMeans::none && log_odds[name] != 0.0F) evidence.add(i, log_odds[name]);

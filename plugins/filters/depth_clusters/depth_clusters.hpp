@@ -5,12 +5,14 @@
 #include <vector>
 
 #include "cluster_scores.hpp"
-#include "depth_view.hpp"
+#include "holdfast/depth_blocks/depth_view.hpp"
 #include "holdfast/interfaces/dynamic_filter.hpp"
 #include "k_means.hpp"
 #include "settings.hpp"
 
 namespace holdfast::cluster_plugin {
+
+using depth_blocks::ViewMaker;
 
 /// Judges clusters of the depth image by what they look like under the camera's motion, before features are matched
 /// and without any network: blocks of a small image are divided by k-means; the frame is carried into one a quarter of

@@ -4,9 +4,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "depth_view.hpp"
+#include "holdfast/depth_blocks/depth_view.hpp"
 
 namespace holdfast::cluster_plugin {
+
+using depth_blocks::BlockGrid;
+using depth_blocks::DepthView;
 
 /// Divides the blocks of a view into clusters (k-means, Lloyd's iterations) by where they lie: direction and logarithm
 /// of depth, so that distances count in proportion to depth. Begins with centres on a grid, later with those of the

@@ -10,6 +10,8 @@
 
 namespace holdfast::cluster_plugin {
 
+using depth_blocks::Surface;
+
 /// Normal equations of every second row and column of blocks. Returns the mean cost, between 0 and 1, of the surface
 /// that both views show.
 float MotionCorrection::sum_up(const DepthView& now, const DepthView& past, const std::vector<float>& trust,

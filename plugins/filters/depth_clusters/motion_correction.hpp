@@ -4,15 +4,13 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "depth_view.hpp"
+#include "holdfast/depth_blocks/depth_view.hpp"
 
 namespace holdfast::cluster_plugin {
 
-/// Limit of what noise makes of a difference of two depths [m]: base + growth * depth^2.
-struct DepthNoise {
-  float base, growth;
-  float at(float depth) const { return base + growth * depth * depth; }
-};
+using depth_blocks::BlockGrid;
+using depth_blocks::DepthNoise;
+using depth_blocks::DepthView;
 
 /// How much surface a block shows, up to a factor: the square of its depth, limited where depth becomes vague.
 inline float surface_of(float depth) {

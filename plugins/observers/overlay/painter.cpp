@@ -50,6 +50,12 @@ std::string status_text(const FrameResult& result) {
   return text;
 }
 
+std::string object_text(const MovingObject& object) {
+  char speed[32];
+  std::snprintf(speed, sizeof(speed), " %.2f m/s", object.speed());
+  return std::to_string(object.id) + (object.class_name.empty() ? "" : " " + object.class_name) + speed;
+}
+
 Painter::Painter(const Camera& camera, bool side_by_side) : camera_(camera), grid_(CoarseSampler(camera).grid()) {
   cell_.reserve(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
   for (int y = 0; y < camera.height; ++y)
@@ -87,6 +93,38 @@ void Painter::tint(const cv::Mat& colour, const CoarseView& coarse, cv::Mat& out
   }
 }
 
+void Painter::draw(const MovingObject& object, const FrameResult& result, cv::Mat& out) const {
+  if (!result.T_world_camera) return;
+  const Eigen::Isometry3d T_camera_object = result.T_world_camera->inverse() * object.T_world_object;
+  constexpr double nearest = 0.2;  // m
+  const auto pixel = [&](const Eigen::Vector3d& in_camera) {
+    const Eigen::Vector2d raw = camera_.distort(camera_.project(in_camera));
+    return cv::Point(static_cast<int>(std::lround(std::clamp(raw.x(), -9999.0, 9999.0))),
+                     static_cast<int>(std::lround(std::clamp(raw.y(), -9999.0, 9999.0))));
+  };
+  // Colours by id, far from those of features; what stands is thin, what is hidden grey.
+  constexpr std::array<Tint, 4> colours{{{255, 255, 0}, {255, 0, 255}, {255, 255, 255}, {255, 160, 90}}};
+  const bool hidden = object.last_seen < result.timestamp;
+  const Tint& tint = colours[object.id % colours.size()];
+  const cv::Scalar colour = hidden ? cv::Scalar(160, 160, 160) : cv::Scalar(tint[0], tint[1], tint[2]);
+  std::array<Eigen::Vector3d, 8> corners;
+  for (unsigned i = 0; i < 8; ++i)
+    corners[i] = T_camera_object * object.box.corner(static_cast<Eigen::AlignedBox3f::CornerType>(i)).cast<double>();
+  for (unsigned i = 0; i < 8; ++i)
+    for (unsigned axis = 1; axis < 8; axis *= 2)
+      if ((i & axis) == 0 && corners[i].z() > nearest && corners[i | axis].z() > nearest)
+        cv::line(out, pixel(corners[i]), pixel(corners[i | axis]), colour, 1, cv::LINE_AA);
+  const Eigen::Vector3d centre = T_camera_object.translation();
+  const Eigen::Vector3d ahead = centre + result.T_world_camera->linear().transpose() * object.velocity;
+  if (centre.z() <= nearest) return;
+  const cv::Point place = pixel(centre);
+  if (object.moving && ahead.z() > nearest) cv::arrowedLine(out, place, pixel(ahead), colour, 2, cv::LINE_AA, 0, 0.15);
+  const cv::Point written(std::clamp(place.x - 40, 2, std::max(2, out.cols - 140)),
+                          std::clamp(place.y + 5, 12, out.rows - 4));
+  cv::putText(out, object_text(object), written, cv::FONT_HERSHEY_SIMPLEX, 0.45, {0, 0, 0}, 3, cv::LINE_AA);
+  cv::putText(out, object_text(object), written, cv::FONT_HERSHEY_SIMPLEX, 0.45, colour, 1, cv::LINE_AA);
+}
+
 const cv::Mat& Painter::paint(const SensorFrame& sensor_frame, const Frame& frame, const FrameResult& result) {
   const cv::Mat& colour = sensor_frame.colour;
   HOLDFAST_CHECK(colour.type() == CV_8UC3 && colour.cols == camera_.width && colour.rows == camera_.height,
@@ -102,6 +140,7 @@ const cv::Mat& Painter::paint(const SensorFrame& sensor_frame, const Frame& fram
     const float probability = i < frame.static_probability.size() ? frame.static_probability[i] : 1.0F;
     cv::circle(right, place, shows_point ? 2 : 3, feature_colour(probability), shows_point ? cv::FILLED : 1);
   }
+  for (const MovingObject& object : result.objects) draw(object, result, right);
   cv::Mat line = picture_.rowRange(colour.rows, picture_.rows);
   line.setTo(cv::Scalar(32, 32, 32));
   cv::putText(line, status_text(result), {8, text_height - 8}, cv::FONT_HERSHEY_SIMPLEX, 0.42, {255, 255, 255}, 1,

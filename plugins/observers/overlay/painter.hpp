@@ -20,8 +20,8 @@ class Painter {
 
   /// 8UC3, valid until the next call. The colour image, its classes tinted blue (class 1; further classes in other
   /// colours), darkened where a mask exists and says "unknown", tinted red where the coarse view says "moves", the
-  /// features from green (static) over yellow to red (moving), filled when they show a map point; below it a line of
-  /// text.
+  /// features from green (static) over yellow to red (moving), filled when they show a map point; boxes around what
+  /// moves, with its velocity as an arrow; below it a line of text.
   const cv::Mat& paint(const SensorFrame& sensor_frame, const Frame& frame, const FrameResult& result);
   cv::Size size() const { return picture_.size(); }
 
@@ -29,6 +29,7 @@ class Painter {
 
  private:
   void tint(const cv::Mat& colour, const CoarseView& coarse, cv::Mat& out) const;
+  void draw(const MovingObject& object, const FrameResult& result, cv::Mat& out) const;
 
   Camera camera_;
   CoarseGrid grid_;
@@ -40,5 +41,7 @@ class Painter {
 cv::Scalar feature_colour(float static_probability);
 /// "frame 12   4.033 s   tracked   inliers 310   static 801 of 1000".
 std::string status_text(const FrameResult& result);
+/// "3 person 0.62 m/s".
+std::string object_text(const MovingObject& object);
 
 }  // namespace holdfast::overlay

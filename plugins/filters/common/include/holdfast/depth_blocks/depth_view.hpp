@@ -10,7 +10,7 @@
 #include "holdfast/core/coarse_view.hpp"
 #include "holdfast/core/frame.hpp"
 
-namespace holdfast::cluster_plugin {
+namespace holdfast::depth_blocks {
 
 /// Where the blocks of a depth view lie: every second cell of the coarse view, with the rays through their centres.
 struct BlockGrid {
@@ -27,6 +27,12 @@ struct BlockGrid {
   float fx, fy, cx, cy;
   float first_x, first_y, inverse_step;
   std::vector<float> ray_x, ray_y;  ///< by column and row: x/z and y/z
+};
+
+/// Limit of what noise makes of a difference of two depths [m]: base + growth * depth^2.
+struct DepthNoise {
+  float base, growth;
+  float at(float depth) const { return base + growth * depth * depth; }
 };
 
 /// A frame in blocks. Entry row * columns + column of every array belongs to a block.
@@ -67,4 +73,8 @@ class ViewMaker {
 /// Looks a view up at fractions of columns and rows.
 Surface surface_at(const BlockGrid& grid, const DepthView& view, float column, float row);
 
-}  // namespace holdfast::cluster_plugin
+/// The block that shows what a feature shows, or -1: at an edge the block below the feature may show what is beside, so
+/// of those around it the one at the feature's own depth is taken.
+int block_of(const BlockGrid& grid, const DepthView& view, const Frame& frame, std::size_t feature);
+
+}  // namespace holdfast::depth_blocks

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "depth_view.hpp"
+#include "holdfast/depth_blocks/depth_view.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace holdfast::cluster_plugin {
+namespace holdfast::depth_blocks {
 
 BlockGrid::BlockGrid(const Camera& camera, const CoarseGrid& coarse)
     : columns(coarse.columns / stride),
@@ -81,4 +81,27 @@ Surface surface_at(const BlockGrid& grid, const DepthView& view, float column, f
   return surface;
 }
 
-}  // namespace holdfast::cluster_plugin
+int block_of(const BlockGrid& grid, const DepthView& view, const Frame& frame, std::size_t feature) {
+  const float x = grid.column_of(frame.x[feature]) + 0.5F, y = grid.row_of(frame.y[feature]) + 0.5F;
+  if (!(x >= 0.0F) || !(y >= 0.0F)) return -1;
+  const int column = static_cast<int>(x), row = static_cast<int>(y);
+  if (column >= grid.columns || row >= grid.rows) return -1;
+  int best = -1;
+  float least = 0.15F * std::max(frame.depth[feature], 0.1F);
+  for (int r = std::max(0, row - 1); r <= std::min(grid.rows - 1, row + 1); ++r)
+    for (int c = std::max(0, column - 1); c <= std::min(grid.columns - 1, column + 1); ++c) {
+      const int block = r * grid.columns + c;
+      const float depth = view.depth[static_cast<std::size_t>(block)];
+      if (depth <= 0.0F) continue;
+      const bool centre = r == row && c == column;
+      if (!frame.has_depth(feature)) {
+        if (centre) best = block;
+        continue;
+      }
+      const float difference = std::abs(depth - frame.depth[feature]) - (centre ? 0.02F * depth : 0.0F);
+      if (difference < least) least = difference, best = block;
+    }
+  return best;
+}
+
+}  // namespace holdfast::depth_blocks

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/plugin/plugin.hpp"
+
+#include "motion_objects.hpp"
+
+HOLDFAST_PLUGIN(motion_objects, registry) {
+  using namespace holdfast;
+  registry.add<DynamicFilter, object_plugin::MotionObjects, object_plugin::ObjectSettings>(
+      {.name = "motion_objects",
+       .summary = "Follows what moves, each thing with a rigid motion of its own, and reports it to observers.",
+       .paper =
+           "Ruenz, Agapito: Co-Fusion: Real-time Segmentation, Tracking and Fusion of Multiple Objects. ICRA 2017. "
+           "Ruenz, Buffier, Agapito: MaskFusion: Real-Time Recognition, Tracking and Reconstruction of Multiple "
+           "Moving Objects. ISMAR 2018"});
+}

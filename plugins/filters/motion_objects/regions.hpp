@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "holdfast/depth_blocks/depth_view.hpp"
+
+namespace holdfast::object_plugin {
+
+using depth_blocks::BlockGrid;
+
+/// What is known of a block before the frame is divided.
+struct BlockHint {
+  static constexpr std::uint32_t background = 0xFFFFFFFF;  ///< does not belong to anything that may move
+  static constexpr std::uint32_t unknown = 0;              ///< may move, and to what it belongs is to be found
+
+  std::uint32_t track = background;  ///< or the track that was here before
+  std::uint8_t label = 255;          ///< of the mask, 255 = unknown
+};
+
+/// A part of the frame that hangs together in depth.
+struct Region {
+  std::uint32_t track = BlockHint::unknown;
+  int first = 0, size = 0;       ///< of its blocks in Regions::blocks()
+  Eigen::AlignedBox3f box;       ///< camera frame [m]
+  Eigen::Vector3f middle;        ///< mean of its points, camera frame [m]
+  float surface = 0.0F;          ///< facing the camera [m^2]
+  Eigen::Vector2f cut = {0, 0};  ///< share of its left and right ends, and of its upper and lower ones, at which the
+                                 ///< image ends or something nearer begins
+  int inner = 0;                 ///< blocks with blocks of it on all four sides
+};
+
+/// Divides what may move in a frame into parts that hang together in depth and were one before (Co-Fusion, Ruenz and
+/// Agapito 2017, section IV-A: connected components of what moves become models). Keeps its buffers.
+class Regions {
+ public:
+  /// Blocks of one surface differ in depth by less [m].
+  static float continuity(float depth) { return 0.04F + 0.02F * depth; }
+
+  /// Unknown blocks first join a track beside them, up to `growth` blocks deep where `may_join(block, track)` - the
+  /// first step whatever the mask says, since its outlines are vague; then regions are connected blocks of one track,
+  /// or of none and of one label where the mask tells. Regions come in the order of their first block.
+  template <class MayJoin>
+  void divide(const BlockGrid& grid, const std::vector<float>& depth, std::vector<BlockHint>& hints, int growth,
+              const MayJoin& may_join) {
+    begin(hints);
+    for (int step = 0; step < growth && !front_.empty(); ++step) {
+      next_front_.clear();
+      for (const int block : front_)
+        for_each_beside(grid, depth, block, [&](int other) {
+          BlockHint& hint = hints[static_cast<std::size_t>(other)];
+          const BlockHint& here = hints[static_cast<std::size_t>(block)];
+          if (hint.track != BlockHint::unknown || (step > 0 && !agree(here, hint))) return;
+          if (!may_join(other, here.track)) return;
+          hint.track = here.track;
+          next_front_.push_back(other);
+        });
+      front_.swap(next_front_);
+    }
+    connect(grid, depth, hints);
+  }
+
+  const std::vector<Region>& regions() const { return regions_; }
+  std::span<const int> blocks(const Region& region) const {
+    return {blocks_.data() + region.first, static_cast<std::size_t>(region.size)};
+  }
+
+ private:
+  static bool agree(const BlockHint& a, const BlockHint& b) {
+    return a.label == b.label || a.label == 255 || b.label == 255;
+  }
+  template <class Visit>
+  static void for_each_beside(const BlockGrid& grid, const std::vector<float>& depth, int block, const Visit& visit) {
+    const int column = block % grid.columns, row = block / grid.columns;
+    const float here = depth[static_cast<std::size_t>(block)];
+    const auto offer = [&](int other) {
+      if (std::abs(depth[static_cast<std::size_t>(other)] - here) < continuity(here)) visit(other);
+    };
+    if (column > 0) offer(block - 1);
+    if (column + 1 < grid.columns) offer(block + 1);
+    if (row > 0) offer(block - grid.columns);
+    if (row + 1 < grid.rows) offer(block + grid.columns);
+  }
+  void begin(const std::vector<BlockHint>& hints);
+  void connect(const BlockGrid& grid, const std::vector<float>& depth, const std::vector<BlockHint>& hints);
+  void measure(const BlockGrid& grid, const std::vector<float>& depth, Region& region) const;
+
+  std::vector<Region> regions_;
+  std::vector<int> blocks_;
+  std::vector<int> front_, next_front_;
+  std::vector<int> region_of_;  // of each block, -1 = none
+};
+
+}  // namespace holdfast::object_plugin
