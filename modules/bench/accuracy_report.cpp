@@ -10,7 +10,7 @@ namespace holdfast {
 
 namespace {
 
-std::string metres(double value) { return std::isfinite(value) ? fixed_text(value, 4) : "-"; }
+std::string metres(double value) { return std::isfinite(value) ? error_text(value) : "-"; }
 std::string percent(double share) { return std::isfinite(share) ? fixed_text(100.0 * share, 2) + " %" : "-"; }
 std::string plural(std::size_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
@@ -68,15 +68,15 @@ class AccuracyReport {
     for (const Comparison& c : analysis_.comparisons) {
       const std::string unit = std::string(" ") + unit_of(c.quantity);
       const bool has_pairs = !c.sequences.empty();
-      table.rows.push_back(
-          {variant(c.after), variant(c.before), to_string(c.quantity),
-           std::to_string(c.better) + " of " + std::to_string(c.sequences.size()),
-           has_pairs ? fixed_text(c.gain, 4) + unit : "-", has_pairs ? fixed_text(c.gain_percent, 1) + " %" : "-",
-           c.enough ? fixed_text(c.interval.low, 4) + " to " + fixed_text(c.interval.high, 4) + unit : "-",
-           c.enough ? fixed_text(c.test.p, 4) : "-", c.enough ? fixed_text(c.adjusted, 4) : "-",
-           !c.enough            ? "too few to tell"
-           : c.is_significant() ? "significant"
-                                : "not significant"});
+      table.rows.push_back({variant(c.after), variant(c.before), to_string(c.quantity),
+                            std::to_string(c.better) + " of " + std::to_string(c.sequences.size()),
+                            has_pairs ? error_text(c.gain) + unit : "-",
+                            has_pairs ? fixed_text(c.gain_percent, 1) + " %" : "-",
+                            c.enough ? error_text(c.interval.low) + " to " + error_text(c.interval.high) + unit : "-",
+                            c.enough ? fixed_text(c.test.p, 4) : "-", c.enough ? fixed_text(c.adjusted, 4) : "-",
+                            !c.enough            ? "too few to tell"
+                            : c.is_significant() ? "significant"
+                                                 : "not significant"});
     }
     add(table);
   }
@@ -146,7 +146,7 @@ class AccuracyReport {
   void add_improvements() {
     if (analysis_.improvements.empty()) return;
     text_ +=
-        "## Improvements over the baseline\n\nEach cell: baseline, variant, and (baseline - variant) / baseline in "
+        "## Improvements over the baseline\n\nEach cell: baseline to variant, and (baseline - variant) / baseline in "
         "per cent, as tables 2 and 3 of Zeng et al. 2023.\n\n";
     for (std::size_t q = 0; q < all_quantities.size(); ++q)
       for (std::size_t i = 0; i < plan_.variants.size(); ++i) {
@@ -165,7 +165,7 @@ class AccuracyReport {
     std::vector<std::string> row = {sequence(improvement.sequence)};
     for (std::size_t s = 0; s < statistic_names.size(); ++s) {
       const double change = improvement.percent[q][s];
-      row.push_back(metres(improvement.before[q][s]) + " " + metres(improvement.after[q][s]) + " " +
+      row.push_back(metres(improvement.before[q][s]) + " to " + metres(improvement.after[q][s]) + ": " +
                     (std::isfinite(change) ? fixed_text(change, 2) + " %" : "-"));
     }
     return row;

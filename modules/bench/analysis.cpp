@@ -153,15 +153,14 @@ std::string sentence(const RunPlan& plan, const Comparison& c) {
   const bool is_gain = c.gain >= 0.0;
   text += std::string(is_gain ? "smaller" : "larger") + " " + to_string(c.quantity) + " RMSE on " +
           std::to_string(is_gain ? c.better : c.worse) + " of " + counted(pairs, "sequence") + ", by " +
-          fixed_text(std::abs(c.gain), 4) + unit + " (" + fixed_text(std::abs(c.gain_percent), 1) +
-          " %) in the median. ";
+          error_text(std::abs(c.gain)) + unit + " (" + fixed_text(std::abs(c.gain_percent), 1) + " %) in the median. ";
   if (!c.enough) {
     text += "Too few to tell: " + counted(c.test.pairs, "pair") + " that differ" + (c.test.pairs == 1 ? "s" : "") +
             ", " + std::to_string(fewest_pairs_to_test) + " are needed.";
   } else {
     const std::string numbers = "p = " + fixed_text(c.test.p, 4) + ", " + counted(c.test.pairs, "pair") +
-                                "; 95 % interval of the gain " + fixed_text(c.interval.low, 4) + " to " +
-                                fixed_text(c.interval.high, 4) + unit;
+                                "; 95 % interval of the gain " + error_text(c.interval.low) + " to " +
+                                error_text(c.interval.high) + unit;
     if (!c.is_significant())
       text += "The difference is not significant (" + numbers + "): these sequences do not tell which is better.";
     else

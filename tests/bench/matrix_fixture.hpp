@@ -32,7 +32,8 @@ class MatrixTest : public ::testing::Test {
           "source: { tum: { path: nowhere } }\nfeatures: orb\noptimizer: ceres\n"
           "segmenter: { masks: { path: nowhere/mask } }\nfilters: [semantic_mask]\n");
     for (const char* sequence : {"one", "two"})
-      for (const char* list : {"rgb.txt", "depth.txt", "groundtruth.txt"}) write(std::string(sequence) + "/" + list, "");
+      for (const char* list : {"rgb.txt", "depth.txt", "groundtruth.txt"})
+        write(std::string(sequence) + "/" + list, "");
     std::filesystem::create_directories(folder_ / "one/mask");
   }
   ~MatrixTest() override {

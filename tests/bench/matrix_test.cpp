@@ -29,16 +29,16 @@ exclude:
   - { sequence: three }
 )");
   EXPECT_THAT(problems(), IsEmpty());
-  EXPECT_THAT(ids(p), ElementsAre("500+narrow/one/seed3-repeat1", "500+narrow/one/seed3-repeat2",
-                                  "500+narrow/one/seed4-repeat1", "500+narrow/one/seed4-repeat2",
-                                  "500+narrow/two/seed3-repeat1", "500+narrow/two/seed3-repeat2",
-                                  "500+narrow/two/seed4-repeat1", "500+narrow/two/seed4-repeat2",
-                                  "2000+narrow/two/seed3-repeat1", "2000+narrow/two/seed3-repeat2",
-                                  "2000+narrow/two/seed4-repeat1", "2000+narrow/two/seed4-repeat2"));
+  EXPECT_THAT(
+      ids(p),
+      ElementsAre("500+narrow/one/seed3-repeat1", "500+narrow/one/seed3-repeat2", "500+narrow/one/seed4-repeat1",
+                  "500+narrow/one/seed4-repeat2", "500+narrow/two/seed3-repeat1", "500+narrow/two/seed3-repeat2",
+                  "500+narrow/two/seed4-repeat1", "500+narrow/two/seed4-repeat2", "2000+narrow/two/seed3-repeat1",
+                  "2000+narrow/two/seed3-repeat2", "2000+narrow/two/seed4-repeat1", "2000+narrow/two/seed4-repeat2"));
   const std::string& request = p.runs.back().request;
-  EXPECT_THAT(request, AllOf(HasSubstr("path: " + (folder_ / "two").string()), HasSubstr("count: 2000"),
-                             HasSubstr("window: 5"), HasSubstr("seed: 4"), HasSubstr("mode: threaded"),
-                             HasSubstr("fx: 535.4")));
+  EXPECT_THAT(request,
+              AllOf(HasSubstr("path: " + (folder_ / "two").string()), HasSubstr("count: 2000"), HasSubstr("window: 5"),
+                    HasSubstr("seed: 4"), HasSubstr("mode: threaded"), HasSubstr("fx: 535.4")));
   EXPECT_THAT(p.runs.front().request, AllOf(HasSubstr("count: 500"), HasSubstr("seed: 3"), HasSubstr("fx: 517.3")));
   EXPECT_THAT(plan_text(p), HasSubstr("12 runs: 4 variants, 3 sequences, 2 seeds, 2 repeats"));
 }
@@ -95,21 +95,20 @@ repeats: none
 exclude: [ { trackin.window: 5 }, { sequence: thre } ]
 baseline: 500+6
 )");
-  EXPECT_THAT(
-      problems(),
-      testing::UnorderedElementsAre(
-          HasSubstr("matrix.yaml:1:1: the matrix has no key 'titel'; did you mean 'title'?"),
-          HasSubstr("matrix.yaml:9:10: found 'none' for 'repeats'"),
-          HasSubstr("matrix.yaml:8:3: 'bad name' cannot be the name of a sequence"),
-          HasSubstr("matrix.yaml:4:3: features 'orb' has no parameter 'cuont'; did you mean 'count'?"),
-          HasSubstr("matrix.yaml:5:24: found '500' for 'window' of section 'tracking': 500 is above 200"),
-          HasSubstr("matrix.yaml:7:27: source 'tum' has no parameter 'pth'"),
-          HasSubstr("matrix.yaml:7:25: source 'tum' needs 'path'"),
-          HasSubstr("matrix.yaml:7:54: there is no segmenter module 'maskss'; did you mean 'masks'?"),
-          HasSubstr("matrix.yaml:8:25: there is no source module 'tun'; did you mean 'tum'?"),
-          HasSubstr("matrix.yaml:10:14: there is no axis 'trackin.window'; did you mean 'tracking.window'?"),
-          HasSubstr("matrix.yaml:10:47: there is no sequence 'thre'"),
-          HasSubstr("matrix.yaml:11:11: there is no variant '500+6'; did you mean '500+5'?")));
+  EXPECT_THAT(problems(),
+              testing::UnorderedElementsAre(
+                  HasSubstr("matrix.yaml:1:1: the matrix has no key 'titel'; did you mean 'title'?"),
+                  HasSubstr("matrix.yaml:9:10: found 'none' for 'repeats'"),
+                  HasSubstr("matrix.yaml:8:3: 'bad name' cannot be the name of a sequence"),
+                  HasSubstr("matrix.yaml:4:3: features 'orb' has no parameter 'cuont'; did you mean 'count'?"),
+                  HasSubstr("matrix.yaml:5:24: found '500' for 'window' of section 'tracking': 500 is above 200"),
+                  HasSubstr("matrix.yaml:7:27: source 'tum' has no parameter 'pth'"),
+                  HasSubstr("matrix.yaml:7:25: source 'tum' needs 'path'"),
+                  HasSubstr("matrix.yaml:7:54: there is no segmenter module 'maskss'; did you mean 'masks'?"),
+                  HasSubstr("matrix.yaml:8:25: there is no source module 'tun'; did you mean 'tum'?"),
+                  HasSubstr("matrix.yaml:10:14: there is no axis 'trackin.window'; did you mean 'tracking.window'?"),
+                  HasSubstr("matrix.yaml:10:47: there is no sequence 'thre'"),
+                  HasSubstr("matrix.yaml:11:11: there is no variant '500+6'; did you mean '500+5'?")));
 }
 
 TEST_F(MatrixTest, RefusesWhatWouldSilentlyNotCount) {
@@ -171,7 +170,7 @@ systems:
 sequences: { one: { source: { tum: { path: one } } } }
 )");
   EXPECT_THAT(problems(), testing::UnorderedElementsAre(
-                              HasSubstr("matrix.yaml:3:58: found 'fast' for 'time_limit' of system 'theirs'"),
+                              HasSubstr("matrix.yaml:3:59: found 'fast' for 'time_limit' of system 'theirs'"),
                               HasSubstr("matrix.yaml:3:3: system 'theirs' has the unknown placeholder {sequense}; did "
                                         "you mean 'sequence'?"),
                               HasSubstr("matrix.yaml:4:14: sequence 'one' needs 'camera'")));

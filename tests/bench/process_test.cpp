@@ -16,7 +16,9 @@ class ProcessTest : public ::testing::Test {
   ProcessTest() : log_(std::filesystem::temp_directory_path() / ("holdfast_process_" + std::to_string(getpid()))) {}
   ~ProcessTest() override { std::filesystem::remove(log_); }
 
-  ProcessRequest request(const std::string& script) const { return {{"sh", "-c", script}, "/", {{"WHO", "bench"}}, log_}; }
+  ProcessRequest request(const std::string& script) const {
+    return {{"sh", "-c", script}, "/", {{"WHO", "bench"}}, log_};
+  }
   static ProcessEnd wait_for(Process& process) {
     while (true) {
       if (const auto end = process.poll()) return *end;
@@ -56,11 +58,11 @@ TEST_F(ProcessTest, TellsOfProgramsThatAreNotThere) {
 TEST_F(ProcessTest, EndsWithItsChildren) {
   const std::filesystem::path mark = log_.string() + "_mark";
   std::filesystem::remove(mark);
-  Process process(request("(sleep 1; touch " + mark.string() + ") & echo begun; wait"));
+  Process process(request("(sleep 0.4; touch " + mark.string() + ") & echo begun; wait"));
   while (log().empty()) wait_for_processes(0.01);
   process.terminate();
   EXPECT_EQ(wait_for(process).signal, SIGTERM);
-  usleep(1'300'000);
+  usleep(600'000);
   EXPECT_FALSE(std::filesystem::exists(mark));
 }
 
