@@ -118,6 +118,29 @@ TEST_F(BenchExternalTest, IsStoppedByASignalAndGoesOn) {
   EXPECT_FALSE(std::filesystem::exists(program_.path("out/runs/hang/little/repeat1")));
 }
 
+TEST_F(BenchExternalTest, HasTimedRunsStandAlone) {
+  program_.write("matrix.yaml", matrix({"good", "half"}));
+  ASSERT_EQ(program_.run({"bench", "matrix.yaml", "--output", "beside", "--jobs", "2"}).exit_code, 0);
+  EXPECT_THAT(program_.text("beside/tables/cost.csv"),
+              AllOf(HasSubstr("\ngood,little,1,no,"), HasSubstr("\nhalf,little,1,no,")));
+  EXPECT_THAT(program_.text("beside/cost.md"), HasSubstr("**Some runs had others beside them**"));
+  ASSERT_EQ(program_.run({"bench", "matrix.yaml", "--output", "alone", "--jobs", "2", "--timing"}).exit_code, 0);
+  EXPECT_THAT(program_.text("alone/tables/cost.csv"),
+              AllOf(HasSubstr("\ngood,little,1,yes,"), HasSubstr("\nhalf,little,1,yes,")));
+  EXPECT_EQ(program_.text("alone/report.md"), program_.text("beside/report.md"));
+}
+
+TEST_F(BenchExternalTest, FindsTheMatricesOfTheProjectSound) {
+  std::size_t matrices = 0;
+  for (const char* name : {"bonn", "composed", "simulated", "tum_dynamic"}) {
+    const Outcome list =
+        program_.run({"bench", HOLDFAST_SOURCE_DIR "/benchmarks/" + std::string(name) + ".yaml", "--dry-run"});
+    EXPECT_EQ(list.exit_code, 0) << name << "\n" << list.errors;
+    matrices += list.output.find(" runs: 5 variants") != std::string::npos ? 1 : 0;
+  }
+  EXPECT_EQ(matrices, 4U);
+}
+
 TEST_F(BenchExternalTest, ListsRunsAndWhatIsMissing) {
   program_.write("matrix.yaml",
                  "systems: { theirs: { command: [/no/such/program] } }\n"
