@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "holdfast/cli/background_command.hpp"
+#include "holdfast/cli/bench_command.hpp"
 #include "holdfast/cli/check_command.hpp"
 #include "holdfast/cli/evaluate_command.hpp"
 #include "holdfast/cli/map_command.hpp"
@@ -70,6 +71,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   int exit_code = 0;
   add_run_command(app, exit_code);
+  add_bench_command(app, exit_code);
   add_evaluate_command(app, exit_code);
   add_map_command(app, exit_code);
   add_background_command(app, exit_code);

@@ -97,8 +97,8 @@ void run(const Arguments& arguments, int& exit_code) {
       {.output_directory = arguments.output, .map_file = arguments.map, .localise_only = arguments.localise});
   prepare_output_folder(
       arguments.output, arguments.overwrite,
-      {"report.html", "run.json", "trajectory.txt", "keyframes.txt", "evaluation.json", "trajectory.svg", "error.svg",
-       "config.yaml", "map.hfm", "static_map.ply", "objects.csv", "overlay"});
+      {"report.html", "run.json", "trajectory.txt", "keyframes.txt", "evaluation.json", "tracks.json", "trajectory.svg",
+       "error.svg", "config.yaml", "map.hfm", "static_map.ply", "objects.csv", "overlay"});
   write_file_atomically(arguments.output / "config.yaml", to_yaml(configuration));
 
   RunRecord record;

@@ -339,6 +339,7 @@ void write_run_results(const std::filesystem::path& folder, const RunRecord& rec
   write_trajectory(folder / "keyframes.txt", record.keyframes);
   if (record.evaluation) {
     write_file_atomically(folder / "evaluation.json", to_json(*record.evaluation));
+    write_file_atomically(folder / "tracks.json", to_tracks_json(*record.evaluation));
     write_file_atomically(folder / "trajectory.svg", top_view_svg(*record.evaluation));
     write_file_atomically(folder / "error.svg", error_over_time_svg(*record.evaluation));
   }

@@ -63,6 +63,39 @@ Camera make_camera(const CameraSettings& s) {
   return {s.name, s.width, s.height, s.fx, s.fy, s.cx, s.cy, {s.k1, s.k2, s.p1, s.p2, s.k3}, s.baseline, s.frame_rate};
 }
 
+std::optional<Camera> read_camera(const ConfigurationNode& node, std::vector<Diagnostic>& diagnostics) {
+  if (node.kind == ConfigurationNode::Kind::scalar) {
+    const std::optional<Camera> camera = find_camera(node.text);
+    if (!camera)
+      diagnostics.push_back({node.location, "there is no known camera '" + node.text +
+                                                "'; expected a name, or numbers as { width: 640, height: 480, fx: ... "
+                                                "}; " +
+                                                did_you_mean(node.text, camera_names())});
+    return camera;
+  }
+  const ParameterTable<CameraSettings> table;
+  std::vector<Parameter> parameters = table.parameters();
+  // A known name gives the numbers that are not given.
+  const ConfigurationNode* name = node.find("name");
+  if (name != nullptr && name->kind == ConfigurationNode::Kind::scalar && !name->text.empty()) {
+    const std::optional<Camera> known = find_camera(name->text);
+    if (!known) {
+      diagnostics.push_back({name->location, "there is no known camera '" + name->text + "'; " +
+                                                 did_you_mean(name->text, camera_names())});
+      return std::nullopt;
+    }
+    const ParameterValues numbers = table.values(camera_settings(*known));
+    for (Parameter& parameter : parameters) {
+      parameter.is_required = false;
+      parameter.default_value = numbers.at(parameter.name);
+    }
+  }
+  const std::size_t before = diagnostics.size();
+  const ParameterValues values = read_parameters(node, parameters, "section 'camera'", diagnostics);
+  if (diagnostics.size() != before) return std::nullopt;
+  return make_camera(table.settings(values));
+}
+
 const std::vector<std::string>& choice_sections() {
   static const std::vector<std::string> names = {"source", "features", "segmenter", "optimizer", "loop_detector"};
   return names;
@@ -215,35 +248,7 @@ class Resolver {
 
   void read_camera() {
     const ConfigurationNode& node = at("camera");
-    if (node.kind == Kind::nothing) return;
-    if (node.kind == Kind::scalar) {
-      result_.camera = find_camera(node.text);
-      if (!result_.camera)
-        complain(node.location, "there is no known camera '" + node.text +
-                                    "'; expected a name, or numbers as { width: 640, height: 480, fx: ... }; " +
-                                    did_you_mean(node.text, camera_names()));
-      return;
-    }
-    const ParameterTable<CameraSettings> table;
-    std::vector<Parameter> parameters = table.parameters();
-    // A known name gives the numbers that are not given.
-    const ConfigurationNode* name = node.find("name");
-    if (name != nullptr && name->kind == Kind::scalar && !name->text.empty()) {
-      const std::optional<Camera> known = find_camera(name->text);
-      if (!known) {
-        complain(name->location,
-                 "there is no known camera '" + name->text + "'; " + did_you_mean(name->text, camera_names()));
-        return;
-      }
-      const ParameterValues numbers = table.values(camera_settings(*known));
-      for (Parameter& parameter : parameters) {
-        parameter.is_required = false;
-        parameter.default_value = numbers.at(parameter.name);
-      }
-    }
-    const std::size_t before = diagnostics_.size();
-    const ParameterValues values = read_parameters(node, parameters, "section 'camera'", diagnostics_);
-    if (diagnostics_.size() == before) result_.camera = make_camera(table.settings(values));
+    if (node.kind != Kind::nothing) result_.camera = holdfast::read_camera(node, diagnostics_);
   }
 
   void read_run() {

@@ -30,19 +30,12 @@ void relocate(ConfigurationNode& node, const SourceLocation& location) {
 
 }  // namespace
 
-void apply_override(ConfigurationNode& root, const std::string& override_text,
-                    const std::vector<std::string>& choices) {
-  const SourceLocation location{"--set " + override_text};
+void set_value(ConfigurationNode& root, const std::string& key_path, ConfigurationNode value,
+               const SourceLocation& location, const std::vector<std::string>& choices) {
   const auto fail = [&](const std::string& message) { throw ConfigurationError(location, message); };
-  const std::size_t equals = override_text.find('=');
-  if (equals == std::string::npos || equals == 0) fail("expected key.path=value, such as features.orb.count=500");
-  const std::vector<std::string> path = split(override_text.substr(0, equals));
+  const std::vector<std::string> path = split(key_path);
   if (std::any_of(path.begin(), path.end(), [](const std::string& part) { return part.empty(); }))
-    fail("the key has an empty part; expected key.path=value, such as features.orb.count=500");
-
-  ConfigurationNode value =
-      parse_yaml(override_text.substr(equals + 1), location.file, std::filesystem::current_path());
-  relocate(value, location);
+    fail("the key '" + key_path + "' has an empty part; expected a key path, such as features.orb.count");
 
   ConfigurationNode* node = &root;
   for (std::size_t depth = 0; depth < path.size(); ++depth) {
@@ -74,6 +67,18 @@ void apply_override(ConfigurationNode& root, const std::string& override_text,
     node = node->find(part);
   }
   *node = std::move(value);
+}
+
+void apply_override(ConfigurationNode& root, const std::string& override_text,
+                    const std::vector<std::string>& choices) {
+  const SourceLocation location{"--set " + override_text};
+  const std::size_t equals = override_text.find('=');
+  if (equals == std::string::npos || equals == 0)
+    throw ConfigurationError(location, "expected key.path=value, such as features.orb.count=500");
+  ConfigurationNode value =
+      parse_yaml(override_text.substr(equals + 1), location.file, std::filesystem::current_path());
+  relocate(value, location);
+  set_value(root, override_text.substr(0, equals), std::move(value), location, choices);
 }
 
 }  // namespace holdfast

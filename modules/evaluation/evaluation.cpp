@@ -6,7 +6,7 @@
 
 #include "holdfast/core/association.hpp"
 #include "holdfast/core/error.hpp"
-#include "number_text.hpp"
+#include "holdfast/evaluation/number_text.hpp"
 #include "relative_error.hpp"
 
 namespace holdfast {

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "holdfast/evaluation/evaluation.hpp"
-#include "number_text.hpp"
+#include "holdfast/evaluation/number_text.hpp"
 
 namespace holdfast {
 
@@ -161,6 +161,26 @@ std::string to_json(const Evaluation& evaluation) {
                         {"gaps", coverage->gaps.size()}, {"longest_gap_frames", coverage->longest_gap()}};
   // A file name need not be UTF-8; its odd bytes must not cost the figures.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+std::string to_tracks_json(const Evaluation& evaluation) {
+  const auto numbers = [](std::initializer_list<double> values, int decimals) {
+    std::string text;
+    for (const double value : values) text += "," + fixed_text(value, decimals);
+    return text;
+  };
+  const auto track = [&](const std::vector<TimedPosition>& positions) {
+    std::string text;
+    for (const TimedPosition& p : positions)
+      text += (text.empty() ? "[" : ",[") + fixed_text(p.timestamp, 3) +
+              numbers({p.position.x(), p.position.y(), p.position.z()}, 4) + "]";
+    return text;
+  };
+  std::string errors;
+  for (const EvaluatedPose& pose : evaluation.poses)
+    errors += (errors.empty() ? "[" : ",[") + fixed_text(pose.timestamp, 3) + numbers({pose.error}, 6) + "]";
+  return "{\"truth\":[" + track(evaluation.truth_track) + "],\n\"estimate\":[" + track(evaluation.estimate_track) +
+         "],\n\"error\":[" + errors + "]}\n";
 }
 
 std::string to_csv(const Evaluation& evaluation) {

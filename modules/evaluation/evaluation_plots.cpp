@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "holdfast/evaluation/evaluation.hpp"
+#include "holdfast/evaluation/number_text.hpp"
 #include "holdfast/evaluation/svg_plot.hpp"
-#include "number_text.hpp"
 
 namespace holdfast {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "holdfast/core/error.hpp"
-#include "number_text.hpp"
+#include "holdfast/evaluation/number_text.hpp"
 
 namespace holdfast {
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "holdfast/core/error.hpp"
-#include "number_text.hpp"
+#include "holdfast/evaluation/number_text.hpp"
 
 namespace holdfast {
 

@@ -56,12 +56,13 @@ TEST_F(RunTest, WritesItsResults) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_EQ(outcome.errors, "");
   EXPECT_THAT(outcome.output, AllOf(HasSubstr("coverage"), HasSubstr("ATE RMSE"), HasSubstr("median ms")));
-  for (const char* name : {"trajectory.txt", "keyframes.txt", "run.json", "report.html", "config.yaml",
-                           "evaluation.json", "trajectory.svg", "error.svg", "map.hfm", "static_map.ply"})
+  for (const char* name :
+       {"trajectory.txt", "keyframes.txt", "run.json", "report.html", "config.yaml", "evaluation.json", "tracks.json",
+        "trajectory.svg", "error.svg", "map.hfm", "static_map.ply"})
     EXPECT_GT(fs::file_size(program_.path(std::string("deep/out/") + name)), 20U) << name;
   std::size_t files = 0;
   for ([[maybe_unused]] const auto& entry : fs::directory_iterator(program_.path("deep/out"))) ++files;
-  EXPECT_EQ(files, 10U);  // nothing half-written is left
+  EXPECT_EQ(files, 11U);  // nothing half-written is left
 
   const nlohmann::json run = summary("deep/out");
   EXPECT_EQ(run.at("frames").at("coverage"), 1.0);

@@ -51,8 +51,8 @@ struct RunRecord {
   double coverage() const;
 };
 
-/// Writes trajectory.txt, keyframes.txt, run.json, report.html and, where there is truth, evaluation.json and the plots
-/// trajectory.svg and error.svg. Each file is replaced in one step.
+/// Writes trajectory.txt, keyframes.txt, run.json, report.html and, where there is truth, evaluation.json, tracks.json
+/// and the plots trajectory.svg and error.svg. Each file is replaced in one step.
 void write_run_results(const std::filesystem::path& folder, const RunRecord& record);
 
 /// The summary that is printed at the end.

@@ -49,6 +49,10 @@ struct CameraSettings {
 CameraSettings camera_settings(const Camera& camera);
 Camera make_camera(const CameraSettings& settings);
 
+/// Reads a `camera` section: a known name or a map of numbers. What is wrong is appended to `diagnostics`; the result
+/// is nothing then.
+std::optional<Camera> read_camera(const ConfigurationNode& node, std::vector<Diagnostic>& diagnostics);
+
 /// A module that the configuration chose, with all its parameters, defaults included.
 struct ModuleChoice {
   std::string kind;

@@ -43,9 +43,14 @@ ConfigurationNode parse_yaml(const std::string& text, const std::string& file_na
                              const std::filesystem::path& folder);
 ConfigurationNode read_yaml(const std::filesystem::path& file);
 
-/// Applies "key.path=value" as if the file said so. The value is YAML; elements of lists are named by number. Missing
-/// sections are made. In a section that chooses one module (see `choices`) naming another module replaces the choice.
-/// Relative paths in the value start from the working directory. Throws ConfigurationError.
+/// Sets the value at a key path, such as features.orb.count or filters.0. Elements of lists are named by number.
+/// Missing sections are made. In a section that chooses one module (see `choices`) naming another module replaces the
+/// choice. `location` is where the key path stands. Throws ConfigurationError.
+void set_value(ConfigurationNode& root, const std::string& key_path, ConfigurationNode value,
+               const SourceLocation& location, const std::vector<std::string>& choices);
+
+/// Applies "key.path=value" as if the file said so, by set_value(). The value is YAML; relative paths in it start from
+/// the working directory. Throws ConfigurationError.
 void apply_override(ConfigurationNode& root, const std::string& override_text, const std::vector<std::string>& choices);
 
 }  // namespace holdfast

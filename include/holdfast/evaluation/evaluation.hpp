@@ -87,6 +87,10 @@ std::string to_json(const Evaluation& evaluation);
 /// The same figures in full precision as rows "quantity,statistic,value,unit".
 std::string to_csv(const Evaluation& evaluation);
 
+/// What was compared, for whoever draws it: {"truth": [[t, x, y, z], ...], "estimate": the same, aligned, "error": [[t,
+/// metres], ...]} with stamps in milliseconds' precision and positions in a tenth of one [s, m].
+std::string to_tracks_json(const Evaluation& evaluation);
+
 /// A picture of the aligned estimate on the truth, seen along the axis in which the truth extends least, both axes to
 /// one scale. Self-contained SVG.
 std::string top_view_svg(const Evaluation& evaluation);

@@ -75,16 +75,6 @@ std::optional<SensorFrame> ImageSequence::next() {
   return std::nullopt;
 }
 
-void select_range(std::vector<ImageFiles>& files, std::int64_t start, std::int64_t count,
-                  const std::filesystem::path& place, const char* what) {
-  const auto size = static_cast<std::int64_t>(files.size());
-  if (start >= size)
-    throw InputError({place.string()}, "has " + std::to_string(size) + ' ' + what + ", but `start` is " +
-                                           std::to_string(start) + "; expected 0 to " + std::to_string(size - 1));
-  files.erase(files.begin(), files.begin() + start);
-  if (count > 0 && count < size - start) files.resize(static_cast<std::size_t>(count));
-}
-
 std::string folder_name(const std::filesystem::path& path) {
   const std::filesystem::path folder = std::filesystem::absolute(path).lexically_normal();
   return (folder.has_filename() ? folder : folder.parent_path()).filename().string();

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
 #include <utility>
 
-#include "holdfast/core/association.hpp"
 #include "holdfast/image_files/image_list.hpp"
 #include "holdfast/image_files/image_sequence.hpp"
+#include "holdfast/image_files/recording_pairs.hpp"
 #include "holdfast/interfaces/frame_source.hpp"
 #include "holdfast/plugin/plugin.hpp"
 
@@ -42,57 +41,22 @@ struct TumSettings {
   }
 };
 
-ImageFiles image_files(const std::filesystem::path& folder, const ListedImage& colour,
-                       const std::filesystem::path& colour_list, const ListedImage& depth,
-                       const std::filesystem::path& depth_list) {
-  return {colour.timestamp,
-          folder / colour.name,
-          folder / depth.name,
-          {colour_list.string(), colour.line},
-          {depth_list.string(), depth.line}};
-}
-
-std::vector<ImageFiles> read_ready_pairs(const std::filesystem::path& folder, const std::filesystem::path& file) {
-  std::vector<ImageFiles> pairs;
-  for (const ListedPair& pair : read_association_list(file))
-    pairs.push_back(image_files(folder, pair.colour, file, pair.depth, file));
-  return pairs;
-}
-
-std::vector<ImageFiles> associate(const std::filesystem::path& folder, double max_time_difference) {
-  const std::filesystem::path colour_list = folder / "rgb.txt";
-  const std::filesystem::path depth_list = folder / "depth.txt";
-  const std::vector<ListedImage> colour = read_image_list(colour_list);
-  const std::vector<ListedImage> depth = read_image_list(depth_list);
-  const auto stamps = [](const std::vector<ListedImage>& images) {
-    std::vector<double> result;
-    result.reserve(images.size());
-    for (const ListedImage& image : images) result.push_back(image.timestamp);
-    return result;
-  };
-  const std::vector<double> colour_stamps = stamps(colour), depth_stamps = stamps(depth);
-  std::vector<ImageFiles> pairs;
-  for (const auto& [c, d] : associate_stamps(colour_stamps, depth_stamps, max_time_difference))
-    pairs.push_back(image_files(folder, colour[c], colour_list, depth[d], depth_list));
-  if (pairs.empty())
-    throw InputError({folder.string()},
-                     "no colour and depth image lie within " + stamp_text(max_time_difference) + " s of each other: " +
-                         colour_list.filename().string() + " runs from " + stamp_text(colour_stamps.front()) + " to " +
-                         stamp_text(colour_stamps.back()) + " s, " + depth_list.filename().string() + " from " +
-                         stamp_text(depth_stamps.front()) + " to " + stamp_text(depth_stamps.back()) +
-                         " s; are both lists of this recording? Otherwise raise `max_time_difference`");
-  return pairs;
-}
-
 std::vector<ImageFiles> find_pairs(const TumSettings& settings) {
   std::error_code error;
   if (!std::filesystem::is_directory(settings.path, error))
     throw InputError({settings.path.string()},
                      std::string(std::filesystem::exists(settings.path, error) ? "is not a folder" : "is missing") +
                          "; expected the folder of a TUM recording, with rgb.txt and depth.txt; set `source.tum.path`");
-  std::vector<ImageFiles> pairs = settings.associations.empty()
-                                      ? associate(settings.path, settings.max_time_difference)
-                                      : read_ready_pairs(settings.path, settings.associations);
+  const auto listed_in = [&](const char* list) {
+    return (settings.associations.empty() ? settings.path / list : settings.associations).string();
+  };
+  std::vector<ImageFiles> pairs;
+  for (const ListedPair& pair : recording_pairs(settings.path, settings.associations, settings.max_time_difference))
+    pairs.push_back({pair.colour.timestamp,
+                     settings.path / pair.colour.name,
+                     settings.path / pair.depth.name,
+                     {listed_in("rgb.txt"), pair.colour.line},
+                     {listed_in("depth.txt"), pair.depth.line}});
   select_range(pairs, settings.start, settings.frames, settings.path, "colour and depth pairs");
   return pairs;
 }

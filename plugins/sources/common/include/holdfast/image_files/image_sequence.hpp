@@ -58,8 +58,16 @@ class ImageSequence {
 
 /// Keeps `count` elements (0 = all that follow) from `start` on. Throws InputError at `place` when `start` lies behind
 /// the last one; `what` says what is counted.
-void select_range(std::vector<ImageFiles>& files, std::int64_t start, std::int64_t count,
-                  const std::filesystem::path& place, const char* what);
+template <class Element>
+void select_range(std::vector<Element>& elements, std::int64_t start, std::int64_t count,
+                  const std::filesystem::path& place, const char* what) {
+  const auto size = static_cast<std::int64_t>(elements.size());
+  if (start >= size)
+    throw InputError({place.string()}, "has " + std::to_string(size) + ' ' + what + ", but `start` is " +
+                                           std::to_string(start) + "; expected 0 to " + std::to_string(size - 1));
+  elements.erase(elements.begin(), elements.begin() + start);
+  if (count > 0 && count < size - start) elements.resize(static_cast<std::size_t>(count));
+}
 
 /// The last name of a path, for titles: "fr1_xyz" for "data/fr1_xyz/".
 std::string folder_name(const std::filesystem::path& path);

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "holdfast/core/error.hpp"
+
+namespace holdfast {
+
+/// A row of a published table: ATE RMSE by sequence, with where it is printed and how it was measured. The same system
+/// differs between papers by a factor of up to 4.7, so a figure never goes without these two.
+struct PublishedResult {
+  std::string system;
+  std::string citation;
+  std::string protocol;
+  std::map<std::string, double> values;  ///< [m] by name of the sequence
+};
+
+/// Time per frame as a ratio to ORB-SLAM2 on the same machine.
+struct PublishedTimes {
+  std::string citation;
+  std::string protocol;
+  std::vector<std::pair<std::string, double>> ratios;  ///< by system, in the order of the file
+};
+
+struct PublishedResults {
+  std::vector<PublishedResult> results;
+  std::vector<PublishedTimes> times;
+};
+
+/// Reads a file of published figures. Appends everything that is wrong to `diagnostics`: a figure without a source, a
+/// source without a protocol, what is no number.
+PublishedResults read_published(const std::filesystem::path& file, std::vector<Diagnostic>& diagnostics);
+
+}  // namespace holdfast

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "holdfast/bench/process.hpp"
+#include "holdfast/evaluation/evaluation.hpp"
+#include "holdfast/evaluation/statistics.hpp"
+
+namespace holdfast {
+
+/// How a run ended.
+enum class RunStatus {
+  finished,     ///< by itself, with exit code 0
+  failed,       ///< by itself, with another exit code
+  crashed,      ///< by a signal that we did not send
+  timed_out,    ///< we stopped it at its time limit
+  not_started,  ///< the program is not there or cannot be executed
+};
+const char* to_string(RunStatus status);
+
+/// The errors that are reported.
+enum class Quantity { ate, rpe_translation, rpe_rotation };
+inline constexpr std::array all_quantities = {Quantity::ate, Quantity::rpe_translation, Quantity::rpe_rotation};
+const char* to_string(Quantity quantity);  ///< "ATE", "RPE translation", "RPE rotation"
+const char* unit_of(Quantity quantity);    ///< "m", "m/s", "deg/s"
+
+/// The six statistics of an error, in the order of table 2 of Zeng et al., Remote Sens. 2023, 15, 5479.
+inline constexpr std::array<const char*, 6> statistic_names = {"RMSE", "mean", "median", "S.D.", "min", "max"};
+using SixStatistics = std::array<double, 6>;  ///< NaN where there are none
+SixStatistics six_statistics(const Statistics& statistics);
+
+/// What a run found: all that depends on the frames, the configuration and the seed, and nothing of the machine or the
+/// clock. In sequential mode the same bytes on every repetition.
+struct RunResult {
+  RunStatus status = RunStatus::not_started;
+  int code = 0;                              ///< exit code, or the signal of a crash
+  std::size_t frames = 0;                    ///< colour-depth pairs of the sequence; 0 = the run did not live to say
+  std::size_t poses = 0;                     ///< frames with a pose
+  std::size_t not_finite = 0;                ///< poses of an external system that are no numbers
+  std::size_t malformed = 0;                 ///< lines of an external system's trajectory that are no pose
+  bool has_errors = false;                   ///< the statistics below
+  std::array<SixStatistics, 3> errors = {};  ///< by Quantity
+  std::string no_errors;                     ///< why there are none
+
+  double coverage() const { return frames == 0 ? 0.0 : static_cast<double>(poses) / static_cast<double>(frames); }
+  /// Whether its errors enter tables and tests. What a run left that did not finish is shown, but stands for nothing.
+  bool counts() const { return status == RunStatus::finished && has_errors; }
+};
+
+/// One line for people: "finished", "crashed (signal 11), 45.0 % of the poses", ...
+std::string outcome_text(const RunResult& result);
+
+/// Time of one stage of a run of ours.
+struct StageCost {
+  std::string name;
+  double median = 0.0;  ///< [s]
+  double total = 0.0;   ///< [s]
+};
+
+/// What a run cost, and on which machine; differs from repetition to repetition.
+struct RunCost {
+  ProcessEnd process;
+  bool alone = false;                                          ///< nothing else of the bench ran beside it
+  double tracking = std::numeric_limits<double>::quiet_NaN();  ///< median per frame [s]; NaN: not said
+  std::string version;                                         ///< of Holdfast, with its commit; "" of others
+  std::string machine;                                         ///< processor and cores
+  std::vector<StageCost> stages;
+};
+
+std::string to_json(const RunResult& result);
+std::string to_json(const RunCost& cost);
+/// Throw InputError for a file that is not what to_json() gave.
+RunResult read_run_result(const std::filesystem::path& file);
+RunCost read_run_cost(const std::filesystem::path& file);
+
+/// Fills in what an evaluation found.
+void take_errors(const Evaluation& evaluation, RunResult& result);
+/// The same from the folder of `holdfast run` (run.json, evaluation.json); a file that is not there says nothing.
+void read_own_run(const std::filesystem::path& folder, RunResult& result, RunCost& cost);
+
+}  // namespace holdfast

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "cell_configuration.hpp"
+
+#include <algorithm>
+
+namespace holdfast {
+
+using Kind = ConfigurationNode::Kind;
+
+namespace {
+
+/// The module that a section of a configuration chooses; "" when that cannot be said.
+std::string chosen_module(const ConfigurationNode& root, const std::string& section) {
+  const ConfigurationNode* node = root.find(section);
+  if (node == nullptr) return "none";
+  if (node->kind == Kind::scalar) return node->text;
+  return node->entries.size() == 1 ? node->entries.front().key : "";
+}
+
+ConfigurationNode scalar(const std::string& text, const SourceLocation& location) {
+  ConfigurationNode node;
+  node.kind = Kind::scalar;
+  node.location = location;
+  node.text = text;
+  return node;
+}
+
+}  // namespace
+
+const ConfigurationNode* CellConfigurations::file(const PlacedText& path) {
+  if (!files_.contains(path.text)) {
+    auto& entry = files_[path.text];
+    try {
+      entry = read_yaml(path.text);
+    } catch (const ConfigurationError& error) {
+      for (const Diagnostic& diagnostic : error.diagnostics())
+        diagnostics_.push_back(diagnostic.location.line > 0
+                                   ? diagnostic
+                                   : Diagnostic{path.location, "'" + path.text + "': " + diagnostic.message});
+    }
+  }
+  const auto& root = files_[path.text];
+  return root ? &*root : nullptr;
+}
+
+bool CellConfigurations::set(ConfigurationNode& root, const KeyValue& change) {
+  try {
+    set_value(root, change.key, change.value, change.location, choice_sections());
+    return true;
+  } catch (const ConfigurationError& error) {
+    diagnostics_.insert(diagnostics_.end(), error.diagnostics().begin(), error.diagnostics().end());
+    return false;
+  }
+}
+
+void CellConfigurations::override_for_sequence(ConfigurationNode& root, const MatrixSequence& sequence,
+                                               const std::vector<const AxisValue*>& values) {
+  for (const KeyValue& change : sequence.overrides) {
+    const bool set_by_axis = std::any_of(values.begin(), values.end(), [&](const AxisValue* value) {
+      return std::any_of(value->overrides.begin(), value->overrides.end(),
+                         [&](const KeyValue& other) { return other.key == change.key; });
+    });
+    if (set_by_axis) continue;
+    const std::size_t first = change.key.find('.');
+    const std::string section = change.key.substr(0, first);
+    const auto& choices = choice_sections();
+    if (first != std::string::npos && std::find(choices.begin(), choices.end(), section) != choices.end()) {
+      const std::size_t second = change.key.find('.', first + 1);
+      if (change.key.substr(first + 1, second - first - 1) != chosen_module(root, section)) continue;
+    }
+    set(root, change);
+  }
+}
+
+std::optional<Configuration> CellConfigurations::build(const std::vector<const AxisValue*>& values,
+                                                       const MatrixSequence& sequence) {
+  const PlacedText* path = matrix_.base ? &*matrix_.base : nullptr;
+  for (const AxisValue* value : values)
+    if (value->configuration) path = &*value->configuration;
+  const ConfigurationNode* file_root = path != nullptr ? file(*path) : nullptr;
+  if (file_root == nullptr) return std::nullopt;
+
+  const std::size_t before = diagnostics_.size();
+  ConfigurationNode root = *file_root;
+  set(root, {"source", sequence.location, sequence.source});
+  if (sequence.camera) set(root, {"camera", sequence.location, *sequence.camera});
+  if (matrix_.mode) set(root, {"run.mode", matrix_.mode->location, scalar(matrix_.mode->text, matrix_.mode->location)});
+  for (const AxisValue* value : values)
+    for (const KeyValue& change : value->overrides) set(root, change);
+  override_for_sequence(root, sequence, values);
+  if (diagnostics_.size() != before) return std::nullopt;
+  try {
+    return resolve_configuration(root, path->text, registry_, sections_);
+  } catch (const ConfigurationError& error) {
+    diagnostics_.insert(diagnostics_.end(), error.diagnostics().begin(), error.diagnostics().end());
+    return std::nullopt;
+  }
+}
+
+}  // namespace holdfast

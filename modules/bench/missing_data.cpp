@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "missing_data.hpp"
+
+#include <algorithm>
+
+#include "holdfast/config/parameter_reader.hpp"
+#include "holdfast/image_files/image_sequence.hpp"
+#include "holdfast/image_files/recording_pairs.hpp"
+
+namespace holdfast {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+bool is_there(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
+Diagnostic missing(const MatrixSequence& sequence, const std::string& what) {
+  return {sequence.location,
+          "sequence '" + sequence.name + "': " + what + (sequence.about.empty() ? "" : "; " + sequence.about)};
+}
+
+std::string unset(const PlacedText& variable) {
+  return "the variable '" + variable.text + "' is not set; set it in the environment or by --data " + variable.text +
+         "=FOLDER";
+}
+
+std::optional<PlacedText> unset_variable(const MatrixSequence& sequence) {
+  if (auto name = missing_variable(sequence.source)) return name;
+  for (const KeyValue& change : sequence.overrides)
+    if (auto name = missing_variable(change.value)) return name;
+  return std::nullopt;
+}
+
+std::string text_of(const ParameterValues& values, const std::string& name) {
+  const auto value = values.find(name);
+  return value == values.end() ? "" : std::get<std::string>(value->second);
+}
+
+/// A recording in TUM layout that lacks one of its lists.
+std::optional<std::string> missing_list(const fs::path& folder, const std::string& associations) {
+  if (!is_there(folder)) return "the folder '" + folder.string() + "' is missing";
+  for (const char* list : {"rgb.txt", "depth.txt", "groundtruth.txt"}) {
+    if (!associations.empty() && std::string(list) != "groundtruth.txt") continue;
+    if (!is_there(folder / list))
+      return "'" + (folder / list).string() + "' is missing" +
+             (std::string(list) == "groundtruth.txt" ? ", and without truth there is nothing to measure" : "");
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Diagnostic> missing_data(const MatrixSequence& sequence, const Configuration& configuration,
+                                       const Registry& registry) {
+  if (const auto variable = unset_variable(sequence)) return missing(sequence, unset(*variable));
+  const ParameterValues& source = configuration.source.values;
+  if (configuration.source.name == "tum")
+    if (const auto list = missing_list(text_of(source, "path"), text_of(source, "associations")))
+      return missing(sequence, *list);
+  for (const ModuleChoice* choice :
+       {&configuration.source, &configuration.segmenter, &configuration.features, &configuration.loop_detector}) {
+    const ModuleEntry* entry = registry.find(choice->kind, choice->name);
+    if (entry == nullptr) continue;
+    for (const Parameter& parameter : entry->parameters) {
+      if (parameter.type != ParameterType::path) continue;
+      const std::string path = text_of(choice->values, parameter.name);
+      if (path.empty() || is_there(path)) continue;
+      return missing(sequence, "'" + path + "' is missing, which " + choice->kind + "." + choice->name + "." +
+                                   parameter.name + " names; correct it, or give it under `overrides` of the sequence");
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Diagnostic> missing_program(const ExternalSystem& system) {
+  std::vector<std::string> texts = system.command;
+  texts.insert(texts.end(), {system.folder, system.trajectory});
+  for (const auto& [name, value] : system.environment) texts.push_back(value);
+  for (const std::string& text : texts)
+    if (const auto name = missing_variable(text))
+      return Diagnostic{system.location, "system '" + system.name + "': " + unset({*name, system.location})};
+  const std::string& program = system.command.front();
+  if (program.find('/') != std::string::npos && program.find('{') == std::string::npos && !is_there(program))
+    return Diagnostic{system.location, "system '" + system.name + "': the program '" + program + "' is missing"};
+  return std::nullopt;
+}
+
+std::optional<RecordedSequence> recorded_sequence(const MatrixSequence& sequence, const Registry& registry,
+                                                  std::vector<Diagnostic>& diagnostics,
+                                                  std::vector<Diagnostic>& missing_ones) {
+  const ConfigurationNode* tum = sequence.source.find("tum");
+  const ModuleEntry* entry = registry.find("source", "tum");
+  if (tum == nullptr || entry == nullptr) {
+    diagnostics.push_back(
+        {sequence.location, "sequence '" + sequence.name +
+                                "' is no recording in TUM layout, which external systems read; write it as one "
+                                "(`holdfast simulate`), or exclude it: { system: NAME, sequence: " +
+                                sequence.name + " }"});
+    return std::nullopt;
+  }
+  RecordedSequence recorded;
+  recorded.name = sequence.name;
+  const std::size_t before = diagnostics.size();
+  if (!sequence.camera)
+    diagnostics.push_back({sequence.location, "sequence '" + sequence.name +
+                                                  "' needs 'camera', because external systems get a settings file for "
+                                                  "it; expected a known name or numbers"});
+  else if (const auto camera = read_camera(*sequence.camera, diagnostics))
+    recorded.camera = *camera;
+  const ParameterValues values = read_parameters(*tum, entry->parameters, "source 'tum'", diagnostics);
+  if (diagnostics.size() != before) return std::nullopt;
+  if (const auto variable = unset_variable(sequence)) {
+    missing_ones.push_back(missing(sequence, unset(*variable)));
+    return std::nullopt;
+  }
+  recorded.folder = fs::absolute(text_of(values, "path"));
+  recorded.depth_factor = std::get<double>(values.at("depth_factor"));
+  const std::string associations = text_of(values, "associations");
+  if (const auto list = missing_list(recorded.folder, associations)) {
+    missing_ones.push_back(missing(sequence, *list));
+    return std::nullopt;
+  }
+  try {
+    recorded.frames =
+        recording_pairs(recorded.folder, associations, std::get<double>(values.at("max_time_difference")));
+    select_range(recorded.frames, std::get<std::int64_t>(values.at("start")),
+                 std::get<std::int64_t>(values.at("frames")), recorded.folder, "colour and depth pairs");
+  } catch (const InputError& error) {
+    missing_ones.push_back(missing(sequence, error.what()));
+    return std::nullopt;
+  }
+  return recorded;
+}
+
+}  // namespace holdfast

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "holdfast/bench/external_system.hpp"
+#include "holdfast/bench/matrix.hpp"
+#include "holdfast/config/configuration.hpp"
+
+namespace holdfast {
+
+/// Why a sequence cannot be run with this configuration on this machine: a variable that is not set, a folder or file
+/// that is not there, a recording without truth. Nothing when all is there.
+std::optional<Diagnostic> missing_data(const MatrixSequence& sequence, const Configuration& configuration,
+                                       const Registry& registry);
+/// Why a system cannot be started.
+std::optional<Diagnostic> missing_program(const ExternalSystem& system);
+
+/// The recording of a sequence as external systems get it. Nothing when it is missing (then `missing` says why) or
+/// unfit (then `diagnostics` do).
+std::optional<RecordedSequence> recorded_sequence(const MatrixSequence& sequence, const Registry& registry,
+                                                  std::vector<Diagnostic>& diagnostics,
+                                                  std::vector<Diagnostic>& missing);
+
+}  // namespace holdfast

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <nlohmann/json.hpp>
+
+#include "holdfast/bench/bench_report.hpp"
+#include "holdfast/bench/tables.hpp"
+#include "holdfast/core/trajectory.hpp"
+
+namespace holdfast {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json spread_json(const Spread& spread) {
+  return {{"median", spread.median}, {"least", spread.least}, {"most", spread.most}, {"count", spread.count}};
+}
+
+constexpr std::array quantity_keys = {"ate_m", "rpe_translation_m", "rpe_rotation_deg"};
+constexpr std::array<const char*, 6> statistic_keys = {"rmse", "mean", "median", "standard_deviation", "min", "max"};
+
+Json six_json(const SixStatistics& values) {
+  Json json;
+  for (std::size_t s = 0; s < values.size(); ++s) json[statistic_keys[s]] = values[s];
+  return json;
+}
+
+Json run_json(const RunPlan& plan, const BenchResults& results, std::size_t i) {
+  const PlannedRun& run = plan.runs[i];
+  const bool is_external = plan.variants[run.variant].is_external();
+  Json json = {{"id", run.id},
+               {"variant", run.variant},
+               {"sequence", run.sequence},
+               {"seed", run.seed},
+               {"repeat", run.repeat},
+               {"folder", "runs/" + run.id},
+               {"configuration", is_external ? external_request_file : configuration_file}};
+  json["result"] = results.results[i] ? Json::parse(to_json(*results.results[i])) : Json(nullptr);
+  json["counts"] = results.results[i] && results.results[i]->counts();
+  json["outcome"] = results.results[i] ? outcome_text(*results.results[i]) : "not done";
+  const bool has_tracks = results.results[i] && results.results[i]->has_errors;
+  json["tracks"] = has_tracks ? Json("runs/" + run.id + "/tracks.json") : Json(nullptr);
+  json["report"] = is_external ? Json(nullptr) : Json("runs/" + run.id + "/report.html");
+  json["cost"] = results.costs[i] ? Json::parse(to_json(*results.costs[i])) : Json(nullptr);
+  return json;
+}
+
+Json cell_json(const Cell& cell) {
+  Json json = {{"variant", cell.variant},
+               {"sequence", cell.sequence},
+               {"runs", cell.runs},
+               {"counted", cell.counted},
+               {"coverage", spread_json(cell.coverage)}};
+  for (std::size_t q = 0; q < quantity_keys.size(); ++q)
+    for (std::size_t s = 0; s < statistic_keys.size(); ++s)
+      json["errors"][quantity_keys[q]][statistic_keys[s]] = spread_json(cell.errors[q][s]);
+  json["cost"] = {{"wall_s", spread_json(cell.wall)},
+                  {"processor_s", spread_json(cell.processor)},
+                  {"tracking_s", spread_json(cell.tracking)},
+                  {"wall_per_frame_s", spread_json(cell.wall_per_frame)},
+                  {"peak_memory_bytes", spread_json(cell.memory)},
+                  {"alone", cell.alone}};
+  return json;
+}
+
+Json improvement_json(const Improvement& improvement) {
+  Json json = {
+      {"variant", improvement.variant}, {"baseline", improvement.baseline}, {"sequence", improvement.sequence}};
+  for (std::size_t q = 0; q < quantity_keys.size(); ++q)
+    json[quantity_keys[q]] = {{"before", six_json(improvement.before[q])},
+                              {"after", six_json(improvement.after[q])},
+                              {"percent", six_json(improvement.percent[q])}};
+  return json;
+}
+
+Json comparison_json(const RunPlan& plan, const Comparison& c) {
+  Json json = {{"before", c.before},
+               {"after", c.after},
+               {"quantity", to_string(c.quantity)},
+               {"unit", unit_of(c.quantity)},
+               {"sequences", c.sequences},
+               {"left_out", c.left_out},
+               {"better", c.better},
+               {"worse", c.worse},
+               {"gain", c.gain},
+               {"gain_percent", c.gain_percent},
+               {"pairs", c.test.pairs},
+               {"enough", c.enough}};
+  json["interval"] = c.enough ? Json({c.interval.low, c.interval.high}) : Json(nullptr);
+  json["p"] = c.enough ? Json(c.test.p) : Json(nullptr);
+  json["p_holm"] = c.enough ? Json(c.adjusted) : Json(nullptr);
+  json["significant"] = c.is_significant();
+  json["sentence"] = sentence(plan, c);
+  return json;
+}
+
+Json published_json(const RunPlan& plan, const PublishedResults& published) {
+  Json rows = Json::array();
+  for (const PublishedResult& result : published.results) {
+    Json values = Json::object();
+    for (std::size_t s = 0; s < plan.matrix.sequences.size(); ++s)
+      if (const auto value = result.values.find(published_name(plan.matrix.sequences[s])); value != result.values.end())
+        values[plan.matrix.sequences[s].name] = value->second;
+    if (!values.empty())
+      rows.push_back({{"system", result.system},
+                      {"citation", result.citation},
+                      {"protocol", result.protocol},
+                      {"ate_rmse_m", values}});
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::string results_json(const RunPlan& plan, const BenchResults& results, const Analysis& analysis,
+                         const PublishedResults& published) {
+  Json json = {{"format", "holdfast-bench 1"},      {"title", plan.matrix.title},
+               {"about", plan.matrix.about},        {"matrix", plan.matrix.file.filename().string()},
+               {"complete", results.is_complete()}, {"minimum_coverage", plan.matrix.minimum_coverage}};
+  for (const Variant& variant : plan.variants) {
+    Json values = Json::object();
+    for (std::size_t a = 0; a < variant.choices.size(); ++a)
+      values[plan.matrix.axes[a].name] = plan.matrix.axes[a].values[variant.choices[a]].name;
+    json["variants"].push_back({{"name", variant.name},
+                                {"external", variant.is_external()},
+                                {"values", values},
+                                {"baseline", variant.baseline ? Json(*variant.baseline) : Json(nullptr)}});
+  }
+  for (const MatrixSequence& sequence : plan.matrix.sequences)
+    json["sequences"].push_back({{"name", sequence.name}, {"about", sequence.about}});
+  for (std::size_t i = 0; i < plan.runs.size(); ++i) json["runs"].push_back(run_json(plan, results, i));
+  for (const char* list : {"cells", "improvements", "comparisons"}) json[list] = Json::array();
+  for (const Cell& cell : analysis.cells) json["cells"].push_back(cell_json(cell));
+  for (const Improvement& each : analysis.improvements) json["improvements"].push_back(improvement_json(each));
+  for (const Comparison& each : analysis.comparisons) json["comparisons"].push_back(comparison_json(plan, each));
+  json["published"] = published_json(plan, published);
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void write_bench_reports(const std::filesystem::path& output, const RunPlan& plan, const BenchResults& results,
+                         const PublishedResults& published) {
+  const Analysis analysis = analyse(plan, results);
+  const std::filesystem::path tables = output / "tables";
+  std::filesystem::create_directories(tables);
+  write_file_atomically(tables / "runs.csv", to_csv(runs_table(plan, results)));
+  write_file_atomically(tables / "cells.csv", to_csv(cells_table(plan, analysis)));
+  write_file_atomically(tables / "improvements.csv", to_csv(improvements_table(plan, analysis)));
+  write_file_atomically(tables / "comparisons.csv", to_csv(comparisons_table(plan, analysis)));
+  write_file_atomically(tables / "published.csv", to_csv(published_table(plan, published)));
+  write_file_atomically(tables / "cost.csv", to_csv(cost_table(plan, analysis)));
+  write_file_atomically(output / "report.md", accuracy_report(plan, results, analysis, published));
+  write_file_atomically(output / "cost.md", cost_report(plan, results, analysis, published));
+  write_file_atomically(output / "results.json", results_json(plan, results, analysis, published));
+}
+
+}  // namespace holdfast

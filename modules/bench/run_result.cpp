@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/bench/run_result.hpp"
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "holdfast/core/error.hpp"
+#include "holdfast/evaluation/number_text.hpp"
+
+namespace holdfast {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array statuses = {RunStatus::finished, RunStatus::failed, RunStatus::crashed, RunStatus::timed_out,
+                                 RunStatus::not_started};
+constexpr std::array quantity_keys = {"ate_m", "rpe_translation_m", "rpe_rotation_deg"};
+constexpr std::array<const char*, 6> statistic_keys = {"rmse", "mean", "median", "standard_deviation", "min", "max"};
+
+double number(const Json& json) { return json.is_number() ? json.get<double>() : Statistics::none; }
+
+Json read_json(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream) throw InputError({file.string()}, "cannot be read; expected a result of the bench");
+  try {
+    return Json::parse(stream);
+  } catch (const Json::exception& error) {
+    throw InputError({file.string()},
+                     std::string("is no result of the bench: ") + error.what() + "; remove its folder");
+  }
+}
+
+/// Runs read; a value that is missing or of another type is the file's fault.
+template <class Read>
+auto read_values(const std::filesystem::path& file, const Read& read) {
+  const Json json = read_json(file);
+  try {
+    return read(json);
+  } catch (const Json::exception& error) {
+    throw InputError({file.string()},
+                     std::string("is no result of the bench: ") + error.what() + "; remove its folder");
+  }
+}
+
+Json statistics_json(const SixStatistics& values) {
+  Json json;
+  for (std::size_t i = 0; i < values.size(); ++i) json[statistic_keys[i]] = values[i];
+  return json;
+}
+
+SixStatistics statistics_of_json(const Json& json) {
+  SixStatistics values;
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = number(json.at(statistic_keys[i]));
+  return values;
+}
+
+}  // namespace
+
+const char* to_string(RunStatus status) {
+  switch (status) {
+    case RunStatus::finished:
+      return "finished";
+    case RunStatus::failed:
+      return "failed";
+    case RunStatus::crashed:
+      return "crashed";
+    case RunStatus::timed_out:
+      return "timed out";
+    case RunStatus::not_started:
+      return "not started";
+  }
+  return "";
+}
+
+const char* to_string(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::ate:
+      return "ATE";
+    case Quantity::rpe_translation:
+      return "RPE translation";
+    case Quantity::rpe_rotation:
+      return "RPE rotation";
+  }
+  return "";
+}
+
+const char* unit_of(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::ate:
+      return "m";
+    case Quantity::rpe_translation:
+      return "m/s";
+    case Quantity::rpe_rotation:
+      return "deg/s";
+  }
+  return "";
+}
+
+SixStatistics six_statistics(const Statistics& s) {
+  return {s.rmse, s.mean, s.median, s.standard_deviation, s.minimum, s.maximum};
+}
+
+std::string outcome_text(const RunResult& result) {
+  std::string text = to_string(result.status);
+  if (result.status == RunStatus::failed) text += " (exit code " + std::to_string(result.code) + ")";
+  if (result.status == RunStatus::crashed) text += " (signal " + std::to_string(result.code) + ")";
+  if (!result.has_errors) text += ", no errors: " + (result.no_errors.empty() ? "no trajectory" : result.no_errors);
+  const auto add = [&](std::size_t count, const char* one, const char* many) {
+    if (count > 0) text += ", " + std::to_string(count) + (count == 1 ? one : many);
+  };
+  add(result.not_finite, " pose is not finite", " poses are not finite");
+  add(result.malformed, " line is no pose", " lines are no pose");
+  return text;
+}
+
+std::string to_json(const RunResult& result) {
+  Json json = {{"status", to_string(result.status)},
+               {"code", result.code},
+               {"frames", result.frames},
+               {"poses", result.poses},
+               {"coverage", result.coverage()},
+               {"not_finite", result.not_finite},
+               {"malformed", result.malformed}};
+  json["no_errors"] = result.has_errors ? Json(nullptr) : Json(result.no_errors);
+  Json& errors = json["errors"] = nullptr;
+  if (result.has_errors)
+    for (std::size_t i = 0; i < quantity_keys.size(); ++i) errors[quantity_keys[i]] = statistics_json(result.errors[i]);
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string to_json(const RunCost& cost) {
+  const ProcessEnd& process = cost.process;
+  Json json = {{"wall_s", process.wall_seconds},
+               {"user_s", process.user_seconds},
+               {"system_s", process.system_seconds},
+               {"peak_memory_bytes", process.peak_memory},
+               {"alone", cost.alone},
+               {"tracking_median_s", cost.tracking},
+               {"version", cost.version},
+               {"machine", cost.machine}};
+  Json& stages = json["stages"] = Json::array();
+  for (const StageCost& stage : cost.stages)
+    stages.push_back({{"stage", stage.name}, {"median_s", stage.median}, {"total_s", stage.total}});
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+RunResult read_run_result(const std::filesystem::path& file) {
+  return read_values(file, [](const Json& json) {
+    RunResult result;
+    for (const RunStatus status : statuses)
+      if (json.at("status") == to_string(status)) result.status = status;
+    result.code = json.at("code");
+    result.frames = json.at("frames");
+    result.poses = json.at("poses");
+    result.not_finite = json.at("not_finite");
+    result.malformed = json.at("malformed");
+    const Json& errors = json.at("errors");
+    result.has_errors = errors.is_object();
+    if (!result.has_errors) result.no_errors = json.at("no_errors");
+    for (std::size_t i = 0; result.has_errors && i < quantity_keys.size(); ++i)
+      result.errors[i] = statistics_of_json(errors.at(quantity_keys[i]));
+    return result;
+  });
+}
+
+RunCost read_run_cost(const std::filesystem::path& file) {
+  return read_values(file, [](const Json& json) {
+    RunCost cost;
+    cost.process.wall_seconds = json.at("wall_s");
+    cost.process.user_seconds = json.at("user_s");
+    cost.process.system_seconds = json.at("system_s");
+    cost.process.peak_memory = json.at("peak_memory_bytes");
+    cost.alone = json.at("alone");
+    cost.tracking = number(json.at("tracking_median_s"));
+    cost.version = json.at("version");
+    cost.machine = json.at("machine");
+    for (const Json& stage : json.at("stages"))
+      cost.stages.push_back({stage.at("stage"), number(stage.at("median_s")), number(stage.at("total_s"))});
+    return cost;
+  });
+}
+
+void take_errors(const Evaluation& evaluation, RunResult& result) {
+  result.has_errors = true;
+  result.errors = {six_statistics(evaluation.absolute_error), six_statistics(evaluation.error_per_time.translation),
+                   six_statistics(evaluation.error_per_time.rotation)};
+  if (!evaluation.coverage) return;
+  result.frames = evaluation.coverage->frames;
+  result.poses = evaluation.coverage->poses;
+}
+
+void read_own_run(const std::filesystem::path& folder, RunResult& result, RunCost& cost) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(folder / "run.json", ignored)) return;
+  read_values(folder / "run.json", [&](const Json& json) {
+    result.frames = json.at("frames").at("expected");
+    result.poses = json.at("frames").at("poses");
+    cost.tracking = number(json.at("tracking").at("median_s"));
+    cost.version = json.at("holdfast").get<std::string>() + " (" + json.at("commit").get<std::string>() + ")";
+    const Json& machine = json.at("machine");
+    cost.machine = machine.at("processor").get<std::string>() + ", " + std::to_string(machine.at("cores").get<int>()) +
+                   " cores, " + machine.at("simd").get<std::string>();
+    for (const Json& stage : json.at("stages"))
+      cost.stages.push_back({stage.at("stage"), number(stage.at("median_s")), number(stage.at("total_s"))});
+    const Json& evaluation = json.at("evaluation");
+    if (!evaluation.is_object()) {
+      result.no_errors = result.poses == 0 ? "no frame has a pose" : "the poses cannot be compared with the truth";
+      return 0;
+    }
+    result.has_errors = true;
+    result.errors = {statistics_of_json(evaluation.at("ate_m")),
+                     statistics_of_json(evaluation.at("rpe_per_time").at("translation_m")),
+                     statistics_of_json(evaluation.at("rpe_per_time").at("rotation_deg"))};
+    const Json& coverage = evaluation.at("coverage");
+    if (coverage.is_object()) {
+      result.frames = coverage.at("frames");
+      result.poses = coverage.at("poses");
+    }
+    return 0;
+  });
+}
+
+}  // namespace holdfast

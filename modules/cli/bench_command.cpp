@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/cli/bench_command.hpp"
+
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "holdfast/bench/bench_report.hpp"
+#include "holdfast/bench/published.hpp"
+#include "holdfast/bench/run_desk.hpp"
+#include "holdfast/bench/run_plan.hpp"
+#include "holdfast/cli/terminal.hpp"
+#include "holdfast/core/error.hpp"
+#include "holdfast/core/trajectory.hpp"
+#include "holdfast/evaluation/number_text.hpp"
+#include "holdfast/pipeline/pipeline_builder.hpp"
+#include "holdfast/plugin/builtin.hpp"
+
+namespace holdfast {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  std::string matrix;
+  fs::path output;
+  int jobs = 1;
+  bool resume = false, dry_run = false, timing = false, quiet = false;
+  std::vector<std::string> data;
+};
+
+Variables variables_of(const std::vector<std::string>& data) {
+  Variables variables;
+  for (const std::string& each : data) {
+    const std::size_t equals = each.find('=');
+    if (equals == std::string::npos || equals == 0)
+      throw ConfigurationError(SourceLocation{"--data " + each}, "expected NAME=VALUE, such as HOLDFAST_TUM=/data/tum");
+    variables[each.substr(0, equals)] = each.substr(equals + 1);
+  }
+  return variables;
+}
+
+/// File by file, from top to bottom; what has no line comes last.
+void sort_diagnostics(std::vector<Diagnostic>& diagnostics) {
+  std::stable_sort(diagnostics.begin(), diagnostics.end(), [](const Diagnostic& a, const Diagnostic& b) {
+    const auto key = [](const SourceLocation& l) { return std::tuple(l.file, l.line == 0, l.line, l.column); };
+    return key(a.location) < key(b.location);
+  });
+}
+
+std::string time_text(double seconds) {
+  const int whole = static_cast<int>(seconds + 0.5);
+  if (whole < 100) return std::to_string(whole) + " s";
+  return whole < 6000 ? std::to_string((whole + 30) / 60) + " min" : fixed_text(seconds / 3600.0, 1) + " h";
+}
+
+void print_end(const PlannedRun& run, const RunResult& result, const RunCost& cost, const BenchProgress& progress) {
+  std::string text = "[" + std::to_string(progress.done) + "/" + std::to_string(progress.total) + "] " + run.id + ": ";
+  text += result.counts() ? "ATE RMSE " + fixed_text(result.errors[0][0], 4) + " m, coverage " +
+                                fixed_text(100.0 * result.coverage(), 1) + " %"
+                          : red(outcome_text(result), STDERR_FILENO);
+  text += ", " + time_text(cost.process.wall_seconds);
+  if (progress.done < progress.total) text += "; " + time_text(progress.seconds_left) + " left";
+  std::fprintf(stderr, "%s\n", text.c_str());
+}
+
+fs::path own_program() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (error) throw Error("the path of this program cannot be found: " + error.message() + "; is /proc mounted?");
+  return program;
+}
+
+void prepare_folder(const Arguments& arguments) {
+  std::error_code ignored;
+  if (!arguments.resume && fs::exists(arguments.output, ignored) && !fs::is_empty(arguments.output, ignored))
+    throw InputError({arguments.output.string()},
+                     "the output folder is not empty; go on with what is there by --resume, or name another one");
+  fs::create_directories(arguments.output, ignored);
+  if (!fs::is_directory(arguments.output, ignored))
+    throw InputError({arguments.output.string()}, "the output folder cannot be made");
+}
+
+std::string command_to_resume(const Arguments& arguments) {
+  std::string text = "holdfast bench " + arguments.matrix + " --output " + arguments.output.string() + " --resume";
+  if (arguments.jobs != 1) text += " --jobs " + std::to_string(arguments.jobs);
+  if (arguments.timing) text += " --timing";
+  for (const std::string& each : arguments.data) text += " --data " + each;
+  return text;
+}
+
+void bench(const Arguments& arguments, int& exit_code) {
+  std::vector<Diagnostic> diagnostics;
+  Matrix matrix = read_matrix(arguments.matrix, variables_of(arguments.data), diagnostics);
+  matrix.timing = matrix.timing || arguments.timing;
+  PublishedResults published;
+  if (matrix.published) published = read_published(matrix.published->text, diagnostics);
+  Registry registry;
+  register_builtin_plugins(registry);
+  const RunPlan plan = make_run_plan(std::move(matrix), registry, pipeline_sections(), diagnostics);
+  if (!arguments.dry_run) diagnostics.insert(diagnostics.end(), plan.missing.begin(), plan.missing.end());
+  sort_diagnostics(diagnostics);
+  if (!diagnostics.empty()) throw ConfigurationError(std::move(diagnostics));
+  exit_code = 0;
+  if (arguments.dry_run) {
+    std::fputs(plan_text(plan).c_str(), stdout);
+    return;
+  }
+  if (arguments.output.empty())
+    throw ConfigurationError(SourceLocation{"holdfast bench"}, "--output DIR is needed, the folder for the results");
+
+  catch_interrupts();
+  prepare_folder(arguments);
+  BenchOptions options;
+  options.output = fs::absolute(arguments.output);
+  options.program = own_program();
+  options.jobs = arguments.jobs;
+  options.stop = interrupted;
+  const BenchResults results = run_bench(
+      plan, options,
+      [&](const PlannedRun& run, const RunResult& result, const RunCost& cost, const BenchProgress& progress) {
+        if (!arguments.quiet) print_end(run, result, cost, progress);
+      });
+  std::ifstream text(arguments.matrix, std::ios::binary);
+  write_file_atomically(arguments.output / "matrix.yaml",
+                        {std::istreambuf_iterator<char>(text), std::istreambuf_iterator<char>()});
+  write_bench_reports(arguments.output, plan, results, published);
+  if (results.was_stopped) {
+    const auto done = std::count_if(results.results.begin(), results.results.end(),
+                                    [](const auto& result) { return result.has_value(); });
+    std::fprintf(stderr, "interrupted; %td of %zu runs are done. Go on with: %s\n", done, plan.runs.size(),
+                 command_to_resume(arguments).c_str());
+    exit_code = interrupted_exit_code;
+    return;
+  }
+  if (arguments.quiet) return;
+  if (results.kept > 0) std::printf("%zu runs were finished already\n", results.kept);
+  for (const Comparison& comparison : analyse(plan, results).comparisons)
+    if (comparison.quantity == Quantity::ate) std::printf("%s\n", sentence(plan, comparison).c_str());
+  std::printf("%s\n", (arguments.output / "report.md").c_str());
+}
+
+}  // namespace
+
+void add_bench_command(CLI::App& app, int& exit_code) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("bench", "Run a matrix of systems, configurations, sequences and repeats");
+  command->footer(
+      "\nEverything that is wrong with the matrix or with a configuration that follows from it is reported at once,\n"
+      "before anything runs. A run that crashes, hangs or loses its way is a result, shown as such.\n\n"
+      "Writes into the output folder:\n"
+      "  report.md     accuracy: what helps, by how much, is it sure    tables/*.csv  the same for programs\n"
+      "  cost.md       time and memory, and the machine                 results.json  everything\n"
+      "  runs/VARIANT/SEQUENCE/RUN  configuration, log and results of every run\n\n"
+      "Exits 0 when every run has a result, 130 on Ctrl-C, 2 when the matrix is wrong or something is missing, 1 for\n"
+      "anything else.\n\n"
+      "Examples\n"
+      "  holdfast bench benchmarks/simulated.yaml --dry-run\n"
+      "  holdfast bench benchmarks/composed.yaml --data HOLDFAST_COMPOSED=/data/composed --output out/composed\n"
+      "  holdfast bench benchmarks/composed.yaml --output out/composed --resume");
+  command->add_option("MATRIX", arguments->matrix, "Matrix in YAML")->required();
+  command->add_option("--output", arguments->output, "Folder for the results")->type_name("DIR");
+  command->add_option("--jobs", arguments->jobs, "Runs at once; more than one disturbs times, not errors")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command->add_flag("--resume", arguments->resume, "Go on with an interrupted bench: finished runs are not repeated");
+  command->add_flag("--dry-run", arguments->dry_run, "List the runs, and what is missing for them; run nothing");
+  command->add_flag("--timing", arguments->timing, "Every run alone, whatever --jobs says");
+  command->add_option("--data", arguments->data, "NAME=VALUE: of ${NAME} in the matrix; else the environment's")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
+  command->add_flag("--quiet", arguments->quiet, "No progress, no summary");
+  command->callback([arguments, &exit_code] { bench(*arguments, exit_code); });
+}
+
+}  // namespace holdfast

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+
+#include "cli/program.hpp"
+
+namespace holdfast {
+namespace {
+
+using test::Outcome;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+/// The program's own example of an external system, on a recording of which only the lists are there: nobody looks at
+/// the images.
+class BenchExternalTest : public ::testing::Test {
+ protected:
+  BenchExternalTest() {
+    std::filesystem::create_directories(program_.path("recording"));
+    std::string colour, depth, truth;
+    for (int i = 0; i < 60; ++i) {
+      char line[200];
+      std::snprintf(line, sizeof(line), "%.6f rgb/%d.png\n", 100.0 + 0.1 * i, i);
+      colour += line;
+      std::snprintf(line, sizeof(line), "%.6f depth/%d.png\n", 100.005 + 0.1 * i, i);
+      depth += line;
+      std::snprintf(line, sizeof(line), "%.6f %d %d 1.5 0 0 0 1\n", 100.0 + 0.1 * i, i % 7, i % 3);
+      truth += line;
+    }
+    program_.write("recording/rgb.txt", colour);
+    program_.write("recording/depth.txt", depth);
+    program_.write("recording/groundtruth.txt", truth);
+  }
+
+  /// One system per name, each the stand-in in that mood.
+  static std::string matrix(const std::vector<std::string>& moods) {
+    std::string text = "title: Stand-ins\nbaseline: " + moods.front() + "\nsystems:\n";
+    for (const std::string& mood : moods)
+      text += "  " + mood +
+              ":\n    command: [sh, " HOLDFAST_SOURCE_DIR
+              "/examples/external/stand_in.sh, '{associations}', '{settings}', '{sequence}', poses.txt]\n"
+              "    environment: { STAND_IN: " +
+              mood + ", STAND_IN_NAME: 'of {name}' }\n    trajectory: '{output}/poses.txt'\n    time_limit: " +
+              (mood == "hang" ? "2" : "60") + "\n";
+    return text + "sequences: { little: { source: { tum: { path: recording, frames: 50 } }, camera: tum_fr3 } }\n";
+  }
+
+  test::Program program_;
+};
+
+TEST_F(BenchExternalTest, ShowsEveryEndAsWhatItIs) {
+  program_.write("matrix.yaml", matrix({"good", "half", "crash", "hang", "nan", "empty", "fail"}));
+  const Outcome outcome = program_.run({"bench", "matrix.yaml", "--output", "out", "--jobs", "2"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  const std::string runs = program_.text("out/tables/runs.csv");
+  EXPECT_THAT(runs, AllOf(HasSubstr("\ngood,little,,1,finished,0,50,50,1,0,0,"),
+                          HasSubstr("\nhalf,little,,1,finished,0,50,25,0.5,0,0,"),
+                          HasSubstr("\ncrash,little,,1,crashed,11,50,25,0.5,0,1,"),
+                          HasSubstr("\nhang,little,,1,timed out,0,50,25,0.5,0,0,"),
+                          HasSubstr("\nnan,little,,1,finished,0,50,25,0.5,25,0,")));
+  EXPECT_THAT(runs, AllOf(HasSubstr("\nempty,little,,1,finished,0,50,0,0,0,0,,,,,,,,,,,,,,,,,,\n"),
+                          HasSubstr("\nfail,little,,1,failed,3,50,0,0,0,0,,,,,,,,,,,,,,,,,,\n")));
+  const std::string report = program_.text("out/report.md");
+  EXPECT_THAT(report,
+              AllOf(HasSubstr("| crash/little/repeat1 | crashed (signal 11), 1 line is no pose, short | 50.00 %"),
+                    HasSubstr("| hang/little/repeat1 | timed out, short | 50.00 %"),
+                    HasSubstr("| nan/little/repeat1 | finished, 25 poses are not finite, short | 50.00 %"),
+                    HasSubstr("| fail/little/repeat1 | failed (exit code 3), no errors: no trajectory"),
+                    HasSubstr("7 of 7 runs done, 3 with a result that counts")));
+  // The stand-in moves the truth by a rigid motion, so what counts has no error.
+  EXPECT_THAT(program_.text("out/tables/cells.csv"), HasSubstr("\ncrash,little,1,0,0.5,0.5,0.5,,,,"));
+  EXPECT_THAT(report, HasSubstr("| little | 0.0000 | 0.0000, 50.00 % |"));
+
+  const std::string folder = "out/runs/good/little/repeat1/";
+  EXPECT_THAT(program_.text(folder + "associations.txt"), StartsWith("100.000000 rgb/0.png 100.005000 depth/0.png\n"));
+  EXPECT_THAT(program_.text(folder + "settings.yaml"), HasSubstr("Camera.fx: 535.4"));
+  EXPECT_THAT(program_.text(folder + "log.txt"), HasSubstr("50 frames of little"));
+  EXPECT_TRUE(std::filesystem::exists(program_.path(folder + "tracks.json")));
+
+  // Nothing is run again, and nothing changes.
+  const Outcome again = program_.run({"bench", "matrix.yaml", "--output", "out", "--resume"});
+  EXPECT_THAT(again.output, HasSubstr("7 runs were finished already"));
+  EXPECT_EQ(program_.text("out/tables/runs.csv"), runs);
+  EXPECT_EQ(program_.text("out/report.md"), report);
+}
+
+TEST_F(BenchExternalTest, RepeatsOnlyWhatWasAskedOtherwise) {
+  program_.write("matrix.yaml", matrix({"good", "half"}));
+  ASSERT_EQ(program_.run({"bench", "matrix.yaml", "--output", "out"}).exit_code, 0);
+  EXPECT_EQ(program_.run({"bench", "matrix.yaml", "--output", "out"}).exit_code, 1) << "the folder is not empty";
+  std::string changed = matrix({"good", "half", "empty"});
+  changed.replace(changed.find("'of {name}'"), 11, "other");
+  program_.write("matrix.yaml", changed);
+  const Outcome outcome = program_.run({"bench", "matrix.yaml", "--output", "out", "--resume"});
+  EXPECT_THAT(outcome.output, HasSubstr("1 runs were finished already"));
+  EXPECT_THAT(outcome.errors,
+              AllOf(HasSubstr("good/little"), HasSubstr("empty/little"), Not(HasSubstr("half/little"))));
+}
+
+TEST_F(BenchExternalTest, IsStoppedByASignalAndGoesOn) {
+  program_.write("matrix.yaml", matrix({"good", "hang"}));
+  std::string text = program_.text("matrix.yaml");
+  text.replace(text.rfind("time_limit: 2"), 13, "time_limit: 60");
+  program_.write("matrix.yaml", text);
+  const pid_t process = program_.start({"bench", "matrix.yaml", "--output", "out"});
+  while (!std::filesystem::exists(program_.path("out/runs/hang"))) usleep(20'000);
+  kill(process, SIGINT);
+  const Outcome stopped = program_.finish(process);
+  EXPECT_EQ(stopped.exit_code, 130);
+  EXPECT_THAT(stopped.errors,
+              HasSubstr("1 of 2 runs are done. Go on with: holdfast bench matrix.yaml --output out --resume"));
+  EXPECT_THAT(program_.text("out/report.md"), HasSubstr("**Unfinished**"));
+  EXPECT_FALSE(std::filesystem::exists(program_.path("out/runs/hang/little/repeat1")));
+}
+
+TEST_F(BenchExternalTest, HasTimedRunsStandAlone) {
+  program_.write("matrix.yaml", matrix({"good", "half"}));
+  ASSERT_EQ(program_.run({"bench", "matrix.yaml", "--output", "beside", "--jobs", "2"}).exit_code, 0);
+  EXPECT_THAT(program_.text("beside/tables/cost.csv"),
+              AllOf(HasSubstr("\ngood,little,1,no,"), HasSubstr("\nhalf,little,1,no,")));
+  EXPECT_THAT(program_.text("beside/cost.md"), HasSubstr("**Some runs had others beside them**"));
+  ASSERT_EQ(program_.run({"bench", "matrix.yaml", "--output", "alone", "--jobs", "2", "--timing"}).exit_code, 0);
+  EXPECT_THAT(program_.text("alone/tables/cost.csv"),
+              AllOf(HasSubstr("\ngood,little,1,yes,"), HasSubstr("\nhalf,little,1,yes,")));
+  EXPECT_EQ(program_.text("alone/report.md"), program_.text("beside/report.md"));
+}
+
+TEST_F(BenchExternalTest, FindsTheMatricesOfTheProjectSound) {
+  std::size_t matrices = 0;
+  for (const char* name : {"bonn", "composed", "simulated", "tum_dynamic"}) {
+    const Outcome list =
+        program_.run({"bench", HOLDFAST_SOURCE_DIR "/benchmarks/" + std::string(name) + ".yaml", "--dry-run"});
+    EXPECT_EQ(list.exit_code, 0) << name << "\n" << list.errors;
+    matrices += list.output.find(" runs: 5 variants") != std::string::npos ? 1 : 0;
+  }
+  EXPECT_EQ(matrices, 4U);
+}
+
+TEST_F(BenchExternalTest, ListsRunsAndWhatIsMissing) {
+  program_.write("matrix.yaml",
+                 "systems: { theirs: { command: [/no/such/program] } }\n"
+                 "sequences: { gone: { source: { tum: { path: '${HOLDFAST_NOWHERE}/gone' } }, camera: tum_fr3,\n"
+                 "                     about: ask Ada } }\n");
+  const Outcome list = program_.run({"bench", "matrix.yaml", "--dry-run"});
+  EXPECT_EQ(list.exit_code, 0);
+  EXPECT_THAT(list.output, AllOf(HasSubstr("theirs/gone/repeat1\n1 run:"), HasSubstr("'/no/such/program' is missing"),
+                                 HasSubstr("the variable 'HOLDFAST_NOWHERE' is not set"), HasSubstr("ask Ada")));
+  const Outcome run = program_.run({"bench", "matrix.yaml", "--output", "out"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.errors, AllOf(HasSubstr("matrix.yaml:1:12: system 'theirs'"), HasSubstr("matrix.yaml:2:14")));
+  EXPECT_FALSE(std::filesystem::exists(program_.path("out")));
+}
+
+}  // namespace
+}  // namespace holdfast
