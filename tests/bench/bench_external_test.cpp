@@ -70,7 +70,7 @@ TEST_F(BenchExternalTest, ShowsEveryEndAsWhatItIs) {
               AllOf(HasSubstr("| crash/little/repeat1 | crashed (signal 11), 1 line is no pose, short | 50.00 %"),
                     HasSubstr("| hang/little/repeat1 | timed out, short | 50.00 %"),
                     HasSubstr("| nan/little/repeat1 | finished, 25 poses are not finite, short | 50.00 %"),
-                    HasSubstr("| fail/little/repeat1 | failed (exit code 3), no errors: no trajectory"),
+                    HasSubstr("| fail/little/repeat1 | failed (exit code 3), no figures: no trajectory"),
                     HasSubstr("7 of 7 runs done, 3 with a result that counts")));
   // The stand-in moves the truth by a rigid motion, so what counts has no error.
   EXPECT_THAT(program_.text("out/tables/cells.csv"), HasSubstr("\ncrash,little,1,0,0.5,0.5,0.5,,,,"));
@@ -84,7 +84,7 @@ TEST_F(BenchExternalTest, ShowsEveryEndAsWhatItIs) {
 
   // Nothing is run again, and nothing changes.
   const Outcome again = program_.run({"bench", "matrix.yaml", "--output", "out", "--resume"});
-  EXPECT_THAT(again.output, HasSubstr("7 runs were finished already"));
+  EXPECT_THAT(again.output, HasSubstr("7 of 7 runs were finished before"));
   EXPECT_EQ(program_.text("out/tables/runs.csv"), runs);
   EXPECT_EQ(program_.text("out/report.md"), report);
 }
@@ -97,7 +97,7 @@ TEST_F(BenchExternalTest, RepeatsOnlyWhatWasAskedOtherwise) {
   changed.replace(changed.find("'of {name}'"), 11, "other");
   program_.write("matrix.yaml", changed);
   const Outcome outcome = program_.run({"bench", "matrix.yaml", "--output", "out", "--resume"});
-  EXPECT_THAT(outcome.output, HasSubstr("1 runs were finished already"));
+  EXPECT_THAT(outcome.output, HasSubstr("1 of 3 runs were finished before"));
   EXPECT_THAT(outcome.errors,
               AllOf(HasSubstr("good/little"), HasSubstr("empty/little"), Not(HasSubstr("half/little"))));
 }
