@@ -47,15 +47,19 @@ function showComparisons(quantity) {
   const largest = Math.max(...chosen.flatMap((comparison) => [
     ...gainsOf(comparison, quantity).map(({gain}) => Math.abs(gain)), ...(comparison.interval ?? []).map(Math.abs)]), 0);
   const range = largest > 0 ? 1.05 * largest : 1;
-  fill('comparison-cards', chosen.map((comparison) => {
+  const withPairs = chosen.filter((comparison) => comparison.sequences.length > 0);
+  const cards = withPairs.map((comparison) => {
     const verdict = verdictOf(comparison);
     return element('article', {class: 'card'},
                    element('div', {}, element('h3', {}, element('code', {}, variantName(comparison.after)), ' against ',
                                               element('code', {}, variantName(comparison.before)), ' ',
                                               element('span', {class: `mark ${verdict.kind}`}, verdict.text)),
                            element('p', {}, withCode(comparison.sentence))),
-                   comparison.sequences.length > 0 ? gainPicture(comparison, quantity, range) : null);
-  }));
+                   gainPicture(comparison, quantity, range));
+  });
+  const others = chosen.filter((comparison) => comparison.sequences.length === 0);
+  fill('comparison-cards', cards, others.length === 0 ? null :
+       element('ul', {class: 'others'}, others.map((comparison) => element('li', {}, withCode(comparison.sentence)))));
   const {unit} = quantities[quantity];
   fill('comparison-table', sortableTable(`Comparisons: ${quantities[quantity].name} RMSE`, [
     {title: 'variant', value: (c) => variantName(c.after)},

@@ -14,7 +14,7 @@ function errorCell(cell, quantity, statistic, isBest) {
   if (failed > 0) {
     const marks = cell.runs.length === 1 ? outcomeMarks(results.runs[cell.runs[0]]) :
                                            [element('span', {class: 'mark bad'}, `${failed} of ${cell.runs.length} failed`)];
-    parts.push(element('div', {}, marks));
+    parts.push(element('div', {class: 'marks'}, marks));
   }
   if (cell.coverage.least < 1)
     parts.push(element('small', {class: cell.coverage.least < results.minimum_coverage ? 'low' : null},
@@ -25,15 +25,17 @@ function errorCell(cell, quantity, statistic, isBest) {
 function showErrors(quantity, statistic) {
   const {name, unit} = quantities[quantity];
   const medianOf = (variant, sequence) => cellOf(variant, sequence)?.errors[quantity][statistic].median;
+  const isCovered = (variant, sequence) => cellOf(variant, sequence)?.coverage.least >= results.minimum_coverage;
   const sequences = results.sequences.map((_, i) => i);
   const bestOf = sequences.map((sequence) => {
-    const values = results.variants.map((_, variant) => medianOf(variant, sequence)).filter(isNumber);
+    // An error over the easy part of a sequence is no least error.
+    const values = results.variants.map((_, variant) => (isCovered(variant, sequence) ? medianOf(variant, sequence) : null)).filter(isNumber);
     return values.length > 1 ? Math.min(...values) : null;
   });
   const columns = [{title: 'sequence', value: (s) => sequenceName(s)}];
   results.variants.forEach((variant, v) => columns.push({
     title: variant.name, numeric: true, value: (s) => medianOf(v, s),
-    cell: (s) => errorCell(cellOf(v, s), quantity, statistic, medianOf(v, s) === bestOf[s]),
+    cell: (s) => errorCell(cellOf(v, s), quantity, statistic, isCovered(v, s) && medianOf(v, s) === bestOf[s]),
   }));
   fill('error-table', sortableTable(`${name}, ${statistics[statistic]} [${unit}], by sequence and variant`, columns, sequences));
 }
@@ -42,8 +44,8 @@ function showImprovements(quantity) {
   byId('improvements').hidden = results.improvements.length === 0;
   const columns = [
     {title: 'sequence', value: (i) => sequenceName(i.sequence)},
-    {title: 'variant', value: (i) => variantName(i.variant)},
-    {title: 'baseline', value: (i) => variantName(i.baseline)},
+    {title: 'variant', value: (i) => variantName(i.variant),
+     cell: (i) => [variantName(i.variant), element('small', {}, `against ${variantName(i.baseline)}`)]},
   ];
   for (const [key, label] of Object.entries(statistics)) {
     columns.push({
@@ -75,7 +77,10 @@ function showPublished() {
   fill('published-table', sortableTable('Published ATE RMSE [m], and ours', [
     {title: 'system', value: (row) => row.system, cell: (row) => (row.here ? element('b', {}, `${row.system} (here)`) : row.system)},
     ...withFigures.map((s) => ({
-      title: sequenceName(s), numeric: true, value: (row) => row.valueOf(s), cell: (row) => (isNumber(row.valueOf(s)) ? errorText(row.valueOf(s)) : '')})),
+      title: sequenceName(s), numeric: true, value: (row) => row.valueOf(s),
+      // What others printed is shown with the digits that they printed.
+      cell: (row) => (!isNumber(row.valueOf(s)) ? '' : row.here ? errorText(row.valueOf(s)) : String(row.valueOf(s))),
+    })),
     {title: 'source', value: (row) => row.source},
     {title: 'protocol', value: (row) => row.protocol},
   ], rows, {attributesOf: (row) => ({class: row.here ? 'here' : null})}));
