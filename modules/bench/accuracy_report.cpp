@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <cmath>
 
+#include "error_text.hpp"
 #include "holdfast/bench/bench_report.hpp"
 #include "holdfast/bench/tables.hpp"
-#include "holdfast/evaluation/number_text.hpp"
 
 namespace holdfast {
 
 namespace {
 
-std::string metres(double value) { return std::isfinite(value) ? error_text(value) : "-"; }
-std::string percent(double share) { return std::isfinite(share) ? fixed_text(100.0 * share, 2) + " %" : "-"; }
+std::string metres(double value) { return error_text(value); }
+std::string percent(double share) { return percent_text(100.0 * share, 2); }
 std::string plural(std::size_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
@@ -70,8 +69,7 @@ class AccuracyReport {
       const bool has_pairs = !c.sequences.empty();
       table.rows.push_back({variant(c.after), variant(c.before), to_string(c.quantity),
                             std::to_string(c.better) + " of " + std::to_string(c.sequences.size()),
-                            has_pairs ? error_text(c.gain) + unit : "-",
-                            has_pairs ? fixed_text(c.gain_percent, 1) + " %" : "-",
+                            has_pairs ? error_text(c.gain) + unit : "-", percent_text(c.gain_percent, 1),
                             c.enough ? error_text(c.interval.low) + " to " + error_text(c.interval.high) + unit : "-",
                             c.enough ? fixed_text(c.test.p, 4) : "-", c.enough ? fixed_text(c.adjusted, 4) : "-",
                             !c.enough            ? "too few to tell"
@@ -116,7 +114,7 @@ class AccuracyReport {
           text += " (" + metres(spread.least) + " to " + metres(spread.most) + ")";
         if (cell.counted < cell.runs.size())
           text += ", " + std::to_string(cell.runs.size() - cell.counted) + " of " + std::to_string(cell.runs.size()) +
-                  " failed";
+                  " without a figure";
         if (quantity == Quantity::ate && cell.coverage.least < 1.0) text += ", " + percent(cell.coverage.least);
         return text;
       });
@@ -165,8 +163,10 @@ class AccuracyReport {
     std::vector<std::string> row = {sequence(improvement.sequence)};
     for (std::size_t s = 0; s < statistic_names.size(); ++s) {
       const double change = improvement.percent[q][s];
-      row.push_back(metres(improvement.before[q][s]) + " to " + metres(improvement.after[q][s]) + ": " +
-                    (std::isfinite(change) ? fixed_text(change, 2) + " %" : "-"));
+      row.push_back(std::isfinite(improvement.after[q][s])
+                        ? metres(improvement.before[q][s]) + " to " + metres(improvement.after[q][s]) + ": " +
+                              percent_text(change, 2)
+                        : "-");
     }
     return row;
   }

@@ -166,6 +166,7 @@ void ActiveRun::complete() {
 }
 
 void ActiveRun::discard() {
+  process_.kill();
   std::error_code ignored;
   fs::remove_all(folder_, ignored);
 }

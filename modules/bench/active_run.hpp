@@ -23,7 +23,7 @@ class ActiveRun {
   void complete();
   /// Asks the process to end.
   void terminate() { process_.terminate(); }
-  /// Removes the folder of a run that was not completed.
+  /// Ends the process and removes the folder of a run that was not completed.
   void discard();
 
   const RunResult& result() const { return result_; }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "holdfast/evaluation/number_text.hpp"
+#include "error_text.hpp"
 
 namespace holdfast {
 
@@ -81,7 +81,7 @@ Comparison compare(const RunPlan& plan, const Analysis& analysis, std::size_t be
   }
   if (gains.empty()) return result;
   result.gain = median(gains);
-  result.gain_percent = median(percents);
+  result.gain_percent = spread_of(percents).median;  // a baseline without any error has none
   result.test = wilcoxon_signed_rank(gains);
   result.enough = result.test.pairs >= fewest_pairs_to_test;
   if (result.enough) result.interval = bootstrap_median(gains);

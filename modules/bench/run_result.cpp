@@ -106,8 +106,11 @@ std::string outcome_text(const RunResult& result) {
   if (result.status == RunStatus::failed) text += " (exit code " + std::to_string(result.code) + ")";
   if (result.status == RunStatus::crashed) text += " (signal " + std::to_string(result.code) + ")";
   if (!result.has_errors) text += ", no errors: " + (result.no_errors.empty() ? "no trajectory" : result.no_errors);
-  if (result.not_finite > 0) text += ", " + std::to_string(result.not_finite) + " poses are not finite";
-  if (result.malformed > 0) text += ", " + std::to_string(result.malformed) + " lines are no pose";
+  const auto add = [&](std::size_t count, const char* one, const char* many) {
+    if (count > 0) text += ", " + std::to_string(count) + (count == 1 ? one : many);
+  };
+  add(result.not_finite, " pose is not finite", " poses are not finite");
+  add(result.malformed, " line is no pose", " lines are no pose");
   return text;
 }
 

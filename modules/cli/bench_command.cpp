@@ -91,6 +91,14 @@ void prepare_folder(const Arguments& arguments) {
     throw InputError({arguments.output.string()}, "the output folder cannot be made");
 }
 
+std::string command_to_resume(const Arguments& arguments) {
+  std::string text = "holdfast bench " + arguments.matrix + " --output " + arguments.output.string() + " --resume";
+  if (arguments.jobs != 1) text += " --jobs " + std::to_string(arguments.jobs);
+  if (arguments.timing) text += " --timing";
+  for (const std::string& each : arguments.data) text += " --data " + each;
+  return text;
+}
+
 void bench(const Arguments& arguments, int& exit_code) {
   std::vector<Diagnostic> diagnostics;
   Matrix matrix = read_matrix(arguments.matrix, variables_of(arguments.data), diagnostics);
@@ -130,8 +138,8 @@ void bench(const Arguments& arguments, int& exit_code) {
   if (results.was_stopped) {
     const auto done = std::count_if(results.results.begin(), results.results.end(),
                                     [](const auto& result) { return result.has_value(); });
-    std::fprintf(stderr, "interrupted; %td of %zu runs are done. Go on with: holdfast bench %s --output %s --resume\n",
-                 done, plan.runs.size(), arguments.matrix.c_str(), arguments.output.c_str());
+    std::fprintf(stderr, "interrupted; %td of %zu runs are done. Go on with: %s\n", done, plan.runs.size(),
+                 command_to_resume(arguments).c_str());
     exit_code = interrupted_exit_code;
     return;
   }

@@ -45,7 +45,8 @@ class BenchExternalTest : public ::testing::Test {
               ":\n    command: [sh, " HOLDFAST_SOURCE_DIR
               "/examples/external/stand_in.sh, '{associations}', '{settings}', '{sequence}', poses.txt]\n"
               "    environment: { STAND_IN: " +
-              mood + ", STAND_IN_NAME: 'of {name}' }\n    trajectory: '{output}/poses.txt'\n    time_limit: 1\n";
+              mood + ", STAND_IN_NAME: 'of {name}' }\n    trajectory: '{output}/poses.txt'\n    time_limit: " +
+              (mood == "hang" ? "2" : "60") + "\n";
     return text + "sequences: { little: { source: { tum: { path: recording, frames: 50 } }, camera: tum_fr3 } }\n";
   }
 
@@ -66,7 +67,7 @@ TEST_F(BenchExternalTest, ShowsEveryEndAsWhatItIs) {
                           HasSubstr("\nfail,little,,1,failed,3,50,0,0,0,0,,,,,,,,,,,,,,,,,,\n")));
   const std::string report = program_.text("out/report.md");
   EXPECT_THAT(report,
-              AllOf(HasSubstr("| crash/little/repeat1 | crashed (signal 11), 1 lines are no pose, short | 50.00 %"),
+              AllOf(HasSubstr("| crash/little/repeat1 | crashed (signal 11), 1 line is no pose, short | 50.00 %"),
                     HasSubstr("| hang/little/repeat1 | timed out, short | 50.00 %"),
                     HasSubstr("| nan/little/repeat1 | finished, 25 poses are not finite, short | 50.00 %"),
                     HasSubstr("| fail/little/repeat1 | failed (exit code 3), no errors: no trajectory"),
@@ -104,7 +105,7 @@ TEST_F(BenchExternalTest, RepeatsOnlyWhatWasAskedOtherwise) {
 TEST_F(BenchExternalTest, IsStoppedByASignalAndGoesOn) {
   program_.write("matrix.yaml", matrix({"good", "hang"}));
   std::string text = program_.text("matrix.yaml");
-  text.replace(text.rfind("time_limit: 1"), 13, "time_limit: 60");
+  text.replace(text.rfind("time_limit: 2"), 13, "time_limit: 60");
   program_.write("matrix.yaml", text);
   const pid_t process = program_.start({"bench", "matrix.yaml", "--output", "out"});
   while (!std::filesystem::exists(program_.path("out/runs/hang"))) usleep(20'000);

@@ -18,12 +18,6 @@ inline std::string fixed_text(double value, int decimals) {
   return text;
 }
 
-/// An error for people to read: four decimals, and more where fewer than three digits would be left.
-inline std::string error_text(double value) {
-  const double magnitude = value < 0.0 ? -value : value;
-  return fixed_text(value, magnitude >= 0.01 || magnitude == 0.0 ? 4 : magnitude >= 0.001 ? 5 : 6);
-}
-
 /// The shortest text that reads back as the same value.
 inline std::string shortest_text(double value) {
   char buffer[64];

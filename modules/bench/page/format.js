@@ -14,7 +14,7 @@ const isNumber = (value) => typeof value === 'number' && Number.isFinite(value);
 const fixed = (value, decimals) => (isNumber(value) ? value.toFixed(decimals).replace('-', '−') : '–');
 const percent = (share, decimals = 1) => (isNumber(share) ? `${fixed(100 * share, decimals)} %` : '–');
 /// An error with as many decimals as in report.md.
-const errorText = (value) => fixed(value, Math.abs(value) >= 0.01 || value === 0 ? 4 : Math.abs(value) >= 0.001 ? 5 : 6);
+const errorText = (value) => fixed(value, Math.abs(value) >= 0.01 || Math.abs(value) < 5e-7 ? 4 : Math.abs(value) >= 0.001 ? 5 : 6);
 const counted = (count, noun) => `${count} ${noun}${count === 1 ? '' : 's'}`;
 
 function median(values) {

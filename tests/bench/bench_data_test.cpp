@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+
+#include "cli/program.hpp"
+
+namespace holdfast {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Figures of the TUM benchmark's own scripts for trajectories that others published: ATE RMSE, mean, median, max [m],
+/// RPE RMSE in translation [m] and rotation [deg] over 1 s, as printed.
+const std::map<std::string, std::array<const char*, 6>> expected = {
+    {"walking_xyz_dyna", {"0.015449", "0.013397", "0.011407", "0.058548", "0.019365", "0.602667"}},
+    {"walking_xyz_orbslam2", {"0.656076", "0.562545", "0.587079", "1.502284", "0.366183", "6.924481"}},
+    {"walking_static_orbslam2", {"0.378868", "0.345465", "0.289259", "0.660806", "0.212673", "3.813051"}},
+    {"walking_static_dyna", {"0.013178", "0.011447", "0.010252", "0.036711", "0.012994", "0.313914"}},
+    {"sitting_xyz_dyna", {"0.011730", "0.010308", "0.009486", "0.076597", "0.013358", "0.509499"}},
+    {"walking_halfsphere_dyna", {"0.027084", "0.024131", "0.022680", "0.073258", "0.025507", "0.737192"}},
+};
+
+/// Programs that "track" by copying a published trajectory.
+TEST(BenchDataTest, AgreesWithTheBenchmarksOwnScripts) {
+  const char* data = std::getenv("HOLDFAST_DATA");
+  if (data == nullptr)
+    GTEST_SKIP() << "set HOLDFAST_DATA to a folder with tum_fr3/{groundtruth,associations,published}";
+  const fs::path tum = fs::path(data) / "tum_fr3";
+  const test::Program program;
+  std::string systems = "systems:\n", sequences = "sequences:\n", exclude = "exclude:\n";
+  std::map<std::string, bool> seen;
+  for (const auto& [name, figures] : expected) {
+    const std::string sequence = name.substr(0, name.rfind('_'));
+    systems += "  " + name + ": { command: [cp, '" + (tum / "published" / (name + ".txt")).string() +
+               "', '{output}/trajectory.txt'] }\n";
+    if (!seen[sequence]) {
+      fs::create_directories(program.path(sequence));
+      fs::copy_file(tum / "groundtruth" / ("fr3_" + sequence + ".txt"), program.path(sequence + "/groundtruth.txt"));
+      sequences += "  " + sequence + ": { source: { tum: { path: " + sequence + ", associations: '" +
+                   (tum / "associations" / ("fr3_" + sequence + ".txt")).string() + "' } }, camera: tum_fr3 }\n";
+    }
+    seen[sequence] = true;
+  }
+  for (const auto& [name, figures] : expected)
+    for (const auto& [sequence, is_there] : seen)
+      if (name.substr(0, name.rfind('_')) != sequence)
+        exclude += "  - { system: " + name + ", sequence: " + sequence + " }\n";
+  program.write("matrix.yaml", systems + sequences + exclude);
+  const test::Outcome outcome = program.run({"bench", "matrix.yaml", "--output", "out"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+
+  std::istringstream rows(program.text("out/tables/runs.csv"));
+  std::size_t checked = 0;
+  std::string line;
+  for (std::getline(rows, line); std::getline(rows, line); ++checked) {
+    std::vector<std::string> cells;
+    std::istringstream row(line);
+    for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+    ASSERT_EQ(cells.size(), 29U) << line;
+    EXPECT_EQ(cells[4], "finished");
+    const auto& figures = expected.at(cells[0]);
+    // Behind 11 columns: RMSE, mean, median, S.D., min and max of ATE, then of RPE in translation and in rotation.
+    const std::size_t columns[] = {11, 12, 13, 16, 17, 23};
+    for (std::size_t i = 0; i < figures.size(); ++i) {
+      char printed[32];
+      std::snprintf(printed, sizeof(printed), "%.6f", std::stod(cells[columns[i]]));
+      EXPECT_STREQ(printed, figures[i]) << cells[0] << ", column " << columns[i];
+    }
+  }
+  EXPECT_EQ(checked, expected.size());
+}
+
+}  // namespace
+}  // namespace holdfast
