@@ -213,7 +213,7 @@ class AccuracyReport {
                             percent(result.coverage()), result.has_errors ? metres(result.errors[0][0]) : "-"});
     }
     if (table.rows.empty()) return;
-    text_ += "## Trouble\n\nRuns that did not finish, left no errors, have fewer than " +
+    text_ += "## Trouble\n\nRuns that did not finish, have no figures, have fewer than " +
              percent(plan_.matrix.minimum_coverage) +
              " of the poses, or left what is no pose. Of these only runs that finished enter the tables above.\n\n";
     add(table);

@@ -153,7 +153,8 @@ std::string sentence(const RunPlan& plan, const Comparison& c) {
   const bool is_gain = c.gain >= 0.0;
   text += std::string(is_gain ? "smaller" : "larger") + " " + to_string(c.quantity) + " RMSE on " +
           std::to_string(is_gain ? c.better : c.worse) + " of " + counted(pairs, "sequence") + ", by " +
-          error_text(std::abs(c.gain)) + unit + " (" + fixed_text(std::abs(c.gain_percent), 1) + " %) in the median. ";
+          error_text(std::abs(c.gain)) + unit + " (median of the differences; of the ratios " +
+          percent_text(is_gain ? c.gain_percent : -c.gain_percent, 1) + "). ";
   if (!c.enough) {
     text += "Too few to tell: " + counted(c.test.pairs, "pair") + " that differ" + (c.test.pairs == 1 ? "s" : "") +
             ", " + std::to_string(fewest_pairs_to_test) + " are needed.";

@@ -129,7 +129,7 @@ std::string results_json(const RunPlan& plan, const BenchResults& results, const
   for (const MatrixSequence& sequence : plan.matrix.sequences)
     json["sequences"].push_back({{"name", sequence.name}, {"about", sequence.about}});
   for (std::size_t i = 0; i < plan.runs.size(); ++i) json["runs"].push_back(run_json(plan, results, i));
-  json["cells"] = json["improvements"] = json["comparisons"] = Json::array();
+  for (const char* list : {"cells", "improvements", "comparisons"}) json[list] = Json::array();
   for (const Cell& cell : analysis.cells) json["cells"].push_back(cell_json(cell));
   for (const Improvement& each : analysis.improvements) json["improvements"].push_back(improvement_json(each));
   for (const Comparison& each : analysis.comparisons) json["comparisons"].push_back(comparison_json(plan, each));

@@ -105,7 +105,7 @@ std::string outcome_text(const RunResult& result) {
   std::string text = to_string(result.status);
   if (result.status == RunStatus::failed) text += " (exit code " + std::to_string(result.code) + ")";
   if (result.status == RunStatus::crashed) text += " (signal " + std::to_string(result.code) + ")";
-  if (!result.has_errors) text += ", no errors: " + (result.no_errors.empty() ? "no trajectory" : result.no_errors);
+  if (!result.has_errors) text += ", no figures: " + (result.no_errors.empty() ? "no trajectory" : result.no_errors);
   const auto add = [&](std::size_t count, const char* one, const char* many) {
     if (count > 0) text += ", " + std::to_string(count) + (count == 1 ? one : many);
   };

@@ -144,7 +144,7 @@ void bench(const Arguments& arguments, int& exit_code) {
     return;
   }
   if (arguments.quiet) return;
-  if (results.kept > 0) std::printf("%zu runs were finished already\n", results.kept);
+  if (results.kept > 0) std::printf("%zu of %zu runs were finished before\n", results.kept, plan.runs.size());
   for (const Comparison& comparison : analyse(plan, results).comparisons)
     if (comparison.quantity == Quantity::ate) std::printf("%s\n", sentence(plan, comparison).c_str());
   std::printf("%s\n", (arguments.output / "report.html").c_str());

@@ -70,7 +70,7 @@ TEST_F(BenchExternalTest, ShowsEveryEndAsWhatItIs) {
               AllOf(HasSubstr("| crash/little/repeat1 | crashed (signal 11), 1 line is no pose, short | 50.00 %"),
                     HasSubstr("| hang/little/repeat1 | timed out, short | 50.00 %"),
                     HasSubstr("| nan/little/repeat1 | finished, 25 poses are not finite, short | 50.00 %"),
-                    HasSubstr("| fail/little/repeat1 | failed (exit code 3), no errors: no trajectory"),
+                    HasSubstr("| fail/little/repeat1 | failed (exit code 3), no figures: no trajectory"),
                     HasSubstr("7 of 7 runs done, 3 with a result that counts")));
   // The stand-in moves the truth by a rigid motion, so what counts has no error.
   EXPECT_THAT(program_.text("out/tables/cells.csv"), HasSubstr("\ncrash,little,1,0,0.5,0.5,0.5,,,,"));
@@ -84,7 +84,7 @@ TEST_F(BenchExternalTest, ShowsEveryEndAsWhatItIs) {
 
   // Nothing is run again, and nothing changes.
   const Outcome again = program_.run({"bench", "matrix.yaml", "--output", "out", "--resume"});
-  EXPECT_THAT(again.output, HasSubstr("7 runs were finished already"));
+  EXPECT_THAT(again.output, HasSubstr("7 of 7 runs were finished before"));
   EXPECT_EQ(program_.text("out/tables/runs.csv"), runs);
   EXPECT_EQ(program_.text("out/report.md"), report);
 }
@@ -97,7 +97,7 @@ TEST_F(BenchExternalTest, RepeatsOnlyWhatWasAskedOtherwise) {
   changed.replace(changed.find("'of {name}'"), 11, "other");
   program_.write("matrix.yaml", changed);
   const Outcome outcome = program_.run({"bench", "matrix.yaml", "--output", "out", "--resume"});
-  EXPECT_THAT(outcome.output, HasSubstr("1 runs were finished already"));
+  EXPECT_THAT(outcome.output, HasSubstr("1 of 3 runs were finished before"));
   EXPECT_THAT(outcome.errors,
               AllOf(HasSubstr("good/little"), HasSubstr("empty/little"), Not(HasSubstr("half/little"))));
 }
@@ -116,6 +116,29 @@ TEST_F(BenchExternalTest, IsStoppedByASignalAndGoesOn) {
               HasSubstr("1 of 2 runs are done. Go on with: holdfast bench matrix.yaml --output out --resume"));
   EXPECT_THAT(program_.text("out/report.md"), HasSubstr("**Unfinished**"));
   EXPECT_FALSE(std::filesystem::exists(program_.path("out/runs/hang/little/repeat1")));
+}
+
+TEST_F(BenchExternalTest, HasTimedRunsStandAlone) {
+  program_.write("matrix.yaml", matrix({"good", "half"}));
+  ASSERT_EQ(program_.run({"bench", "matrix.yaml", "--output", "beside", "--jobs", "2"}).exit_code, 0);
+  EXPECT_THAT(program_.text("beside/tables/cost.csv"),
+              AllOf(HasSubstr("\ngood,little,1,no,"), HasSubstr("\nhalf,little,1,no,")));
+  EXPECT_THAT(program_.text("beside/cost.md"), HasSubstr("**Some runs had others beside them**"));
+  ASSERT_EQ(program_.run({"bench", "matrix.yaml", "--output", "alone", "--jobs", "2", "--timing"}).exit_code, 0);
+  EXPECT_THAT(program_.text("alone/tables/cost.csv"),
+              AllOf(HasSubstr("\ngood,little,1,yes,"), HasSubstr("\nhalf,little,1,yes,")));
+  EXPECT_EQ(program_.text("alone/report.md"), program_.text("beside/report.md"));
+}
+
+TEST_F(BenchExternalTest, FindsTheMatricesOfTheProjectSound) {
+  std::size_t matrices = 0;
+  for (const char* name : {"bonn", "composed", "simulated", "tum_dynamic"}) {
+    const Outcome list =
+        program_.run({"bench", HOLDFAST_SOURCE_DIR "/benchmarks/" + std::string(name) + ".yaml", "--dry-run"});
+    EXPECT_EQ(list.exit_code, 0) << name << "\n" << list.errors;
+    matrices += list.output.find(" runs: 5 variants") != std::string::npos ? 1 : 0;
+  }
+  EXPECT_EQ(matrices, 4U);
 }
 
 TEST_F(BenchExternalTest, ListsRunsAndWhatIsMissing) {

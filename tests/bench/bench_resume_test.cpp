@@ -89,7 +89,7 @@ TEST_F(BenchResumeTest, KilledTwiceGivesTheSameTablesByteForByte) {
   EXPECT_LT(finished("killed"), 4U);
   const Outcome resumed = program_.run({"bench", "matrix.yaml", "--output", "killed", "--resume"});
   ASSERT_EQ(resumed.exit_code, 0) << resumed.errors;
-  EXPECT_THAT(resumed.output, ::testing::HasSubstr("runs were finished already"));
+  EXPECT_THAT(resumed.output, ::testing::HasSubstr("runs were finished before"));
 
   const auto expected = accuracy("whole");
   const auto found = accuracy("killed");
