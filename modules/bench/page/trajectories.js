@@ -58,7 +58,7 @@ class TrajectoryCanvas {
       canvas.addEventListener(end, (event) => this.pointers.delete(event.pointerId));
     canvas.addEventListener('pointerleave', () => this.pointers.size === 0 && this.pointedAt(null));
     canvas.addEventListener('keydown', (event) => this.keyPressed(event));
-    new ResizeObserver(() => this.draw()).observe(canvas);
+    new ResizeObserver(() => (this.isWhole ? this.fit() : this.draw())).observe(canvas);
   }
 
   show(lines, axes) {
@@ -73,11 +73,13 @@ class TrajectoryCanvas {
   }
   fit() {
     this.view = null;
+    this.isWhole = true;
     this.draw();
   }
   zoom(factor, x = this.canvas.clientWidth / 2, y = this.canvas.clientHeight / 2) {
     const {view} = this;
     if (!view) return;
+    this.isWhole = false;
     const scale = Math.min(Math.max(view.scale * factor, 1), 1e6);
     view.x += (x - this.canvas.clientWidth / 2) * (1 / view.scale - 1 / scale);
     view.y -= (y - this.canvas.clientHeight / 2) * (1 / view.scale - 1 / scale);
@@ -86,6 +88,7 @@ class TrajectoryCanvas {
   }
   pan(x, y) {
     if (!this.view) return;
+    this.isWhole = false;
     this.view.x -= x / this.view.scale;
     this.view.y += y / this.view.scale;
     this.draw();
@@ -282,8 +285,8 @@ class TrajectorySection {
     byId('sequence').addEventListener('change', () => this.choose(Number(byId('sequence').value)));
     makeChoice('plane', Object.fromEntries(Object.entries(planes).map(([key, plane]) => [key, plane.label])), '', (key) => {
       this.plane = key;
-      this.canvas.view = null;
       this.show();
+      this.canvas.fit();
     });
     byId('zoom-in').addEventListener('click', () => this.canvas.zoom(1.25));
     byId('zoom-out').addEventListener('click', () => this.canvas.zoom(0.8));
@@ -304,9 +307,9 @@ class TrajectorySection {
                                                 runs.find((other) => other.variant === run.variant) === run)));
     this.plane = plane ?? widestPlane(tracks.truth[sequence]);
     document.querySelector(`#plane input[value=${this.plane}]`).checked = true;
-    this.canvas.view = null;
     this.listRuns(runs);
     this.show();
+    this.canvas.fit();
   }
   listRuns(runs) {
     const many = runs.some((run) => runs.some((other) => other !== run && other.variant === run.variant));
