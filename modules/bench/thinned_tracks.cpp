@@ -7,6 +7,7 @@
 
 #include "holdfast/bench/report_page.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/evaluation/statistics.hpp"
 
 namespace holdfast {
 
@@ -35,14 +36,12 @@ std::optional<Tracks> read_tracks(const std::filesystem::path& file) {
   }
 }
 
-/// A step in time that is no step from frame to frame.
-double gap_of(const Rows& rows) {
+/// A step in time that is none from frame to frame. Truth comes at least as often as frames do; the poses of a run that
+/// lost most of them would not tell.
+double gap_beside(const Rows& truth) {
   std::vector<double> steps;
-  for (std::size_t i = 1; i < rows.size(); ++i) steps.push_back(rows[i][0] - rows[i - 1][0]);
-  if (steps.empty()) return 0.0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return std::max(0.25, 3.0 * *middle);
+  for (std::size_t i = 1; i < truth.size(); ++i) steps.push_back(truth[i][0] - truth[i - 1][0]);
+  return steps.empty() ? 0.25 : std::max(0.25, 3.0 * median(steps));
 }
 
 /// Lists of equal length with a name each; null in each of them breaks the line.
@@ -70,9 +69,8 @@ class Columns {
 };
 
 /// Keeps one row of every stretch of equal length, of errors the largest, and the ends of every unbroken piece.
-Json thinned(const Rows& rows, std::vector<const char*> names, double origin) {
+Json thinned(const Rows& rows, std::vector<const char*> names, double origin, double gap) {
   Columns columns(std::move(names), origin);
-  const double gap = gap_of(rows);
   const std::size_t stretch = (rows.size() + points_of_a_line - 1) / points_of_a_line;
   const bool is_error = !rows.empty() && rows.front().size() == 2;
   for (std::size_t begin = 0; begin < rows.size();) {
@@ -107,15 +105,17 @@ std::string thinned_tracks_json(const std::filesystem::path& output, const RunPl
   }
   Json json = {{"truth", Json::array()}, {"runs", Json::array()}};
   for (const Rows& truth : truths)
-    json["truth"].push_back(truth.empty() ? Json(nullptr) : thinned(truth, {"t", "x", "y", "z"}, truth.front()[0]));
+    json["truth"].push_back(truth.empty() ? Json(nullptr)
+                                          : thinned(truth, {"t", "x", "y", "z"}, truth.front()[0], gap_beside(truth)));
   for (std::size_t i = 0; i < plan.runs.size(); ++i) {
     const Rows& truth = truths[plan.runs[i].sequence];
     if (!tracks[i] || truth.empty()) {
       json["runs"].push_back(nullptr);
       continue;
     }
-    json["runs"].push_back({{"track", thinned(tracks[i]->estimate, {"t", "x", "y", "z"}, truth.front()[0])},
-                            {"error", thinned(tracks[i]->error, {"t", "e"}, truth.front()[0])}});
+    const double begin = truth.front()[0], gap = gap_beside(truth);
+    json["runs"].push_back({{"track", thinned(tracks[i]->estimate, {"t", "x", "y", "z"}, begin, gap)},
+                            {"error", thinned(tracks[i]->error, {"t", "e"}, begin, gap)}});
   }
   return json.dump() + "\n";
 }

@@ -73,6 +73,14 @@ TEST_F(ReportPageTest, ThinsTracksButKeepsPeaksAndGaps) {
   EXPECT_EQ(breaks, 1u);
   const json& x = run.at("track").at("x");
   EXPECT_EQ(std::count(x.begin(), x.end(), json(nullptr)), 1);
+
+  // Few poses, each far from the next: every one stands alone.
+  results_.results[1]->has_errors = true;
+  json sparse = tracks(6000, 100.0, 0.01, -1, -1, 0);
+  sparse["estimate"] = {{101.0, 1.0, 2.0, 3.0}, {102.0, 1.0, 2.0, 3.0}, {103.0, 1.0, 2.0, 3.0}};
+  write("runs/none/tracks.json", sparse.dump());
+  const json few = json::parse(thinned_tracks_json(folder_, plan_, results_)).at("runs").at(1).at("track").at("x");
+  EXPECT_EQ(few, json({1.0, nullptr, 1.0, nullptr, 1.0}));
   EXPECT_NEAR(thinned.at("runs").at(2).at("track").at("t").front(), 30.0, 1e-9) << "one clock for a sequence";
 }
 

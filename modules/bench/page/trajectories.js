@@ -27,6 +27,15 @@ function nearestPlace(list, value) {
   return low > 0 && value - list[low - 1] < list[low] - value ? low - 1 : low;
 }
 
+/// The places of values between breaks, which make no line: they are drawn as dots. A value that is undefined belongs to
+/// another line's time, and breaks nothing.
+function lonelyPlaces(values) {
+  const places = [];
+  values.forEach((value, i) => value !== undefined && places.push(i));
+  const isThere = (k) => k >= 0 && k < places.length && values[places[k]] !== null;
+  return places.filter((_, k) => isThere(k) && !isThere(k - 1) && !isThere(k + 1));
+}
+
 /// 1, 2 or 5 times a power of ten, not below a value.
 function niceStep(least) {
   const power = 10 ** Math.floor(Math.log10(least));
@@ -183,6 +192,12 @@ class TrajectoryCanvas {
         else context.lineTo(x, y);
       }
       context.stroke();
+      context.fillStyle = colour;
+      for (const i of lonelyPlaces(line[this.axes[0]])) {
+        context.beginPath();
+        context.arc(...this.toScreen(line, i), 2.5, 0, 2 * Math.PI);
+        context.fill();
+      }
     }
     if (this.time !== null) this.drawMarks(context);
   }
@@ -245,7 +260,9 @@ class ErrorPlot {
     this.plot = null;
     if (runs.length === 0) return;
     const curves = runs.map((run) => tracks.runs[results.runs.indexOf(run)].error);
-    const data = uPlot.join(curves.map((curve) => [curve.t, isLogarithmic ? curve.e.map((e) => e || null) : curve.e]));
+    // 2: a break reaches over the times of other runs to its neighbours.
+    const data = uPlot.join(curves.map((curve) => [curve.t, isLogarithmic ? curve.e.map((e) => e || null) : curve.e]),
+                            curves.map(() => [0, 2]));
     const axis = {stroke: () => style('--muted'), grid: {stroke: () => style('--grid'), width: 1},
                   ticks: {stroke: () => style('--grid'), width: 1}, font: '11px system-ui, sans-serif'};
     this.plot = new uPlot({
@@ -255,7 +272,8 @@ class ErrorPlot {
       scales: {x: {time: false}, y: isLogarithmic ? {distr: 3} : {range: (_, low, high) => [0, high > 0 ? 1.05 * high : 1]}},
       axes: [{...axis, label: undefined, values: (_, values) => values.map((v) => `${+v.toFixed(3)} s`)},
              {...axis, size: 62, values: (_, values) => values.map((v) => (v === null ? null : `${+v.toPrecision(3)} m`))}],
-      series: [{}, ...runs.map((run) => ({stroke: () => colourOf(run), dash: dashOf(run), width: 1.5, spanGaps: false, points: {show: false}}))],
+      series: [{}, ...runs.map((run) => ({stroke: () => colourOf(run), dash: dashOf(run), width: 1.5, spanGaps: false,
+                                          points: {show: true, size: 5, fill: () => colourOf(run), filter: (plot, i) => lonelyPlaces(plot.data[i])}}))],
       hooks: {setCursor: [(plot) => {
         if (this.isFollowing) return;
         const {idx} = plot.cursor;
