@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "holdfast/bench/dataset_recipe.hpp"
 #include "strict_map.hpp"
 
 namespace holdfast {
@@ -91,6 +92,47 @@ std::vector<std::pair<std::string, std::string>> read_texts(const StrictMap& map
 
 }  // namespace
 
+namespace {
+
+ConfigurationNode map_of(const std::string& key, ConfigurationNode value) {
+  ConfigurationNode node;
+  node.kind = Kind::map;
+  node.location = value.location;
+  node.folder = value.folder;
+  node.entries.push_back({key, node.location, std::move(value)});
+  return node;
+}
+
+/// What a recipe knows: the source and the camera, where to get the recording, its name in published figures. Masks are
+/// where composed sequences and `holdfast segment` put them.
+void follow_recipe(const ConfigurationNode& node, StrictMap& map, MatrixSequence& sequence) {
+  if (const auto* source = map.find("source"))
+    map.complain(source->location, map.owner() + " has both 'recipe' and 'source'; leave one out");
+  const ConfigurationNode* path = map.require("path", "the folder of the recording");
+  const DatasetRecipe* recipe = find_recipe(node.text);
+  if (recipe == nullptr) {
+    map.complain(node.location, no_such_recipe(node.text));
+    return;
+  }
+  if (recipe->layout != DatasetLayout::tum)
+    map.complain(node.location,
+                 "the recording '" + recipe->name +
+                     "' is not in TUM layout; write its pairs by `holdfast dataset associate`, its truth to "
+                     "groundtruth.txt, and give source: { tum: { path: ..., associations: ... } } and camera");
+  if (path == nullptr) return;
+  sequence.source = map_of("tum", map_of("path", *path));
+  ConfigurationNode camera = node;
+  camera.text = recipe->camera.name;
+  sequence.camera = camera;
+  ConfigurationNode masks = *path;
+  masks.text += "/mask";
+  sequence.overrides.push_back({"segmenter.precomputed.path", path->location, std::move(masks)});
+  sequence.about = recipe->how_to_get();
+  sequence.published = recipe->name;
+}
+
+}  // namespace
+
 PlacedText placed_path(const ConfigurationNode& node) {
   const std::filesystem::path path = node.text;
   return {(path.is_absolute() ? path : node.folder / path).lexically_normal().string(), node.location};
@@ -126,17 +168,24 @@ MatrixSequence read_sequence(const ConfigurationNode::Entry& entry, std::vector<
   sequence.name = entry.key;
   sequence.location = entry.location;
   check_name(entry, "a sequence", diagnostics);
-  StrictMap map(entry.value, "sequence '" + entry.key + "'", {"source", "camera", "overrides", "about", "published"},
-                diagnostics);
-  if (const auto* source = map.require("source", "a source, as in a configuration: { tum: { path: ... } }"))
+  StrictMap map(entry.value, "sequence '" + entry.key + "'",
+                {"source", "recipe", "path", "camera", "overrides", "about", "published"}, diagnostics);
+  const ConfigurationNode* recipe = map.find("recipe");
+  if (recipe != nullptr)
+    follow_recipe(*recipe, map, sequence);
+  else if (const auto* source =
+               map.require("source", "a source, as in a configuration: { tum: { path: ... } }, or 'recipe' and 'path'"))
     sequence.source = *source;
+  if (const auto* path = map.find("path"); path != nullptr && recipe == nullptr)
+    map.complain(path->location,
+                 "'path' of " + map.owner() + " goes with 'recipe'; write source: { tum: { path: ... } }");
   if (const auto* camera = map.find("camera")) sequence.camera = *camera;
   if (const auto* overrides = map.find("overrides")) {
     if (overrides->kind != Kind::map) map.mismatch(*overrides, "overrides", "a map { key.path: value }");
-    sequence.overrides = read_overrides(*overrides);
+    for (KeyValue& change : read_overrides(*overrides)) sequence.overrides.push_back(std::move(change));
   }
-  sequence.about = map.text("about", "");
-  sequence.published = map.text("published", "");
+  sequence.about = map.text("about", sequence.about);
+  sequence.published = map.text("published", sequence.published);
   return sequence;
 }
 

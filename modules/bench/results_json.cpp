@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "holdfast/bench/bench_report.hpp"
+#include "holdfast/bench/report_page.hpp"
 #include "holdfast/bench/tables.hpp"
 #include "holdfast/core/trajectory.hpp"
 
@@ -149,7 +150,10 @@ void write_bench_reports(const std::filesystem::path& output, const RunPlan& pla
   write_file_atomically(tables / "cost.csv", to_csv(cost_table(plan, analysis)));
   write_file_atomically(output / "report.md", accuracy_report(plan, results, analysis, published));
   write_file_atomically(output / "cost.md", cost_report(plan, results, analysis, published));
-  write_file_atomically(output / "results.json", results_json(plan, results, analysis, published));
+  const std::string json = results_json(plan, results, analysis, published);
+  write_file_atomically(output / "results.json", json);
+  write_file_atomically(output / "report.html",
+                        report_page(plan.matrix.title, json, thinned_tracks_json(output, plan, results)));
 }
 
 }  // namespace holdfast

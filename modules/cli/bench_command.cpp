@@ -147,7 +147,7 @@ void bench(const Arguments& arguments, int& exit_code) {
   if (results.kept > 0) std::printf("%zu of %zu runs were finished before\n", results.kept, plan.runs.size());
   for (const Comparison& comparison : analyse(plan, results).comparisons)
     if (comparison.quantity == Quantity::ate) std::printf("%s\n", sentence(plan, comparison).c_str());
-  std::printf("%s\n", (arguments.output / "report.md").c_str());
+  std::printf("%s\n", (arguments.output / "report.html").c_str());
 }
 
 }  // namespace
@@ -161,6 +161,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       "Writes into the output folder:\n"
       "  report.md     accuracy: what helps, by how much, is it sure    tables/*.csv  the same for programs\n"
       "  cost.md       time and memory, and the machine                 results.json  everything\n"
+      "  report.html   all of it to sort, plot and browse, offline\n"
       "  runs/VARIANT/SEQUENCE/RUN  configuration, log and results of every run\n\n"
       "Exits 0 when every run has a result, 130 on Ctrl-C, 2 when the matrix is wrong or something is missing, 1 for\n"
       "anything else.\n\n"

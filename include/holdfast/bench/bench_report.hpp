@@ -24,7 +24,7 @@ std::string cost_report(const RunPlan& plan, const BenchResults& results, const 
 std::string results_json(const RunPlan& plan, const BenchResults& results, const Analysis& analysis,
                          const PublishedResults& published);
 
-/// Writes report.md, cost.md, results.json and tables/*.csv into the folder of a bench.
+/// Writes report.md, cost.md, report.html, results.json and tables/*.csv into the folder of a bench.
 void write_bench_reports(const std::filesystem::path& output, const RunPlan& plan, const BenchResults& results,
                          const PublishedResults& published);
 

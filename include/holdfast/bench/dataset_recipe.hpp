@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "holdfast/core/camera.hpp"
+#include "holdfast/core/error.hpp"
+
+namespace holdfast {
+
+/// How the files of a recording are arranged.
+enum class DatasetLayout {
+  tum,       ///< rgb.txt and depth.txt list the images with their stamps (Sturm et al., IROS 2012)
+  icl_nuim,  ///< associations.txt lists numbered pairs, the depth image first (Handa et al., ICRA 2014)
+};
+
+/// What is known of a recording: enough to say where to get it and whether a folder holds it. Nothing is ever fetched.
+struct DatasetRecipe {
+  std::string name;      ///< as in published figures: fr3_walking_xyz, bonn_crowd, w21
+  std::string dataset;   ///< that it belongs to
+  std::string folder;    ///< that its archive unpacks to
+  std::string licence;   ///< "unknown; ..." where its page says nothing that we know
+  std::string citation;  ///< to be named by whoever uses it
+  std::string address;   ///< where people get it
+  std::string about;     ///< what to know before using it; may be empty
+  std::string make;      ///< the command that makes it, of a composed sequence; otherwise empty
+  DatasetLayout layout = DatasetLayout::tum;
+  Camera camera;
+  std::string truth = "groundtruth.txt";
+  bool has_masks = false;                    ///< mask.txt and mask/: of every colour image, 0 = static, k = person k
+  std::optional<std::size_t> colour, depth;  ///< images; nothing: no document says
+  std::optional<std::size_t> pairs;          ///< colour-depth pairs within 0.02 s
+
+  /// How to get it, in a sentence.
+  std::string how_to_get() const;
+};
+
+/// All recipes, dataset by dataset: those of modules/bench/recipes/*.yaml.
+const std::vector<DatasetRecipe>& dataset_recipes();
+
+/// Nullptr when there is none of that name.
+const DatasetRecipe* find_recipe(const std::string& name);
+/// "there is no recipe 'x'; did you mean 'y'? `holdfast dataset list` shows all".
+std::string no_such_recipe(const std::string& name);
+
+/// Reads a file of recipes: keys of the dataset, and `sequences`. Appends everything that is wrong to `diagnostics`.
+std::vector<DatasetRecipe> read_recipes(const std::string& yaml, const std::string& file_name,
+                                        std::vector<Diagnostic>& diagnostics);
+
+}  // namespace holdfast

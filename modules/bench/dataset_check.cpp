@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/bench/dataset_check.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "holdfast/core/trajectory.hpp"
+#include "holdfast/image_files/image_decoder.hpp"
+#include "holdfast/image_files/image_sequence.hpp"
+#include "holdfast/image_files/recording_pairs.hpp"
+
+namespace holdfast {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double max_time_difference = 0.02;
+constexpr const char* icl_list = "associations.txt";
+
+std::string counted(std::size_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
+bool is_file(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
+class Checker {
+ public:
+  Checker(const fs::path& folder, const DatasetRecipe* recipe) : folder_(folder), recipe_(recipe) {}
+
+  DatasetCheck result() {
+    std::error_code ignored;
+    if (!fs::is_directory(folder_, ignored)) {
+      problem("'" + folder_.string() + "' is no folder" + (recipe_ ? "; " + recipe_->how_to_get() : ""));
+      return check_;
+    }
+    if (recipe_) fact(recipe_->name + ": " + recipe_->dataset + ", camera " + recipe_->camera.name);
+    if (recipe_ && recipe_->layout == DatasetLayout::icl_nuim)
+      check_icl();
+    else
+      check_tum();
+    check_truth();
+    return check_;
+  }
+
+ private:
+  void fact(const std::string& text) { check_.facts.push_back(text); }
+  void problem(const std::string& text) { check_.problems.push_back(text); }
+
+  /// Runs what throws InputError for what it cannot use.
+  template <class Action>
+  void attempt(const Action& action) {
+    try {
+      action();
+    } catch (const InputError& error) {
+      problem(error.what());
+    }
+  }
+
+  void check_tum() {
+    const bool has_lists = is_file(folder_ / "rgb.txt") && is_file(folder_ / "depth.txt");
+    const auto colour = check_list("rgb.txt", "colour", recipe_ ? recipe_->colour : std::nullopt);
+    const auto depth = check_list("depth.txt", "depth", recipe_ ? recipe_->depth : std::nullopt);
+    for (const ListedImage& image : colour) stamps_.push_back(image.timestamp);
+    check_images(colour, [&](const fs::path& file) { return decoder_.read_colour(file); });
+    check_images(depth, [&](const fs::path& file) { return decoder_.read_depth(file, 5000.0); });
+    if (has_lists && !colour.empty() && !depth.empty())
+      attempt([&] { check_pairs(dataset_pairs(folder_, DatasetLayout::tum, max_time_difference).size()); });
+    if ((recipe_ && recipe_->has_masks) || is_file(folder_ / "mask.txt")) check_masks(colour);
+  }
+
+  void check_icl() {
+    if (!is_file(folder_ / icl_list)) {
+      problem(std::string(icl_list) + " is missing, the list of pairs; unpack the archive again");
+      return;
+    }
+    attempt([&] {
+      std::vector<ListedImage> colour, depth;
+      for (const ListedPair& pair : dataset_pairs(folder_, DatasetLayout::icl_nuim, max_time_difference)) {
+        colour.push_back(pair.colour);
+        depth.push_back(pair.depth);
+        stamps_.push_back(pair.colour.timestamp);
+      }
+      check_presence(icl_list, colour);
+      check_presence(icl_list, depth);
+      check_images(colour, [&](const fs::path& file) { return decoder_.read_colour(file); });
+      check_images(depth, [&](const fs::path& file) { return decoder_.read_depth(file, 5000.0); });
+      check_pairs(colour.size());
+    });
+  }
+
+  std::vector<ListedImage> check_list(const std::string& list, const std::string& what,
+                                      std::optional<std::size_t> expected) {
+    std::vector<ListedImage> images;
+    if (!is_file(folder_ / list)) {
+      problem(list + " is missing, the list of " + what +
+              " images (lines 'timestamp filename'); unpack the archive again, or make the recording again");
+      return images;
+    }
+    attempt([&] { images = read_image_list(folder_ / list); });
+    if (images.empty()) return images;
+    fact(counted(images.size(), what + " image") + (expected ? ", expected " + std::to_string(*expected) : ""));
+    if (expected && images.size() != *expected)
+      problem(list + " lists " + counted(images.size(), "image") + "; expected " + std::to_string(*expected) +
+              ": the recording was cut or changed");
+    check_presence(list, images);
+    return images;
+  }
+
+  void check_presence(const std::string& list, const std::vector<ListedImage>& images) {
+    std::string examples;
+    std::size_t missing = 0;
+    for (const ListedImage& image : images) {
+      if (is_file(folder_ / image.name)) continue;
+      if (++missing <= 3)
+        examples += (missing == 1 ? "" : ", ") + image.name + " (line " + std::to_string(image.line) + ")";
+    }
+    if (missing == 0) return;
+    problem(list + " lists " + counted(missing, "image") + " that " + (missing == 1 ? "is" : "are") +
+            " missing: " + examples + (missing > 3 ? " and " + std::to_string(missing - 3) + " more" : "") +
+            "; unpack the archive again");
+  }
+
+  /// Decodes the first, the middle and the last image: a broken download shows at its end.
+  template <class Decode>
+  void check_images(const std::vector<ListedImage>& images, const Decode& decode) {
+    if (images.empty()) return;
+    for (const std::size_t i : std::set<std::size_t>{0, images.size() / 2, images.size() - 1}) {
+      const fs::path file = folder_ / images[i].name;
+      if (!is_file(file)) continue;
+      attempt([&] {
+        const cv::Mat image = decode(file);
+        if (!recipe_ || (image.cols == recipe_->camera.width && image.rows == recipe_->camera.height)) return;
+        problem(file.string() + " has " + std::to_string(image.cols) + "x" + std::to_string(image.rows) +
+                " pixels; expected " + std::to_string(recipe_->camera.width) + "x" +
+                std::to_string(recipe_->camera.height) + " of the camera " + recipe_->camera.name +
+                ": is this another recording?");
+      });
+    }
+  }
+
+  void check_pairs(std::size_t pairs) {
+    const auto expected = recipe_ ? recipe_->pairs : std::nullopt;
+    fact(counted(pairs, "colour-depth pair") + (expected ? ", expected " + std::to_string(*expected) : ""));
+    // Tools pair a little differently: a frame or two are no damage.
+    if (expected && pairs + 2 + *expected / 100 < *expected)
+      problem(counted(pairs, "colour-depth pair") + " within 0.02 s; expected " + std::to_string(*expected) +
+              ": the lists do not belong together, or one of them was cut");
+  }
+
+  void check_masks(const std::vector<ListedImage>& colour) {
+    if (!is_file(folder_ / "mask.txt")) {
+      problem("mask.txt is missing, the list of masks of a composed sequence; " +
+              (recipe_ && !recipe_->make.empty() ? recipe_->how_to_get() : std::string("compose it again")));
+      return;
+    }
+    const auto masks = check_list("mask.txt", "mask", recipe_ ? recipe_->colour : std::nullopt);
+    std::set<double> with_mask;
+    for (const ListedImage& mask : masks) with_mask.insert(mask.timestamp);
+    const auto without = std::count_if(colour.begin(), colour.end(),
+                                       [&](const ListedImage& image) { return !with_mask.contains(image.timestamp); });
+    if (!masks.empty() && without > 0)
+      problem(counted(static_cast<std::size_t>(without), "colour image") +
+              " without a mask of the same stamp in mask.txt; every one needs one: compose the sequence again");
+    check_images(masks, [&](const fs::path& file) { return decoder_.read_labels(file); });
+  }
+
+  void check_truth() {
+    const std::string name = recipe_ ? recipe_->truth : "groundtruth.txt";
+    if (!is_file(folder_ / name)) {
+      problem(name + " is missing, the true poses; without them there is nothing to measure");
+      return;
+    }
+    attempt([&] {
+      const Trajectory truth = read_trajectory(folder_ / name);
+      if (truth.empty()) {
+        problem(name + " holds no pose; expected lines 'timestamp tx ty tz qx qy qz qw'");
+        return;
+      }
+      fact(counted(truth.size(), "true pose"));
+      const auto covered = static_cast<std::size_t>(std::count_if(stamps_.begin(), stamps_.end(), [&](double stamp) {
+        return stamp >= truth.front().timestamp - max_time_difference &&
+               stamp <= truth.back().timestamp + max_time_difference;
+      }));
+      if (2 * covered < stamps_.size())
+        problem(name + " covers the time of " + std::to_string(covered) + " of " +
+                counted(stamps_.size(), "colour image") + "; it belongs to another recording");
+    });
+  }
+
+  fs::path folder_;
+  const DatasetRecipe* recipe_;
+  DatasetCheck check_;
+  ImageDecoder decoder_;
+  std::vector<double> stamps_;  ///< of the colour images
+};
+
+}  // namespace
+
+const DatasetRecipe* recipe_of_folder(const fs::path& folder) {
+  const std::string name = folder_name(folder);
+  for (const DatasetRecipe& recipe : dataset_recipes())
+    if (recipe.folder == name || recipe.name == name) return &recipe;
+  return nullptr;
+}
+
+DatasetCheck check_dataset(const fs::path& folder, const DatasetRecipe* recipe) {
+  return Checker(folder, recipe).result();
+}
+
+std::vector<ListedPair> dataset_pairs(const fs::path& folder, DatasetLayout layout, double max_difference) {
+  if (layout == DatasetLayout::tum) return recording_pairs(folder, {}, max_difference);
+  std::vector<ListedPair> pairs = read_association_list(folder / icl_list);
+  for (ListedPair& pair : pairs)
+    if (pair.colour.name.find("depth") != std::string::npos) std::swap(pair.colour, pair.depth);
+  return pairs;
+}
+
+}  // namespace holdfast

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <opencv2/imgcodecs.hpp>
+#include <set>
+
+#include "bench/matrix_fixture.hpp"
+#include "cli/program.hpp"
+#include "holdfast/bench/dataset_check.hpp"
+#include "holdfast/bench/published.hpp"
+
+namespace holdfast {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Outcome;
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+TEST(DatasetRecipeTest, EveryRecipeSaysWhatPeopleMustKnow) {
+  std::set<std::string> names;
+  std::map<std::string, int> sequences;
+  for (const DatasetRecipe& recipe : dataset_recipes()) {
+    EXPECT_TRUE(names.insert(recipe.name).second) << recipe.name << " stands twice";
+    EXPECT_TRUE(is_plain_name(recipe.name)) << recipe.name;
+    EXPECT_FALSE(recipe.folder.empty() || recipe.licence.empty() || recipe.citation.empty()) << recipe.name;
+    EXPECT_THAT(recipe.address, StartsWith("https://")) << recipe.name;
+    EXPECT_FALSE(recipe.camera.name.empty()) << recipe.name;
+    EXPECT_EQ(recipe.has_masks, !recipe.make.empty()) << recipe.name;
+    ++sequences[recipe.dataset];
+  }
+  EXPECT_EQ(sequences["Bonn RGB-D Dynamic"], 26);
+  EXPECT_EQ(sequences["ICL-NUIM"], 8);
+  for (const char* name : {"sitting_static", "sitting_xyz", "sitting_halfsphere", "sitting_rpy", "walking_static",
+                           "walking_xyz", "walking_halfsphere", "walking_rpy"}) {
+    const DatasetRecipe* recipe = find_recipe(std::string("fr3_") + name);
+    ASSERT_NE(recipe, nullptr) << name;
+    EXPECT_EQ(recipe->folder, std::string("rgbd_dataset_freiburg3_") + name);
+    EXPECT_EQ(recipe->camera.fx, 535.4);
+  }
+  EXPECT_EQ(find_recipe("fr2_desk_with_person")->camera.name, "tum_fr2");
+  EXPECT_THAT(find_recipe("w21")->make, HasSubstr("compose_people.py"));
+  EXPECT_EQ(find_recipe("fr9_xyz"), nullptr);
+}
+
+TEST(DatasetRecipeTest, PublishedFiguresAreOfKnownSequences) {
+  std::vector<Diagnostic> diagnostics;
+  const auto published = read_published(HOLDFAST_SOURCE_DIR "/benchmarks/published.yaml", diagnostics);
+  ASSERT_TRUE(diagnostics.empty());
+  for (const PublishedResult& result : published.results)
+    for (const auto& [sequence, value] : result.values) EXPECT_NE(find_recipe(sequence), nullptr) << sequence;
+}
+
+TEST(DatasetRecipeTest, SaysAllThatIsWrongWithAFile) {
+  std::vector<Diagnostic> diagnostics;
+  read_recipes(
+      "dataset: Ours\nlayout: tom\nlicence: none\ncitation: us\nadress: https://nowhere\n"
+      "sequences:\n  one: { folder: one, camera: tum_fr4, colour: many, depth: 10, pairs: unknown }\n",
+      "ours.yaml", diagnostics);
+  std::vector<std::string> texts;
+  for (const Diagnostic& each : diagnostics) texts.push_back(each.to_string());
+  EXPECT_THAT(texts, Contains(HasSubstr("ours.yaml:2:9: found 'tom' for 'layout'")));
+  EXPECT_THAT(texts, Contains(AllOf(HasSubstr("ours.yaml:5:1"), HasSubstr("did you mean 'address'?"))));
+  EXPECT_THAT(texts, Contains(HasSubstr("needs 'address'")));
+  EXPECT_THAT(texts, Contains(HasSubstr("there is no camera 'tum_fr4'; did you mean")));
+  EXPECT_THAT(texts, Contains(AllOf(HasSubstr("'many'"), HasSubstr("a number above 0, or unknown"))));
+}
+
+/// A recording of four frames with masks, and a recipe for it.
+class DatasetCheckTest : public ::testing::Test {
+ protected:
+  DatasetCheckTest() {
+    for (const char* kind : {"rgb", "depth", "mask"}) {
+      fs::create_directories(program_.path(std::string("rec/") + kind));
+      std::string list = "# timestamp filename\n";
+      for (int i = 0; i < 4; ++i) {
+        const std::string name = std::string(kind) + "/" + std::to_string(i) + ".png";
+        char line[100];
+        std::snprintf(line, sizeof(line), "%.6f %s\n", 10.0 + 0.1 * i, name.c_str());
+        list += line;
+        const int type = std::string(kind) == "rgb" ? CV_8UC3 : std::string(kind) == "depth" ? CV_16UC1 : CV_8UC1;
+        cv::imwrite(path(name).string(), cv::Mat(480, 640, type, cv::Scalar::all(3 * i)));
+      }
+      program_.write("rec/" + std::string(kind) + ".txt", list);
+    }
+    program_.write("rec/groundtruth.txt", "9 0 0 0 0 0 0 1\n11 1 0 0 0 0 0 1\n");
+    std::vector<Diagnostic> diagnostics;
+    recipe_ = read_recipes(
+                  "dataset: Ours\nlayout: tum\nmasks: true\nlicence: none\ncitation: us\naddress: https://nowhere\n"
+                  "sequences: { rec: { folder: rec, camera: tum_fr3, colour: 4, depth: 4, pairs: 4 } }\n",
+                  "ours.yaml", diagnostics)
+                  .at(0);
+  }
+
+  fs::path path(const std::string& name) const { return program_.path("rec/" + name); }
+  std::vector<std::string> problems() const { return check_dataset(program_.path("rec"), &recipe_).problems; }
+  /// Leaves the last line of a list out.
+  void cut(const std::string& list) const {
+    const std::string text = program_.text("rec/" + list);
+    program_.write("rec/" + list, text.substr(0, text.rfind('\n', text.size() - 2) + 1));
+  }
+
+  test::Program program_;
+  DatasetRecipe recipe_;
+};
+
+TEST_F(DatasetCheckTest, FindsNothingWrongWithAWholeRecording) {
+  EXPECT_THAT(problems(), IsEmpty());
+  EXPECT_THAT(check_dataset(program_.path("rec"), &recipe_).facts,
+              AllOf(Contains("4 colour images, expected 4"), Contains("4 colour-depth pairs, expected 4"),
+                    Contains("2 true poses"), Contains("4 mask images, expected 4")));
+}
+
+TEST_F(DatasetCheckTest, ExplainsWhatIsMissing) {
+  fs::remove(path("depth.txt"));
+  fs::remove(path("groundtruth.txt"));
+  fs::remove(path("rgb/2.png"));
+  fs::remove(path("mask.txt"));
+  EXPECT_THAT(problems(), ElementsAre(HasSubstr("rgb.txt lists 1 image that is missing: rgb/2.png (line 4)"),
+                                      HasSubstr("depth.txt is missing, the list of depth images"),
+                                      HasSubstr("mask.txt is missing, the list of masks"),
+                                      HasSubstr("groundtruth.txt is missing, the true poses")));
+  EXPECT_THAT(check_dataset(program_.path("nowhere"), &recipe_).problems,
+              ElementsAre(HasSubstr("is no folder; get it from https://nowhere")));
+}
+
+TEST_F(DatasetCheckTest, ExplainsWhatIsCut) {
+  cut("rgb.txt");
+  EXPECT_THAT(problems(), ElementsAre(HasSubstr("rgb.txt lists 3 images; expected 4")));
+  cut("mask.txt");
+  cut("mask.txt");
+  EXPECT_THAT(problems(), Contains(HasSubstr("1 colour image without a mask of the same stamp")));
+  fs::resize_file(path("depth/3.png"), fs::file_size(path("depth/3.png")) / 2);
+  EXPECT_THAT(problems(), Contains(HasSubstr("depth/3.png")));
+}
+
+TEST_F(DatasetCheckTest, SeesThatItIsAnotherRecording) {
+  cv::imwrite(path("rgb/0.png").string(), cv::Mat(540, 960, CV_8UC3, cv::Scalar::all(1)));
+  program_.write("rec/groundtruth.txt", "100 0 0 0 0 0 0 1\n110 1 0 0 0 0 0 1\n");
+  EXPECT_THAT(problems(), ElementsAre(HasSubstr("960x540 pixels; expected 640x480 of the camera tum_fr3"),
+                                      HasSubstr("covers the time of 0 of 4 colour images")));
+}
+
+TEST_F(DatasetCheckTest, TurnsTheListsOfIclNuimRound) {
+  program_.write("rec/associations.txt", "0 depth/0.png 0 rgb/0.png\n1 depth/1.png 1 rgb/1.png\n");
+  const auto pairs = dataset_pairs(program_.path("rec"), DatasetLayout::icl_nuim, 0.02);
+  ASSERT_EQ(pairs.size(), 2u);
+  EXPECT_EQ(pairs[1].colour.name, "rgb/1.png");
+  EXPECT_EQ(pairs[1].depth.name, "depth/1.png");
+}
+
+TEST_F(DatasetCheckTest, IsACommand) {
+  EXPECT_THAT(program_.run({"dataset", "list"}).output,
+              AllOf(HasSubstr("fr3_walking_xyz"), HasSubstr("bonn_crowd3"), HasSubstr("licence: CC BY 4.0")));
+  EXPECT_THAT(program_.run({"dataset", "list", "fr1_xyz"}).output,
+              AllOf(HasSubstr("fx 517.306408"), HasSubstr("798 colour, 798 depth, 792 pairs"),
+                    HasSubstr("https://cvg.cit.tum.de")));
+  const Outcome unknown = program_.run({"dataset", "list", "fr1_xzy"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.errors, HasSubstr("did you mean 'fr1_xyz'?"));
+
+  EXPECT_EQ(program_.run({"dataset", "check", "rec"}).exit_code, 0);
+  const Outcome other = program_.run({"dataset", "check", "rec", "--recipe", "fr1_xyz"});
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_THAT(other.output, HasSubstr("rgb.txt lists 4 images; expected 798"));
+
+  EXPECT_EQ(program_.run({"dataset", "associate", "rec"}).exit_code, 0);
+  const std::string associations = program_.text("rec/associations.txt");
+  EXPECT_THAT(associations, StartsWith("10.000000 rgb/0.png 10.000000 depth/0.png\n"));
+  EXPECT_EQ(std::count(associations.begin(), associations.end(), '\n'), 4);
+  const Outcome again = program_.run({"dataset", "associate", "rec"});
+  EXPECT_EQ(again.exit_code, 1);
+  EXPECT_THAT(again.errors, HasSubstr("is there already"));
+}
+
+/// The TUM recording freiburg1_xyz, and copies of its lists beside links to its images.
+TEST(DatasetDataTest, KnowsARealRecordingAndItsDamages) {
+  const char* data = std::getenv("HOLDFAST_DATA");
+  const fs::path original = fs::path(data == nullptr ? "" : data) / "tum_fr1_xyz";
+  if (data == nullptr || !fs::exists(original)) GTEST_SKIP() << "HOLDFAST_DATA names no folder with tum_fr1_xyz";
+  const DatasetRecipe* recipe = find_recipe("fr1_xyz");
+  const DatasetCheck whole = check_dataset(original, recipe);
+  EXPECT_THAT(whole.problems, IsEmpty());
+  EXPECT_THAT(whole.facts, Contains("792 colour-depth pairs, expected 792"));
+
+  test::Program folder;
+  fs::create_directories(folder.path("copy"));
+  for (const char* list : {"rgb.txt", "depth.txt", "groundtruth.txt"})
+    fs::copy_file(original / list, folder.path("copy") / list);
+  fs::create_directory_symlink(original / "depth", folder.path("copy/depth"));
+  EXPECT_THAT(check_dataset(folder.path("copy"), recipe).problems,
+              ElementsAre(AllOf(HasSubstr("rgb.txt lists 798 images that are missing"), HasSubstr("795 more"))));
+  fs::create_directory_symlink(original / "rgb", folder.path("copy/rgb"));
+  EXPECT_THAT(check_dataset(folder.path("copy"), recipe).problems, IsEmpty());
+  const std::string depth = folder.text("copy/depth.txt");
+  folder.write("copy/depth.txt", depth.substr(0, depth.rfind('\n', depth.size() / 2) + 1));
+  EXPECT_THAT(check_dataset(folder.path("copy"), recipe).problems,
+              ElementsAre(HasSubstr("expected 798"), HasSubstr("expected 792")));
+}
+
+/// Sequences of a matrix by recipe, with the segmenter that reads masks.
+class RecipeMatrixTest : public test::MatrixTest {
+ protected:
+  RunPlan plan(const std::string& text) {
+    write("matrix.yaml", text);
+    diagnostics_.clear();
+    Registry registry = test::test_registry();
+    test::add<Segmenter, test::MaskSettings>(registry, "precomputed");
+    Matrix matrix = read_matrix(folder_ / "matrix.yaml", {}, diagnostics_);
+    return make_run_plan(std::move(matrix), registry, test::test_sections(), diagnostics_);
+  }
+};
+
+TEST_F(RecipeMatrixTest, FillsInWhatARecipeKnows) {
+  const RunPlan with_recipe = plan("base: plain.yaml\nsequences:\n  walking: { recipe: fr3_walking_xyz, path: one }\n");
+  EXPECT_THAT(problems(), IsEmpty());
+  const MatrixSequence& sequence = with_recipe.matrix.sequences.at(0);
+  EXPECT_EQ(sequence.camera->text, "tum_fr3");
+  EXPECT_EQ(sequence.published, "fr3_walking_xyz");
+  EXPECT_THAT(sequence.about, HasSubstr("https://cvg.cit.tum.de"));
+  const RunPlan by_hand = plan(
+      "base: plain.yaml\nsequences:\n  walking: { source: { tum: { path: one } }, camera: tum_fr3, published: "
+      "fr3_walking_xyz }\n");
+  EXPECT_EQ(with_recipe.runs.at(0).request, by_hand.runs.at(0).request);
+
+  write("masked.yaml",
+        "source: { tum: { path: nowhere } }\nfeatures: orb\noptimizer: ceres\n"
+        "segmenter: { precomputed: { path: nowhere/mask } }\nfilters: [semantic_mask]\n");
+  const RunPlan masked = plan("base: masked.yaml\nsequences:\n  w21: { recipe: w21, path: one }\n");
+  EXPECT_THAT(problems(), IsEmpty());
+  EXPECT_THAT(masked.runs.at(0).request, HasSubstr("/one/mask"));
+}
+
+TEST_F(RecipeMatrixTest, SaysWhatIsWrongWithARecipe) {
+  plan(
+      "base: plain.yaml\nsequences:\n  a: { recipe: fr3_walking_xzy, path: one }\n  b: { recipe: w21 }\n"
+      "  c: { source: { tum: { path: one } }, path: two }\n  d: { recipe: icl_lr_kt0, path: one }\n");
+  EXPECT_THAT(problems(), Contains(HasSubstr("matrix.yaml:3:16: there is no recipe 'fr3_walking_xzy'; did you mean "
+                                             "'fr3_walking_xyz'?")));
+  EXPECT_THAT(problems(), Contains(HasSubstr("sequence 'b' needs 'path'")));
+  EXPECT_THAT(problems(), Contains(HasSubstr("'path' of sequence 'c' goes with 'recipe'")));
+  EXPECT_THAT(problems(), Contains(HasSubstr("'icl_lr_kt0' is not in TUM layout")));
+}
+
+}  // namespace
+}  // namespace holdfast
