@@ -11,6 +11,7 @@
 #include "holdfast/cli/background_command.hpp"
 #include "holdfast/cli/check_command.hpp"
 #include "holdfast/cli/evaluate_command.hpp"
+#include "holdfast/cli/evaluate_segmentation_command.hpp"
 #include "holdfast/cli/map_command.hpp"
 #include "holdfast/cli/modules_command.hpp"
 #include "holdfast/cli/run_command.hpp"
@@ -71,6 +72,7 @@ int main(int argc, char** argv) {
   int exit_code = 0;
   add_run_command(app, exit_code);
   add_evaluate_command(app, exit_code);
+  add_evaluate_segmentation_command(app, exit_code);
   add_map_command(app, exit_code);
   add_background_command(app, exit_code);
   add_simulate_command(app, exit_code);
