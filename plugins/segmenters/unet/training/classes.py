@@ -5,6 +5,8 @@ import numpy as np
 CLASSES = ("background", "person", "chair", "table", "tv")
 PERSON = 1
 IGNORED = 255
+#: Some furniture: whatever it is, it is no person.
+NOT_PERSON = 254
 
 #: PASCAL VOC's class indices; every other object of VOC is background, 255 its unlabelled border.
 VOC = {9: 2, 11: 3, 15: PERSON, 20: 4, 255: IGNORED}

@@ -34,7 +34,8 @@ def cutouts(entry, smallest_height=90):
 def placed(random, image, opacity, size):
     """The cutout at a random place and scale of a frame: its picture and opacity, as large as the frame."""
     width, height = size
-    person_height = height * np.exp(random.uniform(np.log(0.35), np.log(3.2)))
+    nearest = random.random() < 0.3  # at arm's length
+    person_height = height * np.exp(random.uniform(np.log(1.6 if nearest else 0.35), np.log(3.6)))
     scale = person_height / image.shape[0]
     stretch = np.exp(random.normal(0.0, 0.12))
     if random.random() < 0.5:

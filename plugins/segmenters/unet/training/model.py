@@ -11,9 +11,9 @@ from torch.nn import functional
 
 from classes import CLASSES
 
-#: Widths of the stages, from the finest to the coarsest, and width x height of the input it ships with.
+#: Widths of the stages, from the finest to the coarsest, and width x height of the input.
 SIZES = {
-    "small": ((16, 32, 64, 96, 160), (192, 160)),
+    "tiny": ((8, 16, 24), (64, 48)),  # for tests
     "base": ((16, 32, 96, 160, 256), (256, 192)),
     "large": ((48, 96, 192, 288, 384), (320, 256)),
 }

@@ -55,7 +55,7 @@ def random_light(random, picture, strength=1.0):
     levels = (np.arange(256, dtype=np.float32) / 255.0) ** gamma * 255.0
     table = np.clip(levels[:, None] * gain[None] + offset, 0, 255).astype(np.uint8)
     picture = cv2.LUT(picture, table[None])
-    saturation = random.uniform(0.5, 1.25) if random.random() < 0.5 else (0.0 if random.random() < 0.08 else 1.0)
+    saturation = random.uniform(0.3, 1.3) if random.random() < 0.5 else (0.0 if random.random() < 0.08 else 1.0)
     if saturation != 1.0:
         grey = cv2.cvtColor(cv2.cvtColor(picture, cv2.COLOR_BGR2GRAY), cv2.COLOR_GRAY2BGR)
         picture = cv2.addWeighted(picture, saturation, grey, 1.0 - saturation, 0.0)
@@ -79,9 +79,9 @@ def blurred(random, picture, longest):
 def random_camera(random, picture):
     """Light, blur and noise of another camera."""
     picture = random_light(random, picture)
-    if random.random() < 0.25:
+    if random.random() < 0.2:
         picture = blurred(random, picture, picture.shape[1] / 25)
-    if random.random() < 0.3:
+    if random.random() < 0.25:
         noise = random.normal(0.0, random.uniform(1.0, 8.0), picture.shape)
         picture = np.clip(picture + noise, 0, 255).astype(np.uint8)
     return picture

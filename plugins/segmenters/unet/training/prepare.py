@@ -17,7 +17,7 @@ import sys
 import cv2
 import numpy as np
 
-from classes import IGNORED, PERSON, SIMULATED, VOC, relabelled
+from classes import IGNORED, NOT_PERSON, PERSON, SIMULATED, VOC, relabelled
 from pack import PackError, PackWriter
 
 HERE = pathlib.Path(__file__).parent
@@ -65,10 +65,21 @@ def human_290(folder):
         yield path.stem, colour(picture), with_ignored(people, folder / "unlabelled_people" / path.name)
 
 
+def furniture(labels):
+    """Where large things stand that are no part of a person, among the pixels that are unsure."""
+    unsure = cv2.erode((labels == IGNORED).astype(np.uint8), np.ones((7, 7), np.uint8))
+    count, components, stats, _ = cv2.connectedComponentsWithStats(unsure)
+    large = [k for k in range(1, count) if stats[k, cv2.CC_STAT_AREA] > 0.025 * labels.size]
+    near_person = cv2.dilate((labels == PERSON).astype(np.uint8), np.ones((25, 25), np.uint8)) > 0
+    return np.isin(components, large) & ~near_person
+
+
 def room(folder):
     for path in sorted((folder / "labels_pseudo").glob("*.png")):
         picture = next((folder / "rgb").glob(path.stem + ".*"))
-        yield path.stem, colour(picture), relabelled(grey(path), {15: PERSON, 255: IGNORED})
+        labels = relabelled(grey(path), {15: PERSON, 255: IGNORED})
+        labels[furniture(labels)] = NOT_PERSON
+        yield path.stem, colour(picture), labels
 
 
 def simulated(folder):

@@ -11,8 +11,8 @@ from photographs import random_camera, random_view
 MEAN, DEVIATION = 0.5, 0.25  # of a pixel divided by 255, every channel
 
 #: How often a sample is a plain view of a picture of this source.
-PLAIN = {"voc_person": 0.42, "human_290": 0.11, "penn_fudan": 0.05, "room": 0.03, "simulated": 0.06}
-COMPOSED = 0.33
+PLAIN = {"voc_person": 0.42, "human_290": 0.11, "penn_fudan": 0.05, "room": 0.05, "simulated": 0.06}
+COMPOSED = 0.38
 #: How often a picture of this source is the background of a composed sample, and how often its people are in it.
 BACKGROUNDS = {"room": 0.3, "simulated": 0.3, "voc_person": 0.4}
 PEOPLE = {"voc_person": 0.3, "human_290": 0.3, "penn_fudan": 0.3, "simulated": 0.1}
@@ -46,11 +46,14 @@ def by_source(items):
 
 
 class Samples(torch.utils.data.IterableDataset):
-    """Sample i depends on seed and i alone, so that a training goes on after an interruption as if there was none."""
+    """Sample i depends on seed and i alone, so that a training goes on after an interruption as if there was none.
 
-    def __init__(self, entries, size, seed=1, start=0):
+    `sizes`: width x height of the samples, batch by batch in turn.
+    """
+
+    def __init__(self, entries, sizes, batch=1, seed=1, start=0):
         super().__init__()
-        self.size, self.seed, self.start = size, seed, start
+        self.sizes, self.batch, self.seed, self.start = sizes, batch, seed, start
         entries_by_source = by_source((entry.source, entry) for entry in entries)
         self.plain = Choice(entries_by_source, PLAIN)
         self.backgrounds = Choice(entries_by_source, BACKGROUNDS)
@@ -63,12 +66,13 @@ class Samples(torch.utils.data.IterableDataset):
 
     def sample(self, i):
         random = np.random.default_rng((self.seed, i))
+        size = self.sizes[i // self.batch % len(self.sizes)]
         if random.random() < self.composed_share:
             people = [self.people.draw(random) for _ in range(4)]
-            picture, labels = composed(random, self.backgrounds.draw(random), people, self.textures, self.size)
+            picture, labels = composed(random, self.backgrounds.draw(random), people, self.textures, size)
         else:
             entry = self.plain.draw(random)
-            picture, labels = random_view(random, entry.picture, entry.labels, self.size)
+            picture, labels = random_view(random, entry.picture, entry.labels, size)
         return random_camera(random, picture), labels
 
     def __iter__(self):

@@ -21,7 +21,7 @@ import time
 import torch
 from torch.nn import functional
 
-from classes import IGNORED, PERSON
+from classes import IGNORED, NOT_PERSON, PERSON
 from curves import draw_curves
 from measure import Validation
 from model import SIZES, UNet, multiple
@@ -38,13 +38,25 @@ def soft_dice(scores, labels):
     return 1.0 - (2.0 * (probability * person).sum() + 1.0) / (probability.sum() + person.sum() + 1.0)
 
 
+def class_loss(scores, labels, class_weights):
+    """Cross entropy; furniture of no known class only must not be a person."""
+    known = torch.where(labels == NOT_PERSON, IGNORED, labels)
+    loss = functional.cross_entropy(scores, known, class_weights, ignore_index=IGNORED)
+    vague = labels == NOT_PERSON
+    if vague.any():
+        others = torch.cat([scores[:, :PERSON], scores[:, PERSON + 1:]], 1)
+        surprise = (torch.logsumexp(scores, 1) - torch.logsumexp(others, 1))[vague]
+        loss = loss + surprise.sum() / (known != IGNORED).sum()
+    return loss
+
+
 def training_loss(outputs, labels, class_weights):
     fine = functional.interpolate(outputs[0], size=labels.shape[1:], mode="bilinear", align_corners=False)
-    loss = functional.cross_entropy(fine, labels, class_weights, ignore_index=IGNORED) + 0.5 * soft_dice(fine, labels)
+    loss = class_loss(fine, labels, class_weights) + 0.5 * soft_dice(fine, labels)
     for scores in outputs[1:]:
         step = labels.shape[1] // scores.shape[2]
         coarse_labels = labels[:, step // 2::step, step // 2::step]
-        loss = loss + 0.2 * functional.cross_entropy(scores, coarse_labels, class_weights, ignore_index=IGNORED)
+        loss = loss + 0.2 * class_loss(scores, coarse_labels, class_weights)
     return loss
 
 
@@ -127,7 +139,8 @@ def train(arguments):
     if arguments.resume and checkpoint.exists():
         training.load(checkpoint)
         print(f"goes on at step {training.step}", flush=True)
-    samples = Samples(training_entries, training.input_size, arguments.seed, training.step * arguments.batch)
+    sizes = [training.input_size] * 2 + [arguments.also] if arguments.also else [training.input_size]
+    samples = Samples(training_entries, sizes, arguments.batch, arguments.seed, training.step * arguments.batch)
     batches = iter(torch.utils.data.DataLoader(samples, arguments.batch, num_workers=arguments.workers))
     validation = Validation(training_entries, held_out)
     class_weights = torch.tensor(arguments.class_weights)
@@ -156,7 +169,10 @@ def train(arguments):
         training.seconds = time.monotonic() - started
         last = progress() >= 1.0
         if last or training.seconds - measured_at >= 60.0 * arguments.measure_every:
-            figures = validation(training.averaged_model(), training.input_size)
+            model = training.averaged_model()
+            figures = validation(model, training.input_size)
+            if arguments.also:
+                figures.update({f"small_{name}": value for name, value in validation(model, arguments.also).items()})
             row = dict(step=training.step, minutes=round(training.seconds / 60, 2), learning_rate=f"{rate:.2e}",
                        loss=round(mean_loss / count, 4), **{name: round(float(v), 4) for name, v in figures.items()})
             print("  ".join(f"{name} {value}" for name, value in row.items()), flush=True)
@@ -168,6 +184,11 @@ def train(arguments):
             saved_at = time.monotonic() - started
 
 
+def size_of(text):
+    width, height = (int(part) for part in text.split("x"))
+    return width, height
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("pack", type=pathlib.Path, help="pictures and labels, from prepare.py")
@@ -175,6 +196,8 @@ def main():
     parser.add_argument("--size", choices=SIZES, default="base")
     parser.add_argument("--width", type=int, help="of the input [px] (default: as the size ships with)")
     parser.add_argument("--height", type=int)
+    parser.add_argument("--also", type=size_of, metavar="WxH",
+                        help="every third batch has this size, for weights that are good at both, such as 160x128")
     length = parser.add_mutually_exclusive_group()
     length.add_argument("--minutes", type=float, default=60.0, help="length of the run (default: 60)")
     length.add_argument("--steps", type=int, help="length of the run, exactly repeatable")
@@ -195,8 +218,9 @@ def main():
     arguments.width = arguments.width or SIZES[arguments.size][1][0]
     arguments.height = arguments.height or SIZES[arguments.size][1][1]
     unit = multiple(arguments.size)
-    if arguments.width % unit or arguments.height % unit:
-        parser.error(f"an input of {arguments.width}x{arguments.height}; expected multiples of {unit}")
+    for width, height in [(arguments.width, arguments.height)] + ([arguments.also] if arguments.also else []):
+        if width % unit or height % unit:
+            parser.error(f"an input of {width}x{height}; expected multiples of {unit}")
     arguments.output.mkdir(parents=True, exist_ok=True)
     train(arguments)
 
