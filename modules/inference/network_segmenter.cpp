@@ -19,7 +19,7 @@ NetworkSegmenter::NetworkSegmenter(const NetworkOptions& options, OutputForm for
 }
 
 Segmentation NetworkSegmenter::segment(const SensorFrame& frame) {
-  Segmentation result = decode_segmentation(network_.run(frame.colour), form_, frame.colour.cols, frame.colour.rows);
+  Segmentation result = decode_segmentation(scores(frame.colour), form_, frame.colour.cols, frame.colour.rows);
   if (unknown_label_ >= 0) result.labels.setTo(255, result.labels == unknown_label_);
   return result;
 }

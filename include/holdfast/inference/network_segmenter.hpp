@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <opencv2/core/mat.hpp>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,10 @@ class NetworkSegmenter : public Segmenter {
   const std::vector<std::string>& classes() const override { return classes_; }
   std::vector<std::string> movable() const override { return movable_; }
   Segmentation segment(const SensorFrame& frame) override;
+
+ protected:
+  /// The network's output for an image, valid until the next call.
+  virtual cv::Mat scores(const cv::Mat& colour) { return network_.run(colour); }
 
  private:
   std::vector<std::string> classes_, movable_;

@@ -36,10 +36,11 @@ def draw_curves(logs, picture):
     for border in borders:
         cv2.line(canvas, at(border, 0), at(border, 1), (225, 225, 225), 1)
     for i, (name, colour) in enumerate(COLOURS.items()):
-        points = [at(step, float(row[name])) for step, row in rows if row.get(name)]
+        scale = 0.5 if name == "loss" else 1.0
+        points = [at(step, scale * float(row[name])) for step, row in rows if row.get(name)]
         if len(points) > 1:
             cv2.polylines(canvas, [np.array(points, np.int32)], False, colour, 2, cv2.LINE_AA)
-        cv2.putText(canvas, name, (MARGIN + 180 * i, 25), cv2.FONT_HERSHEY_SIMPLEX, 0.5, colour, 1, cv2.LINE_AA)
+        cv2.putText(canvas, "loss / 2" if name == "loss" else name, (MARGIN + 180 * i, 25), cv2.FONT_HERSHEY_SIMPLEX, 0.5, colour, 1, cv2.LINE_AA)
     cv2.putText(canvas, f"{offset} steps", (WIDTH - MARGIN - 100, HEIGHT - 15), cv2.FONT_HERSHEY_SIMPLEX, 0.45, (0, 0, 0), 1,
                 cv2.LINE_AA)
     cv2.imwrite(str(pathlib.Path(picture)), canvas)

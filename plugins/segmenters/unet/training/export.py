@@ -16,14 +16,17 @@ import warnings
 
 import torch
 
+from classes import PERSON
 from model import multiple
 from pack import PackError
 from weights import folded, load_weights
 
 
-def export(model, input_size, path):
+def export(model, input_size, path, caution=0.0):
     """`model`: for evaluation; it is changed."""
     model = folded(model.eval())
+    with torch.no_grad():
+        model.head.bias[PERSON] -= caution
     model.coarse_heads = torch.nn.ModuleList()
     picture = torch.zeros(1, 3, input_size[1], input_size[0])
     with warnings.catch_warnings():
@@ -37,9 +40,11 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("weights", type=pathlib.Path, help="weights.npz of a training")
     parser.add_argument("onnx", type=pathlib.Path, help="file to write")
+    parser.add_argument("--caution", type=float, default=0.0,
+                        help="subtracted from the score of 'person', where it is found too often (default: 0)")
     arguments = parser.parse_args()
     model, (width, height) = load_weights(arguments.weights)
-    export(model, (width, height), arguments.onnx)
+    export(model, (width, height), arguments.onnx, arguments.caution)
     print(f"{arguments.onnx}: size '{model.size}', trained for {width}x{height}, sides multiples of "
           f"{multiple(model.size)}, "
           f"{arguments.onnx.stat().st_size / 1e6:.2f} MB")
