@@ -3,6 +3,7 @@
 # Installs what Holdfast is built from, on Debian 12 and its relatives. Quick when everything is there already.
 #
 #   sh cmake/install_dependencies.sh             install what is missing (as root, or through sudo without a password)
+#   sh cmake/install_dependencies.sh --training  also what the training of the U-Net and its test need
 #   sh cmake/install_dependencies.sh --dry-run   say what would be installed, change nothing
 set -eu
 
@@ -16,12 +17,14 @@ say() { printf 'install_dependencies: %s\n' "$*"; }
 fail() { say "$@" >&2; exit 1; }
 
 dry_run=no
-case "${1-}" in
-  "") ;;
-  --dry-run) dry_run=yes ;;
-  -h | --help) sed -n '3,6s/^# \{0,1\}//p' "$0"; exit 0 ;;
-  *) fail "unknown argument '$1'; known are --dry-run and --help" ;;
-esac
+for argument in "$@"; do
+  case "$argument" in
+    --training) packages="$packages python3 python3-numpy python3-opencv python3-torch" ;;
+    --dry-run) dry_run=yes ;;
+    -h | --help) sed -n '3,7s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) fail "unknown argument '$argument'; known are --training, --dry-run and --help" ;;
+  esac
+done
 
 if ! command -v apt-get >/dev/null 2>&1 || ! command -v dpkg-query >/dev/null 2>&1; then
   fail "no apt-get here: please install, by the means of your system, what Debian 12 calls" $packages

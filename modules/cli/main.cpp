@@ -13,6 +13,7 @@
 #include "holdfast/cli/check_command.hpp"
 #include "holdfast/cli/dataset_command.hpp"
 #include "holdfast/cli/evaluate_command.hpp"
+#include "holdfast/cli/evaluate_segmentation_command.hpp"
 #include "holdfast/cli/map_command.hpp"
 #include "holdfast/cli/modules_command.hpp"
 #include "holdfast/cli/run_command.hpp"
@@ -75,6 +76,7 @@ int main(int argc, char** argv) {
   add_bench_command(app, exit_code);
   add_dataset_command(app, exit_code);
   add_evaluate_command(app, exit_code);
+  add_evaluate_segmentation_command(app, exit_code);
   add_map_command(app, exit_code);
   add_background_command(app, exit_code);
   add_simulate_command(app, exit_code);

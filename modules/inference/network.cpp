@@ -10,6 +10,7 @@
 #include <opencv2/dnn.hpp>
 #include <opencv2/imgproc.hpp>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "holdfast/core/error.hpp"
@@ -148,7 +149,9 @@ struct Network::Parts {
 Network::Network(const NetworkOptions& options) : parts_(std::make_unique<Parts>()) {
   require_three(options);
   parts_->options = options;
-  const std::vector<std::uint8_t> bytes = read_bytes(options.model);
+  const std::vector<std::uint8_t> file =
+      options.bytes.empty() ? read_bytes(options.model) : std::vector<std::uint8_t>();
+  const std::span<const std::uint8_t> bytes = options.bytes.empty() ? std::span(file) : options.bytes;
   const OnnxSignature signature = read_onnx_signature(bytes, options.model);
   if (signature.has_half_precision)
     throw InputError({options.model.string()},

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <opencv2/core/mat.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,10 @@ namespace holdfast {
 /// channel, (value * scale - mean) / standard_deviation.
 struct NetworkOptions {
   std::filesystem::path model;  ///< ONNX, float32
-  int width = 0;                ///< of the input [px]; 0 = as the model declares it
+  /// The model itself, where the program holds it; `model` then only names it in messages. Read when the network is
+  /// made.
+  std::span<const std::uint8_t> bytes = {};
+  int width = 0;  ///< of the input [px]; 0 = as the model declares it
   int height = 0;
   bool rgb = true;  ///< order of the channels: red green blue, or blue green red
   double scale = 1.0 / 255.0;

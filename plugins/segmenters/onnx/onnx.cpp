@@ -6,9 +6,7 @@
 #include <vector>
 
 #include "holdfast/core/error.hpp"
-#include "holdfast/inference/network.hpp"
-#include "holdfast/inference/segmentation_output.hpp"
-#include "holdfast/interfaces/segmenter.hpp"
+#include "holdfast/inference/network_segmenter.hpp"
 #include "holdfast/plugin/did_you_mean.hpp"
 #include "holdfast/plugin/plugin.hpp"
 
@@ -60,23 +58,23 @@ struct OnnxSettings {
 };
 
 NetworkOptions network_options(const OnnxSettings& s) {
-  return {s.model,
-          s.width,
-          s.height,
-          s.colour_order == "rgb",
-          s.scale,
-          s.mean,
-          s.standard_deviation,
-          s.layout == "nhwc",
-          s.output_name,
-          s.threads};
+  return {.model = s.model,
+          .width = s.width,
+          .height = s.height,
+          .rgb = s.colour_order == "rgb",
+          .scale = s.scale,
+          .mean = s.mean,
+          .standard_deviation = s.standard_deviation,
+          .channels_last = s.layout == "nhwc",
+          .output_name = s.output_name,
+          .threads = s.threads};
 }
 
 OutputForm output_form(const OnnxSettings& s) {
   const OutputKind kind = s.output == "labels"          ? OutputKind::labels
                           : s.output == "probabilities" ? OutputKind::probabilities
                                                         : OutputKind::logits;
-  return {kind, s.layout == "nhwc", static_cast<int>(s.classes.size()), s.model};
+  return {.kind = kind, .channels_last = s.layout == "nhwc", .model = s.model};
 }
 
 /// Checked before the model is loaded, all at once.
@@ -97,34 +95,11 @@ void check_classes(const OnnxSettings& settings) {
 }
 
 /// Any network for semantic segmentation.
-class OnnxSegmenter final : public Segmenter {
+class OnnxSegmenter final : public NetworkSegmenter {
  public:
   OnnxSegmenter(const OnnxSettings& settings, const CreationContext&)
-      : settings_((check_classes(settings), settings)),
-        form_(output_form(settings)),
-        network_(network_options(settings)) {
-    const auto unknown = std::find(settings_.classes.begin(), settings_.classes.end(), "unknown");
-    if (unknown != settings_.classes.end()) unknown_label_ = static_cast<int>(unknown - settings_.classes.begin());
-    // Whatever does not fit shows now, before the first frame.
-    SensorFrame trial;
-    trial.colour = cv::Mat::zeros(network_.height(), network_.width(), CV_8UC3);
-    segment(trial);
-  }
-
-  const std::vector<std::string>& classes() const override { return settings_.classes; }
-  std::vector<std::string> movable() const override { return settings_.movable; }
-
-  Segmentation segment(const SensorFrame& frame) override {
-    Segmentation result = decode_segmentation(network_.run(frame.colour), form_, frame.colour.cols, frame.colour.rows);
-    if (unknown_label_ >= 0) result.labels.setTo(255, result.labels == unknown_label_);
-    return result;
-  }
-
- private:
-  OnnxSettings settings_;
-  OutputForm form_;
-  Network network_;
-  int unknown_label_ = -1;
+      : NetworkSegmenter((check_classes(settings), network_options(settings)), output_form(settings), settings.classes,
+                         settings.movable) {}
 };
 
 }  // namespace

@@ -6,10 +6,10 @@
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/image_files/image_decoder.hpp"
+#include "holdfast/image_files/label_map.hpp"
 #include "holdfast/interfaces/segmenter.hpp"
 #include "holdfast/plugin/plugin.hpp"
 #include "label_files.hpp"
-#include "label_map.hpp"
 
 namespace holdfast {
 
@@ -48,7 +48,7 @@ constexpr double least_tolerance = 1e-6;
 class PrecomputedSegmenter final : public Segmenter {
  public:
   PrecomputedSegmenter(const PrecomputedSettings& settings, const CreationContext&)
-      : labels_(settings.labels),
+      : labels_(settings.labels, "segmenter.precomputed.labels"),
         files_(settings.list.empty() ? find_label_files(settings.path)
                                      : listed_label_files(settings.path, settings.list)),
         tolerance_(std::max(settings.tolerance, least_tolerance)) {}

@@ -16,8 +16,8 @@ namespace holdfast {
 class LabelMap {
  public:
   /// Throws ConfigurationError, all problems at once, for a key that is no value and no range, a value above 65535,
-  /// values that are named twice, names that are empty, and more than 254 classes.
-  explicit LabelMap(const TextMap& labels);
+  /// values that are named twice, names that are empty, and more than 254 classes. `where` begins their messages.
+  LabelMap(const TextMap& labels, const std::string& where);
 
   /// By label: the background, then the others in the order in which the map first names them.
   const std::vector<std::string>& classes() const { return classes_; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "label_map.hpp"
+#include "holdfast/image_files/label_map.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -66,11 +66,10 @@ cv::Mat look_up(const cv::Mat& values, const std::vector<std::uint16_t>& label_o
 
 }  // namespace
 
-LabelMap::LabelMap(const TextMap& labels) : classes_{"background"}, label_of_value_(most_values, no_label) {
+LabelMap::LabelMap(const TextMap& labels, const std::string& where)
+    : classes_{"background"}, label_of_value_(most_values, no_label) {
   std::vector<Diagnostic> diagnostics;
-  const auto problem = [&](const std::string& message) {
-    diagnostics.push_back({{}, "segmenter.precomputed.labels: " + message});
-  };
+  const auto problem = [&](const std::string& message) { diagnostics.push_back({{}, where + ": " + message}); };
   if (labels.empty())
     problem("is empty; expected values or ranges with the names of their classes, such as { 1-254: person }");
   std::vector<const std::string*> named_by(most_values, nullptr);

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Time of the U-Net for one 640x480 frame, on one thread, resizing and labels included. Images: 40 frames spread over
+// the TUM sequence in $HOLDFAST_DATA/tum_fr1_xyz, or synthetic ones when HOLDFAST_DATA is unset. The counter
+// `to_cv_orb` is the median time divided by that of cv::ORB(1000), image by image in turn with it, so that a busy
+// machine slows both.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <opencv2/core/utility.hpp>
+#include <opencv2/features2d.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <vector>
+
+#include "holdfast/interfaces/segmenter.hpp"
+#include "holdfast/plugin/builtin.hpp"
+#include "holdfast/plugin/registry.hpp"
+
+namespace {
+
+using namespace holdfast;
+using Clock = std::chrono::steady_clock;
+
+std::vector<cv::Mat> load_images() {
+  std::vector<cv::Mat> images;
+  if (const char* data = std::getenv("HOLDFAST_DATA")) {
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(data) / "tum_fr1_xyz" / "rgb"))
+      files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    for (std::size_t i = 0; i < files.size(); i += std::max<std::size_t>(1, files.size() / 40))
+      images.push_back(cv::imread(files[i].string()));
+  }
+  for (std::uint64_t seed = 1; images.empty() || (images.size() < 10 && seed < 10); ++seed) {
+    cv::Mat image(480, 640, CV_8UC3);
+    cv::RNG random(seed);
+    random.fill(image, cv::RNG::UNIFORM, 0, 256);
+    cv::GaussianBlur(image, image, {0, 0}, 3.0);
+    images.push_back(image);
+  }
+  return images;
+}
+
+template <class Function>
+double seconds(const Function& function) {
+  const auto begin = Clock::now();
+  function();
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+void unet(benchmark::State& state, const std::string& size, bool mirror) {
+  static const std::vector<cv::Mat> images = load_images();
+  Registry registry;
+  register_builtin_plugins(registry);
+  const auto segmenter = registry.create<Segmenter>("unet", {{"size", size}, {"mirror", mirror}}, CreationContext{});
+  const cv::Ptr<cv::ORB> reference = cv::ORB::create(1000);
+  std::vector<cv::KeyPoint> keypoints;
+  cv::Mat descriptors, grey;
+  std::vector<double> times, reference_times;
+  std::size_t next = 0;
+  for (auto _ : state) {
+    SensorFrame frame;
+    frame.colour = images[next++ % images.size()];
+    cv::cvtColor(frame.colour, grey, cv::COLOR_BGR2GRAY);
+    reference_times.push_back(
+        seconds([&] { reference->detectAndCompute(grey, cv::noArray(), keypoints, descriptors); }));
+    times.push_back(seconds([&] { benchmark::DoNotOptimize(segmenter->segment(frame)); }));
+    state.SetIterationTime(times.back());
+  }
+  state.counters["median_ms"] = 1e3 * median(times);
+  state.counters["cv_orb_ms"] = 1e3 * median(reference_times);
+  state.counters["to_cv_orb"] = median(times) / median(reference_times);
+}
+BENCHMARK_CAPTURE(unet, small_once, "small", false)->UseManualTime()->Iterations(40)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(unet, small, "small", true)->UseManualTime()->Iterations(40)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(unet, base_once, "base", false)->UseManualTime()->Iterations(40)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(unet, base, "base", true)->UseManualTime()->Iterations(40)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cv::setNumThreads(1);
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}

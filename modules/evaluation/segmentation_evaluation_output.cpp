@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "holdfast/evaluation/segmentation_evaluation.hpp"
+#include "number_text.hpp"
+
+namespace holdfast {
+
+namespace {
+
+std::string right(const std::string& text, std::size_t width) {
+  return text.size() < width ? std::string(width - text.size(), ' ') + text : text;
+}
+std::string left(const std::string& text, std::size_t width) {
+  return text.size() < width ? text + std::string(width - text.size(), ' ') : text;
+}
+std::string percent(double share) { return std::isnan(share) ? "-" : fixed_text(100.0 * share, 2); }
+
+}  // namespace
+
+std::string to_text(const SegmentationEvaluation& evaluation) {
+  constexpr std::size_t name_width = 16, width = 14;
+  const auto row = [&](const std::string& name, std::initializer_list<std::string> cells) {
+    std::string line = left(name, name_width);
+    for (const std::string& cell : cells) line += right(cell, width);
+    return line + '\n';
+  };
+  std::string text =
+      row("", {"IoU [%]", "accuracy [%]", "detected [%]", "boundary [%]", "false [%]", "images", "pixels [%]"});
+  const auto known = static_cast<double>(evaluation.known_pixels);
+  for (const ClassEvaluation& one : evaluation.classes)
+    text += row(one.name, {percent(one.iou()), percent(one.accuracy()), percent(one.detection_rate()),
+                           percent(one.boundary_iou()), percent(static_cast<double>(one.false_pixels()) / known),
+                           std::to_string(one.images), percent(static_cast<double>(one.true_pixels) / known)});
+  text += row("mean", {percent(evaluation.mean_iou()), percent(evaluation.mean_accuracy())});
+  text += row("all pixels", {"", percent(evaluation.overall_accuracy())});
+  return text + std::to_string(evaluation.images) + " images, " + std::to_string(evaluation.known_pixels) +
+         " pixels with a true label. detected: images that show the class where its IoU is above 0.5.\n"
+         "false: pixels found to be of the class that are not, of all.\n";
+}
+
+std::string to_json(const SegmentationEvaluation& evaluation) {
+  using Json = nlohmann::ordered_json;
+  Json classes = Json::array();
+  for (const ClassEvaluation& one : evaluation.classes)
+    classes.push_back({{"name", one.name},
+                       {"iou", one.iou()},
+                       {"accuracy", one.accuracy()},
+                       {"detection_rate", one.detection_rate()},
+                       {"boundary_iou", one.boundary_iou()},
+                       {"true_pixels", one.true_pixels},
+                       {"found_pixels", one.found_pixels},
+                       {"correct_pixels", one.both},
+                       {"images", one.images},
+                       {"detected_images", one.detected}});
+  const Json json = {{"images", evaluation.images},
+                     {"known_pixels", evaluation.known_pixels},
+                     {"correct_pixels", evaluation.correct_pixels},
+                     {"overall_accuracy", evaluation.overall_accuracy()},
+                     {"mean_iou", evaluation.mean_iou()},
+                     {"mean_accuracy", evaluation.mean_accuracy()},
+                     {"classes", classes}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+}  // namespace holdfast

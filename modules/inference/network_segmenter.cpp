@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/inference/network_segmenter.hpp"
+
+#include <algorithm>
+#include <opencv2/core/mat.hpp>
+#include <utility>
+
+namespace holdfast {
+
+NetworkSegmenter::NetworkSegmenter(const NetworkOptions& options, OutputForm form, std::vector<std::string> classes,
+                                   std::vector<std::string> movable)
+    : classes_(std::move(classes)), movable_(std::move(movable)), form_(std::move(form)), network_(options) {
+  form_.classes = static_cast<int>(classes_.size());
+  const auto unknown = std::find(classes_.begin(), classes_.end(), "unknown");
+  if (unknown != classes_.end()) unknown_label_ = static_cast<int>(unknown - classes_.begin());
+  SensorFrame trial;
+  trial.colour = cv::Mat::zeros(network_.height(), network_.width(), CV_8UC3);
+  NetworkSegmenter::segment(trial);
+}
+
+Segmentation NetworkSegmenter::segment(const SensorFrame& frame) {
+  Segmentation result = decode_segmentation(scores(frame.colour), form_, frame.colour.cols, frame.colour.rows);
+  if (unknown_label_ >= 0) result.labels.setTo(255, result.labels == unknown_label_);
+  return result;
+}
+
+}  // namespace holdfast

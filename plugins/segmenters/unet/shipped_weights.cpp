@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "shipped_weights.hpp"
+
+// The assembler copies the file: C++20 has no way of its own that a compiler survives with megabytes.
+__asm__(
+    ".pushsection .rodata\n"
+    ".balign 16\n"
+    "holdfast_unet_begin:\n"
+    ".incbin \"" HOLDFAST_UNET_WEIGHTS
+    "\"\n"
+    "holdfast_unet_end:\n"
+    ".popsection\n");
+
+extern "C" {
+extern const std::uint8_t holdfast_unet_begin[];
+extern const std::uint8_t holdfast_unet_end[];
+}
+
+namespace holdfast {
+
+std::span<const std::uint8_t> shipped_unet() { return {holdfast_unet_begin, holdfast_unet_end}; }
+
+}  // namespace holdfast

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace holdfast {
+
+/// The network that Holdfast comes with: unet.onnx of this folder, compiled in.
+std::span<const std::uint8_t> shipped_unet();
+
+}  // namespace holdfast

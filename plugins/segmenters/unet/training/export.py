@@ -1,0 +1,57 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Turn weights.npz into an ONNX file that the segmenter `unet` loads (opset 11, float32, one picture of any size whose
+sides are multiples of what the depth wants).
+
+Batch normalisation is folded into the convolutions, and the coarse heads of training are left out.
+
+Example
+  export.py out/base/weights.npz unet_base.onnx
+  holdfast run rgbd.yaml --set 'segmenter={unet: {model: unet_base.onnx}}' --output out/run
+"""
+import argparse
+import pathlib
+import sys
+import warnings
+
+import torch
+
+from classes import PERSON
+from model import multiple
+from pack import PackError
+from weights import folded, load_weights
+
+
+def export(model, input_size, path, caution=0.0):
+    """`model`: for evaluation; it is changed."""
+    model = folded(model.eval())
+    with torch.no_grad():
+        model.head.bias[PERSON] -= caution
+    model.coarse_heads = torch.nn.ModuleList()
+    picture = torch.zeros(1, 3, input_size[1], input_size[0])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # about optional checks of the exporter
+        torch.onnx.export(model, picture, str(path), opset_version=11, input_names=["picture"],
+                          output_names=["scores"], do_constant_folding=True,
+                          dynamic_axes={name: {2: "height", 3: "width"} for name in ("picture", "scores")})
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("weights", type=pathlib.Path, help="weights.npz of a training")
+    parser.add_argument("onnx", type=pathlib.Path, help="file to write")
+    parser.add_argument("--caution", type=float, default=0.0,
+                        help="subtracted from the score of 'person', where it is found too often (default: 0)")
+    arguments = parser.parse_args()
+    model, (width, height) = load_weights(arguments.weights)
+    export(model, (width, height), arguments.onnx, arguments.caution)
+    print(f"{arguments.onnx}: size '{model.size}', trained for {width}x{height}, sides multiples of "
+          f"{multiple(model.size)}, "
+          f"{arguments.onnx.stat().st_size / 1e6:.2f} MB")
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except (PackError, OSError) as error:
+        sys.exit(f"export.py: {error}")

@@ -1,0 +1,140 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Pack pictures of people and of rooms for training.
+
+Reads, as far as they are named:
+  --people DIR      with voc_person/, penn_fudan/ and human_290/ (their layout: README.md)
+  --room DIR        a sequence in TUM layout with labels_pseudo/: 0 nobody, 15 person, 255 unsure
+  --simulated DIR   sequences that `holdfast simulate` wrote; DIR itself, or folders in it
+and writes one .npz.  Entries that --validation lists (or that its rule chooses, see validation.txt) are marked: they are
+never trained on.
+"""
+import argparse
+import json
+import pathlib
+import sys
+
+import cv2
+import numpy as np
+
+from classes import IGNORED, NOT_PERSON, PERSON, SIMULATED, VOC, relabelled
+from pack import PackError, PackWriter
+
+HERE = pathlib.Path(__file__).parent
+
+
+def read(path, flags):
+    image = cv2.imread(str(path), flags)
+    if image is None:
+        raise PackError(f"{path}: cannot be read; expected an image")
+    return image
+
+
+def colour(path):
+    return read(path, cv2.IMREAD_COLOR)
+
+
+def grey(path):
+    return read(path, cv2.IMREAD_GRAYSCALE)
+
+
+def with_ignored(labels, ignored_path):
+    """Bystanders whom the masks leave out teach nothing."""
+    if ignored_path.exists():
+        labels = np.where((grey(ignored_path) > 0) & (labels == 0), IGNORED, labels).astype(np.uint8)
+    return labels
+
+
+def voc_person(folder):
+    for path in sorted((folder / "labels").glob("*.png")):
+        yield path.stem, colour(folder / "images" / f"{path.stem}.jpg"), relabelled(grey(path), VOC)
+
+
+def penn_fudan(folder):
+    for path in sorted((folder / "PedMasks").glob("*_mask.png")):
+        name = path.stem[:-len("_mask")]
+        people = np.where(grey(path) > 0, PERSON, 0).astype(np.uint8)
+        picture = next((folder / "PNGImages").glob(name + ".*"))
+        yield name, colour(picture), with_ignored(people, folder / "unlabelled_people" / f"{name}.png")
+
+
+def human_290(folder):
+    for path in sorted((folder / "masks").glob("*.png")):
+        people = np.where(grey(path) > 0, PERSON, 0).astype(np.uint8)
+        picture = folder / "images" / f"{path.stem}.jpg"
+        yield path.stem, colour(picture), with_ignored(people, folder / "unlabelled_people" / path.name)
+
+
+def furniture(labels):
+    """Where large things stand that are no part of a person, among the pixels that are unsure."""
+    unsure = cv2.erode((labels == IGNORED).astype(np.uint8), np.ones((7, 7), np.uint8))
+    count, components, stats, _ = cv2.connectedComponentsWithStats(unsure)
+    large = [k for k in range(1, count) if stats[k, cv2.CC_STAT_AREA] > 0.025 * labels.size]
+    near_person = cv2.dilate((labels == PERSON).astype(np.uint8), np.ones((25, 25), np.uint8)) > 0
+    return np.isin(components, large) & ~near_person
+
+
+def room(folder):
+    for path in sorted((folder / "labels_pseudo").glob("*.png")):
+        picture = next((folder / "rgb").glob(path.stem + ".*"))
+        labels = relabelled(grey(path), {15: PERSON, 255: IGNORED})
+        labels[furniture(labels)] = NOT_PERSON
+        yield path.stem, colour(picture), labels
+
+
+def simulated(folder):
+    scenes = [folder] if (folder / "scene.json").exists() else sorted(p.parent for p in folder.glob("*/scene.json"))
+    if not scenes:
+        raise PackError(f"{folder}: holds no scene.json; expected a sequence that `holdfast simulate` wrote")
+    for scene in scenes:
+        names = json.loads((scene / "scene.json").read_text())["classes"]
+        mapping = {i: SIMULATED[name] for i, name in enumerate(names) if name in SIMULATED}
+        for path in sorted((scene / "labels").glob("*.png")):
+            picture = next((scene / "rgb").glob(path.stem + ".*"))
+            yield f"{scene.name}/{path.stem}", colour(picture), relabelled(grey(path), mapping)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--people", type=pathlib.Path)
+    parser.add_argument("--room", type=pathlib.Path)
+    parser.add_argument("--simulated", type=pathlib.Path)
+    parser.add_argument("--validation", type=pathlib.Path, default=HERE / "validation.txt",
+                        help="names of entries to hold out, one a line (default: validation.txt beside this program)")
+    parser.add_argument("--long-side", type=int, default=384, help="pictures are shrunk to it [px] (default: 384)")
+    parser.add_argument("--output", type=pathlib.Path, required=True, help="the pack, .npz")
+    arguments = parser.parse_args()
+
+    held_out = {line for line in arguments.validation.read_text().split("\n") if line and not line.startswith("#")}
+    readers = []
+    if arguments.people:
+        for reader in (voc_person, penn_fudan, human_290):
+            readers.append((reader, arguments.people / reader.__name__))
+    if arguments.room:
+        readers.append((room, arguments.room))
+    if arguments.simulated:
+        readers.append((simulated, arguments.simulated))
+    if not readers:
+        parser.error("nothing to pack; name --people, --room or --simulated")
+
+    writer = PackWriter(arguments.long_side)
+    for reader, folder in readers:
+        if not folder.is_dir():
+            raise PackError(f"{folder}: is no folder; expected the data of '{reader.__name__}'")
+        before = len(writer.names)
+        for name, picture, labels in reader(folder):
+            full_name = f"{reader.__name__}/{name}"
+            writer.add(full_name, picture, labels, full_name in held_out)
+        print(f"{reader.__name__}: {len(writer.names) - before} pictures, "
+              f"{sum(writer.validation[before:])} of them held out")
+    if not writer.names:
+        raise PackError("no pictures found; expected the layouts that --help names")
+    writer.write(arguments.output)
+    print(f"{arguments.output}: {arguments.output.stat().st_size / 2**20:.1f} MiB")
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except (PackError, OSError, StopIteration) as error:
+        sys.exit(f"prepare.py: {error}")

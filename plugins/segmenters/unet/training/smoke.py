@@ -1,0 +1,63 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Does the training work at all?  A few steps with a tiny network, in seconds.
+
+Packs simulated frames, trains, goes on from the checkpoint, exports.  Fails when the loss does not fall.  Leaves in
+--output: unet.onnx, picture.png and labels.png, what PyTorch says of that picture, for a comparison with C++.
+"""
+import argparse
+import csv
+import pathlib
+import subprocess
+import sys
+
+import cv2
+import numpy as np
+import torch
+
+from measure import found_labels
+from pack import PackError, read_pack
+from weights import load_weights
+
+HERE = pathlib.Path(__file__).parent
+
+
+def run(program, *arguments):
+    command = [sys.executable, str(HERE / program), *map(str, arguments)]
+    result = subprocess.run(command, capture_output=True, text=True)
+    if result.returncode != 0:
+        raise PackError(f"{program} failed:\n{result.stdout}{result.stderr}")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("simulated", type=pathlib.Path, help="a sequence that `holdfast simulate` wrote")
+    parser.add_argument("--output", type=pathlib.Path, required=True)
+    arguments = parser.parse_args()
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    pack, onnx = arguments.output / "pack.npz", arguments.output / "unet.onnx"
+
+    run("prepare.py", "--simulated", arguments.simulated, "--long-side", 160, "--output", pack)
+    training = ("train.py", pack, "--output", arguments.output, "--size", "tiny", "--batch", 4, "--workers", 0,
+                "--learning-rate", "5e-3", "--resume")
+    run(*training, "--steps", 25)
+    run(*training, "--steps", 50)
+    with open(arguments.output / "log.csv", newline="") as file:
+        losses = [float(row["loss"]) for row in csv.DictReader(file)]
+    if len(losses) != 2 or not losses[1] < losses[0]:
+        raise PackError(f"mean losses of the two halves {losses}; expected two, the second below the first")
+    run("export.py", arguments.output / "weights.npz", onnx)
+
+    torch.set_num_threads(1)
+    model, input_size = load_weights(arguments.output / "weights.npz")
+    picture = read_pack(pack)[0][0].picture
+    cv2.imwrite(str(arguments.output / "picture.png"), picture)
+    cv2.imwrite(str(arguments.output / "labels.png"), found_labels(model, picture, input_size).astype(np.uint8))
+    print(f"loss {losses[0]:.3f}, then {losses[1]:.3f}; {onnx}")
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except (PackError, OSError) as error:
+        sys.exit(f"smoke.py: {error}")

@@ -1,0 +1,232 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Train the U-Net on a pack.
+
+Writes into --output: weights.npz (averaged over the last steps, for export.py), checkpoint.pt (to go on after an
+interruption, --resume), log.csv and curves.png.  Progressive training is several runs, each with --start-from the one
+before: a short way to good weights is small pictures first, for long, then larger ones.
+
+Example
+  train.py pack.npz --output out/coarse --width 128 --height 96 --minutes 60
+  train.py pack.npz --output out/base --start-from out/coarse/weights.npz --learning-rate 5e-4 --minutes 60
+"""
+import argparse
+import copy
+import csv
+import math
+import pathlib
+import sys
+import time
+
+import torch
+from torch.nn import functional
+
+from classes import IGNORED, NOT_PERSON, PERSON
+from curves import draw_curves
+from measure import Validation
+from model import SIZES, UNet, multiple
+from pack import PackError, read_pack
+from samples import Samples
+from weights import load_weights, save_weights
+
+
+def soft_dice(scores, labels):
+    """1 - dice coefficient of the person, pixels of a batch together."""
+    known = (labels != IGNORED).float()
+    person = (labels == PERSON).float() * known
+    probability = torch.softmax(scores, 1)[:, PERSON] * known
+    return 1.0 - (2.0 * (probability * person).sum() + 1.0) / (probability.sum() + person.sum() + 1.0)
+
+
+def class_loss(scores, labels, class_weights):
+    """Cross entropy; furniture of no known class only must not be a person."""
+    known = torch.where(labels == NOT_PERSON, IGNORED, labels)
+    loss = functional.cross_entropy(scores, known, class_weights, ignore_index=IGNORED)
+    vague = labels == NOT_PERSON
+    if vague.any():
+        others = torch.cat([scores[:, :PERSON], scores[:, PERSON + 1:]], 1)
+        surprise = (torch.logsumexp(scores, 1) - torch.logsumexp(others, 1))[vague]
+        loss = loss + surprise.sum() / (known != IGNORED).sum()
+    return loss
+
+
+def training_loss(outputs, labels, class_weights):
+    fine = functional.interpolate(outputs[0], size=labels.shape[1:], mode="bilinear", align_corners=False)
+    loss = class_loss(fine, labels, class_weights) + 0.5 * soft_dice(fine, labels)
+    for scores in outputs[1:]:
+        step = labels.shape[1] // scores.shape[2]
+        coarse_labels = labels[:, step // 2::step, step // 2::step]
+        loss = loss + 0.2 * class_loss(scores, coarse_labels, class_weights)
+    return loss
+
+
+class Training:
+    """Everything that changes while training; what a checkpoint holds."""
+
+    def __init__(self, arguments):
+        torch.manual_seed(arguments.seed)
+        self.input_size = (arguments.width, arguments.height)
+        self.model = UNet(arguments.size, arguments.dropout)
+        if arguments.start_from:
+            weights, _ = load_weights(arguments.start_from)
+            if weights.size != arguments.size:
+                raise PackError(f"{arguments.start_from}: holds size '{weights.size}', expected '{arguments.size}'")
+            self.model.load_state_dict(weights.state_dict())
+        self.model = self.model.to(memory_format=torch.channels_last)
+        self.average = copy.deepcopy(self.model.state_dict())
+        self.optimizer = torch.optim.AdamW(self.model.parameters(), lr=arguments.learning_rate, betas=(0.9, 0.999),
+                                           weight_decay=arguments.weight_decay, foreach=True)
+        self.step, self.seconds = 0, 0.0
+
+    def average_weights(self, fraction=0.999):
+        """Running mean over the steps: smoother, and better, than the last step's weights."""
+        keep = min(fraction, (1.0 + self.step) / (10.0 + self.step))
+        averages, values = [], []
+        for name, value in self.model.state_dict().items():
+            if value.dtype.is_floating_point:
+                averages.append(self.average[name])
+                values.append(value)
+        torch._foreach_mul_(averages, keep)
+        torch._foreach_add_(averages, values, alpha=1.0 - keep)
+
+    def averaged_model(self):
+        model = copy.deepcopy(self.model)
+        model.load_state_dict(self.average)
+        return model.eval()
+
+    def save(self, folder):
+        state = dict(model=self.model.state_dict(), average=self.average, optimizer=self.optimizer.state_dict(),
+                     step=self.step, seconds=self.seconds, size=self.model.size, input_size=self.input_size)
+        torch.save(state, folder / "checkpoint.part")
+        (folder / "checkpoint.part").replace(folder / "checkpoint.pt")
+        save_weights(folder / "weights.npz", self.average, self.model.size, self.input_size)
+
+    def load(self, path):
+        state = torch.load(path)
+        if (state["size"], tuple(state["input_size"])) != (self.model.size, self.input_size):
+            raise PackError(f"{path}: is of size '{state['size']}' with an input of {state['input_size']}; expected "
+                            f"'{self.model.size}' and {self.input_size}, as this run says")
+        self.model.load_state_dict(state["model"])
+        self.optimizer.load_state_dict(state["optimizer"])
+        self.average, self.step, self.seconds = state["average"], state["step"], state["seconds"]
+
+
+class Log:
+    """log.csv: one row for each measurement."""
+
+    def __init__(self, path, goes_on):
+        self.path, self.header_is_written = path, goes_on and path.exists()
+
+    def add(self, row):
+        with open(self.path, "a" if self.header_is_written else "w", newline="") as file:
+            writer = csv.DictWriter(file, row.keys())
+            if not self.header_is_written:
+                writer.writeheader()
+            writer.writerow(row)
+        self.header_is_written = True
+
+
+def learning_rate(progress, step, highest):
+    """Warm-up over 200 steps, then half a cosine down to a hundredth."""
+    return highest * min(1.0, (step + 1) / 200) * (0.01 + 0.99 * 0.5 * (1.0 + math.cos(math.pi * min(progress, 1.0))))
+
+
+def train(arguments):
+    torch.set_num_threads(arguments.threads)
+    training_entries, held_out = read_pack(arguments.pack)
+    training = Training(arguments)
+    checkpoint = arguments.output / "checkpoint.pt"
+    if arguments.resume and checkpoint.exists():
+        training.load(checkpoint)
+        print(f"goes on at step {training.step}", flush=True)
+    sizes = [training.input_size] * 2 + [arguments.also] if arguments.also else [training.input_size]
+    samples = Samples(training_entries, sizes, arguments.batch, arguments.seed, training.step * arguments.batch)
+    batches = iter(torch.utils.data.DataLoader(samples, arguments.batch, num_workers=arguments.workers))
+    validation = Validation(training_entries, held_out)
+    class_weights = torch.tensor(arguments.class_weights)
+    log = Log(arguments.output / "log.csv", arguments.resume)
+
+    def progress():
+        return training.step / arguments.steps if arguments.steps else training.seconds / (60.0 * arguments.minutes)
+
+    mean_loss, count = 0.0, 0
+    started, measured_at, saved_at = time.monotonic() - training.seconds, training.seconds, training.seconds
+    while progress() < 1.0:
+        rate = learning_rate(progress(), training.step, arguments.learning_rate)
+        for group in training.optimizer.param_groups:
+            group["lr"] = rate
+        pictures, labels = next(batches)
+        training.model.train()
+        training.optimizer.zero_grad(set_to_none=True)
+        outputs = training.model(pictures.contiguous(memory_format=torch.channels_last))
+        loss = training_loss(outputs, labels, class_weights)
+        loss.backward()
+        torch.nn.utils.clip_grad_norm_(training.model.parameters(), 5.0)
+        training.optimizer.step()
+        training.step += 1
+        training.average_weights()
+        mean_loss, count = mean_loss + loss.item(), count + 1
+        training.seconds = time.monotonic() - started
+        last = progress() >= 1.0
+        if last or training.seconds - measured_at >= 60.0 * arguments.measure_every:
+            model = training.averaged_model()
+            figures = validation(model, training.input_size)
+            if arguments.also:
+                figures.update({f"small_{name}": value for name, value in validation(model, arguments.also).items()})
+            row = dict(step=training.step, minutes=round(training.seconds / 60, 2), learning_rate=f"{rate:.2e}",
+                       loss=round(mean_loss / count, 4), **{name: round(float(v), 4) for name, v in figures.items()})
+            print("  ".join(f"{name} {value}" for name, value in row.items()), flush=True)
+            log.add(row)
+            draw_curves([log.path], arguments.output / "curves.png")
+            mean_loss, count, measured_at = 0.0, 0, time.monotonic() - started
+        if last or training.seconds - saved_at >= 60.0 * arguments.save_every:
+            training.save(arguments.output)
+            saved_at = time.monotonic() - started
+
+
+def size_of(text):
+    width, height = (int(part) for part in text.split("x"))
+    return width, height
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("pack", type=pathlib.Path, help="pictures and labels, from prepare.py")
+    parser.add_argument("--output", type=pathlib.Path, required=True, help="folder of this run")
+    parser.add_argument("--size", choices=SIZES, default="base")
+    parser.add_argument("--width", type=int, help="of the input [px] (default: as the size ships with)")
+    parser.add_argument("--height", type=int)
+    parser.add_argument("--also", type=size_of, metavar="WxH",
+                        help="every third batch has this size, for weights that are good at both, such as 160x128")
+    length = parser.add_mutually_exclusive_group()
+    length.add_argument("--minutes", type=float, default=60.0, help="length of the run (default: 60)")
+    length.add_argument("--steps", type=int, help="length of the run, exactly repeatable")
+    parser.add_argument("--start-from", type=pathlib.Path, help="weights.npz of an earlier run")
+    parser.add_argument("--resume", action="store_true", help="go on from the checkpoint in --output, if there is one")
+    parser.add_argument("--batch", type=int, default=16)
+    parser.add_argument("--learning-rate", type=float, default=1.5e-3, help="the highest (default: 1.5e-3)")
+    parser.add_argument("--weight-decay", type=float, default=1e-2, help="decoupled from the gradient (default: 1e-2)")
+    parser.add_argument("--dropout", type=float, default=0.1)
+    parser.add_argument("--class-weights", type=float, nargs=5, default=[1.0, 1.3, 1.0, 1.0, 1.0],
+                        help="in the loss: background, person, chair, table, tv")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--workers", type=int, default=1, help="processes that make samples (default: 1; 0 = none)")
+    parser.add_argument("--measure-every", type=float, default=4.0, metavar="MINUTES")
+    parser.add_argument("--save-every", type=float, default=4.0, metavar="MINUTES")
+    arguments = parser.parse_args()
+    arguments.width = arguments.width or SIZES[arguments.size][1][0]
+    arguments.height = arguments.height or SIZES[arguments.size][1][1]
+    unit = multiple(arguments.size)
+    for width, height in [(arguments.width, arguments.height)] + ([arguments.also] if arguments.also else []):
+        if width % unit or height % unit:
+            parser.error(f"an input of {width}x{height}; expected multiples of {unit}")
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    train(arguments)
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except (PackError, OSError) as error:
+        sys.exit(f"train.py: {error}")

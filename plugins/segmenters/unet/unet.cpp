@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstddef>
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <string>
+
+#include "holdfast/inference/network_segmenter.hpp"
+#include "holdfast/plugin/plugin.hpp"
+#include "shipped_weights.hpp"
+
+namespace holdfast {
+
+namespace {
+
+struct UnetSettings {
+  std::string size = "base";
+  int width = 0, height = 0;
+  bool mirror = true;
+  std::filesystem::path model;
+  int threads = 0;
+
+  static void describe(ParameterTable<UnetSettings>& table) {
+    using S = UnetSettings;
+    table
+        .add("size", &S::size,
+             "of the picture that the network is shown: small (160x128) takes less than half the time of base "
+             "(256x192), "
+             "which sees better")
+        .one_of({"small", "base"});
+    table.add("width", &S::width, "of that picture, a multiple of 32; 0 = as size says").range(0, 4096).unit("px");
+    table.add("height", &S::height, "of that picture, a multiple of 32; 0 = as size says").range(0, 4096).unit("px");
+    table.add("mirror", &S::mirror,
+              "show the network the mirror image, too, and take the mean: sees a little better, takes twice the time");
+    table.add("model", &S::model,
+              "weights of your own, ONNX, as training/export.py writes them; empty = those that Holdfast comes with");
+    table
+        .add("threads", &S::threads,
+             "of OpenCV, for the whole process, because OpenCV knows no other; 0 = as it is (holdfast: 1)")
+        .range(0, 256);
+  }
+};
+
+NetworkOptions network_options(const UnetSettings& settings) {
+  NetworkOptions options;
+  const bool small = settings.size == "small";
+  options.width = settings.width > 0 ? settings.width : small ? 160 : 256;
+  options.height = settings.height > 0 ? settings.height : small ? 128 : 192;
+  // What training/samples.py does to a pixel.
+  options.mean = {0.5, 0.5, 0.5};
+  options.standard_deviation = {0.25, 0.25, 0.25};
+  options.threads = settings.threads;
+  options.model = settings.model;
+  if (settings.model.empty()) {
+    options.model = "unet.onnx";
+    options.bytes = shipped_unet();
+  }
+  return options;
+}
+
+/// Our U-Net, trained on photographs of people and on people in rooms.
+class UnetSegmenter final : public NetworkSegmenter {
+ public:
+  UnetSegmenter(const UnetSettings& settings, const CreationContext&)
+      : UnetSegmenter(network_options(settings), settings.mirror) {}
+
+ protected:
+  cv::Mat scores(const cv::Mat& colour) override {
+    if (!mirror_) return NetworkSegmenter::scores(colour);
+    NetworkSegmenter::scores(colour).copyTo(mean_);
+    cv::flip(colour, mirrored_, 1);
+    const cv::Mat other = NetworkSegmenter::scores(mirrored_);
+    const auto width = static_cast<std::size_t>(other.size[other.dims - 1]);
+    const auto* from = other.ptr<float>();
+    auto* to = mean_.ptr<float>();
+    for (std::size_t row = 0; row < other.total(); row += width)
+      for (std::size_t x = 0; x < width; ++x) to[row + x] = 0.5F * (to[row + x] + from[row + width - 1 - x]);
+    return mean_;
+  }
+
+ private:
+  UnetSegmenter(const NetworkOptions& options, bool mirror)
+      : NetworkSegmenter(options, {.model = options.model}, {"background", "person", "chair", "table", "tv"},
+                         {"person"}),
+        mirror_(mirror) {}
+
+  bool mirror_;
+  cv::Mat mirrored_, mean_;
+};
+
+}  // namespace
+
+HOLDFAST_PLUGIN(unet, registry) {
+  registry.add<Segmenter, UnetSegmenter, UnetSettings>(
+      {.name = "unet",
+       .summary = "Finds people with the U-Net that Holdfast comes with; needs no files.",
+       .paper = "Ronneberger et al., U-Net, MICCAI 2015"});
+}
+
+}  // namespace holdfast

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <opencv2/core.hpp>
+
+#include "holdfast/simulation/scene_file.hpp"
+#include "holdfast/simulation/simulator.hpp"
+#include "segmenters/segmenter_fixture.hpp"
+
+extern "C" void holdfast_register_plugin_unet(holdfast::Registry& registry);
+
+namespace holdfast {
+namespace {
+
+using test::error_of;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+std::unique_ptr<Segmenter> make(const ParameterValues& values = {}) {
+  return test::make_segmenter(holdfast_register_plugin_unet, "unet", values);
+}
+
+/// Pixels of people that a segmenter and the truth agree on, and each alone.
+struct Agreement {
+  int both = 0, found = 0, real = 0;
+  double iou() const { return both / static_cast<double>(found + real - both); }
+};
+
+Agreement compare(Segmenter& segmenter, simulation::Simulator& simulator, std::uint64_t index) {
+  const SensorFrame frame = simulator.frame(index);
+  const std::vector<std::string>& names = simulator.class_names();
+  const auto person = std::find(names.begin(), names.end(), "person") - names.begin();
+  const cv::Mat found = segmenter.segment(frame).labels == 1, real = frame.truth->class_labels == person;
+  return {cv::countNonZero(found & real), cv::countNonZero(found), cv::countNonZero(real)};
+}
+
+simulation::Simulator room_with(const std::string& people) {
+  return {
+      simulation::read_scene("", {"duration=0.2", "frame_rate=10", "camera.path=static", "people=[" + people + "]"}),
+      find_camera("tum_fr1").value()};
+}
+
+class Unet : public testing::TestWithParam<std::string> {};
+
+TEST_P(Unet, FindsAPersonInARoomAndNobodyInAnEmptyOne) {
+  const auto segmenter = make({{"size", GetParam()}});
+  simulation::Simulator with_person = room_with("{ at: [2.5, 3.0] }"), empty = room_with("");
+  EXPECT_GT(compare(*segmenter, with_person, 0).iou(), 0.6);
+  EXPECT_LT(compare(*segmenter, empty, 0).found, 640 * 480 / 100);
+}
+
+TEST_P(Unet, SameImageSameLabels) {
+  simulation::Simulator room = room_with("{ at: [2.5, 3.0] }");
+  const SensorFrame frame = room.frame(0);
+  const auto first = make({{"size", GetParam()}}), second = make({{"size", GetParam()}});
+  const Segmentation once = first->segment(frame), other = second->segment(frame), again = first->segment(frame);
+  EXPECT_EQ(once.labels.size(), frame.colour.size());
+  EXPECT_EQ(once.confidence.size(), frame.colour.size());
+  for (const Segmentation* result : {&other, &again}) {
+    EXPECT_EQ(cv::norm(once.labels, result->labels, cv::NORM_INF), 0.0);
+    EXPECT_EQ(cv::norm(once.confidence, result->confidence, cv::NORM_INF), 0.0);
+  }
+}
+
+TEST(UnetSegmenter, WithItsMirrorImageLeftAndRightAreAlike) {
+  simulation::Simulator room = room_with("{ at: [2.5, 3.0] }");
+  const SensorFrame frame = room.frame(0);
+  SensorFrame mirrored;
+  cv::flip(frame.colour, mirrored.colour, 1);
+  // Within what rounding may decide, the labels of the mirror image are the mirror image of the labels.
+  const auto difference = [&](bool mirror) {
+    const auto segmenter = make({{"mirror", mirror}});
+    cv::Mat labels = segmenter->segment(frame).labels, other;
+    cv::flip(segmenter->segment(mirrored).labels, other, 1);
+    const cv::Mat differs = labels != other;
+    return cv::countNonZero(differs);
+  };
+  EXPECT_LT(difference(true), 640 * 480 / 10000);
+  EXPECT_GT(difference(false), 640 * 480 / 1000);
+}
+
+INSTANTIATE_TEST_SUITE_P(Sizes, Unet, testing::Values("small", "base"));
+
+TEST(UnetSegmenter, SaysWhatItKnowsAndWhatMoves) {
+  const auto segmenter = make();
+  EXPECT_THAT(segmenter->classes(), ElementsAre("background", "person", "chair", "table", "tv"));
+  EXPECT_THAT(segmenter->movable(), ElementsAre("person"));
+}
+
+TEST(UnetSegmenter, WrongWeightsSayWhatWasExpected) {
+  EXPECT_THAT(error_of([] { make({{"model", std::string("absent.onnx")}}); }), HasSubstr("absent.onnx: is missing"));
+  EXPECT_THAT(error_of([] {
+                make({{"model", std::string(HOLDFAST_TEST_MODELS "/any_size.onnx")}});
+              }),
+              HasSubstr("expected 1 x 5 x height x width"));
+}
+
+}  // namespace
+}  // namespace holdfast
