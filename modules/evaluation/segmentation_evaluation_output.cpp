@@ -2,8 +2,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "holdfast/evaluation/number_text.hpp"
 #include "holdfast/evaluation/segmentation_evaluation.hpp"
-#include "number_text.hpp"
 
 namespace holdfast {
 
