@@ -3,8 +3,8 @@
 #include <unistd.h>
 
 #include <csignal>
-#include <cstdio>
 
+#include "bench/listed_recording.hpp"
 #include "cli/program.hpp"
 
 namespace holdfast {
@@ -20,22 +20,7 @@ using ::testing::StartsWith;
 /// the images.
 class BenchExternalTest : public ::testing::Test {
  protected:
-  BenchExternalTest() {
-    std::filesystem::create_directories(program_.path("recording"));
-    std::string colour, depth, truth;
-    for (int i = 0; i < 60; ++i) {
-      char line[200];
-      std::snprintf(line, sizeof(line), "%.6f rgb/%d.png\n", 100.0 + 0.1 * i, i);
-      colour += line;
-      std::snprintf(line, sizeof(line), "%.6f depth/%d.png\n", 100.005 + 0.1 * i, i);
-      depth += line;
-      std::snprintf(line, sizeof(line), "%.6f %d %d 1.5 0 0 0 1\n", 100.0 + 0.1 * i, i % 7, i % 3);
-      truth += line;
-    }
-    program_.write("recording/rgb.txt", colour);
-    program_.write("recording/depth.txt", depth);
-    program_.write("recording/groundtruth.txt", truth);
-  }
+  BenchExternalTest() { test::write_listed_recording(program_, "recording"); }
 
   /// One system per name, each the stand-in in that mood.
   static std::string matrix(const std::vector<std::string>& moods) {

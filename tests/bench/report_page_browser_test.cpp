@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
-#include <cstdio>
-
 #include "bench/browser.hpp"
+#include "bench/listed_recording.hpp"
 #include "cli/program.hpp"
 
 namespace holdfast {
@@ -26,20 +25,7 @@ class ReportPageBrowserTest : public ::testing::Test {
   }
 
   void run_bench() {
-    std::filesystem::create_directories(program_.path("recording"));
-    std::string colour, depth, truth;
-    for (int i = 0; i < 60; ++i) {
-      char line[200];
-      std::snprintf(line, sizeof(line), "%.6f rgb/%d.png\n", 100.0 + 0.1 * i, i);
-      colour += line;
-      std::snprintf(line, sizeof(line), "%.6f depth/%d.png\n", 100.005 + 0.1 * i, i);
-      depth += line;
-      std::snprintf(line, sizeof(line), "%.6f %d %d 1.5 0 0 0 1\n", 100.0 + 0.1 * i, i % 7, i % 3);
-      truth += line;
-    }
-    program_.write("recording/rgb.txt", colour);
-    program_.write("recording/depth.txt", depth);
-    program_.write("recording/groundtruth.txt", truth);
+    test::write_listed_recording(program_, "recording");
     std::string matrix = "title: '" + title_ + "'\nabout: '<b>bold</b>'\nbaseline: good\nsystems:\n";
     for (const std::string mood : {"good", "half", "crash", "nan", "fail"})
       matrix += "  " + mood +
