@@ -6,8 +6,6 @@
 
 #include <cstdlib>
 #include <opencv2/core/utility.hpp>
-#include <opencv2/features2d.hpp>
-#include <opencv2/imgproc.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +14,7 @@
 #include "holdfast/evaluation/statistics.hpp"
 #include "holdfast/pipeline/pipeline_builder.hpp"
 #include "holdfast/plugin/builtin.hpp"
+#include "orb_yardstick.hpp"
 
 namespace holdfast {
 namespace {
@@ -48,19 +47,14 @@ void moving_world(benchmark::State& state, const std::string& file) {
   constexpr std::size_t most_frames = 400;
   cv::setNumThreads(1);
   std::vector<double> carrying, filters, extra, orb_times;
-  const cv::Ptr<cv::ORB> orb = cv::ORB::create(1000);
+  OrbYardstick orb;
   for (auto _ : state) {
     BuiltPipeline built = build(file);
     double total = 0.0;
     while (extra.size() < most_frames) {
       const auto frame = built.source->next();
       if (!frame) break;
-      cv::Mat grey, descriptors;
-      std::vector<cv::KeyPoint> keypoints;
-      cv::cvtColor(frame->colour, grey, cv::COLOR_BGR2GRAY);
-      const Stopwatch watch;
-      orb->detectAndCompute(grey, cv::noArray(), keypoints, descriptors);
-      orb_times.push_back(watch.seconds());
+      orb_times.push_back(orb.seconds(frame->colour));
       const FrameResult result = built.pipeline.feed(*frame);
       carrying.push_back(seconds_in(result.times, "masks"));
       filters.push_back(seconds_in(result.times, "filters"));

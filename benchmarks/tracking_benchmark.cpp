@@ -6,8 +6,6 @@
 
 #include <cstdlib>
 #include <opencv2/core/utility.hpp>
-#include <opencv2/features2d.hpp>
-#include <opencv2/imgproc.hpp>
 #include <string>
 #include <vector>
 
@@ -15,6 +13,7 @@
 #include "holdfast/evaluation/statistics.hpp"
 #include "holdfast/pipeline/pipeline_builder.hpp"
 #include "holdfast/plugin/builtin.hpp"
+#include "orb_yardstick.hpp"
 
 namespace holdfast {
 namespace {
@@ -34,17 +33,12 @@ BuiltPipeline build(const std::string& extractor) {
 void tracking(benchmark::State& state, const std::string& extractor) {
   cv::setNumThreads(1);
   std::vector<double> tracking_times, orb_times;
-  const cv::Ptr<cv::ORB> orb = cv::ORB::create(1000);
+  OrbYardstick orb;
   for (auto _ : state) {
     BuiltPipeline built = build(extractor);
     double tracking_total = 0.0;
     while (const auto frame = built.source->next()) {
-      cv::Mat grey, descriptors;
-      std::vector<cv::KeyPoint> keypoints;
-      cv::cvtColor(frame->colour, grey, cv::COLOR_BGR2GRAY);
-      const Stopwatch watch;
-      orb->detectAndCompute(grey, cv::noArray(), keypoints, descriptors);
-      orb_times.push_back(watch.seconds());
+      orb_times.push_back(orb.seconds(frame->colour));
       tracking_times.push_back(built.pipeline.feed(*frame).tracking_seconds);
       tracking_total += tracking_times.back();
     }

@@ -2,8 +2,8 @@
 #include "holdfast/cli/label_folder.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
+#include <opencv2/core.hpp>
 
 #include "holdfast/config/configuration_node.hpp"
 #include "holdfast/core/error.hpp"
@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::string quoted_list(const std::vector<std::string>& words) {
+std::string comma_separated(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
   return text;
@@ -69,7 +69,8 @@ std::map<std::string, fs::path> files_by_stem(const fs::path& folder, const std:
                                             "'; expected one image for each name; move one elsewhere");
   }
   if (files.empty())
-    throw InputError({folder.string()}, "holds no image; expected files with the ending " + quoted_list(extensions));
+    throw InputError({folder.string()},
+                     "holds no image; expected files with the ending " + comma_separated(extensions));
   return files;
 }
 
@@ -79,16 +80,14 @@ LabelFolder::LabelFolder(const fs::path& folder, const std::string& map, const s
 cv::Mat LabelFolder::read(const fs::path& file) { return map_.apply(decoder_.read_labels(file), file); }
 
 cv::Mat translated(const cv::Mat& labels, const std::vector<std::string>& from, const std::vector<std::string>& to) {
-  std::array<std::uint8_t, 256> table{};
-  table[255] = 255;
+  cv::Mat table = cv::Mat::zeros(1, 256, CV_8UC1);
+  table.at<std::uint8_t>(255) = 255;
   for (std::size_t i = 0; i < from.size(); ++i) {
     const auto place = std::find(to.begin(), to.end(), from[i]);
-    if (place != to.end()) table[i] = static_cast<std::uint8_t>(place - to.begin());
+    if (place != to.end()) table.at<std::uint8_t>(static_cast<int>(i)) = static_cast<std::uint8_t>(place - to.begin());
   }
-  cv::Mat result(labels.size(), CV_8UC1);
-  for (int y = 0; y < labels.rows; ++y)
-    std::transform(labels.ptr<std::uint8_t>(y), labels.ptr<std::uint8_t>(y) + labels.cols, result.ptr<std::uint8_t>(y),
-                   [&](std::uint8_t label) { return table[label]; });
+  cv::Mat result;
+  cv::LUT(labels, table, result);
   return result;
 }
 

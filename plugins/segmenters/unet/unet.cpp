@@ -24,8 +24,7 @@ struct UnetSettings {
     table
         .add("size", &S::size,
              "of the picture that the network is shown: small (160x128) takes less than half the time of base "
-             "(256x192), "
-             "which sees better")
+             "(256x192), which sees better")
         .one_of({"small", "base"});
     table.add("width", &S::width, "of that picture, a multiple of 32; 0 = as size says").range(0, 4096).unit("px");
     table.add("height", &S::height, "of that picture, a multiple of 32; 0 = as size says").range(0, 4096).unit("px");
