@@ -72,13 +72,36 @@ void CellConfigurations::override_for_sequence(ConfigurationNode& root, const Ma
   }
 }
 
+void CellConfigurations::check_without_file(const PlacedText& path, const std::vector<const AxisValue*>& values,
+                                            const MatrixSequence& sequence) {
+  ConfigurationNode root;
+  root.kind = Kind::map;
+  root.location.file = path.text;
+  const std::size_t before = diagnostics_.size();
+  set(root, {"source", sequence.location, sequence.source});
+  if (sequence.camera) set(root, {"camera", sequence.location, *sequence.camera});
+  for (const AxisValue* value : values)
+    for (const KeyValue& change : value->overrides) set(root, change);
+  diagnostics_.resize(before);  // a change of what only the file holds is no mistake
+  try {
+    resolve_configuration(root, path.text, registry_, sections_);
+  } catch (const ConfigurationError& error) {
+    for (const Diagnostic& diagnostic : error.diagnostics())
+      if (diagnostic.location.file != path.text && diagnostic.location.line > 0) diagnostics_.push_back(diagnostic);
+  }
+}
+
 std::optional<Configuration> CellConfigurations::build(const std::vector<const AxisValue*>& values,
                                                        const MatrixSequence& sequence) {
   const PlacedText* path = matrix_.base ? &*matrix_.base : nullptr;
   for (const AxisValue* value : values)
     if (value->configuration) path = &*value->configuration;
-  const ConfigurationNode* file_root = path != nullptr ? file(*path) : nullptr;
-  if (file_root == nullptr) return std::nullopt;
+  if (path == nullptr) return std::nullopt;
+  const ConfigurationNode* file_root = file(*path);
+  if (file_root == nullptr) {
+    check_without_file(*path, values, sequence);
+    return std::nullopt;
+  }
 
   const std::size_t before = diagnostics_.size();
   ConfigurationNode root = *file_root;

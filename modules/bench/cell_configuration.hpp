@@ -26,6 +26,9 @@ class CellConfigurations {
   const ConfigurationNode* file(const PlacedText& path);
   void override_for_sequence(ConfigurationNode& root, const MatrixSequence& sequence,
                              const std::vector<const AxisValue*>& values);
+  /// Without the file nothing can be built, but what the matrix itself says can still be wrong.
+  void check_without_file(const PlacedText& path, const std::vector<const AxisValue*>& values,
+                          const MatrixSequence& sequence);
   bool set(ConfigurationNode& root, const KeyValue& change);
 
   const Matrix& matrix_;

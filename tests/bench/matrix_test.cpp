@@ -111,6 +111,21 @@ baseline: 500+6
                   HasSubstr("matrix.yaml:11:11: there is no variant '500+6'; did you mean '500+5'?")));
 }
 
+TEST_F(MatrixTest, AMissingBaseHidesNoOtherMistake) {
+  plan(R"(base: absent.yaml
+axes:
+  features.orb.cuont: [500]
+  filters: { none: { filters: [] } }
+sequences:
+  one: { source: { tum: { pth: one } } }
+)");
+  EXPECT_THAT(problems(), testing::UnorderedElementsAre(
+                              testing::AllOf(HasSubstr("matrix.yaml:1:7: "), HasSubstr("there is no such file")),
+                              HasSubstr("matrix.yaml:3:3: features 'orb' has no parameter 'cuont'"),
+                              HasSubstr("matrix.yaml:6:27: source 'tum' has no parameter 'pth'"),
+                              HasSubstr("matrix.yaml:6:25: source 'tum' needs 'path'")));
+}
+
 TEST_F(MatrixTest, RefusesWhatWouldSilentlyNotCount) {
   plan(R"(base: plain.yaml
 axes:

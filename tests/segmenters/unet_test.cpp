@@ -88,6 +88,12 @@ TEST(UnetSegmenter, SaysWhatItKnowsAndWhatMoves) {
   EXPECT_THAT(segmenter->movable(), ElementsAre("person"));
 }
 
+TEST(UnetSegmenter, AWrongSideSaysWhichOnesFit) {
+  EXPECT_THAT(error_of([] { make({{"width", 200}}); }),
+              HasSubstr("segmenter.unet.width is 200; expected a multiple of 32, such as 192 or 224"));
+  EXPECT_THAT(error_of([] { make({{"height", 20}}); }), HasSubstr("expected a multiple of 32, such as 32"));
+}
+
 TEST(UnetSegmenter, WrongWeightsSayWhatWasExpected) {
   EXPECT_THAT(error_of([] { make({{"model", std::string("absent.onnx")}}); }), HasSubstr("absent.onnx: is missing"));
   EXPECT_THAT(error_of([] {

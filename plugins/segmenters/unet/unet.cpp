@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 #include <string>
 
+#include "holdfast/core/error.hpp"
 #include "holdfast/inference/network_segmenter.hpp"
 #include "holdfast/plugin/plugin.hpp"
 #include "shipped_weights.hpp"
@@ -39,6 +40,16 @@ struct UnetSettings {
   }
 };
 
+/// The shipped network halves its picture five times.
+void check_side(const char* name, int pixels) {
+  constexpr int unit = 32;
+  if (pixels % unit == 0) return;
+  const int below = pixels / unit * unit;
+  throw ConfigurationError({}, "segmenter.unet." + std::string(name) + " is " + std::to_string(pixels) +
+                                   "; expected a multiple of " + std::to_string(unit) + ", such as " +
+                                   (below > 0 ? std::to_string(below) + " or " : "") + std::to_string(below + unit));
+}
+
 NetworkOptions network_options(const UnetSettings& settings) {
   NetworkOptions options;
   const bool small = settings.size == "small";
@@ -50,6 +61,8 @@ NetworkOptions network_options(const UnetSettings& settings) {
   options.threads = settings.threads;
   options.model = settings.model;
   if (settings.model.empty()) {
+    check_side("width", options.width);
+    check_side("height", options.height);
     options.model = "unet.onnx";
     options.bytes = shipped_unet();
   }

@@ -6,6 +6,7 @@ Reads, as far as they are named:
   --people DIR      with voc_person/, penn_fudan/ and human_290/ (their layout: README.md)
   --room DIR        a sequence in TUM layout with labels_pseudo/: 0 nobody, 15 person, 255 unsure
   --simulated DIR   sequences that `holdfast simulate` wrote; DIR itself, or folders in it
+  --composed DIR    folders of sequences that benchmarks/tools/compose_people.py wrote from frames of --room
 and writes one .npz.  Entries that --validation lists (or that its rule chooses, see validation.txt) are marked: they are
 never trained on.
 """
@@ -74,12 +75,15 @@ def furniture(labels):
     return np.isin(components, large) & ~near_person
 
 
+def room_labels(path):
+    labels = relabelled(grey(path), {15: PERSON, 255: IGNORED})
+    labels[furniture(labels)] = NOT_PERSON
+    return labels
+
+
 def room(folder):
     for path in sorted((folder / "labels_pseudo").glob("*.png")):
-        picture = next((folder / "rgb").glob(path.stem + ".*"))
-        labels = relabelled(grey(path), {15: PERSON, 255: IGNORED})
-        labels[furniture(labels)] = NOT_PERSON
-        yield path.stem, colour(picture), labels
+        yield path.stem, colour(next((folder / "rgb").glob(path.stem + ".*"))), room_labels(path)
 
 
 def simulated(folder):
@@ -94,11 +98,24 @@ def simulated(folder):
             yield f"{scene.name}/{path.stem}", colour(picture), relabelled(grey(path), mapping)
 
 
+def walking(folder, room_folder):
+    """People composed into frames of the room by its depth; the room's own labels where nobody was put."""
+    for path in sorted(folder.glob("*/mask/*.png")):
+        below = room_folder / "labels_pseudo" / path.name
+        if not below.exists():
+            continue
+        labels = room_labels(below)
+        labels[grey(path) > 0] = PERSON
+        picture = next((path.parent.parent / "rgb").glob(path.stem + ".*"))
+        yield f"{path.parent.parent.name}/{path.stem}", colour(picture), labels
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--people", type=pathlib.Path)
     parser.add_argument("--room", type=pathlib.Path)
     parser.add_argument("--simulated", type=pathlib.Path)
+    parser.add_argument("--composed", type=pathlib.Path)
     parser.add_argument("--validation", type=pathlib.Path, default=HERE / "validation.txt",
                         help="names of entries to hold out, one a line (default: validation.txt beside this program)")
     parser.add_argument("--long-side", type=int, default=384, help="pictures are shrunk to it [px] (default: 384)")
@@ -109,23 +126,27 @@ def main():
     readers = []
     if arguments.people:
         for reader in (voc_person, penn_fudan, human_290):
-            readers.append((reader, arguments.people / reader.__name__))
+            readers.append((reader.__name__, reader, arguments.people / reader.__name__))
     if arguments.room:
-        readers.append((room, arguments.room))
+        readers.append(("room", room, arguments.room))
     if arguments.simulated:
-        readers.append((simulated, arguments.simulated))
+        readers.append(("simulated", simulated, arguments.simulated))
+    if arguments.composed:
+        if not arguments.room:
+            parser.error("--composed needs --room, the recording that people were composed into")
+        readers.append(("walking", lambda folder: walking(folder, arguments.room), arguments.composed))
     if not readers:
         parser.error("nothing to pack; name --people, --room or --simulated")
 
     writer = PackWriter(arguments.long_side)
-    for reader, folder in readers:
+    for source, reader, folder in readers:
         if not folder.is_dir():
-            raise PackError(f"{folder}: is no folder; expected the data of '{reader.__name__}'")
+            raise PackError(f"{folder}: is no folder; expected the data of '{source}'")
         before = len(writer.names)
         for name, picture, labels in reader(folder):
-            full_name = f"{reader.__name__}/{name}"
+            full_name = f"{source}/{name}"
             writer.add(full_name, picture, labels, full_name in held_out)
-        print(f"{reader.__name__}: {len(writer.names) - before} pictures, "
+        print(f"{source}: {len(writer.names) - before} pictures, "
               f"{sum(writer.validation[before:])} of them held out")
     if not writer.names:
         raise PackError("no pictures found; expected the layouts that --help names")

@@ -11,8 +11,8 @@ from photographs import random_camera, random_view
 MEAN, DEVIATION = 0.5, 0.25  # of a pixel divided by 255, every channel
 
 #: How often a sample is a plain view of a picture of this source.
-PLAIN = {"voc_person": 0.42, "human_290": 0.11, "penn_fudan": 0.05, "room": 0.05, "simulated": 0.06}
-COMPOSED = 0.38
+PLAIN = {"voc_person": 0.36, "human_290": 0.09, "penn_fudan": 0.05, "room": 0.04, "simulated": 0.06, "walking": 0.08}
+COMPOSED = 0.36
 #: How often a picture of this source is the background of a composed sample, and how often its people are in it.
 BACKGROUNDS = {"room": 0.3, "simulated": 0.3, "voc_person": 0.4}
 PEOPLE = {"voc_person": 0.3, "human_290": 0.3, "penn_fudan": 0.3, "simulated": 0.1}

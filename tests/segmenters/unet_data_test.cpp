@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The shipped weights on photographs that they were not trained on: plugins/segmenters/unet/training/validation.txt.
+#include <algorithm>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "holdfast/evaluation/segmentation_evaluation.hpp"
+#include "segmenters/segmenter_fixture.hpp"
+
+extern "C" void holdfast_register_plugin_unet(holdfast::Registry& registry);
+
+namespace holdfast {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t person = 1;
+
+std::vector<std::string> held_out_photographs() {
+  std::ifstream list(HOLDFAST_TRAINING "/validation.txt");
+  const std::string source = "voc_person/";
+  std::vector<std::string> names;
+  for (std::string line; std::getline(list, line);)
+    if (line.starts_with(source)) names.push_back(line.substr(source.size()));
+  return names;
+}
+
+/// Of PASCAL VOC's class indices: 15 = person, 255 = unlabelled border.
+cv::Mat people_of(const cv::Mat& voc_labels) {
+  cv::Mat labels = cv::Mat::zeros(voc_labels.size(), CV_8UC1);
+  labels.setTo(person, voc_labels == 15);
+  labels.setTo(255, voc_labels == 255);
+  return labels;
+}
+
+TEST(UnetData, FindsPeopleInPhotographsThatItNeverSaw) {
+  const char* data = std::getenv("HOLDFAST_DATA");
+  if (data == nullptr) GTEST_SKIP() << "HOLDFAST_DATA is not set";
+  const fs::path folder = fs::path(data) / "people" / "voc_person";
+  if (!fs::exists(folder)) GTEST_SKIP() << folder << " is missing";
+  const std::vector<std::string> names = held_out_photographs();
+  ASSERT_GT(names.size(), 100U);
+  const auto segmenter = test::make_segmenter(holdfast_register_plugin_unet, "unet", {});
+  SegmentationEvaluator evaluator({"background", "person"}, "");
+  for (std::size_t i = 0; i < names.size(); i += 4) {
+    SensorFrame frame = test::frame_of(0.0, 16, 16);
+    frame.colour = cv::imread((folder / "images" / (names[i] + ".jpg")).string());
+    const cv::Mat labels = cv::imread((folder / "labels" / (names[i] + ".png")).string(), cv::IMREAD_UNCHANGED);
+    ASSERT_FALSE(frame.colour.empty() || labels.empty()) << names[i];
+    const cv::Mat found = segmenter->segment(frame).labels == person;
+    evaluator.add(people_of(labels), found & person);
+  }
+  // docs: plugins/segmenters/unet/README.md says how well it does on all of them.
+  EXPECT_GT(evaluator.result().classes[person].iou(), 0.55);
+}
+
+}  // namespace
+}  // namespace holdfast
