@@ -116,6 +116,7 @@ void run(const Arguments& arguments, int& exit_code) {
   record.map_points = built.pipeline.map().points().size();
   record.mapping = built.pipeline.mapping_counts();
   record.loops = built.pipeline.loop_record();
+  record.mask_ages = built.pipeline.mask_latencies();
   evaluate_run(*built.source, record);
   record.total_seconds = since_start.seconds();
   record.peak_memory = peak_memory();

@@ -3,6 +3,7 @@
 
 #include <sys/utsname.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -69,10 +70,15 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& r
   const StageRow tracking = s.tracking();
   rows.emplace_back("tracking", number(tracking.median * 1e3, 2) + " ms a frame (median), " +
                                     number(tracking.p95 * 1e3, 2) + " ms (p95)");
+  if (!record.mask_ages.empty())
+    rows.emplace_back("masks", std::to_string(record.mask_ages.size()) + ", " +
+                                   number(median(record.mask_ages) * 1e3, 0) + " ms old when they came (median), " +
+                                   number(percentile(record.mask_ages, 95.0) * 1e3, 0) + " ms (p95)");
   if (record.threads) {
     const ThreadRecord& threads = *record.threads;
     rows.emplace_back("frame to result", number(median(threads.delays) * 1e3, 2) + " ms (median), " +
-                                             number(percentile(threads.delays, 95.0) * 1e3, 2) + " ms (p95); " +
+                                             number(percentile(threads.delays, 95.0) * 1e3, 2) + " ms (p95), " +
+                                             percent(threads.late_share()) + " above 33 ms; " +
                                              std::to_string(threads.frames.dropped) + " dropped, " +
                                              std::to_string(threads.keyframes_deferred) + " keyframes put off");
   }
@@ -101,7 +107,8 @@ Json threads_json(const ThreadRecord& threads) {
   if (!threads.delays.empty())
     json["frame_to_result"] = {{"median_s", median(threads.delays)},
                                {"p95_s", percentile(threads.delays, 95.0)},
-                               {"maximum_s", percentile(threads.delays, 100.0)}};
+                               {"maximum_s", percentile(threads.delays, 100.0)},
+                               {"share_above_33_ms", threads.late_share()}};
   Json& workers = json["workers"] = Json::array();
   for (const WorkerCounts& worker : threads.workers)
     workers.push_back({{"name", worker.name}, {"busy_s", worker.busy_seconds}, {"queue", queue_json(worker.queue)}});
@@ -179,6 +186,11 @@ Json run_json(const RunRecord& record) {
                  {"points_fused", record.mapping.points_fused},
                  {"observations_removed", record.mapping.observations_removed}};
   json["loops"] = loops_json(record.loops);
+  json["masks"] = {{"count", record.mask_ages.size()}};
+  if (!record.mask_ages.empty()) {
+    json["masks"]["median_age_s"] = median(record.mask_ages);
+    json["masks"]["p95_age_s"] = percentile(record.mask_ages, 95.0);
+  }
   json["mean_inliers"] = s.mean_inliers();
   json["evaluation"] = record.evaluation ? Json::parse(to_json(*record.evaluation)) : Json(nullptr);
   json["tracking"] = stage_json(s.tracking());
@@ -329,6 +341,12 @@ std::string report_html(const RunRecord& record) {
 }
 
 }  // namespace
+
+double ThreadRecord::late_share() const {
+  if (delays.empty()) return 0.0;
+  const auto late = std::count_if(delays.begin(), delays.end(), [](double seconds) { return seconds > 0.033; });
+  return static_cast<double>(late) / static_cast<double>(delays.size());
+}
 
 double RunRecord::coverage() const {
   return frames_expected == 0 ? 0.0 : static_cast<double>(trajectory.size()) / static_cast<double>(frames_expected);

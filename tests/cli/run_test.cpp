@@ -191,10 +191,24 @@ TEST_F(RunTest, ThreadsTrackEveryFrameAndTellWhatTheyDid) {
   EXPECT_EQ(run.at("frames").at("poses"), 60);
   EXPECT_LT(run.at("evaluation").at("ate_m").at("rmse"), 0.006);
   EXPECT_EQ(run.at("threads").at("frames").at("taken"), 60);
+  const nlohmann::json& delays = run.at("threads").at("frame_to_result");
+  EXPECT_EQ(delays.at("share_above_33_ms") == 0.0, delays.at("maximum_s") <= 0.033);
+  EXPECT_EQ(run.at("masks").at("count"), 0);
   EXPECT_EQ(run.at("threads").at("workers").at(0).at("name"), "local mapping");
   EXPECT_EQ(run.at("threads").at("workers").at(0).at("queue").at("taken"), run.at("map").at("keyframes_made"));
   EXPECT_TRUE(summary("out").at("loops").at("closed").empty());
   EXPECT_THAT(program_.text("out/report.html"), HasSubstr("Queues between threads"));
+}
+
+TEST_F(RunTest, SaysHowOldMasksWereWhenTheyCame) {
+  const Outcome outcome =
+      program_.run({"run", "room.yaml", "--set", "segmenter=truth", "--set", "segmentation.latency=3", "--set",
+                    "source.simulated.duration=1", "--output", "out"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output, HasSubstr("100 ms old when they came (median)"));
+  const nlohmann::json run = summary("out");
+  EXPECT_GT(run.at("masks").at("count"), 0);
+  EXPECT_NEAR(run.at("masks").at("median_age_s").get<double>(), 0.1, 1e-6);
 }
 
 TEST_F(RunTest, ThreadsStopWhenInterrupted) {

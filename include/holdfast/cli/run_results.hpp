@@ -21,6 +21,8 @@ struct ThreadRecord {
   std::uint64_t late = 0;      ///< paced: frames that the source gave after they were due
   double latest = 0.0;         ///< by how much at most [s]
   std::vector<double> delays;  ///< from when a frame was due (unpaced: read) until it had its result [s]
+  /// Share of the delays above 33 ms: a frame of a camera at 30 Hz.
+  double late_share() const;
   std::vector<WorkerCounts> workers;
   std::uint64_t keyframes_deferred = 0;  ///< due, but local mapping had no room for them
 };
@@ -38,6 +40,7 @@ struct RunRecord {
   std::size_t map_keyframes = 0, map_points = 0;
   MappingCounts mapping;
   LoopRecord loops;
+  std::vector<double> mask_ages;  ///< of the masks of segmented frames when they came: frames went on meanwhile [s]
   std::optional<ThreadRecord> threads;  ///< in threaded mode
   std::optional<Evaluation> evaluation;
   std::string no_evaluation;   ///< why there is none
