@@ -3,9 +3,9 @@
 """check_blocks.py ROOT PROGRAM [CXX ARGUMENT ...]: the blocks of the pages that are not commands.
 
 - A block after the line <!-- file: PATH --> is that file of the repository, to the letter; after <!-- file: PATH part
-  --> it is a part of it.
-- A YAML block with source, features and optimizer is a whole configuration, and `holdfast check` accepts it.
-- A C++ block with an #include is a whole file, and compiles (without linking) by the given compiler."""
+  --> it is a part of it. What holds for such files is tested where they are used.
+- Any other YAML block with source, features and optimizer is a whole configuration, and `holdfast check` accepts it.
+- Any other C++ block with an #include is a whole file, and compiles (without linking) by the given compiler."""
 import pathlib
 import re
 import subprocess
@@ -54,11 +54,11 @@ def main() -> int:
             if marker:
                 files += 1
                 problems += check_file(root, where, block, marker)
-            if block.language == "yaml" and all(re.search(rf"^{key}:", block.text, re.M)
+            elif block.language == "yaml" and all(re.search(rf"^{key}:", block.text, re.M)
                                                 for key in ("source", "features", "optimizer")):
                 configurations += 1
                 problems += check_configuration(program, where, block.text)
-            if block.language == "cpp" and "#include" in block.text and compiler and not marker:
+            elif block.language == "cpp" and "#include" in block.text and compiler:
                 sources += 1
                 problems += check_source(compiler, where, block.text)
     print("\n".join(problems) or f"{files} files, {configurations} configurations, {sources} sources are fine")
