@@ -13,7 +13,6 @@ struct InFront final : holdfast::Segmenter {
   InFront(const InFrontSettings& settings, const holdfast::CreationContext&) : distance(settings.distance) {}
 
   const std::vector<std::string>& classes() const override { return names; }
-  std::vector<std::string> movable() const override { return {"person"}; }
 
   holdfast::Segmentation segment(const holdfast::SensorFrame& frame) override {
     holdfast::Segmentation result;
