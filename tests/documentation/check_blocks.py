@@ -3,7 +3,7 @@
 """check_blocks.py ROOT PROGRAM [CXX ARGUMENT ...]: the blocks of the pages that are not commands.
 
 - A block after the line <!-- file: PATH --> is that file of the repository, to the letter; after <!-- file: PATH part
-  --> it is a part of it. What holds for such files is tested where they are used.
+  --> it is a part of it. What holds for such files is tested where they are used; plugins have 30 lines at most.
 - Any other YAML block with source, features and optimizer is a whole configuration, and `holdfast check` accepts it.
 - Any other C++ block with an #include is a whole file, and compiles (without linking) by the given compiler."""
 import pathlib
@@ -29,6 +29,16 @@ def check_file(root: pathlib.Path, where: str, block: markdown.Block, marker: re
     return []
 
 
+def check_length(root: pathlib.Path, most: int = 30) -> list[str]:
+    """What a stranger writes is short: the plugins that the pages show."""
+    problems = []
+    for file in sorted(root.glob("examples/plugins/*/*.cpp")):
+        lines = [line for line in file.read_text(encoding="utf-8").splitlines() if not re.match(r"\s*(//.*)?$", line)]
+        if len(lines) > most:
+            problems.append(f"{file.relative_to(root)}: {len(lines)} lines of code; the pages promise {most} at most")
+    return problems
+
+
 def check_configuration(program: str, where: str, text: str) -> list[str]:
     with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
         file.write(text)
@@ -44,7 +54,7 @@ def check_source(compiler: list[str], where: str, text: str) -> list[str]:
 
 def main() -> int:
     root, program, compiler = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2], sys.argv[3:]
-    problems, files, configurations, sources = [], 0, 0, 0
+    problems, files, configurations, sources = check_length(root), 0, 0, 0
     for page in markdown.pages(root):
         text = page.read_text(encoding="utf-8")
         lines = text.splitlines()
