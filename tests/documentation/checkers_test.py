@@ -21,7 +21,8 @@ class Links(unittest.TestCase):
 
     def test_good_links(self):
         other = "# A `b`: c, d\n\n## Twice\n\n## Twice\n"
-        page = "[x](b.md) [y](b.md#a-b-c-d) [z](b.md#twice-1) ![p](../docs/b.md) [w](https://a.b/c) [h](#here)\n\n# Here\n"
+        page = ("[x](b.md) [y](b.md#a-b-c-d) [z](b.md#twice-1) ![p](../docs/b.md) [w](https://a.b/c) [h](#here)\n\n"
+                "# Here\n")
         self.assertEqual(self.problems(a=page, b=other), [])
 
     def test_bad_links(self):
@@ -29,6 +30,15 @@ class Links(unittest.TestCase):
                      "[x]: c.md", '<img src="none.png">', "- one\n    - [x](c.md)"):
             with self.subTest(link):
                 self.assertEqual(len(self.problems(a=link, b="# B\n")), 1)
+
+    def test_built_folders_hold_no_pages(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            for name in ("docs", "build", "out", ".git", "elsewhere"):
+                (root / name).mkdir()
+                (root / name / "a.md").write_text("")
+            (root / "elsewhere/CMakeCache.txt").write_text("")
+            self.assertEqual(markdown.pages(root), [root / "docs/a.md"])
 
     def test_code_holds_no_links(self):
         self.assertEqual(self.problems(a="```cpp\n[x](c.md)\n```\nand `[x](c.md)`\n"), [])
@@ -63,7 +73,8 @@ class Commands(unittest.TestCase):
 
     def test_rules(self):
         with tempfile.NamedTemporaryFile("w", suffix=".toml") as file:
-            file.write('[[rule]]\ncommand = "a (b)"\nreason = "x"\n[[rule]]\nmatches = "/data/"\nreason = "y"\nrun = "c"\n')
+            file.write('[[rule]]\ncommand = "a (b)"\nreason = "x"\n'
+                       '[[rule]]\nmatches = "/data/"\nreason = "y"\nrun = "c"\n')
             file.flush()
             rules = shell.read_rules(pathlib.Path(file.name))
         find = lambda text: shell.rule_of(shell.Command("page", 1, text), rules)

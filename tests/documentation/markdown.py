@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The pages of this repository, and what stands in them: blocks of code, headings, links."""
 import dataclasses
+import os
 import pathlib
 import re
-
-HIDDEN = {"build", "out"}  # folders that are made, not written
-
 
 @dataclasses.dataclass(frozen=True)
 class Block:
@@ -14,13 +12,19 @@ class Block:
     line: int  # of its first line, from 1
 
 
+def is_made(folder: pathlib.Path) -> bool:
+    """Whether a folder is hidden or was made by a build or a run, and so is no part of the repository."""
+    if folder.name.startswith(".") or folder.name in ("build", "out", "__pycache__"):
+        return True
+    return (folder / "CMakeCache.txt").exists()
+
+
 def pages(root: pathlib.Path) -> list[pathlib.Path]:
-    """All Markdown files below root, in order; not those in hidden or built folders."""
+    """All Markdown files below root, in order; not those in folders that are made."""
     found = []
-    for file in root.rglob("*.md"):
-        folders = file.relative_to(root).parts[:-1]
-        if not any(part.startswith(".") or part in HIDDEN or part.startswith("build-") for part in folders):
-            found.append(file)
+    for folder, folders, files in os.walk(root):
+        folders[:] = [name for name in folders if not is_made(pathlib.Path(folder, name))]
+        found += [pathlib.Path(folder, name) for name in files if name.endswith(".md")]
     return sorted(found)
 
 

@@ -19,7 +19,8 @@ import shell
 
 def make_clone(root: pathlib.Path, folder: pathlib.Path, program: pathlib.Path) -> None:
     shutil.rmtree(folder, ignore_errors=True)
-    shutil.copytree(root, folder, ignore=shutil.ignore_patterns(".*", "build*", "out", "__pycache__"))
+    shutil.copytree(root, folder, ignore=lambda parent, names: [name for name in names
+                                                                if markdown.is_made(pathlib.Path(parent, name))])
     (folder / "build/bin").mkdir(parents=True)
     (folder / "build/bin/holdfast").symlink_to(program)
 
