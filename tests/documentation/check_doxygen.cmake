@@ -4,9 +4,12 @@
 set(output ${WORK}/doxygen)
 file(REMOVE_RECURSE ${output})
 file(MAKE_DIRECTORY ${output})
+# As in the root of the repository, but with what it writes here.
 file(READ ${SOURCES}/docs/Doxyfile settings)
-file(WRITE ${output}/Doxyfile "${settings}\nOUTPUT_DIRECTORY = ${output}\nWARN_IF_UNDOCUMENTED = YES\n")
-execute_process(COMMAND ${DOXYGEN} ${output}/Doxyfile WORKING_DIRECTORY ${SOURCES}
+string(REPLACE "= include" "= ${SOURCES}/include" settings "${settings}")
+string(REPLACE "docs/api.dox" "${SOURCES}/docs/api.dox" settings "${settings}")
+file(WRITE ${output}/Doxyfile "${settings}\nWARN_IF_UNDOCUMENTED = YES\n")
+execute_process(COMMAND ${DOXYGEN} Doxyfile WORKING_DIRECTORY ${output}
                 RESULT_VARIABLE result OUTPUT_VARIABLE warnings ERROR_VARIABLE warnings)
 # A member whose name and type say all needs no comment.
 string(REGEX REPLACE "[^\n]*warning: Member [^\n]* is not documented\\.\n" "" warnings "${warnings}")
@@ -14,7 +17,7 @@ if(NOT result EQUAL 0 OR NOT warnings MATCHES "^[ \n]*$")
   message(FATAL_ERROR "doxygen docs/Doxyfile (result ${result}) says:\n${warnings}")
 endif()
 foreach(page IN ITEMS index classholdfast_1_1Pipeline classholdfast_1_1Segmenter structholdfast_1_1Camera)
-  if(NOT EXISTS ${output}/html/${page}.html)
+  if(NOT EXISTS ${output}/out/api/${page}.html)
     message(FATAL_ERROR "there is no page ${page}.html")
   endif()
 endforeach()
