@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Installs what Holdfast is built from, on Debian 12 and its relatives. Quick when everything is there already.
 #
-#   sh cmake/install_dependencies.sh             install what is missing (as root, or through sudo without a password)
-#   sh cmake/install_dependencies.sh --training  also what the training of the U-Net and its test need
-#   sh cmake/install_dependencies.sh --dry-run   say what would be installed, change nothing
+#   sh cmake/install_dependencies.sh                  install what is missing (as root, or through sudo without a
+#                                                     password)
+#   sh cmake/install_dependencies.sh --training       also what the training of the U-Net and its test need
+#   sh cmake/install_dependencies.sh --documentation  also what the tests of the documentation need
+#   sh cmake/install_dependencies.sh --dry-run        say what would be installed, change nothing
 set -eu
 
 packages="
@@ -20,9 +22,10 @@ dry_run=no
 for argument in "$@"; do
   case "$argument" in
     --training) packages="$packages python3 python3-numpy python3-opencv python3-torch" ;;
+    --documentation) packages="$packages python3 doxygen" ;;
     --dry-run) dry_run=yes ;;
-    -h | --help) sed -n '3,7s/^# \{0,1\}//p' "$0"; exit 0 ;;
-    *) fail "unknown argument '$argument'; known are --training, --dry-run and --help" ;;
+    -h | --help) sed -n '3,9s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) fail "unknown argument '$argument'; known are --training, --documentation, --dry-run and --help" ;;
   esac
 done
 

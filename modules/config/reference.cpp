@@ -2,6 +2,8 @@
 #include "holdfast/config/reference.hpp"
 
 #include <algorithm>
+#include <cctype>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "holdfast/plugin/did_you_mean.hpp"
@@ -87,16 +89,64 @@ std::string escaped(std::string text) {
   return text;
 }
 
+std::string heading_of(const std::string& kind) {
+  return kind == "section" ? "Plain sections" : kind == "scene" ? "Scene files" : "`" + kind + "`";
+}
+
+/// How the section of a kind is written; empty for kinds that are not known here.
+std::string use_of(const std::string& kind) {
+  static const std::map<std::string, std::string> uses{
+      {"source", "Where frames come from. One module, required."},
+      {"features", "What is found in an image and matched. One module, required."},
+      {"optimizer", "What solves for poses and points. One module, required."},
+      {"segmenter", "What is where in an image. One module; without the section `none`."},
+      {"loop_detector", "Which places look alike. One module; without the section `none`."},
+      {"filters", "What belongs to the static world. A list, worked through in order; without the section empty."},
+      {"observers", "Who watches the run. A list; without the section empty."},
+      {"section",
+       "Sections of parameters, without a choice of modules. Each may be left out, but `camera` where the source "
+       "knows none."},
+      {"scene", "What a scene file says, which the source `simulated` and `holdfast simulate` read."},
+  };
+  const auto found = uses.find(kind);
+  return found == uses.end() ? "" : found->second;
+}
+
+/// The name of a heading in links, as hosts of Markdown make it.
+std::string anchor_of(const std::string& heading) {
+  std::string anchor;
+  for (const char c : heading)
+    if (c == ' ')
+      anchor += '-';
+    else if (c != '`' && c != '.')
+      anchor += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return anchor;
+}
+
+std::string contents(const std::vector<Entry>& entries) {
+  std::string text = "| Section | Entries |\n|---|---|", kind;
+  for (const Entry& entry : entries) {
+    const std::string heading = heading_of(entry.kind);
+    const bool begins = entry.kind != kind;
+    if (begins) text += (kind.empty() ? "\n| [" : " |\n| [") + heading + "](#" + anchor_of(heading) + ") | ";
+    kind = entry.kind;
+    // `none` stands under two kinds: its second heading is another one to links.
+    const std::string& name = entry.description.name;
+    const auto same = [&](const Entry& other) { return other.description.name == name; };
+    const auto before = std::count_if(entries.begin(), entries.begin() + (&entry - entries.data()), same);
+    text += (begins ? "[`" : ", [`") + name + "`](#" + anchor_of(name) +
+            (before > 0 ? "-" + std::to_string(before) : "") + ")";
+  }
+  return text + " |\n";
+}
+
 std::string markdown(const std::vector<Entry>& entries) {
   std::string text, kind;
   for (const Entry& entry : entries) {
     if (entry.kind != kind) {
       kind = entry.kind;
-      text += (text.empty() ? "## " : "\n## ") +
-              (kind == "section" ? "Plain sections"
-               : kind == "scene" ? "Scene files"
-                                 : "`" + kind + "`") +
-              "\n";
+      text += (text.empty() ? "## " : "\n## ") + heading_of(kind) + "\n";
+      if (const std::string use = use_of(kind); !use.empty()) text += "\n" + use + "\n";
     }
     text += "\n### `" + entry.description.name + "`\n\n" + entry.description.summary + "\n";
     if (!entry.description.paper.empty()) text += "\nPaper: " + entry.description.paper + "\n";
@@ -108,6 +158,15 @@ std::string markdown(const std::vector<Entry>& entries) {
               escaped(range_text(p)) + " | " + p.unit_name + " | " + escaped(p.help) + " |\n";
   }
   return text;
+}
+
+/// Everything, as a page of its own.
+std::string markdown_page(const std::vector<Entry>& entries) {
+  return "# Configuration reference\n\n"
+         "Everything that a configuration can say, made by `holdfast modules --markdown` from the tables that check "
+         "it. The\n"
+         "rules of how it is said are in `docs/configuration.md`. *Required* means that there is no default.\n\n" +
+         contents(entries) + "\n" + markdown(entries);
 }
 
 nlohmann::ordered_json to_json(const ParameterValue& value) {
@@ -168,7 +227,7 @@ std::string reference(const Registry& registry, const std::vector<SectionDescrip
     }
   }
   if (format == ReferenceFormat::json) return json(entries);
-  if (format == ReferenceFormat::markdown) return markdown(entries);
+  if (format == ReferenceFormat::markdown) return name.empty() ? markdown_page(entries) : markdown(entries);
   if (name.empty()) return brief_text(entries);
   std::string text;
   for (const Entry& entry : entries) text += (text.empty() ? "" : "\n") + full_text(entry);

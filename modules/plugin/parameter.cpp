@@ -82,7 +82,13 @@ struct YamlText {
   }
 };
 
-std::string number_text(double number) { return shortest_text(number); }
+/// For people to read: 100000 rather than 1e+05.
+std::string number_text(double number) {
+  constexpr double largest_plain = 1e9;
+  if (std::abs(number) < largest_plain && number == std::trunc(number))
+    return std::to_string(static_cast<std::int64_t>(number));
+  return shortest_text(number);
+}
 
 bool has_type(const ParameterValue& value, ParameterType type) {
   switch (type) {

@@ -39,6 +39,28 @@ TEST(Reference, MarkdownHasOneRowPerParameter) {
   EXPECT_THAT(text, HasSubstr("| `path` | path | required |"));
 }
 
+TEST(Reference, MarkdownOfEverythingIsAPageWithContents) {
+  const std::string page = reference_of("", ReferenceFormat::markdown),
+                    part = reference_of("orb", ReferenceFormat::markdown);
+  EXPECT_EQ(page.rfind("# Configuration reference\n", 0), 0U);
+  EXPECT_THAT(page,
+              testing::AllOf(HasSubstr("\n| [`features`](#features) | [`opencv_orb`](#opencv_orb), [`orb`](#orb)"),
+                             HasSubstr("| [Plain sections](#plain-sections) | [`camera`](#camera), ")));
+  EXPECT_EQ(part.rfind("## `features`\n", 0), 0U);
+}
+
+TEST(Reference, ContentsTellModulesOfOneNameApart) {
+  EXPECT_THAT(reference_of("", ReferenceFormat::markdown),
+              testing::AllOf(HasSubstr("(#loop_detector) | [`none`](#none) |"),
+                             HasSubstr("(#segmenter) | [`none`](#none-1) |")));
+}
+
+TEST(Reference, WritesRangesOfLargeNumbersInFull) {
+  Parameter parameter;
+  EXPECT_EQ(parameter.range(1, 1e5).range_text(), "from 1 to 100000");
+  EXPECT_EQ(parameter.range(1e-12, 0.5).range_text(), "from 1e-12 to 0.5");
+}
+
 TEST(Reference, JsonHoldsTheTable) {
   const auto all = nlohmann::json::parse(reference_of("orb", ReferenceFormat::json));
   ASSERT_EQ(all.size(), 1U);
@@ -65,7 +87,7 @@ TEST(Reference, ListsTheSectionsOfSceneFilesUnderTheirOwnHeading) {
   EXPECT_THAT(of("scene.people.do.walk", ReferenceFormat::text),
               testing::AllOf(HasSubstr("scene.people.do.walk"), testing::Not(HasSubstr("About scene.\n"))));
   const std::string markdown = of("", ReferenceFormat::markdown);
-  EXPECT_THAT(markdown, testing::AllOf(HasSubstr("\n## Scene files\n\n### `scene`\n\nAbout scene.\n"),
+  EXPECT_THAT(markdown, testing::AllOf(HasSubstr("\n## Scene files\n"), HasSubstr("\n### `scene`\n\nAbout scene.\n"),
                                        HasSubstr("\n### `scene.people.do.walk`\n")));
   EXPECT_LT(markdown.find("### `tracking`"), markdown.find("## Scene files"));
 }

@@ -67,6 +67,7 @@ struct Comparison {
   bool is_significant() const { return enough && test.p < 0.05; }
 };
 
+/// What the results of a bench say, cell by cell and against the baseline.
 struct Analysis {
   std::vector<Cell> cells;  ///< in the plan's order
   std::vector<Improvement> improvements;

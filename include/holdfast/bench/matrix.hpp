@@ -36,6 +36,7 @@ struct AxisValue {
   bool timing = false;  ///< its runs stand alone on the machine
 };
 
+/// What is varied, and its values: one variant for every combination of the values of all axes.
 struct Axis {
   std::string name;
   SourceLocation location;
@@ -74,6 +75,7 @@ struct ExternalSystem {
 /// Runs that are left out: those that meet every condition. Keys are axes, `sequence` and `system`.
 struct Exclusion {
   SourceLocation location;
+  /// That an axis, the sequence or the system has one of some values.
   struct Condition {
     PlacedText key;
     std::vector<PlacedText> values;  ///< one of them

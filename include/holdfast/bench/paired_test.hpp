@@ -23,6 +23,7 @@ SignedRank wilcoxon_signed_rank(std::span<const double> differences);
 /// Fewer pairs cannot reach p < 0.05, whatever they say: of n signs all alike p is 2 / 2^n.
 inline constexpr std::size_t fewest_pairs_to_test = 6;
 
+/// A confidence interval, in the unit of the values it was made of.
 struct Interval {
   double low = 0.0;
   double high = 0.0;

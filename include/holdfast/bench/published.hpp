@@ -26,6 +26,7 @@ struct PublishedTimes {
   std::vector<std::pair<std::string, double>> ratios;  ///< by system, in the order of the file
 };
 
+/// All published figures of a file, in its order.
 struct PublishedResults {
   std::vector<PublishedResult> results;
   std::vector<PublishedTimes> times;

@@ -12,6 +12,7 @@
 
 namespace holdfast {
 
+/// Where and how the runs of a bench are started.
 struct BenchOptions {
   std::filesystem::path output;   ///< results of run ID go to output/runs/ID
   std::filesystem::path program;  ///< ours, for `holdfast run`

@@ -30,6 +30,7 @@ struct ConfigurationNode {
   std::string found() const;
 };
 
+/// One key of a map, and its value.
 struct ConfigurationNode::Entry {
   std::string key;
   SourceLocation location;  ///< of the key

@@ -25,9 +25,14 @@ using MapPointId = Id<struct MapPointTag>;
 
 }  // namespace holdfast
 
+namespace std {
+
+/// Lets ids be keys of unordered containers.
 template <class Tag>
-struct std::hash<holdfast::Id<Tag>> {
+struct hash<holdfast::Id<Tag>> {
   std::size_t operator()(const holdfast::Id<Tag>& id) const noexcept {
     return (static_cast<std::size_t>(id.generation) << 32) ^ id.slot;
   }
 };
+
+}  // namespace std

@@ -24,6 +24,7 @@ class Stopwatch {
 /// Time that one frame spent in each stage, in the order in which the stages ended.
 class StageTimes {
  public:
+  /// One stage, and the time that the frame spent in it [s].
   struct Entry {
     std::string_view stage;  ///< a string literal
     double seconds = 0.0;

@@ -13,6 +13,7 @@
 
 namespace holdfast {
 
+/// How an estimate is compared with the truth; docs/evaluation.md defines each.
 struct EvaluationOptions {
   AlignmentKind alignment = AlignmentKind::se3;
   double max_time_difference = 0.02;  ///< stamps further apart than this are no pair [s]

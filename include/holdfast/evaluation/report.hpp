@@ -38,6 +38,7 @@ struct ReportHighlight {
   std::string value;
 };
 
+/// The content of a report page, from top to bottom.
 struct Report {
   std::string title;
   std::string subtitle;

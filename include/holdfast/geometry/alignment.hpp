@@ -27,6 +27,7 @@ struct Similarity {
 std::optional<Similarity> align_points(std::span<const Eigen::Vector3d> source, std::span<const Eigen::Vector3d> target,
                                        bool with_scale = false);
 
+/// How align_points_ransac() draws and judges its samples.
 struct AlignmentRansacOptions {
   bool with_scale = false;
   double threshold = 0.05;    ///< largest distance of an inlier, in units of the target [m]
@@ -36,6 +37,7 @@ struct AlignmentRansacOptions {
   std::uint64_t seed = 1;
 };
 
+/// The best alignment, and which pairs agree with it.
 struct AlignmentRansacResult {
   Similarity similarity;
   std::vector<std::uint8_t> inlier;

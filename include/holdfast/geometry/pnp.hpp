@@ -18,6 +18,7 @@ namespace holdfast::geometry {
 std::vector<Eigen::Isometry3d> solve_p3p(const std::array<Eigen::Vector3d, 3>& points,
                                          const std::array<Eigen::Vector3d, 3>& directions);
 
+/// How the samples of a pose without a first guess are drawn and judged.
 struct PnpOptions {
   int iterations = 300;       ///< at most
   double confidence = 0.999;  ///< stop when a better sample is this unlikely

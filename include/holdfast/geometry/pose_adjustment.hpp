@@ -12,6 +12,7 @@ inline constexpr double chi_square_three = 7.815;
 /// Points nearer to the image plane than this, or behind it, are outliers [m].
 inline constexpr double minimum_depth = 1e-3;
 
+/// Rounds and limits of adjust_pose().
 struct PoseAdjustmentOptions {
   int robust_rounds = 2;              ///< with Huber's cost
   int final_rounds = 2;               ///< without it

@@ -31,13 +31,16 @@ inline std::optional<Eigen::Vector3d> triangulate_midpoint(const Eigen::Vector3d
 std::optional<Eigen::Vector3d> triangulate_linear(const Eigen::Isometry3d& T_a_world, const Eigen::Vector3d& ray_a,
                                                   const Eigen::Isometry3d& T_b_world, const Eigen::Vector3d& ray_b);
 
+/// What triangulate() asks of a point.
 struct TriangulationOptions {
   double largest_parallax_cosine = 0.9998;  ///< 0.9998 is 1.15 degrees
   double limit = 5.991;                     ///< chi-square of the reprojection in each view
 };
 
+/// Whether a triangulated point is good, or what is wrong with it.
 enum class TriangulationStatus { good, little_parallax, behind_camera, large_error };
 
+/// A point that two views gave, and whether it is to be believed.
 struct TriangulatedPoint {
   TriangulationStatus status = TriangulationStatus::little_parallax;
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< world [m]; valid only with status good

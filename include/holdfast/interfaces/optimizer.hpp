@@ -31,6 +31,7 @@ struct PoseProblem {
   std::size_t size() const { return points.size(); }
 };
 
+/// How the adjustment of a single pose ended.
 struct PoseSummary {
   bool usable = false;  ///< false: too few observations or no finite solution; T_camera_world is unchanged then
   int inliers = 0;
@@ -42,10 +43,12 @@ struct PoseSummary {
 
 /// Poses and points together: local and full bundle adjustment (Mur-Artal and Tardos 2017, section III-C).
 struct BundleProblem {
+  /// The pose of one camera.
   struct Pose {
     Eigen::Isometry3d T_camera_world;  ///< in and out
     bool fixed = false;
   };
+  /// One point as one camera sees it; `pose` and `point` are indices into the lists below.
   struct Observation {
     std::uint32_t pose = 0;
     std::uint32_t point = 0;
@@ -66,6 +69,7 @@ struct BundleProblem {
   double function_tolerance = 0.0;
 };
 
+/// How an adjustment of poses and points ended.
 struct BundleSummary {
   bool usable = false;   ///< false: nothing was changed
   bool stopped = false;  ///< the stop flag ended it early; the best state so far is in the problem
@@ -78,10 +82,12 @@ struct BundleSummary {
 
 /// Keyframe poses linked by relative poses (Mur-Artal and Tardos 2017, section III-D).
 struct PoseGraphProblem {
+  /// The pose of one keyframe.
   struct Node {
     Eigen::Isometry3d T_camera_world;  ///< in and out
     bool fixed = false;
   };
+  /// A measured relative pose of two nodes, which `from` and `to` name by their index.
   struct Edge {
     std::uint32_t from = 0;
     std::uint32_t to = 0;
@@ -93,6 +99,7 @@ struct PoseGraphProblem {
   int iterations = 20;
 };
 
+/// How the adjustment of a pose graph ended.
 struct GraphSummary {
   bool usable = false;
   int iterations = 0;

@@ -13,6 +13,7 @@
 
 namespace holdfast {
 
+/// What an adjustment of the whole map did.
 struct FullAdjustmentSummary {
   BundleSummary bundle;
   bool applied = false;  ///< false: the map is as before

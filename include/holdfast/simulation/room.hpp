@@ -29,6 +29,7 @@ const char* to_string(RoomKind kind);
 RoomKind room_kind(const std::string& name);
 std::vector<std::string> room_names();
 
+/// A furnished room, and where people and cameras can be in it.
 struct Room {
   World world;
   Stage stage;

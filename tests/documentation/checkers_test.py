@@ -1,0 +1,95 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""The checkers of the pages find what they should: on made-up pages, with mistakes and without."""
+import pathlib
+import tempfile
+import unittest
+
+import check_links
+import markdown
+import shell
+
+
+class Links(unittest.TestCase):
+    def problems(self, **pages: str) -> list[str]:
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            (root / "docs").mkdir()
+            for name, text in pages.items():
+                (root / "docs" / f"{name}.md").write_text(text)
+            return check_links.problems_of(root)[0]
+
+    def test_good_links(self):
+        other = "# A `b`: c, d\n\n## Twice\n\n## Twice\n"
+        page = ("[x](b.md) [y](b.md#a-b-c-d) [z](b.md#twice-1) ![p](../docs/b.md) [w](https://a.b/c) [h](#here)\n\n"
+                "# Here\n")
+        self.assertEqual(self.problems(a=page, b=other), [])
+
+    def test_bad_links(self):
+        for link in ("[x](c.md)", "[x](b.md#none)", "[x](#none)", "![x](none.png)", "[x](../../a)", "[x](/docs/b.md)",
+                     "[x]: c.md", '<img src="none.png">', "- one\n    - [x](c.md)"):
+            with self.subTest(link):
+                self.assertEqual(len(self.problems(a=link, b="# B\n")), 1)
+
+    def test_built_folders_hold_no_pages(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            for name in ("docs", "build", "out", ".git", "elsewhere"):
+                (root / name).mkdir()
+                (root / name / "a.md").write_text("")
+            (root / "elsewhere/CMakeCache.txt").write_text("")
+            self.assertEqual(markdown.pages(root), [root / "docs/a.md"])
+
+    def test_code_holds_no_links(self):
+        self.assertEqual(self.problems(a="```cpp\n[x](c.md)\n```\nand `[x](c.md)`\n"), [])
+
+
+class Blocks(unittest.TestCase):
+    def test_lines_and_languages(self):
+        text = "a\n\n```sh\none\n\ntwo\n```\n```\nthree\n```\n"
+        self.assertEqual(markdown.blocks(text),
+                         [markdown.Block("sh", "one\n\ntwo\n", 4), markdown.Block("", "three\n", 9)])
+
+    def test_no_heading_in_a_block(self):
+        self.assertEqual(markdown.headings("# A\n```sh\n# B\n```\n"), ["A"])
+
+    def test_a_block_must_end(self):
+        with self.assertRaises(ValueError):
+            markdown.blocks("```sh\none\n")
+
+
+class Commands(unittest.TestCase):
+    def texts(self, lines: str) -> list[str]:
+        return [command.text for command in shell.commands_of("page", f"```sh\n{lines}\n```\n")]
+
+    def test_one_by_one(self):
+        self.assertEqual(self.texts("a b   # why\n# alone\n\nc --d '#e'"), ["a b", "c --d '#e'"])
+        self.assertEqual(self.texts("a \\\n  b\nc"), ["a \\\n  b", "c"])
+        self.assertEqual(self.texts("for x in 1 2; do\n  a $x\ndone\nb"), ["for x in 1 2; do\n  a $x\ndone", "b"])
+
+    def test_a_command_must_end(self):
+        with self.assertRaises(ValueError):
+            self.texts("a \\")
+
+    def test_rules(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".toml") as file:
+            file.write('[[rule]]\ncommand = "a (b)"\nreason = "x"\n'
+                       '[[rule]]\nmatches = "/data/"\nreason = "y"\nrun = "c"\n')
+            file.flush()
+            rules = shell.read_rules(pathlib.Path(file.name))
+        find = lambda text: shell.rule_of(shell.Command("page", 1, text), rules)
+        self.assertIsNone(find("a (b) c"))
+        self.assertIs(find("a (b)"), rules[0])
+        self.assertEqual(find("x /data/y").run, "c")
+        self.assertTrue(all(rule.used for rule in rules))
+
+    def test_a_rule_needs_a_reason(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".toml") as file:
+            file.write('[[rule]]\ncommand = "a"\n')
+            file.flush()
+            with self.assertRaises(ValueError):
+                shell.read_rules(pathlib.Path(file.name))
+
+
+if __name__ == "__main__":
+    unittest.main()
