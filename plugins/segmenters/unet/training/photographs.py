@@ -12,11 +12,12 @@ def resized(picture, labels, size):
             cv2.resize(labels, size, interpolation=cv2.INTER_NEAREST_EXACT))
 
 
-def random_view(random, picture, labels, size, smallest=0.3):
-    """A random part of a picture, at the size of the network's input: often nearly all of it, sometimes a detail; its
-    shape between its own and that of the input, because a frame is squeezed into the input whatever its shape."""
+def random_view(random, picture, labels, size, smallest=0.3, whole=0.25):
+    """A random part of a picture, at the size of the network's input: the whole of it with probability `whole`, else a
+    part down to the share `smallest` of its longer side; its shape between its own and that of the input, because a
+    frame is squeezed into the input whatever its shape."""
     height, width = labels.shape
-    if random.random() < 0.25:
+    if random.random() < whole:
         crop_width, crop_height = width, height
     else:
         share = np.exp(random.uniform(np.log(smallest), 0.0))  # of the longer side

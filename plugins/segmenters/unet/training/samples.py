@@ -11,8 +11,8 @@ from photographs import random_camera, random_view
 MEAN, DEVIATION = 0.5, 0.25  # of a pixel divided by 255, every channel
 
 #: How often a sample is a plain view of a picture of this source.
-PLAIN = {"voc_person": 0.36, "human_290": 0.09, "penn_fudan": 0.05, "room": 0.04, "simulated": 0.06, "walking": 0.08}
-COMPOSED = 0.36
+PLAIN = {"voc_person": 0.42, "human_290": 0.09, "penn_fudan": 0.05, "room": 0.04, "simulated": 0.06, "walking": 0.08}
+COMPOSED = 0.30
 #: How often a picture of this source is the background of a composed sample, and how often its people are in it.
 BACKGROUNDS = {"room": 0.3, "simulated": 0.3, "voc_person": 0.4}
 PEOPLE = {"voc_person": 0.3, "human_290": 0.3, "penn_fudan": 0.3, "simulated": 0.1}
@@ -48,12 +48,12 @@ def by_source(items):
 class Samples(torch.utils.data.IterableDataset):
     """Sample i depends on seed and i alone, so that a training goes on after an interruption as if there was none.
 
-    `sizes`: width x height of the samples, batch by batch in turn.
+    `sizes`: width x height of the samples, batch by batch in turn.  `whole`: how often a picture is shown whole.
     """
 
-    def __init__(self, entries, sizes, batch=1, seed=1, start=0):
+    def __init__(self, entries, sizes, batch=1, seed=1, start=0, whole=0.25):
         super().__init__()
-        self.sizes, self.batch, self.seed, self.start = sizes, batch, seed, start
+        self.sizes, self.batch, self.seed, self.start, self.whole = sizes, batch, seed, start, whole
         entries_by_source = by_source((entry.source, entry) for entry in entries)
         self.plain = Choice(entries_by_source, PLAIN)
         self.backgrounds = Choice(entries_by_source, BACKGROUNDS)
@@ -72,7 +72,7 @@ class Samples(torch.utils.data.IterableDataset):
             picture, labels = composed(random, self.backgrounds.draw(random), people, self.textures, size)
         else:
             entry = self.plain.draw(random)
-            picture, labels = random_view(random, entry.picture, entry.labels, size)
+            picture, labels = random_view(random, entry.picture, entry.labels, size, whole=self.whole)
         return random_camera(random, picture), labels
 
     def __iter__(self):

@@ -140,7 +140,8 @@ def train(arguments):
         training.load(checkpoint)
         print(f"goes on at step {training.step}", flush=True)
     sizes = [training.input_size] * 2 + [arguments.also] if arguments.also else [training.input_size]
-    samples = Samples(training_entries, sizes, arguments.batch, arguments.seed, training.step * arguments.batch)
+    samples = Samples(training_entries, sizes, arguments.batch, arguments.seed, training.step * arguments.batch,
+                      arguments.whole)
     batches = iter(torch.utils.data.DataLoader(samples, arguments.batch, num_workers=arguments.workers))
     validation = Validation(training_entries, held_out)
     class_weights = torch.tensor(arguments.class_weights)
@@ -209,6 +210,8 @@ def main():
     parser.add_argument("--dropout", type=float, default=0.1)
     parser.add_argument("--class-weights", type=float, nargs=5, default=[1.0, 1.3, 1.0, 1.0, 1.0],
                         help="in the loss: background, person, chair, table, tv")
+    parser.add_argument("--whole", type=float, default=0.25,
+                        help="how often a picture is shown whole, not a part of it (default: 0.25; in a last run 0.5)")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--workers", type=int, default=1, help="processes that make samples (default: 1; 0 = none)")
