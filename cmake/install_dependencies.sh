@@ -4,6 +4,7 @@
 #
 #   sh cmake/install_dependencies.sh             install what is missing (as root, or through sudo without a password)
 #   sh cmake/install_dependencies.sh --training  also what the training of the U-Net and its test need
+#   sh cmake/install_dependencies.sh --python    also what the segmenter `python` is built of, and numpy
 #   sh cmake/install_dependencies.sh --dry-run   say what would be installed, change nothing
 set -eu
 
@@ -20,9 +21,10 @@ dry_run=no
 for argument in "$@"; do
   case "$argument" in
     --training) packages="$packages python3 python3-numpy python3-opencv python3-torch" ;;
+    --python) packages="$packages python3-dev pybind11-dev python3-numpy" ;;
     --dry-run) dry_run=yes ;;
-    -h | --help) sed -n '3,7s/^# \{0,1\}//p' "$0"; exit 0 ;;
-    *) fail "unknown argument '$argument'; known are --training, --dry-run and --help" ;;
+    -h | --help) sed -n '3,8s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) fail "unknown argument '$argument'; known are --training, --python, --dry-run and --help" ;;
   esac
 done
 
