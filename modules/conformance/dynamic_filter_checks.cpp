@@ -177,7 +177,7 @@ void lives_with_everything_masked(const Maker& maker) {
 }
 
 void survives_images_of_any_size(const Maker& maker) {
-  for (const cv::Size size : {cv::Size(1, 1), cv::Size(3, 40), cv::Size(50, 2)}) {
+  for (const cv::Size size : {cv::Size(1, 1), cv::Size(3, 40), cv::Size(12, 6), cv::Size(50, 2)}) {
     SCOPED_TRACE("with a camera of " + std::to_string(size.width) + "x" + std::to_string(size.height));
     CreationContext context = standard_context();
     context.camera.width = size.width, context.camera.height = size.height;

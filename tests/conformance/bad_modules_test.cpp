@@ -67,11 +67,103 @@ void expect_found(const std::string& kind, const std::map<std::string, Names>& e
         << kind << "/" << module << " is not expected to fail " << testing::PrintToString(checks);
 }
 
-TEST(BadModules, ExtractorsAreFound) { expect_found("features", {}); }
-TEST(BadModules, SegmentersAreFound) { expect_found("segmenter", {}); }
-TEST(BadModules, FiltersAreFound) { expect_found("filters", {}); }
-TEST(BadModules, OptimizersAreFound) { expect_found("optimizer", {}); }
-TEST(BadModules, LoopDetectorsAreFound) { expect_found("loop_detector", {}); }
+TEST(BadModules, ExtractorsAreFound) {
+  expect_found(
+      "features",
+      {{"appends", {"InstancesDoNotMeet", "ReplacesOut"}},
+       {"blind",
+        {"AnglesLieWithinTheCircle", "FillsEveryArray", "FindsFeatures", "PositionsLieInsideTheImage",
+         "ResponsesAreFinite"}},
+       {"counts_calls",
+        {"InstancesDoNotMeet", "MayChangeThreads", "ReplacesOut", "SameImageSameFeatures", "TakesImagesWithGaps"}},
+       {"degrees", {"AnglesLieWithinTheCircle"}},
+       {"grows", {"PyramidIsWholeAndStays"}},
+       {"high_octave", {"HonoursIgnore", "OctavesLieWithinThePyramid"}},
+       {"ignores_gaps", {"TakesImagesWithGaps"}},
+       {"ignores_ignore", {"HonoursIgnore", "TakesImagesOfAnySize", "TakesNothingWhereAllIsIgnored"}},
+       {"no_number",
+        {"InstancesDoNotMeet", "MayChangeThreads", "ReplacesOut", "ResponsesAreFinite", "SameImageSameFeatures",
+         "TakesImagesWithGaps"}},
+       {"outside", {"HonoursIgnore", "PositionsLieInsideTheImage", "TakesImagesOfAnySize"}},
+       {"refuses_tiny", {"FindsNothingInTinyImages", "TakesImagesOfAnySize"}},
+       {"short_array", {"FillsEveryArray", "HonoursIgnore", "ReplacesOut", "TakesImagesOfAnySize"}},
+       {"writes", {"WritesToNoImage"}}});
+}
+
+TEST(BadModules, SegmentersAreFound) {
+  const Names unsound{"LivesWithoutDepthAndTruth", "ResultsAreSound", "SurvivesDepthThatIsNoNumber",
+                      "SurvivesFramesOfAnySize"};
+  expect_found(
+      "segmenter",
+      {{"counts_calls", {"InstancesDoNotMeet", "MayChangeThreads", "SameFramesSameResults", "TakesImagesWithGaps"}},
+       {"half_size", unsound},
+       {"movable_stranger", {"MovableAreClasses"}},
+       {"new_class", {"ClassesStay"}},
+       {"nothing", {"SegmentsFrames"}},
+       {"one_buffer", {"MayChangeThreads", "ResultsAreKeptApart"}},
+       {"one_thread", {"InstancesDoNotMeet", "MayChangeThreads"}},
+       {"same_names", {"ClassesHaveNames"}},
+       {"small_confidence", unsound},
+       {"stranger", unsound},
+       {"throws_texts", {"SurvivesFramesOfAnySize"}},
+       {"wide", unsound},
+       {"writes", {"WritesToNoFrame"}}});
+}
+
+TEST(BadModules, FiltersAreFound) {
+  const Names unsound{
+      "EvidenceIsSound",     "LivesWithEverythingMasked",    "LivesWithoutDepth",           "LivesWithoutFeatures",
+      "LivesWithoutMatches", "LivesWithoutWhatMayBeMissing", "SurvivesDepthThatIsNoNumber", "SurvivesImagesOfAnySize"};
+  expect_found("filters",
+               {{"cells_without_end", unsound},
+                {"changes_its_needs", {"NeedsStay"}},
+                {"counts_calls", {"InstancesDoNotMeet", "MayChangeThreads", "SameContextsSameEvidence"}},
+                {"invents_points", unsound},
+                {"names_itself", {"NeverTakesAway"}},
+                {"needs_depth", {"LivesWithoutDepth"}},
+                {"no_number",
+                 {"EvidenceIsSound", "InstancesDoNotMeet", "LivesWithEverythingMasked", "LivesWithoutDepth",
+                  "LivesWithoutFeatures", "LivesWithoutMatches", "LivesWithoutWhatMayBeMissing", "MayChangeThreads",
+                  "SameContextsSameEvidence", "SurvivesDepthThatIsNoNumber", "SurvivesImagesOfAnySize"}},
+                {"numbers_from_zero", unsound},
+                {"starts_anew", {"NeverTakesAway"}},
+                {"writes", {"ChangesNothingButEvidence"}}});
+}
+
+TEST(BadModules, OptimizersAreFound) {
+  expect_found("optimizer",
+               {{"counts_calls",
+                 {"InstancesDoNotMeet", "LeavesAPoseThatCannotBeFound", "ManyThreadsAtOnce", "SameProblemSameBits"}},
+                {"forgets_inliers", {"MarksInliersOfAPose", "SurvivesNumbersThatAreNone"}},
+                {"ignores_weights", {"LeavesOutWhatHasNoWeight", "LeavesWhatIsNotOut"}},
+                {"miscounts", {"FindsAPose", "MarksInliersOfAPose", "MarksOutliersOfABundle", "SolvesABundle"}},
+                {"moves_fixed", {"KeepsFixedPoses", "LeavesABundleThatCannotBeSolved", "StopsABundle"}},
+                {"moves_unusable", {"LeavesAPoseThatCannotBeFound"}},
+                {"never_stops", {"StopsABundle"}},
+                {"no_covariance", {"CovarianceIsOne"}},
+                {"no_number",
+                 {"FindsAPose", "InstancesDoNotMeet", "LeavesAPoseThatCannotBeFound", "LeavesOutWhatHasNoWeight",
+                  "ManyThreadsAtOnce", "MarksInliersOfAPose", "SameProblemSameBits", "SurvivesNumbersThatAreNone"}},
+                {"rounds_rotations", {"FindsAPose", "LeavesAPoseThatCannotBeFound"}},
+                {"stays_away", {"LeavesAGraphThatCannotBeSolved", "SolvesAGraph"}}});
+}
+
+TEST(BadModules, LoopDetectorsAreFound) {
+  expect_found(
+      "loop_detector",
+      {{"blind", {"RecognisesAPlace"}},
+       {"counts_calls", {"AskingChangesNothing", "InstancesDoNotMeet", "MayChangeThreads", "SameCallsSameMatches"}},
+       {"generous", {"GivesAtMostWhatWasAsked", "MatchesAreSound"}},
+       {"learns_by_asking", {"AskingChangesNothing"}},
+       {"never_forgets", {"ForgetsWhatIsRemoved", "LivesWithAnyNumberOfDescriptors"}},
+       {"no_number",
+        {"AskingChangesNothing", "ForgetsWhatIsRemoved", "IgnoresUnknownRemovals", "InstancesDoNotMeet",
+         "LivesWithAnyNumberOfDescriptors", "MatchesAreSound", "MayChangeThreads", "SameCallsSameMatches"}},
+       {"strict", {"ForgetsWhatIsRemoved", "IgnoresUnknownRemovals"}},
+       {"twice",
+        {"ForgetsWhatIsRemoved", "IgnoresUnknownRemovals", "LivesWithAnyNumberOfDescriptors", "MatchesAreSound"}},
+       {"worst_first", {"MatchesAreSound"}}});
+}
 
 TEST(BadModules, MessagesNameTheSentence) {
   EXPECT_THAT(run("segmenter/stranger.ResultsAreSound").output,

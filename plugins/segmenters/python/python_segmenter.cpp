@@ -45,7 +45,7 @@ py::object python_value(const std::string& text) {
 /// Runs the file as a module of its own. What lies beside it can be imported, as if the file were run by `python3`.
 py::object run_file(const std::filesystem::path& file) {
   static std::atomic<int> count = 0;
-  const py::list path = py::module_::import("sys").attr("path");
+  py::list path = py::module_::import("sys").attr("path");
   const py::str folder(file.parent_path().string());
   if (!path.contains(folder)) path.insert(0, folder);
   const py::module_ util = py::module_::import("importlib.util");
