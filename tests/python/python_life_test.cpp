@@ -2,6 +2,8 @@
 // Instances, threads and lifetimes: one Python for the process, whoever calls.
 #include <gmock/gmock.h>
 
+#include <csignal>
+#include <cstdlib>
 #include <future>
 
 #include "holdfast/config/configuration.hpp"
@@ -67,6 +69,57 @@ TEST_F(PythonLife, TheObjectEndsWithTheSegmenter) {
   EXPECT_FALSE(std::filesystem::exists(mark));
   segmenter.reset();
   EXPECT_TRUE(std::filesystem::exists(mark));
+}
+
+volatile std::sig_atomic_t signals_seen = 0;
+
+TEST_F(PythonLife, SignalsStayWithTheProgram) {
+  const auto before = std::signal(SIGINT, [](int) { signals_seen = signals_seen + 1; });
+  const auto segmenter = make(write(counting));
+  std::raise(SIGINT);
+  EXPECT_EQ(signals_seen, 1);
+  EXPECT_EQ(first_label(*segmenter, frame()), 1) << "no KeyboardInterrupt";
+  std::signal(SIGINT, before);
+}
+
+/// The end of processes, each a new run of this program.
+class PythonEnd : public test::PythonFiles {
+ protected:
+  PythonEnd() { GTEST_FLAG_SET(death_test_style, "threadsafe"); }
+  std::unique_ptr<Segmenter> with_last_words() const {
+    return make(
+        write("import atexit, sys\natexit.register(lambda: print('last words', file=sys.stderr))\n" + counting));
+  }
+};
+
+TEST_F(PythonEnd, FunctionsOfAtexitRun) {
+  EXPECT_EXIT(
+      {
+        first_label(*with_last_words(), frame());
+        std::exit(0);
+      },
+      testing::ExitedWithCode(0), "last words");
+}
+
+TEST_F(PythonEnd, ASegmenterMayOutliveMain) {
+  EXPECT_EXIT(
+      {
+        static const auto kept = with_last_words();
+        first_label(*kept, frame());
+        std::exit(0);
+      },
+      testing::ExitedWithCode(0), "");
+}
+
+TEST_F(PythonEnd, APythonThreadThatStillRunsDoesNotHinder) {
+  EXPECT_EXIT(
+      {
+        make(write("import threading, time\nthreading.Thread(target=time.sleep, args=(3600,), daemon=True).start()\n" +
+                   counting))
+            ->segment(frame());
+        std::exit(0);
+      },
+      testing::ExitedWithCode(0), "");
 }
 
 /// A pipeline on simulated frames with the segmenter of a file.

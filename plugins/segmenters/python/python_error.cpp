@@ -9,15 +9,18 @@ namespace py = pybind11;
 
 namespace {
 
+/// What Python's own C code raises need not come through any line.
+py::object trace_of(const py::error_already_set& raised) { return raised.trace() ? raised.trace() : py::none(); }
+
 /// As Python itself would print it.
 std::string traceback_of(const py::error_already_set& raised) {
   try {
     const py::object lines =
-        py::module_::import("traceback").attr("format_exception")(raised.type(), raised.value(), raised.trace());
+        py::module_::import("traceback").attr("format_exception")(raised.type(), raised.value(), trace_of(raised));
     std::string text = py::str(py::str("").attr("join")(lines));
     while (!text.empty() && text.back() == '\n') text.pop_back();
     return text;
-  } catch (const py::error_already_set&) {
+  } catch (const std::exception&) {
     return raised.what();  // even printing it failed, as exceptions with a broken __str__ do
   }
 }
@@ -27,7 +30,7 @@ std::string summary_of(const py::error_already_set& raised) {
     const std::string type = py::str(raised.type().attr("__name__"));
     const std::string text = py::str(raised.value());
     return text.empty() ? type : type + ": " + text;
-  } catch (const py::error_already_set&) {
+  } catch (const std::exception&) {
     return "an exception that cannot be printed";
   }
 }
@@ -36,8 +39,7 @@ std::string summary_of(const py::error_already_set& raised) {
 int line_of(const py::error_already_set& raised, const std::string& file) {
   int line = 0;
   try {
-    for (py::object trace = raised.trace() ? raised.trace() : py::none(); !trace.is_none();
-         trace = trace.attr("tb_next"))
+    for (py::object trace = trace_of(raised); !trace.is_none(); trace = trace.attr("tb_next"))
       if (trace.attr("tb_frame").attr("f_code").attr("co_filename").cast<std::string>() == file)
         line = trace.attr("tb_lineno").cast<int>();
     if (line == 0 && raised.matches(PyExc_SyntaxError) &&
