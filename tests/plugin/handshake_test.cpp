@@ -91,9 +91,10 @@ TEST(Handshake, DamagedLibrariesAreRefused) {
   whole << std::ifstream(file_of("good"), std::ios::binary).rdbuf();
   const std::string bytes = whole.str();
   const std::string file = testing::TempDir() + "holdfast_damaged_plugin.so";
-  for (const double share : {0.0, 0.001, 0.1, 0.5, 0.9}) {
-    std::ofstream(file, std::ios::binary) << bytes.substr(0, static_cast<std::size_t>(share * bytes.size()));
-    EXPECT_THAT(refusal(file), AllOf(HasSubstr(file), HasSubstr("cannot be loaded"))) << share;
+  ASSERT_GT(bytes.size(), 30000U);
+  for (const std::size_t size : {0, 40, 1000, 20000}) {
+    std::ofstream(file, std::ios::binary) << bytes.substr(0, size);
+    EXPECT_THAT(refusal(file), AllOf(HasSubstr(file), HasSubstr("cannot be loaded"))) << size;
   }
   std::remove(file.c_str());
 }

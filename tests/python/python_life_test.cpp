@@ -131,7 +131,7 @@ class PythonPipeline : public test::PythonFiles {
   };
   Run run(const std::string& mode) {
     const std::string text =
-        "source: { simulated: { duration: 1.5 } }\n"
+        "source: { simulated: { duration: 0.5 } }\n"
         "camera: { width: 160, height: 120, fx: 130, fy: 130, cx: 79.5, cy: 59.5, frame_rate: 10 }\n"
         "features: { orb: { count: 300 } }\noptimizer: ceres\nfilters: [semantic_mask]\n"
         "segmenter: { python: { file: segmenter.py } }\nsegmentation: { on: every_n, every: 2, latency: 1 }\n"
