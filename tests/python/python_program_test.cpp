@@ -20,9 +20,8 @@ class PythonProgram : public testing::Test {
  protected:
   PythonProgram() {
     program_.write("run.yaml",
-                   "source: { simulated: { duration: 2 } }\n"
-                   "camera: { width: 160, height: 120, fx: 130, fy: 130, cx: 79.5, cy: 59.5, frame_rate: 10 }\n"
-                   "features: { orb: { count: 300 } }\noptimizer: ceres\nfilters: [semantic_mask]\n"
+                   "source: { simulated: { duration: 1 } }\ncamera: tum_fr1\n"
+                   "features: { orb: { count: 1000 } }\noptimizer: ceres\nfilters: [semantic_mask]\n"
                    "segmenter: { python: { file: segmenter.py } }\nsegmentation: { on: every_n, every: 2 }\n");
   }
   /// `body` is that of segment().
@@ -59,8 +58,8 @@ TEST_F(PythonProgram, EndsCleanlyWithTheErrorOfPython) {
   for (const std::string mode : {"sequential", "threaded"}) {
     const Outcome outcome = run(mode);
     EXPECT_EQ(outcome.exit_code, 1) << mode << ": " << outcome.errors;
-    EXPECT_THAT(outcome.errors, AllOf(HasSubstr("segmenter.py"), HasSubstr("labels of shape (120, 160, 3)"),
-                                      HasSubstr("with shape (120, 160)")))
+    EXPECT_THAT(outcome.errors, AllOf(HasSubstr("segmenter.py"), HasSubstr("labels of shape (480, 640, 3)"),
+                                      HasSubstr("with shape (480, 640)")))
         << mode;
     EXPECT_TRUE(fs::exists(program_.path(mode + "/trajectory.txt"))) << mode << ": what was found stays the user's";
     EXPECT_TRUE(fs::exists(program_.path("calls.txt"))) << mode << ": functions of atexit must run";
