@@ -10,7 +10,7 @@ get_property(exported_targets GLOBAL PROPERTY HOLDFAST_EXPORTED_TARGETS)
 function(holdfast_package_of library result)
   if(library MATCHES "^opencv_")
     set(package OpenCV)
-  elseif(library MATCHES "^(Eigen3|Threads|spdlog|nlohmann_json|CLI11)::")
+  elseif(library MATCHES "^(Eigen3|Threads|spdlog|nlohmann_json|CLI11|GTest)::")
     set(package ${CMAKE_MATCH_1})
   elseif(library MATCHES "^Ceres::")
     set(package Ceres)
@@ -88,6 +88,8 @@ write_basic_package_version_file(${holdfast_BINARY_DIR}/package/holdfastConfigVe
 install(FILES ${holdfast_BINARY_DIR}/package/holdfastConfig.cmake
               ${holdfast_BINARY_DIR}/package/holdfastConfigVersion.cmake
               ${CMAKE_CURRENT_LIST_DIR}/HoldfastAddPlugin.cmake
+              ${CMAKE_CURRENT_LIST_DIR}/HoldfastConformance.cmake
+              ${CMAKE_CURRENT_LIST_DIR}/conformance_main.cpp.in
         DESTINATION ${package_folder} COMPONENT development)
 
 install(DIRECTORY ${holdfast_SOURCE_DIR}/include/holdfast ${holdfast_BINARY_DIR}/include/holdfast

@@ -2,6 +2,7 @@
 # One function per idea, so that a module's CMakeLists.txt reads as a table.
 include(GNUInstallDirs)
 include(HoldfastAddPlugin)
+include(HoldfastConformance)
 
 # What every Holdfast target shares. No global flags: a project that embeds us keeps its own.
 function(holdfast_target_defaults target)

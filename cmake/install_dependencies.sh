@@ -6,6 +6,7 @@
 #                                                     password)
 #   sh cmake/install_dependencies.sh --training       also what the training of the U-Net and its test need
 #   sh cmake/install_dependencies.sh --documentation  also what the tests of the documentation need
+#   sh cmake/install_dependencies.sh --python         also what the segmenter `python` is built of, and numpy
 #   sh cmake/install_dependencies.sh --dry-run        say what would be installed, change nothing
 set -eu
 
@@ -23,9 +24,10 @@ for argument in "$@"; do
   case "$argument" in
     --training) packages="$packages python3 python3-numpy python3-opencv python3-torch" ;;
     --documentation) packages="$packages python3 doxygen" ;;
+    --python) packages="$packages python3-dev pybind11-dev python3-numpy" ;;
     --dry-run) dry_run=yes ;;
-    -h | --help) sed -n '3,9s/^# \{0,1\}//p' "$0"; exit 0 ;;
-    *) fail "unknown argument '$argument'; known are --training, --documentation, --dry-run and --help" ;;
+    -h | --help) sed -n '3,10s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) fail "unknown argument '$argument'; known are --training, --documentation, --python, --dry-run and --help" ;;
   esac
 done
 

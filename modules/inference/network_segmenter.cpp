@@ -5,6 +5,8 @@
 #include <opencv2/core/mat.hpp>
 #include <utility>
 
+#include "holdfast/core/error.hpp"
+
 namespace holdfast {
 
 NetworkSegmenter::NetworkSegmenter(const NetworkOptions& options, OutputForm form, std::vector<std::string> classes,
@@ -19,6 +21,9 @@ NetworkSegmenter::NetworkSegmenter(const NetworkOptions& options, OutputForm for
 }
 
 Segmentation NetworkSegmenter::segment(const SensorFrame& frame) {
+  if (frame.colour.empty() || frame.colour.type() != CV_8UC3)
+    throw InputError({"frame " + std::to_string(frame.index)},
+                     "has no colour image for the network; expected 8 bit and three channels");
   Segmentation result = decode_segmentation(scores(frame.colour), form_, frame.colour.cols, frame.colour.rows);
   if (unknown_label_ >= 0) result.labels.setTo(255, result.labels == unknown_label_);
   return result;

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <exception>
 
+#include "abi_of_file.hpp"
 #include "holdfast/plugin/abi.hpp"
 
 namespace holdfast {
@@ -87,6 +88,16 @@ fs::path load_plugin(Registry& registry, const std::string& name_or_path, const 
   const std::string file = find_plugin(name_or_path, search_first).lexically_normal().string();
   const auto refuse = [&](const std::string& reason) { throw PluginError("plugin '" + file + "' " + reason); };
   if (has_modules_of(registry, file)) return file;
+  const auto refuse_differences = [&](const AbiRecord& record) {
+    std::string all;
+    for (const std::string& difference : abi_differences(compiled_abi(), record))
+      all += (all.empty() ? "" : "; ") + difference;
+    if (!all.empty())
+      refuse("does not fit this program: " + all + "; build both with the same Holdfast, compiler and libraries");
+  };
+  // Before anything of it is loaded: what does not fit often cannot be loaded either, for a reason that tells less.
+  if (is_cut_off(file)) refuse("cannot be loaded: the file ends too early; build or copy it again");
+  if (const auto record = read_abi_of_file(file)) refuse_differences(*record);
 
   // RTLD_NOW: a symbol that is missing is an error here and not in the middle of a run. Never closed: see the header.
   void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
@@ -97,11 +108,7 @@ fs::path load_plugin(Registry& registry, const std::string& name_or_path, const 
   const auto* record = static_cast<const AbiRecord*>(dlsym(library, "holdfast_plugin_abi"));
   if (record == nullptr)
     refuse("is no Holdfast plugin: it has no ABI record holdfast_plugin_abi; define its entry with HOLDFAST_PLUGIN");
-  if (const auto differences = abi_differences(compiled_abi(), *record); !differences.empty()) {
-    std::string all;
-    for (const std::string& difference : differences) all += (all.empty() ? "" : "; ") + difference;
-    refuse("does not fit this program: " + all + "; build both with the same Holdfast, compiler and libraries");
-  }
+  refuse_differences(*record);
   auto* entry = reinterpret_cast<void (*)(Registry&)>(dlsym(library, "holdfast_register_plugin"));
   if (entry == nullptr) refuse("has no entry function holdfast_register_plugin; define it with HOLDFAST_PLUGIN");
 

@@ -40,6 +40,21 @@ TEST(Abi, EveryFieldCounts) {
   EXPECT_EQ(differs([](AbiRecord& r) { r.opencv_version += 1; }), 1U);
   EXPECT_EQ(differs([](AbiRecord& r) { r.compiler_abi += 1; }), 1U);
   EXPECT_EQ(differs([](AbiRecord& r) { r.new_string_abi ^= 1; }), 1U);
+  EXPECT_EQ(differs([](AbiRecord& r) { r.eigen_static_alignment += 8; }), 1U);
+  EXPECT_EQ(differs([](AbiRecord& r) { r.eigen_index_size /= 2; }), 1U);
+  EXPECT_EQ(differs([](AbiRecord& r) { r.eigen_row_major ^= 1; }), 1U);
+  EXPECT_EQ(differs([](AbiRecord& r) { r.debug_containers ^= 1; }), 1U);
+  EXPECT_EQ(differs([](AbiRecord& r) { r.sanitizers ^= 1; }), 1U);
+  EXPECT_EQ(differs([](AbiRecord& r) { r.compiler[0] = 'X'; }), 0U) << "compilers of one ABI fit";
+}
+
+TEST(Abi, ARecordOfAnotherSizeStillTellsItsVersion) {
+  AbiRecord plugin = compiled_abi();
+  plugin.record_size = 56;
+  std::strcpy(plugin.holdfast_version, "0.0.9");
+  EXPECT_THAT(abi_differences(compiled_abi(), plugin),
+              ElementsAre(HasSubstr("Holdfast version: program " HOLDFAST_VERSION ", plugin 0.0.9"),
+                          HasSubstr("size of the ABI record")));
 }
 
 TEST(Abi, DoesNotReadBeyondAnUnfinishedVersion) {

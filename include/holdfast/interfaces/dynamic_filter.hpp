@@ -17,7 +17,8 @@
 
 namespace holdfast {
 
-/// What a filter cannot work without. Checked against the source and the pipeline before the first frame.
+/// What a filter cannot work without. Checked against the source and the pipeline before the first frame; does not
+/// change. What is needed may still be missing in one frame: no depth in it, no mask yet, no pose.
 struct Needs {
   bool depth = false;
   bool segmentation = false;  ///< a segmenter other than none
@@ -119,7 +120,9 @@ class DynamicFilter : public Module {
   static constexpr const char* kind = "filters";
 
   virtual Needs needs() const = 0;
-  /// Adds evidence about the features of context.frame; says nothing where it cannot judge.
+  /// Adds evidence about the features of context.frame, in finite numbers; says nothing where it cannot judge. The same
+  /// contexts in the same order give the same evidence. Throws InputError for a context that it cannot use, such as
+  /// classes without one that it was told of.
   virtual void apply(const FilterContext& context, StaticEvidence& evidence) = 0;
 };
 

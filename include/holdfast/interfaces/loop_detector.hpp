@@ -22,9 +22,12 @@ class LoopDetector : public Module {
  public:
   static constexpr const char* kind = "loop_detector";
 
+  /// A keyframe that is not known yet, with any number of descriptors.
   virtual void add(KeyFrameId keyframe, std::span<const Descriptor> descriptors) = 0;
+  /// Forgets a keyframe; one that is not known is ignored.
   virtual void remove(KeyFrameId keyframe) = 0;
-  /// Up to `most` keyframes, best first; equal scores by rising id.
+  /// Up to `most` of the known keyframes, none twice, best first; equal scores by rising id. Scores are finite. The
+  /// same calls in the same order give the same matches, and asking changes no later answer.
   virtual std::vector<PlaceMatch> query(std::span<const Descriptor> descriptors, int most) const = 0;
 };
 

@@ -108,7 +108,9 @@ struct GraphSummary {
 };
 
 /// Solves the least-squares problems of the pipeline. Any method may be called by several threads at once, each with a
-/// problem of its own. With CreationContext::sequential the results are bit-identical from run to run.
+/// problem of its own. With CreationContext::sequential the results are bit-identical from run to run. What is not
+/// marked `out` is not written to. Numbers that are not finite in an observation or an edge make it an outlier or the
+/// problem unusable, never a pose or point that is not finite.
 class Optimizer : public Module {
  public:
   static constexpr const char* kind = "optimizer";

@@ -23,11 +23,14 @@ class Segmenter : public Module {
  public:
   static constexpr const char* kind = "segmenter";
 
-  /// Class names by label; label 0 is the background. Empty for a segmenter that never finds anything.
+  /// Class names by label, none twice; label 0 is the background. Empty for a segmenter that never finds anything. Does
+  /// not change after construction.
   virtual const std::vector<std::string>& classes() const = 0;
   /// Of the classes, those that can move or be moved; empty when the segmenter does not say.
   virtual std::vector<std::string> movable() const { return {}; }
-  /// The segmentation of a frame; empty when it has none for this frame (a result, not an error).
+  /// The segmentation of a frame; empty when it has none for this frame (a result, not an error). Throws InputError for
+  /// a frame that it cannot use. The frame is not written to, and later calls leave the result as it is. The same
+  /// frames in the same order give the same results.
   virtual Segmentation segment(const SensorFrame& frame) = 0;
 };
 

@@ -30,6 +30,9 @@ void ViewMaker::make(const Frame& frame, const cv::Mat& colour, DepthView& view)
   view.grey.resize(size);
   view.static_score.assign(size, 1.0F);
   const int coarse_columns = sampler_.grid().columns;
+  // Nine of the block's pixels: enough against aliasing.
+  constexpr int spacing = 3;
+  const bool too_small = std::min(colour.cols, colour.rows) <= 2 * spacing;
   for (int row = 0; row < grid_.rows; ++row)
     for (int column = 0; column < grid_.columns; ++column) {
       const int cell = (row * coarse_columns + column) * BlockGrid::stride;
@@ -37,12 +40,10 @@ void ViewMaker::make(const Frame& frame, const cv::Mat& colour, DepthView& view)
       view.depth[block] = frame.coarse.depth[static_cast<std::size_t>(cell)];
       view.grey[block] = 0.0F;
       const std::int32_t raw = sampler_.raw_pixel(cell);
-      if (raw < 0) {
+      if (raw < 0 || too_small) {
         view.depth[block] = 0.0F;
         continue;
       }
-      // Nine of the block's pixels: enough against aliasing.
-      constexpr int spacing = 3;
       const int x = std::clamp(raw % colour.cols, spacing, colour.cols - 1 - spacing);
       const int y = std::clamp(raw / colour.cols, spacing, colour.rows - 1 - spacing);
       int sum = 0;

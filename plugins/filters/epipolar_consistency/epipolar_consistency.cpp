@@ -60,8 +60,9 @@ void EpipolarConsistency::collect_pairs(const Frame& frame, const StaticEvidence
 
 void EpipolarConsistency::apply(const FilterContext& context, StaticEvidence& evidence) {
   const Frame& frame = context.frame;
-  flow_.add_image(context.sensor_frame.colour, context.sensor_frame.timestamp);
   verdict_ = Verdict::few_points;
+  if (!FeatureFlow::can_follow(context.sensor_frame.colour)) return;
+  flow_.add_image(context.sensor_frame.colour, context.sensor_frame.timestamp);
   if (!flow_.ready()) return;
   choose_features(frame);
   flow_.follow(frame.features, chosen_);

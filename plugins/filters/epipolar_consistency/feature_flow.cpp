@@ -20,6 +20,10 @@ cv::Point2f halved(float x, float y) { return {0.5F * x - 0.25F, 0.5F * y - 0.25
 float doubled(float value) { return 2.0F * value + 0.5F; }
 }  // namespace
 
+bool FeatureFlow::can_follow(const cv::Mat& colour) {
+  return colour.cols >= 2 * window.width && colour.rows >= 2 * window.height;
+}
+
 void FeatureFlow::add_image(const cv::Mat& colour, double timestamp) {
   if (!pyramids_.empty() && !(std::abs(timestamp - timestamp_) <= longest_pause)) pyramids_.clear();
   timestamp_ = timestamp;

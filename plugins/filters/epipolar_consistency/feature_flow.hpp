@@ -17,6 +17,8 @@ class FeatureFlow {
   /// gap: how many images back features are followed; after a break as far as there are images.
   explicit FeatureFlow(int gap) : gap_(static_cast<std::size_t>(gap)) {}
 
+  /// Whether half of such an image holds the window that is compared.
+  static bool can_follow(const cv::Mat& colour);
   /// Takes a frame's image, 8UC3 or 8UC1. A frame that comes more than 0.25 s after the last one begins anew.
   void add_image(const cv::Mat& colour, double timestamp);
   /// Whether there is an earlier image to follow features into.
