@@ -37,7 +37,7 @@ void place_recognition(benchmark::State& state) {
   const auto keyframes = static_cast<std::uint32_t>(state.range(0));
   for (auto _ : state) {
     const double bytes_before = allocated_bytes();
-    auto detector = std::make_unique<flann_plugin::FlannDetector>(flann_plugin::FlannSettings{});
+    auto detector = std::make_unique<flann_plugin::FlannDetector>(FlannSettings{});
     std::vector<double> query_times, times, all_times;
     const std::uint32_t measured = std::max(50U, keyframes / 10);
     int revisits = 0, found = 0;

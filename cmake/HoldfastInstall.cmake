@@ -98,5 +98,9 @@ install(FILES ${holdfast_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR}
 
 if(TARGET holdfast_program)
   set_target_properties(holdfast_program PROPERTIES INSTALL_RPATH "\$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
-  install(TARGETS holdfast_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime)
+  install(TARGETS holdfast_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+endif()
+
+if(PROJECT_IS_TOP_LEVEL)
+  include(HoldfastPackage)
 endif()

@@ -2,9 +2,9 @@
 #pragma once
 
 /// Everything that a program which embeds Holdfast starts from; link holdfast::holdfast. The way through it:
-/// a Registry with register_builtin_plugins() and load_plugin(), load_configuration(), build_pipeline(), then frames
-/// into Pipeline::feed() and poses out of Pipeline::trajectory(), and evaluate() against a truth. A program that needs
-/// only one of these compiles faster with that one header.
+/// a PipelineBuilder, or load_configuration() and build_pipeline() for YAML, then frames into Pipeline::feed(), poses
+/// out of its results and of Pipeline::trajectory(), and evaluate() against a truth. Typed settings of the built-in
+/// modules are in holdfast/settings/all.hpp. A program that needs only one of these compiles faster with that one header.
 #include "holdfast/config/configuration.hpp"
 #include "holdfast/core/camera.hpp"
 #include "holdfast/core/error.hpp"
@@ -21,4 +21,3 @@
 #include "holdfast/plugin/loader.hpp"
 #include "holdfast/plugin/plugin.hpp"
 #include "holdfast/plugin/registry.hpp"
-#include "holdfast/simulation/simulator.hpp"

@@ -18,6 +18,7 @@
 #include "holdfast/cli/terminal.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/dense_map/background.hpp"
+#include "holdfast/dense_map/static_scene.hpp"
 #include "holdfast/pipeline/pipeline_builder.hpp"
 #include "holdfast/plugin/builtin.hpp"
 

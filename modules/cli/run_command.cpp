@@ -21,6 +21,7 @@
 #include "holdfast/cli/run_results.hpp"
 #include "holdfast/cli/terminal.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/dense_map/static_scene.hpp"
 #include "holdfast/map_io/map_export.hpp"
 #include "holdfast/map_io/map_file.hpp"
 #include "holdfast/pipeline/pipeline_builder.hpp"

@@ -202,7 +202,7 @@ class Resolver {
 
   ModuleChoice module(const std::string& kind, const ConfigurationNode& node) {
     if (node.kind == Kind::scalar)
-      return module(kind, node.text, node.location, ConfigurationNode{.location = node.location});
+      return module(kind, node.text, node.location, ConfigurationNode{.location = node.location, .entries = {}});
     const bool one = node.kind == Kind::map && node.entries.size() == 1;
     if (!one) {
       std::string found = node.found();
@@ -225,7 +225,8 @@ class Resolver {
   ModuleChoice choose(const std::string& kind, const char* fallback) {
     const ConfigurationNode& node = at(kind);
     if (node.kind != Kind::nothing) return module(kind, node);
-    if (fallback != nullptr) return module(kind, fallback, {file_}, ConfigurationNode{.location = {file_}});
+    if (fallback != nullptr)
+      return module(kind, fallback, {file_}, ConfigurationNode{.location = {file_}, .entries = {}});
     const bool is_empty = !node.location.file.empty();
     complain(is_empty ? node.location : SourceLocation{file_},
              "section '" + kind + "' is " + (is_empty ? "empty" : "missing") + "; expected one module; " +

@@ -53,17 +53,18 @@ void set_value(ConfigurationNode& root, const std::string& key_path, Configurati
     const bool chooses = depth == 1 && std::find(choices.begin(), choices.end(), path[0]) != choices.end();
     if (node->kind == ConfigurationNode::Kind::scalar) {
       const ConfigurationNode name = *node;
-      *node = {.location = name.location, .folder = name.folder};
+      *node = {.location = name.location, .folder = name.folder, .entries = {}};
       // `orb` stands for `orb: {}`, in a choice and as a link of a chain, and a camera's name for that camera.
       if (name.text == part)
         node->entries.push_back(
-            {part, name.location, ConfigurationNode{.location = name.location, .folder = name.folder}});
+            {part, name.location, ConfigurationNode{.location = name.location, .folder = name.folder, .entries = {}}});
       else if (depth == 1 && path[0] == "camera")
         node->entries.push_back({"name", name.location, name});
     }
     node->kind = ConfigurationNode::Kind::map;
     if (chooses && node->find(part) == nullptr) node->entries.clear();
-    if (node->find(part) == nullptr) node->entries.push_back({part, location, ConfigurationNode{.location = location}});
+    if (node->find(part) == nullptr)
+      node->entries.push_back({part, location, ConfigurationNode{.location = location, .entries = {}}});
     node = node->find(part);
   }
   *node = std::move(value);

@@ -9,8 +9,11 @@
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/map_mutex.hpp"
+#include "holdfast/dense_map/static_scene.hpp"
 #include "holdfast/map_io/map_export.hpp"
 #include "holdfast/pipeline/segmentation_desk.hpp"
+#include "holdfast/tracking/filter_chain.hpp"
+#include "holdfast/tracking/tracker.hpp"
 
 namespace holdfast {
 
@@ -350,6 +353,11 @@ Trajectory Pipeline::trajectory() const {
 Trajectory Pipeline::keyframe_trajectory() const {
   const TrackingLock lock(state_->map_mutex);
   return holdfast::keyframe_trajectory(state_->map);
+}
+
+MapSnapshot Pipeline::map_snapshot() const {
+  const std::lock_guard lock(state_->map_mutex);
+  return make_snapshot(state_->map);
 }
 
 const Map& Pipeline::map() const { return state_->map; }

@@ -1,162 +1,216 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/pipeline/pipeline_builder.hpp"
 
-#include <utility>
-
+#include "camera_numbers.hpp"
 #include "holdfast/core/error.hpp"
-#include "holdfast/map_io/map_file.hpp"
+#include "holdfast/plugin/did_you_mean.hpp"
+#include "holdfast/plugin/loader.hpp"
+#include "holdfast/plugin/parameter_check.hpp"
 
 namespace holdfast {
 
-std::vector<SectionDescription> pipeline_sections() {
-  return {
-      {"tracking", "How poses are found, and when a frame becomes a keyframe.",
-       ParameterTable<TrackingSettings>().parameters()},
-      {"segmentation", "Which frames the segmenter sees, and when its answer counts.",
-       ParameterTable<SegmentationSettings>().parameters()},
-      {"evidence", "What becomes of the evidence that filters give.", ParameterTable<EvidenceSettings>().parameters()},
-      {"mapping", "How the map around a new keyframe is made and kept.",
-       ParameterTable<MappingSettings>().parameters()},
-      {"loop_closing", "When a place counts as seen again, and how the map is corrected then.",
-       ParameterTable<LoopClosingSettings>().parameters()},
-      {"dense_map", "A dense cloud of the static scene, of what keyframes saw.",
-       ParameterTable<DenseMapSettings>().parameters()}};
-}
-
 namespace {
 
-template <class Settings>
-Settings section(const Configuration& configuration, const std::string& name) {
-  const auto found = configuration.sections.find(name);
-  return found == configuration.sections.end() ? Settings{} : ParameterTable<Settings>().settings(found->second);
-}
-
-bool differ(Camera a, const Camera& b) {
-  a.name = b.name;  // only the numbers matter
-  return a != b;
-}
-
-/// The camera of the run: the configuration's or the source's; when both name one, they must agree.
-Camera resolve_camera(const Configuration& configuration, const SourceDescription& source,
-                      std::vector<Diagnostic>& diagnostics) {
-  if (source.camera && configuration.camera && differ(*source.camera, *configuration.camera))
-    diagnostics.push_back(
-        {configuration.source.location,
-         "the source '" + configuration.source.name +
-             "' brings its own camera, and the section 'camera' says something else; remove one of them"});
-  if (source.camera) return *source.camera;
-  if (configuration.camera) return *configuration.camera;
-  std::string known;
-  for (const std::string& name : camera_names()) known += (known.empty() ? "" : ", ") + name;
-  diagnostics.push_back({SourceLocation{configuration.file},
-                         "section 'camera' is missing, and the source '" + configuration.source.name +
-                             "' does not know its camera; expected a name (" + known + ") or numbers"});
-  return {};
-}
-
-void check_needs(const ModuleChoice& choice, const Needs& needs, const SourceDescription& source,
-                 const Configuration& configuration, std::vector<Diagnostic>& diagnostics) {
-  if (needs.depth && !source.has_depth)
-    diagnostics.push_back({choice.location, "the filter '" + choice.name + "' needs depth, which the source '" +
-                                                configuration.source.name + "' does not have; remove one of them"});
-  if (needs.segmentation && configuration.segmenter.name == "none")
-    diagnostics.push_back(
-        {choice.location,
-         "the filter '" + choice.name + "' needs a segmentation, but the segmenter is 'none'; choose a segmenter"});
-}
-
-/// A map can only be continued by the camera that made it: bundle adjustment knows one camera.
-void check_map(const Map& map, const Camera& camera, const std::filesystem::path& file) {
-  if (map.keyframes().empty())
-    throw InputError({file.string()}, "is a map without keyframes; expected one that a run has saved");
-  map.keyframes().for_each([&](KeyFrameId, const KeyFrame& keyframe) {
-    if (differ(*keyframe.frame.camera, camera))
-      throw InputError({file.string()}, "was made with the camera '" + keyframe.frame.camera->name +
-                                            "', and the run has '" + camera.name +
-                                            "' with other numbers; expected the same camera");
-  });
-}
-
-/// What the source is told; the camera and the classes that it knows come afterwards.
-CreationContext context_of_source(const Configuration& configuration) {
-  CreationContext context;
-  if (configuration.camera) context.camera = *configuration.camera;
-  context.seed = configuration.run.seed;
-  context.sequential = configuration.run.mode == "sequential";
-  return context;
+template <class Interface>
+bool is_absent(const std::optional<ModuleOf<Interface>>& module) {
+  return !module || (module->object == nullptr && module->name == "none");
 }
 
 }  // namespace
 
-BuiltPipeline build_pipeline(const Configuration& configuration, const Registry& registry, const RunOptions& options) {
-  CreationContext context = context_of_source(configuration);
-  context.output_directory = options.output_directory;
-  const auto create = [&]<class Interface>(const ModuleChoice& choice) {
-    return registry.create<Interface>(choice.name, choice.values, context);
-  };
-
-  std::unique_ptr<FrameSource> source = create.operator()<FrameSource>(configuration.source);
-  const SourceDescription description = source->describe();
-  std::vector<Diagnostic> diagnostics;
-  context.camera = resolve_camera(configuration, description, diagnostics);
-  context.class_names = description.class_names;
-
-  PipelineParts parts;
-  parts.camera = context.camera;
-  parts.seed = context.seed;
-  parts.features = create.operator()<FeatureExtractor>(configuration.features);
-  parts.segmenter = create.operator()<Segmenter>(configuration.segmenter);
-  parts.optimizer = create.operator()<Optimizer>(configuration.optimizer);
-  parts.loop_detector = create.operator()<LoopDetector>(configuration.loop_detector);
-  for (const ModuleChoice& choice : configuration.filters) {
-    auto filter = create.operator()<DynamicFilter>(choice);
-    check_needs(choice, filter->needs(), description, configuration, diagnostics);
-    parts.filters.emplace_back(choice.name, std::move(filter));
-  }
-  for (const ModuleChoice& choice : configuration.observers)
-    parts.observers.push_back(create.operator()<Observer>(choice));
-  parts.tracking = section<TrackingSettings>(configuration, "tracking");
-  parts.segmentation = section<SegmentationSettings>(configuration, "segmentation");
-  parts.evidence = section<EvidenceSettings>(configuration, "evidence");
-  parts.mapping = section<MappingSettings>(configuration, "mapping");
-  parts.loop_closing = section<LoopClosingSettings>(configuration, "loop_closing");
-  parts.dense_map = section<DenseMapSettings>(configuration, "dense_map");
-  parts.threads.threaded = !context.sequential;
-  parts.threads.keyframe_queue = static_cast<std::size_t>(configuration.run.keyframe_queue);
-  parts.threads.unpaced = configuration.run.pace == "none";
-  if (!description.has_depth)
-    diagnostics.push_back(
-        {configuration.source.location,
-         "the source '" + configuration.source.name + "' has no depth; this version tracks colour with depth only"});
-  if (!options.map_file.empty() && configuration.loop_detector.name == "none")
-    diagnostics.push_back({configuration.loop_detector.location,
-                           "a camera in a loaded map finds its place by place recognition, but the loop detector is "
-                           "'none'; choose one, such as 'loop_detector: { flann: {} }'"});
-  if (!diagnostics.empty()) throw ConfigurationError(std::move(diagnostics));
-  parts.localise_only = options.localise_only;
-  HOLDFAST_CHECK(!options.localise_only || !options.map_file.empty(), "localising needs a map");
-  if (!options.map_file.empty()) {
-    read_map(options.map_file, parts.map);
-    check_map(parts.map, parts.camera, options.map_file);
-  }
-  return {std::move(source), Pipeline(std::move(parts))};
+PipelineBuilder& PipelineBuilder::plugin(const std::string& name_or_path) {
+  load_plugin(registry_, name_or_path);
+  return *this;
+}
+PipelineBuilder& PipelineBuilder::plugin(void (*entry)(Registry&)) {
+  entry(registry_);
+  return *this;
 }
 
-BuiltSegmenter build_segmenter(const Configuration& configuration, const Registry& registry) {
-  if (configuration.segmenter.name == "none")
-    throw ConfigurationError(
-        configuration.segmenter.location.file.empty() ? SourceLocation{configuration.file}
-                                                      : configuration.segmenter.location,
-        "the segmenter is 'none', which finds nothing; choose one under 'segmenter:', such as 'onnx'");
-  CreationContext context = context_of_source(configuration);
-  auto source = registry.create<FrameSource>(configuration.source.name, configuration.source.values, context);
-  const SourceDescription description = source->describe();
-  std::vector<Diagnostic> diagnostics;
-  context.camera = resolve_camera(configuration, description, diagnostics);
-  context.class_names = description.class_names;
-  if (!diagnostics.empty()) throw ConfigurationError(std::move(diagnostics));
-  auto segmenter = registry.create<Segmenter>(configuration.segmenter.name, configuration.segmenter.values, context);
-  return {std::move(source), std::move(segmenter)};
+PipelineBuilder& PipelineBuilder::camera(const Camera& camera) {
+  parts_.camera = camera;
+  has_camera_ = true;
+  return *this;
+}
+PipelineBuilder& PipelineBuilder::camera(const std::string& name) {
+  if (const std::optional<Camera> known = find_camera(name)) return camera(*known);
+  complain(place_, "camera '" + name + "' is unknown; " + did_you_mean(name, camera_names()));
+  return camera(Camera{});
+}
+PipelineBuilder& PipelineBuilder::source(const SourceDescription& description) {
+  source_camera_ = description.camera;
+  source_name_ = description.name;
+  has_depth_ = description.has_depth;
+  context_.class_names = description.class_names;
+  return *this;
+}
+
+PipelineBuilder& PipelineBuilder::features(ModuleOf<FeatureExtractor> module) {
+  features_ = std::move(module);
+  return *this;
+}
+PipelineBuilder& PipelineBuilder::optimizer(ModuleOf<Optimizer> module) {
+  optimizer_ = std::move(module);
+  return *this;
+}
+PipelineBuilder& PipelineBuilder::segmenter(ModuleOf<Segmenter> module) {
+  segmenter_ = std::move(module);
+  return *this;
+}
+PipelineBuilder& PipelineBuilder::loop_detector(ModuleOf<LoopDetector> module) {
+  loop_detector_ = std::move(module);
+  return *this;
+}
+PipelineBuilder& PipelineBuilder::filter(ModuleOf<DynamicFilter> module) {
+  filters_.push_back(std::move(module));
+  return *this;
+}
+PipelineBuilder& PipelineBuilder::observer(ModuleOf<Observer> module) {
+  observers_.push_back(std::move(module));
+  return *this;
+}
+
+PipelineBuilder& PipelineBuilder::tracking(const TrackingSettings& settings) {
+  parts_.tracking = settings;
+  return *this;
+}
+PipelineBuilder& PipelineBuilder::segmentation(const SegmentationSettings& settings) {
+  parts_.segmentation = settings;
+  return *this;
+}
+PipelineBuilder& PipelineBuilder::evidence(const EvidenceSettings& settings) {
+  parts_.evidence = settings;
+  return *this;
+}
+PipelineBuilder& PipelineBuilder::mapping(const MappingSettings& settings) {
+  parts_.mapping = settings;
+  return *this;
+}
+PipelineBuilder& PipelineBuilder::loop_closing(const LoopClosingSettings& settings) {
+  parts_.loop_closing = settings;
+  return *this;
+}
+PipelineBuilder& PipelineBuilder::dense_map(const DenseMapSettings& settings) {
+  parts_.dense_map = settings;
+  return *this;
+}
+
+PipelineBuilder& PipelineBuilder::seed(std::uint64_t seed) {
+  parts_.seed = context_.seed = seed;
+  return *this;
+}
+PipelineBuilder& PipelineBuilder::threads(const ThreadSettings& settings) {
+  parts_.threads = settings;
+  context_.sequential = !settings.threaded;
+  return *this;
+}
+PipelineBuilder& PipelineBuilder::output_directory(std::filesystem::path folder) {
+  context_.output_directory = std::move(folder);
+  return *this;
+}
+PipelineBuilder& PipelineBuilder::map(Map map) {
+  parts_.map = std::move(map);
+  has_map_ = true;
+  return *this;
+}
+PipelineBuilder& PipelineBuilder::localise_in(Map map) {
+  parts_.localise_only = true;
+  return this->map(std::move(map));
+}
+
+void PipelineBuilder::complain(const SourceLocation& place, std::string message) {
+  diagnostics_.push_back({place.file.empty() ? place_ : place, std::move(message)});
+}
+
+template <class Interface>
+std::unique_ptr<Interface> PipelineBuilder::make(ModuleOf<Interface>& module) {
+  if (module.object) return std::move(module.object);
+  const std::string owner = std::string(Interface::kind) + " '" + module.name + "'";
+  const ModuleEntry* entry = registry_.find(Interface::kind, module.name);
+  if (entry == nullptr) {
+    complain(module.place, owner + " is unknown; " + did_you_mean(module.name, registry_.names(Interface::kind)));
+    return nullptr;
+  }
+  const std::size_t before = diagnostics_.size();
+  const ParameterValues values = check_parameters(module.values, entry->parameters, owner,
+                                                  module.place.file.empty() ? place_ : module.place, diagnostics_);
+  if (diagnostics_.size() > before) return nullptr;
+  return registry_.create<Interface>(module.name, values, context_);
+}
+
+template <class Interface>
+std::unique_ptr<Interface> PipelineBuilder::make_if_any(std::optional<ModuleOf<Interface>>& module) {
+  return module ? make(*module) : nullptr;
+}
+
+template <class Settings>
+void PipelineBuilder::check(const Settings& settings, const char* section) {
+  const ParameterTable<Settings> table;
+  check_parameters(table.values(settings), table.parameters(), section, place_, diagnostics_);
+}
+
+void PipelineBuilder::check_camera() {
+  if (source_camera_ && has_camera_ && have_other_numbers(*source_camera_, parts_.camera))
+    complain(source_place_, "the source '" + source_name_ +
+                                "' brings its own camera, and camera() says something else; remove one of them");
+  if (source_camera_) parts_.camera = *source_camera_;
+  if (!source_camera_ && !has_camera_)
+    complain(place_, "the camera is missing; call camera() with numbers or a known name, or source()");
+  context_.camera = parts_.camera;
+}
+
+void PipelineBuilder::check_filter(const ModuleOf<DynamicFilter>& module, const Needs& needs) {
+  if (needs.depth && !has_depth_)
+    complain(module.place, "the filter '" + module.name + "' needs depth, which the source '" + source_name_ +
+                               "' does not have; remove one of them");
+  if (needs.segmentation && is_absent(segmenter_))
+    complain(module.place,
+             "the filter '" + module.name + "' needs a segmentation, but the segmenter is 'none'; choose a segmenter");
+}
+
+/// A map can only be continued by the camera that made it: bundle adjustment knows one camera.
+void PipelineBuilder::check_map() const {
+  if (parts_.map.keyframes().empty())
+    throw InputError({map_name_}, "is a map without keyframes; expected one that a run has saved");
+  parts_.map.keyframes().for_each([&](KeyFrameId, const KeyFrame& keyframe) {
+    if (have_other_numbers(*keyframe.frame.camera, parts_.camera))
+      throw InputError({map_name_}, "was made with the camera '" + keyframe.frame.camera->name +
+                                        "', and the run has '" + parts_.camera.name +
+                                        "' with other numbers; expected the same camera");
+  });
+}
+
+Pipeline PipelineBuilder::build() {
+  check_camera();
+  if (!features_) complain(place_, "features() is missing; choose an extractor, such as 'orb'");
+  if (!optimizer_) complain(place_, "optimizer() is missing; choose one, such as 'ceres'");
+  check(parts_.tracking, "tracking");
+  check(parts_.segmentation, "segmentation");
+  check(parts_.evidence, "evidence");
+  check(parts_.mapping, "mapping");
+  check(parts_.loop_closing, "loop_closing");
+  check(parts_.dense_map, "dense_map");
+
+  parts_.features = make_if_any(features_);
+  parts_.segmenter = make_if_any(segmenter_);
+  parts_.optimizer = make_if_any(optimizer_);
+  parts_.loop_detector = make_if_any(loop_detector_);
+  for (ModuleOf<DynamicFilter>& module : filters_) {
+    std::unique_ptr<DynamicFilter> filter = make(module);
+    if (filter) check_filter(module, filter->needs());
+    parts_.filters.emplace_back(module.name, std::move(filter));
+  }
+  for (ModuleOf<Observer>& module : observers_) parts_.observers.push_back(make(module));
+  if (!has_depth_)
+    complain(source_place_,
+             "the source '" + source_name_ + "' has no depth; this version tracks colour with depth only");
+  if (has_map_ && is_absent(loop_detector_))
+    complain(loop_detector_ ? loop_detector_->place : place_,
+             "a camera in a loaded map finds its place by place recognition, but the loop detector is 'none'; choose "
+             "one, such as 'loop_detector: { flann: {} }'");
+  if (!diagnostics_.empty()) throw ConfigurationError(std::move(diagnostics_));
+  if (has_map_) check_map();
+  return Pipeline(std::move(parts_));
 }
 
 }  // namespace holdfast

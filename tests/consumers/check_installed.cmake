@@ -6,10 +6,18 @@ set(build ${WORK_FOLDER}/installed)
 configure(${CMAKE_CURRENT_LIST_DIR}/installed ${build} -DCMAKE_PREFIX_PATH=${WORK_FOLDER}/moved)
 run(COMMAND ${CMAKE_COMMAND} --build ${build})
 run(COMMAND ${build}/consumer)
+check_libraries(${build}/consumer)
 
 if(EXISTS ${BUILD_FOLDER}/bin/holdfast)
   run(COMMAND ${WORK_FOLDER}/moved/bin/holdfast modules OUTPUT modules)
   if(NOT modules MATCHES "opencv_orb")
     message(FATAL_ERROR "the installed program does not know its modules:\n${modules}")
   endif()
+  check_libraries(${WORK_FOLDER}/moved/bin/holdfast)
 endif()
+
+# Shared libraries, where there are any.
+file(GLOB_RECURSE libraries ${WORK_FOLDER}/moved/libholdfast*.so)
+foreach(library IN LISTS libraries)
+  check_libraries(${library})
+endforeach()

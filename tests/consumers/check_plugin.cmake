@@ -18,3 +18,15 @@ execute_process(COMMAND ${CMAKE_COMMAND} -E env HOLDFAST_PLUGIN_PATH=${WORK_FOLD
 if(NOT result EQUAL 5 OR NOT message MATCHES "upper_half" OR NOT message MATCHES "${WORK_FOLDER}")
   message(FATAL_ERROR "a plugin that is not there gave ${result}: ${message}")
 endif()
+
+# The installed program, which knows nothing of them, runs a segmenter and a filter of theirs.
+if(EXISTS ${BUILD_FOLDER}/bin/holdfast)
+  run(COMMAND ${CMAKE_COMMAND} -E env HOLDFAST_PLUGIN_PATH=${build} ${WORK_FOLDER}/moved/bin/holdfast
+              run ${CMAKE_CURRENT_LIST_DIR}/plugin/run.yaml --output ${build}/out OUTPUT output)
+  file(STRINGS ${build}/out/trajectory.txt poses REGEX "^[0-9]")
+  list(LENGTH poses number)
+  file(READ ${build}/out/config.yaml resolved)
+  if(NOT number EQUAL 12 OR NOT resolved MATCHES "${build}/libdark_things.so")
+    message(FATAL_ERROR "a run with plugins gave ${number} poses with the configuration\n${resolved}\n${output}")
+  endif()
+endif()

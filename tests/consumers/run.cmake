@@ -15,13 +15,36 @@ function(run)
   endif()
 endfunction()
 
-# configure(SOURCE BUILD [argument ...]): from nothing, with the compiler of the build under test. No build type:
-# unoptimised code compiles fastest, and consumers need not build as we do.
+# configure(SOURCE BUILD [argument ...] [OUTPUT variable]): from nothing, with the compiler of the build under test. No
+# build type: unoptimised code compiles fastest, and consumers need not build as we do.
 function(configure source build)
+  cmake_parse_arguments(PARSE_ARGV 2 arg "" "OUTPUT" "")
   file(REMOVE_RECURSE ${build})
   set(launcher "")
   if(CCACHE)
     set(launcher -DCMAKE_CXX_COMPILER_LAUNCHER=${CCACHE})
   endif()
-  run(COMMAND ${CMAKE_COMMAND} -S ${source} -B ${build} -G Ninja -DCMAKE_CXX_COMPILER=${CXX} ${launcher} ${ARGN})
+  run(COMMAND ${CMAKE_COMMAND} -S ${source} -B ${build} -G Ninja -DCMAKE_CXX_COMPILER=${CXX} ${launcher}
+              ${arg_UNPARSED_ARGUMENTS} OUTPUT output)
+  if(arg_OUTPUT)
+    set(${arg_OUTPUT} "${output}" PARENT_SCOPE)
+  endif()
+endfunction()
+
+# check_libraries(FILE): what a program or library loads lies neither where Holdfast was built nor in its sources, and
+# all of it is found.
+function(check_libraries file)
+  run(COMMAND ldd ${file} OUTPUT libraries)
+  foreach(folder IN ITEMS ${HOLDFAST_FOLDER}/modules ${HOLDFAST_FOLDER}/plugins ${BUILD_FOLDER}/modules
+                          ${BUILD_FOLDER}/plugins ${WORK_FOLDER}/first "not found")
+    string(FIND "${libraries}" "${folder}" position)
+    if(NOT position EQUAL -1)
+      message(FATAL_ERROR "${file} loads what it must not, or misses it (${folder}):\n${libraries}")
+    endif()
+  endforeach()
+  run(COMMAND readelf --dynamic ${file} OUTPUT entries)
+  string(FIND "${entries}" "${BUILD_FOLDER}/modules" position)
+  if(NOT position EQUAL -1)
+    message(FATAL_ERROR "${file} looks for libraries where Holdfast was built:\n${entries}")
+  endif()
 endfunction()

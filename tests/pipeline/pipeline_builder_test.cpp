@@ -4,191 +4,184 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "holdfast/core/error.hpp"
+#include <atomic>
+#include <thread>
+
+#include "holdfast/settings/ceres.hpp"
+#include "support/brute_force_detector.hpp"
+#include "support/point_world.hpp"
+
+extern "C" void holdfast_register_plugin_ceres(holdfast::Registry&);
 
 namespace holdfast {
 namespace {
 
 using ::testing::HasSubstr;
 
-/// What the fake modules say of themselves, and what they were told.
-struct World {
-  SourceDescription source;
-  Needs needs;
-  std::vector<CreationContext> told;
-};
-
-class FakeSource final : public FrameSource {
- public:
-  explicit FakeSource(SourceDescription description) : description_(std::move(description)) {}
-  SourceDescription describe() const override { return description_; }
-  std::optional<SensorFrame> next() override { return std::nullopt; }
-
- private:
-  SourceDescription description_;
-};
-
-class FakeFeatures final : public FeatureExtractor {
- public:
-  void extract(const cv::Mat&, const cv::Mat&, Features&) override {}
-  const ScalePyramid& pyramid() const override { return pyramid_; }
-
- private:
-  ScalePyramid pyramid_;
-};
-
-class FakeFilter final : public DynamicFilter {
- public:
-  explicit FakeFilter(Needs needs) : needs_(needs) {}
-  Needs needs() const override { return needs_; }
-  void apply(const FilterContext&, StaticEvidence&) override {}
-
- private:
-  Needs needs_;
-};
-
-class FakeSegmenter final : public Segmenter {
- public:
-  const std::vector<std::string>& classes() const override { return classes_; }
-  Segmentation segment(const SensorFrame&) override { return {}; }
-
- private:
-  std::vector<std::string> classes_;
-};
-
-class FakeOptimizer final : public Optimizer {
- public:
-  PoseSummary optimize_pose(PoseProblem&) override { return {}; }
-  BundleSummary optimize_bundle(BundleProblem&, const std::atomic<bool>&) override { return {}; }
-  GraphSummary optimize_pose_graph(PoseGraphProblem&) override { return {}; }
-};
-
-template <class Interface, class Make>
-void add(Registry& registry, const char* name, Make make) {
-  registry.add<Interface, NoSettings>({.name = name}, [make](const NoSettings&, const CreationContext& context) {
-    return std::unique_ptr<Interface>(make(context));
-  });
+Registry registry() {
+  Registry registry;
+  holdfast_register_plugin_ceres(registry);
+  return registry;
 }
 
-class PipelineBuilder : public ::testing::Test {
- protected:
-  PipelineBuilder() {
-    world_.source.name = "fake";
-    world_.source.has_depth = true;
-    World& world = world_;
-    add<FrameSource>(registry_, "fake", [&world](const CreationContext& context) {
-      world.told.push_back(context);
-      return std::make_unique<FakeSource>(world.source);
-    });
-    add<FeatureExtractor>(registry_, "fake", [&world](const CreationContext& context) {
-      world.told.push_back(context);
-      return std::make_unique<FakeFeatures>();
-    });
-    add<DynamicFilter>(registry_, "filter",
-                       [&world](const CreationContext&) { return std::make_unique<FakeFilter>(world.needs); });
-    add<Segmenter>(registry_, "none", [](const CreationContext&) { return std::make_unique<NullSegmenter>(); });
-    add<Segmenter>(registry_, "fake", [](const CreationContext&) { return std::make_unique<FakeSegmenter>(); });
-    add<LoopDetector>(registry_, "none", [](const CreationContext&) { return std::make_unique<NullLoopDetector>(); });
-    add<Optimizer>(registry_, "fake", [](const CreationContext&) { return std::make_unique<FakeOptimizer>(); });
-  }
-
-  BuiltPipeline build(const std::string& more) {
-    const std::string text = "source: fake\nfeatures: fake\noptimizer: fake\n" + more;
-    const ConfigurationNode root = parse_yaml(text, "c.yaml", "/");
-    RunOptions options;
-    options.output_directory = "/out";
-    return build_pipeline(resolve_configuration(root, "c.yaml", registry_, pipeline_sections()), registry_, options);
-  }
-  std::string complaints(const std::string& more) {
-    try {
-      build(more);
-    } catch (const ConfigurationError& error) {
-      return error.what();
-    }
-    return "";
-  }
-
-  World world_;
-  Registry registry_;
-};
-
-TEST_F(PipelineBuilder, TellsTheModulesAboutTheRun) {
-  const BuiltPipeline built = build("camera: tum_fr2\nrun: { seed: 77 }\n");
-  ASSERT_EQ(world_.told.size(), 2U);
-  for (const CreationContext& context : world_.told) {
-    EXPECT_EQ(context.camera, find_camera("tum_fr2"));
-    EXPECT_EQ(context.seed, 77U);
-    EXPECT_TRUE(context.sequential);
-    EXPECT_EQ(context.output_directory, "/out");
-  }
-  EXPECT_EQ(built.pipeline.camera(), find_camera("tum_fr2"));
-  EXPECT_EQ(built.source->describe().name, "fake");
+PipelineBuilder builder_for(test::PointWorld& world) {
+  PipelineBuilder builder(registry());
+  builder.camera(world.camera())
+      .features(std::make_unique<test::PointExtractor>(world, 0.3))
+      .optimizer(CeresSettings{});
+  return builder;
 }
 
-TEST_F(PipelineBuilder, TheCameraComesFromOneOfBoth) {
-  EXPECT_THAT(complaints(""), HasSubstr("c.yaml: section 'camera' is missing, and the source 'fake' does not know its "
-                                        "camera; expected a name (bonn, "));
-  world_.source.camera = find_camera("tum_fr3");
-  EXPECT_EQ(build("").pipeline.camera(), find_camera("tum_fr3"));
-  EXPECT_EQ(world_.told.back().camera, find_camera("tum_fr3"));  // the features are made for it
-  EXPECT_THAT(complaints("camera: tum_fr1\n"),
-              HasSubstr("the source 'fake' brings its own camera, and the section 'camera' says something else"));
+Trajectory run(Pipeline& pipeline, test::PointWorld& world, int frames) {
+  for (int i = 0; i < frames; ++i)
+    pipeline.feed(world.frame(static_cast<std::uint64_t>(i), i / 30.0, test::path_pose(i / 30.0)));
+  pipeline.finish();
+  return pipeline.trajectory();
 }
 
-TEST_F(PipelineBuilder, BothMaySayTheSameCamera) {
-  world_.source.camera = find_camera("tum_fr3");
-  EXPECT_EQ(complaints("camera: tum_fr3\n"), "");
-  // By numbers alone: the name does not matter.
-  CameraSettings settings = camera_settings(*world_.source.camera);
-  settings.name.clear();
-  const ParameterValues values = ParameterTable<CameraSettings>().values(settings);
-  std::string numbers = "camera:\n";
-  for (const auto& [name, value] : values) numbers += "  " + name + ": " + to_string(value) + "\n";
-  EXPECT_EQ(complaints(numbers), "");
-  world_.source.camera->fx += 1e-6;
-  EXPECT_NE(complaints(numbers), "");
-}
-
-TEST_F(PipelineBuilder, FiltersGetWhatTheyNeed) {
-  const std::string filter = "camera: tum_fr1\nfilters: [ filter ]\n";
-  EXPECT_EQ(complaints(filter), "");
-  world_.needs.segmentation = true;
-  EXPECT_THAT(complaints(filter),
-              HasSubstr("c.yaml:5:12: the filter 'filter' needs a segmentation, but the segmenter is 'none'"));
-  EXPECT_EQ(complaints(filter + "segmenter: fake\n"), "");
-}
-
-TEST_F(PipelineBuilder, DepthIsNeeded) {
-  world_.source.has_depth = false;
-  EXPECT_THAT(complaints("camera: tum_fr1\n"), HasSubstr("c.yaml:1:9: the source 'fake' has no depth"));
-  world_.needs.depth = true;
-  EXPECT_THAT(complaints("camera: tum_fr1\nfilters: [ filter ]\n"),
-              HasSubstr("c.yaml:5:12: the filter 'filter' needs depth, which the source 'fake' does not have"));
-}
-
-TEST_F(PipelineBuilder, TellsAllMisfitsAtOnce) {
-  world_.source.has_depth = false;
-  world_.needs = {.depth = true, .segmentation = true};
+std::string complaints(PipelineBuilder& builder) {
   try {
-    build("filters: [ filter, filter ]\n");
-    FAIL();
+    builder.build();
   } catch (const ConfigurationError& error) {
-    EXPECT_EQ(error.diagnostics().size(), 6U) << error.what();  // no camera, two for each filter, no depth
+    return error.what();
   }
+  return "";
 }
 
-TEST_F(PipelineBuilder, DescribesItsSections) {
-  std::vector<std::string> names;
-  for (const SectionDescription& section : pipeline_sections()) {
-    names.push_back(section.name);
-    EXPECT_FALSE(section.help.empty());
-    for (const Parameter& parameter : section.parameters) {
-      EXPECT_FALSE(parameter.help.empty()) << parameter.name;
-      EXPECT_FALSE(parameter.reject(parameter.default_value).has_value()) << parameter.name;
-    }
+void expect_same(const Trajectory& first, const Trajectory& second) {
+  ASSERT_EQ(first.size(), second.size());
+  for (std::size_t i = 0; i < first.size(); ++i)
+    EXPECT_EQ(first[i].T_world_camera.matrix(), second[i].T_world_camera.matrix()) << i;
+}
+
+/// Needs masks; says nothing.
+class MaskReader final : public DynamicFilter {
+ public:
+  Needs needs() const override { return {.segmentation = true}; }
+  void apply(const FilterContext&, StaticEvidence&) override {}
+};
+
+TEST(PipelineBuilder, TypedSettingsNamesAndObjectsAreOneThing) {
+  const auto trajectory = [](ModuleOf<Optimizer> optimizer) {
+    test::PointWorld world(find_camera("tum_fr1").value());
+    PipelineBuilder builder = builder_for(world);
+    Pipeline pipeline = builder.optimizer(std::move(optimizer)).build();
+    return run(pipeline, world, 20);
+  };
+  const Trajectory typed = trajectory(CeresSettings{.pose_rounds = 2, .function_tolerance = 0.0});
+  ASSERT_EQ(typed.size(), 20U);
+  // An integer is as good as a real.
+  expect_same(typed, trajectory({"ceres", {{"pose_rounds", 2}, {"function_tolerance", 0}}}));
+  expect_same(typed, trajectory(registry().create<Optimizer>(
+                         "ceres", {{"pose_rounds", std::int64_t{2}}, {"function_tolerance", 0.0}}, {})));
+  EXPECT_NE(typed.back().T_world_camera.matrix(), trajectory("ceres").back().T_world_camera.matrix());
+}
+
+TEST(PipelineBuilder, TellsEverythingThatIsWrongAtOnce) {
+  PipelineBuilder builder(registry());
+  builder.camera("tum_fr9")
+      .optimizer({"cerse"})
+      .filter({std::make_unique<MaskReader>(), "mask_reader"})
+      .tracking({.minimum_matches = 2});
+  const std::string text = complaints(builder);
+  EXPECT_THAT(text, HasSubstr("PipelineBuilder: camera 'tum_fr9' is unknown; did you mean 'tum_fr"));
+  EXPECT_THAT(text, HasSubstr("PipelineBuilder: features() is missing"));
+  EXPECT_THAT(text, HasSubstr("PipelineBuilder: optimizer 'cerse' is unknown; did you mean 'ceres'?"));
+  EXPECT_THAT(text, HasSubstr("found 2 for 'minimum_matches' of tracking: 2 is below 4; expected an integer from 4"));
+  EXPECT_THAT(text, HasSubstr("the filter 'mask_reader' needs a segmentation, but the segmenter is 'none'"));
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 4) << text;
+}
+
+TEST(PipelineBuilder, ParametersAreCheckedByTheirTable) {
+  test::PointWorld world(Camera{});
+  PipelineBuilder typed = builder_for(world);
+  EXPECT_THAT(complaints(typed.optimizer(CeresSettings{.pose_rounds = 40})),
+              HasSubstr("found 40 for 'pose_rounds' of optimizer 'ceres': 40 is above 10; expected an integer from 2"));
+  PipelineBuilder named = builder_for(world);
+  const std::string text = complaints(named.optimizer({"ceres", {{"pose_round", 4}, {"function_tolerance", "small"}}}));
+  EXPECT_THAT(text, HasSubstr("optimizer 'ceres' has no parameter 'pose_round'; did you mean 'pose_rounds'?"));
+  EXPECT_THAT(text, HasSubstr("found small for 'function_tolerance' of optimizer 'ceres': small is no real"));
+}
+
+TEST(PipelineBuilder, CameraAndMapMustFit) {
+  test::PointWorld world(find_camera("tum_fr1").value());
+  PipelineBuilder none(registry());
+  EXPECT_THAT(complaints(none), HasSubstr("the camera is missing; call camera()"));
+
+  SourceDescription source;
+  source.name = "robot";
+  source.camera = find_camera("tum_fr2");
+  source.has_depth = false;
+  PipelineBuilder two = builder_for(world);
+  const std::string text = complaints(two.source(source));
+  EXPECT_THAT(text, HasSubstr("the source 'robot' brings its own camera, and camera() says something else"));
+  EXPECT_THAT(text, HasSubstr("the source 'robot' has no depth"));
+
+  Map map;
+  {
+    PipelineBuilder builder = builder_for(world);
+    Pipeline pipeline = builder.build();
+    run(pipeline, world, 10);
+    map = pipeline.take_map();
   }
-  EXPECT_THAT(names,
-              ::testing::ElementsAre("tracking", "segmentation", "evidence", "mapping", "loop_closing", "dense_map"));
+  PipelineBuilder blind = builder_for(world);
+  EXPECT_THAT(complaints(blind.map(Map())), HasSubstr("but the loop detector is 'none'"));
+  PipelineBuilder other = builder_for(world);
+  other.camera("tum_fr3").localise_in(std::move(map)).loop_detector(std::make_unique<test::BruteForceDetector>());
+  EXPECT_THROW(other.build(), InputError);
+}
+
+TEST(PipelineBuilder, TwoPipelinesInOneProcessShareNothing) {
+  const auto alone = [](int frames) {
+    test::PointWorld world(find_camera("tum_fr1").value());
+    PipelineBuilder builder = builder_for(world);
+    Pipeline pipeline = builder.build();
+    return run(pipeline, world, frames);
+  };
+  const Trajectory first = alone(40), second = alone(60);
+  Trajectory first_beside, second_beside;
+  std::thread other([&] { second_beside = alone(60); });
+  first_beside = alone(40);
+  other.join();
+  expect_same(first, first_beside);
+  expect_same(second, second_beside);
+}
+
+TEST(PipelineBuilder, SnapshotsOfTheMapWhileItGrows) {
+  for (const bool threaded : {true, false}) {
+    test::PointWorld world(find_camera("tum_fr1").value());
+    PipelineBuilder builder = builder_for(world);
+    Pipeline pipeline =
+        builder.loop_detector(std::make_unique<test::BruteForceDetector>()).threads({.threaded = threaded}).build();
+    std::atomic<bool> ended = false;
+    std::size_t most_keyframes = 0;
+    std::thread watcher([&] {
+      while (!ended) {
+        const MapSnapshot snapshot = pipeline.map_snapshot();
+        for (std::size_t i = 1; i < snapshot.keyframes.size(); ++i)
+          EXPECT_LT(snapshot.keyframes[i - 1].sequence, snapshot.keyframes[i].sequence);
+        for (const MapSnapshot::Point& point : snapshot.points) {
+          EXPECT_TRUE(point.position.allFinite());
+          EXPECT_GT(point.observations, 0U);
+        }
+        most_keyframes = std::max(most_keyframes, snapshot.keyframes.size());
+      }
+    });
+    run(pipeline, world, 60);
+    ended = true;
+    watcher.join();
+
+    const MapSnapshot last = pipeline.map_snapshot();
+    ASSERT_EQ(last.keyframes.size(), pipeline.map().keyframes().size());
+    EXPECT_GE(last.keyframes.size(), 2U);
+    EXPECT_EQ(last.points.size(), pipeline.map().points().size());
+    const KeyFrame& keyframe = pipeline.map().keyframe(last.keyframes.back().id);
+    EXPECT_EQ(last.keyframes.back().timestamp, keyframe.frame.timestamp);
+    EXPECT_EQ(last.keyframes.back().T_world_camera.matrix(), keyframe.frame.T_world_camera().matrix());
+    const MapPoint& point = pipeline.map().point(last.points.front().id);
+    EXPECT_EQ(last.points.front().position, point.position);
+    EXPECT_EQ(last.points.front().observations, point.observations.size());
+  }
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include "holdfast/dense_map/static_scene.hpp"
 #include "holdfast/pipeline/pipeline.hpp"
 #include "holdfast/plugin/registry.hpp"
 #include "support/point_world.hpp"

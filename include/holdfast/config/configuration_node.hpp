@@ -20,7 +20,7 @@ struct ConfigurationNode {
   std::string text = {};                      ///< of a scalar
   bool quoted = false;                        ///< the scalar stands in quotes, so it is a text whatever it looks like
   std::vector<ConfigurationNode> items = {};  ///< of a list
-  std::vector<Entry> entries = {};            ///< of a map, in the order of the file
+  std::vector<Entry> entries;                 ///< of a map, in the order of the file
 
   /// The value of a key, or nullptr.
   ConfigurationNode* find(const std::string& key);

@@ -10,8 +10,9 @@
 #include "holdfast/core/camera.hpp"
 #include "holdfast/core/frame_result.hpp"
 #include "holdfast/core/map.hpp"
+#include "holdfast/core/map_snapshot.hpp"
 #include "holdfast/core/trajectory.hpp"
-#include "holdfast/dense_map/static_scene.hpp"
+#include "holdfast/dense_map/dense_map_settings.hpp"
 #include "holdfast/interfaces/all.hpp"
 #include "holdfast/loop_closing/loop_closer.hpp"
 #include "holdfast/mapping/local_mapper.hpp"
@@ -19,11 +20,11 @@
 #include "holdfast/pipeline/worker.hpp"
 #include "holdfast/segmentation/segmentation_settings.hpp"
 #include "holdfast/tracking/evidence_settings.hpp"
-#include "holdfast/tracking/filter_chain.hpp"
-#include "holdfast/tracking/tracker.hpp"
 #include "holdfast/tracking/tracking_settings.hpp"
 
 namespace holdfast {
+
+class StaticScene;
 
 /// How a pipeline uses threads.
 struct ThreadSettings {
@@ -75,7 +76,7 @@ struct LoopRecord {
 /// gives the same bits on every run. Threaded mode: feed() tracks the frame and inserts keyframes; local mapping, loop
 /// closing, full bundle adjustment and segmentation have threads of their own, and tracking waits for none of them
 /// except, unpaced, for room in the queue of keyframes. One thread at a time calls feed(), finish() and the rest, all
-/// but interrupt().
+/// but interrupt() and map_snapshot().
 class Pipeline {
  public:
   /// Throws CheckError when a required part is missing.
@@ -100,6 +101,9 @@ class Pipeline {
   Trajectory trajectory() const;
   /// Poses of the keyframes in the map, by time.
   Trajectory keyframe_trajectory() const;
+  /// Keyframes, points and loops as they are now, copied between two steps of whoever works on the map: frames and
+  /// background work go on. From any thread, in both modes. Tracking waits for the copy, about 2 ms for 50000 points.
+  MapSnapshot map_snapshot() const;
   /// In threaded mode only after finish().
   const Map& map() const;
   /// Hands the map over and leaves an empty one; nothing else may be called but the destructor.

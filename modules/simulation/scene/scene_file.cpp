@@ -170,7 +170,8 @@ class SceneReader {
       return;
     }
     const std::string& name = named ? item.text : item.entries[0].key;
-    const ConfigurationNode node = named ? ConfigurationNode{.location = item.location} : item.entries[0].value;
+    const ConfigurationNode node =
+        named ? ConfigurationNode{.location = item.location, .entries = {}} : item.entries[0].value;
     const std::string owner = "the action '" + name + "'";
     if (name == "walk") {
       const auto record = read_record<WalkRecord>(node, owner);

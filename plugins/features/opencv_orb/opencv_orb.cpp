@@ -9,6 +9,7 @@
 #include <opencv2/features2d.hpp>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/plugin/parameter_table.hpp"
 
 namespace holdfast {
 

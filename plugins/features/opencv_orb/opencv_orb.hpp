@@ -8,22 +8,13 @@
 
 #include "holdfast/core/module.hpp"
 #include "holdfast/interfaces/feature_extractor.hpp"
-#include "holdfast/plugin/parameter_table.hpp"
+#include "holdfast/settings/opencv_orb.hpp"
 
 namespace cv {
 class ORB;
 }
 
 namespace holdfast {
-
-struct OpencvOrbSettings {
-  int count = 1000;
-  double scale_factor = 1.2;
-  int levels = 8;
-  int fast_threshold = 20;
-
-  static void describe(ParameterTable<OpencvOrbSettings>& table);
-};
 
 /// OpenCV's ORB (Rublee et al., ICCV 2011) behind our interface: features by Harris response over the whole image, with
 /// no care for an even spread. A yardstick, and the proof that extractors can be swapped. `count` may be exceeded by

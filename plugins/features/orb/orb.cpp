@@ -9,6 +9,7 @@
 #include "brief.hpp"
 #include "detector.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/plugin/parameter_table.hpp"
 #include "kernels.hpp"
 #include "orientation.hpp"
 #include "pyramid.hpp"

@@ -6,22 +6,9 @@
 #include "holdfast/core/module.hpp"
 #include "holdfast/core/simd.hpp"
 #include "holdfast/interfaces/feature_extractor.hpp"
-#include "holdfast/plugin/parameter_table.hpp"
+#include "holdfast/settings/orb.hpp"
 
 namespace holdfast {
-
-struct OrbSettings {
-  int count = 1000;
-  int levels = 8;
-  double scale_factor = 1.2;
-  int fast_threshold = 20;
-  int fast_threshold_low = 7;
-  int cell_size = 32;
-  double spread = 0.4;
-  bool subpixel = true;
-
-  static void describe(ParameterTable<OrbSettings>& table);
-};
 
 /// ORB features, evenly spread (README.md): FAST corners of an image pyramid, orientation by intensity centroid,
 /// steered BRIEF of 256 bits. Positions are of the full image, at sub-pixel accuracy; no feature lies within 19 pixels

@@ -5,7 +5,7 @@
 
 HOLDFAST_PLUGIN(orb, registry) {
   registry.add<holdfast::FeatureExtractor, holdfast::OrbExtractor, holdfast::OrbSettings>(
-      {.name = "orb",
+      {.name = holdfast::OrbSettings::module,
        .summary = "ORB, evenly spread: FAST corners of a pyramid with a fallback threshold, steered BRIEF of 256 bits.",
        .paper = "Rublee, Rabaud, Konolige, Bradski: ORB: an efficient alternative to SIFT or SURF. ICCV 2011; spread: "
                 "Mur-Artal, Montiel, Tardos: ORB-SLAM. IEEE Transactions on Robotics 31(5), 2015"});

@@ -13,7 +13,7 @@ constexpr double least_share = 0.35;  // of the interval: in less time little mo
 
 }  // namespace
 
-DepthClusters::DepthClusters(const ClusterSettings& settings, const CreationContext& context)
+DepthClusters::DepthClusters(const DepthClustersSettings& settings, const CreationContext& context)
     : settings_(settings),
       maker_(context.camera),
       noise_{static_cast<float>(settings.noise), static_cast<float>(settings.noise_growth)},

@@ -7,8 +7,8 @@
 #include "cluster_scores.hpp"
 #include "holdfast/depth_blocks/depth_view.hpp"
 #include "holdfast/interfaces/dynamic_filter.hpp"
+#include "holdfast/settings/depth_clusters.hpp"
 #include "k_means.hpp"
-#include "settings.hpp"
 
 namespace holdfast::cluster_plugin {
 
@@ -24,7 +24,7 @@ using depth_blocks::ViewMaker;
 /// 2018, section IV. Keeps images and poses of the last frames. Statements are measurements.
 class DepthClusters final : public DynamicFilter {
  public:
-  DepthClusters(const ClusterSettings& settings, const CreationContext& context);
+  DepthClusters(const DepthClustersSettings& settings, const CreationContext& context);
 
   Needs needs() const override { return {.depth = true, .pose_prior = true}; }
   void apply(const FilterContext& context, StaticEvidence& evidence) override;
@@ -38,7 +38,7 @@ class DepthClusters final : public DynamicFilter {
   void inherit(const DepthView& now, const Eigen::Isometry3d& T_camera_world);
   void say(const Frame& frame, const DepthView& now, StaticEvidence& evidence) const;
 
-  ClusterSettings settings_;
+  DepthClustersSettings settings_;
   ViewMaker maker_;
   DepthNoise noise_;
   MotionCorrection correction_;

@@ -5,8 +5,8 @@
 
 HOLDFAST_PLUGIN(depth_clusters, registry) {
   using namespace holdfast;
-  registry.add<DynamicFilter, cluster_plugin::DepthClusters, cluster_plugin::ClusterSettings>(
-      {.name = "depth_clusters",
+  registry.add<DynamicFilter, cluster_plugin::DepthClusters, DepthClustersSettings>(
+      {.name = DepthClustersSettings::module,
        .summary = "Clusters of the depth image whose residuals under the camera's motion are large move.",
        .paper = "Jaimez, Kerl, Gonzalez-Jimenez, Cremers: Fast Odometry and Scene Flow from RGB-D Cameras based on "
                 "Geometric Clustering. ICRA 2017. Scona, Jaimez, Petillot, Fallon, Cremers: StaticFusion: Background "

@@ -8,7 +8,7 @@ namespace holdfast::epipolar_plugin {
 namespace {
 double focal_length(const Camera& camera) { return 0.5 * (camera.fx + camera.fy); }
 
-TwoViewOptions two_view_options(const EpipolarSettings& settings, const Camera& camera) {
+TwoViewOptions two_view_options(const EpipolarConsistencySettings& settings, const Camera& camera) {
   TwoViewOptions options;
   options.threshold = settings.threshold / focal_length(camera);
   options.parallax = settings.parallax / focal_length(camera);
@@ -27,7 +27,7 @@ Eigen::Vector2d undistorted_near(const Camera& camera, const Eigen::Vector2d& ra
 }
 }  // namespace
 
-EpipolarConsistency::EpipolarConsistency(const EpipolarSettings& settings, const CreationContext& context)
+EpipolarConsistency::EpipolarConsistency(const EpipolarConsistencySettings& settings, const CreationContext& context)
     : settings_(settings),
       camera_(context.camera),
       seed_(context.seed),

@@ -7,7 +7,7 @@
 #include "feature_flow.hpp"
 #include "holdfast/core/random.hpp"
 #include "holdfast/interfaces/dynamic_filter.hpp"
-#include "settings.hpp"
+#include "holdfast/settings/epipolar_consistency.hpp"
 #include "two_views.hpp"
 
 namespace holdfast::epipolar_plugin {
@@ -20,7 +20,7 @@ namespace holdfast::epipolar_plugin {
 /// its own, so it needs neither depth nor a pose nor a map. Same frames, same evidence.
 class EpipolarConsistency : public DynamicFilter {
  public:
-  EpipolarConsistency(const EpipolarSettings& settings, const CreationContext& context);
+  EpipolarConsistency(const EpipolarConsistencySettings& settings, const CreationContext& context);
 
   Needs needs() const override { return {}; }
   void apply(const FilterContext& context, StaticEvidence& evidence) override;
@@ -33,7 +33,7 @@ class EpipolarConsistency : public DynamicFilter {
   void choose_features(const Frame& frame);
   void collect_pairs(const Frame& frame, const StaticEvidence& evidence);
 
-  EpipolarSettings settings_;
+  EpipolarConsistencySettings settings_;
   Camera camera_;
   std::uint64_t seed_;
   FeatureFlow flow_;

@@ -5,8 +5,8 @@
 
 HOLDFAST_PLUGIN(epipolar_consistency, registry) {
   using namespace holdfast;
-  registry.add<DynamicFilter, epipolar_plugin::EpipolarConsistency, epipolar_plugin::EpipolarSettings>(
-      {.name = "epipolar_consistency",
+  registry.add<DynamicFilter, epipolar_plugin::EpipolarConsistency, EpipolarConsistencySettings>(
+      {.name = EpipolarConsistencySettings::module,
        .summary =
            "Features that leave their epipolar lines move; silent where the camera's motion gives no such lines.",
        .paper = "Yu, Liu, Liu, Xie, Yang, Wei, Fei: DS-SLAM: A semantic visual SLAM towards dynamic environments. IROS "

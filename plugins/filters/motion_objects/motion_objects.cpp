@@ -19,7 +19,7 @@ constexpr std::size_t most_points = 250;  // of a thing that are aligned
 
 }  // namespace
 
-MotionObjects::MotionObjects(const ObjectSettings& settings, const CreationContext& context)
+MotionObjects::MotionObjects(const MotionObjectsSettings& settings, const CreationContext& context)
     : settings_(settings),
       maker_(context.camera),
       noise_{depth_noise, depth_noise_growth},

@@ -9,10 +9,10 @@
 
 #include "holdfast/depth_blocks/depth_view.hpp"
 #include "holdfast/interfaces/dynamic_filter.hpp"
+#include "holdfast/settings/motion_objects.hpp"
 #include "object_track.hpp"
 #include "regions.hpp"
 #include "rigid_alignment.hpp"
-#include "settings.hpp"
 
 namespace holdfast::object_plugin {
 
@@ -26,7 +26,7 @@ namespace holdfast::object_plugin {
 /// thing; nothing is fused. Keeps images and poses of the last frames. Statements are measurements.
 class MotionObjects final : public DynamicFilter {
  public:
-  MotionObjects(const ObjectSettings& settings, const CreationContext& context);
+  MotionObjects(const MotionObjectsSettings& settings, const CreationContext& context);
 
   Needs needs() const override { return {.depth = true, .pose_prior = true, .matches = true}; }
   void apply(const FilterContext& context, StaticEvidence& evidence) override;
@@ -71,7 +71,7 @@ class MotionObjects final : public DynamicFilter {
   const ObjectTrack* find(std::uint32_t name) const { return const_cast<MotionObjects*>(this)->find(name); }
   Eigen::Vector3f point(int block) const;
 
-  ObjectSettings settings_;
+  MotionObjectsSettings settings_;
   depth_blocks::ViewMaker maker_;
   depth_blocks::DepthNoise noise_;
   RigidAlignment alignment_;

@@ -5,8 +5,8 @@
 
 HOLDFAST_PLUGIN(motion_objects, registry) {
   using namespace holdfast;
-  registry.add<DynamicFilter, object_plugin::MotionObjects, object_plugin::ObjectSettings>(
-      {.name = "motion_objects",
+  registry.add<DynamicFilter, object_plugin::MotionObjects, MotionObjectsSettings>(
+      {.name = MotionObjectsSettings::module,
        .summary = "Follows what moves, each thing with a rigid motion of its own, and reports it to observers.",
        .paper =
            "Ruenz, Agapito: Co-Fusion: Real-time Segmentation, Tracking and Fusion of Multiple Objects. ICRA 2017. "

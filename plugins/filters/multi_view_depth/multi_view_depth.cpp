@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "holdfast/plugin/plugin.hpp"
+
 namespace holdfast {
 
 namespace {
@@ -275,7 +277,7 @@ void MultiViewDepth::apply(const FilterContext& context, StaticEvidence& evidenc
 
 HOLDFAST_PLUGIN(multi_view_depth, registry) {
   registry.add<holdfast::DynamicFilter, holdfast::MultiViewDepth, holdfast::MultiViewDepthSettings>(
-      {.name = "multi_view_depth",
+      {.name = holdfast::MultiViewDepthSettings::module,
        .summary = "Compares the depth of the frame with that of keyframes: what stands where others saw through moves.",
        .paper = "Bescos, Facil, Civera, Neira: DynaSLAM: Tracking, Mapping and Inpainting in Dynamic Scenes. IEEE "
                 "Robotics and Automation Letters 3(4), 2018, section III-B"});

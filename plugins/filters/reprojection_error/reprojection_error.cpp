@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <bit>
 
+#include "holdfast/plugin/plugin.hpp"
+
 namespace holdfast {
 
 ReprojectionError::ReprojectionError(const ReprojectionErrorSettings& settings, const CreationContext&)
@@ -82,7 +84,7 @@ void ReprojectionError::apply(const FilterContext& context, StaticEvidence& evid
 
 HOLDFAST_PLUGIN(reprojection_error, registry) {
   registry.add<holdfast::DynamicFilter, holdfast::ReprojectionError, holdfast::ReprojectionErrorSettings>(
-      {.name = "reprojection_error",
+      {.name = holdfast::ReprojectionErrorSettings::module,
        .summary =
            "What lies far from its map point for several frames moves; silent when the pose may be what is wrong.",
        .paper =

@@ -6,39 +6,31 @@
 #include "holdfast/interfaces/dynamic_filter.hpp"
 #include "holdfast/plugin/did_you_mean.hpp"
 #include "holdfast/plugin/plugin.hpp"
+#include "holdfast/settings/semantic_mask.hpp"
 
 namespace holdfast {
 
+void SemanticMaskSettings::describe(ParameterTable<SemanticMaskSettings>& table) {
+  using S = SemanticMaskSettings;
+  table.add("classes", &S::classes, "names of the segmenter's classes that can move");
+  table
+      .add("dilate", &S::dilate,
+           "features this near to a mask belong to it, unless their depth says that they lie behind")
+      .range(0, 40)
+      .unit("px");
+  table.add("edge", &S::edge, "features this near to a mask belong to it, whatever their depth")
+      .range(0, 40)
+      .unit("px");
+  table.add("depth_margin", &S::depth_margin, "what is this much farther than the mask beside it lies behind")
+      .range(0, 10)
+      .unit("m");
+  table.add("movable_log_odds", &S::movable_log_odds, "said of a feature on a mask, times the mask's confidence")
+      .range(-20, 0);
+  table.add("background_log_odds", &S::background_log_odds, "said of all others, times the mask's confidence")
+      .range(0, 20);
+}
+
 namespace {
-
-struct SemanticMaskSettings {
-  std::vector<std::string> classes = {"person"};
-  int dilate = 10;
-  int edge = 4;
-  double depth_margin = 0.15;
-  double movable_log_odds = -4.0;
-  double background_log_odds = 0.5;
-
-  static void describe(ParameterTable<SemanticMaskSettings>& table) {
-    using S = SemanticMaskSettings;
-    table.add("classes", &S::classes, "names of the segmenter's classes that can move");
-    table
-        .add("dilate", &S::dilate,
-             "features this near to a mask belong to it, unless their depth says that they lie behind")
-        .range(0, 40)
-        .unit("px");
-    table.add("edge", &S::edge, "features this near to a mask belong to it, whatever their depth")
-        .range(0, 40)
-        .unit("px");
-    table.add("depth_margin", &S::depth_margin, "what is this much farther than the mask beside it lies behind")
-        .range(0, 10)
-        .unit("m");
-    table.add("movable_log_odds", &S::movable_log_odds, "said of a feature on a mask, times the mask's confidence")
-        .range(-20, 0);
-    table.add("background_log_odds", &S::background_log_odds, "said of all others, times the mask's confidence")
-        .range(0, 20);
-  }
-};
 
 /// "Movable" as a prior: features on masks of classes that can move.
 class SemanticMask final : public DynamicFilter {
@@ -153,7 +145,7 @@ class SemanticMask final : public DynamicFilter {
 
 HOLDFAST_PLUGIN(semantic_mask, registry) {
   registry.add<holdfast::DynamicFilter, holdfast::SemanticMask, holdfast::SemanticMaskSettings>(
-      {.name = "semantic_mask",
+      {.name = holdfast::SemanticMaskSettings::module,
        .summary = "What belongs to a class that can move is suspect; a prior, which measurements may overrule.",
        .paper =
            "Zeng et al.: A Semantics-Guided Visual SLAM with U-Net for Complex Dynamic Indoor Environments. Remote "

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "holdfast/interfaces/loop_detector.hpp"
+#include "holdfast/settings/flann.hpp"
 #include "inverted_file.hpp"
-#include "settings.hpp"
 #include "vocabulary.hpp"
 
 namespace holdfast::flann_plugin {

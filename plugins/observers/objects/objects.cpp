@@ -7,18 +7,15 @@
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/interfaces/observer.hpp"
 #include "holdfast/plugin/plugin.hpp"
+#include "holdfast/settings/objects.hpp"
 
 namespace holdfast {
 
+void ObjectsSettings::describe(ParameterTable<ObjectsSettings>& table) {
+  table.add("hidden", &ObjectsSettings::hidden, "also write where hidden objects are expected");
+}
+
 namespace {
-
-struct ObjectsSettings {
-  bool hidden = false;
-
-  static void describe(ParameterTable<ObjectsSettings>& table) {
-    table.add("hidden", &ObjectsSettings::hidden, "also write where hidden objects are expected");
-  }
-};
 
 /// Writes what moves to objects.csv at the end of a run. Needs an output folder, and does nothing without one.
 class Objects final : public Observer {
@@ -64,7 +61,8 @@ class Objects final : public Observer {
 
 HOLDFAST_PLUGIN(objects, registry) {
   registry.add<Observer, Objects, ObjectsSettings>(
-      {.name = "objects", .summary = "Writes the tracks of what moves (filter motion_objects) to objects.csv."});
+      {.name = ObjectsSettings::module,
+       .summary = "Writes the tracks of what moves (filter motion_objects) to objects.csv."});
 }
 
 }  // namespace holdfast

@@ -6,29 +6,23 @@
 
 #include "holdfast/interfaces/observer.hpp"
 #include "holdfast/plugin/plugin.hpp"
+#include "holdfast/settings/overlay.hpp"
 #include "painter.hpp"
 #include "picture_files.hpp"
 
 namespace holdfast {
 
+void OverlaySettings::describe(ParameterTable<OverlaySettings>& table) {
+  using S = OverlaySettings;
+  table.add("every", &S::every, "one picture for this many frames, those whose index it divides").range(1, 100000);
+  table.add("format", &S::format, "single files (png, jpg) or one video (avi, mp4)")
+      .one_of({"png", "jpg", "avi", "mp4"});
+  table.add("layout", &S::layout, "the painted image alone, or the image as it came to its left")
+      .one_of({"single", "side_by_side"});
+  table.add("quality", &S::quality, "of jpg").range(1, 100);
+}
+
 namespace {
-
-struct OverlaySettings {
-  int every = 1;
-  std::string format = "jpg";
-  std::string layout = "single";
-  int quality = 90;
-
-  static void describe(ParameterTable<OverlaySettings>& table) {
-    using S = OverlaySettings;
-    table.add("every", &S::every, "one picture for this many frames, those whose index it divides").range(1, 100000);
-    table.add("format", &S::format, "single files (png, jpg) or one video (avi, mp4)")
-        .one_of({"png", "jpg", "avi", "mp4"});
-    table.add("layout", &S::layout, "the painted image alone, or the image as it came to its left")
-        .one_of({"single", "side_by_side"});
-    table.add("quality", &S::quality, "of jpg").range(1, 100);
-  }
-};
 
 /// Pictures of what the pipeline believes about each frame. Needs an output folder, and does nothing without one.
 class Overlay final : public Observer {
@@ -59,7 +53,7 @@ class Overlay final : public Observer {
 
 HOLDFAST_PLUGIN(overlay, registry) {
   registry.add<Observer, Overlay, OverlaySettings>(
-      {.name = "overlay",
+      {.name = OverlaySettings::module,
        .summary = "Writes pictures of the frames with masks, what moves, and the features' static probability."});
 }
 

@@ -4,7 +4,7 @@
 #include <atomic>
 
 #include "holdfast/interfaces/optimizer.hpp"
-#include "settings.hpp"
+#include "holdfast/settings/ceres.hpp"
 
 namespace holdfast::ceres_plugin {
 

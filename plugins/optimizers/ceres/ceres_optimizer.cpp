@@ -4,6 +4,7 @@
 #include <glog/logging.h>
 
 #include "bundle_adjustment.hpp"
+#include "holdfast/geometry/pose_adjustment.hpp"
 #include "holdfast/plugin/plugin.hpp"
 #include "pose_graph.hpp"
 
@@ -36,8 +37,8 @@ GraphSummary CeresOptimizer::optimize_pose_graph(PoseGraphProblem& problem) {
 
 HOLDFAST_PLUGIN(ceres, registry) {
   using namespace holdfast;
-  registry.add<Optimizer, ceres_plugin::CeresOptimizer, ceres_plugin::CeresSettings>(
-      {.name = "ceres",
+  registry.add<Optimizer, ceres_plugin::CeresOptimizer, CeresSettings>(
+      {.name = CeresSettings::module,
        .summary = "Bundle adjustment and pose graphs with Ceres Solver, single poses with a fixed-size solver.",
        .paper = "Mur-Artal and Tardos, ORB-SLAM2, IEEE Transactions on Robotics 33(5), 2017; Agarwal, Mierle et al., "
                 "Ceres Solver"});

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "holdfast/interfaces/optimizer.hpp"
-#include "settings.hpp"
+#include "holdfast/settings/ceres.hpp"
 
 namespace holdfast::ceres_plugin {
 

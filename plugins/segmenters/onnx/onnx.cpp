@@ -9,53 +9,38 @@
 #include "holdfast/inference/network_segmenter.hpp"
 #include "holdfast/plugin/did_you_mean.hpp"
 #include "holdfast/plugin/plugin.hpp"
+#include "holdfast/settings/onnx.hpp"
 
 namespace holdfast {
 
+void OnnxSettings::describe(ParameterTable<OnnxSettings>& table) {
+  using S = OnnxSettings;
+  table.add("model", &S::model, "network for semantic segmentation, ONNX, float32").required();
+  table.add("width", &S::width, "of the network's input; 0 = as the model declares it").range(0, 8192).unit("px");
+  table.add("height", &S::height, "of the network's input; 0 = as the model declares it").range(0, 8192).unit("px");
+  table.add("colour_order", &S::colour_order, "order of the input's channels").one_of({"rgb", "bgr"});
+  table.add("scale", &S::scale, "input = (pixel * scale - mean) / standard_deviation, pixels from 0 to 255");
+  table.add("mean", &S::mean, "subtracted from each channel, in colour_order, after scale");
+  table.add("standard_deviation", &S::standard_deviation, "each channel is divided by it");
+  table.add("layout", &S::layout, "of input and output: channels before or after height and width")
+      .one_of({"nchw", "nhwc"});
+  table
+      .add("output", &S::output,
+           "what the network gives: scores before softmax, probabilities, or the index of the class; one channel of "
+           "logits or probabilities is the second of two classes")
+      .one_of({"logits", "probabilities", "labels"});
+  table.add("output_name", &S::output_name, "which output, where the model has several");
+  table.add("classes", &S::classes,
+            "names by channel or label; the first is the background where the network has one; 'unknown' is reserved "
+            "for pixels that nobody is sure of");
+  table.add("movable", &S::movable, "those of the classes that can move; empty = the filter decides");
+  table
+      .add("threads", &S::threads,
+           "of OpenCV, for the whole process, because OpenCV knows no other; 0 = as it is (holdfast: 1)")
+      .range(0, 256);
+}
+
 namespace {
-
-struct OnnxSettings {
-  std::filesystem::path model;
-  int width = 0;
-  int height = 0;
-  std::string colour_order = "rgb";
-  double scale = 1.0 / 255.0;
-  std::vector<double> mean = {0.0, 0.0, 0.0};
-  std::vector<double> standard_deviation = {1.0, 1.0, 1.0};
-  std::string layout = "nchw";
-  std::string output = "logits";
-  std::string output_name;
-  std::vector<std::string> classes = {"background", "person"};
-  std::vector<std::string> movable;
-  int threads = 0;
-
-  static void describe(ParameterTable<OnnxSettings>& table) {
-    using S = OnnxSettings;
-    table.add("model", &S::model, "network for semantic segmentation, ONNX, float32").required();
-    table.add("width", &S::width, "of the network's input; 0 = as the model declares it").range(0, 8192).unit("px");
-    table.add("height", &S::height, "of the network's input; 0 = as the model declares it").range(0, 8192).unit("px");
-    table.add("colour_order", &S::colour_order, "order of the input's channels").one_of({"rgb", "bgr"});
-    table.add("scale", &S::scale, "input = (pixel * scale - mean) / standard_deviation, pixels from 0 to 255");
-    table.add("mean", &S::mean, "subtracted from each channel, in colour_order, after scale");
-    table.add("standard_deviation", &S::standard_deviation, "each channel is divided by it");
-    table.add("layout", &S::layout, "of input and output: channels before or after height and width")
-        .one_of({"nchw", "nhwc"});
-    table
-        .add("output", &S::output,
-             "what the network gives: scores before softmax, probabilities, or the index of the class; one channel of "
-             "logits or probabilities is the second of two classes")
-        .one_of({"logits", "probabilities", "labels"});
-    table.add("output_name", &S::output_name, "which output, where the model has several");
-    table.add("classes", &S::classes,
-              "names by channel or label; the first is the background where the network has one; 'unknown' is reserved "
-              "for pixels that nobody is sure of");
-    table.add("movable", &S::movable, "those of the classes that can move; empty = the filter decides");
-    table
-        .add("threads", &S::threads,
-             "of OpenCV, for the whole process, because OpenCV knows no other; 0 = as it is (holdfast: 1)")
-        .range(0, 256);
-  }
-};
 
 NetworkOptions network_options(const OnnxSettings& s) {
   return {.model = s.model,
@@ -106,7 +91,8 @@ class OnnxSegmenter final : public NetworkSegmenter {
 
 HOLDFAST_PLUGIN(onnx, registry) {
   registry.add<Segmenter, OnnxSegmenter, OnnxSettings>(
-      {.name = "onnx", .summary = "Any network for semantic segmentation in ONNX format, on the CPU through OpenCV."});
+      {.name = OnnxSettings::module,
+       .summary = "Any network for semantic segmentation in ONNX format, on the CPU through OpenCV."});
 }
 
 }  // namespace holdfast

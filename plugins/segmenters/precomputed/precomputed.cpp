@@ -9,37 +9,31 @@
 #include "holdfast/image_files/label_map.hpp"
 #include "holdfast/interfaces/segmenter.hpp"
 #include "holdfast/plugin/plugin.hpp"
+#include "holdfast/settings/precomputed.hpp"
 #include "label_files.hpp"
 
 namespace holdfast {
 
+void PrecomputedSettings::describe(ParameterTable<PrecomputedSettings>& table) {
+  using S = PrecomputedSettings;
+  table.add("path", &S::path, "folder of label images (PNG, 1 channel of 8 or 16 bits, or indices into a palette)")
+      .required();
+  table.add("list", &S::list,
+            "file with lines 'timestamp filename', names relative to path; empty = the name of each PNG in path is "
+            "its time stamp");
+  table
+      .add("tolerance", &S::tolerance,
+           "a frame takes the image nearest in time, at most this far away; 0 = the image of that very stamp")
+      .range(0.0, 3600.0)
+      .unit("s");
+  table
+      .add("labels", &S::labels,
+           "what values or ranges mean, such as { 1-254: person, 255: unknown }; 0 is the background unless named; "
+           "'unknown' is reserved for pixels that nobody is sure of")
+      .required();
+}
+
 namespace {
-
-struct PrecomputedSettings {
-  std::filesystem::path path;
-  std::filesystem::path list;
-  double tolerance = 0.0;
-  TextMap labels;
-
-  static void describe(ParameterTable<PrecomputedSettings>& table) {
-    using S = PrecomputedSettings;
-    table.add("path", &S::path, "folder of label images (PNG, 1 channel of 8 or 16 bits, or indices into a palette)")
-        .required();
-    table.add("list", &S::list,
-              "file with lines 'timestamp filename', names relative to path; empty = the name of each PNG in path is "
-              "its time stamp");
-    table
-        .add("tolerance", &S::tolerance,
-             "a frame takes the image nearest in time, at most this far away; 0 = the image of that very stamp")
-        .range(0.0, 3600.0)
-        .unit("s");
-    table
-        .add("labels", &S::labels,
-             "what values or ranges mean, such as { 1-254: person, 255: unknown }; 0 is the background unless named; "
-             "'unknown' is reserved for pixels that nobody is sure of")
-        .required();
-  }
-};
 
 /// Stamps in file names and lists have six decimals.
 constexpr double least_tolerance = 1e-6;
@@ -81,7 +75,7 @@ class PrecomputedSegmenter final : public Segmenter {
 
 HOLDFAST_PLUGIN(precomputed, registry) {
   registry.add<Segmenter, PrecomputedSegmenter, PrecomputedSettings>(
-      {.name = "precomputed", .summary = "Label images from a folder, found by time stamp."});
+      {.name = PrecomputedSettings::module, .summary = "Label images from a folder, found by time stamp."});
 }
 
 }  // namespace holdfast

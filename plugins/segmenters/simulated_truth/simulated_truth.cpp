@@ -9,19 +9,16 @@
 #include "holdfast/interfaces/segmenter.hpp"
 #include "holdfast/plugin/did_you_mean.hpp"
 #include "holdfast/plugin/plugin.hpp"
+#include "holdfast/settings/truth.hpp"
 
 namespace holdfast {
 
+void TruthSettings::describe(ParameterTable<TruthSettings>& table) {
+  table.add("classes", &TruthSettings::classes,
+            "classes of the source to find, all others are background; empty = every class that the source knows");
+}
+
 namespace {
-
-struct TruthSettings {
-  std::vector<std::string> classes;
-
-  static void describe(ParameterTable<TruthSettings>& table) {
-    table.add("classes", &TruthSettings::classes,
-              "classes of the source to find, all others are background; empty = every class that the source knows");
-  }
-};
 
 constexpr const char* remedy =
     "choose a segmenter that needs no truth: 'precomputed' for label images in a folder, 'onnx' for a network";
@@ -80,7 +77,7 @@ class TruthSegmenter final : public Segmenter {
 
 HOLDFAST_PLUGIN(simulated_truth, registry) {
   registry.add<Segmenter, TruthSegmenter, TruthSettings>(
-      {.name = "truth", .summary = "The exact classes of every pixel that a simulated source knows."});
+      {.name = TruthSettings::module, .summary = "The exact classes of every pixel that a simulated source knows."});
 }
 
 }  // namespace holdfast

@@ -7,38 +7,31 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/inference/network_segmenter.hpp"
 #include "holdfast/plugin/plugin.hpp"
+#include "holdfast/settings/unet.hpp"
 #include "shipped_weights.hpp"
 
 namespace holdfast {
 
+void UnetSettings::describe(ParameterTable<UnetSettings>& table) {
+  using S = UnetSettings;
+  table
+      .add("size", &S::size,
+           "of the picture that the network is shown: small (160x128) takes less than half the time of base "
+           "(256x192), which sees better")
+      .one_of({"small", "base"});
+  table.add("width", &S::width, "of that picture, a multiple of 32; 0 = as size says").range(0, 4096).unit("px");
+  table.add("height", &S::height, "of that picture, a multiple of 32; 0 = as size says").range(0, 4096).unit("px");
+  table.add("mirror", &S::mirror,
+            "show the network the mirror image, too, and take the mean: sees a little better, takes twice the time");
+  table.add("model", &S::model,
+            "weights of your own, ONNX, as training/export.py writes them; empty = those that Holdfast comes with");
+  table
+      .add("threads", &S::threads,
+           "of OpenCV, for the whole process, because OpenCV knows no other; 0 = as it is (holdfast: 1)")
+      .range(0, 256);
+}
+
 namespace {
-
-struct UnetSettings {
-  std::string size = "base";
-  int width = 0, height = 0;
-  bool mirror = true;
-  std::filesystem::path model;
-  int threads = 0;
-
-  static void describe(ParameterTable<UnetSettings>& table) {
-    using S = UnetSettings;
-    table
-        .add("size", &S::size,
-             "of the picture that the network is shown: small (160x128) takes less than half the time of base "
-             "(256x192), which sees better")
-        .one_of({"small", "base"});
-    table.add("width", &S::width, "of that picture, a multiple of 32; 0 = as size says").range(0, 4096).unit("px");
-    table.add("height", &S::height, "of that picture, a multiple of 32; 0 = as size says").range(0, 4096).unit("px");
-    table.add("mirror", &S::mirror,
-              "show the network the mirror image, too, and take the mean: sees a little better, takes twice the time");
-    table.add("model", &S::model,
-              "weights of your own, ONNX, as training/export.py writes them; empty = those that Holdfast comes with");
-    table
-        .add("threads", &S::threads,
-             "of OpenCV, for the whole process, because OpenCV knows no other; 0 = as it is (holdfast: 1)")
-        .range(0, 256);
-  }
-};
 
 /// The shipped network halves its picture five times.
 void check_side(const char* name, int pixels) {
@@ -103,7 +96,7 @@ class UnetSegmenter final : public NetworkSegmenter {
 
 HOLDFAST_PLUGIN(unet, registry) {
   registry.add<Segmenter, UnetSegmenter, UnetSettings>(
-      {.name = "unet",
+      {.name = UnetSettings::module,
        .summary = "Finds people with the U-Net that Holdfast comes with; needs no files.",
        .paper = "Ronneberger et al., U-Net, MICCAI 2015"});
 }

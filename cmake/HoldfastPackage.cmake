@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# `cpack -G DEB` makes three packages: libholdfast (shared libraries, when they are shared, and the licence),
+# libholdfast-dev (headers, static libraries, CMake package) and holdfast (the program). Included after the install rules.
+set(CPACK_PACKAGE_NAME holdfast)
+set(CPACK_PACKAGE_VENDOR "The Holdfast authors")
+set(CPACK_PACKAGE_CONTACT "The Holdfast authors <holdfast@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${holdfast_DESCRIPTION}")
+set(CPACK_PACKAGE_VERSION ${holdfast_VERSION})
+set(CPACK_RESOURCE_FILE_LICENSE ${holdfast_SOURCE_DIR}/LICENSE)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL runtime development program)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_PACKAGE_HOMEPAGE "")
+set(CPACK_DEBIAN_ENABLE_COMPONENT_DEPENDS OFF)
+
+set(exactly "(= ${holdfast_VERSION})")
+# What the libraries and the program load is read from them where dpkg can.
+find_program(HOLDFAST_SHLIBDEPS dpkg-shlibdeps)
+mark_as_advanced(HOLDFAST_SHLIBDEPS)
+
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME libholdfast)
+set(CPACK_COMPONENT_RUNTIME_DESCRIPTION "${holdfast_DESCRIPTION}: libraries")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libholdfast-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "${holdfast_DESCRIPTION}: headers and CMake package")
+string(JOIN ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
+       "libholdfast ${exactly}" libeigen3-dev libopencv-dev libceres-dev libyaml-cpp-dev libspdlog-dev
+       nlohmann-json3-dev liblz4-dev)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME holdfast)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "${holdfast_DESCRIPTION}: the program")
+if(BUILD_SHARED_LIBS)
+  set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "libholdfast ${exactly}")
+endif()
+if(HOLDFAST_SHLIBDEPS)
+  set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+  if(BUILD_SHARED_LIBS)
+    set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
+    # Where our own libraries lie before they are installed.
+    foreach(target IN LISTS exported_targets)
+      get_target_property(folder ${target} BINARY_DIR)
+      list(APPEND CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${folder})
+    endforeach()
+  endif()
+endif()
+include(CPack)

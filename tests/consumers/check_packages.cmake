@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Debian packages of the build under test, unpacked into a clean root: their dependencies are said, the program runs,
+# and a consumer builds on the library.
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
+
+find_program(DPKG_DEB dpkg-deb)
+find_program(CPACK cpack)
+if(NOT DPKG_DEB OR NOT CPACK OR NOT EXISTS ${BUILD_FOLDER}/bin/holdfast)
+  message("skipped: needs dpkg-deb, cpack and the program")
+  return()
+endif()
+
+set(folder ${WORK_FOLDER}/packages)
+file(REMOVE_RECURSE ${folder})
+file(MAKE_DIRECTORY ${folder}/root)
+run(COMMAND ${CPACK} -G DEB -B ${folder} --config ${BUILD_FOLDER}/CPackConfig.cmake -C "${CONFIGURATION}"
+            -D CPACK_DEBIAN_COMPRESSION_TYPE=gzip)
+file(GLOB packages ${folder}/*.deb)
+list(LENGTH packages number)
+if(NOT number EQUAL 3)
+  message(FATAL_ERROR "expected three packages, found ${packages}")
+endif()
+
+set(fields "")
+foreach(package IN LISTS packages)
+  run(COMMAND ${DPKG_DEB} --field ${package} Package Version Depends OUTPUT text)
+  string(APPEND fields "${text}\n")
+  run(COMMAND ${DPKG_DEB} --extract ${package} ${folder}/root)
+endforeach()
+foreach(expected IN ITEMS "Package: holdfast\n" "Package: libholdfast\n" "Package: libholdfast-dev\n"
+                          "Depends: libholdfast [(]= [0-9.]+[)], libeigen3-dev, libopencv-dev")
+  if(NOT fields MATCHES "${expected}")
+    message(FATAL_ERROR "no '${expected}' in\n${fields}")
+  endif()
+endforeach()
+find_program(SHLIBDEPS dpkg-shlibdeps)
+if(SHLIBDEPS AND NOT fields MATCHES "libopencv-core[0-9]")
+  message(FATAL_ERROR "the program's package does not say which libraries it needs:\n${fields}")
+endif()
+
+check_libraries(${folder}/root/usr/bin/holdfast)
+run(COMMAND ${folder}/root/usr/bin/holdfast modules orb OUTPUT reference)
+if(NOT reference MATCHES "fast_threshold")
+  message(FATAL_ERROR "the packaged program does not know its modules:\n${reference}")
+endif()
+set(build ${WORK_FOLDER}/packaged)
+configure(${CMAKE_CURRENT_LIST_DIR}/installed ${build} -DCMAKE_PREFIX_PATH=${folder}/root/usr)
+run(COMMAND ${CMAKE_COMMAND} --build ${build})
+run(COMMAND ${build}/consumer)
