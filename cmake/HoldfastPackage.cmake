@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# `cpack -G DEB` makes three packages: libholdfast (shared libraries, when they are shared, and the licence),
-# libholdfast-dev (headers, static libraries, CMake package) and holdfast (the program). Included after the install rules.
+# `cpack -G DEB` makes packages: libholdfast (shared libraries, when they are shared, and the licence), libholdfast-dev
+# (headers, static libraries, CMake package), holdfast (the program) and, where the segmenter `python` was built,
+# holdfast-python. Included after the install rules.
 set(CPACK_PACKAGE_NAME holdfast)
 set(CPACK_PACKAGE_VENDOR "The Holdfast authors")
 set(CPACK_PACKAGE_CONTACT "The Holdfast authors <holdfast@localhost>")
@@ -36,7 +37,15 @@ set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "${holdfast_DESCRIPTION}: the program")
 if(BUILD_SHARED_LIBS)
   set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "libholdfast ${exactly}")
 endif()
+if(TARGET holdfast_python)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME holdfast-python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION science)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS python3-numpy)
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "${holdfast_DESCRIPTION}: segmenters written in Python")
+endif()
 if(HOLDFAST_SHLIBDEPS)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
   set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
   if(BUILD_SHARED_LIBS)
     set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
