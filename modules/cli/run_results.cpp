@@ -344,8 +344,8 @@ std::string report_html(const RunRecord& record) {
 
 double ThreadRecord::late_share() const {
   if (delays.empty()) return 0.0;
-  const auto late = std::count_if(delays.begin(), delays.end(), [](double seconds) { return seconds > 0.033; });
-  return static_cast<double>(late) / static_cast<double>(delays.size());
+  const auto above = std::count_if(delays.begin(), delays.end(), [](double seconds) { return seconds > 0.033; });
+  return static_cast<double>(above) / static_cast<double>(delays.size());
 }
 
 double RunRecord::coverage() const {

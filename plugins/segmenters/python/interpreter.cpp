@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <mutex>
 #include <string>
+#include <thread>
 
 #include "holdfast/core/error.hpp"
 
@@ -17,6 +18,7 @@ namespace {
 
 std::mutex starting;
 std::atomic<int> users = 0;
+std::thread::id starter;  // of Python; to Python it is the main thread
 
 void require(const PyStatus& status, const char* what) {
   if (PyStatus_Exception(status) == 0) return;
@@ -50,8 +52,15 @@ class Configuration {
 void end_python() {
   // With a segmenter alive, its destructor still comes: then Python stays.
   if (users > 0 || Py_IsInitialized() == 0) return;
-  PyGILState_Ensure();
-  Py_FinalizeEx();
+  const PyGILState_STATE state = PyGILState_Ensure();
+  if (std::this_thread::get_id() == starter) {
+    Py_FinalizeEx();
+    return;
+  }
+  // From another thread Python would wait for its main thread to end, which it never learns of. So only what users see
+  // of the end is done, and the process takes the rest with it.
+  PyRun_SimpleString("import atexit, sys\natexit._run_exitfuncs()\nsys.stdout.flush()\nsys.stderr.flush()");
+  PyGILState_Release(state);
 }
 
 void start_python() {
@@ -74,6 +83,7 @@ void start_python() {
             "take the program's name");
   }
   require(Py_InitializeFromConfig(&*configuration), "be started");
+  starter = std::this_thread::get_id();
   PyEval_SaveThread();  // every call takes the lock anew, from whichever thread
   std::atexit(end_python);
 }
