@@ -29,7 +29,7 @@ struct Subject {
   std::filesystem::path folder = {};           ///< relative paths in them start here
 };
 
-/// Adds one GoogleTest per module and check, called <kind>/<module>.<check>; call it between InitGoogleTest() and
+/// Adds one GoogleTest per module and check, called KIND/MODULE.CHECK; call it between InitGoogleTest() and
 /// RUN_ALL_TESTS(). Throws PluginError for a plugin that cannot be loaded or has nothing to test, and
 /// ConfigurationError with everything that is wrong with the modules and parameters named.
 void add_tests(const Subject& subject);

@@ -14,12 +14,14 @@ class Map;
 /// What a map holds at one moment, without images and descriptors: for drawing it, or finding a way through it. A value
 /// of its own that nothing changes any more. Metres, in the world frame of the run.
 struct MapSnapshot {
+  /// Where a keyframe was taken.
   struct KeyFrame {
     KeyFrameId id;
     std::uint64_t sequence = 0;
     double timestamp = 0.0;  ///< [s]
     Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
   };
+  /// A map point.
   struct Point {
     MapPointId id;
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
