@@ -116,14 +116,13 @@ TEST_F(BenchExternalTest, HasTimedRunsStandAlone) {
 }
 
 TEST_F(BenchExternalTest, FindsTheMatricesOfTheProjectSound) {
-  std::size_t matrices = 0;
-  for (const char* name : {"bonn", "composed", "simulated", "tum_dynamic"}) {
+  // `composed` has two of the five again, with masks by the U-Net.
+  for (const auto& [name, variants] : {std::pair{"bonn", 5}, {"composed", 7}, {"simulated", 5}, {"tum_dynamic", 5}}) {
     const Outcome list =
         program_.run({"bench", HOLDFAST_SOURCE_DIR "/benchmarks/" + std::string(name) + ".yaml", "--dry-run"});
     EXPECT_EQ(list.exit_code, 0) << name << "\n" << list.errors;
-    matrices += list.output.find(" runs: ") != std::string::npos ? 1 : 0;
+    EXPECT_THAT(list.output, HasSubstr(" runs: " + std::to_string(variants) + " variants")) << name;
   }
-  EXPECT_EQ(matrices, 4U);
 }
 
 TEST_F(BenchExternalTest, ListsRunsAndWhatIsMissing) {
