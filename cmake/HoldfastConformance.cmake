@@ -4,7 +4,7 @@
 include_guard()
 
 # holdfast_conformance_test(PLUGIN [NAME name] [MODULES module ...] [EXCEPT module ...] [PARAMETERS yaml]
-#                           [FOLDER folder] [ENTRY name] [LABELS label ...] [TIMEOUT seconds])
+#                           [FOLDER folder] [ENTRY name] [LABELS label ...] [TIMEOUT seconds] [PARTS count])
 # A GoogleTest program NAME (PLUGIN_conformance) that holds every extractor, segmenter, filter, optimizer and loop
 # detector of PLUGIN to its contract; each check of each module becomes a case of ctest. PLUGIN is a target made by
 # holdfast_add_plugin, shared or STATIC.
@@ -13,8 +13,9 @@ include_guard()
 #   PARAMETERS  for modules that need some, as in a configuration: "segmenter: { mine: { dilate: 3 } }"
 #   FOLDER      where relative paths in PARAMETERS start; the current source folder by default
 #   ENTRY       name in HOLDFAST_PLUGIN(name, ...) of a static plugin; that of the target by default
+#   PARTS       so many cases of ctest, each with its share of the checks in one process: for many modules that pass
 function(holdfast_conformance_test plugin)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "NAME;PARAMETERS;FOLDER;ENTRY;TIMEOUT" "MODULES;EXCEPT;LABELS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "NAME;PARAMETERS;FOLDER;ENTRY;TIMEOUT;PARTS" "MODULES;EXCEPT;LABELS")
   holdfast_add_conformance_program(${plugin} ${ARGN})
   if(NOT arg_NAME)
     set(arg_NAME ${plugin}_conformance)
@@ -25,6 +26,16 @@ function(holdfast_conformance_test plugin)
   if(NOT arg_TIMEOUT)
     set(arg_TIMEOUT 120)
   endif()
+  if(arg_PARTS)
+    foreach(part RANGE 1 ${arg_PARTS})
+      math(EXPR index "${part} - 1")
+      add_test(NAME ${arg_NAME}.part_${part} COMMAND ${arg_NAME})
+      set_tests_properties(${arg_NAME}.part_${part} PROPERTIES
+        LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT}
+        ENVIRONMENT "GTEST_TOTAL_SHARDS=${arg_PARTS};GTEST_SHARD_INDEX=${index}")
+    endforeach()
+    return()
+  endif()
   include(GoogleTest)
   gtest_discover_tests(${arg_NAME} TEST_PREFIX "${arg_NAME}." DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60
                        PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT})
@@ -32,7 +43,7 @@ endfunction()
 
 # The same without the cases of ctest: the program alone.
 function(holdfast_add_conformance_program plugin)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "NAME;PARAMETERS;FOLDER;ENTRY;TIMEOUT" "MODULES;EXCEPT;LABELS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "NAME;PARAMETERS;FOLDER;ENTRY;TIMEOUT;PARTS" "MODULES;EXCEPT;LABELS")
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "holdfast_conformance_test(${plugin}): unknown arguments ${arg_UNPARSED_ARGUMENTS}")
   endif()

@@ -144,6 +144,33 @@ struct Network::Parts {
               value[channel][from[options.rgb ? 2 - channel : channel]];
     }
   }
+
+  void mirror_input() {
+    const int columns = size.width, channels = options.channels_last ? 3 : 1;
+    const int rows = static_cast<int>(input.total()) / (columns * channels);
+    cv::Mat lines(rows, columns, CV_32FC(channels), input.data);
+    cv::flip(lines, lines, 1);
+  }
+
+  std::string input_text() const {
+    return shape_text(std::vector<std::int64_t>(input.size.p, input.size.p + input.dims));
+  }
+
+  cv::Mat forward() {
+    std::optional<QuietLibrary> quiet;
+    if (!has_run) quiet.emplace();  // what does not fit shows in the first run
+    try {
+      net.setInput(input);
+      cv::Mat scores = net.forward(output);
+      if (scores.depth() != CV_32F) scores.convertTo(scores, CV_32F);
+      has_run = true;
+      return scores;
+    } catch (const cv::Exception& error) {
+      throw InputError({options.model.string()},
+                       "cannot be run on an input of " + input_text() + " (" + one_line(error.err) +
+                           "); expected a network for such an image; check width, height and layout");
+    }
+  }
 };
 
 Network::Network(const NetworkOptions& options) : parts_(std::make_unique<Parts>()) {
@@ -184,27 +211,17 @@ Network::~Network() = default;
 cv::Mat Network::run(const cv::Mat& colour) {
   HOLDFAST_CHECK(colour.type() == CV_8UC3 && !colour.empty(), "type " << colour.type());
   parts_->fill_input(colour);
-  std::optional<QuietLibrary> quiet;
-  if (!parts_->has_run) quiet.emplace();  // what does not fit shows in the first run
-  try {
-    parts_->net.setInput(parts_->input);
-    cv::Mat output = parts_->net.forward(parts_->output);
-    if (output.depth() != CV_32F) output.convertTo(output, CV_32F);
-    parts_->has_run = true;
-    return output;
-  } catch (const cv::Exception& error) {
-    throw InputError({parts_->options.model.string()},
-                     "cannot be run on an input of " + input_text() + " (" + one_line(error.err) +
-                         "); expected a network for such an image; check width, height and layout");
-  }
+  return parts_->forward();
+}
+
+cv::Mat Network::run_mirrored() {
+  parts_->mirror_input();
+  return parts_->forward();
 }
 
 int Network::width() const { return parts_->size.width; }
 int Network::height() const { return parts_->size.height; }
 
-std::string Network::input_text() const {
-  std::vector<std::int64_t> shape(parts_->input.size.p, parts_->input.size.p + parts_->input.dims);
-  return shape_text(shape);
-}
+std::string Network::input_text() const { return parts_->input_text(); }
 
 }  // namespace holdfast

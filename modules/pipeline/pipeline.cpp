@@ -58,7 +58,7 @@ struct Pipeline::State {
     for (const KeyFrameId keyframe : map.keyframes_by_age())
       detector.add(keyframe, map.keyframe(keyframe).frame.features.descriptors);
     if (dynamic_cast<NullSegmenter*>(parts.segmenter.get()) == nullptr) {
-      tracker.expect_masks(parts.segmenter->classes(), parts.segmentation.memory);
+      tracker.expect_masks(*parts.segmenter, parts.segmentation.memory);
       segmentation.emplace(*parts.segmenter, parts.segmentation, parts.threads.threaded);
     }
     if (parts.dense_map.enabled && !parts.localise_only) scene.emplace(parts.camera, parts.dense_map);

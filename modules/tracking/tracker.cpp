@@ -103,7 +103,8 @@ FilterContext Tracker::filter_context(const SensorFrame& sensor_frame, const Eig
           .map = map_,
           .T_camera_world = T_camera_world,
           .carried_mask = has_mask ? &propagator_->mask() : nullptr,
-          .classes = classes_};
+          .classes = classes_,
+          .movable = &movable_};
 }
 
 void Tracker::judge(FilterChain::Stage stage, const SensorFrame& sensor_frame, FrameResult& result) {
@@ -214,8 +215,9 @@ void Tracker::keyframe_added(KeyFrameId keyframe) {
     records_.back() = {current_.timestamp, keyframe, Eigen::Isometry3d::Identity()};
 }
 
-void Tracker::expect_masks(const std::vector<std::string>& classes, double memory) {
-  classes_ = &classes;
+void Tracker::expect_masks(const Segmenter& segmenter, double memory) {
+  classes_ = &segmenter.classes();
+  movable_ = segmenter.movable();
   propagator_.emplace(*builder_.camera(), builder_.coarse_sampler(), memory);
 }
 
@@ -239,7 +241,8 @@ void Tracker::judge_keyframe(const SensorFrame& sensor_frame, const Segmentation
                             .T_camera_world = &keyframe->frame.T_camera_world,
                             .segmentation = &segmentation,
                             .carried_mask = &mask,
-                            .classes = classes_},
+                            .classes = classes_,
+                            .movable = &movable_},
                            keyframe->frame);
 }
 

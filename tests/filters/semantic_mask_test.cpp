@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,13 +45,13 @@ class SemanticMaskTest : public testing::Test {
     return frame.x.size() - 1;
   }
   /// What the filter says of one feature; it must be a prior.
-  float said(std::size_t feature, bool by_exact, const std::vector<std::string>& movable_classes = {"person"}) {
+  float said(std::size_t feature, bool by_exact, const std::vector<std::string>& movable_classes = {}) {
     const StaticEvidence evidence = judge(by_exact ? &exact : nullptr, by_exact ? nullptr : &carried, movable_classes);
     EXPECT_EQ(evidence.measurement(feature), 0.0F);
     return evidence.prior(feature);
   }
   StaticEvidence judge(const Segmentation* segmentation, const CarriedMask* mask,
-                       const std::vector<std::string>& movable_classes = {"person"}) {
+                       const std::vector<std::string>& movable_classes = {}) {
     Registry registry;
     holdfast_register_plugin_semantic_mask(registry);
     const auto filter = registry.create<DynamicFilter>("semantic_mask", {{"classes", movable_classes}}, {});
@@ -62,12 +63,14 @@ class SemanticMaskTest : public testing::Test {
                    .map = map,
                    .segmentation = segmentation,
                    .carried_mask = mask,
-                   .classes = &classes},
+                   .classes = &classes,
+                   .movable = movable_by_segmenter ? &*movable_by_segmenter : nullptr},
                   evidence);
     return evidence;
   }
 
   const std::vector<std::string> classes{"background", "chair", "person"};
+  std::optional<std::vector<std::string>> movable_by_segmenter;
   std::shared_ptr<Camera> camera;
   Map map;
   SensorFrame image;
@@ -95,6 +98,20 @@ TEST_F(SemanticMaskTest, TheClassesThatCanMoveAreChosenByName) {
     EXPECT_EQ(said(person, by_exact, {"chair", "person"}), movable);
     // A name that this segmenter does not know is a mistake, not something that never moves.
     EXPECT_THROW(said(person, by_exact, {"dragon", "person"}), InputError);
+  }
+}
+
+TEST_F(SemanticMaskTest, TheSegmentersOwnWordCountsWhereNoneAreChosen) {
+  const std::size_t person = add_feature(300, 200, person_depth), chair = add_feature(560, 200, wall_depth);
+  for (const bool by_exact : {true, false}) {
+    movable_by_segmenter = {"chair"};
+    EXPECT_EQ(said(person, by_exact), background);
+    EXPECT_EQ(said(chair, by_exact), movable);
+    EXPECT_EQ(said(person, by_exact, {"person"}), movable);
+    EXPECT_EQ(said(chair, by_exact, {"person"}), background);
+    movable_by_segmenter.emplace();  // does not say
+    EXPECT_EQ(said(person, by_exact), movable);
+    EXPECT_EQ(said(chair, by_exact), background);
   }
 }
 

@@ -45,6 +45,22 @@ TEST(Network, ImagesOfAnySizeAreResized) {
     for (int x = 0; x < 16; ++x) EXPECT_NEAR(output_at(output, 1, y, x), x < 8 ? -4.0 : 4.0, 1e-4) << x << ' ' << y;
 }
 
+TEST(Network, TheMirrorImageNeedsNoSecondPreparation) {
+  cv::Mat colour(12, 16, CV_8UC3), mirror_image;
+  cv::RNG(1).fill(colour, cv::RNG::UNIFORM, 0, 256);
+  cv::flip(colour, mirror_image, 1);
+  for (const char* model : {"logits", "channels_last"}) {
+    NetworkOptions chosen = options(model);
+    chosen.channels_last = std::string(model) == "channels_last";
+    Network network(chosen);
+    const cv::Mat expected = network.run(mirror_image).clone(), plain = network.run(colour).clone();
+    const cv::Mat mirrored = network.run_mirrored();
+    ASSERT_EQ(mirrored.total(), expected.total());
+    EXPECT_TRUE(std::equal(expected.begin<float>(), expected.end<float>(), mirrored.begin<float>())) << model;
+    EXPECT_FALSE(std::equal(expected.begin<float>(), expected.end<float>(), plain.begin<float>())) << model;
+  }
+}
+
 TEST(Network, AFreeSizeIsTheOneThatIsAskedFor) {
   NetworkOptions chosen = options("any_size");
   chosen.width = 32;

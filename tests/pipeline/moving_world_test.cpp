@@ -62,12 +62,16 @@ class People {
   std::vector<SensorFrame> frames_;
 };
 
-/// Notes which frames a segmenter was given.
+/// Notes which frames a segmenter was given, and may call people something else, which can move.
 class Noting final : public Segmenter {
  public:
-  Noting(std::unique_ptr<Segmenter> segmenter, std::set<std::uint64_t>& noted)
-      : segmenter_(std::move(segmenter)), noted_(noted) {}
-  const std::vector<std::string>& classes() const override { return segmenter_->classes(); }
+  Noting(std::unique_ptr<Segmenter> segmenter, std::set<std::uint64_t>& noted, const std::string& people_are_called)
+      : segmenter_(std::move(segmenter)), noted_(noted), classes_(segmenter_->classes()) {
+    std::replace(classes_.begin(), classes_.end(), std::string("person"), people_are_called);
+    if (people_are_called != "person") movable_.push_back(people_are_called);
+  }
+  const std::vector<std::string>& classes() const override { return classes_; }
+  std::vector<std::string> movable() const override { return movable_; }
   Segmentation segment(const SensorFrame& frame) override {
     noted_.insert(frame.index);
     return segmenter_->segment(frame);
@@ -76,12 +80,13 @@ class Noting final : public Segmenter {
  private:
   std::unique_ptr<Segmenter> segmenter_;
   std::set<std::uint64_t>& noted_;
+  std::vector<std::string> classes_, movable_;
 };
 
 struct Options {
   bool filters = true, threaded = false;
   int latency = 5;
-  std::string on = "keyframes";
+  std::string on = "keyframes", people_are_called = "person";
 };
 
 struct WholeRun {
@@ -103,7 +108,8 @@ struct WholeRun {
     parts.segmentation.on = options.on;
     parts.threads.threaded = options.threaded;
     if (!options.filters) return parts;
-    parts.segmenter = std::make_unique<Noting>(registry.create<Segmenter>("truth", {}, context), segmented);
+    parts.segmenter = std::make_unique<Noting>(registry.create<Segmenter>("truth", {}, context), segmented,
+                                               options.people_are_called);
     for (const char* name : {"semantic_mask", "multi_view_depth"})
       parts.filters.emplace_back(name, registry.create<DynamicFilter>(name, {}, context));
     return parts;
@@ -180,6 +186,13 @@ TEST_F(MovingWorld, PeopleStayOutOfTheMapHoweverLateTheirMasksCome) {
       }
     }
   }
+}
+
+TEST_F(MovingWorld, WhatTheSegmenterCallsMovableStaysOutOfTheMap) {
+  const WholeRun run(people(), {.people_are_called = "visitor"});
+  EXPECT_LE(run.largest_error(people()), 0.04);
+  EXPECT_EQ(run.points_on_people_at_end(people()), 0);
+  expect_clean_keyframes(run);
 }
 
 TEST_F(MovingWorld, EveryNthFrameIsSegmentedWhenAsked) {

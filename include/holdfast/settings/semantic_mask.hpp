@@ -16,7 +16,7 @@ struct SemanticMaskSettings {
   using Interface = DynamicFilter;
   static constexpr const char* module = "semantic_mask";
 
-  std::vector<std::string> classes = {"person"};
+  std::vector<std::string> classes;
   int dilate = 10;
   int edge = 4;
   double depth_margin = 0.15;

@@ -17,6 +17,7 @@
 #include "holdfast/interfaces/feature_extractor.hpp"
 #include "holdfast/interfaces/loop_detector.hpp"
 #include "holdfast/interfaces/optimizer.hpp"
+#include "holdfast/interfaces/segmenter.hpp"
 #include "holdfast/segmentation/mask_propagator.hpp"
 #include "holdfast/tracking/depth_agreement.hpp"
 #include "holdfast/tracking/filter_chain.hpp"
@@ -52,9 +53,9 @@ class Tracker {
   /// The keyframe that the tracked frame became: its matches and its pose, as local mapping left them, are taken over.
   void keyframe_added(KeyFrameId keyframe);
 
-  /// From now on masks are carried from frame to frame; `classes` must outlive the tracker. `memory`: see
-  /// MaskPropagator.
-  void expect_masks(const std::vector<std::string>& classes, double memory);
+  /// From now on masks are carried from frame to frame. They come from `segmenter`, which must outlive the tracker and
+  /// is asked for the names of its classes only. `memory`: see MaskPropagator.
+  void expect_masks(const Segmenter& segmenter, double memory);
   /// The frame last tracked is going to be segmented.
   void await_mask();
   /// The segmentation of an awaited frame has come.
@@ -115,6 +116,7 @@ class Tracker {
   bool holds_keyframes_ = false;
   std::optional<MaskPropagator> propagator_;
   const std::vector<std::string>* classes_ = nullptr;
+  std::vector<std::string> movable_;
   Frame current_, previous_;
   bool has_previous_ = false;  // previous_ has a pose
   Eigen::Isometry3d T_previous_reference_ = Eigen::Isometry3d::Identity();

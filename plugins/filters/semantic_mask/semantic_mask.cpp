@@ -12,7 +12,9 @@ namespace holdfast {
 
 void SemanticMaskSettings::describe(ParameterTable<SemanticMaskSettings>& table) {
   using S = SemanticMaskSettings;
-  table.add("classes", &S::classes, "names of the segmenter's classes that can move");
+  table.add("classes", &S::classes,
+            "names of the segmenter's classes that can move; empty = those that it says can, or person when it does not "
+            "say");
   table
       .add("dilate", &S::dilate,
            "features this near to a mask belong to it, unless their depth says that they lie behind")
@@ -41,7 +43,7 @@ class SemanticMask final : public DynamicFilter {
 
   void apply(const FilterContext& context, StaticEvidence& evidence) override {
     if (context.classes == nullptr) return;
-    find_movable(*context.classes);
+    find_movable(*context.classes, context.movable);
     if (context.segmentation != nullptr && !context.segmentation->empty())
       apply_exact(context, evidence);
     else if (context.carried_mask != nullptr && !context.carried_mask->empty())
@@ -51,9 +53,14 @@ class SemanticMask final : public DynamicFilter {
 
  private:
   /// Throws InputError for a class that the segmenter does not know.
-  void find_movable(const std::vector<std::string>& classes) {
+  void find_movable(const std::vector<std::string>& classes, const std::vector<std::string>* said_by_segmenter) {
+    static const std::vector<std::string> otherwise{"person"};
+    const bool segmenter_says = said_by_segmenter != nullptr && !said_by_segmenter->empty();
+    const std::vector<std::string>& names = !settings_.classes.empty() ? settings_.classes
+                                            : segmenter_says           ? *said_by_segmenter
+                                                                       : otherwise;
     movable_.fill(0);
-    for (const std::string& name : settings_.classes) {
+    for (const std::string& name : names) {
       const auto found = std::find(classes.begin(), classes.end(), name);
       if (found == classes.end())
         throw InputError({"filters: semantic_mask: classes"},

@@ -33,7 +33,7 @@ void OnnxSettings::describe(ParameterTable<OnnxSettings>& table) {
   table.add("classes", &S::classes,
             "names by channel or label; the first is the background where the network has one; 'unknown' is reserved "
             "for pixels that nobody is sure of");
-  table.add("movable", &S::movable, "those of the classes that can move; empty = the filter decides");
+  table.add("movable", &S::movable, "those of the classes that can move; empty = not said");
   table
       .add("threads", &S::threads,
            "of OpenCV, for the whole process, because OpenCV knows no other; 0 = as it is (holdfast: 1)")

@@ -86,8 +86,7 @@ class UnetSegmenter final : public NetworkSegmenter {
     NetworkSegmenter::scores(colour).copyTo(mean_);
     auto* to = mean_.ptr<float>();
     if (mirror_) {
-      cv::flip(colour, mirrored_, 1);
-      const cv::Mat other = NetworkSegmenter::scores(mirrored_);
+      const cv::Mat other = mirrored_scores();
       const auto width = static_cast<std::size_t>(other.size[other.dims - 1]);
       const auto* from = other.ptr<float>();
       for (std::size_t row = 0; row < other.total(); row += width)
@@ -101,7 +100,7 @@ class UnetSegmenter final : public NetworkSegmenter {
  private:
   bool mirror_;
   float caution_;
-  cv::Mat mirrored_, mean_;
+  cv::Mat mean_;
 };
 
 }  // namespace

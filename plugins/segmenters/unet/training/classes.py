@@ -8,8 +8,14 @@ IGNORED = 255
 #: Some furniture: whatever it is, it is no person.
 NOT_PERSON = 254
 
-#: PASCAL VOC's class indices; every other object of VOC is background, 255 its unlabelled border.
+#: What else VOC names.  Background to the network's user; in training, coarse heads that are not shipped tell it apart,
+#: so that a horse is not taken for the person on it.  Their labels follow those of CLASSES.
+OTHER_THINGS = ("aeroplane", "bicycle", "bird", "boat", "bottle", "bus", "car", "cat", "cow", "dog", "horse", "motorbike",
+                "pottedplant", "sheep", "sofa", "train")
+TOLD_APART = len(CLASSES) + len(OTHER_THINGS)
+#: PASCAL VOC's class indices, 255 its unlabelled border.
 VOC = {9: 2, 11: 3, 15: PERSON, 20: 4, 255: IGNORED}
+VOC.update({index: len(CLASSES) + i for i, index in enumerate(k for k in range(1, 21) if k not in VOC)})
 #: Names in the scene.json of a simulated sequence.
 SIMULATED = {"person": PERSON, "chair": 2, "desk": 3, "table": 3, "monitor": 4}
 
@@ -20,3 +26,8 @@ def relabelled(labels, mapping):
     for value, label in mapping.items():
         table[value] = label
     return table[labels]
+
+
+def is_other_thing(labels):
+    """For arrays of numpy and of PyTorch."""
+    return (labels >= len(CLASSES)) & (labels < TOLD_APART)

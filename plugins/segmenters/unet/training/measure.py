@@ -4,7 +4,7 @@ import numpy as np
 import torch
 from torch.nn import functional
 
-from classes import CLASSES, IGNORED, NOT_PERSON, PERSON
+from classes import CLASSES, IGNORED, NOT_PERSON, PERSON, is_other_thing
 from composition import composed, cutouts
 from photographs import random_camera, resized
 from samples import to_tensor
@@ -18,7 +18,7 @@ class Confusion:
 
     def add(self, labels, found):
         known = labels != IGNORED
-        labels = np.where(labels == NOT_PERSON, 0, labels)
+        labels = np.where((labels == NOT_PERSON) | is_other_thing(labels), 0, labels)
         index = labels[known].astype(np.int64) * len(CLASSES) + found[known]
         self.pixels += np.bincount(index, minlength=self.pixels.size).reshape(self.pixels.shape)
 

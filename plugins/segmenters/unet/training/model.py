@@ -9,7 +9,7 @@ import torch
 from torch import nn
 from torch.nn import functional
 
-from classes import CLASSES
+from classes import CLASSES, TOLD_APART
 
 #: Widths of the stages, from the finest to the coarsest, and width x height of the input.
 SIZES = {
@@ -45,8 +45,8 @@ class UNet(nn.Module):
         self.grow = nn.ModuleList(nn.ConvTranspose2d(b, a, 2, stride=2) for a, b in zip(widths, widths[1:]))
         self.up = nn.ModuleList(Stage(2 * width, width) for width in widths[:-1])
         self.head = nn.Conv2d(widths[0], len(CLASSES), 1)
-        # Coarse scores, in training only: they tell the deep stages sooner what is wanted.
-        self.coarse_heads = nn.ModuleList(nn.Conv2d(width, len(CLASSES), 1) for width in widths[1:4])
+        # Coarse scores, in training only: they tell the deep stages sooner what is wanted, and what else is there.
+        self.coarse_heads = nn.ModuleList(nn.Conv2d(width, TOLD_APART, 1) for width in widths[1:4])
 
     def forward(self, picture):
         """Scores (before softmax) at half size; in training a list, with coarser ones behind."""

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A pack: all pictures and labels of a training in one small .npz (JPEG and PNG bytes inside).
 
-Every entry has a name such as `voc_person/000129`, a picture and labels (indices into classes.CLASSES, 255 = ignored).
+Every entry has a name such as `voc_person/000129`, a picture and labels (indices into classes.CLASSES, behind
+them those of OTHER_THINGS, 254 = not a person, 255 = ignored).
 """
 import zipfile
 

@@ -11,7 +11,7 @@ from photographs import random_camera, random_view
 MEAN, DEVIATION = 0.5, 0.25  # of a pixel divided by 255, every channel
 
 #: How often a sample is a plain view of a picture of this source.
-PLAIN = {"voc_person": 0.42, "human_290": 0.09, "penn_fudan": 0.05, "room": 0.04, "simulated": 0.06, "walking": 0.08}
+PLAIN = {"voc_person": 0.50, "human_290": 0.09, "penn_fudan": 0.05, "room": 0.04, "simulated": 0.08, "walking": 0.07}
 COMPOSED = 0.30
 #: How often a picture of this source is the background of a composed sample, and how often its people are in it.
 BACKGROUNDS = {"room": 0.3, "simulated": 0.3, "voc_person": 0.4}

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Does the training work at all?  A few steps with a tiny network, in seconds.
 
-Packs simulated frames, trains, goes on from the checkpoint, exports.  Fails when the loss does not fall.  Leaves in
+Packs simulated frames, trains, goes on from the checkpoint, exports, and starts another training from that.  Fails when
+the loss does not fall, or when what is read back from the export is another network.  Leaves in
 --output: unet.onnx, picture.png and labels.png, what PyTorch says of that picture, for a comparison with C++.
 """
 import argparse
@@ -17,7 +18,7 @@ import torch
 
 from measure import found_labels
 from pack import PackError, read_pack
-from weights import load_weights
+from weights import load_onnx, load_weights, with_normalisation
 
 HERE = pathlib.Path(__file__).parent
 
@@ -50,6 +51,14 @@ def main():
 
     torch.set_num_threads(1)
     model, input_size = load_weights(arguments.output / "weights.npz")
+    pictures = torch.rand(2, 3, input_size[1], input_size[0])
+    with torch.no_grad():
+        read_back = with_normalisation(load_onnx(onnx), [pictures])
+        difference = float((read_back(pictures) - model(pictures)).abs().max())
+    if not difference < 1e-3:
+        raise PackError(f"{onnx}: scores differ by {difference} from those of weights.npz; expected the same")
+    run("train.py", pack, "--output", arguments.output / "further", "--size", "tiny", "--batch", 4, "--workers", 0,
+        "--steps", 2, "--start-from", onnx)
     picture = read_pack(pack)[0][0].picture
     cv2.imwrite(str(arguments.output / "picture.png"), picture)
     cv2.imwrite(str(arguments.output / "labels.png"), found_labels(model, picture, input_size).astype(np.uint8))

@@ -13,6 +13,7 @@ Example
 import argparse
 import copy
 import csv
+import itertools
 import math
 import pathlib
 import sys
@@ -21,13 +22,13 @@ import time
 import torch
 from torch.nn import functional
 
-from classes import IGNORED, NOT_PERSON, PERSON
+from classes import CLASSES, IGNORED, NOT_PERSON, PERSON, TOLD_APART, is_other_thing
 from curves import draw_curves
 from measure import Validation
 from model import SIZES, UNet, multiple
 from pack import PackError, read_pack
 from samples import Samples
-from weights import load_weights, save_weights
+from weights import load_onnx, load_weights, save_weights, with_normalisation
 
 
 def soft_dice(scores, labels):
@@ -52,23 +53,28 @@ def class_loss(scores, labels, class_weights):
 
 def training_loss(outputs, labels, class_weights):
     fine = functional.interpolate(outputs[0], size=labels.shape[1:], mode="bilinear", align_corners=False)
-    loss = class_loss(fine, labels, class_weights) + 0.5 * soft_dice(fine, labels)
+    own_labels = torch.where(is_other_thing(labels), 0, labels)
+    loss = class_loss(fine, own_labels, class_weights) + 0.5 * soft_dice(fine, own_labels)
+    told_apart = torch.cat([class_weights, class_weights.new_ones(TOLD_APART - len(CLASSES))])
     for scores in outputs[1:]:
         step = labels.shape[1] // scores.shape[2]
         coarse_labels = labels[:, step // 2::step, step // 2::step]
-        loss = loss + 0.2 * class_loss(scores, coarse_labels, class_weights)
+        loss = loss + 0.2 * class_loss(scores, coarse_labels, told_apart)
     return loss
 
 
 class Training:
     """Everything that changes while training; what a checkpoint holds."""
 
-    def __init__(self, arguments):
+    def __init__(self, arguments, first_batches):
         torch.manual_seed(arguments.seed)
         self.input_size = (arguments.width, arguments.height)
         self.model = UNet(arguments.size, arguments.dropout)
         if arguments.start_from:
-            weights, _ = load_weights(arguments.start_from)
+            exported = arguments.start_from.suffix == ".onnx"
+            weights = load_onnx(arguments.start_from) if exported else load_weights(arguments.start_from)[0]
+            if exported:
+                weights = with_normalisation(weights, first_batches)
             if weights.size != arguments.size:
                 raise PackError(f"{arguments.start_from}: holds size '{weights.size}', expected '{arguments.size}'")
             self.model.load_state_dict(weights.state_dict())
@@ -134,15 +140,21 @@ def learning_rate(progress, step, highest):
 def train(arguments):
     torch.set_num_threads(arguments.threads)
     training_entries, held_out = read_pack(arguments.pack)
-    training = Training(arguments)
+    sizes = [(arguments.width, arguments.height)]
+    if arguments.also:
+        sizes = sizes * 2 + [arguments.also]
+
+    def batches_from(step):
+        samples = Samples(training_entries, sizes, arguments.batch, arguments.seed, step * arguments.batch,
+                          arguments.whole)
+        return iter(torch.utils.data.DataLoader(samples, arguments.batch, num_workers=arguments.workers))
+
+    training = Training(arguments, (pictures for pictures, _ in itertools.islice(batches_from(0), 24)))
     checkpoint = arguments.output / "checkpoint.pt"
     if arguments.resume and checkpoint.exists():
         training.load(checkpoint)
         print(f"goes on at step {training.step}", flush=True)
-    sizes = [training.input_size] * 2 + [arguments.also] if arguments.also else [training.input_size]
-    samples = Samples(training_entries, sizes, arguments.batch, arguments.seed, training.step * arguments.batch,
-                      arguments.whole)
-    batches = iter(torch.utils.data.DataLoader(samples, arguments.batch, num_workers=arguments.workers))
+    batches = batches_from(training.step)
     validation = Validation(training_entries, held_out)
     class_weights = torch.tensor(arguments.class_weights)
     log = Log(arguments.output / "log.csv", arguments.resume)
@@ -202,7 +214,7 @@ def main():
     length = parser.add_mutually_exclusive_group()
     length.add_argument("--minutes", type=float, default=60.0, help="length of the run (default: 60)")
     length.add_argument("--steps", type=int, help="length of the run, exactly repeatable")
-    parser.add_argument("--start-from", type=pathlib.Path, help="weights.npz of an earlier run")
+    parser.add_argument("--start-from", type=pathlib.Path, help="weights.npz of an earlier run, or unet.onnx as export.py writes it")
     parser.add_argument("--resume", action="store_true", help="go on from the checkpoint in --output, if there is one")
     parser.add_argument("--batch", type=int, default=16)
     parser.add_argument("--learning-rate", type=float, default=1.5e-3, help="the highest (default: 1.5e-3)")
