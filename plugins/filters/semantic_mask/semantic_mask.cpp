@@ -12,9 +12,10 @@ namespace holdfast {
 
 void SemanticMaskSettings::describe(ParameterTable<SemanticMaskSettings>& table) {
   using S = SemanticMaskSettings;
-  table.add("classes", &S::classes,
-            "names of the segmenter's classes that can move; empty = those that it says can, or person when it does not "
-            "say");
+  table.add(
+      "classes", &S::classes,
+      "names of the segmenter's classes that can move; empty = those that it says can, or person when it does not "
+      "say");
   table
       .add("dilate", &S::dilate,
            "features this near to a mask belong to it, unless their depth says that they lie behind")

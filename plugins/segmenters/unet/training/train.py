@@ -214,7 +214,8 @@ def main():
     length = parser.add_mutually_exclusive_group()
     length.add_argument("--minutes", type=float, default=60.0, help="length of the run (default: 60)")
     length.add_argument("--steps", type=int, help="length of the run, exactly repeatable")
-    parser.add_argument("--start-from", type=pathlib.Path, help="weights.npz of an earlier run, or unet.onnx as export.py writes it")
+    parser.add_argument("--start-from", type=pathlib.Path,
+                        help="weights.npz of an earlier run, or unet.onnx as export.py writes it")
     parser.add_argument("--resume", action="store_true", help="go on from the checkpoint in --output, if there is one")
     parser.add_argument("--batch", type=int, default=16)
     parser.add_argument("--learning-rate", type=float, default=1.5e-3, help="the highest (default: 1.5e-3)")
