@@ -46,8 +46,7 @@ class Unet : public testing::TestWithParam<std::string> {};
 TEST_P(Unet, FindsAPersonInARoomAndNobodyInAnEmptyOne) {
   const auto segmenter = make({{"size", GetParam()}});
   simulation::Simulator with_person = room_with("{ at: [2.5, 3.0] }"), empty = room_with("");
-  // A person as small pictures show them is mostly missed by `small`: its figures are in the model card.
-  EXPECT_GT(compare(*segmenter, with_person, 0).iou(), GetParam() == "small" ? 0.3 : 0.6);
+  EXPECT_GT(compare(*segmenter, with_person, 0).iou(), 0.6);
   EXPECT_LT(compare(*segmenter, empty, 0).found, 640 * 480 / 100);
 }
 

@@ -16,8 +16,8 @@ void UnetSettings::describe(ParameterTable<UnetSettings>& table) {
   using S = UnetSettings;
   table
       .add("size", &S::size,
-           "of the picture that the network is shown: small (192x160) takes a third of the time of base "
-           "(288x224), which sees better")
+           "of the picture that the network is shown: small (224x192) takes a third of the time of base "
+           "(320x256), which sees better")
       .one_of({"small", "base"});
   table.add("width", &S::width, "of that picture, a multiple of 32; 0 = as size says").range(0, 4096).unit("px");
   table.add("height", &S::height, "of that picture, a multiple of 32; 0 = as size says").range(0, 4096).unit("px");
@@ -50,7 +50,7 @@ struct Look {
   int width, height;  ///< [px]
   float caution;      ///< taken from the score of a person: small pictures hide people, large ones invent some
 };
-constexpr Look base_look{288, 224, 0.4F}, small_look{192, 160, 0.1F};
+constexpr Look base_look{320, 256, 0.2F}, small_look{224, 192, 0.0F};
 
 const Look& look_of(const UnetSettings& settings) { return settings.size == "small" ? small_look : base_look; }
 
