@@ -45,7 +45,8 @@ class Network {
   /// The output for an image (8UC3, blue green red, any size): 32F, as many dimensions as the network gives; valid
   /// until the next call. Throws InputError when the network cannot be run on its input.
   cv::Mat run(const cv::Mat& colour);
-  /// The output for the mirror image of the image of the last run(), without preparing that again.
+  /// The output for the mirror image of the image of the last run(), without preparing that again; once after each
+  /// run(), because the image is mirrored where it lies.
   cv::Mat run_mirrored();
 
   int width() const;

@@ -27,7 +27,7 @@ class NetworkSegmenter : public Segmenter {
  protected:
   /// The network's output for an image, valid until the next call.
   virtual cv::Mat scores(const cv::Mat& colour) { return network_.run(colour); }
-  /// The same for the mirror image of the last one; valid until the next call.
+  /// The same for the mirror image of the last one, once after each scores(); valid until the next call.
   cv::Mat mirrored_scores() { return network_.run_mirrored(); }
 
  private:

@@ -43,7 +43,7 @@ struct FilterContext {
   /// none.
   const CarriedMask* carried_mask = nullptr;
   const std::vector<std::string>* classes = nullptr;  ///< of the segmenter; never nullptr when one of the masks is set
-  /// Segmenter::movable(): of the classes, those that can move; set with them, and empty when the segmenter does not
+  /// Segmenter::movable(): of the classes, those that can move; nullptr or empty when the segmenter does not
   /// say.
   const std::vector<std::string>* movable = nullptr;
 };

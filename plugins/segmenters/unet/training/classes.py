@@ -9,7 +9,7 @@ IGNORED = 255
 NOT_PERSON = 254
 
 #: What else VOC names.  Background to the network's user; in training, coarse heads that are not shipped tell it apart,
-#: so that a horse is not taken for the person on it.  Their labels follow those of CLASSES.
+#: so that less of a horse is taken for the person on it.  Their labels follow those of CLASSES.
 OTHER_THINGS = ("aeroplane", "bicycle", "bird", "boat", "bottle", "bus", "car", "cat", "cow", "dog", "horse", "motorbike",
                 "pottedplant", "sheep", "sofa", "train")
 TOLD_APART = len(CLASSES) + len(OTHER_THINGS)
