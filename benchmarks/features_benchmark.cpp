@@ -24,6 +24,7 @@
 #include "holdfast/core/hamming.hpp"
 #include "holdfast/core/random.hpp"
 #include "holdfast/core/simd.hpp"
+#include "holdfast/matching/binary_descriptors.hpp"
 #include "opencv_orb/opencv_orb.hpp"
 #include "orb/orb.hpp"
 
@@ -127,7 +128,11 @@ void nearest(benchmark::State& state) {
   const std::vector<Descriptor> descriptors = random_descriptors(1000);
   std::vector<std::uint32_t> candidates(descriptors.size());
   std::iota(candidates.begin(), candidates.end(), 0U);
-  for (auto _ : state) benchmark::DoNotOptimize(nearest_descriptors(descriptors[500], descriptors.data(), candidates));
+  const matching::BinaryDescriptors block = descriptors;
+  std::vector<std::uint16_t> distances;
+  for (auto _ : state)
+    benchmark::DoNotOptimize(
+        matching::nearest_two(block, 500, block, std::span<const std::uint32_t>(candidates), distances));
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(candidates.size()));
 }
 BENCHMARK(nearest);

@@ -14,7 +14,7 @@
 
 #include "holdfast/evaluation/evaluation.hpp"
 #include "holdfast/evaluation/statistics.hpp"
-#include "holdfast/pipeline/pipeline_builder.hpp"
+#include "holdfast/pipeline/configured_pipeline.hpp"
 #include "holdfast/plugin/builtin.hpp"
 
 namespace holdfast {
@@ -104,7 +104,7 @@ int main(int argument_count, char** arguments) try {
   Registry registry;
   register_builtin_plugins(registry);
   const Configuration configuration =
-      load_configuration(arguments[1], {arguments + 3, arguments + argument_count}, registry, pipeline_sections());
+      load_configuration(arguments[1], {arguments + 3, arguments + argument_count}, registry);
   BuiltPipeline built = build_pipeline(configuration, registry);
   const std::vector<Part> parts = run(built);
   std::filesystem::create_directories(arguments[2]);

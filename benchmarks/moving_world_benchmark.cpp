@@ -12,7 +12,7 @@
 
 #include "holdfast/config/configuration.hpp"
 #include "holdfast/evaluation/statistics.hpp"
-#include "holdfast/pipeline/pipeline_builder.hpp"
+#include "holdfast/pipeline/configured_pipeline.hpp"
 #include "holdfast/plugin/builtin.hpp"
 #include "orb_yardstick.hpp"
 
@@ -32,7 +32,7 @@ BuiltPipeline build(const std::string& file) {
   Registry registry;
   register_builtin_plugins(registry);
   const Configuration configuration =
-      load_configuration(HOLDFAST_SOURCE_DIR "/examples/configs/" + file, changes, registry, pipeline_sections());
+      load_configuration(HOLDFAST_SOURCE_DIR "/examples/configs/" + file, changes, registry);
   return build_pipeline(configuration, registry);
 }
 

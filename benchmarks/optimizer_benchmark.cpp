@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "geometry/synthetic.hpp"
-#include "holdfast/geometry/pose_adjustment.hpp"
+#include "holdfast/geometry/pose_problem.hpp"
 #include "holdfast/plugin/plugin.hpp"
 
 extern "C" void holdfast_register_plugin_ceres(holdfast::Registry& registry);

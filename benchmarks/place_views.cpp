@@ -11,7 +11,7 @@
 #include "holdfast/core/association.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/interfaces/feature_extractor.hpp"
-#include "holdfast/pipeline/pipeline_builder.hpp"
+#include "holdfast/pipeline/configured_pipeline.hpp"
 #include "holdfast/plugin/builtin.hpp"
 
 namespace holdfast {

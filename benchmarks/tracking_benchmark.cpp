@@ -11,7 +11,7 @@
 
 #include "holdfast/config/configuration.hpp"
 #include "holdfast/evaluation/statistics.hpp"
-#include "holdfast/pipeline/pipeline_builder.hpp"
+#include "holdfast/pipeline/configured_pipeline.hpp"
 #include "holdfast/plugin/builtin.hpp"
 #include "orb_yardstick.hpp"
 

@@ -10,7 +10,7 @@ get_property(exported_targets GLOBAL PROPERTY HOLDFAST_EXPORTED_TARGETS)
 function(holdfast_package_of library result)
   if(library MATCHES "^opencv_")
     set(package OpenCV)
-  elseif(library MATCHES "^(Eigen3|Threads|spdlog|nlohmann_json|CLI11|GTest)::")
+  elseif(library MATCHES "^(Eigen3|Threads|nlohmann_json|CLI11|GTest)::")
     set(package ${CMAKE_MATCH_1})
   elseif(library MATCHES "^Ceres::")
     set(package Ceres)
@@ -78,6 +78,7 @@ install(TARGETS ${exported_targets} EXPORT holdfast
 install(EXPORT holdfast NAMESPACE holdfast:: FILE holdfastTargets.cmake
         DESTINATION ${package_folder} COMPONENT development)
 
+list(JOIN HOLDFAST_OPENCV_COMPONENTS " " holdfast_opencv_components)
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/holdfastConfig.cmake.in
                               ${holdfast_BINARY_DIR}/package/holdfastConfig.cmake
                               INSTALL_DESTINATION ${package_folder}
@@ -92,8 +93,12 @@ install(FILES ${holdfast_BINARY_DIR}/package/holdfastConfig.cmake
               ${CMAKE_CURRENT_LIST_DIR}/conformance_main.cpp.in
         DESTINATION ${package_folder} COMPONENT development)
 
+set(left_out "")
+foreach(header IN LISTS HOLDFAST_LEFT_OUT_SETTINGS)
+  list(APPEND left_out PATTERN "${header}" EXCLUDE)
+endforeach()
 install(DIRECTORY ${holdfast_SOURCE_DIR}/include/holdfast ${holdfast_BINARY_DIR}/include/holdfast
-        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development FILES_MATCHING PATTERN "*.hpp")
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development FILES_MATCHING PATTERN "*.hpp" ${left_out})
 install(FILES ${holdfast_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT runtime)
 
 if(TARGET holdfast_program)

@@ -6,6 +6,7 @@
 #                                                     password)
 #   sh cmake/install_dependencies.sh --training       also what the training of the U-Net and its test need
 #   sh cmake/install_dependencies.sh --documentation  also what the tests of the documentation need
+#   sh cmake/install_dependencies.sh --benchmarks     also what the benchmarks are built of
 #   sh cmake/install_dependencies.sh --python         also what the segmenter `python` is built of, and numpy
 #   sh cmake/install_dependencies.sh --dry-run        say what would be installed, change nothing
 set -eu
@@ -13,8 +14,8 @@ set -eu
 packages="
   build-essential cmake ninja-build ccache git ca-certificates pkg-config
   libeigen3-dev libopencv-dev libceres-dev libflann-dev liblz4-dev
-  libyaml-cpp-dev libcli11-dev libspdlog-dev libfmt-dev nlohmann-json3-dev
-  libgtest-dev libgmock-dev libbenchmark-dev"
+  libyaml-cpp-dev libcli11-dev nlohmann-json3-dev
+  libgtest-dev libgmock-dev"
 
 say() { printf 'install_dependencies: %s\n' "$*"; }
 fail() { say "$@" >&2; exit 1; }
@@ -24,10 +25,11 @@ for argument in "$@"; do
   case "$argument" in
     --training) packages="$packages python3 python3-numpy python3-opencv python3-torch" ;;
     --documentation) packages="$packages python3 doxygen" ;;
+    --benchmarks) packages="$packages libbenchmark-dev" ;;
     --python) packages="$packages python3-dev pybind11-dev python3-numpy" ;;
     --dry-run) dry_run=yes ;;
-    -h | --help) sed -n '3,10s/^# \{0,1\}//p' "$0"; exit 0 ;;
-    *) fail "unknown argument '$argument'; known are --training, --documentation, --python, --dry-run and --help" ;;
+    -h | --help) sed -n '3,11s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) fail "unknown argument '$argument'; known are --training, --documentation, --benchmarks, --python, --dry-run and --help" ;;
   esac
 done
 

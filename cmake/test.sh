@@ -10,7 +10,7 @@ cd "$(dirname "$0")/.."
 build=${1:-build}
 jobs=$(nproc)
 
-sh cmake/install_dependencies.sh --training --documentation --python
+sh cmake/install_dependencies.sh --training --documentation --benchmarks --python
 cmake --preset release -B "$build" \
   -DHOLDFAST_BUILD_TESTS=ON -DHOLDFAST_BUILD_BENCHMARKS=ON -DHOLDFAST_BUILD_EXAMPLES=ON -DHOLDFAST_PYTHON=ON
 cmake --build "$build" --parallel "$jobs"

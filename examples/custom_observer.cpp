@@ -15,10 +15,10 @@ class Storyteller final : public holdfast::Observer {
     std::cout << frame.timestamp << " s: " << holdfast::to_string(result.status) << ", " << result.inliers
               << " points in view\n";
   }
-  // In threaded mode this is another thread than on_frame()'s; the map is valid during the call only.
-  void on_keyframe(holdfast::KeyFrameId, const holdfast::Map& map) override {
+  // In threaded mode another thread than that of on_frame() calls this; the map is valid during the call only.
+  void on_keyframe(holdfast::KeyFrameId, const holdfast::ObservedMap& map) override {
     ++keyframes_;
-    std::cout << "  a keyframe; the map has " << map.points().size() << " points\n";
+    std::cout << "  a keyframe; the map has " << map.snapshot().points.size() << " points\n";
   }
   void on_finish(const holdfast::Map& map) override {
     std::cout << "the end, with " << map.keyframes().size() << " keyframes\n";

@@ -15,7 +15,7 @@ class Nearness final : public holdfast::DynamicFilter {
   void apply(const holdfast::FilterContext& context, holdfast::StaticEvidence& evidence) override {
     for (std::size_t i = 0; i < context.frame.size(); ++i)
       if (context.frame.has_depth(i) && context.frame.depth[i] < distance_)
-        evidence.add(i, -4.0F, holdfast::StaticEvidence::Sort::prior);
+        evidence.add(i, -4.0F, holdfast::StaticEvidence::Kind::prior);
   }
 
  private:

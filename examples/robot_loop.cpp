@@ -7,7 +7,7 @@
 #include <string>
 
 #include "holdfast/holdfast.hpp"
-#include "holdfast/pipeline/frame_feeder.hpp"
+#include "holdfast/run/frame_feeder.hpp"
 #include "holdfast/settings/all.hpp"
 #include "simulated_frames.hpp"
 
@@ -21,16 +21,19 @@ int main(int argument_count, char** arguments) try {
   std::signal(SIGINT, [](int) { stop = true; });
   std::signal(SIGTERM, [](int) { stop = true; });
 
+  // Frames arrive at their time stamps, and one that finds tracking busy is dropped, as on a robot.
+  const holdfast::RunSettings run{.mode = holdfast::RunMode::threaded,
+                                  .pace = holdfast::Pace::timestamps,
+                                  .late_frames = holdfast::LateFrames::drop};
   const auto source = simulated_frames(std::stod(arguments[1]));
   holdfast::Pipeline pipeline = holdfast::PipelineBuilder()
                                     .source(source->describe())
                                     .features(holdfast::OrbSettings{})
                                     .optimizer(holdfast::CeresSettings{})
                                     .loop_detector(holdfast::FlannSettings{})
-                                    .threads({.threaded = true, .unpaced = false})
+                                    .run(run)
                                     .build();
-  // Reads the camera in its own thread; a frame that comes too late for tracking is dropped, as a robot wants it.
-  holdfast::FrameFeeder camera(*source, {.by_timestamps = true, .drop_late = true});
+  holdfast::FrameFeeder camera(*source, run);  // reads the camera in its own thread
   int tracked = 0;
   while (!stop) {
     const auto fed = camera.next();

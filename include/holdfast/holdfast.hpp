@@ -4,7 +4,8 @@
 /// Everything that a program which embeds Holdfast starts from; link holdfast::holdfast. The way through it:
 /// a PipelineBuilder, or load_configuration() and build_pipeline() for YAML, then frames into Pipeline::feed(), poses
 /// out of its results and of Pipeline::trajectory(), and evaluate() against a truth. Typed settings of the built-in
-/// modules are in holdfast/settings/all.hpp. A program that needs only one of these compiles faster with that one header.
+/// modules are in holdfast/settings/all.hpp. A program that needs only one of these compiles faster with that one
+/// header.
 #include "holdfast/config/configuration.hpp"
 #include "holdfast/core/camera.hpp"
 #include "holdfast/core/error.hpp"
@@ -15,6 +16,7 @@
 #include "holdfast/interfaces/all.hpp"
 #include "holdfast/map_io/map_export.hpp"
 #include "holdfast/map_io/map_file.hpp"
+#include "holdfast/pipeline/configured_pipeline.hpp"
 #include "holdfast/pipeline/pipeline.hpp"
 #include "holdfast/pipeline/pipeline_builder.hpp"
 #include "holdfast/plugin/builtin.hpp"

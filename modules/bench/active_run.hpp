@@ -5,25 +5,25 @@
 #include <optional>
 
 #include "holdfast/bench/process.hpp"
-#include "holdfast/bench/run_desk.hpp"
+#include "holdfast/bench/run_scheduler.hpp"
 
 namespace holdfast {
 
-/// A run while its process lives, in a hidden folder beside the one that it gets in the end.
+/// A run with a running process, in a hidden folder next to its final folder.
 class ActiveRun {
  public:
   ActiveRun(const RunPlan& plan, const PlannedRun& run, const BenchOptions& options);
 
   const PlannedRun& run() const { return run_; }
-  /// Whether its process has ended; asks it to end, and then ends it, when its time is over.
+  /// Returns whether its process has ended; after its time limit, asks it to end and then kills it.
   bool poll();
-  /// Told when another run is beside it.
+  /// Marks that another run is executed concurrently.
   void set_beside() { cost_.alone = false; }
-  /// Once poll() was true: evaluates, writes the result and gives the folder its name.
+  /// After poll() returned true: evaluates, writes the result and renames the folder.
   void complete();
   /// Asks the process to end.
   void terminate() { process_.terminate(); }
-  /// Ends the process and removes the folder of a run that was not completed.
+  /// Kills the process and removes the folder of an incomplete run.
   void discard();
 
   const RunResult& result() const { return result_; }
@@ -45,7 +45,7 @@ class ActiveRun {
   Process process_;
 };
 
-/// Hidden folders of runs that were never completed, below `runs`.
+/// Hidden folders of incomplete runs below `runs`.
 void remove_incomplete_runs(const std::filesystem::path& runs);
 
 /// The folder of a run.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "holdfast/cli/background_command.hpp"
+#include "background_command.hpp"
 
 #include <unistd.h>
 
@@ -9,18 +9,17 @@
 #include <memory>
 #include <opencv2/core/utility.hpp>
 #include <opencv2/imgcodecs.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "holdfast/cli/configured_command.hpp"
-#include "holdfast/cli/frame_loop.hpp"
-#include "holdfast/cli/output_folder.hpp"
-#include "holdfast/cli/terminal.hpp"
+#include "configured_command.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/dense_map/background.hpp"
 #include "holdfast/dense_map/static_scene.hpp"
-#include "holdfast/pipeline/pipeline_builder.hpp"
-#include "holdfast/plugin/builtin.hpp"
+#include "holdfast/run/run.hpp"
+#include "output_folder.hpp"
+#include "terminal.hpp"
 
 namespace holdfast {
 
@@ -60,16 +59,27 @@ std::size_t write_pictures(const StaticScene& scene, const Map& map, const Argum
   return count;
 }
 
-void run(const Arguments& arguments, int& exit_code) {
-  const Stopwatch since_start;
+int print_end(const Arguments& arguments, const RunRecord& record, std::size_t pictures) {
+  const bool was_interrupted = record.was_interrupted || interrupted();
+  if (!record.failure.empty())
+    std::fprintf(stderr, "%s %s\n", red("error:", STDERR_FILENO).c_str(), record.failure.c_str());
+  else if (was_interrupted)
+    std::fprintf(stderr, "interrupted; what was done is in %s\n", arguments.output.c_str());
+  else if (!arguments.quiet)
+    std::printf("%zu keyframes, each before and after, in %s\n", pictures,
+                (arguments.output / pictures_folder).c_str());
+  if (was_interrupted) return interrupted_exit_code;
+  return record.failure.empty() && pictures > 0 ? 0 : 1;
+}
+
+int draw_background(const Arguments& arguments) {
   cv::setNumThreads(1);
   catch_interrupts();
   Registry registry;
   register_builtin_plugins(registry);
   std::vector<std::string> overrides = {"dense_map.enabled=true"};
   overrides.insert(overrides.end(), arguments.overrides.begin(), arguments.overrides.end());
-  const Configuration configuration =
-      load_configuration(arguments.configuration, overrides, registry, pipeline_sections());
+  const Configuration configuration = load_configuration(arguments.configuration, overrides, registry);
   BuiltPipeline built = build_pipeline(configuration, registry,
                                        {.output_directory = arguments.output, .map_file = {}, .localise_only = false});
   const StaticScene* scene = built.pipeline.static_scene();
@@ -77,22 +87,13 @@ void run(const Arguments& arguments, int& exit_code) {
   prepare_output_folder(arguments.output, arguments.overwrite, {"config.yaml", pictures_folder, "overlay"});
   write_file_atomically(arguments.output / "config.yaml", to_yaml(configuration));
 
-  RunRecord record;
-  record.configuration = &configuration;
-  record.source = built.source->describe();
-  record.camera = built.pipeline.camera();
-  feed_frames(built, arguments.quiet, since_start, record);
-  const std::size_t count = write_pictures(*scene, built.pipeline.map(), arguments);
-
-  if (!record.failure.empty())
-    std::fprintf(stderr, "%s %s\n", red("error:", STDERR_FILENO).c_str(), record.failure.c_str());
-  else if (record.was_interrupted || interrupted())
-    std::fprintf(stderr, "interrupted; what was done is in %s\n", arguments.output.c_str());
-  else if (!arguments.quiet)
-    std::printf("%zu keyframes, each before and after, in %s\n", count, (arguments.output / pictures_folder).c_str());
-  exit_code = record.was_interrupted || interrupted() ? interrupted_exit_code
-              : record.failure.empty() && count > 0   ? 0
-                                                      : 1;
+  std::optional<Progress> progress(std::in_place, built.source->describe().frame_count, arguments.quiet);
+  RunOptions options;
+  options.stop = interrupted;
+  options.on_frame = [&](const RunProgress& run) { progress->update(run.frames_done, to_string(run.result.status)); };
+  const RunRecord record = run(built, configuration, options);
+  progress.reset();
+  return print_end(arguments, record, write_pictures(*scene, built.pipeline.map(), arguments));
 }
 
 }  // namespace
@@ -114,7 +115,7 @@ void add_background_command(CLI::App& app, int& exit_code) {
   command->add_option("--every", arguments->every, "Draw every N-th of the kept keyframes")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  command->callback([arguments, &exit_code] { run(*arguments, exit_code); });
+  command->callback([arguments, &exit_code] { exit_code = draw_background(*arguments); });
 }
 
 }  // namespace holdfast

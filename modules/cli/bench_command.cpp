@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "holdfast/cli/bench_command.hpp"
+#include "bench_command.hpp"
 
 #include <unistd.h>
 
@@ -16,14 +16,14 @@
 
 #include "holdfast/bench/bench_report.hpp"
 #include "holdfast/bench/published.hpp"
-#include "holdfast/bench/run_desk.hpp"
 #include "holdfast/bench/run_plan.hpp"
-#include "holdfast/cli/terminal.hpp"
+#include "holdfast/bench/run_scheduler.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/evaluation/number_text.hpp"
-#include "holdfast/pipeline/pipeline_builder.hpp"
+#include "holdfast/pipeline/configured_pipeline.hpp"
 #include "holdfast/plugin/builtin.hpp"
+#include "terminal.hpp"
 
 namespace holdfast {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "holdfast/cli/check_command.hpp"
+#include "check_command.hpp"
 
 #include <unistd.h>
 
@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "holdfast/cli/terminal.hpp"
 #include "holdfast/config/configuration.hpp"
-#include "holdfast/pipeline/pipeline_builder.hpp"
+#include "holdfast/pipeline/configured_pipeline.hpp"
 #include "holdfast/plugin/builtin.hpp"
+#include "terminal.hpp"
 
 namespace holdfast {
 
@@ -27,8 +27,7 @@ struct Arguments {
 void check(const Arguments& arguments) {
   Registry registry;
   register_builtin_plugins(registry);
-  const Configuration configuration =
-      load_configuration(arguments.configuration, arguments.overrides, registry, pipeline_sections());
+  const Configuration configuration = load_configuration(arguments.configuration, arguments.overrides, registry);
   if (arguments.print) {
     std::fputs(to_yaml(configuration).c_str(), stdout);
     return;

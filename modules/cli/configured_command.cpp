@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "holdfast/cli/configured_command.hpp"
+#include "configured_command.hpp"
 
 #include <CLI/CLI.hpp>
 

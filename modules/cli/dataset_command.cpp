@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "holdfast/cli/dataset_command.hpp"
+#include "dataset_command.hpp"
 
 #include <unistd.h>
 
@@ -12,10 +12,10 @@
 #include "holdfast/bench/dataset_check.hpp"
 #include "holdfast/bench/dataset_recipe.hpp"
 #include "holdfast/bench/external_system.hpp"
-#include "holdfast/cli/terminal.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/evaluation/number_text.hpp"
+#include "terminal.hpp"
 
 namespace holdfast {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "holdfast/cli/evaluate_command.hpp"
+#include "evaluate_command.hpp"
 
 #include <CLI/CLI.hpp>
 #include <cstdio>

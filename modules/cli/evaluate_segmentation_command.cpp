@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "holdfast/cli/evaluate_segmentation_command.hpp"
+#include "evaluate_segmentation_command.hpp"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -13,15 +13,15 @@
 #include <string>
 #include <vector>
 
-#include "holdfast/cli/label_folder.hpp"
-#include "holdfast/cli/terminal.hpp"
 #include "holdfast/config/configuration.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/stage_times.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/evaluation/segmentation_evaluation.hpp"
-#include "holdfast/pipeline/pipeline_builder.hpp"
+#include "holdfast/pipeline/configured_pipeline.hpp"
 #include "holdfast/plugin/builtin.hpp"
+#include "label_folder.hpp"
+#include "terminal.hpp"
 
 namespace holdfast {
 
@@ -207,8 +207,7 @@ Outcome evaluate_by(const Arguments& arguments) {
   cv::setNumThreads(1);  // as `run` does; the segmenter may ask for more
   Registry registry;
   register_builtin_plugins(registry);
-  const Configuration configuration =
-      load_configuration(arguments.configuration, arguments.overrides, registry, pipeline_sections());
+  const Configuration configuration = load_configuration(arguments.configuration, arguments.overrides, registry);
   return arguments.images.empty() ? segment_source(arguments, configuration, registry)
                                   : segment_images(arguments, configuration, registry);
 }

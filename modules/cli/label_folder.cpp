@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "holdfast/cli/label_folder.hpp"
+#include "label_folder.hpp"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "holdfast/cli/label_writer.hpp"
+#include "label_writer.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -7,11 +7,11 @@
 #include <cstdio>
 #include <utility>
 
-#include "holdfast/cli/output_folder.hpp"
-#include "holdfast/cli/sequence_writer.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/plugin/parameter.hpp"
+#include "output_folder.hpp"
+#include "sequence_writer.hpp"
 
 namespace holdfast {
 

@@ -8,21 +8,21 @@
 #include <string>
 #include <vector>
 
-#include "holdfast/cli/background_command.hpp"
-#include "holdfast/cli/bench_command.hpp"
-#include "holdfast/cli/check_command.hpp"
-#include "holdfast/cli/dataset_command.hpp"
-#include "holdfast/cli/evaluate_command.hpp"
-#include "holdfast/cli/evaluate_segmentation_command.hpp"
-#include "holdfast/cli/map_command.hpp"
-#include "holdfast/cli/modules_command.hpp"
-#include "holdfast/cli/run_command.hpp"
-#include "holdfast/cli/segment_command.hpp"
-#include "holdfast/cli/simulate_command.hpp"
-#include "holdfast/cli/terminal.hpp"
+#include "background_command.hpp"
+#include "bench_command.hpp"
+#include "check_command.hpp"
+#include "dataset_command.hpp"
+#include "evaluate_command.hpp"
+#include "evaluate_segmentation_command.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/version.hpp"
 #include "holdfast/plugin/did_you_mean.hpp"
+#include "map_command.hpp"
+#include "modules_command.hpp"
+#include "run_command.hpp"
+#include "segment_command.hpp"
+#include "simulate_command.hpp"
+#include "terminal.hpp"
 
 namespace {
 

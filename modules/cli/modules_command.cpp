@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "holdfast/cli/modules_command.hpp"
+#include "modules_command.hpp"
 
 #include <unistd.h>
 
@@ -10,12 +10,12 @@
 #include <utility>
 #include <vector>
 
-#include "holdfast/cli/terminal.hpp"
 #include "holdfast/config/reference.hpp"
-#include "holdfast/pipeline/pipeline_builder.hpp"
+#include "holdfast/pipeline/configured_pipeline.hpp"
 #include "holdfast/plugin/builtin.hpp"
 #include "holdfast/plugin/loader.hpp"
 #include "holdfast/simulation/scene_file.hpp"
+#include "terminal.hpp"
 
 namespace holdfast {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "holdfast/cli/output_folder.hpp"
+#include "output_folder.hpp"
 
 #include "holdfast/core/error.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "holdfast/cli/scene_preview.hpp"
+#include "scene_preview.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "holdfast/cli/segment_command.hpp"
+#include "segment_command.hpp"
 
 #include <unistd.h>
 
@@ -14,14 +14,14 @@
 #include <string>
 #include <vector>
 
-#include "holdfast/cli/configured_command.hpp"
-#include "holdfast/cli/label_writer.hpp"
-#include "holdfast/cli/terminal.hpp"
+#include "configured_command.hpp"
 #include "holdfast/config/configuration.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/stage_times.hpp"
-#include "holdfast/pipeline/pipeline_builder.hpp"
+#include "holdfast/pipeline/configured_pipeline.hpp"
 #include "holdfast/plugin/builtin.hpp"
+#include "label_writer.hpp"
+#include "terminal.hpp"
 
 namespace holdfast {
 
@@ -59,8 +59,7 @@ int segment(const Arguments& arguments) {
   catch_interrupts();
   Registry registry;
   register_builtin_plugins(registry);
-  const Configuration configuration =
-      load_configuration(arguments.configuration, arguments.overrides, registry, pipeline_sections());
+  const Configuration configuration = load_configuration(arguments.configuration, arguments.overrides, registry);
   BuiltSegmenter built = build_segmenter(configuration, registry);
   LabelWriter writer(arguments.output, built.segmenter->classes(), arguments.overwrite);
 

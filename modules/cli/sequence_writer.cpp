@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "holdfast/cli/sequence_writer.hpp"
+#include "sequence_writer.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "holdfast/cli/simulate_command.hpp"
+#include "simulate_command.hpp"
 
 #include <unistd.h>
 
@@ -11,13 +11,13 @@
 #include <string>
 #include <vector>
 
-#include "holdfast/cli/output_folder.hpp"
-#include "holdfast/cli/scene_preview.hpp"
-#include "holdfast/cli/sequence_writer.hpp"
-#include "holdfast/cli/terminal.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/simulation/scene_file.hpp"
 #include "holdfast/simulation/simulator.hpp"
+#include "output_folder.hpp"
+#include "scene_preview.hpp"
+#include "sequence_writer.hpp"
+#include "terminal.hpp"
 
 namespace holdfast {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "holdfast/cli/terminal.hpp"
+#include "terminal.hpp"
 
 #include <unistd.h>
 

@@ -7,33 +7,10 @@
 #include "holdfast/config/parameter_reader.hpp"
 #include "holdfast/plugin/did_you_mean.hpp"
 #include "holdfast/plugin/loader.hpp"
+#include "holdfast/plugin/module_check.hpp"
+#include "moved_keys.hpp"
 
 namespace holdfast {
-
-void RunSettings::describe(ParameterTable<RunSettings>& table) {
-  table
-      .add("mode", &RunSettings::mode,
-           "sequential: one thread, the same bits on every run; threaded: tracking beside local mapping, loop closing "
-           "and segmentation, each in its own thread")
-      .one_of({"sequential", "threaded"});
-  table.add("seed", &RunSettings::seed, "the only source of chance").at_least(0);
-  table
-      .add(
-          "pace", &RunSettings::pace,
-          "threaded mode; none: frames as fast as they can be read and tracked; timestamps: as fast as they were taken")
-      .one_of({"none", "timestamps"});
-  table
-      .add("late_frames", &RunSettings::late_frames,
-           "threaded mode, paced; queue: a frame that tracking has no time for waits, and the camera waits with it; "
-           "drop: the oldest one that waits is left out")
-      .one_of({"queue", "drop"});
-  table.add("frame_queue", &RunSettings::frame_queue, "threaded mode: frames that wait for tracking, at most")
-      .range(1, 1000);
-  table
-      .add("keyframe_queue", &RunSettings::keyframe_queue,
-           "threaded mode: keyframes that wait for local mapping, at most; paced, one that finds no room is put off")
-      .range(1, 1000);
-}
 
 void CameraSettings::describe(ParameterTable<CameraSettings>& table) {
   using S = CameraSettings;
@@ -129,9 +106,7 @@ class Resolver {
     result_.observers = chain("observers");
     read_camera();
     read_run();
-    for (const SectionDescription& section : sections_)
-      result_.sections[section.name] =
-          read_parameters(at(section.name), section.parameters, "section '" + section.name + "'", diagnostics_);
+    for (const SectionDescription& section : sections_) read_section(section);
     // As a reader goes through the file; what has no line comes last.
     std::stable_sort(diagnostics_.begin(), diagnostics_.end(), [](const Diagnostic& a, const Diagnostic& b) {
       const auto key = [](const SourceLocation& l) { return std::tuple(l.line == 0, l.line, l.column); };
@@ -188,12 +163,8 @@ class Resolver {
   ModuleChoice module(const std::string& kind, const std::string& name, const SourceLocation& location,
                       const ConfigurationNode& parameters) {
     ModuleChoice choice{kind, name, {}, location};
-    const ModuleEntry* entry = registry_.find(kind, name);
-    if (entry == nullptr) {
-      complain(location,
-               "there is no " + kind + " module '" + name + "'; " + did_you_mean(name, registry_.names(kind)));
-      return choice;
-    }
+    const ModuleEntry* entry = find_module(registry_, kind, name, location, diagnostics_);
+    if (entry == nullptr) return choice;
     ConfigurationNode given = parameters;
     if (given.location.file.empty()) given.location = location;
     choice.values = read_parameters(given, entry->parameters, kind + " '" + name + "'", diagnostics_);
@@ -256,10 +227,14 @@ class Resolver {
     const ParameterTable<RunSettings> table;
     const ConfigurationNode& node = at("run");
     result_.run = table.settings(read_parameters(node, table.parameters(), "section 'run'", diagnostics_));
-    if (result_.run.mode == "sequential" && result_.run.pace == "timestamps")
-      complain(node.find("pace")->location,
-               "found 'timestamps' for 'pace' of section 'run', which sequential mode cannot keep; expected 'none', or "
-               "'threaded' for 'mode'");
+    if (const auto reason = result_.run.contradiction()) complain(node.find("pace")->location, *reason);
+  }
+
+  void read_section(const SectionDescription& section) {
+    ConfigurationNode node = at(section.name);
+    reject_moved_keys(section.name, node, diagnostics_);
+    result_.sections[section.name] =
+        read_parameters(node, section.parameters, "section '" + section.name + "'", diagnostics_);
   }
 
   const ConfigurationNode& root_;
@@ -277,7 +252,7 @@ Configuration resolve_configuration(const ConfigurationNode& root, const std::st
   return Resolver(root, file, registry, sections).resolve();
 }
 
-Configuration load_configuration(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+Configuration read_configuration(const std::filesystem::path& file, const std::vector<std::string>& overrides,
                                  Registry& registry, const std::vector<SectionDescription>& sections) {
   ConfigurationNode root = read_yaml(file);
   std::vector<Diagnostic> wrong_overrides;

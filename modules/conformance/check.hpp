@@ -11,9 +11,9 @@
 
 namespace holdfast::conformance {
 
-/// The camera that modules are made for, and whose frames they get: 320x240, no distortion.
+/// The camera of the modules under test and of their frames: 320x240, no distortion.
 Camera standard_camera();
-/// What modules are told: sequential mode, the standard camera, the classes of the scene.
+/// The context of the modules under test: sequential mode, the standard camera, the classes of the scene.
 CreationContext standard_context();
 
 /// Makes the module under test as a configuration would, as often as a check wants one.
@@ -34,7 +34,7 @@ class Maker {
   ParameterValues values_;
 };
 
-/// A test of one sentence. `run` speaks through GoogleTest's expectations, from the thread that called it.
+/// A test of one sentence. `run` reports through GoogleTest's expectations, in the calling thread.
 struct Check {
   const char* name;
   Promise promise;
@@ -48,10 +48,10 @@ std::vector<Check> dynamic_filter_checks();
 std::vector<Check> optimizer_checks();
 std::vector<Check> loop_detector_checks();
 
-/// Runs both at the same time, each in a thread of its own, and passes on what they throw.
+/// Runs both concurrently in separate threads and propagates their exceptions.
 void run_side_by_side(const std::function<void()>& first, const std::function<void()>& second);
 
-/// Runs a call that may refuse its input by an Error. Returns whether it did; fails when the error says nothing.
+/// Runs a call that may reject its input with an Error. Returns whether it did; fails if the error has no message.
 bool refused(const std::function<void()>& call);
 
 /// Runs the call `times` times and reports the median as the test's property median_ms and in the output.

@@ -6,7 +6,7 @@
 namespace holdfast::conformance {
 
 /// While it lives, a crash of this process first writes the text to stderr, so that even then it is known which promise
-/// was broken. Signals that somebody else handles (a sanitizer) are left alone.
+/// was broken. Signals that are handled elsewhere (by a sanitizer) are not changed.
 class CrashNote {
  public:
   explicit CrashNote(const std::string& text);

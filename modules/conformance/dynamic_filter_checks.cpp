@@ -18,7 +18,7 @@ const FilterScene& scene() {
   return scene;
 }
 
-/// All that was said of one moment, for comparisons.
+/// All evidence of one frame, for comparisons.
 struct Said {
   std::vector<std::pair<std::uint32_t, float>> features;
   std::vector<std::pair<MapPointId, float>> points;
@@ -28,8 +28,8 @@ struct Said {
 
 Said said(const StaticEvidence& evidence) {
   Said result;
-  for (const auto& each : evidence.statements()) result.features.emplace_back(each.feature, each.log_odds);
-  for (const auto& each : evidence.point_statements()) result.points.emplace_back(each.point, each.log_odds);
+  for (const auto& each : evidence.contributions()) result.features.emplace_back(each.feature, each.log_odds);
+  for (const auto& each : evidence.point_contributions()) result.points.emplace_back(each.point, each.log_odds);
   result.cells = evidence.cells();
   for (const MovingObject& object : evidence.objects())
     result.objects.emplace_back(object.id, object.T_world_object.matrix());
@@ -46,14 +46,14 @@ void expect_same(const std::vector<StaticEvidence>& a, const std::vector<StaticE
   }
 }
 
-/// What the header says of evidence, whatever the context.
+/// Checks the contract of evidence, which holds for every context.
 void expect_sound(const StaticEvidence& evidence, const Frame& frame, const Map& map) {
   ASSERT_EQ(evidence.size(), frame.size()) << "the evidence was resized; a filter adds to what is there";
-  for (const auto& each : evidence.statements()) {
+  for (const auto& each : evidence.contributions()) {
     ASSERT_LT(each.feature, frame.size()) << "evidence about a feature that the frame does not have";
     ASSERT_TRUE(std::isfinite(each.log_odds)) << "log-odds of feature " << each.feature << ": " << each.log_odds;
   }
-  for (const auto& each : evidence.point_statements()) {
+  for (const auto& each : evidence.point_contributions()) {
     ASSERT_NE(map.find_point(each.point), nullptr) << "evidence about a map point that is not in the map";
     ASSERT_TRUE(std::isfinite(each.log_odds)) << "log-odds of a map point: " << each.log_odds;
   }
@@ -85,7 +85,6 @@ void needs_stay(const Maker& maker) {
     for (const auto& [name, needed] : {std::pair{" depth", n.depth},
                                        {" segmentation", n.segmentation},
                                        {" pose_prior", n.pose_prior},
-                                       {" map", n.map},
                                        {" matches", n.matches}})
       if (needed) result += name;
     return result;
@@ -108,11 +107,11 @@ void never_takes_away(const Maker& maker) {
     StaticEvidence after = before;
     after.begin_stage("filter");
     scene().judge(*filter, i, {}, after);
-    ASSERT_GE(after.statements().size(), before.statements().size()) << "statements of an earlier stage are gone";
+    ASSERT_GE(after.contributions().size(), before.contributions().size()) << "statements of an earlier stage are gone";
     ASSERT_EQ(after.size(), before.size()) << "the evidence was resized";
     EXPECT_EQ(after.cells().size(), before.cells().size()) << "the evidence about cells was resized";
-    for (std::size_t k = 0; k < before.statements().size(); ++k) {
-      const auto &was = before.statements()[k], &is = after.statements()[k];
+    for (std::size_t k = 0; k < before.contributions().size(); ++k) {
+      const auto &was = before.contributions()[k], &is = after.contributions()[k];
       ASSERT_TRUE(was.feature == is.feature && was.log_odds == is.log_odds && was.stage == is.stage)
           << "a statement of an earlier stage was changed";
     }
@@ -142,7 +141,7 @@ void lives_without_depth(const Maker& maker) {
 void survives_depth_that_is_no_number(const Maker& maker) {
   FilterScene given(standard_camera(), 4);
   const auto filter = maker.make<DynamicFilter>();
-  // As a sensor may give it; the frame that is made of it has no depth there.
+  // A sensor may return such values; the frame built from it has no depth there.
   for (Moment& moment : given.moments()) {
     const cv::Mat image(moment.sensor.colour.size(), CV_32FC1, cv::Scalar(std::numeric_limits<double>::quiet_NaN()));
     remove_depth(moment);
@@ -170,7 +169,7 @@ void lives_with_everything_masked(const Maker& maker) {
     for (Moment& moment : given.moments()) {
       moment.segmentation.labels = cv::Mat(moment.sensor.colour.size(), CV_8UC1, cv::Scalar(label));
       moment.segmentation.confidence = cv::Mat();
-      moment.carried.labels.assign(moment.carried.labels.size(), label);
+      moment.frame.coarse.mask.labels.assign(moment.frame.coarse.mask.labels.size(), label);
     }
     expect_sound(given, *maker.make<DynamicFilter>());
   }
@@ -233,20 +232,20 @@ void time(const Maker& maker) {
 
 std::vector<Check> dynamic_filter_checks() {
   const Promise adds{header,
-                     "Adds evidence about the features of context.frame, in finite numbers; says nothing where it "
-                     "cannot judge."};
-  const Promise missing{header,
-                        "What is needed may still be missing in one frame: no depth in it, no mask yet, no pose."};
+                     "Adds evidence about the features of context.frame in finite numbers; adds nothing where it "
+                     "cannot decide."};
+  const Promise missing{
+      header,
+      "In a single frame, an input may be missing all the same: the frame has no depth, no mask has arrived "
+      "yet, or there is no pose."};
   const Promise same{header, "The same contexts in the same order give the same evidence."};
   const Promise threads{header, "Used by one thread."};
   return {
       {"NeedsStay",
-       {header,
-        "What a filter cannot work without. Checked against the source and the pipeline before the first frame; does "
-        "not change."},
+       {header, "They are checked against the source and the pipeline before the first frame and do not change."},
        needs_stay},
       {"EvidenceIsSound", adds, evidence_is_sound},
-      {"NeverTakesAway", {header, "Never takes anything away: filters do not delete."}, never_takes_away},
+      {"NeverTakesAway", {header, "Evidence is never removed: filters do not delete."}, never_takes_away},
       {"LivesWithoutWhatMayBeMissing", missing, lives_without_what_may_be_missing},
       {"LivesWithoutDepth", missing, lives_without_depth},
       {"SurvivesDepthThatIsNoNumber", adds, survives_depth_that_is_no_number},
@@ -255,7 +254,7 @@ std::vector<Check> dynamic_filter_checks() {
       {"LivesWithEverythingMasked", adds, lives_with_everything_masked},
       {"SurvivesImagesOfAnySize", adds, survives_images_of_any_size},
       {"ChangesNothingButEvidence",
-       {"holdfast/core/sensor_frame.hpp", "The images are shared, never copied, and must not be written to."},
+       {"holdfast/core/sensor_frame.hpp", "The images are shared, not copied, and must not be written to."},
        changes_nothing_but_evidence},
       {"SameContextsSameEvidence", same, same_contexts_same_evidence},
       {"MayChangeThreads", threads, may_change_threads},

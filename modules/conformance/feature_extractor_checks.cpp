@@ -34,7 +34,7 @@ Features extract(FeatureExtractor& extractor, const cv::Mat& grey, const cv::Mat
   return features;
 }
 
-/// Of the scene; there must be some, or the checks would look at nothing.
+/// Features of the scene; there must be some, otherwise the checks would be empty.
 Features some_features(const Maker& maker) {
   Features features = extract(*maker.make<FeatureExtractor>(), picture());
   EXPECT_FALSE(features.empty()) << "no feature in a 320x240 picture full of corners: there is nothing to check";
@@ -247,22 +247,23 @@ void time(const Maker& maker) {
 std::vector<Check> feature_extractor_checks() {
   const Promise same{
       extractor_header,
-      "The same image gives the same features, in the same order, on every call and at every SIMD level."};
-  const Promise any_size{
+      "The same image gives the same features in the same order, on every call and at every SIMD level."};
+  const Promise any_size{extractor_header,
+                         "Extracts features from a grey image (8UC1, any size); an empty image or one too small for a "
+                         "feature gives none."};
+  const Promise ignore{
       extractor_header,
-      "Finds features in a grey image (8UC1, any size; an image too small for a feature, or an empty "
-      "one, gives none)."};
-  const Promise ignore{extractor_header,
-                       "`ignore` is empty or 8UC1 of the same size; features are not taken where it is not 0, to "
-                       "within two pixels of their octave."};
-  const Promise threads{extractor_header, "Used by one thread at a time; keeps buffers from image to image."};
+      "`ignore` is empty or 8UC1 of the same size; no features are extracted where it is not 0, with a "
+      "tolerance of two pixels of the feature's octave."};
+  const Promise threads{extractor_header,
+                        "Used by one thread at a time; implementations may keep buffers between images."};
   return {
-      {"FindsFeatures", {extractor_header, "Finds and describes features."}, finds_features},
+      {"FindsFeatures", {extractor_header, "Detects and describes features."}, finds_features},
       {"FillsEveryArray", {features_header, "entry i of every array belongs to feature i."}, fills_every_array},
       {"PositionsLieInsideTheImage",
        {features_header,
-        "Positions are raw image positions [px of level 0], as the extractor found them; Frame adds the undistorted "
-        "ones."},
+        "Positions are raw (distorted) pixels of level 0, as the extractor found them; Frame adds the undistorted "
+        "positions."},
        positions_lie_inside},
       {"AnglesLieWithinTheCircle",
        {features_header, "orientation [rad, 0 to 2 pi), from the x axis towards the y axis"},
@@ -272,7 +273,7 @@ std::vector<Check> feature_extractor_checks() {
        responses_are_finite},
       {"OctavesLieWithinThePyramid", {features_header, "pyramid level"}, octaves_within_the_pyramid},
       {"PyramidIsWholeAndStays",
-       {extractor_header, "The scales of Features::octave; does not change after construction."},
+       {extractor_header, "The scale pyramid to which Features::octave refers; constant after construction."},
        pyramid_is_whole_and_stays},
       {"HonoursIgnore", ignore, honours_ignore},
       {"TakesNothingWhereAllIsIgnored", ignore, takes_nothing_where_all_is_ignored},

@@ -66,12 +66,12 @@ Moment FilterScene::moment_at(std::uint64_t index) {
   frame.features.x = frame.x, frame.features.y = frame.y;
   frame.static_probability.assign(frame.size(), 1.0F);
   frame.measured_log_odds.assign(frame.size(), 0.0F);
-  frame.grid.build(frame.x, frame.y, 0.0F, 0.0F, static_cast<float>(camera.width), static_cast<float>(camera.height));
+  frame.grid.build(frame.x, frame.y, {0.0F, 0.0F, static_cast<float>(camera.width), static_cast<float>(camera.height)});
   moment.segmentation.labels = moment.sensor.truth->class_labels;
   moment.segmentation.confidence = cv::Mat(moment.segmentation.labels.size(), CV_8UC1, cv::Scalar(220));
-  sampler_.sample_labels(moment.segmentation.labels, 255, moment.carried.labels);
-  moment.carried.confidence.assign(moment.carried.labels.size(), 200);
-  moment.carried.age = 0.1;
+  sampler_.sample_labels(moment.segmentation.labels, 255, frame.coarse.mask.labels);
+  frame.coarse.mask.confidence.assign(frame.coarse.mask.labels.size(), 200);
+  frame.coarse.mask.age = 0.1;
   return moment;
 }
 
@@ -101,24 +101,25 @@ StaticEvidence FilterScene::earlier(std::size_t moment) const {
   for (std::size_t i = 0; i < now.frame.size(); ++i) {
     const int column = static_cast<int>(std::lround(now.frame.x[i])),
               row = static_cast<int>(std::lround(now.frame.y[i]));
-    if (labels.at<std::uint8_t>(row, column) == Scene::person) evidence.add(i, -1.5F, StaticEvidence::Sort::prior);
+    if (labels.at<std::uint8_t>(row, column) == Scene::person) evidence.add(i, -1.5F, StaticEvidence::Kind::prior);
   }
   for (std::size_t cell = 0; cell < now.frame.coarse.depth.size(); ++cell)
-    if (now.carried.labels[cell] == Scene::person) evidence.add_cell(cell, -2.0F);
+    if (now.frame.coarse.mask.labels[cell] == Scene::person) evidence.add_cell(cell, -2.0F);
   return evidence;
 }
 
 void FilterScene::judge(DynamicFilter& filter, std::size_t moment, const Shown& shown, StaticEvidence& evidence) const {
   const Moment& now = moments_[moment];
   const Eigen::Isometry3d T_camera_world = now.frame.T_camera_world;
-  const bool has_masks = shown.masks && !now.carried.empty();
+  const bool has_masks = shown.masks && !now.frame.coarse.mask.empty();
+  Frame frame = now.frame;
+  if (!has_masks) frame.coarse.mask.clear();
   filter.apply({.sensor_frame = now.sensor,
-                .frame = now.frame,
+                .frame = frame,
                 .previous = shown.previous && moment > 0 ? &moments_[moment - 1].frame : nullptr,
                 .map = map_,
                 .T_camera_world = shown.pose ? &T_camera_world : nullptr,
                 .segmentation = has_masks && moment % 2 == 1 ? &now.segmentation : nullptr,
-                .carried_mask = has_masks ? &now.carried : nullptr,
                 .classes = has_masks ? &Scene::classes() : nullptr},
                evidence);
 }
@@ -137,8 +138,8 @@ void remove_features(Frame& frame) {
   frame.features.clear();
   frame.x.clear(), frame.y.clear(), frame.depth.clear(), frame.right_x.clear(), frame.map_points.clear();
   frame.static_probability.clear(), frame.measured_log_odds.clear();
-  frame.grid.build(frame.x, frame.y, 0.0F, 0.0F, static_cast<float>(frame.camera->width),
-                   static_cast<float>(frame.camera->height));
+  frame.grid.build(frame.x, frame.y,
+                   {0.0F, 0.0F, static_cast<float>(frame.camera->width), static_cast<float>(frame.camera->height)});
 }
 
 void remove_depth(Moment& moment) {

@@ -14,7 +14,6 @@ struct Moment {
   SensorFrame sensor;
   Frame frame;
   Segmentation segmentation;
-  CarriedMask carried;
 };
 
 /// What of a moment a filter is shown.
@@ -30,11 +29,11 @@ class FilterScene {
   const Map& map() const { return map_; }
   std::vector<Moment>& moments() { return moments_; }
 
-  /// Lets a filter judge every moment in turn; before it a stage "earlier" has suspected what moves.
+  /// Applies a filter to every frame in turn, after a stage "earlier" that adds evidence against the moving block.
   std::vector<StaticEvidence> judge(DynamicFilter& filter, const Shown& shown = {}) const;
   /// The same for one moment with evidence that is there already.
   void judge(DynamicFilter& filter, std::size_t moment, const Shown& shown, StaticEvidence& evidence) const;
-  /// What the stage "earlier" says of a moment.
+  /// The evidence of the stage "earlier" for a frame.
   StaticEvidence earlier(std::size_t moment) const;
 
  private:
@@ -54,7 +53,7 @@ class FilterScene {
   std::shared_ptr<const Camera> camera_;
   std::shared_ptr<const ScalePyramid> pyramid_ = std::make_shared<ScalePyramid>();
   std::vector<Point> points_;
-  std::vector<std::size_t> point_of_feature_;  // of the moment made last
+  std::vector<std::size_t> point_of_feature_;  // of the last frame
   Map map_;
   std::vector<Moment> moments_;
 };

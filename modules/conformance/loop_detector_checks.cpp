@@ -39,9 +39,9 @@ void add_places(LoopDetector& detector) {
   for (std::uint64_t place = 0; place < places; ++place) detector.add(id(place), view(place, 0));
 }
 
-/// What the header says of matches, whatever was asked.
-void expect_sound(const std::vector<PlaceMatch>& matches, const std::set<KeyFrameId>& known, int most) {
-  ASSERT_LE(static_cast<int>(matches.size()), std::max(most, 0)) << "more matches than were asked for";
+/// Checks the contract of matches, which holds for every query.
+void expect_sound(const std::vector<PlaceMatch>& matches, const std::set<KeyFrameId>& known, int max_count) {
+  ASSERT_LE(static_cast<int>(matches.size()), std::max(max_count, 0)) << "more matches than were asked for";
   std::set<KeyFrameId> seen;
   for (std::size_t i = 0; i < matches.size(); ++i) {
     const PlaceMatch& match = matches[i];
@@ -84,14 +84,15 @@ void matches_are_sound(const Maker& maker) {
   detector->add({500, 1}, view(3, 0));  // looks exactly like place 3
   std::set<KeyFrameId> known = all_ids();
   known.insert({500, 1});
-  for (const int most : {1, 2, 5, 1000}) expect_sound(detector->query(view(3, 0), most), known, most);
+  for (const int max_count : {1, 2, 5, 1000}) expect_sound(detector->query(view(3, 0), max_count), known, max_count);
   for (std::uint64_t place = 0; place < places; ++place) expect_sound(detector->query(view(place, 2), 4), known, 4);
 }
 
 void gives_at_most_what_was_asked(const Maker& maker) {
   const auto detector = maker.make<LoopDetector>();
   add_places(*detector);
-  for (const int most : {0, -1}) EXPECT_TRUE(detector->query(view(1, 0), most).empty()) << most << " were asked for";
+  for (const int max_count : {0, -1})
+    EXPECT_TRUE(detector->query(view(1, 0), max_count).empty()) << max_count << " were asked for";
 }
 
 void forgets_what_is_removed(const Maker& maker) {
@@ -188,22 +189,22 @@ void time(const Maker& maker) {
 
 std::vector<Check> loop_detector_checks() {
   const Promise up_to{header,
-                      "Up to `most` of the known keyframes, none twice, best first; equal scores by rising id. Scores "
-                      "are finite."};
-  const Promise remove{header, "Forgets a keyframe; one that is not known is ignored."};
-  const Promise same{header,
-                     "The same calls in the same order give the same matches, and asking changes no later answer."};
+                      "Returns up to `max_count` keyframes of the database by decreasing score, equal scores by "
+                      "increasing id, without duplicates. Scores are finite."};
+  const Promise remove{header, "Removes a keyframe from the database; an unknown id is ignored."};
+  const Promise same{
+      header, "The same calls in the same order give the same matches, and a query does not affect later results."};
   const Promise threads{header, "Used by one thread at a time."};
   return {
       {"RecognisesAPlace",
-       {header, "A keyframe that looks like the query; larger scores look more alike."},
+       {header, "A keyframe similar to the query; a larger score means greater similarity."},
        recognises_a_place},
       {"MatchesAreSound", up_to, matches_are_sound},
       {"GivesAtMostWhatWasAsked", up_to, gives_at_most_what_was_asked},
       {"ForgetsWhatIsRemoved", remove, forgets_what_is_removed},
       {"IgnoresUnknownRemovals", remove, ignores_unknown_removals},
       {"LivesWithAnyNumberOfDescriptors",
-       {header, "A keyframe that is not known yet, with any number of descriptors."},
+       {header, "Adds a keyframe with any number of descriptors."},
        lives_with_any_number_of_descriptors},
       {"SameCallsSameMatches", same, same_calls_same_matches},
       {"AskingChangesNothing", same, asking_changes_nothing},

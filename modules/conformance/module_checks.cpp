@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What every module is held to, whatever it does: that it can be made, and that its reference can be read.
+// Checks of every module: it can be constructed, and its reference is complete.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -49,7 +49,7 @@ std::vector<Check> module_checks() {
   return {
       {"IsMade",
        {"holdfast/plugin/registry.hpp",
-        "A registered module: its description, its parameter table and how to make one."},
+        "A registered module: its description, its parameter table and its factory function."},
        is_made},
       {"IsDescribed",
        {"holdfast/plugin/registry.hpp", "key in the configuration: lower case, words joined by _"},

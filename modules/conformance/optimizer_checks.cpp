@@ -13,6 +13,7 @@ namespace holdfast::conformance {
 namespace {
 
 const char* const header = "holdfast/interfaces/optimizer.hpp";
+const char* const pose_header = "holdfast/geometry/pose_problem.hpp";
 constexpr double near_truth = 2e-3;  // m plus rad; measurements are floats
 constexpr float nan_float = std::numeric_limits<float>::quiet_NaN();
 constexpr double nan_double = std::numeric_limits<double>::quiet_NaN();
@@ -343,12 +344,12 @@ std::vector<Check> optimizer_checks() {
         "projection of the point; weighted by inverse_sigma2 * weight."},
        leaves_out_what_has_no_weight},
       {"CovarianceIsOne",
-       {header,
+       {pose_header,
         "Inverse of the approximated Hessian at the result: covariance of a left perturbation (translation, "
         "rotation)."},
        covariance_is_one},
       {"LeavesAPoseThatCannotBeFound",
-       {header, "false: too few observations or no finite solution; T_camera_world is unchanged then"},
+       {pose_header, "false: too few observations or no finite solution; T_camera_world is unchanged then"},
        leaves_a_pose_that_cannot_be_found},
       {"SolvesABundle", bundle, solves_a_bundle},
       {"KeepsFixedPoses", bundle, keeps_fixed_poses},

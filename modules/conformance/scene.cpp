@@ -16,7 +16,7 @@ struct Block {
   std::uint8_t label;
 };
 
-/// A surface of squares of two sizes, each with a brightness of its own: corners wherever they meet.
+/// A surface of squares of two sizes with different brightness, which has corners at their borders.
 std::array<std::uint8_t, 3> texture(double u, double v, std::uint64_t surface) {
   const auto square = [&](double size, std::uint64_t stream) {
     const auto column = static_cast<std::int64_t>(std::floor(u / size)),

@@ -12,8 +12,8 @@
 
 namespace holdfast::conformance {
 
-/// The room that modules are shown: a wall, a floor and a box that stands still, all full of corners, and before them a
-/// block that moves to the right, which stands for a person. The camera moves a little. Exact, the same on every call.
+/// The scene of the tests: a wall, a floor and a static box, all with many corners, and in front of them a block that
+/// moves to the right and represents a person. The camera moves slightly. It is exact and identical on every call.
 class Scene {
  public:
   explicit Scene(const Camera& camera) : camera_(camera) {}
@@ -45,7 +45,7 @@ class Scene {
   Camera camera_;
 };
 
-/// A digest of an image's pixels, row by row, whatever lies between the rows; 0 for an empty one.
+/// A digest of an image's pixels, row by row, without the padding between rows; 0 for an empty image.
 std::uint64_t digest(const cv::Mat& image);
 /// Of everything in a frame that a module could write to.
 std::uint64_t digest(const SensorFrame& frame);

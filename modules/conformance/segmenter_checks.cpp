@@ -25,7 +25,7 @@ std::vector<SensorFrame> frames() {
 
 std::string size_text(const cv::Mat& image) { return std::to_string(image.cols) + "x" + std::to_string(image.rows); }
 
-/// What the header says of a result, whatever the frame.
+/// Checks the contract of a result, which holds for every frame.
 void expect_sound(Segmenter& segmenter, const SensorFrame& frame, const Segmentation& result) {
   const std::size_t classes = segmenter.classes().size();
   if (result.labels.empty()) {
@@ -134,7 +134,7 @@ void survives_frames_of_any_size(const Maker& maker) {
     survive(*segmenter, frame);
   }
   const SensorFrame usual = frames().front();
-  expect_sound(*segmenter, usual, segmenter->segment(usual));  // and goes on afterwards
+  expect_sound(*segmenter, usual, segmenter->segment(usual));  // and works afterwards
 }
 
 void takes_images_with_gaps(const Maker& maker) {
@@ -178,7 +178,7 @@ void may_change_threads(const Maker& maker) {
   const std::vector<SensorFrame> images = frames();
   const std::vector<Segmentation> here = segment_all(*maker.make<Segmenter>(), images);
   const auto segmenter = maker.make<Segmenter>();
-  for (std::size_t i = 0; i < images.size(); ++i) {  // each frame in a thread of its own
+  for (std::size_t i = 0; i < images.size(); ++i) {  // each frame in another thread
     Segmentation there;
     run_side_by_side([&] { there = segmenter->segment(images[i]); }, [] {});
     expect_same(here[i], there, "frame " + std::to_string(i) + " in another thread than the one that made it");
@@ -206,19 +206,18 @@ void time(const Maker& maker) {
 }  // namespace
 
 std::vector<Check> segmenter_checks() {
-  const Promise classes{header, "Class names by label, none twice; label 0 is the background."};
-  const Promise labels{header, "8UC1 of the frame's size: index into the segmenter's classes(); 255 = unknown"};
+  const Promise classes{header, "Class names by label, without duplicates; label 0 is the background."};
+  const Promise labels{header, "8UC1 of the frame's size: index into Segmenter::classes(); 255 = unknown"};
   const Promise error{header, "Throws InputError for a frame that it cannot use."};
-  const Promise threads{header, "Used by one thread at a time, not necessarily the one that made it."};
+  const Promise threads{header, "Used by one thread at a time, which may differ from the thread that constructed it."};
   const Promise same{header, "The same frames in the same order give the same results."};
   return {
-      {"SegmentsFrames", {header, "Names the class of every pixel."}, segments_frames},
+      {"SegmentsFrames", {header, "Assigns a class to every pixel."}, segments_frames},
       {"ClassesHaveNames", classes, classes_have_names},
-      {"ClassesStay",
-       {header, "Empty for a segmenter that never finds anything. Does not change after construction."},
-       classes_stay},
+      {"ClassesStay", {header, "Empty for a segmenter without classes. Constant after construction."}, classes_stay},
       {"MovableAreClasses",
-       {header, "Of the classes, those that can move or be moved; empty when the segmenter does not say."},
+       {header,
+        "The subset of classes() whose members can move or be moved; empty if the segmenter does not specify it."},
        movable_are_classes},
       {"ResultsAreSound", labels, results_are_sound},
       {"LivesWithoutDepthAndTruth", error, lives_without_depth_and_truth},
@@ -226,10 +225,10 @@ std::vector<Check> segmenter_checks() {
       {"SurvivesFramesOfAnySize", error, survives_frames_of_any_size},
       {"TakesImagesWithGaps", same, takes_images_with_gaps},
       {"WritesToNoFrame",
-       {header, "The frame is not written to, and later calls leave the result as it is."},
+       {header, "The frame is not written to, and later calls do not modify an earlier result."},
        writes_to_no_frame},
       {"ResultsAreKeptApart",
-       {header, "The frame is not written to, and later calls leave the result as it is."},
+       {header, "The frame is not written to, and later calls do not modify an earlier result."},
        results_are_kept_apart},
       {"SameFramesSameResults", same, same_frames_same_results},
       {"MayChangeThreads", threads, may_change_threads},

@@ -95,8 +95,8 @@ class GivenParameters {
     }
   }
 
-  /// By the module's table; what is wrong goes to the diagnostics. A required parameter that nobody gave is left for
-  /// the module's own test to tell.
+  /// Checks parameters with the module's table and adds errors to the diagnostics. A missing required parameter is
+  /// reported by the module's own test.
   ParameterValues values(const ModuleEntry& entry) const {
     const ConfigurationNode* kind = root_.find(entry.kind);
     const ConfigurationNode* given = kind == nullptr ? nullptr : kind->find(entry.description.name);

@@ -16,14 +16,14 @@ struct Stamp {
   std::size_t index;
 };
 
-/// Stamps of one list with one time: stamps[front, end), lowest index first. Neighbours are the groups before and after
-/// it in time that still hold a stamp.
+/// The stamps of one list that have the same time: stamps[front, end), lowest index first. `previous` and `next` are
+/// the adjacent groups in time that are not empty.
 struct Group {
   std::size_t front, end;
   std::ptrdiff_t previous, next;
 };
 
-/// Two neighbouring groups of different lists, with the stamps in front when the pair was found.
+/// A pair of adjacent groups of different lists, with their first stamps at the time of insertion into the queue.
 struct Candidate {
   double difference;
   std::size_t index_a, index_b;
@@ -47,71 +47,97 @@ std::vector<Stamp> merge(std::span<const double> a, std::span<const double> b) {
   return stamps;
 }
 
-}  // namespace
-
-// On the time line the nearest pair of what is left always stands side by side: a stamp between the two would be nearer
-// to one of them. So a queue of neighbours is enough, and taking a pair makes at most one new pair of neighbours.
-std::vector<std::pair<std::size_t, std::size_t>> associate_stamps(std::span<const double> a, std::span<const double> b,
-                                                                  double max_difference) {
-  const std::vector<Stamp> stamps = merge(a, b);
-  std::vector<Group> groups;
-  for (std::size_t i = 0; i < stamps.size(); ++i) {
-    if (i > 0 && stamps[i].time == stamps[i - 1].time && stamps[i].in_b == stamps[i - 1].in_b) {
-      ++groups.back().end;
-      continue;
-    }
-    const auto number = static_cast<std::ptrdiff_t>(groups.size());
-    groups.push_back({i, i + 1, number - 1, number + 1});
+/// Takes the nearest pairs of two lists of stamps one by one.
+///
+/// The nearest pair among the remaining stamps is always adjacent in time, because a stamp between the two would be
+/// nearer to one of them. A priority queue of adjacent pairs is therefore sufficient, and taking a pair creates at most
+/// one new adjacent pair.
+class StampMatcher {
+ public:
+  StampMatcher(std::span<const double> a, std::span<const double> b, double max_difference)
+      : stamps_(merge(a, b)), max_difference_(max_difference) {
+    group_equal_stamps();
+    for (std::size_t i = 1; i < groups_.size(); ++i)
+      offer(static_cast<std::ptrdiff_t>(i) - 1, static_cast<std::ptrdiff_t>(i));
   }
-  if (!groups.empty()) groups.back().next = -1;
 
-  std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue;
-  const auto offer = [&](std::ptrdiff_t before, std::ptrdiff_t after) {
+  std::vector<std::pair<std::size_t, std::size_t>> match() {
+    std::vector<std::pair<std::size_t, std::size_t>> pairs;
+    while (!queue_.empty()) {
+      const Candidate nearest = queue_.top();
+      queue_.pop();
+      if (!is_current(nearest)) continue;
+      pairs.emplace_back(nearest.index_a, nearest.index_b);
+      take(nearest);
+    }
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+  }
+
+ private:
+  void group_equal_stamps() {
+    for (std::size_t i = 0; i < stamps_.size(); ++i) {
+      if (i > 0 && stamps_[i].time == stamps_[i - 1].time && stamps_[i].in_b == stamps_[i - 1].in_b) {
+        ++groups_.back().end;
+        continue;
+      }
+      const auto number = static_cast<std::ptrdiff_t>(groups_.size());
+      groups_.push_back({i, i + 1, number - 1, number + 1});
+    }
+    if (!groups_.empty()) groups_.back().next = -1;
+  }
+
+  void offer(std::ptrdiff_t before, std::ptrdiff_t after) {
     if (before < 0 || after < 0) return;
-    const Stamp& first = stamps[groups[before].front];
-    const Stamp& second = stamps[groups[after].front];
+    const Stamp& first = stamps_[groups_[before].front];
+    const Stamp& second = stamps_[groups_[after].front];
     const double difference = second.time - first.time;
-    if (first.in_b == second.in_b || !(difference < max_difference)) return;
-    queue.push(
+    if (first.in_b == second.in_b || !(difference < max_difference_)) return;
+    queue_.push(
         {difference, first.in_b ? second.index : first.index, first.in_b ? first.index : second.index, before, after});
-  };
-  for (std::size_t i = 1; i < groups.size(); ++i)
-    offer(static_cast<std::ptrdiff_t>(i) - 1, static_cast<std::ptrdiff_t>(i));
+  }
 
-  std::vector<std::pair<std::size_t, std::size_t>> pairs;
-  const auto remove_front = [&](std::ptrdiff_t number) {
-    Group& group = groups[number];
-    if (++group.front < group.end) return;
-    if (group.previous >= 0) groups[group.previous].next = group.next;
-    if (group.next >= 0) groups[group.next].previous = group.previous;
-  };
-  const auto is_current = [&](const Candidate& candidate) {
-    const Group& before = groups[candidate.before];
-    const Group& after = groups[candidate.after];
+  /// Whether the first stamps of both groups are still those of the candidate's insertion.
+  bool is_current(const Candidate& candidate) const {
+    const Group& before = groups_[candidate.before];
+    const Group& after = groups_[candidate.after];
     if (before.front == before.end || after.front == after.end) return false;
-    const Stamp& first = stamps[before.front];
-    return (first.in_b ? stamps[after.front] : first).index == candidate.index_a &&
-           (first.in_b ? first : stamps[after.front]).index == candidate.index_b;
-  };
-  while (!queue.empty()) {
-    const Candidate nearest = queue.top();
-    queue.pop();
-    if (!is_current(nearest)) continue;
-    pairs.emplace_back(nearest.index_a, nearest.index_b);
+    const Stamp& first = stamps_[before.front];
+    return (first.in_b ? stamps_[after.front] : first).index == candidate.index_a &&
+           (first.in_b ? first : stamps_[after.front]).index == candidate.index_b;
+  }
+
+  void remove_front(std::ptrdiff_t number) {
+    Group& group = groups_[number];
+    if (++group.front < group.end) return;
+    if (group.previous >= 0) groups_[group.previous].next = group.next;
+    if (group.next >= 0) groups_[group.next].previous = group.previous;
+  }
+
+  void take(const Candidate& nearest) {
     remove_front(nearest.before);
     remove_front(nearest.after);
-    // Offer again every neighbourhood whose stamps in front have changed; what stands in the queue twice is found
-    // stale.
-    const bool before_left = groups[nearest.before].front < groups[nearest.before].end;
-    const bool after_left = groups[nearest.after].front < groups[nearest.after].end;
-    const std::ptrdiff_t before = before_left ? nearest.before : groups[nearest.before].previous;
-    const std::ptrdiff_t after = after_left ? nearest.after : groups[nearest.after].next;
+    // Insert every pair whose first stamps have changed; the outdated entries are recognised when they are popped.
+    const bool before_left = groups_[nearest.before].front < groups_[nearest.before].end;
+    const bool after_left = groups_[nearest.after].front < groups_[nearest.after].end;
+    const std::ptrdiff_t before = before_left ? nearest.before : groups_[nearest.before].previous;
+    const std::ptrdiff_t after = after_left ? nearest.after : groups_[nearest.after].next;
     offer(before, after);
-    if (before_left) offer(groups[nearest.before].previous, nearest.before);
-    if (after_left) offer(nearest.after, groups[nearest.after].next);
+    if (before_left) offer(groups_[nearest.before].previous, nearest.before);
+    if (after_left) offer(nearest.after, groups_[nearest.after].next);
   }
-  std::sort(pairs.begin(), pairs.end());
-  return pairs;
+
+  std::vector<Stamp> stamps_;
+  double max_difference_;
+  std::vector<Group> groups_;
+  std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue_;
+};
+
+}  // namespace
+
+std::vector<std::pair<std::size_t, std::size_t>> associate_stamps(std::span<const double> a, std::span<const double> b,
+                                                                  double max_difference) {
+  return StampMatcher(a, b, max_difference).match();
 }
 
 }  // namespace holdfast

@@ -28,7 +28,7 @@ void CoarseSampler::sample_depth(const cv::Mat& depth, CoarseView& view) const {
   view.grid = grid_;
   view.T_view_camera.setIdentity();
   view.static_log_odds.clear();
-  view.labels.clear();
+  view.mask.clear();
   view.depth.assign(raw_.size(), 0.0F);
   if (depth.empty()) return;
   HOLDFAST_CHECK(depth.type() == CV_32FC1 && depth.cols == width_ && depth.rows == height_,

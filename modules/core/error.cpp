@@ -40,10 +40,4 @@ ConfigurationError::ConfigurationError(SourceLocation location, std::string mess
 InputError::InputError(SourceLocation location, const std::string& message)
     : Error(Diagnostic{location, message}.to_string()), location_(std::move(location)) {}
 
-void detail::check_failed(const char* file, int line, const char* expression, const std::string& values) {
-  std::ostringstream message;
-  message << file << ':' << line << ": check failed: " << expression << " with " << values;
-  throw CheckError(message.str());
-}
-
 }  // namespace holdfast

@@ -69,7 +69,7 @@ void Map::update_point(MapPointId point_id) {
   MapPoint& point = points_.at(point_id);
   update_point_geometry(point_id);
 
-  // The descriptor with the smallest median distance to the others represents the point.
+  // The descriptor with the smallest median distance to all others represents the point.
   const std::size_t count = point.observations.size();
   std::vector<const Descriptor*> descriptors(count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -118,7 +118,7 @@ void Map::fuse_points(MapPointId from_id, MapPointId to_id) {
   MapPoint& to = points_.at(to_id);
   to.visible_count += from.visible_count;
   to.found_count += from.found_count;
-  to.static_log_odds += from.static_log_odds;
+  to.static_log_odds = std::clamp(to.static_log_odds + from.static_log_odds, -evidence_limit_, evidence_limit_);
   points_.erase(from_id);
   update_point(to_id);
 }

@@ -21,7 +21,7 @@ void Map::erase_edge(KeyFrame& keyframe, KeyFrameId neighbour) {
 
 void Map::update_covisibility(KeyFrameId id, int minimum_weight) {
   KeyFrame& keyframe = keyframes_.at(id);
-  std::map<std::uint64_t, std::pair<KeyFrameId, int>> shared;  // by sequence: the order of time
+  std::map<std::uint64_t, std::pair<KeyFrameId, int>> shared;  // by sequence, that is, in temporal order
   for (const MapPointId point_id : keyframe.frame.map_points) {
     const MapPoint* point = points_.find(point_id);
     if (point == nullptr) continue;
@@ -109,10 +109,10 @@ std::vector<KeyFrameId> Map::keyframes_by_age() const {
   return ids;
 }
 
-std::vector<KeyFrameId> Map::best_covisible(KeyFrameId id, int most) const {
+std::vector<KeyFrameId> Map::best_covisible(KeyFrameId id, int max_count) const {
   std::vector<KeyFrameId> best;
   for (const CovisibilityEdge& edge : keyframes_.at(id).covisible) {
-    if (static_cast<int>(best.size()) >= most) break;
+    if (static_cast<int>(best.size()) >= max_count) break;
     best.push_back(edge.keyframe);
   }
   return best;

@@ -14,7 +14,7 @@ std::string name_of(Id<Tag> id) {
   return id.valid() ? std::to_string(id.slot) : "none";
 }
 
-/// Throws Error at the first thing that does not agree.
+/// Checks the invariants of Map; throws Error at the first violation.
 class ContentCheck {
  public:
   explicit ContentCheck(const MapContent& content) : content_(content) {}
@@ -109,8 +109,8 @@ class ContentCheck {
     }
   }
 
-  /// What the neighbours of each keyframe say, gathered in their order, against what the keyframe itself says, sorted:
-  /// quick also where thousands of keyframes see one place.
+  /// Compares the edges that the neighbours of each keyframe list with the edges that the keyframe lists itself. Both
+  /// are sorted, so that the check takes O(n log n) also for thousands of mutually covisible keyframes.
   void check_symmetry_of_edges() const {
     std::vector<std::vector<CovisibilityEdge>> gathered(content_.keyframes.size());
     for (std::size_t i = 0; i < content_.keyframes.size(); ++i)
@@ -131,7 +131,7 @@ class ContentCheck {
     }
   }
 
-  /// `last_point`: per keyframe, the last point found to be seen by it.
+  /// `last_point`: for each keyframe, the last checked point that it observes.
   void check_point(std::size_t i, std::vector<std::size_t>& last_point) const {
     const MapPoint& point = content_.points[i];
     if (point.observations.empty()) fail("point", i, "has no observation");
@@ -155,7 +155,8 @@ class ContentCheck {
       fail("point", i, "has the reference keyframe " + name_of(point.reference_keyframe) + ", which does not see it");
   }
 
-  /// As many features that show a point as observations, each of which has its own feature: both sides agree.
+  /// Both sides agree if the number of features with a point equals the number of observations, because every
+  /// observation has a feature of its own (check_point).
   void check_counts() const {
     std::size_t observations = 0, features = 0;
     for (const MapPoint& point : content_.points) observations += point.observations.size();
@@ -169,7 +170,7 @@ class ContentCheck {
   const MapContent& content_;
 };
 
-/// Feature grids as the tracker builds them; the bounds are found once per camera.
+/// Builds the feature grids as the tracker does; the bounds are computed once per camera.
 void build_grids(std::vector<KeyFrame>& keyframes) {
   const Camera* camera = nullptr;
   Eigen::Vector2d minimum, maximum;
@@ -179,8 +180,9 @@ void build_grids(std::vector<KeyFrame>& keyframes) {
       camera = frame.camera.get();
       camera->undistorted_bounds(minimum, maximum);
     }
-    frame.grid.build(frame.x, frame.y, static_cast<float>(minimum.x()), static_cast<float>(minimum.y()),
-                     static_cast<float>(maximum.x()), static_cast<float>(maximum.y()));
+    frame.grid.build(frame.x, frame.y,
+                     {static_cast<float>(minimum.x()), static_cast<float>(minimum.y()), static_cast<float>(maximum.x()),
+                      static_cast<float>(maximum.y())});
   }
 }
 
@@ -191,7 +193,7 @@ void Map::restore(MapContent content) {
   build_grids(content.keyframes);
   const std::uint64_t version = version_;
   clear();
-  // In an empty slot map the n-th value gets slot n, generation 0: the ids inside the content hold as they are.
+  // In an empty slot map the n-th value gets slot n, generation 0, so that the ids inside the content remain valid.
   for (KeyFrame& keyframe : content.keyframes) keyframes_.emplace(std::move(keyframe));
   for (MapPoint& point : content.points) points_.emplace(std::move(point));
   next_sequence_ = content.next_sequence;

@@ -14,8 +14,8 @@ namespace holdfast {
 
 namespace {
 
-/// The first 8 numbers of a line, separated by blanks or commas; '#' begins a comment. False for a word among them that
-/// is no number.
+/// Parses the first 8 numbers of a line, separated by blanks or commas; '#' begins a comment. Returns false if one of
+/// them is not a number.
 bool parse_numbers(std::string_view line, std::vector<double>& numbers) {
   numbers.clear();
   line = line.substr(0, line.find('#'));
@@ -34,7 +34,7 @@ bool parse_numbers(std::string_view line, std::vector<double>& numbers) {
   return true;
 }
 
-/// Appends a number with a fixed count of decimals and never a locale's decimal comma.
+/// Appends a number with a fixed number of decimals and a decimal point, independent of the locale.
 void append_fixed(std::string& text, double value, int decimals) {
   char buffer[400];
   const auto [end, error] = std::to_chars(buffer, buffer + sizeof(buffer), value, std::chars_format::fixed, decimals);

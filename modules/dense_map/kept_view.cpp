@@ -38,7 +38,7 @@ ViewSampler::ViewSampler(const Camera& camera, const DenseMapSettings& settings)
   small_.height = camera.height / step_;
   small_.fx = camera.fx / step_;
   small_.fy = camera.fy / step_;
-  // A kept pixel has the place and the depth of a middle one of those that it stands for.
+  // A kept pixel has the position and the depth of a central pixel of those that it represents.
   const int middle = (step_ - 1) / 2;
   small_.cx = (camera.cx - middle) / step_;
   small_.cy = (camera.cy - middle) / step_;
@@ -67,7 +67,7 @@ KeptView ViewSampler::sample(KeyFrameId keyframe, const SensorFrame& frame, cons
   const bool fits_coarse = coarse.grid == grid_;
   const auto cells = static_cast<std::size_t>(grid_.size());
   const bool has_log_odds = fits_coarse && coarse.static_log_odds.size() == cells;
-  const bool has_coarse_labels = labels.empty() && fits_coarse && coarse.labels.size() == cells;
+  const bool has_coarse_labels = labels.empty() && fits_coarse && coarse.mask.labels.size() == cells;
 
   KeptView view{
       .keyframe = keyframe, .frame_index = frame.index, .timestamp = frame.timestamp, .colour = {}, .depth = {}};
@@ -85,7 +85,7 @@ KeptView ViewSampler::sample(KeyFrameId keyframe, const SensorFrame& frame, cons
       }
       const int x = raw_pixel_[i] % raw_.width, y = raw_pixel_[i] / raw_.width;
       depth = frame.depth.empty() ? std::uint16_t{0} : to_units(frame.depth.ptr<float>(y)[x]);
-      // The mean of the pixels that this one stands for.
+      // The mean of the pixels that this one represents.
       const int left = std::clamp(x - (step_ - 1) / 2, 0, raw_.width - step_);
       const int top = std::clamp(y - (step_ - 1) / 2, 0, raw_.height - step_);
       int sum[3] = {0, 0, 0};
@@ -98,7 +98,7 @@ KeptView ViewSampler::sample(KeyFrameId keyframe, const SensorFrame& frame, cons
       const bool has_cell = cell_[i] >= 0;
       const auto cell = static_cast<std::size_t>(std::max(cell_[i], 0));
       if ((!labels.empty() && is_left_out(labels.ptr<std::uint8_t>(y)[x], left_out)) ||
-          (has_cell && has_coarse_labels && is_left_out(coarse.labels[cell], left_out)) ||
+          (has_cell && has_coarse_labels && is_left_out(coarse.mask.labels[cell], left_out)) ||
           (has_cell && has_log_odds && coarse.static_log_odds[cell] < 0.0F))
         depth |= KeptView::moves_bit;
     }
@@ -115,7 +115,7 @@ void ViewSampler::spread(cv::Mat& depth) const {
       for (int c = std::max(column - reach_, 0); c <= right; ++c) {
         auto& other = depth.at<std::uint16_t>(r, c);
         const bool is_edge = std::abs(r - row) <= edge_ && std::abs(c - column) <= edge_;
-        // Without a depth of its own a moving pixel says nothing about where it ends.
+        // A dynamic pixel without depth does not limit its own extent in depth.
         if (is_edge || other == 0 || (own != 0 && std::abs(other - own) <= margin_)) other |= KeptView::moves_bit;
       }
   };

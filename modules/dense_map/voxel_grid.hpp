@@ -32,7 +32,7 @@ class VoxelGrid {
 
   std::uint64_t key_of(const Eigen::Vector3d& point) const;
   Eigen::Vector3d corner_of(std::uint64_t key) const;
-  /// The voxel, made when it is not there; valid until the next call.
+  /// The voxel, inserted if it does not exist; valid until the next call.
   Voxel& at(std::uint64_t key);
   /// nullptr when nothing was seen there.
   const Voxel* find(std::uint64_t key) const;

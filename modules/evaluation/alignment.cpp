@@ -55,4 +55,8 @@ TrajectoryAlignment align_positions(const Eigen::Matrix3Xd& estimate, const Eige
   return alignment;
 }
 
+Eigen::Vector3d TrajectoryAlignment::apply(const Eigen::Vector3d& position) const {
+  return scale * (rotation * position) + translation;
+}
+
 }  // namespace holdfast

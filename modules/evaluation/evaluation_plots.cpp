@@ -29,7 +29,7 @@ std::array<int, 2> widest_axes(const std::vector<EvaluatedPose>& poses) {
     maximum = maximum.cwiseMax(pose.truth);
   }
   int narrowest = 2;
-  // Strictly less, so that of equal extents z is the one looked along: the true top view where up is z.
+  // Strictly less, so that the projection axis is z in case of a tie: the actual top view if z points up.
   for (const int axis : {1, 0})
     if (maximum[axis] - minimum[axis] < maximum[narrowest] - minimum[narrowest]) narrowest = axis;
   return {narrowest == 0 ? 1 : 0, narrowest == 2 ? 1 : 2};

@@ -103,7 +103,7 @@ RelativeError relative_error_per_way(const Trajectory& truth, const Trajectory& 
     way[k] = way[k - 1] + (truth[k].T_world_camera.translation() - truth[k - 1].T_world_camera.translation()).norm();
   Collector collector(truth, estimate, scale);
   RelativeError result;
-  // The way never shrinks with time, so the end of the pair never moves back.
+  // The path length never decreases with time, so that the end of the pair never moves back.
   std::size_t j = 0;
   for (std::size_t i = 0; i < estimate.size(); ++i) {
     if (!nearest.is_near(i)) continue;

@@ -33,7 +33,7 @@ cv::Mat region(const cv::Mat& image, const cv::Mat& labels, std::uint8_t label) 
 }
 
 /// The pixels of a region that have something else, or the image's border, within `reach` pixels (along rows, columns
-/// and diagonals alike), as `reach` erosions by 3x3 pixels find them. Sums over squares say which have not.
+/// and diagonals alike), as `reach` erosions by 3x3 pixels find them. Sums over squares tell which pixels remain.
 cv::Mat outline(const cv::Mat& mask, int reach) {
   const int width = mask.cols, height = mask.rows;
   cv::Mat sums = cv::Mat::zeros(height + 1, width + 1, CV_32SC1);

@@ -40,7 +40,7 @@ struct Range {
   }
 };
 
-/// Where the axes stand and how values become pixels.
+/// Positions of the axes, and conversion of values to pixels.
 struct Frame {
   double left, top, right, bottom;  // [px]
   Range x, y;
@@ -221,7 +221,7 @@ Ticks round_ticks(double begin, double end, int count) {
   const double power = std::pow(10.0, exponent);
   const double leading = wanted / power;
   Ticks ticks;
-  // The next larger round step, so that labels never stand closer than wanted.
+  // The next larger round step, so that labels are never closer than requested.
   const double rounded = leading <= 1.0 ? 1.0 : leading <= 2.0 ? 2.0 : leading <= 5.0 ? 5.0 : 10.0;
   ticks.step = rounded * power;
   ticks.decimals = std::max(0, rounded == 10.0 ? -exponent - 1 : -exponent);

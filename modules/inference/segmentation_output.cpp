@@ -13,7 +13,7 @@ namespace holdfast {
 
 namespace {
 
-/// The numbers of an output, wherever its channels stand.
+/// The values of an output for any position of its channel dimension.
 struct Scores {
   const float* data = nullptr;
   int channels = 1, height = 0, width = 0;

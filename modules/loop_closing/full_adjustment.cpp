@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "holdfast/geometry/bundle_observation.hpp"
+#include "holdfast/interfaces/frame_observations.hpp"
 #include "map_motion.hpp"
 
 namespace holdfast {
@@ -27,9 +27,12 @@ void in_portions(MapMutex& mutex, std::size_t count, Function&& function) {
 
 }  // namespace
 
-FullAdjustment::FullAdjustment(const LoopClosingSettings& settings, Map& map, MapMutex& map_mutex, std::mutex& work,
-                               Optimizer& optimizer)
-    : settings_(settings), map_(map), map_mutex_(map_mutex), work_(work), optimizer_(optimizer) {}
+FullAdjustment::FullAdjustment(const LoopClosingSettings& settings, const SharedMap& shared, Optimizer& optimizer)
+    : settings_(settings),
+      map_(shared.map),
+      map_mutex_(shared.mutex),
+      surgery_(shared.surgery),
+      optimizer_(optimizer) {}
 
 void FullAdjustment::request_stop() {
   std::int64_t not_asked = 0;
@@ -38,7 +41,7 @@ void FullAdjustment::request_stop() {
 }
 
 void FullAdjustment::prepare() {
-  const std::lock_guard surgery(work_);  // no correction is half done, and no request is for one to come
+  const std::lock_guard surgeon(surgery_);  // no correction is half done, and no request is for one to come
   stop_ = false;
   stop_time_ = 0;
   summary_ = {};
@@ -64,9 +67,8 @@ void FullAdjustment::prepare() {
     points_.push_back(id);
     problem_.points.push_back(point.position);
     for (const Observation& observation : point.observations)
-      problem_.observations.push_back(geometry::bundle_observation(map_.keyframe(observation.keyframe).frame,
-                                                                   observation.feature,
-                                                                   pose_of_slot[observation.keyframe.slot], index));
+      problem_.observations.push_back(bundle_observation(map_.keyframe(observation.keyframe).frame, observation.feature,
+                                                         pose_of_slot[observation.keyframe.slot], index));
   });
   before_ = problem_.points;
 }
@@ -83,7 +85,7 @@ void FullAdjustment::solve() {
 }
 
 FullAdjustmentSummary FullAdjustment::apply() {
-  const std::lock_guard surgery(work_);
+  const std::lock_guard surgeon(surgery_);
   summary_.stop_requested = stop_;
   if (!summary_.bundle.usable || summary_.stop_requested) return summary_;
   move_map();

@@ -32,19 +32,18 @@ const char* loop_verdict_name(LoopVerdict verdict) {
   return "";
 }
 
-LoopCloser::LoopCloser(const LoopClosingSettings& settings, Map& map, MapMutex& map_mutex, std::mutex& work,
-                       LoopDetector& detector, Optimizer& optimizer, std::uint64_t seed)
+LoopCloser::LoopCloser(const LoopClosingSettings& settings, const SharedMap& shared, LoopDetector& detector,
+                       Optimizer& optimizer, std::uint64_t seed)
     : settings_(settings),
-      map_(map),
-      map_mutex_(map_mutex),
-      work_(work),
+      map_(shared.map),
+      map_mutex_(shared.mutex),
+      surgery_(shared.surgery),
       detector_(detector),
       optimizer_(optimizer),
       seed_(seed),
       candidates_(settings) {}
 
 std::optional<ClosedLoop> LoopCloser::process(KeyFrameId keyframe, StageTimes& times) {
-  trials_.clear();
   std::vector<KeyFrameId> chosen;
   {
     const StageTimer timer(times, "loops: candidates");
@@ -52,10 +51,10 @@ std::optional<ClosedLoop> LoopCloser::process(KeyFrameId keyframe, StageTimes& t
   }
   if (chosen.empty()) return std::nullopt;
 
-  const std::lock_guard surgery(work_);
+  const std::lock_guard surgeon(surgery_);
   std::optional<ClosedLoop> closed;
   for (const KeyFrameId candidate : chosen) {
-    LoopTrial& trial = trials_.emplace_back();
+    LoopTrial trial;
     trial.keyframe = keyframe;
     trial.candidate = candidate;
     std::optional<LoopMeasurement> measurement;
@@ -99,7 +98,7 @@ std::vector<KeyFrameId> LoopCloser::find_candidates(KeyFrameId id) {
 }
 
 std::optional<LoopMeasurement> LoopCloser::check(LoopTrial& trial) {
-  // `work` is held: keyframes stay, and so do the poses and features that are read without the map's lock.
+  // The surgery mutex is held: keyframes stay, and so do the poses and features that are read without the map's lock.
   const Frame* frame = nullptr;
   PlacePoints place;
   std::uint64_t sequence = 0;
@@ -112,7 +111,7 @@ std::optional<LoopMeasurement> LoopCloser::check(LoopTrial& trial) {
     std::vector<KeyFrameId> side = {trial.candidate};
     for (const KeyFrameId neighbour : map_.best_covisible(trial.candidate, settings_.neighbours))
       side.push_back(neighbour);
-    place = points_seen_by(map_, side);
+    place = copy_points_seen_by(map_, side);
   }
   const CheckedPlace checked = check_place(settings_, optimizer_, *frame, place, Random(seed_).fork(sequence).next());
   trial.verdict = checked.verdict;
@@ -138,8 +137,8 @@ std::optional<LoopMeasurement> LoopCloser::check(LoopTrial& trial) {
   if (trial.verdict != LoopVerdict::closed) return std::nullopt;
 
   LoopMeasurement measurement{trial.keyframe, trial.candidate, checked.T_camera_world, {}};
-  for (const PointMatch& match : checked.inliers)
-    measurement.points.emplace_back(place.ids[match.point], match.feature);
+  for (const matching::BinaryMatch& match : checked.inliers)
+    measurement.points.emplace_back(place.block.ids[match.source], match.feature);
   return measurement;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "holdfast/matching/point_fusion.hpp"
 #include "map_motion.hpp"
 #include "place_points.hpp"
 
@@ -98,28 +99,22 @@ void LoopCorrection::move_map() {
 }
 
 void LoopCorrection::fuse_matches() {
-  for (const auto& [point, feature] : loop_.points) unite(point, loop_.keyframe, feature);
+  for (const auto& [point, feature] : loop_.points) fuse(point, loop_.keyframe, feature);
 }
 
 void LoopCorrection::fuse_into(KeyFrameId target) {
   const Frame& frame = map_.keyframe(target).frame;
-  const PlacePoints points = points_seen_by(map_, place_side_);
+  PointBlock points;
+  for (const MapPointId id : points_seen_by(map_, place_side_)) points.add(id, map_.point(id));
   const double radius = 0.5 * settings_.search_radius;
-  for (const PointMatch& match :
+  for (const matching::BinaryMatch& match :
        find_points(points, frame, frame.T_camera_world, radius, settings_.match_distance).matches)
-    unite(points.ids[match.point], target, match.feature);
+    fuse(points.ids[match.source], target, match.feature);
 }
 
-void LoopCorrection::unite(MapPointId place_point, KeyFrameId keyframe, std::uint32_t feature) {
-  if (map_.find_point(place_point) == nullptr || map_.feature_of(place_point, keyframe) >= 0) return;
-  const MapPointId shown = map_.keyframe(keyframe).frame.map_points[feature];
-  if (!shown.valid()) {
-    map_.add_observation(place_point, keyframe, feature);
-    map_.update_point(place_point);
-    return;
-  }
-  map_.fuse_points(shown, place_point);
-  ++points_fused_;
+void LoopCorrection::fuse(MapPointId place_point, KeyFrameId keyframe, std::uint32_t feature) {
+  if (add_or_fuse(map_, place_point, keyframe, feature, FusionSurvivor::searched_point) == FusionOutcome::points_fused)
+    ++points_fused_;
 }
 
 }  // namespace holdfast

@@ -20,8 +20,8 @@ struct LoopMeasurement {
   std::vector<std::pair<MapPointId, std::uint32_t>> points;  ///< of the place, and features of the keyframe
 };
 
-/// Closes a loop in the map (Mur-Artal et al. 2015, sections VII-C and VII-D). The caller holds `work`, not the map's
-/// lock. One object, one loop.
+/// Closes a loop in the map (Mur-Artal et al. 2015, sections VII-C and VII-D). The caller holds the surgery mutex, not
+/// the map's lock. One object, one loop.
 class LoopCorrection {
  public:
   LoopCorrection(const LoopClosingSettings& settings, Map& map, MapMutex& map_mutex, Optimizer& optimizer,
@@ -38,7 +38,7 @@ class LoopCorrection {
   void move_map();
   void fuse_matches();
   void fuse_into(KeyFrameId target);
-  void unite(MapPointId place_point, KeyFrameId keyframe, std::uint32_t feature);
+  void fuse(MapPointId place_point, KeyFrameId keyframe, std::uint32_t feature);
 
   const LoopClosingSettings& settings_;
   Map& map_;

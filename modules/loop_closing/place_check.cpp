@@ -3,54 +3,46 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <numeric>
 
-#include "holdfast/core/hamming.hpp"
 #include "holdfast/geometry/alignment.hpp"
+#include "holdfast/matching/descriptor_matching.hpp"
+#include "holdfast/matching/frame_features.hpp"
 
 namespace holdfast {
 namespace {
 
-/// Features whose place in space is known and which belong to the static world as far as one knows.
+/// Features with depth that are static as far as is known.
 std::vector<std::uint32_t> solid_features(const Frame& frame) {
   std::vector<std::uint32_t> features;
   for (std::uint32_t i = 0; i < frame.size(); ++i)
-    if (frame.has_depth(i) && frame.static_probability[i] >= 0.5F) features.push_back(i);
+    if (frame.has_depth(i) && is_static(frame, i)) features.push_back(i);
   return features;
 }
 
-/// Nearest point of the place for each feature; each point keeps its nearest feature. The runner-up of the ratio test
-/// is the nearest point elsewhere: a place that was mapped twice is no reason to doubt a match.
-std::vector<PointMatch> match_descriptors(const LoopClosingSettings& settings, const Frame& frame,
-                                          const PlacePoints& place) {
+/// Nearest point of the place for each feature; each point keeps its nearest feature. Only a point elsewhere is a rival
+/// in the ratio test: a place that was mapped twice is no reason to doubt a match. Match::source is the feature of the
+/// frame, Match::feature the point.
+std::vector<matching::BinaryMatch> match_descriptors(const LoopClosingSettings& settings, const Frame& frame,
+                                                     const PlacePoints& place) {
   constexpr double same_spot = 0.1;  // m
-  constexpr int unmatched = std::numeric_limits<int>::max();
-  std::vector<PointMatch> best_of_point(place.size(), PointMatch{0, 0, unmatched});
   std::vector<std::uint32_t> all(place.size());
   std::iota(all.begin(), all.end(), 0U);
-  std::vector<std::uint16_t> distances(place.size());
-  for (const std::uint32_t feature : solid_features(frame)) {
-    hamming_distances(frame.features.descriptors[feature], place.descriptors.data(), all, distances.data());
-    const auto best =
-        static_cast<std::uint32_t>(std::min_element(distances.begin(), distances.end()) - distances.begin());
-    const int distance = distances[best];
-    if (distance > settings.match_distance || distance >= best_of_point[best].distance) continue;
-    const bool is_clear = std::none_of(all.begin(), all.end(), [&](std::uint32_t i) {
-      return distance > settings.match_ratio * distances[i] &&
-             (place.positions[i] - place.positions[best]).squaredNorm() > same_spot * same_spot;
-    });
-    if (is_clear) best_of_point[best] = {best, feature, distance};
-  }
-  std::erase_if(best_of_point, [](const PointMatch& match) { return match.distance == unmatched; });
-  return best_of_point;
+  const auto is_elsewhere = [&](std::uint32_t nearest, std::uint32_t other) {
+    return (place.positions[other] - place.positions[nearest]).squaredNorm() > same_spot * same_spot;
+  };
+  matching::DescriptorMatcher<matching::BinaryDescriptors> matcher;
+  return matcher.match(
+      {frame.features.descriptors, solid_features(frame)}, {place.block.descriptors, all},
+      {.max_distance = static_cast<float>(settings.match_distance), .ratio = static_cast<float>(settings.match_ratio)},
+      is_elsewhere);
 }
 
 /// How many cells of a 4 by 4 grid over the image hold at least two of the features.
-int filled_cells(const Frame& frame, std::span<const PointMatch> matches) {
+int filled_cells(const Frame& frame, std::span<const matching::BinaryMatch> matches) {
   constexpr int side = 4;
   std::array<int, side * side> cells{};
-  for (const PointMatch& match : matches) {
+  for (const matching::BinaryMatch& match : matches) {
     const float x = frame.x[match.feature] / static_cast<float>(frame.camera->width);
     const float y = frame.y[match.feature] / static_cast<float>(frame.camera->height);
     ++cells[static_cast<std::size_t>(std::clamp(static_cast<int>(y * side), 0, side - 1) * side +
@@ -65,15 +57,15 @@ CheckedPlace check_place(const LoopClosingSettings& settings, Optimizer& optimiz
                          const PlacePoints& place, std::uint64_t seed) {
   CheckedPlace result;
   if (place.size() == 0) return result;
-  const std::vector<PointMatch> matches = match_descriptors(settings, frame, place);
+  const std::vector<matching::BinaryMatch> matches = match_descriptors(settings, frame, place);
   result.matches = static_cast<int>(matches.size());
   if (result.matches < settings.minimum_aligned) return result;
 
   result.verdict = LoopVerdict::no_alignment;
   std::vector<Eigen::Vector3d> in_camera, in_world;
-  for (const PointMatch& match : matches) {
-    in_camera.push_back(frame.camera_point(match.feature));
-    in_world.push_back(place.positions[match.point]);
+  for (const matching::BinaryMatch& match : matches) {
+    in_camera.push_back(frame.camera_point(match.source));
+    in_world.push_back(place.positions[match.feature]);
   }
   const auto aligned = geometry::align_points_ransac(in_camera, in_world,
                                                      {.threshold = settings.alignment_threshold,
@@ -88,7 +80,7 @@ CheckedPlace check_place(const LoopClosingSettings& settings, Optimizer& optimiz
   result.verdict = LoopVerdict::few_inliers;
   PointSearch search;
   for (const double radius : {2.0 * settings.search_radius, settings.search_radius}) {
-    search = find_points(place, frame, result.T_camera_world, radius, settings.match_distance);
+    search = find_points(place.block, frame, result.T_camera_world, radius, settings.match_distance);
     PoseProblem problem = pose_problem_of(place, frame, search.matches, result.T_camera_world);
     if (!optimizer.optimize_pose(problem).usable) return result;
     result.T_camera_world = problem.T_camera_world;

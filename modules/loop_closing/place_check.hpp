@@ -15,7 +15,7 @@ namespace holdfast {
 struct CheckedPlace {
   LoopVerdict verdict = LoopVerdict::few_matches;
   Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();  ///< of the keyframe, seen from the place's points
-  std::vector<PointMatch> inliers;                                   ///< points of the place, features of the keyframe
+  std::vector<matching::BinaryMatch> inliers;                        ///< points of the place, features of the keyframe
   int matches = 0, aligned = 0, expected = 0, cells = 0;             ///< as in LoopTrial
 };
 

@@ -6,8 +6,8 @@
 #include <queue>
 #include <tuple>
 
-#include "holdfast/geometry/expected_view.hpp"
 #include "holdfast/geometry/so3.hpp"
+#include "holdfast/matching/frame_features.hpp"
 
 namespace holdfast {
 namespace {
@@ -71,10 +71,11 @@ PlacePoints old_points_in_view(const LoopClosingSettings& settings, const Map& m
     });
     return marks;
   }();
+  const FrameProjection projection = projection_into(keyframe.frame, keyframe.frame.T_camera_world);
   PlacePoints points;
   map.points().for_each([&](MapPointId point_id, const MapPoint& point) {
-    if (!geometry::expected_view(keyframe.frame, keyframe.frame.T_camera_world, point.position, point.viewing_direction,
-                                 point.minimum_distance, point.maximum_distance))
+    if (!projection.expect(point.position.cast<float>(), point.viewing_direction.cast<float>(), point.minimum_distance,
+                           point.maximum_distance))
       return;
     for (const Observation& observation : point.observations)
       if (near[observation.keyframe.slot] != 0) return;
@@ -90,7 +91,7 @@ bool present_pose_is_confirmed(const LoopClosingSettings& settings, Optimizer& o
   Eigen::Isometry3d T_camera_world = frame.T_camera_world;
   int inliers = 0;
   for (const double radius : {3.0 * settings.search_radius, settings.search_radius}) {
-    const PointSearch search = find_points(old_points, frame, T_camera_world, radius, settings.match_distance);
+    const PointSearch search = find_points(old_points.block, frame, T_camera_world, radius, settings.match_distance);
     PoseProblem problem = pose_problem_of(old_points, frame, search.matches, T_camera_world);
     const PoseSummary summary = optimizer.optimize_pose(problem);
     if (!summary.usable) return false;

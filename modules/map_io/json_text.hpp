@@ -15,12 +15,12 @@ namespace holdfast::map_io {
 /// Appends JSON to a text. A map has millions of numbers: they go straight into the text, not through a document.
 class JsonText {
  public:
-  /// As they stand: brackets, commas, keys.
+  /// Appends text unchanged: brackets, commas, keys.
   JsonText& operator<<(std::string_view text) {
     text_ += text;
     return *this;
   }
-  /// The shortest text that gives the same number again; null for what is not finite, which JSON cannot say.
+  /// The shortest text that is parsed as the same number; null if it is not finite, which JSON cannot represent.
   template <class T>
   requires std::integral<T> || std::floating_point<T> JsonText& operator<<(T value) {
     if constexpr (std::floating_point<T>)

@@ -61,7 +61,7 @@ void write_content(std::ostream& stream, const Map& map) {
   write_section(stream, point_section, points.bytes());
 }
 
-/// Removes a file when it goes out of scope, unless told to keep it.
+/// Removes a file at the end of the scope unless keep() was called.
 struct TemporaryFile {
   std::filesystem::path path;
   bool keep = false;

@@ -44,7 +44,7 @@ std::string trouble_of(const Camera& camera) {
   if (camera.name.size() > 255) return wrong("length of the name", static_cast<double>(camera.name.size()), "0 to 255");
   for (const char letter : camera.name)
     if (static_cast<unsigned char>(letter) < 0x20 || letter == 0x7F) return "the name holds a control character";
-  // The feature grid is made as large as the undistorted image.
+  // The feature grid has the size of the undistorted image.
   Eigen::Vector2d minimum, maximum;
   camera.undistorted_bounds(minimum, maximum);
   for (const double bound : {minimum.x(), minimum.y(), maximum.x(), maximum.y()})

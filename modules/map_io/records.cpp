@@ -60,7 +60,7 @@ Eigen::Isometry3d get_pose(ByteReader& reader) {
   return pose;
 }
 
-/// Ids of a map that is made of the file: the position, generation 0.
+/// Ids of a map that is read from the file: the position, generation 0.
 template <class IdType>
 IdType get_id(ByteReader& reader) {
   const auto position = reader.get<std::uint32_t>();
@@ -148,7 +148,7 @@ SharedTables read_tables(ByteReader reader) {
   for (std::uint32_t i = 0; i < pyramids; ++i) {
     const auto levels = reader.get<std::uint32_t>();
     const auto factor = reader.get<double>();
-    // The constructor takes only what makes sense; the rest is checked on what it made.
+    // The constructor accepts valid arguments only; the other members are checked on the result.
     if (levels < 1 || levels > 64 || !(factor > 1.0))
       reader.fail("pyramid " + std::to_string(i) + ": found " + std::to_string(levels) + " levels and a factor of " +
                   std::to_string(factor) + "; expected 1 to 64 and more than 1");

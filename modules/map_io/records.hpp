@@ -64,7 +64,7 @@ SharedTables read_tables(ByteReader reader);
 /// All of the keyframes but their features. `feature_counts`: of each keyframe.
 std::vector<KeyFrame> read_keyframes(ByteReader reader, const SharedTables& tables,
                                      std::vector<std::uint32_t>& feature_counts);
-/// Fills the features of keyframe `position`; `count` as the keyframe says.
+/// Fills the features of keyframe `position`; `count` is that of the keyframe.
 void read_features(ByteReader reader, std::uint32_t position, std::uint32_t count, Frame& frame);
 std::vector<MapPoint> read_points(ByteReader reader);
 

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
-#include "holdfast/geometry/bundle_observation.hpp"
+#include "holdfast/interfaces/frame_observations.hpp"
 #include "holdfast/mapping/local_mapper.hpp"
+#include "holdfast/matching/point_block.hpp"
 
 namespace holdfast {
 
 void LocalMapper::adjust_bundle(KeyFrameId id) {
   {
     const std::lock_guard lock(mutex_);
-    state_bundle(id);
+    build_bundle_problem(id);
   }
   const BundleSummary summary = optimizer_.optimize_bundle(problem_, stop_);
   if (!summary.usable) return;
@@ -17,7 +18,7 @@ void LocalMapper::adjust_bundle(KeyFrameId id) {
   apply_bundle();
 }
 
-void LocalMapper::state_bundle(KeyFrameId id) {
+void LocalMapper::build_bundle_problem(KeyFrameId id) {
   // The keyframe and its strongest neighbours move, with all points that they see; other keyframes that see these
   // points hold them in place.
   std::vector<KeyFrameId>& keyframes = problem_keyframes_;
@@ -28,15 +29,8 @@ void LocalMapper::state_bundle(KeyFrameId id) {
 
   std::vector<std::int32_t> pose_of_slot(map_.keyframes().slot_count(), -1);
   for (std::size_t i = 0; i < moving; ++i) pose_of_slot[keyframes[i].slot] = static_cast<std::int32_t>(i);
-  std::vector<std::uint8_t> taken(map_.points().slot_count(), 0);
-  std::vector<MapPointId>& points = problem_points_;
-  points.clear();
-  for (std::size_t i = 0; i < moving; ++i)
-    for (const MapPointId point : map_.keyframe(keyframes[i]).frame.map_points)
-      if (point.valid() && taken[point.slot] == 0) {
-        taken[point.slot] = 1;
-        points.push_back(point);
-      }
+  problem_points_ = points_seen_by(map_, keyframes);
+  const std::vector<MapPointId>& points = problem_points_;
 
   problem_.camera = map_.keyframe(id).frame.camera.get();
   problem_.poses.clear();
@@ -54,8 +48,8 @@ void LocalMapper::state_bundle(KeyFrameId id) {
         pose = static_cast<std::int32_t>(keyframes.size());
         keyframes.push_back(observation.keyframe);
       }
-      problem_.observations.push_back(geometry::bundle_observation(
-          map_.keyframe(observation.keyframe).frame, observation.feature, static_cast<std::uint32_t>(pose), p));
+      problem_.observations.push_back(bundle_observation(map_.keyframe(observation.keyframe).frame, observation.feature,
+                                                         static_cast<std::uint32_t>(pose), p));
       problem_observations_.emplace_back(points[p], observation.keyframe);
     }
   }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "static_features.hpp"
+#include "holdfast/matching/frame_features.hpp"
 
 namespace holdfast {
 
@@ -63,7 +63,7 @@ void LocalMapper::make_points_from_depth(KeyFrameId id) {
     if (frame.has_depth(i)) by_depth.emplace_back(frame.depth[i], i);
   std::sort(by_depth.begin(), by_depth.end());
 
-  const float close = static_cast<float>(settings_.close_depth_factor * frame.camera->baseline);
+  const float close = static_cast<float>(close_depth_factor_ * frame.camera->baseline);
   const Eigen::Isometry3d T_world_camera = frame.T_world_camera();
   int rank = 0;
   for (const auto& [depth, feature] : by_depth) {
@@ -120,7 +120,7 @@ std::vector<KeyFrameId> LocalMapper::remove_redundant_keyframes(KeyFrameId id) {
     if (!keyframe.parent.valid() || !keyframe.loop_edges.empty()) continue;
     if (keyframe.sequence > sequence) continue;  // waits to be refined itself
     const Frame& frame = keyframe.frame;
-    const float close = static_cast<float>(settings_.close_depth_factor * frame.camera->baseline);
+    const float close = static_cast<float>(close_depth_factor_ * frame.camera->baseline);
     int points = 0, redundant = 0;
     for (std::uint32_t feature = 0; feature < frame.size(); ++feature) {
       if (!frame.map_points[feature].valid() || !frame.has_depth(feature) || frame.depth[feature] > close) continue;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/pipeline/configured_pipeline.hpp"
+
 #include <utility>
 
-#include "camera_numbers.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/map_io/map_file.hpp"
 #include "holdfast/pipeline/pipeline_builder.hpp"
+#include "holdfast/plugin/loader.hpp"
 
 namespace holdfast {
 
@@ -23,38 +25,29 @@ std::vector<SectionDescription> pipeline_sections() {
        ParameterTable<DenseMapSettings>().parameters()}};
 }
 
-namespace {
-
-/// The camera of the run: the configuration's or the source's; when both name one, they must agree.
-Camera resolve_camera(const Configuration& configuration, const SourceDescription& source,
-                      std::vector<Diagnostic>& diagnostics) {
-  if (source.camera && configuration.camera && have_other_numbers(*source.camera, *configuration.camera))
-    diagnostics.push_back(
-        {configuration.source.location,
-         "the source '" + configuration.source.name +
-             "' brings its own camera, and the section 'camera' says something else; remove one of them"});
-  if (source.camera) return *source.camera;
-  if (configuration.camera) return *configuration.camera;
-  std::string known;
-  for (const std::string& name : camera_names()) known += (known.empty() ? "" : ", ") + name;
-  diagnostics.push_back({SourceLocation{configuration.file},
-                         "section 'camera' is missing, and the source '" + configuration.source.name +
-                             "' does not know its camera; expected a name (" + known + ") or numbers"});
-  return {};
+Configuration load_configuration(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+                                 Registry& registry) {
+  return read_configuration(file, overrides, registry, pipeline_sections());
 }
 
-/// What the source is told; the camera and the classes that it knows come afterwards.
+void load_plugins(const Configuration& configuration, Registry& registry) {
+  for (const std::string& file : configuration.plugins) load_plugin(registry, file);
+}
+
+namespace {
+
+/// The context for the source. The camera and the classes that the source knows are added for the other modules.
 CreationContext context_of_source(const Configuration& configuration) {
   CreationContext context;
   if (configuration.camera) context.camera = *configuration.camera;
   context.seed = configuration.run.seed;
-  context.sequential = configuration.run.mode == "sequential";
+  context.sequential = !configuration.run.threaded();
   return context;
 }
 
 }  // namespace
 
-/// Says to a builder what a configuration says.
+/// Passes the choices of a configuration to a builder, each with its place in the file.
 class ConfigurationReader {
  public:
   ConfigurationReader(const Configuration& configuration, const Registry& registry)
@@ -64,15 +57,14 @@ class ConfigurationReader {
 
   PipelineBuilder read(const SourceDescription& source) {
     builder_.source(source);
-    // The camera is settled here, where messages can name the sections.
-    builder_.source_camera_.reset();
-    builder_.camera(resolve_camera(configuration_, source, builder_.diagnostics_));
+    if (configuration_.camera) builder_.camera(*configuration_.camera);
     builder_.source_name_ = configuration_.source.name;
     builder_.source_place_ = configuration_.source.location;
     choose_modules();
     choose_settings();
     return std::move(builder_);
   }
+  static std::unique_ptr<Segmenter> build_segmenter(PipelineBuilder builder) { return builder.build_segmenter(); }
   static void read_map_file(const std::filesystem::path& file, bool localise_only, PipelineBuilder& builder) {
     builder.map_name_ = file.string();
     if (localise_only)
@@ -103,24 +95,21 @@ class ConfigurationReader {
     for (const ModuleChoice& choice : configuration_.observers) builder_.observer(module<Observer>(choice));
   }
   void choose_settings() {
-    const RunSettings& run = configuration_.run;
     builder_.tracking(section<TrackingSettings>("tracking"))
         .segmentation(section<SegmentationSettings>("segmentation"))
         .evidence(section<EvidenceSettings>("evidence"))
         .mapping(section<MappingSettings>("mapping"))
         .loop_closing(section<LoopClosingSettings>("loop_closing"))
         .dense_map(section<DenseMapSettings>("dense_map"))
-        .seed(run.seed)
-        .threads({.threaded = run.mode != "sequential",
-                  .keyframe_queue = static_cast<std::size_t>(run.keyframe_queue),
-                  .unpaced = run.pace == "none"});
+        .run(configuration_.run);
   }
 
   const Configuration& configuration_;
   PipelineBuilder builder_;
 };
 
-BuiltPipeline build_pipeline(const Configuration& configuration, const Registry& registry, const RunOptions& options) {
+BuiltPipeline build_pipeline(const Configuration& configuration, const Registry& registry,
+                             const PipelineOptions& options) {
   HOLDFAST_CHECK(!options.localise_only || !options.map_file.empty(), "localising needs a map");
   CreationContext context = context_of_source(configuration);
   context.output_directory = options.output_directory;
@@ -132,20 +121,10 @@ BuiltPipeline build_pipeline(const Configuration& configuration, const Registry&
 }
 
 BuiltSegmenter build_segmenter(const Configuration& configuration, const Registry& registry) {
-  if (configuration.segmenter.name == "none")
-    throw ConfigurationError(
-        configuration.segmenter.location.file.empty() ? SourceLocation{configuration.file}
-                                                      : configuration.segmenter.location,
-        "the segmenter is 'none', which finds nothing; choose one under 'segmenter:', such as 'onnx'");
-  CreationContext context = context_of_source(configuration);
-  auto source = registry.create<FrameSource>(configuration.source.name, configuration.source.values, context);
-  const SourceDescription description = source->describe();
-  std::vector<Diagnostic> diagnostics;
-  context.camera = resolve_camera(configuration, description, diagnostics);
-  context.class_names = description.class_names;
-  if (!diagnostics.empty()) throw ConfigurationError(std::move(diagnostics));
-  auto segmenter = registry.create<Segmenter>(configuration.segmenter.name, configuration.segmenter.values, context);
-  return {std::move(source), std::move(segmenter)};
+  auto source = registry.create<FrameSource>(configuration.source.name, configuration.source.values,
+                                             context_of_source(configuration));
+  PipelineBuilder builder = ConfigurationReader(configuration, registry).read(source->describe());
+  return {std::move(source), ConfigurationReader::build_segmenter(std::move(builder))};
 }
 
 }  // namespace holdfast

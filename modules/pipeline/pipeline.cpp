@@ -4,15 +4,19 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
+#include <deque>
 #include <mutex>
 #include <optional>
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/map_mutex.hpp"
+#include "holdfast/core/worker.hpp"
 #include "holdfast/dense_map/static_scene.hpp"
+#include "holdfast/loop_closing/full_adjustment.hpp"
+#include "holdfast/loop_closing/loop_closer.hpp"
 #include "holdfast/map_io/map_export.hpp"
-#include "holdfast/pipeline/segmentation_desk.hpp"
-#include "holdfast/tracking/filter_chain.hpp"
+#include "holdfast/mapping/local_mapper.hpp"
+#include "holdfast/moving_world/moving_world.hpp"
 #include "holdfast/tracking/tracker.hpp"
 
 namespace holdfast {
@@ -36,10 +40,15 @@ PipelineParts checked(PipelineParts parts) {
   return parts;
 }
 
-FilterChain chain_of(PipelineParts& parts) {
+MovingWorldParts moving_world_parts(PipelineParts& parts) {
   FilterChain chain(parts.evidence);
   for (auto& [name, filter] : parts.filters) chain.add(name, std::move(filter));
-  return chain;
+  const bool has_segmenter = dynamic_cast<NullSegmenter*>(parts.segmenter.get()) == nullptr;
+  return {.camera = parts.camera,
+          .filters = std::move(chain),
+          .segmenter = has_segmenter ? parts.segmenter.get() : nullptr,
+          .segmentation = parts.segmentation,
+          .threaded = parts.run.threaded()};
 }
 
 }  // namespace
@@ -48,19 +57,17 @@ struct Pipeline::State {
   explicit State(PipelineParts given)
       : parts(std::move(given)),
         map(std::move(parts.map)),
-        filters(chain_of(parts)),
+        moving_world(moving_world_parts(parts), map),
         detector(*parts.loop_detector),
-        tracker(parts.tracking, parts.camera, *parts.features, *parts.optimizer, filters, detector, map, parts.seed),
-        mapper(parts.mapping, map, map_mutex, *parts.optimizer),
-        closer(parts.loop_closing, map, map_mutex, surgery, detector, *parts.optimizer, parts.seed),
-        adjustment(parts.loop_closing, map, map_mutex, surgery, *parts.optimizer) {
+        tracker(parts.tracking,
+                {parts.camera, *parts.features, *parts.optimizer, detector, moving_world, map, parts.run.seed}),
+        mapper(parts.mapping, parts.tracking.close_depth_factor, map, map_mutex, *parts.optimizer),
+        closer(parts.loop_closing, {map, map_mutex, surgery}, detector, *parts.optimizer, parts.run.seed),
+        adjustment(parts.loop_closing, {map, map_mutex, surgery}, *parts.optimizer) {
+    map.set_evidence_limit(static_cast<float>(parts.evidence.limit));
     closer.set_full_adjustment(&adjustment);
     for (const KeyFrameId keyframe : map.keyframes_by_age())
       detector.add(keyframe, map.keyframe(keyframe).frame.features.descriptors);
-    if (dynamic_cast<NullSegmenter*>(parts.segmenter.get()) == nullptr) {
-      tracker.expect_masks(*parts.segmenter, parts.segmentation.memory);
-      segmentation.emplace(*parts.segmenter, parts.segmentation, parts.threads.threaded);
-    }
     if (parts.dense_map.enabled && !parts.localise_only) scene.emplace(parts.camera, parts.dense_map);
     for (const std::string& name : parts.segmenter->classes()) {
       const std::vector<std::string>& out = parts.dense_map.classes;
@@ -68,7 +75,7 @@ struct Pipeline::State {
     }
     if (parts.localise_only)
       tracker.localise_only();
-    else if (parts.threads.threaded)
+    else if (parts.run.threaded())
       start_threads();
   }
 
@@ -78,15 +85,18 @@ struct Pipeline::State {
   /// True when a loop was closed and the whole map should be adjusted.
   bool close_loops(const LoopJob& job, StageTimes& times);
   void adjust_map(StageTimes& times);
-  /// Gives the masks that have come to the tracker, and the keyframes that waited for them to mapping.
-  void take_masks(StageTimes& times);
-  /// Asks for the mask of the frame last tracked, if it should have one. A keyframe that cannot be segmented now goes
-  /// on without.
-  void ask_for_mask(const SensorFrame& frame, const FrameResult& result, StageTimes& times);
-  /// `coarse` and `labels` (may be empty) are the last that will be known of what moves in the keyframe.
+  /// Applies the masks that have arrived and hands the keyframes that waited for them to mapping. Returns the seconds
+  /// that applying them took.
+  double take_masks(StageTimes& times);
+  /// Requests the mask of the frame last tracked, if it should have one. A keyframe that cannot be segmented now goes
+  /// on without a mask.
+  void request_mask(const SensorFrame& frame, const FrameResult& result, StageTimes& times);
+  /// `coarse` and `labels` (may be empty) are the final evidence of motion in the keyframe.
   void keep_view(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse, const cv::Mat& labels,
                  StageTimes& times);
+  /// Paced mode never waits here: a keyframe that finds no room is kept and handed on with a later frame.
   void hand_to_mapping(KeyFrameId keyframe, StageTimes& times);
+  void hand_on_kept_keyframes();
   /// Does work that fills stage times, and keeps them for take_background_times().
   template <class Work>
   void in_background(const Work& work) {
@@ -96,12 +106,23 @@ struct Pipeline::State {
     background_times.push_back(std::move(times));
   }
   void rethrow_failures();
+  bool has_keyframe(KeyFrameId keyframe) {
+    const std::lock_guard lock(map_mutex);
+    return map.find_keyframe(keyframe) != nullptr;
+  }
+  MapSnapshot snapshot() {
+    const std::lock_guard lock(map_mutex);
+    return make_snapshot(map);
+  }
+  ObservedMap observed_map() {
+    return ObservedMap([this] { return snapshot(); });
+  }
 
   PipelineParts parts;
   Map map;
   MapMutex map_mutex;
-  std::mutex surgery;  // held by whoever moves or removes things in the map; before map_mutex
-  FilterChain filters;
+  std::mutex surgery;  // see SharedMap
+  MovingWorld moving_world;
   SharedLoopDetector detector;
   Tracker tracker;
   LocalMapper mapper;
@@ -113,8 +134,7 @@ struct Pipeline::State {
   bool has_frame = false;
   double last_timestamp = 0.0;
   std::uint64_t keyframes_deferred = 0;
-  std::uint64_t frames_fed = 0;
-  std::vector<double> mask_latencies;
+  std::deque<KeyFrameId> keyframes_kept;  // they have their masks, but mapping had no room
   std::optional<StaticScene> scene;
   std::vector<bool> left_out;  // of the static scene, by label
 
@@ -126,11 +146,10 @@ struct Pipeline::State {
   std::optional<Worker<AdjustmentJob>> full_adjustment;
   std::optional<Worker<LoopJob>> loop_closing;
   std::optional<Worker<KeyFrameId>> mapping;
-  std::optional<SegmentationDesk> segmentation;
 };
 
 void Pipeline::State::start_threads() {
-  const std::size_t capacity = parts.threads.keyframe_queue;
+  const auto capacity = static_cast<std::size_t>(parts.run.keyframe_queue);
   full_adjustment.emplace("full adjustment", 1,
                           [this](AdjustmentJob&) { in_background([&](StageTimes& times) { adjust_map(times); }); });
   loop_closing.emplace("loop closing", capacity, [this](LoopJob& job) {
@@ -149,7 +168,7 @@ void Pipeline::State::rethrow_failures() {
   if (mapping) mapping->rethrow();
   if (loop_closing) loop_closing->rethrow();
   if (full_adjustment) full_adjustment->rethrow();
-  if (segmentation) segmentation->rethrow();
+  moving_world.rethrow();
 }
 
 void Pipeline::State::check_stamp(const SensorFrame& frame) {
@@ -169,10 +188,9 @@ LoopJob Pipeline::State::refine(KeyFrameId keyframe, StageTimes& times) {
     const std::lock_guard surgeon(surgery);
     job.removed = mapper.refine(keyframe, times);
   }
-  if (parts.observers.empty()) return job;
-  const std::lock_guard lock(map_mutex);
-  if (map.find_keyframe(keyframe) == nullptr) return job;
-  for (const auto& observer : parts.observers) observer->on_keyframe(keyframe, map);
+  if (parts.observers.empty() || !has_keyframe(keyframe)) return job;
+  const ObservedMap observed = observed_map();
+  for (const auto& observer : parts.observers) observer->on_keyframe(keyframe, observed);
   return job;
 }
 
@@ -194,8 +212,9 @@ bool Pipeline::State::close_loops(const LoopJob& job, StageTimes& times) {
     };
     event.timestamp = stamp_of(loop->keyframe);
     event.candidate_timestamp = stamp_of(loop->candidate);
-    for (const auto& observer : parts.observers) observer->on_loop(loop->keyframe, loop->candidate, map);
   }
+  const ObservedMap observed = observed_map();
+  for (const auto& observer : parts.observers) observer->on_loop(loop->keyframe, loop->candidate, observed);
   const std::lock_guard lock(record_mutex);
   loop_record.counts = closer.counts();
   loop_record.loops.push_back(std::move(event));
@@ -211,13 +230,29 @@ void Pipeline::State::adjust_map(StageTimes& times) {
 }
 
 void Pipeline::State::hand_to_mapping(KeyFrameId keyframe, StageTimes& times) {
-  if (mapping) {
-    // Tracking needs the points of this keyframe adjusted soon; an older adjustment has done most of its good.
-    if (!parts.threads.unpaced) mapper.request_stop();
+  if (!mapping) {
+    if (close_loops(refine(keyframe, times), times)) adjust_map(times);
+    return;
+  }
+  if (!parts.run.paced()) {
     mapping->queue().push(keyframe);
     return;
   }
-  if (close_loops(refine(keyframe, times), times)) adjust_map(times);
+  // Tracking needs the points of this keyframe adjusted soon; an older adjustment has done most of its good.
+  mapper.request_stop();
+  if (keyframes_kept.empty() && mapping->queue().has_room()) {
+    mapping->queue().push(keyframe);  // no other thread adds to the queue, so that this does not wait
+    return;
+  }
+  keyframes_kept.push_back(keyframe);
+  ++keyframes_deferred;
+}
+
+void Pipeline::State::hand_on_kept_keyframes() {
+  while (!keyframes_kept.empty() && mapping->queue().has_room()) {
+    mapping->queue().push(keyframes_kept.front());
+    keyframes_kept.pop_front();
+  }
 }
 
 void Pipeline::State::keep_view(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse,
@@ -227,32 +262,31 @@ void Pipeline::State::keep_view(KeyFrameId keyframe, const SensorFrame& frame, c
   scene->add(keyframe, frame, coarse, labels, left_out);
 }
 
-void Pipeline::State::take_masks(StageTimes& times) {
-  if (!segmentation) return;
-  while (std::optional<SegmentedFrame> segmented = segmentation->fetch(frames_fed)) {
-    tracker.mask_came(segmented->frame.index, segmented->segmentation);
-    mask_latencies.push_back(last_timestamp - segmented->frame.timestamp);
-    if (!segmented->keyframe.valid()) continue;
+double Pipeline::State::take_masks(StageTimes& times) {
+  double seconds = 0.0;
+  for (;;) {
+    Stopwatch watch;
+    const std::optional<ArrivedMask> arrived = moving_world.take_mask(times);
+    if (!arrived) return seconds;
+    seconds += watch.seconds();
+    if (!arrived->keyframe.valid()) continue;
     {
+      watch.restart();
       const TrackingLock lock(map_mutex);
-      tracker.judge_keyframe(segmented->frame, segmented->segmentation, segmented->keyframe);
-      if (const KeyFrame* keyframe = map.find_keyframe(segmented->keyframe))
-        keep_view(segmented->keyframe, segmented->frame, keyframe->frame.coarse, segmented->segmentation.labels, times);
+      moving_world.evaluate_keyframe(*arrived, times);
+      seconds += watch.seconds();
+      if (const KeyFrame* keyframe = map.find_keyframe(arrived->keyframe))
+        keep_view(arrived->keyframe, arrived->frame, keyframe->frame.coarse, arrived->segmentation.labels, times);
     }
-    hand_to_mapping(segmented->keyframe, times);
+    hand_to_mapping(arrived->keyframe, times);
   }
-  tracker.hold_keyframes(segmentation->is_full());
 }
 
-void Pipeline::State::ask_for_mask(const SensorFrame& frame, const FrameResult& result, StageTimes& times) {
-  if (segmentation && (result.is_keyframe || segmentation->wants(frames_fed)) && segmentation->has_room()) {
-    tracker.await_mask();
-    segmentation->hand_in(frame, result.is_keyframe ? result.keyframe : KeyFrameId(), times);
-    tracker.hold_keyframes(segmentation->is_full());
-  } else if (result.is_keyframe) {
-    keep_view(result.keyframe, frame, tracker.frame().coarse, {}, times);
-    hand_to_mapping(result.keyframe, times);
-  }
+void Pipeline::State::request_mask(const SensorFrame& frame, const FrameResult& result, StageTimes& times) {
+  const KeyFrameId keyframe = result.is_keyframe ? result.keyframe : KeyFrameId();
+  if (moving_world.request_mask(frame, keyframe, times) || !result.is_keyframe) return;
+  keep_view(keyframe, frame, tracker.frame().coarse, {}, times);
+  hand_to_mapping(keyframe, times);
 }
 
 Pipeline::Pipeline(PipelineParts parts) : state_(std::make_unique<State>(checked(std::move(parts)))) {}
@@ -266,34 +300,35 @@ FrameResult Pipeline::feed(const SensorFrame& frame) {
   State& s = *state_;
   s.check_stamp(frame);
   s.rethrow_failures();
-  if (s.mapping && s.parts.threads.unpaced) s.mapping->queue().wait_for_room();
+  if (s.mapping && !s.parts.run.paced()) s.mapping->queue().wait_for_room();
 
   FrameResult result;
-  s.take_masks(result.times);
+  s.moving_world.next_frame(frame.timestamp);
+  s.hand_on_kept_keyframes();
+  const double mask_seconds = s.take_masks(result.times);
   const Stopwatch watch;
   s.tracker.begin(frame, result);
   {
     const TrackingLock lock(s.map_mutex);
     s.tracker.locate(frame, result);
-    result.tracking_seconds = watch.seconds();
-    if (result.is_keyframe && s.mapping && !s.mapping->queue().has_room()) {
+    result.tracking_seconds = mask_seconds + watch.seconds();
+    if (result.is_keyframe && s.mapping && (!s.keyframes_kept.empty() || !s.mapping->queue().has_room())) {
       result.is_keyframe = false;
       ++s.keyframes_deferred;
     }
     if (result.is_keyframe) {
       // Without a map there is nothing to track by until the mask comes: the first keyframe's points cannot wait.
-      const bool wait_for_mask = s.segmentation && result.status != TrackingStatus::initialised;
+      const bool wait_for_mask = s.moving_world.expects_masks() && result.status != TrackingStatus::initialised;
       result.keyframe = s.mapper.insert(s.tracker.frame(), wait_for_mask, result.times);
-      if (s.mapping || s.segmentation) s.tracker.keyframe_added(result.keyframe);
+      if (s.mapping || s.moving_world.expects_masks()) s.tracker.keyframe_added(result.keyframe);
     }
   }
-  s.ask_for_mask(frame, result, result.times);
+  s.request_mask(frame, result, result.times);
   if (result.is_keyframe) {
-    if (!s.mapping && !s.segmentation) s.tracker.keyframe_added(result.keyframe);
+    if (!s.mapping && !s.moving_world.expects_masks()) s.tracker.keyframe_added(result.keyframe);
     result.T_world_camera = s.tracker.frame().T_world_camera();
   }
-  s.take_masks(result.times);  // this frame's own, when there is no latency
-  ++s.frames_fed;
+  result.tracking_seconds += s.take_masks(result.times);  // this frame's own, when there is no latency
   for (const auto& observer : s.parts.observers) observer->on_frame(frame, s.tracker.frame(), result);
   return result;
 }
@@ -301,11 +336,11 @@ FrameResult Pipeline::feed(const SensorFrame& frame) {
 void Pipeline::finish() {
   State& s = *state_;
   // In the order in which work is handed on, so that nothing is left behind.
-  if (s.segmentation) {
-    s.segmentation->finish();
-    s.segmentation->rethrow();
+  if (s.moving_world.expects_masks()) {
+    s.moving_world.finish();
     s.in_background([&](StageTimes& times) { s.take_masks(times); });
   }
+  for (const KeyFrameId keyframe : std::exchange(s.keyframes_kept, {})) s.mapping->queue().push(keyframe);
   if (s.mapping) s.mapping->finish();
   if (s.loop_closing) s.loop_closing->finish();
   if (s.full_adjustment) s.full_adjustment->finish();
@@ -326,12 +361,11 @@ void Pipeline::interrupt() {
 std::vector<StageTimes> Pipeline::take_background_times() {
   const std::lock_guard lock(state_->record_mutex);
   std::vector<StageTimes> times = std::exchange(state_->background_times, {});
-  if (state_->segmentation)
-    for (StageTimes& more : state_->segmentation->take_times()) times.push_back(std::move(more));
+  for (StageTimes& more : state_->moving_world.take_times()) times.push_back(std::move(more));
   return times;
 }
 
-const std::vector<double>& Pipeline::mask_latencies() const { return state_->mask_latencies; }
+const std::vector<double>& Pipeline::mask_latencies() const { return state_->moving_world.mask_latencies(); }
 
 std::uint64_t Pipeline::keyframes_deferred() const { return state_->keyframes_deferred; }
 
@@ -340,8 +374,7 @@ std::vector<WorkerCounts> Pipeline::worker_counts() const {
   if (state_->mapping) counts.push_back(state_->mapping->counts());
   if (state_->loop_closing) counts.push_back(state_->loop_closing->counts());
   if (state_->full_adjustment) counts.push_back(state_->full_adjustment->counts());
-  if (state_->segmentation)
-    if (const auto segmentation = state_->segmentation->worker_counts()) counts.push_back(*segmentation);
+  if (const auto segmentation = state_->moving_world.worker_counts()) counts.push_back(*segmentation);
   return counts;
 }
 
@@ -355,10 +388,7 @@ Trajectory Pipeline::keyframe_trajectory() const {
   return holdfast::keyframe_trajectory(state_->map);
 }
 
-MapSnapshot Pipeline::map_snapshot() const {
-  const std::lock_guard lock(state_->map_mutex);
-  return make_snapshot(state_->map);
-}
+MapSnapshot Pipeline::map_snapshot() const { return state_->snapshot(); }
 
 const Map& Pipeline::map() const { return state_->map; }
 Map Pipeline::take_map() {

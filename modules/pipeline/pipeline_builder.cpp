@@ -5,6 +5,7 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/plugin/did_you_mean.hpp"
 #include "holdfast/plugin/loader.hpp"
+#include "holdfast/plugin/module_check.hpp"
 #include "holdfast/plugin/parameter_check.hpp"
 
 namespace holdfast {
@@ -17,6 +18,12 @@ bool is_absent(const std::optional<ModuleOf<Interface>>& module) {
 }
 
 }  // namespace
+
+PipelineBuilder::PipelineBuilder(Registry registry) : registry_(std::move(registry)) {}
+PipelineBuilder::PipelineBuilder(void (*register_modules)(Registry&)) { register_modules(registry_); }
+PipelineBuilder::~PipelineBuilder() = default;
+PipelineBuilder::PipelineBuilder(PipelineBuilder&&) noexcept = default;
+PipelineBuilder& PipelineBuilder::operator=(PipelineBuilder&&) noexcept = default;
 
 PipelineBuilder& PipelineBuilder::plugin(const std::string& name_or_path) {
   load_plugin(registry_, name_or_path);
@@ -95,13 +102,13 @@ PipelineBuilder& PipelineBuilder::dense_map(const DenseMapSettings& settings) {
   return *this;
 }
 
-PipelineBuilder& PipelineBuilder::seed(std::uint64_t seed) {
-  parts_.seed = context_.seed = seed;
-  return *this;
+PipelineBuilder& PipelineBuilder::run(const RunSettings& settings) {
+  parts_.run = settings;
+  context_.sequential = !settings.threaded();
+  return seed(settings.seed);
 }
-PipelineBuilder& PipelineBuilder::threads(const ThreadSettings& settings) {
-  parts_.threads = settings;
-  context_.sequential = !settings.threaded;
+PipelineBuilder& PipelineBuilder::seed(std::uint64_t seed) {
+  parts_.run.seed = context_.seed = seed;
   return *this;
 }
 PipelineBuilder& PipelineBuilder::output_directory(std::filesystem::path folder) {
@@ -125,15 +132,12 @@ void PipelineBuilder::complain(const SourceLocation& place, std::string message)
 template <class Interface>
 std::unique_ptr<Interface> PipelineBuilder::make(ModuleOf<Interface>& module) {
   if (module.object) return std::move(module.object);
-  const std::string owner = std::string(Interface::kind) + " '" + module.name + "'";
-  const ModuleEntry* entry = registry_.find(Interface::kind, module.name);
-  if (entry == nullptr) {
-    complain(module.place, owner + " is unknown; " + did_you_mean(module.name, registry_.names(Interface::kind)));
-    return nullptr;
-  }
+  const SourceLocation& place = module.place.file.empty() ? place_ : module.place;
+  const ModuleEntry* entry = find_module(registry_, Interface::kind, module.name, place, diagnostics_);
+  if (entry == nullptr) return nullptr;
   const std::size_t before = diagnostics_.size();
-  const ParameterValues values = check_parameters(module.values, entry->parameters, owner,
-                                                  module.place.file.empty() ? place_ : module.place, diagnostics_);
+  const ParameterValues values = check_parameters(
+      module.values, entry->parameters, std::string(Interface::kind) + " '" + module.name + "'", place, diagnostics_);
   if (diagnostics_.size() > before) return nullptr;
   return registry_.create<Interface>(module.name, values, context_);
 }
@@ -152,11 +156,28 @@ void PipelineBuilder::check(const Settings& settings, const char* section) {
 void PipelineBuilder::check_camera() {
   if (source_camera_ && has_camera_ && have_other_numbers(*source_camera_, parts_.camera))
     complain(source_place_, "the source '" + source_name_ +
-                                "' brings its own camera, and camera() says something else; remove one of them");
+                                "' brings its own camera, and 'camera' names one with other numbers; remove one of "
+                                "them");
   if (source_camera_) parts_.camera = *source_camera_;
-  if (!source_camera_ && !has_camera_)
-    complain(place_, "the camera is missing; call camera() with numbers or a known name, or source()");
+  if (!source_camera_ && !has_camera_) {
+    std::string known;
+    for (const std::string& name : camera_names()) known += (known.empty() ? "" : ", ") + name;
+    const std::string source =
+        source_name_.empty() ? "" : ", and the source '" + source_name_ + "' does not know its own";
+    complain(place_, "the camera is missing" + source + "; expected 'camera' with a name (" + known + ") or numbers");
+  }
   context_.camera = parts_.camera;
+}
+
+void PipelineBuilder::check_settings() {
+  check(parts_.tracking, "tracking");
+  check(parts_.segmentation, "segmentation");
+  check(parts_.evidence, "evidence");
+  check(parts_.mapping, "mapping");
+  check(parts_.loop_closing, "loop_closing");
+  check(parts_.dense_map, "dense_map");
+  check(parts_.run, "run");
+  if (const auto reason = parts_.run.contradiction()) complain(place_, *reason);
 }
 
 void PipelineBuilder::check_filter(const ModuleOf<DynamicFilter>& module, const Needs& needs) {
@@ -180,17 +201,7 @@ void PipelineBuilder::check_map() const {
   });
 }
 
-Pipeline PipelineBuilder::build() {
-  check_camera();
-  if (!features_) complain(place_, "features() is missing; choose an extractor, such as 'orb'");
-  if (!optimizer_) complain(place_, "optimizer() is missing; choose one, such as 'ceres'");
-  check(parts_.tracking, "tracking");
-  check(parts_.segmentation, "segmentation");
-  check(parts_.evidence, "evidence");
-  check(parts_.mapping, "mapping");
-  check(parts_.loop_closing, "loop_closing");
-  check(parts_.dense_map, "dense_map");
-
+void PipelineBuilder::make_modules() {
   parts_.features = make_if_any(features_);
   parts_.segmenter = make_if_any(segmenter_);
   parts_.optimizer = make_if_any(optimizer_);
@@ -201,6 +212,18 @@ Pipeline PipelineBuilder::build() {
     parts_.filters.emplace_back(module.name, std::move(filter));
   }
   for (ModuleOf<Observer>& module : observers_) parts_.observers.push_back(make(module));
+}
+
+void PipelineBuilder::throw_complaints() {
+  if (!diagnostics_.empty()) throw ConfigurationError(std::move(diagnostics_));
+}
+
+Pipeline PipelineBuilder::build() {
+  check_camera();
+  if (!features_) complain(place_, "features() is missing; choose an extractor, such as 'orb'");
+  if (!optimizer_) complain(place_, "optimizer() is missing; choose one, such as 'ceres'");
+  check_settings();
+  make_modules();
   if (!has_depth_)
     complain(source_place_,
              "the source '" + source_name_ + "' has no depth; this version tracks colour with depth only");
@@ -208,9 +231,19 @@ Pipeline PipelineBuilder::build() {
     complain(loop_detector_ ? loop_detector_->place : place_,
              "a camera in a loaded map finds its place by place recognition, but the loop detector is 'none'; choose "
              "one, such as 'loop_detector: { flann: {} }'");
-  if (!diagnostics_.empty()) throw ConfigurationError(std::move(diagnostics_));
+  throw_complaints();
   if (has_map_) check_map();
   return Pipeline(std::move(parts_));
+}
+
+std::unique_ptr<Segmenter> PipelineBuilder::build_segmenter() {
+  check_camera();
+  if (is_absent(segmenter_))
+    complain(segmenter_ ? segmenter_->place : place_,
+             "the segmenter is 'none', which finds nothing; choose one under 'segmenter:', such as 'onnx'");
+  std::unique_ptr<Segmenter> segmenter = make_if_any(segmenter_);
+  throw_complaints();
+  return segmenter;
 }
 
 }  // namespace holdfast

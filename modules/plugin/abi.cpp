@@ -12,7 +12,7 @@ std::string dotted(int version) {
          std::to_string(version % 100);
 }
 
-// As a plugin may hold anything, no text is trusted to end.
+// A plugin may contain anything, so that a text is not trusted to be null-terminated.
 template <std::size_t size>
 std::string text_of(const char (&text)[size]) {
   return {text, strnlen(text, size)};
@@ -25,7 +25,7 @@ std::string sanitizer_text(int sanitizers) {
   return text;
 }
 
-/// With the compiler, because the number alone tells few people anything.
+/// Includes the compiler, because few readers know the ABI number.
 std::string compiler_text(const AbiRecord& record) {
   return std::to_string(record.compiler_abi) + " (" + text_of(record.compiler) + ")";
 }
@@ -38,7 +38,7 @@ std::vector<std::string> abi_differences(const AbiRecord& program, const AbiReco
     if (ours != theirs) differences.push_back(std::string(what) + ": program " + ours + ", plugin " + theirs);
   };
   if (plugin.magic != program.magic) return {"the plugin's record does not begin with Holdfast's mark"};
-  // The version stands where it stands in every record; what follows is only known to be there when the sizes agree.
+  // The version has the same position in every record; the members after it are only valid if the sizes agree.
   compare("Holdfast version", text_of(program.holdfast_version), text_of(plugin.holdfast_version));
   compare("size of the ABI record", std::to_string(program.record_size), std::to_string(plugin.record_size));
   if (program.record_size != plugin.record_size) return differences;

@@ -13,7 +13,7 @@ namespace holdfast {
 
 namespace {
 
-/// A file read at given places; what lies beyond its end is not there.
+/// Reads a file at given offsets; reading beyond its end fails.
 class ElfFile {
  public:
   explicit ElfFile(const std::filesystem::path& file) : stream_(file, std::ios::binary) {}
@@ -25,8 +25,8 @@ class ElfFile {
   }
   template <class Item>
   std::vector<Item> table(std::uint64_t offset, std::uint64_t count) {
-    constexpr std::uint64_t most = 1U << 24U;  // a broken file must not ask for all memory
-    std::vector<Item> items(count <= most ? count : 0);
+    constexpr std::uint64_t max_size = 1U << 24U;  // a damaged file must not exhaust the memory
+    std::vector<Item> items(count <= max_size ? count : 0);
     if (items.empty() || !read(offset, items.data(), items.size() * sizeof(Item))) items.clear();
     return items;
   }
@@ -35,7 +35,7 @@ class ElfFile {
   std::ifstream stream_;
 };
 
-/// Where an address of the loaded library lies in its file.
+/// File offset of a virtual address of the library.
 std::optional<std::uint64_t> file_offset(const std::vector<Elf64_Phdr>& segments, std::uint64_t address) {
   for (const Elf64_Phdr& segment : segments)
     if (segment.p_type == PT_LOAD && address >= segment.p_vaddr && address - segment.p_vaddr < segment.p_filesz)

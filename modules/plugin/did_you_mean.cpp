@@ -40,7 +40,7 @@ std::optional<std::string> nearest_name(std::string_view name, const std::vector
     int distance = edit_distance(wanted, other);
     if (wanted.size() >= 3 && other.starts_with(wanted)) distance = std::min(distance, 1);
     const int limit = std::max(1, static_cast<int>(std::max(wanted.size(), other.size()) / 3));
-    // A single letter is one edit away from every other single letter; that is no resemblance.
+    // Every single letter is one edit away from every other one, which is not a similarity.
     const bool resembles = distance <= limit && distance < static_cast<int>(std::max(wanted.size(), other.size()));
     if (resembles && (!nearest || distance < least)) {
       nearest = candidate;

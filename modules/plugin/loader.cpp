@@ -67,7 +67,7 @@ bool has_modules_of(const Registry& registry, const std::string& origin) {
   return false;
 }
 
-/// Sets the origin for what a plugin registers and puts the usual one back, also when it throws.
+/// Sets the origin of the modules that a plugin registers and restores the previous one, also after an exception.
 class OriginScope {
  public:
   OriginScope(Registry& registry, const std::string& origin) : registry_(registry), before_(registry.origin()) {
@@ -95,11 +95,11 @@ fs::path load_plugin(Registry& registry, const std::string& name_or_path, const 
     if (!all.empty())
       refuse("does not fit this program: " + all + "; build both with the same Holdfast, compiler and libraries");
   };
-  // Before anything of it is loaded: what does not fit often cannot be loaded either, for a reason that tells less.
+  // Checked before loading: an incompatible plugin often fails to load as well, with a less helpful message.
   if (is_cut_off(file)) refuse("cannot be loaded: the file ends too early; build or copy it again");
   if (const auto record = read_abi_of_file(file)) refuse_differences(*record);
 
-  // RTLD_NOW: a symbol that is missing is an error here and not in the middle of a run. Never closed: see the header.
+  // RTLD_NOW reports a missing symbol here and not during a run. The library is never closed; see the header.
   void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) {
     const char* reason = dlerror();

@@ -208,9 +208,9 @@ std::optional<std::string> Parameter::reject(const ParameterValue& value) const 
     return "'" + text + "' is not among them";
   };
   if (const auto* number = std::get_if<std::int64_t>(&value)) {
-    if (*number < least_integer || *number > most_integer)
-      return std::to_string(*number) + " is outside what can be stored, " + std::to_string(least_integer) + " to " +
-             std::to_string(most_integer);
+    if (*number < min_integer || *number > max_integer)
+      return std::to_string(*number) + " is outside what can be stored, " + std::to_string(min_integer) + " to " +
+             std::to_string(max_integer);
     return check_number(static_cast<double>(*number));
   }
   if (const auto* number = std::get_if<double>(&value)) return check_number(*number);

@@ -41,9 +41,19 @@ std::vector<std::string> Registry::names(const std::string& kind) const {
   return names;
 }
 
+void Registry::add_left_out(const std::string& kind, const std::string& name, const std::string& option) {
+  left_out_[kind + '/' + name] = option;
+}
+
+std::string Registry::suggestion(const std::string& kind, const std::string& name) const {
+  if (const auto found = left_out_.find(kind + '/' + name); found != left_out_.end())
+    return "it was left out of this build; configure Holdfast with -D" + found->second + "=ON";
+  return did_you_mean(name, names(kind));
+}
+
 const ModuleEntry& Registry::require(const std::string& kind, const std::string& name) const {
   if (const ModuleEntry* entry = find(kind, name)) return *entry;
-  throw PluginError("no " + kind + " module is called '" + name + "'; " + did_you_mean(name, names(kind)));
+  throw PluginError("no " + kind + " module is called '" + name + "'; " + suggestion(kind, name));
 }
 
 }  // namespace holdfast

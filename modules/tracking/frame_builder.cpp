@@ -56,8 +56,9 @@ void FrameBuilder::find_features(const SensorFrame& sensor_frame, const cv::Mat&
   frame.map_points.assign(frame.size(), MapPointId());
   frame.static_probability.assign(frame.size(), 1.0F);
   frame.measured_log_odds.assign(frame.size(), 0.0F);
-  frame.grid.build(frame.x, frame.y, static_cast<float>(minimum_.x()), static_cast<float>(minimum_.y()),
-                   static_cast<float>(maximum_.x()), static_cast<float>(maximum_.y()));
+  frame.grid.build(frame.x, frame.y,
+                   {static_cast<float>(minimum_.x()), static_cast<float>(minimum_.y()),
+                    static_cast<float>(maximum_.x()), static_cast<float>(maximum_.y())});
 }
 
 void FrameBuilder::read_depth(const cv::Mat& depth, Frame& frame) const {

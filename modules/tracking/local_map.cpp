@@ -2,8 +2,6 @@
 #include "holdfast/tracking/local_map.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace holdfast {
 
@@ -64,31 +62,12 @@ void LocalMap::collect_points(const Map& map) {
   points_.clear();
   index_of_slot_.assign(map.points().slot_count(), -1);
   std::erase_if(keyframes_, [&](KeyFrameId id) { return map.find_keyframe(id) == nullptr; });
-  for (const KeyFrameId id : keyframes_)
-    for (const MapPointId point : map.keyframe(id).frame.map_points) {
-      if (!point.valid() || index_of_slot_[point.slot] >= 0) continue;
-      index_of_slot_[point.slot] = static_cast<std::int32_t>(points_.size());
-      points_.push_back(point);
-    }
-  const std::size_t count = points_.size();
-  for (std::vector<float>* values : {&position_x_, &position_y_, &position_z_, &direction_x_, &direction_y_,
-                                     &direction_z_, &minimum_distance_, &maximum_distance_})
-    values->resize(count);
-  descriptors_.resize(count);
-  visible_.assign(count, 0);
-  found_.assign(count, 0);
-  for (std::size_t i = 0; i < count; ++i) {
-    const MapPoint& point = map.point(points_[i]);
-    position_x_[i] = static_cast<float>(point.position.x());
-    position_y_[i] = static_cast<float>(point.position.y());
-    position_z_[i] = static_cast<float>(point.position.z());
-    direction_x_[i] = static_cast<float>(point.viewing_direction.x());
-    direction_y_[i] = static_cast<float>(point.viewing_direction.y());
-    direction_z_[i] = static_cast<float>(point.viewing_direction.z());
-    minimum_distance_[i] = point.minimum_distance;
-    maximum_distance_[i] = point.maximum_distance;
-    descriptors_[i] = point.descriptor;
+  for (const MapPointId id : points_seen_by(map, keyframes_)) {
+    index_of_slot_[id.slot] = static_cast<std::int32_t>(points_.size());
+    points_.add(id, map.point(id));
   }
+  visible_.assign(points_.size(), 0);
+  found_.assign(points_.size(), 0);
 }
 
 void LocalMap::mark_shown(const Frame& frame) {
@@ -96,40 +75,18 @@ void LocalMap::mark_shown(const Frame& frame) {
   for (const MapPointId id : frame.map_points) {
     if (!id.valid() || id.slot >= index_of_slot_.size()) continue;
     const std::int32_t index = index_of_slot_[id.slot];
-    if (index >= 0 && points_[static_cast<std::size_t>(index)] == id) shown_[static_cast<std::size_t>(index)] = 1;
+    if (index >= 0 && points_.ids[static_cast<std::size_t>(index)] == id) shown_[static_cast<std::size_t>(index)] = 1;
   }
 }
 
-void LocalMap::project(const Frame& frame, float radius_factor, SearchWindows& windows) {
+void LocalMap::project(const Frame& frame, float radius_factor, matching::SearchWindows& windows) {
   mark_shown(frame);
-  const Camera& camera = *frame.camera;
-  const ScalePyramid& pyramid = *frame.pyramid;
-  const Eigen::Matrix3f R = frame.T_camera_world.linear().cast<float>();
-  const Eigen::Vector3f t = frame.T_camera_world.translation().cast<float>();
-  const Eigen::Vector3f centre = -(R.transpose() * t);
-  const float fx = static_cast<float>(camera.fx), fy = static_cast<float>(camera.fy);
-  const float cx = static_cast<float>(camera.cx), cy = static_cast<float>(camera.cy);
-  const float fx_baseline = static_cast<float>(camera.fx * camera.baseline);
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const float px = position_x_[i], py = position_y_[i], pz = position_z_[i];
-    const float z = R(2, 0) * px + R(2, 1) * py + R(2, 2) * pz + t.z();
-    if (z <= 0.05F) continue;
-    const float inverse_z = 1.0F / z;
-    const float x = fx * (R(0, 0) * px + R(0, 1) * py + R(0, 2) * pz + t.x()) * inverse_z + cx;
-    const float y = fy * (R(1, 0) * px + R(1, 1) * py + R(1, 2) * pz + t.y()) * inverse_z + cy;
-    if (!frame.grid.covers(x, y)) continue;
-    const float dx = px - centre.x(), dy = py - centre.y(), dz = pz - centre.z();
-    const float distance = std::sqrt(dx * dx + dy * dy + dz * dz);
-    if (distance < 0.8F * minimum_distance_[i] || distance > 1.2F * maximum_distance_[i]) continue;
-    const float cosine = (dx * direction_x_[i] + dy * direction_y_[i] + dz * direction_z_[i]) / distance;
-    if (cosine < 0.5F) continue;  // 60 degrees away from where it was seen
+  const matching::WindowSettings settings{.radius = 4.0F, .frontal_radius = 2.5F, .factor = radius_factor};
+  const auto is_wanted = [&](std::uint32_t i) {
     ++visible_[i];
-    if (shown_[i] != 0) continue;
-    const int level = pyramid.predict_level(maximum_distance_[i], distance);
-    const float radius =
-        (cosine > 0.998F ? 2.5F : 4.0F) * radius_factor * pyramid.scale[static_cast<std::size_t>(level)];
-    windows.add(static_cast<std::uint32_t>(i), x, y, x - fx_baseline * inverse_z, radius, level - 1, level);
-  }
+    return shown_[i] == 0;
+  };
+  matching::add_windows(frame, projection_into(frame, frame.T_camera_world), points_, settings, is_wanted, windows);
 }
 
 void LocalMap::count_found(const Frame& frame) {
@@ -140,7 +97,7 @@ void LocalMap::count_found(const Frame& frame) {
 void LocalMap::write_counts(Map& map) {
   for (std::size_t i = 0; i < points_.size(); ++i) {
     if ((visible_[i] | found_[i]) == 0) continue;
-    if (MapPoint* point = map.find_point(points_[i])) {
+    if (MapPoint* point = map.find_point(points_.ids[i])) {
       point->visible_count += visible_[i];
       point->found_count += found_[i];
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "holdfast/cli/map_command.hpp"
+#include "map_command.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "holdfast/cli/simulate_command.hpp"
+#include "simulate_command.hpp"
 
 #include <gtest/gtest.h>
 
@@ -113,6 +113,19 @@ people:
   fs::path root_;
 };
 
+/// The number of files that a list names; all of them must exist.
+int existing_files(const fs::path& folder, const char* list) {
+  std::istringstream lines(content(folder / list));
+  std::string line;
+  int names = 0;
+  while (std::getline(lines, line)) {
+    if (line[0] == '#') continue;
+    ++names;
+    EXPECT_TRUE(fs::exists(folder / line.substr(line.find(' ') + 1))) << line;
+  }
+  return names;
+}
+
 TEST_F(SimulateScene, WritesMasksLabelsAndObjectsThatAgree) {
   const fs::path folder = root_ / "out";
   ASSERT_EQ(run(command("--camera tum_fr3 --output " + folder.string())), 0);
@@ -167,17 +180,7 @@ TEST_F(SimulateScene, WritesMasksLabelsAndObjectsThatAgree) {
     }
   }
   EXPECT_GT(seen, 1000);
-  for (const char* list : {"mask.txt", "labels.txt"}) {
-    std::istringstream lines(content(folder / list));
-    std::string line;
-    int names = 0;
-    while (std::getline(lines, line)) {
-      if (line[0] == '#') continue;
-      ++names;
-      EXPECT_TRUE(fs::exists(folder / line.substr(line.find(' ') + 1))) << line;
-    }
-    EXPECT_EQ(names, 2) << list;
-  }
+  for (const char* list : {"mask.txt", "labels.txt"}) EXPECT_EQ(existing_files(folder, list), 2) << list;
 }
 
 TEST_F(SimulateScene, SameSeedSameBytesInEveryFile) {

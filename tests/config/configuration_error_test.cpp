@@ -38,6 +38,22 @@ TEST(ConfigurationErrors, UnknownParameter) {
               ElementsAre("c.yaml:3:20: features 'orb' has no parameter 'cuont'; did you mean 'count'?"));
 }
 
+TEST(ConfigurationErrors, AMovedKeyNamesItsNewPlace) {
+  std::vector<SectionDescription> sections = test::test_sections();
+  sections.push_back({"mapping", "How the map is made.", {}});
+  const ConfigurationNode root = parse_yaml(test::good + "mapping: { close_depth_factor: 30, x: 1 }\n", "c.yaml", "/");
+  Registry registry = test::test_registry();
+  try {
+    resolve_configuration(root, "c.yaml", registry, sections);
+    FAIL();
+  } catch (const ConfigurationError& error) {
+    ASSERT_EQ(error.diagnostics().size(), 2U);
+    EXPECT_EQ(error.diagnostics()[0].to_string(),
+              "c.yaml:5:12: 'close_depth_factor' of section 'mapping' is now 'tracking.close_depth_factor'");
+    EXPECT_THAT(error.diagnostics()[1].to_string(), testing::HasSubstr("has no parameter 'x'"));
+  }
+}
+
 TEST(ConfigurationErrors, WrongType) {
   EXPECT_THAT(
       problems(with_features("{ orb: { count: 3.5 } }")),

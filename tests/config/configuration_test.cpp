@@ -84,13 +84,13 @@ TEST(Configuration, LoadsPluginsAndNamesTheirFiles) {
   const std::filesystem::path file = std::filesystem::path(TEST_PLUGIN_FOLDER) / "configuration_test.yaml";
   std::ofstream(file) << test::good << "segmenter: { good: { dilate: 9 } }\nplugins: [ test_plugin_good ]\n";
   Registry registry = test::test_registry();
-  const Configuration first = load_configuration(file, {}, registry, test::test_sections());
+  const Configuration first = read_configuration(file, {}, registry, test::test_sections());
   EXPECT_EQ(first.segmenter.values.at("dilate"), ParameterValue(std::int64_t{9}));
   // The resolved configuration is run from another folder.
   const ConfigurationNode moved = parse_yaml(to_yaml(first), "out.yaml", "/elsewhere");
   Registry fresh = test::test_registry();
   EXPECT_EQ(resolve_configuration(moved, "out.yaml", fresh, test::test_sections()).segmenter.name, "good");
-  EXPECT_NO_THROW(load_configuration(file, {}, registry, test::test_sections())) << "twice into one registry";
+  EXPECT_NO_THROW(read_configuration(file, {}, registry, test::test_sections())) << "twice into one registry";
   std::filesystem::remove(file);
 }
 

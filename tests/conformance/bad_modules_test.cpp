@@ -169,7 +169,7 @@ TEST(BadModules, MessagesNameTheSentence) {
   EXPECT_THAT(run("segmenter/stranger.ResultsAreSound").output,
               AllOf(HasSubstr("label 7 at column 0, row 0 of 2 classes"),
                     HasSubstr("segmenter/stranger is held to holdfast/interfaces/segmenter.hpp: \"8UC1 of the frame's "
-                              "size: index into the segmenter's classes(); 255 = unknown\"")));
+                              "size: index into Segmenter::classes(); 255 = unknown\"")));
 }
 
 TEST(BadModules, CrashesNameTheSentenceToo) {

@@ -6,6 +6,7 @@ set(build ${WORK_FOLDER}/installed)
 configure(${CMAKE_CURRENT_LIST_DIR}/installed ${build} -DCMAKE_PREFIX_PATH=${WORK_FOLDER}/moved)
 run(COMMAND ${CMAKE_COMMAND} --build ${build})
 run(COMMAND ${build}/consumer)
+run(COMMAND ${build}/geometry_consumer)
 check_libraries(${build}/consumer)
 
 if(EXISTS ${BUILD_FOLDER}/bin/holdfast)

@@ -59,11 +59,11 @@ TEST(CoarseSampler, ReadsTheRawPixelAtEachCellsCentre) {
     const CoarseGrid& grid = sampler.grid();
     CoarseView view;
     view.static_log_odds.assign(3, 1.0F);
-    view.labels.assign(3, 1);
+    view.mask.labels.assign(3, 1);
     sampler.sample_depth(ramp_image(camera), view);
     EXPECT_EQ(view.grid, grid);
     EXPECT_TRUE(view.static_log_odds.empty());
-    EXPECT_TRUE(view.labels.empty());
+    EXPECT_TRUE(view.mask.empty());
     ASSERT_EQ(view.depth.size(), static_cast<std::size_t>(grid.size()));
     int inside = 0;
     for (int row = 0; row < grid.rows; ++row)

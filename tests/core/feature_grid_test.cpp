@@ -31,7 +31,7 @@ TEST(FeatureGrid, FindsWhatASearchThroughAllFinds) {
   Random random(3);
   for (const float cell_size : {7.0F, 20.0F, 500.0F}) {
     FeatureGrid grid;
-    grid.build(points.x, points.y, 0, 0, 200, 200, cell_size);
+    grid.build(points.x, points.y, {0, 0, 200, 200}, cell_size);
     for (int query = 0; query < 200; ++query) {
       const auto x = static_cast<float>(random.uniform(-40, 240)), y = static_cast<float>(random.uniform(-40, 240));
       const auto radius = static_cast<float>(random.uniform(0, 60));
@@ -48,7 +48,7 @@ TEST(FeatureGrid, FindsWhatASearchThroughAllFinds) {
 TEST(FeatureGrid, AppendsInOrderOfCellsThenOfIndices) {
   FeatureGrid grid;
   const std::vector<float> x = {55, 5, 6, 15, 5}, y = {5, 5, 15, 5, 5};
-  grid.build(x, y, 0, 0, 60, 20, 10);
+  grid.build(x, y, {0, 0, 60, 20}, 10);
   std::vector<std::uint32_t> found = {99};
   grid.query(10, 10, 12, x, y, found);
   EXPECT_EQ(found, (std::vector<std::uint32_t>{99, 1, 4, 3, 2}));
@@ -59,7 +59,7 @@ TEST(FeatureGrid, OfNothingFindsNothing) {
   std::vector<std::uint32_t> found;
   EXPECT_TRUE(grid.empty());
   grid.query(0, 0, 10, {}, {}, found);
-  grid.build({}, {}, 0, 0, 640, 480);
+  grid.build({}, {}, {0, 0, 640, 480});
   grid.query(0, 0, 10, {}, {}, found);
   EXPECT_TRUE(grid.empty());
   EXPECT_TRUE(found.empty());

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <numeric>
 #include <vector>
 
 #include "holdfast/core/random.hpp"
@@ -48,31 +47,6 @@ TEST(Hamming, KernelsAgreeWithCountingBitByBit) {
     for (std::size_t i = 0; i < count; ++i)
       EXPECT_EQ(distances[i], count_bit_by_bit(descriptors[5], descriptors[candidates[i]]));
   }
-}
-
-TEST(Hamming, NearestAgreesWithSortingAndPrefersTheFirstOfEquals) {
-  std::vector<Descriptor> descriptors = random_descriptors(200);
-  descriptors[120] = descriptors[30];
-  for (std::size_t query = 0; query < descriptors.size(); ++query) {
-    std::vector<std::uint32_t> candidates(descriptors.size());
-    std::iota(candidates.begin(), candidates.end(), 0U);
-    candidates.erase(candidates.begin() + static_cast<std::ptrdiff_t>(query));
-    const NearestDescriptors nearest = nearest_descriptors(descriptors[query], descriptors.data(), candidates);
-    std::stable_sort(candidates.begin(), candidates.end(), [&](std::uint32_t a, std::uint32_t b) {
-      return count_bit_by_bit(descriptors[query], descriptors[a]) <
-             count_bit_by_bit(descriptors[query], descriptors[b]);
-    });
-    EXPECT_EQ(nearest.best_index, static_cast<int>(candidates[0]));
-    EXPECT_EQ(nearest.second_index, static_cast<int>(candidates[1]));
-    EXPECT_EQ(nearest.best_distance, count_bit_by_bit(descriptors[query], descriptors[candidates[0]]));
-    EXPECT_EQ(nearest.second_distance, count_bit_by_bit(descriptors[query], descriptors[candidates[1]]));
-  }
-}
-
-TEST(Hamming, NearestOfNoneIsNone) {
-  const NearestDescriptors nearest = nearest_descriptors(Descriptor{}, nullptr, {});
-  EXPECT_EQ(nearest.best_index, -1);
-  EXPECT_EQ(nearest.second_index, -1);
 }
 
 }  // namespace

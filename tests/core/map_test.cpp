@@ -168,5 +168,21 @@ TEST(Map, DistanceRangeFollowsTheOctaveOfTheReference) {
   }
 }
 
+TEST(Map, FusedPointsKeepTheLimitOfEvidence) {
+  for (const float sign : {1.0F, -1.0F}) {
+    Map map;
+    build_row(map, 3);
+    map.set_evidence_limit(3.0F);
+    const auto points = map.points().ids();
+    map.point(points[0]).static_log_odds = sign * 2.0F;
+    map.point(points[1]).static_log_odds = sign * 0.5F;
+    map.point(points[2]).static_log_odds = sign * 2.5F;
+    map.fuse_points(points[0], points[1]);
+    EXPECT_EQ(map.point(points[1]).static_log_odds, sign * 2.5F);
+    map.fuse_points(points[2], points[1]);
+    EXPECT_EQ(map.point(points[1]).static_log_odds, sign * 3.0F);
+  }
+}
+
 }  // namespace
 }  // namespace holdfast

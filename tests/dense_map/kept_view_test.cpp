@@ -82,10 +82,10 @@ TEST(KeptView, TakesLabelsBeforeTheCoarseOnes) {
   const SensorFrame frame = world.images(0.0, 0, std::nullopt);
   CoarseView coarse = blank_coarse(world.camera);
   EXPECT_EQ(count_moving(sampler.sample({}, frame, coarse, {}, {false, true})), 0);
-  coarse.labels.assign(coarse.depth.size(), 0);
-  coarse.labels[static_cast<std::size_t>(coarse.grid.cell_of(40, 40))] = 1;
-  coarse.labels[static_cast<std::size_t>(coarse.grid.cell_of(80, 40))] = 255;
-  coarse.labels[static_cast<std::size_t>(coarse.grid.cell_of(120, 40))] = 2;
+  coarse.mask.labels.assign(coarse.depth.size(), 0);
+  coarse.mask.labels[static_cast<std::size_t>(coarse.grid.cell_of(40, 40))] = 1;
+  coarse.mask.labels[static_cast<std::size_t>(coarse.grid.cell_of(80, 40))] = 255;
+  coarse.mask.labels[static_cast<std::size_t>(coarse.grid.cell_of(120, 40))] = 2;
   const KeptView carried = sampler.sample({}, frame, coarse, {}, {false, true, false});
   EXPECT_TRUE(carried.moves(20, 20));
   EXPECT_TRUE(carried.moves(40, 20));  // unknown

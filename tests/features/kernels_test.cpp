@@ -15,10 +15,14 @@
 namespace holdfast::orb {
 namespace {
 
+ImageView view_of(const cv::Mat& image) {
+  return {image.data, static_cast<std::ptrdiff_t>(image.step), image.cols, image.rows};
+}
+
 cv::Mat fast_scores(const Kernels& kernels, const cv::Mat& image, int threshold) {
   cv::Mat scores(image.rows, image.cols, CV_8UC1, cv::Scalar(0));
-  kernels.fast_scores(image.ptr(3) + 3, static_cast<std::ptrdiff_t>(image.step), image.cols - 6, image.rows - 6,
-                      threshold, scores.ptr(3) + 3, static_cast<std::ptrdiff_t>(scores.step));
+  kernels.fast_scores({image.ptr(3) + 3, static_cast<std::ptrdiff_t>(image.step), image.cols - 6, image.rows - 6},
+                      threshold, {scores.ptr(3) + 3, static_cast<std::ptrdiff_t>(scores.step)});
   return scores;
 }
 
@@ -108,8 +112,7 @@ cv::Mat resized(const Kernels& kernels, const cv::Mat& image, cv::Size size) {
   rows.build(image.rows, size.height);
   std::vector<std::uint8_t> row(image.cols + 32);
   cv::Mat output(size, CV_8UC1);
-  kernels.resize(image.data, static_cast<std::ptrdiff_t>(image.step), image.cols, columns, rows, row.data(),
-                 output.data, static_cast<std::ptrdiff_t>(output.step));
+  kernels.resize(view_of(image), columns, rows, row.data(), {output.data, static_cast<std::ptrdiff_t>(output.step)});
   return output;
 }
 
@@ -129,8 +132,7 @@ TEST(Kernels, ResizeIsBilinearAndTheSameAtEveryLevel) {
 cv::Mat blurred(const Kernels& kernels, const cv::Mat& image) {
   std::vector<std::uint8_t> row(image.cols);
   cv::Mat output(image.size(), CV_8UC1, cv::Scalar(0));
-  kernels.blur(image.data, static_cast<std::ptrdiff_t>(image.step), image.cols, image.rows, row.data(), output.data,
-               static_cast<std::ptrdiff_t>(output.step));
+  kernels.blur(view_of(image), row.data(), {output.data, static_cast<std::ptrdiff_t>(output.step)});
   return output;
 }
 

@@ -33,7 +33,7 @@ Eigen::Isometry3d no_error(std::uint64_t) { return Eigen::Isometry3d::Identity()
 /// Features, by surface, of the frames that were judged: how many, and how many of them were called moving and static.
 struct Counts {
   std::array<int, 3> all{}, moving{}, standing{};
-  int judged_frames = 0;
+  int evaluated_frames = 0;
   std::vector<float> said;
 
   double share(const std::array<int, 3>& of, Surface surface) const {
@@ -48,11 +48,11 @@ Counts count(const ParameterValues& values, const JudgedFrames::PoseError& error
   Counts counts;
   frames.run_with_poses(filter, error,
                         [&](const SensorFrame& image, const Frame& frame, const StaticEvidence& evidence) {
-                          if (!filter.judged()) {
-                            EXPECT_TRUE(evidence.statements().empty());
+                          if (!filter.evaluated()) {
+                            EXPECT_TRUE(evidence.contributions().empty());
                             return;
                           }
-                          ++counts.judged_frames;
+                          ++counts.evaluated_frames;
                           for (std::size_t i = 0; i < frame.size(); ++i) {
                             const auto surface = static_cast<std::size_t>(test::surface_of(image, frame, i));
                             const float said = evidence.measurement(i);
@@ -67,7 +67,7 @@ Counts count(const ParameterValues& values, const JudgedFrames::PoseError& error
 
 TEST(DepthClusters, TellsPeopleWhoWalkFromTheRoom) {
   const Counts counts = count(walkers());
-  EXPECT_GE(counts.judged_frames, 15);
+  EXPECT_GE(counts.evaluated_frames, 15);
   // Half of them stand, and plain clothes that slide along themselves show only at their edges.
   EXPECT_GE(counts.share(counts.moving, Surface::moving), 0.3);
   EXPECT_LE(counts.share(counts.moving, Surface::still), 0.03);
@@ -76,7 +76,7 @@ TEST(DepthClusters, TellsPeopleWhoWalkFromTheRoom) {
 
 TEST(DepthClusters, RaisesNoAlarmWhereNothingMoves) {
   const Counts counts = count(scene("empty", {"duration=1", "camera.speed=2"}));
-  EXPECT_GE(counts.judged_frames, 15);
+  EXPECT_GE(counts.evaluated_frames, 15);
   EXPECT_LE(counts.share(counts.moving, Surface::still), 0.03);
 }
 
@@ -86,7 +86,7 @@ TEST(DepthClusters, AnErrorOfThePredictedPoseIsNotAMovement) {
     error.translation() = (index % 2 == 0 ? 1.0 : -1.0) * Eigen::Vector3d(0.015, -0.01, 0.015);
     return error;
   });
-  EXPECT_GE(counts.judged_frames, 10);
+  EXPECT_GE(counts.evaluated_frames, 10);
   EXPECT_LE(counts.share(counts.moving, Surface::still), 0.05);
 }
 
@@ -101,7 +101,7 @@ TEST(DepthClusters, AHopelessPoseIsNotAMovementOfTheWorld) {
 
 TEST(DepthClusters, AChairThatFillsTheViewIsNotTheWorld) {
   const Counts counts = count(scene("rolling_chair", {"duration=1.3"}));
-  EXPECT_GE(counts.judged_frames, 20);
+  EXPECT_GE(counts.evaluated_frames, 20);
   EXPECT_GE(counts.share(counts.moving, Surface::moving), 0.6);
   EXPECT_LE(counts.share(counts.moving, Surface::still), 0.1);
 }

@@ -37,10 +37,10 @@ Counts count(JudgedFrames& frames) {
   frames.run(filter, [&](const SensorFrame& image, const Frame& frame, const StaticEvidence& evidence) {
     counts.usable_frames += filter.verdict() == Verdict::usable ? 1 : 0;
     if (filter.verdict() != Verdict::usable) {
-      EXPECT_TRUE(evidence.statements().empty());
+      EXPECT_TRUE(evidence.contributions().empty());
     }
-    for (const StaticEvidence::Statement& statement : evidence.statements()) {
-      EXPECT_EQ(statement.sort, StaticEvidence::Sort::measurement);
+    for (const StaticEvidence::Contribution& statement : evidence.contributions()) {
+      EXPECT_EQ(statement.kind, StaticEvidence::Kind::measurement);
       const auto surface = static_cast<std::size_t>(test::surface_of(image, frame, statement.feature));
       ++(statement.log_odds < 0 ? counts.moving : counts.fixed)[surface];
     }
@@ -64,12 +64,12 @@ TEST(EpipolarConsistency, IsSilentWhileTheCameraOnlyTurns) {
 }
 
 TEST(EpipolarConsistency, SameFramesSameEvidence) {
-  std::array<std::vector<StaticEvidence::Statement>, 2> said;
+  std::array<std::vector<StaticEvidence::Contribution>, 2> said;
   for (auto& statements : said) {
     JudgedFrames frames("simulated", scene("empty", {"duration=0.6", "camera.speed=4"}));
     EpipolarConsistency filter({}, frames.context());
     frames.run(filter, [&](const SensorFrame&, const Frame&, const StaticEvidence& evidence) {
-      statements.insert(statements.end(), evidence.statements().begin(), evidence.statements().end());
+      statements.insert(statements.end(), evidence.contributions().begin(), evidence.contributions().end());
     });
   }
   ASSERT_EQ(said[0].size(), said[1].size());

@@ -73,14 +73,14 @@ TEST(RigidAlignment, FindsTheMotionOfATexturedBall) {
                                  now.depth[i] * grid.ray_y[i / static_cast<std::size_t>(grid.columns)], now.depth[i]);
       points.grey.push_back(now.grey[i]);
     }
-    const AlignmentResult result = alignment.align(points, then, owner, name, {}, {});
+    const AlignmentResult result = alignment.align(points, then, {owner, name}, {}, {});
     EXPECT_GT(result.inliers, 100);
     EXPECT_LT((result.motion.translation + moved).norm(), 0.006F) << moved.transpose();
     const Vector3d back = geometry::log_so3(Eigen::Matrix3d(result.motion.rotation.cast<double>()));
     EXPECT_LT((back + turned).norm(), 0.025) << moved.transpose();
     EXPECT_LT(result.covariance.diagonal().maxCoeff(), 0.01F * 0.01F);
     // What belongs to something else does not count.
-    const AlignmentResult other = alignment.align(points, then, owner, name + 1, {}, {});
+    const AlignmentResult other = alignment.align(points, then, {owner, name + 1}, {}, {});
     EXPECT_EQ(other.inliers, 0);
     EXPECT_LT(other.motion.translation.norm(), 1e-4F);
     EXPECT_GT(other.covariance.diagonal().minCoeff(), 0.5F);
@@ -117,15 +117,15 @@ class MotionObjectsTest : public testing::Test {
     seen.evidence.begin_stage("motion_objects");
     SensorFrame image;
     image.colour = colour_;
-    CarriedMask mask;
-    mask.labels = seen.labels;
-    mask.confidence.assign(seen.labels.size(), 255);
+    if (classes != nullptr) {
+      seen.frame.coarse.mask.labels = seen.labels;
+      seen.frame.coarse.mask.confidence.assign(seen.labels.size(), 255);
+    }
     filter.apply({.sensor_frame = image,
                   .frame = seen.frame,
                   .previous = previous_.camera ? &previous_ : nullptr,
                   .map = map_,
                   .T_camera_world = &seen.frame.T_camera_world,
-                  .carried_mask = classes != nullptr ? &mask : nullptr,
                   .classes = classes},
                  seen.evidence);
     previous_ = seen.frame;
@@ -170,8 +170,8 @@ TEST_F(MotionObjectsTest, WhatMovesIsReportedWithItsVelocityWhateverTheCameraDoe
     return result;
   };
   for (const PoseAt& pose : {PoseAt(still), PoseAt(wandering)}) {
-    auto judge = filter();
-    const std::vector<Seen> all = run(judge, world, pose, 2.0);
+    auto tracker = filter();
+    const std::vector<Seen> all = run(tracker, world, pose, 2.0);
     for (const Seen& seen : all) {
       if (seen.time < 0.2) {
         EXPECT_TRUE(seen.objects().empty()) << seen.time;
@@ -211,12 +211,12 @@ TEST_F(MotionObjectsTest, WhatOnlyCouldMoveIsNoObject) {
     result.boxes = {BoxWorld::box({-0.5, 0.1, 2.0}, {0.25, 0.4, 0.2}), BoxWorld::box({0.6, 0.3, 2.6}, {0.3, 0.5, 0.2})};
     return result;
   };
-  auto judge = filter();
-  for (const Seen& seen : run(judge, world, wandering, 1.5)) {
+  auto tracker = filter();
+  for (const Seen& seen : run(tracker, world, wandering, 1.5)) {
     EXPECT_TRUE(seen.objects().empty()) << seen.time;
-    EXPECT_TRUE(seen.evidence.statements().empty()) << seen.time;
+    EXPECT_TRUE(seen.evidence.contributions().empty()) << seen.time;
   }
-  EXPECT_EQ(judge.tracks().size(), 2U);
+  EXPECT_EQ(tracker.tracks().size(), 2U);
 }
 
 TEST_F(MotionObjectsTest, TwoThatPassEachOtherKeepTheirIds) {
@@ -226,10 +226,10 @@ TEST_F(MotionObjectsTest, TwoThatPassEachOtherKeepTheirIds) {
                     BoxWorld::box({0.8 - 0.6 * time, 0.0, 2.5}, {0.2, 0.5, 0.1})};
     return result;
   };
-  auto judge = filter();
+  auto tracker = filter();
   std::set<std::uint32_t> ids;
   std::uint32_t near = 0, far = 0;
-  for (const Seen& seen : run(judge, world, still, 2.5))
+  for (const Seen& seen : run(tracker, world, still, 2.5))
     for (const MovingObject& object : seen.objects()) {
       ids.insert(object.id);
       const bool is_near = object.T_world_object.translation().z() < 2.0;
@@ -251,12 +251,12 @@ TEST_F(MotionObjectsTest, WhatComesToRestIsStaticAgainAndKeepsItsId) {
     result.boxes.push_back(BoxWorld::box({-0.4 + 0.4 * moved, 0.1, 2.2}, {0.25, 0.4, 0.2}));
     return result;
   };
-  auto judge = filter();
-  for (const Seen& seen : run(judge, world, still, 5.1)) {
+  auto tracker = filter();
+  for (const Seen& seen : run(tracker, world, still, 5.1)) {
     if (seen.time < 0.6) continue;
     ASSERT_EQ(seen.objects().size(), 1U) << seen.time;
     EXPECT_EQ(seen.objects().front().id, 1U);
-    const auto& statements = seen.evidence.statements();
+    const auto& statements = seen.evidence.contributions();
     if (seen.time > 0.6 && seen.time < 0.95) {
       EXPECT_TRUE(!statements.empty() && statements.front().log_odds < 0.0F) << seen.time;
     }
@@ -284,8 +284,8 @@ TEST_F(MotionObjectsTest, MasksNameObjectsAndTellThemApart) {
                     BoxWorld::box({x + 0.4, 0.1, 2.2}, {0.2, 0.2, 0.15}, 2)};
     return result;
   };
-  auto judge = filter();
-  const Seen last = run(judge, world, still, 1.2, &classes).back();
+  auto tracker = filter();
+  const Seen last = run(tracker, world, still, 1.2, &classes).back();
   ASSERT_EQ(last.objects().size(), 2U);
   std::set<std::string> names;
   for (const MovingObject& object : last.objects()) names.insert(object.class_name);
@@ -299,13 +299,13 @@ TEST_F(MotionObjectsTest, HiddenObjectsCoastAreForgottenAndTheirIdsNotUsedAgain)
     if (!gone) result.boxes.push_back(BoxWorld::box({-0.4 + 0.4 * time, 0.1, 2.2}, {0.2, 0.4, 0.2}));
     return result;
   };
-  auto judge = filter();
-  for (const Seen& seen : run(judge, world, still, 3.8)) {
+  auto tracker = filter();
+  for (const Seen& seen : run(tracker, world, still, 3.8)) {
     if (seen.time > 1.02 && seen.time < 1.8) {
       ASSERT_EQ(seen.objects().size(), 1U) << seen.time;
       EXPECT_LT(seen.objects().front().last_seen, 1.01);
       EXPECT_GT(seen.objects().front().T_world_object.translation().x(), -0.02);
-      EXPECT_TRUE(seen.evidence.statements().empty());
+      EXPECT_TRUE(seen.evidence.contributions().empty());
     }
     if (seen.time > 2.1 && seen.time < 2.9) {
       EXPECT_TRUE(seen.objects().empty()) << seen.time;
@@ -323,8 +323,8 @@ TEST_F(MotionObjectsTest, ObjectsMoveWithAMapThatIsCorrected) {
     result.boxes.push_back(BoxWorld::box({-0.6 + 0.4 * time, 0.1, 2.2}, {0.25, 0.4, 0.2}));
     return result;
   };
-  auto judge = filter();
-  const Seen before = run(judge, world, still, 1.0).back();
+  auto tracker = filter();
+  const Seen before = run(tracker, world, still, 1.0).back();
   ASSERT_EQ(before.objects().size(), 1U);
   Isometry3d T_new_old(Eigen::AngleAxisd(0.3, Vector3d::UnitY()));
   T_new_old.translation() = Vector3d(0.5, 0.2, -0.3);
@@ -344,12 +344,12 @@ TEST_F(MotionObjectsTest, ObjectsMoveWithAMapThatIsCorrected) {
     after.evidence.begin_stage("motion_objects");
     SensorFrame image;
     image.colour = colour_;
-    judge.apply({.sensor_frame = image,
-                 .frame = after.frame,
-                 .previous = &previous_,
-                 .map = map_,
-                 .T_camera_world = &after.frame.T_camera_world},
-                after.evidence);
+    tracker.apply({.sensor_frame = image,
+                   .frame = after.frame,
+                   .previous = &previous_,
+                   .map = map_,
+                   .T_camera_world = &after.frame.T_camera_world},
+                  after.evidence);
     previous_ = after.frame;
   }
   ASSERT_EQ(after.objects().size(), 1U);
@@ -361,14 +361,14 @@ TEST_F(MotionObjectsTest, ObjectsMoveWithAMapThatIsCorrected) {
 }
 
 TEST_F(MotionObjectsTest, SaysNothingOfWhatItCannotSee) {
-  auto judge = filter();
+  auto tracker = filter();
   // Nothing but a wall, all of it suspected.
   for (int i = 0; i < 20; ++i) {
     BoxWorld world = room();
     world.boxes.push_back(BoxWorld::box({0, 0, 3.5}, {9, 9, 0.5}));
-    const Seen seen = show(judge, world, wandering(i * frame_interval), i * frame_interval);
+    const Seen seen = show(tracker, world, wandering(i * frame_interval), i * frame_interval);
     EXPECT_TRUE(seen.objects().empty());
-    EXPECT_TRUE(seen.evidence.statements().empty());
+    EXPECT_TRUE(seen.evidence.contributions().empty());
   }
   // No depth at all, no view, no evidence, no pose.
   const auto apply = [&](const std::function<void(Frame&, StaticEvidence&)>& change, bool with_pose) {
@@ -380,13 +380,13 @@ TEST_F(MotionObjectsTest, SaysNothingOfWhatItCannotSee) {
     change(frame, evidence);
     SensorFrame image;
     image.colour = colour_;
-    judge.apply({.sensor_frame = image,
-                 .frame = frame,
-                 .map = map_,
-                 .T_camera_world = with_pose ? &frame.T_camera_world : nullptr},
-                evidence);
+    tracker.apply({.sensor_frame = image,
+                   .frame = frame,
+                   .map = map_,
+                   .T_camera_world = with_pose ? &frame.T_camera_world : nullptr},
+                  evidence);
     EXPECT_TRUE(evidence.objects().empty());
-    EXPECT_TRUE(evidence.statements().empty());
+    EXPECT_TRUE(evidence.contributions().empty());
   };
   for (int i = 0; i < 3; ++i) {
     apply([](Frame& frame, StaticEvidence&) { std::fill(frame.coarse.depth.begin(), frame.coarse.depth.end(), 0.0F); },
@@ -408,8 +408,8 @@ TEST_F(MotionObjectsTest, SameFramesSameObjects) {
   for (std::vector<double>& each : values) {
     next_index_ = 0;
     previous_ = {};
-    auto judge = filter();
-    for (const Seen& seen : run(judge, world, wandering, 1.0))
+    auto tracker = filter();
+    for (const Seen& seen : run(tracker, world, wandering, 1.0))
       for (const MovingObject& object : seen.objects()) {
         for (int i = 0; i < 16; ++i) each.push_back(object.T_world_object.matrix().data()[i]);
         for (int i = 0; i < 3; ++i) each.push_back(object.velocity[i]);

@@ -50,8 +50,8 @@ class MultiViewDepthTest : public testing::Test {
     keyframe(world, 2.0, pose(1, {0, 0, 0.1}));
     keyframe(world, 0.4, pose(0, {0.02, 0.01, 0}));
   }
-  StaticEvidence judge(const Frame& frame, const Isometry3d* T_camera_world,
-                       const MultiViewDepthSettings& settings = {}) {
+  StaticEvidence evaluate(const Frame& frame, const Isometry3d* T_camera_world,
+                          const MultiViewDepthSettings& settings = {}) {
     MultiViewDepth filter(settings, {});
     StaticEvidence evidence(frame.size(), frame.coarse.depth.size());
     evidence.begin_stage("multi_view_depth");
@@ -85,7 +85,7 @@ TEST_F(MultiViewDepthTest, OutlinesAreSuspectAndSoIsTheUnknownInACrowd) {
   const BoxWorld world = with_person();
   const Frame frame = world.frame(pose(0, {0, 0, 0}), now);
   const auto suspects = [&](const MultiViewDepthSettings& settings) {
-    const StaticEvidence evidence = judge(frame, &frame.T_camera_world, settings);
+    const StaticEvidence evidence = evaluate(frame, &frame.T_camera_world, settings);
     int count = 0;
     for (std::size_t i = 0; i < frame.size(); ++i) count += evidence.prior(i) < 0.0F ? 1 : 0;
     return count;
@@ -102,7 +102,7 @@ TEST_F(MultiViewDepthTest, WhatStandsWhereOthersSawThroughMoves) {
   const BoxWorld world = with_person();
   for (const Isometry3d& T_world_camera : {pose(0, {0, 0, 0}), pose(4, {0.1, -0.05, 0.1})}) {
     const Frame frame = world.frame(T_world_camera, now);
-    const Shares said = shares(frame, world, judge(frame, &frame.T_camera_world));
+    const Shares said = shares(frame, world, evaluate(frame, &frame.T_camera_world));
     EXPECT_GE(said.person_moves, 0.98);
     EXPECT_EQ(said.person_stays, 0.0);
     EXPECT_LE(said.room_moves, 0.01);
@@ -114,7 +114,7 @@ TEST_F(MultiViewDepthTest, CellsSayTheSameAsFeatures) {
   remember(furnished_room());
   const BoxWorld world = with_person();
   const Frame frame = world.frame(Isometry3d::Identity(), now);
-  const StaticEvidence evidence = judge(frame, &frame.T_camera_world);
+  const StaticEvidence evidence = evaluate(frame, &frame.T_camera_world);
   std::vector<std::uint8_t> labels;
   world.view(Isometry3d::Identity(), &labels);
   int on_person = 0, moving = 0, others_moving = 0;
@@ -134,7 +134,7 @@ TEST_F(MultiViewDepthTest, AnErrorOfThePredictedPoseMakesNoMovement) {
   for (int trial = 0; trial < 20; ++trial) {
     const Frame frame = world.frame(pose(3, {0.05, 0.02, 0.05}), now);
     const Isometry3d predicted = pose(0.5, 0.01 * direction(), direction()) * frame.T_camera_world;
-    const Shares said = shares(frame, world, judge(frame, &predicted));
+    const Shares said = shares(frame, world, evaluate(frame, &predicted));
     EXPECT_LT(said.room_moves, 0.02) << trial;
     EXPECT_GE(said.room_stays, 0.7) << trial;
   }
@@ -148,7 +148,7 @@ TEST_F(MultiViewDepthTest, EdgesOfThinThingsDoNotMoveWithASmallErrorOfThePose) {
   const Frame frame = world.frame(Isometry3d::Identity(), now, 4);
   for (const double sign : {-1.0, 1.0}) {
     const Isometry3d predicted = pose(0.15 * sign, {0.003 * sign, 0, 0}) * frame.T_camera_world;
-    EXPECT_EQ(shares(frame, world, judge(frame, &predicted)).room_moves, 0.0);
+    EXPECT_EQ(shares(frame, world, evaluate(frame, &predicted)).room_moves, 0.0);
   }
 }
 
@@ -158,8 +158,8 @@ TEST_F(MultiViewDepthTest, PartsThatNoKeyframeSawBelongToWhatTheyGoOnFrom) {
   BoxWorld world = furnished_room();
   world.boxes.push_back(BoxWorld::box({-0.5, 0.0, 1.6}, {0.2, 0.6, 0.12}, person));
   const Frame frame = world.frame(Isometry3d::Identity(), now);
-  EXPECT_GE(shares(frame, world, judge(frame, &frame.T_camera_world)).person_moves, 0.95);
-  EXPECT_LE(shares(frame, world, judge(frame, &frame.T_camera_world, {.growth = 0})).person_moves, 0.8);
+  EXPECT_GE(shares(frame, world, evaluate(frame, &frame.T_camera_world)).person_moves, 0.95);
+  EXPECT_LE(shares(frame, world, evaluate(frame, &frame.T_camera_world, {.growth = 0})).person_moves, 0.8);
 }
 
 TEST_F(MultiViewDepthTest, WhatAPersonTouchesIsNotTakenAlong) {
@@ -172,7 +172,7 @@ TEST_F(MultiViewDepthTest, WhatAPersonTouchesIsNotTakenAlong) {
   const BoxWorld world = with_sideboard(with_person());
   const Frame frame = world.frame(Isometry3d::Identity(), now);
   const auto share_of_sideboard = [&](const MultiViewDepthSettings& settings) {
-    const StaticEvidence evidence = judge(frame, &frame.T_camera_world, settings);
+    const StaticEvidence evidence = evaluate(frame, &frame.T_camera_world, settings);
     int all = 0, moves = 0;
     for (std::size_t i = 0; i < frame.size(); ++i) {
       if (world.look(Isometry3d::Identity(), frame.x[i], frame.y[i]).label != 3) continue;
@@ -182,8 +182,8 @@ TEST_F(MultiViewDepthTest, WhatAPersonTouchesIsNotTakenAlong) {
     return static_cast<double>(moves) / all;
   };
   EXPECT_LE(share_of_sideboard({}), 0.08);
-  EXPECT_GE(share_of_sideboard({.sure = 10.0}), 0.35);
-  EXPECT_GE(shares(frame, world, judge(frame, &frame.T_camera_world)).person_moves, 0.95);
+  EXPECT_GE(share_of_sideboard({.confirmed_score = 10.0}), 0.35);
+  EXPECT_GE(shares(frame, world, evaluate(frame, &frame.T_camera_world)).person_moves, 0.95);
 }
 
 TEST_F(MultiViewDepthTest, APersonIsStillFoundWithAnErrorOfThePredictedPose) {
@@ -192,7 +192,7 @@ TEST_F(MultiViewDepthTest, APersonIsStillFoundWithAnErrorOfThePredictedPose) {
   const Frame frame = world.frame(Isometry3d::Identity(), now);
   for (const double sign : {-1.0, 1.0}) {
     const Isometry3d predicted = pose(0.5 * sign, {0.006, 0.006 * sign, 0.006}) * frame.T_camera_world;
-    EXPECT_GE(shares(frame, world, judge(frame, &predicted)).person_moves, 0.95);
+    EXPECT_GE(shares(frame, world, evaluate(frame, &predicted)).person_moves, 0.95);
   }
 }
 
@@ -202,21 +202,21 @@ TEST_F(MultiViewDepthTest, AYoungKeyframeDoesNotExcuseWhoJustStopped) {
   const BoxWorld world = with_person();
   keyframe(world, 0.4, pose(0, {0, 0, 0}));
   const Frame frame = world.frame(Isometry3d::Identity(), now);
-  EXPECT_GE(shares(frame, world, judge(frame, &frame.T_camera_world)).person_moves, 0.95);
+  EXPECT_GE(shares(frame, world, evaluate(frame, &frame.T_camera_world)).person_moves, 0.95);
 }
 
 TEST_F(MultiViewDepthTest, WhatMovedInAKeyframeIsNotConfirmedByIt) {
   const BoxWorld world = with_person();
   remember(world);
   const Frame frame = world.frame(Isometry3d::Identity(), now);
-  EXPECT_GE(shares(frame, world, judge(frame, &frame.T_camera_world)).person_stays, 0.9);
+  EXPECT_GE(shares(frame, world, evaluate(frame, &frame.T_camera_world)).person_stays, 0.9);
   for (const KeyFrameId id : map.keyframes_by_age()) {
     Frame& seen = map.keyframe(id).frame;
     std::vector<std::uint8_t> labels;
     world.view(seen.T_world_camera(), &labels);
     for (const std::uint8_t label : labels) seen.coarse.static_log_odds.push_back(label == person ? -2.0F : 1.0F);
   }
-  const Shares said = shares(frame, world, judge(frame, &frame.T_camera_world));
+  const Shares said = shares(frame, world, evaluate(frame, &frame.T_camera_world));
   EXPECT_LE(said.person_stays, 0.1);
   EXPECT_LE(said.person_moves, 0.02);  // nobody saw through
   EXPECT_GE(said.room_stays, 0.9);
@@ -235,9 +235,9 @@ TEST_F(MultiViewDepthTest, MapPointsThatAreSeenThroughAreGone) {
   }
   ASSERT_GE(on_person.size(), 200U);
   const Frame frame = furnished_room().frame(pose(2, {0.03, 0.0, 0.02}), now);
-  const StaticEvidence evidence = judge(frame, &frame.T_camera_world);
+  const StaticEvidence evidence = evaluate(frame, &frame.T_camera_world);
   std::size_t found = 0, wrong = 0;
-  for (const StaticEvidence::PointStatement& statement : evidence.point_statements()) {
+  for (const StaticEvidence::PointContribution& statement : evidence.point_contributions()) {
     EXPECT_LT(statement.log_odds, 0.0F);
     const bool right = std::find(on_person.begin(), on_person.end(), statement.point) != on_person.end();
     ++(right ? found : wrong);
@@ -251,19 +251,19 @@ TEST_F(MultiViewDepthTest, MapPointsThatAreSeenThroughAreGone) {
                                   return nearer;
                                 }()}) {
     const Frame unchanged = world.frame(Isometry3d::Identity(), now);
-    EXPECT_LE(judge(unchanged, &unchanged.T_camera_world).point_statements().size(), on_person.size() / 20);
+    EXPECT_LE(evaluate(unchanged, &unchanged.T_camera_world).point_contributions().size(), on_person.size() / 20);
   }
-  EXPECT_TRUE(judge(frame, &frame.T_camera_world, {.point_keyframes = 0}).point_statements().empty());
+  EXPECT_TRUE(evaluate(frame, &frame.T_camera_world, {.point_keyframes = 0}).point_contributions().empty());
 }
 
 TEST_F(MultiViewDepthTest, IsSilentWithoutKeyframesThatOverlapOrAPose) {
   const BoxWorld world = with_person();
   const Frame frame = world.frame(Isometry3d::Identity(), now);
   const auto is_silent = [&](const Isometry3d* T_camera_world) {
-    const StaticEvidence evidence = judge(frame, T_camera_world);
+    const StaticEvidence evidence = evaluate(frame, T_camera_world);
     for (const float cell : evidence.cells())
       if (cell != 0.0F) return false;
-    return evidence.statements().empty() && evidence.point_statements().empty();
+    return evidence.contributions().empty() && evidence.point_contributions().empty();
   };
   EXPECT_TRUE(is_silent(&frame.T_camera_world));
   keyframe(furnished_room(), 5.0, pose(40, {0, 0, 0}));    // looks elsewhere
@@ -282,7 +282,7 @@ TEST_F(MultiViewDepthTest, TheDepthsOwnPoseCounts) {
   Frame frame = world.frame(T_world_camera, now);
   frame.coarse = world.view(T_world_view);
   const auto moving_cells = [&] {
-    const StaticEvidence evidence = judge(frame, &frame.T_camera_world);
+    const StaticEvidence evidence = evaluate(frame, &frame.T_camera_world);
     return std::count_if(evidence.cells().begin(), evidence.cells().end(), [](float cell) { return cell < 0.0F; });
   };
   EXPECT_GT(moving_cells(), 200);

@@ -15,9 +15,9 @@ namespace holdfast {
 namespace {
 
 /// Points before a camera that stands at a turned place, and frames that show them displaced.
-class Sights {
+class ObservedPoints {
  public:
-  explicit Sights(bool with_depth = true) : camera_(std::make_shared<Camera>(*find_camera("tum_fr3"))) {
+  explicit ObservedPoints(bool with_depth = true) : camera_(std::make_shared<Camera>(*find_camera("tum_fr3"))) {
     T_camera_world_ =
         Eigen::Translation3d(0.3, -0.2, 0.1) * Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized());
     Random random(3);
@@ -49,7 +49,7 @@ class Sights {
     frame_.right_x[i] = static_cast<float>(camera_->right_x(pixel.x(), point.z()));
   }
 
-  StaticEvidence judge(ReprojectionError& filter) const {
+  StaticEvidence evaluate(ReprojectionError& filter) const {
     const SensorFrame image;
     StaticEvidence evidence(frame_.size());
     evidence.begin_stage("filter");
@@ -79,84 +79,84 @@ ReprojectionErrorSettings settings() {
 const Eigen::Vector3d step(0.06, 0.01, 0.02);
 
 TEST(ReprojectionError, DoubtGrowsWithEveryFrameThatFails) {
-  Sights sights;
+  ObservedPoints points;
   ReprojectionError filter(settings(), {});
   float before = 0.0F;
   for (int k = 1; k <= 3; ++k) {
-    sights.show(7, k * step);
-    const StaticEvidence evidence = sights.judge(filter);
+    points.show(7, k * step);
+    const StaticEvidence evidence = points.evaluate(filter);
     EXPECT_LT(evidence.measurement(7), before);
     EXPECT_GT(evidence.measurement(8), 0.0F);
     before = evidence.measurement(7);
   }
   EXPECT_FLOAT_EQ(before, -4.0F);
   // It is where it was again: no longer moving, and not as trustworthy as one that never failed.
-  sights.show(7, Eigen::Vector3d::Zero());
-  const StaticEvidence evidence = sights.judge(filter);
+  points.show(7, Eigen::Vector3d::Zero());
+  const StaticEvidence evidence = points.evaluate(filter);
   EXPECT_GE(evidence.measurement(7), 0.0F);
   EXPECT_LT(evidence.measurement(7), evidence.measurement(8));
 }
 
 TEST(ReprojectionError, NoiseWithinTheVarianceOfTheLevelPasses) {
-  Sights sights;
+  ObservedPoints points;
   ReprojectionError filter(settings(), {});
-  for (std::size_t i = 0; i < sights.frame().size(); ++i)
-    sights.frame().x[i] += 1.4F * sights.frame().pyramid->scale[sights.frame().features.octave[i]];
-  sights.frame().x[2] += 6.0F;
-  const StaticEvidence evidence = sights.judge(filter);
+  for (std::size_t i = 0; i < points.frame().size(); ++i)
+    points.frame().x[i] += 1.4F * points.frame().pyramid->scale[points.frame().features.octave[i]];
+  points.frame().x[2] += 6.0F;
+  const StaticEvidence evidence = points.evaluate(filter);
   for (std::size_t i = 0; i < evidence.size(); ++i) EXPECT_EQ(evidence.measurement(i) < 0.0F, i == 2) << i;
 }
 
 TEST(ReprojectionError, DepthAloneTellsWhatComesNearer) {
   for (const bool with_depth : {true, false}) {
-    Sights sights(with_depth);
+    ObservedPoints points(with_depth);
     ReprojectionError filter(settings(), {});
-    const float x = sights.frame().x[5], y = sights.frame().y[5];
-    sights.show(5, Eigen::Vector3d(0, 0, -0.4), with_depth);
-    sights.frame().x[5] = x, sights.frame().y[5] = y;
-    EXPECT_EQ(sights.judge(filter).measurement(5) < 0.0F, with_depth);
+    const float x = points.frame().x[5], y = points.frame().y[5];
+    points.show(5, Eigen::Vector3d(0, 0, -0.4), with_depth);
+    points.frame().x[5] = x, points.frame().y[5] = y;
+    EXPECT_EQ(points.evaluate(filter).measurement(5) < 0.0F, with_depth);
   }
 }
 
 TEST(ReprojectionError, DisplacementsThatDisagreeCountLess) {
-  Sights sights;
+  ObservedPoints points;
   ReprojectionError filter(settings(), {});
   StaticEvidence evidence;
   for (int k = 0; k < 6; ++k) {
-    sights.show(3, 4 * step);
-    sights.show(4, (k % 2 == 0 ? 4 : -4) * step);
-    evidence = sights.judge(filter);
+    points.show(3, 4 * step);
+    points.show(4, (k % 2 == 0 ? 4 : -4) * step);
+    evidence = points.evaluate(filter);
   }
   EXPECT_FLOAT_EQ(evidence.measurement(3), -4.0F);
   EXPECT_FLOAT_EQ(evidence.measurement(4), -2.0F);
 }
 
 TEST(ReprojectionError, IsSilentWhenThePoseIsWrong) {
-  Sights sights;
+  ObservedPoints points;
   ReprojectionError filter(settings(), {});
-  for (std::size_t i = 0; i < 60; ++i) sights.show(i, step);
-  EXPECT_TRUE(sights.judge(filter).statements().empty());
+  for (std::size_t i = 0; i < 60; ++i) points.show(i, step);
+  EXPECT_TRUE(points.evaluate(filter).contributions().empty());
   // Unless other evidence speaks against those that fail.
-  for (std::size_t i = 0; i < 60; ++i) sights.frame().static_probability[i] = 0.1F;
-  const StaticEvidence evidence = sights.judge(filter);
+  for (std::size_t i = 0; i < 60; ++i) points.frame().static_probability[i] = 0.1F;
+  const StaticEvidence evidence = points.evaluate(filter);
   EXPECT_LT(evidence.measurement(0), 0.0F);
   EXPECT_GT(evidence.measurement(99), 0.0F);
 }
 
 TEST(ReprojectionError, ANewPointInAnOldSlotBeginsAnew) {
-  Sights sights;
+  ObservedPoints points;
   ReprojectionError filter(settings(), {});
   StaticEvidence evidence;
   for (int k = 1; k <= 4; ++k) {
-    sights.show(7, k * step);
-    evidence = sights.judge(filter);
+    points.show(7, k * step);
+    evidence = points.evaluate(filter);
   }
-  const MapPointId gone = sights.frame().map_points[7];
-  const Eigen::Vector3d position = sights.map().point(gone).position;
-  sights.map().remove_point(gone);
-  sights.frame().map_points[7] = sights.map().add_point(position, 0);
-  ASSERT_EQ(sights.frame().map_points[7].slot, gone.slot);
-  EXPECT_GT(sights.judge(filter).measurement(7), evidence.measurement(7) / 2.0F);
+  const MapPointId gone = points.frame().map_points[7];
+  const Eigen::Vector3d position = points.map().point(gone).position;
+  points.map().remove_point(gone);
+  points.frame().map_points[7] = points.map().add_point(position, 0);
+  ASSERT_EQ(points.frame().map_points[7].slot, gone.slot);
+  EXPECT_GT(points.evaluate(filter).measurement(7), evidence.measurement(7) / 2.0F);
 }
 
 }  // namespace

@@ -34,8 +34,8 @@ class SemanticMaskTest : public testing::Test {
     exact.labels.colRange(0, 100).setTo(255);
     image.depth(person).setTo(person_depth);
     sampler.sample_depth(image.depth, frame.coarse);
-    sampler.sample_labels(exact.labels, 0, carried.labels);
-    carried.confidence.assign(carried.labels.size(), 255);
+    sampler.sample_labels(exact.labels, 0, propagated.labels);
+    propagated.confidence.assign(propagated.labels.size(), 255);
   }
 
   std::size_t add_feature(float x, float y, float depth) {
@@ -46,23 +46,24 @@ class SemanticMaskTest : public testing::Test {
   }
   /// What the filter says of one feature; it must be a prior.
   float said(std::size_t feature, bool by_exact, const std::vector<std::string>& movable_classes = {}) {
-    const StaticEvidence evidence = judge(by_exact ? &exact : nullptr, by_exact ? nullptr : &carried, movable_classes);
+    const StaticEvidence evidence =
+        evaluate(by_exact ? &exact : nullptr, by_exact ? nullptr : &propagated, movable_classes);
     EXPECT_EQ(evidence.measurement(feature), 0.0F);
     return evidence.prior(feature);
   }
-  StaticEvidence judge(const Segmentation* segmentation, const CarriedMask* mask,
-                       const std::vector<std::string>& movable_classes = {}) {
+  StaticEvidence evaluate(const Segmentation* segmentation, const CellMask* mask,
+                          const std::vector<std::string>& movable_classes = {}) {
     Registry registry;
     holdfast_register_plugin_semantic_mask(registry);
     const auto filter = registry.create<DynamicFilter>("semantic_mask", {{"classes", movable_classes}}, {});
     EXPECT_TRUE(filter->needs().segmentation);
     StaticEvidence evidence(frame.size(), frame.coarse.depth.size());
     evidence.begin_stage("semantic_mask");
+    frame.coarse.mask = mask != nullptr ? *mask : CellMask();
     filter->apply({.sensor_frame = image,
                    .frame = frame,
                    .map = map,
                    .segmentation = segmentation,
-                   .carried_mask = mask,
                    .classes = &classes,
                    .movable = movable_by_segmenter ? &*movable_by_segmenter : nullptr},
                   evidence);
@@ -76,7 +77,7 @@ class SemanticMaskTest : public testing::Test {
   SensorFrame image;
   Frame frame;
   Segmentation exact;
-  CarriedMask carried;
+  CellMask propagated;
 };
 
 TEST_F(SemanticMaskTest, FeaturesOnAPersonAreSuspectAndAllOthersAreNot) {
@@ -152,7 +153,7 @@ TEST_F(SemanticMaskTest, WhatIsSaidWeighsByTheMasksConfidence) {
                     border = add_feature(402, 200, wall_depth);
   exact.confidence = cv::Mat(480, 640, CV_8UC1, cv::Scalar(102));
   exact.confidence(cv::Rect(200, 100, 200, 300)).setTo(51);
-  CoarseSampler(*camera).sample_labels(exact.confidence, 0, carried.confidence);
+  CoarseSampler(*camera).sample_labels(exact.confidence, 0, propagated.confidence);
   for (const bool by_exact : {true, false}) {
     EXPECT_FLOAT_EQ(said(person, by_exact), movable * 0.2F);
     EXPECT_FLOAT_EQ(said(border, by_exact), movable * 0.2F);
@@ -161,28 +162,28 @@ TEST_F(SemanticMaskTest, WhatIsSaidWeighsByTheMasksConfidence) {
 }
 
 TEST_F(SemanticMaskTest, CellsOfTheMaskAreSuspectToo) {
-  std::fill(carried.confidence.begin(), carried.confidence.end(), 51);
-  const StaticEvidence evidence = judge(nullptr, &carried);
-  ASSERT_EQ(evidence.cells().size(), carried.labels.size());
-  for (std::size_t i = 0; i < carried.labels.size(); ++i)
-    EXPECT_FLOAT_EQ(evidence.cells()[i], carried.labels[i] == 2 ? movable * 0.2F : 0.0F);
+  std::fill(propagated.confidence.begin(), propagated.confidence.end(), 51);
+  const StaticEvidence evidence = evaluate(nullptr, &propagated);
+  ASSERT_EQ(evidence.cells().size(), propagated.labels.size());
+  for (std::size_t i = 0; i < propagated.labels.size(); ++i)
+    EXPECT_FLOAT_EQ(evidence.cells()[i], propagated.labels[i] == 2 ? movable * 0.2F : 0.0F);
 }
 
-TEST_F(SemanticMaskTest, TheFramesOwnSegmentationCountsBeforeACarriedMask) {
+TEST_F(SemanticMaskTest, TheFramesOwnSegmentationCountsBeforeAPropagatedMask) {
   const std::size_t person = add_feature(300, 200, person_depth);
-  std::fill(carried.labels.begin(), carried.labels.end(), 0);
-  EXPECT_EQ(judge(&exact, &carried).prior(person), movable);
-  EXPECT_EQ(judge(nullptr, &carried).prior(person), background);
+  std::fill(propagated.labels.begin(), propagated.labels.end(), 0);
+  EXPECT_EQ(evaluate(&exact, &propagated).prior(person), movable);
+  EXPECT_EQ(evaluate(nullptr, &propagated).prior(person), background);
   const Segmentation empty;
-  EXPECT_EQ(judge(&empty, &carried).prior(person), background);
+  EXPECT_EQ(evaluate(&empty, &propagated).prior(person), background);
 }
 
 TEST_F(SemanticMaskTest, WithoutAMaskNothingIsSaid) {
   add_feature(300, 200, person_depth);
-  const CarriedMask no_mask;
+  const CellMask no_mask;
   const Segmentation no_segmentation;
-  EXPECT_TRUE(judge(nullptr, nullptr).statements().empty());
-  EXPECT_TRUE(judge(&no_segmentation, &no_mask).statements().empty());
+  EXPECT_TRUE(evaluate(nullptr, nullptr).contributions().empty());
+  EXPECT_TRUE(evaluate(&no_segmentation, &no_mask).contributions().empty());
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ struct Rates {
   double found = 0.0, false_alarms = 0.0;  // shares of the movers and of the rest beyond 1.5 px
 };
 
-Rates judge(const Views& views, std::uint64_t seed = 7) {
+Rates evaluate(const Views& views, std::uint64_t seed = 7) {
   TwoViewOptions options;
   options.threshold = 1.5 * pixel, options.parallax = 0.7 * pixel;
   TwoViews two_views(options);
@@ -83,7 +83,7 @@ TEST(TwoViews, DistancesAreThoseOfTheGeometryModule) {
   epipolar_distances2(matrix, views.pairs, distance2);
   for (std::size_t i = 0; i < views.pairs.size(); ++i) {
     const Eigen::Vector2d a(views.pairs.ax[i], views.pairs.ay[i]), b(views.pairs.bx[i], views.pairs.by[i]);
-    EXPECT_NEAR(distance2[i], geometry::epipolar_distance2(matrix, a, b), 1e-5);
+    EXPECT_NEAR(distance2[i], geometry::epipolar_line(matrix, a).distance2(b.x(), b.y()), 1e-5);
   }
 }
 
@@ -91,7 +91,7 @@ TEST(TwoViews, AMovingCameraFindsMovers) {
   double false_alarms = 0.0;
   for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
     SCOPED_TRACE(seed);
-    const Rates rates = judge(make_views({.movers = 0.25}, seed), seed);
+    const Rates rates = evaluate(make_views({.movers = 0.25}, seed), seed);
     ASSERT_EQ(rates.verdict, Verdict::usable);
     EXPECT_GE(rates.found, 0.9);
     EXPECT_LE(rates.false_alarms, 0.12);
@@ -103,7 +103,7 @@ TEST(TwoViews, AMovingCameraFindsMovers) {
 TEST(TwoViews, AStaticSceneRaisesFewAlarms) {
   for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
     SCOPED_TRACE(seed);
-    const Rates rates = judge(make_views({}, seed), seed);
+    const Rates rates = evaluate(make_views({}, seed), seed);
     ASSERT_EQ(rates.verdict, Verdict::usable);
     EXPECT_LE(rates.false_alarms, 0.01);
   }
@@ -113,24 +113,24 @@ TEST(TwoViews, WithoutParallaxThereIsNothingToSay) {
   for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
     SCOPED_TRACE(seed);
     const Eigen::Vector3d none = Eigen::Vector3d::Zero(), turn(0.0, 0.04, 0.01);
-    EXPECT_EQ(judge(make_views({.translation = none, .rotation = turn}, seed), seed).verdict, Verdict::no_parallax);
-    EXPECT_EQ(judge(make_views({.translation = none, .rotation = none}, seed), seed).verdict, Verdict::no_parallax);
+    EXPECT_EQ(evaluate(make_views({.translation = none, .rotation = turn}, seed), seed).verdict, Verdict::no_parallax);
+    EXPECT_EQ(evaluate(make_views({.translation = none, .rotation = none}, seed), seed).verdict, Verdict::no_parallax);
     // One mover under a turning camera fits a fundamental matrix of its own: no reason to believe it.
-    EXPECT_EQ(judge(make_views({.translation = none, .rotation = turn, .movers = 0.15}, seed), seed).verdict,
+    EXPECT_EQ(evaluate(make_views({.translation = none, .rotation = turn, .movers = 0.15}, seed), seed).verdict,
               Verdict::no_parallax);
-    EXPECT_EQ(judge(make_views({.translation = {0.002, 0, 0}}, seed), seed).verdict, Verdict::no_parallax);
+    EXPECT_EQ(evaluate(make_views({.translation = {0.002, 0, 0}}, seed), seed).verdict, Verdict::no_parallax);
   }
 }
 
 TEST(TwoViews, AWallAloneHasNoParallax) {
   for (const std::uint64_t seed : {1, 2, 3})
-    EXPECT_EQ(judge(make_views({.plane = true}, seed), seed).verdict, Verdict::no_parallax);
+    EXPECT_EQ(evaluate(make_views({.plane = true}, seed), seed).verdict, Verdict::no_parallax);
 }
 
 TEST(TwoViews, MoversInTheMajorityThatAreKnownDoNotTakePart) {
   for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
     SCOPED_TRACE(seed);
-    const Rates rates = judge(make_views({.movers = 0.65, .distrusted = 0.9}, seed, 800), seed);
+    const Rates rates = evaluate(make_views({.movers = 0.65, .distrusted = 0.9}, seed, 800), seed);
     ASSERT_EQ(rates.verdict, Verdict::usable);
     EXPECT_GE(rates.found, 0.85);
     EXPECT_LE(rates.false_alarms, 0.06);
@@ -139,13 +139,13 @@ TEST(TwoViews, MoversInTheMajorityThatAreKnownDoNotTakePart) {
 
 TEST(TwoViews, UnknownMoversOfAllDirectionsInTheMajorityLeaveNoSupport) {
   for (const std::uint64_t seed : {1, 2, 3})
-    EXPECT_EQ(judge(make_views({.movers = 0.7, .coherent = false}, seed), seed).verdict, Verdict::no_support);
+    EXPECT_EQ(evaluate(make_views({.movers = 0.7, .coherent = false}, seed), seed).verdict, Verdict::no_support);
 }
 
 TEST(TwoViews, FewPairsAreNotJudged) {
-  EXPECT_EQ(judge(make_views({}, 1, 29)).verdict, Verdict::few_points);
-  EXPECT_EQ(judge(make_views({}, 1, 0)).verdict, Verdict::few_points);
-  EXPECT_EQ(judge(make_views({.movers = 1.0, .distrusted = 1.0}, 1, 300)).verdict, Verdict::few_points);
+  EXPECT_EQ(evaluate(make_views({}, 1, 29)).verdict, Verdict::few_points);
+  EXPECT_EQ(evaluate(make_views({}, 1, 0)).verdict, Verdict::few_points);
+  EXPECT_EQ(evaluate(make_views({.movers = 1.0, .distrusted = 1.0}, 1, 300)).verdict, Verdict::few_points);
 }
 
 TEST(TwoViews, SamePairsAndSeedSameResult) {

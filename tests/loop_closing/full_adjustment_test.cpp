@@ -33,9 +33,9 @@ class FullAdjustmentTest : public testing::Test {
   test::RingWorld world;
   Map map;
   MapMutex map_mutex;
-  std::mutex work;
+  std::mutex surgery;
   std::unique_ptr<Optimizer> optimizer = make_optimizer();
-  FullAdjustment adjustment{LoopClosingSettings{}, map, map_mutex, work, *optimizer};
+  FullAdjustment adjustment{LoopClosingSettings{}, {map, map_mutex, surgery}, *optimizer};
   KeyFrameId last;
 };
 

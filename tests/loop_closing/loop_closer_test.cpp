@@ -45,7 +45,9 @@ class LoopCloserTest : public testing::Test {
     optimizer = std::make_unique<InterruptedOptimizer>(*ceres);
     make_closer();
   }
-  void make_closer() { closer = std::make_unique<LoopCloser>(settings, map, map_mutex, work, detector, *optimizer, 1); }
+  void make_closer() {
+    closer = std::make_unique<LoopCloser>(settings, SharedMap{map, map_mutex, surgery}, detector, *optimizer, 1);
+  }
   /// Keyframes from one angle to another, each offered to the closer until it closes a loop.
   std::optional<ClosedLoop> walk(test::RingWorld& world, double from, double to, int keyframes) {
     for (int i = 0; i < keyframes; ++i) {
@@ -60,7 +62,7 @@ class LoopCloserTest : public testing::Test {
   LoopClosingSettings settings;
   Map map;
   MapMutex map_mutex;
-  std::mutex work;
+  std::mutex surgery;
   test::BruteForceDetector detector;
   std::unique_ptr<Optimizer> ceres;
   std::unique_ptr<InterruptedOptimizer> optimizer;
@@ -196,7 +198,7 @@ TEST_F(LoopCloserTest, UnsolvedGraphLeavesTheMapAlone) {
 }
 
 TEST_F(LoopCloserTest, NewLoopStopsAFullAdjustment) {
-  FullAdjustment adjustment(settings, map, map_mutex, work, *optimizer);
+  FullAdjustment adjustment(settings, {map, map_mutex, surgery}, *optimizer);
   closer->set_full_adjustment(&adjustment);
   test::RingWorld world;
   world.add_wall(0, round_trip, 2500);

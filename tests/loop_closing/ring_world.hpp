@@ -154,7 +154,7 @@ class RingWorld {
     frame.features.response.assign(shown_.size(), 1.0F);
     frame.map_points.assign(shown_.size(), MapPointId());
     frame.static_probability.assign(shown_.size(), 1.0F);
-    frame.grid.build(frame.x, frame.y, 0, 0, static_cast<float>(camera_->width), static_cast<float>(camera_->height));
+    frame.grid.build(frame.x, frame.y, {0, 0, static_cast<float>(camera_->width), static_cast<float>(camera_->height)});
     return frame;
   }
 

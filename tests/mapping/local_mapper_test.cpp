@@ -12,6 +12,8 @@ extern "C" void holdfast_register_plugin_ceres(holdfast::Registry&);
 namespace holdfast {
 namespace {
 
+constexpr double close_depth_factor = 40.0;  // baselines
+
 /// A mapper over a world of points. Frames come without matches: what the map knows of them, fusion has to find out.
 class LocalMapperTest : public testing::Test {
  protected:
@@ -20,7 +22,7 @@ class LocalMapperTest : public testing::Test {
     Registry registry;
     holdfast_register_plugin_ceres(registry);
     optimizer = registry.create<Optimizer>("ceres", {}, {});
-    mapper = std::make_unique<LocalMapper>(MappingSettings{}, map, mutex, *optimizer);
+    mapper = std::make_unique<LocalMapper>(MappingSettings{}, close_depth_factor, map, mutex, *optimizer);
   }
 
   Frame frame_at(const Eigen::Isometry3d& T_world_camera) {

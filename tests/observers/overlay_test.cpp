@@ -45,7 +45,7 @@ struct Scene {
     frame.camera = std::make_shared<Camera>(camera);
     frame.coarse.grid = CoarseSampler(camera).grid();
     const auto cells = static_cast<std::size_t>(frame.coarse.grid.size());
-    frame.coarse.labels.assign(cells, 0);
+    frame.coarse.mask.labels.assign(cells, 0);
     frame.coarse.static_log_odds.assign(cells, 1.0F);
     frame.coarse.depth.assign(cells, 1.0F);
     result.index = 12;
@@ -72,7 +72,7 @@ TEST(OverlayPainter, TintsTheRawPixelsOfACell) {
   ASSERT_GT((place - raw).norm(), 2.0 * CoarseGrid::step);
   const int cell = scene.frame.coarse.grid.cell_of(static_cast<float>(place.x()), static_cast<float>(place.y()));
   ASSERT_GE(cell, 0);
-  scene.frame.coarse.labels[static_cast<std::size_t>(cell)] = 1;
+  scene.frame.coarse.mask.labels[static_cast<std::size_t>(cell)] = 1;
   overlay::Painter painter(camera, false);
   const cv::Mat& picture = painter.paint(scene.sensor_frame, scene.frame, scene.result);
   ASSERT_EQ(picture.size(), cv::Size(160, 120 + overlay::Painter::text_height));
@@ -94,10 +94,10 @@ TEST(OverlayPainter, TellsClassesUnknownAndMovementApart) {
   const auto cell_at = [&](int x, int y) {
     return static_cast<std::size_t>(scene.frame.coarse.grid.cell_of(static_cast<float>(x), static_cast<float>(y)));
   };
-  scene.frame.coarse.labels[cell_at(20, 20)] = 255;
+  scene.frame.coarse.mask.labels[cell_at(20, 20)] = 255;
   scene.frame.coarse.static_log_odds[cell_at(60, 20)] = -1.0F;
   scene.frame.coarse.static_log_odds[cell_at(100, 20)] = -6.0F;
-  scene.frame.coarse.labels[cell_at(20, 60)] = 2;
+  scene.frame.coarse.mask.labels[cell_at(20, 60)] = 2;
   overlay::Painter painter(camera, true);
   const cv::Mat& picture = painter.paint(scene.sensor_frame, scene.frame, scene.result);
   ASSERT_EQ(picture.cols, 320);

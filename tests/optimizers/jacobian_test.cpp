@@ -90,9 +90,11 @@ TEST(FixedPosesCost, IsTheSameAsRowByRow) {
       for (const FixedObservation& o : observations) {
         double residual[3] = {0, 0, 0}, jacobian[9] = {}, rho[3];
         if (o.has_right)
-          evaluate_observation<3>(camera, o.measurement, state, point.data(), residual, nullptr, jacobian);
+          evaluate_observation<3>(camera, o.measurement, state, point.data(),
+                                  {.residual = residual, .point_jacobian = jacobian});
         else
-          evaluate_observation<2>(camera, o.measurement, state, point.data(), residual, nullptr, jacobian);
+          evaluate_observation<2>(camera, o.measurement, state, point.data(),
+                                  {.residual = residual, .point_jacobian = jacobian});
         const Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> j(jacobian);
         const Eigen::Vector3d r = Eigen::Vector3d::Map(residual);
         SwitchableHuber(o.limit, is_robust).Evaluate(r.squaredNorm(), rho);

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/synthetic.hpp"
-#include "holdfast/geometry/pose_adjustment.hpp"
+#include "holdfast/geometry/pose_problem.hpp"
 #include "holdfast/plugin/registry.hpp"
 
 extern "C" void holdfast_register_plugin_ceres(holdfast::Registry& registry);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "holdfast/pipeline/pipeline_builder.hpp"
+#include "holdfast/pipeline/configured_pipeline.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -95,7 +95,7 @@ class ConfiguredPipeline : public ::testing::Test {
   BuiltPipeline build(const std::string& more) {
     const std::string text = "source: fake\nfeatures: fake\noptimizer: fake\n" + more;
     const ConfigurationNode root = parse_yaml(text, "c.yaml", "/");
-    RunOptions options;
+    PipelineOptions options;
     options.output_directory = "/out";
     return build_pipeline(resolve_configuration(root, "c.yaml", registry_, pipeline_sections()), registry_, options);
   }
@@ -126,13 +126,13 @@ TEST_F(ConfiguredPipeline, TellsTheModulesAboutTheRun) {
 }
 
 TEST_F(ConfiguredPipeline, TheCameraComesFromOneOfBoth) {
-  EXPECT_THAT(complaints(""), HasSubstr("c.yaml: section 'camera' is missing, and the source 'fake' does not know its "
-                                        "camera; expected a name (bonn, "));
+  EXPECT_THAT(complaints(""), HasSubstr("c.yaml: the camera is missing, and the source 'fake' does not know its own; "
+                                        "expected 'camera' with a name (bonn, "));
   world_.source.camera = find_camera("tum_fr3");
   EXPECT_EQ(build("").pipeline.camera(), find_camera("tum_fr3"));
   EXPECT_EQ(world_.told.back().camera, find_camera("tum_fr3"));  // the features are made for it
   EXPECT_THAT(complaints("camera: tum_fr1\n"),
-              HasSubstr("the source 'fake' brings its own camera, and the section 'camera' says something else"));
+              HasSubstr("the source 'fake' brings its own camera, and 'camera' names one with other numbers"));
 }
 
 TEST_F(ConfiguredPipeline, BothMaySayTheSameCamera) {

@@ -86,7 +86,7 @@ TEST(PipelineBuilder, TellsEverythingThatIsWrongAtOnce) {
   const std::string text = complaints(builder);
   EXPECT_THAT(text, HasSubstr("PipelineBuilder: camera 'tum_fr9' is unknown; did you mean 'tum_fr"));
   EXPECT_THAT(text, HasSubstr("PipelineBuilder: features() is missing"));
-  EXPECT_THAT(text, HasSubstr("PipelineBuilder: optimizer 'cerse' is unknown; did you mean 'ceres'?"));
+  EXPECT_THAT(text, HasSubstr("PipelineBuilder: there is no optimizer module 'cerse'; did you mean 'ceres'?"));
   EXPECT_THAT(text, HasSubstr("found 2 for 'minimum_matches' of tracking: 2 is below 4; expected an integer from 4"));
   EXPECT_THAT(text, HasSubstr("the filter 'mask_reader' needs a segmentation, but the segmenter is 'none'"));
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 4) << text;
@@ -106,7 +106,7 @@ TEST(PipelineBuilder, ParametersAreCheckedByTheirTable) {
 TEST(PipelineBuilder, CameraAndMapMustFit) {
   test::PointWorld world(find_camera("tum_fr1").value());
   PipelineBuilder none(registry());
-  EXPECT_THAT(complaints(none), HasSubstr("the camera is missing; call camera()"));
+  EXPECT_THAT(complaints(none), HasSubstr("the camera is missing; expected 'camera' with a name (bonn, "));
 
   SourceDescription source;
   source.name = "robot";
@@ -114,7 +114,7 @@ TEST(PipelineBuilder, CameraAndMapMustFit) {
   source.has_depth = false;
   PipelineBuilder two = builder_for(world);
   const std::string text = complaints(two.source(source));
-  EXPECT_THAT(text, HasSubstr("the source 'robot' brings its own camera, and camera() says something else"));
+  EXPECT_THAT(text, HasSubstr("the source 'robot' brings its own camera, and 'camera' names one with other numbers"));
   EXPECT_THAT(text, HasSubstr("the source 'robot' has no depth"));
 
   Map map;
@@ -151,8 +151,9 @@ TEST(PipelineBuilder, SnapshotsOfTheMapWhileItGrows) {
   for (const bool threaded : {true, false}) {
     test::PointWorld world(find_camera("tum_fr1").value());
     PipelineBuilder builder = builder_for(world);
-    Pipeline pipeline =
-        builder.loop_detector(std::make_unique<test::BruteForceDetector>()).threads({.threaded = threaded}).build();
+    Pipeline pipeline = builder.loop_detector(std::make_unique<test::BruteForceDetector>())
+                            .run({.mode = threaded ? RunMode::threaded : RunMode::sequential})
+                            .build();
     std::atomic<bool> ended = false;
     std::size_t most_keyframes = 0;
     std::thread watcher([&] {

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <future>
+
 #include "holdfast/core/error.hpp"
 #include "holdfast/plugin/registry.hpp"
 #include "support/brute_force_detector.hpp"
@@ -84,11 +87,11 @@ TEST(Pipeline, LostInTheDarkIsAResultAndLightBringsItBack) {
 }
 
 TEST(Pipeline, ThreadsDoTheSameWork) {
-  for (const bool unpaced : {true, false}) {
+  for (const Pace pace : {Pace::none, Pace::timestamps}) {
     test::PointWorld world(find_camera("tum_fr1").value());
     PipelineParts parts = parts_for(world, 0.3);
     parts.loop_detector = std::make_unique<test::BruteForceDetector>();
-    parts.threads = {.threaded = true, .keyframe_queue = 2, .unpaced = unpaced};
+    parts.run = {.mode = RunMode::threaded, .pace = pace, .keyframe_queue = 2};
     Pipeline pipeline(std::move(parts));
     constexpr int frames = 120;
     for (int i = 0; i < frames; ++i) {
@@ -105,7 +108,7 @@ TEST(Pipeline, ThreadsDoTheSameWork) {
     const std::vector<WorkerCounts> workers = pipeline.worker_counts();
     ASSERT_EQ(workers.size(), 3U);  // local mapping, loop closing, full adjustment
     EXPECT_EQ(workers[0].queue.taken, pipeline.mapping_counts().keyframes_made);
-    EXPECT_TRUE(!unpaced || pipeline.keyframes_deferred() == 0);
+    EXPECT_TRUE(pace == Pace::timestamps || pipeline.keyframes_deferred() == 0);
   }
 }
 
@@ -113,7 +116,7 @@ TEST(Pipeline, ThreadsEndCleanlyInTheMiddleOfARun) {
   test::PointWorld world(find_camera("tum_fr1").value());
   for (int frames = 0; frames < 12; ++frames) {
     PipelineParts parts = parts_for(world, 0.3);
-    parts.threads.threaded = true;
+    parts.run.mode = RunMode::threaded;
     Pipeline pipeline(std::move(parts));
     for (int i = 0; i < frames; ++i)
       pipeline.feed(world.frame(static_cast<std::uint64_t>(i), i / 10.0, test::path_pose(i / 10.0)));
@@ -123,7 +126,7 @@ TEST(Pipeline, ThreadsEndCleanlyInTheMiddleOfARun) {
 /// Throws when it is told of the second keyframe.
 class Thrower final : public Observer {
  public:
-  void on_keyframe(KeyFrameId, const Map&) override {
+  void on_keyframe(KeyFrameId, const ObservedMap&) override {
     if (++keyframes_ == 2) throw InputError({"disk"}, "is full");
   }
 
@@ -134,7 +137,7 @@ class Thrower final : public Observer {
 TEST(Pipeline, WhatAThreadThrowsComesBack) {
   test::PointWorld world(find_camera("tum_fr1").value());
   PipelineParts parts = parts_for(world, 0.3);
-  parts.threads.threaded = true;
+  parts.run.mode = RunMode::threaded;
   parts.observers.push_back(std::make_unique<Thrower>());
   Pipeline pipeline(std::move(parts));
   const auto run = [&] {
@@ -143,6 +146,48 @@ TEST(Pipeline, WhatAThreadThrowsComesBack) {
     pipeline.finish();
   };
   EXPECT_THROW(run(), InputError);
+}
+
+/// Blocks in on_keyframe() until it is released, as a viewer may that draws slowly. It takes a snapshot first.
+class SlowViewer final : public Observer {
+ public:
+  struct Gate {
+    std::promise<void> blocked, released;
+    bool gave_up = false;
+  };
+  explicit SlowViewer(Gate& gate) : gate_(gate) {}
+  void on_keyframe(KeyFrameId, const ObservedMap& map) override {
+    if (entered_) return;
+    entered_ = true;
+    EXPECT_FALSE(map.snapshot().points.empty());
+    EXPECT_EQ(&map.snapshot(), &map.snapshot());
+    gate_.blocked.set_value();
+    gate_.gave_up = gate_.released.get_future().wait_for(std::chrono::seconds(60)) != std::future_status::ready;
+  }
+
+ private:
+  Gate& gate_;
+  bool entered_ = false;
+};
+
+TEST(Pipeline, ASlowObserverStallsNeitherTrackingNorSnapshots) {
+  test::PointWorld world(find_camera("tum_fr1").value());
+  PipelineParts parts = parts_for(world, 0.3);
+  parts.run.mode = RunMode::threaded;
+  parts.run.pace = Pace::timestamps;
+  SlowViewer::Gate gate;
+  parts.observers.push_back(std::make_unique<SlowViewer>(gate));
+  Pipeline pipeline(std::move(parts));
+  const auto feed = [&](int i) {
+    return pipeline.feed(world.frame(static_cast<std::uint64_t>(i), i / 30.0, test::path_pose(i / 30.0)));
+  };
+  feed(0);
+  gate.blocked.get_future().wait();
+  for (int i = 1; i < 30; ++i) EXPECT_EQ(feed(i).status, TrackingStatus::tracked) << i;
+  EXPECT_FALSE(pipeline.map_snapshot().keyframes.empty());
+  gate.released.set_value();
+  pipeline.finish();
+  EXPECT_FALSE(gate.gave_up);
 }
 
 TEST(Pipeline, FindsItsPlaceInALoadedMap) {
@@ -205,7 +250,7 @@ class Counter final : public Observer {
   };
   explicit Counter(Counts& counts) : counts_(counts) {}
   void on_frame(const SensorFrame&, const Frame&, const FrameResult&) override { ++counts_.frames; }
-  void on_keyframe(KeyFrameId, const Map&) override { ++counts_.keyframes; }
+  void on_keyframe(KeyFrameId, const ObservedMap&) override { ++counts_.keyframes; }
   void on_finish(const Map&) override { ++counts_.finished; }
 
  private:

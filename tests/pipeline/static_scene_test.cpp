@@ -36,7 +36,7 @@ Pipeline fed_pipeline(bool enabled, bool segmented, bool threaded) {
   parts.features = std::make_unique<test::PointExtractor>(world, 0.3);
   parts.optimizer = registry.create<Optimizer>("ceres", {}, {});
   parts.dense_map.enabled = enabled;
-  parts.threads.threaded = threaded;
+  if (threaded) parts.run.mode = RunMode::threaded;
   if (segmented) parts.segmenter = std::make_unique<RightThird>();
   Pipeline pipeline(std::move(parts));
   for (int i = 0; i < 60; ++i)

@@ -8,10 +8,9 @@
 #include <thread>
 #include <vector>
 
+#include "holdfast/core/bounded_queue.hpp"
 #include "holdfast/core/error.hpp"
-#include "holdfast/pipeline/bounded_queue.hpp"
-#include "holdfast/pipeline/frame_feeder.hpp"
-#include "holdfast/pipeline/worker.hpp"
+#include "holdfast/core/worker.hpp"
 
 namespace holdfast {
 namespace {
@@ -21,16 +20,14 @@ using namespace std::chrono_literals;
 TEST(BoundedQueue, KeepsOrderAndCapacity) {
   BoundedQueue<int> queue(2);
   EXPECT_TRUE(queue.push(1));
-  EXPECT_TRUE(queue.try_push(2));
+  EXPECT_TRUE(queue.push(2));
   EXPECT_FALSE(queue.has_room());
-  EXPECT_FALSE(queue.try_push(3));
   EXPECT_TRUE(queue.push_newest(4));  // 1 makes room
   EXPECT_EQ(queue.pop(), 2);
   EXPECT_EQ(queue.pop(), 4);
   const QueueCounts counts = queue.counts();
   EXPECT_EQ(counts.capacity, 2U);
   EXPECT_EQ(counts.taken, 2U);
-  EXPECT_EQ(counts.refused, 1U);
   EXPECT_EQ(counts.dropped, 1U);
   EXPECT_EQ(counts.longest, 2U);
 }
@@ -119,92 +116,6 @@ TEST(Worker, DestructionAbandonsWhatWaits) {
     worker.reset();
   }
   EXPECT_EQ(done, 1);
-}
-
-/// Frames 0, 1, 2 ... at 100 a second; may throw at one of them.
-class CountingSource final : public FrameSource {
- public:
-  explicit CountingSource(std::uint64_t count, std::uint64_t bad = ~std::uint64_t{0}) : count_(count), bad_(bad) {}
-  SourceDescription describe() const override { return {}; }
-  std::optional<SensorFrame> next() override {
-    if (index_ == bad_) throw InputError({"frame.png"}, "is broken");
-    if (index_ >= count_) return std::nullopt;
-    SensorFrame frame;
-    frame.timestamp = 0.01 * static_cast<double>(index_);
-    frame.index = index_++;
-    return frame;
-  }
-
- private:
-  std::uint64_t count_, bad_, index_ = 0;
-};
-
-TEST(FrameFeeder, GivesEveryFrameInOrder) {
-  CountingSource source(200);
-  FrameFeeder feeder(source, {});
-  std::uint64_t expected = 0;
-  while (const auto fed = feeder.next()) EXPECT_EQ(fed->frame.index, expected++);
-  EXPECT_EQ(expected, 200U);
-  EXPECT_EQ(feeder.stamps().size(), 200U);
-  EXPECT_EQ(feeder.counts().dropped, 0U);
-}
-
-TEST(FrameFeeder, AnErrorOfTheSourceComesAfterTheFramesBeforeIt) {
-  CountingSource source(10, 3);
-  FrameFeeder feeder(source, {});
-  for (std::uint64_t i = 0; i < 3; ++i) EXPECT_EQ(feeder.next()->frame.index, i);
-  EXPECT_THROW(feeder.next(), InputError);
-  EXPECT_FALSE(feeder.next());
-}
-
-TEST(FrameFeeder, PacedFramesDoNotComeBeforeTheirTime) {
-  CountingSource source(6);
-  FrameFeeder feeder(source, {.by_timestamps = true});
-  feeder.next();
-  const Stopwatch since_first;
-  while (const auto fed = feeder.next()) {
-    constexpr double tolerance = 0.005;  // the first frame was due a little before it was taken here
-    EXPECT_GE(since_first.seconds() + tolerance, fed->frame.timestamp);
-  }
-}
-
-TEST(FrameFeeder, ASlowTrackerCostsFramesOrTime) {
-  const auto taken = [](bool drop) {
-    CountingSource source(20);
-    FrameFeeder feeder(source, {.by_timestamps = true, .drop_late = drop, .frame_queue = 2});
-    std::size_t count = 0;
-    std::uint64_t last = 0;
-    while (const auto fed = feeder.next()) {
-      std::this_thread::sleep_for(30ms);
-      ++count;
-      EXPECT_TRUE(count == 1 || fed->frame.index > last);
-      last = fed->frame.index;
-    }
-    EXPECT_EQ(count + feeder.counts().dropped, 20U);
-    EXPECT_EQ(last, 19U);  // the newest is never the one that goes
-    return count;
-  };
-  EXPECT_LT(taken(true), 20U);
-  EXPECT_EQ(taken(false), 20U);
-}
-
-TEST(FrameFeeder, StopEndsAWaitForAFarFrame) {
-  class Far final : public FrameSource {
-   public:
-    SourceDescription describe() const override { return {}; }
-    std::optional<SensorFrame> next() override {
-      SensorFrame frame;
-      frame.timestamp = 3600.0 * static_cast<double>(index_);
-      frame.index = index_++;
-      return frame;
-    }
-    std::uint64_t index_ = 0;
-  } source;
-  FrameFeeder feeder(source, {.by_timestamps = true});
-  EXPECT_TRUE(feeder.next());
-  auto next = std::async(std::launch::async, [&] { return feeder.next().has_value(); });
-  feeder.stop();
-  EXPECT_FALSE(next.get());
 }
 
 }  // namespace

@@ -6,6 +6,12 @@
 #include <limits>
 
 namespace holdfast {
+
+enum class Interpolation { nearest, linear };
+template <>
+inline constexpr Choice<Interpolation> choice_table<Interpolation>[] = {{"nearest", Interpolation::nearest},
+                                                                        {"linear", Interpolation::linear}};
+
 namespace {
 
 struct Settings {
@@ -15,6 +21,7 @@ struct Settings {
   float ratio = 0.1F;
   double sigma = 1.5;
   std::string mode = "fast";
+  Interpolation interpolation = Interpolation::linear;
   std::filesystem::path model;
   std::vector<std::string> classes{"person"};
   std::vector<double> weights{1, 0.5};
@@ -29,6 +36,7 @@ struct Settings {
     table.add("ratio", &S::ratio, "");
     table.add("sigma", &S::sigma, "").at_least(0).unit("px");
     table.add("mode", &S::mode, "").one_of({"fast", "exact"});
+    table.add("interpolation", &S::interpolation, "");
     table.add("model", &S::model, "").required();
     table.add("classes", &S::classes, "").one_of({"person", "cat"});
     table.add("weights", &S::weights, "").at_most(1);
@@ -52,6 +60,7 @@ TEST(ParameterTable, GoesThroughValuesAndBack) {
   written.ratio = 0.3F;
   written.sigma = 1.0 / 3;
   written.mode = "exact";
+  written.interpolation = Interpolation::nearest;
   written.model = "/models/a.onnx";
   written.classes = {"cat", "person"};
   written.weights = {};
@@ -64,11 +73,23 @@ TEST(ParameterTable, GoesThroughValuesAndBack) {
   EXPECT_EQ(read.ratio, written.ratio);
   EXPECT_EQ(read.sigma, written.sigma);
   EXPECT_EQ(read.mode, written.mode);
+  EXPECT_EQ(read.interpolation, written.interpolation);
   EXPECT_EQ(read.model, written.model);
   EXPECT_EQ(read.classes, written.classes);
   EXPECT_EQ(read.weights, written.weights);
   EXPECT_EQ(read.names, written.names);
   EXPECT_EQ(read.places, written.places);
+}
+
+TEST(ParameterTable, AnEnumIsAChoiceOfNames) {
+  const Parameter row = parameter("interpolation");
+  EXPECT_EQ(row.type, ParameterType::text);
+  EXPECT_EQ(std::get<std::string>(row.default_value), "linear");
+  EXPECT_EQ(row.expectation(), "one of nearest, linear");
+  EXPECT_FALSE(row.reject(std::string("nearest")));
+  EXPECT_EQ(row.reject(std::string("cubic")), "'cubic' is not among them");
+  EXPECT_THROW(choice_value<Interpolation>("cubic"), CheckError);
+  EXPECT_THROW(choice_name(static_cast<Interpolation>(7)), CheckError);
 }
 
 TEST(ParameterTable, WhatIsNotGivenKeepsItsDefault) {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "holdfast/core/hamming.hpp"
+#include "holdfast/core/descriptor.hpp"
 #include "holdfast/interfaces/loop_detector.hpp"
 
 namespace holdfast::test {
@@ -20,18 +20,17 @@ class BruteForceDetector final : public LoopDetector {
   void remove(KeyFrameId keyframe) override {
     std::erase_if(places_, [&](const auto& place) { return place.first == keyframe; });
   }
-  std::vector<PlaceMatch> query(std::span<const Descriptor> descriptors, int most) const override {
+  std::vector<PlaceMatch> query(std::span<const Descriptor> descriptors, int max_count) const override {
     std::vector<PlaceMatch> matches;
     for (const auto& [keyframe, known] : places_) {
-      std::vector<std::uint32_t> all(known.size());
-      for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
       int alike = 0;
       for (std::size_t i = 0; i < descriptors.size(); i += 3)
-        alike += nearest_descriptors(descriptors[i], known.data(), all).best_distance < 40 ? 1 : 0;
+        alike += std::any_of(known.begin(), known.end(),
+                             [&](const Descriptor& other) { return hamming_distance(descriptors[i], other) < 40; });
       matches.push_back({keyframe, static_cast<double>(alike) / static_cast<double>(descriptors.size())});
     }
     std::stable_sort(matches.begin(), matches.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
-    if (static_cast<int>(matches.size()) > most) matches.resize(static_cast<std::size_t>(most));
+    if (static_cast<int>(matches.size()) > max_count) matches.resize(static_cast<std::size_t>(max_count));
     return matches;
   }
   std::size_t size() const { return places_.size(); }

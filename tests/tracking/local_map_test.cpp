@@ -44,17 +44,17 @@ TEST(LocalMap, ProjectsEveryPointOntoItsFeature) {
   EXPECT_EQ(local_map.points().size(), scene.frame.size());
   Frame empty = scene.frame;
   std::fill(empty.map_points.begin(), empty.map_points.end(), MapPointId());
-  SearchWindows windows;
+  matching::SearchWindows windows;
   local_map.project(empty, 1.0F, windows);
   EXPECT_EQ(windows.size(), scene.frame.size());
   for (std::size_t w = 0; w < windows.size(); ++w) {
-    const MapPointId point = local_map.points()[windows.source[w]];
+    const MapPointId point = local_map.points().ids[windows.source[w]];
     const auto feature = static_cast<std::size_t>(scene.map.feature_of(point, scene.id));
     EXPECT_NEAR(windows.x[w], scene.frame.x[feature], 0.01);
     EXPECT_NEAR(windows.y[w], scene.frame.y[feature], 0.01);
     EXPECT_NEAR(windows.right_x[w], scene.frame.right_x[feature], 0.01);
-    EXPECT_GE(scene.frame.features.octave[feature], windows.lowest_level[w]);
-    EXPECT_LE(scene.frame.features.octave[feature], windows.highest_level[w]);
+    EXPECT_GE(scene.frame.features.octave[feature], windows.min_octave[w]);
+    EXPECT_LE(scene.frame.features.octave[feature], windows.max_octave[w]);
   }
 }
 
@@ -62,7 +62,7 @@ TEST(LocalMap, LeavesOutWhatTheFrameShowsAlreadyAndWhatLiesBehind) {
   OneKeyframe scene;
   LocalMap local_map(10);
   local_map.update(scene.map, scene.frame, 1);
-  SearchWindows windows;
+  matching::SearchWindows windows;
   local_map.project(scene.frame, 1.0F, windows);
   EXPECT_EQ(windows.size(), 0U);
   Frame turned = scene.frame;
@@ -79,7 +79,7 @@ TEST(LocalMap, CountsReachTheMap) {
   const MapPointId shown = scene.frame.map_points[0];
   Frame frame = scene.frame;
   std::fill(frame.map_points.begin() + 1, frame.map_points.end(), MapPointId());
-  SearchWindows windows;
+  matching::SearchWindows windows;
   for (int i = 0; i < 5; ++i) local_map.project(frame, 1.0F, windows), local_map.count_found(frame);
   local_map.write_counts(scene.map);
   EXPECT_EQ(scene.map.point(shown).visible_count, 6U);

@@ -7,7 +7,7 @@
 struct DepthEdgeSettings {
   double step = 0.3;
   static void describe(holdfast::ParameterTable<DepthEdgeSettings>& table) {
-    table.add("step", &DepthEdgeSettings::step, "by which something beside is nearer").range(0.01, 5).unit("m");
+    table.add("step", &DepthEdgeSettings::step, "depth difference to a nearer surface").range(0.01, 5).unit("m");
   }
 };
 
@@ -24,8 +24,8 @@ struct DepthEdge final : holdfast::DynamicFilter {
       const cv::Mat window = depth(around & cv::Rect(cv::Point(), depth.size()));
       double nearest = 0;
       cv::minMaxLoc(window, &nearest, nullptr, nullptr, nullptr, window > 0);
-      // A feature without depth has 0 there, which is behind nothing.
-      if (frame.depth[i] - nearest > step) evidence.add(i, -1.5F, holdfast::StaticEvidence::Sort::prior);
+      // A feature without depth has depth 0, which is never behind another surface.
+      if (frame.depth[i] - nearest > step) evidence.add(i, -1.5F, holdfast::StaticEvidence::Kind::prior);
     }
   }
   double step;
@@ -33,5 +33,5 @@ struct DepthEdge final : holdfast::DynamicFilter {
 
 HOLDFAST_PLUGIN(depth_edge, registry) {
   registry.add<holdfast::DynamicFilter, DepthEdge, DepthEdgeSettings>(
-      {.name = "depth_edge", .summary = "Distrusts what lies behind an edge of the depth image."});
+      {.name = "depth_edge", .summary = "Prior against features behind an edge of the depth image."});
 }

@@ -5,7 +5,7 @@
 struct InFrontSettings {
   double distance = 1.8;
   static void describe(holdfast::ParameterTable<InFrontSettings>& table) {
-    table.add("distance", &InFrontSettings::distance, "what is nearer is a person").range(0.1, 10).unit("m");
+    table.add("distance", &InFrontSettings::distance, "nearer pixels are labelled as person").range(0.1, 10).unit("m");
   }
 };
 
@@ -16,8 +16,8 @@ struct InFront final : holdfast::Segmenter {
 
   holdfast::Segmentation segment(const holdfast::SensorFrame& frame) override {
     holdfast::Segmentation result;
-    if (frame.depth.empty()) return result;                             // nothing to say about this frame
-    const cv::Mat near = (frame.depth > 0) & (frame.depth < distance);  // 255 where it is near, else 0
+    if (frame.depth.empty()) return result;                             // no segmentation for this frame
+    const cv::Mat near = (frame.depth > 0) & (frame.depth < distance);  // 255 for near pixels, else 0
     result.labels = near / 255;                                         // 8UC1, index into classes()
     return result;
   }
@@ -28,5 +28,5 @@ struct InFront final : holdfast::Segmenter {
 
 HOLDFAST_PLUGIN(in_front, registry) {
   registry.add<holdfast::Segmenter, InFront, InFrontSettings>(
-      {.name = "in_front", .summary = "Takes what is near for a person."});
+      {.name = "in_front", .summary = "Labels near pixels as person."});
 }

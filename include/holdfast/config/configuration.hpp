@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -9,12 +8,13 @@
 #include <vector>
 
 #include "holdfast/config/configuration_node.hpp"
+#include "holdfast/config/run_settings.hpp"
 #include "holdfast/core/camera.hpp"
 #include "holdfast/plugin/registry.hpp"
 
 namespace holdfast {
 
-/// A section of plain parameters that belongs to no module: tracking, mapping.
+/// A section of plain parameters that belongs to no module, such as tracking or mapping.
 struct SectionDescription {
   std::string name;
   std::string help;
@@ -22,19 +22,7 @@ struct SectionDescription {
   std::string kind = "section";  ///< heading that the reference lists it under
 };
 
-/// The `run` section.
-struct RunSettings {
-  std::string mode = "sequential";
-  std::uint64_t seed = 1;
-  std::string pace = "none";
-  std::string late_frames = "queue";
-  int frame_queue = 4;
-  int keyframe_queue = 4;
-
-  static void describe(ParameterTable<RunSettings>& table);
-};
-
-/// The `camera` section when it is a map: numbers, or a known name and what differs from it.
+/// The `camera` section when it is a map: numbers, or a known name and the numbers that differ from it.
 struct CameraSettings {
   std::string name;
   int width = 640, height = 480;
@@ -49,11 +37,11 @@ struct CameraSettings {
 CameraSettings camera_settings(const Camera& camera);
 Camera make_camera(const CameraSettings& settings);
 
-/// Reads a `camera` section: a known name or a map of numbers. What is wrong is appended to `diagnostics`; the result
-/// is nothing then.
+/// Reads a `camera` section, which is a known name or a map of numbers. Problems are appended to `diagnostics`, and the
+/// result is empty then.
 std::optional<Camera> read_camera(const ConfigurationNode& node, std::vector<Diagnostic>& diagnostics);
 
-/// A module that the configuration chose, with all its parameters, defaults included.
+/// A module that a configuration selects, with the values of all its parameters, defaults included.
 struct ModuleChoice {
   std::string kind;
   std::string name;
@@ -61,31 +49,34 @@ struct ModuleChoice {
   SourceLocation location;  ///< of the name
 };
 
-/// A configuration that passed every check that can be made before modules exist.
+/// A configuration in which every name is known and every value is in range. Whether the modules fit together (camera,
+/// depth, segmentation) is checked by PipelineBuilder, which knows the source.
 struct Configuration {
   std::string file;
   ModuleChoice source, features, segmenter, optimizer, loop_detector;
   std::vector<ModuleChoice> filters;  ///< a chain
   std::vector<ModuleChoice> observers;
-  std::optional<Camera> camera;  ///< nothing: the source must know it
+  std::optional<Camera> camera;  ///< empty: the source must know it
   RunSettings run;
-  std::map<std::string, ParameterValues> sections;  ///< by name, as described by the caller
-  std::vector<std::string> plugins;                 ///< the files, absolute
+  std::map<std::string, ParameterValues> sections;  ///< values of the plain sections, by name
+  std::vector<std::string> plugins;                 ///< absolute paths of the plugin files
 };
 
-/// Reads, overrides and checks a configuration. Plugins that it names are loaded into `registry` first. Throws
-/// ConfigurationError with everything that is wrong.
-Configuration load_configuration(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+/// Reads, overrides and resolves a configuration file with the given plain sections. Plugins that it names are loaded
+/// into `registry` first. Throws ConfigurationError with every problem found. load_configuration() of
+/// pipeline/configured_pipeline.hpp knows the sections of the pipeline.
+Configuration read_configuration(const std::filesystem::path& file, const std::vector<std::string>& overrides,
                                  Registry& registry, const std::vector<SectionDescription>& sections);
 
-/// The same for a tree that is already there; `file` names it in messages.
+/// Resolves a configuration that has been parsed; `file` names it in messages.
 Configuration resolve_configuration(const ConfigurationNode& root, const std::string& file, Registry& registry,
                                     const std::vector<SectionDescription>& sections);
 
-/// YAML that, loaded again, gives the same configuration: every default written out, paths absolute.
+/// YAML that gives the same configuration when it is loaded again. Every default is written out, and paths are
+/// absolute.
 std::string to_yaml(const Configuration& configuration);
 
-/// Sections that choose one module.
+/// Names of the sections that choose one module.
 const std::vector<std::string>& choice_sections();
 
 }  // namespace holdfast

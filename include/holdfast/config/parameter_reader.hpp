@@ -10,9 +10,9 @@
 
 namespace holdfast {
 
-/// Reads a map of parameters by their table: every unknown name, wrong type, value out of range and missing required
-/// parameter is appended to `diagnostics`; the result holds a value, given or default, for every parameter that is
-/// right. `owner` names whose parameters these are ("features 'orb'"); nothing counts as an empty map.
+/// Reads a map of parameters by their table. Every unknown name, wrong type, value out of range and missing required
+/// parameter is appended to `diagnostics`. The result holds the given or default value of every valid parameter.
+/// `owner` names the owner of the parameters in messages ("features 'orb'"). An empty node counts as an empty map.
 ParameterValues read_parameters(const ConfigurationNode& node, const std::vector<Parameter>& table,
                                 const std::string& owner, std::vector<Diagnostic>& diagnostics);
 

@@ -11,10 +11,10 @@ namespace holdfast {
 
 enum class ReferenceFormat { text, markdown, json };
 
-/// The reference of everything that a configuration can say, made from the parameter tables: one entry per module, by
-/// kind and name, and per plain section (camera and run among them). `name` narrows it to the modules and sections, or
-/// the kind, of that name; throws Error with the nearest known name when there is none. In text form a reference that
-/// is not narrowed lists names and summaries only.
+/// Generates the reference of all modules and plain sections from their parameter tables: one entry per module, by kind
+/// and name, and one per plain section (camera and run included). A non-empty `name` selects the modules and sections
+/// with this name or kind; throws Error with the nearest known name if there is none. The text form without `name`
+/// lists names and summaries only.
 std::string reference(const Registry& registry, const std::vector<SectionDescription>& sections,
                       const std::string& name, ReferenceFormat format);
 

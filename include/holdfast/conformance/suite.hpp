@@ -7,40 +7,40 @@
 
 #include "holdfast/plugin/registry.hpp"
 
-/// Tests that any extractor, segmenter, filter, optimizer or loop detector must pass, whoever wrote it. Link
-/// holdfast::conformance, or let holdfast_conformance_test() write the program (docs/conformance.md).
+/// Tests that every extractor, segmenter, filter, optimizer and loop detector must pass. Link holdfast::conformance, or
+/// let holdfast_conformance_test() generate the program (docs/conformance.md).
 namespace holdfast::conformance {
 
-/// A sentence of a header that a check holds a module to, as it stands there.
+/// The sentence of a header that a check verifies, quoted literally.
 struct Promise {
   const char* header;
   const char* sentence;
 };
 
-/// What is tested: the modules of one plugin.
+/// Selects the modules of one plugin for the tests.
 struct Subject {
-  void (*register_modules)(Registry&) = nullptr;  ///< entry of a plugin that is linked in; nullptr: `plugin`
+  void (*register_modules)(Registry&) = nullptr;  ///< entry function of a linked plugin; nullptr: use `plugin`
   std::filesystem::path plugin = {};              ///< file of a shared plugin
-  std::vector<std::string> modules = {};          ///< as `name` or `kind/name`; empty: all that can be tested
-  std::vector<std::string> except = {};           ///< and not these
-  /// YAML, kind by kind and name by name: `segmenter: { mine: { dilate: 3 } }`. What is not named keeps its defaults.
+  std::vector<std::string> modules = {};          ///< `name` or `kind/name`; empty = all testable modules
+  std::vector<std::string> except = {};           ///< modules to exclude
+  /// Parameters as YAML by kind and name: `segmenter: { mine: { dilate: 3 } }`. Other modules use their defaults.
   std::string parameters = {};
-  std::string parameters_name = "PARAMETERS";  ///< names them in messages
-  std::filesystem::path folder = {};           ///< relative paths in them start here
+  std::string parameters_name = "PARAMETERS";  ///< name of `parameters` in messages
+  std::filesystem::path folder = {};           ///< base folder of relative paths in `parameters`
 };
 
-/// Adds one GoogleTest per module and check, called KIND/MODULE.CHECK; call it between InitGoogleTest() and
-/// RUN_ALL_TESTS(). Throws PluginError for a plugin that cannot be loaded or has nothing to test, and
-/// ConfigurationError with everything that is wrong with the modules and parameters named.
+/// Registers one GoogleTest per module and check, named KIND/MODULE.CHECK. It must be called between InitGoogleTest()
+/// and RUN_ALL_TESTS(). Throws PluginError for a plugin that cannot be loaded or has no testable module, and
+/// ConfigurationError with all errors in the selected modules and parameters.
 void add_tests(const Subject& subject);
 
-/// One check, for lists.
+/// Description of one check.
 struct CheckDescription {
-  std::string kind;  ///< section of the configuration; "module" for those that every module gets
+  std::string kind;  ///< section of the configuration; "module" for checks of all modules
   std::string name;
   Promise promise;
 };
-/// Every check there is, in the order in which they run.
+/// All checks in the order of execution.
 std::vector<CheckDescription> catalogue();
 
 }  // namespace holdfast::conformance

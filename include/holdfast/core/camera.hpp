@@ -17,10 +17,10 @@ struct Distortion {
 };
 
 /// A pinhole camera with lens distortion. Camera frame: x right, y down, z forward [m]. Pixel centres lie at integer
-/// coordinates. "Pixel" without further word means undistorted: where a camera without distortion and the same
-/// intrinsics would see the point.
+/// coordinates. "Pixel" without a qualifier means an undistorted pixel, that is, the projection by a camera with the
+/// same intrinsics and no distortion.
 struct Camera {
-  std::string name;   ///< "" for a camera given by numbers
+  std::string name;   ///< empty for a camera that is given by its intrinsics
   int width = 640;    ///< [px]
   int height = 480;   ///< [px]
   double fx = 525.0;  ///< [px]
@@ -28,7 +28,7 @@ struct Camera {
   double cx = 319.5;  ///< [px]
   double cy = 239.5;  ///< [px]
   Distortion distortion;
-  double baseline = 0.08;    ///< of the virtual (or real) stereo pair [m]; a Kinect's projector stands about 0.08 m off
+  double baseline = 0.08;    ///< of the virtual (or real) stereo pair [m]; about 0.08 m for a Kinect
   double frame_rate = 30.0;  ///< [1/s]
 
   /// Undistorted pixel of a point in the camera frame; z must be positive.
@@ -40,25 +40,26 @@ struct Camera {
   Eigen::Vector3d back_project(double x, double y, double depth) const {
     return {(x - cx) / fx * depth, (y - cy) / fy * depth, depth};
   }
-  /// Column of the point in the virtual right image, as Mur-Artal and Tardos 2017, section III-A: x - fx * baseline /
-  /// z.
+  /// Column of the point in the virtual right image: x - fx * baseline / depth (Mur-Artal and Tardos 2017, section
+  /// III-A).
   double right_x(double x, double depth) const { return x - fx * baseline / depth; }
 
   /// Raw image position of an undistorted pixel.
   Eigen::Vector2d distort(const Eigen::Vector2d& pixel) const;
-  /// Undistorted pixel of a raw image position (fixed-point iteration, error below 1e-4 px for the known cameras).
+  /// Undistorted pixel of a raw image position, by fixed-point iteration; the error is below 1e-4 px for the cameras of
+  /// find_camera().
   Eigen::Vector2d undistort(const Eigen::Vector2d& raw) const;
 
   friend bool operator==(const Camera&, const Camera&) = default;
 
-  /// Smallest rectangle [min, max] of undistorted pixels that holds the whole image.
+  /// Bounding rectangle [minimum, maximum] of the undistorted pixels of the whole image.
   void undistorted_bounds(Eigen::Vector2d& minimum, Eigen::Vector2d& maximum) const;
 };
 
-/// Cameras known by name: tum_fr1, tum_fr2, tum_fr3 (TUM RGB-D calibration page), bonn (Bonn RGB-D Dynamic), icl_nuim,
-/// kinect2 (960x540).
+/// Returns the calibration of a camera known by name, or nothing. Names: tum_fr1, tum_fr2, tum_fr3 (TUM RGB-D
+/// calibration page), bonn (Bonn RGB-D Dynamic), icl_nuim, kinect2 (960x540).
 std::optional<Camera> find_camera(const std::string& name);
-/// The names that find_camera knows, sorted.
+/// All names that find_camera() accepts, sorted.
 std::vector<std::string> camera_names();
 
 }  // namespace holdfast

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "holdfast/core/camera.hpp"
+#include "holdfast/core/cell_mask.hpp"
 
 namespace holdfast {
 
@@ -39,29 +40,29 @@ struct CoarseGrid {
   }
 };
 
-/// A frame seen coarsely, without distortion: what dense judgements work on. Cell (column, row) is entry
-/// row * columns + column.
+/// The depth image of a frame on a coarse grid of undistorted pixels, with what is known of each cell. Dense
+/// comparisons between views work on it. Cell (column, row) is entry row * columns + column of each array.
 struct CoarseView {
   CoarseGrid grid;
-  /// Where the depth image was taken relative to the camera's pose: sensors expose colour and depth some milliseconds
-  /// apart. T_view_world = T_view_camera * T_camera_world.
+  /// Pose of the depth image relative to the camera's pose: sensors expose colour and depth some milliseconds apart.
+  /// Frame::T_view_world() applies it.
   Eigen::Isometry3d T_view_camera = Eigen::Isometry3d::Identity();
   std::vector<float> depth;            ///< along the optical axis at the cell's centre [m], 0 = none
-  std::vector<float> static_log_odds;  ///< of what the cell shows: positive = stands still, 0 = unknown; may be empty
-  /// Index into the segmenter's classes, as segmented or carried here; 255 = unknown. Empty without a mask.
-  std::vector<std::uint8_t> labels;
+  std::vector<float> static_log_odds;  ///< of the surface in the cell: positive = static, 0 = unknown; may be empty
+  CellMask mask;                       ///< propagated to this frame, or its own segmentation once that was applied
 
   bool empty() const { return depth.empty(); }
 };
 
-/// Looks images up at the cells of a camera's coarse view. Immutable after construction; any thread.
+/// Samples images at the cells of a camera's coarse view. Immutable after construction; any thread.
 class CoarseSampler {
  public:
   explicit CoarseSampler(const Camera& camera);
 
   const CoarseGrid& grid() const { return grid_; }
   /// Replaces view.depth by values of a depth image of the camera's size (32FC1 [m]; empty = no depth anywhere): the
-  /// one at the cell's centre, or the nearest within a pixel when that one is missing. Clears the log-odds.
+  /// one at the cell's centre, or the nearest within a pixel when that one is missing. Clears the log-odds and the
+  /// mask.
   void sample_depth(const cv::Mat& depth, CoarseView& view) const;
   /// Labels (8UC1 of the camera's size) at the cells' centres; `outside` where a cell lies outside the image.
   void sample_labels(const cv::Mat& labels, std::uint8_t outside, std::vector<std::uint8_t>& cells) const;

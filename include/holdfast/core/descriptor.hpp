@@ -14,7 +14,7 @@ struct alignas(32) Descriptor {
 };
 static_assert(sizeof(Descriptor) == 32);
 
-/// Number of bits that differ. For loops over many, use the kernels of hamming.hpp.
+/// Number of bits in which two descriptors differ. Loops over many descriptors should use the kernels of hamming.hpp.
 inline int hamming_distance(const Descriptor& a, const Descriptor& b) {
   int distance = 0;
   for (int i = 0; i < 4; ++i) distance += std::popcount(a.words[i] ^ b.words[i]);

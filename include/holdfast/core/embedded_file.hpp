@@ -6,10 +6,10 @@
 
 namespace holdfast {
 
-/// A text file of the repository that the build put into the program (cmake/HoldfastEmbed.cmake). Functions
-/// `std::span<const EmbeddedFile> embedded_NAME()` give those that belong together.
+/// A text file of the repository that the build embeds in the program (cmake/HoldfastEmbed.cmake). A generated function
+/// `std::span<const EmbeddedFile> embedded_NAME()` returns the files of one group.
 struct EmbeddedFile {
-  std::string_view name;  ///< without folders
+  std::string_view name;  ///< file name without its folder
   std::string_view content;
 };
 

@@ -1,31 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "holdfast/core/check.hpp"
+
 namespace holdfast {
 
-/// Base of everything Holdfast throws. The message names what was found, what was expected and what to do.
-/// Per-frame trouble (no depth, no features, lost) is never an exception; it is a typed result (frame_result.hpp).
+/// Base class of all exceptions that Holdfast throws. The message states what was found, what was expected and how to
+/// correct it. Per-frame failures (no depth, no features, lost) are not exceptions but typed results
+/// (frame_result.hpp).
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A place in a text file, counted from 1; line or column 0 means "the whole file" or "the whole line".
+/// A position in a text file, counted from 1; line 0 denotes the whole file, column 0 the whole line.
 struct SourceLocation {
   std::string file;
   int line = 0;
   int column = 0;
 
-  /// "file:line:column", leaving out what is unknown.
+  /// Returns "file:line:column" without the unknown parts.
   std::string to_string() const;
 };
 
-/// One thing that is wrong with a configuration.
+/// One error in a configuration.
 struct Diagnostic {
   SourceLocation location;
   std::string message;
@@ -33,7 +35,8 @@ struct Diagnostic {
   std::string to_string() const;
 };
 
-/// A configuration that cannot be run. Carries every problem found, not just the first; what() lists them line by line.
+/// Thrown for a configuration that cannot be run. It holds all errors found, not only the first; what() lists one per
+/// line.
 class ConfigurationError : public Error {
  public:
   explicit ConfigurationError(std::vector<Diagnostic> diagnostics);
@@ -44,7 +47,7 @@ class ConfigurationError : public Error {
   std::vector<Diagnostic> diagnostics_;
 };
 
-/// An input file or frame that cannot be used: missing, truncated, of the wrong type or size.
+/// Thrown for an input file or frame that cannot be used: missing, truncated, or of the wrong type or size.
 class InputError : public Error {
  public:
   InputError(SourceLocation location, const std::string& message);
@@ -54,30 +57,10 @@ class InputError : public Error {
   SourceLocation location_;
 };
 
-/// A plugin that cannot be loaded or does not fit this build.
+/// Thrown for a plugin that cannot be loaded or is incompatible with this build.
 class PluginError : public Error {
  public:
   using Error::Error;
 };
-
-/// A broken promise between parts of the program; always a defect in the calling code.
-class CheckError : public std::logic_error {
- public:
-  using std::logic_error::logic_error;
-};
-
-namespace detail {
-[[noreturn]] void check_failed(const char* file, int line, const char* expression, const std::string& values);
-}  // namespace detail
-
-/// HOLDFAST_CHECK(i < n, "i " << i << " n " << n): throws CheckError with the place, the condition and the values.
-#define HOLDFAST_CHECK(condition, values)                                                            \
-  do {                                                                                               \
-    if (!(condition)) [[unlikely]] {                                                                 \
-      std::ostringstream holdfast_check_stream;                                                      \
-      holdfast_check_stream << values;                                                               \
-      ::holdfast::detail::check_failed(__FILE__, __LINE__, #condition, holdfast_check_stream.str()); \
-    }                                                                                                \
-  } while (false)
 
 }  // namespace holdfast

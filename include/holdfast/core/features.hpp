@@ -9,8 +9,8 @@
 
 namespace holdfast {
 
-/// Features of one image as a structure of arrays: entry i of every array belongs to feature i. Positions are raw image
-/// positions [px of level 0], as the extractor found them; Frame adds the undistorted ones.
+/// Features of one image as a structure of arrays: entry i of every array belongs to feature i. Positions are raw
+/// (distorted) pixels of level 0, as the extractor found them; Frame adds the undistorted positions.
 struct Features {
   std::vector<float> x;              ///< raw column [px of the full image]
   std::vector<float> y;              ///< raw row [px of the full image]

@@ -15,11 +15,18 @@
 
 namespace holdfast {
 
-/// The features of one image with all that tracking knows of them, as a structure of arrays. Entry i of every array
-/// belongs to feature i. Moved into a KeyFrame when the frame becomes one.
+/// The features of one image and the state of tracking for each, as a structure of arrays: entry i of every array
+/// belongs to feature i. All positions are of the left (or only) colour image.
+///
+/// Who writes what, in this order: FrameBuilder fills everything up to `right_x`, the grid and coarse.depth, and resets
+/// the rest. MovingWorld writes coarse.mask before features are extracted; then static_probability, measured_log_odds,
+/// coarse.static_log_odds and coarse.T_view_camera while the frame is tracked. The tracker writes map_points and
+/// T_camera_world. When the frame becomes a keyframe, Map stores a copy, and from then on Map and the local mapper
+/// change map_points and T_camera_world of the copy; its mask and static_probability are written once more when its own
+/// segmentation arrives.
 struct Frame {
   std::uint64_t index = 0;  ///< SensorFrame::index
-  double timestamp = 0.0;   ///< [s]
+  double timestamp = 0.0;   ///< of the colour image [s]
   std::shared_ptr<const Camera> camera;
   std::shared_ptr<const ScalePyramid> pyramid;
 
@@ -28,19 +35,23 @@ struct Frame {
   std::vector<float> y;                   ///< undistorted row [px]
   std::vector<float> depth;               ///< along the optical axis [m], 0 = none
   std::vector<float> right_x;             ///< column in the virtual right image [px], NaN = none
-  std::vector<MapPointId> map_points;     ///< the map point that the feature shows, or an invalid id
-  std::vector<float> static_probability;  ///< 1 = certainly part of the static world
-  /// What was measured of each feature's standing still, now and earlier; priors of classes apart. 0 = nothing.
+  std::vector<MapPointId> map_points;     ///< matched map point, or an invalid id
+  std::vector<float> static_probability;  ///< probability of belonging to the static world; the weight of the feature
+  /// Accumulated static log-odds from measurements only, of this frame and of the matched map point; class priors are
+  /// excluded. 0 = nothing was measured.
   std::vector<float> measured_log_odds;
-  FeatureGrid grid;                       ///< of the undistorted positions
-  CoarseView coarse;                      ///< the depth image on a coarse grid, and what is known of its parts
+  FeatureGrid grid;   ///< of the undistorted positions
+  CoarseView coarse;  ///< the depth image on a coarse grid, its mask and its evidence
 
   Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();
 
   std::size_t size() const { return features.size(); }
-  Eigen::Isometry3d T_world_camera() const { return T_camera_world.inverse(); }
+  Eigen::Isometry3d T_world_camera() const;
+  /// Pose of the depth image, which may have been taken at another moment than the colour image. Comparisons of depth
+  /// between frames and keyframes use this pose.
+  Eigen::Isometry3d T_view_world() const;
   bool has_depth(std::size_t feature) const { return depth[feature] > 0.0F; }
-  /// The feature's point in the camera frame; it must have depth.
+  /// Position of the feature in the camera frame [m]; it must have depth.
   Eigen::Vector3d camera_point(std::size_t feature) const {
     return camera->back_project(x[feature], y[feature], depth[feature]);
   }

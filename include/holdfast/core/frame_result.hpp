@@ -12,21 +12,21 @@
 
 namespace holdfast {
 
-/// What became of a frame.
+/// Tracking state of a frame.
 enum class TrackingStatus {
-  waiting,      ///< no map yet, and this frame could not start one
-  initialised,  ///< this frame started the map
-  tracked,      ///< pose found
-  lost,         ///< a map exists, but no pose was found
+  waiting,      ///< there is no map yet, and this frame could not initialise one
+  initialised,  ///< this frame initialised the map
+  tracked,      ///< the pose was estimated
+  lost,         ///< a map exists, but the pose could not be estimated
 };
 
-/// How the pose was first found, before the local map refined it.
+/// How the initial pose was estimated, before the refinement against the local map.
 enum class TrackingMethod {
   none,
-  motion_model,        ///< from the previous frame
-  reference_keyframe,  ///< by comparing with the reference keyframe
-  recovered,           ///< after a loss, from one of the last keyframes
-  relocalised,         ///< after a loss or in a loaded map, at a place that the loop detector recognised
+  motion_model,        ///< matches of the previous frame's map points, predicted with constant velocity
+  reference_keyframe,  ///< descriptor matches with the reference keyframe
+  recovered,           ///< after tracking was lost, from one of the last keyframes
+  relocalised,         ///< after tracking was lost or in a loaded map, at a place recognised by the loop detector
 };
 
 /// Why a frame has no pose.
@@ -36,24 +36,26 @@ const char* to_string(TrackingStatus status);
 const char* to_string(TrackingMethod method);
 const char* to_string(TrackingTrouble trouble);
 
-/// The typed result of one frame; trouble with a frame is never an exception.
+/// The result of one frame. A frame that cannot be tracked is reported here and never by an exception.
 struct FrameResult {
   std::uint64_t index = 0;
   double timestamp = 0.0;
   TrackingStatus status = TrackingStatus::waiting;
   TrackingMethod method = TrackingMethod::none;
   TrackingTrouble trouble = TrackingTrouble::none;
-  /// The pose as known when the frame was done; later adjustments may still correct it (Pipeline::trajectory).
+  /// The pose as estimated when the frame was processed; empty without one. Later adjustments may correct it
+  /// (Pipeline::trajectory).
   std::optional<Eigen::Isometry3d> T_world_camera;
-  int features = 0;         ///< found in the image
-  int static_features = 0;  ///< of those, not judged dynamic
-  int matches = 0;          ///< with the local map
-  int inliers = 0;          ///< of those, after the motion-only adjustment
+  int features = 0;         ///< features extracted from the image
+  int static_features = 0;  ///< features that are not classified as dynamic
+  int matches = 0;          ///< matches with the local map
+  int inliers = 0;          ///< inlier matches after motion-only bundle adjustment
   bool is_keyframe = false;
-  KeyFrameId keyframe;            ///< the keyframe made of this frame, or the reference keyframe
-  /// What moves or has moved, in the order of ids, when a filter tracks it (`motion_objects`); empty for a lost frame.
+  KeyFrameId keyframe;  ///< the keyframe created from this frame, otherwise the reference keyframe
+  /// Moving objects by rising id, if a filter tracks them (`motion_objects`); empty for a lost frame.
   std::vector<MovingObject> objects;
-  double tracking_seconds = 0.0;  ///< from the images to the pose: all but decoding them and local mapping
+  /// Time from images to pose [s], including masks that arrived with this frame; without decoding and local mapping.
+  double tracking_seconds = 0.0;
   StageTimes times;
 };
 

@@ -2,29 +2,46 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <span>
 
 #include "holdfast/core/descriptor.hpp"
+#include "holdfast/core/simd.hpp"
 
 namespace holdfast {
 
-/// The two nearest of a set of candidates; index -1 where there is none.
-struct NearestDescriptors {
-  int best_index = -1;
-  int best_distance = std::numeric_limits<int>::max();
-  int second_index = -1;
-  int second_distance = std::numeric_limits<int>::max();
-};
+namespace detail {
 
-/// distances[i] = Hamming distance of query and descriptors[candidates[i]]; run-time dispatch to popcnt where there is
-/// one.
-void hamming_distances(const Descriptor& query, const Descriptor* descriptors,
-                       std::span<const std::uint32_t> candidates, std::uint16_t* distances);
+#if defined(__x86_64__)
+__attribute__((target("popcnt"))) inline int distance_popcnt(const Descriptor& a, const Descriptor& b) {
+  return static_cast<int>(
+      __builtin_popcountll(a.words[0] ^ b.words[0]) + __builtin_popcountll(a.words[1] ^ b.words[1]) +
+      __builtin_popcountll(a.words[2] ^ b.words[2]) + __builtin_popcountll(a.words[3] ^ b.words[3]));
+}
 
-/// The best and the second best of the candidates; of equal ones the first in the list. Indices are positions in
-/// `descriptors`.
-NearestDescriptors nearest_descriptors(const Descriptor& query, const Descriptor* descriptors,
-                                       std::span<const std::uint32_t> candidates);
+__attribute__((target("popcnt"))) inline void distances_popcnt(const Descriptor& query, const Descriptor* descriptors,
+                                                               std::span<const std::uint32_t> candidates,
+                                                               std::uint16_t* distances) {
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    distances[i] = static_cast<std::uint16_t>(distance_popcnt(query, descriptors[candidates[i]]));
+}
+#endif
+
+inline void distances_scalar(const Descriptor& query, const Descriptor* descriptors,
+                             std::span<const std::uint32_t> candidates, std::uint16_t* distances) {
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    distances[i] = static_cast<std::uint16_t>(hamming_distance(query, descriptors[candidates[i]]));
+}
+
+}  // namespace detail
+
+/// distances[i] = Hamming distance between the query and descriptors[candidates[i]]. Uses the popcnt instruction if the
+/// processor has it (run-time dispatch).
+inline void hamming_distances(const Descriptor& query, const Descriptor* descriptors,
+                              std::span<const std::uint32_t> candidates, std::uint16_t* distances) {
+#if defined(__x86_64__)
+  if (simd_level() >= SimdLevel::sse4) return detail::distances_popcnt(query, descriptors, candidates, distances);
+#endif
+  detail::distances_scalar(query, descriptors, candidates, distances);
+}
 
 }  // namespace holdfast

@@ -8,9 +8,9 @@
 
 namespace holdfast {
 
-/// The name of an entry of a SlotMap: stable for the entry's life, never reused for another one (the generation counts
-/// the reuse of the slot). Ordered by slot, then generation, so that sorted containers of ids iterate the same way in
-/// every run.
+/// Identifies an entry of a SlotMap. An id is stable during the lifetime of its entry and is never reused: the
+/// generation counts how often the slot was reused. Ids are ordered by slot, then generation, so that sorted containers
+/// of ids iterate deterministically.
 template <class Tag>
 struct Id {
   std::uint32_t slot = std::numeric_limits<std::uint32_t>::max();
@@ -27,7 +27,7 @@ using MapPointId = Id<struct MapPointTag>;
 
 namespace std {
 
-/// Lets ids be keys of unordered containers.
+/// Allows ids as keys of unordered containers.
 template <class Tag>
 struct hash<holdfast::Id<Tag>> {
   std::size_t operator()(const holdfast::Id<Tag>& id) const noexcept {

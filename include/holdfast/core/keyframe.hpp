@@ -9,20 +9,20 @@
 
 namespace holdfast {
 
-/// A neighbour in the covisibility graph and the number of map points seen by both.
+/// An edge of the covisibility graph: the neighbour and the number of shared map points.
 struct CovisibilityEdge {
   KeyFrameId keyframe;
   int weight = 0;
 };
 
-/// A frame that the map remembers. Changed through Map.
+/// A frame stored in the map. It is modified through Map only.
 struct KeyFrame {
-  std::uint64_t sequence = 0;  ///< 0 for the first keyframe of the map, then counting up; never reused
+  std::uint64_t sequence = 0;  ///< 0 for the first keyframe of the map, then increasing; never reused
   Frame frame;                 ///< frame.T_camera_world is the keyframe's pose, frame.map_points its observations
-  std::vector<CovisibilityEdge> covisible;  ///< by falling weight, equal weights by rising sequence
+  std::vector<CovisibilityEdge> covisible;  ///< by decreasing weight, equal weights by increasing sequence
   KeyFrameId parent;                        ///< in the spanning tree; invalid for the first keyframe
-  std::vector<KeyFrameId> children;         ///< in the spanning tree, by time of adding
-  std::vector<KeyFrameId> loop_edges;       ///< keyframes at the other end of closed loops; never culled
+  std::vector<KeyFrameId> children;         ///< in the spanning tree, in order of insertion
+  std::vector<KeyFrameId> loop_edges;       ///< other ends of closed loops; a keyframe with one is never culled
 };
 
 }  // namespace holdfast

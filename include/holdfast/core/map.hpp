@@ -12,16 +12,16 @@
 
 namespace holdfast {
 
-/// A whole map as plain values, for Map::restore(). Ids inside it name entries by position: slot i, generation 0 is
-/// entry i.
+/// The content of a map as plain values, for Map::restore(). Ids inside it refer to entries by position: slot i with
+/// generation 0 is entry i.
 struct MapContent {
-  std::vector<KeyFrame> keyframes;  ///< by rising sequence; Frame::grid is left out
+  std::vector<KeyFrame> keyframes;  ///< by increasing sequence; Frame::grid is not set
   std::vector<MapPoint> points;
   std::uint64_t next_sequence = 0;  ///< greater than every keyframe's sequence
 };
 
-/// Keyframes and map points, named by ids, with everything that links them kept consistent: a feature of a keyframe
-/// names a point exactly when the point lists that observation. Not synchronised; see MapMutex.
+/// Keyframes and map points, referred to by ids. The map keeps all links between them consistent: a feature of a
+/// keyframe refers to a map point if and only if the point lists that observation. Not synchronised; see MapMutex.
 class Map {
  public:
   using KeyFrames = SlotMap<KeyFrame, KeyFrameTag>;
@@ -38,62 +38,73 @@ class Map {
   MapPoint* find_point(MapPointId id) { return points_.find(id); }
   const MapPoint* find_point(MapPointId id) const { return points_.find(id); }
 
-  /// Stores a copy of the frame as a keyframe and registers it with every map point that the frame names; names of
-  /// points that are gone are cleared. Call update_covisibility next.
+  /// Inserts the frame as a keyframe and adds an observation to every map point that the frame refers to; references
+  /// to points that no longer exist are cleared. The caller must call update_covisibility() next.
   KeyFrameId add_keyframe(Frame frame);
 
-  /// Makes a point without observations; add them with add_observation and finish with update_point.
+  /// Creates a point [m, world] without observations. The caller adds observations with add_observation() and then
+  /// calls update_point(). `created_at` is the sequence number of the keyframe that creates it.
   MapPointId add_point(const Eigen::Vector3d& position, std::uint64_t created_at);
 
-  /// Links a feature of a keyframe to a point; the feature must be free and the point not yet seen by that keyframe.
+  /// Links a feature of a keyframe to a point. The feature must not be linked yet, and the keyframe must not observe
+  /// the point yet.
   void add_observation(MapPointId point, KeyFrameId keyframe, std::uint32_t feature);
-  /// Unlinks; a point left without observations is removed.
+  /// Removes the observation of a point by a keyframe; a point without observations is removed.
   void remove_observation(MapPointId point, KeyFrameId keyframe);
-  /// The feature by which a keyframe sees a point, or -1.
+  /// The feature with which a keyframe observes a point, or -1.
   int feature_of(MapPointId point, KeyFrameId keyframe) const;
 
   /// Recomputes descriptor, viewing direction and distance range of a point from its observations
   /// (Mur-Artal et al. 2015, section III-C).
   void update_point(MapPointId point);
-  /// Only viewing direction and distance range: after the point or its keyframes moved.
+  /// Recomputes viewing direction and distance range only; sufficient after the point or its keyframes have moved.
   void update_point_geometry(MapPointId point);
 
-  /// Gives the observations of `from` to `to` and removes `from`; where a keyframe sees both, `to` keeps its own.
+  /// Merges `from` into `to`: moves its observations and removes it. If a keyframe observes both, `to` keeps its own
+  /// observation. Their static log-odds are summed, within the evidence limit.
   void fuse_points(MapPointId from, MapPointId to);
   void remove_point(MapPointId point);
 
-  /// Recounts the points that a keyframe shares with others and updates the edges of both sides; edges need
-  /// `minimum_weight` shared points, the best neighbour is kept in any case. Gives a new keyframe its parent.
+  /// Recounts the points that a keyframe shares with others and updates the covisibility edges on both sides. An edge
+  /// needs at least `minimum_weight` shared points; the strongest neighbour is always kept. Sets the spanning-tree
+  /// parent of a new keyframe.
   void update_covisibility(KeyFrameId keyframe, int minimum_weight = 15);
-  /// Removes a keyframe, its observations and edges; its children find new parents among their neighbours, and its pose
-  /// stays available through its parent (see pose_of). Its loop edges go with it.
+  /// Removes a keyframe with its observations, covisibility edges and loop edges. Its children in the spanning tree get
+  /// new parents among their neighbours. Its pose stays available relative to its parent; see pose_of().
   void remove_keyframe(KeyFrameId keyframe);
 
-  /// Remembers that a loop was closed between two keyframes, on both sides; twice is once.
+  /// Adds a loop edge between two keyframes, on both sides. Adding it again has no effect.
   void add_loop_edge(KeyFrameId first, KeyFrameId second);
 
   /// Ids of all keyframes, oldest first.
   std::vector<KeyFrameId> keyframes_by_age() const;
-  /// The up to `most` strongest neighbours.
-  std::vector<KeyFrameId> best_covisible(KeyFrameId keyframe, int most) const;
+  /// Up to `max_count` neighbours with the largest covisibility weights, strongest first.
+  std::vector<KeyFrameId> best_covisible(KeyFrameId keyframe, int max_count) const;
 
-  /// T_camera_world of a keyframe, also of a removed one (from the pose relative to its parent at the time of removal).
+  /// T_camera_world of a keyframe. For a removed keyframe, it is composed from the current pose of its parent and the
+  /// relative pose at the time of removal.
   Eigen::Isometry3d pose_of(KeyFrameId keyframe) const;
 
-  /// Sequence number that the next keyframe will get.
+  /// Bound on the magnitude of the static log-odds that fuse_points() leaves on a point (EvidenceSettings::limit). It
+  /// belongs to the run, not to the content: files do not keep it, and clear() and restore() leave it as it is.
+  void set_evidence_limit(float log_odds) { evidence_limit_ = log_odds; }
+  float evidence_limit() const { return evidence_limit_; }
+
+  /// Sequence number of the next keyframe.
   std::uint64_t next_sequence() const { return next_sequence_; }
 
-  /// Rises with touch(): whoever copies from the map sees by it whether the copy is old.
+  /// Incremented by touch(); a holder of copied map data compares versions to detect that the copy is outdated.
   std::uint64_t version() const { return version_; }
-  /// To be called after a change that others should notice: new keyframes, moved poses or points.
+  /// Must be called after a change that invalidates copies: new keyframes, moved poses or points.
   void touch() { ++version_; }
 
   void clear();
 
-  /// Replaces everything by `content`, whose positions become the ids. Feature grids are built anew. The content must
-  /// keep what Map keeps: observations agree on both sides, every point has some and its reference keyframe is among
-  /// them, edges are symmetric and sorted, parents are older than their children and list them. Throws Error, which
-  /// says what is wrong, and leaves the map as it was. Positions of features must be finite.
+  /// Replaces the whole map by `content`, whose positions become the ids, and rebuilds the feature grids. The content
+  /// must satisfy the invariants of Map: observations agree on both sides, every point has at least one and its
+  /// reference keyframe is among them, covisibility edges are symmetric and sorted, and parents are older than their
+  /// children and list them. Feature positions must be finite. Throws Error that describes the violation and leaves
+  /// the map unchanged.
   void restore(MapContent content);
 
  private:
@@ -110,6 +121,7 @@ class Map {
   std::map<KeyFrameId, Removed> removed_keyframes_;
   std::uint64_t next_sequence_ = 0;
   std::uint64_t version_ = 0;
+  float evidence_limit_ = 4.0F;  // the default of EvidenceSettings::limit
 };
 
 }  // namespace holdfast

@@ -6,18 +6,20 @@
 
 namespace holdfast {
 
-/// Guards a Map between threads. Tracking goes first: while it waits, nobody else gets the lock, so that a worker which
-/// locks again and again cannot keep a frame waiting. Whoever works in the background holds it for a few milliseconds
-/// at most and gives it back before solving anything. Not recursive.
+class Map;
+
+/// Protects a Map that is shared between threads. Tracking has priority: while it waits, no other thread acquires the
+/// lock, so that a worker that locks repeatedly cannot starve it. A background thread holds the lock for a few
+/// milliseconds at most and releases it before it solves an optimization problem. Not recursive.
 class MapMutex {
  public:
-  /// For background work; with std::lock_guard or std::unique_lock.
+  /// Locks for background work; used through std::lock_guard or std::unique_lock.
   void lock() {
     std::unique_lock state(mutex_);
     changed_.wait(state, [this] { return !held_ && trackers_waiting_ == 0; });
     held_ = true;
   }
-  /// For tracking; see TrackingLock.
+  /// Locks with priority for tracking; used through TrackingLock.
   void lock_for_tracking() {
     std::unique_lock state(mutex_);
     ++trackers_waiting_;
@@ -40,7 +42,7 @@ class MapMutex {
   int trackers_waiting_ = 0;
 };
 
-/// Holds the lock for tracking as long as it lives.
+/// Holds the lock with tracking's priority during its lifetime.
 class TrackingLock {
  public:
   explicit TrackingLock(MapMutex& mutex) : mutex_(mutex) { mutex_.lock_for_tracking(); }
@@ -50,6 +52,20 @@ class TrackingLock {
 
  private:
   MapMutex& mutex_;
+};
+
+/// A map that several threads work on, and its two locks, which are always taken in this order:
+///
+/// 1. `surgery`: the surgery mutex, held by whoever moves or removes keyframes and points (refining a keyframe,
+/// correcting
+///    a loop, applying a full adjustment). While it is held, what its holder has copied from the map stays valid.
+/// 2. `mutex`: the map's own lock, held for a few milliseconds and never while solving.
+///
+/// All three must outlive the user of the struct.
+struct SharedMap {
+  Map& map;
+  MapMutex& mutex;
+  std::mutex& surgery;
 };
 
 }  // namespace holdfast

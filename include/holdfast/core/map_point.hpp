@@ -10,25 +10,25 @@
 
 namespace holdfast {
 
-/// One sight of a map point.
+/// One observation of a map point: a feature of a keyframe.
 struct Observation {
   KeyFrameId keyframe;
   std::uint32_t feature = 0;
 };
 
-/// A point of the static world. Changed through Map, which keeps points and keyframes consistent.
+/// A point of the static world. It is modified through Map, which keeps points and keyframes consistent.
 struct MapPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();           ///< world [m]
-  Eigen::Vector3d viewing_direction = Eigen::Vector3d::Zero();  ///< unit mean of camera-to-point directions, world
-  float minimum_distance = 0.0F;                                ///< from which the descriptor can be found again [m]
+  Eigen::Vector3d viewing_direction = Eigen::Vector3d::Zero();  ///< mean camera-to-point direction, unit, world
+  float minimum_distance = 0.0F;  ///< distance range in which the descriptor can be matched [m]
   float maximum_distance = 0.0F;
-  Descriptor descriptor;                  ///< the observation nearest to all others in Hamming distance
-  std::vector<Observation> observations;  ///< ordered by time of adding
-  KeyFrameId reference_keyframe;          ///< first keyframe that still sees it
-  std::uint64_t created_at = 0;           ///< sequence number of the keyframe that made it
-  std::uint32_t visible_count = 1;        ///< frames in which it should have been seen
-  std::uint32_t found_count = 1;          ///< frames in which it was
-  float static_log_odds = 0.0F;           ///< evidence that the point stands still; 0 = unknown
+  Descriptor descriptor;                  ///< of the observation with the least median Hamming distance to all others
+  std::vector<Observation> observations;  ///< in order of insertion
+  KeyFrameId reference_keyframe;          ///< first keyframe that still observes it
+  std::uint64_t created_at = 0;           ///< sequence number of the keyframe that created it
+  std::uint32_t visible_count = 1;        ///< frames in which it is predicted to be visible
+  std::uint32_t found_count = 1;          ///< frames in which it was matched
+  float static_log_odds = 0.0F;           ///< accumulated log-odds that the point is static; 0 = unknown
 
   float found_ratio() const { return static_cast<float>(found_count) / static_cast<float>(visible_count); }
 };

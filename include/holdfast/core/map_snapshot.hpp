@@ -11,10 +11,10 @@ namespace holdfast {
 
 class Map;
 
-/// What a map holds at one moment, without images and descriptors: for drawing it, or finding a way through it. A value
-/// of its own that nothing changes any more. Metres, in the world frame of the run.
+/// A copy of the map's geometry at one time, without images and descriptors, for display or path planning. It is
+/// independent of the map and never modified afterwards. Metres, world frame of the run.
 struct MapSnapshot {
-  /// Where a keyframe was taken.
+  /// Pose and time of a keyframe.
   struct KeyFrame {
     KeyFrameId id;
     std::uint64_t sequence = 0;
@@ -25,10 +25,10 @@ struct MapSnapshot {
   struct Point {
     MapPointId id;
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
-    std::uint32_t observations = 0;  ///< keyframes that see it
-    float static_log_odds = 0.0F;    ///< evidence that it stands still; 0 = unknown
+    std::uint32_t observations = 0;  ///< number of keyframes that observe it
+    float static_log_odds = 0.0F;    ///< accumulated log-odds that it is static; 0 = unknown
   };
-  /// A closed loop joins two keyframes; each pair once.
+  /// A loop edge between two keyframes; each pair is listed once.
   struct Loop {
     KeyFrameId older;
     KeyFrameId newer;
@@ -39,7 +39,8 @@ struct MapSnapshot {
   std::vector<Loop> loops;
 };
 
-/// The caller sees to it that nobody changes the map meanwhile; a running pipeline does: Pipeline::map_snapshot().
+/// Copies the map. The caller must ensure that no other thread modifies the map meanwhile; for a running pipeline, use
+/// Pipeline::map_snapshot().
 MapSnapshot make_snapshot(const Map& map);
 
 }  // namespace holdfast

@@ -10,7 +10,7 @@
 
 namespace holdfast {
 
-/// Base of everything that a plugin provides (interfaces/*.hpp).
+/// Base class of all interfaces that a plugin can implement (interfaces/*.hpp).
 class Module {
  public:
   virtual ~Module() = default;
@@ -21,13 +21,14 @@ class Module {
   Module() = default;
 };
 
-/// What a module is told when it is made, beside its own settings.
+/// Information about the run that a module receives on construction, in addition to its settings.
 struct CreationContext {
-  Camera camera = {};                           ///< of the run
-  std::uint64_t seed = 1;                       ///< the run's only seed; derive your own with Random::fork
-  bool sequential = true;                       ///< results must be bit-identical from run to run
-  std::filesystem::path output_directory = {};  ///< for observers that write files; empty when nothing is written
-  /// Of the source's FrameTruth::class_labels, by index; empty when the source knows none, and for the source itself.
+  Camera camera = {};                           ///< camera of the run
+  std::uint64_t seed = 1;                       ///< the only seed of the run; derive a module's own with Random::fork
+  bool sequential = true;                       ///< if true, results must be bit-identical from run to run
+  std::filesystem::path output_directory = {};  ///< for observers that write files; empty if nothing is written
+  /// Class names of the source's FrameTruth::class_labels, by index; empty if the source has none, and for the source
+  /// itself.
   std::vector<std::string> class_names = {};
 };
 

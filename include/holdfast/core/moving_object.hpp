@@ -7,25 +7,25 @@
 
 namespace holdfast {
 
-/// A thing that moves, or has moved, as tracked over frames. World frame and metres as everywhere.
+/// A rigid object that moves or has moved, as tracked over frames. World frame, metres.
 ///
-/// Its origin is the middle of the surface that the camera sees, smoothed over time; of a thing that is seen from one
-/// side only that is not the middle of the thing. Something that bends, like a person, moves as its body as a whole.
+/// The origin is the centroid of the visible surface, smoothed over time. For an object seen from one side only, this
+/// is not the centroid of the object. A non-rigid object such as a person is approximated by one rigid motion.
 struct MovingObject {
-  std::uint32_t id = 0;    ///< from 1, never used again
-  std::string class_name;  ///< by the majority of the mask's labels on it; empty when they do not tell
-  /// Axes: those of the world when it was first seen, turned with it since.
+  std::uint32_t id = 0;    ///< from 1; never reused
+  std::string class_name;  ///< majority of the mask's labels on the object; empty without a majority
+  /// Its axes are parallel to the world axes when the object is first seen and rotate with the object afterwards.
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();          ///< of the origin, in the world [m/s]
-  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< about the world's axes [rad/s]
-  Eigen::AlignedBox3f box;                                     ///< that holds its visible surface, object frame [m]
-  float speed_deviation = 0.0F;                                ///< standard deviation of the speed [m/s]
-  bool moving = false;                                         ///< now; else it stands, and has moved before
-  double first_seen = 0.0;                                     ///< [s]
-  /// [s]; earlier than the frame's stamp while it is hidden, and its pose then only predicted.
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();          ///< of the origin, world frame [m/s]
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< world frame [rad/s]
+  Eigen::AlignedBox3f box;       ///< bounding box of the visible surface, object frame [m]
+  float speed_deviation = 0.0F;  ///< standard deviation of the speed [m/s]
+  bool moving = false;           ///< whether it moves now; otherwise it is at rest after a motion
+  double first_seen = 0.0;       ///< [s]
+  /// [s]; earlier than the frame's stamp while the object is occluded, in which case its pose is a prediction.
   double last_seen = 0.0;
 
-  double speed() const { return velocity.norm(); }
+  double speed() const;
 };
 
 }  // namespace holdfast

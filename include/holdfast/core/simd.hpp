@@ -1,13 +1,49 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdlib>
+#include <string_view>
+
 namespace holdfast {
 
-/// What the processor offers to the integer kernels. Every kernel gives the same bits at every level.
+/// SIMD instruction set of the integer kernels. Every kernel gives bit-identical results at every level.
 enum class SimdLevel { scalar = 0, sse4 = 1, avx2 = 2 };
 
-/// The best level of this processor; the environment variable HOLDFAST_SIMD (scalar, sse4, avx2) can lower it.
-SimdLevel simd_level();
-const char* to_string(SimdLevel level);
+namespace detail {
+inline SimdLevel detect_simd_level() {
+  SimdLevel level = SimdLevel::scalar;
+#if defined(__x86_64__) || defined(__i386__)
+  __builtin_cpu_init();
+  if (__builtin_cpu_supports("sse4.1") && __builtin_cpu_supports("popcnt")) level = SimdLevel::sse4;
+  if (level == SimdLevel::sse4 && __builtin_cpu_supports("avx2")) level = SimdLevel::avx2;
+#endif
+  if (const char* wanted = std::getenv("HOLDFAST_SIMD")) {
+    const std::string_view name = wanted;
+    if (name == "scalar") level = SimdLevel::scalar;
+    if (name == "sse4" && level > SimdLevel::sse4) level = SimdLevel::sse4;
+  }
+  return level;
+}
+}  // namespace detail
+
+/// The highest level that this processor supports; the environment variable HOLDFAST_SIMD (scalar, sse4, avx2) can
+/// lower it.
+inline SimdLevel simd_level() {
+  static const SimdLevel level = detail::detect_simd_level();
+  return level;
+}
+
+/// The name of a level, as in HOLDFAST_SIMD.
+inline const char* to_string(SimdLevel level) {
+  switch (level) {
+    case SimdLevel::scalar:
+      return "scalar";
+    case SimdLevel::sse4:
+      return "sse4";
+    case SimdLevel::avx2:
+      return "avx2";
+  }
+  return "?";
+}
 
 }  // namespace holdfast

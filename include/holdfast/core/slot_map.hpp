@@ -13,15 +13,15 @@
 
 namespace holdfast {
 
-/// Values named by stable ids instead of pointers. Insertion, look-up and removal in constant time; iteration in slot
-/// order, which depends on the history of calls alone, never on addresses. References stay valid until the value is
-/// removed. Not synchronised: the owner locks.
+/// A container of values that are referred to by stable ids instead of pointers. Insertion, look-up and removal take
+/// constant time. Iteration is in slot order, which depends on the sequence of calls only and never on addresses.
+/// References stay valid until the value is removed. Not synchronised; the owner locks.
 template <class T, class Tag>
 class SlotMap {
  public:
   using IdType = Id<Tag>;
 
-  /// Stores a value and names it.
+  /// Inserts a value and returns its id.
   template <class... Arguments>
   IdType emplace(Arguments&&... arguments) {
     std::uint32_t slot;
@@ -38,7 +38,7 @@ class SlotMap {
     return {slot, entry.generation};
   }
 
-  /// Removes a value; its id names nothing from now on. Does nothing for an id that names nothing.
+  /// Removes a value and invalidates its id. Has no effect for an invalid id.
   void erase(IdType id) {
     if (!contains(id)) return;
     Slot& entry = at_slot(id.slot);
@@ -54,11 +54,11 @@ class SlotMap {
     return entry.value.has_value() && entry.generation == id.generation;
   }
 
-  /// The value, or nullptr when the id names nothing (any more).
+  /// The value, or nullptr if the id is invalid or its value was removed.
   T* find(IdType id) { return contains(id) ? &*at_slot(id.slot).value : nullptr; }
   const T* find(IdType id) const { return contains(id) ? &*at_slot(id.slot).value : nullptr; }
 
-  /// The value; throws CheckError when the id names nothing.
+  /// The value; throws CheckError if the id is invalid or its value was removed.
   T& at(IdType id) {
     T* value = find(id);
     HOLDFAST_CHECK(value != nullptr, "slot " << id.slot << " generation " << id.generation);
@@ -68,7 +68,7 @@ class SlotMap {
 
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
-  /// One past the largest slot ever used: the length of an array indexed by slot.
+  /// One past the largest slot ever used, which is the length of an array indexed by slot.
   std::uint32_t slot_count() const { return used_slots_; }
 
   void clear() {

@@ -11,7 +11,7 @@ namespace holdfast {
 class Stopwatch {
  public:
   double seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
-  /// Begins anew, as if `already` seconds had passed.
+  /// Restarts the measurement, as if `already` seconds had passed.
   void restart(double already = 0.0) {
     begin_ = Clock::now() - std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(already));
   }
@@ -21,15 +21,15 @@ class Stopwatch {
   Clock::time_point begin_ = Clock::now();
 };
 
-/// Time that one frame spent in each stage, in the order in which the stages ended.
+/// Processing time of one frame per stage, in the order in which the stages ended.
 class StageTimes {
  public:
-  /// One stage, and the time that the frame spent in it [s].
+  /// A stage and its processing time [s].
   struct Entry {
-    std::string_view stage;  ///< a string literal
+    std::string_view stage;  ///< must be a string literal
     double seconds = 0.0;
   };
-  /// Adds to the stage's time of this frame.
+  /// Adds time to a stage of this frame [s].
   void add(std::string_view stage, double seconds) {
     for (Entry& entry : entries_)
       if (entry.stage == stage) {
@@ -45,7 +45,7 @@ class StageTimes {
   std::vector<Entry> entries_;
 };
 
-/// Adds the time of its own life to a stage.
+/// Adds the duration of its own lifetime to a stage.
 class StageTimer {
  public:
   StageTimer(StageTimes& times, std::string_view stage) : times_(times), stage_(stage) {}

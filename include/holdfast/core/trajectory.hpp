@@ -8,7 +8,7 @@
 
 namespace holdfast {
 
-/// The pose of the camera at a time. T_world_camera maps points from the camera frame to the world frame.
+/// The camera pose at one time. T_world_camera maps points from the camera frame to the world frame.
 struct TimedPose {
   double timestamp = 0.0;  ///< [s]
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
@@ -16,22 +16,23 @@ struct TimedPose {
 
 using Trajectory = std::vector<TimedPose>;
 
-/// The poses sorted by stamp, each stamp once: of several poses with one stamp the last one counts, as in the TUM
-/// tools. Poses with a value that is not finite are left out, as there.
+/// Sorts the poses by time stamp and removes duplicates: of several poses with the same stamp the last one is kept, as
+/// in the TUM tools. Poses with a value that is not finite are removed, as there.
 Trajectory sort_and_clean(Trajectory trajectory);
 
-/// Reads a trajectory in TUM format: lines "timestamp tx ty tz qx qy qz qw", '#' begins a comment, further words are
-/// ignored. The result is sorted and cleaned as by sort_and_clean(); quaternions are normalised, lines with a zero one
-/// are left out. Throws InputError (file and line) for a file that cannot be read or a line that is no pose.
+/// Reads a trajectory in TUM format: lines "timestamp tx ty tz qx qy qz qw", where '#' begins a comment and additional
+/// columns are ignored. The result is sorted and cleaned as by sort_and_clean(). Quaternions are normalised; lines with
+/// a zero quaternion are skipped. Throws InputError (file and line) for a file that cannot be read or a line that is
+/// not a pose.
 Trajectory read_trajectory(const std::filesystem::path& file);
 
-/// TUM format, stamps with 6 decimals and values with 9. The same bytes whatever the process's locale.
+/// Returns the trajectory in TUM format, with 6 decimals for time stamps and 9 for values, independent of the locale.
 std::string trajectory_text(const Trajectory& trajectory);
 
-/// Writes trajectory_text() to a temporary name first, then renames. Throws InputError when the file cannot be written.
+/// Writes trajectory_text() atomically. Throws InputError if the file cannot be written.
 void write_trajectory(const std::filesystem::path& file, const Trajectory& trajectory);
 
-/// Replaces the content of a file in one step: written to a temporary name beside it, then renamed.
+/// Replaces the content of a file atomically: writes a temporary file in the same folder and renames it.
 void write_file_atomically(const std::filesystem::path& file, const std::string& content);
 
 }  // namespace holdfast

@@ -12,26 +12,26 @@
 
 namespace holdfast {
 
-/// A keyframe's picture, and the same with the static scene in the place of what moves.
+/// The image of a keyframe, and the same image with dynamic pixels replaced by the static background.
 struct BackgroundPicture {
-  cv::Mat before;         ///< 8UC3, black where the undistorted image shows nothing
-  cv::Mat after;          ///< 8UC4: alpha 255, or 0 (and magenta) where no keyframe has seen the background
-  double replaced = 0.0;  ///< share of the pixels that came from other keyframes
-  double unknown = 0.0;   ///< share of the pixels that nobody knows
+  cv::Mat before;         ///< 8UC3, black outside the undistorted image
+  cv::Mat after;          ///< 8UC4: alpha 255, or 0 (and magenta) where no keyframe observed the background
+  double replaced = 0.0;  ///< fraction of pixels from other keyframes
+  double unknown = 0.0;   ///< fraction of pixels without a known background
 };
 
-/// Fills what moves in keyframes' pictures with what other keyframes saw behind it: their static pixels with depth are
-/// projected into the view, the nearest surface wins (z-buffer), and of several views of one surface the one that is
-/// most alike in direction, place and time. Pixels whose voxel has left (StaticScene::cloud) count as moving, in the
-/// view and in the others; what would lie in front of what is to be replaced is not used. Cracks between projected
-/// pixels are closed.
+/// Replaces dynamic pixels of keyframe images by the background that other keyframes observed: the static pixels of
+/// other keyframes with depth are projected into the view with a z-buffer, and among several views of one surface the
+/// most similar one in direction, position and time is used. Pixels of removed voxels (StaticScene::cloud) count as
+/// dynamic in all views. Surfaces in front of the replaced pixels are not used. Gaps between projected pixels are
+/// filled.
 class BackgroundPainter {
  public:
-  /// The scene must outlive the painter; the poses are those that the map has now.
+  /// The scene must outlive the painter. The current poses of the map are used.
   BackgroundPainter(const StaticScene& scene, const Map& map);
   ~BackgroundPainter();
 
-  /// Of scene.views()[view].
+  /// Renders the background of scene.views()[view].
   BackgroundPicture paint(std::size_t view) const;
 
  private:
@@ -41,7 +41,7 @@ class BackgroundPainter {
   const StaticScene& scene_;
   std::vector<Eigen::Isometry3d> T_world_camera_;
   enum Use : std::uint8_t { as_it_is, source, replaced };
-  std::vector<cv::Mat> uses_;  // per view: 8UC1, what each pixel is good for; a source also stays as it is
+  std::vector<cv::Mat> uses_;  // per view: 8UC1, Use of each pixel; source pixels are kept as well
 };
 
 }  // namespace holdfast

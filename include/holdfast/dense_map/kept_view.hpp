@@ -13,23 +13,23 @@
 
 namespace holdfast {
 
-/// What is kept of a keyframe's images: a smaller image without distortion, 5 bytes a pixel.
+/// The kept images of a keyframe: undistorted and subsampled, 5 bytes per pixel.
 struct KeptView {
   static constexpr std::uint16_t moves_bit = 0x8000, depth_bits = 0x7FFF;
-  static constexpr double depth_unit = 0.0005;  ///< [m]; so depth ends at 16.38 m
+  static constexpr double depth_unit = 0.0005;  ///< [m]; the maximum depth is 16.38 m
 
   KeyFrameId keyframe;
   std::uint64_t frame_index = 0;
   double timestamp = 0.0;  ///< [s]
   cv::Mat colour;          ///< 8UC3
-  cv::Mat depth;           ///< 16UC1: depth_bits in depth_units, 0 = none; moves_bit where no static scene is seen
+  cv::Mat depth;           ///< 16UC1: depth_bits in depth_units, 0 = none; moves_bit for dynamic pixels
 
   bool moves(int x, int y) const { return (depth.at<std::uint16_t>(y, x) & moves_bit) != 0; }
-  /// Of whatever is seen there, static or not [m]; 0 = none.
+  /// Depth of the visible surface, static or dynamic [m]; 0 = none.
   double depth_at(int x, int y) const { return (depth.at<std::uint16_t>(y, x) & depth_bits) * depth_unit; }
 };
 
-/// Makes kept views of a camera's images. Immutable after construction.
+/// Creates kept views from the images of a camera. Immutable after construction.
 class ViewSampler {
  public:
   ViewSampler(const Camera& camera, const DenseMapSettings& settings);
@@ -37,9 +37,9 @@ class ViewSampler {
   /// The pinhole camera of the kept views.
   const Camera& camera() const { return small_; }
 
-  /// Not static is what `labels` (8UC1 of the image's size, empty = none) gives a class of `left_out` (by label) or
-  /// calls unknown (255), without labels what coarse.labels says so, what coarse.static_log_odds says to move (< 0),
-  /// what is near it (DenseMapSettings::dilate, edge), and what lies outside the image.
+  /// Creates the kept view of a keyframe. Dynamic pixels are those whose label (`labels`, 8UC1 of the image's size;
+  /// coarse.mask if `labels` is empty) is unknown (255) or a class of `left_out` (by label), cells with negative
+  /// coarse.static_log_odds, pixels near these (DenseMapSettings::dilate, edge), and pixels outside the image.
   KeptView sample(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse, const cv::Mat& labels,
                   const std::vector<bool>& left_out) const;
 

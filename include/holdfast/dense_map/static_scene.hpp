@@ -10,31 +10,31 @@
 
 namespace holdfast {
 
-/// Collects what keyframes show of the static scene, and makes a dense cloud of it at the end, when the poses are what
-/// they will be. Memory: view_bytes() per keyframe, for DenseMapSettings::keyframes of them at most (384 kB each at
-/// 640x480 and step 2); while a cloud is made, about 64 bytes per occupied voxel more. One thread.
+/// Collects the images of keyframes and fuses their static pixels to a dense cloud at the end of the run, when the
+/// poses are final. Memory: view_bytes() per keyframe for at most DenseMapSettings::keyframes keyframes (384 kB each at
+/// 640x480 and step 2), and about 64 bytes per occupied voxel during the fusion. Used by one thread.
 class StaticScene {
  public:
   StaticScene(const Camera& camera, const DenseMapSettings& settings);
 
-  /// Keeps a keyframe whose mask is settled; see ViewSampler::sample. In any order.
+  /// Adds a keyframe whose mask is final; see ViewSampler::sample. Keyframes may be added in any order.
   void add(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse, const cv::Mat& labels,
            const std::vector<bool>& left_out);
 
   const DenseMapSettings& settings() const { return settings_; }
-  /// By rising frame index.
+  /// The kept views by increasing frame index.
   const std::vector<KeptView>& views() const { return views_; }
   /// The pinhole camera of the views.
   const Camera& camera() const { return sampler_.camera(); }
   std::size_t view_bytes() const;
 
-  /// One point per voxel that enough views saw and that stayed: in world coordinates, at the mean of what was seen in
-  /// it, with the mean colour, in the order of the voxels. A view is placed where the map has its keyframe (or had it,
-  /// when it was removed: Map::pose_of).
+  /// The fused cloud in world coordinates: one point per occupied voxel, at the mean position and with the mean colour
+  /// of its pixels, in voxel order. A voxel needs minimum_views views and must not be removed. The pose of a view is
+  /// that of its keyframe in the map (Map::pose_of, also for removed keyframes).
   ///
-  /// A voxel goes when views that came after it was first seen look through it: at least 2 and more than half as many
-  /// as saw it, or, after the last that saw it, at least 3 and more than a quarter. So what left vanishes, and what
-  /// came stays.
+  /// A voxel is removed if views after its first observation see through it: at least 2 and more than half the number
+  /// of its observations; or after its last observation at least 3 and more than a quarter. Surfaces that disappeared
+  /// are thus removed, and surfaces that appeared during the run are kept.
   std::vector<CloudPoint> cloud(const Map& map) const;
 
  private:

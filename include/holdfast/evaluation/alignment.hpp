@@ -7,11 +7,11 @@
 
 namespace holdfast {
 
-/// How an estimate is laid onto the truth before the absolute error is taken.
+/// Alignment of an estimated trajectory with the ground truth before the absolute error is computed.
 enum class AlignmentKind {
-  se3,   ///< rotation and translation: for estimates of metric scale
-  sim3,  ///< and one scale: for monocular estimates
-  none,  ///< as they are: both are in the same world frame already
+  se3,   ///< rotation and translation: for estimates with metric scale
+  sim3,  ///< rotation, translation and scale: for monocular estimates
+  none,  ///< no alignment: both have the same world frame
 };
 
 /// "se3", "sim3", "none".
@@ -24,12 +24,12 @@ struct TrajectoryAlignment {
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();  ///< [m]
   double scale = 1.0;
 
-  Eigen::Vector3d apply(const Eigen::Vector3d& position) const { return scale * (rotation * position) + translation; }
+  Eigen::Vector3d apply(const Eigen::Vector3d& position) const;
 };
 
-/// The least-squares alignment of paired positions, one per column (Umeyama 1991, equations 40 to 43; without scale the
-/// same as Horn 1987). At least 3 columns, both of the same number. Throws Error for sim3 when all positions of the
-/// estimate are one, because no scale follows from that.
+/// Least-squares alignment of corresponding positions, one per column (Umeyama 1991, equations 40 to 43; without scale
+/// identical to Horn 1987). Both need the same number of columns, at least 3. Throws Error for sim3 if all positions of
+/// the estimate coincide, because the scale is then undefined.
 TrajectoryAlignment align_positions(const Eigen::Matrix3Xd& estimate, const Eigen::Matrix3Xd& truth,
                                     AlignmentKind kind);
 

@@ -7,9 +7,9 @@
 
 namespace holdfast {
 
-// Numbers as text without regard to the process's locale, which may want decimal commas.
+// Number formatting independent of the locale, which may use decimal commas.
 
-/// With a fixed count of decimals; "-0.00" is written "0.00".
+/// Formats with a fixed number of decimals; "-0.00" becomes "0.00".
 inline std::string fixed_text(double value, int decimals) {
   char buffer[400];
   const auto result = std::to_chars(buffer, buffer + sizeof(buffer), value, std::chars_format::fixed, decimals);
@@ -18,13 +18,13 @@ inline std::string fixed_text(double value, int decimals) {
   return text;
 }
 
-/// The shortest text that reads back as the same value.
+/// Formats with the shortest text that is parsed as the same value.
 inline std::string shortest_text(double value) {
   char buffer[64];
   return std::string(buffer, std::to_chars(buffer, buffer + sizeof(buffer), value).ptr);
 }
 
-/// Text for use inside HTML or SVG.
+/// Escapes text for HTML or SVG.
 inline std::string escape_markup(std::string_view text) {
   std::string escaped;
   for (const char c : text) {

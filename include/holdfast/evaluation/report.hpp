@@ -7,32 +7,32 @@
 
 namespace holdfast {
 
-/// A table of texts. The first column is set flush left, the others flush right, as numbers want it.
+/// A table of texts. The first column is left-aligned, the others are right-aligned for numbers.
 struct ReportTable {
   std::string caption;
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;  ///< each as long as the header
-  /// One share (0 to 1) per row, drawn as a bar in a column of its own at the end; no such column when empty.
+  /// One fraction (0 to 1) per row, drawn as a bar in an additional last column; empty for no such column.
   std::vector<double> bars;
 };
 
-/// A picture, given as the SVG text that to_svg() makes.
+/// A figure as SVG text from to_svg().
 struct ReportFigure {
   std::string svg;
   std::string caption;
 };
 
-/// A heading and what stands beneath it, in this order; empty parts take no room.
+/// A heading and its content, in this order; empty parts are omitted.
 struct ReportSection {
   std::string heading;
   std::string text;                                         ///< a paragraph
   std::vector<std::pair<std::string, std::string>> values;  ///< name and value
   std::vector<ReportTable> tables;
   std::vector<ReportFigure> figures;
-  std::string preformatted;  ///< kept as it is, in a fixed-width font; for a configuration
+  std::string preformatted;  ///< in a fixed-width font; for a configuration
 };
 
-/// A number worth large type at the top of the page: {"ATE RMSE", "9.6 mm"}.
+/// A key figure in large type at the top of the page: {"ATE RMSE", "9.6 mm"}.
 struct ReportHighlight {
   std::string name;
   std::string value;
@@ -46,9 +46,9 @@ struct Report {
   std::vector<ReportSection> sections;
 };
 
-/// One HTML page that needs nothing but itself: styles and pictures are inline, there are no scripts. Dark on light,
-/// also in print. All texts are escaped, the SVG of figures is not. Same report, same bytes. Throws CheckError when a
-/// row is not as long as its header, or the bars are not as many as the rows.
+/// Formats a report as a self-contained HTML page: styles and figures are inline, there are no scripts. All texts are
+/// escaped, the SVG of figures is not. The same report gives the same bytes. Throws CheckError if a row and its header
+/// differ in length, or if the numbers of bars and rows differ.
 std::string to_html(const Report& report);
 
 }  // namespace holdfast

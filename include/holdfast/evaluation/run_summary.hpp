@@ -10,7 +10,7 @@
 
 namespace holdfast {
 
-/// Time of one stage over a run. Median, 95th percentile and maximum are over the frames in which the stage ran.
+/// Processing time of one stage over a run. Median, 95th percentile and maximum are over the frames in which it ran.
 struct StageRow {
   std::string stage;
   std::size_t frames = 0;
@@ -18,31 +18,31 @@ struct StageRow {
   double p95 = 0.0;      ///< [s]
   double maximum = 0.0;  ///< [s]
   double total = 0.0;    ///< [s]
-  double share = 0.0;    ///< of all stages' total, 0 to 1
+  double share = 0.0;    ///< fraction of the total of all stages, 0 to 1
 };
 
-/// Counts and times of a run, collected frame by frame.
+/// Accumulates counts and times of a run frame by frame.
 class RunSummary {
  public:
-  /// `decode_seconds`: time the source took for the frame's images.
+  /// Adds a frame; `decode_seconds` is the time that the source took for its images.
   void add(const FrameResult& result, double decode_seconds);
-  /// Stages that ran beside tracking, in another thread.
+  /// Adds stages that ran in other threads than tracking.
   void add(const StageTimes& background);
 
   std::uint64_t frames() const { return frames_; }
   std::uint64_t tracked() const { return count(TrackingStatus::tracked) + count(TrackingStatus::initialised); }
   std::uint64_t lost() const { return count(TrackingStatus::lost); }
-  /// Times that a lost camera found its place: among the last keyframes, or by place recognition.
+  /// Number of frames whose pose was recovered after a loss, from the last keyframes or by place recognition.
   std::uint64_t recovered() const { return recovered_; }
   std::uint64_t relocalised() const { return relocalised_; }
   std::uint64_t count(TrackingStatus status) const;
   const std::map<TrackingTrouble, std::uint64_t>& troubles() const { return troubles_; }
   double mean_inliers() const;
-  /// Seconds from the images to the pose, frame by frame.
+  /// Time from images to pose of every frame [s].
   const std::vector<double>& tracking_seconds() const { return tracking_seconds_; }
-  /// Stages in the order in which they first ended.
+  /// Stages in the order of their first completion.
   std::vector<StageRow> stages() const;
-  /// The row of the tracking time as a whole.
+  /// The row of the total tracking time.
   StageRow tracking() const;
 
  private:
@@ -59,7 +59,7 @@ class RunSummary {
   std::vector<double> tracking_seconds_;
 };
 
-/// The stage table as text: median, p95 and maximum in milliseconds, share in percent.
+/// Formats the stage table: median, 95th percentile and maximum in milliseconds, share in percent.
 std::string stage_table(const RunSummary& summary);
 
 }  // namespace holdfast

@@ -9,53 +9,53 @@
 
 namespace holdfast {
 
-/// What became of one class, over all images. A figure of nothing (no pixel, no image) is NaN.
+/// Segmentation accuracy of one class over all images. A figure without pixels or images is NaN.
 struct ClassEvaluation {
   std::string name;
-  std::uint64_t true_pixels = 0;                        ///< that the labels give to the class
-  std::uint64_t found_pixels = 0;                       ///< that the predictions give to it, where the labels are known
-  std::uint64_t both = 0;                               ///< that both give to it
-  std::size_t images = 0;                               ///< whose labels show it
-  std::size_t detected = 0;                             ///< of them those where its IoU is above 0.5
-  std::uint64_t boundary_union = 0, boundary_both = 0;  ///< pixels of the two outlines
+  std::uint64_t true_pixels = 0;                        ///< pixels labelled with the class
+  std::uint64_t found_pixels = 0;                       ///< pixels predicted as the class, among labelled pixels
+  std::uint64_t both = 0;                               ///< pixels labelled with and predicted as the class
+  std::size_t images = 0;                               ///< images whose labels contain the class
+  std::size_t detected = 0;                             ///< of these, images in which its IoU is above 0.5
+  std::uint64_t boundary_union = 0, boundary_both = 0;  ///< pixels of the two boundaries
 
-  /// Intersection over union of the pixels of all images.
+  /// Intersection over union (IoU) of the pixels of all images.
   double iou() const;
   /// Correctly labelled pixels / true pixels: equation 1 of Zeng et al. (Remote Sens. 2023, 15, 5479).
   double accuracy() const;
-  /// Share of the images that show the class in which its IoU is above 0.5: the rule of the same paper, with the class
-  /// in an image as the object.
+  /// Fraction of the images with the class in which its IoU is above 0.5: the rule of the same paper, applied to the
+  /// class in an image as the object.
   double detection_rate() const;
-  /// Intersection over union of the outlines: the pixels of a region at most 2 % of the image's diagonal from what is
-  /// not the region, the image's outside included (Cheng et al., CVPR 2021), of all images together.
+  /// IoU of the boundaries over all images. The boundary of a region consists of its pixels within 2 % of the image
+  /// diagonal of a pixel outside the region or of the image border (Cheng et al., CVPR 2021).
   double boundary_iou() const;
-  /// Found to be of the class, and are not.
+  /// Pixels wrongly predicted as the class.
   std::uint64_t false_pixels() const { return found_pixels - both; }
 };
 
-/// How well predicted labels agree with the truth.
+/// Agreement of predicted labels with the ground truth.
 struct SegmentationEvaluation {
   std::vector<ClassEvaluation> classes;  ///< by label; the first is the background
   std::size_t images = 0;
-  std::uint64_t known_pixels = 0;  ///< with a true label
+  std::uint64_t known_pixels = 0;  ///< pixels with a ground-truth label
   std::uint64_t correct_pixels = 0;
 
   double overall_accuracy() const;
-  /// Over the classes that the labels show at all.
+  /// Mean over the classes that occur in the labels.
   double mean_iou() const;
   double mean_accuracy() const;
 };
 
-/// Counts image by image.
+/// Accumulates the evaluation image by image.
 class SegmentationEvaluator {
  public:
-  /// Names by label; the first is the background. Outlines, which take most of the time, are compared for the class
-  /// with the name `outlined` only; empty = for none.
+  /// `classes` are names by label; the first is the background. Boundaries, which take most of the time, are evaluated
+  /// for the class named `outlined` only; empty = for none.
   explicit SegmentationEvaluator(std::vector<std::string> classes, const std::string& outlined = "person");
 
-  /// Labels and predictions of one image: 8UC1 of the same size, index into the classes. Where the labels are unknown
-  /// (255) nothing is counted. An unknown prediction is wrong, and a find of no class. Throws CheckError for another
-  /// type, size or number.
+  /// Adds labels and predictions of one image: 8UC1 of the same size, index into the classes. Pixels with unknown
+  /// labels (255) are ignored. An unknown prediction is wrong and belongs to no class. Throws CheckError for a wrong
+  /// type, size or label.
   void add(const cv::Mat& labels, const cv::Mat& predictions);
 
   const SegmentationEvaluation& result() const { return result_; }
@@ -65,9 +65,9 @@ class SegmentationEvaluator {
   std::size_t outlined_;  ///< label; as large as the number of classes for none
 };
 
-/// A table to read on a terminal, ends with a newline.
+/// Formats the result as a table for a terminal; ends with a newline.
 std::string to_text(const SegmentationEvaluation& evaluation);
-/// The same figures in full precision; a figure of nothing is null.
+/// Formats the result as JSON in full precision; a figure without pixels or images is null.
 std::string to_json(const SegmentationEvaluation& evaluation);
 
 }  // namespace holdfast

@@ -1,32 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <span>
-#include <vector>
 
 namespace holdfast {
 
-/// The value below which `percent` (0 to 100) of the values lie, with linear interpolation between the two nearest
-/// order statistics (definition 7 of Hyndman and Fan 1996, the default of NumPy and R). NaN for no values.
-inline double percentile(std::span<const double> values, double percent) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  std::vector<double> sorted(values.begin(), values.end());
-  const double rank = std::clamp(percent / 100.0, 0.0, 1.0) * static_cast<double>(sorted.size() - 1);
-  const auto below = sorted.begin() + static_cast<std::ptrdiff_t>(rank);
-  std::nth_element(sorted.begin(), below, sorted.end());
-  const double fraction = rank - std::floor(rank);
-  if (fraction == 0.0) return *below;
-  return *below + fraction * (*std::min_element(below + 1, sorted.end()) - *below);
-}
+/// Percentile (0 to 100) with linear interpolation between the two nearest order statistics (definition 7 of Hyndman
+/// and Fan 1996, the default of NumPy and R). NaN without values.
+double percentile(std::span<const double> values, double percent);
 
-/// The middle value, or the mean of the two middle ones. NaN for no values.
-inline double median(std::span<const double> values) { return percentile(values, 50.0); }
+/// The median; the mean of the two central values for an even number of values. NaN without values.
+double median(std::span<const double> values);
 
-/// The six figures by which trajectory errors are reported, in the unit of the values. NaN for no values.
+/// The six statistics of trajectory errors, in the unit of the values. NaN without values.
 struct Statistics {
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
@@ -39,27 +27,7 @@ struct Statistics {
   double median = none;
 };
 
-/// Sums run in the order of the values, so equal input gives equal bits.
-inline Statistics statistics_of(std::span<const double> values) {
-  Statistics result;
-  result.count = values.size();
-  if (values.empty()) return result;
-  const double count = static_cast<double>(values.size());
-  double sum = 0.0, sum_of_squares = 0.0;
-  for (const double value : values) {
-    sum += value;
-    sum_of_squares += value * value;
-  }
-  result.mean = sum / count;
-  result.rmse = std::sqrt(sum_of_squares / count);
-  double squared_deviations = 0.0;
-  for (const double value : values) squared_deviations += (value - result.mean) * (value - result.mean);
-  result.standard_deviation = std::sqrt(squared_deviations / count);
-  const auto [minimum, maximum] = std::minmax_element(values.begin(), values.end());
-  result.minimum = *minimum;
-  result.maximum = *maximum;
-  result.median = median(values);
-  return result;
-}
+/// Computes the statistics. Sums are accumulated in the order of the values, so that equal input gives equal bits.
+Statistics statistics_of(std::span<const double> values);
 
 }  // namespace holdfast

@@ -3,7 +3,7 @@
 
 #include <limits>
 
-#include "holdfast/core/camera.hpp"
+#include "holdfast/geometry/pinhole.hpp"
 #include "holdfast/geometry/so3.hpp"
 
 /// Two views of the same scene (Hartley and Zisserman, Multiple View Geometry, 2004, chapter 9).
@@ -15,29 +15,39 @@ inline Eigen::Matrix3d essential_matrix(const Eigen::Isometry3d& T_a_world, cons
   return hat(T_b_a.translation()) * T_b_a.linear();
 }
 
-/// Fundamental matrix: pixel_b^T * F * pixel_a = 0 for undistorted pixels (x, y, 1) (equation 9.2).
-inline Eigen::Matrix3d fundamental_matrix(const Camera& camera, const Eigen::Isometry3d& T_a_world,
-                                          const Eigen::Isometry3d& T_b_world) {
+/// Fundamental matrix: pixel_b^T * F * pixel_a = 0 for undistorted pixels (x, y, 1) (equation 9.2). The camera is any
+/// that CameraTraits knows.
+template <class Camera>
+Eigen::Matrix3d fundamental_matrix(const Camera& camera_model, const Eigen::Isometry3d& T_a_world,
+                                   const Eigen::Isometry3d& T_b_world) {
+  const Pinhole camera = pinhole_of(camera_model);
   Eigen::Matrix3d to_ray;
   to_ray << 1.0 / camera.fx, 0, -camera.cx / camera.fx, 0, 1.0 / camera.fy, -camera.cy / camera.fy, 0, 0, 1;
   return to_ray.transpose() * essential_matrix(T_a_world, T_b_world) * to_ray;
 }
 
-/// Squared distance of a pixel in b from the epipolar line of a pixel in a [px^2]; infinite where there is no line (the
-/// pixel in a is the epipole, or the cameras share their centre).
-inline double epipolar_distance2(const Eigen::Matrix3d& fundamental, const Eigen::Vector2d& pixel_a,
-                                 const Eigen::Vector2d& pixel_b) {
-  const Eigen::Vector3d line = fundamental * pixel_a.homogeneous();
-  const double norm2 = line.head<2>().squaredNorm();
-  if (!(norm2 > 0.0)) return std::numeric_limits<double>::infinity();
-  const double value = line.dot(pixel_b.homogeneous());
-  return value * value / norm2;
-}
+/// The line in image b on which the point behind a pixel of image a is seen: a * x + b * y + c = 0.
+struct EpipolarLine {
+  double a = 0.0, b = 0.0, c = 0.0;
 
-/// Chi-square test at 95 % with one degree of freedom; `sigma2_b`: variance of a pixel coordinate in b [px^2].
-inline bool is_on_epipolar_line(const Eigen::Matrix3d& fundamental, const Eigen::Vector2d& pixel_a,
-                                const Eigen::Vector2d& pixel_b, double sigma2_b) {
-  return epipolar_distance2(fundamental, pixel_a, pixel_b) <= 3.841 * sigma2_b;
+  /// Squared distance of a pixel from the line [px^2]; infinite where there is no line (the pixel in a is the epipole,
+  /// or the cameras share their centre).
+  double distance2(double x, double y) const {
+    const double norm2 = a * a + b * b, value = a * x + b * y + c;
+    return norm2 > 0.0 ? value * value / norm2 : std::numeric_limits<double>::infinity();
+  }
+  /// Whether the squared distance is at most `limit` variances of a pixel coordinate; `inverse_sigma2` [1/px^2]. Needs
+  /// no division, for searches through many pixels. Never where there is no line.
+  bool is_near(double x, double y, double inverse_sigma2, double limit = 3.841) const {
+    const double norm2 = a * a + b * b, value = a * x + b * y + c;
+    return norm2 > 0.0 && value * value * inverse_sigma2 <= limit * norm2;
+  }
+};
+
+/// The epipolar line of a pixel of image a.
+inline EpipolarLine epipolar_line(const Eigen::Matrix3d& fundamental, const Eigen::Vector2d& pixel_a) {
+  const Eigen::Vector3d line = fundamental * pixel_a.homogeneous();
+  return {line.x(), line.y(), line.z()};
 }
 
 }  // namespace holdfast::geometry

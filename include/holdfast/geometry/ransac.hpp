@@ -9,7 +9,7 @@
 
 namespace holdfast::geometry {
 
-/// `size` different numbers below `count`; count must be at least size.
+/// `size` different numbers below `count`, in the order in which they are drawn; count must be at least size.
 template <std::size_t size>
 std::array<std::uint32_t, size> sample_without_repeat(Random& random, std::uint32_t count) {
   std::array<std::uint32_t, size> result{};
@@ -22,14 +22,14 @@ std::array<std::uint32_t, size> sample_without_repeat(Random& random, std::uint3
   return result;
 }
 
-/// How many samples are needed until one is free of outliers with the given confidence (Fischler and Bolles 1981,
-/// section II-B), at most `most`.
-inline int ransac_iterations(double inlier_ratio, int sample_size, double confidence, int most) {
+/// Number of samples after which one is free of outliers with the given confidence (Fischler and Bolles 1981, section
+/// II-B), at most `max_iterations`.
+inline int ransac_iterations(double inlier_ratio, int sample_size, double confidence, int max_iterations) {
   const double all_good = std::pow(inlier_ratio, sample_size);
-  if (all_good <= 0.0) return most;
+  if (all_good <= 0.0) return max_iterations;
   if (all_good >= 1.0) return 1;
   const double needed = std::log(1.0 - confidence) / std::log1p(-all_good);
-  return needed >= most ? most : static_cast<int>(std::ceil(needed));
+  return needed >= max_iterations ? max_iterations : static_cast<int>(std::ceil(needed));
 }
 
 }  // namespace holdfast::geometry

@@ -4,7 +4,7 @@
 #include "holdfast/geometry/so3.hpp"
 
 /// Rigid motions and their tangent space, after Sola, Deray and Atchuthan 2018, appendix D. A tangent vector is
-/// (translation part [m], rotation part [rad]), in this order everywhere in Holdfast.
+/// (translation part [m], rotation part [rad]), in this order in every function.
 namespace holdfast::geometry {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
@@ -57,16 +57,8 @@ inline Eigen::Matrix3d left_jacobian_coupling(const Vector6d& tangent) {
   return 0.5 * r + a * (pr + rp + prp) + b * (p * pr + rp * p - 3.0 * prp) + c * (prp * p + p * prp);
 }
 
-/// exp(tangent + d) = exp(left_jacobian * d) * exp(tangent) to first order in d (equation 179a).
-inline Matrix6d left_jacobian_se3(const Vector6d& tangent) {
-  Matrix6d result = Matrix6d::Zero();
-  result.topLeftCorner<3, 3>() = left_jacobian_so3(tangent.tail<3>());
-  result.bottomRightCorner<3, 3>() = result.topLeftCorner<3, 3>();
-  result.topRightCorner<3, 3>() = left_jacobian_coupling(tangent);
-  return result;
-}
-
-/// Inverse of left_jacobian_se3 (equation 179b).
+/// Inverse of the left Jacobian J, for which exp(tangent + d) = exp(J * d) * exp(tangent) to first order in d
+/// (equations 179a and 179b).
 inline Matrix6d left_jacobian_inverse_se3(const Vector6d& tangent) {
   const Eigen::Matrix3d inverse = left_jacobian_inverse_so3(tangent.tail<3>());
   Matrix6d result = Matrix6d::Zero();
@@ -76,11 +68,10 @@ inline Matrix6d left_jacobian_inverse_se3(const Vector6d& tangent) {
   return result;
 }
 
-/// exp(tangent + d) = exp(tangent) * exp(right_jacobian * d) to first order in d.
-inline Matrix6d right_jacobian_se3(const Vector6d& tangent) { return left_jacobian_se3(-tangent); }
+/// Inverse of the right Jacobian J, for which exp(tangent + d) = exp(tangent) * exp(J * d) to first order in d.
 inline Matrix6d right_jacobian_inverse_se3(const Vector6d& tangent) { return left_jacobian_inverse_se3(-tangent); }
 
-/// The nearest rigid motion: products of many motions drift away from orthonormal, this brings them back.
+/// The nearest rigid motion: removes the rounding errors that a product of many motions accumulates in its rotation.
 inline Eigen::Isometry3d orthonormalised(const Eigen::Isometry3d& motion) {
   Eigen::Isometry3d result = motion;
   result.linear() = Eigen::Quaterniond(motion.linear()).normalized().toRotationMatrix();

@@ -23,7 +23,8 @@ inline Eigen::Quaterniond exp_so3(const Eigen::Vector3d& rotation) {
   return Eigen::Quaterniond(std::cos(0.5 * angle), scale * rotation.x(), scale * rotation.y(), scale * rotation.z());
 }
 
-/// Rotation vector of a rotation, angle at most pi. Through the half angle, so that angles near pi lose nothing.
+/// Rotation vector of a rotation, angle at most pi. Computed from the half angle, so that angles near pi lose no
+/// digits.
 inline Eigen::Vector3d log_so3(const Eigen::Quaterniond& rotation) {
   const double sine = rotation.vec().norm();
   const double sign = rotation.w() < 0.0 ? -1.0 : 1.0;
@@ -57,12 +58,6 @@ inline Eigen::Matrix3d left_jacobian_inverse_so3(const Eigen::Vector3d& rotation
       half < 0.05 ? 1.0 / 12 + angle2 * (1.0 / 720 + angle2 / 30240) : (1.0 - half / std::tan(half)) / angle2;
   const Eigen::Matrix3d cross = hat(rotation);
   return Eigen::Matrix3d::Identity() - 0.5 * cross + scale * cross * cross;
-}
-
-/// exp(rotation + d) = exp(rotation) * exp(right_jacobian * d) to first order in d (equation 143).
-inline Eigen::Matrix3d right_jacobian_so3(const Eigen::Vector3d& rotation) { return left_jacobian_so3(-rotation); }
-inline Eigen::Matrix3d right_jacobian_inverse_so3(const Eigen::Vector3d& rotation) {
-  return left_jacobian_inverse_so3(-rotation);
 }
 
 }  // namespace holdfast::geometry

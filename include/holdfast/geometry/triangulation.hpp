@@ -2,15 +2,18 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <Eigen/SVD>
+#include <cmath>
 #include <optional>
 
-#include "holdfast/core/camera.hpp"
+#include "holdfast/geometry/pinhole.hpp"
+#include "holdfast/geometry/pose_problem.hpp"
 
 namespace holdfast::geometry {
 
-/// The point nearest to two rays in the least-squares sense: the middle of their shortest connection (Hartley and Sturm
-/// 1997, section 5.3). Rays start at the camera centres [m, world], directions need not be of unit length. Nothing for
-/// parallel rays.
+/// The point nearest to two rays in the least-squares sense: the midpoint of their shortest connection (Hartley and
+/// Sturm 1997, section 5.3). Rays start at the camera centres [m, world]; directions need not be of unit length. Empty
+/// for parallel rays.
 inline std::optional<Eigen::Vector3d> triangulate_midpoint(const Eigen::Vector3d& centre_a,
                                                            const Eigen::Vector3d& direction_a,
                                                            const Eigen::Vector3d& centre_b,
@@ -26,31 +29,77 @@ inline std::optional<Eigen::Vector3d> triangulate_midpoint(const Eigen::Vector3d
 }
 
 /// The point that solves the four projection equations of two views in the algebraic least-squares sense (Hartley and
-/// Sturm 1997, section 5.1, homogeneous). `ray_a`, `ray_b`: (x, y, 1) in the camera frames. Nothing for a point at
+/// Sturm 1997, section 5.1, homogeneous). `ray_a`, `ray_b`: (x, y, 1) in the camera frames. Empty for a point at
 /// infinity.
-std::optional<Eigen::Vector3d> triangulate_linear(const Eigen::Isometry3d& T_a_world, const Eigen::Vector3d& ray_a,
-                                                  const Eigen::Isometry3d& T_b_world, const Eigen::Vector3d& ray_b);
+inline std::optional<Eigen::Vector3d> triangulate_linear(const Eigen::Isometry3d& T_a_world,
+                                                         const Eigen::Vector3d& ray_a,
+                                                         const Eigen::Isometry3d& T_b_world,
+                                                         const Eigen::Vector3d& ray_b) {
+  const Eigen::Matrix<double, 3, 4> a = T_a_world.matrix().topRows<3>();
+  const Eigen::Matrix<double, 3, 4> b = T_b_world.matrix().topRows<3>();
+  Eigen::Matrix4d system;
+  system.row(0) = ray_a.x() * a.row(2) - ray_a.z() * a.row(0);
+  system.row(1) = ray_a.y() * a.row(2) - ray_a.z() * a.row(1);
+  system.row(2) = ray_b.x() * b.row(2) - ray_b.z() * b.row(0);
+  system.row(3) = ray_b.y() * b.row(2) - ray_b.z() * b.row(1);
+  if (!system.allFinite()) return std::nullopt;
+  const Eigen::JacobiSVD<Eigen::Matrix4d> svd(system, Eigen::ComputeFullV);
+  const Eigen::Vector4d solution = svd.matrixV().col(3);
+  if (std::abs(solution.w()) < 1e-12) return std::nullopt;
+  return solution.head<3>() / solution.w();
+}
 
-/// What triangulate() asks of a point.
+/// Conditions that triangulate() sets a point.
 struct TriangulationOptions {
-  double largest_parallax_cosine = 0.9998;  ///< 0.9998 is 1.15 degrees
-  double limit = 5.991;                     ///< chi-square of the reprojection in each view
+  double max_parallax_cosine = 0.9998;  ///< 0.9998 is 1.15 degrees
+  double limit = 5.991;                 ///< chi-square of the reprojection in each view
 };
 
-/// Whether a triangulated point is good, or what is wrong with it.
+/// Whether a triangulated point is good, or why not.
 enum class TriangulationStatus { good, little_parallax, behind_camera, large_error };
 
-/// A point that two views gave, and whether it is to be believed.
+/// A point from two views, and whether it can be used.
 struct TriangulatedPoint {
   TriangulationStatus status = TriangulationStatus::little_parallax;
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< world [m]; valid only with status good
   double parallax_cosine = 1.0;                     ///< of the angle between the two rays
 };
 
-/// A map point from two undistorted pixels, checked: enough parallax, in front of both cameras, and reprojected within
-/// the chi-square limit in both (Mur-Artal et al. 2015, section VI-D). `sigma2`: variance of a pixel coordinate [px^2].
-TriangulatedPoint triangulate(const Camera& camera, const Eigen::Isometry3d& T_a_world, const Eigen::Vector2d& pixel_a,
-                              double sigma2_a, const Eigen::Isometry3d& T_b_world, const Eigen::Vector2d& pixel_b,
-                              double sigma2_b, const TriangulationOptions& options = {});
+/// A point as one camera observed it.
+struct PointView {
+  Eigen::Isometry3d T_camera_world;
+  Eigen::Vector2d pixel;  ///< without lens distortion [px]
+  double sigma2 = 1.0;    ///< variance of a pixel coordinate [px^2]
+};
+
+/// A map point from two views by the same camera, checked: enough parallax, in front of both cameras, and reprojected
+/// within the chi-square limit in both (Mur-Artal et al. 2015, section VI-D). The camera is any that CameraTraits
+/// knows.
+template <class Camera>
+TriangulatedPoint triangulate(const Camera& camera_model, const PointView& a, const PointView& b,
+                              const TriangulationOptions& options = {}) {
+  const Pinhole camera = pinhole_of(camera_model);
+  TriangulatedPoint result;
+  const Eigen::Vector3d ray_a = camera.back_project(a.pixel.x(), a.pixel.y(), 1.0);
+  const Eigen::Vector3d ray_b = camera.back_project(b.pixel.x(), b.pixel.y(), 1.0);
+  const Eigen::Vector3d world_a = a.T_camera_world.linear().transpose() * ray_a;
+  const Eigen::Vector3d world_b = b.T_camera_world.linear().transpose() * ray_b;
+  result.parallax_cosine = world_a.dot(world_b) / (world_a.norm() * world_b.norm());
+  if (!(result.parallax_cosine < options.max_parallax_cosine)) return result;
+  const auto point = triangulate_linear(a.T_camera_world, ray_a, b.T_camera_world, ray_b);
+  if (!point) return result;
+
+  const Eigen::Vector3d in_a = a.T_camera_world * *point, in_b = b.T_camera_world * *point;
+  if (!(in_a.z() > minimum_depth && in_b.z() > minimum_depth)) {
+    result.status = TriangulationStatus::behind_camera;
+    return result;
+  }
+  const double error_a = (camera.project(in_a) - a.pixel).squaredNorm() / a.sigma2;
+  const double error_b = (camera.project(in_b) - b.pixel).squaredNorm() / b.sigma2;
+  const bool fits = error_a <= options.limit && error_b <= options.limit;
+  result.status = fits ? TriangulationStatus::good : TriangulationStatus::large_error;
+  result.point = *point;
+  return result;
+}
 
 }  // namespace holdfast::geometry

@@ -11,12 +11,12 @@
 
 namespace holdfast {
 
-/// A network for semantic segmentation as a Segmenter: an image in, labels and confidence of its size out.
+/// A Segmenter that runs a semantic segmentation network and decodes its output to labels and confidence.
 class NetworkSegmenter : public Segmenter {
  public:
-  /// Loads the network and runs it once, so that whatever does not fit shows before the first frame. `classes` are the
-  /// names by channel or label; one called 'unknown' stands for pixels that nobody is sure of. `form.classes` is set
-  /// from them. Throws what Network and decode_segmentation() throw.
+  /// Loads the network and runs it once, so that errors are reported before the first frame. `classes` are the names by
+  /// channel or label; the name 'unknown' denotes unlabelled pixels. `form.classes` is set from them. Throws the
+  /// exceptions of Network and decode_segmentation().
   NetworkSegmenter(const NetworkOptions& options, OutputForm form, std::vector<std::string> classes,
                    std::vector<std::string> movable);
 
@@ -25,9 +25,10 @@ class NetworkSegmenter : public Segmenter {
   Segmentation segment(const SensorFrame& frame) override;
 
  protected:
-  /// The network's output for an image, valid until the next call.
+  /// Computes the network's output for an image, valid until the next call.
   virtual cv::Mat scores(const cv::Mat& colour) { return network_.run(colour); }
-  /// The same for the mirror image of the last one, once after each scores(); valid until the next call.
+  /// Computes the output for the mirror image of the last image, at most once after each scores(); valid until the next
+  /// call.
   cv::Mat mirrored_scores() { return network_.run_mirrored(); }
 
  private:

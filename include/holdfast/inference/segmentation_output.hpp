@@ -11,15 +11,15 @@
 
 namespace holdfast {
 
-/// What the numbers of a segmentation network mean.
+/// Meaning of the output values of a segmentation network.
 enum class OutputKind {
-  logits,         ///< scores of each class, of which softmax makes probabilities; of one channel: sigmoid
-  probabilities,  ///< 0 to 1, of each class; of one channel: of the only class beside the background
-  labels          ///< index of the class
+  logits,         ///< score of each class before softmax; before the sigmoid for one channel
+  probabilities,  ///< 0 to 1 for each class; for one channel, of the only class besides the background
+  labels          ///< class index
 };
 
-/// What to expect of a network's output: for N classes N channels (or one, where there are two classes: background and
-/// what is looked for) of any height and width, for labels one channel.
+/// Expected form of the output: N channels for N classes (or one channel for the second of two classes) of any height
+/// and width; one channel for labels.
 struct OutputForm {
   OutputKind kind = OutputKind::logits;
   bool channels_last = false;  ///< 1 x height x width x channels
@@ -27,12 +27,13 @@ struct OutputForm {
   std::filesystem::path model;  ///< named in messages
 };
 
-/// Labels and confidence, of the given size, from a network's output (32F; dimensions as OutputForm says, the first
-/// one, of size 1, may be missing). Scores are resized bilinearly (pixel centres at half integers) before the largest
-/// is chosen, of equal ones the first; labels take the nearest pixel. Confidence is the winner's softmax probability
-/// (probabilities: the winner's share), 0 to 255; for labels it stays empty. A label of 255 is unknown. Throws
-/// InputError, with what was found and what was expected, for another shape, numbers that are not finite, probabilities
-/// outside 0 to 1 and labels that name no class. The same bits at every SIMD level.
+/// Decodes a network's output (32F with the dimensions of OutputForm; the first dimension of size 1 may be missing) to
+/// labels and confidence of the given size. Scores are resized bilinearly (pixel centres at half integers) before the
+/// maximum is taken, the first one in case of a tie; labels are resized by nearest neighbour. The confidence is the
+/// softmax probability of the selected class (for probabilities, its fraction of their sum), 0 to 255; it is empty for
+/// labels. Label 255 is unknown. Throws InputError, which states what was found and what was expected, for a wrong
+/// shape, values that are not finite, probabilities outside 0 to 1 and labels without a class. Results are
+/// bit-identical at every SIMD level.
 Segmentation decode_segmentation(const cv::Mat& output, const OutputForm& form, int width, int height);
 
 }  // namespace holdfast

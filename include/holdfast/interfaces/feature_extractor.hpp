@@ -9,17 +9,17 @@
 
 namespace holdfast {
 
-/// Finds and describes features. Used by one thread at a time; keeps buffers from image to image.
+/// Detects and describes features. Used by one thread at a time; implementations may keep buffers between images.
 class FeatureExtractor : public Module {
  public:
   static constexpr const char* kind = "features";
 
-  /// Finds features in a grey image (8UC1, any size; an image too small for a feature, or an empty one, gives none).
-  /// `ignore` is empty or 8UC1 of the same size; features are not taken where it is not 0, to within two pixels of
-  /// their octave. Neither image is written to. `out` is replaced. The same image gives the same features, in the same
-  /// order, on every call and at every SIMD level.
+  /// Extracts features from a grey image (8UC1, any size); an empty image or one too small for a feature gives none.
+  /// `ignore` is empty or 8UC1 of the same size; no features are extracted where it is not 0, with a tolerance of two
+  /// pixels of the feature's octave. Neither image is written to. `out` is replaced. The same image gives the same
+  /// features in the same order, on every call and at every SIMD level.
   virtual void extract(const cv::Mat& grey, const cv::Mat& ignore, Features& out) = 0;
-  /// The scales of Features::octave; does not change after construction.
+  /// The scale pyramid to which Features::octave refers; constant after construction.
   virtual const ScalePyramid& pyramid() const = 0;
 };
 

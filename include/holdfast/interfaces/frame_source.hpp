@@ -12,36 +12,35 @@
 
 namespace holdfast {
 
-/// A frame that could not be used and was left out because the user allowed it (`on_bad_frame: skip`).
+/// A frame that could not be used and was skipped, as configured by `on_bad_frame: skip`.
 struct SkippedFrame {
   std::uint64_t index = 0;
   double timestamp = 0.0;
-  std::string reason;  ///< names the file
+  std::string reason;  ///< the error message, which names the file
 };
 
-/// What a source offers, known before its first frame.
+/// Properties of a source that are known before its first frame.
 struct SourceDescription {
-  std::string name;  ///< of the sequence, for titles
+  std::string name;  ///< name of the sequence, for titles
   bool has_depth = false;
-  bool has_object_masks = false;             ///< FrameTruth::object_mask and class_labels
-  std::vector<std::string> class_names;      ///< of class_labels, by index
-  std::optional<std::uint64_t> frame_count;  ///< nothing for an endless source
-  std::optional<Camera> camera;  ///< the source's own camera, when it knows it better than the configuration
+  std::vector<std::string> class_names;      ///< class names of FrameTruth::class_labels, by index
+  std::optional<std::uint64_t> frame_count;  ///< empty if the source is endless
+  std::optional<Camera> camera;              ///< calibration known to the source; another one in the configuration is an error
 };
 
-/// Where frames come from: a recording, a simulation, a camera. Frames come in the order of their time stamps, which
-/// rise strictly. Used by one thread.
+/// Provides the frames of a recording, a simulation or a live camera. Time stamps increase strictly from frame to
+/// frame. Used by one thread.
 class FrameSource : public Module {
  public:
   static constexpr const char* kind = "source";
 
   virtual SourceDescription describe() const = 0;
-  /// The next frame, or nothing at the end. Throws InputError, naming the file, for a frame that cannot be used, unless
-  /// the source was told to skip and count those.
+  /// Returns the next frame, or nothing at the end. Throws InputError that names the file for a frame that cannot be
+  /// used, unless the source is configured to skip and count such frames.
   virtual std::optional<SensorFrame> next() = 0;
-  /// True poses, sorted by stamp (not necessarily the frames' stamps); empty when not known.
+  /// Ground-truth poses, sorted by time stamp; the stamps may differ from those of the frames. Empty if unknown.
   virtual Trajectory truth() const { return {}; }
-  /// Frames left out so far.
+  /// Frames skipped so far.
   virtual std::vector<SkippedFrame> skipped() const { return {}; }
 };
 

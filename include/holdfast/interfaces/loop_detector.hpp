@@ -11,27 +11,28 @@
 
 namespace holdfast {
 
-/// A keyframe that looks like the query; larger scores look more alike.
+/// A keyframe similar to the query; a larger score means greater similarity.
 struct PlaceMatch {
   KeyFrameId keyframe;
   double score = 0.0;
 };
 
-/// Recognises places by the descriptors of keyframes. Used by one thread at a time.
+/// Place recognition by the descriptors of keyframes. Used by one thread at a time.
 class LoopDetector : public Module {
  public:
   static constexpr const char* kind = "loop_detector";
 
-  /// A keyframe that is not known yet, with any number of descriptors.
+  /// Adds a keyframe with any number of descriptors. The keyframe must not be in the database yet.
   virtual void add(KeyFrameId keyframe, std::span<const Descriptor> descriptors) = 0;
-  /// Forgets a keyframe; one that is not known is ignored.
+  /// Removes a keyframe from the database; an unknown id is ignored.
   virtual void remove(KeyFrameId keyframe) = 0;
-  /// Up to `most` of the known keyframes, none twice, best first; equal scores by rising id. Scores are finite. The
-  /// same calls in the same order give the same matches, and asking changes no later answer.
-  virtual std::vector<PlaceMatch> query(std::span<const Descriptor> descriptors, int most) const = 0;
+  /// Returns up to `max_count` keyframes of the database by decreasing score, equal scores by increasing id, without
+  /// duplicates. Scores are finite. The same calls in the same order give the same matches, and a query does not affect
+  /// later results.
+  virtual std::vector<PlaceMatch> query(std::span<const Descriptor> descriptors, int max_count) const = 0;
 };
 
-/// Recognises nothing: `loop_detector: none`, the default.
+/// Null object without matches: `loop_detector: none`, the default.
 class NullLoopDetector final : public LoopDetector {
  public:
   void add(KeyFrameId, std::span<const Descriptor>) override {}
@@ -39,10 +40,10 @@ class NullLoopDetector final : public LoopDetector {
   std::vector<PlaceMatch> query(std::span<const Descriptor>, int) const override { return {}; }
 };
 
-/// Another detector behind a mutex, so that tracking can ask while loop closing adds.
+/// Serialises access to another detector with a mutex, so that tracking can query while loop closing adds.
 class SharedLoopDetector final : public LoopDetector {
  public:
-  /// The detector must outlive this one.
+  /// The detector must outlive this object.
   explicit SharedLoopDetector(LoopDetector& detector) : detector_(detector) {}
 
   void add(KeyFrameId keyframe, std::span<const Descriptor> descriptors) override {
@@ -53,9 +54,9 @@ class SharedLoopDetector final : public LoopDetector {
     const std::lock_guard lock(mutex_);
     detector_.remove(keyframe);
   }
-  std::vector<PlaceMatch> query(std::span<const Descriptor> descriptors, int most) const override {
+  std::vector<PlaceMatch> query(std::span<const Descriptor> descriptors, int max_count) const override {
     const std::lock_guard lock(mutex_);
-    return detector_.query(descriptors, most);
+    return detector_.query(descriptors, max_count);
   }
 
  private:

@@ -9,6 +9,7 @@
 
 #include "holdfast/core/camera.hpp"
 #include "holdfast/core/module.hpp"
+#include "holdfast/geometry/pose_problem.hpp"
 
 namespace holdfast {
 
@@ -31,15 +32,32 @@ struct PoseProblem {
   std::size_t size() const { return points.size(); }
 };
 
-/// How the adjustment of a single pose ended.
-struct PoseSummary {
-  bool usable = false;  ///< false: too few observations or no finite solution; T_camera_world is unchanged then
-  int inliers = 0;
-  int iterations = 0;
-  double final_cost = 0.0;
-  /// Inverse of the approximated Hessian at the result: covariance of a left perturbation (translation, rotation).
-  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+/// The result of an adjustment of a single pose.
+using geometry::PoseSummary;
+
+/// Lets geometry::adjust_pose and geometry::find_pose solve a PoseProblem. Without a camera, or with arrays of
+/// different lengths, they throw CheckError.
+template <>
+struct geometry::PoseProblemTraits<PoseProblem> {
+  static Pinhole pinhole(const PoseProblem& problem) { return pinhole_of(*problem.camera); }
+  static std::size_t size(const PoseProblem& problem) { return problem.size(); }
+  static const Eigen::Vector3d& point(const PoseProblem& problem, std::size_t i) { return problem.points[i]; }
+  static Eigen::Vector2d pixel(const PoseProblem& problem, std::size_t i) { return {problem.x[i], problem.y[i]}; }
+  static double right_x(const PoseProblem& problem, std::size_t i) { return problem.right_x[i]; }
+  static double information(const PoseProblem& problem, std::size_t i) { return problem.inverse_sigma2[i]; }
+  static double weight(const PoseProblem& problem, std::size_t i) { return problem.weight[i]; }
+  static const Eigen::Isometry3d& pose(const PoseProblem& problem) { return problem.T_camera_world; }
+  static void set_pose(PoseProblem& problem, const Eigen::Isometry3d& pose) { problem.T_camera_world = pose; }
+  static void set_inlier(PoseProblem& problem, std::size_t i, bool inlier) { problem.inlier[i] = inlier; }
+  /// Checks the problem and makes room for the inliers.
+  static void begin(PoseProblem& problem);
 };
+
+/// \cond
+// Compiled once, in holdfast::interfaces.
+extern template PoseSummary geometry::adjust_pose(PoseProblem& problem, const PoseAdjustmentOptions& options);
+extern template PoseSummary geometry::find_pose(PoseProblem& problem, const PnpOptions& options);
+/// \endcond
 
 /// Poses and points together: local and full bundle adjustment (Mur-Artal and Tardos 2017, section III-C).
 struct BundleProblem {
@@ -115,8 +133,10 @@ class Optimizer : public Module {
  public:
   static constexpr const char* kind = "optimizer";
 
-  virtual PoseSummary optimize_pose(PoseProblem& problem) = 0;
-  /// `stop` is looked at between iterations.
+  /// Motion-only bundle adjustment. The default is geometry::adjust_pose with its default options, so that an optimizer
+  /// has to implement bundles and pose graphs alone.
+  virtual PoseSummary optimize_pose(PoseProblem& problem);
+  /// `stop` is read between iterations.
   virtual BundleSummary optimize_bundle(BundleProblem& problem, const std::atomic<bool>& stop) = 0;
   virtual GraphSummary optimize_pose_graph(PoseGraphProblem& problem) = 0;
 };

@@ -10,31 +10,32 @@
 
 namespace holdfast {
 
-/// What is where in a colour image.
+/// Per-pixel semantic segmentation of a colour image.
 struct Segmentation {
-  cv::Mat labels;      ///< 8UC1 of the frame's size: index into the segmenter's classes(); 255 = unknown
+  cv::Mat labels;      ///< 8UC1 of the frame's size: index into Segmenter::classes(); 255 = unknown
   cv::Mat confidence;  ///< 8UC1 of the same size, 255 = certain; empty means certain everywhere
   bool empty() const { return labels.empty(); }
 };
 
-/// Names the class of every pixel. May be slow: the pipeline asks for keyframes only and never waits in tracking.
-/// Used by one thread at a time, not necessarily the one that made it.
+/// Assigns a class to every pixel. It may be slow: the pipeline segments keyframes (or every n-th frame) only, and in
+/// threaded mode tracking never waits for the result. Used by one thread at a time, which may differ from the thread
+/// that constructed it.
 class Segmenter : public Module {
  public:
   static constexpr const char* kind = "segmenter";
 
-  /// Class names by label, none twice; label 0 is the background. Empty for a segmenter that never finds anything. Does
-  /// not change after construction.
+  /// Class names by label, without duplicates; label 0 is the background. Empty for a segmenter without classes.
+  /// Constant after construction.
   virtual const std::vector<std::string>& classes() const = 0;
-  /// Of the classes, those that can move or be moved; empty when the segmenter does not say.
+  /// The subset of classes() whose members can move or be moved; empty if the segmenter does not specify it.
   virtual std::vector<std::string> movable() const { return {}; }
-  /// The segmentation of a frame; empty when it has none for this frame (a result, not an error). Throws InputError for
-  /// a frame that it cannot use. The frame is not written to, and later calls leave the result as it is. The same
-  /// frames in the same order give the same results.
+  /// Segments a frame. An empty result means that there is no segmentation for this frame, which is not an error.
+  /// Throws InputError for a frame that it cannot use. The frame is not written to, and later calls do not modify an
+  /// earlier result. The same frames in the same order give the same results.
   virtual Segmentation segment(const SensorFrame& frame) = 0;
 };
 
-/// Finds nothing: `segmenter: none`, the default.
+/// Null object without classes: `segmenter: none`, the default.
 class NullSegmenter final : public Segmenter {
  public:
   const std::vector<std::string>& classes() const override {

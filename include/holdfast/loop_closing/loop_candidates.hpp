@@ -10,40 +10,41 @@
 
 namespace holdfast {
 
-/// Which of the keyframes that look like the current one may be the same place (Mur-Artal et al. 2015, section VII-A).
+/// Selects loop candidates among the keyframes similar to the current one (Mur-Artal et al. 2015, section VII-A).
 ///
-/// Left out: keyframes of the neighbourhood (up to two steps in the covisibility graph: tracking already uses their
-/// points), keyframes that are too young, and keyframes that look less like the current one than its least alike
-/// neighbour does. The rest is grouped by covisibility, and a group must turn up for several keyframes in a row: the
-/// same wrong place seldom does. Looks at the map; the caller holds its lock. One thread.
+/// Excluded are keyframes of the neighbourhood (up to two steps in the covisibility graph, because tracking already
+/// uses their points), keyframes that are too recent, and keyframes that are less similar to the current one than its
+/// least similar neighbour. The others are grouped by covisibility, and a group must be consistent over several
+/// consecutive keyframes, which is rare for a wrong place. Reads the map; the caller holds its lock. Used by one
+/// thread.
 class LoopCandidates {
  public:
   explicit LoopCandidates(const LoopClosingSettings& settings) : settings_(settings) {}
 
-  /// How many matches to ask the detector for, so that the neighbours do not use up the answer.
+  /// Number of matches to request from the detector, so that candidates remain after the neighbours are excluded.
   int matches_to_ask_for(const Map& map, KeyFrameId keyframe) const;
 
-  /// The best keyframe of each consistent group, best group first. To be called for each keyframe in turn; matches that
-  /// name no keyframe of the map (any more) are passed over.
+  /// The best keyframe of each consistent group, best group first. It must be called for each keyframe in order.
+  /// Matches whose keyframe is not in the map are ignored.
   std::vector<KeyFrameId> choose(const Map& map, KeyFrameId keyframe, std::span<const PlaceMatch> matches);
 
-  /// Forgets the groups of earlier keyframes: after a loop.
+  /// Removes the groups of earlier keyframes; called after a loop closure.
   void clear() { groups_.clear(); }
 
  private:
   struct Group {
     KeyFrameId best;
-    double score = 0.0;                 ///< sum of the candidates in it
+    double score = 0.0;                 ///< sum of the scores of its candidates
     std::vector<KeyFrameId> keyframes;  ///< the best and its neighbours, sorted
-    int times = 1;                      ///< keyframes in a row
+    int times = 1;                      ///< number of consecutive keyframes
   };
   std::vector<Group> group(const Map& map, std::span<const PlaceMatch> candidates) const;
 
   LoopClosingSettings settings_;
-  std::vector<Group> groups_;  // of the keyframe before
+  std::vector<Group> groups_;  // of the previous keyframe
 };
 
-/// The keyframe and all within two steps in the covisibility graph: 1 at their slots.
+/// Marks the keyframe and all keyframes within two steps in the covisibility graph by 1 at their slots.
 std::vector<std::uint8_t> neighbourhood_of(const Map& map, KeyFrameId keyframe);
 
 }  // namespace holdfast

@@ -11,6 +11,7 @@
 #include "holdfast/core/stage_times.hpp"
 #include "holdfast/interfaces/loop_detector.hpp"
 #include "holdfast/interfaces/optimizer.hpp"
+#include "holdfast/loop_closing/closed_loop.hpp"
 #include "holdfast/loop_closing/full_adjustment.hpp"
 #include "holdfast/loop_closing/loop_candidates.hpp"
 #include "holdfast/loop_closing/loop_closing_settings.hpp"
@@ -20,58 +21,43 @@ namespace holdfast {
 
 struct LoopMeasurement;
 
-/// A loop that was found and corrected.
-struct ClosedLoop {
-  KeyFrameId keyframe;   ///< at the end of the loop
-  KeyFrameId candidate;  ///< the place that it saw again
-  int inliers = 0;       ///< points of the place found in the keyframe
-  int points_fused = 0;
-  double way = 0.0;       ///< shortest way between the two through the map before [m], see below
-  PoseChange correction;  ///< of the keyframe, as measured
-  /// Measured by the check, as maps points of the candidate's camera to the keyframe's.
-  Eigen::Isometry3d T_keyframe_candidate = Eigen::Isometry3d::Identity();
-  double seconds = 0.0;  ///< of the correction
-};
-
-/// Recognises places seen again and pulls the map together there (Mur-Artal et al. 2015, section VII; with depth,
+/// Detects revisited places and corrects the accumulated drift (Mur-Artal et al. 2015, section VII; with depth,
 /// Mur-Artal and Tardos 2017, section III-D).
 ///
 /// 1. Candidates by place recognition, see LoopCandidates.
-/// 2. Geometric check: matched descriptors, rigid alignment by RANSAC, guided matching, pose adjustment.
-/// 3. Plausibility. Two desks that look alike agree in everything that 1 and 2 look at; only the way between them tells
-///    them apart. So a loop must be one that odometry can have caused: the correction may not exceed
-///    drift_constant + drift_per_metre * way (the same for the turn), where the way is the shortest one through the
-///    graph of keyframes. That the shortest counts means that a keyframe which shares points with old keyframes near
-///    its present pose is held there, whatever place it looks like. And the present pose is given a hearing: where old
-///    points in view from it are found in the keyframe, as many as make a place, and disagree with the loop, the pose
-///    is confirmed and the loop refused. In doubt nothing is closed: a missed loop comes again, a false one stays.
+/// 2. Geometric check: matched descriptors, rigid alignment by RANSAC, guided search, motion-only adjustment.
+/// 3. Plausibility. Two similar desks pass steps 1 and 2; only the path between them distinguishes them. The correction
+///    must be explicable by drift: correction <= drift_constant + drift_per_metre * path length, and likewise for the
+///    rotation, where the path is the shortest one in the graph of keyframes. A keyframe that shares points with old
+///    keyframes near its current pose therefore has a short path and stays there. In addition, the current pose is
+///    tested as the competing hypothesis: if enough old points visible from it are matched in the keyframe and disagree
+///    with the loop, the pose is confirmed and the loop rejected. In case of doubt no loop is closed, because a missed
+///    loop is detected again later, whereas a wrong loop is permanent.
 /// 4. Correction: pose graph over the essential graph (spanning tree, strong covisibility edges, loop edges) with the
-///    oldest keyframe fixed; points follow their reference keyframes; points of the place and of the keyframe's
-///    surroundings that are the same become one; covisibility is counted anew; a loop edge remembers it.
+///    oldest keyframe fixed; points are moved with their reference keyframes; duplicate points of the place and of the
+///    keyframe's neighbourhood are fused; covisibility is updated; a loop edge is added.
 ///
-/// Threads: process() and forget() from one thread. Takes `work` for steps 2 to 4 and the map's lock within it, a few
-/// milliseconds at a time and never while solving. Keyframes that others add to the map meanwhile are carried along by
-/// their parents. Nobody else may move or remove keyframes or points without holding `work`.
+/// Threads: process() and forget() are called by one thread. Steps 2 to 4 hold the surgery mutex, and the map's lock
+/// within it for a few milliseconds at a time and never during an optimization. Keyframes inserted meanwhile are moved
+/// with their parents. No other thread may move or remove keyframes or points without holding the surgery mutex.
 class LoopCloser {
  public:
-  /// All references must outlive this; detector and optimizer are used by process() and forget() only. Random samples
-  /// follow from the seed and the keyframe alone.
-  LoopCloser(const LoopClosingSettings& settings, Map& map, MapMutex& map_mutex, std::mutex& work,
-             LoopDetector& detector, Optimizer& optimizer, std::uint64_t seed);
+  /// All references must outlive this object; detector and optimizer are used by process() and forget() only. Random
+  /// samples depend on the seed and the keyframe only.
+  LoopCloser(const LoopClosingSettings& settings, const SharedMap& shared, LoopDetector& detector, Optimizer& optimizer,
+             std::uint64_t seed);
 
-  /// A full adjustment that a new loop makes void: it is asked to stop before the map is corrected.
+  /// Sets the full adjustment that a new loop invalidates; it is requested to stop before the map is corrected.
   void set_full_adjustment(FullAdjustment* adjustment) { adjustment_ = adjustment; }
 
-  /// Looks for a loop at a keyframe, closes it, and adds the keyframe to the detector. To be called once for each
-  /// keyframe by rising sequence, when local mapping is done with it; a keyframe that is gone already is passed over.
-  /// Adds stages "loops: ...".
+  /// Searches for a loop at a keyframe, closes it, and adds the keyframe to the detector. It must be called once for
+  /// each keyframe by increasing sequence, after local mapping has processed it; a removed keyframe is skipped. Adds
+  /// stages "loops: ...".
   std::optional<ClosedLoop> process(KeyFrameId keyframe, StageTimes& times);
 
-  /// Removes a keyframe that left the map from the detector; harmless for one that was never added.
+  /// Removes a keyframe from the detector after it was removed from the map; has no effect if it was never added.
   void forget(KeyFrameId keyframe) { detector_.remove(keyframe); }
 
-  /// The candidates that the last process() looked at closely, the closed one last.
-  const std::vector<LoopTrial>& trials() const { return trials_; }
   const LoopCounts& counts() const { return counts_; }
 
  private:
@@ -82,13 +68,12 @@ class LoopCloser {
   LoopClosingSettings settings_;
   Map& map_;
   MapMutex& map_mutex_;
-  std::mutex& work_;
+  std::mutex& surgery_;
   LoopDetector& detector_;
   Optimizer& optimizer_;
   std::uint64_t seed_;
   FullAdjustment* adjustment_ = nullptr;
   LoopCandidates candidates_;
-  std::vector<LoopTrial> trials_;
   LoopCounts counts_;
   std::optional<std::uint64_t> last_loop_;  // sequence of the keyframe
 };

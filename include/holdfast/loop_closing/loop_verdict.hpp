@@ -9,21 +9,21 @@
 
 namespace holdfast {
 
-/// What became of a candidate that was looked at closely; all but the first refuse it.
+/// Result of the verification of a candidate; all values except the first one reject it.
 enum class LoopVerdict {
   closed,
-  few_matches,             ///< too few descriptors agree
-  no_alignment,            ///< the matched points fit no rigid motion
-  few_inliers,             ///< too few points of the place are found where they should be
-  small_share,             ///< many points of the place that should be seen are not
-  one_corner,              ///< what is found fills too little of the view
-  implausible_correction,  ///< odometry cannot have drifted that far on the way between
-  pose_confirmed,          ///< old points lie where the present pose expects them: it is right already
-  not_solved,              ///< the pose graph has no solution; the map is as before
+  few_matches,             ///< too few descriptor matches
+  no_alignment,            ///< no rigid motion fits enough matched points
+  few_inliers,             ///< too few points of the place are matched by the guided search
+  small_share,             ///< too small a fraction of the points predicted to be visible is matched
+  one_corner,              ///< the matches cover too small a part of the view
+  implausible_correction,  ///< the correction exceeds the plausible drift on the path between the places
+  pose_confirmed,          ///< old points confirm the current pose, which is the competing hypothesis
+  not_solved,              ///< the pose graph has no solution; the map is unchanged
 };
 inline constexpr std::size_t loop_verdicts = 9;
 
-/// Size of a correction: how far the camera's centre moves and how far it turns.
+/// Magnitude of a correction: translation of the camera centre and angle of rotation.
 struct PoseChange {
   double metres = 0.0;
   double degrees = 0.0;
@@ -32,24 +32,24 @@ struct PoseChange {
 /// Name of a verdict as in the report, such as "few inliers".
 const char* loop_verdict_name(LoopVerdict verdict);
 
-/// What was found when a candidate was looked at closely; zero for what its verdict did not need.
+/// Measurements of the verification of a candidate; a value that its verdict did not require is zero.
 struct LoopTrial {
   KeyFrameId keyframe;
   KeyFrameId candidate;
   LoopVerdict verdict = LoopVerdict::few_matches;
-  int matches = 0;        ///< descriptors that agree
-  int aligned = 0;        ///< of these, such as fit one rigid motion
-  int inliers = 0;        ///< points of the place found in the keyframe
-  int expected = 0;       ///< points of the place that the keyframe should show
-  int cells = 0;          ///< of 16 over the image that hold two inliers
-  double way = 0.0;       ///< between the two through the map [m], with a metre for each radian
-  PoseChange correction;  ///< that the loop asks for
+  int matches = 0;        ///< descriptor matches
+  int aligned = 0;        ///< inliers of the rigid alignment among them
+  int inliers = 0;        ///< points of the place that are matched in the keyframe
+  int expected = 0;       ///< points of the place that are predicted to be visible in the keyframe
+  int cells = 0;          ///< number of 16 cells over the image with at least two inliers
+  double way = 0.0;       ///< length of the path between the two in the map [m], with one metre per radian
+  PoseChange correction;  ///< correction that the loop requires
 };
 
-/// What loop closing did so far; for the report.
+/// Cumulative loop-closing statistics.
 struct LoopCounts {
   std::uint64_t keyframes = 0;  ///< processed
-  std::uint64_t removed = 0;    ///< were gone from the map before their turn
+  std::uint64_t removed = 0;    ///< removed from the map before they were processed
   std::uint64_t points_fused = 0;
   std::array<std::uint64_t, loop_verdicts> verdicts{};  ///< candidates by LoopVerdict
 

@@ -16,9 +16,9 @@ struct CloudPoint {
   friend bool operator==(const CloudPoint&, const CloudPoint&) = default;
 };
 
-/// Binary little-endian PLY: float x y z, uchar red green blue per vertex, as viewers of point clouds expect it.
+/// Formats a cloud as binary little-endian PLY with float x y z and uchar red green blue per vertex.
 std::string cloud_ply(std::span<const CloudPoint> cloud);
-/// The same into a file, in one step. Throws InputError when it cannot be written.
+/// Writes cloud_ply() to a file atomically. Throws InputError if it cannot be written.
 void write_cloud_ply(const std::filesystem::path& file, std::span<const CloudPoint> cloud);
 
 }  // namespace holdfast

@@ -11,12 +11,12 @@
 
 namespace holdfast {
 
-/// What a map file holds, in figures.
+/// Key figures of a map file.
 struct MapInfo {
   std::string file;
   std::uint64_t file_size = 0;  ///< [bytes]
   std::uint32_t format_version = 0;
-  std::string made_by;  ///< version of the Holdfast that wrote it
+  std::string made_by;  ///< version of Holdfast that wrote the file
   std::vector<Camera> cameras;
   std::uint64_t keyframes = 0;
   std::uint64_t features = 0;
@@ -25,16 +25,16 @@ struct MapInfo {
   std::uint64_t covisibility_edges = 0;  ///< each pair once
   std::uint64_t loops = 0;               ///< each pair once
   std::uint64_t next_sequence = 0;
-  double first_timestamp = 0.0, last_timestamp = 0.0;       ///< of the keyframes [s]; 0 without any
-  Eigen::Vector3d minimum_point = Eigen::Vector3d::Zero();  ///< corner of the box around all points, world [m]
+  double first_timestamp = 0.0, last_timestamp = 0.0;       ///< of the keyframes [s]; 0 without keyframes
+  Eigen::Vector3d minimum_point = Eigen::Vector3d::Zero();  ///< corner of the bounding box of all points, world [m]
   Eigen::Vector3d maximum_point = Eigen::Vector3d::Zero();
 };
 
-/// Reads a map file section by section and verifies every checksum, but keeps no features: a fraction of the memory
-/// that read_map() takes. Whether references agree is not checked. Throws InputError as read_map() does.
+/// Reads a map file section by section and verifies every checksum, but does not store features, so that it takes a
+/// fraction of the memory of read_map(). The consistency of references is not checked. Throws InputError as read_map().
 MapInfo read_map_info(const std::filesystem::path& file);
 
-/// A table for people, and one JSON object with the members of MapInfo.
+/// Formats as a table for a terminal, and as one JSON object with the members of MapInfo.
 std::string to_text(const MapInfo& info);
 std::string to_json(const MapInfo& info);
 

@@ -7,35 +7,29 @@
 #include <utility>
 #include <vector>
 
+#include "holdfast/config/run_settings.hpp"
 #include "holdfast/core/camera.hpp"
 #include "holdfast/core/frame_result.hpp"
 #include "holdfast/core/map.hpp"
 #include "holdfast/core/map_snapshot.hpp"
 #include "holdfast/core/trajectory.hpp"
+#include "holdfast/core/worker_counts.hpp"
 #include "holdfast/dense_map/dense_map_settings.hpp"
 #include "holdfast/interfaces/all.hpp"
-#include "holdfast/loop_closing/loop_closer.hpp"
-#include "holdfast/mapping/local_mapper.hpp"
+#include "holdfast/loop_closing/closed_loop.hpp"
+#include "holdfast/loop_closing/full_adjustment_summary.hpp"
+#include "holdfast/loop_closing/loop_closing_settings.hpp"
+#include "holdfast/mapping/mapping_counts.hpp"
 #include "holdfast/mapping/mapping_settings.hpp"
-#include "holdfast/pipeline/worker.hpp"
-#include "holdfast/segmentation/segmentation_settings.hpp"
-#include "holdfast/tracking/evidence_settings.hpp"
+#include "holdfast/moving_world/evidence_settings.hpp"
+#include "holdfast/moving_world/segmentation_settings.hpp"
 #include "holdfast/tracking/tracking_settings.hpp"
 
 namespace holdfast {
 
 class StaticScene;
 
-/// How a pipeline uses threads.
-struct ThreadSettings {
-  bool threaded = false;
-  std::size_t keyframe_queue = 4;  ///< keyframes that wait for local mapping, at most
-  /// Frames come as fast as they can be read: tracking waits for room in the queue of keyframes. Otherwise it never
-  /// waits, and a keyframe that finds no room is put off.
-  bool unpaced = true;
-};
-
-/// Everything a pipeline is made of; PipelineBuilder checks and fills it.
+/// The parts of a pipeline. PipelineBuilder checks and fills them.
 struct PipelineParts {
   Camera camera;
   std::unique_ptr<FeatureExtractor> features;
@@ -50,10 +44,9 @@ struct PipelineParts {
   MappingSettings mapping;
   LoopClosingSettings loop_closing;
   DenseMapSettings dense_map;
-  std::uint64_t seed = 1;
-  ThreadSettings threads;
-  Map map;                     ///< to continue; empty = begin a new one
-  bool localise_only = false;  ///< find poses in the map and leave it as it is
+  RunSettings run;
+  Map map;                     ///< map to continue; empty = begin a new map
+  bool localise_only = false;  ///< find poses in the map and leave it unchanged
 };
 
 /// A loop that was closed, with the stamps of both its ends [s].
@@ -75,8 +68,8 @@ struct LoopRecord {
 /// Sequential mode: feed() does all the work of a frame, mapping and loop closing included, in the calling thread, and
 /// gives the same bits on every run. Threaded mode: feed() tracks the frame and inserts keyframes; local mapping, loop
 /// closing, full bundle adjustment and segmentation have threads of their own, and tracking waits for none of them
-/// except, unpaced, for room in the queue of keyframes. One thread at a time calls feed(), finish() and the rest, all
-/// but interrupt() and map_snapshot().
+/// except, when it is not paced, for room in the queue of keyframes. One thread at a time calls feed(), finish() and
+/// the rest, all but interrupt() and map_snapshot().
 class Pipeline {
  public:
   /// Throws CheckError when a required part is missing.

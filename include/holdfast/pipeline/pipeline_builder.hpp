@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "holdfast/config/configuration.hpp"
+#include "holdfast/config/run_settings.hpp"
 #include "holdfast/interfaces/frame_source.hpp"
 #include "holdfast/pipeline/pipeline.hpp"
 #include "holdfast/plugin/builtin.hpp"
@@ -19,11 +19,11 @@
 
 namespace holdfast {
 
-/// What a PipelineBuilder takes for a part, however it is said:
+/// Selects a module by typed settings, registry name or instance:
 ///
 ///     OrbSettings{.count = 1500}                  settings of a built-in module (holdfast/settings/*.hpp)
-///     "orb"  or  {"orb", {{"count", 1500}}}       a module of the registry, by name, with parameters
-///     std::make_unique<MyFilter>()                an object of the caller's; {..., "name"} names it in reports
+///     "orb"  or  {"orb", {{"count", 1500}}}       name of a module in the registry, with parameters
+///     std::make_unique<MyFilter>()                instance made by the caller; {..., "name"} names it in reports
 template <class Interface>
 class ModuleOf {
  public:
@@ -43,8 +43,8 @@ class ModuleOf {
 
   std::string name;
   ParameterValues values;
-  std::unique_ptr<Interface> object;  ///< nullptr: made by name when the pipeline is built
-  SourceLocation place;               ///< of the choice, for messages
+  std::unique_ptr<Interface> object;  ///< nullptr: the module is made by name when the pipeline is built
+  SourceLocation place;               ///< where a configuration selects the module, for messages
 };
 
 /// Makes a pipeline without a configuration file:
@@ -56,14 +56,20 @@ class ModuleOf {
 ///         .filter(MultiViewDepthSettings{})
 ///         .build();
 ///
-/// Camera, features and optimizer are required; what else is not said is absent, as in a configuration. Nothing is made
-/// or checked before build(), which tells everything that is wrong at once. Used once, by one thread.
+/// Camera, features and optimizer are required; every other part is optional, as in a configuration. It is the only
+/// place that checks whether the parts fit together: a configuration goes through it too (configured_pipeline.hpp).
+/// Nothing is made or checked before build(), which reports all problems together. Use a builder once, in one thread.
 class PipelineBuilder {
  public:
   /// Knows the built-in modules; link holdfast::holdfast.
-  PipelineBuilder() { register_builtin_plugins(registry_); }
+  PipelineBuilder() : PipelineBuilder(&register_builtin_plugins) {}
   /// Knows the modules of this registry.
-  explicit PipelineBuilder(Registry registry) : registry_(std::move(registry)) {}
+  explicit PipelineBuilder(Registry registry);
+  /// Knows the modules that this function registers.
+  explicit PipelineBuilder(void (*register_modules)(Registry&));
+  ~PipelineBuilder();
+  PipelineBuilder(PipelineBuilder&&) noexcept;
+  PipelineBuilder& operator=(PipelineBuilder&&) noexcept;
 
   /// Loads a shared plugin, so that its modules can be named. Throws as load_plugin() does.
   PipelineBuilder& plugin(const std::string& name_or_path);
@@ -73,7 +79,8 @@ class PipelineBuilder {
   PipelineBuilder& camera(const Camera& camera);
   /// A known name, see camera_names().
   PipelineBuilder& camera(const std::string& name);
-  /// What a frame source says of itself: its camera, and the names of its classes for the segmenter `truth`.
+  /// The description of the frame source: its camera, whether it has depth, and its class names for the segmenter
+  /// `truth`.
   PipelineBuilder& source(const SourceDescription& description);
 
   PipelineBuilder& features(ModuleOf<FeatureExtractor> module);
@@ -91,23 +98,24 @@ class PipelineBuilder {
   PipelineBuilder& loop_closing(const LoopClosingSettings& settings);
   PipelineBuilder& dense_map(const DenseMapSettings& settings);
 
+  /// Threads, pace and seed; the default is sequential.
+  PipelineBuilder& run(const RunSettings& settings);
+  /// Changes only the seed of run().
   PipelineBuilder& seed(std::uint64_t seed);
-  /// Sequential unless said otherwise.
-  PipelineBuilder& threads(const ThreadSettings& settings);
-  /// Told to the modules that write files, such as the observer `overlay`.
+  /// Folder for modules that write files, such as the observer `overlay`.
   PipelineBuilder& output_directory(std::filesystem::path folder);
-  /// A map to continue, such as read_map() gives. It needs a loop detector, by which the camera finds its place.
+  /// A map to continue, for instance from read_map(). Relocalisation in it needs a loop detector.
   PipelineBuilder& map(Map map);
-  /// The same, but the map stays as it is, and only poses are found.
+  /// A map in which only poses are found; it stays unchanged. It needs a loop detector, too.
   PipelineBuilder& localise_in(Map map);
 
-  /// Makes the modules and the pipeline. Throws ConfigurationError with everything that is wrong (unknown modules and
+  /// Makes the modules and the pipeline. Throws ConfigurationError with every problem found (unknown modules and
   /// parameters, values out of range, parts that are missing or do not fit), InputError for a map of another camera,
-  /// and what a module throws when it is made. Call it once.
+  /// and any exception of a module's constructor. Call it once.
   Pipeline build();
 
  private:
-  friend class ConfigurationReader;  // says where in a file each choice stands
+  friend class ConfigurationReader;  // gives each choice its place in the file
 
   template <class Interface>
   std::unique_ptr<Interface> make(ModuleOf<Interface>& module);
@@ -116,6 +124,10 @@ class PipelineBuilder {
   template <class Settings>
   void check(const Settings& settings, const char* section);
   void check_camera();
+  void check_settings();
+  void make_modules();
+  std::unique_ptr<Segmenter> build_segmenter();
+  void throw_complaints();
   void check_filter(const ModuleOf<DynamicFilter>& module, const Needs& needs);
   void check_map() const;
   void complain(const SourceLocation& place, std::string message);
@@ -128,8 +140,8 @@ class PipelineBuilder {
   bool has_depth_ = true;
   bool has_map_ = false;
   std::string map_name_ = "the map";
-  std::string source_name_ = "source";
-  SourceLocation place_{"PipelineBuilder"}, source_place_ = place_;  // for what has no place of its own
+  std::string source_name_;                                          // empty: source() was not called
+  SourceLocation place_{"PipelineBuilder"}, source_place_ = place_;  // of choices that a configuration does not name
   std::vector<Diagnostic> diagnostics_;
   std::optional<ModuleOf<FeatureExtractor>> features_;
   std::optional<ModuleOf<Optimizer>> optimizer_;
@@ -138,39 +150,5 @@ class PipelineBuilder {
   std::vector<ModuleOf<DynamicFilter>> filters_;
   std::vector<ModuleOf<Observer>> observers_;
 };
-
-/// The plain sections of a configuration that belong to the pipeline: tracking, mapping, loop_closing. For
-/// load_configuration().
-std::vector<SectionDescription> pipeline_sections();
-
-/// A source and the pipeline that its frames go into.
-struct BuiltPipeline {
-  std::unique_ptr<FrameSource> source;
-  Pipeline pipeline;
-};
-
-/// What a run starts from and leaves behind, beside its configuration.
-struct RunOptions {
-  std::filesystem::path output_directory;  ///< told to the modules; empty when nothing is written
-  std::filesystem::path map_file;          ///< a map to continue, or to localise in; empty = begin a new one
-  bool localise_only = false;              ///< find poses in the map and leave it as it is; needs map_file
-};
-
-/// Makes every module that a configuration chose and checks that they fit together: the camera is known and not
-/// told twice differently, filters get what they need, a map was made with the same camera and places in it can be
-/// recognised. Throws ConfigurationError with all misfits, InputError for a map file that cannot be used, and what a
-/// module throws when it is made. The registry is not needed afterwards.
-BuiltPipeline build_pipeline(const Configuration& configuration, const Registry& registry,
-                             const RunOptions& options = {});
-
-/// A source and the segmenter that its frames are given to.
-struct BuiltSegmenter {
-  std::unique_ptr<FrameSource> source;
-  std::unique_ptr<Segmenter> segmenter;
-};
-
-/// Makes only these two of what a configuration chose: for `holdfast segment`. Throws as build_pipeline() does, and
-/// ConfigurationError when the segmenter is 'none'.
-BuiltSegmenter build_segmenter(const Configuration& configuration, const Registry& registry);
 
 }  // namespace holdfast

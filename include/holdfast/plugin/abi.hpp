@@ -10,24 +10,25 @@
 
 namespace holdfast {
 
-/// What must agree between the program and a plugin for objects to be passed between them. Plain data of fixed layout,
-/// read from the plugin's file before anything of it is loaded. The first three stay where they are in every version.
+/// The properties of a build that must agree between the program and a plugin so that objects can be passed between
+/// them. Plain data of fixed layout, read from the plugin's file before the plugin is loaded. The first three members
+/// keep their position in every version.
 struct AbiRecord {
-  unsigned magic;  ///< abi_magic; guards against a symbol of that name that is something else
+  unsigned magic;  ///< abi_magic; detects an unrelated symbol of the same name
   unsigned record_size;
   char holdfast_version[16];
-  char compiler[24];           ///< for messages only: compilers of one ABI may differ
+  char compiler[24];           ///< for messages only: different compilers may share one ABI
   long cpp_standard;           ///< __cplusplus
-  int eigen_alignment;         ///< EIGEN_MAX_ALIGN_BYTES: of what Eigen allocates
-  int eigen_static_alignment;  ///< of a Vector4d inside a struct, which other macros can change
+  int eigen_alignment;         ///< EIGEN_MAX_ALIGN_BYTES: alignment of Eigen's dynamic memory
+  int eigen_static_alignment;  ///< alignof(Eigen::Vector4d), which depends on further macros
   int eigen_index_size;        ///< sizeof(Eigen::Index)
   int eigen_row_major;         ///< 1 with EIGEN_DEFAULT_TO_ROW_MAJOR
   int eigen_version;           ///< world * 10000 + major * 100 + minor
   int opencv_version;          ///< major * 10000 + minor * 100 + revision
   int compiler_abi;            ///< __GXX_ABI_VERSION
   int new_string_abi;          ///< _GLIBCXX_USE_CXX11_ABI
-  int debug_containers;        ///< 1 with _GLIBCXX_DEBUG, where containers hold more
-  int sanitizers;              ///< 1 address, 2 thread, which must come first in a process
+  int debug_containers;        ///< 1 with _GLIBCXX_DEBUG, which changes the layout of containers
+  int sanitizers;              ///< bit 0: address, bit 1: thread sanitizer; their runtimes must be loaded first
 };
 
 inline constexpr unsigned abi_magic = 0x48464142;  // "HFAB"
@@ -71,7 +72,7 @@ constexpr bool compiled_debug_containers() {
 
 }  // namespace detail
 
-/// The record of the code that includes this header.
+/// The record of the translation unit that includes this header.
 constexpr AbiRecord compiled_abi() {
   AbiRecord record{abi_magic,
                    sizeof(AbiRecord),
@@ -91,7 +92,7 @@ constexpr AbiRecord compiled_abi() {
   return record;
 }
 
-/// Every difference in words ("Eigen alignment: program 16, plugin 32"); empty when they fit.
+/// Describes every difference ("Eigen alignment: program 16, plugin 32"); empty if the two are compatible.
 std::vector<std::string> abi_differences(const AbiRecord& program, const AbiRecord& plugin);
 
 }  // namespace holdfast

@@ -5,8 +5,8 @@
 
 namespace holdfast {
 
-/// Registers every plugin that was linked in, and the null objects `none` of segmenter and loop_detector. The list of
-/// plugins is generated from what CMake knows. Link holdfast::builtin_plugins.
+/// Registers every plugin that is linked into the program, and the null objects `none` of segmenter and loop_detector.
+/// CMake generates the list of plugins. Requires linking holdfast::builtin_plugins.
 void register_builtin_plugins(Registry& registry);
 
 }  // namespace holdfast

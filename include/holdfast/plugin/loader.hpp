@@ -9,15 +9,15 @@
 
 namespace holdfast {
 
-/// Where load_plugin looks for a name without a folder, in this order: the given folders, those of the environment
-/// variable HOLDFAST_PLUGIN_PATH (separated by ':'), then the installed plugin folder.
+/// The folders in which load_plugin searches for a name without a folder, in order: the given folders, those of the
+/// environment variable HOLDFAST_PLUGIN_PATH (separated by ':'), then the installed plugin folder.
 std::vector<std::filesystem::path> plugin_search_path(const std::vector<std::filesystem::path>& first);
 
-/// Loads a shared plugin, lets it register its modules and returns the absolute path of its file. A name without a
-/// folder may leave out "lib" and ".so". Throws PluginError when the file is not found (naming the folders searched),
-/// cannot be loaded, has no entry, does not fit this build (naming both sides), or names a module that exists already.
-/// A registry that holds the plugin's modules already is left as it is. The library stays loaded until the process
-/// ends: modules and their code may outlive registries.
+/// Loads a shared plugin, registers its modules and returns the absolute path of its file. The prefix "lib" and the
+/// suffix ".so" may be omitted in a name without a folder. Throws PluginError if the file is not found (the message
+/// lists the folders searched), cannot be loaded, has no entry function, is incompatible with this build (the message
+/// names both sides), or registers a module that exists already. Loading a plugin whose modules the registry already
+/// holds has no effect. The library stays loaded until the process ends, because modules may outlive registries.
 std::filesystem::path load_plugin(Registry& registry, const std::string& name_or_path,
                                   const std::vector<std::filesystem::path>& search_first = {});
 

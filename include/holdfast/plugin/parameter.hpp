@@ -12,26 +12,26 @@
 
 namespace holdfast {
 
-/// Text by text, in the order of the file.
+/// Key-value pairs in file order.
 using TextMap = std::vector<std::pair<std::string, std::string>>;
 
-/// Rows of numbers, such as the places of a path.
+/// Rows of numbers, such as the waypoints of a path.
 using RealTable = std::vector<std::vector<double>>;
 
-/// The value of a parameter, as it stands in a configuration.
+/// The value of a parameter.
 using ParameterValue = std::variant<bool, std::int64_t, double, std::string, std::vector<std::string>,
                                     std::vector<double>, TextMap, RealTable>;
 
 enum class ParameterType { boolean, integer, real, text, path, text_list, real_list, text_map, real_table };
 const char* to_string(ParameterType type);
-/// As it would stand in YAML, on one line.
+/// YAML of the value, on one line.
 std::string to_string(const ParameterValue& value);
-/// The double with the fewest digits that is nearest to this float of all floats: 0.1F gives 0.1, so that references
-/// and resolved configurations show what was written, and the way back is exact.
+/// The double with the fewest decimal digits that rounds to this float: 0.1F gives 0.1. References and resolved
+/// configurations then show the written number, and the conversion back to float is exact.
 double shortest_double(float number);
 
-/// One row of a parameter table: all that is known about a parameter. The same row gives the default, the checks and
-/// the reference that `holdfast modules` prints.
+/// One row of a parameter table. The same row gives the default, the checks and the reference that `holdfast modules`
+/// prints.
 struct Parameter {
   std::string name;
   ParameterType type = ParameterType::real;
@@ -39,11 +39,11 @@ struct Parameter {
   std::string help;
   std::string unit_name;
   bool is_required = false;
-  std::optional<double> minimum;  ///< of a number, or of every number of a list
-  std::optional<double> maximum;
-  std::vector<std::string> allowed;  ///< of a text, or of every text of a list; empty = any
-  std::int64_t least_integer = std::numeric_limits<std::int64_t>::min();  ///< what the bound member can hold
-  std::int64_t most_integer = std::numeric_limits<std::int64_t>::max();
+  std::optional<double> minimum;     ///< bound of a number, or of every number of a list
+  std::optional<double> maximum;     ///< bound of a number, or of every number of a list
+  std::vector<std::string> allowed;  ///< names for a text, or for every text of a list; empty = any text
+  std::int64_t min_integer = std::numeric_limits<std::int64_t>::min();  ///< smallest value of the member's type
+  std::int64_t max_integer = std::numeric_limits<std::int64_t>::max();  ///< largest value of the member's type
 
   Parameter& range(double low, double high) { return at_least(low).at_most(high); }
   Parameter& at_least(double low) {
@@ -62,17 +62,17 @@ struct Parameter {
     allowed = std::move(texts);
     return *this;
   }
-  /// Has no default: a configuration without it is an error.
+  /// Removes the default: a configuration without this parameter is an error.
   Parameter& required() {
     is_required = true;
     return *this;
   }
 
-  /// What is expected, in words: "a number from 1 to 8 [m]".
+  /// Describes the expected value: "a number from 1 to 8 [m]".
   std::string expectation() const;
-  /// "from 1 to 8", "of at least 1", "" where anything goes.
+  /// Describes the bounds: "from 1 to 8", "of at least 1", or "" without bounds.
   std::string range_text() const;
-  /// Why a value is not acceptable ("9 is above 8"), or nothing.
+  /// The reason why a value is refused ("9 is above 8"); empty for an acceptable value.
   std::optional<std::string> reject(const ParameterValue& value) const;
 };
 

@@ -14,29 +14,29 @@
 
 namespace holdfast {
 
-/// What the reference says about a module.
+/// Description of a module for the generated reference.
 struct ModuleDescription {
   std::string name = {};     ///< key in the configuration: lower case, words joined by _
   std::string summary = {};  ///< one sentence
-  std::string paper = {};    ///< what it implements, "" when nothing published
+  std::string paper = {};    ///< the publication that it implements; empty if there is none
   std::string licence = "BSD-3-Clause";
 };
 
-/// A registered module: its description, its parameter table and how to make one.
+/// A registered module: its description, its parameter table and its factory function.
 struct ModuleEntry {
   std::string kind;  ///< the section of the configuration: source, features, ...
   ModuleDescription description;
-  std::string origin;  ///< "built in" or the file of the plugin
+  std::string origin;  ///< "built in" or the path of the plugin
   std::vector<Parameter> parameters;
   std::function<std::unique_ptr<Module>(const ParameterValues&, const CreationContext&)> create;
 };
 
-/// All modules that configurations can name, by kind and name. A value, not a global: two registries in one process do
-/// not know of each other. Not synchronised.
+/// All modules that a configuration can select, by kind and name. It is a value and not a global: two registries in one
+/// process are independent. Not synchronised.
 class Registry {
  public:
-  /// Registers a module. Interface is one of interfaces/*.hpp (it names its kind), Settings a struct with describe().
-  /// Throws PluginError when the kind already has a module of that name.
+  /// Registers a module. Interface is one of interfaces/*.hpp, which defines the kind; Settings is a struct with
+  /// describe(). Throws PluginError if a module of this kind and name is already registered.
   template <class Interface, class Settings>
   void add(ModuleDescription description,
            std::function<std::unique_ptr<Interface>(const Settings&, const CreationContext&)> create) {
@@ -48,7 +48,7 @@ class Registry {
     add_entry(std::move(entry));
   }
 
-  /// Shorthand for a module with a constructor Implementation(const Settings&, const CreationContext&).
+  /// Registers a module that has a constructor Implementation(const Settings&, const CreationContext&).
   template <class Interface, class Implementation, class Settings>
   void add(ModuleDescription description) {
     add<Interface, Settings>(std::move(description), [](const Settings& settings, const CreationContext& context) {
@@ -57,15 +57,21 @@ class Registry {
   }
 
   const ModuleEntry* find(const std::string& kind, const std::string& name) const;
-  /// Entries of a kind, by name.
+  /// Entries of a kind, sorted by name.
   std::vector<const ModuleEntry*> of_kind(const std::string& kind) const;
-  /// Kinds that have a module, sorted.
+  /// Kinds with at least one module, sorted.
   std::vector<std::string> kinds() const;
   /// Names of a kind's modules, sorted.
   std::vector<std::string> names(const std::string& kind) const;
 
-  /// Makes a module; the values must have passed the checks of its table. Throws PluginError for an unknown name and
-  /// passes on what the module throws.
+  /// Records that the build left out a module of ours; `option` is the CMake option that builds it.
+  void add_left_out(const std::string& kind, const std::string& name, const std::string& option);
+  /// How to correct a name that the kind does not have, for messages: the CMake option for a module that was left out
+  /// of this build, otherwise the similar names.
+  std::string suggestion(const std::string& kind, const std::string& name) const;
+
+  /// Creates a module. The values must have passed the checks of its parameter table. Throws PluginError for an unknown
+  /// name; exceptions of the module's constructor are propagated.
   template <class Interface>
   std::unique_ptr<Interface> create(const std::string& name, const ParameterValues& values,
                                     const CreationContext& context) const {
@@ -73,7 +79,7 @@ class Registry {
     return std::unique_ptr<Interface>(static_cast<Interface*>(entry.create(values, context).release()));
   }
 
-  /// Names where the modules added next come from; the plugin loader sets it.
+  /// Sets the origin of the modules that are added next; called by the plugin loader.
   void set_origin(std::string origin) { origin_ = std::move(origin); }
   const std::string& origin() const { return origin_; }
 
@@ -82,10 +88,11 @@ class Registry {
   const ModuleEntry& require(const std::string& kind, const std::string& name) const;
 
   std::map<std::string, std::map<std::string, ModuleEntry>> entries_;
+  std::map<std::string, std::string> left_out_;  // "kind/name" to the CMake option
   std::string origin_ = "built in";
 };
 
-/// Settings of a module that has none.
+/// Settings of a module without parameters.
 struct NoSettings {
   static void describe(ParameterTable<NoSettings>&) {}
 };

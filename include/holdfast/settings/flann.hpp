@@ -7,16 +7,17 @@ class LoopDetector;
 template <class Settings>
 class ParameterTable;
 
-/// The loop detector `flann`: what each value means, and its range, is in the reference (`holdfast modules flann`).
+/// Settings of the loop detector `flann`. Ranges and units: `holdfast modules flann`.
 /// Thread: any.
 struct FlannSettings {
   using Interface = LoopDetector;
   static constexpr const char* module = "flann";
 
-  int radius = 32;
-  int descriptors = 700;
+  int radius = 32;        ///< maximum Hamming distance between a descriptor and its visual word [bits]
+  int descriptors = 700;  ///< maximum number of descriptors used per keyframe; time and memory are proportional to it
+  /// Number of buckets of words that are searched per descriptor; more find more words at a higher cost.
   int probes = 3;
-  int checks = 48;
+  int checks = 48;  ///< number of bucket centres that FLANN compares per descriptor before it stops
 
   static void describe(ParameterTable<FlannSettings>& table);
 };

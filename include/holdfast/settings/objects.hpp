@@ -7,13 +7,13 @@ class Observer;
 template <class Settings>
 class ParameterTable;
 
-/// The observer `objects`: what each value means, and its range, is in the reference (`holdfast modules objects`).
+/// Settings of the observer `objects`.
 /// Thread: any.
 struct ObjectsSettings {
   using Interface = Observer;
   static constexpr const char* module = "objects";
 
-  bool hidden = false;
+  bool hidden = false;  ///< whether predicted poses of occluded objects are written as well
 
   static void describe(ParameterTable<ObjectsSettings>& table);
 };

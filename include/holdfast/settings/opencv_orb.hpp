@@ -7,16 +7,15 @@ class FeatureExtractor;
 template <class Settings>
 class ParameterTable;
 
-/// The feature extractor `opencv_orb`: what each value means, and its range, is in the reference (`holdfast modules
-/// opencv_orb`).
+/// Settings of the feature extractor `opencv_orb`. Ranges and units: `holdfast modules opencv_orb`.
 struct OpencvOrbSettings {
   using Interface = FeatureExtractor;
   static constexpr const char* module = "opencv_orb";
 
-  int count = 1000;
-  double scale_factor = 1.2;
-  int levels = 8;
-  int fast_threshold = 20;
+  int count = 1000;           ///< number of features to extract; 1000 as in ORB-SLAM2 for RGB-D
+  double scale_factor = 1.2;  ///< scale between adjacent pyramid levels, as in ORB-SLAM2
+  int levels = 8;             ///< number of pyramid levels, as in ORB-SLAM2
+  int fast_threshold = 20;    ///< minimum contrast of a FAST corner [grey levels], as in ORB-SLAM2
 
   static void describe(ParameterTable<OpencvOrbSettings>& table);
 };

@@ -11,16 +11,16 @@ class Segmenter;
 template <class Settings>
 class ParameterTable;
 
-/// The segmenter `precomputed`: what each value means, and its range, is in the reference (`holdfast modules
-/// precomputed`).
+/// Settings of the segmenter `precomputed`. Ranges and units: `holdfast modules precomputed`.
 struct PrecomputedSettings {
   using Interface = Segmenter;
   static constexpr const char* module = "precomputed";
 
-  std::filesystem::path path;
+  std::filesystem::path path;  ///< folder of label images; required
+  /// File with lines "timestamp filename"; empty = the name of each PNG is its time stamp.
   std::filesystem::path list;
-  double tolerance = 0.0;
-  TextMap labels;
+  double tolerance = 0.0;  ///< maximum time difference between frame and label image [s]; 0 = identical time stamps
+  TextMap labels;          ///< class name of each value or range of values; required
 
   static void describe(ParameterTable<PrecomputedSettings>& table);
 };

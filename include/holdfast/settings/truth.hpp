@@ -10,12 +10,12 @@ class Segmenter;
 template <class Settings>
 class ParameterTable;
 
-/// The segmenter `truth`: what each value means, and its range, is in the reference (`holdfast modules truth`).
+/// Settings of the segmenter `truth`.
 struct TruthSettings {
   using Interface = Segmenter;
   static constexpr const char* module = "truth";
 
-  std::vector<std::string> classes;
+  std::vector<std::string> classes;  ///< classes of the source to segment, all others are background; empty = all
 
   static void describe(ParameterTable<TruthSettings>& table);
 };

@@ -2,7 +2,8 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
+
+#include "holdfast/plugin/choice.hpp"
 
 namespace holdfast {
 
@@ -10,16 +11,24 @@ class Segmenter;
 template <class Settings>
 class ParameterTable;
 
-/// The segmenter `unet`: what each value means, and its range, is in the reference (`holdfast modules unet`).
+/// Size of the input of the U-Net: small is 224x192 pixels, base is 320x256.
+enum class UnetSize { small, base };
+template <>
+inline constexpr Choice<UnetSize> choice_table<UnetSize>[] = {{"small", UnetSize::small}, {"base", UnetSize::base}};
+
+/// Settings of the segmenter `unet`. Ranges and units: `holdfast modules unet`.
 struct UnetSettings {
   using Interface = Segmenter;
   static constexpr const char* module = "unet";
 
-  std::string size = "base";
-  int width = 0, height = 0;
+  UnetSize size = UnetSize::base;  ///< small takes a third of the time of base
+  int width = 0;                   ///< of the network input, a multiple of 32 [px]; 0 = given by `size`
+  int height = 0;                  ///< likewise
+  /// With `base`, average the scores of the image and its mirror image; doubles the time and improves the masks
+  /// slightly.
   bool mirror = true;
-  std::filesystem::path model;
-  int threads = 0;
+  std::filesystem::path model;  ///< ONNX file with other weights; empty = the weights of the library
+  int threads = 0;              ///< number of threads of OpenCV for the whole process; 0 = unchanged
 
   static void describe(ParameterTable<UnetSettings>& table);
 };

@@ -5,8 +5,8 @@
 
 #include "holdfast/simulation/skeleton.hpp"
 
-/// Arms and legs that reach a point: the two lengths of a limb and the law of cosines leave only the side to which the
-/// joint between them points.
+/// Inverse kinematics of arms and legs: the lengths of the two bones and the law of cosines determine the pose except
+/// for the direction of the joint between them.
 namespace holdfast::simulation {
 
 enum class Side { left, right };
@@ -26,30 +26,32 @@ constexpr Limb leg(Side side) {
                             : Limb{Bone::right_thigh, Bone::right_shin, Bone::right_foot};
 }
 
-/// Bends a leg so that the ankle comes to a point and the foot to a rotation, both in the person's frame; the knee
-/// points to the foot's front. `T_person_pelvis` is the pelvis. A point out of reach leaves the leg stretched to it.
+/// Moves a leg so that the ankle reaches a point and the foot a rotation, both in the person's frame; the knee points
+/// towards the front of the foot. `T_person_pelvis` is the pose of the pelvis. If the point is out of reach, the leg is
+/// stretched towards it.
 void place_foot(const Skeleton& skeleton, const Eigen::Isometry3d& T_person_pelvis, Side side,
                 const Eigen::Vector3d& ankle, const Eigen::Quaterniond& foot, Posture& posture);
 
-/// Where a hand is to be: the wrist, and how the hand is turned, in the person's frame.
+/// Target pose of a hand in the person's frame: position of the wrist and rotation of the hand.
 struct HandPose {
   Eigen::Vector3d wrist;
   Eigen::Quaterniond rotation;
 };
 
-/// From the wrist to the middle of the palm, along the hand, and how thick hand and palm are there [m].
+/// Distance from the wrist to the centre of the palm along the hand, and thickness of the hand there [m].
 double palm_distance(const Skeleton& skeleton);
 constexpr double palm_depth = 0.02;
 
-/// The hand whose palm lies on `point`, facing along `palm`, fingers along `fingers` (made perpendicular to the palm).
+/// The hand pose with the palm at `point`, its normal along `palm` and the fingers along `fingers` (made perpendicular
+/// to the normal).
 HandPose hand_on(const Skeleton& skeleton, Side side, const Eigen::Vector3d& point, const Eigen::Vector3d& palm,
                  const Eigen::Vector3d& fingers);
-/// The middle of the palm's surface for a hand bone's pose; the inverse of hand_on.
+/// The centre of the palm's surface for the pose of a hand bone; the inverse of hand_on.
 Eigen::Vector3d palm_of(const Skeleton& skeleton, Side side, const Eigen::Isometry3d& hand);
 
-/// Turns an arm towards a hand pose: with weight 1 the wrist is there, in between the joints are turned part of the
-/// way from what they were (slerp). The elbow points down, back and outwards. Beyond 93 % of the arm's length the wrist
-/// falls short, by 0.2 % of the length at 95 % and 1 % at 97 %.
+/// Moves an arm towards a hand pose: with weight 1 the wrist reaches it, with smaller weights the joint rotations are
+/// interpolated (slerp). The elbow points down, back and outwards. Beyond 93 % of the arm's length the wrist does not
+/// reach the target completely, by 0.2 % of the length at 95 % and 1 % at 97 %.
 void reach(const Skeleton& skeleton, const Eigen::Isometry3d& T_person_chest, Side side, const HandPose& hand,
            double weight, Posture& posture);
 

@@ -17,9 +17,9 @@ enum class HairStyle { bald, cropped, parted, curly, shoulder_length, bun };
 enum class Top { t_shirt, shirt, pullover, jacket };
 enum class Bottom { trousers, shorts, skirt };
 
-/// What somebody looks like besides how he is built. Colours are blue green red, 0 to 255, in full light.
+/// Appearance of a person in addition to the physique. Colours are blue green red, 0 to 255, in full light.
 struct PersonLook {
-  double figure = 0.0;  ///< of the trunk: 0 like most men's, 1 like most women's
+  double figure = 0.0;  ///< shape of the trunk: 0 typically male, 1 typically female
   cv::Scalar skin;
   HairStyle hair_style = HairStyle::cropped;
   cv::Scalar hair;
@@ -35,12 +35,12 @@ struct PersonLook {
   cv::Scalar shoes, soles;
 };
 
-/// Any of many: two draws seldom resemble one another.
+/// Generates a random appearance.
 PersonLook random_look(Random random);
 
-/// Makes a person of class "person" in the rest posture (Skeleton::standing()) in the person's frame, and adds his
-/// textures to the world, but not him. The mesh bends with its Mesh::skin, indexed by Bone. It has no solids and casts
-/// no shadows when light is baked.
+/// Creates an object of class "person" in the rest posture (Skeleton::standing()) in the person's frame. Its textures
+/// are added to the world, the object itself is not. The mesh is skinned (Mesh::skin, indexed by Bone). It has no
+/// solids and casts no baked shadows.
 Object make_person(World& world, const std::string& name, const Skeleton& skeleton, const PersonLook& look,
                    Random random);
 

@@ -6,15 +6,15 @@
 
 #include "holdfast/core/random.hpp"
 
-/// Pictures from random numbers: what the surfaces of the simulated world look like. Every function gives an 8UC3 image
-/// (blue green red) of the asked size that depends on its arguments alone and repeats nowhere within itself.
+/// Procedural textures of the simulated world. Every function returns an 8UC3 image (blue green red) of the given size
+/// that depends on its arguments only and contains no repetition.
 namespace holdfast::simulation::pictures {
 
-/// A word of two to four syllables that means nothing.
+/// A meaningless word of two to four syllables.
 std::string word(Random& random, bool capital);
-/// Of a colour (blue green red), as the eye weighs channels: 0 to 255.
+/// Luminance of a colour (blue green red), 0 to 255.
 double brightness(const cv::Scalar& colour);
-/// A colour with each channel uniform between those of two others.
+/// A random colour with each channel uniformly distributed between those of two colours.
 cv::Scalar colour_between(const cv::Scalar& low, const cv::Scalar& high, Random& random);
 
 cv::Mat plaster(cv::Size size, const cv::Scalar& colour, Random random);
@@ -37,59 +37,60 @@ cv::Mat book_spine(cv::Size size, Random random);
 cv::Mat cardboard(cv::Size size, Random random);
 /// A keyboard seen from above.
 cv::Mat keyboard(cv::Size size, Random random);
-/// A monitor that shows windows with text and pictures.
+/// A monitor with windows, text and pictures.
 cv::Mat screen(cv::Size size, Random random);
 /// A food or drink package or a mug: bright, with a name and a pattern.
 cv::Mat label(cv::Size size, Random random);
 
-/// What clothes are made of. Colours are blue green red.
+/// Material of clothes. Colours are blue green red.
 struct Cloth {
   enum class Weave { plain, plaid, striped, dotted, printed, knitted, denim, flowered };
   Weave weave = Weave::plain;
-  cv::Scalar colour, second;  ///< the ground, and what is woven in or printed on
+  cv::Scalar colour, second;  ///< background, and colour of the pattern
   double scale = 1.0;         ///< of the pattern
-  std::uint64_t pattern = 1;  ///< seed of what all parts of a garment have in common: the order of stripes, ...
+  std::uint64_t pattern = 1;  ///< seed of properties that all parts of a garment share, such as the order of stripes
 };
 
-/// Where things are on a shirt that lies flat, its middle in front and its halves meeting in the back: shares of the
-/// picture's height.
+/// Layout of an unfolded shirt, with the front in the centre and the seam at the back: fractions of the picture's
+/// height.
 struct ShirtCut {
   enum class Front { closed, buttons, open };
   Front front = Front::closed;
-  Cloth under;  ///< what shows where it is open
+  Cloth under;  ///< visible where the shirt is open
   double neckline = 0.0, shoulder = 0.2, chest = 0.4, waist = 0.8, hem = 1.0;
 };
 
-/// Clothes laid flat, with seams, folds and the shadows that folds hold; `texels` per metre.
+/// Unfolded clothes with seams, folds and their shadows; `texels` per metre.
 cv::Mat shirt(cv::Size size, const Cloth& cloth, const ShirtCut& cut, double texels, Random random);
 /// From the shoulder down; the borders left and right meet at the inner seam. `lengthy`: with an elbow and a cuff.
 cv::Mat sleeve(cv::Size size, const Cloth& cloth, bool lengthy, double texels, Random random);
 cv::Mat collar(cv::Size size, const Cloth& cloth, bool open, double texels, Random random);
-/// Waistband, pockets and fly; the middle is in front.
+/// Waistband, pockets and fly; the centre is the front.
 cv::Mat trouser_seat(cv::Size size, const Cloth& cloth, bool belt, double texels, Random random);
-/// From the hip down; the borders left and right meet at the inner seam, `front` is the share of the width in front.
+/// From the hip down; the borders left and right meet at the inner seam, `front` is the fraction of the width in front.
 cv::Mat trouser_leg(cv::Size size, const Cloth& cloth, bool shorts, double front, double texels, Random random);
-/// `hem`: the share of the height where it ends; below lies its dark inside.
+/// `hem`: the fraction of the height at which it ends; the dark inside is below.
 cv::Mat skirt(cv::Size size, const Cloth& cloth, double hem, double texels, Random random);
-/// Heel at the top, toe at the bottom, the laces in the middle, the soles' edges left and right.
+/// Heel at the top, toe at the bottom, laces in the centre, edges of the sole left and right.
 cv::Mat shoe(cv::Size size, const cv::Scalar& colour, const cv::Scalar& sole, double texels, Random random);
 
-/// What a face is painted from.
+/// Parameters of a face.
 struct Face {
   cv::Scalar skin, hair;
-  double lips = 0.4;  ///< 0 = hardly seen, 1 = painted
+  double lips = 0.4;  ///< 0 = hardly visible, 1 = strongly coloured
   bool beard = false, glasses = false, bald = false;
 };
-/// A picture's column x of `width` lies at the share x / width + face_density sin(2 pi x / width) / (2 pi) of a turn.
+/// Column x of a picture of `width` is at the fraction x / width + face_density sin(2 pi x / width) / (2 pi) of a full
+/// turn.
 inline constexpr float face_density = 0.5F;
-/// The skin of a head, all around: crown at the top, under the chin at the bottom, the nose in the middle.
+/// The skin of a head: crown at the top, below the chin at the bottom, the nose in the centre.
 cv::Mat head(cv::Size size, const Face& face, Random random);
 cv::Mat ear(cv::Size size, const cv::Scalar& skin, double texels, Random random);
 cv::Mat hair(cv::Size size, const cv::Scalar& colour, bool curly, double texels, Random random);
-/// From under the chin to the collarbones; the middle is in front.
+/// From below the chin to the collarbones; the centre is the front.
 cv::Mat bare_neck(cv::Size size, const cv::Scalar& skin, double texels, Random random);
 cv::Mat bare_limb(cv::Size size, const cv::Scalar& skin, double texels, Random random);
-/// From the wrist to the finger tips: the back of the hand in the middle, the palm at the borders.
+/// From the wrist to the finger tips: the back of the hand in the centre, the palm at the borders.
 cv::Mat hand(cv::Size size, const cv::Scalar& skin, double texels, Random random);
 
 }  // namespace holdfast::simulation::pictures

@@ -10,47 +10,48 @@
 #include "holdfast/plugin/parameter_table.hpp"
 #include "holdfast/simulation/skeleton.hpp"
 
-/// What the people in a scene set out to do. Places are in the room's frame [m], things are named as in
-/// World::objects ("chair 2").
+/// Actions of the people in a scene. Positions are in the room's frame [m]; objects are named as in World::objects
+/// ("chair 2").
 namespace holdfast::simulation {
 
-/// Walks past the given places to the last one, rounding corners; where they are too sharp for that, stops and turns.
+/// Walks through the given positions to the last one on a path with rounded corners; at sharp corners the person stops
+/// and turns.
 struct Walk {
   std::vector<Eigen::Vector2d> to;
   double speed = 1.1;  ///< [m/s]
 };
 
-/// Stands for a while.
+/// Stands for a duration.
 struct Stand {
   double duration = 2.0;  ///< [s]
-  bool gesture = false;   ///< talks with the hands
+  bool gesture = false;   ///< whether the person gestures
   std::optional<Eigen::Vector2d> facing;
 };
 
-/// Goes to a chair, sits down, stays, and stands up again. The chair's front is where the legs go; it needs 0.5 m of
-/// free floor there. Under a desk's edge the hands lie on the desk, else on the thighs.
+/// Walks to a chair, sits down, stays seated, and stands up again. 0.5 m of free floor is required in front of the
+/// chair. At a desk the hands rest on the desk, otherwise on the thighs.
 struct Sit {
   std::string on;
   double duration = 6.0;  ///< from seated to rising [s]
   bool gesture = false;
 };
 
-/// Goes behind a thing on the floor and pushes it past the given places to the last one. A chair is swivelled so that
-/// its back comes into the hands, other things keep the side that they have. Where a corner is too sharp the person
-/// lets go and walks round the thing to push from there. Places where the thing is already are left out.
+/// Walks behind an object on the floor and pushes it through the given positions to the last one. A chair is swivelled
+/// so that its back faces the hands; other objects keep their orientation. At a sharp corner the person releases the
+/// object and walks around it to push from the other side. Positions at which the object already is are skipped.
 struct Push {
   std::string thing;
-  std::vector<Eigen::Vector2d> to;  ///< of the thing
+  std::vector<Eigen::Vector2d> to;  ///< of the object
   double speed = 0.7;               ///< [m/s]
 };
 
-/// Goes to a thing at most 0.8 m wide, on the floor or on a table, lifts it with both hands, carries it before the
-/// chest past the given places (of the person) and puts it down, from the side where the last of them is if there is
-/// room to stand, turned to the person as it was when lifted.
+/// Walks to an object of at most 0.8 m width on the floor or on a table, lifts it with both hands, carries it in front
+/// of the chest through the given positions (of the person) and puts it down. The person stands on the side of the last
+/// position if there is free floor; the object keeps its orientation relative to the person.
 struct Carry {
   std::string thing;
   std::vector<Eigen::Vector2d> to;
-  Eigen::Vector3d put_at = Eigen::Vector3d::Zero();  ///< where the thing's origin comes to stand
+  Eigen::Vector3d put_at = Eigen::Vector3d::Zero();  ///< final position of the object's origin
   double speed = 0.9;                                ///< [m/s]
 };
 
@@ -60,21 +61,21 @@ using Action = std::variant<Walk, Stand, Sit, Push, Carry>;
 struct PersonPlan {
   std::string name;  ///< "" = "person K"
   Eigen::Vector2d at = Eigen::Vector2d::Zero();
-  std::optional<Eigen::Vector2d> facing;  ///< looks there at first; otherwise where the first action leads
-  std::optional<double> height, girth;    ///< chosen by the seed where absent
-  double start = 0.0;                     ///< stands still until then [s]
-  bool repeat = true;                     ///< begins anew after the last action (going back to `at`); else stands
+  std::optional<Eigen::Vector2d> facing;  ///< initial viewing target; otherwise the target of the first action
+  std::optional<double> height, girth;    ///< derived from the seed if absent
+  double start = 0.0;                     ///< start of the first action [s]
+  bool repeat = true;                     ///< whether the actions are repeated (after returning to `at`)
   std::vector<Action> actions;
 };
 
-/// A thing that turns about its own z axis: a door on its hinge.
+/// An object that rotates about its own z axis, such as a door on its hinge.
 struct SwingPlan {
   std::string thing = "door 1";
   double angle = 1.4;    ///< open [rad]
-  double start = 2.0;    ///< begins to open [s]
-  double opening = 1.5;  ///< time to open, and to close [s]
-  double open = 2.0;     ///< stays open [s]
-  double shut = 3.0;     ///< stays shut before it opens again [s]
+  double start = 2.0;    ///< time of the first opening [s]
+  double opening = 1.5;  ///< duration of opening and of closing [s]
+  double open = 2.0;     ///< duration of being open [s]
+  double shut = 3.0;     ///< duration of being closed before the next opening [s]
 
   static void describe(ParameterTable<SwingPlan>& table);
 };

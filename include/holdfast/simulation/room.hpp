@@ -10,17 +10,17 @@
 
 namespace holdfast::simulation {
 
-/// A furnished room, lit, with one corner at the origin: x to the right and y ahead as seen from the camera's home.
+/// A furnished and lit room with one corner at the origin: x to the right and y ahead as seen from the camera's home.
 ///
-/// office: 6 m by 5 m by 2.6 m. Two desks with what lies on desks stand at the wall y = 5, where the camera looks, and
-/// left of them "door 1", which swings into the room when it is turned about its z axis by 0 to 1.4 rad (its hinge).
-/// "box 3" on a stool before the desks can be carried; "chair 1" and "chair 2" stand on either side of it.
+/// office: 6 m by 5 m by 2.6 m. Two desks with objects are at the wall y = 5, in the view of the camera, and left of
+/// them "door 1", which opens into the room when it is rotated about its z axis (its hinge) by 0 to 1.4 rad. "box 3" on
+/// a stool in front of the desks can be carried; "chair 1" and "chair 2" are on either side of it.
 ///
 /// hall: 11 m by 9 m by 2.8 m. Furniture along all walls, islands of desks, shelves and partitions, and a table with
-/// free floor around, so that a walk around the islands shows something else everywhere.
+/// free floor around it, so that every part of a walk around the islands looks different.
 ///
-/// corridor: 20 m by 2.6 m by 2.6 m. The same desk group every 2 m along y = 2.6 and the same cabinet and pictures
-/// across, copied to the texel; nothing but a mug on some of the desks tells one from another.
+/// corridor: 20 m by 2.6 m by 2.6 m. The same desk group every 2 m along y = 2.6 and the same cabinet and pictures on
+/// the opposite side with identical textures; only a mug on some of the desks distinguishes them.
 enum class RoomKind { office, hall, corridor };
 
 /// "office", "hall", "corridor".
@@ -29,19 +29,20 @@ const char* to_string(RoomKind kind);
 RoomKind room_kind(const std::string& name);
 std::vector<std::string> room_names();
 
-/// A furnished room, and where people and cameras can be in it.
+/// A furnished room, and the positions of people and cameras in it.
 struct Room {
   World world;
   Stage stage;
 };
 
-/// The seed changes every texture and the places of small things, not the furniture.
+/// Creates a room. The seed changes all textures and the positions of small objects, not the furniture.
 Room make_room(RoomKind kind, std::uint64_t seed);
 
-/// The same before bake_light: for those who set things in motion first, which then leave no shadow where they stood.
+/// Creates a room without baked light, so that objects can be set in motion first and leave no shadow at their initial
+/// position; call bake_light afterwards.
 Room furnish_room(RoomKind kind, std::uint64_t seed);
 
-/// The places of a room alone: the same for every seed.
+/// The positions of a room only; independent of the seed.
 Stage make_stage(RoomKind kind);
 
 }  // namespace holdfast::simulation

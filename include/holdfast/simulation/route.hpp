@@ -6,29 +6,30 @@
 
 namespace holdfast::simulation {
 
-/// Turn about z [rad] that makes the face (-y) look along a direction on the floor.
+/// Rotation about z [rad] that aligns the face (-y) with a direction on the floor.
 double heading_of(const Eigen::Vector2d& direction);
-/// The direction on the floor that a heading looks along.
+/// The direction on the floor of a heading.
 Eigen::Vector2d direction_of(double heading);
 
-/// A line over the floor past given places, corners rounded by arcs, measured by the distance travelled [m].
+/// A path on the floor through given positions with corners rounded by arcs, parametrised by the travelled distance
+/// [m].
 class Route {
  public:
   static constexpr double usual_radius = 0.6;
 
-  /// `radius` of the corners [m], where the straights beside them leave room for it. Points that coincide with the one
-  /// before are left out.
+  /// `radius` is that of the corners [m], limited by the adjacent straight segments. Duplicate consecutive points are
+  /// ignored.
   explicit Route(const std::vector<Eigen::Vector2d>& points, double radius = usual_radius);
 
   double length() const { return length_; }
-  /// Distances outside 0 ... length continue straight on.
+  /// Position at a distance; the path is extended straight beyond 0 ... length.
   Eigen::Vector2d position(double distance) const;
-  /// Heading, averaged over 0.25 m before and after so that it begins to turn gently; without jumps of 2 pi [rad].
+  /// Heading, averaged over 0.25 m before and after for smooth turns; without jumps of 2 pi [rad].
   double heading(double distance) const;
-  /// Turn per metre of heading() [rad/m].
+  /// Derivative of heading() by the distance [rad/m].
   double curvature(double distance) const;
 
-  /// Cuts a list of places where the corner is so sharp that one would stop and turn on the spot.
+  /// Divides a list of positions at corners so sharp that a person would stop and turn on the spot.
   static std::vector<std::vector<Eigen::Vector2d>> legs(const std::vector<Eigen::Vector2d>& points);
 
  private:
@@ -46,17 +47,17 @@ class Route {
   double length_ = 0.0;
 };
 
-/// How far one has come along a route at a time: starts and ends at rest, speeds up and slows down by at most 1 m/s^2
-/// and slows down in bends so that nobody turns faster than 1.9 rad/s.
+/// Travelled distance along a route as a function of time: starts and ends at rest, with accelerations of at most 1
+/// m/s^2 and angular velocities of at most 1.9 rad/s in bends.
 class Travel {
  public:
-  /// Over the first `length` metres of the route at `speed` [m/s].
+  /// Travels the first `length` metres of the route at `speed` [m/s].
   Travel(const Route& route, double length, double speed);
 
   double duration() const { return times_.back(); }
   double distance(double time) const;
   double speed(double time) const;
-  /// When a distance is reached.
+  /// Time at which a distance is reached [s].
   double time(double distance) const;
 
  private:

@@ -12,29 +12,30 @@
 
 namespace holdfast::simulation {
 
-/// The light goes out for a while: the colour camera sees noise. Depth, which brings its own light, goes on.
+/// An interval without light, in which the colour image contains noise only. Depth is not affected, because its sensor
+/// has its own light.
 struct LightsOut {
   double from = 0.0;  ///< [s]
   double to = 0.0;    ///< [s]
 };
 
-/// The camera's way.
+/// The camera path of a scene.
 struct CameraPlan {
   PathKind path = PathKind::xyz;
   PathStyle style;
-  Waypoints waypoints;  ///< of PathKind::waypoints
+  Waypoints waypoints;  ///< for PathKind::waypoints
 };
 
-/// All that makes a simulated sequence: a room, who and what moves in it, the camera's way and its sensors.
+/// Description of a simulated sequence: a room, moving people and objects, the camera path and the sensors.
 struct Scene {
   std::string name = "empty";
-  std::string file;                    ///< that it was read from, for messages and records; empty = none
-  std::vector<std::string> overrides;  ///< of the file's values, for records
+  std::string file;                    ///< path of the scene file, for messages and records; empty = none
+  std::vector<std::string> overrides;  ///< overrides of the file's values, for records
   RoomKind room = RoomKind::office;
   CameraPlan camera;
   double duration = 20.0;    ///< [s]; frames from 0 up to, not including, this time
   double frame_rate = 30.0;  ///< [1/s]
-  std::uint64_t seed = 1;    ///< of textures, small things, people, path and noise
+  std::uint64_t seed = 1;    ///< seed of textures, small objects, people, path and noise
   std::vector<PersonPlan> people;
   std::vector<SwingPlan> doors;
   std::vector<LightsOut> lights_out;

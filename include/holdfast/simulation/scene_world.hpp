@@ -10,26 +10,26 @@
 
 namespace holdfast::simulation {
 
-/// An object that may move in a scene, as masks and truth name it.
+/// A movable object of a scene with its number in masks and ground truth.
 struct NumberedObject {
   std::uint8_t number = 0;  ///< from 1
   std::size_t index = 0;    ///< in World::objects
 };
 
-/// The room of a scene with everybody in it and everything in motion.
+/// The room of a scene with its people and moving objects.
 struct SceneWorld {
   World world;
   Stage stage;
-  std::vector<NumberedObject> numbered;  ///< people in the order of the scene, then things in the order of the world
+  std::vector<NumberedObject> numbered;  ///< people in the order of the scene, then objects in the order of the world
 };
 
-/// Furnishes the room, makes the people and sets what they and the doors move in motion. Throws ConfigurationError for
-/// a plan that the room does not allow: things that are not there, two who move the same one, ... The message names the
-/// scene's file and the element ("people.0.do.1").
+/// Furnishes the room, creates the people and sets the objects that they move, and the doors, in motion. Throws
+/// ConfigurationError for a plan that the room does not permit, such as missing objects or an object that is moved by
+/// two people. The message states the scene's file and the element ("people.0.do.1").
 SceneWorld make_scene_world(const Scene& scene);
 
-/// The same in a room from furnish_room(scene.room, scene.seed), for those who need it more than once: painting its
-/// textures takes most of the time.
+/// The same in a room from furnish_room(scene.room, scene.seed), for repeated use, because generating the textures of
+/// the room takes most of the time.
 SceneWorld make_scene_world(const Scene& scene, Room furnished);
 
 }  // namespace holdfast::simulation

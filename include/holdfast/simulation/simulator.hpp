@@ -15,11 +15,11 @@
 
 namespace holdfast::simulation {
 
-/// A sequence from a simulated scene with all its truth. Frames can be asked for in any order: each depends on scene,
-/// camera and index alone, to the byte. Used by one thread.
+/// Generates the frames of a simulated scene with ground truth. Frames can be requested in any order: each is a
+/// deterministic function of scene, camera and index. Used by one thread.
 class Simulator {
  public:
-  /// Throws ConfigurationError when there would be no frame, and as SceneWorld does.
+  /// Throws ConfigurationError if the sequence has no frame, and as make_scene_world().
   Simulator(const Scene& scene, const Camera& camera);
 
   std::uint64_t frame_count() const { return frame_count_; }
@@ -28,15 +28,15 @@ class Simulator {
   /// The pose of every frame.
   Trajectory truth() const;
 
-  /// The images as the sensors report them, with truth: the pose, object_mask (numbers of numbered_objects()),
-  /// class_labels (into class_names()) and which of the numbered objects move at that moment.
+  /// The images of the sensors with ground truth: the pose, object_mask (numbers of numbered_objects()), class_labels
+  /// (indices into class_names()) and the numbered objects that move at this time.
   SensorFrame frame(std::uint64_t index);
-  /// The same without sensor effects.
+  /// The rendered images without sensor effects.
   RenderedFrame render(std::uint64_t index);
 
   const World& world() const { return scene_world_.world; }
   const Stage& stage() const { return scene_world_.stage; }
-  /// What may move in this scene, by number.
+  /// The movable objects of this scene, by number.
   const std::vector<NumberedObject>& numbered_objects() const { return scene_world_.numbered; }
   const Object& object(const NumberedObject& numbered) const { return world().objects[numbered.index]; }
   const Camera& camera() const { return camera_; }

@@ -30,19 +30,19 @@ enum class Bone : std::uint8_t {
 };
 inline constexpr int bone_count = 17;
 constexpr int index(Bone bone) { return static_cast<int>(bone); }
-/// The bone that a bone hangs on; the pelvis is its own parent.
+/// The parent of a bone; the pelvis is its own parent.
 Bone parent(Bone bone);
 
-/// How somebody is built.
+/// Physique of a person.
 struct Physique {
   double height = 1.75;  ///< [m]
-  double girth = 1.0;    ///< breadth and depth of the body, as a factor on the average for the height
+  double girth = 1.0;    ///< width and depth of the body, relative to the average for the height
 };
 
-/// How somebody holds himself at a moment.
+/// Posture of a person at one time.
 struct Posture {
-  /// Of each bone against its parent (the pelvis: against the person's frame). Identity everywhere is standing upright,
-  /// arms hanging, palms to the thighs, toes to -y.
+  /// Rotation of each bone relative to its parent (of the pelvis, relative to the person's frame). The identity is an
+  /// upright posture with hanging arms, palms towards the thighs and toes towards -y.
   std::array<Eigen::Quaterniond, bone_count> rotations;
   Eigen::Vector3d pelvis = Eigen::Vector3d::Zero();  ///< position of the pelvis in the person's frame [m]
 
@@ -52,27 +52,27 @@ struct Posture {
 /// Poses T_person_bone, by bone.
 using BonePoses = std::array<Eigen::Isometry3d, bone_count>;
 
-/// The lengths of a person's bones and how they hang together. Segment lengths as shares of the height after Drillis
-/// and Contini (1966) as printed by Winter (Biomechanics and Motor Control of Human Movement, 2009, figure 4.1).
+/// Bone lengths and kinematic tree of a person. Segment lengths as fractions of the height by Drillis and Contini
+/// (1966) as printed by Winter (Biomechanics and Motor Control of Human Movement, 2009, figure 4.1).
 ///
-/// A person's frame stands on the floor below the pelvis with z up, the face to -y, the left hand to +x. A bone's frame
-/// has its origin in the joint to its parent and, standing upright, axes parallel to the person's; so bones that hang
-/// down (arms, thighs, shins) extend along -z, those of the trunk along +z, feet along -y. Bending a joint forward is a
-/// turn about +x by a negative angle for limbs that hang down (hip, shoulder, elbow) and positive for the knee (the
-/// shin goes back); bowing the trunk or head forward is a turn about +x by a positive angle.
+/// A person's frame is on the floor below the pelvis with z up, the face towards -y and the left hand towards +x. The
+/// frame of a bone has its origin in the joint to its parent and, in the upright posture, axes parallel to the
+/// person's; thus arms, thighs and shins extend along -z, bones of the trunk along +z, and feet along -y. Forward
+/// flexion is a rotation about +x by a negative angle for hip, shoulder and elbow, and by a positive angle for the knee
+/// (the shin moves backwards); bending the trunk or head forward is a rotation about +x by a positive angle.
 class Skeleton {
  public:
   explicit Skeleton(const Physique& physique);
 
   const Physique& physique() const { return physique_; }
-  /// Joint of a bone in its parent's frame [m]; of the pelvis: in the person's frame when standing.
+  /// Joint of a bone in its parent's frame [m]; that of the pelvis in the person's frame in the upright posture.
   const Eigen::Vector3d& joint(Bone bone) const { return joints_[index(bone)]; }
   /// Length of a bone from its joint to the next one or its end [m]; of the foot: from heel to toe.
   double length(Bone bone) const { return lengths_[index(bone)]; }
-  /// From the ankle down to the floor [m].
+  /// Height of the ankle above the floor [m].
   double ankle_height() const { return ankle_height_; }
 
-  /// Standing upright.
+  /// The upright posture.
   Posture standing() const;
   /// Forward kinematics.
   BonePoses place(const Posture& posture) const;

@@ -7,27 +7,27 @@
 
 namespace holdfast::simulation {
 
-/// A way through the room in words: past some places, with a look.
+/// A camera path through the room: positions and viewing direction.
 struct Waypoints {
   std::vector<Eigen::Vector3d> places;  ///< of the camera [m]; at least two, three if closed
-  bool closed = true;                   ///< round and round; otherwise to the last place, turning there, and back
-  double speed = 0.65;                  ///< [m/s]; a stroll
-  double rounding = 0.8;                ///< corners are rounded from about this far before to this far behind them [m]
-  /// Looks at this point all the time; otherwise along the way, turned aside as given below.
+  bool closed = true;                   ///< repeated loop; otherwise to the last position, a turn, and back
+  double speed = 0.65;                  ///< [m/s]; slow walking
+  double rounding = 0.8;                ///< corners are rounded over about this distance before and after them [m]
+  /// The camera looks at this point; if it is absent, along the path, rotated as given below.
   std::optional<Eigen::Vector3d> target;
-  double aside = 0.0;   ///< gaze turned to the left of the way [rad]; on the way back to the right: to the same things
-  double glance = 0.0;  ///< gaze swings by this much to either side of that [rad]
-  double down = 0.2;    ///< gaze lowered [rad]
+  double aside = 0.0;   ///< viewing direction to the left of the path [rad]; to the right on the way back
+  double glance = 0.0;  ///< amplitude of the oscillation of the viewing direction [rad]
+  double down = 0.2;    ///< viewing direction below the horizon [rad]
 };
 
-/// Places of a room that camera paths and scenes refer to, in the room's frame (z up, floor at z = 0) [m].
+/// Positions in a room to which camera paths and scenes refer, in the room's frame (z up, floor at z = 0) [m].
 struct Stage {
   Eigen::AlignedBox3d walls;       ///< from wall to wall, floor to ceiling
-  Eigen::AlignedBox2d free_floor;  ///< where people may walk and things be pushed: nothing but rugs and `table` there
-  Eigen::Vector3d home;            ///< where the camera of static, xyz and rpy is held
-  Eigen::Vector3d target;          ///< what it looks at, to +y of home; the middle of halfsphere
+  Eigen::AlignedBox2d free_floor;  ///< where people walk and objects are pushed; contains only rugs and `table`
+  Eigen::Vector3d home;            ///< position of the camera of static, xyz and rpy
+  Eigen::Vector3d target;          ///< its viewing target, in direction +y of home; the centre of halfsphere
 
-  /// Where halfsphere goes: each swings by its second number to either side of its first.
+  /// Range of halfsphere: each value oscillates around its mean with the amplitude `_swing`.
   struct HalfSphere {
     double radius = 1.7, radius_swing = 0.1;          ///< from the target [m]
     double azimuth_swing = 0.85;                      ///< about the direction to home [rad]
@@ -35,15 +35,15 @@ struct Stage {
   };
   HalfSphere half_sphere;
 
-  /// The table of the paper's experiments, square to the walls.
+  /// The table of the paper's experiments, parallel to the walls.
   struct Table {
     Eigen::Vector2d centre;
     Eigen::Vector2d size;  ///< along x and y
     double height = 0.0;   ///< of its top
   };
   Table table;
-  Eigen::Vector3d table_edge;         ///< the camera's middle when it slides along the table's edge, parallel to x
-  Eigen::Vector3d table_edge_target;  ///< what it looks at from there
+  Eigen::Vector3d table_edge;         ///< mean camera position of the motion along the table's edge, parallel to x
+  Eigen::Vector3d table_edge_target;  ///< its viewing target
   Eigen::Vector3d spot;               ///< the axis of a rotation on the spot
 
   Waypoints loop, corridor, square;

@@ -8,11 +8,11 @@
 
 namespace holdfast::simulation {
 
-/// Angle of a thing that swings, at a time [rad]: 0 shut, plan.angle open, smooth to the second derivative.
+/// Angle of a swinging object at a time [rad]: 0 closed, plan.angle open, smooth to the second derivative.
 double swing_angle(const SwingPlan& plan, double time);
 
-/// T_world_thing over time of a thing that swings about its own z axis, from its pose when shut.
-/// \throws ConfigurationError when a time of the plan is negative, or opening is 0.
+/// T_world_object over time of an object that swings about its own z axis, from its closed pose.
+/// \throws ConfigurationError if a time of the plan is negative, or opening is 0.
 std::function<Eigen::Isometry3d(double)> swing_motion(const SwingPlan& plan, const Eigen::Isometry3d& T_world_thing);
 
 }  // namespace holdfast::simulation

@@ -8,21 +8,21 @@
 
 namespace holdfast::simulation {
 
-/// A walk along Waypoints. The broken line is rounded by two moving averages over `rounding`, which makes position a
-/// twice differentiable function of the distance walked that keeps inside the line's corners; the gaze follows the
-/// line's direction through two more.
+/// A camera path along Waypoints. The polyline is smoothed by two moving averages over `rounding`, so that the position
+/// is a twice differentiable function of the travelled distance inside the corners of the polyline; the viewing
+/// direction is that of the polyline, smoothed by two further moving averages.
 class WaypointPath {
  public:
-  /// Throws ConfigurationError for too few places, places that coincide, or a speed that is not positive.
+  /// Throws ConfigurationError for too few positions, coinciding positions, or a speed that is not positive.
   explicit WaypointPath(const Waypoints& waypoints);
 
-  /// Of the rounded line, one way [m].
+  /// Length of the smoothed path in one direction [m].
   double length() const { return length_; }
-  /// Time of one round, or of the way to the end and back with both turns [s].
+  /// Duration of one loop, or of the path to the end and back with both turns [s].
   double cycle() const;
-  /// Distance walked until a time >= 0 [m]. A closed path goes at constant speed; an open one stops at its ends.
+  /// Travelled distance at a time >= 0 [m]. The speed of a closed path is constant; an open one stops at its ends.
   double walked(double time) const;
-  /// T_world_camera at a time >= 0 [s], horizon level.
+  /// T_world_camera at a time >= 0 [s], without roll.
   Eigen::Isometry3d pose(double time) const;
 
  private:
@@ -30,6 +30,9 @@ class WaypointPath {
     double distance;  // along the line from its first place [m]
     double turned;    // 0: looking along the way there; 1: along the way back
   };
+  /// Samples the rounded line at equal distances.
+  void resample(const std::vector<Eigen::Vector3d>& points);
+  void find_headings();
   Moment moment(double time) const;
   Eigen::Vector3d position(double distance) const;
   double heading(double distance) const;

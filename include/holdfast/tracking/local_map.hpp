@@ -6,7 +6,8 @@
 
 #include "holdfast/core/frame.hpp"
 #include "holdfast/core/map.hpp"
-#include "holdfast/tracking/projection_search.hpp"
+#include "holdfast/matching/frame_features.hpp"
+#include "holdfast/matching/point_block.hpp"
 
 namespace holdfast {
 
@@ -22,8 +23,9 @@ class LocalMap {
   void update(Map& map, const Frame& frame, std::uint64_t map_version);
 
   /// Adds the windows of all points that the frame should see and does not show yet, and counts the points as visible.
-  /// radius_factor scales the radius: 2.5 px, or 4 px for points seen at an angle, times the scale of the level.
-  void project(const Frame& frame, float radius_factor, SearchWindows& windows);
+  /// `radius_factor` multiplies the radius, which is 2.5 px, or 4 px for points seen at an angle, times the scale of
+  /// the expected octave. SearchWindows::source counts the points of points().
+  void project(const Frame& frame, float radius_factor, matching::SearchWindows& windows);
 
   /// Counts the points that the frame's features show as found, and writes the counts into the map when it is about to
   /// be changed or the local map rebuilt.
@@ -32,8 +34,7 @@ class LocalMap {
 
   KeyFrameId reference_keyframe() const { return reference_keyframe_; }
   const std::vector<KeyFrameId>& keyframes() const { return keyframes_; }
-  const std::vector<MapPointId>& points() const { return points_; }
-  const std::vector<Descriptor>& descriptors() const { return descriptors_; }
+  const PointBlock& points() const { return points_; }
 
  private:
   bool vote(const Map& map, const Frame& frame);
@@ -46,16 +47,10 @@ class LocalMap {
   KeyFrameId reference_keyframe_;
   std::vector<KeyFrameId> keyframes_;
   std::vector<int> votes_;  // by keyframe slot
-  std::vector<std::uint32_t> voted_slots_;
   std::vector<KeyFrameId> voted_;
 
-  // Entry i of each belongs to point i.
-  std::vector<MapPointId> points_;
-  std::vector<float> position_x_, position_y_, position_z_;
-  std::vector<float> direction_x_, direction_y_, direction_z_;
-  std::vector<float> minimum_distance_, maximum_distance_;
-  std::vector<Descriptor> descriptors_;
-  std::vector<std::uint32_t> visible_, found_;
+  PointBlock points_;
+  std::vector<std::uint32_t> visible_, found_;  // entry i of each belongs to point i
   std::vector<std::uint8_t> shown_;
   std::vector<std::int32_t> index_of_slot_;  // of a map point's slot, -1 = not local
 };

@@ -40,13 +40,30 @@ class ScriptBuilder {
     Eigen::Vector3d left, forward;
   };
 
+  /// A thing that is about to be carried: the side from which it is lifted, and how it is held.
+  struct Load {
+    Eigen::Isometry3d T_world_thing;
+    Standpoint stand{};
+    Grips grips;
+    Seen seen{};
+    Eigen::Isometry3d T_person_held = Eigen::Isometry3d::Identity();
+  };
+
   void walk(const Walk& action);
   void stand(const Stand& action);
   void sit(const Sit& action);
   void push(const Push& action);
   /// Past places between which no corner is too sharp to push round.
   void push_along(const Push& action, const std::vector<Eigen::Vector2d>& places);
+  /// Walks behind a thing that is to be pushed and reaches for it.
+  Movement::Bend step_behind(const std::string& name, const Standpoint& stand, const Obstacle& around,
+                             const Eigen::Isometry3d& T_world_thing, const Grips& grips);
   void carry(const Carry& action);
+  /// Of the four sides of a thing the nearest from which it can be lifted.
+  Load choose_side(const Carry& action);
+  /// Walks with the load to a place from which it can be put down, and returns the pose that it gets.
+  Eigen::Isometry3d carry_to(const Carry& action, const Load& load);
+  Movement::Bend bend_to(const std::string& name, const Grips& grips, const Eigen::Isometry3d& T_world_rest);
 
   /// Walks to a place, past others, round what must not be walked through.
   void go(std::vector<Eigen::Vector2d> points, double speed, const std::optional<Obstacle>& obstacle);

@@ -85,9 +85,8 @@ void mark_shadow(const float* depth, int width, float focal_length_baseline, flo
 }
 
 // Marks a band along the depth edges.
-void mark_edges(const cv::Mat& depth, const cv::Mat& cosine, double width, const Random& sequence, Random frame,
-                double time, std::vector<std::uint8_t>& holes) {
-  const RollingNoise noise(depth.size(), sequence, time);
+void mark_edges(const cv::Mat& depth, const cv::Mat& cosine, double width, const RollingNoise& noise, Random frame,
+                std::vector<std::uint8_t>& holes) {
   const int reach = static_cast<int>(std::ceil(width));
   const auto mark = [&](int x, int y) {
     const auto ragged = static_cast<float>(frame.uniform()) - 0.5F;
@@ -145,10 +144,10 @@ cv::Mat sense_depth(const cv::Mat& depth, const cv::Mat& cosine, const Camera& c
   const Random sequence(seed);
   const Random frame = sequence.fork(std::bit_cast<std::uint64_t>(time));
   const int width = depth.cols, padded = (width + 3) / 4 * 4;
-
   std::vector<std::uint8_t> holes(depth.total(), 0);
   if (settings.edge_holes > 0.0)
-    mark_edges(depth, cosine, settings.edge_holes, sequence.fork(0xed6e), frame.fork(0xed6e), time, holes);
+    mark_edges(depth, cosine, settings.edge_holes, RollingNoise(depth.size(), sequence.fork(0xed6e), time),
+               frame.fork(0xed6e), holes);
   std::vector<float> in(padded, 0.0F), facing(padded, 0.0F), out(padded), columns(padded);
   std::vector<std::uint8_t> hole(padded);
   cv::Mat sensed(depth.size(), CV_32FC1);

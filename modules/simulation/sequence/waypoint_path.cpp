@@ -85,24 +85,18 @@ T interpolate(const T& before, const T& from, const T& to, const T& after, doubl
 }
 
 [[noreturn]] void refuse(const std::string& message) { throw ConfigurationError(SourceLocation{}, message); }
-}  // namespace
 
-Eigen::Isometry3d look_along(const Vector3d& eye, double heading, double down) {
-  return look_at(
-      eye, eye + Vector3d(std::cos(heading) * std::cos(down), std::sin(heading) * std::cos(down), -std::sin(down)));
-}
-
-WaypointPath::WaypointPath(const Waypoints& waypoints) : waypoints_(waypoints) {
-  const bool closed = waypoints_.closed;
-  const std::vector<Vector3d>& places = waypoints_.places;
+void check(const Waypoints& waypoints) {
+  const bool closed = waypoints.closed;
+  const std::vector<Vector3d>& places = waypoints.places;
   std::ostringstream text;
   if (places.size() < (closed ? 3U : 2U)) {
     text << "a camera path past " << places.size() << " places; expected at least "
          << (closed ? "three for one that is closed" : "two");
     refuse(text.str());
   }
-  if (!(waypoints_.speed > 0.0) || !std::isfinite(waypoints_.speed) || !(waypoints_.rounding >= 0.0)) {
-    text << "a camera path at " << waypoints_.speed << " m/s with corners rounded over " << waypoints_.rounding
+  if (!(waypoints.speed > 0.0) || !std::isfinite(waypoints.speed) || !(waypoints.rounding >= 0.0)) {
+    text << "a camera path at " << waypoints.speed << " m/s with corners rounded over " << waypoints.rounding
          << " m; expected a positive speed and a rounding of at least 0";
     refuse(text.str());
   }
@@ -115,35 +109,55 @@ WaypointPath::WaypointPath(const Waypoints& waypoints) : waypoints_(waypoints) {
       refuse(text.str());
     }
   }
+}
 
-  std::vector<Vector3d> points = sampled(places, closed);
+/// Refuses a line that passes right above or below the target of the gaze.
+void check_target(const Waypoints& waypoints, const std::vector<Vector3d>& points) {
+  if (!waypoints.target) return;
+  for (const Vector3d& point : points)
+    if ((point - *waypoints.target).head<2>().norm() < 0.1)
+      refuse(
+          "a camera path passes less than 10 cm from above or below the place that it looks at, where level has no "
+          "meaning; expected a target beside the way");
+}
+}  // namespace
+
+Eigen::Isometry3d look_along(const Vector3d& eye, double heading, double down) {
+  return look_at(
+      eye, eye + Vector3d(std::cos(heading) * std::cos(down), std::sin(heading) * std::cos(down), -std::sin(down)));
+}
+
+WaypointPath::WaypointPath(const Waypoints& waypoints) : waypoints_(waypoints) {
+  check(waypoints_);
+  const bool closed = waypoints_.closed;
   const Vector3d still = Vector3d::Zero();
+  std::vector<Vector3d> points = sampled(waypoints_.places, closed);
   const long half = std::min<long>(std::lround(0.5 * waypoints_.rounding / spacing), static_cast<long>(points.size()));
   for (int pass = 0; pass < 2; ++pass) points = moving_average(points, half, closed, still);
-
-  if (waypoints_.target)
-    for (const Vector3d& point : points)
-      if ((point - *waypoints_.target).head<2>().norm() < 0.1) {
-        text << "a camera path passes less than 10 cm from above or below the place that it looks at, where level has "
-                "no "
-                "meaning; expected a target beside the way";
-        refuse(text.str());
-      }
-
-  // Rounding shortens the way at corners: samples at equal distances again.
+  check_target(waypoints_, points);
   if (closed) points.push_back(points.front());
+  resample(points);
+  find_headings();
+}
+
+void WaypointPath::resample(const std::vector<Vector3d>& points) {
+  // Rounding shortens the line at corners, so its samples are no longer at equal distances.
   std::vector<double> way = {0.0};
   for (std::size_t i = 1; i < points.size(); ++i) way.push_back(way.back() + (points[i] - points[i - 1]).norm());
   length_ = way.back();
   const int count = std::max(4, static_cast<int>(std::lround(length_ / spacing)));
   step_ = length_ / count;
-  for (int i = 0, k = 0; i < (closed ? count : count + 1); ++i) {
+  for (int i = 0, k = 0; i < (waypoints_.closed ? count : count + 1); ++i) {
     const double wanted = std::min(i * step_, length_);
     while (k + 2 < static_cast<int>(way.size()) && way[k + 1] < wanted) ++k;
     const double share = (wanted - way[k]) / std::max(1e-12, way[k + 1] - way[k]);
     positions_.push_back(points[k] + share * (points[k + 1] - points[k]));
   }
+}
 
+void WaypointPath::find_headings() {
+  const bool closed = waypoints_.closed;
+  const Vector3d still = Vector3d::Zero();
   const auto direction = [&](long i) {
     const Vector3d along = beyond(positions_, i + 1, closed, still) - beyond(positions_, i - 1, closed, still);
     return std::atan2(along.y(), along.x());

@@ -19,10 +19,10 @@ constexpr int border = 31;  // [px of the level], OpenCV's default edge threshol
 
 void OpencvOrbSettings::describe(ParameterTable<OpencvOrbSettings>& table) {
   using S = OpencvOrbSettings;
-  table.add("count", &S::count, "features to keep of an image").range(10, 50000);
-  table.add("scale_factor", &S::scale_factor, "scale between neighbouring pyramid levels").range(1.05, 2.0);
-  table.add("levels", &S::levels, "pyramid levels").range(1, 16);
-  table.add("fast_threshold", &S::fast_threshold, "contrast of a FAST corner").range(1, 250).unit("grey level");
+  table.add("count", &S::count, "number of features to extract per image").range(10, 50000);
+  table.add("scale_factor", &S::scale_factor, "scale between adjacent pyramid levels").range(1.05, 2.0);
+  table.add("levels", &S::levels, "number of pyramid levels").range(1, 16);
+  table.add("fast_threshold", &S::fast_threshold, "minimum contrast of a FAST corner").range(1, 250).unit("grey level");
 }
 
 OpencvOrb::OpencvOrb(const OpencvOrbSettings& settings, const CreationContext&)

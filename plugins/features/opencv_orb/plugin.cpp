@@ -6,6 +6,6 @@
 HOLDFAST_PLUGIN(opencv_orb, registry) {
   registry.add<holdfast::FeatureExtractor, holdfast::OpencvOrb, holdfast::OpencvOrbSettings>(
       {.name = holdfast::OpencvOrbSettings::module,
-       .summary = "OpenCV's ORB: FAST corners of a pyramid, the strongest of each level, steered BRIEF of 256 bits.",
+       .summary = "OpenCV's ORB: the strongest FAST corners of each pyramid level, steered BRIEF of 256 bits.",
        .paper = "Rublee, Rabaud, Konolige, Bradski: ORB: an efficient alternative to SIFT or SURF. ICCV 2011"});
 }

@@ -22,8 +22,8 @@ void CornerDetector::begin(const ImageView& image) {
 }
 
 void CornerDetector::score(const ImageView& image, const Region& region, int threshold) {
-  kernels_.fast_scores(image.at(border + region.x, border + region.y), image.stride, region.width, region.height,
-                       threshold, scores_.data() + (region.y + 1) * score_stride_ + region.x + 1, score_stride_);
+  kernels_.fast_scores({image.at(border + region.x, border + region.y), image.stride, region.width, region.height},
+                       threshold, {scores_.data() + (region.y + 1) * score_stride_ + region.x + 1, score_stride_});
 }
 
 void CornerDetector::find_empty_cells(const std::vector<Corner>& corners) {

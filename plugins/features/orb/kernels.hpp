@@ -58,24 +58,37 @@ struct ResizeAxis {
   void build(int input_size, int output_size);
 };
 
+/// View of a grey image; it does not own the pixels.
+struct ImageView {
+  const std::uint8_t* data = nullptr;
+  std::ptrdiff_t stride = 0;
+  int width = 0, height = 0;
+
+  const std::uint8_t* at(int x, int y) const { return data + y * stride + x; }
+};
+
+/// Where a kernel writes rows of bytes.
+struct OutputRows {
+  std::uint8_t* data = nullptr;
+  std::ptrdiff_t stride = 0;
+};
+
 /// The inner loops of the extractor. All are integer and give the same bytes at every level. Strides are in bytes.
 struct Kernels {
   /// Scores of FAST-9 of 16 (Rosten and Drummond 2006): the largest threshold at which the pixel is a corner, 0 where
   /// that is below `threshold` (1 to 254). Reads 3 pixels beyond the region on each side.
-  void (*fast_scores)(const std::uint8_t* image, std::ptrdiff_t stride, int width, int height, int threshold,
-                      std::uint8_t* scores, std::ptrdiff_t score_stride);
+  void (*fast_scores)(const ImageView& region, int threshold, const OutputRows& scores);
   /// Scores of a pixel and its eight neighbours, row by row, without a threshold. Reads 17 pixels to the right.
   void (*neighbour_scores)(const std::uint8_t* pixel, std::ptrdiff_t stride, std::uint8_t* scores);
   /// Columns of a row of scores that are maxima of their 3 x 3 neighbourhood (of equal neighbours the first in reading
   /// order), ascending; returns how many. Reads one score beyond the row on each side.
   int (*local_maxima)(const std::uint8_t* scores, std::ptrdiff_t stride, int width, std::uint16_t* columns);
   /// Bilinear reduction. `row` has room for the input width plus 32.
-  void (*resize)(const std::uint8_t* input, std::ptrdiff_t input_stride, int input_width, const ResizeAxis& columns,
-                 const ResizeAxis& rows, std::uint8_t* row, std::uint8_t* output, std::ptrdiff_t output_stride);
+  void (*resize)(const ImageView& input, const ResizeAxis& columns, const ResizeAxis& rows, std::uint8_t* row,
+                 const OutputRows& output);
   /// Gaussian blur of all pixels that are blur_radius or more from the border; the others are left alone. `row` has
   /// room for the width.
-  void (*blur)(const std::uint8_t* input, std::ptrdiff_t input_stride, int width, int height, std::uint8_t* row,
-               std::uint8_t* output, std::ptrdiff_t output_stride);
+  void (*blur)(const ImageView& input, std::uint8_t* row, const OutputRows& output);
   /// First moments of the disc around a pixel: sums of column * grey and row * grey, from the centre. Reads 16 pixels
   /// to the right.
   void (*moments)(const std::uint8_t* centre, std::ptrdiff_t stride, int& moment_x, int& moment_y);

@@ -27,17 +27,16 @@ std::uint8_t fast_score(const std::uint8_t* pixel, const std::ptrdiff_t* offsets
   return static_cast<std::uint8_t>(best > threshold ? best - 1 : 0);
 }
 
-void fast_scores(const std::uint8_t* image, std::ptrdiff_t stride, int width, int height, int threshold,
-                 std::uint8_t* scores, std::ptrdiff_t score_stride) {
+void fast_scores(const ImageView& region, int threshold, const OutputRows& scores) {
   std::ptrdiff_t offsets[16];
-  for (int i = 0; i < 16; ++i) offsets[i] = circle[i][0] + circle[i][1] * stride;
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x)
-      scores[y * score_stride + x] = fast_score(image + y * stride + x, offsets, threshold);
+  for (int i = 0; i < 16; ++i) offsets[i] = circle[i][0] + circle[i][1] * region.stride;
+  for (int y = 0; y < region.height; ++y)
+    for (int x = 0; x < region.width; ++x)
+      scores.data[y * scores.stride + x] = fast_score(region.at(x, y), offsets, threshold);
 }
 
 void neighbour_scores(const std::uint8_t* pixel, std::ptrdiff_t stride, std::uint8_t* scores) {
-  fast_scores(pixel - stride - 1, stride, 3, 3, 0, scores, 3);
+  fast_scores({pixel - stride - 1, stride, 3, 3}, 0, {scores, 3});
 }
 
 int local_maxima(const std::uint8_t* scores, std::ptrdiff_t stride, int width, std::uint16_t* columns) {
@@ -56,12 +55,12 @@ std::uint8_t blend(int first, int second, int weight) {
   return static_cast<std::uint8_t>((first * (128 - weight) + second * weight + 64) >> 7);
 }
 
-void resize(const std::uint8_t* input, std::ptrdiff_t input_stride, int input_width, const ResizeAxis& columns,
-            const ResizeAxis& rows, std::uint8_t* row, std::uint8_t* output, std::ptrdiff_t output_stride) {
+void resize(const ImageView& input, const ResizeAxis& columns, const ResizeAxis& rows, std::uint8_t* row,
+            const OutputRows& output) {
   for (std::size_t y = 0; y < rows.first.size(); ++y) {
-    const std::uint8_t* upper = input + rows.first[y] * input_stride;
-    for (int x = 0; x < input_width; ++x) row[x] = blend(upper[x], upper[x + input_stride], rows.weight[y]);
-    std::uint8_t* out = output + static_cast<std::ptrdiff_t>(y) * output_stride;
+    const std::uint8_t* upper = input.at(0, rows.first[y]);
+    for (int x = 0; x < input.width; ++x) row[x] = blend(upper[x], upper[x + input.stride], rows.weight[y]);
+    std::uint8_t* out = output.data + static_cast<std::ptrdiff_t>(y) * output.stride;
     for (std::size_t x = 0; x < columns.first.size(); ++x)
       out[x] = blend(row[columns.first[x]], row[columns.first[x] + 1], columns.weight[x]);
   }
@@ -73,11 +72,11 @@ std::uint8_t blur_at(const std::uint8_t* p, std::ptrdiff_t step) {
   return static_cast<std::uint8_t>((sum + 64) >> 7);
 }
 
-void blur(const std::uint8_t* input, std::ptrdiff_t input_stride, int width, int height, std::uint8_t* row,
-          std::uint8_t* output, std::ptrdiff_t output_stride) {
-  for (int y = blur_radius; y < height - blur_radius; ++y) {
-    for (int x = 0; x < width; ++x) row[x] = blur_at(input + y * input_stride + x, input_stride);
-    for (int x = blur_radius; x < width - blur_radius; ++x) output[y * output_stride + x] = blur_at(row + x, 1);
+void blur(const ImageView& input, std::uint8_t* row, const OutputRows& output) {
+  for (int y = blur_radius; y < input.height - blur_radius; ++y) {
+    for (int x = 0; x < input.width; ++x) row[x] = blur_at(input.at(x, y), input.stride);
+    for (int x = blur_radius; x < input.width - blur_radius; ++x)
+      output.data[y * output.stride + x] = blur_at(row + x, 1);
   }
 }
 

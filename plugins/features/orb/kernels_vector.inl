@@ -67,17 +67,19 @@ HOLDFAST_TARGET_INLINE void fast_scores_block(const std::uint8_t* pixel, const s
   Simd::store(scores, Simd::and_not(is_none, Simd::subtract(score, Simd::fill(1))));
 }
 
-HOLDFAST_TARGET void fast_scores(const std::uint8_t* image, std::ptrdiff_t stride, int width, int height, int threshold,
-                                 std::uint8_t* scores, std::ptrdiff_t score_stride) {
-  if (width < bytes) return narrower_kernels().fast_scores(image, stride, width, height, threshold, scores, score_stride);
+HOLDFAST_TARGET void fast_scores(const ImageView& region, int threshold, const OutputRows& output) {
+  if (region.width < bytes) return narrower_kernels().fast_scores(region, threshold, output);
+  const std::uint8_t* image = region.data;
+  std::uint8_t* scores = output.data;
+  const int width = region.width;
   std::ptrdiff_t offsets[16];
-  for (int i = 0; i < 16; ++i) offsets[i] = circle[i][0] + circle[i][1] * stride;
+  for (int i = 0; i < 16; ++i) offsets[i] = circle[i][0] + circle[i][1] * region.stride;
   const Vector limit = Simd::fill(static_cast<std::uint8_t>(threshold));
-  for (int y = 0; y < height; ++y) {
+  for (int y = 0; y < region.height; ++y) {
     for (int x = 0; x < width - bytes; x += bytes) fast_scores_block(image + x, offsets, limit, scores + x);
     fast_scores_block(image + width - bytes, offsets, limit, scores + width - bytes);
-    image += stride;
-    scores += score_stride;
+    image += region.stride;
+    scores += output.stride;
   }
 }
 
@@ -103,15 +105,16 @@ HOLDFAST_TARGET int local_maxima(const std::uint8_t* scores, std::ptrdiff_t stri
   return count;
 }
 
-HOLDFAST_TARGET void resize(const std::uint8_t* input, std::ptrdiff_t input_stride, int input_width,
-                            const ResizeAxis& columns, const ResizeAxis& rows, std::uint8_t* row, std::uint8_t* output,
-                            std::ptrdiff_t output_stride) {
+HOLDFAST_TARGET void resize(const ImageView& input, const ResizeAxis& columns, const ResizeAxis& rows,
+                            std::uint8_t* row, const OutputRows& output) {
+  const std::ptrdiff_t input_stride = input.stride;
+  const int input_width = input.width;
   const int output_width = static_cast<int>(columns.first.size());
   if (columns.block_begin.empty() || input_width < bytes || output_width < 8)
-    return scalar_kernels().resize(input, input_stride, input_width, columns, rows, row, output, output_stride);
+    return scalar_kernels().resize(input, columns, rows, row, output);
   const Vector half = Simd::fill16(64);
   for (std::size_t y = 0; y < rows.first.size(); ++y) {
-    const std::uint8_t* upper = input + rows.first[y] * input_stride;
+    const std::uint8_t* upper = input.at(0, rows.first[y]);
     const Vector weights = Simd::fill_pairs(128 - rows.weight[y], rows.weight[y]);
     for (int x = 0;; x += bytes) {
       x = x + bytes <= input_width ? x : input_width - bytes;
@@ -121,7 +124,7 @@ HOLDFAST_TARGET void resize(const std::uint8_t* input, std::ptrdiff_t input_stri
       Simd::store(row + x, Simd::pack(Simd::shift_right16(low), Simd::shift_right16(high)));
       if (x + bytes >= input_width) break;
     }
-    std::uint8_t* out = output + static_cast<std::ptrdiff_t>(y) * output_stride;
+    std::uint8_t* out = output.data + static_cast<std::ptrdiff_t>(y) * output.stride;
     const int full_blocks = output_width / 8;
     for (int block = 0; block < full_blocks; ++block) {
       const __m128i pixels = _mm_loadu_si128(reinterpret_cast<const __m128i*>(row + columns.block_begin[block]));
@@ -153,18 +156,18 @@ HOLDFAST_TARGET_INLINE Vector blur_block(const std::uint8_t* p, std::ptrdiff_t s
   return Simd::pack(Simd::shift_right16(low), Simd::shift_right16(high));
 }
 
-HOLDFAST_TARGET void blur(const std::uint8_t* input, std::ptrdiff_t input_stride, int width, int height,
-                          std::uint8_t* row, std::uint8_t* output, std::ptrdiff_t output_stride) {
+HOLDFAST_TARGET void blur(const ImageView& input, std::uint8_t* row, const OutputRows& output) {
+  const int width = input.width;
   const int inner = width - 2 * blur_radius;
-  if (inner < bytes) return scalar_kernels().blur(input, input_stride, width, height, row, output, output_stride);
+  if (inner < bytes) return scalar_kernels().blur(input, row, output);
   const Vector weights[4] = {Simd::fill_pairs(blur_weights[3], blur_weights[2]),
                              Simd::fill_pairs(blur_weights[1], blur_weights[0]),
                              Simd::fill_pairs(blur_weights[1], blur_weights[2]), Simd::fill_pairs(blur_weights[3], 0)};
-  for (int y = blur_radius; y < height - blur_radius; ++y) {
-    const std::uint8_t* in = input + y * input_stride;
-    for (int x = 0; x < width - bytes; x += bytes) Simd::store(row + x, blur_block(in + x, input_stride, weights));
-    Simd::store(row + width - bytes, blur_block(in + width - bytes, input_stride, weights));
-    std::uint8_t* out = output + y * output_stride + blur_radius;
+  for (int y = blur_radius; y < input.height - blur_radius; ++y) {
+    const std::uint8_t* in = input.at(0, y);
+    for (int x = 0; x < width - bytes; x += bytes) Simd::store(row + x, blur_block(in + x, input.stride, weights));
+    Simd::store(row + width - bytes, blur_block(in + width - bytes, input.stride, weights));
+    std::uint8_t* out = output.data + y * output.stride + blur_radius;
     const std::uint8_t* from = row + blur_radius;
     for (int x = 0; x < inner - bytes; x += bytes) Simd::store(out + x, blur_block(from + x, 1, weights));
     Simd::store(out + inner - bytes, blur_block(from + inner - bytes, 1, weights));

@@ -24,21 +24,22 @@ using orb::ImageView;
 
 void OrbSettings::describe(ParameterTable<OrbSettings>& table) {
   using S = OrbSettings;
-  table.add("count", &S::count, "features to keep of an image").range(10, 50000);
-  table.add("levels", &S::levels, "pyramid levels").range(1, 16);
-  table.add("scale_factor", &S::scale_factor, "scale between neighbouring pyramid levels").range(1.05, 2.0);
-  table.add("fast_threshold", &S::fast_threshold, "contrast of a FAST corner").range(1, 250).unit("grey level");
+  table.add("count", &S::count, "number of features to extract per image").range(10, 50000);
+  table.add("levels", &S::levels, "number of pyramid levels").range(1, 16);
+  table.add("scale_factor", &S::scale_factor, "scale between adjacent pyramid levels").range(1.05, 2.0);
+  table.add("fast_threshold", &S::fast_threshold, "minimum contrast of a FAST corner").range(1, 250).unit("grey level");
   table
       .add("fast_threshold_low", &S::fast_threshold_low,
-           "contrast of a FAST corner in cells that have none otherwise; not below fast_threshold: no second search")
+           "fallback threshold of cells without a corner; a value that is not below fast_threshold disables the "
+           "fallback")
       .range(1, 250)
       .unit("grey level");
-  table.add("cell_size", &S::cell_size, "side of those cells, in pixels of their level").range(16, 512).unit("px");
+  table.add("cell_size", &S::cell_size, "side of these cells, in pixels of the level").range(16, 512).unit("px");
   table
       .add("spread", &S::spread,
-           "share of the features that is chosen for an even spread over the image; the rest are the strongest left")
+           "fraction of the features that is selected for even coverage of the image; the rest is selected by response")
       .range(0, 1);
-  table.add("subpixel", &S::subpixel, "refine positions below the pixel of their level");
+  table.add("subpixel", &S::subpixel, "refine positions to sub-pixel accuracy");
 }
 
 /// Buffers, kept from image to image.
@@ -133,7 +134,7 @@ void OrbExtractor::describe(Features& out) {
   for (int level = 0; level < pyramid.levels(); ++level) {
     if (work_->corners[level].empty()) continue;
     const ImageView& image = pyramid.view(level);
-    kernels.blur(image.data, image.stride, image.width, image.height, work_->row.data(), work_->blurred.data(), stride);
+    kernels.blur(image, work_->row.data(), {work_->blurred.data(), stride});
     for (const Corner& corner : work_->corners[level]) {
       int moment_x = 0, moment_y = 0;
       kernels.moments(image.at(corner.x, corner.y), image.stride, moment_x, moment_y);

@@ -36,8 +36,7 @@ void ImagePyramid::build(const cv::Mat& grey, int minimum_size) {
   for (std::size_t i = 1; i < planned_.size(); ++i) {
     Level& level = planned_[i];
     const ImageView& finer = views_[i - 1];
-    kernels_.resize(finer.data, finer.stride, finer.width, level.columns, level.rows, row_.data(), level.pixels.data(),
-                    level.width);
+    kernels_.resize(finer, level.columns, level.rows, row_.data(), {level.pixels.data(), level.width});
     views_.push_back({level.pixels.data(), level.width, level.width, level.height});
   }
 }

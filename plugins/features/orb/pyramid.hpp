@@ -12,15 +12,6 @@
 
 namespace holdfast::orb {
 
-/// A grey image that somebody else owns.
-struct ImageView {
-  const std::uint8_t* data = nullptr;
-  std::ptrdiff_t stride = 0;
-  int width = 0, height = 0;
-
-  const std::uint8_t* at(int x, int y) const { return data + y * stride + x; }
-};
-
 /// The image at every scale, each level reduced from the one before. Buffers are kept from image to image.
 class ImagePyramid {
  public:

@@ -9,7 +9,7 @@ namespace holdfast::cluster_plugin {
 
 namespace {
 
-constexpr double least_share = 0.35;  // of the interval: in less time little moves
+constexpr double min_share = 0.35;  // of the interval; motion is too small in less time
 
 }  // namespace
 
@@ -21,7 +21,7 @@ DepthClusters::DepthClusters(const DepthClustersSettings& settings, const Creati
       clusters_(settings.clusters, settings.iterations) {}
 
 void DepthClusters::keep_up(const FilterContext& context) {
-  // A frame is judged again when its pose was found another way; then its first judgement is forgotten.
+  // A frame is evaluated again if its pose was estimated by another method; the first result is then discarded.
   if (!views_.empty() && views_.back().frame_index == context.frame.index) views_.pop_back();
   if (views_.empty()) return;
   if (context.previous == nullptr || context.previous->index < views_.back().frame_index ||
@@ -35,17 +35,16 @@ void DepthClusters::keep_up(const FilterContext& context) {
 }
 
 const DepthView* DepthClusters::reference(double timestamp, const Eigen::Isometry3d& T_camera_world) const {
-  // The oldest that still shows much of the same; the first is the youngest that is old enough.
+  // The oldest view with sufficient overlap; the first candidate is the most recent one that is old enough.
   for (std::size_t i = 0; i < views_.size(); ++i) {
-    if (timestamp - views_[i].timestamp < least_share * settings_.interval) return nullptr;
+    if (timestamp - views_[i].timestamp < min_share * settings_.interval) return nullptr;
     const Eigen::Isometry3d motion = views_[i].T_camera_world * T_camera_world.inverse();
     const double turned = std::hypot(motion.linear()(0, 2), motion.linear()(1, 2));
-    constexpr double middle_depth = 1.5;  // m
-    const double moved = std::hypot(motion.translation().x(), motion.translation().y()) / middle_depth;
-    constexpr double most = 0.12;  // of the focal length
-    const bool is_last =
-        i + 1 == views_.size() || timestamp - views_[i + 1].timestamp < least_share * settings_.interval;
-    if (turned + moved <= most || is_last) return &views_[i];
+    constexpr double typical_depth = 1.5;  // m
+    const double moved = std::hypot(motion.translation().x(), motion.translation().y()) / typical_depth;
+    constexpr double max_motion = 0.12;  // of the focal length
+    const bool is_last = i + 1 == views_.size() || timestamp - views_[i + 1].timestamp < min_share * settings_.interval;
+    if (turned + moved <= max_motion || is_last) return &views_[i];
   }
   return nullptr;
 }
@@ -76,7 +75,7 @@ void DepthClusters::inherit(const DepthView& now, const Eigen::Isometry3d& T_cam
     }
 }
 
-void DepthClusters::say(const Frame& frame, const DepthView& now, StaticEvidence& evidence) const {
+void DepthClusters::add_evidence(const Frame& frame, const DepthView& now, StaticEvidence& evidence) const {
   const BlockGrid& grid = maker_.grid();
   const CoarseGrid& coarse = frame.coarse.grid;
   const std::vector<std::uint8_t>& cluster = clusters_.cluster_of();
@@ -106,7 +105,7 @@ void DepthClusters::say(const Frame& frame, const DepthView& now, StaticEvidence
 }
 
 void DepthClusters::apply(const FilterContext& context, StaticEvidence& evidence) {
-  judged_ = false;
+  evaluated_ = false;
   if (context.T_camera_world == nullptr || context.frame.coarse.empty()) return;
   keep_up(context);
   DepthView now;
@@ -120,15 +119,15 @@ void DepthClusters::apply(const FilterContext& context, StaticEvidence& evidence
     Eigen::Isometry3d T_past_now = past->T_camera_world * context.T_camera_world->inverse();
     correction_.correct(now, *past, inherited_, T_past_now);
     scores_.compare(grid, now, *past, T_past_now, noise_);
-    judged_ = scores_.support(now, inherited_) >= static_cast<float>(settings_.support);
+    evaluated_ = scores_.support(now, inherited_) >= static_cast<float>(settings_.support);
   }
-  if (judged_) {
+  if (evaluated_) {
     scores_.score(grid, now, clusters_, inherited_,
                   {static_cast<float>(settings_.neighbours), static_cast<float>(settings_.memory)});
     const std::vector<std::uint8_t>& cluster = clusters_.cluster_of();
     for (std::size_t i = 0; i < cluster.size(); ++i)
       now.static_score[i] = cluster[i] == KMeans::none ? 1.0F : scores_.scores()[cluster[i]];
-    say(context.frame, now, evidence);
+    add_evidence(context.frame, now, evidence);
   }
   views_.push_back(std::move(now));
 }

@@ -9,8 +9,8 @@ namespace holdfast::cluster_plugin {
 
 namespace {
 
-constexpr float depth_weight = 2.0F;  // steps of depth divide clusters rather than distances along a surface
-constexpr float no_depth = -1e3F;     // stands for the logarithm
+constexpr float depth_weight = 2.0F;  // clusters are divided at depth steps rather than along a surface
+constexpr float no_depth = -1e3F;     // in place of the logarithm
 constexpr int smallest_cluster = 8;   // blocks
 constexpr float far_away = std::numeric_limits<float>::max();
 
@@ -89,7 +89,7 @@ void KMeans::move_centres(const BlockGrid& grid) {
       centres_[k] = {sums[k].x * inverse, sums[k].y * inverse, sums[k].log_depth * inverse};
       continue;
     }
-    // Too small to judge by: begins anew where the clusters fit worst.
+    // A cluster that is too small is re-initialised where the clusters fit worst.
     const auto worst = std::max_element(distance_.begin(), distance_.end());
     const int block = static_cast<int>(worst - distance_.begin());
     centres_[k] = {grid.ray_x[static_cast<std::size_t>(block % grid.columns)],

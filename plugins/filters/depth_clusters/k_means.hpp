@@ -11,9 +11,9 @@ namespace holdfast::cluster_plugin {
 using depth_blocks::BlockGrid;
 using depth_blocks::DepthView;
 
-/// Divides the blocks of a view into clusters (k-means, Lloyd's iterations) by where they lie: direction and logarithm
-/// of depth, so that distances count in proportion to depth. Begins with centres on a grid, later with those of the
-/// view before. Same views, same clusters.
+/// Divides the blocks of a view into clusters (k-means with Lloyd's iterations) by viewing direction and logarithm of
+/// depth, so that distances are relative to depth. The first view starts with centres on a grid, later views with the
+/// centres of the previous view. The same views give the same clusters.
 class KMeans {
  public:
   static constexpr std::uint8_t none = 255;
@@ -40,7 +40,7 @@ class KMeans {
   int wanted_, iterations_;
   std::vector<Centre> centres_;
   std::vector<float> log_depth_;
-  std::vector<float> distance_;  // squared, to the own centre
+  std::vector<float> distance_;  // squared, to the centre of its cluster
   std::vector<std::uint8_t> cluster_;
   std::vector<int> sizes_;
 };

@@ -15,10 +15,9 @@ using depth_blocks::Surface;
 /// Normal equations of every second row and column of blocks. Returns the mean cost, between 0 and 1, of the surface
 /// that both views show.
 float MotionCorrection::sum_up(const DepthView& now, const DepthView& past, const std::vector<float>& trust,
-                               Weighting weighting, float scale, bool only_cost, const Eigen::Isometry3d& motion) {
+                               const Pass& pass, const Eigen::Isometry3d& motion) {
   constexpr float grey_noise = 6.0F, grey_slope = 0.3F;
-  const Eigen::Matrix3f R = motion.linear().cast<float>();
-  const Eigen::Vector3f t = motion.translation().cast<float>();
+  const geometry::Warp warp = grid_.warp(motion);
   const float block_x = grid_.fx * grid_.inverse_step, block_y = grid_.fy * grid_.inverse_step;
   float cost = 0.0F, all = 1e-6F;
   H_.setZero();
@@ -28,13 +27,11 @@ float MotionCorrection::sum_up(const DepthView& now, const DepthView& past, cons
       const std::size_t block = static_cast<std::size_t>(row * grid_.columns + column);
       const float depth = now.depth[block];
       if (depth <= 0.0F || trust[block] < 0.05F) continue;
-      const Eigen::Vector3f ray(grid_.ray_x[static_cast<std::size_t>(column)],
-                                grid_.ray_y[static_cast<std::size_t>(row)], 1.0F);
-      const Eigen::Vector3f p = depth * (R * ray) + t;
-      if (p.z() < 0.1F) continue;
+      const auto warped = grid_.warped(warp, column, row, depth);
+      if (!warped) continue;
+      const Eigen::Vector3f& p = warped->point;
       const float inverse = 1.0F / p.z();
-      const Surface there = surface_at(grid_, past, grid_.column_of(grid_.fx * p.x() * inverse + grid_.cx),
-                                       grid_.row_of(grid_.fy * p.y() * inverse + grid_.cy));
+      const Surface there = surface_at(grid_, past, grid_.column_of(warped->x), grid_.row_of(warped->y));
       if (!there.known || !there.smooth) continue;
       const float residual = there.depth - p.z();
       const float noise = noise_.at(p.z());
@@ -47,10 +44,10 @@ float MotionCorrection::sum_up(const DepthView& now, const DepthView& past, cons
         cost += surface * r2 / (1.0F + r2);
         all += surface;
       }
-      if (only_cost) continue;
-      const float sigma = scale * noise;
+      if (pass.only_cost) continue;
+      const float sigma = pass.scale * noise;
       if (std::abs(residual) > 6.0F * sigma) continue;
-      // Columns, rows and depth by the motion: perturbed from the left, translation first.
+      // Derivatives of column, row and depth by the motion: left perturbation, translation first.
       const float xz = p.x() * inverse, yz = p.y() * inverse;
       Vector6f du, dv, dz;
       du << inverse, 0.0F, -xz * inverse, -xz * yz, 1.0F + xz * xz, -yz;
@@ -59,10 +56,10 @@ float MotionCorrection::sum_up(const DepthView& now, const DepthView& past, cons
       du *= block_x;
       dv *= block_y;
       const float r = residual / sigma, rg = grey_residual / grey_sigma;
-      constexpr float middle_noise = 0.02F;  // m
-      const float depth_weight = weighting == Weighting::by_surface ? surface / (middle_noise * middle_noise)
-                                                                    : trust[block] * p.z() / (sigma * sigma);
-      const float grey_weight = weighting == Weighting::by_surface ? surface : trust[block] * p.z();
+      constexpr float typical_noise = 0.02F;  // m
+      const float depth_weight = pass.weighting == Weighting::by_surface ? surface / (typical_noise * typical_noise)
+                                                                         : trust[block] * p.z() / (sigma * sigma);
+      const float grey_weight = pass.weighting == Weighting::by_surface ? surface : trust[block] * p.z();
       const float w = depth_weight / (1.0F + r * r);
       const float wg = grey_weight / ((1.0F + r * r) * (1.0F + rg * rg) * grey_sigma * grey_sigma);
       const Vector6f jacobian = there.depth_x * du + there.depth_y * dv - dz;
@@ -81,15 +78,15 @@ bool MotionCorrection::descend(const DepthView& now, const DepthView& past, cons
   const Eigen::Isometry3d start = motion;
   constexpr std::array<float, 3> scales{1.5F, 1.0F, 1.0F};
   for (const float scale : scales) {
-    sum_up(now, past, trust, weighting, scale, false, motion);
-    // What the images do not show stays as predicted.
+    sum_up(now, past, trust, {weighting, scale}, motion);
+    // Directions that the images do not constrain keep the prediction.
     constexpr float hold_translation = 1.0F / (0.01F * 0.01F), hold_rotation = 1.0F / (0.005F * 0.005F);
     for (int i = 0; i < 6; ++i) H_(i, i) += i < 3 ? hold_translation : hold_rotation;
     const geometry::Vector6d step = H_.selfadjointView<Eigen::Lower>().ldlt().solve(g_).cast<double>();
     if (!step.allFinite()) return false;
     motion = geometry::exp_se3(step) * motion;
   }
-  cost = sum_up(now, past, trust, weighting, scales.back(), true, motion);
+  cost = sum_up(now, past, trust, {weighting, scales.back(), true}, motion);
   const geometry::Vector6d change = geometry::log_se3(motion * start.inverse());
   return change.head<3>().norm() <= largest_ && change.tail<3>().norm() <= 2.0 * largest_;
 }

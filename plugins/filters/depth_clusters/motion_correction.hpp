@@ -12,25 +12,25 @@ using depth_blocks::BlockGrid;
 using depth_blocks::DepthNoise;
 using depth_blocks::DepthView;
 
-/// How much surface a block shows, up to a factor: the square of its depth, limited where depth becomes vague.
+/// Surface area of a block up to a factor: the squared depth, limited because large depths are inexact.
 inline float surface_of(float depth) {
-  constexpr float most = 4.0F;  // m
-  return depth < most ? depth * depth : most * most;
+  constexpr float max_depth = 4.0F;  // m
+  return depth < max_depth ? depth * depth : max_depth * max_depth;
 }
 
-/// Corrects a predicted motion so that the depth and the brightness of `now`, carried into `past`, agree with it
-/// (Jaimez et al. 2017, equations 2 to 6: iteratively reweighted least squares with Cauchy weights; linearised in the
-/// image of `past`). Blocks weigh by `trust` (of now's blocks).
+/// Corrects a predicted motion so that the depth and brightness of `now`, warped into `past`, agree with `past` (Jaimez
+/// et al. 2017, equations 2 to 6: iteratively reweighted least squares with Cauchy weights, linearised in the image of
+/// `past`). Blocks are weighted by `trust` (of the blocks of `now`).
 ///
-/// A thing that fills the view can lead the prediction, and this descent, along. So a second descent weighs blocks by
-/// the surface that they show, which a near thing has little of, and wins when its motion explains clearly more of the
-/// surface.
+/// A moving object that fills the view can bias the prediction and this optimization. Therefore a second optimization
+/// weights blocks by their surface area, which is small for near objects, and is preferred if its motion explains
+/// clearly more surface.
 class MotionCorrection {
  public:
   MotionCorrection(const BlockGrid& grid, const DepthNoise& noise, double largest)
       : grid_(grid), noise_(noise), largest_(largest) {}
 
-  /// `motion` is T_past_now. Returns false, and leaves the motion as it was, when the correction would be larger than
+  /// `motion` is T_past_now. Returns false and leaves the motion unchanged if the correction would be larger than
   /// `largest` [m, and 2 rad per m].
   bool correct(const DepthView& now, const DepthView& past, const std::vector<float>& trust, Eigen::Isometry3d& motion);
 
@@ -39,8 +39,15 @@ class MotionCorrection {
   using Matrix6f = Eigen::Matrix<float, 6, 6>;
   enum class Weighting { by_noise, by_surface };
 
-  float sum_up(const DepthView& now, const DepthView& past, const std::vector<float>& trust, Weighting weighting,
-               float scale, bool only_cost, const Eigen::Isometry3d& motion);
+  /// One pass over the blocks: how they are weighted, the scale of the noise, and whether only the cost is wanted.
+  struct Pass {
+    Weighting weighting;
+    float scale;
+    bool only_cost = false;
+  };
+
+  float sum_up(const DepthView& now, const DepthView& past, const std::vector<float>& trust, const Pass& pass,
+               const Eigen::Isometry3d& motion);
   bool descend(const DepthView& now, const DepthView& past, const std::vector<float>& trust, Weighting weighting,
                Eigen::Isometry3d& motion, float& cost);
 

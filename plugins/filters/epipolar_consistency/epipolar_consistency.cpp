@@ -17,8 +17,8 @@ TwoViewOptions two_view_options(const EpipolarConsistencySettings& settings, con
   return options;
 }
 
-/// Undistorted pixel of a raw position whose undistorted place is roughly known: fixed-point steps from there, which
-/// for the few pixels that a feature moves leave less than 0.01 px.
+/// Undistorted pixel of a raw position with a known approximation: fixed-point iteration from there, whose error is
+/// below 0.01 px for the few pixels that a feature moves.
 Eigen::Vector2d undistorted_near(const Camera& camera, const Eigen::Vector2d& raw, const Eigen::Vector2d& guess) {
   if (camera.distortion.is_zero()) return raw;
   Eigen::Vector2d pixel = guess;
@@ -67,7 +67,7 @@ void EpipolarConsistency::apply(const FilterContext& context, StaticEvidence& ev
   choose_features(frame);
   flow_.follow(frame.features, chosen_);
   collect_pairs(frame, evidence);
-  // By frame, so that what is said about a frame does not depend on how many the tracker judged before.
+  // Seeded by frame, so that the evidence of a frame does not depend on the number of evaluated frames before it.
   Random random = Random(seed_).fork(0xe919).fork(context.sensor_frame.index);
   verdict_ = two_views_.estimate(pairs_, random);
   if (verdict_ != Verdict::usable) return;
@@ -78,7 +78,7 @@ void EpipolarConsistency::apply(const FilterContext& context, StaticEvidence& ev
   suspect_.clear();
   for (std::size_t p = 0; p < places_.size(); ++p)
     if (distance2[p] > threshold2) suspect_.push_back(places_[p]);
-  flow_.check_back(suspect_);  // a way that is lost looks like a movement
+  flow_.check_back(suspect_);  // a tracking failure resembles motion
   for (std::size_t p = 0; p < places_.size(); ++p) {
     if (flow_.found[places_[p]] == 0) continue;
     const bool moves = distance2[p] > threshold2;

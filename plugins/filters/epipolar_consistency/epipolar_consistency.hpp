@@ -13,11 +13,12 @@
 namespace holdfast::epipolar_plugin {
 
 /// Moving consistency check after DS-SLAM (Yu, Liu, Liu, Xie, Yang, Wei, Fei: DS-SLAM, IROS 2018, section II-C):
-/// features are followed between two images, a fundamental matrix is found by RANSAC, and a feature whose distance from
-/// its epipolar line exceeds a threshold moves. Beyond the paper: features that are already known to be suspect
-/// (static_probability below 0.5, or negative evidence of filters before this one) do not take part in the estimate,
-/// and where epipolar lines mean nothing (Verdict) nothing is said at all. Statements are measurements. Keeps images of
-/// its own, so it needs neither depth nor a pose nor a map. Same frames, same evidence.
+/// features are tracked between two images, a fundamental matrix is estimated by RANSAC, and a feature is moving if its
+/// distance from its epipolar line exceeds a threshold. Differences from the paper: features that are already
+/// classified as dynamic (static_probability below 0.5, or negative evidence of earlier filters) do not take part in
+/// the estimation, and no evidence is added if the epipolar geometry is degenerate (Verdict). The evidence is
+/// measurements. The filter keeps its own images and needs neither depth nor a pose nor a map. The same frames give the
+/// same evidence.
 class EpipolarConsistency : public DynamicFilter {
  public:
   EpipolarConsistency(const EpipolarConsistencySettings& settings, const CreationContext& context);
@@ -25,7 +26,7 @@ class EpipolarConsistency : public DynamicFilter {
   Needs needs() const override { return {}; }
   void apply(const FilterContext& context, StaticEvidence& evidence) override;
 
-  /// Of the last frame: why it said something or nothing.
+  /// Result of the last frame: the reason why evidence was added or not.
   Verdict verdict() const { return verdict_; }
   const TwoViews& two_views() const { return two_views_; }
 
@@ -39,9 +40,9 @@ class EpipolarConsistency : public DynamicFilter {
   FeatureFlow flow_;
   TwoViews two_views_;
   Verdict verdict_ = Verdict::few_points;
-  std::vector<std::uint32_t> chosen_;   // features that are followed
-  std::vector<std::uint32_t> places_;   // of the pairs in chosen_
-  std::vector<std::uint32_t> suspect_;  // places of those far from their line
+  std::vector<std::uint32_t> chosen_;   // tracked features
+  std::vector<std::uint32_t> places_;   // indices of the pairs in chosen_
+  std::vector<std::uint32_t> suspect_;  // indices of pairs far from their line
   PointPairs pairs_;
 };
 

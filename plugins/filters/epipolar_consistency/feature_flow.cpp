@@ -11,8 +11,8 @@ namespace holdfast::epipolar_plugin {
 namespace {
 constexpr double longest_pause = 0.25;  // s
 constexpr int top_level = 2;
-constexpr float most_difference = 12.0F;  // grey levels, mean over the window: another surface, or covered
-constexpr float most_return = 0.5F;       // px of the half image
+constexpr float max_difference = 12.0F;  // grey levels, mean over the window: another surface, or covered
+constexpr float max_return = 0.5F;       // px of the half image
 const cv::Size window(9, 9);
 const cv::TermCriteria stop(cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 6, 0.03);
 
@@ -51,7 +51,7 @@ void FeatureFlow::follow(const Features& features, const std::vector<std::uint32
     const cv::Point2f& at = before_[k];
     const bool inside = at.x >= 0 && at.y >= 0 && at.x <= static_cast<float>(size.width - 1) &&
                         at.y <= static_cast<float>(size.height - 1);
-    found[k] = status_[k] != 0 && inside && difference_[k] <= most_difference ? 1 : 0;
+    found[k] = status_[k] != 0 && inside && difference_[k] <= max_difference ? 1 : 0;
     before_x[k] = doubled(at.x), before_y[k] = doubled(at.y);
   }
 }
@@ -64,7 +64,7 @@ void FeatureFlow::check_back(const std::vector<std::uint32_t>& places) {
                            top_level, stop);
   for (std::size_t i = 0; i < places.size(); ++i) {
     const cv::Point2f apart = back_to_[i] - now_[places[i]];
-    if (status_[i] == 0 || std::hypot(apart.x, apart.y) > most_return) found[places[i]] = 0;
+    if (status_[i] == 0 || std::hypot(apart.x, apart.y) > max_return) found[places[i]] = 0;
   }
 }
 

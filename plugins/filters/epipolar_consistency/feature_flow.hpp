@@ -10,23 +10,25 @@
 
 namespace holdfast::epipolar_plugin {
 
-/// Follows features into earlier images by pyramidal Lucas-Kanade (Bouguet, "Pyramidal implementation of the Lucas
+/// Tracks features into earlier images by pyramidal Lucas-Kanade (Bouguet, "Pyramidal implementation of the Lucas
 /// Kanade feature tracker", 2000) on grey images of half size. Keeps the pyramids of the last images. One thread.
 class FeatureFlow {
  public:
-  /// gap: how many images back features are followed; after a break as far as there are images.
+  /// `gap` is the number of images that features are tracked back; fewer after an interruption.
   explicit FeatureFlow(int gap) : gap_(static_cast<std::size_t>(gap)) {}
 
-  /// Whether half of such an image holds the window that is compared.
+  /// Whether the image is large enough at half size for the compared window.
   static bool can_follow(const cv::Mat& colour);
-  /// Takes a frame's image, 8UC3 or 8UC1. A frame that comes more than 0.25 s after the last one begins anew.
+  /// Adds the image of a frame, 8UC3 or 8UC1. A frame more than 0.25 s after the last one restarts the sequence.
   void add_image(const cv::Mat& colour, double timestamp);
-  /// Whether there is an earlier image to follow features into.
+  /// Whether there is an earlier image.
   bool ready() const { return pyramids_.size() > 1; }
-  /// Follows `chosen` features of the last image into the earliest one kept. before_x, before_y: raw positions there
-  /// [px of the full image]; found: 0 where the way was lost, left the image, or looks different at its end.
+  /// Tracks the `chosen` features of the last image into the earliest kept image. Results: before_x, before_y, the raw
+  /// positions there [px of the full image], and found, which is 0 if tracking failed, the feature left the image, or
+  /// its appearance changed.
   void follow(const Features& features, const std::vector<std::uint32_t>& chosen);
-  /// Of the features at these places in `chosen`, marks as lost those that do not come back to where they started.
+  /// Tracks the features at these indices of `chosen` forward again and marks those that do not return to their origin
+  /// as lost.
   void check_back(const std::vector<std::uint32_t>& places);
 
   std::vector<float> before_x, before_y;

@@ -7,8 +7,8 @@ HOLDFAST_PLUGIN(epipolar_consistency, registry) {
   using namespace holdfast;
   registry.add<DynamicFilter, epipolar_plugin::EpipolarConsistency, EpipolarConsistencySettings>(
       {.name = EpipolarConsistencySettings::module,
-       .summary =
-           "Features that leave their epipolar lines move; silent where the camera's motion gives no such lines.",
+       .summary = "Evidence against features that violate the epipolar constraint; none if the epipolar geometry is "
+                  "degenerate.",
        .paper = "Yu, Liu, Liu, Xie, Yang, Wei, Fei: DS-SLAM: A semantic visual SLAM towards dynamic environments. IROS "
                 "2018, section II-C"});
 }

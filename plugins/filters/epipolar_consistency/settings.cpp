@@ -7,24 +7,27 @@ namespace holdfast {
 
 void EpipolarConsistencySettings::describe(ParameterTable<EpipolarConsistencySettings>& table) {
   using S = EpipolarConsistencySettings;
-  table.add("threshold", &S::threshold, "a feature farther than this from its epipolar line moves")
+  table.add("threshold", &S::threshold, "distance from the epipolar line above which a feature is moving")
       .range(0.1, 50.0)
       .unit("px");
-  table.add("parallax", &S::parallax, "a feature this far from where the best homography takes it shows depth")
+  table.add("parallax", &S::parallax, "residual of the best homography above which a feature has parallax")
       .range(0.1, 50.0)
       .unit("px");
   table
       .add("parallax_share", &S::parallax_share,
-           "share of the features on their epipolar lines that must show depth; with fewer the filter says nothing")
+           "minimum fraction of the inliers with parallax; below it the filter adds no evidence")
       .range(0.05, 1.0);
   table
       .add("support", &S::support,
-           "share of the trusted features that must lie on their epipolar lines; with fewer it says nothing")
+           "minimum inlier fraction of the trusted features; below it the filter adds no evidence")
       .range(0.3, 1.0);
-  table.add("gap", &S::gap, "frames back to the image that a frame is compared with").range(1, 8).unit("frame");
-  table.add("features", &S::features, "followed at most, evenly over the frame's list").range(50, 100000);
-  table.add("moving", &S::moving, "taken from the log-odds of a feature that is far from its line").range(0.0, 20.0);
-  table.add("static", &S::fixed, "added to the log-odds of a feature that is near its line").range(0.0, 20.0);
+  table.add("gap", &S::gap, "number of frames back to the reference image").range(1, 8).unit("frame");
+  table.add("features", &S::features, "maximum number of tracked features, evenly sampled from the frame's list")
+      .range(50, 100000);
+  table.add("moving", &S::moving, "subtracted from the log-odds of a feature that violates the epipolar constraint")
+      .range(0.0, 20.0);
+  table.add("static", &S::fixed, "added to the log-odds of a feature that satisfies the epipolar constraint")
+      .range(0.0, 20.0);
 }
 
 }  // namespace holdfast

@@ -14,10 +14,10 @@
 namespace holdfast::epipolar_plugin {
 
 namespace {
-constexpr std::size_t fewest_pairs = 30;  // below, the support of a fundamental matrix proves nothing
-constexpr std::size_t most_chosen = 250;  // more do not make the estimate better, only slower
+constexpr std::size_t min_pairs = 30;    // with fewer, the support of a fundamental matrix is not significant
+constexpr std::size_t max_chosen = 250;  // more increase the run time but not the accuracy
 constexpr int homography_iterations = 100;
-constexpr int most_refits = 4;
+constexpr int max_refits = 4;
 
 using Row = Eigen::Matrix<double, 9, 1>;
 using System = Eigen::Matrix<double, 8, 9, Eigen::RowMajor>;
@@ -29,8 +29,8 @@ Eigen::Matrix3d as_matrix(const Row& v) {
   return result;
 }
 
-/// The vector that eight equations leave free: elimination with complete rows exchanged; nothing when more than one
-/// direction is free.
+/// The null vector of eight equations by Gaussian elimination with row exchange; nothing if the null space has more
+/// than one dimension.
 std::optional<Row> null_vector(System& a) {
   std::array<int, 9> column{0, 1, 2, 3, 4, 5, 6, 7, 8};
   for (int k = 0; k < 8; ++k) {
@@ -69,7 +69,7 @@ Row smallest_direction(const Normal& normal) {
   return solver.eigenvectors().col(0);
 }
 
-/// Least squares over the pairs nearer than the threshold, of rank 2 (Hartley and Zisserman, section 11.1.1).
+/// Least squares of rank 2 over the pairs within the threshold (Hartley and Zisserman, section 11.1.1).
 Eigen::Matrix3d refit_fundamental(const PointPairs& pairs, const std::vector<float>& distance2, float threshold2) {
   Normal normal = Normal::Zero();
   for (std::size_t i = 0; i < pairs.size(); ++i)
@@ -104,29 +104,48 @@ float truncated_sum(const std::vector<float>& distance2, float threshold2) {
   return sum;
 }
 
-/// RANSAC that prefers close fits to many loose ones (MSAC; Torr and Zisserman, CVIU 78, 2000, equation 17), with local
-/// refinement of every new best (Chum, Matas and Kittler, DAGM 2003). How many pairs the best one fits.
-template <std::size_t sample_size, class Solve, class Measure, class Refit>
-int search(const PointPairs& pairs, float threshold2, int most_iterations, double confidence, Random& random,
-           std::vector<float>& distance2, Eigen::Matrix3d& best, const Solve& solve, const Measure& measure,
-           const Refit& refit) {
-  int best_count = 0, needed = most_iterations;
+/// How a search is drawn and when it ends.
+struct SearchLimits {
+  float threshold2;    ///< squared distance of a pair that fits [px^2]
+  int max_iterations;  ///< samples, at most
+  double confidence;   ///< of having drawn a sample without outliers
+};
+
+/// What a search does with a model: solve(sample) gives a model of a minimal sample, measure(model, pairs, distance2)
+/// the squared distances of all pairs, refit(pairs, distance2, threshold2) a model of those that fit.
+template <class Solve, class Measure, class Refit>
+struct ModelFunctions {
+  Solve solve;
+  Measure measure;
+  Refit refit;
+};
+template <class Solve, class Measure, class Refit>
+ModelFunctions(Solve, Measure, Refit) -> ModelFunctions<Solve, Measure, Refit>;
+
+/// RANSAC with a truncated quadratic cost (MSAC; Torr and Zisserman, CVIU 78, 2000, equation 17) and local refinement
+/// of every new best model (Chum, Matas and Kittler, DAGM 2003). Returns the number of inliers of the best model;
+/// `distance2` is scratch memory.
+template <std::size_t sample_size, class Functions>
+int search(const PointPairs& pairs, const SearchLimits& limits, const Functions& model_of, Random& random,
+           std::vector<float>& distance2, Eigen::Matrix3d& best) {
+  int best_count = 0, needed = limits.max_iterations;
   float best_cost = std::numeric_limits<float>::infinity();
   const auto keep_if_better = [&](const Eigen::Matrix3d& model) {
-    measure(model, pairs, distance2);
-    const float cost = truncated_sum(distance2, threshold2);
+    model_of.measure(model, pairs, distance2);
+    const float cost = truncated_sum(distance2, limits.threshold2);
     if (!(cost < best_cost)) return false;
-    best_cost = cost, best_count = count_within(distance2, threshold2), best = model;
+    best_cost = cost, best_count = count_within(distance2, limits.threshold2), best = model;
     return true;
   };
   for (int iteration = 0; iteration < needed; ++iteration) {
     const auto sample = geometry::sample_without_repeat<sample_size>(random, static_cast<std::uint32_t>(pairs.size()));
-    const std::optional<Row> solution = solve(sample);
+    const std::optional<Row> solution = model_of.solve(sample);
     if (!solution || !keep_if_better(as_matrix(*solution))) continue;
-    for (int k = 0; k < most_refits && keep_if_better(refit(pairs, distance2, threshold2)); ++k) {
+    for (int k = 0; k < max_refits && keep_if_better(model_of.refit(pairs, distance2, limits.threshold2)); ++k) {
     }
-    needed = std::min(needed, geometry::ransac_iterations(best_count / static_cast<double>(pairs.size()),
-                                                          static_cast<int>(sample_size), confidence, most_iterations));
+    const double inlier_ratio = best_count / static_cast<double>(pairs.size());
+    needed = std::min(needed, geometry::ransac_iterations(inlier_ratio, static_cast<int>(sample_size),
+                                                          limits.confidence, limits.max_iterations));
   }
   return best_count;
 }
@@ -140,7 +159,7 @@ void epipolar_distances2(const Eigen::Matrix3d& fundamental, const PointPairs& p
     const float a = f(0, 0) * x + f(0, 1) * y + f(0, 2), b = f(1, 0) * x + f(1, 1) * y + f(1, 2),
                 c = f(2, 0) * x + f(2, 1) * y + f(2, 2);
     const float value = a * pairs.bx[i] + b * pairs.by[i] + c;
-    // At the epipole there is no line, and nothing is far from it.
+    // At the epipole the line is undefined, and every point satisfies the constraint.
     distance2[i] = value * value / std::max(a * a + b * b, 1e-12F);
   }
 }
@@ -162,8 +181,8 @@ void TwoViews::choose_trusted(const PointPairs& pairs) {
   std::size_t trusted = 0;
   for (const std::uint8_t value : pairs.trusted) trusted += value;
   chosen_.clear();
-  // Evenly over the list: every pair whose share of the total reaches the next whole number.
-  const std::size_t wanted = std::min(trusted, most_chosen);
+  // Evenly sampled from the list: every pair whose fraction of the total reaches the next integer.
+  const std::size_t wanted = std::min(trusted, max_chosen);
   std::size_t seen = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     if (pairs.trusted[i] == 0) continue;
@@ -175,14 +194,14 @@ void TwoViews::choose_trusted(const PointPairs& pairs) {
 
 bool TwoViews::find_fundamental(Random& random) {
   const auto threshold2 = static_cast<float>(options_.threshold * options_.threshold);
-  const int count = search<8>(
-      chosen_, threshold2, options_.iterations, options_.confidence, random, work_, fundamental_,
-      [&](const std::array<std::uint32_t, 8>& sample) {
-        System system;
-        for (int k = 0; k < 8; ++k) system.row(k) = epipolar_row(chosen_, sample[static_cast<std::size_t>(k)]);
-        return null_vector(system);
-      },
-      epipolar_distances2, refit_fundamental);
+  const auto solve = [&](const std::array<std::uint32_t, 8>& sample) {
+    System system;
+    for (int k = 0; k < 8; ++k) system.row(k) = epipolar_row(chosen_, sample[static_cast<std::size_t>(k)]);
+    return null_vector(system);
+  };
+  const int count =
+      search<8>(chosen_, {threshold2, options_.iterations, options_.confidence},
+                ModelFunctions{solve, epipolar_distances2, refit_fundamental}, random, work_, fundamental_);
   support_ = count / static_cast<double>(chosen_.size());
   return support_ >= options_.support;
 }
@@ -194,17 +213,17 @@ bool TwoViews::find_homography(Random& random) {
   for (std::size_t i = 0; i < chosen_.size(); ++i)
     if (work_[i] <= threshold2) supporting_.add(chosen_.ax[i], chosen_.ay[i], chosen_.bx[i], chosen_.by[i], true);
   const auto parallax2 = static_cast<float>(options_.parallax * options_.parallax);
-  const int without = search<4>(
-      supporting_, parallax2, homography_iterations, options_.confidence, random, work_, homography_,
-      [&](const std::array<std::uint32_t, 4>& sample) {
-        System system;
-        for (int k = 0; k < 4; ++k) {
-          const std::array<Row, 2> rows = homography_rows(supporting_, sample[static_cast<std::size_t>(k)]);
-          system.row(2 * k) = rows[0], system.row(2 * k + 1) = rows[1];
-        }
-        return null_vector(system);
-      },
-      transfer_distances2, refit_homography);
+  const auto solve = [&](const std::array<std::uint32_t, 4>& sample) {
+    System system;
+    for (int k = 0; k < 4; ++k) {
+      const std::array<Row, 2> rows = homography_rows(supporting_, sample[static_cast<std::size_t>(k)]);
+      system.row(2 * k) = rows[0], system.row(2 * k + 1) = rows[1];
+    }
+    return null_vector(system);
+  };
+  const int without =
+      search<4>(supporting_, {parallax2, homography_iterations, options_.confidence},
+                ModelFunctions{solve, transfer_distances2, refit_homography}, random, work_, homography_);
   parallax_share_ = 1.0 - without / static_cast<double>(supporting_.size());
   return parallax_share_ >= options_.parallax_share;
 }
@@ -212,7 +231,7 @@ bool TwoViews::find_homography(Random& random) {
 Verdict TwoViews::estimate(const PointPairs& pairs, Random& random) {
   support_ = parallax_share_ = 0.0;
   choose_trusted(pairs);
-  if (chosen_.size() < fewest_pairs) return Verdict::few_points;
+  if (chosen_.size() < min_pairs) return Verdict::few_points;
   if (!find_fundamental(random)) return Verdict::no_support;
   if (!find_homography(random)) return Verdict::no_parallax;
   epipolar_distances2(fundamental_, pairs, distance2_);

@@ -7,15 +7,15 @@
 
 #include "holdfast/core/random.hpp"
 
-/// What two views of a scene say about which points move (Hartley and Zisserman, Multiple View Geometry, 2004, chapters
-/// 4 and 11), for points between which nothing is known but where they are seen.
+/// Two-view geometry of point pairs, with a test for degeneracy (Hartley and Zisserman, Multiple View Geometry, 2004,
+/// chapters 4 and 11).
 namespace holdfast::epipolar_plugin {
 
-/// Where points are seen in view a (earlier) and view b (now): undistorted pixels, less the principal point, divided by
-/// the focal length. Entry i of every array belongs to pair i.
+/// Positions of points in view a (earlier) and view b (current): undistorted pixels minus the principal point, divided
+/// by the focal length. Entry i of every array belongs to pair i.
 struct PointPairs {
   std::vector<float> ax, ay, bx, by;
-  std::vector<std::uint8_t> trusted;  ///< 0 = not to be used for the estimate
+  std::vector<std::uint8_t> trusted;  ///< 0 = not used for the estimation
 
   std::size_t size() const { return ax.size(); }
   void clear() { ax.clear(), ay.clear(), bx.clear(), by.clear(), trusted.clear(); }
@@ -26,38 +26,38 @@ struct PointPairs {
 
 /// Squared distances of the points in b from the epipolar lines of those in a.
 void epipolar_distances2(const Eigen::Matrix3d& fundamental, const PointPairs& pairs, std::vector<float>& distance2);
-/// Squared distances of the points in b from where a homography takes those in a.
+/// Squared distances of the points in b from the points in a transferred by a homography.
 void transfer_distances2(const Eigen::Matrix3d& homography, const PointPairs& pairs, std::vector<float>& distance2);
 
 enum class Verdict : std::uint8_t {
   usable,
-  few_points,   ///< too few trusted pairs for an estimate
-  no_support,   ///< no fundamental matrix fits enough of the trusted pairs: movers in the majority, or bad flow
-  no_parallax,  ///< a homography does nearly as well (rotation, small baseline, a plane), so lines mean nothing
+  few_points,   ///< too few trusted pairs
+  no_support,   ///< too few inliers of any fundamental matrix: moving points in the majority, or wrong flow
+  no_parallax,  ///< degenerate: a homography fits nearly as well (rotation, small baseline, plane)
 };
 
 struct TwoViewOptions {
-  double threshold = 0.0029;     ///< distance from the epipolar line
-  double parallax = 0.0013;      ///< distance from the homography's transfer
-  double parallax_share = 0.35;  ///< of the supporting pairs that must have parallax
-  double support = 0.5;          ///< of the trusted pairs that must lie on their lines
-  int iterations = 500;          ///< at most
+  double threshold = 0.0029;     ///< maximum distance of an inlier from its epipolar line
+  double parallax = 0.0013;      ///< minimum distance from the homography's transfer for parallax
+  double parallax_share = 0.35;  ///< minimum fraction of the inliers with parallax
+  double support = 0.5;          ///< minimum inlier fraction of the trusted pairs
+  int iterations = 500;          ///< maximum number of RANSAC samples
   double confidence = 0.9999;
 };
 
-/// The fundamental matrix of the trusted pairs and whether it can be believed. RANSAC with eight-point samples (solved
-/// exactly) and least squares over the supporting pairs, then a homography the same way from the same pairs. Reuses
-/// its buffers; the same pairs and generator give the same result. One thread.
+/// Estimates the fundamental matrix of the trusted pairs and tests it for degeneracy: RANSAC with eight-point samples
+/// (solved exactly) and least squares over the inliers, followed by a homography from the same pairs by the same
+/// method. Reuses its buffers; the same pairs and generator give the same result. One thread.
 class TwoViews {
  public:
   explicit TwoViews(const TwoViewOptions& options) : options_(options) {}
 
-  /// distance2() and fundamental() hold for all pairs, trusted or not, when the verdict is `usable`.
+  /// If the verdict is `usable`, distance2() and fundamental() are valid for all pairs, trusted or not.
   Verdict estimate(const PointPairs& pairs, Random& random);
 
   const Eigen::Matrix3d& fundamental() const { return fundamental_; }
   const std::vector<float>& distance2() const { return distance2_; }
-  /// Of the last estimate: share of the trusted pairs on their lines, share of those with parallax.
+  /// Inlier fraction of the trusted pairs in the last estimation, and fraction of the inliers with parallax.
   double support() const { return support_; }
   double parallax_share() const { return parallax_share_; }
 
@@ -67,7 +67,7 @@ class TwoViews {
   bool find_homography(Random& random);
 
   TwoViewOptions options_;
-  PointPairs chosen_;  // trusted ones that the estimate uses
+  PointPairs chosen_;  // trusted pairs that the estimation uses
   PointPairs supporting_;
   std::vector<float> distance2_, work_;
   Eigen::Matrix3d fundamental_ = Eigen::Matrix3d::Zero(), homography_ = Eigen::Matrix3d::Identity();

@@ -14,8 +14,8 @@ namespace {
 
 constexpr float depth_noise = 0.008F, depth_noise_growth = 0.004F;  // as in depth_clusters
 constexpr double candidate_memory = 0.15;                           // s
-constexpr std::size_t most_tracks = 24;
-constexpr std::size_t most_points = 250;  // of a thing that are aligned
+constexpr std::size_t max_tracks = 24;
+constexpr std::size_t max_points = 250;  // per object for the alignment
 
 }  // namespace
 
@@ -45,16 +45,17 @@ bool MotionObjects::keep_up(const FilterContext& context) {
     interval_ = context.frame.timestamp - last.image.timestamp;
     if (interval_ <= 0.0) return false;
     if (context.previous == nullptr || context.previous->index != last.image.frame_index) {
-      views_.clear();  // the camera was lost in between: poses before and after do not fit together
+      views_.clear();  // tracking was lost in between, and poses before and after are inconsistent
     } else {
-      // What was found after this filter spoke: a better pose, or a map that was corrected as a whole.
-      const Eigen::Isometry3d T_view_world = context.previous->coarse.T_view_camera * context.previous->T_camera_world;
+      // The pose was refined after this filter ran, or the whole map was corrected.
+      const Eigen::Isometry3d T_view_world = context.previous->T_view_world();
       const Eigen::Isometry3d T_new_old = T_view_world.inverse() * last.T_view_world;
       constexpr double whole_map = 0.02;  // m
       if (T_new_old.translation().norm() > whole_map) {
         for (View& view : views_) {
           view.T_view_world = view.T_view_world * T_new_old.inverse();
-          for (Sight& sight : view.sights) sight.middle = T_new_old * sight.middle;
+          for (TrackObservation& observation : view.observations)
+            observation.centroid = T_new_old * observation.centroid;
         }
         for (ObjectTrack& track : tracks_) track.transform(T_new_old);
       }
@@ -65,22 +66,22 @@ bool MotionObjects::keep_up(const FilterContext& context) {
   while (!views_.empty() &&
          (views_.size() > 16 || views_.front().image.timestamp < context.frame.timestamp - settings_.interval - 1e-3)) {
     if (views_.size() == 1) break;
-    view = std::move(views_.front());  // its memory serves again
+    view = std::move(views_.front());  // reuse its memory
     views_.pop_front();
   }
   maker_.make(context.frame, context.sensor_frame.colour, view.image);
-  view.T_view_world = context.frame.coarse.T_view_camera * *context.T_camera_world;
+  view.T_view_world = context.T_view_world();
   view.owner.assign(view.image.depth.size(), 0);
-  view.sights.clear();
+  view.observations.clear();
   for (ObjectTrack& track : tracks_) track.predict(interval_);
   predictions_.clear();
   if (!views_.empty()) {
     const View& last = views_.back();
     T_last_now_ = (last.T_view_world * view.T_view_world.inverse()).cast<float>();
-    for (const Sight& sight : last.sights) {
-      const ObjectTrack& track = *find(sight.track);
+    for (const TrackObservation& observation : last.observations) {
+      const ObjectTrack& track = *find(observation.track);
       const Eigen::Vector3d step = -interval_ * track.velocity();
-      predictions_.push_back({sight.track, (last.T_view_world.linear() * step).cast<float>(),
+      predictions_.push_back({observation.track, (last.T_view_world.linear() * step).cast<float>(),
                               (last.T_view_world * (track.position() + step)).cast<float>(),
                               track.box().isEmpty() ? 0.0F : 0.5F * track.box().diagonal().norm() + 0.1F,
                               track.label()});
@@ -95,7 +96,7 @@ std::uint32_t MotionObjects::track_before(const Eigen::Vector3f& in_view, std::u
   const View& last = views_[views_.size() - 2];
   const Eigen::Vector3f stood = T_last_now_ * in_view;
   std::uint32_t best = BlockHint::unknown;
-  float least = 1e3F;
+  float min_difference = 1e3F;
   for (const Prediction& prediction : predictions_) {
     if (label != 255 && prediction.label >= 0 && prediction.label != label) continue;
     const Eigen::Vector3f p = stood + prediction.back;
@@ -108,7 +109,8 @@ std::uint32_t MotionObjects::track_before(const Eigen::Vector3f& in_view, std::u
     const std::size_t there = static_cast<std::size_t>(row * grid.columns + column);
     if (last.owner[there] != prediction.name) continue;
     const float difference = std::abs(last.image.depth[there] - p.z());
-    if (difference < Regions::continuity(p.z()) && difference < least) least = difference, best = prediction.name;
+    if (difference < Regions::continuity(p.z()) && difference < min_difference)
+      min_difference = difference, best = prediction.name;
   }
   return best;
 }
@@ -118,8 +120,7 @@ void MotionObjects::give_hints(const FilterContext& context, const StaticEvidenc
   const View& now = views_.back();
   const int coarse_columns = context.frame.coarse.grid.columns;
   const bool has_evidence = evidence.cells().size() == context.frame.coarse.depth.size();
-  const bool has_mask =
-      context.carried_mask != nullptr && context.carried_mask->labels.size() == evidence.cells().size();
+  const bool has_mask = context.frame.coarse.mask.labels.size() == evidence.cells().size();
   hints_.assign(now.image.depth.size(), {});
   if (!has_evidence) return;
   for (int row = 0; row < grid.rows; ++row)
@@ -129,9 +130,9 @@ void MotionObjects::give_hints(const FilterContext& context, const StaticEvidenc
       const float said = evidence.cells()[cell];
       if (said >= 0.0F || now.image.depth[static_cast<std::size_t>(block)] <= 0.0F) continue;
       BlockHint& hint = hints_[static_cast<std::size_t>(block)];
-      if (has_mask) hint.label = context.carried_mask->labels[cell];
+      if (has_mask) hint.label = context.frame.coarse.mask.labels[cell];
       if (!predictions_.empty()) hint.track = track_before(point(block), hint.label);
-      // What belonged to a thing stays with it on less suspicion.
+      // A block that belonged to a track stays with it at a weaker threshold.
       if (predictions_.empty() || hint.track == BlockHint::unknown)
         hint.track = said <= static_cast<float>(settings_.suspicion) ? BlockHint::unknown : BlockHint::background;
     }
@@ -147,7 +148,7 @@ bool MotionObjects::may_join(int block, std::uint32_t name) const {
 }
 
 bool MotionObjects::belongs_to(const Region& region, const Part& part) const {
-  constexpr float gap = 0.3F;  // m, that an arm or a table may hide
+  constexpr float gap = 0.3F;  // m, occluded by an arm or a table
   for (const std::size_t other : part.regions)
     if (regions_.regions()[other].box.exteriorDistance(region.box) < gap) return true;
   return false;
@@ -165,9 +166,9 @@ void MotionObjects::claim(std::size_t track, std::size_t region) {
 bool MotionObjects::resembles(const ObjectTrack& track, const Region& region) const {
   if (track.box().isEmpty()) return true;
   const float before = track.box().diagonal().norm(), now = region.box.diagonal().norm();
-  constexpr float most = 1.6F;
-  if (now > most * before || before > most * now) return false;
-  // Labels, where they tell.
+  constexpr float max_ratio = 1.6F;
+  if (now > max_ratio * before || before > max_ratio * now) return false;
+  // Mask labels, if known.
   int named = 0, same = 0;
   const int label = track.label();
   for (const int block : regions_.blocks(region)) {
@@ -181,7 +182,7 @@ bool MotionObjects::resembles(const ObjectTrack& track, const Region& region) co
 void MotionObjects::assign_regions() {
   const std::vector<Region>& regions = regions_.regions();
   const Eigen::Isometry3d T_world_view = views_.back().T_view_world.inverse();
-  // Large ones first: of a track that fell apart the largest part keeps the name.
+  // Large regions first: the largest part of a divided track keeps the name.
   order_.resize(regions.size());
   for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = i;
   std::stable_sort(order_.begin(), order_.end(),
@@ -203,29 +204,29 @@ void MotionObjects::assign_regions() {
     claim(track, i);
     taken[i] = 1;
   }
-  // The rest: tracks that were hidden, or new ones.
+  // The remaining regions belong to tracks that were occluded, or to new tracks.
   const double timestamp = views_.back().image.timestamp;
   const std::size_t known = tracks_.size();
   for (const std::size_t i : order_) {
     const Region& region = regions[i];
     if (taken[i] != 0 || region.surface < static_cast<float>(settings_.surface)) continue;
-    constexpr int least_inner = 4;
-    if (region.inner < least_inner || 5 * region.inner < region.size) continue;
-    const Eigen::Vector3d middle = T_world_view * region.middle.cast<double>();
+    constexpr int min_inner = 4;
+    if (region.inner < min_inner || 5 * region.inner < region.size) continue;
+    const Eigen::Vector3d centroid = T_world_view * region.centroid.cast<double>();
     std::size_t nearest = known;
-    double least = 1.0;
+    double min_distance = 1.0;
     for (std::size_t k = 0; k < known; ++k) {
       if (part_of(k) != nullptr) continue;
       const ObjectTrack& track = tracks_[k];
       if (!resembles(track, region)) continue;
       const double reach = 0.25 + 0.25 * (timestamp - track.last_seen());  // m
-      const double away = (track.position() - middle).norm() / reach;
-      if (away < least) least = away, nearest = k;
+      const double away = (track.position() - centroid).norm() / reach;
+      if (away < min_distance) min_distance = away, nearest = k;
     }
     if (nearest == known) {
-      if (tracks_.size() >= most_tracks) continue;
+      if (tracks_.size() >= max_tracks) continue;
       tracks_.emplace_back(next_name_++, timestamp,
-                           ObjectSight{middle, Eigen::Vector3d::Ones(), T_world_view.linear()});
+                           ObjectObservation{centroid, Eigen::Vector3d::Ones(), T_world_view.linear()});
       claim(tracks_.size() - 1, i);
     } else {
       claim(nearest, i);
@@ -234,37 +235,37 @@ void MotionObjects::assign_regions() {
   std::sort(parts_.begin(), parts_.end(), [](const Part& a, const Part& b) { return a.track < b.track; });
 }
 
-const MotionObjects::View* MotionObjects::reference(const ObjectTrack& track, const Sight& now,
-                                                    const Sight*& then) const {
-  // The oldest in which the thing has not moved far across the image; else the youngest.
+const MotionObjects::View* MotionObjects::reference(const ObjectTrack& track, const TrackObservation& now,
+                                                    const TrackObservation*& then) const {
+  // The oldest view in which the object has not moved far across the image, otherwise the most recent one.
   const View* best = nullptr;
   const View& current = views_.back();
-  const Eigen::Vector3d in_view = current.T_view_world * now.middle;
+  const Eigen::Vector3d in_view = current.T_view_world * now.centroid;
   const Eigen::Vector3d velocity = current.T_view_world.linear() * track.velocity();
   const double across = std::hypot(velocity.x(), velocity.y()) / std::max(in_view.z(), 0.1);
   for (std::size_t i = views_.size() - 1; i-- > 0;) {
     const View& view = views_[i];
-    const auto sight = std::find_if(view.sights.begin(), view.sights.end(),
-                                    [&](const Sight& each) { return each.track == track.name(); });
-    if (sight == view.sights.end()) break;
-    constexpr double most = 0.05;  // rad
-    if (best != nullptr && across * (current.image.timestamp - view.image.timestamp) > most) break;
+    const auto observation = std::find_if(view.observations.begin(), view.observations.end(),
+                                          [&](const TrackObservation& each) { return each.track == track.name(); });
+    if (observation == view.observations.end()) break;
+    constexpr double max_angle = 0.05;  // rad
+    if (best != nullptr && across * (current.image.timestamp - view.image.timestamp) > max_angle) break;
     best = &view;
-    then = &*sight;
+    then = &*observation;
   }
   return best;
 }
 
-void MotionObjects::align(ObjectTrack& track, const Part& part, const Sight& sight) {
-  const Sight* then = nullptr;
-  const View* view = reference(track, sight, then);
+void MotionObjects::align(ObjectTrack& track, const Part& part, const TrackObservation& observation) {
+  const TrackObservation* then = nullptr;
+  const View* view = reference(track, observation, then);
   if (view == nullptr) return;
   const View& now = views_.back();
   const Eigen::Isometry3d T_then_now = view->T_view_world * now.T_view_world.inverse();
   const Eigen::Isometry3f moved = T_then_now.cast<float>();
   std::size_t size = 0;
   for (const std::size_t region : part.regions) size += static_cast<std::size_t>(regions_.regions()[region].size);
-  const std::size_t stride = 1 + size / most_points;
+  const std::size_t stride = 1 + size / max_points;
   points_.points.clear();
   points_.grey.clear();
   std::size_t count = 0;
@@ -276,22 +277,23 @@ void MotionObjects::align(ObjectTrack& track, const Part& part, const Sight& sig
     }
   const double interval = now.image.timestamp - view->image.timestamp;
   const Eigen::Matrix3d R_then_world = view->T_view_world.linear();
-  points_.centre = (view->T_view_world * sight.middle).cast<float>();
+  points_.centre = (view->T_view_world * observation.centroid).cast<float>();
 
-  // Expected: what the middles say, as far as the same of the thing shows; the descent begins at what the track says.
+  // Prior: the displacement of the centroids, if the same part of the object is visible; the optimization starts at the
+  // prediction of the track.
   RigidAlignment::Prior prior;
-  prior.translation = (R_then_world * (then->middle - sight.middle)).cast<float>();
-  const float change = std::abs(std::log(sight.surface / then->surface));
+  prior.translation = (R_then_world * (then->centroid - observation.centroid)).cast<float>();
+  const float change = std::abs(std::log(observation.surface / then->surface));
   const Eigen::Vector3f extent =
       track.box().isEmpty() ? Eigen::Vector3f(0.5F, 0.5F, 0.5F) : Eigen::Vector3f(track.box().sizes());
   const double differs = 0.3 * change * extent.maxCoeff();
   for (int axis = 0; axis < 3; ++axis)
-    prior.deviation[axis] = static_cast<float>(std::hypot(sight.deviation[axis], then->deviation[axis], differs));
+    prior.deviation[axis] = static_cast<float>(std::hypot(observation.deviation[axis], then->deviation[axis], differs));
   RigidMotion start;
   start.translation = track.is_object() || track.moving()
                           ? (R_then_world * (-interval * track.velocity())).cast<float>()
                           : prior.translation.cwiseMin(0.1F).cwiseMax(-0.1F).eval();
-  const AlignmentResult result = alignment_.align(points_, view->image, view->owner, track.name(), start, prior);
+  const AlignmentResult result = alignment_.align(points_, view->image, {view->owner, track.name()}, start, prior);
   constexpr float farthest = 0.6F;  // m
   if (!(result.motion.translation.norm() < farthest)) return;
   const Eigen::Matrix3d R_world_then = R_then_world.transpose();
@@ -311,7 +313,7 @@ void MotionObjects::follow(const Part& part) {
   ObjectTrack& track = tracks_[part.track];
   View& now = views_.back();
   const Eigen::Isometry3d T_world_view = now.T_view_world.inverse();
-  Sight sight{track.name(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 0.0F};
+  TrackObservation observation{track.name(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 0.0F};
   Eigen::AlignedBox3f box;
   Eigen::Vector2f cut(0, 0);
   float size = 0.0F;
@@ -319,8 +321,8 @@ void MotionObjects::follow(const Part& part) {
   for (const std::size_t i : part.regions) {
     const Region& region = regions_.regions()[i];
     const float blocks = static_cast<float>(region.size);
-    sight.middle += (blocks * region.middle).cast<double>();
-    sight.surface += region.surface;
+    observation.centroid += (blocks * region.centroid).cast<double>();
+    observation.surface += region.surface;
     cut += blocks * region.cut;
     size += blocks;
     box.extend(region.box);
@@ -332,22 +334,28 @@ void MotionObjects::follow(const Part& part) {
       ++label_counts_[label];
     }
   }
-  sight.middle = T_world_view * (sight.middle / size);
+  observation.centroid = T_world_view * (observation.centroid / size);
   cut /= size;
   const Eigen::Vector3f extent = box.sizes();
-  // Of a middle of blocks; more where the thing is cut, and another part of it shows in every frame.
-  const double coarse = 0.004 * (T_world_view.inverse() * sight.middle).z();
-  sight.deviation = Eigen::Vector3d(coarse + 2.0 * cut.x() * extent.x(), coarse + 2.0 * cut.y() * extent.y(),
-                                    coarse + 0.2 * (cut.x() + cut.y()) * extent.z());
-  if (interval_ > 0.0) align(track, part, sight);
-  track.see(now.image.timestamp, {sight.middle, sight.deviation, T_world_view.linear()});
+  // Deviation of the centroid of blocks; larger if the object is cut, because another part is visible in every frame.
+  const double coarse = 0.004 * (T_world_view.inverse() * observation.centroid).z();
+  observation.deviation = Eigen::Vector3d(coarse + 2.0 * cut.x() * extent.x(), coarse + 2.0 * cut.y() * extent.y(),
+                                          coarse + 0.2 * (cut.x() + cut.y()) * extent.z());
+  if (interval_ > 0.0) align(track, part, observation);
+  track.update(now.image.timestamp, {observation.centroid, observation.deviation, T_world_view.linear()});
   track.count_labels(label_counts_);
 
-  // Extent along the axes of the thing, without the outermost points.
   const Eigen::Isometry3f T_object_view = (track.object().T_world_object.inverse() * T_world_view).cast<float>();
+  track.measure_box(inner_box(part, T_object_view, static_cast<std::size_t>(size)));
+  track.classify({settings_.speed, settings_.moving_time}, interval_, next_id_);
+  now.observations.push_back(observation);
+}
+
+Eigen::AlignedBox3f MotionObjects::inner_box(const Part& part, const Eigen::Isometry3f& T_object_view,
+                                             std::size_t size) {
   std::array<std::vector<float>, 3>& along = along_;
   for (auto& values : along) values.clear();
-  const std::size_t stride = 1 + static_cast<std::size_t>(size) / most_points;
+  const std::size_t stride = 1 + size / max_points;
   std::size_t count = 0;
   for (const std::size_t i : part.regions)
     for (const int block : regions_.blocks(regions_.regions()[i])) {
@@ -364,9 +372,7 @@ void MotionObjects::follow(const Part& part) {
     std::nth_element(values.begin(), values.end() - 1 - outer, values.end());
     inner.max()[axis] = *(values.end() - 1 - outer);
   }
-  track.measure_box(inner);
-  track.judge({settings_.speed, settings_.moving_time}, interval_, next_id_);
-  now.sights.push_back(sight);
+  return inner;
 }
 
 void MotionObjects::forget() {
@@ -376,13 +382,13 @@ void MotionObjects::forget() {
   });
 }
 
-void MotionObjects::say(const FilterContext& context, StaticEvidence& evidence) {
+void MotionObjects::add_evidence(const FilterContext& context, StaticEvidence& evidence) {
   const BlockGrid& grid = maker_.grid();
   const View& now = views_.back();
-  said_.assign(now.owner.size(), 0.0F);
+  log_odds_.assign(now.owner.size(), 0.0F);
   bool anything = false;
-  for (const Sight& sight : now.sights) {
-    const ObjectTrack& track = *find(sight.track);
+  for (const TrackObservation& observation : now.observations) {
+    const ObjectTrack& track = *find(observation.track);
     if (!track.is_object()) continue;
     const double log_odds = track.moving()                               ? settings_.moving_log_odds
                             : track.resting_for() >= settings_.rest_time ? settings_.static_log_odds
@@ -390,19 +396,19 @@ void MotionObjects::say(const FilterContext& context, StaticEvidence& evidence) 
     if (log_odds == 0.0) continue;
     anything = true;
     for (std::size_t i = 0; i < now.owner.size(); ++i)
-      if (now.owner[i] == sight.track) said_[i] = static_cast<float>(log_odds);
+      if (now.owner[i] == observation.track) log_odds_[i] = static_cast<float>(log_odds);
   }
   if (!anything) return;
   for (std::size_t i = 0; i < context.frame.size(); ++i) {
     const int block = depth_blocks::block_of(grid, now.image, context.frame, i);
-    if (block >= 0 && said_[static_cast<std::size_t>(block)] != 0.0F)
-      evidence.add(i, said_[static_cast<std::size_t>(block)]);
+    if (block >= 0 && log_odds_[static_cast<std::size_t>(block)] != 0.0F)
+      evidence.add(i, log_odds_[static_cast<std::size_t>(block)]);
   }
   const int coarse_columns = context.frame.coarse.grid.columns;
   for (int row = 0; row < grid.rows * BlockGrid::stride; ++row)
     for (int column = 0; column < grid.columns * BlockGrid::stride; ++column) {
       const float said =
-          said_[static_cast<std::size_t>((row / BlockGrid::stride) * grid.columns + column / BlockGrid::stride)];
+          log_odds_[static_cast<std::size_t>((row / BlockGrid::stride) * grid.columns + column / BlockGrid::stride)];
       if (said != 0.0F) evidence.add_cell(static_cast<std::size_t>(row * coarse_columns + column), said);
     }
 }
@@ -417,14 +423,14 @@ void MotionObjects::apply(const FilterContext& context, StaticEvidence& evidence
   assign_regions();
   for (const Part& part : parts_) follow(part);
   forget();
-  say(context, evidence);
+  add_evidence(context, evidence);
   for (const ObjectTrack& track : tracks_) {
     if (!track.is_object()) continue;
     MovingObject object = track.object();
     const int label = track.label();
     if (context.classes != nullptr && label > 0 && static_cast<std::size_t>(label) < context.classes->size())
       object.class_name = (*context.classes)[static_cast<std::size_t>(label)];
-    evidence.report(object);
+    evidence.add_object(object);
   }
 }
 

@@ -16,14 +16,15 @@
 
 namespace holdfast::object_plugin {
 
-/// Follows what moves: parts of the frame that earlier filters of the chain suspect, and that hang together in depth,
-/// become tracks; each is aligned with an earlier frame by a rigid motion of its own, which gives its velocity. What
-/// has moved for long enough is reported as a MovingObject, and is not static; what came to rest is again.
+/// Tracks moving objects: regions that earlier filters of the chain classify as moving, and that are connected in
+/// depth, become tracks. Each track is aligned with an earlier frame by its own rigid motion, which gives its velocity.
+/// A track that has moved for long enough is reported as a MovingObject, and its features get negative evidence; an
+/// object that came to rest gets positive evidence.
 ///
 /// After Ruenz and Agapito: Co-Fusion: Real-time Segmentation, Tracking and Fusion of Multiple Objects, ICRA 2017
-/// (connected parts that move become models of their own, which are tracked like the camera), and Ruenz, Buffier and
-/// Agapito: MaskFusion, ISMAR 2018 (labels of masks name them). Here a model is what an earlier frame showed of the
-/// thing; nothing is fused. Keeps images and poses of the last frames. Statements are measurements.
+/// (connected moving regions become models, each of which is tracked like the camera), and Ruenz, Buffier and Agapito:
+/// MaskFusion, ISMAR 2018 (mask labels give their class). Here the model is the surface of the object in an earlier
+/// frame; surfaces are not fused. Keeps images and poses of the last frames. The evidence is measurements.
 class MotionObjects final : public DynamicFilter {
  public:
   MotionObjects(const MotionObjectsSettings& settings, const CreationContext& context);
@@ -31,24 +32,24 @@ class MotionObjects final : public DynamicFilter {
   Needs needs() const override { return {.depth = true, .pose_prior = true, .matches = true}; }
   void apply(const FilterContext& context, StaticEvidence& evidence) override;
 
-  /// Objects and candidates, in the order in which they were first seen.
+  /// Objects and candidates in the order of their first observation.
   const std::vector<ObjectTrack>& tracks() const { return tracks_; }
 
  private:
-  /// What an earlier frame, or this one, showed of a track.
-  struct Sight {
+  /// The observation of a track in one frame.
+  struct TrackObservation {
     std::uint32_t track;
-    Eigen::Vector3d middle;     // world [m]
+    Eigen::Vector3d centroid;   // world [m]
     Eigen::Vector3d deviation;  // by axis of the camera [m]
     float surface;              // [m^2]
   };
   struct View {
     depth_blocks::DepthView image;
     Eigen::Isometry3d T_view_world = Eigen::Isometry3d::Identity();
-    std::vector<std::uint32_t> owner;  // of each block: name of a track, 0 = none
-    std::vector<Sight> sights;
+    std::vector<std::uint32_t> owner;  // of each block: track name, 0 = none
+    std::vector<TrackObservation> observations;
   };
-  /// The regions of a track in this frame, together.
+  /// All regions of a track in this frame.
   struct Part {
     std::size_t track;
     std::vector<std::size_t> regions;
@@ -63,10 +64,12 @@ class MotionObjects final : public DynamicFilter {
   bool resembles(const ObjectTrack& track, const Region& region) const;
   bool belongs_to(const Region& region, const Part& part) const;
   void follow(const Part& part);
-  void align(ObjectTrack& track, const Part& part, const Sight& sight);
-  const View* reference(const ObjectTrack& track, const Sight& now, const Sight*& then) const;
+  /// Extent of a part of `size` blocks along the axes of its object, without the outermost points [m].
+  Eigen::AlignedBox3f inner_box(const Part& part, const Eigen::Isometry3f& T_object_view, std::size_t size);
+  void align(ObjectTrack& track, const Part& part, const TrackObservation& observation);
+  const View* reference(const ObjectTrack& track, const TrackObservation& now, const TrackObservation*& then) const;
   void forget();
-  void say(const FilterContext& context, StaticEvidence& evidence);
+  void add_evidence(const FilterContext& context, StaticEvidence& evidence);
   ObjectTrack* find(std::uint32_t name);
   const ObjectTrack* find(std::uint32_t name) const { return const_cast<MotionObjects*>(this)->find(name); }
   Eigen::Vector3f point(int block) const;
@@ -78,19 +81,19 @@ class MotionObjects final : public DynamicFilter {
   Regions regions_;
   std::vector<ObjectTrack> tracks_;
   std::uint32_t next_name_ = 1, next_id_ = 1;
-  std::deque<View> views_;  // oldest first, the last one is this frame's
-  double interval_ = 0.0;   // since the frame before [s]
+  std::deque<View> views_;  // oldest first, the last one is that of this frame
+  double interval_ = 0.0;   // since the previous frame [s]
 
   std::vector<BlockHint> hints_;
   std::vector<Part> parts_;
   std::vector<std::size_t> order_;
   std::vector<int> label_counts_;
-  std::vector<float> said_;
+  std::vector<float> log_odds_;
   std::array<std::vector<float>, 3> along_;
   ObjectPoints points_;
   struct Prediction {
     std::uint32_t name;
-    Eigen::Vector3f back;  // from where a point of it is now to where it was in the last view, in that view's frame
+    Eigen::Vector3f back;  // displacement of its points from this view to the last view, in the frame of the last view
     Eigen::Vector3f centre;
     float radius;
     int label;

@@ -10,18 +10,18 @@ namespace holdfast::object_plugin {
 
 namespace {
 
-constexpr double unknown_speed = 0.5;      // standard deviation of a velocity before it is measured [m/s]
-constexpr double restlessness = 0.5;       // growth of a velocity's variance [(m/s)^2/s]
-constexpr double forgetting_time = 5.0;    // in which a velocity that is not measured falls to 1/e [s]
-constexpr double fading_time = 0.5;        // in which the velocity of what is hidden falls to 1/e [s]
-constexpr double unknown_turning = 0.3;    // standard deviation of an angular velocity before it is measured [rad/s]
-constexpr double unsteadiness = 0.2;       // growth of its variance [(rad/s)^2/s]
-constexpr double middle_gain = 0.15;       // of the position, by sight, when all of the thing shows
-constexpr double middle_deviation = 0.01;  // of a middle then [m]
+constexpr double unknown_speed = 0.5;        // standard deviation of a velocity before it is measured [m/s]
+constexpr double restlessness = 0.5;         // growth of a velocity's variance [(m/s)^2/s]
+constexpr double forgetting_time = 5.0;      // in which an unmeasured velocity decays to 1/e [s]
+constexpr double fading_time = 0.5;          // in which the velocity of an occluded track decays to 1/e [s]
+constexpr double unknown_turning = 0.3;      // standard deviation of an angular velocity before it is measured [rad/s]
+constexpr double unsteadiness = 0.2;         // growth of its variance [(rad/s)^2/s]
+constexpr double centroid_gain = 0.15;       // correction of the position per observation of the whole object
+constexpr double centroid_deviation = 0.01;  // of its centroid [m]
 
-/// Kalman's update of a state that is measured itself.
-void update(const Eigen::Vector3d& measured, const Eigen::Matrix3d& noise, Eigen::Vector3d& state,
-            Eigen::Matrix3d& covariance) {
+/// Kalman update of a state that is measured directly.
+void kalman_update(const Eigen::Vector3d& measured, const Eigen::Matrix3d& noise, Eigen::Vector3d& state,
+                   Eigen::Matrix3d& covariance) {
   const Eigen::Matrix3d gain = covariance * (covariance + noise).inverse();
   state += gain * (measured - state);
   covariance -= (gain * covariance).eval();
@@ -30,11 +30,11 @@ void update(const Eigen::Vector3d& measured, const Eigen::Matrix3d& noise, Eigen
 
 }  // namespace
 
-ObjectTrack::ObjectTrack(std::uint32_t name, double timestamp, const ObjectSight& sight)
+ObjectTrack::ObjectTrack(std::uint32_t name, double timestamp, const ObjectObservation& observation)
     : name_(name),
       velocity_covariance_(unknown_speed * unknown_speed * Eigen::Matrix3d::Identity()),
       angular_covariance_(unknown_turning * unknown_turning * Eigen::Matrix3d::Identity()) {
-  object_.T_world_object.translation() = sight.middle;
+  object_.T_world_object.translation() = observation.centroid;
   object_.first_seen = object_.last_seen = timestamp;
 }
 
@@ -54,12 +54,12 @@ void ObjectTrack::predict(double interval) {
   seen_ = false;
 }
 
-void ObjectTrack::see(double timestamp, const ObjectSight& sight) {
-  const Eigen::Vector3d away = sight.R_world_camera.transpose() * (sight.middle - position());
+void ObjectTrack::update(double timestamp, const ObjectObservation& observation) {
+  const Eigen::Vector3d away = observation.R_world_camera.transpose() * (observation.centroid - position());
   Eigen::Vector3d step;
   for (int axis = 0; axis < 3; ++axis)
-    step[axis] = away[axis] * middle_gain * std::min(1.0, middle_deviation / sight.deviation[axis]);
-  object_.T_world_object.translation() += sight.R_world_camera * step;
+    step[axis] = away[axis] * centroid_gain * std::min(1.0, centroid_deviation / observation.deviation[axis]);
+  object_.T_world_object.translation() += observation.R_world_camera * step;
   object_.last_seen = timestamp;
   seen_ = true;
 }
@@ -69,10 +69,10 @@ void ObjectTrack::measure_motion(const Motion& motion) {
   const auto noise = [&](const Eigen::Matrix3d& covariance, double own) -> Eigen::Matrix3d {
     return (motion.repeats * covariance + own * own * Eigen::Matrix3d::Identity()) * (per_second * per_second);
   };
-  update(per_second * motion.displacement, noise(motion.covariance, motion.pose_noise), object_.velocity,
-         velocity_covariance_);
-  update(per_second * motion.turned, noise(motion.rotation_covariance, motion.turning_noise), object_.angular_velocity,
-         angular_covariance_);
+  kalman_update(per_second * motion.displacement, noise(motion.covariance, motion.pose_noise), object_.velocity,
+                velocity_covariance_);
+  kalman_update(per_second * motion.turned, noise(motion.rotation_covariance, motion.turning_noise),
+                object_.angular_velocity, angular_covariance_);
 }
 
 void ObjectTrack::measure_box(const Eigen::AlignedBox3f& box) {
@@ -80,7 +80,7 @@ void ObjectTrack::measure_box(const Eigen::AlignedBox3f& box) {
     object_.box = box;
     return;
   }
-  // What comes into view belongs to the thing; what leaves it is rather hidden than gone.
+  // A newly visible part belongs to the object; a part that disappears is probably occluded.
   constexpr float outward = 0.3F, inward = 0.03F;
   for (int axis = 0; axis < 3; ++axis) {
     float& low = object_.box.min()[axis];
@@ -105,12 +105,12 @@ int ObjectTrack::label() const {
   return -1;
 }
 
-void ObjectTrack::judge(const MovingRule& rule, double interval, std::uint32_t& next_id) {
+void ObjectTrack::classify(const MovingRule& rule, double interval, std::uint32_t& next_id) {
   const double speed = object_.speed();
   const Eigen::Vector3d direction = speed > 0.0 ? Eigen::Vector3d(object_.velocity / speed) : Eigen::Vector3d::UnitX();
   const double deviation = std::sqrt(std::max(0.0, direction.dot(velocity_covariance_ * direction)));
   object_.speed_deviation = static_cast<float>(deviation);
-  constexpr double significant = 3.0, slower = 0.5, least_way = 0.05;
+  constexpr double significant = 3.0, slower = 0.5, min_distance = 0.05;
   if (seen_) {
     if (speed > rule.speed && speed > significant * deviation) {
       moving_for_ += interval;
@@ -120,7 +120,7 @@ void ObjectTrack::judge(const MovingRule& rule, double interval, std::uint32_t& 
       travelled_.setZero();
     }
   }
-  if (moving_for_ >= rule.moving_time && travelled_.norm() >= least_way) {
+  if (moving_for_ >= rule.moving_time && travelled_.norm() >= min_distance) {
     object_.moving = true;
     if (object_.id == 0) object_.id = next_id++;
   } else if (moving_for_ == 0.0) {

@@ -10,51 +10,53 @@
 
 namespace holdfast::object_plugin {
 
-/// What counts as moving.
+/// Criterion for moving objects.
 struct MovingRule {
-  double speed;        ///< at least [m/s]
-  double moving_time;  ///< for which it must have lasted [s]
+  double speed;        ///< minimum speed [m/s]
+  double moving_time;  ///< minimum duration of the motion [s]
 };
 
-/// One sight of a thing.
-struct ObjectSight {
-  Eigen::Vector3d middle;     ///< of the visible surface, world [m]
-  Eigen::Vector3d deviation;  ///< of the middle, for the part that shows changes: by axis of the camera [m]
+/// One observation of an object.
+struct ObjectObservation {
+  Eigen::Vector3d centroid;  ///< of the visible surface, world [m]
+  Eigen::Vector3d
+      deviation;  ///< standard deviation of the centroid due to changes of the visible part, camera axes [m]
   Eigen::Matrix3d R_world_camera;
 };
 
-/// A thing over time. Its velocity and angular velocity are random walks that alignment measures (Kalman filters); its
-/// position follows the velocity and is drawn to the middle of what is seen of it, the less the less of it is seen; its
-/// orientation follows the angular velocity.
+/// The track of an object over time. Velocity and angular velocity are random walks that are measured by alignment
+/// (Kalman filters). The position is predicted with the velocity and corrected towards the centroid of the visible
+/// surface, with a smaller gain if less of the object is visible. The orientation is predicted with the angular
+/// velocity.
 ///
-/// A track begins as a candidate. It becomes an object, and gets an id, once it has moved faster than the rule says,
-/// three standard deviations at least, for long enough.
+/// A track begins as a candidate. It becomes an object and gets an id when its speed exceeds that of the rule and three
+/// standard deviations for long enough.
 class ObjectTrack {
  public:
-  ObjectTrack(std::uint32_t name, double timestamp, const ObjectSight& sight);
+  ObjectTrack(std::uint32_t name, double timestamp, const ObjectObservation& observation);
 
-  /// Moves on to a frame, `interval` seconds later. While it is not seen its velocity fades.
+  /// Predicts the state `interval` seconds later. The velocity of an occluded track decays.
   void predict(double interval);
-  /// Seen in the frame that was predicted, at `timestamp`.
-  void see(double timestamp, const ObjectSight& sight);
-  /// A motion over some seconds, in the world.
+  /// Corrects the predicted state with an observation at `timestamp`.
+  void update(double timestamp, const ObjectObservation& observation);
+  /// A measured motion over an interval, world frame.
   struct Motion {
     Eigen::Vector3d displacement;         ///< [m]
     Eigen::Vector3d turned;               ///< rotation vector [rad]
-    Eigen::Matrix3d covariance;           ///< of the displacement, as far as frames share it [m^2]
+    Eigen::Matrix3d covariance;           ///< of the displacement, the part that consecutive frames share [m^2]
     Eigen::Matrix3d rotation_covariance;  ///< the same of the rotation [rad^2]
-    double pose_noise, turning_noise;     ///< of the camera's own motion, new in every frame [m, rad]
+    double pose_noise, turning_noise;     ///< of the camera pose, independent in every frame [m, rad]
     double interval;                      ///< [s]
-    double repeats;                       ///< how many frames share most of the interval, and so its errors
+    double repeats;                       ///< number of frames that share most of the interval, and thus its errors
   };
   void measure_motion(const Motion& motion);
-  /// Extent of what is seen: box in the object frame.
+  /// Updates the extent with the bounding box of the visible surface, object frame.
   void measure_box(const Eigen::AlignedBox3f& box);
-  /// Labels of the blocks that it shows: how many of each; `all` is their sum.
+  /// Adds the number of visible blocks with each label.
   void count_labels(const std::vector<int>& counts);
-  /// Decides whether it moves; gives it the next id, and counts that up, when it becomes an object.
-  void judge(const MovingRule& rule, double interval, std::uint32_t& next_id);
-  /// The map was corrected.
+  /// Decides whether the track moves. A track that becomes an object gets `next_id`, which is then incremented.
+  void classify(const MovingRule& rule, double interval, std::uint32_t& next_id);
+  /// Transforms the track after a correction of the map.
   void transform(const Eigen::Isometry3d& T_new_old);
 
   std::uint32_t name() const { return name_; }  ///< from 1, candidates included
@@ -66,7 +68,7 @@ class ObjectTrack {
   const Eigen::Vector3d& angular_velocity() const { return object_.angular_velocity; }
   Eigen::Vector3d position() const { return object_.T_world_object.translation(); }
   const Eigen::AlignedBox3f& box() const { return object_.box; }
-  /// Index of the class that most of its labels name, -1 when none does.
+  /// Index of the most frequent class of its labels, -1 without labels.
   int label() const;
   const MovingObject& object() const { return object_; }
 
@@ -74,9 +76,9 @@ class ObjectTrack {
   std::uint32_t name_;
   MovingObject object_;
   Eigen::Matrix3d velocity_covariance_, angular_covariance_;
-  Eigen::Vector3d travelled_ = Eigen::Vector3d::Zero();  // since it began to move
+  Eigen::Vector3d travelled_ = Eigen::Vector3d::Zero();  // since the start of the motion
   double moving_for_ = 0.0, resting_for_ = 0.0;          // [s]
-  bool seen_ = true;                                     // in the frame predicted last
+  bool seen_ = true;                                     // in the last predicted frame
   std::vector<float> labels_;
 };
 

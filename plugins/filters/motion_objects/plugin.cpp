@@ -7,7 +7,7 @@ HOLDFAST_PLUGIN(motion_objects, registry) {
   using namespace holdfast;
   registry.add<DynamicFilter, object_plugin::MotionObjects, MotionObjectsSettings>(
       {.name = MotionObjectsSettings::module,
-       .summary = "Follows what moves, each thing with a rigid motion of its own, and reports it to observers.",
+       .summary = "Tracks moving objects, each with its own rigid motion, and reports them to observers.",
        .paper =
            "Ruenz, Agapito: Co-Fusion: Real-time Segmentation, Tracking and Fusion of Multiple Objects. ICRA 2017. "
            "Ruenz, Buffier, Agapito: MaskFusion: Real-Time Recognition, Tracking and Reconstruction of Multiple "

@@ -70,7 +70,7 @@ void Regions::measure(const BlockGrid& grid, const std::vector<float>& depth, Re
     look(1, row + 1 < grid.rows, block + grid.columns);
     region.inner += beside == 4 ? 1 : 0;
   }
-  region.middle = sum / static_cast<float>(region.size);
+  region.centroid = sum / static_cast<float>(region.size);
   region.cut = cut.cwiseQuotient(ends.cwiseMax(1.0F));
 }
 

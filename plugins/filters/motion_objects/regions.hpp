@@ -12,37 +12,37 @@ namespace holdfast::object_plugin {
 
 using depth_blocks::BlockGrid;
 
-/// What is known of a block before the frame is divided.
+/// Prior knowledge of a block before the frame is divided into regions.
 struct BlockHint {
-  static constexpr std::uint32_t background = 0xFFFFFFFF;  ///< does not belong to anything that may move
-  static constexpr std::uint32_t unknown = 0;              ///< may move, and to what it belongs is to be found
+  static constexpr std::uint32_t background = 0xFFFFFFFF;  ///< not a motion hypothesis
+  static constexpr std::uint32_t unknown = 0;              ///< a motion hypothesis without a track
 
-  std::uint32_t track = background;  ///< or the track that was here before
+  std::uint32_t track = background;  ///< background, unknown, or the track that was here before
   std::uint8_t label = 255;          ///< of the mask, 255 = unknown
 };
 
-/// A part of the frame that hangs together in depth.
+/// A region of the frame that is connected in depth.
 struct Region {
   std::uint32_t track = BlockHint::unknown;
   int first = 0, size = 0;       ///< of its blocks in Regions::blocks()
   Eigen::AlignedBox3f box;       ///< camera frame [m]
-  Eigen::Vector3f middle;        ///< mean of its points, camera frame [m]
+  Eigen::Vector3f centroid;      ///< mean of its points, camera frame [m]
   float surface = 0.0F;          ///< facing the camera [m^2]
-  Eigen::Vector2f cut = {0, 0};  ///< share of its left and right ends, and of its upper and lower ones, at which the
-                                 ///< image ends or something nearer begins
-  int inner = 0;                 ///< blocks with blocks of it on all four sides
+  Eigen::Vector2f cut = {0, 0};  ///< fraction of its left and right ends, and of its upper and lower ends, that are cut
+                                 ///< by the image border or a nearer surface
+  int inner = 0;  ///< number of blocks whose four neighbours belong to the region
 };
 
-/// Divides what may move in a frame into parts that hang together in depth and were one before (Co-Fusion, Ruenz and
-/// Agapito 2017, section IV-A: connected components of what moves become models). Keeps its buffers.
+/// Divides the motion hypotheses of a frame into regions that are connected in depth and belong to one track
+/// (Co-Fusion, Ruenz and Agapito 2017, section IV-A: connected moving components become models). Reuses its buffers.
 class Regions {
  public:
-  /// Blocks of one surface differ in depth by less [m].
+  /// Upper bound of the depth difference between adjacent blocks of one surface [m].
   static float continuity(float depth) { return 0.04F + 0.02F * depth; }
 
-  /// Unknown blocks first join a track beside them, up to `growth` blocks deep where `may_join(block, track)` - the
-  /// first step whatever the mask says, since its outlines are vague; then regions are connected blocks of one track,
-  /// or of none and of one label where the mask tells. Regions come in the order of their first block.
+  /// Unknown blocks first join an adjacent track, in up to `growth` steps and if `may_join(block, track)`; the first
+  /// step ignores the mask, because its outline is inexact. Regions are then the connected blocks of one track, or of
+  /// no track and one mask label. Regions are ordered by their first block.
   template <class MayJoin>
   void divide(const BlockGrid& grid, const std::vector<float>& depth, std::vector<BlockHint>& hints, int growth,
               const MayJoin& may_join) {

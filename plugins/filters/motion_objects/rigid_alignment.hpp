@@ -13,48 +13,67 @@ using depth_blocks::BlockGrid;
 using depth_blocks::DepthNoise;
 using depth_blocks::DepthView;
 
-/// A motion of a thing between two frames: p_then = centre + translation + rotation * (p_now - centre).
+/// The motion of an object between two frames: p_then = centre + translation + rotation * (p_now - centre).
 struct RigidMotion {
   Eigen::Vector3f translation = Eigen::Vector3f::Zero();  ///< of the centre [m]
   Eigen::Matrix3f rotation = Eigen::Matrix3f::Identity();
 };
 
-/// The surface of a thing in the frame now, with the camera's own motion removed.
+/// The surface of an object in the current frame, ego-motion-compensated.
 struct ObjectPoints {
   Eigen::Vector3f centre = Eigen::Vector3f::Zero();
-  std::vector<Eigen::Vector3f> points;  ///< where they would be seen then if they had stood still: camera frame of then
-  std::vector<float> grey;              ///< brightness of each
+  std::vector<Eigen::Vector3f>
+      points;               ///< positions in the earlier camera frame under the assumption that they are static
+  std::vector<float> grey;  ///< brightness of each
 };
 
 struct AlignmentResult {
   RigidMotion motion;
   Eigen::Matrix3f covariance = Eigen::Matrix3f::Zero();           ///< of the translation [m^2]
   Eigen::Matrix3f rotation_covariance = Eigen::Matrix3f::Zero();  ///< [rad^2]
-  int inliers = 0;                                                ///< points whose depth agrees then
+  int inliers = 0;                                                ///< points whose depth agrees with the earlier view
 };
 
-/// Finds the rigid motion that takes the points of a thing back to where an earlier view shows them: the joint energy
-/// of Co-Fusion (Ruenz and Agapito 2017, section on tracking: for each model the least E_icp + lambda E_rgb, squared
-/// distances from points to the planes, and squared differences of brightness to the pixels, that they project to), by
-/// Gauss and Newton, with Cauchy weights, since things bend. Distances are taken along the ray and weighed by the noise
-/// of depth.
+/// Estimates the rigid motion that aligns the points of an object with an earlier view by minimising the energy of
+/// Co-Fusion, E_icp + lambda E_rgb (Ruenz and Agapito 2017, section on tracking): squared point-to-plane distances and
+/// squared brightness differences at the projected pixels. Gauss-Newton with Cauchy weights, because objects may be
+/// non-rigid. Distances are measured along the ray and weighted by the depth noise.
 class RigidAlignment {
  public:
-  /// What is expected of the motion; it decides where the surface does not.
+  /// Prior of the motion; it determines directions that the surface does not constrain.
   struct Prior {
     Eigen::Vector3f translation = Eigen::Vector3f::Zero();
-    Eigen::Vector3f deviation = Eigen::Vector3f::Ones();  ///< by axis of the camera [m]
+    Eigen::Vector3f deviation = Eigen::Vector3f::Ones();  ///< along the camera axes [m]
     float rotation_deviation = 0.1F;                      ///< about no rotation [rad]
   };
 
   RigidAlignment(const BlockGrid& grid, const DepthNoise& noise) : grid_(grid), noise_(noise) {}
 
-  /// `owner` names a thing for every block of `then`; only the surface of the thing `name` counts. The descent begins
-  /// at `start`. The result is the prior where nothing is seen.
-  AlignmentResult align(const ObjectPoints& now, const DepthView& then, const std::vector<std::uint32_t>& owner,
-                        std::uint32_t name, const RigidMotion& start, const Prior& prior) const;
+  /// The blocks of an earlier view that belong to the track `name`; `owner` holds the track name of every block.
+  struct OwnedBlocks {
+    const std::vector<std::uint32_t>& owner;
+    std::uint32_t name;
+  };
+
+  /// Aligns with the blocks of `then` that are owned. The optimization starts at `start`. The result is the prior if no
+  /// surface is visible.
+  AlignmentResult align(const ObjectPoints& now, const DepthView& then, const OwnedBlocks& owned,
+                        const RigidMotion& start, const Prior& prior) const;
 
  private:
+  using Vector6f = Eigen::Matrix<float, 6, 1>;
+  using Matrix6f = Eigen::Matrix<float, 6, 6>;
+
+  /// Gauss-Newton system of one iteration: lower triangle of the Hessian, negative gradient, points that count.
+  struct NormalEquations {
+    Matrix6f H = Matrix6f::Zero();
+    Vector6f g = Vector6f::Zero();
+    int inliers = 0;
+  };
+  NormalEquations linearise(const ObjectPoints& now, const DepthView& then, const OwnedBlocks& owned,
+                            const RigidMotion& motion, float scale) const;
+  static void add_prior(const Prior& prior, const RigidMotion& motion, NormalEquations& equations);
+
   const BlockGrid& grid_;
   DepthNoise noise_;
 };

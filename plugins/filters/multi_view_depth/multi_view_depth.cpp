@@ -5,15 +5,16 @@
 #include <array>
 #include <cmath>
 
+#include "holdfast/geometry/warp.hpp"
 #include "holdfast/plugin/plugin.hpp"
 
 namespace holdfast {
 
 namespace {
 
-/// Depths that differ by less show the same surface [m]: noise of the sensor, and a pose that is only predicted.
+/// Maximum depth difference of one surface [m]: sensor noise, and the error of a predicted pose.
 float noise(float depth) { return 0.02F + 0.02F * depth; }
-/// Depths of neighbouring blocks of one surface differ by less [m].
+/// Upper bound of the depth difference between adjacent blocks of one surface [m].
 float continuity(float depth) { return 0.03F + 0.02F * depth; }
 
 }  // namespace
@@ -21,16 +22,16 @@ float continuity(float depth) { return 0.03F + 0.02F * depth; }
 MultiViewDepth::MultiViewDepth(const MultiViewDepthSettings& settings, const CreationContext&) : settings_(settings) {}
 
 void MultiViewDepth::choose_keyframes(const FilterContext& context) {
-  // The best overlapping keyframes of every age: what stood still for long is certain, what moves slowly is only told
-  // by those that are not too young.
+  // The most overlapping keyframes of every age group: old keyframes confirm static surfaces, and slow motion is only
+  // visible in keyframes that are not too recent.
   struct Age {
-    double least;   // s
-    float through;  // weight of a sight through what is there now
-    float same;     // weight of a sight of the same surface
+    double min_age;  // s
+    float through;   // weight of an observation of free space
+    float same;      // weight of an observation of the same surface
   };
   static constexpr std::array<Age, 4> ages{
       {{10.0, 0.6F, 1.0F}, {3.0, 1.0F, 1.0F}, {1.0, 1.0F, 0.6F}, {0.0, 1.0F, 0.2F}}};
-  const int most_of_age = std::max(1, settings_.keyframes / static_cast<int>(ages.size()));
+  const int max_per_age = std::max(1, settings_.keyframes / static_cast<int>(ages.size()));
   const Eigen::Isometry3d& T_camera_world = *context.T_camera_world;
   const Eigen::Vector3d centre = T_camera_world.inverse().translation();
   const Eigen::Vector3d direction = T_camera_world.linear().row(2);
@@ -41,12 +42,12 @@ void MultiViewDepth::choose_keyframes(const FilterContext& context) {
     if (frame.coarse.empty() || !(frame.coarse.grid == context.frame.coarse.grid)) return;
     const double cosine = direction.dot(frame.T_camera_world.linear().row(2));
     const double distance = (frame.T_world_camera().translation() - centre).norm();
-    constexpr double least_cosine = 0.866;  // 30 degrees, as Bescos et al. allow
-    if (cosine < least_cosine || distance > settings_.reach) return;
+    constexpr double min_cosine = 0.866;  // 30 degrees, as Bescos et al. allow
+    if (cosine < min_cosine || distance > settings_.reach) return;
     const double age = context.frame.timestamp - frame.timestamp;
     std::size_t group = 0;
-    while (group + 1 < ages.size() && age < ages[group].least) ++group;
-    candidates_.push_back({id, group, (1.0 - cosine) / (1.0 - least_cosine) + distance / settings_.reach});
+    while (group + 1 < ages.size() && age < ages[group].min_age) ++group;
+    candidates_.push_back({id, group, (1.0 - cosine) / (1.0 - min_cosine) + distance / settings_.reach});
   });
   std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
     if (a.group != b.group) return a.group < b.group;
@@ -56,7 +57,7 @@ void MultiViewDepth::choose_keyframes(const FilterContext& context) {
   int of_age = 0;
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
     of_age = i > 0 && candidates_[i].group == candidates_[i - 1].group ? of_age + 1 : 0;
-    if (of_age >= most_of_age) continue;
+    if (of_age >= max_per_age) continue;
     const Age& age = ages[candidates_[i].group];
     views_.push_back({&context.map.keyframe(candidates_[i].id).frame, age.through, age.same});
   }
@@ -79,11 +80,10 @@ void MultiViewDepth::compare(const FilterContext& context) {
       depth_[static_cast<std::size_t>(row * columns_ + column)] =
           view.depth[static_cast<std::size_t>(row * stride * grid.columns + column * stride)];
 
-  const Eigen::Isometry3d T_view_world = view.T_view_camera * *context.T_camera_world;
+  const Eigen::Isometry3d T_view_world = context.T_view_world();
   const float margin = static_cast<float>(settings_.margin), slope = static_cast<float>(settings_.margin_slope);
   for (const View& other : views_) {
-    const Eigen::Isometry3d motion =
-        other.frame->coarse.T_view_camera * other.frame->T_camera_world * T_view_world.inverse();
+    const Eigen::Isometry3d motion = other.frame->T_view_world() * T_view_world.inverse();
     const Eigen::Matrix3f R = motion.linear().cast<float>();
     const Eigen::Vector3f t = motion.translation().cast<float>();
     const std::vector<float>& there = other.frame->coarse.depth;
@@ -111,18 +111,8 @@ void MultiViewDepth::compare(const FilterContext& context) {
         }
         const float limit = z + margin + slope * z;
         if (seen < limit) continue;
-        // Near an edge of depth a small error of the pose looks like a sight through.
-        int farther = 0;
-        bool edge = false;
-        for (int dr = -1; dr <= 1; ++dr)
-          for (int dc = -1; dc <= 1; ++dc) {
-            const float neighbour = there[static_cast<std::size_t>((r + dr) * grid.columns + c + dc)];
-            if (neighbour >= limit)
-              ++farther;
-            else if (neighbour > 0.0F)
-              edge = true;
-          }
-        if (!edge && farther >= 6) through_[block] += other.through;
+        if (geometry::is_seen_through(there, grid.columns, static_cast<int>(cell), limit))
+          through_[block] += other.through;
       }
     }
   }
@@ -155,7 +145,7 @@ void MultiViewDepth::grow() {
         if (c < 0 || r < 0 || c >= columns_ || r >= rows_) continue;
         const std::size_t other = static_cast<std::size_t>(r * columns_ + c);
         if (moving_[other] != 0 || depth_[other] == 0.0F) continue;
-        if (score_[other] >= static_cast<float>(settings_.sure)) continue;
+        if (score_[other] >= static_cast<float>(settings_.confirmed_score)) continue;
         if (std::abs(depth_[other] - depth) > continuity(depth)) continue;
         moving_[other] = 1;
         next_front_.push_back(r * columns_ + c);
@@ -165,31 +155,31 @@ void MultiViewDepth::grow() {
   }
 }
 
-void MultiViewDepth::judge_features(const FilterContext& context, StaticEvidence& evidence) const {
+void MultiViewDepth::evaluate_features(const FilterContext& context, StaticEvidence& evidence) const {
   const Frame& frame = context.frame;
-  // Where much moves, what nobody has seen before is likely to move, too.
+  // If much of the view moves, surfaces without confirmation are likely to move as well.
   std::size_t deep = 0, moved = 0;
   for (std::size_t i = 0; i < depth_.size(); ++i) {
     deep += depth_[i] > 0.0F ? 1 : 0;
     moved += moving_[i];
   }
   const float share = deep == 0 ? 0.0F : static_cast<float>(moved) / static_cast<float>(deep);
-  const float crowd = context.carried_mask == nullptr ? static_cast<float>(settings_.crowd_log_odds) * share : 0.0F;
+  const float crowd = frame.coarse.mask.empty() ? static_cast<float>(settings_.crowd_log_odds) * share : 0.0F;
   const CoarseGrid& grid = frame.coarse.grid;
   const float moving = static_cast<float>(settings_.moving_log_odds);
   const float standing = static_cast<float>(settings_.static_log_odds);
   for (std::size_t i = 0; i < frame.size(); ++i) {
     const int column = grid.column_of(frame.x[i]) / stride, row = grid.row_of(frame.y[i]) / stride;
     if (frame.x[i] < grid.left || frame.y[i] < grid.top || column >= columns_ || row >= rows_) continue;
-    // The block at the feature's own depth, when the feature lies at an edge.
+    // The block with the depth of the feature, for features at a depth edge.
     int best = row * columns_ + column;
     if (frame.has_depth(i)) {
-      float least = std::abs(depth_[static_cast<std::size_t>(best)] - frame.depth[i]) - noise(frame.depth[i]);
-      for (int r = std::max(0, row - 1); r <= std::min(rows_ - 1, row + 1) && least > 0.0F; ++r)
+      float min_difference = std::abs(depth_[static_cast<std::size_t>(best)] - frame.depth[i]) - noise(frame.depth[i]);
+      for (int r = std::max(0, row - 1); r <= std::min(rows_ - 1, row + 1) && min_difference > 0.0F; ++r)
         for (int c = std::max(0, column - 1); c <= std::min(columns_ - 1, column + 1); ++c) {
           const float difference =
               std::abs(depth_[static_cast<std::size_t>(r * columns_ + c)] - frame.depth[i]) - noise(frame.depth[i]);
-          if (difference < least) least = difference, best = r * columns_ + c;
+          if (difference < min_difference) min_difference = difference, best = r * columns_ + c;
         }
     }
     const std::size_t block = static_cast<std::size_t>(best);
@@ -197,13 +187,13 @@ void MultiViewDepth::judge_features(const FilterContext& context, StaticEvidence
     if (moving_[block] != 0)
       evidence.add(i, moving);
     else if (is_at_edge(grid, frame.x[i], frame.y[i], reach))
-      evidence.add(i, static_cast<float>(settings_.edge_log_odds), StaticEvidence::Sort::prior);
+      evidence.add(i, static_cast<float>(settings_.edge_log_odds), StaticEvidence::Kind::prior);
     else if (score_[block] > 0.0F)
       evidence.add(i, standing * std::min(1.0F, score_[block] / 2.0F));
     else if (through_[block] > 0.0F)
       evidence.add(i, 0.25F * moving);
-    if (crowd < -0.1F && moving_[block] == 0 && score_[block] < static_cast<float>(settings_.sure))
-      evidence.add(i, crowd, StaticEvidence::Sort::prior);
+    if (crowd < -0.1F && moving_[block] == 0 && score_[block] < static_cast<float>(settings_.confirmed_score))
+      evidence.add(i, crowd, StaticEvidence::Kind::prior);
   }
 }
 
@@ -216,19 +206,19 @@ bool MultiViewDepth::is_at_edge(const CoarseGrid& grid, float x, float y, float 
   return false;
 }
 
-void MultiViewDepth::judge_points(const FilterContext& context, StaticEvidence& evidence) {
-  // A point in front of what the frame sees at its place is not there any more.
+void MultiViewDepth::evaluate_points(const FilterContext& context, StaticEvidence& evidence) {
+  // A map point in front of the observed surface no longer exists.
   const Frame& frame = context.frame;
   const CoarseGrid& grid = frame.coarse.grid;
   const Camera& camera = *frame.camera;
-  const Eigen::Isometry3d T_view_world = frame.coarse.T_view_camera * *context.T_camera_world;
+  const Eigen::Isometry3d T_view_world = context.T_view_world();
   const float margin = static_cast<float>(settings_.margin), slope = static_cast<float>(settings_.margin_slope);
-  judged_.assign(context.map.points().slot_count(), 0);
+  evaluated_.assign(context.map.points().slot_count(), 0);
   int left = settings_.point_keyframes;
   for (auto view = views_.rbegin(); view != views_.rend() && left > 0; ++view, --left)
     for (const MapPointId id : view->frame->map_points) {
-      if (!id.valid() || judged_[id.slot] != 0) continue;
-      judged_[id.slot] = 1;
+      if (!id.valid() || evaluated_[id.slot] != 0) continue;
+      evaluated_[id.slot] = 1;
       const MapPoint* point = context.map.find_point(id);
       if (point == nullptr) continue;
       const Eigen::Vector3d in_camera = T_view_world * point->position;
@@ -238,17 +228,8 @@ void MultiViewDepth::judge_points(const FilterContext& context, StaticEvidence& 
       if (c < 1 || r < 1 || c + 1 >= grid.columns || r + 1 >= grid.rows) continue;
       const float z = static_cast<float>(in_camera.z());
       const float limit = z + margin + slope * z;
-      int farther = 0;
-      bool edge = false;
-      for (int dr = -1; dr <= 1; ++dr)
-        for (int dc = -1; dc <= 1; ++dc) {
-          const float seen = frame.coarse.depth[static_cast<std::size_t>((r + dr) * grid.columns + c + dc)];
-          if (seen >= limit)
-            ++farther;
-          else if (seen > 0.0F)
-            edge = true;
-        }
-      if (!edge && farther >= 6) evidence.add_point(id, static_cast<float>(settings_.moving_log_odds));
+      if (geometry::is_seen_through(frame.coarse.depth, grid.columns, r * grid.columns + c, limit))
+        evidence.add_point(id, static_cast<float>(settings_.moving_log_odds));
     }
 }
 
@@ -258,8 +239,8 @@ void MultiViewDepth::apply(const FilterContext& context, StaticEvidence& evidenc
   if (views_.empty()) return;
   compare(context);
   grow();
-  judge_features(context, evidence);
-  judge_points(context, evidence);
+  evaluate_features(context, evidence);
+  evaluate_points(context, evidence);
   const CoarseGrid& grid = context.frame.coarse.grid;
   if (evidence.cells().size() != static_cast<std::size_t>(grid.size())) return;
   for (int row = 0; row < rows_ * stride; ++row)
@@ -278,7 +259,7 @@ void MultiViewDepth::apply(const FilterContext& context, StaticEvidence& evidenc
 HOLDFAST_PLUGIN(multi_view_depth, registry) {
   registry.add<holdfast::DynamicFilter, holdfast::MultiViewDepth, holdfast::MultiViewDepthSettings>(
       {.name = holdfast::MultiViewDepthSettings::module,
-       .summary = "Compares the depth of the frame with that of keyframes: what stands where others saw through moves.",
+       .summary = "Compares the depth of the frame with that of keyframes: a surface in observed free space moves.",
        .paper = "Bescos, Facil, Civera, Neira: DynaSLAM: Tracking, Mapping and Inpainting in Dynamic Scenes. IEEE "
                 "Robotics and Automation Letters 3(4), 2018, section III-B"});
 }

@@ -9,19 +9,19 @@
 
 namespace holdfast {
 
-/// Judges by dense depth, before features are matched: every block of the frame is carried into keyframes with the
-/// predicted pose. Where a keyframe saw farther, there was free space: what is there now has come since. Where the
-/// depths agree, the surface was there then. Moving regions grow in depth, but not into what old keyframes confirm.
-/// And map points in front of what the frame sees are gone.
+/// Compares dense depth with keyframes before features are matched: every block of the frame is projected into
+/// keyframes with the predicted pose. If a keyframe observed a greater depth, it observed free space, and the surface
+/// has moved there since. If the depths agree, the surface is confirmed. Moving regions grow along continuous depth,
+/// but not into surfaces that old keyframes confirm. Map points in front of the observed surface get negative evidence.
 ///
-/// After Bescos et al. 2018, section III-B, who project points of the five best overlapping keyframes and compare
-/// projected with measured depth; here all blocks of a coarse image are compared, both ways, with keyframes of
+/// After Bescos et al. 2018, section III-B, who project the points of the five most overlapping keyframes and compare
+/// projected with measured depth; here all blocks of a coarse image are compared in both directions with keyframes of
 /// different ages.
 class MultiViewDepth final : public DynamicFilter {
  public:
   MultiViewDepth(const MultiViewDepthSettings& settings, const CreationContext& context);
 
-  Needs needs() const override { return {.depth = true, .pose_prior = true, .map = true}; }
+  Needs needs() const override { return {.depth = true, .pose_prior = true}; }
   void apply(const FilterContext& context, StaticEvidence& evidence) override;
 
  private:
@@ -39,16 +39,16 @@ class MultiViewDepth final : public DynamicFilter {
   void choose_keyframes(const FilterContext& context);
   void compare(const FilterContext& context);
   void grow();
-  void judge_features(const FilterContext& context, StaticEvidence& evidence) const;
+  void evaluate_features(const FilterContext& context, StaticEvidence& evidence) const;
   bool is_at_edge(const CoarseGrid& grid, float x, float y, float reach) const;
-  void judge_points(const FilterContext& context, StaticEvidence& evidence);
+  void evaluate_points(const FilterContext& context, StaticEvidence& evidence);
 
   MultiViewDepthSettings settings_;
   std::vector<Candidate> candidates_;
   std::vector<View> views_;
   int columns_ = 0, rows_ = 0;  // blocks
   std::vector<float> depth_, through_, same_, score_;
-  std::vector<std::uint8_t> moving_, judged_;
+  std::vector<std::uint8_t> moving_, evaluated_;
   std::vector<int> front_, next_front_;
 };
 

@@ -40,7 +40,7 @@ bool ReprojectionError::collect(const FilterContext& context) {
     ++trusted;
     passed += error <= 1.0 ? 1 : 0;
   }
-  return trusted >= settings_.least_matches && passed >= settings_.support * trusted;
+  return trusted >= settings_.minimum_matches && passed >= settings_.support * trusted;
 }
 
 ReprojectionError::History& ReprojectionError::remember(const Match& match) {
@@ -48,7 +48,7 @@ ReprojectionError::History& ReprojectionError::remember(const Match& match) {
   History& history = histories_[match.point.slot];
   if (history.generation != match.point.generation) history = {.generation = match.point.generation};
   history.failures = static_cast<std::uint8_t>((history.failures << 1U) | (match.error > 1.0F ? 1U : 0U));
-  history.sights = static_cast<std::uint8_t>(std::min(8, history.sights + 1));
+  history.observations = static_cast<std::uint8_t>(std::min(8, history.observations + 1));
   if (!match.displacement.isZero()) {
     constexpr float share_of_newest = 0.3F;
     history.displacement += share_of_newest * (match.displacement - history.displacement);
@@ -61,14 +61,15 @@ float ReprojectionError::log_odds(const Match& match, const History& history) co
   const int failures = std::popcount(history.failures);
   if (match.error <= 1.0F)
     return static_cast<float>(settings_.static_log_odds) *
-           (1.0F - static_cast<float>(failures) / static_cast<float>(history.sights));
+           (1.0F - static_cast<float>(failures) / static_cast<float>(history.observations));
   const float lasting = std::min(1.0F, static_cast<float>(failures) / static_cast<float>(settings_.frames));
-  // Four times the threshold, twice the distance, is far.
+  // Four times the squared threshold, twice the distance, gives full evidence.
   float certainty = lasting * (0.25F + 0.75F * std::min(1.0F, (match.error - 1.0F) / 3.0F));
-  // With depth, what points where it did before has moved; what points elsewhere each time is noise or a wrong match.
+  // With depth: displacements that agree in direction are motion; others are noise or wrong matches.
   if (history.length > 0.0F)
     certainty *= history.displacement.norm() >= static_cast<float>(settings_.agreement) * history.length ? 1.0F : 0.5F;
-  if (match.found_ratio < static_cast<float>(settings_.least_found_ratio)) certainty = std::min(1.0F, 1.5F * certainty);
+  if (match.found_ratio < static_cast<float>(settings_.minimum_found_ratio))
+    certainty = std::min(1.0F, 1.5F * certainty);
   return static_cast<float>(settings_.moving_log_odds) * certainty;
 }
 

@@ -10,28 +10,27 @@
 
 namespace holdfast {
 
-/// Judges matched features by how far from their map points they lie, under the pose that the matches gave: the
-/// chi-square test in pixels (and the virtual right column, where there is depth), how stable a point's matches are,
-/// and whether its displacements in space agree from frame to frame, as those of a thing that moves do and noise does
-/// not. What fails once is doubted, what fails for several frames moves. When few of the trusted matches pass, the pose
-/// is what is wrong, and nothing is said. Trusted is what other evidence does not speak against.
+/// Tests matched features by their reprojection error under the pose that was estimated from the matches: the
+/// chi-square test in pixels (with the virtual right column if there is depth), the stability of a point's matches, and
+/// the agreement of its displacements in space between frames, which distinguishes moving objects from noise. A single
+/// failure gives weak evidence, failures in several frames full evidence. If few of the trusted matches pass, the pose
+/// is wrong, and no evidence is added. Trusted matches are those without negative evidence from other filters.
 ///
 /// After Zeng et al.: A Semantics-Guided Visual SLAM with U-Net for Complex Dynamic Indoor Environments. Remote Sensing
-/// 2023, 15, 5479 (steps 2 to 6). Statements
-/// are measurements, in the order of features.
+/// 2023, 15, 5479 (steps 2 to 6). The evidence is measurements, in the order of features.
 class ReprojectionError final : public DynamicFilter {
  public:
   ReprojectionError(const ReprojectionErrorSettings& settings, const CreationContext& context);
 
-  Needs needs() const override { return {.pose_prior = true, .map = true, .matches = true}; }
+  Needs needs() const override { return {.pose_prior = true, .matches = true}; }
   void apply(const FilterContext& context, StaticEvidence& evidence) override;
 
  private:
-  /// What was seen of a map point; kept by its slot.
+  /// History of the observations of a map point, stored by its slot.
   struct History {
     std::uint32_t generation = 0;
-    std::uint8_t sights = 0;                                 // at most 8
-    std::uint8_t failures = 0;                               // one bit per sight, the last is the lowest
+    std::uint8_t observations = 0;  // at most 8
+    std::uint8_t failures = 0;      // one bit per observation, the most recent one is the lowest
     Eigen::Vector3f displacement = Eigen::Vector3f::Zero();  // running mean, world [m]
     float length = 0.0F;                                     // running mean of the displacements' lengths [m]
   };
@@ -39,8 +38,8 @@ class ReprojectionError final : public DynamicFilter {
   struct Match {
     std::uint32_t feature;
     MapPointId point;
-    float error;                   // squared, by variance and threshold: above 1 the feature fails
-    Eigen::Vector3f displacement;  // of what the feature shows from the point, world [m]; zero without depth
+    float error;                   // squared, normalised by variance and threshold: a match above 1 fails
+    Eigen::Vector3f displacement;  // from the map point to the observed point, world [m]; zero without depth
     float found_ratio;
   };
 

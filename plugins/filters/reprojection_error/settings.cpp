@@ -9,30 +9,38 @@ void ReprojectionErrorSettings::describe(ParameterTable<ReprojectionErrorSetting
   using S = ReprojectionErrorSettings;
   table
       .add("threshold", &S::threshold,
-           "a feature without depth fails when its squared error by the variance of its level is larger; 5.991 = "
-           "95 % of what stands still passes")
+           "maximum squared normalised reprojection error of a match without depth; 5.991 = chi-square 95 %, two "
+           "degrees of freedom")
       .range(0.1, 1000);
-  table.add("threshold_depth", &S::threshold_depth, "the same for features with depth, which have a third residual")
+  table
+      .add("threshold_depth", &S::threshold_depth,
+           "the same for a match with depth; 7.815 = chi-square 95 %, three degrees of freedom")
       .range(0.1, 1000);
-  table.add("frames", &S::frames, "a map point moves for certain after failing so often among its last eight sights")
+  table
+      .add("frames", &S::frames,
+           "number of failures among the last eight observations of a map point that give full evidence")
       .range(1, 8)
       .unit("frame");
   table
-      .add("support", &S::support,
-           "share of the trusted matches that must pass; with fewer the pose itself may be wrong and nothing is said")
+      .add(
+          "support", &S::support,
+          "minimum fraction of the trusted matches that must pass; below it the pose may be wrong, and the filter adds "
+          "no evidence")
       .range(0, 1);
-  table.add("least_matches", &S::least_matches, "with fewer trusted matches nothing is said").range(1, 100000);
   table
-      .add("least_found_ratio", &S::least_found_ratio,
-           "a map point that was found in a smaller share of the frames that should show it is unstable")
+      .add("minimum_matches", &S::minimum_matches,
+           "minimum number of trusted matches; below it the filter adds no evidence")
+      .range(1, 100000);
+  table.add("minimum_found_ratio", &S::minimum_found_ratio, "found ratio below which a map point is unstable")
       .range(0, 1);
   table
       .add("agreement", &S::agreement,
-           "a map point is displaced when its mean displacement is this share of the mean length of displacements; 1 "
-           "= all in the same direction")
+           "ratio of the length of the mean displacement to the mean length from which on displacements agree; 1 = all "
+           "parallel")
       .range(0, 1);
-  table.add("moving_log_odds", &S::moving_log_odds, "said of what fails far and for long").range(-20, 0);
-  table.add("static_log_odds", &S::static_log_odds, "said of what passes").range(0, 20);
+  table.add("moving_log_odds", &S::moving_log_odds, "evidence of a match with a large and persistent error")
+      .range(-20, 0);
+  table.add("static_log_odds", &S::static_log_odds, "evidence of a match that passes").range(0, 20);
 }
 
 }  // namespace holdfast

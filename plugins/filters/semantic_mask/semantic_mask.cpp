@@ -12,30 +12,29 @@ namespace holdfast {
 
 void SemanticMaskSettings::describe(ParameterTable<SemanticMaskSettings>& table) {
   using S = SemanticMaskSettings;
-  table.add(
-      "classes", &S::classes,
-      "names of the segmenter's classes that can move; empty = those that it says can, or person when it does not "
-      "say");
+  table.add("classes", &S::classes,
+            "names of the segmenter's movable classes; empty = as the segmenter specifies, or `person` if it does not");
   table
-      .add("dilate", &S::dilate,
-           "features this near to a mask belong to it, unless their depth says that they lie behind")
+      .add("dilate", &S::dilate, "features within this distance of a mask belong to it unless their depth is behind it")
       .range(0, 40)
       .unit("px");
-  table.add("edge", &S::edge, "features this near to a mask belong to it, whatever their depth")
+  table.add("edge", &S::edge, "features within this distance of a mask belong to it for any depth")
       .range(0, 40)
       .unit("px");
-  table.add("depth_margin", &S::depth_margin, "what is this much farther than the mask beside it lies behind")
+  table.add("depth_margin", &S::depth_margin, "depth difference from which on a feature is behind the adjacent mask")
       .range(0, 10)
       .unit("m");
-  table.add("movable_log_odds", &S::movable_log_odds, "said of a feature on a mask, times the mask's confidence")
+  table.add("movable_log_odds", &S::movable_log_odds, "prior of a feature on a mask, times the confidence of the mask")
       .range(-20, 0);
-  table.add("background_log_odds", &S::background_log_odds, "said of all others, times the mask's confidence")
+  table
+      .add("background_log_odds", &S::background_log_odds,
+           "prior of all other features, times the confidence of the mask")
       .range(0, 20);
 }
 
 namespace {
 
-/// "Movable" as a prior: features on masks of classes that can move.
+/// Adds a negative prior to features on masks of movable classes.
 class SemanticMask final : public DynamicFilter {
  public:
   SemanticMask(const SemanticMaskSettings& settings, const CreationContext&) : settings_(settings) {}
@@ -47,13 +46,13 @@ class SemanticMask final : public DynamicFilter {
     find_movable(*context.classes, context.movable);
     if (context.segmentation != nullptr && !context.segmentation->empty())
       apply_exact(context, evidence);
-    else if (context.carried_mask != nullptr && !context.carried_mask->empty())
-      apply_carried(context, evidence);
-    if (context.carried_mask != nullptr) judge_cells(*context.carried_mask, evidence);
+    else if (!context.frame.coarse.mask.empty())
+      apply_propagated(context.frame, evidence);
+    evaluate_cells(context.frame.coarse.mask, evidence);
   }
 
  private:
-  /// Throws InputError for a class that the segmenter does not know.
+  /// Throws InputError for a class that the segmenter does not have.
   void find_movable(const std::vector<std::string>& classes, const std::vector<std::string>* said_by_segmenter) {
     static const std::vector<std::string> otherwise{"person"};
     const bool segmenter_says = said_by_segmenter != nullptr && !said_by_segmenter->empty();
@@ -70,9 +69,9 @@ class SemanticMask final : public DynamicFilter {
     }
   }
 
-  void say(StaticEvidence& evidence, std::size_t feature, bool movable, std::uint8_t confidence) const {
+  void add_evidence(StaticEvidence& evidence, std::size_t feature, bool movable, std::uint8_t confidence) const {
     const double log_odds = movable ? settings_.movable_log_odds : settings_.background_log_odds;
-    evidence.add(feature, static_cast<float>(log_odds * confidence / 255.0), StaticEvidence::Sort::prior);
+    evidence.add(feature, static_cast<float>(log_odds * confidence / 255.0), StaticEvidence::Kind::prior);
   }
 
   void apply_exact(const FilterContext& context, StaticEvidence& evidence) const {
@@ -101,13 +100,12 @@ class SemanticMask final : public DynamicFilter {
           movable = true;
           certainty = sure(column, row);
         }
-      if (movable || label != unknown) say(evidence, i, movable, certainty);
+      if (movable || label != unknown) add_evidence(evidence, i, movable, certainty);
     }
   }
 
-  void apply_carried(const FilterContext& context, StaticEvidence& evidence) const {
-    const CarriedMask& mask = *context.carried_mask;
-    const Frame& frame = context.frame;
+  void apply_propagated(const Frame& frame, StaticEvidence& evidence) const {
+    const CellMask& mask = frame.coarse.mask;
     const CoarseGrid& grid = frame.coarse.grid;
     const auto cells = [](int pixels) { return (pixels + CoarseGrid::step / 2) / CoarseGrid::step; };
     const int reach = cells(settings_.dilate), edge = cells(settings_.edge);
@@ -128,11 +126,11 @@ class SemanticMask final : public DynamicFilter {
           movable = true;
           certainty = mask.confidence[other];
         }
-      if (movable || mask.labels[cell] != unknown) say(evidence, i, movable, certainty);
+      if (movable || mask.labels[cell] != unknown) add_evidence(evidence, i, movable, certainty);
     }
   }
 
-  void judge_cells(const CarriedMask& mask, StaticEvidence& evidence) const {
+  void evaluate_cells(const CellMask& mask, StaticEvidence& evidence) const {
     for (std::size_t cell = 0; cell < mask.labels.size() && cell < evidence.cells().size(); ++cell)
       if (movable_[mask.labels[cell]] != 0)
         evidence.add_cell(cell, static_cast<float>(settings_.movable_log_odds * mask.confidence[cell] / 255.0));
@@ -154,7 +152,7 @@ class SemanticMask final : public DynamicFilter {
 HOLDFAST_PLUGIN(semantic_mask, registry) {
   registry.add<holdfast::DynamicFilter, holdfast::SemanticMask, holdfast::SemanticMaskSettings>(
       {.name = holdfast::SemanticMaskSettings::module,
-       .summary = "What belongs to a class that can move is suspect; a prior, which measurements may overrule.",
+       .summary = "Prior against features of movable classes, which measurements can outweigh.",
        .paper =
            "Zeng et al.: A Semantics-Guided Visual SLAM with U-Net for Complex Dynamic Indoor Environments. Remote "
            "Sensing 15, 5479, 2023, section 3.2"});

@@ -10,28 +10,28 @@
 
 namespace holdfast::flann_plugin {
 
-/// Descriptors that only ever become more, and the nearest of them by Hamming distance, approximately: FLANN's
-/// hierarchical clustering of binary features (Muja and Lowe, "Fast matching of binary features", CRV 2012).
+/// Approximate nearest neighbours by Hamming distance among a growing set of descriptors: FLANN's hierarchical
+/// clustering of binary features (Muja and Lowe, "Fast matching of binary features", CRV 2012).
 ///
-/// FLANN itself seeds this clustering from std::random_device, so that no two runs agree. Here the centres of clusters
-/// are drawn by a generator of ours (FLANN's chooser, specialised for our distance type), which belongs to the index:
-/// same seed and same additions, same answers, whatever else happens in the process; std::rand is not touched.
+/// FLANN seeds this clustering from std::random_device, so that its results differ between runs. Here the cluster
+/// centres are drawn by a generator of the index (FLANN's chooser, specialised for the distance type of this plugin):
+/// the same seed and additions give the same results, independent of the rest of the process; std::rand is not used.
 class CentreIndex {
  public:
-  /// `checks`: how many centres a search compares with before it stops, at least.
+  /// `checks`: minimum number of centres that a search compares before it stops.
   CentreIndex(std::uint64_t seed, int checks);
   ~CentreIndex();
   CentreIndex(CentreIndex&& other) noexcept;
   CentreIndex& operator=(CentreIndex&& other) noexcept;
 
-  /// The number of the new one, counted from 0. Now and then, whenever their number has doubled, rebuilds the index.
+  /// Adds a centre and returns its index, from 0. Rebuilds the FLANN index whenever the number of centres has doubled.
   std::uint32_t add(const Descriptor& centre);
-  /// Puts another descriptor in a centre's place. The clusters follow at the next rebuild, so let it be near.
+  /// Replaces a centre. The clusters are updated at the next rebuild, so that the new descriptor should be near.
   void move(std::uint32_t number, const Descriptor& centre) { centres_[number] = centre; }
   std::uint32_t size() const { return static_cast<std::uint32_t>(centres_.size()); }
   const Descriptor& operator[](std::uint32_t number) const { return centres_[number]; }
 
-  /// Fills `nearest`, nearest first, and returns how many there are.
+  /// Fills `nearest`, nearest first, and returns their number.
   std::size_t find(const Descriptor& descriptor, std::span<std::uint32_t> nearest) const;
 
  private:

@@ -8,14 +8,14 @@
 
 namespace holdfast::flann_plugin {
 
-/// Hamming distances with the processor's own count of bits where it has one; same values everywhere.
+/// Hamming distances with the popcnt instruction of the processor if available; the values are the same everywhere.
 struct DistanceKernels {
   int (*of_two)(const Descriptor& a, const Descriptor& b);
-  /// distances[i] = distance of query and descriptors[i], for descriptors that lie side by side.
+  /// distances[i] = distance between query and descriptors[i], for contiguous descriptors.
   void (*of_row)(const Descriptor& query, const Descriptor* descriptors, std::size_t count, std::uint16_t* distances);
 };
 
-/// Those of this processor, as simd_level() says.
+/// The kernels of this processor according to simd_level().
 DistanceKernels distance_kernels();
 
 }  // namespace holdfast::flann_plugin

@@ -63,8 +63,8 @@ void FlannDetector::remove(KeyFrameId keyframe) {
   slots_.erase(found);
 }
 
-std::vector<PlaceMatch> FlannDetector::query(std::span<const Descriptor> descriptors, int most) const {
-  if (most <= 0 || slots_.empty()) return {};
+std::vector<PlaceMatch> FlannDetector::query(std::span<const Descriptor> descriptors, int max_count) const {
+  if (max_count <= 0 || slots_.empty()) return {};
   look_up(descriptors);
   tallies_.assign(entries_.size(), {});
   std::uint64_t total = 0;
@@ -82,7 +82,7 @@ std::vector<PlaceMatch> FlannDetector::query(std::span<const Descriptor> descrip
   for (std::size_t slot = 0; slot < tallies_.size(); ++slot)
     if (const std::uint64_t votes = tallies_[slot].votes; votes > 0)
       matches.push_back({entries_[slot].keyframe, static_cast<double>(votes) / static_cast<double>(total)});
-  const auto wanted = matches.begin() + std::min<std::ptrdiff_t>(most, std::ssize(matches));
+  const auto wanted = matches.begin() + std::min<std::ptrdiff_t>(max_count, std::ssize(matches));
   std::partial_sort(matches.begin(), wanted, matches.end(), [](const PlaceMatch& a, const PlaceMatch& b) {
     return a.score != b.score ? a.score > b.score : a.keyframe < b.keyframe;
   });
@@ -93,8 +93,8 @@ std::vector<PlaceMatch> FlannDetector::query(std::span<const Descriptor> descrip
 /// Fills looked_up_descriptors_, which are those used of the given ones, and their lookups_.
 void FlannDetector::look_up(std::span<const Descriptor> descriptors) const {
   std::vector<Descriptor> used;
-  const std::size_t most = static_cast<std::size_t>(settings_.descriptors);
-  const std::size_t count = std::min(descriptors.size(), most);
+  const std::size_t limit = static_cast<std::size_t>(settings_.descriptors);
+  const std::size_t count = std::min(descriptors.size(), limit);
   used.reserve(count);
   for (std::size_t i = 0; i < count; ++i) used.push_back(descriptors[i * descriptors.size() / count]);
   if (looked_up_ && used == looked_up_descriptors_) return;

@@ -17,29 +17,28 @@ namespace holdfast::flann_plugin {
 /// vocabulary file, no training (after Garcia-Fidalgo and Ortiz, "iBoW-LCD: An appearance-based loop-closure detection
 /// approach using incremental bags of binary words", RA-L 3(4), 2018).
 ///
-/// Every descriptor i of a query votes for the n_i of N keyframes that have a word within the radius of it, with a
-/// weight that falls with their number (the inverse document frequency of Nister and Stewenius, "Scalable recognition
-/// with a vocabulary tree", CVPR 2006, equation 4; the one is added so that it is never zero, n_i is 1 when there are
-/// none):
+/// Every descriptor i of a query votes for the n_i of N keyframes with a word within the radius, with a weight that
+/// decreases with n_i (the inverse document frequency of Nister and Stewenius, "Scalable recognition with a vocabulary
+/// tree", CVPR 2006, equation 4; one is added so that it is never zero, and n_i is 1 without such keyframes):
 ///
 ///     weight_i = log(1 + N / n_i),     score of a keyframe = sum of the weights that voted for it / sum of all weights
 ///
-/// So a score is the share of what is seen, rare things counting more, that the keyframe has too; it lies in 0 to 1 and
-/// does not depend on how many descriptors the keyframe has. Up to four words count for a descriptor: words of the same
-/// thing that an approximate search did not find when it was seen before. Weights are rounded to 1/1024, so that sums
-/// are exact in any order. Keyframes without a vote are left out.
+/// The score is thus the fraction of the query's descriptors, weighted by rarity, that the keyframe has as well; it
+/// lies between 0 and 1 and does not depend on the number of descriptors of the keyframe. Up to four words per
+/// descriptor are used, because the approximate search may have created several words for one feature. Weights are
+/// rounded to 1/1024, so that sums are exact in any order. Keyframes without a vote are omitted.
 ///
-/// Results depend on the settings, the seed and the sequence of add() and remove() only. Costs: see README.md.
+/// Results depend on the settings, the seed and the sequence of add() and remove() only. Cost: see README.md.
 class FlannDetector final : public LoopDetector {
  public:
   explicit FlannDetector(const FlannSettings& settings, const CreationContext& context = {});
 
-  /// Throws CheckError when the keyframe is there already.
+  /// Throws CheckError if the keyframe is already in the database.
   void add(KeyFrameId keyframe, std::span<const Descriptor> descriptors) override;
-  /// Forgets a keyframe, and the words that no other has. One that is not there is passed over: a keyframe may be
-  /// culled before it was ever added.
+  /// Removes a keyframe, and the words that no other keyframe has. An unknown keyframe is ignored, because a keyframe
+  /// may be culled before it is added.
   void remove(KeyFrameId keyframe) override;
-  std::vector<PlaceMatch> query(std::span<const Descriptor> descriptors, int most) const override;
+  std::vector<PlaceMatch> query(std::span<const Descriptor> descriptors, int max_count) const override;
 
   std::size_t keyframes() const { return slots_.size(); }
   std::size_t words() const { return vocabulary_.size(); }
@@ -64,7 +63,7 @@ class FlannDetector final : public LoopDetector {
   std::vector<std::uint32_t> free_slots_;
   std::unordered_map<KeyFrameId, std::uint32_t> slots_;
 
-  // What the last query looked up, since the keyframe asked for is mostly added next; void after any change.
+  // Words of the last query, because the queried keyframe is usually added next; invalid after any change.
   mutable bool looked_up_ = false;
   mutable std::vector<Descriptor> looked_up_descriptors_;
   mutable std::vector<Lookup> lookups_;

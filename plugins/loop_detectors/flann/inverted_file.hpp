@@ -8,21 +8,21 @@
 
 namespace holdfast::flann_plugin {
 
-/// That a keyframe has a word, and how often. Keyframes are small numbers here, below most_keyframes.
+/// A keyframe with a word, and the number of its occurrences. Keyframes are small integers here, below most_keyframes.
 struct Posting {
   std::uint32_t keyframe : 24;
-  std::uint32_t count : 8;  ///< 255 stands for 255 and more
+  std::uint32_t count : 8;  ///< saturates at 255
 };
 static_assert(sizeof(Posting) == 4);
 inline constexpr std::uint32_t most_keyframes = 1U << 24;
 
-/// Who has a word: for each word its postings, side by side in one pool. A single posting, the most frequent case by
-/// far, lies in the word's own entry; longer lists have a room of 2, 4, 8, ... in the pool, and rooms are used again.
+/// Inverted file: the contiguous postings of each word in one pool. A single posting, by far the most frequent case, is
+/// stored in the entry of the word; longer lists have a block of 2, 4, 8, ... in the pool, and blocks are reused.
 class InvertedFile {
  public:
   /// The keyframe must not have the word yet.
   void add(std::uint32_t word, std::uint32_t keyframe);
-  /// Returns whether that was the word's last keyframe. Throws CheckError when the keyframe does not have it.
+  /// Returns whether this was the last keyframe of the word. Throws CheckError if the keyframe does not have the word.
   bool remove(std::uint32_t word, std::uint32_t keyframe);
   /// In no particular order. Valid until the next change.
   std::span<const std::uint32_t> keyframes(std::uint32_t word) const;

@@ -8,20 +8,21 @@ namespace holdfast {
 void FlannSettings::describe(ParameterTable<FlannSettings>& table) {
   table
       .add("radius", &FlannSettings::radius,
-           "a descriptor that differs by no more than this from a word is that word; else it becomes a new one")
+           "maximum Hamming distance between a descriptor and its word; without such a word, it becomes a new one")
       .range(0, 128)
       .unit("bit");
   table
       .add("descriptors", &FlannSettings::descriptors,
-           "descriptors used of a keyframe, evenly spread over its list; time and memory are in proportion")
+           "maximum number of descriptors used per keyframe, evenly sampled from its list; time and memory are "
+           "proportional to it")
       .range(10, 100000);
   table
       .add("probes", &FlannSettings::probes,
-           "buckets of words searched for a descriptor; more find more of the words that are there, at a cost")
+           "number of buckets of words that are searched per descriptor; more find more words at a higher cost")
       .range(1, 64);
   table
       .add("checks", &FlannSettings::checks,
-           "centres of buckets that FLANN compares a descriptor with before it stops looking for nearer ones")
+           "number of bucket centres that FLANN compares per descriptor before it stops")
       .range(1, 10000);
 }
 

@@ -16,39 +16,39 @@ namespace holdfast::flann_plugin {
 
 using WordId = std::uint32_t;
 
-/// Where a descriptor falls in the vocabulary.
+/// Result of the search for a descriptor in the vocabulary.
 struct Lookup {
   static constexpr std::size_t most_words = 4;
 
-  std::array<WordId, most_words> words{};  ///< the nearest within the radius, nearest first; equal ones as met
-  std::uint32_t count = 0;                 ///< how many there are
+  std::array<WordId, most_words> words{};  ///< nearest words within the radius, nearest first
+  std::uint32_t count = 0;                 ///< number of words
   std::uint32_t bucket = 0;                ///< where the descriptor would be inserted
 };
 
-/// Words that come and go: descriptors that stand for what looks like them. They lie in buckets around centres; FLANN
-/// finds the nearest centres, and the words of these buckets are compared one by one, so a search costs about the same
-/// at any size. A bucket that grows too full is split in two, around the bitwise majorities of its halves (k-means with
-/// Hamming distance: Grana et al., "A fast approach for integrating ORB descriptors in the bag of words model", SPIE
-/// 8667, 2013): of all descriptors a majority has the least sum of distances to its words, so that the same thing seen
-/// again mostly falls on the same side. An erased word leaves nothing behind, and nothing is ever rebuilt but the small
-/// index of centres.
+/// An incremental vocabulary of visual words, which are descriptors that represent similar ones. Words are stored in
+/// buckets around centres: FLANN finds the nearest centres, and the words of their buckets are compared one by one, so
+/// that the cost of a search is nearly independent of the size. A bucket that becomes too large is split around the
+/// bitwise majorities of its halves (k-means with Hamming distance: Grana et al., "A fast approach for integrating ORB
+/// descriptors in the bag of words model", SPIE 8667, 2013). A majority minimises the sum of distances to its words, so
+/// that observations of the same feature usually belong to the same half. Erased words leave no trace, and only the
+/// small index of centres is ever rebuilt.
 class Vocabulary {
  public:
-  /// `radius`: how far a descriptor may be from its word [bits]; `probes`: buckets searched, at most 64; `checks`: see
-  /// CentreIndex.
+  /// `radius`: maximum distance between a descriptor and its word [bits]; `probes`: number of searched buckets, at most
+  /// 64; `checks`: see CentreIndex.
   Vocabulary(std::uint64_t seed, int radius, int probes, int checks);
 
   Lookup find(const Descriptor& descriptor) const;
-  /// The same for many, which is quicker than one by one.
+  /// Searches many descriptors, which is faster than one by one.
   void find(std::span<const Descriptor> descriptors, std::vector<Lookup>& lookups) const;
-  /// A new word, in the bucket that find() named. Its id may have been that of an erased word.
+  /// Inserts a new word into the bucket that find() returned. Ids of erased words are reused.
   WordId insert(const Descriptor& descriptor, std::uint32_t bucket);
   void erase(WordId word);
-  /// Splits the buckets that insert() has filled too far. Lookups made before may name a bucket that is no longer the
-  /// nearest; that costs a little recall, nothing else.
+  /// Splits the buckets that have become too large. Earlier lookups may then refer to a bucket that is no longer the
+  /// nearest one, which only reduces the recall slightly.
   void split_full_buckets();
 
-  /// Gives up the empty buckets once they are the larger part. No lookup made before may be used afterwards.
+  /// Removes empty buckets if they are the majority. Earlier lookups are invalid afterwards.
   void drop_empty_buckets();
 
   std::size_t size() const { return bucket_of_word_.size() - free_words_.size(); }

@@ -12,7 +12,7 @@
 namespace holdfast {
 
 void ObjectsSettings::describe(ParameterTable<ObjectsSettings>& table) {
-  table.add("hidden", &ObjectsSettings::hidden, "also write where hidden objects are expected");
+  table.add("hidden", &ObjectsSettings::hidden, "also write the predicted poses of occluded objects");
 }
 
 namespace {
@@ -62,7 +62,7 @@ class Objects final : public Observer {
 HOLDFAST_PLUGIN(objects, registry) {
   registry.add<Observer, Objects, ObjectsSettings>(
       {.name = ObjectsSettings::module,
-       .summary = "Writes the tracks of what moves (filter motion_objects) to objects.csv."});
+       .summary = "Writes the tracks of moving objects (filter motion_objects) to objects.csv."});
 }
 
 }  // namespace holdfast

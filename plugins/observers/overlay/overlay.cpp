@@ -14,12 +14,11 @@ namespace holdfast {
 
 void OverlaySettings::describe(ParameterTable<OverlaySettings>& table) {
   using S = OverlaySettings;
-  table.add("every", &S::every, "one picture for this many frames, those whose index it divides").range(1, 100000);
-  table.add("format", &S::format, "single files (png, jpg) or one video (avi, mp4)")
-      .one_of({"png", "jpg", "avi", "mp4"});
-  table.add("layout", &S::layout, "the painted image alone, or the image as it came to its left")
-      .one_of({"single", "side_by_side"});
-  table.add("quality", &S::quality, "of jpg").range(1, 100);
+  table.add("every", &S::every, "a picture is written for every frame whose index is a multiple of this number")
+      .range(1, 100000);
+  table.add("format", &S::format, "single files (png, jpg) or one video (avi, mp4)");
+  table.add("layout", &S::layout, "the overlay alone, or the input image to its left");
+  table.add("quality", &S::quality, "JPEG quality").range(1, 100);
 }
 
 namespace {
@@ -30,7 +29,7 @@ class Overlay final : public Observer {
   Overlay(const OverlaySettings& settings, const CreationContext& context)
       : every_(static_cast<std::uint64_t>(settings.every)),
         is_on_(!context.output_directory.empty()),
-        painter_(context.camera, settings.layout == "side_by_side"),
+        painter_(context.camera, settings.layout == PictureLayout::side_by_side),
         files_({.folder = context.output_directory / "overlay",
                 .format = settings.format,
                 .quality = settings.quality,
@@ -54,7 +53,7 @@ class Overlay final : public Observer {
 HOLDFAST_PLUGIN(overlay, registry) {
   registry.add<Observer, Overlay, OverlaySettings>(
       {.name = OverlaySettings::module,
-       .summary = "Writes pictures of the frames with masks, what moves, and the features' static probability."});
+       .summary = "Writes pictures of the frames with masks, moving regions and the static probability of features."});
 }
 
 }  // namespace holdfast

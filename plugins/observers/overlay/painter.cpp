@@ -69,11 +69,11 @@ Painter::Painter(const Camera& camera, bool side_by_side) : camera_(camera), gri
 void Painter::tint(const cv::Mat& colour, const CoarseView& coarse, cv::Mat& out) const {
   colour.copyTo(out);
   const auto cells = static_cast<std::size_t>(grid_.size());
-  const bool has_labels = coarse.labels.size() == cells, has_log_odds = coarse.static_log_odds.size() == cells;
+  const bool has_labels = coarse.mask.labels.size() == cells, has_log_odds = coarse.static_log_odds.size() == cells;
   if (!(coarse.grid == grid_) || (!has_labels && !has_log_odds)) return;
   std::vector<CellTint> tints(cells);
   for (std::size_t i = 0; i < cells; ++i) {
-    if (has_labels) tints[i].label = coarse.labels[i];
+    if (has_labels) tints[i].label = coarse.mask.labels[i];
     if (has_log_odds && coarse.static_log_odds[i] < 0.0F)
       tints[i].moving_share =
           static_cast<std::uint8_t>(strongest * (0.4F + 0.6F * std::min(1.0F, -coarse.static_log_odds[i] / certain)));

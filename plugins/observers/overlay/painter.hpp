@@ -12,16 +12,16 @@
 
 namespace holdfast::overlay {
 
-/// Paints what is known of a frame over its colour image. One thread.
+/// Draws masks, evidence, features and objects of a frame over its colour image. One thread.
 class Painter {
  public:
-  /// `side_by_side`: the image as it came stands to the left.
+  /// `side_by_side` adds the input image to the left.
   Painter(const Camera& camera, bool side_by_side);
 
-  /// 8UC3, valid until the next call. The colour image, its classes tinted blue (class 1; further classes in other
-  /// colours), darkened where a mask exists and says "unknown", tinted red where the coarse view says "moves", the
-  /// features from green (static) over yellow to red (moving), filled when they show a map point; boxes around what
-  /// moves, with its velocity as an arrow; below it a line of text.
+  /// Draws a frame; the result is 8UC3, valid until the next call. Masks are tinted blue (class 1; further classes in
+  /// other colours), unknown cells of a mask are darkened, moving cells of the coarse view are tinted red. Features are
+  /// circles from green (static) over yellow to red (moving), filled if they have a map point. Moving objects have a
+  /// box and their velocity as an arrow. Below the image is a line of text.
   const cv::Mat& paint(const SensorFrame& sensor_frame, const Frame& frame, const FrameResult& result);
   cv::Size size() const { return picture_.size(); }
 
@@ -37,7 +37,7 @@ class Painter {
   cv::Mat picture_;
 };
 
-/// Blue, green, red of a feature with this probability of being static.
+/// Colour (blue, green, red) of a feature with a static probability.
 cv::Scalar feature_colour(float static_probability);
 /// "frame 12   4.033 s   tracked   inliers 310   static 801 of 1000".
 std::string status_text(const FrameResult& result);

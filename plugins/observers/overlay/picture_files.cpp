@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
+#include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -26,12 +27,12 @@ PictureFiles::~PictureFiles() {
 }
 
 fs::path PictureFiles::video_file(bool partial) const {
-  return settings_.folder / ((partial ? "overlay.partial." : "overlay.") + settings_.format);
+  return settings_.folder / (std::string(partial ? "overlay.partial." : "overlay.") + choice_name(settings_.format));
 }
 
 void PictureFiles::open_video(cv::Size size) {
   const fs::path file = video_file(true);
-  const bool is_mp4 = settings_.format == "mp4";
+  const bool is_mp4 = settings_.format == PictureFormat::mp4;
   video_ = std::make_unique<cv::VideoWriter>();
   // Motion JPEG is written by OpenCV itself: no library can be missing, and the bytes are always the same.
   const bool opened =
@@ -49,21 +50,21 @@ void PictureFiles::write(std::uint64_t index, const cv::Mat& picture) {
   std::error_code error;
   fs::create_directories(settings_.folder, error);
   if (error) throw InputError({settings_.folder.string()}, "the folder cannot be made: " + error.message());
-  if (settings_.format == "avi" || settings_.format == "mp4") {
+  if (settings_.format == PictureFormat::avi || settings_.format == PictureFormat::mp4) {
     if (!video_) open_video(picture.size());
     video_->write(picture);
     return;
   }
   char name[48];
   std::snprintf(name, sizeof(name), "frame_%06llu.%s", static_cast<unsigned long long>(index),
-                settings_.format.c_str());
+                choice_name(settings_.format));
   std::vector<int> options;
-  if (settings_.format == "jpg")
+  if (settings_.format == PictureFormat::jpg)
     options = {cv::IMWRITE_JPEG_QUALITY, settings_.quality};
   else
     options = {cv::IMWRITE_PNG_COMPRESSION, 1};  // the pictures are many, and waiting for them costs frames
   std::vector<std::uint8_t> bytes;
-  if (!cv::imencode("." + settings_.format, picture, bytes, options))
+  if (!cv::imencode(std::string(".") + choice_name(settings_.format), picture, bytes, options))
     throw InputError({(settings_.folder / name).string()}, "this OpenCV cannot write the format");
   write_file_atomically(settings_.folder / name, std::string(bytes.begin(), bytes.end()));
 }

@@ -5,7 +5,8 @@
 #include <filesystem>
 #include <memory>
 #include <opencv2/core/mat.hpp>
-#include <string>
+
+#include "holdfast/settings/overlay.hpp"
 
 namespace cv {
 class VideoWriter;
@@ -13,24 +14,24 @@ class VideoWriter;
 
 namespace holdfast::overlay {
 
-/// Writes pictures into a folder, as single files or as one video. The folder and a video are made with the first
-/// picture. Every file has its name only when it is complete; a video gets it from close() or the destructor.
+/// Writes pictures into a folder, as single files or as one video. The folder and the video are created with the first
+/// picture. Files are renamed when they are complete; a video by close() or the destructor.
 class PictureFiles {
  public:
   struct Settings {
     std::filesystem::path folder;
-    std::string format;        ///< png, jpg, avi (Motion JPEG) or mp4 (MPEG-4)
-    int quality = 90;          ///< of jpg, 1..100
-    double frame_rate = 30.0;  ///< of a video [1/s]
+    PictureFormat format = PictureFormat::jpg;  ///< avi is Motion JPEG, mp4 is MPEG-4
+    int quality = 90;                           ///< of jpg, 1..100
+    double frame_rate = 30.0;                   ///< of a video [1/s]
   };
 
   explicit PictureFiles(Settings settings);
   ~PictureFiles();
 
-  /// All pictures must have one size. Throws InputError naming the file when it cannot be written, or when OpenCV was
-  /// built without the video's format.
+  /// All pictures must have the same size. Throws InputError with the file if it cannot be written, or if OpenCV was
+  /// built without the format of the video.
   void write(std::uint64_t index, const cv::Mat& picture);
-  /// Completes the video, if there is one; nothing may be written afterwards.
+  /// Completes the video, if there is one; no picture may be written afterwards.
   void close();
 
  private:

@@ -4,7 +4,7 @@
 #include <glog/logging.h>
 
 #include "bundle_adjustment.hpp"
-#include "holdfast/geometry/pose_adjustment.hpp"
+#include "holdfast/geometry/pose_problem.hpp"
 #include "holdfast/plugin/plugin.hpp"
 #include "pose_graph.hpp"
 
@@ -39,7 +39,8 @@ HOLDFAST_PLUGIN(ceres, registry) {
   using namespace holdfast;
   registry.add<Optimizer, ceres_plugin::CeresOptimizer, CeresSettings>(
       {.name = CeresSettings::module,
-       .summary = "Bundle adjustment and pose graphs with Ceres Solver, single poses with a fixed-size solver.",
+       .summary =
+           "Bundle adjustment and pose graphs with Ceres Solver; motion-only adjustment with a fixed-size solver.",
        .paper = "Mur-Artal and Tardos, ORB-SLAM2, IEEE Transactions on Robotics 33(5), 2017; Agarwal, Mierle et al., "
                 "Ceres Solver"});
 }

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "holdfast/core/camera.hpp"
-#include "holdfast/geometry/pose_adjustment.hpp"
+#include "holdfast/geometry/pose_problem.hpp"
 #include "holdfast/geometry/so3.hpp"
 
 namespace holdfast::ceres_plugin {
@@ -88,12 +88,21 @@ struct Measurement {
   bool active = true;
 };
 
-/// Scaled residual of a point seen from a pose, rows x, y and with rows = 3 right_x. Jacobians row by row: of the pose
-/// (translation, rotation vector) and of the point; either may be null. A point behind the camera has a large residual
-/// that does not depend on anything, so that the solver refuses steps that push points there.
+/// Where an evaluation goes: `rows` residuals, and Jacobians in row-major order, rows x 6 of the pose (translation,
+/// rotation vector) and rows x 3 of the point; nullptr = not wanted.
+struct EvaluationOutput {
+  double* residual = nullptr;
+  double* pose_jacobian = nullptr;
+  double* point_jacobian = nullptr;
+};
+
+/// Scaled residual of a point seen from a pose, rows x, y and with rows = 3 right_x, and its Jacobians. A point behind
+/// the camera has a large residual that does not depend on anything, so that the solver refuses steps that push points
+/// there.
 template <int rows>
 void evaluate_observation(const Camera& camera, const Measurement& measurement, const PoseState& pose,
-                          const double* point, double* residual, double* pose_jacobian, double* point_jacobian) {
+                          const double* point, const EvaluationOutput& out) {
+  const auto [residual, pose_jacobian, point_jacobian] = out;
   using Rows3 = Eigen::Matrix<double, rows, 3, Eigen::RowMajor>;
   const Eigen::Vector3d turned = pose.rotation * Eigen::Map<const Eigen::Vector3d>(point);
   const Eigen::Vector3d p = turned + pose.translation;
@@ -135,8 +144,10 @@ class FreePoseCost final : public ceres::SizedCostFunction<rows, 6, 3> {
   FreePoseCost(const Camera& camera, const Measurement& measurement, const PoseState& pose)
       : camera_(camera), measurement_(measurement), pose_(pose) {}
   bool Evaluate(const double* const* parameters, double* residual, double** jacobians) const override {
-    evaluate_observation<rows>(camera_, measurement_, pose_, parameters[1], residual,
-                               jacobians ? jacobians[0] : nullptr, jacobians ? jacobians[1] : nullptr);
+    evaluate_observation<rows>(camera_, measurement_, pose_, parameters[1],
+                               {.residual = residual,
+                                .pose_jacobian = jacobians ? jacobians[0] : nullptr,
+                                .point_jacobian = jacobians ? jacobians[1] : nullptr});
     return true;
   }
 
@@ -175,8 +186,8 @@ class FixedPosesCost final : public ceres::SizedCostFunction<4, 3> {
       const auto accumulate = [&]<int rows>() {
         Eigen::Matrix<double, rows, 1> error;
         Eigen::Matrix<double, rows, 3, Eigen::RowMajor> jacobian;
-        evaluate_observation<rows>(camera_, observation.measurement, *observation.pose, parameters[0], error.data(),
-                                   nullptr, linearise ? jacobian.data() : nullptr);
+        evaluate_observation<rows>(camera_, observation.measurement, *observation.pose, parameters[0],
+                                   {.residual = error.data(), .point_jacobian = linearise ? jacobian.data() : nullptr});
         const double squared = error.squaredNorm();
         const bool beyond = is_robust_ && squared > observation.limit;
         const double slope = beyond ? std::sqrt(observation.limit / squared) : 1.0;

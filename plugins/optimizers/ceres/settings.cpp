@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/settings/ceres.hpp"
 
-#include "holdfast/geometry/pose_adjustment.hpp"
+#include "holdfast/geometry/pose_problem.hpp"
 #include "holdfast/plugin/parameter_table.hpp"
 
 namespace holdfast {
@@ -11,25 +11,27 @@ static_assert(CeresSettings{}.chi_square_two == geometry::chi_square_two &&
 
 void CeresSettings::describe(ParameterTable<CeresSettings>& table) {
   table
-      .add("chi_square_two", &CeresSettings::chi_square_two,
-           "outlier limit of the squared residual over its variance, observations with x and y; its square root is "
-           "Huber's threshold")
+      .add(
+          "chi_square_two", &CeresSettings::chi_square_two,
+          "outlier threshold of the squared normalised residual without depth; 5.991 = chi-square 95 %, two degrees of "
+          "freedom; its square root is the threshold of the Huber cost")
       .range(0.1, 1000.0);
-  table.add("chi_square_three", &CeresSettings::chi_square_three, "the same for observations with x, y and depth")
+  table
+      .add("chi_square_three", &CeresSettings::chi_square_three,
+           "the same with depth; 7.815 = chi-square 95 %, three degrees of freedom")
       .range(0.1, 1000.0);
   table
       .add("pose_rounds", &CeresSettings::pose_rounds,
-           "outlier rounds of motion-only adjustment, the first half of them with Huber's cost")
+           "rounds of motion-only adjustment with outlier re-classification, the first half with the Huber cost")
       .range(2, 10);
-  table.add("pose_iterations", &CeresSettings::pose_iterations, "iterations at most in each of these rounds")
-      .range(1, 100);
+  table.add("pose_iterations", &CeresSettings::pose_iterations, "maximum iterations of each round").range(1, 100);
   table
       .add("function_tolerance", &CeresSettings::function_tolerance,
-           "bundle adjustment and pose graph stop when an iteration lowers the cost by less than this part of it")
+           "relative decrease of the cost at which bundle adjustment and pose graph have converged")
       .range(0.0, 0.1);
   table
       .add("dense_poses", &CeresSettings::dense_poses,
-           "the reduced camera system of bundle adjustment is dense up to this number of free poses, sparse beyond")
+           "maximum number of free poses for which the reduced camera system is factorised as a dense matrix")
       .range(0, 1000);
 }
 

@@ -16,27 +16,28 @@ namespace holdfast {
 void OnnxSettings::describe(ParameterTable<OnnxSettings>& table) {
   using S = OnnxSettings;
   table.add("model", &S::model, "network for semantic segmentation, ONNX, float32").required();
-  table.add("width", &S::width, "of the network's input; 0 = as the model declares it").range(0, 8192).unit("px");
-  table.add("height", &S::height, "of the network's input; 0 = as the model declares it").range(0, 8192).unit("px");
-  table.add("colour_order", &S::colour_order, "order of the input's channels").one_of({"rgb", "bgr"});
+  table.add("width", &S::width, "width of the network input; 0 = as declared by the model").range(0, 8192).unit("px");
+  table.add("height", &S::height, "height of the network input; 0 = as declared by the model")
+      .range(0, 8192)
+      .unit("px");
+  table.add("colour_order", &S::colour_order, "order of the input channels");
   table.add("scale", &S::scale, "input = (pixel * scale - mean) / standard_deviation, pixels from 0 to 255");
   table.add("mean", &S::mean, "subtracted from each channel, in colour_order, after scale");
-  table.add("standard_deviation", &S::standard_deviation, "each channel is divided by it");
-  table.add("layout", &S::layout, "of input and output: channels before or after height and width")
-      .one_of({"nchw", "nhwc"});
-  table
-      .add("output", &S::output,
-           "what the network gives: scores before softmax, probabilities, or the index of the class; one channel of "
-           "logits or probabilities is the second of two classes")
-      .one_of({"logits", "probabilities", "labels"});
-  table.add("output_name", &S::output_name, "which output, where the model has several");
-  table.add("classes", &S::classes,
-            "names by channel or label; the first is the background where the network has one; 'unknown' is reserved "
-            "for pixels that nobody is sure of");
-  table.add("movable", &S::movable, "those of the classes that can move; empty = not said");
+  table.add("standard_deviation", &S::standard_deviation, "divides each channel, in colour_order");
+  table.add("layout", &S::layout, "layout of input and output: channels before or after height and width");
+  table.add("output", &S::output,
+            "output of the network: scores before softmax, probabilities, or class indices; a single channel of logits "
+            "or probabilities belongs to the second of two classes");
+  table.add("output_name", &S::output_name, "name of the output, if the model has several");
+  table.add(
+      "classes", &S::classes,
+      "class names by channel or label; the first is the background if the network has one; 'unknown' is reserved "
+      "for unlabelled pixels");
+  table.add("movable", &S::movable, "the subset of classes that can move; empty = not specified");
   table
       .add("threads", &S::threads,
-           "of OpenCV, for the whole process, because OpenCV knows no other; 0 = as it is (holdfast: 1)")
+           "number of threads of OpenCV for the whole process, because OpenCV has no other setting; 0 = unchanged "
+           "(holdfast: 1)")
       .range(0, 256);
 }
 
@@ -46,20 +47,20 @@ NetworkOptions network_options(const OnnxSettings& s) {
   return {.model = s.model,
           .width = s.width,
           .height = s.height,
-          .rgb = s.colour_order == "rgb",
+          .rgb = s.colour_order == ColourOrder::rgb,
           .scale = s.scale,
           .mean = s.mean,
           .standard_deviation = s.standard_deviation,
-          .channels_last = s.layout == "nhwc",
+          .channels_last = s.layout == TensorLayout::nhwc,
           .output_name = s.output_name,
           .threads = s.threads};
 }
 
 OutputForm output_form(const OnnxSettings& s) {
-  const OutputKind kind = s.output == "labels"          ? OutputKind::labels
-                          : s.output == "probabilities" ? OutputKind::probabilities
-                                                        : OutputKind::logits;
-  return {.kind = kind, .channels_last = s.layout == "nhwc", .model = s.model};
+  const OutputKind kind = s.output == NetworkOutput::labels          ? OutputKind::labels
+                          : s.output == NetworkOutput::probabilities ? OutputKind::probabilities
+                                                                     : OutputKind::logits;
+  return {.kind = kind, .channels_last = s.layout == TensorLayout::nhwc, .model = s.model};
 }
 
 /// Checked before the model is loaded, all at once.
@@ -92,7 +93,7 @@ class OnnxSegmenter final : public NetworkSegmenter {
 HOLDFAST_PLUGIN(onnx, registry) {
   registry.add<Segmenter, OnnxSegmenter, OnnxSettings>(
       {.name = OnnxSettings::module,
-       .summary = "Any network for semantic segmentation in ONNX format, on the CPU through OpenCV."});
+       .summary = "Runs any semantic segmentation network in ONNX format on the CPU with OpenCV."});
 }
 
 }  // namespace holdfast

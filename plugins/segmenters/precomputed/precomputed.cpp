@@ -23,20 +23,21 @@ void PrecomputedSettings::describe(ParameterTable<PrecomputedSettings>& table) {
             "its time stamp");
   table
       .add("tolerance", &S::tolerance,
-           "a frame takes the image nearest in time, at most this far away; 0 = the image of that very stamp")
+           "maximum time difference between frame and label image; 0 = identical time stamps")
       .range(0.0, 3600.0)
       .unit("s");
   table
-      .add("labels", &S::labels,
-           "what values or ranges mean, such as { 1-254: person, 255: unknown }; 0 is the background unless named; "
-           "'unknown' is reserved for pixels that nobody is sure of")
+      .add(
+          "labels", &S::labels,
+          "class names of values or ranges, such as { 1-254: person, 255: unknown }; 0 is the background unless named; "
+          "'unknown' is reserved for unlabelled pixels")
       .required();
 }
 
 namespace {
 
 /// Stamps in file names and lists have six decimals.
-constexpr double least_tolerance = 1e-6;
+constexpr double min_tolerance = 1e-6;
 
 /// Label images that were made before.
 class PrecomputedSegmenter final : public Segmenter {
@@ -45,7 +46,7 @@ class PrecomputedSegmenter final : public Segmenter {
       : labels_(settings.labels, "segmenter.precomputed.labels"),
         files_(settings.list.empty() ? find_label_files(settings.path)
                                      : listed_label_files(settings.path, settings.list)),
-        tolerance_(std::max(settings.tolerance, least_tolerance)) {}
+        tolerance_(std::max(settings.tolerance, min_tolerance)) {}
 
   const std::vector<std::string>& classes() const override { return labels_.classes(); }
 
@@ -75,7 +76,7 @@ class PrecomputedSegmenter final : public Segmenter {
 
 HOLDFAST_PLUGIN(precomputed, registry) {
   registry.add<Segmenter, PrecomputedSegmenter, PrecomputedSettings>(
-      {.name = PrecomputedSettings::module, .summary = "Label images from a folder, found by time stamp."});
+      {.name = PrecomputedSettings::module, .summary = "Reads label images from a folder by time stamp."});
 }
 
 }  // namespace holdfast

@@ -15,7 +15,7 @@ namespace holdfast {
 
 void TruthSettings::describe(ParameterTable<TruthSettings>& table) {
   table.add("classes", &TruthSettings::classes,
-            "classes of the source to find, all others are background; empty = every class that the source knows");
+            "classes of the source to segment, all others are background; empty = all classes of the source");
 }
 
 namespace {
@@ -77,7 +77,7 @@ class TruthSegmenter final : public Segmenter {
 
 HOLDFAST_PLUGIN(simulated_truth, registry) {
   registry.add<Segmenter, TruthSegmenter, TruthSettings>(
-      {.name = TruthSettings::module, .summary = "The exact classes of every pixel that a simulated source knows."});
+      {.name = TruthSettings::module, .summary = "Exact class labels from a simulated source."});
 }
 
 }  // namespace holdfast

@@ -14,22 +14,25 @@ namespace holdfast {
 
 void UnetSettings::describe(ParameterTable<UnetSettings>& table) {
   using S = UnetSettings;
-  table
-      .add("size", &S::size,
-           "of the picture that the network is shown: small (224x192) takes a third of the time of base "
-           "(320x256), which sees better")
-      .one_of({"small", "base"});
-  table.add("width", &S::width, "of that picture, a multiple of 32; 0 = as size says").range(0, 4096).unit("px");
-  table.add("height", &S::height, "of that picture, a multiple of 32; 0 = as size says").range(0, 4096).unit("px");
+  table.add("size", &S::size,
+            "size of the network input: small (224x192) takes a third of the time of base (320x256), which is more "
+            "accurate");
+  table.add("width", &S::width, "width of the network input, a multiple of 32; 0 = given by size")
+      .range(0, 4096)
+      .unit("px");
+  table.add("height", &S::height, "height of the network input, a multiple of 32; 0 = given by size")
+      .range(0, 4096)
+      .unit("px");
   table.add(
       "mirror", &S::mirror,
-      "with base, show the network the mirror image, too, and take the mean: sees a little better, takes twice the "
-      "time; small never does");
+      "with base, average the scores of the image and its mirror image: slightly more accurate, twice the time; small "
+      "never does");
   table.add("model", &S::model,
-            "weights of your own, ONNX, as training/export.py writes them; empty = those that Holdfast comes with");
+            "other weights in ONNX format, as written by training/export.py; empty = the built-in weights");
   table
       .add("threads", &S::threads,
-           "of OpenCV, for the whole process, because OpenCV knows no other; 0 = as it is (holdfast: 1)")
+           "number of threads of OpenCV for the whole process, because OpenCV has no other setting; 0 = unchanged "
+           "(holdfast: 1)")
       .range(0, 256);
 }
 
@@ -52,7 +55,7 @@ struct Look {
 };
 constexpr Look base_look{320, 256, 0.2F}, small_look{224, 192, 0.0F};
 
-const Look& look_of(const UnetSettings& settings) { return settings.size == "small" ? small_look : base_look; }
+const Look& look_of(const UnetSettings& settings) { return settings.size == UnetSize::small ? small_look : base_look; }
 
 NetworkOptions network_options(const UnetSettings& settings) {
   NetworkOptions options;
@@ -78,7 +81,7 @@ class UnetSegmenter final : public NetworkSegmenter {
   UnetSegmenter(const UnetSettings& settings, const CreationContext&)
       : NetworkSegmenter(network_options(settings), {.model = network_options(settings).model},
                          {"background", "person", "chair", "table", "tv"}, {"person"}),
-        mirror_(settings.mirror && settings.size == "base"),
+        mirror_(settings.mirror && settings.size == UnetSize::base),
         caution_(settings.model.empty() ? look_of(settings).caution : 0.0F) {}
 
  protected:
@@ -108,7 +111,7 @@ class UnetSegmenter final : public NetworkSegmenter {
 HOLDFAST_PLUGIN(unet, registry) {
   registry.add<Segmenter, UnetSegmenter, UnetSettings>(
       {.name = UnetSettings::module,
-       .summary = "Finds people with the U-Net that Holdfast comes with; needs no files.",
+       .summary = "Segments people with the built-in U-Net; needs no files.",
        .paper = "Ronneberger et al., U-Net, MICCAI 2015"});
 }
 

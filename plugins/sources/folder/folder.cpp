@@ -33,22 +33,21 @@ struct FolderSettings {
               "depth images under path, 16-bit PNG with the numbers of the colour images: a folder, or a pattern where "
               "colour is one; empty = no depth");
     table.add("depth_factor", &FolderSettings::depth_factor, "value of one metre in a depth image").range(1.0, 65535.0);
-    table.add("frame_rate", &FolderSettings::frame_rate, "frames per second, where no stamps are given")
+    table.add("frame_rate", &FolderSettings::frame_rate, "frame rate, if no time stamps are given")
         .range(0.001, 100000.0)
         .unit("Hz");
     table.add("stamps", &FolderSettings::stamps,
-              "file with one time stamp per line for each colour image, in place of frame_rate");
-    table.add("truth", &FolderSettings::truth, "true trajectory, TUM format");
+              "file with one time stamp per line for each colour image, instead of frame_rate");
+    table.add("truth", &FolderSettings::truth, "ground-truth trajectory in TUM format");
     table.add(
         "intrinsics", &FolderSettings::intrinsics,
-        "YAML or JSON file with fx, fy, cx, cy, width, height and, where the lens distorts, k1, k2, p1, p2, k3, in "
-        "place of the configuration's camera");
+        "YAML or JSON file with fx, fy, cx, cy, width, height and, for a lens with distortion, k1, k2, p1, p2, k3; "
+        "if the configuration has a camera too, both must agree");
     table
         .add("on_bad_frame", &FolderSettings::on_bad_frame,
-             "what to do with a missing, damaged or unfit image: stop with an error, or leave the frame out and count "
-             "it")
+             "reaction to a missing, damaged or unsuitable image: stop with an error, or skip and count the frame")
         .one_of({"fail", "skip"});
-    table.add("start", &FolderSettings::start, "number of the first frame, from 0").at_least(0);
+    table.add("start", &FolderSettings::start, "index of the first frame, from 0").at_least(0);
     table.add("frames", &FolderSettings::frames, "number of frames, 0 = all").at_least(0);
   }
 };

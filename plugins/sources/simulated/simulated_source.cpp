@@ -28,9 +28,13 @@ struct SimulatedSourceSettings {
   static void describe(ParameterTable<SimulatedSourceSettings>& table) {
     using S = SimulatedSourceSettings;
     table.add("scene", &S::scene, "scene file (YAML); empty = the empty office");
-    table.add("path", &S::path, "how the camera moves; as_scene = as the scene says").one_of(paths());
-    table.add("duration", &S::duration, "length of the sequence; 0 = as the scene says").range(0.0, 36000.0).unit("s");
-    table.add("seed", &S::seed, "of textures, small things, people, path and noise; 0 = the scene's, else the run's")
+    table.add("path", &S::path, "camera path; as_scene = path of the scene").one_of(paths());
+    table.add("duration", &S::duration, "duration of the sequence; 0 = duration of the scene")
+        .range(0.0, 36000.0)
+        .unit("s");
+    table
+        .add("seed", &S::seed,
+             "seed of textures, small objects, people, path and noise; 0 = the seed of the scene, or else of the run")
         .at_least(0.0);
     table.add("set", &S::set, "values of the scene to override, each \"key.path=value\"");
   }
@@ -47,7 +51,6 @@ class SimulatedSource final : public FrameSource {
     description.name = "simulated " + scene.name + ", " + simulation::to_string(scene.room) + ", path " +
                        simulation::to_string(scene.camera.path) + ", seed " + std::to_string(scene.seed);
     description.has_depth = true;
-    description.has_object_masks = true;
     description.class_names = simulator_.class_names();
     description.frame_count = simulator_.frame_count();
     description.camera = simulator_.camera();
@@ -83,6 +86,6 @@ class SimulatedSource final : public FrameSource {
 HOLDFAST_PLUGIN(simulated, registry) {
   registry.add<holdfast::FrameSource, holdfast::SimulatedSource, holdfast::SimulatedSourceSettings>(
       {.name = "simulated",
-       .summary = "A simulated scene with people and things that move, drawn on the fly with exact truth.",
+       .summary = "A simulated scene with moving people and objects, rendered during the run, with exact ground truth.",
        .paper = "Depth noise after Nguyen, Izadi and Lovell 2012; paths after Sturm et al. 2012 and Zeng et al. 2023"});
 }

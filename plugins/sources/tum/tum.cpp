@@ -24,19 +24,18 @@ struct TumSettings {
     table.add("path", &TumSettings::path, "folder of the recording, with rgb.txt and depth.txt").required();
     table
         .add("max_time_difference", &TumSettings::max_time_difference,
-             "a colour and a depth image whose stamps differ by less than this may make a pair")
+             "upper bound of the time difference between a colour image and its depth image")
         .range(1e-6, 1.0)
         .unit("s");
     table.add("depth_factor", &TumSettings::depth_factor, "value of one metre in a depth image").range(1.0, 65535.0);
     table.add("associations", &TumSettings::associations,
-              "file of ready pairs, lines 'colour_timestamp colour_file depth_timestamp depth_file', used in place of "
-              "rgb.txt and depth.txt; image names are relative to path");
+              "file of associated pairs, lines 'colour_timestamp colour_file depth_timestamp depth_file', used instead "
+              "of rgb.txt and depth.txt; image names are relative to path");
     table
         .add("on_bad_frame", &TumSettings::on_bad_frame,
-             "what to do with a missing, damaged or unfit image: stop with an error, or leave the frame out and count "
-             "it")
+             "reaction to a missing, damaged or unsuitable image: stop with an error, or skip and count the frame")
         .one_of({"fail", "skip"});
-    table.add("start", &TumSettings::start, "number of the first pair, from 0").at_least(0);
+    table.add("start", &TumSettings::start, "index of the first pair, from 0").at_least(0);
     table.add("frames", &TumSettings::frames, "number of pairs, 0 = all").at_least(0);
   }
 };

@@ -32,7 +32,7 @@ class FaultyFilter final : public DynamicFilter {
       if (fault_ == "counts_calls") evidence.add(0, static_cast<float>(++calls));
     }
     if (fault_ == "invents_points") evidence.add_point({4000000, 1}, -1.0F);
-    if (fault_ == "numbers_from_zero") evidence.report({});
+    if (fault_ == "numbers_from_zero") evidence.add_object({});
     if (fault_ == "writes") const_cast<std::uint8_t*>(context.sensor_frame.colour.data)[0] ^= 255;
     if (fault_ == "cells_without_end" && !evidence.cells().empty())
       evidence.add_cell(0, std::numeric_limits<float>::infinity());

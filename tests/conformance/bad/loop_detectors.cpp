@@ -33,13 +33,13 @@ class FaultyLoopDetector final : public LoopDetector {
     std::erase(known_, keyframe);
     flann_->remove(keyframe);
   }
-  std::vector<PlaceMatch> query(std::span<const Descriptor> descriptors, int most) const override {
+  std::vector<PlaceMatch> query(std::span<const Descriptor> descriptors, int max_count) const override {
     if (fault_ == "blind") return {};
-    auto matches = flann_->query(descriptors, fault_ == "generous" ? 1000 : most);
+    auto matches = flann_->query(descriptors, fault_ == "generous" ? 1000 : max_count);
     ++queries_;
     if (matches.empty()) return matches;
     if (fault_ == "worst_first") std::reverse(matches.begin(), matches.end());
-    if (fault_ == "twice" && static_cast<int>(matches.size()) < most) matches.push_back(matches.back());
+    if (fault_ == "twice" && static_cast<int>(matches.size()) < max_count) matches.push_back(matches.back());
     if (fault_ == "no_number") matches[0].score = std::numeric_limits<double>::quiet_NaN();
     if (fault_ == "learns_by_asking") matches[0].score += 1e-6 * queries_;
     if (fault_ == "counts_calls") matches[0].score += 1e-6 * ++calls;

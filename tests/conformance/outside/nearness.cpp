@@ -23,7 +23,7 @@ class Nearness final : public holdfast::DynamicFilter {
   void apply(const holdfast::FilterContext& context, holdfast::StaticEvidence& evidence) override {
     for (std::size_t i = 0; i < context.frame.size(); ++i)
       if (context.frame.has_depth(i) && context.frame.depth[i] < settings_.distance)
-        evidence.add(i, static_cast<float>(settings_.log_odds), holdfast::StaticEvidence::Sort::prior);
+        evidence.add(i, static_cast<float>(settings_.log_odds), holdfast::StaticEvidence::Kind::prior);
   }
 
  private:

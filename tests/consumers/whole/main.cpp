@@ -8,11 +8,7 @@
 namespace {
 
 std::string track(const char* file) {
-  holdfast::Registry registry;
-  holdfast::register_builtin_plugins(registry);
-  const holdfast::Configuration configuration =
-      holdfast::load_configuration(file, {}, registry, holdfast::pipeline_sections());
-  holdfast::BuiltPipeline built = holdfast::build_pipeline(configuration, registry);
+  holdfast::BuiltPipeline built = holdfast::build_pipeline(holdfast::load_configuration(file));
   while (const auto frame = built.source->next()) built.pipeline.feed(*frame);
   built.pipeline.finish();
   return holdfast::trajectory_text(built.pipeline.trajectory());

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "holdfast/core/stage_times.hpp"
+#include "holdfast/core/worker_counts.hpp"
+
+namespace holdfast {
+
+/// First in, first out, between threads, and never longer than its capacity. Waits without spinning.
+template <class T>
+class BoundedQueue {
+ public:
+  explicit BoundedQueue(std::size_t capacity) { counts_.capacity = std::max<std::size_t>(capacity, 1); }
+
+  /// Waits for room. False, and the value is gone, when the queue is closed.
+  bool push(T value) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return closed_ || has_room_unlocked(); });
+    return add(std::move(value));
+  }
+  /// Makes room by dropping the oldest value.
+  bool push_newest(T value) {
+    const std::lock_guard lock(mutex_);
+    if (!closed_ && !has_room_unlocked()) {
+      entries_.pop_front();
+      ++counts_.dropped;
+    }
+    return add(std::move(value));
+  }
+
+  /// Waits for a value; nothing when the queue is closed and empty.
+  std::optional<T> pop() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return closed_ || !entries_.empty(); });
+    if (entries_.empty()) return std::nullopt;
+    Entry entry = std::move(entries_.front());
+    entries_.pop_front();
+    const double waited = entry.since.seconds();
+    ++counts_.taken;
+    counts_.wait_total += waited;
+    counts_.wait_longest = std::max(counts_.wait_longest, waited);
+    lock.unlock();
+    changed_.notify_all();
+    return std::move(entry.value);
+  }
+
+  bool has_room() const {
+    const std::lock_guard lock(mutex_);
+    return has_room_unlocked();
+  }
+  /// Returns at once when the queue is closed.
+  void wait_for_room() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return closed_ || has_room_unlocked(); });
+  }
+  /// Takes nothing more; what waits can still be popped unless `abandon`. Wakes everybody.
+  void close(bool abandon = false) {
+    {
+      const std::lock_guard lock(mutex_);
+      closed_ = true;
+      if (abandon) entries_.clear();
+    }
+    changed_.notify_all();
+  }
+  QueueCounts counts() const {
+    const std::lock_guard lock(mutex_);
+    return counts_;
+  }
+
+ private:
+  struct Entry {
+    T value;
+    Stopwatch since;
+  };
+  bool has_room_unlocked() const { return entries_.size() < counts_.capacity; }
+  bool add(T value) {
+    if (closed_) return false;
+    entries_.push_back({std::move(value), Stopwatch()});
+    counts_.longest = std::max(counts_.longest, entries_.size());
+    changed_.notify_all();
+    return true;
+  }
+
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Entry> entries_;
+  bool closed_ = false;
+  QueueCounts counts_;
+};
+
+}  // namespace holdfast

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <optional>
+#include <span>
+
+#include "holdfast/geometry/pinhole.hpp"
+
+/// Comparison of the depth images of two views: where a measured point lies in the other view, and whether the other
+/// view sees through it. In single precision, which suffices for depth images.
+namespace holdfast::geometry {
+
+/// A point as another view would see it.
+struct WarpedPoint {
+  Eigen::Vector3f point;  ///< in the camera frame of the other view [m]; its z is the expected depth
+  float x, y;             ///< pixel in the other view, perhaps outside its image [px]
+};
+
+/// Takes pixels with depth from one view to another:
+///
+///   point = depth * R * (ray_x, ray_y, 1) + t,  x = fx * point.x / point.z + cx,  y = fy * point.y / point.z + cy
+///
+/// with R and t of T_to_from, a ray ((x - cx) / fx, (y - cy) / fy) of the first camera, and the intrinsics of the
+/// second one. Immutable; any thread.
+class Warp {
+ public:
+  /// Points nearer to the second camera than `minimum_depth` [m] have no pixel there.
+  Warp(const Eigen::Isometry3d& T_to_from, const Pinhole& from, const Pinhole& to, float minimum_depth = 0.1F)
+
+      : R_(T_to_from.linear().cast<float>()),
+        t_(T_to_from.translation().cast<float>()),
+        from_(from),
+        to_(to),
+        minimum_depth_(minimum_depth) {}
+  /// Both views from one camera.
+  Warp(const Eigen::Isometry3d& T_to_from, const Pinhole& camera, float minimum_depth = 0.1F)
+      : Warp(T_to_from, camera, camera, minimum_depth) {}
+
+  /// The ray of a column or row of the first view.
+  float ray_x(float x) const { return (x - from_.cx) / from_.fx; }
+  float ray_y(float y) const { return (y - from_.cy) / from_.fy; }
+
+  /// Where the second view sees the point that the first one measured along a ray at a depth [m] along its optical
+  /// axis.
+  std::optional<WarpedPoint> operator()(float ray_x, float ray_y, float depth) const {
+    return project(depth * (R_ * Eigen::Vector3f(ray_x, ray_y, 1.0F)) + t_);
+  }
+  /// Where the second view sees a point that is given in its camera frame [m].
+  std::optional<WarpedPoint> project(const Eigen::Vector3f& point) const {
+    if (!(point.z() >= minimum_depth_)) return std::nullopt;
+    const float inverse = 1.0F / point.z();
+    return WarpedPoint{point, to_.fx * point.x() * inverse + to_.cx, to_.fy * point.y() * inverse + to_.cy};
+  }
+  /// Where the second view sees a point at infinite distance along a ray of the first view: the effect of rotation
+  /// alone.
+  std::optional<WarpedPoint> project_direction(float ray_x, float ray_y) const {
+    return project(R_ * Eigen::Vector3f(ray_x, ray_y, 1.0F));
+  }
+
+ private:
+  struct Intrinsics {
+    explicit Intrinsics(const Pinhole& camera)
+        : fx(static_cast<float>(camera.fx)),
+          fy(static_cast<float>(camera.fy)),
+          cx(static_cast<float>(camera.cx)),
+          cy(static_cast<float>(camera.cy)) {}
+    float fx, fy, cx, cy;
+  };
+
+  Eigen::Matrix3f R_;
+  Eigen::Vector3f t_;
+  Intrinsics from_, to_;
+  float minimum_depth_;
+};
+
+/// Whether a depth image shows that the space up to `limit` [m] is free at a cell: of the 3 x 3 cells around it at
+/// least six measured a depth of `limit` or more, and none a smaller one, because near a depth edge a small error of
+/// the pose would have the same effect as free space. `depth`: row by row, 0 = no measurement; the cell must not lie on
+/// the border.
+inline bool is_seen_through(std::span<const float> depth, int columns, int cell, float limit) {
+  constexpr int enough = 6;
+  int farther = 0;
+  for (int row = -1; row <= 1; ++row)
+    for (int column = -1; column <= 1; ++column) {
+      const float measured = depth[static_cast<std::size_t>(cell + row * columns + column)];
+      if (measured >= limit)
+        ++farther;
+      else if (measured > 0.0F)
+        return false;
+    }
+  return farther >= enough;
+}
+
+}  // namespace holdfast::geometry

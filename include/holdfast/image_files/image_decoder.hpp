@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+namespace holdfast {
+
+/// Decodes PNG and JPEG files strictly: an image that the decoding library would repair or convert silently (a
+/// truncated file, a grey image instead of colour, 8-bit depth) is an InputError that states the file, what was found,
+/// what was expected and how to correct it. Keeps its buffers between images; used by one thread.
+class ImageDecoder {
+ public:
+  /// Decodes an 8-bit image with three channels to 8UC3, blue green red, in the orientation of the sensor (EXIF is not
+  /// applied).
+  cv::Mat read_colour(const std::filesystem::path& file);
+  /// Decodes a 16-bit PNG with one channel to 32FC1 [m]: value / depth_factor, 0 = no value.
+  cv::Mat read_depth(const std::filesystem::path& file, double depth_factor);
+  /// Decodes a PNG of labels to the stored type, 8UC1 or 16UC1. For a PNG with a palette (8 bits, such as those of
+  /// Pascal VOC) the result contains the indices and not the colours.
+  cv::Mat read_labels(const std::filesystem::path& file);
+
+ private:
+  void load(const std::filesystem::path& file);
+
+  std::vector<std::uint8_t> bytes_;
+  cv::Mat raw_depth_;
+};
+
+}  // namespace holdfast

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "holdfast/core/error.hpp"
+#include "holdfast/core/sensor_frame.hpp"
+#include "holdfast/image_files/image_decoder.hpp"
+#include "holdfast/interfaces/frame_source.hpp"
+
+namespace holdfast {
+
+/// The files of one frame of a recording.
+struct ImageFiles {
+  double timestamp = 0.0;  ///< of the colour image [s]
+  std::filesystem::path colour;
+  std::filesystem::path depth;      ///< empty for a recording without depth
+  SourceLocation colour_listed_at;  ///< the line of the list with the image; no file without a list
+  SourceLocation depth_listed_at;
+};
+
+/// How the images of a sequence are read.
+struct ImageSequenceOptions {
+  double depth_factor = 5000.0;  ///< value of one metre in a depth image
+  int width = 0;                 ///< of every image [px]
+  int height = 0;
+  bool skip_bad_frames = false;  ///< skip and count bad frames instead of throwing InputError
+};
+
+/// Decodes the frames of a recording one by one; the common part of all sources that read image files. Used by one
+/// thread.
+class ImageSequence {
+ public:
+  /// The time stamps must increase strictly.
+  ImageSequence(std::vector<ImageFiles> files, const ImageSequenceOptions& options);
+
+  /// Returns the next valid frame, or nothing at the end. Throws InputError with the image and its line in the list for
+  /// a bad frame, unless bad frames are skipped; in this case it throws at the end if no frame was valid.
+  std::optional<SensorFrame> next();
+
+  std::uint64_t size() const { return files_.size(); }
+  const std::vector<SkippedFrame>& skipped() const { return skipped_; }
+
+ private:
+  SensorFrame decode(const ImageFiles& files);
+
+  std::vector<ImageFiles> files_;
+  ImageSequenceOptions options_;
+  std::size_t position_ = 0;
+  ImageDecoder decoder_;
+  std::vector<SkippedFrame> skipped_;
+};
+
+/// Keeps `count` elements (0 = all remaining) from index `start`. Throws InputError at `place` if `start` is beyond the
+/// last element; `what` names the elements in the message.
+template <class Element>
+void select_range(std::vector<Element>& elements, std::int64_t start, std::int64_t count,
+                  const std::filesystem::path& place, const char* what) {
+  const auto size = static_cast<std::int64_t>(elements.size());
+  if (start >= size)
+    throw InputError({place.string()}, "has " + std::to_string(size) + ' ' + what + ", but `start` is " +
+                                           std::to_string(start) + "; expected 0 to " + std::to_string(size - 1));
+  elements.erase(elements.begin(), elements.begin() + start);
+  if (count > 0 && count < size - start) elements.resize(static_cast<std::size_t>(count));
+}
+
+/// The last component of a path, for titles: "fr1_xyz" for "data/fr1_xyz/".
+std::string folder_name(const std::filesystem::path& path);
+
+}  // namespace holdfast

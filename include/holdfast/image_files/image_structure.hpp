@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace holdfast {
+
+/// Properties of an image from the headers of its PNG or JPEG file.
+struct ImageStructure {
+  enum class Format { png, jpeg };
+
+  Format format = Format::png;
+  int width = 0;         ///< [px]
+  int height = 0;        ///< [px]
+  int channels = 0;      ///< as stored; 3 for a palette image
+  int bits = 0;          ///< of a channel; 8 for a palette image
+  bool palette = false;  ///< a PNG whose pixels are indices into a palette
+  int index_bits = 8;    ///< of such an index
+  std::string problem;   ///< the reason why the file cannot be decoded completely; empty if it can
+
+  /// Description such as "640x480, 3 channels of 8 bits".
+  std::string to_string() const;
+};
+
+/// Checks the structure of a complete PNG (ISO/IEC 15948: signature, chunks with their checksums, IEND) or JPEG file
+/// (ITU-T T.81: markers, scans, EOI) without decoding it. This detects truncated files, which the decoding libraries
+/// fill with grey, or for which they print messages. Bytes after the end of the image are allowed. Only `bytes` are
+/// read.
+ImageStructure examine_image(std::span<const std::uint8_t> bytes);
+
+/// Converts an 8-bit palette PNG that examine_image() accepted to a grey PNG whose pixels are the indices, because the
+/// decoding libraries only provide the palette's colours, which are ambiguous for identical entries.
+std::vector<std::uint8_t> palette_indices_as_grey(std::span<const std::uint8_t> bytes);
+
+}  // namespace holdfast

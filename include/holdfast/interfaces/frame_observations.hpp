@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "holdfast/core/frame.hpp"
+#include "holdfast/interfaces/optimizer.hpp"
+
+/// Observations of an optimizer's problems from the features of a frame. Each is weighted by the probability that its
+/// feature belongs to the static world.
+namespace holdfast {
+
+/// Adds to the pose problem of `frame` that its feature number `feature` shows `point` (world [m]).
+inline void add_observation(PoseProblem& problem, const Frame& frame, std::size_t feature,
+                            const Eigen::Vector3d& point) {
+  problem.points.push_back(point);
+  problem.x.push_back(frame.x[feature]);
+  problem.y.push_back(frame.y[feature]);
+  problem.right_x.push_back(frame.right_x[feature]);
+  problem.inverse_sigma2.push_back(frame.pyramid->inverse_sigma2[frame.features.octave[feature]]);
+  problem.weight.push_back(frame.static_probability[feature]);
+}
+
+/// Builds the bundle-adjustment observation of a feature: pose number `pose`, that of the frame, observes point number
+/// `point`.
+inline BundleProblem::Observation bundle_observation(const Frame& frame, std::uint32_t feature, std::uint32_t pose,
+                                                     std::uint32_t point) {
+  return {.pose = pose,
+          .point = point,
+          .x = frame.x[feature],
+          .y = frame.y[feature],
+          .right_x = frame.right_x[feature],
+          .inverse_sigma2 = frame.pyramid->inverse_sigma2[frame.features.octave[feature]],
+          .weight = frame.static_probability[feature]};
+}
+
+}  // namespace holdfast

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include "holdfast/core/id.hpp"
+#include "holdfast/loop_closing/loop_verdict.hpp"
+
+namespace holdfast {
+
+/// A loop that was detected and corrected.
+struct ClosedLoop {
+  KeyFrameId keyframe;   ///< keyframe at the end of the loop
+  KeyFrameId candidate;  ///< keyframe of the revisited place
+  int inliers = 0;       ///< points of the place that are matched in the keyframe
+  int points_fused = 0;
+  double way = 0.0;       ///< length of the shortest path between the two before the correction [m]
+  PoseChange correction;  ///< measured correction of the keyframe
+  /// Measured relative pose, which maps points of the candidate's camera frame to the keyframe's.
+  Eigen::Isometry3d T_keyframe_candidate = Eigen::Isometry3d::Identity();
+  double seconds = 0.0;  ///< duration of the correction
+};
+
+}  // namespace holdfast

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "holdfast/core/map.hpp"
+
+namespace holdfast {
+
+/// Selects which of two map points is kept when both are the same point.
+enum class FusionSurvivor {
+  more_observed,  ///< the one with more observations; of equal ones the point that was searched for
+  searched_point  ///< the point that was searched for, because its position is the more trustworthy one
+};
+
+/// Result of add_or_fuse().
+enum class FusionOutcome {
+  nothing,            ///< the point is gone, or the keyframe observes it already
+  observation_added,  ///< the feature was free and observes the point now
+  points_fused        ///< the feature observed another point, and the two are one now
+};
+
+/// Records that a keyframe's feature shows a map point that was searched for: adds an observation, or fuses the point
+/// with the one that the feature shows already. The caller holds the lock of the map.
+FusionOutcome add_or_fuse(Map& map, MapPointId point, KeyFrameId keyframe, std::uint32_t feature,
+                          FusionSurvivor survivor);
+
+}  // namespace holdfast

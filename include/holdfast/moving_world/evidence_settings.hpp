@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace holdfast {
+
+template <class Settings>
+class ParameterTable;
+
+/// How the probability of being static becomes the weight of a feature.
+enum class Removal {
+  soft,  ///< the weight is the probability
+  hard,  ///< the weight is 0 below a threshold and 1 above it, as in Zeng et al. 2023
+};
+
+/// The `evidence` section of a configuration: how the log-odds that filters add become weights, how map points
+/// accumulate them, and when dense depth overrules a pose.
+struct EvidenceSettings {
+  Removal removal = Removal::soft;
+  double static_log_odds = 2.0;  ///< prior of every feature; 2 is a probability of 0.88
+  double threshold = 0.5;        ///< probability, for hard removal
+  double ignore_below = 0.2;     ///< probability, for soft removal
+  double carried_share = 0.95;   ///< share of a point's log-odds that lasts until its next observation
+  double measured_share = 0.3;   ///< share of a frame's measurement that is added to its points
+  double limit = 4.0;            ///< bound of a point's log-odds, so that a point can change its mind within seconds
+  bool skip_moving = true;
+  /// Share of compared cells by which the motion model's prediction must agree better with keyframes than the pose from
+  /// matches. The lead keeps noise of depth from deciding.
+  double prediction_lead = 0.03;
+  /// A pose with fewer inliers than this is checked against dense depth: so few can agree by chance.
+  int depth_check_inliers = 50;
+  /// Share of compared cells that must agree. It is small, because people may fill most of the view.
+  double depth_check_share = 0.05;
+  /// The same two for a pose that was found after a loss: it is the best of many hypotheses, so chance has more tries.
+  int depth_check_inliers_lost = 60;
+  double depth_check_share_lost = 0.08;
+
+  static void describe(ParameterTable<EvidenceSettings>& table);
+};
+
+}  // namespace holdfast

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "holdfast/core/frame.hpp"
+#include "holdfast/interfaces/dynamic_filter.hpp"
+#include "holdfast/moving_world/evidence_settings.hpp"
+
+namespace holdfast {
+
+/// When a filter runs. Filters that need neither pose_prior nor matches run before matching, so that features that they
+/// suspect cannot bias the pose; those that need a pose run after the first estimate; those that need matches run after
+/// the local map was matched.
+enum class FilterStage { before_matching, with_pose, after_matching };
+
+/// The dynamic filters of a run in their order, and the conversion of their evidence into weights. For each frame:
+/// begin(), then evaluate() for each stage, with weight_features() whenever matches or evidence have changed, then
+/// accumulate(). With an empty chain every feature keeps full weight. One thread.
+///
+/// The log-odds of a feature are the sum of a constant prior (settings), the class priors of this frame's filters,
+/// their measurements, and the accumulated log-odds of the matched map point. Map points accumulate measurements only:
+/// class priors are evaluated anew in every frame.
+class FilterChain {
+ public:
+  explicit FilterChain(const EvidenceSettings& settings = {}) : settings_(settings) {}
+  void add(std::string name, std::unique_ptr<DynamicFilter> filter) {
+    names_.push_back(std::move(name));
+    filters_.push_back(std::move(filter));
+  }
+  bool empty() const { return filters_.empty(); }
+  bool has(FilterStage stage) const;
+  std::size_t size() const { return filters_.size(); }
+  const std::string& name(std::size_t i) const { return names_[i]; }
+  const DynamicFilter& filter(std::size_t i) const { return *filters_[i]; }
+
+  void begin(const Frame& frame) { evidence_.reset(frame.size(), frame.coarse.depth.size()); }
+  /// Runs the filters of a stage in their order.
+  void evaluate(FilterStage stage, const FilterContext& context);
+  /// Sets static_probability, measured_log_odds and the log-odds of the coarse cells.
+  void weight_features(const Map& map, Frame& frame) const;
+  /// Adds the frame's measurements to the map points that it shows, and to those that filters measured themselves.
+  void accumulate(const Frame& frame, Map& map) const;
+  /// Evaluates a keyframe again by its own segmentation (context.segmentation and the mask in `frame`): the class
+  /// priors of its features are replaced, measurements are kept; cells of its coarse view become more suspect, never
+  /// less.
+  void evaluate_keyframe(const FilterContext& context, Frame& frame);
+
+  /// Evidence of the most recently evaluated frame, including re-evaluated keyframes.
+  const StaticEvidence& evidence() const { return evidence_; }
+  const EvidenceSettings& settings() const { return settings_; }
+
+ private:
+  static FilterStage stage_of(const DynamicFilter& filter);
+  void apply(std::size_t filter, const FilterContext& context);
+  float probability(float log_odds) const;
+
+  EvidenceSettings settings_;
+  std::vector<std::string> names_;
+  std::vector<std::unique_ptr<DynamicFilter>> filters_;
+  StaticEvidence evidence_;
+};
+
+}  // namespace holdfast

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "holdfast/core/cell_mask.hpp"
+#include "holdfast/core/coarse_view.hpp"
+#include "holdfast/core/frame.hpp"
+#include "holdfast/interfaces/segmenter.hpp"
+#include "holdfast/moving_world/mask_transfer.hpp"
+#include "holdfast/moving_world/point_follower.hpp"
+
+namespace holdfast {
+
+/// Samples a segmentation at the centres of the cells; background outside the image. Empty for an empty segmentation.
+CellMask sample_mask(const CoarseSampler& sampler, const Segmentation& segmentation);
+
+/// Provides a mask for every frame although few frames are segmented, and their masks arrive late. For each frame:
+///
+///     advance(...)          moves the followed points and the mask to the frame
+///     set_pose(...)         once its pose is estimated
+///     remember()            when the frame is going to be segmented
+///     apply(index, ...)     when the mask of a remembered frame has arrived: its labels are transferred to the current
+///                           frame along the points that were followed in between
+///
+/// One thread.
+class MaskPropagator {
+ public:
+  /// The sampler must outlive the propagator. `memory` is the time after which the confidence has halved [s].
+  MaskPropagator(const Camera& camera, const CoarseSampler& sampler, double memory);
+
+  /// `T_frame_previous` is the predicted motion of the camera since the last frame. The frame needs its coarse depth,
+  /// but no features, and must stay valid until the next call.
+  void advance(const cv::Mat& grey, const Frame& frame, const Eigen::Isometry3d& T_frame_previous);
+  /// Sets the pose of the frame, and what filters found in its cells: an object moves in the cells whose
+  /// evaluated.static_log_odds are below `moving`.
+  void set_pose(const std::optional<Eigen::Isometry3d>& T_camera_world, const CoarseView& evaluated, float moving);
+  void remember();
+  /// Forgets that frame and older ones; an empty mask changes nothing else. mask.moving is not read.
+  void apply(std::uint64_t frame_index, const CellMask& mask);
+
+  /// The mask of the last frame, `moving` left out; empty before the first segmentation.
+  const CellMask& mask() const { return mask_; }
+  const PointFollower::Points& points() const { return follower_.points(); }
+  /// Raw pixels (8UC1, not 0) of objects that moved when they were last evaluated; empty when there are none. The
+  /// reference is valid until the next call.
+  const cv::Mat& moving_pixels();
+
+ private:
+  /// The part of a frame from which its labels can be transferred to a later one.
+  struct View {
+    std::uint64_t frame_index = 0;
+    double timestamp = 0.0;
+    CoarseView coarse;
+    std::optional<Eigen::Isometry3d> T_camera_world;
+    std::vector<std::uint64_t> ids;
+    std::vector<float> x, y, depth;
+  };
+
+  void take_view(const Frame& frame, View& view) const;
+  void pair_with(const View& view, const std::vector<std::uint8_t>& labels_there);
+  void renew_points(const Frame& frame);
+  void publish();
+
+  Camera camera_;
+  const CoarseSampler& sampler_;
+  double memory_;
+  PointFollower follower_;
+  MaskTransfer transfer_;
+  const Frame* frame_ = nullptr;  // of the last advance(), until the next
+  View current_, previous_;
+  std::deque<View> remembered_;
+  CellMask labels_, next_labels_;  // confidence without the effect of age
+  bool segmented_ = false;         // at least once
+  double labels_from_ = 0.0;       // time of the segmented frame [s]
+  FollowedPairs pairs_;
+  std::vector<int> bucket_strength_;
+  std::vector<std::int32_t> bucket_cell_;
+  cv::Mat moving_pixels_;
+  CellMask mask_;
+};
+
+}  // namespace holdfast

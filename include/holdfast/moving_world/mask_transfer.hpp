@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <vector>
+
+#include "holdfast/core/camera.hpp"
+#include "holdfast/core/cell_mask.hpp"
+#include "holdfast/core/coarse_view.hpp"
+
+namespace holdfast {
+
+/// Points of labelled objects, followed from one frame to another; a structure of arrays. Positions are undistorted
+/// pixels, depths [m], 0 = none.
+struct FollowedPairs {
+  std::vector<float> from_x, from_y, from_depth;
+  std::vector<float> to_x, to_y, to_depth;
+
+  std::size_t size() const { return from_x.size(); }
+  void clear() { from_x.clear(), from_y.clear(), from_depth.clear(), to_x.clear(), to_y.clear(), to_depth.clear(); }
+};
+
+/// Transfers the labels of one frame to another on their coarse views. A cell takes the label of the cell from which
+/// ego-motion moves it, if the same surface was observed there, or else of the cell from which the followed points of
+/// an object moved here, if depth agrees. Then objects grow over neighbouring surface that continues theirs in depth
+/// where there was free space in the previous view: parts that come into view are labelled, and a person does not flow
+/// into the floor. After the idea of NGD-SLAM (Zhang et al. 2024, section III-B: points of the last mask are followed
+/// by optical flow and the mask is rebuilt by depth), with the background as a second source of motion. Keeps its
+/// buffers; one thread.
+class MaskTransfer {
+ public:
+  explicit MaskTransfer(const Camera& camera) : camera_(camera) {}
+
+  /// `T_to_from` is the motion of the camera. `to` must not be `from`; all its arrays are replaced, its age is kept.
+  void transfer(const CoarseView& from_view, const CellMask& from, const CoarseView& to_view,
+                const Eigen::Isometry3d& T_to_from, const FollowedPairs& pairs, CellMask& to);
+
+ private:
+  struct Job;
+  void find_movers(const CoarseGrid& grid, const FollowedPairs& pairs);
+  /// Copies from where ego-motion moves the cell from; false when its own motion has to be looked for.
+  bool take_by_ego_motion(const Job& job, int column, int row);
+  void take_by_object_motion(const Job& job, int column, int row);
+  void take_without_depth(const Job& job, int column, int row);
+  void grow(const CoarseView& to_view, CellMask& to);
+  void fill_holes(const CoarseView& to_view, CellMask& to);
+
+  /// A candidate motion of the surface near a block of cells.
+  struct Mover {
+    int columns, rows;   // cells, from minus to
+    float depth_change;  // m, from minus to
+  };
+  static constexpr int block = 8;  // cells
+  static constexpr int max_movers = 4;
+
+  Camera camera_;
+  int block_columns_ = 0, block_rows_ = 0;
+  std::vector<Mover> movers_;  // max_movers for each block
+  std::vector<std::uint8_t> mover_count_;
+  /// Ego-motion-compensated state of a cell in the previous view.
+  enum class CellState : std::uint8_t { same_surface, free_space, occluded, unobserved };
+  std::vector<CellState> previous_state_;
+  std::vector<float> start_depth_;  // depth at which the growth into this cell began [m]
+  std::vector<std::int32_t> front_, next_front_;
+};
+
+}  // namespace holdfast

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "holdfast/core/cell_mask.hpp"
+#include "holdfast/core/frame.hpp"
+#include "holdfast/core/map.hpp"
+#include "holdfast/core/sensor_frame.hpp"
+#include "holdfast/core/stage_times.hpp"
+#include "holdfast/core/worker.hpp"
+#include "holdfast/interfaces/segmenter.hpp"
+#include "holdfast/moving_world/depth_agreement.hpp"
+#include "holdfast/moving_world/filter_chain.hpp"
+#include "holdfast/moving_world/mask_propagator.hpp"
+#include "holdfast/moving_world/segmentation_queue.hpp"
+#include "holdfast/moving_world/segmentation_settings.hpp"
+
+namespace holdfast {
+
+/// The parts of a MovingWorld. Without filters every feature counts as static; without a segmenter there are no masks.
+struct MovingWorldParts {
+  Camera camera;
+  FilterChain filters = FilterChain();
+  Segmenter* segmenter = nullptr;  ///< nullptr = none; must outlive the MovingWorld
+  SegmentationSettings segmentation = {};
+  bool threaded = false;  ///< the segmenter has a thread of its own
+};
+
+/// The frame that is being tracked, as filters see it.
+struct TrackedView {
+  const SensorFrame& sensor_frame;
+  const Frame* previous;  ///< the previous frame with its pose; nullptr when it has none
+  Frame& frame;
+};
+
+/// A pose of the current frame from the motion model.
+struct PosePrediction {
+  Eigen::Isometry3d T_camera_world;
+  Eigen::Isometry3d T_world_previous;  ///< pose of the previous frame
+};
+
+/// A mask that arrived from the segmenter and was applied to the current frame.
+struct ArrivedMask {
+  SensorFrame frame;
+  KeyFrameId keyframe;        ///< the keyframe made of the frame; invalid when there is none
+  Segmentation segmentation;  ///< empty when the segmenter had no result
+  CellMask mask;              ///< the segmentation on the cells of the frame's coarse view
+};
+
+/// What to trust: decides which features, map points and poses belong to the static world. It owns all that happens to
+/// a mask (segmentation queue, propagation to every frame), the filters with their evidence, and the check of poses
+/// against dense depth. The tracker asks, the pipeline feeds; neither knows how a mask arrives. One thread, except the
+/// segmenter's own.
+///
+/// Functions that read or write the map (marked with *) are called while the caller holds the map's lock.
+class MovingWorld {
+ public:
+  /// The map must outlive the MovingWorld.
+  MovingWorld(MovingWorldParts parts, Map& map);
+  MovingWorld(const MovingWorld&) = delete;
+  MovingWorld& operator=(const MovingWorld&) = delete;
+
+  // Asked by the tracker, in the order of a frame.
+
+  /// Propagates the mask to a frame that has its coarse depth but no features yet; `T_frame_previous` is the predicted
+  /// motion. Returns the raw pixels (8UC1, not 0) in which no features should be extracted; empty = extract everywhere.
+  /// Adds the stage "masks".
+  cv::Mat begin_frame(const cv::Mat& grey, const Eigen::Isometry3d& T_frame_previous, Frame& frame, StageTimes& times);
+  /// * Runs the filters of a stage; false when there are none. The stage before_matching begins the evidence of the
+  /// frame. Adds the stage "filters".
+  bool evaluate(FilterStage stage, const TrackedView& view, StageTimes& times);
+  bool has(FilterStage stage) const { return filters_.has(stage); }
+  /// * Sets the weights of the frame's features from the evidence so far.
+  void weight_features(Frame& frame) const { filters_.weight_features(map_, frame); }
+  /// Whether weights differ: inliers among features that are probably moving then do not count for a pose.
+  bool weights_features() const { return !filters_.empty(); }
+  /// * If matches on moving objects biased the pose, replaces it by the motion model's prediction: the one whose depth
+  /// agrees better with keyframes around `reference`. Then estimates coarse.T_view_camera. Adds the stage "filters".
+  void check_pose(const PosePrediction& prediction, KeyFrameId reference, Frame& frame, StageTimes& times);
+  /// * Whether a pose with this number of inliers contradicts the depth of the keyframes around `reference`. The limits
+  /// are stricter after a loss, see EvidenceSettings.
+  bool contradicts_depth(const Frame& frame, int inliers, bool was_lost, KeyFrameId reference);
+  /// * Adds the frame's measurements to its map points.
+  void accumulate(const Frame& frame) { filters_.accumulate(frame, map_); }
+  /// Ends a frame: the mask takes over its pose, if it has one, and which objects move.
+  void end_frame(const Frame& frame, bool has_pose);
+
+  /// Objects that filters track in this frame.
+  const std::vector<MovingObject>& objects() const { return filters_.evidence().objects(); }
+  /// Age of the propagated mask [s]; 0 without a mask.
+  double mask_age() const { return propagator_ ? propagator_->mask().age : 0.0; }
+  /// Whether so many keyframes wait for their masks that only a frame that is about to be lost should become another.
+  bool holds_keyframes() const { return queue_ && queue_->is_full(); }
+
+  // Fed by the pipeline.
+
+  bool expects_masks() const { return queue_.has_value(); }
+  /// Begins a frame: masks that are available at this frame can be taken.
+  void next_frame(double timestamp);
+  /// The next mask that has arrived, if any. It is already applied to the current frame. Adds the stage "masks".
+  std::optional<ArrivedMask> take_mask(StageTimes& times);
+  /// * Evaluates the features of the keyframe again by its own mask; does nothing when the keyframe is gone or the mask
+  /// is empty. Adds the stage "masks".
+  void evaluate_keyframe(const ArrivedMask& arrived, StageTimes& times);
+  /// Requests the mask of the frame last tracked, which became `keyframe` or, when that is invalid, none. False when
+  /// the frame is not to be segmented or the queue has no room. In sequential mode this adds the stage "segmentation".
+  bool request_mask(const SensorFrame& sensor_frame, KeyFrameId keyframe, StageTimes& times);
+  /// Waits until every requested mask can be taken. Throws what the segmenter threw.
+  void finish();
+  /// Throws what the segmenter threw in its thread.
+  void rethrow();
+
+  /// From the stamp of each segmented frame to that of the first frame to which its mask was applied, or of the last
+  /// frame of the run [s].
+  const std::vector<double>& mask_latencies() const { return mask_latencies_; }
+  /// Of the segmentation thread, since the last call.
+  std::vector<StageTimes> take_times();
+  std::optional<WorkerCounts> worker_counts() const;
+
+ private:
+  FilterContext context(const SensorFrame& sensor_frame, const Frame& frame) const;
+
+  Map& map_;
+  FilterChain filters_;
+  DepthAgreement depth_agreement_;
+  CoarseSampler sampler_;
+  std::vector<std::string> classes_, movable_;
+  std::optional<MaskPropagator> propagator_;
+  std::uint64_t next_frame_number_ = 0;
+  double timestamp_ = 0.0;  // of the current frame [s]
+  std::vector<double> mask_latencies_;
+  std::optional<SegmentationQueue> queue_;  // last: its thread ends before the others go
+};
+
+}  // namespace holdfast

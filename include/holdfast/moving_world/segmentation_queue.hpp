@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "holdfast/core/id.hpp"
+#include "holdfast/core/sensor_frame.hpp"
+#include "holdfast/core/stage_times.hpp"
+#include "holdfast/core/worker.hpp"
+#include "holdfast/interfaces/segmenter.hpp"
+#include "holdfast/moving_world/segmentation_settings.hpp"
+
+namespace holdfast {
+
+/// A frame with its segmentation.
+struct SegmentedFrame {
+  SensorFrame frame;
+  KeyFrameId keyframe;        ///< the keyframe made of the frame; invalid when there is none
+  Segmentation segmentation;  ///< empty when the segmenter had no result
+};
+
+/// Frames that wait for their segmentation, and results that wait to be applied. Sequential mode: push() segments at
+/// once, and pop() returns the result after the configured number of frames, so that results are those of a slow
+/// network and always the same. Threaded mode: a thread segments, at most one frame waits for it, and pop() returns a
+/// result as soon as it exists. First in, first out. One thread uses it.
+class SegmentationQueue {
+ public:
+  /// The segmenter must outlive the queue.
+  SegmentationQueue(Segmenter& segmenter, const SegmentationSettings& settings, bool threaded);
+
+  /// Whether a frame that is not a keyframe should be segmented. Frames are counted from 0.
+  bool wants(std::uint64_t frame_number) const;
+  bool has_room() const { return !worker_ || worker_->queue().has_room(); }
+  /// Adds a frame; there must be room. `times` gets the stage "segmentation" in sequential mode.
+  void push(const SensorFrame& frame, KeyFrameId keyframe, StageTimes& times);
+  /// The next result that is available at this frame, if any. Call it at least once per frame.
+  std::optional<SegmentedFrame> pop(std::uint64_t frame_number);
+  /// Waits until every frame is segmented; the next calls of pop() return all results.
+  void finish();
+
+  /// Whether no more keyframes should be made: there is no room, or the results of two keyframes, one in work and one
+  /// that waits, are outstanding, and the mask of a third would come too late to be useful.
+  bool is_full() const { return keyframes_inside_ >= 2 || !has_room(); }
+  /// Stage times of the segmentation thread since the last call.
+  std::vector<StageTimes> take_times();
+  /// Throws what the segmenter threw in its thread.
+  void rethrow() {
+    if (worker_) worker_->rethrow();
+  }
+  /// Nothing in sequential mode.
+  std::optional<WorkerCounts> worker_counts() const;
+
+ private:
+  struct Job {
+    SegmentedFrame segmented;
+    std::uint64_t due = 0;
+    bool done = false;
+  };
+  void segment(Job& job, StageTimes& times);
+
+  Segmenter& segmenter_;
+  SegmentationSettings settings_;
+  std::deque<std::shared_ptr<Job>> jobs_;
+  std::uint64_t frame_number_ = 0;
+  int keyframes_inside_ = 0;
+  bool all_due_ = false;
+  mutable std::mutex mutex_;  // protects Job::done, the content of jobs that are not done, and times_
+  std::vector<StageTimes> times_;
+  std::optional<Worker<std::shared_ptr<Job>>> worker_;  // last: it uses all the others
+};
+
+}  // namespace holdfast

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace holdfast {
+
+template <class Settings>
+class ParameterTable;
+
+/// The frames that are segmented.
+enum class SegmentedFrames {
+  keyframes,  ///< keyframes only, as in Zeng et al. 2023
+  every_n,    ///< keyframes and every n-th frame, for comparison
+};
+
+/// The `segmentation` section of a configuration: which frames the segmenter sees, and when its answer is applied.
+struct SegmentationSettings {
+  SegmentedFrames on = SegmentedFrames::keyframes;
+  int every = 5;        ///< with every_n, the n [frames]
+  int latency = 5;      ///< in sequential mode, frames after which a mask is applied; about a small network's 0.15 s
+  double memory = 1.0;  ///< time after which the confidence of a propagated mask has halved [s]
+
+  static void describe(ParameterTable<SegmentationSettings>& table);
+};
+
+}  // namespace holdfast

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "holdfast/config/run_settings.hpp"
+#include "holdfast/core/bounded_queue.hpp"
+#include "holdfast/core/sensor_frame.hpp"
+#include "holdfast/core/stage_times.hpp"
+#include "holdfast/interfaces/frame_source.hpp"
+
+namespace holdfast {
+
+/// A frame that was read and waits for tracking.
+struct FedFrame {
+  SensorFrame frame;
+  double decode_seconds = 0.0;
+  Stopwatch since_due;  ///< time since the frame was due: paced, its time stamp; otherwise the moment of reading
+};
+
+/// Reads a source in a separate thread, so that decoding and tracking overlap. Of the settings it uses pace,
+/// late_frames and frame_queue.
+class FrameFeeder {
+ public:
+  /// Starts reading. The source must outlive the feeder, and no other code may use it during that time.
+  FrameFeeder(FrameSource& source, const RunSettings& settings);
+  /// Stops reading and discards the frames that were read but not taken.
+  ~FrameFeeder();
+
+  /// Waits for the next frame; empty at the end of the source. An exception of the source is thrown here, after the
+  /// frames before it.
+  std::optional<FedFrame> next();
+  /// Ends the reading; next() returns empty from now on. Any thread may call it.
+  void stop();
+
+  QueueCounts counts() const { return queue_.counts(); }
+  /// Time stamps of all frames read so far, dropped ones included [s].
+  std::vector<double> stamps() const;
+  /// Paced: number of frames that the source gave after they were due.
+  std::uint64_t late() const;
+  /// Paced: largest delay of such a frame [s].
+  double latest() const;
+
+ private:
+  void read();
+  bool wait_until_due(double timestamp, Stopwatch& since_due);
+
+  FrameSource& source_;
+  RunSettings settings_;
+  BoundedQueue<FedFrame> queue_;
+  mutable std::mutex mutex_;
+  std::condition_variable stopped_changed_;
+  bool stopped_ = false;
+  std::exception_ptr failure_;
+  std::vector<double> stamps_;
+  std::uint64_t late_ = 0;
+  double latest_ = 0.0;
+  std::optional<double> first_timestamp_;
+  Stopwatch since_first_;
+  std::thread thread_;  // last, because it uses the members above
+};
+
+}  // namespace holdfast

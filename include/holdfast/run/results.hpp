@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "holdfast/run/run_record.hpp"
+
+namespace holdfast {
+
+/// Names of all files and folders that a run may write into its folder, in the order in which an earlier run's are
+/// removed. The observers `objects` and `overlay` write two of them.
+const std::vector<std::string>& result_names();
+
+/// Writes the results of a run into an existing or new folder: trajectory.txt, keyframes.txt, run.json, report.html and
+/// config.yaml; where there is a true trajectory, evaluation.json, tracks.json, trajectory.svg and error.svg; where the
+/// run has made or changed a map, map.hfm and static_map.ply (the dense map where there is one, else the map points).
+/// Each file is replaced in one step. Throws InputError when a file cannot be written.
+void write_results(const RunRecord& record, const std::filesystem::path& folder);
+
+/// The content of run.json: version, seed, machine, counts, coverage, stage times and errors.
+std::string run_json(const RunRecord& record);
+/// The content of report.html: one self-contained page.
+std::string report_html(const RunRecord& record);
+/// A short summary for a terminal: stage times and one line per figure.
+std::string summary_text(const RunRecord& record);
+
+}  // namespace holdfast

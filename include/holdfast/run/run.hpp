@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "holdfast/core/stage_times.hpp"
+#include "holdfast/pipeline/configured_pipeline.hpp"
+#include "holdfast/run/run_record.hpp"
+
+/// Runs a whole configuration: it reads the source to its end, at the configured pace, feeds the pipeline and collects
+/// a record of the run. results.hpp writes the record into files. The program `holdfast run` is a shell over it.
+namespace holdfast {
+
+/// Progress of a run after a frame.
+struct RunProgress {
+  std::uint64_t frames_done = 0;
+  std::optional<std::uint64_t> frame_count;  ///< of the source; empty when it is unknown
+  const FrameResult& result;                 ///< of this frame; valid during the call only
+};
+
+/// How a run is done, besides its configuration. All callbacks are called in the thread that called run(), and an empty
+/// callback is not called. on_start may throw: run() passes the exception on. An exception of on_frame ends the run and
+/// is recorded as its failure. stop must not throw.
+struct RunOptions {
+  PipelineOptions pipeline;
+  /// Called once, after all modules have been made and before the first frame is read.
+  std::function<void(const RunRecord& record)> on_start;
+  std::function<void(const RunProgress& progress)> on_frame;
+  /// Returns true when the run shall end early. Called before each frame.
+  std::function<bool()> stop;
+  /// Start of the time measurement of RunRecord::start_seconds and total_seconds. A program gives a stopwatch that it
+  /// started itself, so that loading the configuration counts.
+  Stopwatch since_start;
+};
+
+/// Builds the pipeline of a configuration, feeds it with all frames of the source, and evaluates the trajectory where
+/// the source has a true one. Throws as build_pipeline() does. An exception during the frames ends the run; what was
+/// computed until then is in the record, with the message in RunRecord::failure. The library sets neither signal
+/// handlers nor the number of OpenCV's threads: a program that wants the same times as `holdfast run` calls
+/// cv::setNumThreads(1).
+RunRecord run(const Configuration& configuration, const Registry& registry, const RunOptions& options = {});
+/// Runs with the built-in modules and those of the configuration's plugins. Link holdfast::holdfast.
+inline RunRecord run(const Configuration& configuration, const RunOptions& options = {}) {
+  Registry registry;
+  register_builtin_plugins(registry);
+  load_plugins(configuration, registry);
+  return run(configuration, registry, options);
+}
+
+/// Runs a pipeline that the caller has built and keeps. The record has no dense map then, and its map is empty: the
+/// caller finds both in the pipeline.
+RunRecord run(BuiltPipeline& built, const Configuration& configuration, const RunOptions& options = {});
+
+}  // namespace holdfast

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "holdfast/config/configuration.hpp"
+#include "holdfast/core/map.hpp"
+#include "holdfast/core/trajectory.hpp"
+#include "holdfast/evaluation/evaluation.hpp"
+#include "holdfast/evaluation/run_summary.hpp"
+#include "holdfast/interfaces/frame_source.hpp"
+#include "holdfast/map_io/cloud_ply.hpp"
+#include "holdfast/pipeline/pipeline.hpp"
+
+namespace holdfast {
+
+/// Queues and delays of a run in threaded mode.
+struct ThreadRecord {
+  QueueCounts frames;          ///< the queue between the source and tracking
+  std::uint64_t late = 0;      ///< paced: frames that the source gave after they were due
+  double latest = 0.0;         ///< paced: largest delay of such a frame [s]
+  std::vector<double> delays;  ///< per frame, time from when it was due (not paced: read) until its result [s]
+  std::vector<WorkerCounts> workers;
+  std::uint64_t keyframes_deferred = 0;  ///< keyframes that found the queue of local mapping full
+
+  /// Share of the delays above 33 ms, the frame interval of a camera at 30 Hz. 0 to 1.
+  double late_share() const;
+};
+
+/// Everything that is known at the end of a run. The record owns its content and refers to no pipeline.
+struct RunRecord {
+  Configuration configuration;
+  SourceDescription source;
+  Camera camera;
+  RunSummary summary;  ///< counts and stage times over all frames
+  std::vector<SkippedFrame> skipped;
+  std::vector<double> frame_stamps;  ///< time stamps of all frames of the source, skipped ones included, sorted [s]
+  std::size_t frames_expected = 0;   ///< number of frames that the source announced, else the number of frame_stamps
+
+  Trajectory trajectory;          ///< poses of all tracked frames, T_world_camera
+  Trajectory keyframes;           ///< poses of the keyframes in the map, T_world_camera
+  std::size_t map_keyframes = 0;  ///< number of keyframes in the map at the end
+  std::size_t map_points = 0;     ///< number of points in the map at the end
+  Map map;                        ///< the map at the end; empty when the caller keeps the pipeline, see run()
+  bool localised_only = false;    ///< the run found poses in a given map and left it unchanged
+  std::optional<std::vector<CloudPoint>> dense_map;  ///< cloud of the static scene, with dense_map.enabled
+  MappingCounts mapping;
+  LoopRecord loops;
+  std::vector<double> mask_ages;        ///< age of each segmentation mask when it was first used [s]
+  std::optional<ThreadRecord> threads;  ///< in threaded mode
+
+  std::optional<Evaluation> evaluation;  ///< where the source has a true trajectory
+  std::string no_evaluation;             ///< the reason why there is no evaluation
+
+  double start_seconds = 0.0;    ///< time from the start of the run to the first pose [s]
+  double total_seconds = 0.0;    ///< duration of the run, evaluation included and dense map excluded [s]
+  std::size_t peak_memory = 0;   ///< largest resident memory of the process so far [bytes]
+  bool was_interrupted = false;  ///< RunOptions::stop asked for the end
+  std::string failure;           ///< message of the exception that ended the run early; empty when none did
+
+  /// Number of poses divided by the number of expected frames, skipped ones included. 0 to 1.
+  double coverage() const;
+};
+
+}  // namespace holdfast

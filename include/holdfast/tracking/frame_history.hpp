@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "holdfast/core/frame.hpp"
+#include "holdfast/core/id.hpp"
+#include "holdfast/core/map.hpp"
+#include "holdfast/core/trajectory.hpp"
+
+namespace holdfast {
+
+/// Poses of all tracked frames, and the motion model (constant velocity) that follows from the last two. Each pose is
+/// kept relative to the frame's reference keyframe, so that it follows later corrections of the map. Functions that
+/// take the map are called while the caller holds its lock. One thread.
+class FrameHistory {
+ public:
+  /// Adds a tracked frame. Its velocity is T_current_previous when the frame before was tracked, too.
+  void add(const Frame& frame, KeyFrameId reference, const Map& map);
+  /// The last frame was not tracked: there is no previous frame and no velocity for the motion model. extrapolate()
+  /// still knows the velocity of the last tracked frame.
+  void interrupt() { has_previous_ = has_velocity_ = false; }
+  /// Makes the last tracked frame, if that is its time stamp, the reference of itself: it became this keyframe.
+  void became_keyframe(KeyFrameId keyframe, double timestamp);
+
+  bool empty() const { return records_.empty(); }
+  /// Whether the frame before the current one was tracked.
+  bool has_previous() const { return has_previous_; }
+  bool has_velocity() const { return has_velocity_; }
+  /// Time stamp of the last tracked frame [s]; the history must not be empty.
+  double last_timestamp() const { return records_.back().timestamp; }
+  /// T_camera_world of the last tracked frame by the map as it is now; the history must not be empty.
+  Eigen::Isometry3d last_pose(const Map& map) const;
+
+  /// The motion model: T_current_previous for a frame at this time; the identity without a velocity.
+  Eigen::Isometry3d predicted_step(double timestamp) const;
+  /// Motion since the last tracked frame if the camera went on with `share` of its last velocity, also after a loss.
+  Eigen::Isometry3d extrapolate(double timestamp, double share) const;
+
+  /// Poses of all tracked frames by the map as it is now.
+  Trajectory trajectory(const Map& map) const;
+
+ private:
+  struct Record {
+    double timestamp;
+    KeyFrameId reference;
+    Eigen::Isometry3d T_camera_reference;
+  };
+
+  std::vector<Record> records_;
+  bool has_previous_ = false;
+  bool has_velocity_ = false;
+  Eigen::Isometry3d velocity_ = Eigen::Isometry3d::Identity();  // T_current_previous
+  double velocity_interval_ = 0.0;                              // [s]
+};
+
+}  // namespace holdfast

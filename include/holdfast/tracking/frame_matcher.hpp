@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "holdfast/core/frame.hpp"
+#include "holdfast/core/map.hpp"
+#include "holdfast/matching/frame_features.hpp"
+#include "holdfast/tracking/local_map.hpp"
+#include "holdfast/tracking/tracking_settings.hpp"
+
+namespace holdfast {
+
+/// Matches the features of a frame with map points, by each of the priors that tracking has: the previous frame, a
+/// keyframe's descriptors alone, or the local map. Results are written to frame.map_points. Keeps its buffers; one
+/// thread. The caller holds the map's lock.
+class FrameMatcher {
+ public:
+  /// The map must outlive the matcher.
+  FrameMatcher(const TrackingSettings& settings, Map& map)
+      : settings_(settings), map_(map), local_map_(settings.local_keyframes) {}
+
+  /// Projects the map points of the previous frame by frame.T_camera_world and replaces the frame's matches by the
+  /// features found within `radius` pixels, times the scale of the octave. Names of points that are gone are cleared in
+  /// `previous`. Returns the number of matches.
+  int match_previous(Frame& previous, float radius, Frame& frame);
+  /// Replaces the frame's matches by mutual nearest neighbours among the descriptors of a keyframe's map points.
+  /// Returns the number of matches.
+  int match_keyframe(const Frame& keyframe_frame, Frame& frame);
+  /// Brings the local map up to date for the frame's matches and adds matches with points that project near a feature.
+  /// `window` multiplies the search radius, see LocalMap::project.
+  void match_local_map(float window, Frame& frame);
+
+  LocalMap& local_map() { return local_map_; }
+
+ private:
+  const TrackingSettings settings_;
+  Map& map_;
+  LocalMap local_map_;
+  FrameSearch search_;
+  matching::SearchWindows windows_;
+  std::vector<std::uint8_t> usable_;  // features that a search may match
+};
+
+}  // namespace holdfast

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "holdfast/config/configuration_node.hpp"
+#include "holdfast/core/error.hpp"
+
+namespace holdfast {
+
+/// A text of the matrix with its location.
+struct PlacedText {
+  std::string text;
+  SourceLocation location;
+};
+
+/// What a matrix sets in a configuration: a key path, as after `--set`, and the value.
+struct KeyValue {
+  std::string key;
+  SourceLocation location;
+  ConfigurationNode value;
+};
+
+/// One value of an axis: a name, and what it changes.
+struct AxisValue {
+  std::string name;  ///< fit for the name of a folder
+  SourceLocation location;
+  std::optional<PlacedText> configuration;  ///< a file in place of the matrix's base, absolute
+  std::vector<KeyValue> overrides;
+  bool timing = false;  ///< its runs stand alone on the machine
+};
+
+/// What is varied, and its values: one variant for every combination of the values of all axes.
+struct Axis {
+  std::string name;
+  SourceLocation location;
+  std::vector<AxisValue> values;
+};
+
+/// Where frames come from. Whatever knows sequences by other means than a `source:` section (a dataset recipe) fills
+/// the same fields.
+struct MatrixSequence {
+  std::string name;  ///< fit for the name of a folder
+  SourceLocation location;
+  ConfigurationNode source;                 ///< as the section `source` of a configuration
+  std::optional<ConfigurationNode> camera;  ///< as the section `camera`; nothing: the configuration's
+  /// Overrides of configurations on this sequence. A key of a module (segmenter.precomputed.path) applies only if the
+  /// configuration selects that module.
+  std::vector<KeyValue> overrides;
+  std::string about;      ///< its origin, reported if it is missing
+  std::string published;  ///< its name in the file of published figures; empty = its own name
+};
+
+/// An external system that runs on the same frames. Its texts may contain placeholders: {sequence} {associations}
+/// {settings} {output} {name}, see external_system.hpp.
+struct ExternalSystem {
+  std::string name;  ///< fit for the name of a folder
+  SourceLocation location;
+  std::vector<std::string> command;                              ///< program and arguments; no shell
+  std::string folder = "{output}";                               ///< to run in
+  std::vector<std::pair<std::string, std::string>> environment;  ///< added to ours
+  std::vector<std::pair<std::string, std::string>> settings;     ///< added to, or in place of, the generated ones
+  std::string trajectory = "{output}/trajectory.txt";            ///< where it leaves its poses, TUM format
+  std::optional<double> time_limit;                              ///< [s]
+  std::optional<int> repeats;
+  bool timing = false;
+};
+
+/// Runs that are left out: those that meet every condition. Keys are axes, `sequence` and `system`.
+struct Exclusion {
+  SourceLocation location;
+  /// That an axis, the sequence or the system has one of some values.
+  struct Condition {
+    PlacedText key;
+    std::vector<PlacedText> values;  ///< one of them
+  };
+  std::vector<Condition> conditions;
+};
+
+/// A file that says which systems run on which sequences, how often, and what is compared with what.
+struct Matrix {
+  std::filesystem::path file;
+  std::string title;
+  std::string about;
+  std::optional<PlacedText> base;  ///< a configuration, absolute
+  std::optional<PlacedText> mode;  ///< sequential or threaded; nothing: as the configurations say
+  int repeats = 1;                 ///< of every seed
+  std::vector<std::uint64_t> seeds = {1};
+  double time_limit = 3600.0;     ///< of a run [s]
+  double minimum_coverage = 0.9;  ///< below it a comparison is marked, 0 to 1
+  bool timing = false;            ///< every run stands alone on the machine
+  std::vector<Axis> axes;
+  std::vector<MatrixSequence> sequences;
+  std::vector<ExternalSystem> systems;
+  std::vector<Exclusion> exclusions;
+  std::vector<PlacedText> baseline;                            ///< a variant, or some values of axes; see run_plan.hpp
+  bool baseline_is_variant = false;                            ///< `baseline` holds one text: a variant's name
+  std::vector<std::string> baseline_axes;                      ///< otherwise: the axes of those values
+  std::vector<std::pair<PlacedText, PlacedText>> comparisons;  ///< variants, the second measured against the first
+  std::optional<PlacedText> published;                         ///< file of published figures, absolute
+};
+
+/// Values of ${NAME} in a matrix: those given here, then the environment's.
+using Variables = std::map<std::string, std::string>;
+
+/// Reads a matrix. Appends to `diagnostics` everything that is wrong with the file itself; names that refer to each
+/// other are checked by make_run_plan(). ${NAME} is replaced everywhere; where no such variable is set the text stays
+/// as it is, for missing_variable() to find: an error everywhere but in sequences and systems, which may be missing in
+/// a listing. Throws ConfigurationError when the file cannot be read as YAML.
+Matrix read_matrix(const std::filesystem::path& file, const Variables& variables, std::vector<Diagnostic>& diagnostics);
+
+/// The name of a variable that was not set, when the tree holds one.
+std::optional<PlacedText> missing_variable(const ConfigurationNode& node);
+/// The same for one text.
+std::optional<std::string> missing_variable(const std::string& text);
+
+/// Whether a text can be the name of a folder, of a variant and of a column: letters, digits, '.', '_' and '-', no '.'
+/// at its begin.
+bool is_plain_name(const std::string& name);
+
+}  // namespace holdfast

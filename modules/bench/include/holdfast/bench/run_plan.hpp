@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "holdfast/bench/external_system.hpp"
+#include "holdfast/bench/matrix.hpp"
+#include "holdfast/config/configuration.hpp"
+
+namespace holdfast {
+
+/// What is compared: one value of every axis, or an external system.
+struct Variant {
+  std::string name;                     ///< the values' names joined by '+', or the system's
+  std::vector<std::size_t> choices;     ///< value of each axis; empty for a system
+  std::optional<std::size_t> system;    ///< of Matrix::systems
+  std::optional<std::size_t> baseline;  ///< the variant it is measured against; nothing for a baseline itself
+  bool alone = false;                   ///< its runs are executed alone
+
+  bool is_external() const { return system.has_value(); }
+};
+
+/// One process with its results folder.
+struct PlannedRun {
+  std::string id;  ///< variant/sequence/run: its folder below `runs`
+  std::size_t variant = 0;
+  std::size_t sequence = 0;
+  std::uint64_t seed = 0;  ///< 0 for an external system, which has its own randomness
+  int repeat = 1;          ///< from 1
+  bool alone = false;
+  double time_limit = 0.0;  ///< [s]
+  /// All input of the run: the resolved configuration, or the call of an external system. A finished run with the same
+  /// request is not repeated.
+  std::string request;
+};
+
+/// All runs of a matrix in the order of execution: sequence by sequence, so that an interrupted benchmark has complete
+/// rows.
+struct RunPlan {
+  Matrix matrix;
+  std::vector<Variant> variants;
+  std::vector<PlannedRun> runs;
+  std::vector<std::pair<std::size_t, std::size_t>> comparisons;  ///< (before, after): every variant with its baseline
+  std::vector<std::optional<RecordedSequence>> recordings;       ///< by sequence: those that external systems run on
+  std::vector<Diagnostic> missing;  ///< folders, files and programs that are not there, with where to get them
+};
+
+/// Files in a run's folder that hold PlannedRun::request.
+inline constexpr const char* configuration_file = "config.yaml";
+inline constexpr const char* external_request_file = "request.json";
+
+/// Expands a matrix: variants are the product of the axes (the first one varies slowest), then the systems; every
+/// configuration is built and checked as `holdfast check` does. Everything that is wrong is appended to `diagnostics`,
+/// each once; what is only missing on this machine goes to RunPlan::missing. Plugins that configurations name are
+/// loaded into `registry`.
+RunPlan make_run_plan(Matrix matrix, Registry& registry, const std::vector<SectionDescription>& sections,
+                      std::vector<Diagnostic>& diagnostics);
+
+/// What `--dry-run` prints: every run, their count, remarks, and what is missing.
+std::string plan_text(const RunPlan& plan);
+
+}  // namespace holdfast

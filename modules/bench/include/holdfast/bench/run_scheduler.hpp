@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "holdfast/bench/run_plan.hpp"
+#include "holdfast/bench/run_result.hpp"
+
+namespace holdfast {
+
+/// Options for the execution of the runs of a benchmark.
+struct BenchOptions {
+  std::filesystem::path output;   ///< results of run ID go to output/runs/ID
+  std::filesystem::path program;  ///< path of the program `holdfast`
+  int jobs = 1;         ///< maximum number of concurrent runs; does not apply to runs that must be executed alone
+  double grace = 10.0;  ///< time between asking a process to end and killing it [s]
+  /// Polled several times per second; if it returns true, unfinished runs are aborted.
+  std::function<bool()> stop = [] { return false; };
+};
+
+/// Progress of a benchmark after the end of a run.
+struct BenchProgress {
+  std::size_t done = 0;  ///< including runs that were finished before
+  std::size_t total = 0;
+  double seconds_left = 0.0;  ///< extrapolated from this session
+};
+
+/// Results of all runs of a plan, by index.
+struct BenchResults {
+  std::vector<std::optional<RunResult>> results;
+  std::vector<std::optional<RunCost>> costs;
+  std::size_t kept = 0;  ///< runs that were finished before
+  bool was_stopped = false;
+
+  bool is_complete() const;
+};
+
+/// Files that the benchmark writes to the folder of a run; result_file is the last one, so that its presence identifies
+/// a finished run.
+inline constexpr const char* result_file = "result.json";
+inline constexpr const char* cost_file = "cost.json";
+inline constexpr const char* log_file = "log.txt";
+
+/// Reads the results in a folder of all planned runs that finished with the current request; the others are empty.
+BenchResults find_results(const RunPlan& plan, const std::filesystem::path& output);
+
+/// Executes the unfinished runs, each in a separate process. A run works in a hidden folder that is renamed when its
+/// result is complete, so that the folder of a run is either complete or absent, even if the benchmark is killed. A
+/// failed run is a result; the other runs continue. RunPlan::missing must be empty. Throws Error if another benchmark
+/// uses the folder, InputError if files cannot be written.
+BenchResults run_bench(
+    const RunPlan& plan, const BenchOptions& options,
+    const std::function<void(const PlannedRun&, const RunResult&, const RunCost&, const BenchProgress&)>& ended);
+
+}  // namespace holdfast

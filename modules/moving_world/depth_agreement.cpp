@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/moving_world/depth_agreement.hpp"
+
+#include <cmath>
+
+#include "holdfast/geometry/se3.hpp"
+
+namespace holdfast {
+
+bool DepthAgreement::choose(const Map& map, KeyFrameId reference, double timestamp) {
+  constexpr std::size_t most = 3;
+  constexpr int neighbours = 20;
+  constexpr double old = 0.7;  // s
+  keyframes_.clear();
+  const KeyFrame* first = map.find_keyframe(reference);
+  if (first == nullptr) return false;
+  const auto take = [&](const Frame& frame) {
+    if (keyframes_.size() < most && !frame.coarse.empty()) keyframes_.push_back(&frame);
+  };
+  const std::vector<KeyFrameId> covisible = map.best_covisible(reference, neighbours);
+  for (const bool want_old : {true, false}) {
+    if (!keyframes_.empty()) break;
+    if (timestamp - first->frame.timestamp >= old || !want_old) take(first->frame);
+    for (const KeyFrameId id : covisible)
+      if (const Frame& frame = map.keyframe(id).frame; timestamp - frame.timestamp >= old || !want_old) take(frame);
+  }
+  return !keyframes_.empty();
+}
+
+Eigen::Isometry3d DepthAgreement::find_view(const Frame& frame, const Eigen::Isometry3d& T_camera_world,
+                                            const Eigen::Isometry3d& step) const {
+  // On the motion from the last frame to the next: the best of five poses, then of two between it and its neighbours.
+  const auto motion = geometry::log_se3(step);
+  const auto view_at = [&](double steps) { return geometry::exp_se3(steps * motion); };
+  double best_steps = 0.0, best_share = share(frame, T_camera_world);
+  const auto try_at = [&](double steps) {
+    const double there = share(frame, view_at(steps) * T_camera_world);
+    if (there <= best_share) return;
+    best_share = there;
+    best_steps = steps;
+  };
+  for (const double steps : {-0.4, 0.4, -0.8, 0.8}) try_at(steps);
+  const double centre = best_steps;
+  for (const double steps : {centre - 0.2, centre + 0.2}) try_at(steps);
+  return view_at(best_steps);
+}
+
+double DepthAgreement::share(const Frame& frame, const Eigen::Isometry3d& T_view_world) const {
+  constexpr int stride = 4;  // cells
+  const CoarseGrid& grid = frame.coarse.grid;
+  const Camera& camera = *frame.camera;
+  const float fx = static_cast<float>(camera.fx), fy = static_cast<float>(camera.fy);
+  const float cx = static_cast<float>(camera.cx), cy = static_cast<float>(camera.cy);
+  int compared = 0, agreeing = 0;
+  for (const Frame* keyframe : keyframes_) {
+    if (!(keyframe->coarse.grid == grid)) continue;
+    const Eigen::Isometry3d motion = keyframe->T_view_world() * T_view_world.inverse();
+    const Eigen::Matrix3f R = motion.linear().cast<float>();
+    const Eigen::Vector3f t = motion.translation().cast<float>();
+    const std::vector<float>& known = keyframe->coarse.static_log_odds;
+    for (int row = stride / 2; row < grid.rows; row += stride)
+      for (int column = stride / 2; column < grid.columns; column += stride) {
+        const float depth = frame.coarse.depth[static_cast<std::size_t>(row * grid.columns + column)];
+        if (depth == 0.0F) continue;
+        const Eigen::Vector3f ray((grid.x_of(column) - cx) / fx, (grid.y_of(row) - cy) / fy, 1.0F);
+        const Eigen::Vector3f there = R * (depth * ray) + t;
+        if (there.z() < 0.1F) continue;
+        const int cell = grid.cell_of(fx * there.x() / there.z() + cx, fy * there.y() / there.z() + cy);
+        if (cell < 0) continue;
+        const std::size_t index = static_cast<std::size_t>(cell);
+        if (!known.empty() && known[index] < 0.0F) continue;
+        const float seen = keyframe->coarse.depth[index];
+        if (seen == 0.0F) continue;
+        ++compared;
+        agreeing += std::abs(seen - there.z()) < 0.01F + 0.01F * there.z() ? 1 : 0;
+      }
+  }
+  constexpr int enough = 50;
+  return compared < enough ? 0.0 : static_cast<double>(agreeing) / compared;
+}
+
+}  // namespace holdfast

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/moving_world/mask_propagator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace holdfast {
+
+namespace {
+
+constexpr int bucket = 6;  // cells: one followed point in each, where there is a corner
+bool is_object(std::uint8_t label) { return CellMask::is_object(label); }
+
+}  // namespace
+
+CellMask sample_mask(const CoarseSampler& sampler, const Segmentation& segmentation) {
+  CellMask mask;
+  if (segmentation.empty()) return mask;
+  sampler.sample_labels(segmentation.labels, CellMask::background, mask.labels);
+  if (segmentation.confidence.empty())
+    mask.confidence.assign(mask.labels.size(), 255);
+  else
+    sampler.sample_labels(segmentation.confidence, 0, mask.confidence);
+  return mask;
+}
+
+MaskPropagator::MaskPropagator(const Camera& camera, const CoarseSampler& sampler, double memory)
+    : camera_(camera), sampler_(sampler), memory_(memory), transfer_(camera) {}
+
+void MaskPropagator::advance(const cv::Mat& grey, const Frame& frame, const Eigen::Isometry3d& T_frame_previous) {
+  std::swap(current_, previous_);
+  follower_.advance(grey, frame);
+  frame_ = &frame;
+  take_view(frame, current_);
+  if (labels_.empty()) return;
+  pair_with(previous_, labels_.labels);
+  transfer_.transfer(previous_.coarse, labels_, current_.coarse, T_frame_previous, pairs_, next_labels_);
+  std::swap(labels_, next_labels_);
+  renew_points(frame);
+  take_view(frame, current_);
+  publish();
+}
+
+void MaskPropagator::take_view(const Frame& frame, View& view) const {
+  const PointFollower::Points& points = follower_.points();
+  view.frame_index = frame.index;
+  view.timestamp = frame.timestamp;
+  view.coarse.grid = frame.coarse.grid;
+  view.coarse.depth = frame.coarse.depth;
+  view.T_camera_world.reset();
+  view.ids = points.id;
+  view.x = points.x, view.y = points.y, view.depth = points.depth;
+}
+
+void MaskPropagator::pair_with(const View& view, const std::vector<std::uint8_t>& labels_there) {
+  // Points on an object there, but not at its border, where a point may follow the background.
+  pairs_.clear();
+  const PointFollower::Points& points = follower_.points();
+  const CoarseGrid& grid = view.coarse.grid;
+  std::size_t there = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    while (there < view.ids.size() && view.ids[there] < points.id[i]) ++there;
+    if (there == view.ids.size()) break;
+    if (view.ids[there] != points.id[i]) continue;
+    const int column = grid.column_of(view.x[there]), row = grid.row_of(view.y[there]);
+    if (column < 1 || row < 1 || column + 1 >= grid.columns || row + 1 >= grid.rows) continue;
+    const std::size_t cell = static_cast<std::size_t>(row * grid.columns + column);
+    const auto width = static_cast<std::size_t>(grid.columns);
+    const std::uint8_t label = labels_there[cell];
+    if (!is_object(label) || labels_there[cell - 1] != label || labels_there[cell + 1] != label ||
+        labels_there[cell - width] != label || labels_there[cell + width] != label)
+      continue;
+    pairs_.from_x.push_back(view.x[there]), pairs_.from_y.push_back(view.y[there]);
+    pairs_.from_depth.push_back(view.depth[there]);
+    pairs_.to_x.push_back(points.x[i]), pairs_.to_y.push_back(points.y[i]);
+    pairs_.to_depth.push_back(points.depth[i]);
+  }
+}
+
+void MaskPropagator::set_pose(const std::optional<Eigen::Isometry3d>& T_camera_world, const CoarseView& evaluated,
+                              float moving) {
+  current_.T_camera_world = T_camera_world;
+  if (!T_camera_world || labels_.empty() || evaluated.static_log_odds.size() != labels_.labels.size()) return;
+  for (std::size_t i = 0; i < labels_.labels.size(); ++i)
+    labels_.moving[i] = is_object(labels_.labels[i]) && evaluated.static_log_odds[i] < moving ? 1 : 0;
+}
+
+const cv::Mat& MaskPropagator::moving_pixels() {
+  constexpr int half = CoarseGrid::step / 2;
+  moving_pixels_.release();
+  for (std::size_t i = 0; i < labels_.moving.size(); ++i) {
+    if (labels_.moving[i] == 0) continue;
+    const std::int32_t raw = sampler_.raw_pixel(static_cast<int>(i));
+    if (raw < 0) continue;
+    if (moving_pixels_.empty()) moving_pixels_ = cv::Mat::zeros(camera_.height, camera_.width, CV_8UC1);
+    const int x = raw % camera_.width, y = raw / camera_.width;
+    for (int row = std::max(0, y - half); row <= std::min(camera_.height - 1, y + half); ++row)
+      std::fill_n(moving_pixels_.ptr<std::uint8_t>(row) + std::max(0, x - half),
+                  std::min(camera_.width - 1, x + half) - std::max(0, x - half) + 1, std::uint8_t{255});
+  }
+  return moving_pixels_;
+}
+
+void MaskPropagator::renew_points(const Frame& frame) {
+  // While no segmentation is awaited, only points on objects are followed; every part of an object has one.
+  const CoarseGrid& grid = frame.coarse.grid;
+  const PointFollower::Points& points = follower_.points();
+  const int columns = (grid.columns + bucket - 1) / bucket, rows = (grid.rows + bucket - 1) / bucket;
+  const auto is_wanted = [&](int cell) {
+    return !remembered_.empty() || is_object(labels_.labels[static_cast<std::size_t>(cell)]);
+  };
+  const auto bucket_of = [&](int cell) {
+    return static_cast<std::size_t>((cell / grid.columns / bucket) * columns + cell % grid.columns / bucket);
+  };
+  follower_.filter([&](std::size_t i) {
+    const int cell = grid.cell_of(points.x[i], points.y[i]);
+    return cell >= 0 && is_wanted(cell);
+  });
+  constexpr int min_strength = 200;  // of Scharr derivatives
+  bucket_cell_.assign(static_cast<std::size_t>(columns * rows), -1);
+  bucket_strength_.assign(static_cast<std::size_t>(columns * rows), min_strength);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    bucket_strength_[bucket_of(grid.cell_of(points.x[i], points.y[i]))] = std::numeric_limits<int>::max();
+  for (int cell = 0; cell < grid.size(); ++cell) {
+    const std::size_t place = bucket_of(cell);
+    const std::int32_t raw = sampler_.raw_pixel(cell);
+    if (raw < 0 || bucket_strength_[place] == std::numeric_limits<int>::max() || !is_wanted(cell)) continue;
+    const int strength =
+        follower_.corner_strength(static_cast<float>(raw % camera_.width), static_cast<float>(raw / camera_.width));
+    if (strength <= bucket_strength_[place]) continue;
+    bucket_strength_[place] = strength;
+    bucket_cell_[place] = cell;
+  }
+  for (const std::int32_t cell : bucket_cell_) {
+    if (cell < 0) continue;
+    const std::int32_t raw = sampler_.raw_pixel(cell);
+    follower_.add(frame, static_cast<float>(raw % camera_.width), static_cast<float>(raw / camera_.width), 0);
+  }
+}
+
+void MaskPropagator::remember() {
+  if (frame_ == nullptr) return;
+  const std::optional<Eigen::Isometry3d> pose = current_.T_camera_world;
+  remembered_.push_back({});
+  if (labels_.empty()) labels_.assign(current_.coarse.depth.size(), CellMask::unknown, 0);
+  renew_points(*frame_);
+  take_view(*frame_, current_);
+  current_.T_camera_world = pose;
+  remembered_.back() = current_;
+}
+
+void MaskPropagator::apply(std::uint64_t frame_index, const CellMask& mask) {
+  while (!remembered_.empty() && remembered_.front().frame_index < frame_index) remembered_.pop_front();
+  if (remembered_.empty() || remembered_.front().frame_index != frame_index) return;
+  const View there = std::move(remembered_.front());
+  remembered_.pop_front();
+  if (mask.empty()) return;
+
+  CellMask exact = mask;
+  exact.moving.assign(exact.labels.size(), 0);
+  labels_from_ = there.timestamp;
+  segmented_ = true;
+  if (current_.frame_index == frame_index) {
+    labels_ = std::move(exact);
+  } else {
+    Eigen::Isometry3d T_current_there = Eigen::Isometry3d::Identity();
+    if (there.T_camera_world && current_.T_camera_world)
+      T_current_there = *current_.T_camera_world * there.T_camera_world->inverse();
+    pair_with(there, exact.labels);
+    transfer_.transfer(there.coarse, exact, current_.coarse, T_current_there, pairs_, labels_);
+  }
+  publish();
+}
+
+void MaskPropagator::publish() {
+  if (!segmented_) return;
+  const double age = current_.timestamp - labels_from_;
+  const double share = std::exp2(-std::max(0.0, age) / memory_);
+  mask_.age = age;
+  mask_.labels = labels_.labels;
+  mask_.confidence.resize(labels_.confidence.size());
+  for (std::size_t i = 0; i < mask_.confidence.size(); ++i)
+    mask_.confidence[i] = static_cast<std::uint8_t>(labels_.confidence[i] * share);
+}
+
+}  // namespace holdfast

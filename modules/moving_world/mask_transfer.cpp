@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/moving_world/mask_transfer.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace holdfast {
+
+namespace {
+
+bool is_object(std::uint8_t label) { return CellMask::is_object(label); }
+
+/// Depths of a static surface, seen from two poses, differ by less [m].
+float same_place(float depth) { return 0.01F + 0.012F * depth; }
+/// Depths of a surface that moved differ by less, when its motion is known [m].
+float same_surface(float depth) { return 0.015F + 0.02F * depth; }
+/// Depths of two surfaces of which one occludes the other differ by more [m].
+float apart(float depth) { return 0.02F + 0.03F * depth; }
+/// Depths of neighbouring cells of one surface differ by less [m].
+float continues_surface(float depth) { return 0.02F + 0.015F * depth; }
+
+}  // namespace
+
+void MaskTransfer::find_movers(const CoarseGrid& grid, const FollowedPairs& pairs) {
+  block_columns_ = (grid.columns + block - 1) / block;
+  block_rows_ = (grid.rows + block - 1) / block;
+  const std::size_t blocks = static_cast<std::size_t>(block_columns_) * static_cast<std::size_t>(block_rows_);
+  movers_.resize(blocks * max_movers);
+  mover_count_.assign(blocks, 0);
+  constexpr float reach = 3.0F * block * CoarseGrid::step;  // px
+  for (int row = 0; row < block_rows_; ++row)
+    for (int column = 0; column < block_columns_; ++column) {
+      const float x = grid.left + (static_cast<float>(column) + 0.5F) * block * CoarseGrid::step;
+      const float y = grid.top + (static_cast<float>(row) + 0.5F) * block * CoarseGrid::step;
+      std::array<std::pair<float, std::size_t>, max_movers> nearest;
+      std::size_t count = 0;
+      for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const float dx = pairs.to_x[i] - x, dy = pairs.to_y[i] - y;
+        const float distance = dx * dx + dy * dy;
+        if (distance > reach * reach || (count == max_movers && distance >= nearest[count - 1].first)) continue;
+        std::size_t place = count < max_movers ? count++ : count - 1;
+        for (; place > 0 && nearest[place - 1].first > distance; --place) nearest[place] = nearest[place - 1];
+        nearest[place] = {distance, i};
+      }
+      const std::size_t index =
+          static_cast<std::size_t>(row) * static_cast<std::size_t>(block_columns_) + static_cast<std::size_t>(column);
+      mover_count_[index] = static_cast<std::uint8_t>(count);
+      for (std::size_t k = 0; k < count; ++k) {
+        const std::size_t i = nearest[k].second;
+        const auto cells = [](float pixels) { return static_cast<int>(std::lround(pixels / CoarseGrid::step)); };
+        const bool deep = pairs.from_depth[i] > 0.0F && pairs.to_depth[i] > 0.0F;
+        movers_[index * max_movers + k] = {cells(pairs.from_x[i] - pairs.to_x[i]),
+                                           cells(pairs.from_y[i] - pairs.to_y[i]),
+                                           deep ? pairs.from_depth[i] - pairs.to_depth[i] : 0.0F};
+      }
+    }
+}
+
+/// One transfer: both views, both masks, and the camera's motion in single precision.
+struct MaskTransfer::Job {
+  const CoarseView& from_view;
+  const CellMask& from;
+  const CoarseView& to_view;
+  CellMask& to;
+  Eigen::Matrix3f R;  // of T_from_to
+  Eigen::Vector3f t;
+  float fx, fy, cx, cy;
+
+  void take(std::size_t cell, std::size_t source) const {
+    to.labels[cell] = from.labels[source];
+    to.confidence[cell] = from.confidence[source];
+    to.moving[cell] = from.moving[source];
+  }
+};
+
+void MaskTransfer::transfer(const CoarseView& from_view, const CellMask& from, const CoarseView& to_view,
+                            const Eigen::Isometry3d& T_to_from, const FollowedPairs& pairs, CellMask& to) {
+  const CoarseGrid& grid = to_view.grid;
+  find_movers(grid, pairs);
+  const std::size_t size = static_cast<std::size_t>(grid.size());
+  to.assign(size, CellMask::background, 255);
+  previous_state_.assign(size, CellState::occluded);
+  const Eigen::Isometry3d T_from_to = T_to_from.inverse();
+  const Job job{.from_view = from_view,
+                .from = from,
+                .to_view = to_view,
+                .to = to,
+                .R = T_from_to.linear().cast<float>(),
+                .t = T_from_to.translation().cast<float>(),
+                .fx = static_cast<float>(camera_.fx),
+                .fy = static_cast<float>(camera_.fy),
+                .cx = static_cast<float>(camera_.cx),
+                .cy = static_cast<float>(camera_.cy)};
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) {
+      const std::size_t cell = static_cast<std::size_t>(row * grid.columns + column);
+      if (take_by_ego_motion(job, column, row)) continue;
+      take_by_object_motion(job, column, row);
+      if (to_view.depth[cell] > 0.0F || to.labels[cell] != 0) continue;
+      take_without_depth(job, column, row);
+    }
+  grow(to_view, to);
+  fill_holes(to_view, to);
+}
+
+bool MaskTransfer::take_by_ego_motion(const Job& job, int column, int row) {
+  const CoarseGrid& grid = job.to_view.grid;
+  const Eigen::Matrix3f& R = job.R;
+  const Eigen::Vector3f& t = job.t;
+  const std::size_t cell = static_cast<std::size_t>(row * grid.columns + column);
+  const float depth = job.to_view.depth[cell];
+  if (!(depth > 0.0F)) return false;
+  const float ray_y = (grid.y_of(row) - job.cy) / job.fy;
+  const float ray_x = (grid.x_of(column) - job.cx) / job.fx;
+  const float z = depth * (R(2, 0) * ray_x + R(2, 1) * ray_y + R(2, 2)) + t.z();
+  int source = -1;
+  if (z > 0.05F)
+    source = grid.cell_of(job.fx * (depth * (R(0, 0) * ray_x + R(0, 1) * ray_y + R(0, 2)) + t.x()) / z + job.cx,
+                          job.fy * (depth * (R(1, 0) * ray_x + R(1, 1) * ray_y + R(1, 2)) + t.y()) / z + job.cy);
+  const float before = source < 0 ? 0.0F : job.from_view.depth[static_cast<std::size_t>(source)];
+  if (before == 0.0F) {
+    previous_state_[cell] = CellState::unobserved;
+  } else if (std::abs(before - z) < apart(z)) {
+    previous_state_[cell] = CellState::same_surface;
+    job.take(cell, static_cast<std::size_t>(source));
+    // At almost the same place, the surface may still be an object that has just arrived there.
+    return job.to.labels[cell] != 0 || std::abs(before - z) < same_place(z);
+  } else if (before > z + apart(z)) {
+    previous_state_[cell] = CellState::free_space;
+  }
+  return false;
+}
+
+void MaskTransfer::take_by_object_motion(const Job& job, int column, int row) {
+  const CoarseGrid& grid = job.to_view.grid;
+  const std::size_t cell = static_cast<std::size_t>(row * grid.columns + column);
+  const float depth = job.to_view.depth[cell];
+  const std::size_t place = static_cast<std::size_t>((row / block) * block_columns_ + column / block);
+  for (std::size_t k = 0; k < mover_count_[place]; ++k) {
+    const Mover& mover = movers_[place * max_movers + k];
+    const int source_column = column + mover.columns, source_row = row + mover.rows;
+    if (source_column < 0 || source_row < 0 || source_column >= grid.columns || source_row >= grid.rows) continue;
+    const std::size_t source = static_cast<std::size_t>(source_row * grid.columns + source_column);
+    if (!is_object(job.from.labels[source])) continue;
+    const float before = job.from_view.depth[source];
+    if (depth > 0.0F && (before == 0.0F || std::abs(before - depth - mover.depth_change) > same_surface(depth)))
+      continue;
+    job.take(cell, source);
+    return;
+  }
+}
+
+void MaskTransfer::take_without_depth(const Job& job, int column, int row) {
+  // A surface too near for the depth sensor, such as a person right in front of the camera, shows the camera's rotation
+  // only. Cells at the border of an object are left out: depth is missing there for other reasons.
+  const CoarseGrid& grid = job.to_view.grid;
+  const Eigen::Vector3f ray =
+      job.R * Eigen::Vector3f((grid.x_of(column) - job.cx) / job.fx, (grid.y_of(row) - job.cy) / job.fy, 1.0F);
+  if (ray.z() < 0.05F) return;
+  const int c = grid.column_of(job.fx * ray.x() / ray.z() + job.cx);
+  const int r = grid.row_of(job.fy * ray.y() / ray.z() + job.cy);
+  constexpr int border = 3;  // cells
+  const auto is_near_object = [&](int dc, int dr) {
+    if (c < 0 || r < 0 || c >= grid.columns || r >= grid.rows) return false;
+    const int there = std::clamp(r + dr, 0, grid.rows - 1) * grid.columns + std::clamp(c + dc, 0, grid.columns - 1);
+    return is_object(job.from.labels[static_cast<std::size_t>(there)]);
+  };
+  if (is_near_object(0, 0) && job.from_view.depth[static_cast<std::size_t>(r * grid.columns + c)] == 0.0F &&
+      is_near_object(-border, 0) && is_near_object(border, 0) && is_near_object(0, -border) &&
+      is_near_object(0, border))
+    job.take(static_cast<std::size_t>(row * grid.columns + column), static_cast<std::size_t>(r * grid.columns + c));
+}
+
+void MaskTransfer::grow(const CoarseView& to_view, CellMask& to) {
+  // Surface where there was free space belongs to the object that arrived there. Unobserved surface may be anything, so
+  // the object grows over a little of it only. Surface that was occluded is what the object uncovered.
+  const CoarseGrid& grid = to_view.grid;
+  constexpr int max_unobserved_steps = 15, max_steps = 60;
+  constexpr float max_depth_change = 0.1F;  // m, over unobserved surface
+  constexpr std::array<std::pair<int, int>, 4> neighbours{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
+  front_.clear();
+  start_depth_.resize(to.labels.size());
+  for (std::int32_t cell = 0; cell < grid.size(); ++cell)
+    if (is_object(to.labels[static_cast<std::size_t>(cell)])) {
+      front_.push_back(cell);
+      start_depth_[static_cast<std::size_t>(cell)] = to_view.depth[static_cast<std::size_t>(cell)];
+    }
+  for (int step = 0; step < max_steps && !front_.empty(); ++step) {
+    next_front_.clear();
+    for (const std::int32_t cell : front_) {
+      const int column = cell % grid.columns, row = cell / grid.columns;
+      const float depth = to_view.depth[static_cast<std::size_t>(cell)];
+      if (depth == 0.0F) continue;
+      for (const auto& [dc, dr] : neighbours) {
+        const int c = column + dc, r = row + dr;
+        if (c < 0 || r < 0 || c >= grid.columns || r >= grid.rows) continue;
+        const std::size_t other = static_cast<std::size_t>(r * grid.columns + c);
+        if (to.labels[other] != 0) continue;
+        const float there = to_view.depth[other];
+        if (there == 0.0F || std::abs(there - depth) > continues_surface(depth)) continue;
+        const float start = start_depth_[static_cast<std::size_t>(cell)];
+        const bool may_be_object = previous_state_[other] == CellState::free_space ||
+                                   (previous_state_[other] == CellState::unobserved && step < max_unobserved_steps &&
+                                    std::abs(there - start) < max_depth_change);
+        if (!may_be_object) continue;
+        start_depth_[other] = start;
+        to.moving[other] = to.moving[static_cast<std::size_t>(cell)];
+        to.labels[other] = to.labels[static_cast<std::size_t>(cell)];
+        to.confidence[other] = static_cast<std::uint8_t>(to.confidence[static_cast<std::size_t>(cell)] * 15 / 16);
+        next_front_.push_back(static_cast<std::int32_t>(other));
+      }
+    }
+    front_.swap(next_front_);
+  }
+}
+
+void MaskTransfer::fill_holes(const CoarseView& to_view, CellMask& to) {
+  // Cells without depth amid an object belong to it.
+  const CoarseGrid& grid = to_view.grid;
+  for (int row = 1; row + 1 < grid.rows; ++row)
+    for (int column = 1; column + 1 < grid.columns; ++column) {
+      const std::size_t cell = static_cast<std::size_t>(row * grid.columns + column);
+      if (to.labels[cell] != 0 || to_view.depth[cell] > 0.0F) continue;
+      const auto width = static_cast<std::ptrdiff_t>(grid.columns);
+      int labelled = 0;
+      std::uint8_t label = 0, quality = 255;
+      for (const std::ptrdiff_t offset : {-width, width, std::ptrdiff_t{-1}, std::ptrdiff_t{1}}) {
+        const std::size_t other = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(cell) + offset);
+        if (!is_object(to.labels[other])) continue;
+        ++labelled;
+        label = to.labels[other];
+        quality = std::min(quality, to.confidence[other]);
+      }
+      if (labelled >= 3) to.labels[cell] = label, to.confidence[cell] = quality;
+    }
+}
+
+}  // namespace holdfast

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/moving_world/moving_world.hpp"
+
+#include <utility>
+
+namespace holdfast {
+
+MovingWorld::MovingWorld(MovingWorldParts parts, Map& map)
+    : map_(map), filters_(std::move(parts.filters)), sampler_(parts.camera) {
+  if (parts.segmenter == nullptr) return;
+  classes_ = parts.segmenter->classes();
+  movable_ = parts.segmenter->movable();
+  propagator_.emplace(parts.camera, sampler_, parts.segmentation.memory);
+  queue_.emplace(*parts.segmenter, parts.segmentation, parts.threaded);
+}
+
+cv::Mat MovingWorld::begin_frame(const cv::Mat& grey, const Eigen::Isometry3d& T_frame_previous, Frame& frame,
+                                 StageTimes& times) {
+  if (!propagator_) return {};
+  const StageTimer timer(times, "masks");
+  propagator_->advance(grey, frame, T_frame_previous);
+  frame.coarse.mask = propagator_->mask();
+  return filters_.settings().skip_moving ? propagator_->moving_pixels() : cv::Mat();
+}
+
+FilterContext MovingWorld::context(const SensorFrame& sensor_frame, const Frame& frame) const {
+  const bool has_classes = propagator_.has_value();
+  return {.sensor_frame = sensor_frame,
+          .frame = frame,
+          .map = map_,
+          .classes = has_classes ? &classes_ : nullptr,
+          .movable = &movable_};
+}
+
+bool MovingWorld::evaluate(FilterStage stage, const TrackedView& view, StageTimes& times) {
+  if (stage == FilterStage::before_matching) filters_.begin(view.frame);
+  if (!filters_.has(stage)) return false;
+  const StageTimer timer(times, "filters");
+  FilterContext inputs = context(view.sensor_frame, view.frame);
+  inputs.previous = view.previous;
+  if (stage != FilterStage::before_matching) inputs.T_camera_world = &view.frame.T_camera_world;
+  filters_.evaluate(stage, inputs);
+  return true;
+}
+
+void MovingWorld::check_pose(const PosePrediction& prediction, KeyFrameId reference, Frame& frame, StageTimes& times) {
+  const StageTimer timer(times, "filters");
+  if (!depth_agreement_.choose(map_, reference, frame.timestamp)) return;
+  if (depth_agreement_.share(frame, prediction.T_camera_world) >
+      depth_agreement_.share(frame, frame.T_camera_world) + filters_.settings().prediction_lead)
+    frame.T_camera_world = prediction.T_camera_world;
+  frame.coarse.T_view_camera =
+      depth_agreement_.find_view(frame, frame.T_camera_world, frame.T_camera_world * prediction.T_world_previous);
+}
+
+bool MovingWorld::contradicts_depth(const Frame& frame, int inliers, bool was_lost, KeyFrameId reference) {
+  const EvidenceSettings& limits = filters_.settings();
+  if (filters_.empty() || inliers >= (was_lost ? limits.depth_check_inliers_lost : limits.depth_check_inliers))
+    return false;
+  if (!depth_agreement_.choose(map_, reference, frame.timestamp)) return false;
+  return depth_agreement_.share(frame, frame.T_view_world()) <
+         (was_lost ? limits.depth_check_share_lost : limits.depth_check_share);
+}
+
+void MovingWorld::end_frame(const Frame& frame, bool has_pose) {
+  if (!propagator_) return;
+  // An object moves when evidence overcomes the prior by a factor of e: one filter that suspects it is enough.
+  const float moving = -static_cast<float>(filters_.settings().static_log_odds) - 1.0F;
+  propagator_->set_pose(has_pose ? std::optional(frame.T_camera_world) : std::nullopt, frame.coarse, moving);
+}
+
+void MovingWorld::next_frame(double timestamp) {
+  ++next_frame_number_;
+  timestamp_ = timestamp;
+}
+
+std::optional<ArrivedMask> MovingWorld::take_mask(StageTimes& times) {
+  if (!queue_ || next_frame_number_ == 0) return std::nullopt;
+  std::optional<SegmentedFrame> segmented = queue_->pop(next_frame_number_ - 1);
+  if (!segmented) return std::nullopt;
+  const StageTimer timer(times, "masks");
+  ArrivedMask arrived{.frame = std::move(segmented->frame),
+                      .keyframe = segmented->keyframe,
+                      .segmentation = std::move(segmented->segmentation),
+                      .mask = {}};
+  arrived.mask = sample_mask(sampler_, arrived.segmentation);
+  propagator_->apply(arrived.frame.index, arrived.mask);
+  mask_latencies_.push_back(timestamp_ - arrived.frame.timestamp);
+  return arrived;
+}
+
+void MovingWorld::evaluate_keyframe(const ArrivedMask& arrived, StageTimes& times) {
+  KeyFrame* keyframe = map_.find_keyframe(arrived.keyframe);
+  if (keyframe == nullptr || arrived.mask.empty()) return;
+  const StageTimer timer(times, "masks");
+  keyframe->frame.coarse.mask = arrived.mask;
+  FilterContext inputs = context(arrived.frame, keyframe->frame);
+  inputs.T_camera_world = &keyframe->frame.T_camera_world;
+  inputs.segmentation = &arrived.segmentation;
+  filters_.evaluate_keyframe(inputs, keyframe->frame);
+}
+
+bool MovingWorld::request_mask(const SensorFrame& sensor_frame, KeyFrameId keyframe, StageTimes& times) {
+  if (!queue_ || !queue_->has_room()) return false;
+  if (!keyframe.valid() && !queue_->wants(next_frame_number_ - 1)) return false;
+  propagator_->remember();
+  queue_->push(sensor_frame, keyframe, times);
+  return true;
+}
+
+void MovingWorld::finish() {
+  if (!queue_) return;
+  queue_->finish();
+  queue_->rethrow();
+}
+
+void MovingWorld::rethrow() {
+  if (queue_) queue_->rethrow();
+}
+
+std::vector<StageTimes> MovingWorld::take_times() { return queue_ ? queue_->take_times() : std::vector<StageTimes>(); }
+
+std::optional<WorkerCounts> MovingWorld::worker_counts() const {
+  return queue_ ? queue_->worker_counts() : std::nullopt;
+}
+
+}  // namespace holdfast

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/evaluation/report.hpp"
+
+#include <string>
+#include <utility>
+
+#include "holdfast/core/version.hpp"
+#include "holdfast/evaluation/number_text.hpp"
+#include "holdfast/run/results.hpp"
+#include "summary.hpp"
+
+namespace holdfast {
+
+namespace {
+
+ReportSection section(std::string heading) {
+  ReportSection section;
+  section.heading = std::move(heading);
+  return section;
+}
+
+ReportTable stage_report(const RunSummary& summary) {
+  ReportTable table{
+      "Time per frame in each stage", {"stage", "frames", "median ms", "p95 ms", "max ms", "share"}, {}, {}};
+  for (const StageRow& row : summary.stages()) {
+    table.rows.push_back({row.stage, std::to_string(row.frames), fixed_text(row.median * 1e3, 3),
+                          fixed_text(row.p95 * 1e3, 3), fixed_text(row.maximum * 1e3, 3),
+                          fixed_text(row.share * 100.0, 1) + " %"});
+    table.bars.push_back(row.share);
+  }
+  return table;
+}
+
+ReportTable error_report(const Evaluation& evaluation) {
+  ReportTable table{"Errors", {"", "RMSE", "S.D.", "max", "min", "mean", "median", "pairs"}, {}, {}};
+  const auto add = [&](const std::string& name, const Statistics& s, std::size_t pairs, int decimals) {
+    if (pairs == 0) return;
+    table.rows.push_back({name, fixed_text(s.rmse, decimals), fixed_text(s.standard_deviation, decimals),
+                          fixed_text(s.maximum, decimals), fixed_text(s.minimum, decimals),
+                          fixed_text(s.mean, decimals), fixed_text(s.median, decimals), std::to_string(pairs)});
+  };
+  const RelativeError &time = evaluation.error_per_time, &way = evaluation.error_per_way;
+  add("ATE [m]", evaluation.absolute_error, evaluation.poses.size(), 6);
+  add("RPE per second [m]", time.translation, time.pairs, 6);
+  add("RPE per second [deg]", time.rotation, time.pairs, 4);
+  add("RPE per metre [m]", way.translation, way.pairs, 6);
+  add("RPE per metre [deg]", way.rotation, way.pairs, 4);
+  return table;
+}
+
+ReportTable thread_report(const ThreadRecord& threads) {
+  ReportTable table{"Queues between threads",
+                    {"before", "taken", "dropped", "longest", "of", "mean wait ms", "longest wait ms", "busy s"},
+                    {},
+                    {}};
+  const auto add = [&](const std::string& name, const QueueCounts& queue, const std::string& busy) {
+    table.rows.push_back({name, std::to_string(queue.taken), std::to_string(queue.dropped),
+                          std::to_string(queue.longest), std::to_string(queue.capacity),
+                          fixed_text(queue.mean_wait() * 1e3, 2), fixed_text(queue.wait_longest * 1e3, 2), busy});
+  };
+  add("tracking", threads.frames, "");
+  for (const WorkerCounts& worker : threads.workers) add(worker.name, worker.queue, fixed_text(worker.busy_seconds, 2));
+  return table;
+}
+
+ReportTable loop_report(const LoopRecord& record) {
+  ReportTable table{"Loops",
+                    {"at s", "saw again s", "points found", "fused", "way m", "moved by m", "turned by deg", "took ms"},
+                    {},
+                    {}};
+  for (const LoopEvent& event : record.loops)
+    table.rows.push_back({fixed_text(event.timestamp, 2), fixed_text(event.candidate_timestamp, 2),
+                          std::to_string(event.loop.inliers), std::to_string(event.loop.points_fused),
+                          fixed_text(event.loop.way, 2), fixed_text(event.loop.correction.metres, 4),
+                          fixed_text(event.loop.correction.degrees, 2), fixed_text(event.loop.seconds * 1e3, 0)});
+  return table;
+}
+
+ReportTable adjustment_report(const LoopRecord& record) {
+  ReportTable table{
+      "Full adjustments", {"keyframes", "points", "iterations", "seconds", "ms an iteration", "outcome"}, {}, {}};
+  for (const FullAdjustmentSummary& summary : record.adjustments)
+    table.rows.push_back({std::to_string(summary.keyframes), std::to_string(summary.points),
+                          std::to_string(summary.bundle.iterations), fixed_text(summary.bundle.seconds, 2),
+                          fixed_text(summary.seconds_per_iteration * 1e3, 0),
+                          summary.applied          ? "applied"
+                          : summary.stop_requested ? "stopped"
+                                                   : "no solution"});
+  return table;
+}
+
+ReportSection summary_section(const RunRecord& record) {
+  ReportSection summary = section("Summary");
+  summary.values = summary_rows(record);
+  if (!record.failure.empty()) summary.text = "The run ended before its time: " + record.failure;
+  if (record.was_interrupted) summary.text = "The run was interrupted; this is what was done until then.";
+  return summary;
+}
+
+ReportSection error_section(const Evaluation& evaluation) {
+  ReportSection error = section("Trajectory");
+  error.tables = {error_report(evaluation)};
+  error.text = "Aligned with the truth by a rigid motion (se3) over all pairs; stamps paired one to one within 0.02 s.";
+  error.figures.push_back({top_view_svg(evaluation), "The path against the truth"});
+  error.figures.push_back({error_over_time_svg(evaluation), "Absolute error over time"});
+  return error;
+}
+
+ReportSection thread_section(const ThreadRecord& record) {
+  ReportSection threads = section("Threads");
+  threads.text = "Late frames: " + std::to_string(record.late) + ", at most by " + fixed_text(record.latest * 1e3, 1) +
+                 " ms; keyframes put off: " + std::to_string(record.keyframes_deferred) + ".";
+  threads.tables = {thread_report(record)};
+  return threads;
+}
+
+ReportSection skipped_section(const std::vector<SkippedFrame>& skipped) {
+  ReportTable table{"Frames left out", {"stamp", "reason"}, {}, {}};
+  for (const SkippedFrame& frame : skipped) table.rows.push_back({fixed_text(frame.timestamp, 6), frame.reason});
+  ReportSection result = section("Skipped frames");
+  result.tables = {std::move(table)};
+  return result;
+}
+
+std::vector<ReportHighlight> highlights(const RunRecord& record) {
+  std::vector<ReportHighlight> result;
+  if (record.evaluation)
+    result.push_back({"ATE RMSE", fixed_text(record.evaluation->absolute_error.rmse * 1e3, 2) + " mm"});
+  result.push_back({"coverage", percent_text(record.coverage())});
+  result.push_back({"tracking", fixed_text(record.summary.tracking().median * 1e3, 2) + " ms"});
+  return result;
+}
+
+}  // namespace
+
+std::string report_html(const RunRecord& record) {
+  const RunSettings& run = record.configuration.run;
+  Report report;
+  report.title = record.source.name.empty() ? "Holdfast run" : "Holdfast: " + record.source.name;
+  report.subtitle = record.configuration.file + ", seed " + std::to_string(run.seed) + ", " + choice_name(run.mode) +
+                    ", version " HOLDFAST_VERSION;
+  report.highlights = highlights(record);
+  report.sections.push_back(summary_section(record));
+  if (record.evaluation) report.sections.push_back(error_section(*record.evaluation));
+  report.sections.push_back(section("Stages"));
+  report.sections.back().tables = {stage_report(record.summary)};
+  if (!record.loops.loops.empty()) {
+    report.sections.push_back(section("Loops"));
+    report.sections.back().tables = {loop_report(record.loops), adjustment_report(record.loops)};
+  }
+  if (record.threads) report.sections.push_back(thread_section(*record.threads));
+  if (!record.skipped.empty()) report.sections.push_back(skipped_section(record.skipped));
+  report.sections.push_back(section("Configuration"));
+  report.sections.back().preformatted = to_yaml(record.configuration);
+  return to_html(report);
+}
+
+}  // namespace holdfast

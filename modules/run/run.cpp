@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/run/run.hpp"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "frame_loop.hpp"
+#include "holdfast/core/error.hpp"
+#include "holdfast/dense_map/static_scene.hpp"
+
+namespace holdfast {
+
+namespace {
+
+std::size_t peak_memory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+/// A run that ended early has frames whose time stamps were never read. They count as missing, in a gap at the end.
+void count_unread_frames(const RunRecord& record, Coverage& coverage) {
+  if (record.frame_stamps.size() >= record.frames_expected) return;
+  const std::size_t missing = record.frames_expected - record.frame_stamps.size();
+  const double last = record.frame_stamps.back();
+  coverage.frames += missing;
+  const bool gap_is_open = !coverage.gaps.empty() && coverage.gaps.back().end == last &&
+                           (record.trajectory.empty() || record.trajectory.back().timestamp < last);
+  if (!gap_is_open) coverage.gaps.push_back({last, last, 0});
+  coverage.gaps.back().frames += missing;
+}
+
+void evaluate_run(const FrameSource& source, RunRecord& record) {
+  const Trajectory truth = source.truth();
+  if (truth.empty()) {
+    record.no_evaluation = "the source has no truth";
+    return;
+  }
+  for (const SkippedFrame& skipped : record.skipped) record.frame_stamps.push_back(skipped.timestamp);
+  std::sort(record.frame_stamps.begin(), record.frame_stamps.end());
+  EvaluationOptions options;
+  options.truth_name = "truth";
+  options.estimate_name = "trajectory.txt";
+  try {
+    record.evaluation = evaluate(truth, record.trajectory, options, record.frame_stamps);
+  } catch (const Error& error) {
+    record.no_evaluation = error.what();
+    return;
+  }
+  if (record.evaluation->coverage) count_unread_frames(record, *record.evaluation->coverage);
+}
+
+void record_pipeline(const Pipeline& pipeline, RunRecord& record) {
+  record.trajectory = pipeline.trajectory();
+  record.keyframes = pipeline.keyframe_trajectory();
+  record.map_keyframes = pipeline.map().keyframes().size();
+  record.map_points = pipeline.map().points().size();
+  record.mapping = pipeline.mapping_counts();
+  record.loops = pipeline.loop_record();
+  record.mask_ages = pipeline.mask_latencies();
+}
+
+}  // namespace
+
+RunRecord run(BuiltPipeline& built, const Configuration& configuration, const RunOptions& options) {
+  RunRecord record;
+  record.configuration = configuration;
+  record.source = built.source->describe();
+  record.camera = built.pipeline.camera();
+  record.localised_only = options.pipeline.localise_only;
+  if (options.on_start) options.on_start(record);
+  feed_frames(built, options, record);
+
+  record.skipped = built.source->skipped();
+  record.frames_expected = record.source.frame_count ? static_cast<std::size_t>(*record.source.frame_count)
+                                                     : record.frame_stamps.size() + record.skipped.size();
+  record_pipeline(built.pipeline, record);
+  evaluate_run(*built.source, record);
+  record.total_seconds = options.since_start.seconds();
+  record.peak_memory = peak_memory();
+  return record;
+}
+
+RunRecord run(const Configuration& configuration, const Registry& registry, const RunOptions& options) {
+  BuiltPipeline built = build_pipeline(configuration, registry, options.pipeline);
+  RunRecord record = run(built, configuration, options);
+  if (const StaticScene* scene = built.pipeline.static_scene()) record.dense_map = scene->cloud(built.pipeline.map());
+  record.map = built.pipeline.take_map();
+  return record;
+}
+
+}  // namespace holdfast

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <sys/utsname.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "holdfast/core/simd.hpp"
+#include "holdfast/core/version.hpp"
+#include "holdfast/evaluation/statistics.hpp"
+#include "holdfast/run/results.hpp"
+
+namespace holdfast {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string processor() {
+  std::ifstream stream("/proc/cpuinfo");
+  for (std::string line; std::getline(stream, line);)
+    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
+  return "unknown";
+}
+
+std::string system_name() {
+  utsname name{};
+  return uname(&name) == 0 ? std::string(name.sysname) + " " + name.release + " " + name.machine : "unknown";
+}
+
+Json stage_json(const StageRow& row) {
+  return {{"stage", row.stage},       {"frames", row.frames}, {"median_s", row.median}, {"p95_s", row.p95},
+          {"maximum_s", row.maximum}, {"total_s", row.total}, {"share", row.share}};
+}
+
+Json queue_json(const QueueCounts& queue) {
+  return {{"capacity", queue.capacity},       {"taken", queue.taken},
+          {"dropped", queue.dropped},         {"longest", queue.longest},
+          {"mean_wait_s", queue.mean_wait()}, {"longest_wait_s", queue.wait_longest}};
+}
+
+Json threads_json(const ThreadRecord& threads) {
+  Json json = {{"frames", queue_json(threads.frames)},
+               {"late_frames", threads.late},
+               {"latest_s", threads.latest},
+               {"keyframes_deferred", threads.keyframes_deferred}};
+  if (!threads.delays.empty())
+    json["frame_to_result"] = {{"median_s", median(threads.delays)},
+                               {"p95_s", percentile(threads.delays, 95.0)},
+                               {"maximum_s", percentile(threads.delays, 100.0)},
+                               {"share_above_33_ms", threads.late_share()}};
+  Json& workers = json["workers"] = Json::array();
+  for (const WorkerCounts& worker : threads.workers)
+    workers.push_back({{"name", worker.name}, {"busy_s", worker.busy_seconds}, {"queue", queue_json(worker.queue)}});
+  return json;
+}
+
+Json loops_json(const LoopRecord& record) {
+  Json json;
+  json["keyframes"] = record.counts.keyframes;
+  json["points_fused"] = record.counts.points_fused;
+  Json& verdicts = json["verdicts"] = Json::object();
+  for (std::size_t i = 0; i < loop_verdicts; ++i)
+    verdicts[loop_verdict_name(static_cast<LoopVerdict>(i))] = record.counts.verdicts[i];
+  Json& loops = json["closed"] = Json::array();
+  for (const LoopEvent& event : record.loops)
+    loops.push_back({{"timestamp", event.timestamp},
+                     {"candidate_timestamp", event.candidate_timestamp},
+                     {"inliers", event.loop.inliers},
+                     {"points_fused", event.loop.points_fused},
+                     {"way_m", event.loop.way},
+                     {"correction_m", event.loop.correction.metres},
+                     {"correction_deg", event.loop.correction.degrees},
+                     {"seconds", event.loop.seconds}});
+  Json& adjustments = json["full_adjustments"] = Json::array();
+  for (const FullAdjustmentSummary& summary : record.adjustments)
+    adjustments.push_back({{"applied", summary.applied},
+                           {"stopped", summary.stop_requested},
+                           {"stop_s", summary.stop_seconds},
+                           {"keyframes", summary.keyframes},
+                           {"points", summary.points},
+                           {"observations", summary.observations},
+                           {"iterations", summary.bundle.iterations},
+                           {"seconds", summary.bundle.seconds},
+                           {"seconds_per_iteration", summary.seconds_per_iteration}});
+  return json;
+}
+
+Json machine_json() {
+  return {{"system", system_name()},
+          {"processor", processor()},
+          {"cores", std::thread::hardware_concurrency()},
+          {"simd", to_string(simd_level())}};
+}
+
+Json frames_json(const RunRecord& record) {
+  const RunSummary& s = record.summary;
+  return {{"expected", record.frames_expected},
+          {"fed", s.frames()},
+          {"skipped", record.skipped.size()},
+          {"waiting", s.count(TrackingStatus::waiting)},
+          {"tracked", s.tracked()},
+          {"lost", s.lost()},
+          {"recovered", s.recovered()},
+          {"relocalised", s.relocalised()},
+          {"poses", record.trajectory.size()},
+          {"coverage", record.coverage()}};
+}
+
+Json map_json(const RunRecord& record) {
+  return {{"keyframes", record.map_keyframes},
+          {"points", record.map_points},
+          {"keyframes_made", record.mapping.keyframes_made},
+          {"keyframes_removed", record.mapping.keyframes_removed},
+          {"points_from_depth", record.mapping.points_from_depth},
+          {"points_triangulated", record.mapping.points_triangulated},
+          {"points_removed", record.mapping.points_removed},
+          {"points_fused", record.mapping.points_fused},
+          {"observations_removed", record.mapping.observations_removed}};
+}
+
+Json masks_json(const std::vector<double>& ages) {
+  Json json = {{"count", ages.size()}};
+  if (ages.empty()) return json;
+  json["median_age_s"] = median(ages);
+  json["p95_age_s"] = percentile(ages, 95.0);
+  return json;
+}
+
+}  // namespace
+
+std::string run_json(const RunRecord& record) {
+  const RunSummary& s = record.summary;
+  Json json = {{"holdfast", HOLDFAST_VERSION},
+               {"commit", HOLDFAST_COMMIT},
+               {"configuration", record.configuration.file},
+               {"seed", record.configuration.run.seed},
+               {"mode", choice_name(record.configuration.run.mode)},
+               {"machine", machine_json()},
+               {"sequence", record.source.name},
+               {"interrupted", record.was_interrupted}};
+  json["failure"] = record.failure.empty() ? Json(nullptr) : Json(record.failure);
+  json["frames"] = frames_json(record);
+  Json& troubles = json["troubles"] = Json::object();
+  for (const auto& [trouble, count] : s.troubles()) troubles[to_string(trouble)] = count;
+  Json& skipped = json["skipped_frames"] = Json::array();
+  for (const SkippedFrame& frame : record.skipped)
+    skipped.push_back({{"index", frame.index}, {"timestamp", frame.timestamp}, {"reason", frame.reason}});
+  json["map"] = map_json(record);
+  json["loops"] = loops_json(record.loops);
+  json["masks"] = masks_json(record.mask_ages);
+  json["mean_inliers"] = s.mean_inliers();
+  json["evaluation"] = record.evaluation ? Json::parse(to_json(*record.evaluation)) : Json(nullptr);
+  json["tracking"] = stage_json(s.tracking());
+  Json& stages = json["stages"] = Json::array();
+  for (const StageRow& row : s.stages()) stages.push_back(stage_json(row));
+  json["threads"] = record.threads ? threads_json(*record.threads) : Json(nullptr);
+  json["start_to_first_pose_s"] = record.start_seconds;
+  json["total_s"] = record.total_seconds;
+  json["peak_memory_bytes"] = record.peak_memory;
+  return json.dump(2) + "\n";
+}
+
+}  // namespace holdfast

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "summary.hpp"
+
+#include <algorithm>
+
+#include "holdfast/evaluation/number_text.hpp"
+#include "holdfast/evaluation/report.hpp"
+#include "holdfast/evaluation/statistics.hpp"
+#include "holdfast/run/results.hpp"
+
+namespace holdfast {
+
+std::string percent_text(double share) { return fixed_text(share * 100.0, 2) + " %"; }
+
+std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& record) {
+  const RunSummary& s = record.summary;
+  std::vector<std::pair<std::string, std::string>> rows;
+  rows.emplace_back("sequence", record.source.name);
+  rows.emplace_back("frames",
+                    std::to_string(s.frames()) + " of " + std::to_string(record.frames_expected) +
+                        (record.skipped.empty() ? "" : ", " + std::to_string(record.skipped.size()) + " skipped"));
+  rows.emplace_back("coverage",
+                    percent_text(record.coverage()) + " (" + std::to_string(record.trajectory.size()) + " poses)");
+  rows.emplace_back("lost", std::to_string(s.lost()) + " frames, recovered " + std::to_string(s.recovered()) +
+                                " times, relocalised " + std::to_string(s.relocalised()));
+  rows.emplace_back("map", std::to_string(record.map_keyframes) + " keyframes, " + std::to_string(record.map_points) +
+                               " points; " + fixed_text(s.mean_inliers(), 0) + " inliers a frame");
+  if (record.configuration.loop_detector.name != "none")
+    rows.emplace_back("loops", std::to_string(record.loops.loops.size()) + " closed");
+  if (record.evaluation) {
+    const Evaluation& e = *record.evaluation;
+    rows.emplace_back("ATE RMSE", fixed_text(e.absolute_error.rmse, 6) + " m (se3, " + std::to_string(e.poses.size()) +
+                                      " pairs, path " + fixed_text(e.path_length, 2) + " m)");
+    if (e.error_per_time.pairs > 0)
+      rows.emplace_back("RPE per second", fixed_text(e.error_per_time.translation.rmse, 6) + " m, " +
+                                              fixed_text(e.error_per_time.rotation.rmse, 4) + " deg");
+  } else {
+    rows.emplace_back("error", "unknown: " + record.no_evaluation);
+  }
+  const StageRow tracking = s.tracking();
+  rows.emplace_back("tracking", fixed_text(tracking.median * 1e3, 2) + " ms a frame (median), " +
+                                    fixed_text(tracking.p95 * 1e3, 2) + " ms (p95)");
+  if (!record.mask_ages.empty())
+    rows.emplace_back("masks", std::to_string(record.mask_ages.size()) + ", " +
+                                   fixed_text(median(record.mask_ages) * 1e3, 0) + " ms old when they came (median), " +
+                                   fixed_text(percentile(record.mask_ages, 95.0) * 1e3, 0) + " ms (p95)");
+  if (record.threads) {
+    const ThreadRecord& threads = *record.threads;
+    rows.emplace_back("frame to result", fixed_text(median(threads.delays) * 1e3, 2) + " ms (median), " +
+                                             fixed_text(percentile(threads.delays, 95.0) * 1e3, 2) + " ms (p95), " +
+                                             percent_text(threads.late_share()) + " above 33 ms; " +
+                                             std::to_string(threads.frames.dropped) + " dropped, " +
+                                             std::to_string(threads.keyframes_deferred) + " keyframes put off");
+  }
+  rows.emplace_back("start to first pose", fixed_text(record.start_seconds, 3) + " s");
+  rows.emplace_back("whole run", fixed_text(record.total_seconds, 1) + " s, peak memory " +
+                                     fixed_text(static_cast<double>(record.peak_memory) / 1e6, 0) + " MB");
+  return rows;
+}
+
+std::string summary_text(const RunRecord& record) {
+  std::string text = stage_table(record.summary) + "\n";
+  for (const auto& [name, value] : summary_rows(record)) {
+    std::string label = name;
+    label.resize(std::max<std::size_t>(label.size() + 1, 21), ' ');
+    text += label + value + "\n";
+  }
+  return text;
+}
+
+}  // namespace holdfast

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/tracking/frame_history.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "holdfast/geometry/se3.hpp"
+
+namespace holdfast {
+
+void FrameHistory::add(const Frame& frame, KeyFrameId reference, const Map& map) {
+  if (has_previous_) {
+    velocity_ = frame.T_camera_world * last_pose(map).inverse();
+    velocity_interval_ = frame.timestamp - last_timestamp();
+    has_velocity_ = true;
+  }
+  has_previous_ = true;
+  Record record{frame.timestamp, reference, Eigen::Isometry3d::Identity()};
+  if (reference.valid()) record.T_camera_reference = frame.T_camera_world * map.pose_of(reference).inverse();
+  records_.push_back(record);
+}
+
+void FrameHistory::became_keyframe(KeyFrameId keyframe, double timestamp) {
+  if (records_.empty() || records_.back().timestamp != timestamp) return;
+  records_.back() = {timestamp, keyframe, Eigen::Isometry3d::Identity()};
+}
+
+Eigen::Isometry3d FrameHistory::last_pose(const Map& map) const {
+  const Record& last = records_.back();
+  return last.T_camera_reference * map.pose_of(last.reference);
+}
+
+Eigen::Isometry3d FrameHistory::predicted_step(double timestamp) const {
+  if (!has_velocity_ || velocity_interval_ <= 0.0) return Eigen::Isometry3d::Identity();
+  // Recordings leave frames out: the velocity is applied over the time that really passed, but not over gaps that are
+  // much longer than the interval that it was measured in.
+  constexpr double max_intervals = 4.0;
+  constexpr double same_interval = 0.05;  // jitter of time stamps, as a share of the interval
+  const double ratio = std::clamp((timestamp - last_timestamp()) / velocity_interval_, 0.0, max_intervals);
+  return std::abs(ratio - 1.0) < same_interval ? velocity_ : geometry::exp_se3(ratio * geometry::log_se3(velocity_));
+}
+
+Eigen::Isometry3d FrameHistory::extrapolate(double timestamp, double share) const {
+  const double steps = velocity_interval_ > 0.0 ? (timestamp - last_timestamp()) / velocity_interval_ : 0.0;
+  return geometry::exp_se3(share * steps * geometry::log_se3(velocity_));
+}
+
+Trajectory FrameHistory::trajectory(const Map& map) const {
+  Trajectory trajectory;
+  trajectory.reserve(records_.size());
+  for (const Record& record : records_)
+    trajectory.push_back({record.timestamp, (record.T_camera_reference * map.pose_of(record.reference)).inverse()});
+  return trajectory;
+}
+
+}  // namespace holdfast

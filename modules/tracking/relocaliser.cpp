@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/tracking/relocaliser.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "holdfast/geometry/alignment.hpp"
+
+namespace holdfast {
+
+bool Relocaliser::relocalise(KeyFrameId last_keyframe, KeyFrameId reference, Frame& frame, FrameResult& result) {
+  return coast(frame, result) || recover(last_keyframe, reference, frame, result) || find_place(frame, result);
+}
+
+int Relocaliser::search_local_map(double window, Frame& frame) {
+  parts_.matcher.match_local_map(static_cast<float>(window), frame);
+  const int inliers = parts_.estimator.adjust(frame);
+  parts_.estimator.drop_outliers(frame);
+  return inliers;
+}
+
+bool Relocaliser::coast(Frame& frame, FrameResult& result) {
+  // A short loss, such as when somebody walks past the lens, leaves the camera near where its velocity takes it.
+  const FrameHistory& history = parts_.history;
+  if (history.empty() || frame.timestamp > history.last_timestamp() + settings_.coasting_time) return false;
+  const Eigen::Isometry3d T_last_world = history.last_pose(parts_.map);
+  for (const double share : settings_.coasting_shares) {
+    frame.T_camera_world = history.extrapolate(frame.timestamp, share) * T_last_world;
+    std::fill(frame.map_points.begin(), frame.map_points.end(), MapPointId());
+    search_local_map(settings_.coasting_window * settings_.local_map_window, frame);
+    if (search_local_map(settings_.local_map_window, frame) < settings_.minimum_inliers) continue;
+    result.method = TrackingMethod::recovered;
+    return true;
+  }
+  result.trouble = TrackingTrouble::few_inliers;
+  return false;
+}
+
+bool Relocaliser::recover(KeyFrameId last_keyframe, KeyFrameId reference, Frame& frame, FrameResult& result) {
+  const int max_keyframes = settings_.recovery_keyframes;
+  std::vector<KeyFrameId> candidates;
+  if (parts_.map.find_keyframe(last_keyframe) != nullptr) candidates.push_back(last_keyframe);
+  for (const KeyFrameId id : {last_keyframe, reference}) {
+    if (parts_.map.find_keyframe(id) == nullptr) continue;
+    for (const KeyFrameId neighbour : parts_.map.best_covisible(id, max_keyframes)) candidates.push_back(neighbour);
+  }
+  parts_.history.interrupt();
+  std::vector<KeyFrameId> tried;
+  for (const KeyFrameId candidate : candidates) {
+    if (std::find(tried.begin(), tried.end(), candidate) != tried.end()) continue;
+    if (static_cast<int>(tried.size()) >= max_keyframes) break;
+    tried.push_back(candidate);
+    if (!align_with_keyframe(candidate, std::nullopt, frame, result) || !is_reachable(frame)) continue;
+    result.method = TrackingMethod::recovered;
+    return true;
+  }
+  return false;
+}
+
+bool Relocaliser::align_with_keyframe(KeyFrameId keyframe, const std::optional<Eigen::Isometry3d>& start, Frame& frame,
+                                      FrameResult& result) {
+  const KeyFrame* found = parts_.map.find_keyframe(keyframe);
+  if (found == nullptr) return false;
+  if (parts_.matcher.match_keyframe(found->frame, frame) < settings_.minimum_matches / 2) {
+    result.trouble = TrackingTrouble::few_matches;
+    return false;
+  }
+  // Matches without prediction contain enough outliers to mislead an adjustment that starts far away: a rigid alignment
+  // of the features' depth with the map (three points, random samples) finds the start.
+  std::vector<Eigen::Vector3d> in_world, in_camera;
+  for (std::size_t i = 0; i < frame.size(); ++i)
+    if (frame.map_points[i].valid() && frame.has_depth(i)) {
+      in_world.push_back(parts_.map.point(frame.map_points[i]).position);
+      in_camera.push_back(frame.camera_point(i));
+    }
+  frame.T_camera_world = start.value_or(found->frame.T_camera_world);
+  const geometry::AlignmentRansacOptions options{.threshold = settings_.alignment_threshold, .seed = random_.next()};
+  if (const auto aligned = geometry::align_points_ransac(in_world, in_camera, options))
+    frame.T_camera_world = aligned->similarity.motion();
+  const int inliers = parts_.estimator.adjust(frame);
+  parts_.estimator.drop_outliers(frame);
+  if (inliers < settings_.minimum_matches / 2) {
+    result.trouble = TrackingTrouble::few_inliers;
+    return false;
+  }
+  result.method = TrackingMethod::reference_keyframe;
+  return true;
+}
+
+bool Relocaliser::find_place(Frame& frame, FrameResult& result) {
+  parts_.history.interrupt();
+  for (const PlaceMatch& place :
+       parts_.detector.query(frame.features.descriptors, settings_.relocalisation_candidates)) {
+    const KeyFrame* keyframe = parts_.map.find_keyframe(place.keyframe);
+    if (keyframe == nullptr) continue;  // removed a moment ago, and the detector does not know yet
+    parts_.matcher.match_keyframe(keyframe->frame, frame);
+    frame.T_camera_world = keyframe->frame.T_camera_world;
+    parts_.estimator.build_problem(frame);
+    const geometry::PnpOptions options{.seed = random_.next()};
+    if (!geometry::find_pose(parts_.estimator.problem(), options).usable) {
+      result.trouble = TrackingTrouble::few_matches;
+      continue;
+    }
+    frame.T_camera_world = parts_.estimator.problem().T_camera_world;
+    parts_.estimator.drop_outliers(frame);
+    if (!fits_surroundings(frame, result) || !is_reachable(frame)) continue;
+    result.method = TrackingMethod::relocalised;
+    return true;
+  }
+  return false;
+}
+
+bool Relocaliser::fits_surroundings(Frame& frame, FrameResult& result) {
+  // The first pose depends on few points and may be off by pixels: a wide window finds more, a narrow one the rest.
+  search_local_map(settings_.relocalisation_window * settings_.local_map_window, frame);
+  if (search_local_map(settings_.local_map_window, frame) >= settings_.relocalisation_inliers) return true;
+  result.trouble = TrackingTrouble::few_inliers;
+  return false;
+}
+
+bool Relocaliser::is_reachable(const Frame& frame) const {
+  const FrameHistory& history = parts_.history;
+  if (history.empty()) return true;  // a camera may start anywhere in a loaded map
+  const Eigen::Isometry3d T_camera_world = history.last_pose(parts_.map);
+  const double distance = (T_camera_world.inverse().translation() - frame.T_world_camera().translation()).norm();
+  return distance <= settings_.relocalisation_tolerance +
+                         settings_.relocalisation_speed * (frame.timestamp - history.last_timestamp());
+}
+
+}  // namespace holdfast

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/tracking/tracking_settings.hpp"
+
+#include "holdfast/plugin/parameter_table.hpp"
+
+namespace holdfast {
+
+namespace {
+
+using S = TrackingSettings;
+
+void describe_poses(ParameterTable<S>& table) {
+  table.add("minimum_start_points", &S::minimum_start_points, "points with depth that the first frame must have")
+      .range(10, 100000);
+  table
+      .add("close_depth_factor", &S::close_depth_factor,
+           "depth up to this many baselines is trusted alone; farther points are triangulated")
+      .range(1, 10000);
+  table.add("motion_window", &S::motion_window, "search radius around a predicted feature, at level 0")
+      .range(1, 200)
+      .unit("px");
+  table
+      .add("motion_window_retry", &S::motion_window_retry,
+           "factor on motion_window for a second try when the first finds too few matches")
+      .range(1, 20);
+  table.add("local_map_window", &S::local_map_window, "factor of the search radius around projected map points")
+      .range(0.5, 20);
+  table.add("descriptor_ratio", &S::descriptor_ratio, "best to second best descriptor distance, at most").range(0.1, 1);
+  table.add("strict_distance", &S::strict_distance, "descriptor distance of a match without a prediction, at most")
+      .range(1, 256)
+      .unit("bits");
+  table.add("loose_distance", &S::loose_distance, "descriptor distance of a match near its prediction, at most")
+      .range(1, 256)
+      .unit("bits");
+  table.add("minimum_matches", &S::minimum_matches, "matches with the previous frame for a pose to be tried")
+      .range(4, 10000);
+  table
+      .add("alignment_threshold", &S::alignment_threshold,
+           "distance up to which a point agrees with a rigid alignment to a keyframe")
+      .range(0.001, 10)
+      .unit("m");
+  table.add("minimum_inliers", &S::minimum_inliers, "map points that must agree with a pose for it to be accepted")
+      .range(6, 10000);
+  table
+      .add("maximum_deviation", &S::maximum_deviation,
+           "standard deviation of the position, as the inliers determine it, above which a pose is rejected")
+      .range(1e-4, 1000)
+      .unit("m");
+  table.add("local_keyframes", &S::local_keyframes, "keyframes whose points make the local map, at most")
+      .range(1, 1000);
+}
+
+void describe_keyframes(ParameterTable<S>& table) {
+  table
+      .add("keyframe_minimum_interval", &S::keyframe_minimum_interval,
+           "time between keyframes, at least, unless tracking is about to be lost")
+      .range(0, 1000)
+      .unit("s");
+  table.add("keyframe_maximum_interval", &S::keyframe_maximum_interval, "time after which a keyframe is due")
+      .range(0.03, 1000)
+      .unit("s");
+  table
+      .add("keyframe_tracked_ratio", &S::keyframe_tracked_ratio,
+           "a keyframe is due when less than this share of the reference keyframe's points is tracked")
+      .range(0, 1);
+  table
+      .add("keyframe_first_ratio", &S::keyframe_first_ratio,
+           "like keyframe_tracked_ratio, at most, while the map has one keyframe")
+      .range(0, 1);
+  table
+      .add("keyframe_due_ratio", &S::keyframe_due_ratio,
+           "like keyframe_tracked_ratio, once keyframe_maximum_interval has passed")
+      .range(0, 1);
+  table
+      .add("keyframe_mask_age", &S::keyframe_mask_age,
+           "with a segmenter, a keyframe is due when the propagated mask is this old")
+      .range(0.03, 1000)
+      .unit("s");
+  table
+      .add("keyframe_close_tracked", &S::keyframe_close_tracked,
+           "a keyframe is due when fewer close points are tracked, and ...")
+      .range(0, 100000);
+  table.add("keyframe_close_possible", &S::keyframe_close_possible, "... more than this many new ones could be made")
+      .range(0, 100000);
+  table
+      .add("depth_edge_ratio", &S::depth_edge_ratio,
+           "depth is not trusted where it varies around a feature by more than this share of itself; 0 = trust all")
+      .range(0, 1);
+}
+
+void describe_relocalisation(ParameterTable<S>& table) {
+  table.add("coasting_time", &S::coasting_time, "a lost camera is searched for along its last velocity for this long")
+      .range(0, 100)
+      .unit("s");
+  table
+      .add("coasting_shares", &S::coasting_shares,
+           "shares of the last velocity that are tried in this order: the camera goes on, slows down, or stops")
+      .range(-1, 10);
+  table
+      .add("coasting_window", &S::coasting_window,
+           "factor on local_map_window for the first search along the last velocity")
+      .range(1, 20);
+  table.add("recovery_keyframes", &S::recovery_keyframes, "last keyframes that a lost camera is compared with, at most")
+      .range(0, 100);
+  table
+      .add("relocalisation_candidates", &S::relocalisation_candidates,
+           "places that a lost camera is compared with in each frame, at most; 0 = the last keyframes only")
+      .range(0, 100);
+  table
+      .add("relocalisation_inliers", &S::relocalisation_inliers,
+           "map points that must agree before a recognised place is accepted")
+      .range(6, 10000);
+  table
+      .add("relocalisation_window", &S::relocalisation_window,
+           "factor on local_map_window for the first search around a recognised place")
+      .range(1, 20);
+  table
+      .add("relocalisation_speed", &S::relocalisation_speed,
+           "poses that a lost camera could only have reached faster than this are rejected")
+      .range(0.01, 1000)
+      .unit("m/s");
+  table
+      .add("relocalisation_tolerance", &S::relocalisation_tolerance,
+           "distance that is added to what relocalisation_speed allows, for poses that had gone astray before the "
+           "loss")
+      .range(0, 1000)
+      .unit("m");
+}
+
+}  // namespace
+
+void TrackingSettings::describe(ParameterTable<TrackingSettings>& table) {
+  describe_poses(table);
+  describe_keyframes(table);
+  describe_relocalisation(table);
+}
+
+}  // namespace holdfast

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "holdfast/pipeline/pipeline.hpp"
+#include "holdfast/plugin/builtin.hpp"
+#include "holdfast/plugin/registry.hpp"
+#include "holdfast/simulation/scene_file.hpp"
+#include "holdfast/simulation/simulator.hpp"
+
+namespace holdfast {
+namespace {
+
+/// People come into view and fill three quarters of it: a part of walking_xyz.
+class People {
+ public:
+  static constexpr std::uint64_t first = 48, count = 48;
+
+  People()
+      : simulator_(simulation::read_scene(std::string(HOLDFAST_SOURCE_DIR) + "/examples/scenes/walking_xyz.yaml"),
+                   find_camera("tum_fr3").value()) {
+    const auto& names = simulator_.class_names();
+    person_ = static_cast<std::uint8_t>(std::find(names.begin(), names.end(), "person") - names.begin());
+    for (std::uint64_t i = 0; i < count; ++i) frames_.push_back(simulator_.frame(first + i));
+  }
+  const std::vector<SensorFrame>& frames() const { return frames_; }
+  const SensorFrame& at(std::uint64_t index) const { return frames_[index - first]; }
+  const Camera& camera() const { return simulator_.camera(); }
+  const std::vector<std::string>& class_names() const { return simulator_.class_names(); }
+  /// Whether a pixel and all around it within a few pixels show a person.
+  bool shows_person(const SensorFrame& frame, double x, double y) const {
+    constexpr int margin = 3;
+    const cv::Mat& labels = frame.truth->class_labels;
+    const int column = static_cast<int>(std::lround(x)), row = static_cast<int>(std::lround(y));
+    if (column < margin || row < margin || column + margin >= labels.cols || row + margin >= labels.rows) return false;
+    for (const int dy : {-margin, 0, margin})
+      for (const int dx : {-margin, 0, margin})
+        if (labels.at<std::uint8_t>(row + dy, column + dx) != person_) return false;
+    return true;
+  }
+  /// Points of a map that lie on people in a frame.
+  int points_on_people(const Map& map, const SensorFrame& frame, const Eigen::Isometry3d& T_world_camera) const {
+    int points = 0;
+    map.points().for_each([&](MapPointId, const MapPoint& point) {
+      const Eigen::Vector3d p = T_world_camera.inverse() * point.position;
+      if (p.z() < 0.1) return;
+      const Eigen::Vector2d pixel = camera().project(p);
+      if (!shows_person(frame, pixel.x(), pixel.y())) return;
+      const float depth =
+          frame.depth.at<float>(static_cast<int>(std::lround(pixel.y())), static_cast<int>(std::lround(pixel.x())));
+      points += depth > 0.0F && std::abs(depth - p.z()) < 0.1 ? 1 : 0;
+    });
+    return points;
+  }
+
+ private:
+  simulation::Simulator simulator_;
+  std::uint8_t person_ = 0;
+  std::vector<SensorFrame> frames_;
+};
+
+/// Notes which frames a segmenter was given, and may call people something else, which can move.
+class Noting final : public Segmenter {
+ public:
+  Noting(std::unique_ptr<Segmenter> segmenter, std::set<std::uint64_t>& noted, const std::string& people_are_called)
+      : segmenter_(std::move(segmenter)), noted_(noted), classes_(segmenter_->classes()) {
+    std::replace(classes_.begin(), classes_.end(), std::string("person"), people_are_called);
+    if (people_are_called != "person") movable_.push_back(people_are_called);
+  }
+  const std::vector<std::string>& classes() const override { return classes_; }
+  std::vector<std::string> movable() const override { return movable_; }
+  Segmentation segment(const SensorFrame& frame) override {
+    noted_.insert(frame.index);
+    return segmenter_->segment(frame);
+  }
+
+ private:
+  std::unique_ptr<Segmenter> segmenter_;
+  std::set<std::uint64_t>& noted_;
+  std::vector<std::string> classes_, movable_;
+};
+
+struct Options {
+  bool filters = true, threaded = false;
+  int latency = 5;
+  SegmentedFrames on = SegmentedFrames::keyframes;
+  std::string people_are_called = "person";
+};
+
+struct WholeRun {
+  explicit WholeRun(const People& people, const Options& options = {}) : pipeline(parts_of(people, options)) {
+    for (const SensorFrame& frame : people.frames()) results.push_back(pipeline.feed(frame));
+    pipeline.finish();
+  }
+  PipelineParts parts_of(const People& people, const Options& options) {
+    Registry registry;
+    register_builtin_plugins(registry);
+    CreationContext context;
+    context.camera = people.camera();
+    context.class_names = people.class_names();
+    PipelineParts parts;
+    parts.camera = context.camera;
+    parts.features = registry.create<FeatureExtractor>("orb", {}, context);
+    parts.optimizer = registry.create<Optimizer>("ceres", {}, context);
+    parts.segmentation.latency = options.latency;
+    parts.segmentation.on = options.on;
+    if (options.threaded) parts.run.mode = RunMode::threaded;
+    if (!options.filters) return parts;
+    parts.segmenter = std::make_unique<Noting>(registry.create<Segmenter>("truth", {}, context), segmented,
+                                               options.people_are_called);
+    for (const char* name : {"semantic_mask", "multi_view_depth"})
+      parts.filters.emplace_back(name, registry.create<DynamicFilter>(name, {}, context));
+    return parts;
+  }
+  /// Largest distance from the truth, both relative to the first frame [m].
+  double largest_error(const People& people) const {
+    double largest = 0.0;
+    const Trajectory trajectory = pipeline.trajectory();
+    for (const TimedPose& pose : trajectory)
+      for (const SensorFrame& frame : people.frames())
+        if (frame.timestamp == pose.timestamp)
+          largest = std::max(
+              largest,
+              (pose.T_world_camera.translation() -
+               (people.frames().front().truth->T_world_camera->inverse() * *frame.truth->T_world_camera).translation())
+                  .norm());
+    return largest;
+  }
+  int points_on_people_at_end(const People& people) const {
+    return people.points_on_people(pipeline.map(), people.frames().back(), pipeline.trajectory().back().T_world_camera);
+  }
+
+  std::set<std::uint64_t> segmented;  // before the pipeline, whose segmenter writes to it
+  Pipeline pipeline;
+  std::vector<FrameResult> results;
+};
+
+class PeopleTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { people_ = new People; }
+  static void TearDownTestSuite() {
+    delete people_;
+    people_ = nullptr;
+  }
+  static const People& people() { return *people_; }
+
+  /// No feature on a person names a map point in keyframes that were segmented.
+  static void expect_clean_keyframes(const WholeRun& run) {
+    int judged = 0, on_people = 0;
+    run.pipeline.map().keyframes().for_each([&](KeyFrameId, const KeyFrame& keyframe) {
+      const Frame& frame = keyframe.frame;
+      if (!run.segmented.contains(frame.index)) return;
+      for (std::size_t i = 0; i < frame.size(); ++i) {
+        if (!people().shows_person(people().at(frame.index), frame.features.x[i], frame.features.y[i])) continue;
+        ++judged;
+        on_people += frame.map_points[i].valid() ? 1 : 0;
+      }
+    });
+    EXPECT_GE(judged, 100);
+    EXPECT_EQ(on_people, 0);
+  }
+
+ private:
+  static inline const People* people_ = nullptr;
+};
+
+TEST_F(PeopleTest, PeopleStayOutOfTheMapHoweverLateTheirMasksCome) {
+  for (const int latency : {0, 5}) {
+    const WholeRun run(people(), {.latency = latency});
+    EXPECT_GE(run.pipeline.trajectory().size(), People::count * 9 / 10);
+    EXPECT_LE(run.largest_error(people()), 0.04) << latency;
+    EXPECT_EQ(run.points_on_people_at_end(people()), 0) << latency;
+    expect_clean_keyframes(run);
+    const std::uint64_t made = run.pipeline.mapping_counts().keyframes_made;
+    EXPECT_GE(made, 2U);
+    EXPECT_EQ(run.segmented.size(), made);  // every keyframe and nothing else
+    ASSERT_EQ(run.pipeline.mask_latencies().size(), made);
+    std::size_t i = 0;
+    for (const std::uint64_t index : run.segmented) {
+      const double measured = run.pipeline.mask_latencies()[i++];
+      const auto frames = static_cast<std::uint64_t>(latency);
+      if (index + frames < People::first + People::count) {  // the run did not end before
+        EXPECT_NEAR(measured, static_cast<double>(frames) / 30.0, 1e-6) << index;
+      }
+    }
+  }
+}
+
+TEST_F(PeopleTest, WhatTheSegmenterCallsMovableStaysOutOfTheMap) {
+  const WholeRun run(people(), {.people_are_called = "visitor"});
+  EXPECT_LE(run.largest_error(people()), 0.04);
+  EXPECT_EQ(run.points_on_people_at_end(people()), 0);
+  expect_clean_keyframes(run);
+}
+
+TEST_F(PeopleTest, EveryNthFrameIsSegmentedWhenAsked) {
+  const WholeRun run(people(), {.on = SegmentedFrames::every_n});
+  std::uint64_t before = People::first;
+  for (const std::uint64_t index : run.segmented) {
+    EXPECT_LE(index - before, 5U);
+    before = index;
+  }
+  EXPECT_LE(People::first + People::count - before, 5U);
+  EXPECT_LT(run.segmented.size(), People::count / 5 + run.pipeline.mapping_counts().keyframes_made + 1);
+  EXPECT_EQ(run.pipeline.mask_latencies().size(), run.segmented.size());
+  EXPECT_LE(run.largest_error(people()), 0.08);
+}
+
+TEST_F(PeopleTest, WithoutFiltersTheyAreInTheMapAndDragThePose) {
+  const WholeRun run(people(), {.filters = false});
+  EXPECT_GE(run.points_on_people_at_end(people()), 50);
+  EXPECT_GE(run.largest_error(people()), 0.1);
+}
+
+TEST_F(PeopleTest, TwoRunsGiveTheSameBits) {
+  const WholeRun first(people()), second(people());
+  const Trajectory a = first.pipeline.trajectory(), b = second.pipeline.trajectory();
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) EXPECT_EQ(a[i].T_world_camera.matrix(), b[i].T_world_camera.matrix()) << i;
+  for (std::size_t i = 0; i < first.results.size(); ++i) {
+    EXPECT_EQ(first.results[i].features, second.results[i].features) << i;
+    EXPECT_EQ(first.results[i].static_features, second.results[i].static_features) << i;
+    EXPECT_EQ(first.results[i].inliers, second.results[i].inliers) << i;
+  }
+  std::vector<std::pair<Eigen::Vector3d, float>> points[2];
+  for (int k = 0; k < 2; ++k)
+    (k == 0 ? first : second).pipeline.map().points().for_each([&](MapPointId, const MapPoint& point) {
+      points[k].emplace_back(point.position, point.static_log_odds);
+    });
+  EXPECT_GE(points[0].size(), 200U);
+  EXPECT_TRUE(points[0] == points[1]);
+}
+
+TEST_F(PeopleTest, ThreadsSegmentEveryKeyframeOrPassItOn) {
+  const WholeRun run(people(), {.threaded = true});
+  EXPECT_GE(run.pipeline.trajectory().size(), People::count * 9 / 10);
+  const std::uint64_t made = run.pipeline.mapping_counts().keyframes_made;
+  EXPECT_GE(made, 2U);
+  EXPECT_GE(run.segmented.size(), 1U);
+  EXPECT_LE(run.segmented.size(), made);
+  EXPECT_EQ(run.pipeline.mask_latencies().size(), run.segmented.size());
+  const std::vector<WorkerCounts> workers = run.pipeline.worker_counts();
+  ASSERT_EQ(workers.size(), 4U);
+  EXPECT_EQ(workers[0].queue.taken, made);  // local mapping
+  EXPECT_EQ(workers[3].queue.taken, run.segmented.size());
+  expect_clean_keyframes(run);
+}
+
+}  // namespace
+}  // namespace holdfast

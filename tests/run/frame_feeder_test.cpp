@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/run/frame_feeder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <future>
+#include <thread>
+
+#include "holdfast/core/error.hpp"
+
+namespace holdfast {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Frames 0, 1, 2 ... at 100 a second; may throw at one of them.
+class CountingSource final : public FrameSource {
+ public:
+  explicit CountingSource(std::uint64_t count, std::uint64_t bad = ~std::uint64_t{0}) : count_(count), bad_(bad) {}
+  SourceDescription describe() const override { return {}; }
+  std::optional<SensorFrame> next() override {
+    if (index_ == bad_) throw InputError({"frame.png"}, "is broken");
+    if (index_ >= count_) return std::nullopt;
+    SensorFrame frame;
+    frame.timestamp = 0.01 * static_cast<double>(index_);
+    frame.index = index_++;
+    return frame;
+  }
+
+ private:
+  std::uint64_t count_, bad_, index_ = 0;
+};
+
+TEST(FrameFeeder, GivesEveryFrameInOrder) {
+  CountingSource source(200);
+  FrameFeeder feeder(source, {});
+  std::uint64_t expected = 0;
+  while (const auto fed = feeder.next()) EXPECT_EQ(fed->frame.index, expected++);
+  EXPECT_EQ(expected, 200U);
+  EXPECT_EQ(feeder.stamps().size(), 200U);
+  EXPECT_EQ(feeder.counts().dropped, 0U);
+}
+
+TEST(FrameFeeder, AnErrorOfTheSourceComesAfterTheFramesBeforeIt) {
+  CountingSource source(10, 3);
+  FrameFeeder feeder(source, {});
+  for (std::uint64_t i = 0; i < 3; ++i) EXPECT_EQ(feeder.next()->frame.index, i);
+  EXPECT_THROW(feeder.next(), InputError);
+  EXPECT_FALSE(feeder.next());
+}
+
+TEST(FrameFeeder, PacedFramesDoNotComeBeforeTheirTime) {
+  CountingSource source(6);
+  const Stopwatch since_start;  // before the first frame is due, however busy the machine is
+  FrameFeeder feeder(source, {.pace = Pace::timestamps});
+  while (const auto fed = feeder.next()) EXPECT_GE(since_start.seconds(), fed->frame.timestamp);
+}
+
+TEST(FrameFeeder, ASlowTrackerCostsFramesOrTime) {
+  const auto taken = [](LateFrames late) {
+    CountingSource source(20);
+    FrameFeeder feeder(source, {.pace = Pace::timestamps, .late_frames = late, .frame_queue = 2});
+    std::size_t count = 0;
+    std::uint64_t last = 0;
+    while (const auto fed = feeder.next()) {
+      std::this_thread::sleep_for(30ms);
+      ++count;
+      EXPECT_TRUE(count == 1 || fed->frame.index > last);
+      last = fed->frame.index;
+    }
+    EXPECT_EQ(count + feeder.counts().dropped, 20U);
+    EXPECT_EQ(last, 19U);  // the newest is never the one that goes
+    return count;
+  };
+  EXPECT_LT(taken(LateFrames::drop), 20U);
+  EXPECT_EQ(taken(LateFrames::queue), 20U);
+}
+
+TEST(FrameFeeder, StopEndsAWaitForAFarFrame) {
+  class Far final : public FrameSource {
+   public:
+    SourceDescription describe() const override { return {}; }
+    std::optional<SensorFrame> next() override {
+      SensorFrame frame;
+      frame.timestamp = 3600.0 * static_cast<double>(index_);
+      frame.index = index_++;
+      return frame;
+    }
+    std::uint64_t index_ = 0;
+  } source;
+  FrameFeeder feeder(source, {.pace = Pace::timestamps});
+  EXPECT_TRUE(feeder.next());
+  auto next = std::async(std::launch::async, [&] { return feeder.next().has_value(); });
+  feeder.stop();
+  EXPECT_FALSE(next.get());
+}
+
+}  // namespace
+}  // namespace holdfast

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/run/results.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "holdfast/map_io/map_file.hpp"
+#include "run/point_run.hpp"
+
+namespace holdfast {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+namespace fs = std::filesystem;
+
+class ResultsTest : public ::testing::Test {
+ protected:
+  ResultsTest() : folder_(fs::temp_directory_path() / ("results_test." + std::to_string(getpid()))) {
+    test::PointRun points;
+    record_ = run(*points.built, points.configuration);
+    record_.map = points.built->pipeline.take_map();
+  }
+  ~ResultsTest() override { fs::remove_all(folder_); }
+
+  std::string text(const std::string& file) const {
+    std::ifstream stream(folder_ / file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  }
+  std::vector<std::string> files() const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_)) names.push_back(entry.path().filename().string());
+    return names;
+  }
+
+  fs::path folder_;
+  RunRecord record_;
+};
+
+TEST_F(ResultsTest, EveryResultIsAFileOfItsOwn) {
+  write_results(record_, folder_ / "deep");
+  folder_ /= "deep";
+  EXPECT_THAT(files(), ::testing::UnorderedElementsAre("trajectory.txt", "keyframes.txt", "config.yaml", "run.json",
+                                                       "report.html", "map.hfm", "static_map.ply", "evaluation.json",
+                                                       "tracks.json", "trajectory.svg", "error.svg"));
+  for (const std::string& name : files())
+    EXPECT_EQ(std::count(result_names().begin(), result_names().end(), name), 1) << name;
+  EXPECT_EQ(text("trajectory.txt"), trajectory_text(record_.trajectory));
+  EXPECT_EQ(read_map(folder_ / "map.hfm").points().size(), record_.map_points);
+  EXPECT_EQ(text("run.json"), run_json(record_));
+  folder_ = folder_.parent_path();
+}
+
+TEST_F(ResultsTest, AMapThatWasOnlyLocalisedInIsNotWritten) {
+  record_.localised_only = true;
+  write_results(record_, folder_);
+  EXPECT_FALSE(fs::exists(folder_ / "map.hfm"));
+  EXPECT_FALSE(fs::exists(folder_ / "static_map.ply"));
+  EXPECT_TRUE(fs::exists(folder_ / "run.json"));
+}
+
+TEST_F(ResultsTest, TheDenseMapTakesThePlaceOfTheMapPoints) {
+  record_.dense_map = std::vector<CloudPoint>(3);
+  write_results(record_, folder_);
+  EXPECT_THAT(text("static_map.ply"), HasSubstr("element vertex 3\n"));
+}
+
+TEST_F(ResultsTest, RunJsonHoldsTheFigures) {
+  const nlohmann::json json = nlohmann::json::parse(run_json(record_));
+  EXPECT_EQ(json.at("configuration"), "points.yaml");
+  EXPECT_EQ(json.at("seed"), 7);
+  EXPECT_EQ(json.at("mode"), "sequential");
+  EXPECT_EQ(json.at("sequence"), "points");
+  EXPECT_EQ(json.at("frames").at("expected"), 30);
+  EXPECT_EQ(json.at("frames").at("poses"), 30);
+  EXPECT_EQ(json.at("map").at("points"), record_.map_points);
+  EXPECT_EQ(json.at("evaluation").at("ate_m").at("rmse"), record_.evaluation->absolute_error.rmse);
+  EXPECT_TRUE(json.at("threads").is_null());
+  EXPECT_TRUE(json.at("failure").is_null());
+  record_.failure = "the disk is full";
+  record_.threads.emplace().delays = {0.01, 0.05};
+  const nlohmann::json failed = nlohmann::json::parse(run_json(record_));
+  EXPECT_EQ(failed.at("failure"), "the disk is full");
+  EXPECT_EQ(failed.at("threads").at("frame_to_result").at("share_above_33_ms"), 0.5);
+}
+
+TEST_F(ResultsTest, TheReportShowsWhatTheRunHas) {
+  record_.evaluation->absolute_error.rmse = 0.0123;
+  EXPECT_THAT(report_html(record_), AllOf(HasSubstr("Holdfast: points"), HasSubstr("12.30 mm"), HasSubstr("<svg"),
+                                          HasSubstr("points.yaml, seed 7, sequential")));
+  EXPECT_THAT(summary_text(record_), AllOf(HasSubstr("30 of 30"), HasSubstr("0.012300 m (se3, 30 pairs")));
+  EXPECT_THAT(report_html(record_), ::testing::Not(HasSubstr("Skipped frames")));
+  record_.skipped.push_back({4, 0.5, "blurred.png: is cut short"});
+  record_.evaluation.reset();
+  record_.no_evaluation = "the source has no truth";
+  EXPECT_THAT(report_html(record_), AllOf(HasSubstr("Skipped frames"), HasSubstr("blurred.png: is cut short"),
+                                          HasSubstr("unknown: the source has no truth")));
+}
+
+}  // namespace
+}  // namespace holdfast

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/run/run.hpp"
+
+#include <gtest/gtest.h>
+
+#include "run/point_run.hpp"
+
+namespace holdfast {
+namespace {
+
+TEST(Run, RecordsEveryFrame) {
+  test::PointRun points;
+  RunOptions options;
+  std::vector<std::uint64_t> done;
+  bool started = false;
+  options.on_start = [&](const RunRecord& record) {
+    started = true;
+    EXPECT_TRUE(done.empty());
+    EXPECT_EQ(record.source.name, "points");
+  };
+  options.on_frame = [&](const RunProgress& progress) {
+    done.push_back(progress.frames_done);
+    EXPECT_EQ(progress.frame_count, 30U);
+    EXPECT_TRUE(progress.result.T_world_camera.has_value());
+  };
+  const RunRecord record = run(*points.built, points.configuration, options);
+  EXPECT_TRUE(started);
+  ASSERT_EQ(done.size(), 30U);
+  EXPECT_EQ(done.front(), 1U);
+  EXPECT_EQ(done.back(), 30U);
+  EXPECT_EQ(record.failure, "");
+  EXPECT_FALSE(record.was_interrupted);
+  EXPECT_EQ(record.summary.frames(), 30U);
+  EXPECT_EQ(record.frame_stamps.size(), 30U);
+  EXPECT_EQ(record.trajectory.size(), 30U);
+  EXPECT_EQ(record.coverage(), 1.0);
+  EXPECT_EQ(record.map_keyframes, points.built->pipeline.map().keyframes().size());
+  EXPECT_EQ(record.map_points, points.built->pipeline.map().points().size());
+  EXPECT_GT(record.map_points, 100U);
+  EXPECT_FALSE(record.threads.has_value());
+  ASSERT_TRUE(record.evaluation.has_value()) << record.no_evaluation;
+  EXPECT_LT(record.evaluation->absolute_error.rmse, 0.01);
+  EXPECT_GT(record.start_seconds, 0.0);
+  EXPECT_GE(record.total_seconds, record.start_seconds);
+  EXPECT_GT(record.peak_memory, std::size_t{1} << 20U);
+}
+
+TEST(Run, StopEndsItAndUnreadFramesCountAsMissing) {
+  test::PointRun points;
+  RunOptions options;
+  std::uint64_t frames = 0;
+  options.on_frame = [&](const RunProgress& progress) { frames = progress.frames_done; };
+  options.stop = [&] { return frames == 12; };
+  const RunRecord record = run(*points.built, points.configuration, options);
+  EXPECT_TRUE(record.was_interrupted);
+  EXPECT_EQ(record.failure, "");
+  EXPECT_EQ(record.summary.frames(), 12U);
+  EXPECT_EQ(record.frames_expected, 30U);
+  EXPECT_DOUBLE_EQ(record.coverage(), 12.0 / 30.0);
+  ASSERT_TRUE(record.evaluation && record.evaluation->coverage);
+  EXPECT_EQ(record.evaluation->coverage->frames, 30U);
+  ASSERT_FALSE(record.evaluation->coverage->gaps.empty());
+  EXPECT_EQ(record.evaluation->coverage->gaps.back().frames, 18U);
+}
+
+TEST(Run, AFailureKeepsTheResultsBeforeIt) {
+  test::PointRun points(9);
+  const RunRecord record = run(*points.built, points.configuration);
+  EXPECT_EQ(record.failure, "frame.png: is broken");
+  EXPECT_FALSE(record.was_interrupted);
+  EXPECT_EQ(record.trajectory.size(), 9U);
+  test::PointRun others;
+  RunOptions options;
+  options.on_frame = [](const RunProgress&) { throw Error("the disk is full"); };
+  EXPECT_EQ(run(*others.built, others.configuration, options).failure, "the disk is full");
+}
+
+TEST(Run, TheLateShareCountsDelaysAboveAFrameInterval) {
+  ThreadRecord threads;
+  EXPECT_EQ(threads.late_share(), 0.0);
+  threads.delays = {0.01, 0.033, 0.034, 1.0};
+  EXPECT_EQ(threads.late_share(), 0.5);
+}
+
+}  // namespace
+}  // namespace holdfast

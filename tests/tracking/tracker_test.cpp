@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Drives Tracker alone: the test takes the place of the pipeline and of local mapping.
+#include "holdfast/tracking/tracker.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <utility>
+
+#include "support/brute_force_detector.hpp"
+#include "support/point_world.hpp"
+
+namespace holdfast {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+/// The motion-only adjustment that every optimizer has by default; a tracker needs no more.
+class PoseOptimizer final : public Optimizer {
+ public:
+  BundleSummary optimize_bundle(BundleProblem&, const std::atomic<bool>&) override { return {}; }
+  GraphSummary optimize_pose_graph(PoseGraphProblem&) override { return {}; }
+};
+
+/// Extracts every n-th feature of the world and none without light.
+class SparseExtractor final : public FeatureExtractor {
+ public:
+  explicit SparseExtractor(test::PointWorld& world) : all_(world, 0.3) {}
+  void extract(const cv::Mat& grey, const cv::Mat& ignore, Features& out) override {
+    Features all;
+    all_.extract(grey, ignore, all);
+    out.resize(all.size() / every);
+    for (std::size_t i = 0; i < out.size(); ++i) {
+      const std::size_t k = i * every;
+      out.x[i] = all.x[k], out.y[i] = all.y[k], out.angle[i] = all.angle[k], out.response[i] = all.response[k];
+      out.octave[i] = all.octave[k], out.descriptors[i] = all.descriptors[k];
+    }
+  }
+  const ScalePyramid& pyramid() const override { return all_.pyramid(); }
+
+  std::size_t every = 1;
+
+ private:
+  test::PointExtractor all_;
+};
+
+/// Adds no evidence, but makes the chain of filters active.
+class SilentFilter final : public DynamicFilter {
+ public:
+  Needs needs() const override { return {}; }
+  void apply(const FilterContext&, StaticEvidence&) override {}
+};
+
+Isometry3d at(double x, double y = 0.0, double z = 0.0) {
+  Isometry3d T = Isometry3d::Identity();
+  T.translation() = Vector3d(x, y, z);
+  return T;
+}
+
+/// A tracker in a world of points, and a map to which its keyframes are added without any refinement.
+class Bench {
+ public:
+  explicit Bench(const TrackingSettings& settings = {}, bool with_filter = false, Map known = {},
+                 std::uint64_t seed = 5)
+      : world(find_camera("tum_fr1").value(), 1500, seed),
+        map(std::move(known)),
+        moving_world({.camera = world.camera(), .filters = chain(with_filter)}, map),
+        tracker(settings, {world.camera(), extractor, optimizer, detector, moving_world, map}) {
+    map.keyframes().for_each(
+        [&](KeyFrameId id, const KeyFrame& keyframe) { detector.add(id, keyframe.frame.features.descriptors); });
+  }
+
+  FrameResult feed(double time, const Isometry3d& T_world_camera, bool visible = true) {
+    return feed(world.frame(next_index, time, T_world_camera, visible));
+  }
+  FrameResult feed(const SensorFrame& frame) {
+    ++next_index;
+    FrameResult result;
+    moving_world.next_frame(frame.timestamp);
+    tracker.begin(frame, result);
+    tracker.locate(frame, result);
+    if (result.is_keyframe) add_keyframe();
+    return result;
+  }
+  void add_keyframe() {
+    const KeyFrameId id = map.add_keyframe(tracker.frame());
+    const Frame& frame = map.keyframe(id).frame;
+    for (std::uint32_t i = 0; i < frame.size(); ++i) {
+      MapPointId point = frame.map_points[i];
+      if (!point.valid() && frame.has_depth(i)) {
+        point = map.add_point(frame.T_world_camera() * frame.camera_point(i), map.keyframe(id).sequence);
+        map.add_observation(point, id, i);
+      }
+      if (point.valid()) map.update_point(point);
+    }
+    map.update_covisibility(id);
+    map.touch();
+    detector.add(id, frame.features.descriptors);
+    tracker.keyframe_added(id);
+  }
+  /// Feeds frames along x at 0.5 m/s from `from` to `to` [s]; the last result.
+  FrameResult walk(double from, double to) {
+    FrameResult result;
+    for (double time = from; time < to - 1e-9; time += 1.0 / 30.0) result = feed(time, at(speed * time));
+    return result;
+  }
+
+  static constexpr double speed = 0.5;
+  test::PointWorld world;
+  SparseExtractor extractor{world};
+  PoseOptimizer optimizer;
+  test::BruteForceDetector detector;
+  Map map;
+  MovingWorld moving_world;
+  Tracker tracker;
+  std::uint64_t next_index = 0;
+
+ private:
+  static FilterChain chain(bool with_filter) {
+    FilterChain filters;
+    if (with_filter) filters.add("silent", std::make_unique<SilentFilter>());
+    return filters;
+  }
+};
+
+double error(const FrameResult& result, const Isometry3d& T_world_camera) {
+  if (!result.T_world_camera) return 1e9;
+  return (result.T_world_camera->translation() - T_world_camera.translation()).norm();
+}
+
+/// Only the branch under test can find a lost camera.
+TrackingSettings without_relocalisation() {
+  TrackingSettings settings;
+  settings.coasting_time = 0.0;
+  settings.recovery_keyframes = 0;
+  settings.relocalisation_candidates = 0;
+  return settings;
+}
+
+TEST(Tracker, TracksWithTheMotionModel) {
+  Bench bench;
+  EXPECT_EQ(bench.feed(0.0, at(0.0)).status, TrackingStatus::initialised);
+  for (int i = 1; i < 30; ++i) {
+    const double time = i / 30.0;
+    const FrameResult result = bench.feed(time, at(Bench::speed * time));
+    EXPECT_EQ(result.status, TrackingStatus::tracked) << i;
+    EXPECT_EQ(result.method, TrackingMethod::motion_model) << i;
+    EXPECT_LT(error(result, at(Bench::speed * time)), 0.006) << i;
+  }
+}
+
+TEST(Tracker, AJumpIsTrackedByTheReferenceKeyframe) {
+  Bench bench(without_relocalisation());
+  bench.walk(0.0, 0.5);
+  const Isometry3d jumped = at(0.2, 0.35, 0.1);
+  const FrameResult result = bench.feed(0.5, jumped);
+  EXPECT_EQ(result.status, TrackingStatus::tracked);
+  EXPECT_EQ(result.method, TrackingMethod::reference_keyframe);
+  EXPECT_LT(error(result, jumped), 0.01);
+}
+
+TEST(Tracker, AShortLossIsFoundAlongTheLastVelocity) {
+  // In the dark for 0.9 s, the camera goes on by 0.45 m: a fifth of the image.
+  for (const bool goes_on : {true, false}) {
+    TrackingSettings settings = without_relocalisation();
+    settings.coasting_time = 1.2;
+    settings.coasting_shares = {goes_on ? 1.0 : 0.0};
+    Bench bench(settings);
+    bench.walk(0.0, 0.5);
+    EXPECT_EQ(bench.feed(0.5, at(0.25), false).status, TrackingStatus::lost);
+    const FrameResult result = bench.feed(1.4, at(0.7));
+    EXPECT_EQ(result.status, goes_on ? TrackingStatus::tracked : TrackingStatus::lost);
+    if (!goes_on) continue;
+    EXPECT_EQ(result.method, TrackingMethod::recovered);
+    EXPECT_LT(error(result, at(0.7)), 0.01);
+  }
+}
+
+TEST(Tracker, CoastsNoLongerThanItsTime) {
+  for (const double coasting_time : {0.4, 0.6}) {
+    TrackingSettings settings = without_relocalisation();
+    settings.coasting_time = coasting_time;
+    Bench bench(settings);
+    bench.walk(0.0, 0.5);
+    bench.feed(0.5, at(0.25), false);
+    const bool in_time = coasting_time > 0.5;
+    EXPECT_EQ(bench.feed(0.98, at(0.49)).status, in_time ? TrackingStatus::tracked : TrackingStatus::lost);
+  }
+}
+
+TEST(Tracker, ALostCameraIsRecoveredAmongTheLastKeyframes) {
+  for (const int keyframes : {5, 0}) {
+    TrackingSettings settings = without_relocalisation();
+    settings.recovery_keyframes = keyframes;
+    Bench bench(settings);
+    bench.walk(0.0, 0.5);
+    bench.feed(0.5, at(0.25), false);
+    const Isometry3d elsewhere = at(-0.1, 0.2, 0.1);
+    const FrameResult result = bench.feed(0.6, elsewhere);
+    EXPECT_EQ(result.status, keyframes > 0 ? TrackingStatus::tracked : TrackingStatus::lost);
+    if (keyframes == 0) continue;
+    EXPECT_EQ(result.method, TrackingMethod::recovered);
+    EXPECT_LT(error(result, elsewhere), 0.01);
+  }
+}
+
+TEST(Tracker, APlaceThatTheCameraCannotHaveReachedIsRejected) {
+  for (const double tolerance : {1.0, 0.05}) {
+    TrackingSettings settings = without_relocalisation();
+    settings.recovery_keyframes = 5;
+    settings.relocalisation_candidates = 5;
+    settings.relocalisation_tolerance = tolerance;
+    settings.relocalisation_speed = 0.1;
+    Bench bench(settings);
+    bench.walk(0.0, 0.5);
+    bench.feed(0.5, at(0.25), false);
+    const FrameResult result = bench.feed(0.6, at(-0.1, 0.2, 0.1));
+    EXPECT_EQ(result.status, tolerance > 0.5 ? TrackingStatus::tracked : TrackingStatus::lost);
+  }
+}
+
+TEST(Tracker, InALoadedMapItIsRelocalisedAtAPlaceOfTheLoopDetector) {
+  for (const int candidates : {5, 0}) {
+    Bench maker;
+    maker.walk(0.0, 1.0);
+    TrackingSettings settings;
+    settings.relocalisation_candidates = candidates;
+    Bench bench(settings, false, std::move(maker.map));
+    bench.tracker.localise_only();
+    const Isometry3d place = at(0.21, 0.02, 0.05);
+    const FrameResult result = bench.feed(0.0, place);
+    EXPECT_EQ(result.status, candidates > 0 ? TrackingStatus::tracked : TrackingStatus::lost);
+    if (candidates == 0) continue;
+    EXPECT_EQ(result.method, TrackingMethod::relocalised);
+    EXPECT_LT(error(result, place), 0.01);
+    EXPECT_FALSE(result.is_keyframe);
+    EXPECT_EQ(bench.feed(0.03, place).method, TrackingMethod::motion_model);
+  }
+}
+
+TEST(Tracker, AnUnknownPlaceIsNotRelocalised) {
+  Bench maker;
+  maker.walk(0.0, 0.5);
+  Bench elsewhere(TrackingSettings{}, false, std::move(maker.map), 99);
+  const FrameResult result = elsewhere.feed(0.0, at(0.1));
+  EXPECT_EQ(result.status, TrackingStatus::lost);
+  EXPECT_EQ(result.trouble, TrackingTrouble::few_matches);
+}
+
+/// The frame of a camera at `T_depth` in which few features, without depth, are seen as if from `T_features`: what a
+/// person who fills most of the view and moves makes of it.
+SensorFrame contradicting_frame(Bench& bench, double time, const Isometry3d& T_depth, const Isometry3d& T_features) {
+  const cv::Mat depth = bench.world.frame(bench.next_index, time, T_depth).depth.clone();
+  SensorFrame frame = bench.world.frame(bench.next_index, time, T_features);
+  frame.depth = depth;
+  const auto& seen = bench.world.seen();
+  constexpr int reach = 4;
+  for (std::size_t i = 0; i < seen.size(); i += bench.extractor.every)
+    for (int row = static_cast<int>(seen[i].y) - reach; row <= static_cast<int>(seen[i].y) + reach; ++row)
+      for (int column = static_cast<int>(seen[i].x) - reach; column <= static_cast<int>(seen[i].x) + reach; ++column)
+        if (row >= 0 && column >= 0 && row < depth.rows && column < depth.cols)
+          frame.depth.at<float>(row, column) = 0.0F;
+  return frame;
+}
+
+TEST(Tracker, APoseThatContradictsDepthIsRefused) {
+  // 40 features agree that the camera moved by 6 cm; the depth of the room shows that it did not.
+  for (const bool contradicts : {true, false})
+    for (const bool with_filter : {true, false}) {
+      Bench bench(without_relocalisation(), with_filter);
+      for (int i = 0; i < 10; ++i) bench.feed(i / 30.0, at(0.0));
+      bench.extractor.every = bench.world.seen().size() / 42;
+      const Isometry3d moved = at(0.06);
+      const FrameResult result =
+          bench.feed(contradicting_frame(bench, 10 / 30.0, contradicts ? at(0.0) : moved, moved));
+      const bool refused = contradicts && with_filter;  // without filters, everything counts as static
+      EXPECT_EQ(result.status, refused ? TrackingStatus::lost : TrackingStatus::tracked)
+          << contradicts << with_filter << " inliers " << result.inliers;
+      EXPECT_GE(result.inliers, 30);
+      EXPECT_LT(result.inliers, 50);
+      if (refused) {
+        EXPECT_EQ(result.trouble, TrackingTrouble::few_inliers);
+      } else {
+        EXPECT_LT(error(result, moved), 0.02);
+      }
+    }
+}
+
+TEST(Tracker, KeyframesAreMadeWhenThePolicySaysSo) {
+  // Each reason by itself: settings leave the others out.
+  TrackingSettings none;
+  none.keyframe_close_tracked = 0;
+  none.keyframe_tracked_ratio = 0.0;
+  none.keyframe_due_ratio = 0.0;
+  const auto keyframes = [](const TrackingSettings& settings, bool localise_only = false) {
+    Bench bench(settings);
+    bench.feed(0.0, at(0.0));
+    if (localise_only) bench.tracker.localise_only();
+    bench.walk(1.0 / 30.0, 1.0);
+    return bench.map.keyframes().size();
+  };
+  EXPECT_EQ(keyframes(none), 1U);
+  TrackingSettings interval = none;
+  interval.keyframe_due_ratio = 1.0;
+  interval.keyframe_maximum_interval = 0.25;
+  EXPECT_EQ(keyframes(interval), 4U);
+  TrackingSettings close = none;
+  close.keyframe_close_tracked = 100000;
+  close.keyframe_close_possible = 10;
+  EXPECT_GE(keyframes(close), 2U);
+  TrackingSettings view = none;
+  view.keyframe_tracked_ratio = view.keyframe_first_ratio = 0.9;
+  EXPECT_GE(keyframes(view), 2U);
+  EXPECT_EQ(keyframes(view, true), 1U);
+}
+
+TEST(Tracker, TheTrajectoryFollowsCorrectionsOfKeyframes) {
+  Bench bench;
+  bench.walk(0.0, 0.5);
+  const Trajectory before = bench.tracker.trajectory();
+  ASSERT_EQ(before.size(), 15U);
+  bench.map.keyframes().for_each([&](KeyFrameId id, const KeyFrame&) {
+    Frame& frame = bench.map.keyframe(id).frame;
+    frame.T_camera_world = frame.T_camera_world * at(0.0, 1.0).inverse();
+  });
+  const Trajectory after = bench.tracker.trajectory();
+  for (std::size_t i = 0; i < after.size(); ++i)
+    EXPECT_LT(
+        ((after[i].T_world_camera.translation() - before[i].T_world_camera.translation()) - Vector3d(0, 1, 0)).norm(),
+        1e-9)
+        << i;
+}
+
+TEST(Tracker, WaitsForAFrameWithDepth) {
+  Bench bench;
+  SensorFrame blind = bench.world.frame(0, 0.0, at(0.0));
+  blind.depth.release();
+  FrameResult result = bench.feed(blind);
+  EXPECT_EQ(result.status, TrackingStatus::waiting);
+  EXPECT_EQ(result.trouble, TrackingTrouble::no_depth);
+  result = bench.feed(0.1, at(0.0), false);
+  EXPECT_EQ(result.trouble, TrackingTrouble::few_features);
+  EXPECT_EQ(bench.feed(0.2, at(0.0)).status, TrackingStatus::initialised);
+  EXPECT_TRUE(bench.tracker.trajectory().size() == 1U);
+}
+
+}  // namespace
+}  // namespace holdfast
