@@ -101,7 +101,7 @@ void run_extractor(benchmark::State& state, FeatureExtractor& extractor) {
 }
 
 void opencv_orb(benchmark::State& state) {
-  OpencvOrb extractor({});
+  opencv_orb_plugin::OpencvOrb extractor({});
   run_extractor(state, extractor);
 }
 BENCHMARK(opencv_orb)->UseManualTime()->Iterations(120)->Unit(benchmark::kMillisecond);

@@ -13,7 +13,7 @@ output=out/demo
 sh cmake/install_dependencies.sh
 # The program alone: tests, benchmarks and examples would more than double the time to the first picture.
 cmake --preset release -B "$build" \
-  -DHOLDFAST_BUILD_TESTS=OFF -DHOLDFAST_BUILD_BENCHMARKS=OFF -DHOLDFAST_BUILD_EXAMPLES=OFF
+  -DHOLDFAST_UNITY=ON -DHOLDFAST_BUILD_TESTS=OFF -DHOLDFAST_BUILD_BENCHMARKS=OFF -DHOLDFAST_BUILD_EXAMPLES=OFF
 cmake --build "$build" --parallel "$(nproc)" --target holdfast_program
 "$build/bin/holdfast" run examples/configs/demo.yaml --output "$output" --overwrite
 

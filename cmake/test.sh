@@ -12,7 +12,7 @@ jobs=$(nproc)
 
 sh cmake/install_dependencies.sh --training --documentation --benchmarks --python
 cmake --preset release -B "$build" \
-  -DHOLDFAST_BUILD_TESTS=ON -DHOLDFAST_BUILD_BENCHMARKS=ON -DHOLDFAST_BUILD_EXAMPLES=ON -DHOLDFAST_PYTHON=ON
+  -DHOLDFAST_UNITY=ON -DHOLDFAST_BUILD_TESTS=ON -DHOLDFAST_BUILD_BENCHMARKS=ON -DHOLDFAST_BUILD_EXAMPLES=ON -DHOLDFAST_PYTHON=ON
 cmake --build "$build" --parallel "$jobs"
 
 run_tests() { ctest --test-dir "$build" --parallel "$jobs" --output-on-failure --no-tests=error "$@"; }

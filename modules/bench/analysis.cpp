@@ -103,10 +103,6 @@ void adjust(std::vector<Comparison>& comparisons) {
   }
 }
 
-std::string counted(std::size_t count, const std::string& noun) {
-  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
-}
-
 }  // namespace
 
 Spread spread_of(const std::vector<double>& values) {

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "holdfast/core/trajectory.hpp"
+#include "holdfast/evaluation/number_text.hpp"
 #include "holdfast/image_files/image_decoder.hpp"
 #include "holdfast/image_files/image_sequence.hpp"
 #include "holdfast/image_files/recording_pairs.hpp"
@@ -17,10 +18,6 @@ namespace {
 
 constexpr double max_time_difference = 0.02;
 constexpr const char* icl_list = "associations.txt";
-
-std::string counted(std::size_t count, const std::string& noun) {
-  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
-}
 
 bool is_file(const fs::path& path) {
   std::error_code ignored;

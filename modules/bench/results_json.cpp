@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <nlohmann/json.hpp>
 
+#include "error_keys.hpp"
 #include "holdfast/bench/bench_report.hpp"
 #include "holdfast/bench/report_page.hpp"
 #include "holdfast/bench/tables.hpp"
@@ -15,9 +16,6 @@ using Json = nlohmann::ordered_json;
 Json spread_json(const Spread& spread) {
   return {{"median", spread.median}, {"least", spread.least}, {"most", spread.most}, {"count", spread.count}};
 }
-
-constexpr std::array quantity_keys = {"ate_m", "rpe_translation_m", "rpe_rotation_deg"};
-constexpr std::array<const char*, 6> statistic_keys = {"rmse", "mean", "median", "standard_deviation", "min", "max"};
 
 Json six_json(const SixStatistics& values) {
   Json json;

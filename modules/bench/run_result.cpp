@@ -4,6 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "error_keys.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/evaluation/number_text.hpp"
 
@@ -15,8 +16,6 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::array statuses = {RunStatus::finished, RunStatus::failed, RunStatus::crashed, RunStatus::timed_out,
                                  RunStatus::not_started};
-constexpr std::array quantity_keys = {"ate_m", "rpe_translation_m", "rpe_rotation_deg"};
-constexpr std::array<const char*, 6> statistic_keys = {"rmse", "mean", "median", "standard_deviation", "min", "max"};
 
 double number(const Json& json) { return json.is_number() ? json.get<double>() : Statistics::none; }
 

@@ -16,12 +16,12 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// A row of tracks.json: the stamp [s], then one or three values [m].
-using Row = std::vector<double>;
-using Rows = std::vector<Row>;
+using TrackRow = std::vector<double>;
+using TrackRows = std::vector<TrackRow>;
 
 /// The tracks of one run.
 struct Tracks {
-  Rows truth, estimate, error;
+  TrackRows truth, estimate, error;
 };
 
 std::optional<Tracks> read_tracks(const std::filesystem::path& file) {
@@ -38,7 +38,7 @@ std::optional<Tracks> read_tracks(const std::filesystem::path& file) {
 
 /// A step in time that is none from frame to frame. Truth comes at least as often as frames do; the poses of a run that
 /// lost most of them would not tell.
-double gap_beside(const Rows& truth) {
+double gap_beside(const TrackRows& truth) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < truth.size(); ++i) steps.push_back(truth[i][0] - truth[i - 1][0]);
   return steps.empty() ? 0.25 : std::max(0.25, 3.0 * median(steps));
@@ -50,7 +50,7 @@ class Columns {
   Columns(std::vector<const char*> names, double origin) : names_(std::move(names)), origin_(origin) {
     for (const char* name : names_) json_[name] = Json::array();
   }
-  void add(const Row& row) {
+  void add(const TrackRow& row) {
     json_[names_[0]].push_back(rounded(row.at(0) - origin_, 1e3));
     for (std::size_t c = 1; c < names_.size(); ++c) json_[names_[c]].push_back(rounded(row.at(c), 1e4));
   }
@@ -69,7 +69,7 @@ class Columns {
 };
 
 /// Keeps one row of every stretch of equal length, of errors the largest, and the ends of every unbroken piece.
-Json thinned(const Rows& rows, std::vector<const char*> names, double origin, double gap) {
+Json thinned(const TrackRows& rows, std::vector<const char*> names, double origin, double gap) {
   Columns columns(std::move(names), origin);
   const std::size_t stretch = (rows.size() + points_of_a_line - 1) / points_of_a_line;
   const bool is_error = !rows.empty() && rows.front().size() == 2;
@@ -80,8 +80,9 @@ Json thinned(const Rows& rows, std::vector<const char*> names, double origin, do
     for (std::size_t i = begin; i < end; i += stretch) {
       const auto first = rows.begin() + static_cast<std::ptrdiff_t>(i);
       const auto last = rows.begin() + static_cast<std::ptrdiff_t>(std::min(i + stretch, end));
-      columns.add(is_error ? *std::max_element(first, last, [](const Row& a, const Row& b) { return a[1] < b[1]; })
-                           : *first);
+      columns.add(is_error
+                      ? *std::max_element(first, last, [](const TrackRow& a, const TrackRow& b) { return a[1] < b[1]; })
+                      : *first);
     }
     if (!is_error && (end - 1 - begin) % stretch != 0) columns.add(rows[end - 1]);
     begin = end;
@@ -93,22 +94,22 @@ Json thinned(const Rows& rows, std::vector<const char*> names, double origin, do
 
 std::string thinned_tracks_json(const std::filesystem::path& output, const RunPlan& plan, const BenchResults& results) {
   std::vector<std::optional<Tracks>> tracks(plan.runs.size());
-  std::vector<Rows> truths(plan.matrix.sequences.size());
+  std::vector<TrackRows> truths(plan.matrix.sequences.size());
   for (std::size_t i = 0; i < plan.runs.size(); ++i) {
     if (!results.results[i] || !results.results[i]->has_errors) continue;
     tracks[i] = read_tracks(output / "runs" / plan.runs[i].id / "tracks.json");
     if (!tracks[i]) continue;
     // A run knows the truth of its own time only; the longest one serves all.
-    Rows& truth = truths[plan.runs[i].sequence];
+    TrackRows& truth = truths[plan.runs[i].sequence];
     if (tracks[i]->truth.size() > truth.size()) truth = tracks[i]->truth;
     tracks[i]->truth.clear();
   }
   Json json = {{"truth", Json::array()}, {"runs", Json::array()}};
-  for (const Rows& truth : truths)
+  for (const TrackRows& truth : truths)
     json["truth"].push_back(truth.empty() ? Json(nullptr)
                                           : thinned(truth, {"t", "x", "y", "z"}, truth.front()[0], gap_beside(truth)));
   for (std::size_t i = 0; i < plan.runs.size(); ++i) {
-    const Rows& truth = truths[plan.runs[i].sequence];
+    const TrackRows& truth = truths[plan.runs[i].sequence];
     if (!tracks[i] || truth.empty()) {
       json["runs"].push_back(nullptr);
       continue;

@@ -7,6 +7,10 @@
 
 namespace holdfast {
 
+Eigen::Isometry3d CoarseView::T_view_world(const Eigen::Isometry3d& T_camera_world) const {
+  return T_view_camera * T_camera_world;
+}
+
 CoarseSampler::CoarseSampler(const Camera& camera) : width_(camera.width), height_(camera.height) {
   Eigen::Vector2d minimum, maximum;
   camera.undistorted_bounds(minimum, maximum);

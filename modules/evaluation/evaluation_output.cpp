@@ -38,10 +38,6 @@ std::string table_row(const std::string& name, const char* unit, const Statistic
   return line + '\n';
 }
 
-std::string counted(std::size_t count, const std::string& noun) {
-  return std::to_string(count) + ' ' + noun + (count == 1 ? "" : "s");
-}
-
 using Json = nlohmann::ordered_json;
 
 Json to_json_value(const Statistics& statistics) {

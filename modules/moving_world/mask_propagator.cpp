@@ -10,7 +10,6 @@ namespace holdfast {
 namespace {
 
 constexpr int bucket = 6;  // cells: one followed point in each, where there is a corner
-bool is_object(std::uint8_t label) { return CellMask::is_object(label); }
 
 }  // namespace
 
@@ -68,7 +67,7 @@ void MaskPropagator::pair_with(const View& view, const std::vector<std::uint8_t>
     const std::size_t cell = static_cast<std::size_t>(row * grid.columns + column);
     const auto width = static_cast<std::size_t>(grid.columns);
     const std::uint8_t label = labels_there[cell];
-    if (!is_object(label) || labels_there[cell - 1] != label || labels_there[cell + 1] != label ||
+    if (!CellMask::is_object(label) || labels_there[cell - 1] != label || labels_there[cell + 1] != label ||
         labels_there[cell - width] != label || labels_there[cell + width] != label)
       continue;
     pairs_.from_x.push_back(view.x[there]), pairs_.from_y.push_back(view.y[there]);
@@ -83,7 +82,7 @@ void MaskPropagator::set_pose(const std::optional<Eigen::Isometry3d>& T_camera_w
   current_.T_camera_world = T_camera_world;
   if (!T_camera_world || labels_.empty() || evaluated.static_log_odds.size() != labels_.labels.size()) return;
   for (std::size_t i = 0; i < labels_.labels.size(); ++i)
-    labels_.moving[i] = is_object(labels_.labels[i]) && evaluated.static_log_odds[i] < moving ? 1 : 0;
+    labels_.moving[i] = CellMask::is_object(labels_.labels[i]) && evaluated.static_log_odds[i] < moving ? 1 : 0;
 }
 
 const cv::Mat& MaskPropagator::moving_pixels() {
@@ -108,7 +107,7 @@ void MaskPropagator::renew_points(const Frame& frame) {
   const PointFollower::Points& points = follower_.points();
   const int columns = (grid.columns + bucket - 1) / bucket, rows = (grid.rows + bucket - 1) / bucket;
   const auto is_wanted = [&](int cell) {
-    return !remembered_.empty() || is_object(labels_.labels[static_cast<std::size_t>(cell)]);
+    return !remembered_.empty() || CellMask::is_object(labels_.labels[static_cast<std::size_t>(cell)]);
   };
   const auto bucket_of = [&](int cell) {
     return static_cast<std::size_t>((cell / grid.columns / bucket) * columns + cell % grid.columns / bucket);

@@ -7,7 +7,7 @@
 
 #include "features/test_images.hpp"
 
-namespace holdfast::orb {
+namespace holdfast::orb_plugin {
 namespace {
 
 ImageView view(const cv::Mat& image) {
@@ -74,4 +74,4 @@ TEST(CornerDetector, ALaterSmallerImageIsNotTouchedByAnEarlierLargerOne) {
 }
 
 }  // namespace
-}  // namespace holdfast::orb
+}  // namespace holdfast::orb_plugin

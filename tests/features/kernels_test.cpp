@@ -12,7 +12,7 @@
 #include "brief.hpp"
 #include "features/test_images.hpp"
 
-namespace holdfast::orb {
+namespace holdfast::orb_plugin {
 namespace {
 
 ImageView view_of(const cv::Mat& image) {
@@ -197,4 +197,4 @@ TEST(Brief, TestsAreDistinct) {
 }
 
 }  // namespace
-}  // namespace holdfast::orb
+}  // namespace holdfast::orb_plugin

@@ -8,7 +8,7 @@
 
 #include "subpixel.hpp"
 
-namespace holdfast::orb {
+namespace holdfast::orb_plugin {
 namespace {
 
 TEST(Direction, AgreesWithTheLibraryInEveryQuadrant) {
@@ -47,4 +47,4 @@ TEST(ScorePeak, IsTheMiddleWhereThereIsNoPeak) {
 }
 
 }  // namespace
-}  // namespace holdfast::orb
+}  // namespace holdfast::orb_plugin

@@ -8,7 +8,7 @@
 
 #include "holdfast/core/random.hpp"
 
-namespace holdfast::orb {
+namespace holdfast::orb_plugin {
 namespace {
 
 using Key = std::tuple<int, int, int>;
@@ -85,4 +85,4 @@ TEST(EvenSpread, DoesNotDependOnTheOrderOfTheCorners) {
 }
 
 }  // namespace
-}  // namespace holdfast::orb
+}  // namespace holdfast::orb_plugin

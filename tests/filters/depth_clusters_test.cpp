@@ -11,7 +11,7 @@
 
 #include "filters/judged_frames.hpp"
 
-namespace holdfast::cluster_plugin {
+namespace holdfast::depth_clusters_plugin {
 namespace {
 
 using depth_blocks::ViewMaker;
@@ -167,4 +167,4 @@ TEST(SurfaceAt, InterpolatesOnSurfacesAndNotOverEdges) {
 }
 
 }  // namespace
-}  // namespace holdfast::cluster_plugin
+}  // namespace holdfast::depth_clusters_plugin

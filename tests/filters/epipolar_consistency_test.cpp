@@ -10,7 +10,7 @@
 
 #include "filters/judged_frames.hpp"
 
-namespace holdfast::epipolar_plugin {
+namespace holdfast::epipolar_consistency_plugin {
 namespace {
 
 using test::JudgedFrames;
@@ -92,4 +92,4 @@ TEST(EpipolarConsistency, RaisesFewAlarmsInARealRoomWhereNothingMoves) {
 }
 
 }  // namespace
-}  // namespace holdfast::epipolar_plugin
+}  // namespace holdfast::epipolar_consistency_plugin

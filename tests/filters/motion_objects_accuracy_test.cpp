@@ -12,7 +12,7 @@
 #include "holdfast/simulation/simulator.hpp"
 #include "motion_objects.hpp"
 
-namespace holdfast::object_plugin {
+namespace holdfast::motion_objects_plugin {
 namespace {
 
 using Eigen::Vector3d;
@@ -52,7 +52,7 @@ TEST(MotionObjectsAccuracy, APushedChairIsFollowedWithoutMasks) {
 
   CreationContext context;
   context.camera = camera;
-  cluster_plugin::DepthClusters clusters({}, context);
+  depth_clusters_plugin::DepthClusters clusters({}, context);
   MotionObjects objects({}, context);
   const CoarseSampler sampler(camera);
   const Map map;
@@ -106,4 +106,4 @@ TEST(MotionObjectsAccuracy, APushedChairIsFollowedWithoutMasks) {
 }
 
 }  // namespace
-}  // namespace holdfast::object_plugin
+}  // namespace holdfast::motion_objects_plugin

@@ -12,7 +12,7 @@
 #include "holdfast/geometry/so3.hpp"
 #include "support/box_world.hpp"
 
-namespace holdfast::object_plugin {
+namespace holdfast::motion_objects_plugin {
 namespace {
 
 using Eigen::Isometry3d;
@@ -420,4 +420,4 @@ TEST_F(MotionObjectsTest, SameFramesSameObjects) {
 }
 
 }  // namespace
-}  // namespace holdfast::object_plugin
+}  // namespace holdfast::motion_objects_plugin

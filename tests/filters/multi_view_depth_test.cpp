@@ -52,7 +52,7 @@ class MultiViewDepthTest : public testing::Test {
   }
   StaticEvidence evaluate(const Frame& frame, const Isometry3d* T_camera_world,
                           const MultiViewDepthSettings& settings = {}) {
-    MultiViewDepth filter(settings, {});
+    multi_view_depth_plugin::MultiViewDepth filter(settings, {});
     StaticEvidence evidence(frame.size(), frame.coarse.depth.size());
     evidence.begin_stage("multi_view_depth");
     const SensorFrame image;

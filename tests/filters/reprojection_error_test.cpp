@@ -14,6 +14,8 @@
 namespace holdfast {
 namespace {
 
+using reprojection_error_plugin::ReprojectionError;
+
 /// Points before a camera that stands at a turned place, and frames that show them displaced.
 class ObservedPoints {
  public:

@@ -6,7 +6,7 @@
 #include "holdfast/geometry/epipolar.hpp"
 #include "holdfast/geometry/so3.hpp"
 
-namespace holdfast::epipolar_plugin {
+namespace holdfast::epipolar_consistency_plugin {
 namespace {
 
 constexpr double focal = 525.0, pixel = 1.0 / focal;
@@ -161,4 +161,4 @@ TEST(TwoViews, SamePairsAndSeedSameResult) {
 }
 
 }  // namespace
-}  // namespace holdfast::epipolar_plugin
+}  // namespace holdfast::epipolar_consistency_plugin

@@ -73,9 +73,9 @@ TEST(OverlayPainter, TintsTheRawPixelsOfACell) {
   const int cell = scene.frame.coarse.grid.cell_of(static_cast<float>(place.x()), static_cast<float>(place.y()));
   ASSERT_GE(cell, 0);
   scene.frame.coarse.mask.labels[static_cast<std::size_t>(cell)] = 1;
-  overlay::Painter painter(camera, false);
+  overlay_plugin::Painter painter(camera, false);
   const cv::Mat& picture = painter.paint(scene.sensor_frame, scene.frame, scene.result);
-  ASSERT_EQ(picture.size(), cv::Size(160, 120 + overlay::Painter::text_height));
+  ASSERT_EQ(picture.size(), cv::Size(160, 120 + overlay_plugin::Painter::text_height));
   int changed = 0;
   for (int y = 0; y < camera.height; ++y)
     for (int x = 0; x < camera.width; ++x)
@@ -98,7 +98,7 @@ TEST(OverlayPainter, TellsClassesUnknownAndMovementApart) {
   scene.frame.coarse.static_log_odds[cell_at(60, 20)] = -1.0F;
   scene.frame.coarse.static_log_odds[cell_at(100, 20)] = -6.0F;
   scene.frame.coarse.mask.labels[cell_at(20, 60)] = 2;
-  overlay::Painter painter(camera, true);
+  overlay_plugin::Painter painter(camera, true);
   const cv::Mat& picture = painter.paint(scene.sensor_frame, scene.frame, scene.result);
   ASSERT_EQ(picture.cols, 320);
   EXPECT_EQ(pixel(picture, 20, 20), cv::Vec3b(grey, grey, grey));  // the image as it came
@@ -121,7 +121,7 @@ TEST(OverlayPainter, DrawsFeaturesByProbabilityAndMapPoint) {
   scene.add_feature(60, 30, 0.0F, true);
   scene.add_feature(90, 30, 0.5F, true);
   scene.add_feature(120, 30, 1.0F, false);
-  overlay::Painter painter(camera, false);
+  overlay_plugin::Painter painter(camera, false);
   const cv::Mat& picture = painter.paint(scene.sensor_frame, scene.frame, scene.result);
   EXPECT_EQ(pixel(picture, 30, 30), cv::Vec3b(0, 255, 0));
   EXPECT_EQ(pixel(picture, 60, 30), cv::Vec3b(0, 0, 255));
@@ -144,8 +144,8 @@ TEST(OverlayPainter, DrawsWhatMovesWithItsVelocity) {
   scene.result.T_world_camera = Eigen::Isometry3d(Eigen::Translation3d(1, 0, 0));
   object.T_world_object.translation() = Eigen::Vector3d(1, 0, 2);  // two metres before the camera
   scene.result.objects = {object};
-  EXPECT_EQ(overlay::object_text(object), "2 person 0.60 m/s");
-  overlay::Painter painter(camera, false);
+  EXPECT_EQ(overlay_plugin::object_text(object), "2 person 0.60 m/s");
+  overlay_plugin::Painter painter(camera, false);
   const auto bright = [](const cv::Mat& picture, int x, int y) { return pixel(picture, x, y)[1] > grey + 60; };
   const auto differs = [](const cv::Mat& picture, int x, int y) {
     return pixel(picture, x, y) != cv::Vec3b(grey, grey, grey);
@@ -167,7 +167,7 @@ TEST(OverlayPainter, PaintsFramesWithoutACoarseView) {
   const Camera camera = wide_camera();
   Scene scene(camera);
   scene.frame.coarse = {};
-  overlay::Painter painter(camera, false);
+  overlay_plugin::Painter painter(camera, false);
   EXPECT_EQ(pixel(painter.paint(scene.sensor_frame, scene.frame, scene.result), 50, 50), cv::Vec3b(grey, grey, grey));
 }
 
@@ -179,7 +179,7 @@ TEST(OverlayStatus, SaysWhatBecameOfTheFrame) {
   result.inliers = 33;
   result.features = 500;
   result.static_features = 450;
-  EXPECT_EQ(overlay::status_text(result), "frame 7   1.500 s   tracked   inliers 33   static 450 of 500");
+  EXPECT_EQ(overlay_plugin::status_text(result), "frame 7   1.500 s   tracked   inliers 33   static 450 of 500");
 }
 
 class OverlayFiles : public testing::Test {

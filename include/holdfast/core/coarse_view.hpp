@@ -52,6 +52,8 @@ struct CoarseView {
   CellMask mask;                       ///< propagated to this frame, or its own segmentation once that was applied
 
   bool empty() const { return depth.empty(); }
+  /// Pose of the depth image when the camera has the given pose: T_view_camera * T_camera_world.
+  Eigen::Isometry3d T_view_world(const Eigen::Isometry3d& T_camera_world) const;
 };
 
 /// Samples images at the cells of a camera's coarse view. Immutable after construction; any thread.

@@ -51,4 +51,9 @@ inline std::string escape_markup(std::string_view text) {
   return escaped;
 }
 
+/// "1 frame", "2 frames": a count and a noun whose plural ends in s.
+inline std::string counted(std::size_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
 }  // namespace holdfast

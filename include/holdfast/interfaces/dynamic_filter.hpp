@@ -47,7 +47,7 @@ struct FilterContext {
 
   /// Pose of the frame's depth image (Frame::T_view_world) by the current estimate; T_camera_world must not be nullptr.
   /// To compare depth with a keyframe, use this pose and the keyframe's frame.T_view_world().
-  Eigen::Isometry3d T_view_world() const { return frame.coarse.T_view_camera * *T_camera_world; }
+  Eigen::Isometry3d T_view_world() const { return frame.coarse.T_view_world(*T_camera_world); }
 };
 
 /// Evidence that each feature of a frame belongs to the static world, as log-odds: 0 = unknown, positive = static.

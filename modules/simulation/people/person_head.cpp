@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "person_builder.hpp"
+
+#include "full_turn.hpp"
 
 namespace holdfast::simulation {
 
 using Eigen::Vector3f;
 
 namespace {
-constexpr float full_turn = 2.0F * std::numbers::pi_v<float>;
 constexpr float chin = 0.868F, crown = 0.993F;  // of the bald skull, as shares of the height
 constexpr float head_texels = 640.0F, hair_texels = 420.0F;
 constexpr float head_centre = -0.008F;  // y of the head's axis
@@ -25,11 +25,11 @@ constexpr HeadSection head_sections[] = {
     {0.450F, 0.342F, 0.418F, 0.455F}, {0.550F, 0.355F, 0.416F, 0.480F},  {0.660F, 0.362F, 0.422F, 0.490F},
     {0.770F, 0.355F, 0.400F, 0.480F}, {0.860F, 0.322F, 0.345F, 0.435F},  {0.930F, 0.255F, 0.262F, 0.345F},
     {0.980F, 0.145F, 0.140F, 0.210F}, {1.000F, 0.0F, -0.04F, 0.04F}};
-constexpr std::size_t section_count = std::size(head_sections);
+constexpr std::size_t head_section_count = std::size(head_sections);
 
-HeadSection section_at(float rise) {
+HeadSection head_section_at(float rise) {
   std::size_t k = 0;
-  while (k + 2 < section_count && head_sections[k + 1].rise < rise) ++k;
+  while (k + 2 < head_section_count && head_sections[k + 1].rise < rise) ++k;
   const HeadSection &a = head_sections[k], &b = head_sections[k + 1];
   const float t = std::clamp((rise - a.rise) / (b.rise - a.rise), 0.0F, 1.0F);
   // Near the crown an ellipse, which a straight line would cut short.
@@ -41,7 +41,9 @@ HeadSection section_at(float rise) {
 float bump(float value, float at, float size) { return std::exp(-std::pow((value - at) / size, 2.0F)); }
 
 // Vertices, and so texels, stand twice as dense before as in the mean, where the face is.
-float dense_before(float share) { return share + pictures::face_density * std::sin(full_turn * share) / full_turn; }
+float dense_before(float share) {
+  return share + pictures::face_density * std::sin(full_turn<float> * share) / full_turn<float>;
+}
 
 // Distance from the middle of the face, as a share of a turn: 0 before, 0.5 behind.
 float from_front(float share) { return std::abs(share - 0.5F); }
@@ -57,8 +59,8 @@ float between(std::initializer_list<std::pair<float, float>> table, float at) {
 
 Vector3f PersonBuilder::head_point(float share, float rise, float outwards, bool curtain) const {
   const float scale = (crown - chin) * height_;
-  const HeadSection section = section_at(curtain ? std::max(rise, 0.48F) : rise);
-  const float sine = std::sin(full_turn * share), cosine = std::cos(full_turn * share);
+  const HeadSection section = head_section_at(curtain ? std::max(rise, 0.48F) : rise);
+  const float sine = std::sin(full_turn<float> * share), cosine = std::cos(full_turn<float> * share);
   const float middle = 0.5F * (section.back - section.front), depth = 0.5F * (section.back + section.front);
   const float jaw = 1.0F - 0.07F * figure_ * smooth_step(0.45F, 0.10F, rise);
   const auto rounded = [](float value) { return std::copysign(std::pow(std::abs(value), 0.90F), value); };
@@ -232,7 +234,7 @@ void PersonBuilder::hair() {
   const Vector3f centre(0.0F, (0.50F * (crown - chin) + head_centre + 0.012F) * height_,
                         chin * height_ + 0.72F * scale);
   for (int k = 0; k <= 5; ++k) {
-    const float angle = 0.5F * full_turn * static_cast<float>(k) / 5.0F;
+    const float angle = 0.5F * full_turn<float> * static_cast<float>(k) / 5.0F;
     Ring ring;
     ring.centre = centre + Vector3f(0.0F, 0.0F, 0.032F * std::cos(angle));
     ring.width = 0.036F * std::sin(angle), ring.front = ring.back = 0.032F * std::sin(angle);

@@ -5,12 +5,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "full_turn.hpp"
+
 namespace holdfast::simulation {
 
 using Eigen::Vector3f;
 
 namespace {
-constexpr float full_turn = 2.0F * std::numbers::pi_v<float>;
 constexpr float pole_size = 1e-4F;  // a ring smaller than this is a point [m]
 
 float signed_power(float value, float power) { return std::copysign(std::pow(std::abs(value), power), value); }
@@ -18,7 +19,7 @@ float signed_power(float value, float power) { return std::copysign(std::pow(std
 bool is_pole(const Ring& ring) { return std::max({ring.width, ring.front, ring.back}) < pole_size; }
 
 Vector3f ring_point(const Ring& ring, float share, float bulge) {
-  const float sine = std::sin(full_turn * share), cosine = std::cos(full_turn * share);
+  const float sine = std::sin(full_turn<float> * share), cosine = std::cos(full_turn<float> * share);
   const float exponent = 2.0F / ring.power;
   const float depth = cosine > 0.0F ? ring.back : ring.front;
   const Vector3f outwards = -sine * ring.across + cosine * ring.behind;

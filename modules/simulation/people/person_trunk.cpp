@@ -9,7 +9,7 @@ namespace holdfast::simulation {
 using Eigen::Vector3f;
 
 namespace {
-constexpr float cloth_texels = 420.0F;  // per metre
+constexpr float trunk_cloth_texels = 420.0F;  // per metre
 
 // Half sizes of the trunk, as shares of the height, for the average man and woman.
 struct TrunkSection {
@@ -160,7 +160,7 @@ void PersonBuilder::trunk() {
   cut.neckline = static_cast<double>(rows[1] / rows.back());
   cut.shoulder = row_of(0.80F), cut.chest = row_of(0.735F), cut.waist = row_of(0.62F);
   cut.hem = look_.tucked_in ? 1.0 : static_cast<double>(rows[rows.size() - 2] / rows.back());
-  add(loft, cloth_texels, [&](cv::Size size, double texels, Random random) {
+  add(loft, trunk_cloth_texels, [&](cv::Size size, double texels, Random random) {
     return pictures::shirt(size, look_.top_cloth, cut, texels, random);
   });
   collar();
@@ -205,7 +205,7 @@ void PersonBuilder::collar() {
   loft.weights = [this](const Vector3f& position) {
     return chain_weights(-position.z(), Bone::neck, {{-0.850F * height_, 0.022F * height_, Bone::chest}});
   };
-  add(loft, cloth_texels, [&](cv::Size size, double texels, Random random) {
+  add(loft, trunk_cloth_texels, [&](cv::Size size, double texels, Random random) {
     return pictures::collar(size, look_.top_cloth, look_.top != Top::pullover, texels, random);
   });
 }
@@ -265,7 +265,7 @@ void PersonBuilder::seat() {
   };
   const std::vector<float> rows = ring_rows(loft.rings);
   const double hem = static_cast<double>(rows[rows.size() - std::min<std::size_t>(rows.size(), 4)] / rows.back());
-  add(loft, cloth_texels, [&](cv::Size size, double texels, Random random) {
+  add(loft, trunk_cloth_texels, [&](cv::Size size, double texels, Random random) {
     if (skirt) return pictures::skirt(size, look_.bottom_cloth, hem, texels, random);
     return pictures::trouser_seat(size, look_.bottom_cloth, look_.tucked_in, texels, random);
   });

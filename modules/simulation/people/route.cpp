@@ -10,12 +10,12 @@ namespace holdfast::simulation {
 using Eigen::Vector2d;
 
 namespace {
-constexpr double averaged = 0.25;        // to both sides, for the heading [m]
-constexpr double least_radius = 0.5;     // below it one turns on the spot [m]
-constexpr double sharpest_corner = 1.8;  // above it one turns on the spot [rad]
-constexpr double acceleration = 1.0;     // [m/s^2]
-constexpr double fastest_turn = 1.9;     // [rad/s]
-constexpr double same_place = 1e-6;      // [m]
+constexpr double averaged_length = 0.25;  // to both sides, for the heading [m]
+constexpr double least_radius = 0.5;      // below it one turns on the spot [m]
+constexpr double sharpest_corner = 1.8;   // above it one turns on the spot [rad]
+constexpr double acceleration = 1.0;      // [m/s^2]
+constexpr double fastest_turn = 1.9;      // [rad/s]
+constexpr double same_place = 1e-6;       // [m]
 
 double wrapped(double angle) { return std::remainder(angle, 2.0 * std::numbers::pi); }
 
@@ -98,7 +98,8 @@ double Route::heading_integral(double distance) const {
 }
 
 double Route::heading(double distance) const {
-  return (heading_integral(distance + averaged) - heading_integral(distance - averaged)) / (2.0 * averaged);
+  return (heading_integral(distance + averaged_length) - heading_integral(distance - averaged_length)) /
+         (2.0 * averaged_length);
 }
 
 double Route::curvature(double distance) const {

@@ -2,14 +2,14 @@
 #include "holdfast/simulation/mesh.hpp"
 
 #include <cmath>
-#include <numbers>
+
+#include "full_turn.hpp"
 
 namespace holdfast::simulation {
 
 using Eigen::Vector3f;
 
 namespace {
-constexpr float turn = 2.0F * std::numbers::pi_v<float>;
 
 std::uint32_t add_vertex(Mesh& mesh, const Vector3f& position, const Vector3f& normal, float u, float v) {
   mesh.vertices.push_back({position, normal, u, v, 1.0F});
@@ -30,7 +30,7 @@ void add_disc(Mesh& mesh, const Vector3f& centre, float radius, float up, const 
       add_vertex(mesh, centre, normal, area.u + 0.5F * area.width, area.v + 0.5F * area.height);
   std::vector<std::uint32_t> rim;
   for (int i = 0; i < facets; ++i) {
-    const float angle = turn * static_cast<float>(i) / static_cast<float>(facets);
+    const float angle = full_turn<float> * static_cast<float>(i) / static_cast<float>(facets);
     const float x = std::cos(angle), y = std::sin(angle);
     rim.push_back(add_vertex(mesh, centre + radius * Vector3f(x, y, 0), normal, area.u + (0.5F + 0.5F * x) * area.width,
                              area.v + (0.5F - 0.5F * y) * area.height));
@@ -83,7 +83,7 @@ void add_cylinder(Mesh& mesh, const Vector3f& base, float bottom_radius, float t
   const std::uint32_t surface = mesh.surface_count++;
   std::vector<std::uint32_t> upper, lower;
   for (int i = 0; i <= facets; ++i) {
-    const float share = static_cast<float>(i) / static_cast<float>(facets), angle = turn * share;
+    const float share = static_cast<float>(i) / static_cast<float>(facets), angle = full_turn<float> * share;
     const Vector3f out(std::cos(angle), std::sin(angle), 0);
     const Vector3f normal = (out * height + Vector3f(0, 0, bottom_radius - top_radius)).normalized();
     const float u = side.u + share * side.width;
@@ -110,7 +110,7 @@ void add_bar(Mesh& mesh, const std::vector<Vector3f>& points, float radius, cons
     std::vector<std::uint32_t> ring;
     for (int i = 0; i <= facets; ++i) {
       const float part = static_cast<float>(i) / static_cast<float>(facets);
-      const Vector3f out = std::cos(turn * part) * side + std::sin(turn * part) * other;
+      const Vector3f out = std::cos(full_turn<float> * part) * side + std::sin(full_turn<float> * part) * other;
       ring.push_back(add_vertex(mesh, points[k] + radius * out, out, area.u + part * area.width,
                                 area.v + (1.0F - share) * area.height));
     }

@@ -7,7 +7,7 @@
 namespace holdfast::simulation {
 
 namespace {
-constexpr double width = 11.0, depth = 9.0;
+constexpr double hall_width = 11.0, hall_depth = 9.0;
 
 // Facing into the hall from its walls, and the same for things that stand free.
 constexpr double from_north = 0.0, from_east = -quarter_turn, from_south = 2 * quarter_turn, from_west = quarter_turn;
@@ -77,7 +77,7 @@ void furnish_walls(RoomBuilder& room, const Random& random) {
   room.poster(on_wall(south(10.3, 0), 1.75), 0.7, 1.0);
 
   // East, from south to north.
-  const auto east = [](double y, double off) { return Place{width - off, y, 0, from_east}; };
+  const auto east = [](double y, double off) { return Place{hall_width - off, y, 0, from_east}; };
   room.painting(on_wall(east(0.75, 0), 1.45), 0.8, 0.6);
   work(east(2.0, 0.40), 3);
   room.notice_board(on_wall(east(2.0, 0), 1.60), 1.4, 0.9);
@@ -96,7 +96,7 @@ void furnish_walls(RoomBuilder& room, const Random& random) {
   room.notice_board(on_wall(east(8.45, 0), 1.50), 0.8, 0.9);
 
   // North, from east to west.
-  const auto north = [](double x, double off) { return Place{x, depth - off, 0, from_north}; };
+  const auto north = [](double x, double off) { return Place{x, hall_depth - off, 0, from_north}; };
   room.bookcase(north(9.7, 0.17), 1.2, 1.9);
   room.cabinet(north(8.45, 0.25), 0.8, 0.45, 1.1);
   room.lamp({8.3, 8.75, 1.1, 0.4});
@@ -180,7 +180,7 @@ void furnish_islands(RoomBuilder& room, const Random& random) {
 
 Stage hall_stage() {
   Stage stage;
-  stage.walls = {Eigen::Vector3d::Zero(), Eigen::Vector3d(width, depth, 2.8)};
+  stage.walls = {Eigen::Vector3d::Zero(), Eigen::Vector3d(hall_width, hall_depth, 2.8)};
   stage.free_floor = {Eigen::Vector2d(5.0, 2.75), Eigen::Vector2d(9.9, 6.15)};
   stage.home = {7.1, 2.50, 1.38};
   stage.target = {7.1, 4.55, 0.85};
@@ -206,8 +206,8 @@ Stage hall_stage() {
 World make_hall(std::uint64_t seed) {
   World world;
   RoomBuilder room(world, seed);
-  room.shell({.width = width,
-              .depth = depth,
+  room.shell({.width = hall_width,
+              .depth = hall_depth,
               .height = 2.8F,
               .wall_density = 160.0,
               .floor_density = 130.0,

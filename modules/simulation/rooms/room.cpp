@@ -9,24 +9,24 @@
 namespace holdfast::simulation {
 
 namespace {
-constexpr std::pair<RoomKind, const char*> kinds[] = {
+constexpr std::pair<RoomKind, const char*> room_kinds[] = {
     {RoomKind::office, "office"}, {RoomKind::hall, "hall"}, {RoomKind::corridor, "corridor"}};
 }
 
 const char* to_string(RoomKind kind) {
-  for (const auto& [known, name] : kinds)
+  for (const auto& [known, name] : room_kinds)
     if (known == kind) return name;
   return "";
 }
 
 std::vector<std::string> room_names() {
   std::vector<std::string> names;
-  for (const auto& [kind, name] : kinds) names.emplace_back(name);
+  for (const auto& [kind, name] : room_kinds) names.emplace_back(name);
   return names;
 }
 
 RoomKind room_kind(const std::string& name) {
-  for (const auto& [kind, known] : kinds)
+  for (const auto& [kind, known] : room_kinds)
     if (name == known) return kind;
   throw ConfigurationError(SourceLocation{}, "room '" + name + "' is not known; expected office, hall or corridor");
 }

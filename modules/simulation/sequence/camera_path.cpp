@@ -2,9 +2,9 @@
 #include "holdfast/simulation/camera_path.hpp"
 
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "full_turn.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/random.hpp"
 
@@ -13,7 +13,6 @@ namespace holdfast::simulation {
 using Eigen::Vector3d;
 
 namespace {
-constexpr double turn = 2.0 * std::numbers::pi;
 // Time as the motion feels it: speed rises smoothly from 0 to 1 within `ramp` seconds.
 double eased(double time) {
   constexpr double ramp = 1.0;
@@ -22,16 +21,16 @@ double eased(double time) {
   return ramp * (t * t * t - 0.5 * t * t * t * t);  // the integral of smoothstep
 }
 
-constexpr std::pair<PathKind, const char*> kinds[] = {{PathKind::fixed, "static"},
-                                                      {PathKind::xyz, "xyz"},
-                                                      {PathKind::halfsphere, "halfsphere"},
-                                                      {PathKind::rpy, "rpy"},
-                                                      {PathKind::loop, "loop"},
-                                                      {PathKind::corridor, "corridor"},
-                                                      {PathKind::table_edge, "table_edge"},
-                                                      {PathKind::rotation, "rotation"},
-                                                      {PathKind::square, "square"},
-                                                      {PathKind::waypoints, "waypoints"}};
+constexpr std::pair<PathKind, const char*> path_kinds[] = {{PathKind::fixed, "static"},
+                                                           {PathKind::xyz, "xyz"},
+                                                           {PathKind::halfsphere, "halfsphere"},
+                                                           {PathKind::rpy, "rpy"},
+                                                           {PathKind::loop, "loop"},
+                                                           {PathKind::corridor, "corridor"},
+                                                           {PathKind::table_edge, "table_edge"},
+                                                           {PathKind::rotation, "rotation"},
+                                                           {PathKind::square, "square"},
+                                                           {PathKind::waypoints, "waypoints"}};
 
 constexpr double edge_stroke = 0.075, edge_period = 8.0;                 // of table_edge [m], [s]
 constexpr double rotation_period = 20.0, rotation_radius = 0.12;         // the camera is held before the body
@@ -51,21 +50,21 @@ std::optional<WaypointPath> walk_of(PathKind kind, const Stage& stage) {
 }  // namespace
 
 const char* to_string(PathKind kind) {
-  for (const auto& [known, name] : kinds)
+  for (const auto& [known, name] : path_kinds)
     if (known == kind) return name;
   return "";
 }
 
 std::vector<std::string> path_names(bool of_stage_alone) {
   std::vector<std::string> names;
-  for (const auto& [kind, name] : kinds)
+  for (const auto& [kind, name] : path_kinds)
     if (kind != PathKind::waypoints || !of_stage_alone) names.emplace_back(name);
   return names;
 }
 
 PathKind path_kind(const std::string& name) {
   std::string expected;
-  for (const auto& [kind, known] : kinds) {
+  for (const auto& [kind, known] : path_kinds) {
     if (name == known) return kind;
     expected += (expected.empty() ? "" : kind == PathKind::waypoints ? " or " : ", ") + std::string(known);
   }
@@ -96,7 +95,7 @@ CameraPath::CameraPath(PathKind kind, const Stage& stage, std::optional<Waypoint
                        const PathStyle& style)
     : kind_(kind), stage_(stage), style_(style), walk_(std::move(walk)) {
   Random random = Random(seed).fork(0x9a7);
-  for (double& phase : phases_) phase = random.uniform(0.0, turn);
+  for (double& phase : phases_) phase = random.uniform(0.0, full_turn<double>);
   // On the table's edge the hand rests.
   const double steadiness = kind == PathKind::table_edge ? 0.3 : 1.0;
   for (int axis = 0; axis < 6; ++axis)
@@ -104,7 +103,7 @@ CameraPath::CameraPath(PathKind kind, const Stage& stage, std::optional<Waypoint
       // A hand trembles most below 1 Hz; amplitudes fall with frequency so that no frame jumps.
       const double frequency = random.uniform(0.4, 1.0) * (1.0 + 0.9 * i);
       const double size = (axis < 3 ? 0.0035 : 0.0045) / (1.0 + i) * steadiness * style.shake;
-      tremors_[axis].push_back({size * random.uniform(0.5, 1.0), frequency, random.uniform(0.0, turn)});
+      tremors_[axis].push_back({size * random.uniform(0.5, 1.0), frequency, random.uniform(0.0, full_turn<double>)});
     }
 }
 
@@ -118,13 +117,13 @@ double CameraPath::cycle() const {
 Eigen::Isometry3d CameraPath::hand_pose(double t) const {
   const Vector3d &home = stage_.home, &target = stage_.target;
   const Stage::HalfSphere& sphere = stage_.half_sphere;
-  const auto wave = [&](int phase, double period) { return std::sin(turn * t / period + phases_[phase]); };
+  const auto wave = [&](int phase, double period) { return std::sin(full_turn<double> * t / period + phases_[phase]); };
   Eigen::Isometry3d pose;
   switch (kind_) {
     case PathKind::xyz: {
       // One axis after the other comes to the fore.
       const auto swell = [&](int phase, double shift) {
-        return 0.62 + 0.38 * std::cos(turn * (t / 19.0 + shift) + phases_[3 + phase] * 0.1);
+        return 0.62 + 0.38 * std::cos(full_turn<double> * (t / 19.0 + shift) + phases_[3 + phase] * 0.1);
       };
       const Vector3d offset(0.42 * swell(0, 0.0) * wave(0, 6.1), 0.36 * swell(1, 1.0 / 3) * wave(1, 7.3),
                             0.30 * swell(2, 2.0 / 3) * wave(2, 5.3));
@@ -149,10 +148,10 @@ Eigen::Isometry3d CameraPath::hand_pose(double t) const {
     }
     case PathKind::table_edge:
       pose = look_at(stage_.table_edge, stage_.table_edge_target);
-      pose.translation().x() -= 0.5 * edge_stroke * std::cos(turn * t / edge_period);
+      pose.translation().x() -= 0.5 * edge_stroke * std::cos(full_turn<double> * t / edge_period);
       break;
     case PathKind::rotation: {
-      const double heading = 0.25 * turn + turn * t / rotation_period;
+      const double heading = 0.25 * full_turn<double> + full_turn<double> * t / rotation_period;
       const Vector3d out(std::cos(heading), std::sin(heading), 0.0);
       pose = look_along(stage_.spot + rotation_radius * out, heading, 0.2);
       break;
@@ -167,8 +166,9 @@ Eigen::Isometry3d CameraPath::walk_pose(double t) const {
   Eigen::Isometry3d pose = walk_->pose(t);
   // The body rises with every step and sways with every other.
   const double steps = walk_->walked(t) / step_length;
-  pose.translation() += style_.shake * (bob_up * std::sin(turn * steps + phases_[0]) * Vector3d::UnitZ() +
-                                        bob_aside * std::sin(0.5 * turn * steps + phases_[1]) * pose.linear().col(0));
+  pose.translation() +=
+      style_.shake * (bob_up * std::sin(full_turn<double> * steps + phases_[0]) * Vector3d::UnitZ() +
+                      bob_aside * std::sin(0.5 * full_turn<double> * steps + phases_[1]) * pose.linear().col(0));
   return pose;
 }
 
@@ -178,7 +178,7 @@ Eigen::Isometry3d CameraPath::pose(double time) const {
   double shake[6] = {};
   for (int axis = 0; axis < 6; ++axis)
     for (const Tremor& tremor : tremors_[axis])
-      shake[axis] += tremor.amplitude * std::sin(turn * tremor.frequency * hand_time + tremor.phase);
+      shake[axis] += tremor.amplitude * std::sin(full_turn<double> * tremor.frequency * hand_time + tremor.phase);
   const Vector3d angles(shake[3], shake[4], shake[5]);
   const double angle = angles.norm();
   pose.translate(Vector3d(shake[0], shake[1], shake[2]));

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <sstream>
 
+#include "full_turn.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/simulation/camera_path.hpp"
 
@@ -14,7 +15,6 @@ namespace holdfast::simulation {
 using Eigen::Vector3d;
 
 namespace {
-constexpr double turn = 2.0 * std::numbers::pi;
 constexpr double spacing = 0.02;      // of samples [m]
 constexpr double gaze_window = 0.9;   // of each moving average over the heading [m]
 constexpr double ramp = 1.0;          // time to start and to stop at the ends of an open path [s]
@@ -165,9 +165,9 @@ void WaypointPath::find_headings() {
   headings_.push_back(direction(0));
   for (long i = 1; i <= static_cast<long>(positions_.size()); ++i) {
     const double before = headings_.back();
-    headings_.push_back(before + std::remainder(direction(i) - before, turn));
+    headings_.push_back(before + std::remainder(direction(i) - before, full_turn<double>));
   }
-  winding_ = closed ? turn * std::round((headings_.back() - headings_.front()) / turn) : 0.0;
+  winding_ = closed ? full_turn<double> * std::round((headings_.back() - headings_.front()) / full_turn<double>) : 0.0;
   headings_.pop_back();
   const long gaze_half = std::lround(0.5 * gaze_window / spacing);
   for (int pass = 0; pass < 2; ++pass) headings_ = moving_average(headings_, gaze_half, closed, winding_);
@@ -218,7 +218,7 @@ Eigen::Isometry3d WaypointPath::pose(double time) const {
   if (waypoints_.target) return look_at(eye, *waypoints_.target);
   // About one glance to each side per 6 m, a whole number on the way.
   const double glances = std::max(1.0, std::round(length_ / 6.0));
-  const double swing = waypoints_.glance * std::sin(turn * glances * now.distance / length_);
+  const double swing = waypoints_.glance * std::sin(full_turn<double> * glances * now.distance / length_);
   // Turning at the end passes over the side to which the gaze is turned.
   const double side = waypoints_.aside < 0.0 ? -1.0 : 1.0;
   const double there = waypoints_.aside + swing, back = side * std::numbers::pi - waypoints_.aside + swing;

@@ -13,10 +13,6 @@
 
 namespace holdfast {
 
-namespace {
-constexpr int border = 31;  // [px of the level], OpenCV's default edge threshold and patch size
-}  // namespace
-
 void OpencvOrbSettings::describe(ParameterTable<OpencvOrbSettings>& table) {
   using S = OpencvOrbSettings;
   table.add("count", &S::count, "number of features to extract per image").range(10, 50000);
@@ -24,6 +20,14 @@ void OpencvOrbSettings::describe(ParameterTable<OpencvOrbSettings>& table) {
   table.add("levels", &S::levels, "number of pyramid levels").range(1, 16);
   table.add("fast_threshold", &S::fast_threshold, "minimum contrast of a FAST corner").range(1, 250).unit("grey level");
 }
+
+}  // namespace holdfast
+
+namespace holdfast::opencv_orb_plugin {
+
+namespace {
+constexpr int border = 31;  // [px of the level], OpenCV's default edge threshold and patch size
+}  // namespace
 
 OpencvOrb::OpencvOrb(const OpencvOrbSettings& settings, const CreationContext&)
     : pyramid_(settings.levels, settings.scale_factor),
@@ -69,4 +73,4 @@ void OpencvOrb::extract(const cv::Mat& grey, const cv::Mat& ignore, Features& ou
   }
 }
 
-}  // namespace holdfast
+}  // namespace holdfast::opencv_orb_plugin

@@ -14,7 +14,7 @@ namespace cv {
 class ORB;
 }
 
-namespace holdfast {
+namespace holdfast::opencv_orb_plugin {
 
 /// OpenCV's ORB (Rublee et al., ICCV 2011) behind our interface: features by Harris response over the whole image, with
 /// no care for an even spread. A yardstick, and the proof that extractors can be swapped. `count` may be exceeded by
@@ -37,4 +37,4 @@ class OpencvOrb : public FeatureExtractor {
   cv::Mat descriptors_, mask_;
 };
 
-}  // namespace holdfast
+}  // namespace holdfast::opencv_orb_plugin

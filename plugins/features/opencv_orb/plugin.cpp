@@ -4,7 +4,7 @@
 #include "opencv_orb.hpp"
 
 HOLDFAST_PLUGIN(opencv_orb, registry) {
-  registry.add<holdfast::FeatureExtractor, holdfast::OpencvOrb, holdfast::OpencvOrbSettings>(
+  registry.add<holdfast::FeatureExtractor, holdfast::opencv_orb_plugin::OpencvOrb, holdfast::OpencvOrbSettings>(
       {.name = holdfast::OpencvOrbSettings::module,
        .summary = "OpenCV's ORB: the strongest FAST corners of each pyramid level, steered BRIEF of 256 bits.",
        .paper = "Rublee, Rabaud, Konolige, Bradski: ORB: an efficient alternative to SIFT or SURF. ICCV 2011"});

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace holdfast::orb {
+namespace holdfast::orb_plugin {
 
 const std::array<BriefTest, 256>& brief_pattern() {
   static constexpr std::array<BriefTest, 256> pattern = {{
@@ -38,4 +38,4 @@ const std::int32_t* SteeredPattern::offsets(float angle) const {
   return offsets_.data() + static_cast<std::size_t>(step) * 512;
 }
 
-}  // namespace holdfast::orb
+}  // namespace holdfast::orb_plugin

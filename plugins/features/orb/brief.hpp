@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace holdfast::orb {
+namespace holdfast::orb_plugin {
 
 /// One binary test: bit = grey(x1, y1) < grey(x2, y2), in pixels from the feature, unrotated.
 struct BriefTest {
@@ -35,4 +35,4 @@ class SteeredPattern {
   std::vector<std::int32_t> offsets_;
 };
 
-}  // namespace holdfast::orb
+}  // namespace holdfast::orb_plugin

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
-namespace holdfast::orb {
+namespace holdfast::orb_plugin {
 
 void CornerDetector::begin(const ImageView& image) {
   width_ = image.width - 2 * border;
@@ -52,4 +52,4 @@ void CornerDetector::find_empty_cells(const std::vector<Corner>& corners) {
   }
 }
 
-}  // namespace holdfast::orb
+}  // namespace holdfast::orb_plugin

@@ -7,7 +7,7 @@
 #include "brief.hpp"
 #include "pyramid.hpp"
 
-namespace holdfast::orb {
+namespace holdfast::orb_plugin {
 
 /// A FAST corner of a level.
 struct Corner {
@@ -82,4 +82,4 @@ class CornerDetector {
   std::vector<Region> empty_;
 };
 
-}  // namespace holdfast::orb
+}  // namespace holdfast::orb_plugin

@@ -6,7 +6,7 @@
 
 #include "holdfast/core/error.hpp"
 
-namespace holdfast::orb {
+namespace holdfast::orb_plugin {
 
 void ResizeAxis::build(int input_size, int output_size) {
   const double ratio = static_cast<double>(input_size) / output_size;
@@ -49,4 +49,4 @@ const Kernels& kernels(SimdLevel level) {
   return scalar_kernels();
 }
 
-}  // namespace holdfast::orb
+}  // namespace holdfast::orb_plugin

@@ -9,7 +9,7 @@
 #include "holdfast/core/descriptor.hpp"
 #include "holdfast/core/simd.hpp"
 
-namespace holdfast::orb {
+namespace holdfast::orb_plugin {
 
 /// The circle of radius 3 around a pixel (Bresenham), clockwise from the top: column and row offsets.
 inline constexpr std::array<std::array<int, 2>, 16> circle = {{{0, -3},
@@ -105,4 +105,4 @@ const Kernels& sse4_kernels();
 const Kernels& avx2_kernels();
 #endif
 
-}  // namespace holdfast::orb
+}  // namespace holdfast::orb_plugin

@@ -7,7 +7,7 @@
 #define HOLDFAST_TARGET __attribute__((target("avx2,popcnt")))
 #define HOLDFAST_TARGET_INLINE HOLDFAST_TARGET __attribute__((always_inline)) inline
 
-namespace holdfast::orb {
+namespace holdfast::orb_plugin {
 namespace {
 
 const Kernels& narrower_kernels() { return sse4_kernels(); }
@@ -74,5 +74,5 @@ const Kernels& avx2_kernels() {
   return table;
 }
 
-}  // namespace holdfast::orb
+}  // namespace holdfast::orb_plugin
 #endif

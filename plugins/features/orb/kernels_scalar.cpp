@@ -5,7 +5,7 @@
 
 #include "kernels.hpp"
 
-namespace holdfast::orb {
+namespace holdfast::orb_plugin {
 
 namespace {
 
@@ -110,4 +110,4 @@ const Kernels& scalar_kernels() {
   return table;
 }
 
-}  // namespace holdfast::orb
+}  // namespace holdfast::orb_plugin

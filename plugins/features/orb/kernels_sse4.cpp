@@ -7,7 +7,7 @@
 #define HOLDFAST_TARGET __attribute__((target("sse4.1,popcnt")))
 #define HOLDFAST_TARGET_INLINE HOLDFAST_TARGET __attribute__((always_inline)) inline
 
-namespace holdfast::orb {
+namespace holdfast::orb_plugin {
 namespace {
 
 const Kernels& narrower_kernels() { return scalar_kernels(); }
@@ -70,5 +70,5 @@ const Kernels& sse4_kernels() {
   return table;
 }
 
-}  // namespace holdfast::orb
+}  // namespace holdfast::orb_plugin
 #endif

@@ -18,9 +18,9 @@
 
 namespace holdfast {
 
-using orb::Corner;
-using orb::CornerDetector;
-using orb::ImageView;
+using orb_plugin::Corner;
+using orb_plugin::CornerDetector;
+using orb_plugin::ImageView;
 
 void OrbSettings::describe(ParameterTable<OrbSettings>& table) {
   using S = OrbSettings;
@@ -44,17 +44,17 @@ void OrbSettings::describe(ParameterTable<OrbSettings>& table) {
 
 /// Buffers, kept from image to image.
 struct OrbExtractor::Work {
-  Work(const OrbSettings& settings, const ScalePyramid& scales, const orb::Kernels& chosen_kernels)
+  Work(const OrbSettings& settings, const ScalePyramid& scales, const orb_plugin::Kernels& chosen_kernels)
       : kernels(chosen_kernels),
         pyramid(scales, kernels),
         detector(settings.fast_threshold, settings.fast_threshold_low, settings.cell_size, kernels),
         corners(scales.levels()) {}
 
-  const orb::Kernels& kernels;
-  orb::ImagePyramid pyramid;
+  const orb_plugin::Kernels& kernels;
+  orb_plugin::ImagePyramid pyramid;
   CornerDetector detector;
-  orb::EvenSpread spread;
-  orb::SteeredPattern pattern;
+  orb_plugin::EvenSpread spread;
+  orb_plugin::SteeredPattern pattern;
   std::vector<std::vector<Corner>> corners;  // by level
   std::vector<std::uint8_t> blurred, row;
 };
@@ -62,7 +62,7 @@ struct OrbExtractor::Work {
 OrbExtractor::OrbExtractor(const OrbSettings& settings, const CreationContext&, SimdLevel level)
     : settings_(settings),
       scales_(settings.levels, settings.scale_factor),
-      work_(std::make_unique<Work>(settings_, scales_, orb::kernels(level))) {}
+      work_(std::make_unique<Work>(settings_, scales_, orb_plugin::kernels(level))) {}
 
 OrbExtractor::~OrbExtractor() = default;
 
@@ -79,7 +79,7 @@ void OrbExtractor::extract(const cv::Mat& grey, const cv::Mat& ignore, Features&
 }
 
 void OrbExtractor::detect(const cv::Mat& ignore) {
-  const orb::ImagePyramid& pyramid = work_->pyramid;
+  const orb_plugin::ImagePyramid& pyramid = work_->pyramid;
   for (int level = 0; level < pyramid.levels(); ++level) {
     std::vector<Corner>& corners = work_->corners[level];
     if (ignore.empty()) {
@@ -115,8 +115,8 @@ void OrbExtractor::select() {
 }
 
 void OrbExtractor::describe(Features& out) {
-  const orb::ImagePyramid& pyramid = work_->pyramid;
-  const orb::Kernels& kernels = work_->kernels;
+  const orb_plugin::ImagePyramid& pyramid = work_->pyramid;
+  const orb_plugin::Kernels& kernels = work_->kernels;
   std::size_t count = 0;
   for (int level = 0; level < pyramid.levels(); ++level) count += work_->corners[level].size();
   out.resize(count);
@@ -138,14 +138,14 @@ void OrbExtractor::describe(Features& out) {
     for (const Corner& corner : work_->corners[level]) {
       int moment_x = 0, moment_y = 0;
       kernels.moments(image.at(corner.x, corner.y), image.stride, moment_x, moment_y);
-      out.angle[i] = orb::direction(moment_x, moment_y);
+      out.angle[i] = orb_plugin::direction(moment_x, moment_y);
       kernels.describe(work_->blurred.data() + corner.y * stride + corner.x, work_->pattern.offsets(out.angle[i]),
                        out.descriptors[i]);
-      orb::SubpixelOffset offset;
+      orb_plugin::SubpixelOffset offset;
       if (settings_.subpixel) {
         std::array<std::uint8_t, 9> scores;
         kernels.neighbour_scores(image.at(corner.x, corner.y), image.stride, scores.data());
-        offset = orb::score_peak(scores);
+        offset = orb_plugin::score_peak(scores);
       }
       out.x[i] = pyramid.full_x(level, static_cast<float>(corner.x) + offset.x);
       out.y[i] = pyramid.full_y(level, static_cast<float>(corner.y) + offset.y);

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-namespace holdfast::orb {
+namespace holdfast::orb_plugin {
 
 float direction(int x, int y) {
   if (x == 0 && y == 0) return 0.0F;
@@ -26,4 +26,4 @@ float direction(int x, int y) {
   return result < 2 * std::numbers::pi_v<float> ? result : 0.0F;
 }
 
-}  // namespace holdfast::orb
+}  // namespace holdfast::orb_plugin

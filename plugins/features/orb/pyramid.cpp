@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace holdfast::orb {
+namespace holdfast::orb_plugin {
 
 void ImagePyramid::plan(int width, int height, int minimum_size) {
   planned_.clear();
@@ -41,4 +41,4 @@ void ImagePyramid::build(const cv::Mat& grey, int minimum_size) {
   }
 }
 
-}  // namespace holdfast::orb
+}  // namespace holdfast::orb_plugin

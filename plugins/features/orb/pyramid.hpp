@@ -10,7 +10,7 @@
 #include "holdfast/core/scale_pyramid.hpp"
 #include "kernels.hpp"
 
-namespace holdfast::orb {
+namespace holdfast::orb_plugin {
 
 /// The image at every scale, each level reduced from the one before. Buffers are kept from image to image.
 class ImagePyramid {
@@ -45,4 +45,4 @@ class ImagePyramid {
   std::vector<std::uint8_t> row_;
 };
 
-}  // namespace holdfast::orb
+}  // namespace holdfast::orb_plugin

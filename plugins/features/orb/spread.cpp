@@ -5,7 +5,7 @@
 #include <array>
 #include <bit>
 
-namespace holdfast::orb {
+namespace holdfast::orb_plugin {
 
 namespace {
 
@@ -124,4 +124,4 @@ void EvenSpread::select(std::size_t wanted, std::size_t spread, std::vector<Corn
   corners = chosen_;
 }
 
-}  // namespace holdfast::orb
+}  // namespace holdfast::orb_plugin

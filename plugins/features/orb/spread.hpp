@@ -6,7 +6,7 @@
 
 #include "detector.hpp"
 
-namespace holdfast::orb {
+namespace holdfast::orb_plugin {
 
 /// Chooses corners that are strong and evenly spread (the aim of Mur-Artal et al. 2015, section IV): the image is
 /// divided like a quad-tree, fullest square first, until there are as many squares as corners wanted, and the strongest
@@ -41,4 +41,4 @@ class EvenSpread {
   std::vector<Corner> chosen_;
 };
 
-}  // namespace holdfast::orb
+}  // namespace holdfast::orb_plugin

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace holdfast::orb {
+namespace holdfast::orb_plugin {
 
 SubpixelOffset score_peak(const std::array<std::uint8_t, 9>& s) {
   // f(x, y) = f0 + gx x + gy y + hxx x^2 / 2 + hxy x y + hyy y^2 / 2, times 6, 6, 3, 4 and 3: integers.
@@ -23,4 +23,4 @@ SubpixelOffset score_peak(const std::array<std::uint8_t, 9>& s) {
           std::clamp((hxy * gx - hxx * gy) / determinant, -limit, limit)};
 }
 
-}  // namespace holdfast::orb
+}  // namespace holdfast::orb_plugin

@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-namespace holdfast::orb {
+namespace holdfast::orb_plugin {
 
 /// Where between the pixels the corner score peaks.
 struct SubpixelOffset {
@@ -15,4 +15,4 @@ struct SubpixelOffset {
 /// middle one [px]; clamped to 0.75, and 0 where the scores have no peak.
 SubpixelOffset score_peak(const std::array<std::uint8_t, 9>& scores);
 
-}  // namespace holdfast::orb
+}  // namespace holdfast::orb_plugin

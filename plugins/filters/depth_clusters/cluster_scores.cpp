@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace holdfast::cluster_plugin {
+namespace holdfast::depth_clusters_plugin {
 
 using depth_blocks::Surface;
 
@@ -133,4 +133,4 @@ void ClusterScores::score(const BlockGrid& grid, const DepthView& now, const KMe
     }
 }
 
-}  // namespace holdfast::cluster_plugin
+}  // namespace holdfast::depth_clusters_plugin

@@ -8,7 +8,7 @@
 #include "k_means.hpp"
 #include "motion_correction.hpp"
 
-namespace holdfast::cluster_plugin {
+namespace holdfast::depth_clusters_plugin {
 
 /// Motion evidence of blocks and clusters from the comparison of a frame with an earlier one.
 class ClusterScores {
@@ -45,4 +45,4 @@ class ClusterScores {
   std::vector<float> contacts_;  // matrix: length of the border of two clusters with continuous depth [blocks]
 };
 
-}  // namespace holdfast::cluster_plugin
+}  // namespace holdfast::depth_clusters_plugin

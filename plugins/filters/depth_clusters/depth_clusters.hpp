@@ -10,7 +10,7 @@
 #include "holdfast/settings/depth_clusters.hpp"
 #include "k_means.hpp"
 
-namespace holdfast::cluster_plugin {
+namespace holdfast::depth_clusters_plugin {
 
 using depth_blocks::ViewMaker;
 
@@ -49,4 +49,4 @@ class DepthClusters final : public DynamicFilter {
   bool evaluated_ = false;
 };
 
-}  // namespace holdfast::cluster_plugin
+}  // namespace holdfast::depth_clusters_plugin

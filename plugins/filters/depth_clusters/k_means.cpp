@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace holdfast::cluster_plugin {
+namespace holdfast::depth_clusters_plugin {
 
 namespace {
 
@@ -123,4 +123,4 @@ void KMeans::divide(const BlockGrid& grid, const DepthView& view) {
   assign(grid);
 }
 
-}  // namespace holdfast::cluster_plugin
+}  // namespace holdfast::depth_clusters_plugin

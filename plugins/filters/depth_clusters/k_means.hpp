@@ -6,7 +6,7 @@
 
 #include "holdfast/depth_blocks/depth_view.hpp"
 
-namespace holdfast::cluster_plugin {
+namespace holdfast::depth_clusters_plugin {
 
 using depth_blocks::BlockGrid;
 using depth_blocks::DepthView;
@@ -45,4 +45,4 @@ class KMeans {
   std::vector<int> sizes_;
 };
 
-}  // namespace holdfast::cluster_plugin
+}  // namespace holdfast::depth_clusters_plugin

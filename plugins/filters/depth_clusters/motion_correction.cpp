@@ -8,7 +8,7 @@
 
 #include "holdfast/geometry/se3.hpp"
 
-namespace holdfast::cluster_plugin {
+namespace holdfast::depth_clusters_plugin {
 
 using depth_blocks::Surface;
 
@@ -106,4 +106,4 @@ bool MotionCorrection::correct(const DepthView& now, const DepthView& past, cons
   return first || second;
 }
 
-}  // namespace holdfast::cluster_plugin
+}  // namespace holdfast::depth_clusters_plugin

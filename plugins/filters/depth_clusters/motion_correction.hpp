@@ -6,7 +6,7 @@
 
 #include "holdfast/depth_blocks/depth_view.hpp"
 
-namespace holdfast::cluster_plugin {
+namespace holdfast::depth_clusters_plugin {
 
 using depth_blocks::BlockGrid;
 using depth_blocks::DepthNoise;
@@ -58,4 +58,4 @@ class MotionCorrection {
   Vector6f g_;
 };
 
-}  // namespace holdfast::cluster_plugin
+}  // namespace holdfast::depth_clusters_plugin

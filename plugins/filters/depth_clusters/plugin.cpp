@@ -5,7 +5,7 @@
 
 HOLDFAST_PLUGIN(depth_clusters, registry) {
   using namespace holdfast;
-  registry.add<DynamicFilter, cluster_plugin::DepthClusters, DepthClustersSettings>(
+  registry.add<DynamicFilter, depth_clusters_plugin::DepthClusters, DepthClustersSettings>(
       {.name = DepthClustersSettings::module,
        .summary = "Evidence against clusters of the depth image with large residuals under the camera's motion.",
        .paper = "Jaimez, Kerl, Gonzalez-Jimenez, Cremers: Fast Odometry and Scene Flow from RGB-D Cameras based on "

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace holdfast::epipolar_plugin {
+namespace holdfast::epipolar_consistency_plugin {
 
 namespace {
 double focal_length(const Camera& camera) { return 0.5 * (camera.fx + camera.fy); }
@@ -87,4 +87,4 @@ void EpipolarConsistency::apply(const FilterContext& context, StaticEvidence& ev
   }
 }
 
-}  // namespace holdfast::epipolar_plugin
+}  // namespace holdfast::epipolar_consistency_plugin

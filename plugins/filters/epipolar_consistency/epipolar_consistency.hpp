@@ -10,7 +10,7 @@
 #include "holdfast/settings/epipolar_consistency.hpp"
 #include "two_views.hpp"
 
-namespace holdfast::epipolar_plugin {
+namespace holdfast::epipolar_consistency_plugin {
 
 /// Moving consistency check after DS-SLAM (Yu, Liu, Liu, Xie, Yang, Wei, Fei: DS-SLAM, IROS 2018, section II-C):
 /// features are tracked between two images, a fundamental matrix is estimated by RANSAC, and a feature is moving if its
@@ -46,4 +46,4 @@ class EpipolarConsistency : public DynamicFilter {
   PointPairs pairs_;
 };
 
-}  // namespace holdfast::epipolar_plugin
+}  // namespace holdfast::epipolar_consistency_plugin

@@ -6,7 +6,7 @@
 #include <opencv2/video/tracking.hpp>
 #include <utility>
 
-namespace holdfast::epipolar_plugin {
+namespace holdfast::epipolar_consistency_plugin {
 
 namespace {
 constexpr double longest_pause = 0.25;  // s
@@ -68,4 +68,4 @@ void FeatureFlow::check_back(const std::vector<std::uint32_t>& places) {
   }
 }
 
-}  // namespace holdfast::epipolar_plugin
+}  // namespace holdfast::epipolar_consistency_plugin

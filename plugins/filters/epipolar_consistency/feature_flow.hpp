@@ -8,7 +8,7 @@
 
 #include "holdfast/core/features.hpp"
 
-namespace holdfast::epipolar_plugin {
+namespace holdfast::epipolar_consistency_plugin {
 
 /// Tracks features into earlier images by pyramidal Lucas-Kanade (Bouguet, "Pyramidal implementation of the Lucas
 /// Kanade feature tracker", 2000) on grey images of half size. Keeps the pyramids of the last images. One thread.
@@ -46,4 +46,4 @@ class FeatureFlow {
   std::vector<float> difference_;
 };
 
-}  // namespace holdfast::epipolar_plugin
+}  // namespace holdfast::epipolar_consistency_plugin

@@ -5,7 +5,7 @@
 
 HOLDFAST_PLUGIN(epipolar_consistency, registry) {
   using namespace holdfast;
-  registry.add<DynamicFilter, epipolar_plugin::EpipolarConsistency, EpipolarConsistencySettings>(
+  registry.add<DynamicFilter, epipolar_consistency_plugin::EpipolarConsistency, EpipolarConsistencySettings>(
       {.name = EpipolarConsistencySettings::module,
        .summary = "Evidence against features that violate the epipolar constraint; none if the epipolar geometry is "
                   "degenerate.",

@@ -11,7 +11,7 @@
 
 #include "holdfast/geometry/ransac.hpp"
 
-namespace holdfast::epipolar_plugin {
+namespace holdfast::epipolar_consistency_plugin {
 
 namespace {
 constexpr std::size_t min_pairs = 30;    // with fewer, the support of a fundamental matrix is not significant
@@ -238,4 +238,4 @@ Verdict TwoViews::estimate(const PointPairs& pairs, Random& random) {
   return Verdict::usable;
 }
 
-}  // namespace holdfast::epipolar_plugin
+}  // namespace holdfast::epipolar_consistency_plugin

@@ -9,7 +9,7 @@
 
 /// Two-view geometry of point pairs, with a test for degeneracy (Hartley and Zisserman, Multiple View Geometry, 2004,
 /// chapters 4 and 11).
-namespace holdfast::epipolar_plugin {
+namespace holdfast::epipolar_consistency_plugin {
 
 /// Positions of points in view a (earlier) and view b (current): undistorted pixels minus the principal point, divided
 /// by the focal length. Entry i of every array belongs to pair i.
@@ -74,4 +74,4 @@ class TwoViews {
   double support_ = 0.0, parallax_share_ = 0.0;
 };
 
-}  // namespace holdfast::epipolar_plugin
+}  // namespace holdfast::epipolar_consistency_plugin

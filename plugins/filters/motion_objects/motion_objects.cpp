@@ -8,7 +8,7 @@
 
 #include "holdfast/geometry/so3.hpp"
 
-namespace holdfast::object_plugin {
+namespace holdfast::motion_objects_plugin {
 
 namespace {
 
@@ -434,4 +434,4 @@ void MotionObjects::apply(const FilterContext& context, StaticEvidence& evidence
   }
 }
 
-}  // namespace holdfast::object_plugin
+}  // namespace holdfast::motion_objects_plugin

@@ -14,7 +14,7 @@
 #include "regions.hpp"
 #include "rigid_alignment.hpp"
 
-namespace holdfast::object_plugin {
+namespace holdfast::motion_objects_plugin {
 
 /// Tracks moving objects: regions that earlier filters of the chain classify as moving, and that are connected in
 /// depth, become tracks. Each track is aligned with an earlier frame by its own rigid motion, which gives its velocity.
@@ -102,4 +102,4 @@ class MotionObjects final : public DynamicFilter {
   Eigen::Isometry3f T_last_now_ = Eigen::Isometry3f::Identity();
 };
 
-}  // namespace holdfast::object_plugin
+}  // namespace holdfast::motion_objects_plugin

@@ -6,7 +6,7 @@
 
 #include "holdfast/geometry/se3.hpp"
 
-namespace holdfast::object_plugin {
+namespace holdfast::motion_objects_plugin {
 
 namespace {
 
@@ -138,4 +138,4 @@ void ObjectTrack::transform(const Eigen::Isometry3d& T_new_old) {
   travelled_ = T_new_old.linear() * travelled_;
 }
 
-}  // namespace holdfast::object_plugin
+}  // namespace holdfast::motion_objects_plugin

@@ -8,7 +8,7 @@
 
 #include "holdfast/core/moving_object.hpp"
 
-namespace holdfast::object_plugin {
+namespace holdfast::motion_objects_plugin {
 
 /// Criterion for moving objects.
 struct MovingRule {
@@ -82,4 +82,4 @@ class ObjectTrack {
   std::vector<float> labels_;
 };
 
-}  // namespace holdfast::object_plugin
+}  // namespace holdfast::motion_objects_plugin

@@ -5,7 +5,7 @@
 
 HOLDFAST_PLUGIN(motion_objects, registry) {
   using namespace holdfast;
-  registry.add<DynamicFilter, object_plugin::MotionObjects, MotionObjectsSettings>(
+  registry.add<DynamicFilter, motion_objects_plugin::MotionObjects, MotionObjectsSettings>(
       {.name = MotionObjectsSettings::module,
        .summary = "Tracks moving objects, each with its own rigid motion, and reports them to observers.",
        .paper =

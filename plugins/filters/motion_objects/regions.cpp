@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace holdfast::object_plugin {
+namespace holdfast::motion_objects_plugin {
 
 void Regions::begin(const std::vector<BlockHint>& hints) {
   front_.clear();
@@ -74,4 +74,4 @@ void Regions::measure(const BlockGrid& grid, const std::vector<float>& depth, Re
   region.cut = cut.cwiseQuotient(ends.cwiseMax(1.0F));
 }
 
-}  // namespace holdfast::object_plugin
+}  // namespace holdfast::motion_objects_plugin

@@ -8,7 +8,7 @@
 
 #include "holdfast/depth_blocks/depth_view.hpp"
 
-namespace holdfast::object_plugin {
+namespace holdfast::motion_objects_plugin {
 
 using depth_blocks::BlockGrid;
 
@@ -30,7 +30,7 @@ struct Region {
   float surface = 0.0F;          ///< facing the camera [m^2]
   Eigen::Vector2f cut = {0, 0};  ///< fraction of its left and right ends, and of its upper and lower ends, that are cut
                                  ///< by the image border or a nearer surface
-  int inner = 0;  ///< number of blocks whose four neighbours belong to the region
+  int inner = 0;                 ///< number of blocks whose four neighbours belong to the region
 };
 
 /// Divides the motion hypotheses of a frame into regions that are connected in depth and belong to one track
@@ -94,4 +94,4 @@ class Regions {
   std::vector<int> region_of_;  // of each block, -1 = none
 };
 
-}  // namespace holdfast::object_plugin
+}  // namespace holdfast::motion_objects_plugin

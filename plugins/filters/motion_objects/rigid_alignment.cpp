@@ -7,7 +7,7 @@
 
 #include "holdfast/geometry/so3.hpp"
 
-namespace holdfast::object_plugin {
+namespace holdfast::motion_objects_plugin {
 
 using depth_blocks::Surface;
 
@@ -99,4 +99,4 @@ AlignmentResult RigidAlignment::align(const ObjectPoints& now, const DepthView& 
   return result;
 }
 
-}  // namespace holdfast::object_plugin
+}  // namespace holdfast::motion_objects_plugin

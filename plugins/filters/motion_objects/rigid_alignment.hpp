@@ -7,7 +7,7 @@
 
 #include "holdfast/depth_blocks/depth_view.hpp"
 
-namespace holdfast::object_plugin {
+namespace holdfast::motion_objects_plugin {
 
 using depth_blocks::BlockGrid;
 using depth_blocks::DepthNoise;
@@ -78,4 +78,4 @@ class RigidAlignment {
   DepthNoise noise_;
 };
 
-}  // namespace holdfast::object_plugin
+}  // namespace holdfast::motion_objects_plugin

@@ -7,7 +7,7 @@
 #include "holdfast/interfaces/dynamic_filter.hpp"
 #include "holdfast/settings/multi_view_depth.hpp"
 
-namespace holdfast {
+namespace holdfast::multi_view_depth_plugin {
 
 /// Compares dense depth with keyframes before features are matched: every block of the frame is projected into
 /// keyframes with the predicted pose. If a keyframe observed a greater depth, it observed free space, and the surface
@@ -52,4 +52,4 @@ class MultiViewDepth final : public DynamicFilter {
   std::vector<int> front_, next_front_;
 };
 
-}  // namespace holdfast
+}  // namespace holdfast::multi_view_depth_plugin

@@ -6,7 +6,7 @@
 
 #include "holdfast/plugin/plugin.hpp"
 
-namespace holdfast {
+namespace holdfast::reprojection_error_plugin {
 
 ReprojectionError::ReprojectionError(const ReprojectionErrorSettings& settings, const CreationContext&)
     : settings_(settings) {}
@@ -81,10 +81,11 @@ void ReprojectionError::apply(const FilterContext& context, StaticEvidence& evid
   }
 }
 
-}  // namespace holdfast
+}  // namespace holdfast::reprojection_error_plugin
 
 HOLDFAST_PLUGIN(reprojection_error, registry) {
-  registry.add<holdfast::DynamicFilter, holdfast::ReprojectionError, holdfast::ReprojectionErrorSettings>(
+  registry.add<holdfast::DynamicFilter, holdfast::reprojection_error_plugin::ReprojectionError,
+               holdfast::ReprojectionErrorSettings>(
       {.name = holdfast::ReprojectionErrorSettings::module,
        .summary =
            "What lies far from its map point for several frames moves; silent when the pose may be what is wrong.",

@@ -8,7 +8,7 @@
 #include "holdfast/interfaces/dynamic_filter.hpp"
 #include "holdfast/settings/reprojection_error.hpp"
 
-namespace holdfast {
+namespace holdfast::reprojection_error_plugin {
 
 /// Tests matched features by their reprojection error under the pose that was estimated from the matches: the
 /// chi-square test in pixels (with the virtual right column if there is depth), the stability of a point's matches, and
@@ -52,4 +52,4 @@ class ReprojectionError final : public DynamicFilter {
   std::vector<History> histories_;
 };
 
-}  // namespace holdfast
+}  // namespace holdfast::reprojection_error_plugin

@@ -44,8 +44,8 @@ class Overlay final : public Observer {
  private:
   std::uint64_t every_;
   bool is_on_;
-  overlay::Painter painter_;
-  overlay::PictureFiles files_;
+  overlay_plugin::Painter painter_;
+  overlay_plugin::PictureFiles files_;
 };
 
 }  // namespace

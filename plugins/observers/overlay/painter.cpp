@@ -9,7 +9,7 @@
 
 #include "holdfast/core/error.hpp"
 
-namespace holdfast::overlay {
+namespace holdfast::overlay_plugin {
 
 namespace {
 
@@ -148,4 +148,4 @@ const cv::Mat& Painter::paint(const SensorFrame& sensor_frame, const Frame& fram
   return picture_;
 }
 
-}  // namespace holdfast::overlay
+}  // namespace holdfast::overlay_plugin

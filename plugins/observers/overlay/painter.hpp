@@ -10,7 +10,7 @@
 #include "holdfast/core/frame_result.hpp"
 #include "holdfast/core/sensor_frame.hpp"
 
-namespace holdfast::overlay {
+namespace holdfast::overlay_plugin {
 
 /// Draws masks, evidence, features and objects of a frame over its colour image. One thread.
 class Painter {
@@ -44,4 +44,4 @@ std::string status_text(const FrameResult& result);
 /// "3 person 0.62 m/s".
 std::string object_text(const MovingObject& object);
 
-}  // namespace holdfast::overlay
+}  // namespace holdfast::overlay_plugin

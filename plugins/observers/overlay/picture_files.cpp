@@ -12,7 +12,7 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/trajectory.hpp"
 
-namespace holdfast::overlay {
+namespace holdfast::overlay_plugin {
 
 namespace fs = std::filesystem;
 
@@ -78,4 +78,4 @@ void PictureFiles::close() {
   if (error) throw InputError({video_file(false).string()}, "cannot be written: " + error.message());
 }
 
-}  // namespace holdfast::overlay
+}  // namespace holdfast::overlay_plugin

@@ -12,7 +12,7 @@ namespace cv {
 class VideoWriter;
 }
 
-namespace holdfast::overlay {
+namespace holdfast::overlay_plugin {
 
 /// Writes pictures into a folder, as single files or as one video. The folder and the video are created with the first
 /// picture. Files are renamed when they are complete; a video by close() or the destructor.
@@ -42,4 +42,4 @@ class PictureFiles {
   std::unique_ptr<cv::VideoWriter> video_;
 };
 
-}  // namespace holdfast::overlay
+}  // namespace holdfast::overlay_plugin

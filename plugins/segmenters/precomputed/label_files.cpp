@@ -10,7 +10,7 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/image_files/image_list.hpp"
 
-namespace holdfast {
+namespace holdfast::precomputed_plugin {
 
 namespace {
 
@@ -83,4 +83,4 @@ const LabelFile* nearest_label_file(const std::vector<LabelFile>& files, double 
   return best != nullptr && std::abs(best->timestamp - timestamp) <= tolerance ? best : nullptr;
 }
 
-}  // namespace holdfast
+}  // namespace holdfast::precomputed_plugin

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace holdfast {
+namespace holdfast::precomputed_plugin {
 
 /// A label image and the moment it belongs to.
 struct LabelFile {
@@ -24,4 +24,4 @@ std::vector<LabelFile> listed_label_files(const std::filesystem::path& folder, c
 /// earlier.
 const LabelFile* nearest_label_file(const std::vector<LabelFile>& files, double timestamp, double tolerance);
 
-}  // namespace holdfast
+}  // namespace holdfast::precomputed_plugin

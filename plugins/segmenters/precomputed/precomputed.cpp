@@ -36,6 +36,8 @@ void PrecomputedSettings::describe(ParameterTable<PrecomputedSettings>& table) {
 
 namespace {
 
+using namespace precomputed_plugin;
+
 /// Stamps in file names and lists have six decimals.
 constexpr double min_tolerance = 1e-6;
 

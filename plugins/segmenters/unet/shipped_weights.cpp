@@ -16,8 +16,8 @@ extern const std::uint8_t holdfast_unet_begin[];
 extern const std::uint8_t holdfast_unet_end[];
 }
 
-namespace holdfast {
+namespace holdfast::unet_plugin {
 
 std::span<const std::uint8_t> shipped_unet() { return {holdfast_unet_begin, holdfast_unet_end}; }
 
-}  // namespace holdfast
+}  // namespace holdfast::unet_plugin

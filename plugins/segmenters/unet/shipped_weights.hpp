@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <span>
 
-namespace holdfast {
+namespace holdfast::unet_plugin {
 
 /// The network that Holdfast comes with: unet.onnx of this folder, compiled in.
 std::span<const std::uint8_t> shipped_unet();
 
-}  // namespace holdfast
+}  // namespace holdfast::unet_plugin

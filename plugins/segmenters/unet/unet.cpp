@@ -38,6 +38,8 @@ void UnetSettings::describe(ParameterTable<UnetSettings>& table) {
 
 namespace {
 
+using namespace unet_plugin;
+
 /// The shipped network halves its picture five times.
 void check_side(const char* name, int pixels) {
   constexpr int unit = 32;

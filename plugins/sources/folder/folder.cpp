@@ -12,6 +12,8 @@ namespace holdfast {
 
 namespace {
 
+using namespace folder_plugin;
+
 struct FolderSettings {
   std::filesystem::path path;
   std::string colour = "colour";

@@ -11,7 +11,7 @@
 
 #include "holdfast/core/error.hpp"
 
-namespace holdfast {
+namespace holdfast::folder_plugin {
 
 namespace {
 
@@ -133,4 +133,4 @@ Camera read_intrinsics(const std::filesystem::path& file, const Camera& defaults
   return camera;
 }
 
-}  // namespace holdfast
+}  // namespace holdfast::folder_plugin

@@ -5,7 +5,7 @@
 
 #include "holdfast/core/camera.hpp"
 
-namespace holdfast {
+namespace holdfast::folder_plugin {
 
 /// Reads a camera from a YAML or JSON file: fx, fy, cx, cy, width and height are required; k1, k2, p1, p2, k3 (radial
 /// and tangential distortion), baseline [m] and name are optional; `defaults` gives what is left out but for the
@@ -13,4 +13,4 @@ namespace holdfast {
 /// that is missing, unknown or given twice and for a value that cannot be.
 Camera read_intrinsics(const std::filesystem::path& file, const Camera& defaults);
 
-}  // namespace holdfast
+}  // namespace holdfast::folder_plugin

@@ -8,7 +8,7 @@
 
 #include "holdfast/core/error.hpp"
 
-namespace holdfast {
+namespace holdfast::folder_plugin {
 
 namespace {
 
@@ -137,4 +137,4 @@ bool comes_before(const FileNumbers& left, const FileNumbers& right) {
                                       });
 }
 
-}  // namespace holdfast
+}  // namespace holdfast::folder_plugin

@@ -31,10 +31,11 @@ struct Position {
 
 std::vector<Position> disc() {
   std::vector<Position> positions;
-  constexpr int limit = 4 * orb::brief_radius * orb::brief_radius;  // (r - 0.5)^2: a rotated sample stays within r
-  for (int y = -orb::brief_radius; y <= orb::brief_radius; ++y)
-    for (int x = -orb::brief_radius; x <= orb::brief_radius; ++x)
-      if (4 * (x * x + y * y) <= limit - 4 * orb::brief_radius + 1) positions.push_back({x, y});
+  constexpr int limit =
+      4 * orb_plugin::brief_radius * orb_plugin::brief_radius;  // (r - 0.5)^2: a rotated sample stays within r
+  for (int y = -orb_plugin::brief_radius; y <= orb_plugin::brief_radius; ++y)
+    for (int x = -orb_plugin::brief_radius; x <= orb_plugin::brief_radius; ++x)
+      if (4 * (x * x + y * y) <= limit - 4 * orb_plugin::brief_radius + 1) positions.push_back({x, y});
   return positions;
 }
 
@@ -47,10 +48,10 @@ struct Patches {
 class Sampler {
  public:
   Sampler(const cv::Mat& image, const ScalePyramid& scales)
-      : kernels_(orb::kernels(simd_level())), pyramid_(scales, kernels_) {
-    pyramid_.build(image, orb::CornerDetector::minimum_image_size);
+      : kernels_(orb_plugin::kernels(simd_level())), pyramid_(scales, kernels_) {
+    pyramid_.build(image, orb_plugin::CornerDetector::minimum_image_size);
     for (int level = 0; level < pyramid_.levels(); ++level) {
-      const orb::ImageView& view = pyramid_.view(level);
+      const orb_plugin::ImageView& view = pyramid_.view(level);
       std::vector<std::uint8_t> row(view.width);
       blurred_.emplace_back(cv::Mat::zeros(view.height, view.width, CV_8UC1));
       kernels_.blur(view.data, view.stride, view.width, view.height, row.data(), blurred_.back().data,
@@ -74,8 +75,8 @@ class Sampler {
   }
 
  private:
-  const orb::Kernels& kernels_;
-  orb::ImagePyramid pyramid_;
+  const orb_plugin::Kernels& kernels_;
+  orb_plugin::ImagePyramid pyramid_;
   std::vector<cv::Mat> blurred_;
 };
 
