@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "holdfast/geometry/se3.hpp"
+#include "holdfast/geometry/warp.hpp"
 
 namespace holdfast {
 
@@ -48,31 +49,27 @@ Eigen::Isometry3d DepthAgreement::find_view(const Frame& frame, const Eigen::Iso
 double DepthAgreement::share(const Frame& frame, const Eigen::Isometry3d& T_view_world) const {
   constexpr int stride = 4;  // cells
   const CoarseGrid& grid = frame.coarse.grid;
-  const Camera& camera = *frame.camera;
-  const float fx = static_cast<float>(camera.fx), fy = static_cast<float>(camera.fy);
-  const float cx = static_cast<float>(camera.cx), cy = static_cast<float>(camera.cy);
+  const geometry::Pinhole camera = geometry::pinhole_of(*frame.camera);
   int compared = 0, agreeing = 0;
   for (const Frame* keyframe : keyframes_) {
     if (!(keyframe->coarse.grid == grid)) continue;
-    const Eigen::Isometry3d motion = keyframe->T_view_world() * T_view_world.inverse();
-    const Eigen::Matrix3f R = motion.linear().cast<float>();
-    const Eigen::Vector3f t = motion.translation().cast<float>();
+    const geometry::Warp warp(keyframe->T_view_world() * T_view_world.inverse(), camera);
     const std::vector<float>& known = keyframe->coarse.static_log_odds;
     for (int row = stride / 2; row < grid.rows; row += stride)
       for (int column = stride / 2; column < grid.columns; column += stride) {
         const float depth = frame.coarse.depth[static_cast<std::size_t>(row * grid.columns + column)];
         if (depth == 0.0F) continue;
-        const Eigen::Vector3f ray((grid.x_of(column) - cx) / fx, (grid.y_of(row) - cy) / fy, 1.0F);
-        const Eigen::Vector3f there = R * (depth * ray) + t;
-        if (there.z() < 0.1F) continue;
-        const int cell = grid.cell_of(fx * there.x() / there.z() + cx, fy * there.y() / there.z() + cy);
+        const auto warped = warp(warp.ray_x(grid.x_of(column)), warp.ray_y(grid.y_of(row)), depth);
+        if (!warped) continue;
+        const int cell = grid.cell_of(warped->x, warped->y);
         if (cell < 0) continue;
         const std::size_t index = static_cast<std::size_t>(cell);
         if (!known.empty() && known[index] < 0.0F) continue;
         const float seen = keyframe->coarse.depth[index];
         if (seen == 0.0F) continue;
         ++compared;
-        agreeing += std::abs(seen - there.z()) < 0.01F + 0.01F * there.z() ? 1 : 0;
+        const float expected = warped->point.z();
+        agreeing += std::abs(seen - expected) < 0.01F + 0.01F * expected ? 1 : 0;
       }
   }
   constexpr int enough = 50;

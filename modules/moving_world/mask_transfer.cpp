@@ -5,11 +5,11 @@
 #include <array>
 #include <cmath>
 
+#include "holdfast/geometry/warp.hpp"
+
 namespace holdfast {
 
 namespace {
-
-bool is_object(std::uint8_t label) { return CellMask::is_object(label); }
 
 /// Depths of a static surface, seen from two poses, differ by less [m].
 float same_place(float depth) { return 0.01F + 0.012F * depth; }
@@ -57,15 +57,13 @@ void MaskTransfer::find_movers(const CoarseGrid& grid, const FollowedPairs& pair
     }
 }
 
-/// One transfer: both views, both masks, and the camera's motion in single precision.
+/// One transfer: both views, both masks, and the ego-motion.
 struct MaskTransfer::Job {
   const CoarseView& from_view;
   const CellMask& from;
   const CoarseView& to_view;
   CellMask& to;
-  Eigen::Matrix3f R;  // of T_from_to
-  Eigen::Vector3f t;
-  float fx, fy, cx, cy;
+  geometry::Warp warp;  // by T_from_to
 
   void take(std::size_t cell, std::size_t source) const {
     to.labels[cell] = from.labels[source];
@@ -81,17 +79,12 @@ void MaskTransfer::transfer(const CoarseView& from_view, const CellMask& from, c
   const std::size_t size = static_cast<std::size_t>(grid.size());
   to.assign(size, CellMask::background, 255);
   previous_state_.assign(size, CellState::occluded);
-  const Eigen::Isometry3d T_from_to = T_to_from.inverse();
+  constexpr float min_depth = 0.05F;  // m
   const Job job{.from_view = from_view,
                 .from = from,
                 .to_view = to_view,
                 .to = to,
-                .R = T_from_to.linear().cast<float>(),
-                .t = T_from_to.translation().cast<float>(),
-                .fx = static_cast<float>(camera_.fx),
-                .fy = static_cast<float>(camera_.fy),
-                .cx = static_cast<float>(camera_.cx),
-                .cy = static_cast<float>(camera_.cy)};
+                .warp = geometry::Warp(T_to_from.inverse(), geometry::pinhole_of(camera_), min_depth)};
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column) {
       const std::size_t cell = static_cast<std::size_t>(row * grid.columns + column);
@@ -106,18 +99,12 @@ void MaskTransfer::transfer(const CoarseView& from_view, const CellMask& from, c
 
 bool MaskTransfer::take_by_ego_motion(const Job& job, int column, int row) {
   const CoarseGrid& grid = job.to_view.grid;
-  const Eigen::Matrix3f& R = job.R;
-  const Eigen::Vector3f& t = job.t;
   const std::size_t cell = static_cast<std::size_t>(row * grid.columns + column);
   const float depth = job.to_view.depth[cell];
   if (!(depth > 0.0F)) return false;
-  const float ray_y = (grid.y_of(row) - job.cy) / job.fy;
-  const float ray_x = (grid.x_of(column) - job.cx) / job.fx;
-  const float z = depth * (R(2, 0) * ray_x + R(2, 1) * ray_y + R(2, 2)) + t.z();
-  int source = -1;
-  if (z > 0.05F)
-    source = grid.cell_of(job.fx * (depth * (R(0, 0) * ray_x + R(0, 1) * ray_y + R(0, 2)) + t.x()) / z + job.cx,
-                          job.fy * (depth * (R(1, 0) * ray_x + R(1, 1) * ray_y + R(1, 2)) + t.y()) / z + job.cy);
+  const auto warped = job.warp(job.warp.ray_x(grid.x_of(column)), job.warp.ray_y(grid.y_of(row)), depth);
+  const int source = warped ? grid.cell_of(warped->x, warped->y) : -1;
+  const float z = warped ? warped->point.z() : 0.0F;
   const float before = source < 0 ? 0.0F : job.from_view.depth[static_cast<std::size_t>(source)];
   if (before == 0.0F) {
     previous_state_[cell] = CellState::unobserved;
@@ -142,7 +129,7 @@ void MaskTransfer::take_by_object_motion(const Job& job, int column, int row) {
     const int source_column = column + mover.columns, source_row = row + mover.rows;
     if (source_column < 0 || source_row < 0 || source_column >= grid.columns || source_row >= grid.rows) continue;
     const std::size_t source = static_cast<std::size_t>(source_row * grid.columns + source_column);
-    if (!is_object(job.from.labels[source])) continue;
+    if (!CellMask::is_object(job.from.labels[source])) continue;
     const float before = job.from_view.depth[source];
     if (depth > 0.0F && (before == 0.0F || std::abs(before - depth - mover.depth_change) > same_surface(depth)))
       continue;
@@ -155,16 +142,15 @@ void MaskTransfer::take_without_depth(const Job& job, int column, int row) {
   // A surface too near for the depth sensor, such as a person right in front of the camera, shows the camera's rotation
   // only. Cells at the border of an object are left out: depth is missing there for other reasons.
   const CoarseGrid& grid = job.to_view.grid;
-  const Eigen::Vector3f ray =
-      job.R * Eigen::Vector3f((grid.x_of(column) - job.cx) / job.fx, (grid.y_of(row) - job.cy) / job.fy, 1.0F);
-  if (ray.z() < 0.05F) return;
-  const int c = grid.column_of(job.fx * ray.x() / ray.z() + job.cx);
-  const int r = grid.row_of(job.fy * ray.y() / ray.z() + job.cy);
+  const auto warped = job.warp.project_direction(job.warp.ray_x(grid.x_of(column)), job.warp.ray_y(grid.y_of(row)));
+  if (!warped) return;
+  const int c = grid.column_of(warped->x);
+  const int r = grid.row_of(warped->y);
   constexpr int border = 3;  // cells
   const auto is_near_object = [&](int dc, int dr) {
     if (c < 0 || r < 0 || c >= grid.columns || r >= grid.rows) return false;
     const int there = std::clamp(r + dr, 0, grid.rows - 1) * grid.columns + std::clamp(c + dc, 0, grid.columns - 1);
-    return is_object(job.from.labels[static_cast<std::size_t>(there)]);
+    return CellMask::is_object(job.from.labels[static_cast<std::size_t>(there)]);
   };
   if (is_near_object(0, 0) && job.from_view.depth[static_cast<std::size_t>(r * grid.columns + c)] == 0.0F &&
       is_near_object(-border, 0) && is_near_object(border, 0) && is_near_object(0, -border) &&
@@ -182,7 +168,7 @@ void MaskTransfer::grow(const CoarseView& to_view, CellMask& to) {
   front_.clear();
   start_depth_.resize(to.labels.size());
   for (std::int32_t cell = 0; cell < grid.size(); ++cell)
-    if (is_object(to.labels[static_cast<std::size_t>(cell)])) {
+    if (CellMask::is_object(to.labels[static_cast<std::size_t>(cell)])) {
       front_.push_back(cell);
       start_depth_[static_cast<std::size_t>(cell)] = to_view.depth[static_cast<std::size_t>(cell)];
     }
@@ -227,7 +213,7 @@ void MaskTransfer::fill_holes(const CoarseView& to_view, CellMask& to) {
       std::uint8_t label = 0, quality = 255;
       for (const std::ptrdiff_t offset : {-width, width, std::ptrdiff_t{-1}, std::ptrdiff_t{1}}) {
         const std::size_t other = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(cell) + offset);
-        if (!is_object(to.labels[other])) continue;
+        if (!CellMask::is_object(to.labels[other])) continue;
         ++labelled;
         label = to.labels[other];
         quality = std::min(quality, to.confidence[other]);

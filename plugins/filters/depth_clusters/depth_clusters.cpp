@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace holdfast::cluster_plugin {
+namespace holdfast::depth_clusters_plugin {
 
 namespace {
 
@@ -54,23 +54,20 @@ void DepthClusters::inherit(const DepthView& now, const Eigen::Isometry3d& T_cam
   inherited_.assign(now.depth.size(), 1.0F);
   if (views_.empty()) return;
   const DepthView& last = views_.back();
-  const Eigen::Isometry3d T_last_now = last.T_camera_world * T_camera_world.inverse();
-  const Eigen::Matrix3f R = T_last_now.linear().cast<float>();
-  const Eigen::Vector3f t = T_last_now.translation().cast<float>();
+  const geometry::Warp warp = grid.warp(last.T_camera_world * T_camera_world.inverse());
   for (int row = 0; row < grid.rows; ++row)
     for (int column = 0; column < grid.columns; ++column) {
       const std::size_t block = static_cast<std::size_t>(row * grid.columns + column);
       const float depth = now.depth[block];
       if (depth <= 0.0F) continue;
-      const Eigen::Vector3f p = depth * (R * Eigen::Vector3f(grid.ray_x[static_cast<std::size_t>(column)],
-                                                             grid.ray_y[static_cast<std::size_t>(row)], 1.0F)) +
-                                t;
-      if (p.z() < 0.1F) continue;
-      const int c = static_cast<int>(grid.column_of(grid.fx * p.x() / p.z() + grid.cx) + 0.5F);
-      const int r = static_cast<int>(grid.row_of(grid.fy * p.y() / p.z() + grid.cy) + 0.5F);
+      const auto warped = grid.warped(warp, column, row, depth);
+      if (!warped) continue;
+      const float z = warped->point.z();
+      const int c = static_cast<int>(grid.column_of(warped->x) + 0.5F);
+      const int r = static_cast<int>(grid.row_of(warped->y) + 0.5F);
       if (c < 0 || r < 0 || c >= grid.columns || r >= grid.rows) continue;
       const std::size_t there = static_cast<std::size_t>(r * grid.columns + c);
-      if (last.depth[there] > 0.0F && std::abs(last.depth[there] - p.z()) < 0.1F * p.z())
+      if (last.depth[there] > 0.0F && std::abs(last.depth[there] - z) < 0.1F * z)
         inherited_[block] = last.static_score[there];
     }
 }
@@ -132,4 +129,4 @@ void DepthClusters::apply(const FilterContext& context, StaticEvidence& evidence
   views_.push_back(std::move(now));
 }
 
-}  // namespace holdfast::cluster_plugin
+}  // namespace holdfast::depth_clusters_plugin

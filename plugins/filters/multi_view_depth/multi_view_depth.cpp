@@ -8,7 +8,7 @@
 #include "holdfast/geometry/warp.hpp"
 #include "holdfast/plugin/plugin.hpp"
 
-namespace holdfast {
+namespace holdfast::multi_view_depth_plugin {
 
 namespace {
 
@@ -66,9 +66,7 @@ void MultiViewDepth::choose_keyframes(const FilterContext& context) {
 void MultiViewDepth::compare(const FilterContext& context) {
   const CoarseView& view = context.frame.coarse;
   const CoarseGrid& grid = view.grid;
-  const Camera& camera = *context.frame.camera;
-  const float fx = static_cast<float>(camera.fx), fy = static_cast<float>(camera.fy);
-  const float cx = static_cast<float>(camera.cx), cy = static_cast<float>(camera.cy);
+  const geometry::Pinhole camera = geometry::pinhole_of(*context.frame.camera);
   columns_ = grid.columns / stride;
   rows_ = grid.rows / stride;
   const std::size_t size = static_cast<std::size_t>(columns_ * rows_);
@@ -83,24 +81,19 @@ void MultiViewDepth::compare(const FilterContext& context) {
   const Eigen::Isometry3d T_view_world = context.T_view_world();
   const float margin = static_cast<float>(settings_.margin), slope = static_cast<float>(settings_.margin_slope);
   for (const View& other : views_) {
-    const Eigen::Isometry3d motion = other.frame->T_view_world() * T_view_world.inverse();
-    const Eigen::Matrix3f R = motion.linear().cast<float>();
-    const Eigen::Vector3f t = motion.translation().cast<float>();
+    const geometry::Warp warp(other.frame->T_view_world() * T_view_world.inverse(), camera);
     const std::vector<float>& there = other.frame->coarse.depth;
     const std::vector<float>& known = other.frame->coarse.static_log_odds;
     for (int row = 0; row < rows_; ++row) {
-      const float ray_y = (grid.y_of(row * stride) - cy) / fy;
+      const float ray_y = warp.ray_y(grid.y_of(row * stride));
       for (int column = 0; column < columns_; ++column) {
         const std::size_t block = static_cast<std::size_t>(row * columns_ + column);
         const float depth = depth_[block];
         if (depth == 0.0F) continue;
-        const float ray_x = (grid.x_of(column * stride) - cx) / fx;
-        const float z = depth * (R(2, 0) * ray_x + R(2, 1) * ray_y + R(2, 2)) + t.z();
-        if (z < 0.1F) continue;
-        const float inverse = 1.0F / z;
-        const float x = fx * (depth * (R(0, 0) * ray_x + R(0, 1) * ray_y + R(0, 2)) + t.x()) * inverse + cx;
-        const float y = fy * (depth * (R(1, 0) * ray_x + R(1, 1) * ray_y + R(1, 2)) + t.y()) * inverse + cy;
-        const int c = grid.column_of(x), r = grid.row_of(y);
+        const auto warped = warp(warp.ray_x(grid.x_of(column * stride)), ray_y, depth);
+        if (!warped) continue;
+        const float z = warped->point.z();
+        const int c = grid.column_of(warped->x), r = grid.row_of(warped->y);
         if (c < 1 || r < 1 || c + 1 >= grid.columns || r + 1 >= grid.rows) continue;
         const std::size_t cell = static_cast<std::size_t>(r * grid.columns + c);
         const float seen = there[cell];
@@ -254,10 +247,11 @@ void MultiViewDepth::apply(const FilterContext& context, StaticEvidence& evidenc
     }
 }
 
-}  // namespace holdfast
+}  // namespace holdfast::multi_view_depth_plugin
 
 HOLDFAST_PLUGIN(multi_view_depth, registry) {
-  registry.add<holdfast::DynamicFilter, holdfast::MultiViewDepth, holdfast::MultiViewDepthSettings>(
+  registry.add<holdfast::DynamicFilter, holdfast::multi_view_depth_plugin::MultiViewDepth,
+               holdfast::MultiViewDepthSettings>(
       {.name = holdfast::MultiViewDepthSettings::module,
        .summary = "Compares the depth of the frame with that of keyframes: a surface in observed free space moves.",
        .paper = "Bescos, Facil, Civera, Neira: DynaSLAM: Tracking, Mapping and Inpainting in Dynamic Scenes. IEEE "
