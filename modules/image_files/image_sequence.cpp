@@ -33,6 +33,7 @@ ImageSequence::ImageSequence(std::vector<ImageFiles> files, const ImageSequenceO
 SensorFrame ImageSequence::decode(const ImageFiles& files) {
   SensorFrame frame;
   frame.timestamp = files.timestamp;
+  frame.depth_delay = files.depth_delay;
   frame.colour = read_at(files.colour_listed_at, [&] {
     cv::Mat colour = decoder_.read_colour(files.colour);
     if (colour.cols != options_.width || colour.rows != options_.height)

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/tracking/frame_builder.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <opencv2/imgproc.hpp>
 #include <string>
 
@@ -15,7 +12,7 @@ FrameBuilder::FrameBuilder(const Camera& camera, FeatureExtractor& extractor, do
     : camera_(std::make_shared<const Camera>(camera)),
       pyramid_(std::make_shared<const ScalePyramid>(extractor.pyramid())),
       extractor_(extractor),
-      depth_edge_ratio_(depth_edge_ratio),
+      depth_reader_(camera_, depth_edge_ratio),
       undistortion_(camera),
       coarse_sampler_(camera) {
   camera.undistorted_bounds(minimum_, maximum_);
@@ -52,42 +49,13 @@ void FrameBuilder::find_features(const SensorFrame& sensor_frame, const cv::Mat&
   }
   const StageTimer timer(times, "frame");
   undistortion_.undistort(frame.features.x, frame.features.y, frame.x, frame.y);
-  read_depth(sensor_frame.depth, frame);
+  depth_reader_.read(sensor_frame.depth, frame);
   frame.map_points.assign(frame.size(), MapPointId());
   frame.static_probability.assign(frame.size(), 1.0F);
   frame.measured_log_odds.assign(frame.size(), 0.0F);
   frame.grid.build(frame.x, frame.y,
                    {static_cast<float>(minimum_.x()), static_cast<float>(minimum_.y()),
                     static_cast<float>(maximum_.x()), static_cast<float>(maximum_.y())});
-}
-
-void FrameBuilder::read_depth(const cv::Mat& depth, Frame& frame) const {
-  const std::size_t count = frame.size();
-  frame.depth.assign(count, 0.0F);
-  frame.right_x.assign(count, std::numeric_limits<float>::quiet_NaN());
-  if (depth.empty()) return;
-  const float fx_baseline = static_cast<float>(camera_->fx * camera_->baseline);
-  for (std::size_t i = 0; i < count; ++i) {
-    const int column = std::clamp(static_cast<int>(frame.features.x[i] + 0.5F), 0, depth.cols - 1);
-    const int row = std::clamp(static_cast<int>(frame.features.y[i] + 0.5F), 0, depth.rows - 1);
-    const float value = depth.at<float>(row, column);
-    if (!(value > 0.0F) || !std::isfinite(value)) continue;
-    if (depth_edge_ratio_ > 0.0) {
-      // At an edge of depth the feature may lie on either side: its depth would be a guess.
-      float nearest = value, farthest = value;
-      constexpr int reach = 2;
-      for (int r = std::max(row - reach, 0); r <= std::min(row + reach, depth.rows - 1); r += reach)
-        for (int c = std::max(column - reach, 0); c <= std::min(column + reach, depth.cols - 1); c += reach) {
-          const float neighbour = depth.at<float>(r, c);
-          if (!(neighbour > 0.0F)) continue;
-          nearest = std::min(nearest, neighbour);
-          farthest = std::max(farthest, neighbour);
-        }
-      if (farthest - nearest > depth_edge_ratio_ * value) continue;
-    }
-    frame.depth[i] = value;
-    frame.right_x[i] = frame.x[i] - fx_baseline / value;
-  }
 }
 
 }  // namespace holdfast

@@ -2,8 +2,11 @@
 #include "holdfast/tracking/tracker.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
+
+#include "holdfast/geometry/se3.hpp"
 
 namespace holdfast {
 
@@ -26,6 +29,7 @@ void Tracker::begin(const SensorFrame& sensor_frame, FrameResult& result) {
   const cv::Mat ignored =
       moving_world_.begin_frame(builder_.grey(), history_.predicted_step(current_.timestamp), current_, result.times);
   builder_.find_features(sensor_frame, ignored, current_, result.times);
+  if (history_.has_velocity()) align_depth(sensor_frame, history_.predicted_step(current_.timestamp), result.times);
   result.features = static_cast<int>(current_.size());
 }
 
@@ -43,6 +47,9 @@ void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
   moving_world_.evaluate(FilterStage::before_matching, view, result.times);
   bool found = find_pose(view, result);
   if (!history_.has_previous()) view.previous = nullptr;  // relocalisation gives the previous frame up
+  // The measured motion replaces the predicted one.
+  if (found && history_.has_previous())
+    align_depth(sensor_frame, current_.T_camera_world * previous_.T_world_camera(), result.times);
   if (found) evaluate_with_pose(view, result);
   found = found && track_local_map(view, result);
   state_ = found ? State::tracking : State::lost;
@@ -55,6 +62,14 @@ void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
     if (result.is_keyframe) matcher_.local_map().write_counts(map_);  // local mapping evaluates points by them
   }
   end_frame(result);
+}
+
+void Tracker::align_depth(const SensorFrame& sensor_frame, const Eigen::Isometry3d& step, StageTimes& times) {
+  constexpr double min_delay = 1e-4, max_interval = 0.2;  // s; over a longer interval the velocity may have changed
+  const double interval = current_.timestamp - history_.last_timestamp();
+  if (!settings_.depth_alignment || std::abs(sensor_frame.depth_delay) < min_delay || interval > max_interval) return;
+  const double steps = sensor_frame.depth_delay / interval;
+  builder_.align_depth(sensor_frame, geometry::exp_se3(steps * geometry::log_se3(step)), current_, times);
 }
 
 bool Tracker::start_map(FrameResult& result) {

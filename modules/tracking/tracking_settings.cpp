@@ -86,6 +86,9 @@ void describe_keyframes(ParameterTable<S>& table) {
       .add("depth_edge_ratio", &S::depth_edge_ratio,
            "depth is not trusted where it varies around a feature by more than this share of itself; 0 = trust all")
       .range(0, 1);
+  table.add("depth_alignment", &S::depth_alignment,
+            "whether the depth of features is corrected for the motion of the camera between the exposures of the "
+            "colour and the depth image, where the source knows both times");
 }
 
 void describe_relocalisation(ParameterTable<S>& table) {

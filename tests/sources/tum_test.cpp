@@ -63,6 +63,7 @@ TEST_F(TumSourceTest, GivesEveryPairInOrder) {
     const SensorFrame& frame = frames[static_cast<std::size_t>(i)];
     EXPECT_EQ(frame.index, static_cast<std::uint64_t>(i));
     EXPECT_NEAR(frame.timestamp, 100.0 + 0.1 * i, 1e-9);
+    EXPECT_NEAR(frame.depth_delay, 0.004, 1e-9);
     ASSERT_EQ(frame.colour.type(), CV_8UC3);
     ASSERT_EQ(frame.depth.type(), CV_32FC1);
     EXPECT_NEAR(frame.colour.at<cv::Vec3b>(10, 10)[0], 40 + i, i % 2 == 0 ? 0 : 4);

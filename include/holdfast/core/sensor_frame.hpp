@@ -24,8 +24,11 @@ struct FrameTruth {
 struct SensorFrame {
   std::uint64_t index = 0;  ///< number of the frame in its source, from 0; skipped frames are counted
   double timestamp = 0.0;   ///< time stamp of the colour image [s]
-  cv::Mat colour;           ///< 8UC3, blue green red
-  cv::Mat depth;            ///< 32FC1 along the optical axis [m], 0 = no value; same size as colour; may be empty
+  /// Time from the exposure of the colour image to that of the depth image [s]: negative if depth came first, 0 if the
+  /// sensor exposes both together or the source does not know.
+  double depth_delay = 0.0;
+  cv::Mat colour;  ///< 8UC3, blue green red
+  cv::Mat depth;   ///< 32FC1 along the optical axis [m], 0 = no value; same size as colour; may be empty
   std::shared_ptr<const FrameTruth> truth;  ///< nullptr if the source has none
 };
 

@@ -17,7 +17,8 @@ namespace holdfast {
 
 /// The files of one frame of a recording.
 struct ImageFiles {
-  double timestamp = 0.0;  ///< of the colour image [s]
+  double timestamp = 0.0;    ///< of the colour image [s]
+  double depth_delay = 0.0;  ///< from the colour to the depth image [s]; see SensorFrame
   std::filesystem::path colour;
   std::filesystem::path depth;      ///< empty for a recording without depth
   SourceLocation colour_listed_at;  ///< the line of the list with the image; no file without a list

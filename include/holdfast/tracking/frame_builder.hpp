@@ -10,6 +10,7 @@
 #include "holdfast/core/sensor_frame.hpp"
 #include "holdfast/core/stage_times.hpp"
 #include "holdfast/interfaces/feature_extractor.hpp"
+#include "holdfast/tracking/depth_reader.hpp"
 #include "holdfast/tracking/undistortion_table.hpp"
 
 namespace holdfast {
@@ -32,18 +33,24 @@ class FrameBuilder {
   /// The second half; no features where `ignore` (8UC1 of the image's size, or empty) is not 0.
   void find_features(const SensorFrame& sensor_frame, const cv::Mat& ignore, Frame& frame, StageTimes& times);
 
+  /// Reads the depth of the features again, for a camera that moved by T_depth_colour between the exposures of the
+  /// colour and the depth image. Adds to the stage "frame".
+  void align_depth(const SensorFrame& sensor_frame, const Eigen::Isometry3d& T_depth_colour, Frame& frame,
+                   StageTimes& times) const {
+    const StageTimer timer(times, "frame");
+    depth_reader_.align(sensor_frame.depth, T_depth_colour, frame);
+  }
+
   const std::shared_ptr<const Camera>& camera() const { return camera_; }
   const CoarseSampler& coarse_sampler() const { return coarse_sampler_; }
   /// The grey image of the last frame that was built (8UC1); valid until the next.
   const cv::Mat& grey() const { return grey_; }
 
  private:
-  void read_depth(const cv::Mat& depth, Frame& frame) const;
-
   std::shared_ptr<const Camera> camera_;
   std::shared_ptr<const ScalePyramid> pyramid_;
   FeatureExtractor& extractor_;
-  double depth_edge_ratio_;
+  DepthReader depth_reader_;
   UndistortionTable undistortion_;
   CoarseSampler coarse_sampler_;
   Eigen::Vector2d minimum_, maximum_;

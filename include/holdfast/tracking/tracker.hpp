@@ -67,6 +67,9 @@ class Tracker {
  private:
   enum class State { waiting, tracking, lost };
 
+  /// Corrects the depth of the current frame for the motion between the exposures of colour and depth, a share of the
+  /// motion since the previous frame: step = T_current_previous.
+  void align_depth(const SensorFrame& sensor_frame, const Eigen::Isometry3d& step, StageTimes& times);
   bool start_map(FrameResult& result);
   bool find_pose(const TrackedView& view, FrameResult& result);
   bool predict_with_velocity(FrameResult& result);

@@ -14,6 +14,7 @@ struct TrackingSettings {
   int minimum_start_points = 100;    ///< points with depth in the first frame; fewer make a map too weak to track by
   double close_depth_factor = 40.0;  ///< baselines; beyond it, noise of depth exceeds that of triangulation (ORB-SLAM2)
   double depth_edge_ratio = 0.0;     ///< share of the depth; 0 = off
+  bool depth_alignment = true;       ///< depth of features is corrected for the ego-motion between colour and depth
   double motion_window = 15.0;       ///< search radius around a prediction, at level 0 [px]
   double motion_window_retry = 2.0;  ///< factor on motion_window for the second try, after a sudden motion
   int minimum_matches = 20;          ///< with the previous frame; half as many inliers accept the first pose

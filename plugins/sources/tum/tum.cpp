@@ -52,6 +52,7 @@ std::vector<ImageFiles> find_pairs(const TumSettings& settings) {
   std::vector<ImageFiles> pairs;
   for (const ListedPair& pair : recording_pairs(settings.path, settings.associations, settings.max_time_difference))
     pairs.push_back({pair.colour.timestamp,
+                     pair.depth.timestamp - pair.colour.timestamp,
                      settings.path / pair.colour.name,
                      settings.path / pair.depth.name,
                      {listed_in("rgb.txt"), pair.colour.line},

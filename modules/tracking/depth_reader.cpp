@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/tracking/depth_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "holdfast/geometry/warp.hpp"
+
+namespace holdfast {
+
+DepthReader::DepthReader(std::shared_ptr<const Camera> camera, double edge_ratio)
+    : camera_(std::move(camera)), edge_ratio_(edge_ratio) {}
+
+/// The depth at a raw pixel; 0 without a measurement, outside the image, or at a depth edge.
+float DepthReader::depth_at(const cv::Mat& depth, float x, float y) const {
+  if (!(x > -0.5F) || !(y > -0.5F)) return 0.0F;
+  const int column = static_cast<int>(x + 0.5F), row = static_cast<int>(y + 0.5F);
+  if (column >= depth.cols || row >= depth.rows) return 0.0F;
+  const float value = depth.at<float>(row, column);
+  if (!(value > 0.0F) || !std::isfinite(value)) return 0.0F;
+  if (edge_ratio_ <= 0.0) return value;
+  // At a depth edge the feature may lie on either surface, so that its depth is unknown.
+  float nearest = value, farthest = value;
+  constexpr int reach = 2;
+  for (int r = std::max(row - reach, 0); r <= std::min(row + reach, depth.rows - 1); r += reach)
+    for (int c = std::max(column - reach, 0); c <= std::min(column + reach, depth.cols - 1); c += reach) {
+      const float neighbour = depth.at<float>(r, c);
+      if (!(neighbour > 0.0F)) continue;
+      nearest = std::min(nearest, neighbour);
+      farthest = std::max(farthest, neighbour);
+    }
+  return farthest - nearest > edge_ratio_ * value ? 0.0F : value;
+}
+
+void DepthReader::set_depth(std::size_t feature, float depth, Frame& frame) const {
+  const float fx_baseline = static_cast<float>(camera_->fx * camera_->baseline);
+  frame.depth[feature] = depth;
+  frame.right_x[feature] =
+      depth > 0.0F ? frame.x[feature] - fx_baseline / depth : std::numeric_limits<float>::quiet_NaN();
+}
+
+void DepthReader::read(const cv::Mat& depth, Frame& frame) const {
+  const std::size_t count = frame.size();
+  frame.depth.assign(count, 0.0F);
+  frame.right_x.assign(count, std::numeric_limits<float>::quiet_NaN());
+  if (depth.empty()) return;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float x = std::clamp(frame.features.x[i], 0.0F, static_cast<float>(depth.cols - 1));
+    const float y = std::clamp(frame.features.y[i], 0.0F, static_cast<float>(depth.rows - 1));
+    set_depth(i, depth_at(depth, x, y), frame);
+  }
+}
+
+void DepthReader::align(const cv::Mat& depth, const Eigen::Isometry3d& T_depth_colour, Frame& frame) const {
+  if (depth.empty()) return;
+  constexpr float typical_depth = 2.0F, min_depth = 0.1F;  // m
+  const geometry::Pinhole pinhole = geometry::pinhole_of(*camera_);
+  const geometry::Warp to_depth(T_depth_colour, pinhole, min_depth);
+  const geometry::Warp to_colour(T_depth_colour.inverse(), pinhole, min_depth);
+  for (std::size_t i = 0; i < frame.size(); ++i) {
+    const float guess = frame.has_depth(i) ? frame.depth[i] : typical_depth;
+    float aligned = 0.0F;
+    if (const auto seen = to_depth(to_depth.ray_x(frame.x[i]), to_depth.ray_y(frame.y[i]), guess)) {
+      const Eigen::Vector2d raw = camera_->distort({seen->x, seen->y});
+      const float measured = depth_at(depth, static_cast<float>(raw.x()), static_cast<float>(raw.y()));
+      if (measured > 0.0F)
+        if (const auto back = to_colour(to_colour.ray_x(seen->x), to_colour.ray_y(seen->y), measured))
+          aligned = back->point.z();
+    }
+    set_depth(i, aligned, frame);
+  }
+}
+
+}  // namespace holdfast
