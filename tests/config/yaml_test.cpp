@@ -61,6 +61,15 @@ TEST(Yaml, RefusesASecondDocument) {
   EXPECT_TRUE(problems("---\n" + test::good).empty());
 }
 
+TEST(Yaml, RefusesTextThatBelongsToNothing) {
+  EXPECT_THAT(problems(","), ElementsAre(StartsWith("c.yaml:1:1: syntax error: found text that continues no")));
+  EXPECT_THAT(problems(",\n---\n"), ElementsAre(StartsWith("c.yaml:1:1: syntax error: ")));
+  EXPECT_THAT(problems("run: [a], b\n"), ElementsAre(StartsWith("c.yaml:1:9: syntax error: ")));
+  EXPECT_THAT(problems("[a]\n, b\n"), ElementsAre(StartsWith("c.yaml:2:1: syntax error: ")));
+  EXPECT_THAT(problems(test::good, {"source.tum.path=,x"}),
+              ElementsAre(StartsWith("--set source.tum.path=,x:1:1: syntax error: ")));
+}
+
 TEST(Yaml, RefusesWhatIsNoMap) {
   EXPECT_THAT(problems("- a\n"), ElementsAre(testing::HasSubstr("found a list; expected a map with the sections")));
   EXPECT_THAT(problems(""), ElementsAre(testing::HasSubstr("found nothing; expected a map with the sections")));
