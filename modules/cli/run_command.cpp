@@ -76,7 +76,12 @@ int run_configuration(const Arguments& arguments) {
   std::optional<Progress> progress;
   const RunRecord record = run(configuration, registry, options_of(arguments, since_start, progress));
   progress.reset();
-  write_results(record, arguments.output);
+  try {
+    write_results(record, arguments.output);
+  } catch (const InputError&) {
+    print_end(arguments, record);  // the summary may be all that is left of it
+    throw;
+  }
   return print_end(arguments, record);
 }
 

@@ -127,7 +127,11 @@ void write_file_atomically(const std::filesystem::path& file, const std::string&
   }
   std::error_code error;
   std::filesystem::rename(temporary, file, error);
-  if (error) throw InputError({file.string()}, "cannot be replaced: " + error.message());
+  if (error) {
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    throw InputError({file.string()}, "cannot be replaced: " + error.message());
+  }
 }
 
 }  // namespace holdfast
