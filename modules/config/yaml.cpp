@@ -4,6 +4,7 @@
 
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <sstream>
 
 #include "holdfast/config/configuration_node.hpp"
@@ -74,7 +75,7 @@ class Converter {
         break;
       case YAML::NodeType::Map:
         result.kind = ConfigurationNode::Kind::map;
-        for (const auto& pair : node) add_entry(pair.first, pair.second, result);
+        add_entries(node, result);
         break;
       case YAML::NodeType::Null:
       case YAML::NodeType::Undefined:
@@ -88,7 +89,13 @@ class Converter {
     return {file_, mark.line + 1, mark.column + 1};
   }
 
-  void add_entry(const YAML::Node& key, const YAML::Node& value, ConfigurationNode& map) {
+  void add_entries(const YAML::Node& node, ConfigurationNode& map) {
+    std::map<std::string, int> lines;  // of the keys so far
+    for (const auto& pair : node) add_entry(pair.first, pair.second, lines, map);
+  }
+
+  void add_entry(const YAML::Node& key, const YAML::Node& value, std::map<std::string, int>& lines,
+                 ConfigurationNode& map) {
     const SourceLocation place = location(key);
     if (!key.IsScalar()) {
       diagnostics.push_back({place, "found a key that is no plain text; expected a name"});
@@ -100,12 +107,11 @@ class Converter {
                              "whole value"});
       return;
     }
-    for (const ConfigurationNode::Entry& entry : map.entries)
-      if (entry.key == key.Scalar()) {
-        diagnostics.push_back({place, "duplicate key '" + key.Scalar() + "'; it stands already in line " +
-                                          std::to_string(entry.location.line) + "; keep one of them"});
-        return;
-      }
+    if (const auto [first, is_new] = lines.emplace(key.Scalar(), place.line); !is_new) {
+      diagnostics.push_back({place, "duplicate key '" + key.Scalar() + "'; it stands already in line " +
+                                        std::to_string(first->second) + "; keep one of them"});
+      return;
+    }
     map.entries.push_back({key.Scalar(), place, convert(value)});
   }
 

@@ -32,6 +32,13 @@ TEST(Yaml, ReportsDuplicateKeysAllTogether) {
                           "c.yaml:3:1: duplicate key 'run'; it stands already in line 1; keep one of them"));
 }
 
+TEST(Yaml, FindsADuplicateAmongVeryManyKeys) {
+  std::string text;
+  for (int i = 0; i < 60000; ++i) text += "k" + std::to_string(i) + ": 1\n";
+  EXPECT_THAT(problems(text + "k7: 2\n"),
+              ElementsAre("c.yaml:60001:1: duplicate key 'k7'; it stands already in line 8; keep one of them"));
+}
+
 TEST(Yaml, RefusesMergeKeysAndOddKeys) {
   EXPECT_THAT(problems("a: &x { b: 1 }\nc:\n  <<: *x\n[d]: 1\n"),
               ElementsAre(StartsWith("c.yaml:3:3: merge keys (<<) are not supported"),
