@@ -37,14 +37,15 @@ void keep_map_out_of_results(const Arguments& arguments) {
 }
 
 /// Shows the progress of a run, prepares its folder and asks for its end after Ctrl-C.
-RunOptions options_of(const Arguments& arguments, const Stopwatch& since_start, std::optional<Progress>& progress) {
+RunOptions options_of(const Arguments& arguments, const Stopwatch& since_start, std::optional<Progress>& progress,
+                      std::optional<FolderLock>& lock) {
   RunOptions options;
   options.pipeline = {
       .output_directory = arguments.output, .map_file = arguments.map, .localise_only = arguments.localise};
   options.since_start = since_start;
   options.stop = interrupted;
   options.on_start = [&](const RunRecord& record) {
-    prepare_output_folder(arguments.output, arguments.overwrite, result_names());
+    lock.emplace(prepare_output_folder(arguments.output, arguments.overwrite, result_names()));
     write_file_atomically(arguments.output / "config.yaml", to_yaml(record.configuration));
     progress.emplace(record.source.frame_count, arguments.quiet);
   };
@@ -73,8 +74,9 @@ int run_configuration(const Arguments& arguments) {
   Registry registry;
   register_builtin_plugins(registry);
   const Configuration configuration = load_configuration(arguments.configuration, arguments.overrides, registry);
+  std::optional<FolderLock> lock;
   std::optional<Progress> progress;
-  const RunRecord record = run(configuration, registry, options_of(arguments, since_start, progress));
+  const RunRecord record = run(configuration, registry, options_of(arguments, since_start, progress, lock));
   progress.reset();
   try {
     write_results(record, arguments.output);
