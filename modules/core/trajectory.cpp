@@ -14,24 +14,41 @@ namespace holdfast {
 
 namespace {
 
-/// Parses the first 8 numbers of a line, separated by blanks or commas; '#' begins a comment. Returns false if one of
-/// them is not a number.
-bool parse_numbers(std::string_view line, std::vector<double>& numbers) {
-  numbers.clear();
+/// The words of a line, separated by blanks or commas; '#' begins a comment.
+void split(std::string_view line, std::vector<std::string_view>& words) {
+  words.clear();
   line = line.substr(0, line.find('#'));
-  while (numbers.size() < 8) {
+  while (true) {
     const std::size_t begin = line.find_first_not_of(" \t\r,");
-    if (begin == std::string_view::npos) return true;
+    if (begin == std::string_view::npos) return;
     const std::size_t end = std::min(line.find_first_of(" \t\r,", begin), line.size());
-    std::string_view word = line.substr(begin, end - begin);
+    words.push_back(line.substr(begin, end - begin));
+    line.remove_prefix(end);
+  }
+}
+
+/// Returns false if one of the words is not a number.
+bool parse_numbers(const std::vector<std::string_view>& words, std::vector<double>& numbers) {
+  numbers.clear();
+  for (std::string_view word : words) {
     if (word.front() == '+') word.remove_prefix(1);
     double value = 0.0;
     const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc() || stop != word.data() + word.size()) return false;
     numbers.push_back(value);
-    line.remove_prefix(end);
   }
   return true;
+}
+
+constexpr double nanoseconds_from = 1e14;  // no clock has counted so many seconds
+
+/// The format that a line without a TUM pose looks like; empty for none that is known.
+std::string known_format(const std::vector<double>& numbers) {
+  if (numbers.size() == 12) return "; it looks like KITTI's format (12 numbers of a matrix, without a stamp)";
+  const bool has_nanoseconds = !numbers.empty() && numbers.front() >= nanoseconds_from;
+  if (has_nanoseconds && numbers.size() >= 8)
+    return "; it looks like EuRoC's format (stamps in nanoseconds, then tx ty tz qw qx qy qz)";
+  return "";
 }
 
 /// Appends a number with a fixed number of decimals and a decimal point, independent of the locale.
@@ -72,13 +89,17 @@ Trajectory read_trajectory(const std::filesystem::path& file) {
   if (!stream) throw InputError({file.string()}, std::string("cannot be opened for reading; ") + expected_format);
   Trajectory trajectory;
   std::string line;
+  std::vector<std::string_view> words;
   std::vector<double> numbers;
   for (int line_number = 1; std::getline(stream, line); ++line_number) {
-    const bool parsed = parse_numbers(line, numbers);
-    if (parsed && numbers.empty()) continue;
-    if (!parsed || numbers.size() < 8)
+    split(line, words);
+    if (words.empty()) continue;
+    const bool parsed = parse_numbers(words, numbers);
+    if (!parsed || numbers.size() != 8 || numbers.front() >= nanoseconds_from)
       throw InputError({file.string(), line_number},
-                       "found '" + line.substr(0, 60) + "'; expected 8 numbers: t tx ty tz qx qy qz qw");
+                       "found " + std::to_string(words.size()) + " columns, '" + line.substr(0, 60) + "'" +
+                           (parsed ? known_format(numbers) : "") +
+                           "; expected 8 numbers: t tx ty tz qx qy qz qw, t in seconds; convert the file");
     const Eigen::Quaterniond rotation(numbers[7], numbers[4], numbers[5], numbers[6]);
     if (rotation.norm() == 0.0) continue;
     TimedPose pose;

@@ -13,6 +13,7 @@
 namespace holdfast {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 class TrajectoryFile : public ::testing::Test {
@@ -52,7 +53,7 @@ TEST_F(TrajectoryFile, ReadsBlanksTabsCommasCommentsAndWindowsLineEnds) {
                             "1.5 1 2 3 0 0 0 2\r\n"
                             "\n"
                             "2.5,+4,-5,6e-1,0,0,1,0 # a comment\n"
-                            "3.5\t7 8 9 1 0 0 0 further words"));
+                            "3.5\t7 8 9 1 0 0 0"));
   ASSERT_EQ(trajectory.size(), 3u);
   EXPECT_EQ(trajectory[0].timestamp, 1.5);
   EXPECT_EQ(trajectory[1].T_world_camera.translation(), Eigen::Vector3d(4.0, -5.0, 0.6));
@@ -86,9 +87,23 @@ TEST_F(TrajectoryFile, NormalisesQuaternions) {
 
 TEST_F(TrajectoryFile, NamesTheLineOfAnError) {
   const std::string message = error_of(write("# head\n1 0 0 0 0 0 0 1\n2 0 0 zero 0 0 0 1\n"));
-  EXPECT_THAT(message, HasSubstr("trajectory.txt:3: found '2 0 0 zero"));
+  EXPECT_THAT(message, HasSubstr("trajectory.txt:3: found 8 columns, '2 0 0 zero"));
   EXPECT_THAT(message, HasSubstr("expected 8 numbers"));
   EXPECT_THAT(error_of(write("1 0 0 0 0 0 0\n")), HasSubstr("trajectory.txt:1:"));
+}
+
+TEST_F(TrajectoryFile, RefusesOtherFormatsByName) {
+  EXPECT_THAT(error_of(write("1 0 0 0 0 1 0 0 0 0 1 0\n")),
+              AllOf(HasSubstr("trajectory.txt:1: found 12 columns"), HasSubstr("KITTI's format")));
+  const char* euroc = "it looks like EuRoC's format (stamps in nanoseconds";
+  EXPECT_THAT(error_of(write("#timestamp,x,y,z\n1403636580838555648,4.6,-1.7,0.7,0.5,-0.1,-0.8,-0.1\n")),
+              AllOf(HasSubstr("trajectory.txt:2: found 8 columns"), HasSubstr(euroc)));
+  EXPECT_THAT(error_of(write("1403636580838555648,4.6,-1.7,0.7,0.5,-0.1,-0.8,-0.1,0,0,0,0,0,0,0,0,0\n")),
+              AllOf(HasSubstr("found 17 columns"), HasSubstr(euroc)));
+  EXPECT_THAT(error_of(write("timestamp,tx,ty,tz,qx,qy,qz,qw\n1,0,0,0,0,0,0,1\n")),
+              AllOf(HasSubstr("trajectory.txt:1: found 8 columns, 'timestamp,tx"), HasSubstr("expected 8 numbers")));
+  EXPECT_THAT(error_of(write("1 0 0 0 0 0 0 1 0.5\n")), HasSubstr("found 9 columns"));
+  EXPECT_THAT(error_of(write("1 0 0 0 0 0 0 1 further words\n")), HasSubstr("found 10 columns"));
 }
 
 TEST_F(TrajectoryFile, NamesAFileThatIsMissingOrAFolder) {

@@ -20,10 +20,10 @@ using Trajectory = std::vector<TimedPose>;
 /// in the TUM tools. Poses with a value that is not finite are removed, as there.
 Trajectory sort_and_clean(Trajectory trajectory);
 
-/// Reads a trajectory in TUM format: lines "timestamp tx ty tz qx qy qz qw", where '#' begins a comment and additional
-/// columns are ignored. The result is sorted and cleaned as by sort_and_clean(). Quaternions are normalised; lines with
-/// a zero quaternion are skipped. Throws InputError (file and line) for a file that cannot be read or a line that is
-/// not a pose.
+/// Reads a trajectory in TUM format: lines "timestamp tx ty tz qx qy qz qw", where '#' begins a comment. The result is
+/// sorted and cleaned as by sort_and_clean(). Quaternions are normalised; lines with a zero quaternion are skipped.
+/// Throws InputError (file and line) for a file that cannot be read or a line that is not a pose of exactly 8 numbers;
+/// the message names the format of another data set that it looks like.
 Trajectory read_trajectory(const std::filesystem::path& file);
 
 /// Returns the trajectory in TUM format, with 6 decimals for time stamps and 9 for values, independent of the locale.
