@@ -61,14 +61,22 @@ void write_plots(const std::filesystem::path& folder, const Evaluation& evaluati
   write_file_atomically(folder / "error_over_time.svg", error_over_time_svg(evaluation));
 }
 
+/// Reads a trajectory, and says what of it does not count.
+Trajectory read_with_notes(const std::string& file) {
+  TrajectoryFile read = read_trajectory_file(file);
+  if (const std::string omissions = read.omissions(); !omissions.empty())
+    std::cerr << "holdfast evaluate: " << file << ": leaves out " << omissions << '\n';
+  return std::move(read.poses);
+}
+
 void run(EvaluateArguments arguments) {
   if (arguments.json == "-" && arguments.csv == "-")
     throw Error("--json and --csv cannot both go to standard output; give one of them a file");
   arguments.options.alignment = parse_alignment(arguments.alignment).value();
   arguments.options.truth_name = arguments.truth;
   arguments.options.estimate_name = arguments.estimate;
-  const Trajectory truth = read_trajectory(arguments.truth);
-  const Trajectory estimate = read_trajectory(arguments.estimate);
+  const Trajectory truth = read_with_notes(arguments.truth);
+  const Trajectory estimate = read_with_notes(arguments.estimate);
   std::optional<std::vector<double>> frames;
   if (!arguments.frames.empty()) frames = read_frame_stamps(arguments.frames);
   const Evaluation evaluation = evaluate(truth, estimate, arguments.options, frames);

@@ -40,13 +40,13 @@ bool parse_numbers(const std::vector<std::string_view>& words, std::vector<doubl
   return true;
 }
 
-constexpr double nanoseconds_from = 1e14;  // no clock has counted so many seconds
+/// No clock has counted so many seconds.
+bool is_in_nanoseconds(double stamp) { return std::isfinite(stamp) && stamp >= 1e14; }
 
 /// The format that a line without a TUM pose looks like; empty for none that is known.
 std::string known_format(const std::vector<double>& numbers) {
   if (numbers.size() == 12) return "; it looks like KITTI's format (12 numbers of a matrix, without a stamp)";
-  const bool has_nanoseconds = !numbers.empty() && numbers.front() >= nanoseconds_from;
-  if (has_nanoseconds && numbers.size() >= 8)
+  if (numbers.size() >= 8 && is_in_nanoseconds(numbers.front()))
     return "; it looks like EuRoC's format (stamps in nanoseconds, then tx ty tz qw qx qy qz)";
   return "";
 }
@@ -79,7 +79,21 @@ Trajectory sort_and_clean(Trajectory trajectory) {
   return unique;
 }
 
-Trajectory read_trajectory(const std::filesystem::path& file) {
+Trajectory read_trajectory(const std::filesystem::path& file) { return read_trajectory_file(file).poses; }
+
+std::string TrajectoryFile::omissions() const {
+  std::string text;
+  const auto add = [&](std::size_t count, const char* what) {
+    if (count > 0)
+      text += (text.empty() ? "" : ", ") + std::to_string(count) + (count == 1 ? " pose " : " poses ") + what;
+  };
+  add(not_finite, not_finite == 1 ? "that is not finite" : "that are not finite");
+  add(zero_quaternions, "with a zero quaternion");
+  add(repeated_stamps, "with the stamp of a later line");
+  return text;
+}
+
+TrajectoryFile read_trajectory_file(const std::filesystem::path& file) {
   std::error_code status;
   if (!std::filesystem::exists(file, status))
     throw InputError({file.string()}, std::string("no such file; ") + expected_format);
@@ -87,6 +101,7 @@ Trajectory read_trajectory(const std::filesystem::path& file) {
     throw InputError({file.string()}, std::string("found a folder; ") + expected_format);
   std::ifstream stream(file);
   if (!stream) throw InputError({file.string()}, std::string("cannot be opened for reading; ") + expected_format);
+  TrajectoryFile result;
   Trajectory trajectory;
   std::string line;
   std::vector<std::string_view> words;
@@ -95,20 +110,30 @@ Trajectory read_trajectory(const std::filesystem::path& file) {
     split(line, words);
     if (words.empty()) continue;
     const bool parsed = parse_numbers(words, numbers);
-    if (!parsed || numbers.size() != 8 || numbers.front() >= nanoseconds_from)
+    if (!parsed || numbers.size() != 8 || is_in_nanoseconds(numbers.front()))
       throw InputError({file.string(), line_number},
                        "found " + std::to_string(words.size()) + " columns, '" + line.substr(0, 60) + "'" +
                            (parsed ? known_format(numbers) : "") +
                            "; expected 8 numbers: t tx ty tz qx qy qz qw, t in seconds; convert the file");
     const Eigen::Quaterniond rotation(numbers[7], numbers[4], numbers[5], numbers[6]);
-    if (rotation.norm() == 0.0) continue;
+    if (rotation.norm() == 0.0) {
+      ++result.zero_quaternions;
+      continue;
+    }
     TimedPose pose;
     pose.timestamp = numbers[0];
     pose.T_world_camera = Eigen::Translation3d(numbers[1], numbers[2], numbers[3]) * rotation.normalized();
+    if (!std::isfinite(pose.timestamp) || !pose.T_world_camera.matrix().allFinite()) {
+      ++result.not_finite;
+      continue;
+    }
     trajectory.push_back(pose);
   }
   if (stream.bad()) throw InputError({file.string()}, "reading stopped before the end; is the disk in order?");
-  return sort_and_clean(std::move(trajectory));
+  const std::size_t count = trajectory.size();
+  result.poses = sort_and_clean(std::move(trajectory));
+  result.repeated_stamps = count - result.poses.size();
+  return result;
 }
 
 std::string trajectory_text(const Trajectory& trajectory) {
