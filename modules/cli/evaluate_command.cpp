@@ -10,6 +10,7 @@
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/evaluation/evaluation.hpp"
+#include "terminal.hpp"
 
 namespace holdfast {
 
@@ -65,7 +66,7 @@ void write_plots(const std::filesystem::path& folder, const Evaluation& evaluati
 Trajectory read_with_notes(const std::string& file) {
   TrajectoryFile read = read_trajectory_file(file);
   if (const std::string omissions = read.omissions(); !omissions.empty())
-    std::cerr << "holdfast evaluate: " << file << ": leaves out " << omissions << '\n';
+    std::cerr << "holdfast evaluate: " << printable(file) << ": leaves out " << omissions << '\n';
   return std::move(read.poses);
 }
 
@@ -81,7 +82,7 @@ void run(EvaluateArguments arguments) {
   if (!arguments.frames.empty()) frames = read_frame_stamps(arguments.frames);
   const Evaluation evaluation = evaluate(truth, estimate, arguments.options, frames);
   if (arguments.json != "-" && arguments.csv != "-") {
-    std::cout << to_text(evaluation);
+    std::cout << printable(to_text(evaluation));
     if (!frames) std::cout << "Coverage needs --frames LIST.\n";
   }
   if (!arguments.json.empty()) write_to(arguments.json, to_json(evaluation));
@@ -134,7 +135,7 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
       run(*arguments);
       exit_code = 0;
     } catch (const Error& error) {
-      std::cerr << "holdfast evaluate: " << error.what() << '\n';
+      std::cerr << "holdfast evaluate: " << printable(error.what()) << '\n';
       exit_code = 1;
     }
   });

@@ -16,6 +16,7 @@
 #include "holdfast/config/configuration.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/stage_times.hpp"
+#include "holdfast/core/text_file.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/evaluation/segmentation_evaluation.hpp"
 #include "holdfast/pipeline/configured_pipeline.hpp"
@@ -68,6 +69,7 @@ Examples
 std::vector<std::string> read_names(const fs::path& file) {
   std::ifstream stream(file);
   if (!stream) throw InputError({file.string()}, "cannot be read; expected a file with one image name a line");
+  skip_byte_order_mark(stream);
   std::vector<std::string> names;
   for (std::string line; std::getline(stream, line);)
     if (!line.empty() && line.front() != '#') names.push_back(line);

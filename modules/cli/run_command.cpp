@@ -54,11 +54,11 @@ RunOptions options_of(const Arguments& arguments, const Stopwatch& since_start, 
 }
 
 int print_end(const Arguments& arguments, const RunRecord& record) {
-  if (!arguments.quiet && record.summary.frames() > 0) std::fputs(summary_text(record).c_str(), stdout);
+  if (!arguments.quiet && record.summary.frames() > 0) std::fputs(printable(summary_text(record)).c_str(), stdout);
   if (!record.failure.empty())
-    std::fprintf(stderr, "%s %s\n", red("error:", STDERR_FILENO).c_str(), record.failure.c_str());
+    std::fprintf(stderr, "%s %s\n", red("error:", STDERR_FILENO).c_str(), printable(record.failure).c_str());
   else if (record.was_interrupted)
-    std::fprintf(stderr, "interrupted; what was done is in %s\n", arguments.output.c_str());
+    std::fprintf(stderr, "interrupted; what was done is in %s\n", printable(arguments.output.string()).c_str());
   else if (record.trajectory.empty())
     std::fprintf(stderr, "%s no frame got a pose; is there depth, and enough to see?\n",
                  red("error:", STDERR_FILENO).c_str());

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/text_file.hpp"
 
 namespace holdfast {
 
@@ -101,6 +102,7 @@ TrajectoryFile read_trajectory_file(const std::filesystem::path& file) {
     throw InputError({file.string()}, std::string("found a folder; ") + expected_format);
   std::ifstream stream(file);
   if (!stream) throw InputError({file.string()}, std::string("cannot be opened for reading; ") + expected_format);
+  skip_byte_order_mark(stream);
   TrajectoryFile result;
   Trajectory trajectory;
   std::string line;

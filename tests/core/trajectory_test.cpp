@@ -60,6 +60,16 @@ TEST_F(TrajectoryTest, ReadsBlanksTabsCommasCommentsAndWindowsLineEnds) {
   EXPECT_EQ(trajectory[2].T_world_camera.translation(), Eigen::Vector3d(7.0, 8.0, 9.0));
 }
 
+TEST_F(TrajectoryTest, SkipsAByteOrderMark) {
+  EXPECT_EQ(read_trajectory(write("\xef\xbb\xbf"
+                                  "1 0 0 0 0 0 0 1\n"))
+                .size(),
+            1u);
+  EXPECT_EQ(read_trajectory(write("\xef\xbb\xbf# a comment\n1 0 0 0 0 0 0 1\n")).size(), 1u);
+  EXPECT_EQ(read_trajectory(write("")).size(), 0u);
+  EXPECT_THAT(error_of(write("\xef\xbb 1 0 0 0 0 0 0 1\n")), HasSubstr("trajectory.txt:1: found 9 columns"));
+}
+
 TEST_F(TrajectoryTest, SortsAndKeepsTheLastOfEqualStamps) {
   const Trajectory trajectory =
       read_trajectory(write("3 1 0 0 0 0 0 1\n1 2 0 0 0 0 0 1\n3 3 0 0 0 0 0 1\n2 4 0 0 0 0 0 1\n"));
