@@ -7,6 +7,7 @@
 #include <fstream>
 #include <string_view>
 
+#include "holdfast/core/text_file.hpp"
 #include "holdfast/evaluation/number_text.hpp"
 
 namespace holdfast {
@@ -147,6 +148,7 @@ SalvagedTrajectory salvage_trajectory(const std::filesystem::path& file) {
   std::error_code ignored;
   result.exists = std::filesystem::is_regular_file(file, ignored);
   std::ifstream stream(file);
+  skip_byte_order_mark(stream);
   TimedPose pose;
   for (std::string line; std::getline(stream, line);) {
     switch (read_line(line, pose)) {

@@ -30,6 +30,22 @@ Json read_json(const std::filesystem::path& file) {
   }
 }
 
+/// A count, which conversion would also take from a negative or a broken number.
+std::size_t count(const Json& json, const char* key) {
+  const Json& value = json.at(key);
+  if (!value.is_number_unsigned())
+    throw Error("'" + std::string(key) + "' is " + value.dump(-1, ' ', false, Json::error_handler_t::replace) +
+                "; expected a whole number of at least 0");
+  return value;
+}
+
+RunStatus status_of_json(const Json& json) {
+  for (const RunStatus status : statuses)
+    if (json == to_string(status)) return status;
+  throw Error("'status' is " + json.dump(-1, ' ', false, Json::error_handler_t::replace) +
+              "; expected what the bench writes, such as \"finished\"");
+}
+
 /// Runs read; a value that is missing or of another type is the file's fault.
 template <class Read>
 auto read_values(const std::filesystem::path& file, const Read& read) {
@@ -37,6 +53,9 @@ auto read_values(const std::filesystem::path& file, const Read& read) {
   try {
     return read(json);
   } catch (const Json::exception& error) {
+    throw InputError({file.string()},
+                     std::string("is no result of the bench: ") + error.what() + "; remove its folder");
+  } catch (const Error& error) {
     throw InputError({file.string()},
                      std::string("is no result of the bench: ") + error.what() + "; remove its folder");
   }
@@ -147,13 +166,12 @@ std::string to_json(const RunCost& cost) {
 RunResult read_run_result(const std::filesystem::path& file) {
   return read_values(file, [](const Json& json) {
     RunResult result;
-    for (const RunStatus status : statuses)
-      if (json.at("status") == to_string(status)) result.status = status;
+    result.status = status_of_json(json.at("status"));
     result.code = json.at("code");
-    result.frames = json.at("frames");
-    result.poses = json.at("poses");
-    result.not_finite = json.at("not_finite");
-    result.malformed = json.at("malformed");
+    result.frames = count(json, "frames");
+    result.poses = count(json, "poses");
+    result.not_finite = count(json, "not_finite");
+    result.malformed = count(json, "malformed");
     const Json& errors = json.at("errors");
     result.has_errors = errors.is_object();
     if (!result.has_errors) result.no_errors = json.at("no_errors");
@@ -169,7 +187,7 @@ RunCost read_run_cost(const std::filesystem::path& file) {
     cost.process.wall_seconds = json.at("wall_s");
     cost.process.user_seconds = json.at("user_s");
     cost.process.system_seconds = json.at("system_s");
-    cost.process.peak_memory = json.at("peak_memory_bytes");
+    cost.process.peak_memory = count(json, "peak_memory_bytes");
     cost.alone = json.at("alone");
     cost.tracking = number(json.at("tracking_median_s"));
     cost.version = json.at("version");
@@ -193,8 +211,8 @@ void read_own_run(const std::filesystem::path& folder, RunResult& result, RunCos
   std::error_code ignored;
   if (!std::filesystem::exists(folder / "run.json", ignored)) return;
   read_values(folder / "run.json", [&](const Json& json) {
-    result.frames = json.at("frames").at("expected");
-    result.poses = json.at("frames").at("poses");
+    result.frames = count(json.at("frames"), "expected");
+    result.poses = count(json.at("frames"), "poses");
     cost.tracking = number(json.at("tracking").at("median_s"));
     cost.version = json.at("holdfast").get<std::string>() + " (" + json.at("commit").get<std::string>() + ")";
     const Json& machine = json.at("machine");
@@ -213,8 +231,8 @@ void read_own_run(const std::filesystem::path& folder, RunResult& result, RunCos
                      statistics_of_json(evaluation.at("rpe_per_time").at("rotation_deg"))};
     const Json& coverage = evaluation.at("coverage");
     if (coverage.is_object()) {
-      result.frames = coverage.at("frames");
-      result.poses = coverage.at("poses");
+      result.frames = count(coverage, "frames");
+      result.poses = count(coverage, "poses");
     }
     return 0;
   });

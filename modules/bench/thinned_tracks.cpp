@@ -24,12 +24,25 @@ struct Tracks {
   TrackRows truth, estimate, error;
 };
 
+/// Rows are used by their columns without further questions.
+TrackRows rows_of_json(const Json& json, const char* key, std::size_t columns, const std::filesystem::path& file) {
+  TrackRows rows = json.at(key);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (rows[i].size() != columns)
+      throw InputError({file.string()}, "is no file of tracks: row " + std::to_string(i) + " of '" + key + "' has " +
+                                            std::to_string(rows[i].size()) + " numbers; expected " +
+                                            std::to_string(columns) +
+                                            "; remove the folder of the run and let --resume repeat it");
+  return rows;
+}
+
 std::optional<Tracks> read_tracks(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) return std::nullopt;
   try {
     const Json json = Json::parse(stream);
-    return Tracks{json.at("truth"), json.at("estimate"), json.at("error")};
+    return Tracks{rows_of_json(json, "truth", 4, file), rows_of_json(json, "estimate", 4, file),
+                  rows_of_json(json, "error", 2, file)};
   } catch (const Json::exception& error) {
     throw InputError({file.string()}, std::string("is no file of tracks: ") + error.what() +
                                           "; remove the folder of the run and let --resume repeat it");

@@ -84,7 +84,8 @@ int draw_background(const Arguments& arguments) {
                                        {.output_directory = arguments.output, .map_file = {}, .localise_only = false});
   const StaticScene* scene = built.pipeline.static_scene();
   if (scene == nullptr) throw Error("dense_map.enabled was set to false; pictures need what it keeps");
-  prepare_output_folder(arguments.output, arguments.overwrite, {"config.yaml", pictures_folder, "overlay"});
+  const FolderLock lock =
+      prepare_output_folder(arguments.output, arguments.overwrite, {"config.yaml", pictures_folder, "overlay"});
   write_file_atomically(arguments.output / "config.yaml", to_yaml(configuration));
 
   std::optional<Progress> progress(std::in_place, built.source->describe().frame_count, arguments.quiet);

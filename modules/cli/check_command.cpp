@@ -37,7 +37,8 @@ void check(const Arguments& arguments) {
   for (const ModuleChoice& filter : configuration.filters) chain += " -> " + filter.name;
   chain += " -> " + configuration.optimizer.name;
   if (configuration.loop_detector.name != "none") chain += " -> " + configuration.loop_detector.name;
-  std::printf("%s %s: %s\n", green("ok", STDOUT_FILENO).c_str(), arguments.configuration.c_str(), chain.c_str());
+  std::printf("%s %s: %s\n", green("ok", STDOUT_FILENO).c_str(), printable(arguments.configuration).c_str(),
+              chain.c_str());
 }
 
 }  // namespace

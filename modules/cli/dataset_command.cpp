@@ -95,11 +95,11 @@ void show(const DatasetRecipe& recipe) {
 void check(const Arguments& arguments, int& exit_code) {
   const DatasetRecipe* recipe = chosen_recipe(arguments);
   const DatasetCheck result = check_dataset(arguments.folder, recipe);
-  for (const std::string& fact : result.facts) std::printf("  %s\n", fact.c_str());
+  for (const std::string& fact : result.facts) std::printf("  %s\n", printable(fact).c_str());
   if (recipe == nullptr)
     std::printf("  no recipe has a folder of this name: checked as a recording in TUM layout; --recipe names one\n");
   for (const std::string& problem : result.problems)
-    std::printf("  %s %s\n", red("wrong:", STDOUT_FILENO).c_str(), problem.c_str());
+    std::printf("  %s %s\n", red("wrong:", STDOUT_FILENO).c_str(), printable(problem).c_str());
   const bool is_good = result.problems.empty();
   std::printf("%s %s\n", is_good ? green("ok", STDOUT_FILENO).c_str() : red("not usable", STDOUT_FILENO).c_str(),
               arguments.folder.c_str());

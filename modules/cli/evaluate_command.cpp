@@ -10,6 +10,7 @@
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/evaluation/evaluation.hpp"
+#include "terminal.hpp"
 
 namespace holdfast {
 
@@ -61,19 +62,27 @@ void write_plots(const std::filesystem::path& folder, const Evaluation& evaluati
   write_file_atomically(folder / "error_over_time.svg", error_over_time_svg(evaluation));
 }
 
+/// Reads a trajectory, and says what of it does not count.
+Trajectory read_with_notes(const std::string& file) {
+  TrajectoryFile read = read_trajectory_file(file);
+  if (const std::string omissions = read.omissions(); !omissions.empty())
+    std::cerr << "holdfast evaluate: " << printable(file) << ": leaves out " << omissions << '\n';
+  return std::move(read.poses);
+}
+
 void run(EvaluateArguments arguments) {
   if (arguments.json == "-" && arguments.csv == "-")
     throw Error("--json and --csv cannot both go to standard output; give one of them a file");
   arguments.options.alignment = parse_alignment(arguments.alignment).value();
   arguments.options.truth_name = arguments.truth;
   arguments.options.estimate_name = arguments.estimate;
-  const Trajectory truth = read_trajectory(arguments.truth);
-  const Trajectory estimate = read_trajectory(arguments.estimate);
+  const Trajectory truth = read_with_notes(arguments.truth);
+  const Trajectory estimate = read_with_notes(arguments.estimate);
   std::optional<std::vector<double>> frames;
   if (!arguments.frames.empty()) frames = read_frame_stamps(arguments.frames);
   const Evaluation evaluation = evaluate(truth, estimate, arguments.options, frames);
   if (arguments.json != "-" && arguments.csv != "-") {
-    std::cout << to_text(evaluation);
+    std::cout << printable(to_text(evaluation));
     if (!frames) std::cout << "Coverage needs --frames LIST.\n";
   }
   if (!arguments.json.empty()) write_to(arguments.json, to_json(evaluation));
@@ -126,7 +135,7 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
       run(*arguments);
       exit_code = 0;
     } catch (const Error& error) {
-      std::cerr << "holdfast evaluate: " << error.what() << '\n';
+      std::cerr << "holdfast evaluate: " << printable(error.what()) << '\n';
       exit_code = 1;
     }
   });

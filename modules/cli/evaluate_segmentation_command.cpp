@@ -16,6 +16,7 @@
 #include "holdfast/config/configuration.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/stage_times.hpp"
+#include "holdfast/core/text_file.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/evaluation/segmentation_evaluation.hpp"
 #include "holdfast/pipeline/configured_pipeline.hpp"
@@ -68,6 +69,7 @@ Examples
 std::vector<std::string> read_names(const fs::path& file) {
   std::ifstream stream(file);
   if (!stream) throw InputError({file.string()}, "cannot be read; expected a file with one image name a line");
+  skip_byte_order_mark(stream);
   std::vector<std::string> names;
   for (std::string line; std::getline(stream, line);)
     if (!line.empty() && line.front() != '#') names.push_back(line);
@@ -75,10 +77,10 @@ std::vector<std::string> read_names(const fs::path& file) {
   return names;
 }
 
-std::string size_text(const cv::Mat& image) { return std::to_string(image.cols) + "x" + std::to_string(image.rows); }
+std::string size_text(const cv::Size& size) { return std::to_string(size.width) + "x" + std::to_string(size.height); }
 
-void require_same_size(const fs::path& file, const cv::Mat& found, const cv::Mat& labels) {
-  if (found.size() != labels.size())
+void require_same_size(const fs::path& file, const cv::Size& found, const cv::Size& labels) {
+  if (found != labels)
     throw InputError({file.string()}, "is " + size_text(found) + " pixels, its labels " + size_text(labels) +
                                           "; expected the same size");
 }
@@ -137,7 +139,7 @@ Outcome compare_folders(const Arguments& arguments) {
   LabelFolder predictions(arguments.predictions, arguments.prediction_map, "--prediction-map");
   return compare(arguments, predictions.files(), labels, [&](const fs::path& file, const cv::Mat& truth) {
     const cv::Mat found = predictions.read(file);
-    require_same_size(file, found, truth);
+    require_same_size(file, found.size(), truth.size());
     return translated(found, predictions.classes(), labels.classes());
   });
 }
@@ -151,8 +153,8 @@ Outcome segment_images(const Arguments& arguments, const Configuration& configur
   const auto images = files_by_stem(arguments.images, {".png", ".jpg", ".jpeg"});
   Outcome outcome = compare(arguments, images, labels, [&](const fs::path& file, const cv::Mat& truth) {
     SensorFrame frame;
-    frame.colour = decoder.read_colour(file);
-    require_same_size(file, frame.colour, truth);
+    frame.colour =
+        decoder.read_colour(file, [&](const cv::Size& size) { require_same_size(file, size, truth.size()); });
     const Stopwatch watch;
     const Segmentation found = segmenter->segment(frame);
     seconds += watch.seconds();

@@ -58,8 +58,9 @@ std::string meaning_of_values(const std::vector<std::string>& classes) {
 LabelWriter::LabelWriter(fs::path folder, std::vector<std::string> classes, bool overwrite)
     : folder_(std::move(folder)),
       classes_(std::move(classes)),
+      lock_(prepare_output_folder(folder_, overwrite,
+                                  overwrite ? files_of_earlier_run(folder_) : std::vector<std::string>())),
       list_("# label images; classes.yaml says what the values mean\n# timestamp filename\n") {
-  prepare_output_folder(folder_, overwrite, overwrite ? files_of_earlier_run(folder_) : std::vector<std::string>());
   write_file_atomically(folder_ / classes_name, "labels: " + meaning_of_values(classes_) + "\n");
 }
 

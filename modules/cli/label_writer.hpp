@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "output_folder.hpp"
+
 namespace holdfast {
 
 /// Writes label images for the segmenter `precomputed`: STAMP.png (8 bit, index into the classes, 255 = unknown),
@@ -30,6 +32,7 @@ class LabelWriter {
  private:
   std::filesystem::path folder_;
   std::vector<std::string> classes_;
+  FolderLock lock_;
   std::vector<double> stamps_;
   std::string list_;
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <iostream>
 #include <string>
 #include <vector>
 
@@ -38,7 +39,7 @@ What a configuration can say:
 )";
 
 void print_error(const std::string& message) {
-  std::fprintf(stderr, "%s %s\n", holdfast::red("error:", STDERR_FILENO).c_str(), message.c_str());
+  std::fprintf(stderr, "%s %s\n", holdfast::red("error:", STDERR_FILENO).c_str(), holdfast::printable(message).c_str());
 }
 
 /// A word where a command should stand, or one of a command's own: CLI11 would only say that a command is required.
@@ -55,9 +56,17 @@ bool is_unknown_command(const CLI::App& app, const std::vector<std::string>& wor
   return true;
 }
 
+/// What was printed may not have arrived, as on a full disk: then the exit code says so.
+int after_output(int exit_code) {
+  std::cout.flush();
+  if (exit_code != 0 || (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout)) return exit_code;
+  print_error("standard output could not be written; is the disk full?");
+  return 1;
+}
+
 /// Help and version go to standard output; what is wrong with the arguments to standard error, with where to look.
 int answer_parse_error(const CLI::App& app, const CLI::ParseError& error) {
-  if (error.get_exit_code() == 0) return app.exit(error);
+  if (error.get_exit_code() == 0) return after_output(app.exit(error));
   std::string command = "holdfast";
   for (const CLI::App* parsed : app.get_subcommands()) command += " " + parsed->get_name();
   print_error(std::string(error.what()) + "; see `" + command + " --help`");
@@ -99,5 +108,5 @@ int main(int argc, char** argv) {
     print_error(error.what());
     return 1;
   }
-  return exit_code;
+  return after_output(exit_code);
 }

@@ -10,6 +10,7 @@
 #include "holdfast/map_io/map_export.hpp"
 #include "holdfast/map_io/map_file.hpp"
 #include "holdfast/map_io/map_info.hpp"
+#include "terminal.hpp"
 
 namespace holdfast {
 
@@ -54,7 +55,7 @@ Examples
 
 void show_info(const MapArguments& arguments) {
   const MapInfo info = read_map_info(arguments.file);
-  std::cout << (arguments.json ? to_json(info) : to_text(info));
+  std::cout << (arguments.json ? to_json(info) : printable(to_text(info)));
 }
 
 void export_to(const std::string& target, const std::string& content) {
@@ -88,7 +89,7 @@ void answer(CLI::App* command, const std::shared_ptr<MapArguments>& arguments, i
       if (!std::cout) throw Error("standard output could not be written");
       exit_code = 0;
     } catch (const Error& error) {
-      std::cerr << "holdfast map " << name << ": " << error.what() << '\n';
+      std::cerr << "holdfast map " << name << ": " << printable(error.what()) << '\n';
       exit_code = 1;
     }
   });

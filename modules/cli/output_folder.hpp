@@ -7,8 +7,24 @@
 
 namespace holdfast {
 
-/// Makes a folder for results. One that is not empty is refused (InputError) unless `overwrite`; then only the entries
-/// named in `ours` are removed, in this order, and what else lies there stays.
-void prepare_output_folder(const std::filesystem::path& folder, bool overwrite, const std::vector<std::string>& ours);
+/// Keeps a folder for one process as long as the object lives: a second one would mix its files with those of the
+/// first. The folder itself is locked, so that no file stays behind; the end of the process releases it as well.
+class FolderLock {
+ public:
+  /// Throws InputError when another process holds the folder. Where the file system knows no locks, there is none.
+  explicit FolderLock(const std::filesystem::path& folder);
+  ~FolderLock();
+  FolderLock(FolderLock&& other) noexcept;
+  FolderLock& operator=(FolderLock&&) = delete;
+
+ private:
+  int folder_;
+};
+
+/// Makes a folder for results, and keeps it for this process as long as the returned lock lives. One that is not empty
+/// is refused (InputError) unless `overwrite`; then only the entries named in `ours` are removed, in this order, and
+/// what else lies there stays.
+[[nodiscard]] FolderLock prepare_output_folder(const std::filesystem::path& folder, bool overwrite,
+                                               const std::vector<std::string>& ours);
 
 }  // namespace holdfast

@@ -37,14 +37,15 @@ void keep_map_out_of_results(const Arguments& arguments) {
 }
 
 /// Shows the progress of a run, prepares its folder and asks for its end after Ctrl-C.
-RunOptions options_of(const Arguments& arguments, const Stopwatch& since_start, std::optional<Progress>& progress) {
+RunOptions options_of(const Arguments& arguments, const Stopwatch& since_start, std::optional<Progress>& progress,
+                      std::optional<FolderLock>& lock) {
   RunOptions options;
   options.pipeline = {
       .output_directory = arguments.output, .map_file = arguments.map, .localise_only = arguments.localise};
   options.since_start = since_start;
   options.stop = interrupted;
   options.on_start = [&](const RunRecord& record) {
-    prepare_output_folder(arguments.output, arguments.overwrite, result_names());
+    lock.emplace(prepare_output_folder(arguments.output, arguments.overwrite, result_names()));
     write_file_atomically(arguments.output / "config.yaml", to_yaml(record.configuration));
     progress.emplace(record.source.frame_count, arguments.quiet);
   };
@@ -53,11 +54,11 @@ RunOptions options_of(const Arguments& arguments, const Stopwatch& since_start, 
 }
 
 int print_end(const Arguments& arguments, const RunRecord& record) {
-  if (!arguments.quiet && record.summary.frames() > 0) std::fputs(summary_text(record).c_str(), stdout);
+  if (!arguments.quiet && record.summary.frames() > 0) std::fputs(printable(summary_text(record)).c_str(), stdout);
   if (!record.failure.empty())
-    std::fprintf(stderr, "%s %s\n", red("error:", STDERR_FILENO).c_str(), record.failure.c_str());
+    std::fprintf(stderr, "%s %s\n", red("error:", STDERR_FILENO).c_str(), printable(record.failure).c_str());
   else if (record.was_interrupted)
-    std::fprintf(stderr, "interrupted; what was done is in %s\n", arguments.output.c_str());
+    std::fprintf(stderr, "interrupted; what was done is in %s\n", printable(arguments.output.string()).c_str());
   else if (record.trajectory.empty())
     std::fprintf(stderr, "%s no frame got a pose; is there depth, and enough to see?\n",
                  red("error:", STDERR_FILENO).c_str());
@@ -73,10 +74,16 @@ int run_configuration(const Arguments& arguments) {
   Registry registry;
   register_builtin_plugins(registry);
   const Configuration configuration = load_configuration(arguments.configuration, arguments.overrides, registry);
+  std::optional<FolderLock> lock;
   std::optional<Progress> progress;
-  const RunRecord record = run(configuration, registry, options_of(arguments, since_start, progress));
+  const RunRecord record = run(configuration, registry, options_of(arguments, since_start, progress, lock));
   progress.reset();
-  write_results(record, arguments.output);
+  try {
+    write_results(record, arguments.output);
+  } catch (const InputError&) {
+    print_end(arguments, record);  // the summary may be all that is left of it
+    throw;
+  }
   return print_end(arguments, record);
 }
 

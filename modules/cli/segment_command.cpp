@@ -74,7 +74,8 @@ int segment(const Arguments& arguments) {
   const auto done = static_cast<std::size_t>(counts.asked);
   const std::string written = std::to_string(writer.count()) + " label images are in " + arguments.output.string();
   if (!failure.empty())
-    std::fprintf(stderr, "%s %s\n%s\n", red("error:", STDERR_FILENO).c_str(), failure.c_str(), written.c_str());
+    std::fprintf(stderr, "%s %s\n%s\n", red("error:", STDERR_FILENO).c_str(), printable(failure).c_str(),
+                 printable(written).c_str());
   else if (interrupted())
     std::fprintf(stderr, "interrupted; %s\n", written.c_str());
   else if (writer.count() == 0)

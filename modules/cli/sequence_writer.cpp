@@ -60,6 +60,9 @@ Json to_json(const Settings& settings, const ParameterTable<Settings>& table) {
   return json;
 }
 
+/// A text with its quotes; bytes that are not UTF-8 are replaced.
+std::string quoted(const std::string& text) { return Json(text).dump(-1, ' ', false, Json::error_handler_t::replace); }
+
 /// So that the sequence can be made again; "" where there is no file.
 std::string content_of(const std::string& file) {
   std::ifstream stream(file, std::ios::binary);
@@ -146,7 +149,7 @@ std::string SequenceWriter::objects_json() const {
     const std::vector<std::string>& names = simulator_.class_names();
     const auto label = std::find(names.begin(), names.end(), object.class_name) - names.begin();
     text += std::string(k == 0 ? "" : ",") + "\n    {\"number\": " + std::to_string(numbered[k].number) +
-            ", \"name\": " + Json(object.name).dump() + ", \"class\": " + Json(object.class_name).dump() +
+            ", \"name\": " + quoted(object.name) + ", \"class\": " + quoted(object.class_name) +
             ", \"label\": " + std::to_string(label) + ", \"rows\": [";
     for (std::size_t i = 0; i < states_.size(); ++i) {
       const ObjectState& state = states_[i][k];
@@ -204,7 +207,7 @@ std::string SequenceWriter::scene_json() const {
                        {"box_maximum", {box.max().x(), box.max().y(), box.max().z()}},
                        {"triangles", object.mesh.triangles.size()}});
   }
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 void SequenceWriter::finish() {

@@ -72,7 +72,7 @@ int simulate(const Arguments& arguments) {
     write_image_atomically(arguments.preview, scene_preview(simulator));
     if (arguments.output.empty()) return 0;
   }
-  prepare_output_folder(arguments.output, arguments.overwrite, SequenceWriter::entries());
+  const FolderLock lock = prepare_output_folder(arguments.output, arguments.overwrite, SequenceWriter::entries());
   SequenceWriter writer(simulator, arguments.output, arguments.colour_format);
   catch_interrupts();
   {

@@ -33,6 +33,23 @@ std::string bold(const std::string& text, int stream) { return coloured(text, "1
 std::string red(const std::string& text, int stream) { return coloured(text, "31", stream); }
 std::string green(const std::string& text, int stream) { return coloured(text, "32", stream); }
 
+std::string printable(const std::string& text) {
+  constexpr const char* digits = "0123456789abcdef";
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    // U+0080 to U+009F are control characters as well, of two bytes in UTF-8.
+    const bool is_second = byte >= 0x80 && byte < 0xa0 && i > 0 && text[i - 1] == '\xc2';
+    const bool is_control = (byte < 0x20 && byte != '\n' && byte != '\t') || byte == 0x7f || is_second;
+    if (is_second) result.pop_back();
+    if (is_control)
+      (result += "\\x") += {digits[byte >> 4], digits[byte & 15]};
+    else
+      result += text[i];
+  }
+  return result;
+}
+
 Progress::Progress(std::optional<std::uint64_t> total, bool quiet)
     : total_(total), quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1), next_(terminal_ ? 0.0 : 10.0) {}
 

@@ -14,6 +14,10 @@ std::string bold(const std::string& text, int stream);
 std::string red(const std::string& text, int stream);
 std::string green(const std::string& text, int stream);
 
+/// Text with control characters written out, such as \x1b, so that a name from a file cannot command the terminal; line
+/// feeds and tabs stay.
+std::string printable(const std::string& text);
+
 /// Frames done and time left, on standard error: one line that is written over on a terminal, a line every ten seconds
 /// elsewhere. The line of a terminal is cleared at the end.
 class Progress {

@@ -205,7 +205,7 @@ std::string json(const std::vector<Entry>& entries) {
                    {"origin", entry.origin},
                    {"parameters", parameters}});
   }
-  return all.dump(2) + "\n";
+  return all.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace

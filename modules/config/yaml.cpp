@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <sstream>
 
 #include "holdfast/config/configuration_node.hpp"
@@ -73,7 +75,7 @@ class Converter {
         break;
       case YAML::NodeType::Map:
         result.kind = ConfigurationNode::Kind::map;
-        for (const auto& pair : node) add_entry(pair.first, pair.second, result);
+        add_entries(node, result);
         break;
       case YAML::NodeType::Null:
       case YAML::NodeType::Undefined:
@@ -87,7 +89,13 @@ class Converter {
     return {file_, mark.line + 1, mark.column + 1};
   }
 
-  void add_entry(const YAML::Node& key, const YAML::Node& value, ConfigurationNode& map) {
+  void add_entries(const YAML::Node& node, ConfigurationNode& map) {
+    std::map<std::string, int> lines;  // of the keys so far
+    for (const auto& pair : node) add_entry(pair.first, pair.second, lines, map);
+  }
+
+  void add_entry(const YAML::Node& key, const YAML::Node& value, std::map<std::string, int>& lines,
+                 ConfigurationNode& map) {
     const SourceLocation place = location(key);
     if (!key.IsScalar()) {
       diagnostics.push_back({place, "found a key that is no plain text; expected a name"});
@@ -99,12 +107,11 @@ class Converter {
                              "whole value"});
       return;
     }
-    for (const ConfigurationNode::Entry& entry : map.entries)
-      if (entry.key == key.Scalar()) {
-        diagnostics.push_back({place, "duplicate key '" + key.Scalar() + "'; it stands already in line " +
-                                          std::to_string(entry.location.line) + "; keep one of them"});
-        return;
-      }
+    if (const auto [first, is_new] = lines.emplace(key.Scalar(), place.line); !is_new) {
+      diagnostics.push_back({place, "duplicate key '" + key.Scalar() + "'; it stands already in line " +
+                                        std::to_string(first->second) + "; keep one of them"});
+      return;
+    }
     map.entries.push_back({key.Scalar(), place, convert(value)});
   }
 
@@ -114,17 +121,49 @@ class Converter {
   int count_ = 0;
 };
 
-/// Where a second document begins; asked only when there is one.
-SourceLocation second_document(const std::string& text, const std::string& file) {
+/// Where the documents of a text begin; builds nothing.
+class DocumentStarts : public YAML::EventHandler {
+ public:
+  void OnDocumentStart(const YAML::Mark& mark) override { starts.push_back(mark); }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
+  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
+  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
+  void OnMapEnd() override {}
+
+  std::vector<YAML::Mark> starts;
+};
+
+/// The line that separates a second document from the first, which begins at `mark`; 0 where there is none.
+int separator_line(const std::string& text, const YAML::Mark& mark) {
   std::istringstream lines(text);
   bool began = false;
   int number = 1;
-  for (std::string line; std::getline(lines, line); ++number) {
+  for (std::string line; number <= mark.line + 1 && std::getline(lines, line); ++number) {
     const bool is_mark = line.starts_with("---") || line.starts_with("...");
-    if (is_mark && began) return {file, number, 1};
+    if (is_mark && began) return number;
     if (!is_mark && line.find_first_not_of(" \t\r") != std::string::npos && line.front() != '#') began = true;
   }
-  return {file};
+  return 0;
+}
+
+/// Throws where the text goes on after its first document. The parser takes what it cannot continue with, such as a
+/// comma, for one more document and stays where it is: asked for all documents, it would never end.
+void require_one_document(const std::string& text, const std::string& file) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  DocumentStarts documents;
+  if (!parser.HandleNextDocument(documents) || !parser.HandleNextDocument(documents)) return;
+  const YAML::Mark& second = documents.starts.back();
+  if (const int line = separator_line(text, second); line > 0)
+    throw ConfigurationError({file, line, 1},
+                             "found a second document; expected one: remove the line '---' or what follows it");
+  throw ConfigurationError({file, second.line + 1, second.column + 1},
+                           "syntax error: found text that continues no key, list or value; remove it, or put a value "
+                           "that begins with ',' into quotes");
 }
 
 }  // namespace
@@ -133,11 +172,8 @@ ConfigurationNode parse_yaml(const std::string& text, const std::string& file_na
                              const std::filesystem::path& folder) {
   YAML::Node document;
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() > 1)
-      throw ConfigurationError(second_document(text, file_name),
-                               "found a second document; expected one: remove the line '---' or what follows it");
-    if (!documents.empty()) document = documents.front();
+    require_one_document(text, file_name);
+    document = YAML::Load(text);
   } catch (const YAML::Exception& error) {
     throw ConfigurationError(SourceLocation{file_name, error.mark.line + 1, error.mark.column + 1},
                              "syntax error: " + error.msg);

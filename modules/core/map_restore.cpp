@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -170,6 +171,15 @@ class ContentCheck {
   const MapContent& content_;
 };
 
+/// The tracker's cell size [px], or more where there would be far more cells than features, as of an almost empty
+/// keyframe of a very large image: a small file must not take much memory.
+float cell_size(const PixelBounds& bounds, std::size_t features) {
+  constexpr float usual = 20.0F, cells_per_feature = 64.0F, least_cells = 4096.0F;
+  const float area = (bounds.max_x - bounds.min_x) * (bounds.max_y - bounds.min_y);
+  const float most_cells = std::max(least_cells, cells_per_feature * static_cast<float>(features));
+  return std::max(usual, std::sqrt(std::max(area, 0.0F) / most_cells));
+}
+
 /// Builds the feature grids as the tracker does; the bounds are computed once per camera.
 void build_grids(std::vector<KeyFrame>& keyframes) {
   const Camera* camera = nullptr;
@@ -180,9 +190,9 @@ void build_grids(std::vector<KeyFrame>& keyframes) {
       camera = frame.camera.get();
       camera->undistorted_bounds(minimum, maximum);
     }
-    frame.grid.build(frame.x, frame.y,
-                     {static_cast<float>(minimum.x()), static_cast<float>(minimum.y()), static_cast<float>(maximum.x()),
-                      static_cast<float>(maximum.y())});
+    const PixelBounds bounds{static_cast<float>(minimum.x()), static_cast<float>(minimum.y()),
+                             static_cast<float>(maximum.x()), static_cast<float>(maximum.y())};
+    frame.grid.build(frame.x, frame.y, bounds, cell_size(bounds, frame.size()));
   }
 }
 

@@ -9,29 +9,47 @@
 #include <utility>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/text_file.hpp"
 
 namespace holdfast {
 
 namespace {
 
-/// Parses the first 8 numbers of a line, separated by blanks or commas; '#' begins a comment. Returns false if one of
-/// them is not a number.
-bool parse_numbers(std::string_view line, std::vector<double>& numbers) {
-  numbers.clear();
+/// The words of a line, separated by blanks or commas; '#' begins a comment.
+void split(std::string_view line, std::vector<std::string_view>& words) {
+  words.clear();
   line = line.substr(0, line.find('#'));
-  while (numbers.size() < 8) {
+  while (true) {
     const std::size_t begin = line.find_first_not_of(" \t\r,");
-    if (begin == std::string_view::npos) return true;
+    if (begin == std::string_view::npos) return;
     const std::size_t end = std::min(line.find_first_of(" \t\r,", begin), line.size());
-    std::string_view word = line.substr(begin, end - begin);
+    words.push_back(line.substr(begin, end - begin));
+    line.remove_prefix(end);
+  }
+}
+
+/// Returns false if one of the words is not a number.
+bool parse_numbers(const std::vector<std::string_view>& words, std::vector<double>& numbers) {
+  numbers.clear();
+  for (std::string_view word : words) {
     if (word.front() == '+') word.remove_prefix(1);
     double value = 0.0;
     const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc() || stop != word.data() + word.size()) return false;
     numbers.push_back(value);
-    line.remove_prefix(end);
   }
   return true;
+}
+
+/// No clock has counted so many seconds.
+bool is_in_nanoseconds(double stamp) { return std::isfinite(stamp) && stamp >= 1e14; }
+
+/// The format that a line without a TUM pose looks like; empty for none that is known.
+std::string known_format(const std::vector<double>& numbers) {
+  if (numbers.size() == 12) return "; it looks like KITTI's format (12 numbers of a matrix, without a stamp)";
+  if (numbers.size() >= 8 && is_in_nanoseconds(numbers.front()))
+    return "; it looks like EuRoC's format (stamps in nanoseconds, then tx ty tz qw qx qy qz)";
+  return "";
 }
 
 /// Appends a number with a fixed number of decimals and a decimal point, independent of the locale.
@@ -62,7 +80,21 @@ Trajectory sort_and_clean(Trajectory trajectory) {
   return unique;
 }
 
-Trajectory read_trajectory(const std::filesystem::path& file) {
+Trajectory read_trajectory(const std::filesystem::path& file) { return read_trajectory_file(file).poses; }
+
+std::string TrajectoryFile::omissions() const {
+  std::string text;
+  const auto add = [&](std::size_t count, const char* what) {
+    if (count > 0)
+      text += (text.empty() ? "" : ", ") + std::to_string(count) + (count == 1 ? " pose " : " poses ") + what;
+  };
+  add(not_finite, not_finite == 1 ? "that is not finite" : "that are not finite");
+  add(zero_quaternions, "with a zero quaternion");
+  add(repeated_stamps, "with the stamp of a later line");
+  return text;
+}
+
+TrajectoryFile read_trajectory_file(const std::filesystem::path& file) {
   std::error_code status;
   if (!std::filesystem::exists(file, status))
     throw InputError({file.string()}, std::string("no such file; ") + expected_format);
@@ -70,24 +102,40 @@ Trajectory read_trajectory(const std::filesystem::path& file) {
     throw InputError({file.string()}, std::string("found a folder; ") + expected_format);
   std::ifstream stream(file);
   if (!stream) throw InputError({file.string()}, std::string("cannot be opened for reading; ") + expected_format);
+  skip_byte_order_mark(stream);
+  TrajectoryFile result;
   Trajectory trajectory;
   std::string line;
+  std::vector<std::string_view> words;
   std::vector<double> numbers;
   for (int line_number = 1; std::getline(stream, line); ++line_number) {
-    const bool parsed = parse_numbers(line, numbers);
-    if (parsed && numbers.empty()) continue;
-    if (!parsed || numbers.size() < 8)
+    split(line, words);
+    if (words.empty()) continue;
+    const bool parsed = parse_numbers(words, numbers);
+    if (!parsed || numbers.size() != 8 || is_in_nanoseconds(numbers.front()))
       throw InputError({file.string(), line_number},
-                       "found '" + line.substr(0, 60) + "'; expected 8 numbers: t tx ty tz qx qy qz qw");
+                       "found " + std::to_string(words.size()) + " columns, '" + line.substr(0, 60) + "'" +
+                           (parsed ? known_format(numbers) : "") +
+                           "; expected 8 numbers: t tx ty tz qx qy qz qw, t in seconds; convert the file");
     const Eigen::Quaterniond rotation(numbers[7], numbers[4], numbers[5], numbers[6]);
-    if (rotation.norm() == 0.0) continue;
+    if (rotation.norm() == 0.0) {
+      ++result.zero_quaternions;
+      continue;
+    }
     TimedPose pose;
     pose.timestamp = numbers[0];
     pose.T_world_camera = Eigen::Translation3d(numbers[1], numbers[2], numbers[3]) * rotation.normalized();
+    if (!std::isfinite(pose.timestamp) || !pose.T_world_camera.matrix().allFinite()) {
+      ++result.not_finite;
+      continue;
+    }
     trajectory.push_back(pose);
   }
   if (stream.bad()) throw InputError({file.string()}, "reading stopped before the end; is the disk in order?");
-  return sort_and_clean(std::move(trajectory));
+  const std::size_t count = trajectory.size();
+  result.poses = sort_and_clean(std::move(trajectory));
+  result.repeated_stamps = count - result.poses.size();
+  return result;
 }
 
 std::string trajectory_text(const Trajectory& trajectory) {
@@ -127,7 +175,11 @@ void write_file_atomically(const std::filesystem::path& file, const std::string&
   }
   std::error_code error;
   std::filesystem::rename(temporary, file, error);
-  if (error) throw InputError({file.string()}, "cannot be replaced: " + error.message());
+  if (error) {
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    throw InputError({file.string()}, "cannot be replaced: " + error.message());
+  }
 }
 
 }  // namespace holdfast

@@ -10,6 +10,7 @@
 
 #include "holdfast/core/association.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/text_file.hpp"
 
 namespace holdfast {
 
@@ -22,6 +23,7 @@ std::vector<double> read_stamp_list(const std::filesystem::path& file) {
   std::ifstream stream(file);
   if (!stream)
     throw InputError({file.string()}, "cannot be read; expected a list of frames, each line beginning with a stamp");
+  skip_byte_order_mark(stream);
   std::vector<double> stamps;
   std::string line;
   for (int line_number = 1; std::getline(stream, line); ++line_number) {

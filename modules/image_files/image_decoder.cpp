@@ -53,18 +53,19 @@ void ImageDecoder::load(const std::filesystem::path& file) {
     throw InputError({file.string()}, "cannot be read to its end; check the disk, or copy the file again");
 }
 
-cv::Mat ImageDecoder::read_colour(const std::filesystem::path& file) {
+cv::Mat ImageDecoder::read_colour(const std::filesystem::path& file, const SizeCheck& check_size) {
   load(file);
   const ImageStructure image = examine_image(bytes_);
   require_decodable(file, image);
   if (image.channels != 3 || image.bits != 8)
     throw InputError({file.string()}, "is an image of " + image.to_string() +
                                           "; expected a colour image, 3 channels of 8 bits; convert it");
+  if (check_size) check_size({image.width, image.height});
   cv::Mat colour;
   return decode(file, bytes_, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION, colour);
 }
 
-cv::Mat ImageDecoder::read_depth(const std::filesystem::path& file, double depth_factor) {
+cv::Mat ImageDecoder::read_depth(const std::filesystem::path& file, double depth_factor, const SizeCheck& check_size) {
   load(file);
   const ImageStructure image = examine_image(bytes_);
   require_decodable(file, image);
@@ -74,6 +75,7 @@ cv::Mat ImageDecoder::read_depth(const std::filesystem::path& file, double depth
                                           " image of " + image.to_string() +
                                           "; expected a depth image, a PNG of 1 channel of 16 bits; export the depth "
                                           "without conversion");
+  if (check_size) check_size({image.width, image.height});
   raw_depth_ = decode(file, bytes_, cv::IMREAD_UNCHANGED, raw_depth_);
   cv::Mat depth(raw_depth_.size(), CV_32FC1);
   for (int y = 0; y < depth.rows; ++y) {
@@ -85,7 +87,7 @@ cv::Mat ImageDecoder::read_depth(const std::filesystem::path& file, double depth
   return depth;
 }
 
-cv::Mat ImageDecoder::read_labels(const std::filesystem::path& file) {
+cv::Mat ImageDecoder::read_labels(const std::filesystem::path& file, const SizeCheck& check_size) {
   load(file);
   const ImageStructure image = examine_image(bytes_);
   require_decodable(file, image);
@@ -101,6 +103,7 @@ cv::Mat ImageDecoder::read_labels(const std::filesystem::path& file) {
                                         : image.to_string()) +
                          "; expected a label image, a PNG of 1 channel of 8 or 16 bits, or with a palette of 8 bits; "
                          "convert it without changing its values");
+  if (check_size) check_size({image.width, image.height});
   if (is_indexed) bytes_ = palette_indices_as_grey(bytes_);
   cv::Mat labels;
   return decode(file, bytes_, cv::IMREAD_UNCHANGED, labels);

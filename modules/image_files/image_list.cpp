@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/text_file.hpp"
 
 namespace holdfast {
 
@@ -86,6 +87,7 @@ void read_lines(const std::filesystem::path& file, const char* form,
   std::ifstream stream(file);
   if (!stream || std::filesystem::is_directory(file, error))
     throw InputError({file.string()}, std::string("cannot be read; expected a list with lines '") + form + "'");
+  skip_byte_order_mark(stream);
   ListedImage previous;
   std::string text;
   int lines = 0;

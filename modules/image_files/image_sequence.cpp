@@ -35,23 +35,23 @@ SensorFrame ImageSequence::decode(const ImageFiles& files) {
   frame.timestamp = files.timestamp;
   frame.depth_delay = files.depth_delay;
   frame.colour = read_at(files.colour_listed_at, [&] {
-    cv::Mat colour = decoder_.read_colour(files.colour);
-    if (colour.cols != options_.width || colour.rows != options_.height)
-      throw InputError({files.colour.string()},
-                       "is " + size_text(colour.cols, colour.rows) + " pixels, but the camera is " +
-                           size_text(options_.width, options_.height) +
-                           "; give the camera of this recording under `camera:`, or scale the images");
-    return colour;
+    return decoder_.read_colour(files.colour, [&](const cv::Size& size) {
+      if (size.width != options_.width || size.height != options_.height)
+        throw InputError({files.colour.string()},
+                         "is " + size_text(size.width, size.height) + " pixels, but the camera is " +
+                             size_text(options_.width, options_.height) +
+                             "; give the camera of this recording under `camera:`, or scale the images");
+    });
   });
   if (files.depth.empty()) return frame;
   frame.depth = read_at(files.depth_listed_at, [&] {
-    cv::Mat depth = decoder_.read_depth(files.depth, options_.depth_factor);
-    if (depth.size() != frame.colour.size())
-      throw InputError({files.depth.string()}, "is " + size_text(depth.cols, depth.rows) +
-                                                   " pixels, but its colour image '" + files.colour.string() + "' is " +
-                                                   size_text(frame.colour.cols, frame.colour.rows) +
-                                                   "; expected depth registered to the colour image, pixel by pixel");
-    return depth;
+    return decoder_.read_depth(files.depth, options_.depth_factor, [&](const cv::Size& size) {
+      if (size != frame.colour.size())
+        throw InputError({files.depth.string()}, "is " + size_text(size.width, size.height) +
+                                                     " pixels, but its colour image '" + files.colour.string() +
+                                                     "' is " + size_text(frame.colour.cols, frame.colour.rows) +
+                                                     "; expected depth registered to the colour image, pixel by pixel");
+    });
   });
   return frame;
 }

@@ -2,8 +2,11 @@
 #include "holdfast/inference/onnx_signature.hpp"
 
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "holdfast/core/error.hpp"
 
@@ -13,13 +16,21 @@ namespace {
 
 using Bytes = std::span<const std::uint8_t>;
 
-constexpr int half_precision = 10;  // TensorProto.DataType.FLOAT16
+/// Values of TensorProto.DataType.
+namespace type {
+constexpr std::uint64_t float32 = 1, int64 = 7, half_precision = 10, float64 = 11, uint32 = 12, uint64 = 13;
+}  // namespace type
 
 /// Field numbers of onnx.proto3.
 namespace field {
 constexpr std::uint32_t model_graph = 7;
-constexpr std::uint32_t graph_initializer = 5, graph_input = 11, graph_output = 12;
-constexpr std::uint32_t tensor_data_type = 2, tensor_name = 8;
+constexpr std::uint32_t graph_node = 1, graph_initializer = 5, graph_input = 11, graph_output = 12;
+constexpr std::uint32_t graph_sparse_initializer = 15, sparse_values = 1;
+constexpr std::uint32_t node_input = 1, node_output = 2, node_name = 3, node_operator = 4, node_attribute = 5;
+constexpr std::uint32_t attribute_tensor = 5, attribute_graph = 6, attribute_tensors = 10, attribute_graphs = 11;
+constexpr std::uint32_t tensor_dimension = 1, tensor_data_type = 2, tensor_name = 8;
+constexpr std::uint32_t tensor_floats = 4, tensor_int32s = 5, tensor_int64s = 7, tensor_raw = 9, tensor_doubles = 10;
+constexpr std::uint32_t tensor_uint64s = 11, tensor_location = 14;
 constexpr std::uint32_t value_name = 1, value_type = 2;
 constexpr std::uint32_t type_tensor = 1;
 constexpr std::uint32_t tensor_type_element = 1, tensor_type_shape = 2;
@@ -29,34 +40,43 @@ constexpr std::uint32_t dimension_value = 1;
 
 struct Field {
   std::uint32_t number = 0;
+  std::uint32_t wire = 0;   ///< how the value is encoded
   std::uint64_t value = 0;  ///< of a varint
   Bytes content;            ///< of a length-delimited field
 };
 
+constexpr std::uint32_t wire_varint = 0, wire_eight_bytes = 1, wire_content = 2, wire_four_bytes = 5;
+
 struct Malformed {};
+/// A well-formed model that OpenCV must not see: what is wrong, what was expected and what to do.
+struct Unusable {
+  std::string message;
+};
 
 /// The fields of a message, one after the other.
 class Message {
  public:
   explicit Message(Bytes bytes) : rest_(bytes) {}
 
+  bool is_at_end() const { return rest_.empty(); }
   std::optional<Field> next() {
     if (rest_.empty()) return std::nullopt;
     const std::uint64_t key = varint();
     Field result;
     result.number = static_cast<std::uint32_t>(key >> 3);
     if (result.number == 0) throw Malformed();
-    switch (key & 7) {
-      case 0:
+    result.wire = key & 7;
+    switch (result.wire) {
+      case wire_varint:
         result.value = varint();
         break;
-      case 1:
+      case wire_eight_bytes:
         take(8);
         break;
-      case 2:
+      case wire_content:
         result.content = take(varint());
         break;
-      case 5:
+      case wire_four_bytes:
         take(4);
         break;
       default:
@@ -65,13 +85,6 @@ class Message {
     return result;
   }
 
- private:
-  Bytes take(std::uint64_t count) {
-    if (count > rest_.size()) throw Malformed();
-    const Bytes taken = rest_.first(count);
-    rest_ = rest_.subspan(count);
-    return taken;
-  }
   std::uint64_t varint() {
     std::uint64_t value = 0;
     for (int shift = 0; shift < 64; shift += 7) {
@@ -80,6 +93,14 @@ class Message {
       if ((byte & 0x80) == 0) return value;
     }
     throw Malformed();
+  }
+
+ private:
+  Bytes take(std::uint64_t count) {
+    if (count > rest_.size()) throw Malformed();
+    const Bytes taken = rest_.first(count);
+    rest_ = rest_.subspan(count);
+    return taken;
   }
 
   Bytes rest_;
@@ -120,20 +141,160 @@ OnnxTensor read_value(Bytes bytes) {
   return tensor;
 }
 
+/// The bytes of one element, 0 for types whose tensors OpenCV refuses.
+std::uint64_t element_size(std::uint64_t data_type) {
+  constexpr std::array<std::uint64_t, 17> sizes = {0, 4, 1, 1, 2, 2, 4, 8, 0, 1, 2, 8, 4, 8, 0, 0, 2};
+  return data_type < sizes.size() ? sizes[data_type] : 0;
+}
+
+/// The field of a tensor, beside the raw bytes, that holds elements of that type.
+std::uint32_t typed_field(std::uint64_t data_type) {
+  switch (data_type) {
+    case type::float32:
+      return field::tensor_floats;
+    case type::float64:
+      return field::tensor_doubles;
+    case type::int64:
+      return field::tensor_int64s;
+    case type::uint32:
+    case type::uint64:
+      return field::tensor_uint64s;
+    default:
+      return field::tensor_int32s;
+  }
+}
+
+/// The number of elements in one occurrence of a repeated field of numbers, which may be packed.
+std::uint64_t count_numbers(const Field& f) {
+  const std::uint32_t wire = f.number == field::tensor_floats    ? wire_four_bytes
+                             : f.number == field::tensor_doubles ? wire_eight_bytes
+                                                                 : wire_varint;
+  if (f.wire != wire_content) return f.wire == wire ? 1 : 0;
+  if (wire == wire_four_bytes) return f.content.size() / 4;
+  if (wire == wire_eight_bytes) return f.content.size() / 8;
+  return static_cast<std::uint64_t>(
+      std::count_if(f.content.begin(), f.content.end(), [](std::uint8_t byte) { return (byte & 0x80) == 0; }));
+}
+
+void add_dimensions(const Field& f, std::vector<std::int64_t>& shape) {
+  if (f.wire == wire_varint) shape.push_back(static_cast<std::int64_t>(f.value));
+  Message packed(f.content);
+  while (!packed.is_at_end()) shape.push_back(static_cast<std::int64_t>(packed.varint()));
+}
+
+/// Refuses a tensor with fewer elements than its dimensions say: OpenCV reads as many as they say.
+void check_tensor(Bytes bytes) {
+  std::string name;
+  std::vector<std::int64_t> shape;
+  std::uint64_t data_type = 0, raw_size = 0;
+  bool is_external = false;
+  each_field(bytes, [&](const Field& f) {
+    if (f.number == field::tensor_name) name = text(f.content);
+    if (f.number == field::tensor_dimension) add_dimensions(f, shape);
+    if (f.number == field::tensor_data_type) data_type = f.value;
+    if (f.number == field::tensor_raw) raw_size = f.content.size();
+    if (f.number == field::tensor_location) is_external = f.value == 1;
+  });
+  if (is_external)
+    throw Unusable{"keeps its tensor '" + name +
+                   "' in another file; expected all weights inside; export it as one file"};
+  if (element_size(data_type) == 0) return;
+  std::uint64_t elements = 0;
+  each_field(bytes, [&](const Field& f) {
+    if (f.number == typed_field(data_type)) elements += count_numbers(f);
+  });
+  if (elements == 0) elements = raw_size / element_size(data_type);
+  std::uint64_t expected = 1;
+  bool fits = true;
+  for (const std::int64_t size : shape) {
+    fits = fits && size >= 0 && size <= std::numeric_limits<std::int32_t>::max();
+    expected = fits ? expected * static_cast<std::uint64_t>(size) : 0;
+    fits = fits && expected <= elements;
+  }
+  if (!fits || expected > elements)
+    throw Unusable{"has a tensor '" + name + "' of " + shape_text(shape) + ", but data for " +
+                   std::to_string(elements) + " elements; expected one for each; export or copy it again"};
+}
+
+constexpr int most_graphs = 32;  // within each other; OpenCV knows no layer with a graph inside
+
+void check_tensors(Bytes graph, int depth);
+
+void check_attribute(Bytes bytes, int depth) {
+  bool has_tensor = false;
+  each_field(bytes, [&](const Field& f) {
+    if (f.number == field::attribute_tensor && std::exchange(has_tensor, true)) throw Malformed();
+    if (f.number == field::attribute_tensor || f.number == field::attribute_tensors) check_tensor(f.content);
+    if (f.number == field::attribute_graph || f.number == field::attribute_graphs) check_tensors(f.content, depth + 1);
+  });
+}
+
+/// All tensors of a graph: its weights and those in attributes of its layers.
+void check_tensors(Bytes graph, int depth) {
+  if (depth > most_graphs) throw Malformed();
+  each_field(graph, [&](const Field& part) {
+    if (part.number == field::graph_initializer) check_tensor(part.content);
+    if (part.number != field::graph_node) return;
+    each_field(part.content, [&](const Field& f) {
+      if (f.number == field::node_attribute) check_attribute(f.content, depth);
+    });
+  });
+}
+
+/// Refuses a layer with an input that nothing before it provides: OpenCV would run it without that input. `provided`
+/// holds the names of inputs and weights, and gets those of the layers' outputs.
+void check_layers(const std::vector<Bytes>& layers, std::set<std::string>& provided) {
+  for (const Bytes layer : layers) {
+    std::string name, kind, missing;
+    std::vector<std::string> outputs;
+    each_field(layer, [&](const Field& f) {
+      if (f.number == field::node_name) name = text(f.content);
+      if (f.number == field::node_operator) kind = text(f.content);
+      if (f.number == field::node_output) outputs.push_back(text(f.content));
+      if (f.number != field::node_input || f.content.empty()) return;  // an empty name leaves an input out
+      if (provided.count(text(f.content)) == 0) missing = text(f.content);
+    });
+    if (!missing.empty())
+      throw Unusable{
+          "has a layer '" + name + "' (" + kind + ") that reads '" + missing +
+          "', which no input, weight or layer before it provides; expected a whole network; export it again"};
+    provided.insert(outputs.begin(), outputs.end());
+  }
+}
+
 OnnxSignature read_graph(Bytes bytes) {
   OnnxSignature signature;
   std::set<std::string> weights;
+  std::vector<Bytes> layers;
+  check_tensors(bytes, 0);
   each_field(bytes, [&](const Field& part) {
     if (part.number == field::graph_input) signature.inputs.push_back(read_value(part.content));
     if (part.number == field::graph_output) signature.outputs.push_back(read_value(part.content));
+    if (part.number == field::graph_node) layers.push_back(part.content);
+    if (part.number == field::graph_sparse_initializer)
+      each_field(part.content, [&](const Field& sparse) {
+        if (sparse.number != field::sparse_values) return;
+        each_field(sparse.content, [&](const Field& weight) {
+          if (weight.number == field::tensor_name) weights.insert(text(weight.content));
+        });
+      });
     if (part.number != field::graph_initializer) return;
     each_field(part.content, [&](const Field& weight) {
       if (weight.number == field::tensor_name) weights.insert(text(weight.content));
-      if (weight.number == field::tensor_data_type) signature.has_half_precision |= weight.value == half_precision;
+      if (weight.number == field::tensor_data_type)
+        signature.has_half_precision |= weight.value == type::half_precision;
     });
   });
+  std::set<std::string> provided = weights;
+  for (const OnnxTensor& input : signature.inputs) provided.insert(input.name);
+  check_layers(layers, provided);
+  for (const OnnxTensor& output : signature.outputs)
+    if (provided.count(output.name) == 0)
+      throw Unusable{"declares an output '" + output.name + "', which no layer provides; export it again"};
   std::erase_if(signature.inputs, [&](const OnnxTensor& input) { return weights.count(input.name) > 0; });
-  const auto is_half = [](const OnnxTensor& tensor) { return tensor.element_type == half_precision; };
+  const auto is_half = [](const OnnxTensor& tensor) {
+    return tensor.element_type == static_cast<int>(type::half_precision);
+  };
   signature.has_half_precision |= std::any_of(signature.inputs.begin(), signature.inputs.end(), is_half) ||
                                   std::any_of(signature.outputs.begin(), signature.outputs.end(), is_half);
   return signature;
@@ -153,10 +314,14 @@ OnnxSignature read_onnx_signature(Bytes bytes, const std::filesystem::path& file
   std::optional<OnnxSignature> signature;
   try {
     each_field(bytes, [&](const Field& part) {
-      if (part.number == field::model_graph && !part.content.empty()) signature = read_graph(part.content);
+      if (part.number != field::model_graph || part.content.empty()) return;
+      if (signature) throw Malformed();
+      signature = read_graph(part.content);
     });
   } catch (const Malformed&) {
     signature.reset();
+  } catch (const Unusable& model) {
+    throw InputError({file.string()}, model.message);
   }
   if (!signature || signature->inputs.empty() || signature->outputs.empty())
     throw InputError({file.string()}, "is not a whole ONNX model of " + std::to_string(bytes.size()) +

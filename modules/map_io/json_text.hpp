@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -11,6 +12,21 @@
 #include "holdfast/core/camera.hpp"
 
 namespace holdfast::map_io {
+
+/// Length of the UTF-8 sequence at the beginning of a text that is not empty; 0 where it begins with none.
+inline std::size_t utf8_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char first = byte(0);
+  if (first < 0x80) return 1;
+  const std::size_t length = first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : first < 0xf5 ? 4 : 0;
+  if (length == 0 || length > text.size()) return 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+  // Longer than necessary, halves of surrogate pairs, and beyond the last character.
+  const bool is_none = (first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) > 0x9f) ||
+                       (first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) > 0x8f);
+  return is_none ? 0 : length;
+}
 
 /// Appends JSON to a text. A map has millions of numbers: they go straight into the text, not through a document.
 class JsonText {
@@ -32,16 +48,21 @@ class JsonText {
   JsonText& operator<<(const Eigen::Vector3d& v) {
     return *this << "[" << v.x() << "," << v.y() << "," << v.z() << "]";
   }
-  /// A string with its quotes.
+  /// A string with its quotes; bytes that are not UTF-8 become U+FFFD.
   JsonText& quote(std::string_view string) {
     text_ += '"';
-    for (const char letter : string) {
+    while (!string.empty()) {
       constexpr const char* digits = "0123456789abcdef";
+      const char letter = string.front();
+      const std::size_t length = utf8_length(string);
       if (letter == '"' || letter == '\\') text_ += '\\';
-      if (static_cast<unsigned char>(letter) < 0x20)
+      if (length == 0)
+        text_ += "\xef\xbf\xbd";
+      else if (static_cast<unsigned char>(letter) < 0x20)
         (text_ += "\\u00") += {digits[letter >> 4], digits[letter & 15]};
       else
-        text_ += letter;
+        text_ += string.substr(0, length);
+      string.remove_prefix(std::max<std::size_t>(length, 1));
     }
     text_ += '"';
     return *this;

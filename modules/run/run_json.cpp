@@ -158,7 +158,7 @@ std::string run_json(const RunRecord& record) {
   json["start_to_first_pose_s"] = record.start_seconds;
   json["total_s"] = record.total_seconds;
   json["peak_memory_bytes"] = record.peak_memory;
-  return json.dump(2) + "\n";
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace holdfast

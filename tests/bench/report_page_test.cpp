@@ -95,6 +95,22 @@ TEST_F(ReportPageTest, SaysWhichFileOfTracksIsNone) {
   }
 }
 
+TEST_F(ReportPageTest, RefusesRowsOfOtherLengths) {
+  add_run("odd", true);
+  for (const char* text :
+       {R"({"truth": [], "estimate": [[], []], "error": []})", R"({"truth": [[1, 0, 0]], "estimate": [], "error": []})",
+        R"({"truth": [[1, 0, 0, 0]], "estimate": [], "error": [[1, 0.1], [2]]})"}) {
+    write("runs/odd/tracks.json", text);
+    try {
+      thinned_tracks_json(folder_, plan_, results_);
+      ADD_FAILURE() << text;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), ::testing::AllOf(HasSubstr("runs/odd/tracks.json: is no file of tracks: row "),
+                                                 HasSubstr("let --resume repeat it")));
+    }
+  }
+}
+
 TEST_F(ReportPageTest, NothingInItEndsAScriptOrLoadsAFile) {
   const std::string page = report_page("a </title><script>", R"({"title": "</script><!-- {{main.js}}"})", "{}");
   EXPECT_THAT(page, HasSubstr("<title>a &lt;/title&gt;&lt;script&gt;</title>"));

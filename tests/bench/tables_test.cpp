@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
+#include <cstring>
+
 #include "holdfast/bench/bench_report.hpp"
 
 namespace holdfast {
@@ -149,6 +151,14 @@ TEST_F(TablesTest, ResultsComeBackFromTheirFiles) {
   const auto file = std::filesystem::temp_directory_path() / ("holdfast_result_" + std::to_string(getpid()));
   write_file_atomically(file, to_json(result));
   EXPECT_EQ(to_json(read_run_result(file)), to_json(result));
+  for (const auto& [from, to] :
+       {std::pair("\"frames\": 100", "\"frames\": -1"), std::pair("\"poses\": 100", "\"poses\": 1.5"),
+        std::pair("\"finished\"", "\"perhaps\"")}) {
+    std::string text = to_json(result);
+    ASSERT_NE(text.find(from), std::string::npos) << text;
+    write_file_atomically(file, text.replace(text.find(from), std::strlen(from), to));
+    EXPECT_THROW(read_run_result(file), InputError) << to;
+  }
   RunCost cost;
   cost.process.peak_memory = 12345678;
   cost.stages = {{"frame", 0.1, 2.5}};

@@ -92,6 +92,15 @@ TEST_F(EvaluateCommand, PrintsNothingButJsonWhenAsked) {
   EXPECT_EQ(json["rpe_per_time"]["step_s"], 0.5);
 }
 
+TEST_F(EvaluateCommand, SaysWhatDoesNotCount) {
+  std::ofstream(path("estimate.txt"), std::ios::app) << "900 nan 0 0 0 0 0 1\n901 0 0 0 0 0 0 0\n";
+  const Outcome outcome = run({path("truth.txt"), path("estimate.txt"), "--json", "-"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.errors, "holdfast evaluate: " + path("estimate.txt") +
+                                ": leaves out 1 pose that is not finite, 1 pose with a zero quaternion\n");
+  EXPECT_EQ(nlohmann::json::parse(outcome.output)["estimate"]["poses"], 90);
+}
+
 TEST_F(EvaluateCommand, ExplainsFailureAndReturnsNonZero) {
   const Outcome missing = run({path("absent.txt"), path("estimate.txt")});
   EXPECT_EQ(missing.exit_code, 1);

@@ -127,6 +127,26 @@ TEST_F(ProgramTest, SetTakesAnyText) {
   EXPECT_THAT(outcome.output, AllOf(HasSubstr("/a=b, c d/[x],y\""), HasSubstr("count: 77")));
 }
 
+TEST_F(ProgramTest, NamesCannotCommandTheTerminal) {
+  const Outcome outcome = program_.run({"check", "\x1b[31mred\x7f\xc2\x9b.yaml"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.errors, HasSubstr("error: \\x1b[31mred\\x7f\\x9b.yaml: there is no such file"));
+  const Outcome compared = program_.run({"evaluate", "\x1b[2J.txt", "b.txt"});
+  EXPECT_THAT(compared.errors, HasSubstr("\\x1b[2J.txt: no such file"));
+}
+
+TEST_F(ProgramTest, AFullDiskUnderTheOutputIsAnError) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
+  for (const std::string arguments : {"modules", "modules --json", "check good.yaml", "check good.yaml --print",
+                                      "run good.yaml --output out --overwrite", "--help"}) {
+    const std::string command =
+        "cd '" + program_.path("").string() + "' && '" HOLDFAST_PROGRAM "' " + arguments + " > /dev/full 2> errors.txt";
+    EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 1) << arguments;
+    EXPECT_EQ(program_.text("errors.txt"), "error: standard output could not be written; is the disk full?\n")
+        << arguments;
+  }
+}
+
 TEST_F(ProgramTest, FilesThatAreNotThere) {
   const Outcome missing = program_.run({"check", "nowhere.yaml"});
   EXPECT_EQ(missing.exit_code, 2);

@@ -119,6 +119,22 @@ TEST_F(RunTest, LeavesEarlierResultsAlone) {
   EXPECT_EQ(program_.text("out/notes.txt"), "mine");
 }
 
+TEST_F(RunTest, TwoRunsDoNotShareAFolder) {
+  const pid_t first =
+      program_.start({"run", "room.yaml", "--set", "source.simulated.duration=600", "--output", "out", "--quiet"});
+  for (int i = 0; i < 3000 && !fs::exists(program_.path("out/config.yaml")); ++i) usleep(10'000);
+  // Its output goes elsewhere than that of the first, which program_ keeps.
+  const test::Program other;
+  const Outcome second = other.run(
+      {"run", program_.path("room.yaml"), "--overwrite", "--output", program_.path("out").string(), "--quiet"});
+  EXPECT_EQ(second.exit_code, 1);
+  EXPECT_THAT(second.errors, AllOf(HasSubstr("another process is writing into this folder"), HasSubstr("wait for")));
+  EXPECT_TRUE(fs::exists(program_.path("out/config.yaml"))) << "nothing of the first is removed";
+  kill(first, SIGTERM);
+  EXPECT_EQ(program_.finish(first).exit_code, 130);
+  EXPECT_EQ(program_.run({"run", "room.yaml", "--overwrite", "--output", "out", "--quiet"}).exit_code, 0);
+}
+
 TEST_F(RunTest, SwapsTheFeatures) {
   const Outcome outcome = program_.run({"run", "room.yaml", "--set", "features=opencv_orb", "--output", "out"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;

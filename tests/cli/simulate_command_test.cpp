@@ -101,7 +101,8 @@ people:
     start: -8
     do:
       - carry: { thing: box 3, to: [[2.3, 3.05], [3.6, 3.05]], put_at: [4.7, 3.1, 0.0], speed: 0.6 }
-)";
+)"
+                           << "# by Ren\xe9, in Latin-1, which scene.json holds as UTF-8\n";
   }
   ~SimulateScene() override { fs::remove_all(root_); }
 
@@ -226,7 +227,7 @@ TEST_F(SimulateScene, TellsWhereTheSceneIsWrongAndWritesNothing) {
       problem("--set \"people.0.do.0.carry.thing=box 77\"").find("scene.yaml: people.0.do.0: Anna wants to carry"),
       std::string::npos);
   std::ofstream(scene(), std::ios::app) << "  - { at: [2, 2], nmae: Bob }\n";
-  EXPECT_EQ(problem(""), scene().string() + ":11:19: a person has no parameter 'nmae'; did you mean 'name'?");
+  EXPECT_EQ(problem(""), scene().string() + ":12:19: a person has no parameter 'nmae'; did you mean 'name'?");
   EXPECT_FALSE(fs::exists(root_ / "out"));
 }
 

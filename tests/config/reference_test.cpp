@@ -71,6 +71,14 @@ TEST(Reference, JsonHoldsTheTable) {
   EXPECT_EQ(count["minimum"], 50);
 }
 
+TEST(Reference, JsonReplacesBytesThatAreNotUtf8) {
+  Registry registry;
+  registry.add<Segmenter, NoSettings>({.name = "strange", .summary = "A caf\xe9.", .paper = ""},
+                                      [](const NoSettings&, const CreationContext&) { return nullptr; });
+  const auto all = nlohmann::json::parse(reference(registry, {}, "strange", ReferenceFormat::json));
+  EXPECT_EQ(all[0]["summary"], "A caf\xef\xbf\xbd.");
+}
+
 TEST(Reference, ListsTheSectionsOfSceneFilesUnderTheirOwnHeading) {
   std::vector<SectionDescription> sections = test::test_sections();
   for (const char* name : {"scene", "scene.people.do.walk"})

@@ -32,6 +32,13 @@ TEST(Yaml, ReportsDuplicateKeysAllTogether) {
                           "c.yaml:3:1: duplicate key 'run'; it stands already in line 1; keep one of them"));
 }
 
+TEST(Yaml, FindsADuplicateAmongVeryManyKeys) {
+  std::string text;
+  for (int i = 0; i < 60000; ++i) text += "k" + std::to_string(i) + ": 1\n";
+  EXPECT_THAT(problems(text + "k7: 2\n"),
+              ElementsAre("c.yaml:60001:1: duplicate key 'k7'; it stands already in line 8; keep one of them"));
+}
+
 TEST(Yaml, RefusesMergeKeysAndOddKeys) {
   EXPECT_THAT(problems("a: &x { b: 1 }\nc:\n  <<: *x\n[d]: 1\n"),
               ElementsAre(StartsWith("c.yaml:3:3: merge keys (<<) are not supported"),
@@ -59,6 +66,15 @@ TEST(Yaml, RefusesAliasesThatNeverEnd) {
 TEST(Yaml, RefusesASecondDocument) {
   EXPECT_THAT(problems(test::good + "---\nrun: { seed: 5 }\n"), ElementsAre(StartsWith("c.yaml:5:1: found a second")));
   EXPECT_TRUE(problems("---\n" + test::good).empty());
+}
+
+TEST(Yaml, RefusesTextThatBelongsToNothing) {
+  EXPECT_THAT(problems(","), ElementsAre(StartsWith("c.yaml:1:1: syntax error: found text that continues no")));
+  EXPECT_THAT(problems(",\n---\n"), ElementsAre(StartsWith("c.yaml:1:1: syntax error: ")));
+  EXPECT_THAT(problems("run: [a], b\n"), ElementsAre(StartsWith("c.yaml:1:9: syntax error: ")));
+  EXPECT_THAT(problems("[a]\n, b\n"), ElementsAre(StartsWith("c.yaml:2:1: syntax error: ")));
+  EXPECT_THAT(problems(test::good, {"source.tum.path=,x"}),
+              ElementsAre(StartsWith("--set source.tum.path=,x:1:1: syntax error: ")));
 }
 
 TEST(Yaml, RefusesWhatIsNoMap) {

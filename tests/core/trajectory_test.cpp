@@ -13,9 +13,10 @@
 namespace holdfast {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-class TrajectoryFile : public ::testing::Test {
+class TrajectoryTest : public ::testing::Test {
  protected:
   void SetUp() override {
     folder_ = std::filesystem::path(::testing::TempDir()) /
@@ -46,20 +47,30 @@ class TrajectoryFile : public ::testing::Test {
   std::filesystem::path folder_;
 };
 
-TEST_F(TrajectoryFile, ReadsBlanksTabsCommasCommentsAndWindowsLineEnds) {
+TEST_F(TrajectoryTest, ReadsBlanksTabsCommasCommentsAndWindowsLineEnds) {
   const Trajectory trajectory =
       read_trajectory(write("# timestamp tx ty tz qx qy qz qw\r\n"
                             "1.5 1 2 3 0 0 0 2\r\n"
                             "\n"
                             "2.5,+4,-5,6e-1,0,0,1,0 # a comment\n"
-                            "3.5\t7 8 9 1 0 0 0 further words"));
+                            "3.5\t7 8 9 1 0 0 0"));
   ASSERT_EQ(trajectory.size(), 3u);
   EXPECT_EQ(trajectory[0].timestamp, 1.5);
   EXPECT_EQ(trajectory[1].T_world_camera.translation(), Eigen::Vector3d(4.0, -5.0, 0.6));
   EXPECT_EQ(trajectory[2].T_world_camera.translation(), Eigen::Vector3d(7.0, 8.0, 9.0));
 }
 
-TEST_F(TrajectoryFile, SortsAndKeepsTheLastOfEqualStamps) {
+TEST_F(TrajectoryTest, SkipsAByteOrderMark) {
+  EXPECT_EQ(read_trajectory(write("\xef\xbb\xbf"
+                                  "1 0 0 0 0 0 0 1\n"))
+                .size(),
+            1u);
+  EXPECT_EQ(read_trajectory(write("\xef\xbb\xbf# a comment\n1 0 0 0 0 0 0 1\n")).size(), 1u);
+  EXPECT_EQ(read_trajectory(write("")).size(), 0u);
+  EXPECT_THAT(error_of(write("\xef\xbb 1 0 0 0 0 0 0 1\n")), HasSubstr("trajectory.txt:1: found 9 columns"));
+}
+
+TEST_F(TrajectoryTest, SortsAndKeepsTheLastOfEqualStamps) {
   const Trajectory trajectory =
       read_trajectory(write("3 1 0 0 0 0 0 1\n1 2 0 0 0 0 0 1\n3 3 0 0 0 0 0 1\n2 4 0 0 0 0 0 1\n"));
   ASSERT_EQ(trajectory.size(), 3u);
@@ -69,7 +80,7 @@ TEST_F(TrajectoryFile, SortsAndKeepsTheLastOfEqualStamps) {
   EXPECT_EQ(trajectory[2].T_world_camera.translation().x(), 3.0);
 }
 
-TEST_F(TrajectoryFile, LeavesOutPosesThatAreNotFiniteAndZeroQuaternions) {
+TEST_F(TrajectoryTest, LeavesOutPosesThatAreNotFiniteAndZeroQuaternions) {
   const Trajectory trajectory =
       read_trajectory(write("1 nan 0 0 0 0 0 1\n2 0 inf 0 0 0 0 1\n3 0 0 0 NaN 0 0 1\n4 0 0 0 0 0 0 0\nnan 0 0 0 0 0 0 "
                             "1\n5 1 2 3 0 0 0 1\n"));
@@ -77,26 +88,52 @@ TEST_F(TrajectoryFile, LeavesOutPosesThatAreNotFiniteAndZeroQuaternions) {
   EXPECT_EQ(trajectory[0].timestamp, 5.0);
 }
 
-TEST_F(TrajectoryFile, NormalisesQuaternions) {
+TEST_F(TrajectoryTest, CountsWhatItLeavesOut) {
+  const TrajectoryFile read = read_trajectory_file(
+      write("1 nan 0 0 0 0 0 1\n2 0 inf 0 0 0 0 1\n3 0 0 0 0 0 0 0\n4 1 0 0 0 0 0 1\n4 2 0 0 0 0 0 1\n"));
+  EXPECT_EQ(read.poses.size(), 1u);
+  EXPECT_EQ(read.not_finite, 2u);
+  EXPECT_EQ(read.zero_quaternions, 1u);
+  EXPECT_EQ(read.repeated_stamps, 1u);
+  EXPECT_EQ(read.omissions(),
+            "2 poses that are not finite, 1 pose with a zero quaternion, 1 pose with the stamp of a later line");
+  EXPECT_EQ(read_trajectory_file(write("1 0 0 0 0 0 0 1\n")).omissions(), "");
+}
+
+TEST_F(TrajectoryTest, NormalisesQuaternions) {
   const Trajectory trajectory = read_trajectory(write("1 0 0 0 0 0 3 3\n"));
   ASSERT_EQ(trajectory.size(), 1u);
   const Eigen::Vector3d turned = trajectory[0].T_world_camera.linear() * Eigen::Vector3d::UnitX();
   EXPECT_NEAR((turned - Eigen::Vector3d::UnitY()).norm(), 0.0, 1e-15);
 }
 
-TEST_F(TrajectoryFile, NamesTheLineOfAnError) {
+TEST_F(TrajectoryTest, NamesTheLineOfAnError) {
   const std::string message = error_of(write("# head\n1 0 0 0 0 0 0 1\n2 0 0 zero 0 0 0 1\n"));
-  EXPECT_THAT(message, HasSubstr("trajectory.txt:3: found '2 0 0 zero"));
+  EXPECT_THAT(message, HasSubstr("trajectory.txt:3: found 8 columns, '2 0 0 zero"));
   EXPECT_THAT(message, HasSubstr("expected 8 numbers"));
   EXPECT_THAT(error_of(write("1 0 0 0 0 0 0\n")), HasSubstr("trajectory.txt:1:"));
 }
 
-TEST_F(TrajectoryFile, NamesAFileThatIsMissingOrAFolder) {
+TEST_F(TrajectoryTest, RefusesOtherFormatsByName) {
+  EXPECT_THAT(error_of(write("1 0 0 0 0 1 0 0 0 0 1 0\n")),
+              AllOf(HasSubstr("trajectory.txt:1: found 12 columns"), HasSubstr("KITTI's format")));
+  const char* euroc = "it looks like EuRoC's format (stamps in nanoseconds";
+  EXPECT_THAT(error_of(write("#timestamp,x,y,z\n1403636580838555648,4.6,-1.7,0.7,0.5,-0.1,-0.8,-0.1\n")),
+              AllOf(HasSubstr("trajectory.txt:2: found 8 columns"), HasSubstr(euroc)));
+  EXPECT_THAT(error_of(write("1403636580838555648,4.6,-1.7,0.7,0.5,-0.1,-0.8,-0.1,0,0,0,0,0,0,0,0,0\n")),
+              AllOf(HasSubstr("found 17 columns"), HasSubstr(euroc)));
+  EXPECT_THAT(error_of(write("timestamp,tx,ty,tz,qx,qy,qz,qw\n1,0,0,0,0,0,0,1\n")),
+              AllOf(HasSubstr("trajectory.txt:1: found 8 columns, 'timestamp,tx"), HasSubstr("expected 8 numbers")));
+  EXPECT_THAT(error_of(write("1 0 0 0 0 0 0 1 0.5\n")), HasSubstr("found 9 columns"));
+  EXPECT_THAT(error_of(write("1 0 0 0 0 0 0 1 further words\n")), HasSubstr("found 10 columns"));
+}
+
+TEST_F(TrajectoryTest, NamesAFileThatIsMissingOrAFolder) {
   EXPECT_THAT(error_of(folder_ / "absent.txt"), HasSubstr("absent.txt: no such file"));
   EXPECT_THAT(error_of(folder_), HasSubstr("found a folder"));
 }
 
-TEST_F(TrajectoryFile, WritesStampsWithSixAndValuesWithNineDecimals) {
+TEST_F(TrajectoryTest, WritesStampsWithSixAndValuesWithNineDecimals) {
   TimedPose pose;
   pose.timestamp = 1305031102.1753040;
   pose.T_world_camera = Eigen::Translation3d(1.0, -0.25, 1e-9) * Eigen::Quaterniond(-0.6, 0.0, 0.8, 0.0);
@@ -106,7 +143,7 @@ TEST_F(TrajectoryFile, WritesStampsWithSixAndValuesWithNineDecimals) {
       "1305031102.175304 1.000000000 -0.250000000 0.000000001 0.000000000 -0.800000000 0.000000000 0.600000000\n");
 }
 
-TEST_F(TrajectoryFile, ReadsWhatItWrote) {
+TEST_F(TrajectoryTest, ReadsWhatItWrote) {
   Random random(7);
   Trajectory trajectory;
   for (int i = 0; i < 50; ++i) {
@@ -126,7 +163,7 @@ TEST_F(TrajectoryFile, ReadsWhatItWrote) {
   }
 }
 
-TEST_F(TrajectoryFile, ReplacesAFileWithoutLeavingATemporaryOne) {
+TEST_F(TrajectoryTest, ReplacesAFileWithoutLeavingATemporaryOne) {
   write_file_atomically(write("old"), "new");
   EXPECT_EQ(content(folder_ / "trajectory.txt"), "new");
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);

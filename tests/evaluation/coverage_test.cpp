@@ -86,6 +86,13 @@ TEST_F(FrameList, ReadsTheFirstColumnOfAList) {
               ElementsAre(1.5, 2.5));
 }
 
+TEST_F(FrameList, SkipsAByteOrderMark) {
+  EXPECT_THAT(read_frame_stamps(write("a.txt",
+                                      "\xef\xbb\xbf"
+                                      "1.5 a.png\n")),
+              ElementsAre(1.5));
+}
+
 TEST_F(FrameList, PairsColourAndDepthOfAFolder) {
   write("rgb.txt", "1.00 rgb/a\n1.03 rgb/b\n1.06 rgb/c\n1.09 rgb/d\n");
   write("depth.txt", "1.001 depth/a\n1.028 depth/b\n1.2 depth/x\n1.071 depth/c\n");

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -13,7 +14,9 @@
 namespace holdfast {
 namespace {
 
+using testing::AllOf;
 using testing::ElementsAre;
+using testing::HasSubstr;
 namespace fs = std::filesystem;
 
 std::vector<std::uint8_t> bytes_of(const std::string& name) {
@@ -32,6 +35,44 @@ TEST(OnnxSignature, TellsInputsAndOutputs) {
   EXPECT_FALSE(fixed.has_half_precision);
   EXPECT_EQ(read_onnx_signature(bytes_of("any_size"), "m").inputs[0].shape_text(), "1x3x?x?");
   EXPECT_TRUE(read_onnx_signature(bytes_of("half"), "m").has_half_precision);
+}
+
+std::string error_of(const std::vector<std::uint8_t>& bytes) {
+  try {
+    read_onnx_signature(bytes, "m");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(OnnxSignature, RefusesALayerWhoseInputNothingProvides) {
+  std::vector<std::uint8_t> bytes = bytes_of("labels");
+  bytes[33] = 'b';  // the first layer provides 'scobes'
+  EXPECT_THAT(error_of(bytes), AllOf(HasSubstr("m: has a layer 'labels_node' (ArgMax) that reads 'scores', which no"),
+                                     HasSubstr("export it again")));
+}
+
+TEST(OnnxSignature, RefusesDimensionsLargerThanTheData) {
+  std::vector<std::uint8_t> bytes = bytes_of("one_channel");
+  bytes[106] = 0x7f;
+  EXPECT_THAT(error_of(bytes), HasSubstr("has a tensor 'weight' of 127x3x1x1, but data for 3 elements"));
+  bytes[106] = 0;
+  EXPECT_EQ(error_of(bytes), "no error") << "nothing is read of an empty tensor";
+}
+
+/// Packed numbers of their own type instead of raw bytes.
+TEST(OnnxSignature, CountsTypedData) {
+  std::vector<std::uint8_t> bytes = bytes_of("one_channel");
+  const std::vector<std::uint8_t> raw = {0x4a, 12, 0, 0, 0, 0x41};
+  const auto found = std::search(bytes.begin(), bytes.end(), raw.begin(), raw.end());
+  ASSERT_NE(found, bytes.end());
+  *found = 0x22;  // float_data
+  EXPECT_EQ(error_of(bytes), "no error");
+  bytes[106] = 2;
+  EXPECT_THAT(error_of(bytes), HasSubstr("of 2x3x1x1, but data for 3 elements"));
+  *found = 0x2a;  // int32_data, which OpenCV does not read for floats
+  EXPECT_THAT(error_of(bytes), HasSubstr("but data for 0 elements"));
 }
 
 TEST(OnnxSignature, EveryTruncationAndAnyRubbishIsAnErrorOrShorter) {

@@ -2,6 +2,7 @@
 #include "holdfast/map_io/map_file.hpp"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include <cstring>
 #include <map>
@@ -231,6 +232,32 @@ TEST_F(MapFile, PlacesThatCannotBeWritten) {
   if (geteuid() == 0) return;  // root writes everywhere
   std::filesystem::permissions(folder_, std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
   EXPECT_THROW(write_map(path("map.hfm"), map), InputError);
+}
+
+/// The memory that the program has taken from the allocator [bytes].
+std::size_t memory_in_use() {
+  const struct mallinfo2 info = mallinfo2();
+  return info.uordblks + info.hblkhd;
+}
+
+TEST_F(MapFile, AlmostEmptyKeyframesOfALargeImageTakeLittleMemory) {
+  Camera camera;
+  camera.width = camera.height = 16384;
+  camera.fx = camera.fy = 16384;
+  camera.cx = camera.cy = 8192;
+  Map map;
+  for (int k = 0; k < 300; ++k) {
+    Frame frame;
+    frame.camera = std::make_shared<const Camera>(camera);
+    frame.pyramid = std::make_shared<const ScalePyramid>(8, 1.2);
+    map.add_keyframe(std::move(frame));
+  }
+  write_map(path("empty.hfm"), map);
+  EXPECT_LT(std::filesystem::file_size(path("empty.hfm")), 100'000U);
+  const std::size_t before = memory_in_use();
+  const Map again = read_map(path("empty.hfm"));
+  EXPECT_EQ(again.keyframes().size(), 300U);
+  EXPECT_LT(memory_in_use(), before + 50'000'000);
 }
 
 }  // namespace

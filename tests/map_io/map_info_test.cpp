@@ -63,6 +63,10 @@ TEST_F(MapInfoTest, TextAndJson) {
   EXPECT_EQ(json["cameras"][0]["fx"], info.cameras[0].fx);
   EXPECT_EQ(json["first_timestamp"], info.first_timestamp);
   EXPECT_EQ(json["maximum_point"][2], info.maximum_point.z());
+  info.file = "caf\xe9 caf\xc3\xa9 \xed\xa0\x80 \xf0\x9f\x98\x80 \xf0\x9f";
+  EXPECT_EQ(
+      nlohmann::json::parse(to_json(info))["file"],
+      "caf\xef\xbf\xbd caf\xc3\xa9 \xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd \xf0\x9f\x98\x80 \xef\xbf\xbd\xef\xbf\xbd");
   write_map(path("empty.hfm"), Map());
   EXPECT_EQ(nlohmann::json::parse(to_json(read_map_info(path("empty.hfm"))))["keyframes"], 0);
   EXPECT_THAT(to_text(read_map_info(path("empty.hfm"))), HasSubstr("keyframes  0, "));

@@ -9,6 +9,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "holdfast/core/error.hpp"
 #include "holdfast/map_io/map_file.hpp"
 #include "run/point_run.hpp"
 
@@ -87,6 +88,37 @@ TEST_F(ResultsTest, RunJsonHoldsTheFigures) {
   const nlohmann::json failed = nlohmann::json::parse(run_json(record_));
   EXPECT_EQ(failed.at("failure"), "the disk is full");
   EXPECT_EQ(failed.at("threads").at("frame_to_result").at("share_above_33_ms"), 0.5);
+}
+
+TEST_F(ResultsTest, BytesThatAreNotUtf8AreReplaced) {
+  record_.configuration.file = "caf\xe9.yaml";
+  record_.source.name = "\xff";
+  record_.failure = "\xc3(";
+  record_.skipped.push_back({4, 0.5, "caf\xe9.png: is cut short"});
+  const nlohmann::json json = nlohmann::json::parse(run_json(record_));
+  EXPECT_EQ(json.at("configuration"), "caf\xef\xbf\xbd.yaml");
+  EXPECT_EQ(json.at("skipped_frames").at(0).at("reason"), "caf\xef\xbf\xbd.png: is cut short");
+  write_results(record_, folder_);
+  EXPECT_EQ(files().size(), 11U);
+}
+
+/// A folder of the name of a file stands for any file that cannot be replaced.
+TEST_F(ResultsTest, OneThatCannotBeWrittenDoesNotTakeTheOthersWithIt) {
+  fs::create_directories(folder_ / "whole");
+  write_results(record_, folder_ / "whole");
+  for (const std::string broken : {"trajectory.txt", "map.hfm", "run.json", "report.html", "static_map.ply"}) {
+    const fs::path folder = folder_ / ("without_" + broken);
+    fs::create_directories(folder / broken / "full");
+    try {
+      write_results(record_, folder);
+      ADD_FAILURE() << broken;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), AllOf(HasSubstr("1 result could not be written"), HasSubstr(broken)));
+    }
+    for (const auto& entry : fs::directory_iterator(folder_ / "whole"))
+      EXPECT_TRUE(fs::exists(folder / entry.path().filename())) << broken << ": " << entry.path();
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 11) << "something half is left";
+  }
 }
 
 TEST_F(ResultsTest, TheReportShowsWhatTheRunHas) {

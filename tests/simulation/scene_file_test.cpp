@@ -156,6 +156,18 @@ lights_out:
   EXPECT_THROW(read_scene("no_such_scene.yaml"), ConfigurationError);
 }
 
+TEST_F(SceneFile, RefusesPlacesFarFromAnyRoom) {
+  for (const char* text :
+       {"people: [{ at: [1e7, 2] }]\n", "people: [{ at: [1, 2], facing: [2147483647, 2] }]\n",
+        "people: [{ at: [1, 2], do: [{ walk: { to: [[1e308, 2]] } }] }]\n",
+        "people: [{ at: [1, 2], do: [{ push: { thing: chair 1, to: [[2, -1e7]] } }] }]\n",
+        "people: [{ at: [1, 2], do: [{ carry: { thing: box 5, to: [[2, 2]], put_at: [1, 2, 60] } }] }]\n",
+        "camera: { path: waypoints, along: [[0, 0, 1], [1e7, 0, 1]] }\n",
+        "camera: { path: waypoints, along: [[0, 0, 1], [1, 0, 1]], look_at: [1e7, 0, 1] }\n"})
+    EXPECT_THAT(problems(text), ElementsAre(HasSubstr("from -50 to 50"))) << text;
+  EXPECT_THAT(problems("doors: [{ thing: door 1, shut: 1e308 }]\n"), ElementsAre(HasSubstr("from 0 to 36000")));
+}
+
 TEST(SceneSections, TellAllThatASceneCanSay) {
   const std::vector<SectionDescription> sections = scene_sections();
   const Registry registry;

@@ -36,6 +36,15 @@ TEST_F(ImageListTest, ReadsWhatIsWritten) {
   EXPECT_EQ(list[1].name, "b.png");
 }
 
+TEST_F(ImageListTest, SkipsAByteOrderMark) {
+  EXPECT_EQ(read_image_list(folder_.write("list.txt", "\xef\xbb\xbf# a comment\n1.0 a.png\n")).size(), 1u);
+  EXPECT_EQ(read_stamp_list(folder_.write("stamps.txt",
+                                          "\xef\xbb\xbf"
+                                          "1.0\n2.0\n"))
+                .size(),
+            2u);
+}
+
 TEST_F(ImageListTest, UnsortedAndRepeatedStampsNameTheirLine) {
   EXPECT_THAT(error_of("# c\n2.0 a\n1.5 b\n"),
               AllOf(StartsWith(place(3)), HasSubstr("1.500000, earlier than 2.000000 in line 2"), HasSubstr("sort")));

@@ -202,6 +202,34 @@ TEST_F(TumSourceTest, ImageOfAnotherSizeThanTheCamera) {
   expect_bad_frame("rgb.txt", colour_name(2), "is 32x24 pixels, but the camera is 64x48; give the camera");
 }
 
+/// The checksum of a PNG's chunk (ISO/IEC 15948, annex D).
+std::uint32_t png_checksum(const std::string& bytes) {
+  std::uint32_t value = 0xffffffffu;
+  for (const char byte : bytes) {
+    value ^= static_cast<unsigned char>(byte);
+    for (int bit = 0; bit < 8; ++bit) value = (value & 1) != 0 ? 0xedb88320u ^ (value >> 1) : value >> 1;
+  }
+  return ~value;
+}
+
+std::string big_endian(std::uint32_t value) {
+  std::string bytes;
+  for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift);
+  return bytes;
+}
+
+/// Its pixels cannot be decoded: the size must be found before that.
+TEST_F(TumSourceTest, SizesAreComparedBeforeAnImageIsDecoded) {
+  for (const std::string& name : {colour_name(2), depth_name(2)}) {
+    std::string bytes = folder_.read(name.c_str());
+    bytes.replace(16, 8, big_endian(20000) + big_endian(20000));
+    bytes.replace(29, 4, big_endian(png_checksum(bytes.substr(12, 17))));
+    folder_.write(name.c_str(), bytes);
+    expect_bad_frame(name == colour_name(2) ? "rgb.txt" : "depth.txt", name, "is 20000x20000 pixels, but ");
+    if (name == colour_name(2)) folder_.write_image(name, test::colour_image(2));
+  }
+}
+
 TEST_F(TumSourceTest, SkippingEveryFrameIsAnError) {
   const auto source = open({{"on_bad_frame", std::string("skip")}}, 640, 480);
   EXPECT_THAT(input_error([&] { read_all(*source); }),

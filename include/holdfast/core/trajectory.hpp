@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -20,11 +21,25 @@ using Trajectory = std::vector<TimedPose>;
 /// in the TUM tools. Poses with a value that is not finite are removed, as there.
 Trajectory sort_and_clean(Trajectory trajectory);
 
-/// Reads a trajectory in TUM format: lines "timestamp tx ty tz qx qy qz qw", where '#' begins a comment and additional
-/// columns are ignored. The result is sorted and cleaned as by sort_and_clean(). Quaternions are normalised; lines with
-/// a zero quaternion are skipped. Throws InputError (file and line) for a file that cannot be read or a line that is
-/// not a pose.
+/// Reads a trajectory in TUM format: lines "timestamp tx ty tz qx qy qz qw", where '#' begins a comment. The result is
+/// sorted and cleaned as by sort_and_clean(). Quaternions are normalised; lines with a zero quaternion are skipped.
+/// Throws InputError (file and line) for a file that cannot be read or a line that is not a pose of exactly 8 numbers;
+/// the message names the format of another data set that it looks like.
 Trajectory read_trajectory(const std::filesystem::path& file);
+
+/// The content of a trajectory file, and how many of its lines are left out.
+struct TrajectoryFile {
+  Trajectory poses;  ///< as of read_trajectory()
+  std::size_t not_finite = 0;
+  std::size_t zero_quaternions = 0;
+  std::size_t repeated_stamps = 0;  ///< poses whose stamp another pose has, which stands later in the file
+
+  /// What is left out, as "2 poses that are not finite, 1 pose with a zero quaternion"; empty if nothing is.
+  std::string omissions() const;
+};
+
+/// Reads a trajectory as read_trajectory() does, which says nothing about what it leaves out.
+TrajectoryFile read_trajectory_file(const std::filesystem::path& file);
 
 /// Returns the trajectory in TUM format, with 6 decimals for time stamps and 9 for values, independent of the locale.
 std::string trajectory_text(const Trajectory& trajectory);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
@@ -13,14 +14,18 @@ namespace holdfast {
 /// what was expected and how to correct it. Keeps its buffers between images; used by one thread.
 class ImageDecoder {
  public:
+  /// Gets the size of an image before it is decoded, and throws if it is not the expected one: a small file can hold an
+  /// image that takes gigabytes.
+  using SizeCheck = std::function<void(const cv::Size&)>;
+
   /// Decodes an 8-bit image with three channels to 8UC3, blue green red, in the orientation of the sensor (EXIF is not
   /// applied).
-  cv::Mat read_colour(const std::filesystem::path& file);
+  cv::Mat read_colour(const std::filesystem::path& file, const SizeCheck& check_size = {});
   /// Decodes a 16-bit PNG with one channel to 32FC1 [m]: value / depth_factor, 0 = no value.
-  cv::Mat read_depth(const std::filesystem::path& file, double depth_factor);
+  cv::Mat read_depth(const std::filesystem::path& file, double depth_factor, const SizeCheck& check_size = {});
   /// Decodes a PNG of labels to the stored type, 8UC1 or 16UC1. For a PNG with a palette (8 bits, such as those of
   /// Pascal VOC) the result contains the indices and not the colours.
-  cv::Mat read_labels(const std::filesystem::path& file);
+  cv::Mat read_labels(const std::filesystem::path& file, const SizeCheck& check_size = {});
 
  private:
   void load(const std::filesystem::path& file);

@@ -16,7 +16,8 @@ const std::vector<std::string>& result_names();
 /// Writes the results of a run into an existing or new folder: trajectory.txt, keyframes.txt, run.json, report.html and
 /// config.yaml; where there is a true trajectory, evaluation.json, tracks.json, trajectory.svg and error.svg; where the
 /// run has made or changed a map, map.hfm and static_map.ply (the dense map where there is one, else the map points).
-/// Each file is replaced in one step. Throws InputError when a file cannot be written.
+/// Each file is replaced in one step, in the order of their worth: trajectory, map, run.json, then the others. When
+/// some cannot be written, the others are, and then InputError names those that were not.
 void write_results(const RunRecord& record, const std::filesystem::path& folder);
 
 /// The content of run.json: version, seed, machine, counts, coverage, stage times and errors.

@@ -3,6 +3,15 @@
 
 namespace holdfast::simulation {
 
+namespace {
+
+/// Coordinates are compared with the largest room, 20 m long, with space around it: time and memory grow with the ways
+/// between places.
+constexpr double farthest = 50.0;    // [m]
+constexpr double longest = 36000.0;  // [s]
+
+}  // namespace
+
 void SceneRecord::describe(ParameterTable<SceneRecord>& table) {
   using S = SceneRecord;
   table.add("room", &S::room, "where it plays").one_of(room_names());
@@ -16,17 +25,20 @@ void CameraRecord::describe(ParameterTable<CameraRecord>& table) {
   table.add("path", &S::path, "how the camera moves; waypoints: past the places in `along`").one_of(path_names(false));
   table.add("speed", &S::speed, "factor on the speed of the path").range(0.01, 10.0);
   table.add("shake", &S::shake, "factor on the tremor of the hand; 0 = none").range(0.0, 10.0);
-  table.add("along", &S::along, "waypoints: places [x, y, z] to pass").unit("m");
+  table.add("along", &S::along, "waypoints: places [x, y, z] to pass").range(-farthest, farthest).unit("m");
   table.add("closed", &S::closed, "waypoints: from the last place on to the first; otherwise to and fro");
   table.add("walking_speed", &S::walking_speed, "waypoints: before the factor `speed`").range(0.01, 3.0).unit("m/s");
-  table.add("look_at", &S::look_at, "waypoints: the place [x, y, z] to look at; otherwise along the way").unit("m");
+  table.add("look_at", &S::look_at, "waypoints: the place [x, y, z] to look at; otherwise along the way")
+      .range(-farthest, farthest)
+      .unit("m");
 }
 
 void PersonRecord::describe(ParameterTable<PersonRecord>& table) {
   using S = PersonRecord;
   table.add("name", &S::name, "what truth calls the person; empty = \"person\" and a number");
-  table.add("at", &S::at, "place [x, y] where the person begins").unit("m").required();
+  table.add("at", &S::at, "place [x, y] where the person begins").range(-farthest, farthest).unit("m").required();
   table.add("facing", &S::facing, "place [x, y] the person looks to at first; empty = where the first action leads")
+      .range(-farthest, farthest)
       .unit("m");
   table.add("height", &S::height, "0 = chosen by the seed").range(0.0, 2.3).unit("m");
   table.add("girth", &S::girth, "breadth as a factor on the average for the height; 0 = chosen by the seed")
@@ -39,7 +51,10 @@ void PersonRecord::describe(ParameterTable<PersonRecord>& table) {
 
 void WalkRecord::describe(ParameterTable<WalkRecord>& table) {
   using S = WalkRecord;
-  table.add("to", &S::to, "places [x, y] to walk past, the last one to stop at").unit("m").required();
+  table.add("to", &S::to, "places [x, y] to walk past, the last one to stop at")
+      .range(-farthest, farthest)
+      .unit("m")
+      .required();
   table.add("speed", &S::speed, "of walking").range(0.1, 3.0).unit("m/s");
 }
 
@@ -47,7 +62,9 @@ void StandRecord::describe(ParameterTable<StandRecord>& table) {
   using S = StandRecord;
   table.add("for", &S::duration, "how long").range(0.01, 36000.0).unit("s");
   table.add("gesture", &S::gesture, "talks with the hands");
-  table.add("facing", &S::facing, "place [x, y] to turn to first; empty = as before").unit("m");
+  table.add("facing", &S::facing, "place [x, y] to turn to first; empty = as before")
+      .range(-farthest, farthest)
+      .unit("m");
 }
 
 void SitRecord::describe(ParameterTable<SitRecord>& table) {
@@ -60,7 +77,10 @@ void SitRecord::describe(ParameterTable<SitRecord>& table) {
 void PushRecord::describe(ParameterTable<PushRecord>& table) {
   using S = PushRecord;
   table.add("thing", &S::thing, "name of a thing on the floor, such as \"chair 2\"").required();
-  table.add("to", &S::to, "places [x, y] to push it past, the last one to leave it at").unit("m").required();
+  table.add("to", &S::to, "places [x, y] to push it past, the last one to leave it at")
+      .range(-farthest, farthest)
+      .unit("m")
+      .required();
   table.add("speed", &S::speed, "of walking").range(0.1, 3.0).unit("m/s");
 }
 
@@ -68,9 +88,10 @@ void CarryRecord::describe(ParameterTable<CarryRecord>& table) {
   using S = CarryRecord;
   table.add("thing", &S::thing, "name of a thing, such as \"box 5\"").required();
   table.add("to", &S::to, "places [x, y] that the person walks past with it, the last one to stop at")
+      .range(-farthest, farthest)
       .unit("m")
       .required();
-  table.add("put_at", &S::put_at, "place [x, y, z] to put it down at").unit("m").required();
+  table.add("put_at", &S::put_at, "place [x, y, z] to put it down at").range(-farthest, farthest).unit("m").required();
   table.add("speed", &S::speed, "of walking").range(0.1, 3.0).unit("m/s");
 }
 
@@ -78,10 +99,10 @@ void SwingPlan::describe(ParameterTable<SwingPlan>& table) {
   using S = SwingPlan;
   table.add("thing", &S::thing, "name of a door");
   table.add("angle", &S::angle, "how far it opens").range(0.01, 3.0).unit("rad");
-  table.add("start", &S::start, "begins to open").at_least(0.0).unit("s");
+  table.add("start", &S::start, "begins to open").range(0.0, longest).unit("s");
   table.add("opening", &S::opening, "time to open, and to close").range(0.1, 60.0).unit("s");
-  table.add("open", &S::open, "stays open").at_least(0.0).unit("s");
-  table.add("shut", &S::shut, "stays shut before it opens again").at_least(0.0).unit("s");
+  table.add("open", &S::open, "stays open").range(0.0, longest).unit("s");
+  table.add("shut", &S::shut, "stays shut before it opens again").range(0.0, longest).unit("s");
 }
 
 void ColourSensorSettings::describe(ParameterTable<ColourSensorSettings>& table) {
@@ -113,8 +134,8 @@ void DepthSensorSettings::describe(ParameterTable<DepthSensorSettings>& table) {
 
 void LightsOutRecord::describe(ParameterTable<LightsOutRecord>& table) {
   using S = LightsOutRecord;
-  table.add("from", &S::from, "the light goes out").at_least(0.0).unit("s").required();
-  table.add("to", &S::to, "the light is back").at_least(0.0).unit("s").required();
+  table.add("from", &S::from, "the light goes out").range(0.0, longest).unit("s").required();
+  table.add("to", &S::to, "the light is back").range(0.0, longest).unit("s").required();
 }
 
 }  // namespace holdfast::simulation

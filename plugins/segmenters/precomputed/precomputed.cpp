@@ -55,17 +55,18 @@ class PrecomputedSegmenter final : public Segmenter {
   Segmentation segment(const SensorFrame& frame) override {
     const LabelFile* file = nearest_label_file(files_, frame.timestamp, tolerance_);
     if (file == nullptr) return {};
-    const cv::Mat values = decoder_.read_labels(file->path);
-    if (values.size() != frame.colour.size())
-      throw InputError({file->path.string()},
-                       "is " + size_text(values) + " pixels, but the frame is " + size_text(frame.colour) +
-                           "; expected labels of the frame's size; scale them without interpolation");
+    const cv::Mat values = decoder_.read_labels(file->path, [&](const cv::Size& size) {
+      if (size != frame.colour.size())
+        throw InputError({file->path.string()},
+                         "is " + size_text(size) + " pixels, but the frame is " + size_text(frame.colour.size()) +
+                             "; expected labels of the frame's size; scale them without interpolation");
+    });
     return {labels_.apply(values, file->path), {}};
   }
 
  private:
-  static std::string size_text(const cv::Mat& image) {
-    return std::to_string(image.cols) + "x" + std::to_string(image.rows);
+  static std::string size_text(const cv::Size& size) {
+    return std::to_string(size.width) + "x" + std::to_string(size.height);
   }
 
   LabelMap labels_;

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <istream>
+
+namespace holdfast {
+
+/// Skips the UTF-8 byte-order mark that some editors write at the beginning of a text. To be called before anything is
+/// read from a file.
+inline void skip_byte_order_mark(std::istream& stream) {
+  if (stream.peek() != 0xef) {
+    stream.clear();  // peek() has met the end of an empty file, which the caller is to meet itself
+    return;
+  }
+  char mark[3] = {};
+  stream.read(mark, 3);
+  if (stream.gcount() == 3 && mark[1] == '\xbb' && mark[2] == '\xbf') return;
+  stream.clear();
+  stream.seekg(0);
+}
+
+}  // namespace holdfast
