@@ -238,6 +238,28 @@ TEST_F(RecipeMatrixTest, FillsInWhatARecipeKnows) {
   EXPECT_THAT(masked.runs.at(0).request, HasSubstr("/one/mask"));
 }
 
+TEST_F(RecipeMatrixTest, TurnsTheTruthOfBonnToTheCamera) {
+  write("matrix.yaml", "base: plain.yaml\nsequences:\n  crowd: { recipe: bonn_crowd, path: one }\n");
+  const Matrix matrix = read_matrix(folder_ / "matrix.yaml", {}, diagnostics_);
+  const ConfigurationNode* tum = matrix.sequences.at(0).source.find("tum");
+  ASSERT_NE(tum, nullptr);
+  const auto matrix_of = [&](const char* key) {
+    Eigen::Matrix4d result = Eigen::Matrix4d::Zero();
+    const ConfigurationNode* rows = tum->find(key);
+    for (std::size_t row = 0; rows != nullptr && row < rows->items.size(); ++row)
+      for (std::size_t column = 0; column < 4; ++column)
+        result(static_cast<int>(row), static_cast<int>(column)) = std::stod(rows->items[row].items.at(column).text);
+    return result;
+  };
+  // As the page of the dataset gives them.
+  Eigen::Matrix4d T_ros, T_m;
+  T_ros << -1, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 1;
+  T_m << 1.0157, 0.1828, -0.2389, 0.0113, 0.0009, -0.8431, -0.6413, -0.0098, -0.3009, 0.6147, -0.8085, 0.0111, 0, 0, 0,
+      1;
+  EXPECT_EQ(matrix_of("truth_left"), T_ros);
+  EXPECT_EQ(matrix_of("truth_right"), T_ros * T_m);
+}
+
 TEST_F(RecipeMatrixTest, SaysWhatIsWrongWithARecipe) {
   plan(
       "base: plain.yaml\nsequences:\n  a: { recipe: fr3_walking_xzy, path: one }\n  b: { recipe: w21 }\n"
