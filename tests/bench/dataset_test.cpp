@@ -141,6 +141,21 @@ TEST_F(DatasetCheckTest, ExplainsWhatIsCut) {
   EXPECT_THAT(problems(), Contains(HasSubstr("depth/3.png")));
 }
 
+TEST_F(DatasetCheckTest, SaysWhatIsKnownToBeAbsentAsAFact) {
+  ASSERT_TRUE(find_recipe("bonn_crowd")->lists_absent_depth);
+  fs::remove(path("depth/1.png"));
+  EXPECT_THAT(problems(), ElementsAre(HasSubstr("depth.txt lists 1 image that is missing: depth/1.png (line 3)")));
+  recipe_.lists_absent_depth = true;
+  EXPECT_THAT(problems(), IsEmpty());
+  EXPECT_THAT(check_dataset(program_.path("rec"), &recipe_).facts,
+              Contains(AllOf(HasSubstr("depth.txt lists 1 image that does not exist: depth/1.png (line 3)"),
+                             HasSubstr("known of the dataset"))));
+  fs::remove(path("rgb/1.png"));
+  EXPECT_THAT(problems(), ElementsAre(HasSubstr("rgb.txt lists 1 image that is missing")));
+  fs::remove_all(path("depth"));
+  EXPECT_THAT(problems(), Contains(HasSubstr("depth.txt lists 4 images that are missing")));
+}
+
 TEST_F(DatasetCheckTest, SeesThatItIsAnotherRecording) {
   cv::imwrite(path("rgb/0.png").string(), cv::Mat(540, 960, CV_8UC3, cv::Scalar::all(1)));
   program_.write("rec/groundtruth.txt", "100 0 0 0 0 0 0 1\n110 1 0 0 0 0 0 1\n");
