@@ -33,6 +33,11 @@ std::string bold(const std::string& text, int stream) { return coloured(text, "1
 std::string red(const std::string& text, int stream) { return coloured(text, "31", stream); }
 std::string green(const std::string& text, int stream) { return coloured(text, "32", stream); }
 
+void print_warnings(const std::vector<Diagnostic>& warnings) {
+  for (const Diagnostic& warning : warnings)
+    std::fprintf(stderr, "%s %s\n", bold("warning:", STDERR_FILENO).c_str(), warning.to_string().c_str());
+}
+
 Progress::Progress(std::optional<std::uint64_t> total, bool quiet)
     : total_(total), quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1), next_(terminal_ ? 0.0 : 10.0) {}
 

@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "holdfast/core/error.hpp"
 #include "holdfast/core/stage_times.hpp"
 
 namespace holdfast {
@@ -13,6 +15,9 @@ namespace holdfast {
 std::string bold(const std::string& text, int stream);
 std::string red(const std::string& text, int stream);
 std::string green(const std::string& text, int stream);
+
+/// What may be unintended, on standard error.
+void print_warnings(const std::vector<Diagnostic>& warnings);
 
 /// Frames done and time left, on standard error: one line that is written over on a terminal, a line every ten seconds
 /// elsewhere. The line of a terminal is cleared at the end.
