@@ -79,6 +79,23 @@ class AccuracyReport {
     add(table);
   }
 
+  /// Whether the errors on a sequence are those against a transformed truth.
+  bool has_transformed_truth(std::size_t sequence) const {
+    for (std::size_t i = 0; i < plan_.runs.size(); ++i)
+      if (const auto& result = results_.results[i]; plan_.runs[i].sequence == sequence && result && result->has_errors)
+        return result->truth_frame != "raw";
+    return false;
+  }
+  /// The truth that the errors refer to, and on which sequences.
+  std::string truth_sentence() const {
+    std::string names;
+    for (std::size_t s = 0; s < plan_.matrix.sequences.size(); ++s)
+      if (has_transformed_truth(s)) names += (names.empty() ? "" : ", ") + sequence(s);
+    if (names.empty()) return "Truth: raw, as recorded.";
+    return "Truth: transformed from markers to the camera (`source.tum.truth_left`, `truth_right`) on " + names +
+           "; elsewhere raw, as recorded. Published ATE is against the raw truth.";
+  }
+
   void add_variants() {
     text_ += "## Variants\n\nATE RMSE [m] over sequences, each the median over its runs.\n\n";
     ReportTable table{
@@ -106,7 +123,8 @@ class AccuracyReport {
     for (const Quantity quantity : all_quantities) {
       text_ += std::string("## ") + to_string(quantity) + " RMSE [" + unit_of(quantity) +
                "]\n\nMedian over runs (least to most where there are several)" +
-               (quantity == Quantity::ate ? ", coverage where it is below 100 %" : "") + ".\n\n";
+               (quantity == Quantity::ate ? ", coverage where it is below 100 %" : "") + ". " + truth_sentence() +
+               "\n\n";
       ReportTable table = by_sequence([&](const Cell& cell) {
         const Spread& spread = cell.errors[static_cast<std::size_t>(quantity)][0];
         std::string text = metres(spread.median);
@@ -131,7 +149,7 @@ class AccuracyReport {
       table.header.push_back(variant(i));
     }
     for (std::size_t s = 0; s < plan_.matrix.sequences.size(); ++s) {
-      std::vector<std::string> row = {sequence(s)};
+      std::vector<std::string> row = {sequence(s) + (has_transformed_truth(s) ? " (transformed truth)" : "")};
       for (const std::size_t column : columns) {
         const Cell* cell = analysis_.find(column, s);
         row.push_back(cell != nullptr ? text_of_cell(*cell) : "");
@@ -189,7 +207,8 @@ class AccuracyReport {
     if (table.rows.empty()) return;
     text_ +=
         "## Published figures\n\nATE RMSE [m] as printed. The same system differs between papers: protocols, repeats "
-        "and machines differ, so these are a scale, not opponents.\n\n";
+        "and machines differ, so these are a scale, not opponents. " +
+        truth_sentence() + "\n\n";
     for (std::size_t i = 0; i < plan_.variants.size(); ++i) {
       std::vector<std::string> row = {"**" + variant(i) + "** (here)"};
       for (std::size_t s = 0; s < plan_.matrix.sequences.size(); ++s) {

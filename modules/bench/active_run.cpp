@@ -136,9 +136,10 @@ void ActiveRun::evaluate_external() {
   }
   EvaluationOptions options;
   options.estimate_name = "trajectory.txt";
+  options.truth_frame = sequence.truth.frame();
   try {
-    const Evaluation evaluation =
-        evaluate(read_trajectory(sequence.folder / "groundtruth.txt"), salvaged.poses, options, frames);
+    const Trajectory truth = transformed(sequence.truth, read_trajectory(sequence.folder / "groundtruth.txt"));
+    const Evaluation evaluation = evaluate(truth, salvaged.poses, options, frames);
     take_errors(evaluation, result_);
     write_file_atomically(folder_ / "evaluation.json", to_json(evaluation));
     write_file_atomically(folder_ / "tracks.json", to_tracks_json(evaluation));

@@ -116,6 +116,13 @@ class Checker {
         examples += (missing == 1 ? "" : ", ") + image.name + " (line " + std::to_string(image.line) + ")";
     }
     if (missing == 0) return;
+    if (recipe_ && recipe_->lists_absent_depth && list == "depth.txt" && missing < images.size()) {
+      fact(list + " lists " + counted(missing, "image") + " that " + (missing == 1 ? "does" : "do") +
+           " not exist: " + examples + (missing > 3 ? " and " + std::to_string(missing - 3) + " more" : "") +
+           "; this is known of the dataset, and nothing is damaged. A run that pairs one of them needs "
+           "`source.tum.on_bad_frame: skip`");
+      return;
+    }
     problem(list + " lists " + counted(missing, "image") + " that " + (missing == 1 ? "is" : "are") +
             " missing: " + examples + (missing > 3 ? " and " + std::to_string(missing - 3) + " more" : "") +
             "; unpack the archive again");

@@ -97,7 +97,9 @@ std::vector<DatasetRecipe> read_recipes(const std::string& yaml, const std::stri
                                         std::vector<Diagnostic>& diagnostics) {
   const ConfigurationNode root = parse_yaml(yaml, file_name, {});
   StrictMap map(root, "a file of recipes",
-                {"dataset", "layout", "licence", "citation", "address", "about", "masks", "sequences"}, diagnostics);
+                {"dataset", "layout", "licence", "citation", "address", "about", "masks", "truth_left", "truth_right",
+                 "lists_absent_depth", "sequences"},
+                diagnostics);
   DatasetRecipe common;
   common.dataset = required_text(map, "dataset", "the name of the dataset");
   common.licence = required_text(map, "licence", "its licence, or unknown");
@@ -105,6 +107,9 @@ std::vector<DatasetRecipe> read_recipes(const std::string& yaml, const std::stri
   common.address = required_text(map, "address", "where people get it");
   common.about = map.text("about", "");
   common.has_masks = map.boolean("masks", false);
+  if (const auto* left = map.find("truth_left")) common.truth_left = *left;
+  if (const auto* right = map.find("truth_right")) common.truth_right = *right;
+  common.lists_absent_depth = map.boolean("lists_absent_depth", false);
   if (const ConfigurationNode* layout = map.require("layout", "tum or icl_nuim")) {
     if (const auto known = layouts.find(layout->text); known != layouts.end())
       common.layout = known->second;

@@ -120,7 +120,10 @@ void follow_recipe(const ConfigurationNode& node, StrictMap& map, MatrixSequence
                      "' is not in TUM layout; write its pairs by `holdfast dataset associate`, its truth to "
                      "groundtruth.txt, and give source: { tum: { path: ..., associations: ... } } and camera");
   if (path == nullptr) return;
-  sequence.source = map_of("tum", map_of("path", *path));
+  ConfigurationNode tum = map_of("path", *path);
+  if (recipe->truth_left) tum.entries.push_back({"truth_left", node.location, *recipe->truth_left});
+  if (recipe->truth_right) tum.entries.push_back({"truth_right", node.location, *recipe->truth_right});
+  sequence.source = map_of("tum", std::move(tum));
   ConfigurationNode camera = node;
   camera.text = recipe->camera.name;
   sequence.camera = camera;

@@ -125,6 +125,8 @@ std::optional<RecordedSequence> recorded_sequence(const MatrixSequence& sequence
     return std::nullopt;
   }
   try {
+    recorded.truth = make_truth_transform(std::get<RealTable>(values.at("truth_left")),
+                                          std::get<RealTable>(values.at("truth_right")), "source.tum");
     recorded.frames =
         recording_pairs(recorded.folder, associations, std::get<double>(values.at("max_time_difference")));
     select_range(recorded.frames, std::get<std::int64_t>(values.at("start")),

@@ -303,6 +303,7 @@ class Planner {
       request["sequence"] = recording->folder.string();
       request["settings"] = orb_slam2_settings(*recording, system.settings);
       request["associations"] = associations_text(*recording);
+      if (!recording->truth.is_identity()) request["truth"] = recording->truth.frame();
     }
     const int repeats = system.repeats.value_or(matrix().repeats * static_cast<int>(matrix().seeds.size()));
     for (int repeat = 1; repeat <= repeats; ++repeat) {

@@ -140,6 +140,7 @@ std::string to_json(const RunResult& result) {
                {"coverage", result.coverage()},
                {"not_finite", result.not_finite},
                {"malformed", result.malformed}};
+  json["truth_frame"] = result.truth_frame;
   json["no_errors"] = result.has_errors ? Json(nullptr) : Json(result.no_errors);
   Json& errors = json["errors"] = nullptr;
   if (result.has_errors)
@@ -172,6 +173,7 @@ RunResult read_run_result(const std::filesystem::path& file) {
     result.poses = count(json, "poses");
     result.not_finite = count(json, "not_finite");
     result.malformed = count(json, "malformed");
+    result.truth_frame = json.value("truth_frame", "raw");
     const Json& errors = json.at("errors");
     result.has_errors = errors.is_object();
     if (!result.has_errors) result.no_errors = json.at("no_errors");
@@ -200,6 +202,7 @@ RunCost read_run_cost(const std::filesystem::path& file) {
 
 void take_errors(const Evaluation& evaluation, RunResult& result) {
   result.has_errors = true;
+  result.truth_frame = evaluation.options.truth_frame;
   result.errors = {six_statistics(evaluation.absolute_error), six_statistics(evaluation.error_per_time.translation),
                    six_statistics(evaluation.error_per_time.rotation)};
   if (!evaluation.coverage) return;
@@ -226,6 +229,7 @@ void read_own_run(const std::filesystem::path& folder, RunResult& result, RunCos
       return 0;
     }
     result.has_errors = true;
+    result.truth_frame = evaluation.at("truth").value("frame", "raw");
     result.errors = {statistics_of_json(evaluation.at("ate_m")),
                      statistics_of_json(evaluation.at("rpe_per_time").at("translation_m")),
                      statistics_of_json(evaluation.at("rpe_per_time").at("rotation_deg"))};

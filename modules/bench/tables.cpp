@@ -75,7 +75,7 @@ const std::string& published_name(const MatrixSequence& sequence) {
 
 ReportTable runs_table(const RunPlan& plan, const BenchResults& results) {
   ReportTable t = table("Runs", {"variant", "sequence", "seed", "repeat", "status", "code", "frames", "poses",
-                                 "coverage", "not_finite", "malformed"});
+                                 "coverage", "not_finite", "malformed", "truth"});
   for (const Quantity quantity : all_quantities)
     for (const char* statistic : statistic_columns) t.header.push_back(column(quantity, statistic));
   for (std::size_t i = 0; i < plan.runs.size(); ++i) {
@@ -92,7 +92,8 @@ ReportTable runs_table(const RunPlan& plan, const BenchResults& results) {
                text_of(result.poses),
                text_of(result.coverage()),
                text_of(result.not_finite),
-               text_of(result.malformed)};
+               text_of(result.malformed),
+               result.has_errors ? result.truth_frame : ""};
     for (const SixStatistics& statistics : result.errors)
       for (const double value : statistics) row.push_back(result.has_errors ? text_of(value) : "");
     t.rows.push_back(std::move(row));

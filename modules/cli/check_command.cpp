@@ -28,6 +28,7 @@ void check(const Arguments& arguments) {
   Registry registry;
   register_builtin_plugins(registry);
   const Configuration configuration = load_configuration(arguments.configuration, arguments.overrides, registry);
+  print_warnings(configuration.warnings);
   if (arguments.print) {
     std::fputs(to_yaml(configuration).c_str(), stdout);
     return;

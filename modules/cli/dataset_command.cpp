@@ -85,6 +85,8 @@ void show(const DatasetRecipe& recipe) {
   line("camera", camera_text(recipe.camera));
   line("images", count_text(recipe.colour) + " colour, " + count_text(recipe.depth) + " depth, " +
                      count_text(recipe.pairs) + " pairs within 0.02 s");
+  if (recipe.truth_left || recipe.truth_right)
+    line("truth", "of markers; a matrix with this recipe transforms it to the camera");
   line("licence", recipe.licence);
   line("cite", recipe.citation);
   line("from", recipe.address);

@@ -75,6 +75,7 @@ int run_configuration(const Arguments& arguments) {
   register_builtin_plugins(registry);
   const Configuration configuration = load_configuration(arguments.configuration, arguments.overrides, registry);
   std::optional<FolderLock> lock;
+  print_warnings(configuration.warnings);
   std::optional<Progress> progress;
   const RunRecord record = run(configuration, registry, options_of(arguments, since_start, progress, lock));
   progress.reset();

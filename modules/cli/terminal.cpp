@@ -50,6 +50,11 @@ std::string printable(const std::string& text) {
   return result;
 }
 
+void print_warnings(const std::vector<Diagnostic>& warnings) {
+  for (const Diagnostic& warning : warnings)
+    std::fprintf(stderr, "%s %s\n", bold("warning:", STDERR_FILENO).c_str(), printable(warning.to_string()).c_str());
+}
+
 Progress::Progress(std::optional<std::uint64_t> total, bool quiet)
     : total_(total), quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1), next_(terminal_ ? 0.0 : 10.0) {}
 

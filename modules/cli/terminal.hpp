@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "holdfast/core/error.hpp"
 #include "holdfast/core/stage_times.hpp"
 
 namespace holdfast {
@@ -17,6 +19,8 @@ std::string green(const std::string& text, int stream);
 /// Text with control characters written out, such as \x1b, so that a name from a file cannot command the terminal; line
 /// feeds and tabs stay.
 std::string printable(const std::string& text);
+/// What may be unintended, on standard error.
+void print_warnings(const std::vector<Diagnostic>& warnings);
 
 /// Frames done and time left, on standard error: one line that is written over on a terminal, a line every ten seconds
 /// elsewhere. The line of a terminal is cleared at the end.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 
 #include "holdfast/config/parameter_reader.hpp"
 #include "holdfast/plugin/did_you_mean.hpp"
@@ -81,6 +82,20 @@ const std::vector<std::string>& choice_sections() {
 namespace {
 
 using Kind = ConfigurationNode::Kind;
+
+/// The known camera that the folder of a recording is named after: rgbd_dataset_freiburg1_* is tum_fr1 (2 and 3
+/// likewise), rgbd_bonn_* is bonn, and a name that begins with that of a known camera and '_' is of that camera.
+std::optional<std::string> camera_of_recording(const std::string& folder_name) {
+  static const std::pair<const char*, const char*> published[] = {{"rgbd_bonn_", "bonn"},
+                                                                  {"rgbd_dataset_freiburg1_", "tum_fr1"},
+                                                                  {"rgbd_dataset_freiburg2_", "tum_fr2"},
+                                                                  {"rgbd_dataset_freiburg3_", "tum_fr3"}};
+  for (const auto& [beginning, camera] : published)
+    if (folder_name.starts_with(beginning)) return camera;
+  for (const std::string& camera : camera_names())
+    if (folder_name.starts_with(camera + "_")) return camera;
+  return std::nullopt;
+}
 
 class Resolver {
  public:
@@ -220,7 +235,37 @@ class Resolver {
 
   void read_camera() {
     const ConfigurationNode& node = at("camera");
-    if (node.kind != Kind::nothing) result_.camera = holdfast::read_camera(node, diagnostics_);
+    if (node.kind == Kind::nothing) return;
+    const std::string folder = source_folder();
+    const std::optional<std::string> named = camera_of_recording(folder);
+    if (node.kind == Kind::scalar && node.text == "auto") {
+      if (named)
+        result_.camera = find_camera(*named);
+      else if (!folder.empty())  // a source without a folder may know its camera
+        complain(node.location, "found 'auto' for 'camera', but the name of the folder '" + folder +
+                                    "' says none; expected one such as rgbd_dataset_freiburg1_xyz or rgbd_bonn_crowd; "
+                                    "give 'camera' a name or numbers");
+      return;
+    }
+    result_.camera = holdfast::read_camera(node, diagnostics_);
+    if (named && result_.camera && result_.camera->name != *named && find_camera(result_.camera->name))
+      result_.warnings.push_back({node.location, "found the camera '" + result_.camera->name + "' for the folder '" +
+                                                     folder + "'; expected '" + *named +
+                                                     "' by the name of the folder; write 'camera: auto' to follow it"});
+  }
+
+  /// The name of the folder that the source reads; "" for a source without one.
+  std::string source_folder() const {
+    const ModuleEntry* entry = registry_.find("source", result_.source.name);
+    const auto value = result_.source.values.find("path");
+    if (entry == nullptr || value == result_.source.values.end()) return "";
+    const bool is_path = std::any_of(entry->parameters.begin(), entry->parameters.end(), [](const Parameter& each) {
+      return each.name == "path" && each.type == ParameterType::path;
+    });
+    if (!is_path || std::get<std::string>(value->second).empty()) return "";
+    const std::filesystem::path folder =
+        std::filesystem::absolute(std::get<std::string>(value->second)).lexically_normal();
+    return (folder.has_filename() ? folder : folder.parent_path()).filename().string();
   }
 
   void read_run() {

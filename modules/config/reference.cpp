@@ -32,7 +32,10 @@ std::vector<Entry> all_entries(const Registry& registry, const std::vector<Secti
   };
   std::string cameras;
   for (const std::string& camera : camera_names()) cameras += (cameras.empty() ? "" : ", ") + camera;
-  add_section("camera", "The camera: one of the names " + cameras + ", or by numbers.",
+  add_section("camera",
+              "The camera: one of the names " + cameras +
+                  ", or by numbers; auto = the one that the name of the source's folder says, such as "
+                  "rgbd_dataset_freiburg1_xyz or rgbd_bonn_crowd.",
               ParameterTable<CameraSettings>().parameters());
   const auto add_sections = [&](bool plain) {
     for (const SectionDescription& section : sections)

@@ -78,7 +78,8 @@ class CsvRows {
 std::string to_text(const Evaluation& evaluation) {
   const EvaluationOptions& options = evaluation.options;
   std::string text;
-  text += "truth      " + options.truth_name + ": " + counted(evaluation.truth_poses, "pose") + '\n';
+  text += "truth      " + options.truth_name + ": " + counted(evaluation.truth_poses, "pose") +
+          (options.truth_frame == "raw" ? "" : ", " + options.truth_frame) + '\n';
   text += "estimate   " + options.estimate_name + ": " + counted(evaluation.estimate_poses, "pose") + '\n';
   text += "pairing    one-to-one, nearest stamps first, closer than " + shortest_text(options.max_time_difference) +
           " s: " + counted(evaluation.poses.size(), "pair") + " over " + fixed_text(evaluation.duration, 2) +
@@ -128,7 +129,7 @@ std::string to_json(const Evaluation& evaluation) {
   const Eigen::Vector3d& translation = alignment.translation;
 
   Json json;
-  json["truth"] = {{"name", options.truth_name}, {"poses", evaluation.truth_poses}};
+  json["truth"] = {{"name", options.truth_name}, {"poses", evaluation.truth_poses}, {"frame", options.truth_frame}};
   json["estimate"] = {{"name", options.estimate_name}, {"poses", evaluation.estimate_poses}};
   json["pairing"] = {{"method", "one-to-one, nearest stamps first"},
                      {"max_time_difference_s", options.max_time_difference},
@@ -185,6 +186,7 @@ std::string to_csv(const Evaluation& evaluation) {
   rows.add("alignment", "kind", std::string(to_string(options.alignment)), "");
   rows.add("alignment", "scale", shortest_text(evaluation.alignment.scale), "");
   rows.add("truth", "poses", evaluation.truth_poses);
+  rows.add("truth", "frame", options.truth_frame, "");
   rows.add("estimate", "poses", evaluation.estimate_poses);
   rows.add("pairing", "max_time_difference", shortest_text(options.max_time_difference), "s");
   rows.add("pairing", "pairs", evaluation.poses.size());

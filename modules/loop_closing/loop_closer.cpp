@@ -2,6 +2,7 @@
 #include "holdfast/loop_closing/loop_closer.hpp"
 
 #include "holdfast/core/random.hpp"
+#include "holdfast/matching/frame_features.hpp"
 #include "loop_correction.hpp"
 #include "place_check.hpp"
 #include "plausibility.hpp"
@@ -83,7 +84,7 @@ std::vector<KeyFrameId> LoopCloser::find_candidates(KeyFrameId id) {
       ++counts_.removed;
       return {};
     }
-    descriptors = keyframe->frame.features.descriptors;
+    descriptors = static_descriptors(keyframe->frame);
     sequence = keyframe->sequence;
     ask_for = candidates_.matches_to_ask_for(map_, id);
   }

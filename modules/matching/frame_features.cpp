@@ -15,6 +15,14 @@ void mark_static(const Frame& frame, std::vector<std::uint8_t>& usable) {
   for (std::size_t i = 0; i < usable.size(); ++i) usable[i] = is_static(frame, i) ? 1 : 0;
 }
 
+std::vector<Descriptor> static_descriptors(const Frame& frame) {
+  std::vector<Descriptor> descriptors;
+  descriptors.reserve(frame.size());
+  for (std::size_t i = 0; i < frame.size(); ++i)
+    if (is_static(frame, i)) descriptors.push_back(frame.features.descriptors[i]);
+  return descriptors;
+}
+
 void mark_unmatched(const Frame& frame, std::vector<std::uint8_t>& usable) {
   usable.resize(frame.size());
   for (std::size_t i = 0; i < usable.size(); ++i) usable[i] = frame.map_points[i].valid() ? 0 : 1;

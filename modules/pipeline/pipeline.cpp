@@ -16,6 +16,7 @@
 #include "holdfast/loop_closing/loop_closer.hpp"
 #include "holdfast/map_io/map_export.hpp"
 #include "holdfast/mapping/local_mapper.hpp"
+#include "holdfast/matching/frame_features.hpp"
 #include "holdfast/moving_world/moving_world.hpp"
 #include "holdfast/tracking/tracker.hpp"
 
@@ -67,7 +68,7 @@ struct Pipeline::State {
     map.set_evidence_limit(static_cast<float>(parts.evidence.limit));
     closer.set_full_adjustment(&adjustment);
     for (const KeyFrameId keyframe : map.keyframes_by_age())
-      detector.add(keyframe, map.keyframe(keyframe).frame.features.descriptors);
+      detector.add(keyframe, static_descriptors(map.keyframe(keyframe).frame));
     if (parts.dense_map.enabled && !parts.localise_only) scene.emplace(parts.camera, parts.dense_map);
     for (const std::string& name : parts.segmenter->classes()) {
       const std::vector<std::string>& out = parts.dense_map.classes;

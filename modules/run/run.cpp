@@ -42,6 +42,7 @@ void evaluate_run(const FrameSource& source, RunRecord& record) {
   std::sort(record.frame_stamps.begin(), record.frame_stamps.end());
   EvaluationOptions options;
   options.truth_name = "truth";
+  options.truth_frame = record.source.truth_frame;
   options.estimate_name = "trajectory.txt";
   try {
     record.evaluation = evaluate(truth, record.trajectory, options, record.frame_stamps);

@@ -140,6 +140,8 @@ std::string run_json(const RunRecord& record) {
                {"sequence", record.source.name},
                {"interrupted", record.was_interrupted}};
   json["failure"] = record.failure.empty() ? Json(nullptr) : Json(record.failure);
+  Json& warnings = json["warnings"] = Json::array();
+  for (const Diagnostic& warning : record.configuration.warnings) warnings.push_back(warning.to_string());
   json["frames"] = frames_json(record);
   Json& troubles = json["troubles"] = Json::object();
   for (const auto& [trouble, count] : s.troubles()) troubles[to_string(trouble)] = count;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "holdfast/geometry/alignment.hpp"
+#include "holdfast/matching/frame_features.hpp"
 
 namespace holdfast {
 
@@ -89,8 +90,12 @@ bool Relocaliser::align_with_keyframe(KeyFrameId keyframe, const std::optional<E
 
 bool Relocaliser::find_place(Frame& frame, FrameResult& result) {
   parts_.history.interrupt();
+  // The database contains static features only, and so does the query. Points that an earlier hypothesis matched say
+  // nothing about this place: the weights come from the frame alone.
+  std::fill(frame.map_points.begin(), frame.map_points.end(), MapPointId());
+  parts_.estimator.build_problem(frame);
   for (const PlaceMatch& place :
-       parts_.detector.query(frame.features.descriptors, settings_.relocalisation_candidates)) {
+       parts_.detector.query(static_descriptors(frame), settings_.relocalisation_candidates)) {
     const KeyFrame* keyframe = parts_.map.find_keyframe(place.keyframe);
     if (keyframe == nullptr) continue;  // removed a moment ago, and the detector does not know yet
     parts_.matcher.match_keyframe(keyframe->frame, frame);

@@ -141,6 +141,21 @@ TEST_F(DatasetCheckTest, ExplainsWhatIsCut) {
   EXPECT_THAT(problems(), Contains(HasSubstr("depth/3.png")));
 }
 
+TEST_F(DatasetCheckTest, SaysWhatIsKnownToBeAbsentAsAFact) {
+  ASSERT_TRUE(find_recipe("bonn_crowd")->lists_absent_depth);
+  fs::remove(path("depth/1.png"));
+  EXPECT_THAT(problems(), ElementsAre(HasSubstr("depth.txt lists 1 image that is missing: depth/1.png (line 3)")));
+  recipe_.lists_absent_depth = true;
+  EXPECT_THAT(problems(), IsEmpty());
+  EXPECT_THAT(check_dataset(program_.path("rec"), &recipe_).facts,
+              Contains(AllOf(HasSubstr("depth.txt lists 1 image that does not exist: depth/1.png (line 3)"),
+                             HasSubstr("known of the dataset"))));
+  fs::remove(path("rgb/1.png"));
+  EXPECT_THAT(problems(), ElementsAre(HasSubstr("rgb.txt lists 1 image that is missing")));
+  fs::remove_all(path("depth"));
+  EXPECT_THAT(problems(), Contains(HasSubstr("depth.txt lists 4 images that are missing")));
+}
+
 TEST_F(DatasetCheckTest, SeesThatItIsAnotherRecording) {
   cv::imwrite(path("rgb/0.png").string(), cv::Mat(540, 960, CV_8UC3, cv::Scalar::all(1)));
   program_.write("rec/groundtruth.txt", "100 0 0 0 0 0 0 1\n110 1 0 0 0 0 0 1\n");
@@ -236,6 +251,28 @@ TEST_F(RecipeMatrixTest, FillsInWhatARecipeKnows) {
   const RunPlan masked = plan("base: masked.yaml\nsequences:\n  w21: { recipe: w21, path: one }\n");
   EXPECT_THAT(problems(), IsEmpty());
   EXPECT_THAT(masked.runs.at(0).request, HasSubstr("/one/mask"));
+}
+
+TEST_F(RecipeMatrixTest, TurnsTheTruthOfBonnToTheCamera) {
+  write("matrix.yaml", "base: plain.yaml\nsequences:\n  crowd: { recipe: bonn_crowd, path: one }\n");
+  const Matrix matrix = read_matrix(folder_ / "matrix.yaml", {}, diagnostics_);
+  const ConfigurationNode* tum = matrix.sequences.at(0).source.find("tum");
+  ASSERT_NE(tum, nullptr);
+  const auto matrix_of = [&](const char* key) {
+    Eigen::Matrix4d result = Eigen::Matrix4d::Zero();
+    const ConfigurationNode* rows = tum->find(key);
+    for (std::size_t row = 0; rows != nullptr && row < rows->items.size(); ++row)
+      for (std::size_t column = 0; column < 4; ++column)
+        result(static_cast<int>(row), static_cast<int>(column)) = std::stod(rows->items[row].items.at(column).text);
+    return result;
+  };
+  // As the page of the dataset gives them.
+  Eigen::Matrix4d T_ros, T_m;
+  T_ros << -1, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 1;
+  T_m << 1.0157, 0.1828, -0.2389, 0.0113, 0.0009, -0.8431, -0.6413, -0.0098, -0.3009, 0.6147, -0.8085, 0.0111, 0, 0, 0,
+      1;
+  EXPECT_EQ(matrix_of("truth_left"), T_ros);
+  EXPECT_EQ(matrix_of("truth_right"), T_ros * T_m);
 }
 
 TEST_F(RecipeMatrixTest, SaysWhatIsWrongWithARecipe) {

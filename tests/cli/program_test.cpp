@@ -98,6 +98,14 @@ TEST_F(ProgramTest, TheExamplesAreRight) {
   }
 }
 
+TEST_F(ProgramTest, CheckWarnsOfAnotherCamera) {
+  const Outcome outcome = program_.run({"check", std::string(HOLDFAST_EXAMPLE_CONFIGURATIONS) + "/rgbd.yaml", "--set",
+                                        "source.tum.path=/data/rgbd_dataset_freiburg3_walking_xyz"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.errors, testing::AllOf(testing::HasSubstr("warning:"), testing::HasSubstr("rgbd.yaml:4:9"),
+                                             testing::HasSubstr("expected 'tum_fr3'")));
+}
+
 TEST_F(ProgramTest, CheckTellsAllMistakes) {
   program_.write("bad.yaml",
                  "source: { tum: {} }\ncamera: tum_fr7\nfeatures: { orb: { cuont: 500, levels: many } }\noptimizer: "

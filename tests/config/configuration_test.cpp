@@ -31,6 +31,36 @@ TEST(Configuration, ARealMayBeWrittenAsAnInteger) {
             ParameterValue(20.0));
 }
 
+TEST(Configuration, CameraAutoFollowsTheNameOfTheFolder) {
+  const auto camera = [](const std::string& folder) {
+    return resolve(test::good, {"camera=auto", "source.tum.path=" + folder}).camera->name;
+  };
+  EXPECT_EQ(camera("/data/rgbd_dataset_freiburg1_xyz"), "tum_fr1");
+  EXPECT_EQ(camera("/data/rgbd_dataset_freiburg2_desk/"), "tum_fr2");
+  EXPECT_EQ(camera("/data/rgbd_dataset_freiburg3_walking_xyz"), "tum_fr3");
+  EXPECT_EQ(camera("/data/rgbd_bonn_crowd"), "bonn");
+  EXPECT_EQ(camera("/data/tum_fr1_xyz"), "tum_fr1");
+  EXPECT_EQ(resolve(test::good, {"camera=auto", "source.tum.path=/rgbd_bonn_crowd"}).camera, find_camera("bonn"));
+  const std::string silent = "source: { tum: { path: kitchen } }\ncamera: auto\nfeatures: orb\noptimizer: ceres\n";
+  EXPECT_THAT(test::problems(silent),
+              testing::ElementsAre(testing::AllOf(testing::HasSubstr("c.yaml:2:9: found 'auto' for 'camera'"),
+                                                  testing::HasSubstr("the folder 'kitchen' says none; expected"))));
+}
+
+TEST(Configuration, WarnsOfAFolderNamedAfterAnotherCamera) {
+  const Configuration other = resolve(test::good, {"source.tum.path=/data/rgbd_dataset_freiburg3_sitting_xyz"});
+  ASSERT_EQ(other.warnings.size(), 1U);
+  EXPECT_THAT(other.warnings[0].to_string(),
+              testing::AllOf(testing::StartsWith("c.yaml:2:9: found the camera 'tum_fr1'"),
+                             testing::HasSubstr("expected 'tum_fr3'")));
+  EXPECT_EQ(other.camera->name, "tum_fr1");  // as it is written all the same
+  for (const char* folder : {"/data/rgbd_dataset_freiburg1_xyz", "/data/kitchen", "/data/rgbd_dataset_freiburg3"})
+    EXPECT_TRUE(resolve(test::good, {std::string("source.tum.path=") + folder}).warnings.empty()) << folder;
+  // Numbers of one's own are meant.
+  const std::string numbers = "camera={width: 640, height: 480, fx: 530, fy: 530, cx: 320, cy: 240}";
+  EXPECT_TRUE(resolve(test::good, {numbers, "source.tum.path=/data/rgbd_bonn_crowd"}).warnings.empty());
+}
+
 TEST(Configuration, PathsStartFromTheFileThatSaysThem) {
   EXPECT_EQ(resolve(test::good).source.values.at("path"), ParameterValue(std::string("/data/fr1")));
   EXPECT_EQ(resolve(test::good, {"source.tum.path=../fr2"}).source.values.at("path"),

@@ -99,6 +99,22 @@ TEST(ReprojectionError, DoubtGrowsWithEveryFrameThatFails) {
   EXPECT_LT(evidence.measurement(7), evidence.measurement(8));
 }
 
+TEST(ReprojectionError, WithoutSofteningAMatchIsDynamicAfterTheGivenFailures) {
+  ReprojectionErrorSettings printed = settings();
+  printed.soften = false;
+  printed.frames = 3;
+  ObservedPoints points;
+  ReprojectionError filter(printed, {});
+  // To and fro: softening would halve the evidence.
+  for (int k = 1; k <= 4; ++k) {
+    points.show(7, Eigen::Vector3d(k % 2 == 0 ? 0.03 : -0.03, 0, 0));
+    EXPECT_EQ(points.evaluate(filter).measurement(7), k < 3 ? 0.0F : -4.0F) << k;
+  }
+  points.map().point(points.frame().map_points[9]).visible_count = 100;  // hardly ever found where it is predicted
+  points.show(9, step);
+  EXPECT_EQ(points.evaluate(filter).measurement(9), -4.0F);
+}
+
 TEST(ReprojectionError, NoiseWithinTheVarianceOfTheLevelPasses) {
   ObservedPoints points;
   ReprojectionError filter(settings(), {});

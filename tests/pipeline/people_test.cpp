@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
+#include "holdfast/matching/frame_features.hpp"
 #include "holdfast/pipeline/pipeline.hpp"
 #include "holdfast/plugin/builtin.hpp"
 #include "holdfast/plugin/registry.hpp"
@@ -83,6 +85,22 @@ class Noting final : public Segmenter {
   std::vector<std::string> classes_, movable_;
 };
 
+/// Keeps what it is given and recognises nothing.
+class NotingDetector final : public LoopDetector {
+ public:
+  using Database = std::map<KeyFrameId, std::vector<Descriptor>>;
+
+  explicit NotingDetector(Database& database) : database_(database) {}
+  void add(KeyFrameId keyframe, std::span<const Descriptor> descriptors) override {
+    database_[keyframe].assign(descriptors.begin(), descriptors.end());
+  }
+  void remove(KeyFrameId keyframe) override { database_.erase(keyframe); }
+  std::vector<PlaceMatch> query(std::span<const Descriptor>, int) const override { return {}; }
+
+ private:
+  Database& database_;
+};
+
 struct Options {
   bool filters = true, threaded = false;
   int latency = 5;
@@ -105,6 +123,7 @@ struct WholeRun {
     parts.camera = context.camera;
     parts.features = registry.create<FeatureExtractor>("orb", {}, context);
     parts.optimizer = registry.create<Optimizer>("ceres", {}, context);
+    parts.loop_detector = std::make_unique<NotingDetector>(database);
     parts.segmentation.latency = options.latency;
     parts.segmentation.on = options.on;
     if (options.threaded) parts.run.mode = RunMode::threaded;
@@ -133,7 +152,9 @@ struct WholeRun {
     return people.points_on_people(pipeline.map(), people.frames().back(), pipeline.trajectory().back().T_world_camera);
   }
 
-  std::set<std::uint64_t> segmented;  // before the pipeline, whose segmenter writes to it
+  // Before the pipeline, whose segmenter and loop detector write to them.
+  std::set<std::uint64_t> segmented;
+  NotingDetector::Database database;
   Pipeline pipeline;
   std::vector<FrameResult> results;
 };
@@ -163,6 +184,29 @@ class PeopleTest : public testing::Test {
     EXPECT_EQ(on_people, 0);
   }
 
+  /// The database of place recognition has no descriptor of a feature on a person in keyframes that were segmented,
+  /// and that of every static feature.
+  static void expect_clean_database(const Map& map, const std::set<std::uint64_t>& segmented,
+                                    const NotingDetector::Database& database) {
+    int judged = 0, on_people = 0;
+    EXPECT_EQ(database.size(), map.keyframes().size());
+    for (const auto& [id, descriptors] : database) {
+      ASSERT_NE(map.find_keyframe(id), nullptr);
+      const Frame& frame = map.keyframe(id).frame;
+      EXPECT_TRUE(descriptors == static_descriptors(frame));
+      if (!segmented.contains(frame.index)) continue;
+      for (std::size_t i = 0; i < frame.size(); ++i) {
+        if (!people().shows_person(people().at(frame.index), frame.features.x[i], frame.features.y[i])) continue;
+        ++judged;
+        on_people +=
+            std::find(descriptors.begin(), descriptors.end(), frame.features.descriptors[i]) != descriptors.end() ? 1
+                                                                                                                  : 0;
+      }
+    }
+    EXPECT_GE(judged, 100);
+    EXPECT_EQ(on_people, 0);
+  }
+
  private:
   static inline const People* people_ = nullptr;
 };
@@ -186,6 +230,21 @@ TEST_F(PeopleTest, PeopleStayOutOfTheMapHoweverLateTheirMasksCome) {
         EXPECT_NEAR(measured, static_cast<double>(frames) / 30.0, 1e-6) << index;
       }
     }
+  }
+}
+
+TEST_F(PeopleTest, PeopleStayOutOfTheKeyframeDatabase) {
+  for (const int latency : {0, 5}) {
+    WholeRun run(people(), {.latency = latency});
+    expect_clean_database(run.pipeline.map(), run.segmented, run.database);
+    // A map that is loaded again makes the same database.
+    NotingDetector::Database loaded;
+    PipelineParts parts = run.parts_of(people(), {});
+    parts.loop_detector = std::make_unique<NotingDetector>(loaded);
+    parts.map = run.pipeline.take_map();
+    parts.localise_only = true;
+    const Pipeline continued(std::move(parts));
+    expect_clean_database(continued.map(), run.segmented, loaded);
   }
 }
 
@@ -247,6 +306,7 @@ TEST_F(PeopleTest, ThreadsSegmentEveryKeyframeOrPassItOn) {
   EXPECT_EQ(workers[0].queue.taken, made);  // local mapping
   EXPECT_EQ(workers[3].queue.taken, run.segmented.size());
   expect_clean_keyframes(run);
+  expect_clean_database(run.pipeline.map(), run.segmented, run.database);
 }
 
 }  // namespace

@@ -120,6 +120,62 @@ TEST_F(TumSourceTest, ReadyPairsReplaceTheLists) {
               AllOf(StartsWith(file + ":2: "), HasSubstr("none.png: is missing")));
 }
 
+/// The transforms of Bonn RGB-D Dynamic by its page: T_world_camera = T_ROS T T_ROS T_m.
+Eigen::Matrix4d bonn_ros() {
+  Eigen::Matrix4d matrix;
+  matrix << -1, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 1;
+  return matrix;
+}
+Eigen::Matrix4d bonn_markers() {
+  Eigen::Matrix4d matrix;
+  matrix << 1.0157, 0.1828, -0.2389, 0.0113, 0.0009, -0.8431, -0.6413, -0.0098, -0.3009, 0.6147, -0.8085, 0.0111, 0, 0,
+      0, 1;
+  return matrix;
+}
+RealTable rows_of(const Eigen::Matrix4d& matrix) {
+  RealTable rows;
+  for (int row = 0; row < 4; ++row) rows.push_back({matrix(row, 0), matrix(row, 1), matrix(row, 2), matrix(row, 3)});
+  return rows;
+}
+
+TEST_F(TumSourceTest, TruthOfMarkersBecomesThatOfTheCamera) {
+  // The nearest rotation by another way than the source: Newton's iteration for the polar decomposition.
+  Eigen::Isometry3d T_m = Eigen::Isometry3d::Identity();
+  Eigen::Matrix3d rotation = bonn_markers().topLeftCorner<3, 3>();
+  for (int i = 0; i < 20; ++i) rotation = (0.5 * (rotation + rotation.inverse().transpose())).eval();
+  T_m.linear() = rotation;
+  T_m.translation() = bonn_markers().topRightCorner<3, 1>();
+  const Eigen::Isometry3d T_ros(bonn_ros());
+  Trajectory camera, recorded;
+  for (int i = 0; i < 5; ++i) {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.linear() = Eigen::AngleAxisd(0.3 * i, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();
+    pose.translation() = Eigen::Vector3d(0.2 * i, -0.1, 0.05 * i * i);
+    camera.push_back({100.0 + 0.1 * i, pose});
+    recorded.push_back({100.0 + 0.1 * i, T_ros.inverse() * pose * (T_ros * T_m).inverse()});
+  }
+  write_trajectory(folder_.path() / "groundtruth.txt", recorded);
+  const auto source =
+      open({{"truth_left", rows_of(bonn_ros())}, {"truth_right", rows_of(bonn_ros() * bonn_markers())}});
+  EXPECT_EQ(source->describe().truth_frame, "transformed");
+  const Trajectory truth = source->truth();
+  ASSERT_EQ(truth.size(), camera.size());
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    EXPECT_EQ(truth[i].timestamp, camera[i].timestamp);
+    EXPECT_TRUE(truth[i].T_world_camera.isApprox(camera[i].T_world_camera, 1e-7)) << i;
+  }
+  EXPECT_EQ(open()->describe().truth_frame, "raw");
+  EXPECT_TRUE(open()->truth()[2].T_world_camera.isApprox(recorded[2].T_world_camera, 1e-7));
+}
+
+TEST_F(TumSourceTest, RefusesATransformThatIsNoRigidMotion) {
+  const auto message = [&](const RealTable& rows) { return error({{"truth_right", rows}}); };
+  EXPECT_THAT(message({{1, 0, 0, 0}}), AllOf(HasSubstr("source.tum.truth_right: found [[1"), HasSubstr("four rows")));
+  EXPECT_THAT(message({{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 1, 1}}), HasSubstr("found the last row"));
+  EXPECT_THAT(message({{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, -1, 0}, {0, 0, 0, 1}}), HasSubstr("no rotation"));
+  EXPECT_THAT(message({{2, 0, 0, 0}, {0, 2, 0, 0}, {0, 0, 2, 0}, {0, 0, 0, 1}}), HasSubstr("no rotation"));
+}
+
 TEST_F(TumSourceTest, TruthIsGivenWhereThereIsOne) {
   folder_.write("groundtruth.txt", "# t\n99 1 2 3 0 0 0 1\n101 4 5 6 0 0 0 1\n");
   const Trajectory truth = open()->truth();

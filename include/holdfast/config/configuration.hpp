@@ -57,6 +57,8 @@ struct Configuration {
   std::vector<ModuleChoice> filters;  ///< a chain
   std::vector<ModuleChoice> observers;
   std::optional<Camera> camera;  ///< empty: the source must know it
+  /// What is no mistake and may still be unintended, with its place: a folder that is named after another camera.
+  std::vector<Diagnostic> warnings;
   RunSettings run;
   std::map<std::string, ParameterValues> sections;  ///< values of the plain sections, by name
   std::vector<std::string> plugins;                 ///< absolute paths of the plugin files

@@ -20,6 +20,7 @@ struct EvaluationOptions {
   double time_step = 1.0;             ///< interval of the relative error per time [s]
   double path_step = 1.0;             ///< path length of the relative error per distance [m]
   std::string truth_name = "truth";   ///< for messages, tables and plots
+  std::string truth_frame = "raw";    ///< "raw" as recorded, or "transformed" to the camera; for the results alone
   std::string estimate_name = "estimate";
 };
 

@@ -23,9 +23,10 @@ struct SkippedFrame {
 struct SourceDescription {
   std::string name;  ///< name of the sequence, for titles
   bool has_depth = false;
+  std::string truth_frame = "raw";           ///< of FrameSource::truth(): "raw" as recorded, or "transformed"
   std::vector<std::string> class_names;      ///< class names of FrameTruth::class_labels, by index
   std::optional<std::uint64_t> frame_count;  ///< empty if the source is endless
-  std::optional<Camera> camera;              ///< calibration known to the source; another one in the configuration is an error
+  std::optional<Camera> camera;  ///< calibration known to the source; another one in the configuration is an error
 };
 
 /// Provides the frames of a recording, a simulation or a live camera. Time stamps increase strictly from frame to

@@ -17,7 +17,8 @@ struct PlaceMatch {
   double score = 0.0;
 };
 
-/// Place recognition by the descriptors of keyframes. Used by one thread at a time.
+/// Place recognition by the descriptors of keyframes. Callers pass those of static features only, so that a place is
+/// not recognised by the people in it (Zeng et al. 2023, section 3.3). Used by one thread at a time.
 class LoopDetector : public Module {
  public:
   static constexpr const char* kind = "loop_detector";

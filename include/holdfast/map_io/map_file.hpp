@@ -8,7 +8,8 @@
 /// Map files (.hfm): a header and sections, little-endian, each with a checksum (CRC-32C), so that damage is always
 /// detected. docs/map_format.md defines the layout. A file contains the complete content of Map except the poses of
 /// removed keyframes (which serve the trajectory of the run that removed them) and Map::version(). The index for place
-/// recognition is not part of a map; after loading, the keyframes must be added to a detector.
+/// recognition is not part of a map; after loading, the static descriptors of the keyframes must be added to a
+/// detector.
 ///
 /// Ids are not stored. Reading assigns new ones: keyframes 0, 1, 2, ... by increasing sequence, points in slot order.
 /// Writing a map that was read therefore gives the same bytes, and a run that continues a map is deterministic.

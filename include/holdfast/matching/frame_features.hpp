@@ -58,6 +58,9 @@ inline bool is_static(const Frame& frame, std::size_t feature) { return is_stati
 
 /// Sets `usable` to 1 for each static feature and to 0 for the others.
 void mark_static(const Frame& frame, std::vector<std::uint8_t>& usable);
+/// Copies the descriptors of the static features, in the order of the features. Place recognition uses no others (Zeng
+/// et al. 2023, section 3.3); entry i is not that of feature i when a feature before it moves.
+std::vector<Descriptor> static_descriptors(const Frame& frame);
 /// Sets `usable` to 1 for each feature without a map point and to 0 for the others.
 void mark_unmatched(const Frame& frame, std::vector<std::uint8_t>& usable);
 

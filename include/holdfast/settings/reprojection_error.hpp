@@ -26,6 +26,10 @@ struct ReprojectionErrorSettings {
   /// Ratio of the length of the mean displacement to the mean length from which on displacements agree; 1 = all
   /// parallel.
   double agreement = 0.7;
+  /// Whether evidence grows with the number of failures and the size of the error, and is halved where displacements do
+  /// not agree. Without it, a match that fails has all the evidence once its point failed in `frames` observations or
+  /// is unstable, and none before: the decision of Zeng et al. 2023.
+  bool soften = true;
   double moving_log_odds = -1.0;  ///< evidence of a match with a large and persistent error
   double static_log_odds = 0.0;   ///< evidence of a match that passes
 

@@ -62,14 +62,16 @@ float ReprojectionError::log_odds(const Match& match, const History& history) co
   if (match.error <= 1.0F)
     return static_cast<float>(settings_.static_log_odds) *
            (1.0F - static_cast<float>(failures) / static_cast<float>(history.observations));
+  const bool unstable = match.found_ratio < static_cast<float>(settings_.minimum_found_ratio);
+  if (!settings_.soften)
+    return failures >= settings_.frames || unstable ? static_cast<float>(settings_.moving_log_odds) : 0.0F;
   const float lasting = std::min(1.0F, static_cast<float>(failures) / static_cast<float>(settings_.frames));
   // Four times the squared threshold, twice the distance, gives full evidence.
   float certainty = lasting * (0.25F + 0.75F * std::min(1.0F, (match.error - 1.0F) / 3.0F));
   // With depth: displacements that agree in direction are motion; others are noise or wrong matches.
   if (history.length > 0.0F)
     certainty *= history.displacement.norm() >= static_cast<float>(settings_.agreement) * history.length ? 1.0F : 0.5F;
-  if (match.found_ratio < static_cast<float>(settings_.minimum_found_ratio))
-    certainty = std::min(1.0F, 1.5F * certainty);
+  if (unstable) certainty = std::min(1.0F, 1.5F * certainty);
   return static_cast<float>(settings_.moving_log_odds) * certainty;
 }
 

@@ -38,6 +38,10 @@ void ReprojectionErrorSettings::describe(ParameterTable<ReprojectionErrorSetting
            "ratio of the length of the mean displacement to the mean length from which on displacements agree; 1 = all "
            "parallel")
       .range(0, 1);
+  table.add("soften", &S::soften,
+            "whether evidence grows with the number of failures and the size of the error, and is halved where "
+            "displacements do not agree; false = all of it after the given number of failures or on an unstable point, "
+            "none before, as in Zeng et al. 2023");
   table.add("moving_log_odds", &S::moving_log_odds, "evidence of a match with a large and persistent error")
       .range(-20, 0);
   table.add("static_log_odds", &S::static_log_odds, "evidence of a match that passes").range(0, 20);

@@ -4,6 +4,7 @@
 #include "holdfast/image_files/image_list.hpp"
 #include "holdfast/image_files/image_sequence.hpp"
 #include "holdfast/image_files/recording_pairs.hpp"
+#include "holdfast/image_files/truth_transform.hpp"
 #include "holdfast/interfaces/frame_source.hpp"
 #include "holdfast/plugin/plugin.hpp"
 
@@ -17,6 +18,7 @@ struct TumSettings {
   double depth_factor = 5000.0;
   std::filesystem::path associations;
   std::string on_bad_frame = "fail";
+  RealTable truth_left, truth_right;
   std::int64_t start = 0;
   std::int64_t frames = 0;
 
@@ -35,6 +37,12 @@ struct TumSettings {
         .add("on_bad_frame", &TumSettings::on_bad_frame,
              "reaction to a missing, damaged or unsuitable image: stop with an error, or skip and count the frame")
         .one_of({"fail", "skip"});
+    table
+        .add("truth_left", &TumSettings::truth_left,
+             "rigid motion before each pose of groundtruth.txt, the four rows of a matrix; empty = none. The true pose "
+             "of the camera is truth_left * pose * truth_right, for motion capture that tracks markers")
+        .unit("m");
+    table.add("truth_right", &TumSettings::truth_right, "the same after each pose").unit("m");
     table.add("start", &TumSettings::start, "index of the first pair, from 0").at_least(0);
     table.add("frames", &TumSettings::frames, "number of pairs, 0 = all").at_least(0);
   }
@@ -71,8 +79,10 @@ class TumSource final : public FrameSource {
     description_.name = folder_name(settings.path);
     description_.has_depth = true;
     description_.frame_count = sequence_.size();
+    const TruthTransform transform = make_truth_transform(settings.truth_left, settings.truth_right, "source.tum");
+    description_.truth_frame = transform.frame();
     if (const auto truth_file = settings.path / "groundtruth.txt"; std::filesystem::exists(truth_file))
-      truth_ = read_trajectory(truth_file);
+      truth_ = transformed(transform, read_trajectory(truth_file));
   }
 
   SourceDescription describe() const override { return description_; }

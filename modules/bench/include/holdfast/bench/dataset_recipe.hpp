@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "holdfast/config/configuration_node.hpp"
 #include "holdfast/core/camera.hpp"
 #include "holdfast/core/error.hpp"
 
@@ -30,6 +31,10 @@ struct DatasetRecipe {
   DatasetLayout layout = DatasetLayout::tum;
   Camera camera;
   std::string truth = "groundtruth.txt";
+  /// Values of source.tum.truth_left and truth_right; nothing = the truth is that of the camera.
+  std::optional<ConfigurationNode> truth_left, truth_right;
+  /// Whether depth.txt lists images that the archive lacks: nothing is damaged then.
+  bool lists_absent_depth = false;
   bool has_masks = false;                    ///< mask.txt and mask/: of every colour image, 0 = static, k = person k
   std::optional<std::size_t> colour, depth;  ///< images; nothing: no document says
   std::optional<std::size_t> pairs;          ///< colour-depth pairs within 0.02 s

@@ -12,6 +12,7 @@
 #include "holdfast/core/camera.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/image_files/image_list.hpp"
+#include "holdfast/image_files/truth_transform.hpp"
 
 namespace holdfast {
 
@@ -22,6 +23,7 @@ struct RecordedSequence {
   Camera camera;
   double depth_factor = 5000.0;    ///< value of one metre in a depth image
   std::vector<ListedPair> frames;  ///< file names relative to the folder
+  TruthTransform truth;            ///< of groundtruth.txt
 };
 
 /// Lines "colour_stamp colour_file depth_stamp depth_file", stamps with 6 decimals.

@@ -47,6 +47,7 @@ struct RunResult {
   std::size_t malformed = 0;                 ///< lines of an external system's trajectory that are no pose
   bool has_errors = false;                   ///< the statistics below
   std::array<SixStatistics, 3> errors = {};  ///< by Quantity
+  std::string truth_frame = "raw";           ///< EvaluationOptions::truth_frame of the errors
   std::string no_errors;                     ///< why there are none
 
   double coverage() const { return frames == 0 ? 0.0 : static_cast<double>(poses) / static_cast<double>(frames); }
