@@ -246,14 +246,19 @@ void check_tensors(Bytes graph, int depth) {
 void check_layers(const std::vector<Bytes>& layers, std::set<std::string>& provided) {
   for (const Bytes layer : layers) {
     std::string name, kind, missing;
+    bool has_input = false;
     std::vector<std::string> outputs;
     each_field(layer, [&](const Field& f) {
       if (f.number == field::node_name) name = text(f.content);
       if (f.number == field::node_operator) kind = text(f.content);
       if (f.number == field::node_output) outputs.push_back(text(f.content));
       if (f.number != field::node_input || f.content.empty()) return;  // an empty name leaves an input out
+      has_input = true;
       if (provided.count(text(f.content)) == 0) missing = text(f.content);
     });
+    if (!has_input && kind != "Constant")
+      throw Unusable{"has a layer '" + name + "' (" + kind +
+                     ") without an input; expected a whole network; export it again"};
     if (!missing.empty())
       throw Unusable{
           "has a layer '" + name + "' (" + kind + ") that reads '" + missing +

@@ -53,6 +53,13 @@ TEST(OnnxSignature, RefusesALayerWhoseInputNothingProvides) {
                                      HasSubstr("export it again")));
 }
 
+TEST(OnnxSignature, RefusesALayerWithoutInput) {
+  std::vector<std::uint8_t> bytes = bytes_of("labels");
+  ASSERT_EQ(bytes[98], 0x0a);
+  bytes[98] = 0x1a;  // what was the input is a name now
+  EXPECT_THAT(error_of(bytes), HasSubstr("(ArgMax) without an input"));
+}
+
 TEST(OnnxSignature, RefusesDimensionsLargerThanTheData) {
   std::vector<std::uint8_t> bytes = bytes_of("one_channel");
   bytes[106] = 0x7f;
