@@ -48,8 +48,8 @@ TEST_F(BenchExternalTest, ShowsEveryEndAsWhatItIs) {
                           HasSubstr("\ncrash,little,,1,crashed,11,50,25,0.5,0,1,"),
                           HasSubstr("\nhang,little,,1,timed out,0,50,25,0.5,0,0,"),
                           HasSubstr("\nnan,little,,1,finished,0,50,25,0.5,25,0,")));
-  EXPECT_THAT(runs, AllOf(HasSubstr("\nempty,little,,1,finished,0,50,0,0,0,0,,,,,,,,,,,,,,,,,,\n"),
-                          HasSubstr("\nfail,little,,1,failed,3,50,0,0,0,0,,,,,,,,,,,,,,,,,,\n")));
+  EXPECT_THAT(runs, AllOf(HasSubstr("\nempty,little,,1,finished,0,50,0,0,0,0,,,,,,,,,,,,,,,,,,,\n"),
+                          HasSubstr("\nfail,little,,1,failed,3,50,0,0,0,0,,,,,,,,,,,,,,,,,,,\n")));
   const std::string report = program_.text("out/report.md");
   EXPECT_THAT(report,
               AllOf(HasSubstr("| crash/little/repeat1 | crashed (signal 11), 1 line is no pose, short | 50.00 %"),
