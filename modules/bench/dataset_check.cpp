@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <set>
 
+#include "holdfast/core/folder_name.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/evaluation/number_text.hpp"
 #include "holdfast/image_files/image_decoder.hpp"
-#include "holdfast/image_files/image_sequence.hpp"
 #include "holdfast/image_files/recording_pairs.hpp"
 
 namespace holdfast {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "holdfast/config/parameter_reader.hpp"
+#include "holdfast/core/folder_name.hpp"
 #include "holdfast/plugin/did_you_mean.hpp"
 #include "holdfast/plugin/loader.hpp"
 #include "holdfast/plugin/module_check.hpp"
@@ -85,15 +86,15 @@ using Kind = ConfigurationNode::Kind;
 
 /// The known camera that the folder of a recording is named after: rgbd_dataset_freiburg1_* is tum_fr1 (2 and 3
 /// likewise), rgbd_bonn_* is bonn, and a name that begins with that of a known camera and '_' is of that camera.
-std::optional<std::string> camera_of_recording(const std::string& folder_name) {
+std::optional<std::string> camera_of_recording(const std::string& folder) {
   static const std::pair<const char*, const char*> published[] = {{"rgbd_bonn_", "bonn"},
                                                                   {"rgbd_dataset_freiburg1_", "tum_fr1"},
                                                                   {"rgbd_dataset_freiburg2_", "tum_fr2"},
                                                                   {"rgbd_dataset_freiburg3_", "tum_fr3"}};
   for (const auto& [beginning, camera] : published)
-    if (folder_name.starts_with(beginning)) return camera;
+    if (folder.starts_with(beginning)) return camera;
   for (const std::string& camera : camera_names())
-    if (folder_name.starts_with(camera + "_")) return camera;
+    if (folder.starts_with(camera + "_")) return camera;
   return std::nullopt;
 }
 
@@ -263,9 +264,7 @@ class Resolver {
       return each.name == "path" && each.type == ParameterType::path;
     });
     if (!is_path || std::get<std::string>(value->second).empty()) return "";
-    const std::filesystem::path folder =
-        std::filesystem::absolute(std::get<std::string>(value->second)).lexically_normal();
-    return (folder.has_filename() ? folder : folder.parent_path()).filename().string();
+    return folder_name(std::get<std::string>(value->second));
   }
 
   void read_run() {

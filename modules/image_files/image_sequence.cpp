@@ -76,9 +76,4 @@ std::optional<SensorFrame> ImageSequence::next() {
   return std::nullopt;
 }
 
-std::string folder_name(const std::filesystem::path& path) {
-  const std::filesystem::path folder = std::filesystem::absolute(path).lexically_normal();
-  return (folder.has_filename() ? folder : folder.parent_path()).filename().string();
-}
-
 }  // namespace holdfast

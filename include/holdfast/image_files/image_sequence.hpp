@@ -70,7 +70,4 @@ void select_range(std::vector<Element>& elements, std::int64_t start, std::int64
   if (count > 0 && count < size - start) elements.resize(static_cast<std::size_t>(count));
 }
 
-/// The last component of a path, for titles: "fr1_xyz" for "data/fr1_xyz/".
-std::string folder_name(const std::filesystem::path& path);
-
 }  // namespace holdfast

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <utility>
 
+#include "holdfast/core/folder_name.hpp"
 #include "holdfast/image_files/image_list.hpp"
 #include "holdfast/image_files/image_sequence.hpp"
 #include "holdfast/interfaces/frame_source.hpp"
