@@ -33,6 +33,18 @@ const char* to_string(TrackingMethod method) {
   return "?";
 }
 
+const char* to_string(TrackingFallback fallback) {
+  switch (fallback) {
+    case TrackingFallback::none:
+      return "none";
+    case TrackingFallback::masked_features:
+      return "masked features";
+    case TrackingFallback::dense_depth:
+      return "dense depth";
+  }
+  return "?";
+}
+
 const char* to_string(TrackingTrouble trouble) {
   switch (trouble) {
     case TrackingTrouble::none:

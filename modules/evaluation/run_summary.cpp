@@ -15,6 +15,7 @@ void RunSummary::add(const FrameResult& result, double decode_seconds) {
   if (result.status == TrackingStatus::lost || result.status == TrackingStatus::waiting) ++troubles_[result.trouble];
   if (result.status == TrackingStatus::tracked) {
     inliers_ += static_cast<std::uint64_t>(result.inliers);
+    ++fallbacks_[result.fallback];
     if (result.method == TrackingMethod::recovered) ++recovered_;
     if (result.method == TrackingMethod::relocalised) ++relocalised_;
   }
@@ -30,6 +31,11 @@ void RunSummary::add(const StageTimes& background) {
 std::uint64_t RunSummary::count(TrackingStatus status) const {
   const auto found = statuses_.find(status);
   return found == statuses_.end() ? 0 : found->second;
+}
+
+std::uint64_t RunSummary::count(TrackingFallback fallback) const {
+  const auto found = fallbacks_.find(fallback);
+  return found == fallbacks_.end() ? 0 : found->second;
 }
 
 double RunSummary::mean_inliers() const {

@@ -46,11 +46,11 @@ Eigen::Isometry3d DepthAgreement::find_view(const Frame& frame, const Eigen::Iso
   return view_at(best_steps);
 }
 
-double DepthAgreement::share(const Frame& frame, const Eigen::Isometry3d& T_view_world) const {
+DepthAgreement::Counts DepthAgreement::count(const Frame& frame, const Eigen::Isometry3d& T_view_world) const {
   constexpr int stride = 4;  // cells
   const CoarseGrid& grid = frame.coarse.grid;
   const geometry::Pinhole camera = geometry::pinhole_of(*frame.camera);
-  int compared = 0, agreeing = 0;
+  Counts counts;
   for (const Frame* keyframe : keyframes_) {
     if (!(keyframe->coarse.grid == grid)) continue;
     const geometry::Warp warp(keyframe->T_view_world() * T_view_world.inverse(), camera);
@@ -67,13 +67,28 @@ double DepthAgreement::share(const Frame& frame, const Eigen::Isometry3d& T_view
         if (!known.empty() && known[index] < 0.0F) continue;
         const float seen = keyframe->coarse.depth[index];
         if (seen == 0.0F) continue;
-        ++compared;
+        ++counts.compared;
         const float expected = warped->point.z();
-        agreeing += std::abs(seen - expected) < 0.01F + 0.01F * expected ? 1 : 0;
+        counts.agreeing += std::abs(seen - expected) < 0.01F + 0.01F * expected ? 1 : 0;
+        counts.farther += expected - seen > 0.05F + 0.03F * expected ? 1 : 0;
       }
   }
+  return counts;
+}
+
+double DepthAgreement::share(const Frame& frame, const Eigen::Isometry3d& T_view_world) const {
   constexpr int enough = 50;
-  return compared < enough ? 0.0 : static_cast<double>(agreeing) / compared;
+  const Counts counts = count(frame, T_view_world);
+  return counts.compared < enough ? 0.0 : static_cast<double>(counts.agreeing) / counts.compared;
+}
+
+double DepthAgreement::support(const Frame& frame, const Eigen::Isometry3d& T_view_world) const {
+  // A pose from which everything seems to stand before the known surfaces is wrong, too.
+  constexpr int enough = 50;
+  constexpr double least_share = 0.2;
+  const Counts counts = count(frame, T_view_world);
+  if (counts.agreeing < enough || counts.agreeing < least_share * counts.compared) return 0.0;
+  return static_cast<double>(counts.agreeing) / (counts.agreeing + counts.farther);
 }
 
 }  // namespace holdfast

@@ -46,6 +46,17 @@ void EvidenceSettings::describe(ParameterTable<EvidenceSettings>& table) {
       .add("depth_check_share_lost", &S::depth_check_share_lost,
            "like depth_check_share, for a pose that was found after a loss")
       .range(0, 1);
+  table.add("fallback", &S::fallback,
+            "whether a frame that its static features do not determine is tracked by masked features as well, and if "
+            "these do not suffice by aligning its depth with keyframes; depth has to confirm the pose");
+  table
+      .add("fallback_log_odds", &S::fallback_log_odds,
+           "least log-odds that class priors add to a feature in such a frame")
+      .range(-20, 0);
+  table
+      .add("fallback_share", &S::fallback_share,
+           "share of the view, without what people may occlude, whose depth must agree with keyframes in such a frame")
+      .range(0, 1);
 }
 
 }  // namespace holdfast

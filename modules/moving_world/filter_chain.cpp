@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace holdfast {
 
@@ -23,6 +24,7 @@ void FilterChain::apply(std::size_t filter, const FilterContext& context) {
 }
 
 void FilterChain::evaluate(FilterStage stage, const FilterContext& context) {
+  if (std::exchange(evaluated_[static_cast<std::size_t>(stage)], true)) return;
   for (std::size_t i = 0; i < filters_.size(); ++i)
     if (stage_of(*filters_[i]) == stage) apply(i, context);
 }
@@ -31,6 +33,18 @@ float FilterChain::probability(float log_odds) const {
   const float p = 1.0F / (1.0F + std::exp(-log_odds));
   if (settings_.removal == Removal::hard) return p < static_cast<float>(settings_.threshold) ? 0.0F : 1.0F;
   return p < static_cast<float>(settings_.ignore_below) ? 0.0F : p;
+}
+
+float FilterChain::prior(std::size_t feature) const {
+  const float prior = evidence_.prior(feature);
+  return discounts_priors_ ? std::max(prior, static_cast<float>(settings_.fallback_log_odds)) : prior;
+}
+
+bool FilterChain::discount_priors() {
+  if (!settings_.fallback || discounts_priors_) return false;
+  for (std::size_t i = 0; i < evidence_.size() && !discounts_priors_; ++i)
+    discounts_priors_ = evidence_.prior(i) < static_cast<float>(settings_.fallback_log_odds);
+  return discounts_priors_;
 }
 
 void FilterChain::weight_features(const Map& map, Frame& frame) const {
@@ -43,7 +57,7 @@ void FilterChain::weight_features(const Map& map, Frame& frame) const {
     if (frame.map_points[i].valid())
       if (const MapPoint* point = map.find_point(frame.map_points[i])) measured += point->static_log_odds;
     frame.measured_log_odds[i] = measured;
-    frame.static_probability[i] = probability(start + evidence_.prior(i) + measured);
+    frame.static_probability[i] = probability(start + prior(i) + measured);
   }
   frame.coarse.static_log_odds = evidence_.cells();
 }

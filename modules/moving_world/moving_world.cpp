@@ -55,11 +55,25 @@ void MovingWorld::check_pose(const PosePrediction& prediction, KeyFrameId refere
 
 bool MovingWorld::contradicts_depth(const Frame& frame, int inliers, bool was_lost, KeyFrameId reference) {
   const EvidenceSettings& limits = filters_.settings();
+  if (filters_.discounts_priors())
+    return !depth_agreement_.choose(map_, reference, frame.timestamp) ||
+           depth_agreement_.support(frame, frame.T_view_world()) < limits.fallback_share;
   if (filters_.empty() || inliers >= (was_lost ? limits.depth_check_inliers_lost : limits.depth_check_inliers))
     return false;
   if (!depth_agreement_.choose(map_, reference, frame.timestamp)) return false;
   return depth_agreement_.share(frame, frame.T_view_world()) <
          (was_lost ? limits.depth_check_share_lost : limits.depth_check_share);
+}
+
+std::optional<Eigen::Isometry3d> MovingWorld::align_depth(const Frame& frame, const Eigen::Isometry3d& predicted,
+                                                          KeyFrameId reference, StageTimes& times) {
+  const EvidenceSettings& limits = filters_.settings();
+  if (!limits.fallback) return std::nullopt;
+  const StageTimer timer(times, "depth alignment");
+  if (!depth_agreement_.choose(map_, reference, frame.timestamp)) return std::nullopt;
+  const Eigen::Isometry3d aligned = depth_agreement_.align(frame, frame.coarse.T_view_world(predicted));
+  if (depth_agreement_.support(frame, aligned) < limits.fallback_share) return std::nullopt;
+  return frame.coarse.T_view_camera.inverse() * aligned;
 }
 
 void MovingWorld::end_frame(const Frame& frame, bool has_pose) {

@@ -22,6 +22,11 @@ void SegmentationSettings::describe(ParameterTable<SegmentationSettings>& table)
   table.add("memory", &S::memory, "time after which the confidence of a propagated mask has halved")
       .range(0.01, 1000)
       .unit("s");
+  table
+      .add("new_view_share", &S::new_view_share,
+           "the points of a keyframe wait for its mask, unless less than this share of its static features shows map "
+           "points; 1 = no keyframe waits")
+      .range(0, 1);
 }
 
 }  // namespace holdfast

@@ -103,6 +103,8 @@ Json frames_json(const RunRecord& record) {
           {"lost", s.lost()},
           {"recovered", s.recovered()},
           {"relocalised", s.relocalised()},
+          {"by_masked_features", s.count(TrackingFallback::masked_features)},
+          {"by_dense_depth", s.count(TrackingFallback::dense_depth)},
           {"poses", record.trajectory.size()},
           {"coverage", record.coverage()}};
 }

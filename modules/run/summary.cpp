@@ -23,6 +23,10 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& r
                     percent_text(record.coverage()) + " (" + std::to_string(record.trajectory.size()) + " poses)");
   rows.emplace_back("lost", std::to_string(s.lost()) + " frames, recovered " + std::to_string(s.recovered()) +
                                 " times, relocalised " + std::to_string(s.relocalised()));
+  const std::uint64_t masked = s.count(TrackingFallback::masked_features);
+  if (const std::uint64_t dense = s.count(TrackingFallback::dense_depth); masked + dense > 0)
+    rows.emplace_back("fallback", counted(masked, "frame") + " by masked features, " + counted(dense, "frame") +
+                                      " by dense depth");
   rows.emplace_back("map", std::to_string(record.map_keyframes) + " keyframes, " + std::to_string(record.map_points) +
                                " points; " + fixed_text(s.mean_inliers(), 0) + " inliers a frame");
   if (record.configuration.loop_detector.name != "none")

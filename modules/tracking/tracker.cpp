@@ -45,18 +45,14 @@ void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
   if (history_.has_previous()) previous_.T_camera_world = history_.last_pose(map_);
   TrackedView view{sensor_frame, history_.has_previous() ? &previous_ : nullptr, current_};
   moving_world_.evaluate(FilterStage::before_matching, view, result.times);
-  bool found = find_pose(view, result);
-  if (!history_.has_previous()) view.previous = nullptr;  // relocalisation gives the previous frame up
-  // The measured motion replaces the predicted one.
-  if (found && history_.has_previous())
-    align_depth(sensor_frame, current_.T_camera_world * previous_.T_world_camera(), result.times);
-  if (found) evaluate_with_pose(view, result);
-  found = found && track_local_map(view, result);
+  const bool found = find_pose(view, result);
   state_ = found ? State::tracking : State::lost;
   result.status = found ? TrackingStatus::tracked : TrackingStatus::lost;
   if (found) {
     const StageTimer timer(result.times, "keyframe");
-    result.is_keyframe = !localises_only_ && needs_keyframe(result);
+    const bool by_features = result.inliers >= settings_.minimum_inliers;
+    if (by_features) last_feature_time_ = current_.timestamp;
+    result.is_keyframe = by_features && !localises_only_ && needs_keyframe(result);
     result.trouble = TrackingTrouble::none;
     result.objects = moving_world_.objects();
     if (result.is_keyframe) matcher_.local_map().write_counts(map_);  // local mapping evaluates points by them
@@ -86,13 +82,64 @@ bool Tracker::start_map(FrameResult& result) {
   return true;
 }
 
-bool Tracker::find_pose(const TrackedView& view, FrameResult& result) {
+bool Tracker::find_pose(TrackedView& view, FrameResult& result) {
   if (state_ == State::tracking) {
-    const StageTimer timer(result.times, "predict");
-    if (predict_with_velocity(result) || predict_with_reference(result)) return true;
+    const bool predicted = predict(result);
+    if ((predicted && refine(view, result)) || fall_back(view, result)) return true;
+    if (predicted) return false;
   }
-  const StageTimer timer(result.times, "relocalisation");
-  return relocaliser_.relocalise(last_keyframe_, reference_keyframe_, view.frame, result);
+  {
+    const StageTimer timer(result.times, "relocalisation");
+    if (!relocaliser_.relocalise(last_keyframe_, reference_keyframe_, view.frame, result)) return false;
+  }
+  return refine(view, result);
+}
+
+bool Tracker::predict(FrameResult& result) {
+  const StageTimer timer(result.times, "predict");
+  return predict_with_velocity(result) || predict_with_reference(result);
+}
+
+bool Tracker::refine(TrackedView& view, FrameResult& result) {
+  if (!history_.has_previous()) view.previous = nullptr;  // relocalisation gives the previous frame up
+  // The measured motion replaces the predicted one.
+  if (history_.has_previous())
+    align_depth(view.sensor_frame, current_.T_camera_world * previous_.T_world_camera(), result.times);
+  evaluate_with_pose(view, result);
+  return track_local_map(view, result);
+}
+
+bool Tracker::fall_back(TrackedView& view, FrameResult& result) {
+  if (!history_.has_previous()) return false;
+  if (moving_world_.discount_priors()) {
+    result.fallback = TrackingFallback::masked_features;
+    if (predict(result) && refine(view, result)) return true;
+  }
+  result.fallback = TrackingFallback::dense_depth;
+  if (track_dense_depth(view, result)) return true;
+  result.fallback = TrackingFallback::none;
+  return false;
+}
+
+bool Tracker::track_dense_depth(const TrackedView& view, FrameResult& result) {
+  const Eigen::Isometry3d predicted = history_.predicted_step(current_.timestamp) * previous_.T_camera_world;
+  const auto aligned = moving_world_.align_depth(current_, predicted, reference_keyframe_, result.times);
+  if (!aligned) return false;
+  result.method = TrackingMethod::motion_model;
+  const TrackingTrouble trouble = result.trouble;
+  // The aligned pose is better than a prediction, but not as good as features: a wide search finds them if there are.
+  current_.T_camera_world = *aligned;
+  std::fill(current_.map_points.begin(), current_.map_points.end(), MapPointId());
+  matcher_.match_local_map(static_cast<float>(settings_.relocalisation_window * settings_.local_map_window), current_);
+  estimator_.adjust(current_);
+  estimator_.drop_outliers(current_);
+  if (track_local_map(view, result)) return true;
+  if (current_.timestamp > last_feature_time_ + settings_.depth_only_time) return false;
+  current_.T_camera_world = *aligned;
+  std::fill(current_.map_points.begin(), current_.map_points.end(), MapPointId());
+  result.inliers = result.matches = 0;
+  result.trouble = trouble;
+  return true;
 }
 
 bool Tracker::predict_with_velocity(FrameResult& result) {
@@ -141,7 +188,6 @@ bool Tracker::track_local_map(const TrackedView& view, FrameResult& result) {
       moving_world_.evaluate(FilterStage::after_matching, view, result.times))
     result.inliers = estimator_.adjust(current_);
   const StageTimer timer(result.times, "local map");
-  moving_world_.accumulate(current_);
   result.matches = estimator_.matches();
   result.static_features = static_cast<int>(std::count_if(
       current_.static_probability.begin(), current_.static_probability.end(), [](float p) { return is_static(p); }));
@@ -153,6 +199,7 @@ bool Tracker::track_local_map(const TrackedView& view, FrameResult& result) {
     result.trouble = TrackingTrouble::few_inliers;
     return false;
   }
+  moving_world_.accumulate(current_);
   reference_keyframe_ = matcher_.local_map().reference_keyframe();
   return true;
 }

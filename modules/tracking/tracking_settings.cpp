@@ -46,6 +46,11 @@ void describe_poses(ParameterTable<S>& table) {
            "standard deviation of the position, as the inliers determine it, above which a pose is rejected")
       .range(1e-4, 1000)
       .unit("m");
+  table
+      .add("depth_only_time", &S::depth_only_time,
+           "time for which poses can be based on dense depth alone, because matches do not determine them")
+      .range(0, 100)
+      .unit("s");
   table.add("local_keyframes", &S::local_keyframes, "keyframes whose points make the local map, at most")
       .range(1, 1000);
 }

@@ -20,12 +20,14 @@ double cost_at(const PoseProblem& problem, const Eigen::Isometry3d& T_camera_wor
   for (std::size_t i = 0; i < problem.size(); ++i) {
     const Eigen::Vector3d p = T_camera_world * problem.points[i];
     const Eigen::Vector2d pixel = camera.project(p);
-    double squared = (pixel - Eigen::Vector2d(problem.x[i], problem.y[i])).squaredNorm();
+    double squared =
+        problem.inverse_sigma2[i] * (pixel - Eigen::Vector2d(problem.x[i], problem.y[i])).squaredNorm();
     if (!std::isnan(problem.right_x[i])) {
-      const double right = camera.right_x(pixel.x(), p.z()) - problem.right_x[i];
-      squared += right * right;
+      const double measured = static_cast<double>(problem.x[i]) - problem.right_x[i];
+      const double deviations = (camera.fx * camera.baseline / p.z() - measured) / disparity_sigma;
+      squared += deviations * deviations;
     }
-    sum += 0.5 * problem.weight[i] * problem.inverse_sigma2[i] * squared;
+    sum += 0.5 * problem.weight[i] * squared;
   }
   return sum;
 }
@@ -62,6 +64,7 @@ TEST(AdjustPose, StopsWhereTheCostIsLeast) {
   for (std::size_t i = 0; i < c.problem.size(); ++i) c.problem.weight[i] = 0.2f + 0.004f * static_cast<float>(i);
   PoseAdjustmentOptions everything;  // limits that no observation reaches: one plain least-squares problem
   everything.limit_two = everything.limit_three = 1e6;
+  everything.disparity_threshold = 1e3;
   const PoseSummary summary = adjust_pose(c.problem, everything);
   ASSERT_TRUE(summary.usable);
   const double least = cost_at(c.problem, c.problem.T_camera_world);

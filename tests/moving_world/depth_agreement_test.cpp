@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "holdfast/geometry/se3.hpp"
 #include "support/box_world.hpp"
 
@@ -140,6 +142,44 @@ TEST_F(DepthAgreementTest, FindsWhereOnTheWayTheDepthWasTaken) {
     EXPECT_NEAR(found_steps, std::abs(steps), 0.05) << steps;
     EXPECT_LE((found.translation() - T_view_camera.translation()).norm(), 0.05 * step.translation().norm()) << steps;
   }
+}
+
+TEST_F(DepthAgreementTest, ASupportedPoseMayBeOccludedButMustNotSeeThroughSurfaces) {
+  ASSERT_TRUE(agreement.choose(map, keyframe(furnished_room(), 0.0), 2.0));
+  const Frame frame = with_person(0.1).frame(origin, 2.0);
+  EXPECT_LE(agreement.share(frame, origin), 0.9);
+  EXPECT_GE(agreement.support(frame, origin), 0.98);
+  EXPECT_LE(agreement.support(frame, pose(0, {0, 0, 0.15})), 0.6);
+  EXPECT_LE(agreement.support(frame, pose(0, {0, 0, -0.15})), 0.6);
+  Frame blind = frame;
+  std::fill(blind.coarse.depth.begin(), blind.coarse.depth.end(), 0.0F);
+  EXPECT_EQ(agreement.support(blind, origin), 0.0);
+}
+
+TEST_F(DepthAgreementTest, DepthAloneFindsThePose) {
+  ASSERT_TRUE(agreement.choose(map, keyframe(furnished_room(), 0.0), 2.0));
+  for (const bool has_person : {false, true})
+    for (const Isometry3d& T_world_camera : {origin, pose(6, {0.1, 0.0, 0.05}), pose(-5, {-0.15, 0.1, 0.2})}) {
+      const Frame frame = (has_person ? with_person(0.1) : furnished_room()).frame(T_world_camera, 2.0);
+      const Isometry3d truth = T_world_camera.inverse();
+      for (const double sign : {-1.0, 1.0}) {
+        const Isometry3d predicted = pose(2 * sign, {0.02 * sign, -0.02, 0.03 * sign}) * truth;
+        const Isometry3d error = agreement.align(frame, predicted) * T_world_camera;
+        EXPECT_LE(error.translation().norm(), 0.01) << has_person;
+        EXPECT_LE(geometry::log_so3(Eigen::Matrix3d(error.linear())).norm(), 0.004) << has_person;
+      }
+    }
+}
+
+TEST_F(DepthAgreementTest, WhatDepthDoesNotDetermineStaysAsPredicted) {
+  // Above a bare floor, depth determines the height and two angles.
+  BoxWorld floor;
+  floor.floor_y = 1.2;
+  ASSERT_TRUE(agreement.choose(map, keyframe(floor, 0.0), 2.0));
+  const Frame frame = floor.frame(origin, 2.0);
+  const Isometry3d found = agreement.align(frame, pose(0, {0.02, 0.03, 0.0}));
+  EXPECT_NEAR(found.translation().x(), 0.02, 0.003);
+  EXPECT_NEAR(found.translation().y(), 0.0, 0.005);
 }
 
 }  // namespace

@@ -112,6 +112,42 @@ class OfMask final : public DynamicFilter {
   }
 };
 
+TEST(FilterChain, DiscountedPriorsCostLittleUntilTheNextFrame) {
+  EvidenceSettings settings;  // a static prior of 2, at most -1.5 after the discount
+  FilterChain chain(settings);
+  chain.add("mask", std::make_unique<EveryNth>(2, -6.0F, StaticEvidence::Kind::prior));
+  chain.add("moves", std::make_unique<EveryNth>(3, -6.0F));
+  Frame frame = six_features();
+  const Map map;
+  evaluate(chain, map, frame);
+  EXPECT_EQ(frame.static_probability[2], 0.0F);
+  EXPECT_TRUE(chain.discount_priors());
+  chain.weight_features(map, frame);
+  EXPECT_NEAR(frame.static_probability[2], 1.0 / (1.0 + std::exp(-0.5)), 1e-6);
+  EXPECT_EQ(frame.static_probability[3], 0.0F);  // measured, which no discount changes
+  EXPECT_GT(frame.static_probability[1], 0.8F);
+  EXPECT_FALSE(chain.discount_priors());  // a second time there is nothing to gain
+  evaluate(chain, map, frame);
+  EXPECT_EQ(frame.static_probability[2], 0.0F);
+
+  settings.fallback = false;
+  FilterChain strict(settings);
+  strict.add("mask", std::make_unique<EveryNth>(2, -6.0F, StaticEvidence::Kind::prior));
+  evaluate(strict, map, frame);
+  EXPECT_FALSE(strict.discount_priors());
+}
+
+TEST(FilterChain, AStageCountsOncePerFrame) {
+  FilterChain chain(plain_settings());
+  chain.add("even", std::make_unique<EveryNth>(2, -2.0F));
+  Frame frame = six_features();
+  evaluate(chain, Map(), frame);
+  const SensorFrame sensor_frame;
+  const Map map;
+  chain.evaluate(FilterStage::before_matching, {.sensor_frame = sensor_frame, .frame = frame, .map = map});
+  EXPECT_EQ(chain.evidence().measurement(0), -2.0F);
+}
+
 TEST(FilterChain, AKeyframeLearnsFromItsOwnSegmentationAndKeepsItsMeasurements) {
   for (const bool evaluated_before : {false, true}) {
     FilterChain chain(plain_settings());

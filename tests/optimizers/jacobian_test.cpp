@@ -21,10 +21,15 @@ PoseState turned_state() {
 }
 
 template <int rows>
-void check_observation() {
+void check_observation(double threshold) {
   PoseState state = turned_state();
   Eigen::Vector3d point = state.T_camera_world().inverse() * Eigen::Vector3d(0.3, -0.2, 1.7);
-  const Measurement measurement{400.0, 200.0, 380.0, 0.7, true};
+  const Measurement measurement{.x = 400.0,
+                                .y = 200.0,
+                                .disparity = 20.0,
+                                .scale = 0.7,
+                                .disparity_scale = 0.9,
+                                .disparity_threshold = threshold};
   const FreePoseCost<rows> cost(camera, measurement, state);
   const double* blocks[2] = {state.parameters, point.data()};
   Eigen::Matrix<double, rows, 1> residual, plus, minus;
@@ -45,19 +50,24 @@ void check_observation() {
   const Eigen::Vector3d p = state.T_camera_world() * point;
   EXPECT_NEAR(residual[0], 0.7 * (camera.project(p).x() - 400.0), 1e-9);
   EXPECT_NEAR(residual[1], 0.7 * (camera.project(p).y() - 200.0), 1e-9);
-  const double right = camera.right_x(camera.project(p).x(), p.z());
-  EXPECT_NEAR(residual[rows - 1], 0.7 * (rows == 3 ? right - 380.0 : camera.project(p).y() - 200.0), 1e-9);
+  if constexpr (rows == 3) {
+    const double plain = 0.9 * (camera.fx * camera.baseline / p.z() - 20.0), size = std::abs(plain);
+    const double cost = size <= threshold ? plain * plain : 2.0 * threshold * size - threshold * threshold;
+    EXPECT_NEAR(residual[2] * residual[2], cost, 1e-9);
+    EXPECT_EQ(std::signbit(residual[2]), std::signbit(plain));
+  }
 }
 
 TEST(ObservationCost, JacobiansAgreeWithDifferences) {
-  check_observation<2>();
-  check_observation<3>();
+  check_observation<2>(1.0);
+  check_observation<3>(1e3);
+  check_observation<3>(1.0);  // far beyond: Huber's cost is linear
 }
 
 TEST(ObservationCost, BehindTheCameraIsDearAndFlat) {
   const PoseState state = turned_state();
   const Eigen::Vector3d point = state.T_camera_world().inverse() * Eigen::Vector3d(0.3, -0.2, -1.0);
-  const Measurement measurement{400.0, 200.0, 380.0, 1.0, true};
+  const Measurement measurement{.x = 400.0, .y = 200.0, .disparity = 20.0};
   const FreePoseCost<3> cost(camera, measurement, state);
   const double* blocks[2] = {state.parameters, point.data()};
   double residual[3], by_pose[18], by_point[9];
@@ -74,12 +84,12 @@ TEST(FixedPosesCost, IsTheSameAsRowByRow) {
   Eigen::Vector3d point = state.T_camera_world().inverse() * Eigen::Vector3d(0.3, -0.2, 1.7);
   const Eigen::Vector3d p = state.T_camera_world() * point;
   const Eigen::Vector2d pixel = camera.project(p);
-  const double right = camera.right_x(pixel.x(), p.z());
+  const double disparity = camera.fx * camera.baseline / p.z();
   for (const bool is_robust : {true, false}) {
     for (const int count : {1, 3}) {  // one observation without depth: singular
       std::vector<FixedObservation> observations;
       for (int i = 0; i < count; ++i)  // the second one is beyond the limit
-        observations.push_back({{pixel.x() + 1.0 + 9.0 * (i % 2), pixel.y() - 0.5, right + 0.3, 1.0, true},
+        observations.push_back({{pixel.x() + 1.0 + 9.0 * (i % 2), pixel.y() - 0.5, disparity + 0.3},
                                 &state,
                                 i ? 7.815 : 5.991,
                                 i != 0});

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "geometry/synthetic.hpp"
 #include "holdfast/geometry/pose_problem.hpp"
 #include "holdfast/plugin/registry.hpp"
@@ -18,8 +20,8 @@ std::unique_ptr<Optimizer> make(const ParameterValues& values = {}) {
   return registry.create<Optimizer>("ceres", values, {});
 }
 
-/// The same pose by Ceres: a bundle with one free pose, whose points are pinned by a fixed pose that sees them with
-/// overwhelming certainty.
+/// The same pose by Ceres: a bundle with one free pose, whose points are pinned by two fixed poses that see them from
+/// the front and from the side with overwhelming certainty.
 BundleProblem as_bundle(const PoseProblem& problem) {
   BundleProblem bundle;
   bundle.camera = problem.camera;
@@ -29,18 +31,21 @@ BundleProblem as_bundle(const PoseProblem& problem) {
     bundle.points.push_back(problem.points[i]);
     bundle.observations.push_back({0, point, problem.x[i], problem.y[i], problem.right_x[i], problem.inverse_sigma2[i],
                                    problem.weight[i], false});
-    // Each point has a camera of its own, one metre before it: its pixel is the principal point, to the last bit.
-    Eigen::Isometry3d witness = Eigen::Isometry3d::Identity();
-    witness.translation() = Eigen::Vector3d(0, 0, 1) - problem.points[i];
-    bundle.poses.push_back({witness, true});
-    BundleProblem::Observation exact;
-    exact.pose = static_cast<std::uint32_t>(bundle.poses.size() - 1);
-    exact.point = point;
-    exact.x = static_cast<float>(problem.camera->cx);
-    exact.y = static_cast<float>(problem.camera->cy);
-    exact.right_x = static_cast<float>(problem.camera->cx - problem.camera->fx * problem.camera->baseline);
-    exact.inverse_sigma2 = 1e8f;
-    bundle.observations.push_back(exact);
+    // Each point has cameras of its own, at one metre from it: its pixel is the principal point, to the last bit.
+    for (const bool from_the_side : {false, true}) {
+      Eigen::Isometry3d witness = Eigen::Isometry3d::Identity();
+      if (from_the_side) witness.linear() << 0, 0, 1, 0, 1, 0, -1, 0, 0;
+      witness.translation() = Eigen::Vector3d(0, 0, 1) - witness.linear() * problem.points[i];
+      bundle.poses.push_back({witness, true});
+      BundleProblem::Observation exact;
+      exact.pose = static_cast<std::uint32_t>(bundle.poses.size() - 1);
+      exact.point = point;
+      exact.x = static_cast<float>(problem.camera->cx);
+      exact.y = static_cast<float>(problem.camera->cy);
+      exact.right_x = std::numeric_limits<float>::quiet_NaN();
+      exact.inverse_sigma2 = 1e8f;
+      bundle.observations.push_back(exact);
+    }
   }
   bundle.robust_iterations = bundle.final_iterations = 50;
   return bundle;

@@ -104,13 +104,17 @@ class NotingDetector final : public LoopDetector {
 struct Options {
   bool filters = true, threaded = false;
   int latency = 5;
+  double new_view_share = 0.3;
   SegmentedFrames on = SegmentedFrames::keyframes;
   std::string people_are_called = "person";
 };
 
 struct WholeRun {
   explicit WholeRun(const People& people, const Options& options = {}) : pipeline(parts_of(people, options)) {
-    for (const SensorFrame& frame : people.frames()) results.push_back(pipeline.feed(frame));
+    for (const SensorFrame& frame : people.frames()) {
+      results.push_back(pipeline.feed(frame));
+      if (!options.threaded && results.back().is_keyframe) points_at_once.push_back(points_of(results.back().keyframe));
+    }
     pipeline.finish();
   }
   PipelineParts parts_of(const People& people, const Options& options) {
@@ -125,6 +129,7 @@ struct WholeRun {
     parts.optimizer = registry.create<Optimizer>("ceres", {}, context);
     parts.loop_detector = std::make_unique<NotingDetector>(database);
     parts.segmentation.latency = options.latency;
+    parts.segmentation.new_view_share = options.new_view_share;
     parts.segmentation.on = options.on;
     if (options.threaded) parts.run.mode = RunMode::threaded;
     if (!options.filters) return parts;
@@ -133,6 +138,11 @@ struct WholeRun {
     for (const char* name : {"semantic_mask", "multi_view_depth"})
       parts.filters.emplace_back(name, registry.create<DynamicFilter>(name, {}, context));
     return parts;
+  }
+  /// Number of features of a keyframe that show map points.
+  std::ptrdiff_t points_of(KeyFrameId keyframe) const {
+    const std::vector<MapPointId>& points = pipeline.map().keyframe(keyframe).frame.map_points;
+    return std::count_if(points.begin(), points.end(), [](MapPointId id) { return id.valid(); });
   }
   /// Largest distance from the truth, both relative to the first frame [m].
   double largest_error(const People& people) const {
@@ -156,6 +166,7 @@ struct WholeRun {
   std::set<std::uint64_t> segmented;
   NotingDetector::Database database;
   Pipeline pipeline;
+  std::vector<std::ptrdiff_t> points_at_once;  // of each keyframe right after its frame
   std::vector<FrameResult> results;
 };
 
@@ -231,6 +242,18 @@ TEST_F(PeopleTest, PeopleStayOutOfTheMapHoweverLateTheirMasksCome) {
       }
     }
   }
+}
+
+TEST_F(PeopleTest, AKeyframeOfANewViewDoesNotWaitForItsMask) {
+  const WholeRun waits(people(), {.new_view_share = 0.0}), does_not(people(), {.new_view_share = 1.0});
+  ASSERT_GE(waits.points_at_once.size(), 2U);
+  ASSERT_GE(does_not.points_at_once.size(), 2U);
+  EXPECT_EQ(waits.points_at_once[0], does_not.points_at_once[0]);  // the first never waits
+  EXPECT_GT(does_not.points_at_once[1], waits.points_at_once[1] + 50);
+  // Its own mask takes them back once it is there.
+  EXPECT_LE(does_not.largest_error(people()), 0.04);
+  EXPECT_EQ(does_not.points_on_people_at_end(people()), 0);
+  expect_clean_keyframes(does_not);
 }
 
 TEST_F(PeopleTest, PeopleStayOutOfTheKeyframeDatabase) {

@@ -45,11 +45,18 @@ class SparseExtractor final : public FeatureExtractor {
   test::PointExtractor all_;
 };
 
-/// Adds no evidence, but makes the chain of filters active.
-class SilentFilter final : public DynamicFilter {
+/// Makes the chain of filters active; while `*covers` is set, it is a mask over all features but every 80th.
+class MaskFilter final : public DynamicFilter {
  public:
+  explicit MaskFilter(const bool* covers) : covers_(covers) {}
   Needs needs() const override { return {}; }
-  void apply(const FilterContext&, StaticEvidence&) override {}
+  void apply(const FilterContext& context, StaticEvidence& evidence) override {
+    for (std::size_t i = 0; i < context.frame.size() && *covers_; ++i)
+      if (i % 80 != 0) evidence.add(i, -6.0F, StaticEvidence::Kind::prior);
+  }
+
+ private:
+  const bool* covers_;
 };
 
 Isometry3d at(double x, double y = 0.0, double z = 0.0) {
@@ -62,11 +69,11 @@ Isometry3d at(double x, double y = 0.0, double z = 0.0) {
 class Bench {
  public:
   explicit Bench(const TrackingSettings& settings = {}, bool with_filter = false, Map known = {},
-                 std::uint64_t seed = 5)
+                 std::uint64_t seed = 5, const EvidenceSettings& evidence = {})
       : world(find_camera("tum_fr1").value(), 1500, seed),
         map(std::move(known)),
-        moving_world({.camera = world.camera(), .filters = chain(with_filter)}, map),
-        tracker(settings, {world.camera(), extractor, optimizer, detector, moving_world, map}) {
+        moving_world({.camera = world.camera(), .filters = chain(with_filter, evidence)}, map),
+        tracker(of_patches(settings), {world.camera(), extractor, optimizer, detector, moving_world, map}) {
     map.keyframes().for_each(
         [&](KeyFrameId id, const KeyFrame& keyframe) { detector.add(id, keyframe.frame.features.descriptors); });
   }
@@ -115,11 +122,17 @@ class Bench {
   MovingWorld moving_world;
   Tracker tracker;
   std::uint64_t next_index = 0;
+  bool mask_covers = false;
 
  private:
-  static FilterChain chain(bool with_filter) {
-    FilterChain filters;
-    if (with_filter) filters.add("silent", std::make_unique<SilentFilter>());
+  /// The depth of this world consists of patches around points, all of whose borders are depth edges.
+  static TrackingSettings of_patches(TrackingSettings settings) {
+    settings.depth_edge_ratio = 0.0;
+    return settings;
+  }
+  FilterChain chain(bool with_filter, const EvidenceSettings& evidence) const {
+    FilterChain filters(evidence);
+    if (with_filter) filters.add("mask", std::make_unique<MaskFilter>(&mask_covers));
     return filters;
   }
 };
@@ -268,7 +281,9 @@ TEST(Tracker, APoseThatContradictsDepthIsRefused) {
   // 40 features agree that the camera moved by 6 cm; the depth of the room shows that it did not.
   for (const bool contradicts : {true, false})
     for (const bool with_filter : {true, false}) {
-      Bench bench(without_relocalisation(), with_filter);
+      EvidenceSettings evidence;
+      evidence.fallback = false;
+      Bench bench(without_relocalisation(), with_filter, {}, 5, evidence);
       for (int i = 0; i < 10; ++i) bench.feed(i / 30.0, at(0.0));
       bench.extractor.every = bench.world.seen().size() / 42;
       const Isometry3d moved = at(0.06);
@@ -285,6 +300,58 @@ TEST(Tracker, APoseThatContradictsDepthIsRefused) {
         EXPECT_LT(error(result, moved), 0.02);
       }
     }
+}
+
+TEST(Tracker, MaskedFeaturesCountWhereStaticOnesDoNotSuffice) {
+  for (const bool fallback : {true, false}) {
+    EvidenceSettings evidence;
+    evidence.fallback = fallback;
+    Bench bench(without_relocalisation(), true, {}, 5, evidence);
+    EXPECT_EQ(bench.walk(0.0, 0.5).fallback, TrackingFallback::none);
+    bench.mask_covers = true;  // somebody seems to stand everywhere, but the depth is that of the room
+    const FrameResult result = bench.feed(0.5, at(0.25));
+    if (!fallback) {
+      EXPECT_EQ(result.status, TrackingStatus::lost);
+      continue;
+    }
+    EXPECT_EQ(result.status, TrackingStatus::tracked);
+    EXPECT_EQ(result.fallback, TrackingFallback::masked_features);
+    EXPECT_LT(error(result, at(0.25)), 0.01);
+    bench.mask_covers = false;
+    EXPECT_EQ(bench.feed(0.53, at(0.265)).fallback, TrackingFallback::none);
+  }
+}
+
+TEST(Tracker, MaskedFeaturesDoNotCountAgainstDepth) {
+  Bench bench(without_relocalisation(), true);
+  for (int i = 0; i < 10; ++i) bench.feed(i / 30.0, at(0.0));
+  bench.mask_covers = true;
+  // All features have moved by 10 cm; the room has not.
+  const FrameResult result = bench.feed(contradicting_frame(bench, 10 / 30.0, at(0.0), at(0.1)));
+  EXPECT_NE(result.fallback, TrackingFallback::masked_features);
+  if (result.status == TrackingStatus::tracked) {
+    EXPECT_LT(error(result, at(0.0)), 0.01);
+  }
+}
+
+TEST(Tracker, WithoutFeaturesDenseDepthSufficesForAWhile) {
+  TrackingSettings settings = without_relocalisation();
+  settings.depth_only_time = 0.5;
+  Bench bench(settings, true);
+  bench.walk(0.0, 0.5);
+  bench.extractor.every = 100000;  // nothing has texture
+  double time = 0.5;
+  int frames = 0;
+  for (;; time += 1.0 / 30.0, ++frames) {
+    const FrameResult result = bench.feed(time, at(Bench::speed * time));
+    if (result.status == TrackingStatus::lost) break;
+    ASSERT_LT(time, 2.0);
+    EXPECT_EQ(result.fallback, TrackingFallback::dense_depth);
+    EXPECT_FALSE(result.is_keyframe);
+    EXPECT_LT(error(result, at(Bench::speed * time)), 0.04) << time;
+  }
+  EXPECT_GE(frames, 8);
+  EXPECT_LE(frames, 15);  // 0.5 s
 }
 
 TEST(Tracker, KeyframesAreMadeWhenThePolicySaysSo) {

@@ -29,11 +29,19 @@ enum class TrackingMethod {
   relocalised,         ///< after tracking was lost or in a loaded map, at a place recognised by the loop detector
 };
 
+/// What a pose is based on when the static features of a frame did not determine it.
+enum class TrackingFallback {
+  none,
+  masked_features,  ///< features on masks of movable classes as well; dense depth confirms the pose
+  dense_depth,      ///< alignment of the depth image with those of keyframes, refined by features where they agree
+};
+
 /// Why a frame has no pose.
 enum class TrackingTrouble { none, no_depth, few_features, few_matches, few_inliers };
 
 const char* to_string(TrackingStatus status);
 const char* to_string(TrackingMethod method);
+const char* to_string(TrackingFallback fallback);
 const char* to_string(TrackingTrouble trouble);
 
 /// The result of one frame. A frame that cannot be tracked is reported here and never by an exception.
@@ -42,6 +50,7 @@ struct FrameResult {
   double timestamp = 0.0;
   TrackingStatus status = TrackingStatus::waiting;
   TrackingMethod method = TrackingMethod::none;
+  TrackingFallback fallback = TrackingFallback::none;
   TrackingTrouble trouble = TrackingTrouble::none;
   /// The pose as estimated when the frame was processed; empty without one. Later adjustments may correct it
   /// (Pipeline::trajectory).

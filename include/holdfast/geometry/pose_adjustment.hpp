@@ -40,21 +40,26 @@ struct RoundLimits {
 template <class Problem>
 class PoseAdjustment {
  public:
-  PoseAdjustment(const Problem& problem, std::vector<ObservationBatch>& batches)
-      : camera_(Traits::pinhole(problem)), pose_(Traits::pose(problem)), batches_(batches) {}
+  PoseAdjustment(const Problem& problem, const PoseAdjustmentOptions& options, std::vector<ObservationBatch>& batches)
+      : camera_(Traits::pinhole(problem)),
+        pose_(Traits::pose(problem)),
+        options_(options),
+        disparity_limit_(options.disparity_threshold * options.disparity_threshold),
+        batches_(batches) {}
 
   const Eigen::Isometry3d& pose() const { return pose_; }
   double cost() const { return system_.cost; }
 
   /// Fills the batches; returns how many observations count.
-  int pack(const Problem& problem, const PoseAdjustmentOptions& options) {
+  int pack(const Problem& problem) {
+    const double information_disparity = 1.0 / (options_.disparity_sigma * options_.disparity_sigma);
     const std::size_t size = Traits::size(problem);
     batches_.assign((size + batch_size - 1) / batch_size, ObservationBatch{});
     int count = 0;
     for (std::size_t i = 0; i < size; ++i) {
       ObservationBatch& batch = batches_[i / batch_size];
       const std::size_t k = i % batch_size;
-      batch.limit[k] = options.limit_two;
+      batch.limit[k] = options_.limit_two;
       batch.point_z[k] = 1.0;
       if (!is_finite(problem, i)) continue;
       const Eigen::Vector3d point = Traits::point(problem, i);
@@ -68,7 +73,8 @@ class PoseAdjustment {
       if (const double right = right_x(problem, i); !std::isnan(right)) {
         batch.right_x[k] = right;
         batch.information_right[k] = batch.information[k];
-        batch.limit[k] = options.limit_three;
+        batch.information_disparity[k] = information_disparity;
+        batch.limit[k] = options_.limit_three;
       }
       batch.full_weight[k] = batch.weight[k] = std::max(0.0, weight(problem, i));
       count += batch.weight[k] > 0.0;
@@ -103,7 +109,7 @@ class PoseAdjustment {
   /// One round of Levenberg-Marquardt. Returns the number of iterations.
   int minimise(bool robust, const RoundLimits& limits) {
     double damping = 1e-7;
-    build_system(batches_, PoseView(camera_, pose_), robust, system_);
+    build_system(batches_, PoseView(camera_, pose_), disparity_limit_, robust, system_);
     PoseSystem candidate;
     for (int iteration = 0; iteration < limits.iterations; ++iteration) {
       Matrix6d damped = system_.hessian;
@@ -114,7 +120,7 @@ class PoseAdjustment {
       const double predicted = -0.5 * system_.gradient.dot(step);
       if (!(predicted > std::min(limits.relative * system_.cost, limits.absolute) + 1e-14)) return iteration;
       const Eigen::Isometry3d moved = orthonormalised(exp_se3(step) * pose_);
-      build_system(batches_, PoseView(camera_, moved), robust, candidate);
+      build_system(batches_, PoseView(camera_, moved), disparity_limit_, robust, candidate);
       if (candidate.cost <= system_.cost) {
         pose_ = moved;
         std::swap(system_, candidate);
@@ -145,6 +151,8 @@ class PoseAdjustment {
 
   Pinhole camera_;
   Eigen::Isometry3d pose_;
+  const PoseAdjustmentOptions& options_;
+  double disparity_limit_;
   PoseSystem system_;  ///< of pose_, once minimise() was called
   std::vector<ObservationBatch>& batches_;
 };
@@ -156,9 +164,9 @@ PoseSummary adjust_pose(Problem& problem, const PoseAdjustmentOptions& options) 
   using Traits = PoseProblemTraits<Problem>;
   detail::begin(problem);
   thread_local std::vector<detail::ObservationBatch> batches;  // reused, so that tracking does not allocate per frame
-  detail::PoseAdjustment<Problem> adjustment(problem, batches);
+  detail::PoseAdjustment<Problem> adjustment(problem, options, batches);
   PoseSummary summary;
-  if (adjustment.pack(problem, options) < 3 || !adjustment.pose().matrix().allFinite()) return summary;
+  if (adjustment.pack(problem) < 3 || !adjustment.pose().matrix().allFinite()) return summary;
 
   if (options.trust_guess) adjustment.set_outliers_aside();
   bool settled = false;  // whether the last round left the set of outliers unchanged

@@ -18,6 +18,13 @@ namespace holdfast::geometry {
 inline constexpr double chi_square_two = 5.991;
 inline constexpr double chi_square_three = 7.815;
 
+/// The noise of a depth sensor such as the Kinect, as a disparity of the stereo pair that its depth stands for: the same
+/// at every distance, and independent of the noise of the pixel (Khoshelham and Elberink 2012, equation 13, with the
+/// errors that neighbouring pixels share). Its cost is linear beyond `disparity_threshold` deviations, because a wrong
+/// depth says nothing against the pixel.
+inline constexpr double disparity_sigma = 0.5;  ///< [px]
+inline constexpr double disparity_threshold = 1.5;
+
 /// Points nearer to the image plane than this, or behind it, are outliers [m].
 inline constexpr double minimum_depth = 1e-3;
 
@@ -71,6 +78,8 @@ struct PoseAdjustmentOptions {
   int iterations = 10;                ///< at most, per round
   double limit_two = chi_square_two;  ///< an observation with two residuals beyond this is an outlier
   double limit_three = chi_square_three;  ///< an observation with three residuals beyond this is an outlier
+  double disparity_sigma = geometry::disparity_sigma;          ///< standard deviation of x - right_x [px]
+  double disparity_threshold = geometry::disparity_threshold;  ///< of Huber's cost of x - right_x [deviations]
 };
 
 /// Sampling and stopping rules of find_pose().
@@ -82,10 +91,11 @@ struct PnpOptions {
 };
 
 /// Motion-only bundle adjustment (Mur-Artal and Tardos 2017, equation 3): the pose of one camera against fixed points
-/// by Levenberg-Marquardt on a left perturbation of T_camera_world.
+/// by Levenberg-Marquardt on a left perturbation of T_camera_world. The residuals are the pixel's, weighted by its
+/// information, and that of the disparity x - right_x, whose noise is a setting of its own.
 ///
 /// After each round every observation is tested anew: it is an outlier if its squared residual times its information
-/// exceeds the chi-square limit, or if its point lies behind the camera. Outliers do not count in the next round.
+/// (x, y and right_x) exceeds the chi-square limit, or if its point lies behind the camera. Outliers do not count in the next round.
 /// Huber's threshold is the square root of the limit. The weight scales an observation's cost but not its chi-square
 /// test; weight 0 excludes it from the pose and from the count of inliers, while set_inlier still tells whether it
 /// fits. An observation with a number that is not finite is never an inlier.

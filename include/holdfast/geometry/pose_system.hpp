@@ -26,7 +26,8 @@ struct alignas(32) ObservationBatch {
   Batch point_x, point_y, point_z;  ///< world [m]
   Batch x, y, right_x;              ///< [px]
   Batch information;                ///< of x and y [1/px^2]
-  Batch information_right;          ///< of right_x, 0 where there is none
+  Batch information_right;          ///< of right_x in the chi-square test, 0 where there is none
+  Batch information_disparity;      ///< of x - right_x in the cost, 0 where there is none
   Batch limit;                      ///< chi-square limit, and square of Huber's threshold
   Batch full_weight;                ///< of the observation's cost while it is no outlier
   Batch weight;                     ///< full_weight, or 0 in a round in which the observation is an outlier
@@ -74,7 +75,7 @@ struct alignas(32) NormalEquationSums {
 
 template <bool robust>
 [[gnu::always_inline]] inline void accumulate(const std::vector<ObservationBatch>& batches, const PoseView& view,
-                                              NormalEquationSums& sums) {
+                                              double disparity_limit, NormalEquationSums& sums) {
   const double* r = view.rotation;
   const double* t = view.translation;
   const Batch one = Batch{} + 1.0;
@@ -92,9 +93,15 @@ template <bool robust>
     const Batch shift = view.fx_baseline * inverse_z;
     const Batch error_x = fx_x + view.cx - o.x;
     const Batch error_y = fy_y + view.cy - o.y;
-    const Batch error_right = fx_x + view.cx - shift - o.right_x;
-    const Batch chi =
-        o.information * (error_x * error_x + error_y * error_y) + o.information_right * (error_right * error_right);
+    const Batch error_disparity = shift - (o.x - o.right_x);
+    const Batch chi_disparity = o.information_disparity * (error_disparity * error_disparity);
+    const auto wrong_depth = chi_disparity > disparity_limit;
+    const Batch disparity_ratio = wrong_depth ? disparity_limit / chi_disparity : one;
+    Batch disparity_scale;
+    for (std::size_t k = 0; k < batch_size; ++k) disparity_scale[k] = std::sqrt(disparity_ratio[k]);
+    const Batch disparity_cost =
+        wrong_depth ? 2.0 * chi_disparity * disparity_scale - disparity_limit : chi_disparity;
+    const Batch chi = o.information * (error_x * error_x + error_y * error_y) + disparity_cost;
     Batch weight = in_front ? o.weight : Batch{};
     Batch cost = chi;
     if constexpr (robust) {
@@ -108,18 +115,18 @@ template <bool robust>
     s.cost += o.weight * (in_front ? cost : behind_cost * o.limit);
 
     const Batch w = weight * o.information;
-    const Batch w_right = weight * o.information_right;
+    const Batch w_disparity = weight * o.information_disparity * disparity_scale;
     const Batch a2 = -fx_x * inverse_z;
     const Batch c2 = -fy_y * inverse_z;
-    const Batch right2 = a2 + shift * inverse_z;
-    const Batch m00 = (w + w_right) * a * a;
-    const Batch m02 = a * (w * a2 + w_right * right2);
+    const Batch disparity2 = -shift * inverse_z;
+    const Batch m00 = w * a * a;
+    const Batch m02 = a * (w * a2);
     const Batch m11 = w * c * c;
     const Batch m12 = w * c * c2;
-    const Batch m22 = w * (a2 * a2 + c2 * c2) + w_right * right2 * right2;
-    const Batch g0 = a * (w * error_x + w_right * error_right);
+    const Batch m22 = w * (a2 * a2 + c2 * c2) + w_disparity * disparity2 * disparity2;
+    const Batch g0 = a * (w * error_x);
     const Batch g1 = c * w * error_y;
-    const Batch g2 = w * (a2 * error_x + c2 * error_y) + w_right * right2 * error_right;
+    const Batch g2 = w * (a2 * error_x + c2 * error_y) + w_disparity * disparity2 * error_disparity;
     s.tt00 += m00, s.tt02 += m02, s.tt11 += m11, s.tt12 += m12, s.tt22 += m22;
     s.gt0 += g0, s.gt1 += g1, s.gt2 += g2;
     s.gr0 += y * g2 - z * g1, s.gr1 += z * g0 - x * g2, s.gr2 += x * g1 - y * g0;
@@ -160,9 +167,10 @@ template <bool robust>
 #if defined(__x86_64__)
 // With the same lanes and without fused multiply-add, AVX2 gives the same bits as the baseline.
 __attribute__((target("avx2"))) inline void accumulate_avx2(const std::vector<ObservationBatch>& batches,
-                                                            const PoseView& view, bool robust,
+                                                            const PoseView& view, double disparity_limit, bool robust,
                                                             NormalEquationSums& sums) {
-  robust ? accumulate<true>(batches, view, sums) : accumulate<false>(batches, view, sums);
+  robust ? accumulate<true>(batches, view, disparity_limit, sums)
+         : accumulate<false>(batches, view, disparity_limit, sums);
 }
 __attribute__((target("avx2"))) inline void chi_squares_avx2(std::vector<ObservationBatch>& batches,
                                                              const PoseView& view) {
@@ -170,23 +178,25 @@ __attribute__((target("avx2"))) inline void chi_squares_avx2(std::vector<Observa
 }
 #endif
 
-inline void accumulate_baseline(const std::vector<ObservationBatch>& batches, const PoseView& view, bool robust,
-                                NormalEquationSums& sums) {
-  robust ? accumulate<true>(batches, view, sums) : accumulate<false>(batches, view, sums);
+inline void accumulate_baseline(const std::vector<ObservationBatch>& batches, const PoseView& view,
+                                double disparity_limit, bool robust, NormalEquationSums& sums) {
+  robust ? accumulate<true>(batches, view, disparity_limit, sums)
+         : accumulate<false>(batches, view, disparity_limit, sums);
 }
 
 inline double sum(const Batch& batch) { return (batch[0] + batch[1]) + (batch[2] + batch[3]); }
 
-/// Builds the normal equations; Jacobians in closed form. `robust`: Huber's cost, else plain squares.
-inline void build_system(const std::vector<ObservationBatch>& batches, const PoseView& view, bool robust,
-                         PoseSystem& system) {
+/// Builds the normal equations; Jacobians in closed form. `robust`: Huber's cost, else plain squares. The cost of the
+/// disparity alone is always Huber's, with the squared threshold `disparity_limit`.
+inline void build_system(const std::vector<ObservationBatch>& batches, const PoseView& view, double disparity_limit,
+                         bool robust, PoseSystem& system) {
   NormalEquationSums s;
 #if defined(__x86_64__)
   if (simd_level() >= SimdLevel::avx2)
-    accumulate_avx2(batches, view, robust, s);
+    accumulate_avx2(batches, view, disparity_limit, robust, s);
   else
 #endif
-    accumulate_baseline(batches, view, robust, s);
+    accumulate_baseline(batches, view, disparity_limit, robust, s);
 
   Matrix6d& h = system.hessian;
   h(0, 0) = sum(s.tt00), h(0, 1) = 0.0, h(0, 2) = sum(s.tt02);

@@ -19,12 +19,28 @@ class DepthAgreement {
   bool choose(const Map& map, KeyFrameId reference, double timestamp);
   /// Share of the compared cells whose depth agrees with a keyframe's, 0 to 1; 0 when too few can be compared.
   double share(const Frame& frame, const Eigen::Isometry3d& T_view_world) const;
+  /// Share of the cells that agree among those that agree or contradict a keyframe: they measure more depth than a
+  /// static surface allows. Cells that are nearer than the keyframe's surface are not counted, because a person may
+  /// stand there. 0 when too few cells agree, or less than a fifth of those compared.
+  double support(const Frame& frame, const Eigen::Isometry3d& T_view_world) const;
+  /// Aligns the depth image of the frame with those of the keyframes, beginning at a predicted pose, which remains
+  /// the estimate in directions that depth does not determine. Projective point-to-plane ICP (Chen and Medioni 1992;
+  /// Newcombe et al. 2011, equations 16 to 24) on coarse views.
+  Eigen::Isometry3d align(const Frame& frame, const Eigen::Isometry3d& T_view_world) const;
   /// Estimates the colour-depth time offset as a pose on the inter-frame motion: T_view_camera. `step` is the motion
   /// T_frame_previous.
   Eigen::Isometry3d find_view(const Frame& frame, const Eigen::Isometry3d& T_camera_world,
                               const Eigen::Isometry3d& step) const;
 
  private:
+  /// Numbers of cells of the frame by what the keyframes measured there.
+  struct Counts {
+    int compared = 0;
+    int agreeing = 0;
+    int farther = 0;  ///< than the keyframe's surface
+  };
+  Counts count(const Frame& frame, const Eigen::Isometry3d& T_view_world) const;
+
   std::vector<const Frame*> keyframes_;
 };
 

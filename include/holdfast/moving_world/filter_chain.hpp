@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 #include <vector>
@@ -36,9 +37,17 @@ class FilterChain {
   const std::string& name(std::size_t i) const { return names_[i]; }
   const DynamicFilter& filter(std::size_t i) const { return *filters_[i]; }
 
-  void begin(const Frame& frame) { evidence_.reset(frame.size(), frame.coarse.depth.size()); }
-  /// Runs the filters of a stage in their order.
+  void begin(const Frame& frame) {
+    evidence_.reset(frame.size(), frame.coarse.depth.size());
+    evaluated_ = {};
+    discounts_priors_ = false;
+  }
+  /// Runs the filters of a stage in their order, once per frame; a second call has no effect.
   void evaluate(FilterStage stage, const FilterContext& context);
+  /// From now on, until the next frame, class priors lower the log-odds of a feature by no more than
+  /// `fallback_log_odds`. False if that changes no feature, or if the settings exclude it.
+  bool discount_priors();
+  bool discounts_priors() const { return discounts_priors_; }
   /// Sets static_probability, measured_log_odds and the log-odds of the coarse cells.
   void weight_features(const Map& map, Frame& frame) const;
   /// Adds the frame's measurements to the map points that it shows, and to those that filters measured themselves.
@@ -56,11 +65,14 @@ class FilterChain {
   static FilterStage stage_of(const DynamicFilter& filter);
   void apply(std::size_t filter, const FilterContext& context);
   float probability(float log_odds) const;
+  float prior(std::size_t feature) const;
 
   EvidenceSettings settings_;
   std::vector<std::string> names_;
   std::vector<std::unique_ptr<DynamicFilter>> filters_;
   StaticEvidence evidence_;
+  std::array<bool, 3> evaluated_ = {};  // by FilterStage, of this frame
+  bool discounts_priors_ = false;
 };
 
 }  // namespace holdfast

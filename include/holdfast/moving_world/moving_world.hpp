@@ -86,6 +86,13 @@ class MovingWorld {
   /// * Whether a pose with this number of inliers contradicts the depth of the keyframes around `reference`. The limits
   /// are stricter after a loss, see EvidenceSettings.
   bool contradicts_depth(const Frame& frame, int inliers, bool was_lost, KeyFrameId reference);
+  /// Lets features on masks count as well, for another attempt at this frame, if that changes anything. From then on
+  /// contradicts_depth() requires the support of dense depth whatever the number of inliers.
+  bool discount_priors() { return filters_.discount_priors(); }
+  /// * The pose of the frame by dense depth alone, T_camera_world, beginning at a predicted one; nothing if its depth
+  /// contradicts keyframes around `reference`. Adds the stage "depth alignment".
+  std::optional<Eigen::Isometry3d> align_depth(const Frame& frame, const Eigen::Isometry3d& predicted,
+                                               KeyFrameId reference, StageTimes& times);
   /// * Adds the frame's measurements to its map points.
   void accumulate(const Frame& frame) { filters_.accumulate(frame, map_); }
   /// Ends a frame: the mask takes over its pose, if it has one, and which objects move.

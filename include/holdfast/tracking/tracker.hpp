@@ -34,7 +34,9 @@ struct TrackerParts {
 
 /// Where am I: estimates the pose of every frame against the map (Mur-Artal and Tardos 2017, section III). The motion
 /// model, or the reference keyframe when that fails, gives a first pose; the local map refines it; KeyframePolicy
-/// decides on a keyframe. A lost camera is relocalised (Relocaliser). MovingWorld decides what to trust in each step.
+/// decides on a keyframe. MovingWorld decides what to trust in each step. A frame that static features do not determine
+/// is tracked by masked ones as well, or by dense depth (TrackingFallback), as long as depth confirms the pose. A lost
+/// camera is relocalised (Relocaliser).
 ///
 /// The tracker writes to the map only what it observes of points: how often they are visible and found, and their
 /// static log-odds (through MovingWorld). One thread.
@@ -71,7 +73,13 @@ class Tracker {
   /// motion since the previous frame: step = T_current_previous.
   void align_depth(const SensorFrame& sensor_frame, const Eigen::Isometry3d& step, StageTimes& times);
   bool start_map(FrameResult& result);
-  bool find_pose(const TrackedView& view, FrameResult& result);
+  bool find_pose(TrackedView& view, FrameResult& result);
+  /// A first pose of a camera that is not lost, from the motion model or the reference keyframe.
+  bool predict(FrameResult& result);
+  /// Takes a first pose to the final one. False if the local map does not confirm it.
+  bool refine(TrackedView& view, FrameResult& result);
+  bool fall_back(TrackedView& view, FrameResult& result);
+  bool track_dense_depth(const TrackedView& view, FrameResult& result);
   bool predict_with_velocity(FrameResult& result);
   bool predict_with_reference(FrameResult& result);
   void evaluate_with_pose(const TrackedView& view, FrameResult& result);
@@ -95,6 +103,7 @@ class Tracker {
   KeyFrameId reference_keyframe_;
   KeyFrameId last_keyframe_;
   double last_keyframe_time_ = 0.0;  // [s]
+  double last_feature_time_ = 0.0;   // [s], of the last pose that matches determined
 };
 
 }  // namespace holdfast

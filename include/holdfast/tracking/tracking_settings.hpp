@@ -13,7 +13,7 @@ struct TrackingSettings {
   // Start and first pose.
   int minimum_start_points = 100;    ///< points with depth in the first frame; fewer make a map too weak to track by
   double close_depth_factor = 40.0;  ///< baselines; beyond it, noise of depth exceeds that of triangulation (ORB-SLAM2)
-  double depth_edge_ratio = 0.0;     ///< share of the depth; 0 = off
+  double depth_edge_ratio = 0.05;    ///< share of the depth; features at larger steps of depth have none; 0 = off
   bool depth_alignment = true;       ///< depth of features is corrected for the ego-motion between colour and depth
   double motion_window = 15.0;       ///< search radius around a prediction, at level 0 [px]
   double motion_window_retry = 2.0;  ///< factor on motion_window for the second try, after a sudden motion
@@ -29,6 +29,7 @@ struct TrackingSettings {
   int minimum_inliers = 30;         ///< map points that must agree with a pose
   double maximum_deviation = 0.02;  ///< standard deviation of the position [m]
   int local_keyframes = 80;         ///< whose points make the local map
+  double depth_only_time = 1.0;     ///< how long poses can be based on dense depth alone [s]
 
   // Keyframes.
   double keyframe_minimum_interval = 0.0;  ///< [s]

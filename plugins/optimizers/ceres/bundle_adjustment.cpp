@@ -57,6 +57,7 @@ class Bundle {
   void choose();
   void build();
   void add_free(const Observation& observation);
+  Measurement measurement_of(const Observation& observation) const;
   void set_outliers_aside();
   bool is_outlier(const Observation& observation) const;
   double limit(const Observation& observation) const {
@@ -131,9 +132,14 @@ void Bundle::choose() {
   });
 }
 
-Measurement measurement_of(const BundleProblem::Observation& observation) {
-  const double scale2 = static_cast<double>(observation.inverse_sigma2) * observation.weight;
-  return {observation.x, observation.y, observation.right_x, std::sqrt(scale2), true};
+Measurement Bundle::measurement_of(const Observation& observation) const {
+  const double weight = observation.weight;
+  return {.x = observation.x,
+          .y = observation.y,
+          .disparity = static_cast<double>(observation.x) - observation.right_x,
+          .scale = std::sqrt(observation.inverse_sigma2 * weight),
+          .disparity_scale = std::sqrt(weight) / settings_.disparity_sigma,
+          .disparity_threshold = std::sqrt(weight) * settings_.disparity_threshold};
 }
 
 void Bundle::add_free(const Observation& observation) {

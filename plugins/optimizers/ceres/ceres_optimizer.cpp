@@ -22,6 +22,8 @@ PoseSummary CeresOptimizer::optimize_pose(PoseProblem& problem) {
   options.iterations = settings_.pose_iterations;
   options.limit_two = settings_.chi_square_two;
   options.limit_three = settings_.chi_square_three;
+  options.disparity_sigma = settings_.disparity_sigma;
+  options.disparity_threshold = settings_.disparity_threshold;
   return geometry::adjust_pose(problem, options);
 }
 

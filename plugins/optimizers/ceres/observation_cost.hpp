@@ -81,10 +81,12 @@ class SwitchableHuber final : public ceres::LossFunction {
   const bool& is_robust_;
 };
 
-/// A measurement, its scale, and whether it has a say.
+/// A measurement, its scales, and whether it has a say.
 struct Measurement {
-  double x = 0, y = 0, right_x = 0;  ///< [px]
-  double scale = 1;                  ///< square root of inverse_sigma2 * weight
+  double x = 0, y = 0, disparity = 0;  ///< [px]
+  double scale = 1;                    ///< of the pixel: square root of inverse_sigma2 * weight
+  double disparity_scale = 1;          ///< square root of weight, over the standard deviation of a disparity
+  double disparity_threshold = 1;      ///< of Huber's cost of the scaled disparity
   bool active = true;
 };
 
@@ -96,8 +98,8 @@ struct EvaluationOutput {
   double* point_jacobian = nullptr;
 };
 
-/// Scaled residual of a point seen from a pose, rows x, y and with rows = 3 right_x, and its Jacobians. A point behind
-/// the camera has a large residual that does not depend on anything, so that the solver refuses steps that push points
+/// Scaled residual of a point seen from a pose, rows x, y and with rows = 3 the disparity, and its Jacobians. The square
+/// of the disparity's row is Huber's cost of it. A point behind the camera has a large residual that does not depend on anything, so that the solver refuses steps that push points
 /// there.
 template <int rows>
 void evaluate_observation(const Camera& camera, const Measurement& measurement, const PoseState& pose,
@@ -120,13 +122,22 @@ void evaluate_observation(const Camera& camera, const Measurement& measurement, 
   const double column = a * p.x() + camera.cx;
   residual[0] = s * (column - measurement.x);
   residual[1] = s * (b * p.y() + camera.cy - measurement.y);
-  if constexpr (rows == 3) residual[2] = s * (column - shift - measurement.right_x);
+  double disparity_slope = measurement.disparity_scale;
+  if constexpr (rows == 3) {
+    residual[2] = measurement.disparity_scale * (shift - measurement.disparity);
+    const double threshold = measurement.disparity_threshold, size = std::abs(residual[2]);
+    if (size > threshold) {
+      const double root = std::sqrt(2.0 * threshold * size - threshold * threshold);
+      disparity_slope *= threshold / root;
+      residual[2] = std::copysign(root, residual[2]);
+    }
+  }
   if (!pose_jacobian && !point_jacobian) return;
 
   Rows3 projection;  // derivative by the point in the camera frame
   projection.row(0) << s * a, 0.0, -s * a * p.x() * inverse_z;
   projection.row(1) << 0.0, s * b, -s * b * p.y() * inverse_z;
-  if constexpr (rows == 3) projection.row(2) << s * a, 0.0, s * (shift - a * p.x()) * inverse_z;
+  if constexpr (rows == 3) projection.row(2) << 0.0, 0.0, -disparity_slope * shift * inverse_z;
   if (point_jacobian) Eigen::Map<Rows3>(point_jacobian).noalias() = projection * pose.rotation;
   if (pose_jacobian) {
     Eigen::Map<Eigen::Matrix<double, rows, 6, Eigen::RowMajor>> jacobian(pose_jacobian);

@@ -7,7 +7,9 @@
 namespace holdfast {
 
 static_assert(CeresSettings{}.chi_square_two == geometry::chi_square_two &&
-              CeresSettings{}.chi_square_three == geometry::chi_square_three);
+              CeresSettings{}.chi_square_three == geometry::chi_square_three &&
+              CeresSettings{}.disparity_sigma == geometry::disparity_sigma &&
+              CeresSettings{}.disparity_threshold == geometry::disparity_threshold);
 
 void CeresSettings::describe(ParameterTable<CeresSettings>& table) {
   table
@@ -19,6 +21,15 @@ void CeresSettings::describe(ParameterTable<CeresSettings>& table) {
   table
       .add("chi_square_three", &CeresSettings::chi_square_three,
            "the same with depth; 7.815 = chi-square 95 %, three degrees of freedom")
+      .range(0.1, 1000.0);
+  table
+      .add("disparity_sigma", &CeresSettings::disparity_sigma,
+           "standard deviation of the disparity that a measured depth stands for")
+      .range(0.01, 100.0)
+      .unit("px");
+  table
+      .add("disparity_threshold", &CeresSettings::disparity_threshold,
+           "threshold of the Huber cost of a disparity, in standard deviations")
       .range(0.1, 1000.0);
   table
       .add("pose_rounds", &CeresSettings::pose_rounds,
