@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/moving_world/moving_world.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace holdfast {
@@ -81,6 +82,13 @@ void MovingWorld::end_frame(const Frame& frame, bool has_pose) {
   // An object moves when evidence overcomes the prior by a factor of e: one filter that suspects it is enough.
   const float moving = -static_cast<float>(filters_.settings().static_log_odds) - 1.0F;
   propagator_->set_pose(has_pose ? std::optional(frame.T_camera_world) : std::nullopt, frame.coarse, moving);
+}
+
+bool MovingWorld::sees_movable(const Frame& frame) {
+  constexpr double small_share = 0.02;
+  const std::vector<float>& cells = frame.coarse.static_log_odds;
+  const auto suspects = std::count_if(cells.begin(), cells.end(), [](float log_odds) { return log_odds < 0.0F; });
+  return static_cast<double>(suspects) > small_share * static_cast<double>(cells.size());
 }
 
 void MovingWorld::next_frame(double timestamp) {

@@ -114,6 +114,7 @@ class OfMask final : public DynamicFilter {
 
 TEST(FilterChain, DiscountedPriorsCostLittleUntilTheNextFrame) {
   EvidenceSettings settings;  // a static prior of 2, at most -1.5 after the discount
+  settings.fallback = true;
   FilterChain chain(settings);
   chain.add("mask", std::make_unique<EveryNth>(2, -6.0F, StaticEvidence::Kind::prior));
   chain.add("moves", std::make_unique<EveryNth>(3, -6.0F));

@@ -142,6 +142,12 @@ double error(const FrameResult& result, const Isometry3d& T_world_camera) {
   return (result.T_world_camera->translation() - T_world_camera.translation()).norm();
 }
 
+EvidenceSettings with_fallback() {
+  EvidenceSettings evidence;
+  evidence.fallback = true;
+  return evidence;
+}
+
 /// Only the branch under test can find a lost camera.
 TrackingSettings without_relocalisation() {
   TrackingSettings settings;
@@ -281,9 +287,7 @@ TEST(Tracker, APoseThatContradictsDepthIsRefused) {
   // 40 features agree that the camera moved by 6 cm; the depth of the room shows that it did not.
   for (const bool contradicts : {true, false})
     for (const bool with_filter : {true, false}) {
-      EvidenceSettings evidence;
-      evidence.fallback = false;
-      Bench bench(without_relocalisation(), with_filter, {}, 5, evidence);
+      Bench bench(without_relocalisation(), with_filter);
       for (int i = 0; i < 10; ++i) bench.feed(i / 30.0, at(0.0));
       bench.extractor.every = bench.world.seen().size() / 42;
       const Isometry3d moved = at(0.06);
@@ -323,7 +327,7 @@ TEST(Tracker, MaskedFeaturesCountWhereStaticOnesDoNotSuffice) {
 }
 
 TEST(Tracker, MaskedFeaturesDoNotCountAgainstDepth) {
-  Bench bench(without_relocalisation(), true);
+  Bench bench(without_relocalisation(), true, {}, 5, with_fallback());
   for (int i = 0; i < 10; ++i) bench.feed(i / 30.0, at(0.0));
   bench.mask_covers = true;
   // All features have moved by 10 cm; the room has not.
@@ -337,7 +341,7 @@ TEST(Tracker, MaskedFeaturesDoNotCountAgainstDepth) {
 TEST(Tracker, WithoutFeaturesDenseDepthSufficesForAWhile) {
   TrackingSettings settings = without_relocalisation();
   settings.depth_only_time = 0.5;
-  Bench bench(settings, true);
+  Bench bench(settings, true, {}, 5, with_fallback());
   bench.walk(0.0, 0.5);
   bench.extractor.every = 100000;  // nothing has texture
   double time = 0.5;

@@ -33,8 +33,9 @@ struct EvidenceSettings {
   /// The same two for a pose that was found after a loss: it is the best of many hypotheses, so chance has more tries.
   int depth_check_inliers_lost = 60;
   double depth_check_share_lost = 0.08;
-  /// Whether a frame that its static features do not determine is tracked by masked features, then by dense depth.
-  bool fallback = true;
+  /// Whether a frame that its static features do not determine is tracked by masked features, then by dense depth. Off:
+  /// where people are near, it saves frames at the cost of accuracy (docs/moving_world.md).
+  bool fallback = false;
   double fallback_log_odds = -1.5;  ///< most that class priors then cost a feature; 2 - 1.5 is a probability of 0.62
   /// Share of the cells that must agree with keyframes among those that agree or contradict them.
   double fallback_share = 0.7;
