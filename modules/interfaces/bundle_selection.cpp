@@ -37,8 +37,7 @@ double chi_square(const Camera& camera, const Eigen::Isometry3d& T_camera_world,
 
 bool is_outlier(const Camera& camera, const Eigen::Isometry3d& T_camera_world, const Eigen::Vector3d& point,
                 const BundleProblem::Observation& observation, const ChiSquareLimits& limits) {
-  return !is_finite(observation) ||
-         !(chi_square(camera, T_camera_world, point, observation) <= limits.of(observation));
+  return !is_finite(observation) || !(chi_square(camera, T_camera_world, point, observation) <= limits.of(observation));
 }
 
 void BundleSelection::select(const BundleProblem& problem) {

@@ -36,7 +36,8 @@ BundleProblem make_problem(int fixed, int free, int points, int track, double ou
 }
 
 TEST(SchurAgreesWithCeres, OnLocalProblems) {
-  for (std::uint64_t seed = 1; seed <= 3; ++seed) expect_agreement(make_problem(4, 6, 300, 8, 0.0, seed), "no outliers");
+  for (std::uint64_t seed = 1; seed <= 3; ++seed)
+    expect_agreement(make_problem(4, 6, 300, 8, 0.0, seed), "no outliers");
   for (std::uint64_t seed = 1; seed <= 3; ++seed) expect_agreement(make_problem(4, 6, 300, 8, 0.1, seed), "outliers");
 }
 
@@ -102,8 +103,7 @@ TEST(SchurAgreesWithCeres, OnPoseGraphs) {
   }
   problem.iterations = 100;
   PoseGraphProblem reference = problem;
-  const GraphSummary expected =
-      make_optimizer("ceres", {{"function_tolerance", 0.0}})->optimize_pose_graph(reference);
+  const GraphSummary expected = make_optimizer("ceres", {{"function_tolerance", 0.0}})->optimize_pose_graph(reference);
   const GraphSummary found = make_optimizer("schur", {{"graph_tolerance", 0.0}})->optimize_pose_graph(problem);
   ASSERT_TRUE(expected.usable && found.usable);
   EXPECT_NEAR(found.initial_cost, expected.initial_cost, 1e-9 * expected.initial_cost);
@@ -112,15 +112,16 @@ TEST(SchurAgreesWithCeres, OnPoseGraphs) {
     EXPECT_LT(synthetic::distance(problem.nodes[i].T_camera_world, reference.nodes[i].T_camera_world), 1e-6) << i;
 }
 
-/// With its default tolerances it ends well within the uncertainty of the poses.
+/// With its default tolerances it ends well within the uncertainty of the poses. The costs differ more, because a few
+/// observations at the limit are outliers to the one and not to the other.
 TEST(SchurAgreesWithCeres, NearlyWithDefaultTolerances) {
   BundleProblem problem = make_problem(4, 6, 300, 8, 0.05, 11), reference = problem;
   const BundleSummary found = make_optimizer("schur")->optimize_bundle(problem, go_on);
   reference.robust_iterations = reference.final_iterations = 200;
   reference.function_tolerance = 1e-14;
   const BundleSummary expected = make_optimizer("ceres")->optimize_bundle(reference, go_on);
-  EXPECT_LE(found.iterations, 12);
-  EXPECT_NEAR(found.final_cost, expected.final_cost, 0.01 * expected.final_cost);
+  EXPECT_LE(found.iterations, 6);
+  EXPECT_NEAR(found.final_cost, expected.final_cost, 0.03 * expected.final_cost);
   for (std::size_t i = 0; i < problem.poses.size(); ++i)
     EXPECT_LT(synthetic::distance(problem.poses[i].T_camera_world, reference.poses[i].T_camera_world), 1e-3) << i;
 }

@@ -39,7 +39,8 @@ struct Prepared {
       const std::int32_t* pose = arrays.pose.data() + lanes * arrays.first_group[p];
       const std::uint32_t count = arrays.first_coupling[p + 1] - arrays.first_coupling[p];
       for (std::uint32_t a = 0; a < count; ++a)
-        for (std::uint32_t b = 0; b <= a; ++b) pair_block.push_back(static_cast<std::uint32_t>(block(pose[a], pose[b])));
+        for (std::uint32_t b = 0; b <= a; ++b)
+          pair_block.push_back(static_cast<std::uint32_t>(block(pose[a], pose[b])));
     }
   }
   static std::int32_t block(std::int32_t row, std::int32_t column) { return row * (row + 1) / 2 + column; }
@@ -79,7 +80,8 @@ NumericDerivatives differentiate(const BundleProblem::Observation& o, const Eige
   for (int i = 0; i < 6; ++i) {
     const Vector6d step = h * Vector6d::Unit(i);
     result.by_pose.col(i) = (residual_of(o, geometry::exp_se3(step) * pose, point) -
-                             residual_of(o, geometry::exp_se3(-step) * pose, point)) / (2 * h);
+                             residual_of(o, geometry::exp_se3(-step) * pose, point)) /
+                            (2 * h);
   }
   for (int i = 0; i < 3; ++i) {
     const Eigen::Vector3d step = h * Eigen::Vector3d::Unit(i);
@@ -116,8 +118,7 @@ struct DenseSystem {
       point_number[prepared.arrays.point_indices[i]] = static_cast<Eigen::Index>(i);
     for (const BundleProblem::Observation& o : problem.observations) {
       if (point_number[o.point] < 0) continue;
-      const NumericDerivatives d =
-          differentiate(o, problem.poses[o.pose].T_camera_world, problem.points[o.point]);
+      const NumericDerivatives d = differentiate(o, problem.poses[o.pose].T_camera_world, problem.points[o.point]);
       const double limit = o.weight * (std::isnan(o.right_x) ? geometry::chi_square_two : geometry::chi_square_three);
       const double squared = d.residual.squaredNorm();
       const bool beyond = is_robust && squared > limit;
@@ -172,8 +173,9 @@ void check_against_numeric_derivatives(bool is_robust, double damping) {
     EXPECT_NEAR(moved[static_cast<std::size_t>(i)] - prepared.arrays.points[static_cast<std::size_t>(i)], expected[i],
                 1e-7);
   const Eigen::VectorXd scaled = damping * dense.hessian.diagonal().tail(points).cwiseProduct(expected);
-  const double predicted = 0.5 * (expected.dot(scaled) + dense.gradient.tail(points).dot(inverse * dense.gradient.tail(
-                                      points) + inverse * coupling.transpose() * step));
+  const double predicted =
+      0.5 * (expected.dot(scaled) + dense.gradient.tail(points).dot(inverse * dense.gradient.tail(points) +
+                                                                    inverse * coupling.transpose() * step));
   EXPECT_NEAR(decrease, predicted, 1e-6 * std::abs(predicted));
 }
 
@@ -189,8 +191,8 @@ TEST(SchurKernels, WriteTheChiSquareOfEachObservation) {
   for (std::size_t i = 0; i < chi_squares.size(); ++i) {
     if (prepared.arrays.entries[i] == BundleArrays::none) continue;
     const BundleProblem::Observation& o = prepared.problem.observations[prepared.arrays.entries[i]];
-    const double expected = chi_square(camera, prepared.problem.poses[o.pose].T_camera_world,
-                                       prepared.problem.points[o.point], o);
+    const double expected =
+        chi_square(camera, prepared.problem.poses[o.pose].T_camera_world, prepared.problem.points[o.point], o);
     EXPECT_NEAR(chi_squares[i], expected, 1e-9 * (1.0 + expected));
   }
 }
@@ -219,8 +221,8 @@ TEST(SchurKernels, EveryLevelGivesTheSameBits) {
       kernel.eliminate(view, 1e-3, prepared.system());
       const std::vector<double> steps(coupling_size * prepared.arrays.free_count(), 1e-3);
       all.push_back(kernel.substitute(view, prepared.system(), steps.data(), moved.data()));
-      for (const auto* each : {&chi_squares, &moved, &prepared.blocks, &prepared.cameras, &prepared.couplings,
-                               &prepared.points})
+      for (const auto* each :
+           {&chi_squares, &moved, &prepared.blocks, &prepared.cameras, &prepared.couplings, &prepared.points})
         all.insert(all.end(), each->begin(), each->end());
     }
     return all;

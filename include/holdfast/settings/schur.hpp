@@ -20,8 +20,8 @@ struct SchurSettings {
   int pose_iterations = 10;  ///< maximum iterations of each round, as in ORB-SLAM2
   /// Relative decrease of the cost at which a bundle adjustment has converged, unless its problem states one.
   double function_tolerance = 1e-4;
-  /// Largest step of a pose, in metres or radians, at which a bundle adjustment has converged, unless its problem states
-  /// a tolerance of the cost.
+  /// Largest step of a pose, in metres or radians, at which a bundle adjustment has converged, unless its problem
+  /// states a tolerance of the cost.
   double step_tolerance = 1e-4;
   double graph_tolerance = 1e-5;  ///< relative decrease of the cost at which a pose graph has converged
   /// Maximum number of free poses for which the reduced camera system is factorised as a dense matrix.

@@ -128,7 +128,8 @@ void Bundle::build() {
 }
 
 void Bundle::set_outliers_aside() {
-  for (std::size_t i = 0; i < free_.size(); ++i) measurements_[i].active = !is_an_outlier(problem_.observations[free_[i]]);
+  for (std::size_t i = 0; i < free_.size(); ++i)
+    measurements_[i].active = !is_an_outlier(problem_.observations[free_[i]]);
   for (std::size_t i = 0; i < fixed_.size(); ++i)
     fixed_observations_[i].measurement.active = !is_an_outlier(problem_.observations[fixed_[i]]);
   is_robust_ = false;

@@ -42,13 +42,13 @@ class BlockSystem {
   std::size_t poses_ = 0;
   bool dense_ = true;
   bool analyzed_ = false;
-  std::vector<std::uint32_t> first_;                     // of the blocks of each row; poses + 1
-  std::vector<std::uint32_t> columns_;                   // of each block, in the order of rows and columns
-  std::vector<bool> exists_;                             // poses x poses, while the structure is built
+  std::vector<std::uint32_t> first_;    // of the blocks of each row; poses + 1
+  std::vector<std::uint32_t> columns_;  // of each block, in the order of rows and columns
+  std::vector<bool> exists_;            // poses x poses, while the structure is built
   std::vector<double> values_;
   Eigen::MatrixXd matrix_;
-  Eigen::SparseMatrix<double> sparse_;                   // lower triangle
-  std::vector<std::uint32_t> sparse_order_;              // blocks in the order of columns and rows
+  Eigen::SparseMatrix<double> sparse_;       // lower triangle
+  std::vector<std::uint32_t> sparse_order_;  // blocks in the order of columns and rows
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
 };
 

@@ -33,6 +33,7 @@ BundleSummary BundleAdjuster::run(BundleProblem& problem, const std::atomic<bool
   const bool own = problem.function_tolerance > 0.0;
   function_tolerance_ = own ? problem.function_tolerance : settings_.function_tolerance;
   step_tolerance_ = own ? 0.0 : settings_.step_tolerance;
+  stops_early_ = !own;
   arrays_.build(problem, selection_);
   if (arrays_.free_count() == 0) return summary;
   build_system();
@@ -89,8 +90,7 @@ BundleView BundleAdjuster::view(bool is_robust) const {
   return view;
 }
 
-double BundleAdjuster::minimise(int iterations, bool is_robust, const std::atomic<bool>& stop,
-                                BundleSummary& summary) {
+double BundleAdjuster::minimise(int iterations, bool is_robust, const std::atomic<bool>& stop, BundleSummary& summary) {
   double cost = kernels_.cost(view(is_robust), nullptr);
   for (int i = 0; i < iterations; ++i) {
     if (stop.load(std::memory_order_relaxed)) {
@@ -99,6 +99,7 @@ double BundleAdjuster::minimise(int iterations, bool is_robust, const std::atomi
     }
     ++summary.iterations;
     const BundleView current = view(is_robust);
+    const double damping = damping_.value();
     double predicted = 0.0, pose_step = 0.0;
     if (!find_step(current, predicted, pose_step)) {
       damping_.refuse();
@@ -120,7 +121,12 @@ double BundleAdjuster::minimise(int iterations, bool is_robust, const std::atomi
       damping_.refuse();
       if (damping_.is_hopeless()) return cost;
     }
-    if (std::abs(decrease) <= function_tolerance_ * cost || pose_step <= step_tolerance_) return cost;
+    // The first phase only prepares the second one.
+    const double tolerance = function_tolerance_ * cost * (stops_early_ && is_robust ? 10.0 : 1.0);
+    if (std::abs(decrease) <= tolerance || pose_step <= step_tolerance_) return cost;
+    // If the linearisation foresaw the decrease to within the tolerance, its minimum, which a step with little damping
+    // reaches, is that of the cost.
+    if (stops_early_ && damping <= Damping().value() && std::abs(decrease - predicted) <= tolerance) return cost;
   }
   return cost;
 }
@@ -128,8 +134,8 @@ double BundleAdjuster::minimise(int iterations, bool is_robust, const std::atomi
 bool BundleAdjuster::find_step(const BundleView& view, double& predicted_decrease, double& pose_step) {
   system_.set_zero();
   std::fill(cameras_.begin(), cameras_.end(), 0.0);
-  const BundleSystem system{pair_block_.data(),   system_.elements(0),  cameras_.data(),
-                            couplings_.data(), eliminations_.data(), scratch_.data()};
+  const BundleSystem system{pair_block_.data(), system_.elements(0),  cameras_.data(),
+                            couplings_.data(),  eliminations_.data(), scratch_.data()};
   kernels_.eliminate(view, damping_.value(), system);
   add_camera_diagonal();
   if (!system_.solve(right_hand_side_)) return false;

@@ -21,16 +21,17 @@ namespace holdfast::schur_plugin {
 /// A free pose moves by a left perturbation of T_camera_world (translation [m], rotation [rad]). Phase one has Huber's
 /// cost; then observations beyond the chi-square limit are left out, and phase two has plain squares. At the end every
 /// observation is decided anew: `outlier` is also set for points behind the camera and for numbers that are not finite.
-/// A phase ends when a step lowers the cost by less than the relative tolerance of the problem; if it states none, at
-/// that of the settings, or when a step moves no pose by more than step_tolerance.
+/// If the problem states a tolerance, a phase ends when a step lowers the cost by less than this share. Otherwise it
+/// ends when a step lowers the cost by less than function_tolerance of it (ten times as much in phase one, which
+/// prepares phase two), or moves no pose by more than step_tolerance, or when the linearisation foresaw the decrease to
+/// within that tolerance, so that another step would gain less.
 ///
 /// Left as they are: points without an observation from a free pose, points with fewer than three residuals, poses
-/// without observations. Not usable: nothing free, or no finite solution. Indices out of range throw CheckError. With no
-/// fixed pose at all the gauge is held only by the damping.
+/// without observations. Not usable: nothing free, or no finite solution. Indices out of range throw CheckError. With
+/// no fixed pose at all the gauge is held only by the damping.
 class BundleAdjuster {
  public:
-  BundleAdjuster(const SchurSettings& settings, SimdLevel level)
-      : settings_(settings), kernels_(kernels(level)) {}
+  BundleAdjuster(const SchurSettings& settings, SimdLevel level) : settings_(settings), kernels_(kernels(level)) {}
 
   BundleSummary run(BundleProblem& problem, const std::atomic<bool>& stop);
 
@@ -55,6 +56,7 @@ class BundleAdjuster {
   Damping damping_;
   const Camera* camera_ = nullptr;
   double function_tolerance_ = 0.0, step_tolerance_ = 0.0;
+  bool stops_early_ = true;
   std::vector<std::uint32_t> pair_block_;
   std::vector<double> cameras_, camera_damping_, couplings_, eliminations_, steps_;
   std::vector<Scratch> scratch_;

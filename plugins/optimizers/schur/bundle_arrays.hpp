@@ -28,14 +28,14 @@ class BundleArrays {
   /// The arrays for the kernels, to be completed with camera and limits.
   BundleView view() const;
 
-  std::vector<double> poses;                  ///< pose_size each
-  std::vector<double> points;                 ///< three each
-  std::vector<std::uint32_t> pose_indices;    ///< in the problem, of `poses`
-  std::vector<std::uint32_t> point_indices;   ///< in the problem, of `points`
-  std::vector<std::uint32_t> entries;         ///< index of the observation in the problem; none = fills up a group
+  std::vector<double> poses;                 ///< pose_size each
+  std::vector<double> points;                ///< three each
+  std::vector<std::uint32_t> pose_indices;   ///< in the problem, of `poses`
+  std::vector<std::uint32_t> point_indices;  ///< in the problem, of `points`
+  std::vector<std::uint32_t> entries;        ///< index of the observation in the problem; none = fills up a group
   std::vector<std::uint32_t> first_group, first_coupling;
   std::vector<std::size_t> first_pair;
-  std::vector<std::int32_t> pose;             ///< of each entry
+  std::vector<std::int32_t> pose;  ///< of each entry
 
  private:
   void number_poses(const BundleProblem& problem, const BundleSelection& selection);
@@ -45,8 +45,8 @@ class BundleArrays {
   void fill_group();
 
   std::size_t free_count_ = 0, largest_ = 0;
-  std::vector<std::int32_t> number_of_pose_;   // of each pose of the problem
-  std::vector<std::int32_t> number_of_point_;  // of each point of the problem
+  std::vector<std::int32_t> number_of_pose_;    // of each pose of the problem
+  std::vector<std::int32_t> number_of_point_;   // of each point of the problem
   std::vector<std::uint32_t> ordered_, first_;  // observations by point, and where those of each point begin
   std::vector<float> x_, y_, right_x_, inverse_sigma2_, weight_;
 };

@@ -34,15 +34,15 @@ struct BundleView {
   bool is_robust;  ///< Huber's cost instead of plain squares
 
   std::size_t point_count;
-  const std::uint32_t* first_group;        ///< of each point; point_count + 1 entries
-  const std::uint32_t* first_coupling;     ///< number of free observations before each point; point_count + 1 entries
-  const std::size_t* first_pair;           ///< number of pairs of free observations before each point
-  const float *x, *y;                      ///< undistorted [px]
-  const float* right_x;                    ///< [px], NaN = none
-  const float *inverse_sigma2, *weight;    ///< [1/px^2], 0 to 1
-  const std::int32_t* pose;                ///< index into `poses`; free poses have the first indices
-  const double* poses;                     ///< pose_size each
-  const double* points;                    ///< three each, world [m]
+  const std::uint32_t* first_group;      ///< of each point; point_count + 1 entries
+  const std::uint32_t* first_coupling;   ///< number of free observations before each point; point_count + 1 entries
+  const std::size_t* first_pair;         ///< number of pairs of free observations before each point
+  const float *x, *y;                    ///< undistorted [px]
+  const float* right_x;                  ///< [px], NaN = none
+  const float *inverse_sigma2, *weight;  ///< [1/px^2], 0 to 1
+  const std::int32_t* pose;              ///< index into `poses`; free poses have the first indices
+  const double* poses;                   ///< pose_size each
+  const double* points;                  ///< three each, world [m]
 };
 
 /// Memory for the derivatives of one group.

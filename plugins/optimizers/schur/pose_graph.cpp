@@ -104,8 +104,8 @@ void PoseGraph::build_system() {
 double PoseGraph::cost(const std::vector<Eigen::Isometry3d>& poses) const {
   double sum = 0.0;
   for (const ActiveEdge& edge : edges_)
-    sum += edge.weight *
-           geometry::relative_pose_residual(edge.T_from_to, poses[edge.from], poses[edge.to]).squaredNorm();
+    sum +=
+        edge.weight * geometry::relative_pose_residual(edge.T_from_to, poses[edge.from], poses[edge.to]).squaredNorm();
   return 0.5 * sum;
 }
 

@@ -23,8 +23,8 @@ class SchurOptimizer final : public Optimizer {
 
  private:
   SchurSettings settings_;
-  std::mutex mutex_;                                     // of idle_
-  std::vector<std::unique_ptr<BundleAdjuster>> idle_;    // adjusters that no thread uses now
+  std::mutex mutex_;                                   // of idle_
+  std::vector<std::unique_ptr<BundleAdjuster>> idle_;  // adjusters that no thread uses now
 };
 
 }  // namespace holdfast::schur_plugin
