@@ -49,6 +49,8 @@ struct Prepared {
     view.fx = camera.fx, view.fy = camera.fy, view.cx = camera.cx, view.cy = camera.cy;
     view.baseline = camera.baseline;
     view.limit_two = geometry::chi_square_two, view.limit_three = geometry::chi_square_three;
+    view.disparity_scale = 1.0 / geometry::disparity_sigma;
+    view.disparity_limit = geometry::disparity_threshold * geometry::disparity_threshold;
     view.is_robust = is_robust;
     return view;
   }
@@ -57,14 +59,19 @@ struct Prepared {
   }
 };
 
-/// Residuals of an observation, scaled by the root of its information and weight, from the definition.
+/// Residuals of an observation (column, row, disparity), scaled by the root of their information and weight, from the
+/// definition.
 Residual residual_of(const BundleProblem::Observation& observation, const Eigen::Isometry3d& T_camera_world,
                      const Eigen::Vector3d& point) {
   const Eigen::Vector3d p = T_camera_world * point;
   const Eigen::Vector2d pixel = camera.project(p);
   Residual result(pixel.x() - observation.x, pixel.y() - observation.y, 0.0);
-  if (!std::isnan(observation.right_x)) result.z() = camera.right_x(pixel.x(), p.z()) - observation.right_x;
-  return std::sqrt(double{observation.inverse_sigma2} * observation.weight) * result;
+  result *= std::sqrt(double{observation.inverse_sigma2} * observation.weight);
+  if (std::isnan(observation.right_x)) return result;
+  const double disparity = static_cast<double>(observation.x) - observation.right_x;
+  result.z() = std::sqrt(double{observation.weight}) / geometry::disparity_sigma *
+               (camera.fx * camera.baseline / p.z() - disparity);
+  return result;
 }
 
 struct NumericDerivatives {
@@ -120,15 +127,21 @@ struct DenseSystem {
       if (point_number[o.point] < 0) continue;
       const NumericDerivatives d = differentiate(o, problem.poses[o.pose].T_camera_world, problem.points[o.point]);
       const double limit = o.weight * (std::isnan(o.right_x) ? geometry::chi_square_two : geometry::chi_square_three);
-      const double squared = d.residual.squaredNorm();
+      const double threshold = geometry::disparity_threshold * std::sqrt(double{o.weight});
+      const double deviation = std::abs(d.residual.z());
+      const bool wrong_depth = deviation > threshold;
+      const Eigen::Vector3d slopes(1.0, 1.0, wrong_depth ? threshold / deviation : 1.0);
+      const double squared =
+          d.residual.head<2>().squaredNorm() +
+          (wrong_depth ? 2.0 * threshold * deviation - threshold * threshold : deviation * deviation);
       const bool beyond = is_robust && squared > limit;
       const double slope = beyond ? std::sqrt(limit / squared) : 1.0;
       cost += 0.5 * (beyond ? 2.0 * std::sqrt(limit * squared) - limit : squared);
       Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(3, size);
       if (pose_number[o.pose] >= 0) jacobian.middleCols<6>(6 * pose_number[o.pose]) = d.by_pose;
       jacobian.middleCols<3>(6 * free + 3 * point_number[o.point]) = d.by_point;
-      hessian += slope * jacobian.transpose() * jacobian;
-      gradient += slope * jacobian.transpose() * d.residual;
+      hessian += slope * jacobian.transpose() * slopes.asDiagonal() * jacobian;
+      gradient += slope * jacobian.transpose() * slopes.asDiagonal() * d.residual;
     }
   }
 };
