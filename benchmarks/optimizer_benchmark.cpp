@@ -6,14 +6,13 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <string>
 #include <thread>
 #include <vector>
 
 #include "geometry/synthetic.hpp"
 #include "holdfast/geometry/pose_problem.hpp"
-#include "holdfast/plugin/plugin.hpp"
-
-extern "C" void holdfast_register_plugin_ceres(holdfast::Registry& registry);
+#include "optimizers/both_optimizers.hpp"
 
 namespace holdfast {
 namespace {
@@ -33,14 +32,12 @@ void adjust_pose(benchmark::State& state) {
 BENCHMARK(adjust_pose)->Arg(300)->Arg(1000)->Unit(benchmark::kMicrosecond);
 
 /// Arguments: fixed poses, free poses, points, observations at most per point.
-void optimize_bundle(benchmark::State& state) {
+void optimize_bundle(benchmark::State& state, const std::string& name) {
   const Camera camera = synthetic::camera();
   const synthetic::BundleCase original =
       synthetic::bundle_case(camera, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)),
                              static_cast<int>(state.range(2)), static_cast<int>(state.range(3)), 1.0, 0.03, 1);
-  Registry registry;
-  holdfast_register_plugin_ceres(registry);
-  const auto optimizer = registry.create<Optimizer>("ceres", {}, {});
+  const auto optimizer = make_optimizer(name);
   const std::atomic<bool> stop = false;
   BundleSummary summary;
   for (auto _ : state) {
@@ -50,23 +47,21 @@ void optimize_bundle(benchmark::State& state) {
   state.counters["observations"] = static_cast<double>(original.problem.observations.size());
   state.counters["iterations"] = summary.iterations;
 }
-BENCHMARK(optimize_bundle)
-    ->Args({5, 5, 1000, 8})
-    ->Args({12, 13, 1500, 10})
-    ->Args({12, 13, 3000, 10})
-    ->Args({1, 60, 6000, 10})
-    ->Unit(benchmark::kMillisecond);
+void bundle_sizes(benchmark::internal::Benchmark* each) {
+  each->Args({5, 5, 1000, 8})->Args({12, 13, 1500, 10})->Args({12, 13, 3000, 10})->Args({1, 60, 6000, 10});
+  each->Unit(benchmark::kMillisecond);
+}
+BENCHMARK_CAPTURE(optimize_bundle, ceres, std::string("ceres"))->Apply(bundle_sizes);
+BENCHMARK_CAPTURE(optimize_bundle, schur, std::string("schur"))->Apply(bundle_sizes);
 
 /// How long an adjustment goes on after it was asked to stop, at moments spread over its whole time; the counters are
 /// in milliseconds. Arguments as above.
-void stop_bundle(benchmark::State& state) {
+void stop_bundle(benchmark::State& state, const std::string& name) {
   const Camera camera = synthetic::camera();
   const synthetic::BundleCase original =
       synthetic::bundle_case(camera, static_cast<int>(state.range(0)), static_cast<int>(state.range(1)),
                              static_cast<int>(state.range(2)), static_cast<int>(state.range(3)), 1.0, 0.03, 1);
-  Registry registry;
-  holdfast_register_plugin_ceres(registry);
-  const auto optimizer = registry.create<Optimizer>("ceres", {}, {});
+  const auto optimizer = make_optimizer(name);
   using Clock = std::chrono::steady_clock;
   const auto seconds_since = [](Clock::time_point begin) {
     return std::chrono::duration<double>(Clock::now() - begin).count();
@@ -98,7 +93,11 @@ void stop_bundle(benchmark::State& state) {
   state.counters["stop_median_ms"] = delays[delays.size() / 2] * 1e3;
   state.counters["stop_longest_ms"] = delays.back() * 1e3;
 }
-BENCHMARK(stop_bundle)->Args({12, 20, 3000, 12})->Args({1, 60, 6000, 10})->Iterations(3)->Unit(benchmark::kMillisecond);
+void stop_sizes(benchmark::internal::Benchmark* each) {
+  each->Args({12, 20, 3000, 12})->Args({1, 60, 6000, 10})->Iterations(3)->Unit(benchmark::kMillisecond);
+}
+BENCHMARK_CAPTURE(stop_bundle, ceres, std::string("ceres"))->Apply(stop_sizes);
+BENCHMARK_CAPTURE(stop_bundle, schur, std::string("schur"))->Apply(stop_sizes);
 
 }  // namespace
 }  // namespace holdfast

@@ -20,6 +20,7 @@ set(HOLDFAST_PLUGIN_TABLE
   "observers       objects               observers/objects"
   "observers       overlay               observers/overlay"
   "optimizer       ceres                 optimizers/ceres"
+  "optimizer       schur                 optimizers/schur"
   "segmenter       onnx                  segmenters/onnx"
   "segmenter       precomputed           segmenters/precomputed"
   "segmenter       python                segmenters/python"

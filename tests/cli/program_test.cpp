@@ -65,8 +65,8 @@ TEST_F(ProgramTest, WrongArguments) {
 TEST_F(ProgramTest, ModulesPrintsTheReference) {
   const Outcome all = program_.run({"modules"});
   EXPECT_EQ(all.exit_code, 0);
-  for (const char* name : {"orb", "opencv_orb", "ceres", "tum", "folder", "simulated", "none", "precomputed", "truth",
-                           "onnx", "tracking", "mapping", "camera", "run"})
+  for (const char* name : {"orb", "opencv_orb", "ceres", "schur", "tum", "folder", "simulated", "none", "precomputed",
+                           "truth", "onnx", "tracking", "mapping", "camera", "run"})
     EXPECT_THAT(all.output, HasSubstr(std::string("\n  ") + name + " "));
   const Outcome orb = program_.run({"modules", "orb"});
   EXPECT_THAT(orb.output, AllOf(HasSubstr("features: orb"), HasSubstr("count"), HasSubstr("Paper: ")));

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "geometry/synthetic.hpp"
+#include "holdfast/geometry/relative_pose.hpp"
 
 namespace holdfast::geometry {
 namespace {
@@ -93,6 +94,29 @@ TEST(Se3, AdjointMovesAPerturbationToTheOtherSide) {
   const Vector6d d = synthetic::tangent(random, 0.3, 0.2);
   const Eigen::Isometry3d expected = motion * exp_se3(d);
   EXPECT_LT((expected.matrix() - (exp_se3(adjoint_se3(motion) * d) * motion).matrix()).norm(), 1e-13);
+}
+
+TEST(RelativePose, DerivativesAgreeWithDifferences) {
+  Random random(6);
+  for (const double turn : {0.0, 0.3, 1.5}) {
+    const Eigen::Isometry3d from = exp_se3(synthetic::tangent(random, 1.0, 0.5));
+    const Eigen::Isometry3d T_from_to = exp_se3(synthetic::tangent(random, 0.5, 0.3));
+    const Eigen::Isometry3d to = exp_se3(synthetic::tangent(random, 0.5, turn)) * T_from_to.inverse() * from;
+    const RelativePoseError error = relative_pose_error(T_from_to, from, to);
+    EXPECT_EQ(error.residual, relative_pose_residual(T_from_to, from, to));
+    EXPECT_LT(relative_pose_residual(T_from_to, from, T_from_to.inverse() * from).norm(), 1e-12);
+    for (int i = 0; i < 6; ++i) {
+      const Eigen::Isometry3d plus = exp_se3(1e-6 * Vector6d::Unit(i)), minus = plus.inverse();
+      const Vector6d by_from =
+          (relative_pose_residual(T_from_to, plus * from, to) - relative_pose_residual(T_from_to, minus * from, to)) /
+          2e-6;
+      const Vector6d by_to =
+          (relative_pose_residual(T_from_to, from, plus * to) - relative_pose_residual(T_from_to, from, minus * to)) /
+          2e-6;
+      EXPECT_LT((error.by_from.col(i) - by_from).norm(), 1e-7) << turn << " column " << i;
+      EXPECT_LT((error.by_to.col(i) - by_to).norm(), 1e-7) << turn << " column " << i;
+    }
+  }
 }
 
 }  // namespace

@@ -4,19 +4,25 @@
 #include <chrono>
 #include <thread>
 
+#include "both_optimizers.hpp"
 #include "geometry/synthetic.hpp"
-#include "holdfast/plugin/registry.hpp"
-
-extern "C" void holdfast_register_plugin_ceres(holdfast::Registry& registry);
 
 namespace holdfast {
 namespace {
 
-std::unique_ptr<Optimizer> make(const ParameterValues& values = {}) {
-  Registry registry;
-  holdfast_register_plugin_ceres(registry);
-  return registry.create<Optimizer>("ceres", values, {});
-}
+/// What every optimizer must do; the parameter is its name.
+class Bundle : public testing::TestWithParam<std::string> {
+ protected:
+  static std::unique_ptr<Optimizer> make() { return make_optimizer(GetParam()); }
+  /// Stops at a relative decrease of the cost alone.
+  static std::unique_ptr<Optimizer> make(double function_tolerance, ParameterValues values = {}) {
+    values["function_tolerance"] = function_tolerance;
+    if (GetParam() == "schur") values["step_tolerance"] = 0.0;
+    return make_optimizer(GetParam(), values);
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Optimizers, Bundle, testing::Values("ceres", "schur"),
+                         [](const auto& each) { return each.param; });
 
 const std::atomic<bool> go_on = false;
 const Camera camera = synthetic::camera();
@@ -28,7 +34,7 @@ double largest_pose_error(const synthetic::BundleCase& c) {
   return largest;
 }
 
-TEST(Bundle, RecoversAPerturbedMapAndFlagsOutliers) {
+TEST_P(Bundle, RecoversAPerturbedMapAndFlagsOutliers) {
   synthetic::BundleCase c = synthetic::bundle_case(camera, 3, 4, 300, 7, 0.5, 0.05, 1);
   const BundleProblem before = c.problem;
   const double error_before = largest_pose_error(c);
@@ -60,17 +66,17 @@ TEST(Bundle, RecoversAPerturbedMapAndFlagsOutliers) {
   EXPECT_LT(2.0 * summary.final_cost / freedom, 1.05);
 }
 
-TEST(Bundle, DenseAndSparseAgree) {
+TEST_P(Bundle, DenseAndSparseAgree) {
   synthetic::BundleCase dense = synthetic::bundle_case(camera, 2, 4, 200, 6, 0.5, 0.0, 2);
   synthetic::BundleCase sparse = dense;
   dense.problem.final_iterations = sparse.problem.final_iterations = 30;
-  make({{"function_tolerance", 1e-12}})->optimize_bundle(dense.problem, go_on);
-  make({{"function_tolerance", 1e-12}, {"dense_poses", std::int64_t{0}}})->optimize_bundle(sparse.problem, go_on);
+  make(1e-12)->optimize_bundle(dense.problem, go_on);
+  make(1e-12, {{"dense_poses", std::int64_t{0}}})->optimize_bundle(sparse.problem, go_on);
   for (std::size_t i = 0; i < dense.poses.size(); ++i)
     EXPECT_LT(synthetic::distance(dense.problem.poses[i].T_camera_world, sparse.problem.poses[i].T_camera_world), 1e-6);
 }
 
-TEST(Bundle, TwoRunsGiveTheSameBytes) {
+TEST_P(Bundle, TwoRunsGiveTheSameBytes) {
   synthetic::BundleCase a = synthetic::bundle_case(camera, 3, 4, 200, 7, 0.5, 0.05, 3);
   synthetic::BundleCase b = a;
   const std::vector<double> elsewhere(12345);  // so that the second run finds other addresses
@@ -81,7 +87,7 @@ TEST(Bundle, TwoRunsGiveTheSameBytes) {
   for (std::size_t i = 0; i < a.points.size(); ++i) EXPECT_EQ(a.problem.points[i], b.problem.points[i]);
 }
 
-TEST(Bundle, StopBeforeTheStartChangesNothing) {
+TEST_P(Bundle, StopBeforeTheStartChangesNothing) {
   synthetic::BundleCase c = synthetic::bundle_case(camera, 2, 3, 60, 5, 0.5, 0.0, 4);
   const BundleProblem before = c.problem;
   const std::atomic<bool> stop = true;
@@ -92,10 +98,10 @@ TEST(Bundle, StopBeforeTheStartChangesNothing) {
   for (std::size_t i = 0; i < before.points.size(); ++i) EXPECT_EQ(c.problem.points[i], before.points[i]);
 }
 
-TEST(Bundle, StopBetweenIterationsKeepsTheBestSoFar) {
+TEST_P(Bundle, StopBetweenIterationsKeepsTheBestSoFar) {
   const synthetic::BundleCase c = synthetic::bundle_case(camera, 3, 6, 600, 9, 0.5, 0.05, 8);
   BundleProblem full = c.problem;
-  const auto optimizer = make({{"function_tolerance", 0.0}});
+  const auto optimizer = make(0.0);
   const BundleSummary unstopped = optimizer->optimize_bundle(full, go_on);
   ASSERT_GT(unstopped.iterations, 3);
   // Looks for a moment that falls into the iterations, wherever they are on this machine.
@@ -123,7 +129,7 @@ TEST(Bundle, StopBetweenIterationsKeepsTheBestSoFar) {
   FAIL() << "the stop flag was never seen between iterations";
 }
 
-TEST(Bundle, WeightZeroHasNoSay) {
+TEST_P(Bundle, WeightZeroHasNoSay) {
   synthetic::BundleCase with = synthetic::bundle_case(camera, 2, 3, 80, 5, 0.5, 0.0, 5);
   synthetic::BundleCase without = with;
   // Two observations of the same pixel: one wrong and without weight, against one that is not there.
@@ -138,7 +144,7 @@ TEST(Bundle, WeightZeroHasNoSay) {
   EXPECT_TRUE(with.problem.observations.back().outlier);
 }
 
-TEST(Bundle, LeavesAloneWhatIsNotDetermined) {
+TEST_P(Bundle, LeavesAloneWhatIsNotDetermined) {
   synthetic::BundleCase c = synthetic::bundle_case(camera, 2, 3, 80, 5, 0.5, 0.0, 6);
   const auto add_point = [&](std::uint32_t pose, float right_x) {
     BundleProblem::Observation observation = c.problem.observations.front();
@@ -160,7 +166,7 @@ TEST(Bundle, LeavesAloneWhatIsNotDetermined) {
   EXPECT_EQ(c.problem.points[seen_once], before[seen_once]);
 }
 
-TEST(Bundle, BadInputIsRefusedOrFlagged) {
+TEST_P(Bundle, BadInputIsRefusedOrFlagged) {
   BundleProblem empty;
   empty.camera = &camera;
   EXPECT_FALSE(make()->optimize_bundle(empty, go_on).usable);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include "ceres/observation_cost.hpp"
+#include "ceres/relative_pose_cost.hpp"
 #include "geometry/synthetic.hpp"
-#include "observation_cost.hpp"
-#include "relative_pose_cost.hpp"
 
 namespace holdfast::ceres_plugin {
 namespace {

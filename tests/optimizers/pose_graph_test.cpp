@@ -3,20 +3,20 @@
 
 #include <numbers>
 
+#include "both_optimizers.hpp"
 #include "geometry/synthetic.hpp"
 #include "holdfast/core/error.hpp"
-#include "holdfast/plugin/registry.hpp"
-
-extern "C" void holdfast_register_plugin_ceres(holdfast::Registry& registry);
 
 namespace holdfast {
 namespace {
 
-std::unique_ptr<Optimizer> make() {
-  Registry registry;
-  holdfast_register_plugin_ceres(registry);
-  return registry.create<Optimizer>("ceres", {}, {});
-}
+/// What every optimizer must do; the parameter is its name.
+class PoseGraph : public testing::TestWithParam<std::string> {
+ protected:
+  static std::unique_ptr<Optimizer> make() { return make_optimizer(GetParam()); }
+};
+INSTANTIATE_TEST_SUITE_P(Optimizers, PoseGraph, testing::Values("ceres", "schur"),
+                         [](const auto& each) { return each.param; });
 
 struct Loop {
   PoseGraphProblem problem;
@@ -50,7 +50,7 @@ struct Loop {
   }
 };
 
-TEST(PoseGraph, ClosesALoop) {
+TEST_P(PoseGraph, ClosesALoop) {
   Loop loop(60);
   const double before = loop.largest_error();
   const GraphSummary summary = make()->optimize_pose_graph(loop.problem);
@@ -63,7 +63,7 @@ TEST(PoseGraph, ClosesALoop) {
   EXPECT_LT(synthetic::distance(closed, loop.problem.edges.back().T_to_from), 0.01);
 }
 
-TEST(PoseGraph, IsExactWhereTheEdgesAgree) {
+TEST_P(PoseGraph, IsExactWhereTheEdgesAgree) {
   Loop loop(40);
   for (PoseGraphProblem::Edge& edge : loop.problem.edges)
     edge.T_to_from = loop.truth[edge.to] * loop.truth[edge.from].inverse();
@@ -72,7 +72,7 @@ TEST(PoseGraph, IsExactWhereTheEdgesAgree) {
   EXPECT_LT(loop.largest_error(), 1e-5);
 }
 
-TEST(PoseGraph, SameBytesEveryTime) {
+TEST_P(PoseGraph, SameBytesEveryTime) {
   Loop a(30), b(30);
   make()->optimize_pose_graph(a.problem);
   make()->optimize_pose_graph(b.problem);
@@ -80,7 +80,7 @@ TEST(PoseGraph, SameBytesEveryTime) {
     EXPECT_EQ(a.problem.nodes[i].T_camera_world.matrix(), b.problem.nodes[i].T_camera_world.matrix());
 }
 
-TEST(PoseGraph, RefusesWhatCannotBeSolved) {
+TEST_P(PoseGraph, RefusesWhatCannotBeSolved) {
   Loop loose(10);
   loose.problem.nodes[0].fixed = false;
   const Eigen::Matrix4d before = loose.problem.nodes[5].T_camera_world.matrix();

@@ -3,22 +3,16 @@
 
 #include <limits>
 
+#include "both_optimizers.hpp"
 #include "geometry/synthetic.hpp"
 #include "holdfast/geometry/pose_problem.hpp"
-#include "holdfast/plugin/registry.hpp"
-
-extern "C" void holdfast_register_plugin_ceres(holdfast::Registry& registry);
 
 namespace holdfast {
 namespace {
 
 const Camera camera = synthetic::camera();
 
-std::unique_ptr<Optimizer> make(const ParameterValues& values = {}) {
-  Registry registry;
-  holdfast_register_plugin_ceres(registry);
-  return registry.create<Optimizer>("ceres", values, {});
-}
+std::unique_ptr<Optimizer> make(const ParameterValues& values = {}) { return make_optimizer("ceres", values); }
 
 /// The same pose by Ceres: a bundle with one free pose, whose points are pinned by two fixed poses that see them from
 /// the front and from the side with overwhelming certainty.
@@ -84,12 +78,14 @@ TEST(OptimizePose, AgreesWithCeres) {
 }
 
 TEST(OptimizePose, SettingsReachTheSolver) {
-  synthetic::PoseCase loose = synthetic::pose_case(camera, 200, 1.0, 0.0, 1);
-  synthetic::PoseCase strict = loose;
-  make({{"chi_square_two", 100.0}, {"chi_square_three", 100.0}})->optimize_pose(loose.problem);
-  make({{"chi_square_two", 1.0}, {"chi_square_three", 1.0}})->optimize_pose(strict.problem);
-  EXPECT_EQ(std::count(loose.problem.inlier.begin(), loose.problem.inlier.end(), 1), 200);
-  EXPECT_LT(std::count(strict.problem.inlier.begin(), strict.problem.inlier.end(), 1), 120);
+  for (const std::string name : {"ceres", "schur"}) {
+    synthetic::PoseCase loose = synthetic::pose_case(camera, 200, 1.0, 0.0, 1);
+    synthetic::PoseCase strict = loose;
+    make_optimizer(name, {{"chi_square_two", 100.0}, {"chi_square_three", 100.0}})->optimize_pose(loose.problem);
+    make_optimizer(name, {{"chi_square_two", 1.0}, {"chi_square_three", 1.0}})->optimize_pose(strict.problem);
+    EXPECT_EQ(std::count(loose.problem.inlier.begin(), loose.problem.inlier.end(), 1), 200) << name;
+    EXPECT_LT(std::count(strict.problem.inlier.begin(), strict.problem.inlier.end(), 1), 120) << name;
+  }
 }
 
 }  // namespace

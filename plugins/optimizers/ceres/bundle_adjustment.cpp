@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <chrono>
 #include <deque>
-#include <limits>
 
-#include "holdfast/core/error.hpp"
+#include "holdfast/core/check.hpp"
+#include "holdfast/interfaces/bundle_selection.hpp"
 #include "observation_cost.hpp"
 
 namespace holdfast::ceres_plugin {
@@ -27,27 +27,15 @@ class StopCallback final : public ceres::IterationCallback {
   const std::atomic<bool>& stop_;
 };
 
-void check(const BundleProblem& problem) {
-  HOLDFAST_CHECK(problem.camera != nullptr, "a bundle problem needs a camera");
-  for (std::size_t i = 0; i < problem.observations.size(); ++i) {
-    const BundleProblem::Observation& observation = problem.observations[i];
-    HOLDFAST_CHECK(observation.pose < problem.poses.size() && observation.point < problem.points.size(),
-                   "observation " << i << " pose " << observation.pose << " of " << problem.poses.size() << " point "
-                                  << observation.point << " of " << problem.points.size());
-  }
-}
-
-bool is_finite(const BundleProblem::Observation& observation) {
-  return std::isfinite(observation.x) && std::isfinite(observation.y) && !std::isinf(observation.right_x) &&
-         std::isfinite(observation.inverse_sigma2) && std::isfinite(observation.weight) &&
-         observation.inverse_sigma2 > 0.0f;
-}
-
 /// One bundle adjustment: owns everything that the Ceres problem points to.
 class Bundle {
  public:
   Bundle(BundleProblem& problem, const CeresSettings& settings)
-      : problem_(problem), settings_(settings), camera_(*problem.camera), updater_(states_) {}
+      : problem_(problem),
+        settings_(settings),
+        limits_{settings.chi_square_two, settings.chi_square_three},
+        camera_(*problem.camera),
+        updater_(states_) {}
 
   BundleSummary run(const std::atomic<bool>& stop);
 
@@ -59,20 +47,20 @@ class Bundle {
   void add_free(const Observation& observation);
   Measurement measurement_of(const Observation& observation) const;
   void set_outliers_aside();
-  bool is_outlier(const Observation& observation) const;
-  double limit(const Observation& observation) const {
-    return std::isnan(observation.right_x) ? settings_.chi_square_two : settings_.chi_square_three;
+  bool is_an_outlier(const Observation& observation) const {
+    return is_outlier(camera_, states_[observation.pose].exact(), points_[observation.point], observation, limits_);
   }
   /// Runs the solver; returns whether its result can be used.
   bool solve(int iterations, const std::atomic<bool>& stop, BundleSummary& summary, double& cost_before);
 
   BundleProblem& problem_;
   const CeresSettings& settings_;
+  const ChiSquareLimits limits_;
   const Camera camera_;
   std::vector<PoseState> states_;
   PoseUpdater updater_;
   std::vector<Eigen::Vector3d> points_;
-  std::vector<std::uint8_t> pose_is_used_, point_is_used_;
+  BundleSelection selection_;
   std::vector<std::uint32_t> free_;   // observations in the problem, from free poses
   std::vector<std::uint32_t> fixed_;  // from fixed poses, by point
   bool is_robust_ = true;
@@ -86,46 +74,12 @@ class Bundle {
   std::unique_ptr<ceres::Problem> ceres_;
 };
 
-/// Squared residual over its variance; infinite behind the camera, NaN for what is not finite.
-double chi_square(const Camera& camera, const PoseState& pose, const Eigen::Vector3d& point,
-                  const BundleProblem::Observation& observation) {
-  const Eigen::Vector3d p = pose.rotation * point + pose.translation;
-  if (!(p.z() > geometry::minimum_depth)) return std::numeric_limits<double>::infinity();
-  const Eigen::Vector2d pixel = camera.project(p);
-  double squared = (pixel - Eigen::Vector2d(observation.x, observation.y)).squaredNorm();
-  if (!std::isnan(observation.right_x)) {
-    const double right = camera.right_x(pixel.x(), p.z()) - observation.right_x;
-    squared += right * right;
-  }
-  return squared * observation.inverse_sigma2;
-}
-
-bool Bundle::is_outlier(const Observation& observation) const {
-  return !is_finite(observation) || !(chi_square(camera_, states_[observation.pose], points_[observation.point],
-                                                 observation) <= limit(observation));
-}
-
 void Bundle::choose() {
-  const std::size_t count = problem_.observations.size();
-  std::vector<std::uint8_t> usable(count);
-  std::vector<int> rows(points_.size());
-  point_is_used_.assign(points_.size(), 0);
-  pose_is_used_.assign(states_.size(), 0);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Observation& observation = problem_.observations[i];
-    const double chi = chi_square(camera_, states_[observation.pose], points_[observation.point], observation);
-    if (!is_finite(observation) || observation.weight <= 0.0f || !std::isfinite(chi)) continue;
-    usable[i] = 1;
-    rows[observation.point] += std::isnan(observation.right_x) ? 2 : 3;
-    if (!problem_.poses[observation.pose].fixed) point_is_used_[observation.point] = 1;
-  }
-  for (std::size_t i = 0; i < points_.size(); ++i) point_is_used_[i] = point_is_used_[i] && rows[i] >= 3;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Observation& observation = problem_.observations[i];
-    if (!usable[i] || !point_is_used_[observation.point]) continue;
-    const bool is_fixed = problem_.poses[observation.pose].fixed;
+  selection_.select(problem_);
+  for (std::size_t i = 0; i < problem_.observations.size(); ++i) {
+    if (!selection_.observation_counts[i]) continue;
+    const bool is_fixed = problem_.poses[problem_.observations[i].pose].fixed;
     (is_fixed ? fixed_ : free_).push_back(static_cast<std::uint32_t>(i));
-    if (!is_fixed) pose_is_used_[observation.pose] = 1;
   }
   std::stable_sort(fixed_.begin(), fixed_.end(), [this](std::uint32_t a, std::uint32_t b) {
     return problem_.observations[a].point < problem_.observations[b].point;
@@ -146,7 +100,7 @@ void Bundle::add_free(const Observation& observation) {
   PoseState& pose = states_[observation.pose];
   double* point = points_[observation.point].data();
   const Measurement& measurement = measurements_.emplace_back(measurement_of(observation));
-  SwitchableHuber* loss = &losses_.emplace_back(limit(observation) * observation.weight, is_robust_);
+  SwitchableHuber* loss = &losses_.emplace_back(limits_.of(observation) * observation.weight, is_robust_);
   ceres::CostFunction* cost = nullptr;
   if (std::isnan(observation.right_x))
     cost = &free_two_.emplace_back(camera_, measurement, pose);
@@ -172,7 +126,7 @@ void Bundle::build() {
     for (; end < fixed_.size() && problem_.observations[fixed_[end]].point == point; ++end) {
       const Observation& observation = problem_.observations[fixed_[end]];
       fixed_observations_.push_back({measurement_of(observation), &states_[observation.pose],
-                                     limit(observation) * observation.weight, !std::isnan(observation.right_x)});
+                                     limits_.of(observation) * observation.weight, !std::isnan(observation.right_x)});
     }
     const std::span<const FixedObservation> group(fixed_observations_.data() + begin, end - begin);
     ceres_->AddResidualBlock(&fixed_costs_.emplace_back(camera_, group, is_robust_), nullptr, points_[point].data());
@@ -180,9 +134,10 @@ void Bundle::build() {
 }
 
 void Bundle::set_outliers_aside() {
-  for (std::size_t i = 0; i < free_.size(); ++i) measurements_[i].active = !is_outlier(problem_.observations[free_[i]]);
+  for (std::size_t i = 0; i < free_.size(); ++i)
+    measurements_[i].active = !is_an_outlier(problem_.observations[free_[i]]);
   for (std::size_t i = 0; i < fixed_.size(); ++i)
-    fixed_observations_[i].measurement.active = !is_outlier(problem_.observations[fixed_[i]]);
+    fixed_observations_[i].measurement.active = !is_an_outlier(problem_.observations[fixed_[i]]);
   is_robust_ = false;
 }
 
@@ -192,9 +147,9 @@ bool Bundle::solve(int iterations, const std::atomic<bool>& stop, BundleSummary&
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   int free_poses = 0;
   for (std::size_t i = 0; i < points_.size(); ++i)
-    if (point_is_used_[i]) ordering->AddElementToGroup(points_[i].data(), 0);
+    if (selection_.point_counts[i]) ordering->AddElementToGroup(points_[i].data(), 0);
   for (std::size_t i = 0; i < states_.size(); ++i)
-    if (pose_is_used_[i]) ordering->AddElementToGroup(states_[i].parameters, 1), ++free_poses;
+    if (selection_.pose_moves[i]) ordering->AddElementToGroup(states_[i].parameters, 1), ++free_poses;
   options.linear_solver_ordering = std::move(ordering);
   options.linear_solver_type = free_poses <= settings_.dense_poses ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
   // CHOLMOD starts threads of its own through OpenMP and BLAS, whatever num_threads says.
@@ -236,14 +191,14 @@ BundleSummary Bundle::run(const std::atomic<bool>& stop) {
     if (!solve(problem_.final_iterations, stop, summary, ignored)) return summary;
   }
   for (std::size_t i = 0; i < states_.size(); ++i)
-    if (pose_is_used_[i] && !states_[i].T_camera_world().matrix().allFinite()) return summary;
+    if (selection_.pose_moves[i] && !states_[i].T_camera_world().matrix().allFinite()) return summary;
 
   for (Observation& observation : problem_.observations) {
-    observation.outlier = is_outlier(observation);
+    observation.outlier = is_an_outlier(observation);
     summary.outliers += observation.outlier;
   }
   for (std::size_t i = 0; i < states_.size(); ++i)
-    if (pose_is_used_[i]) problem_.poses[i].T_camera_world = states_[i].T_camera_world();
+    if (selection_.pose_moves[i]) problem_.poses[i].T_camera_world = states_[i].T_camera_world();
   problem_.points = std::move(points_);
   summary.usable = true;
   return summary;
@@ -253,7 +208,7 @@ BundleSummary Bundle::run(const std::atomic<bool>& stop) {
 
 BundleSummary adjust_bundle(BundleProblem& problem, const std::atomic<bool>& stop, const CeresSettings& settings) {
   const auto start = std::chrono::steady_clock::now();
-  check(problem);
+  HOLDFAST_CHECK(problem.camera != nullptr, "a bundle problem needs a camera");
   BundleSummary summary = Bundle(problem, settings).run(stop);
   summary.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return summary;

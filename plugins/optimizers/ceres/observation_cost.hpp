@@ -13,7 +13,7 @@
 
 #include "holdfast/core/camera.hpp"
 #include "holdfast/geometry/pose_problem.hpp"
-#include "holdfast/geometry/so3.hpp"
+#include "holdfast/geometry/se3.hpp"
 
 namespace holdfast::ceres_plugin {
 
@@ -39,9 +39,11 @@ struct PoseState {
     rotation = geometry::exp_so3(turn).toRotationMatrix() * first_rotation;
     left_jacobian = geometry::left_jacobian_so3(turn);
   }
-  Eigen::Isometry3d T_camera_world() const {
+  Eigen::Isometry3d T_camera_world() const { return geometry::orthonormalised(exact()); }
+  /// The pose of the residuals, to the last bit.
+  Eigen::Isometry3d exact() const {
     Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
-    result.linear() = Eigen::Quaterniond(rotation).normalized().toRotationMatrix();
+    result.linear() = rotation;
     result.translation() = translation;
     return result;
   }

@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "holdfast/geometry/se3.hpp"
+#include "holdfast/geometry/relative_pose.hpp"
 
 namespace holdfast::ceres_plugin {
 
@@ -54,25 +54,26 @@ class RelativePoseCost final : public ceres::SizedCostFunction<6, 7, 7> {
   RelativePoseCost(const Eigen::Isometry3d& T_to_from, double scale) : inverse_(T_to_from.inverse()), scale_(scale) {}
 
   bool Evaluate(const double* const* parameters, double* residual, double** jacobians) const override {
-    const Eigen::Isometry3d error = inverse_ * pose_of(parameters[1]) * pose_of(parameters[0]).inverse();
-    const geometry::Vector6d tangent = geometry::log_se3(error);
-    geometry::Vector6d::Map(residual) = scale_ * tangent;
-    if (!jacobians) return true;
-    using Block = Eigen::Map<Eigen::Matrix<double, 6, 7, Eigen::RowMajor>>;
-    if (jacobians[0]) {
-      Block block(jacobians[0]);
-      block.leftCols<6>() = -scale_ * geometry::right_jacobian_inverse_se3(tangent);
-      block.col(6).setZero();
+    const Eigen::Isometry3d from = pose_of(parameters[0]), to = pose_of(parameters[1]);
+    if (!jacobians) {
+      geometry::Vector6d::Map(residual) = scale_ * geometry::relative_pose_residual(inverse_, from, to);
+      return true;
     }
-    if (jacobians[1]) {
-      Block block(jacobians[1]);
-      block.leftCols<6>() = scale_ * geometry::left_jacobian_inverse_se3(tangent) * geometry::adjoint_se3(inverse_);
-      block.col(6).setZero();
-    }
+    const geometry::RelativePoseError error = geometry::relative_pose_error(inverse_, from, to);
+    geometry::Vector6d::Map(residual) = scale_ * error.residual;
+    write(scale_ * error.by_from, jacobians[0]);
+    write(scale_ * error.by_to, jacobians[1]);
     return true;
   }
 
  private:
+  static void write(const geometry::Matrix6d& derivative, double* jacobian) {
+    if (jacobian == nullptr) return;
+    Eigen::Map<Eigen::Matrix<double, 6, 7, Eigen::RowMajor>> block(jacobian);
+    block.leftCols<6>() = derivative;
+    block.col(6).setZero();
+  }
+
   Eigen::Isometry3d inverse_;
   double scale_;
 };

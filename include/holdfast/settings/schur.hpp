@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace holdfast {
+
+class Optimizer;
+template <class Settings>
+class ParameterTable;
+
+/// Settings of the optimizer `schur`. Ranges and units: `holdfast modules schur`.
+struct SchurSettings {
+  using Interface = Optimizer;
+  static constexpr const char* module = "schur";
+
+  /// Outlier threshold of the squared normalised residual without depth: chi-square 95 %, two degrees of freedom.
+  double chi_square_two = 5.991;
+  double chi_square_three = 7.815;  ///< the same with depth: chi-square 95 %, three degrees of freedom
+  double disparity_sigma = 0.5;      ///< standard deviation of the disparity that a depth stands for [px]
+  double disparity_threshold = 1.5;  ///< of the Huber cost of the disparity [standard deviations]
+  /// Rounds of motion-only adjustment with outlier re-classification, as in ORB-SLAM2; the first half robust.
+  int pose_rounds = 4;
+  int pose_iterations = 10;  ///< maximum iterations of each round, as in ORB-SLAM2
+  /// Relative decrease of the cost at which a bundle adjustment has converged, unless its problem states one.
+  double function_tolerance = 1e-4;
+  /// Largest step of a pose, in metres or radians, at which a bundle adjustment has converged, unless its problem
+  /// states a tolerance of the cost.
+  double step_tolerance = 1e-4;
+  double graph_tolerance = 1e-5;  ///< relative decrease of the cost at which a pose graph has converged
+  /// Maximum number of free poses for which the reduced camera system is factorised as a dense matrix.
+  int dense_poses = 60;
+
+  static void describe(ParameterTable<SchurSettings>& table);
+};
+
+}  // namespace holdfast

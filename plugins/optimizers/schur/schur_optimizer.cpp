@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "schur_optimizer.hpp"
+
+#include <utility>
+
+#include "holdfast/geometry/pose_problem.hpp"
+#include "holdfast/plugin/plugin.hpp"
+#include "pose_graph.hpp"
+
+namespace holdfast::schur_plugin {
+
+SchurOptimizer::SchurOptimizer(const SchurSettings& settings, const CreationContext&) : settings_(settings) {}
+
+PoseSummary SchurOptimizer::optimize_pose(PoseProblem& problem) {
+  geometry::PoseAdjustmentOptions options;
+  options.robust_rounds = settings_.pose_rounds / 2;
+  options.final_rounds = settings_.pose_rounds - options.robust_rounds;
+  options.iterations = settings_.pose_iterations;
+  options.limit_two = settings_.chi_square_two;
+  options.limit_three = settings_.chi_square_three;
+  options.disparity_sigma = settings_.disparity_sigma;
+  options.disparity_threshold = settings_.disparity_threshold;
+  return geometry::adjust_pose(problem, options);
+}
+
+BundleSummary SchurOptimizer::optimize_bundle(BundleProblem& problem, const std::atomic<bool>& stop) {
+  std::unique_ptr<BundleAdjuster> adjuster;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!idle_.empty()) {
+      adjuster = std::move(idle_.back());
+      idle_.pop_back();
+    }
+  }
+  if (adjuster == nullptr) adjuster = std::make_unique<BundleAdjuster>(settings_, simd_level());
+  const BundleSummary summary = adjuster->run(problem, stop);
+  // The memory of a full adjustment is not kept, because the next one is far away.
+  if (problem.poses.size() <= 200) {
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(adjuster));
+  }
+  return summary;
+}
+
+GraphSummary SchurOptimizer::optimize_pose_graph(PoseGraphProblem& problem) {
+  return adjust_pose_graph(problem, settings_);
+}
+
+}  // namespace holdfast::schur_plugin
+
+HOLDFAST_PLUGIN(schur, registry) {
+  using namespace holdfast;
+  registry.add<Optimizer, schur_plugin::SchurOptimizer, SchurSettings>(
+      {.name = SchurSettings::module,
+       .summary = "Bundle adjustment on the Schur complement and pose graphs with vectorised solvers of fixed block "
+                  "sizes; motion-only adjustment with a fixed-size solver.",
+       .paper = "Triggs et al., Bundle Adjustment: A Modern Synthesis, 2000; Lourakis and Argyros, SBA, ACM "
+                "Transactions on Mathematical Software 36(1), 2009; Mur-Artal and Tardos, ORB-SLAM2, IEEE Transactions "
+                "on Robotics 33(5), 2017"});
+}
