@@ -95,10 +95,10 @@ std::string zsh_script(const std::vector<CommandEntry>& tree) {
     for (const CommandEntry& below : tree)
       if (below.path.size() == entry.path.size() + 1 &&
           std::equal(entry.path.begin(), entry.path.end(), below.path.begin()))
-        text += " " + described(below.path.back(), below.help);
+        (text += ' ') += described(below.path.back(), below.help);
     text += " )\n      options=(";
     for (const OptionEntry& option : entry.options)
-      for (const std::string& name : option.names) text += " " + described(name, option.help);
+      for (const std::string& name : option.names) (text += ' ') += described(name, option.help);
     text += " ) ;;\n";
   }
   return text +
