@@ -93,6 +93,8 @@ install(FILES ${holdfast_BINARY_DIR}/package/holdfastConfig.cmake
               ${CMAKE_CURRENT_LIST_DIR}/conformance_main.cpp.in
         DESTINATION ${package_folder} COMPONENT development)
 
+include(HoldfastPkgConfig)
+
 set(left_out "")
 foreach(header IN LISTS HOLDFAST_LEFT_OUT_SETTINGS)
   list(APPEND left_out PATTERN "${header}" EXCLUDE)
@@ -104,6 +106,17 @@ install(FILES ${holdfast_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR}
 if(TARGET holdfast_program)
   set_target_properties(holdfast_program PROPERTIES INSTALL_RPATH "\$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
   install(TARGETS holdfast_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+  # Written by the program itself after it was linked; see modules/cli.
+  set(shell_folder ${holdfast_BINARY_DIR}/shell)
+  install(FILES ${shell_folder}/holdfast.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program OPTIONAL)
+  install(FILES ${shell_folder}/holdfast DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+          COMPONENT program OPTIONAL)
+  install(FILES ${shell_folder}/_holdfast DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions
+          COMPONENT program OPTIONAL)
+  install(FILES ${shell_folder}/holdfast.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d
+          COMPONENT program OPTIONAL)
+  install(DIRECTORY ${holdfast_SOURCE_DIR}/examples/configs ${holdfast_SOURCE_DIR}/examples/scenes
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/holdfast COMPONENT program FILES_MATCHING PATTERN "*.yaml")
 endif()
 
 if(PROJECT_IS_TOP_LEVEL)

@@ -10,10 +10,11 @@ cd "$(dirname "$0")/.."
 build=${1:-build}
 output=out/demo
 
-sh cmake/install_dependencies.sh
+# With Python: the tutorial goes on with a segmenter written in it.
+sh cmake/install_dependencies.sh --python
 # The program alone: tests, benchmarks and examples would more than double the time to the first picture.
 cmake --preset release -B "$build" \
-  -DHOLDFAST_UNITY=ON -DHOLDFAST_BUILD_TESTS=OFF -DHOLDFAST_BUILD_BENCHMARKS=OFF -DHOLDFAST_BUILD_EXAMPLES=OFF
+  -DHOLDFAST_UNITY=ON -DHOLDFAST_PYTHON=ON -DHOLDFAST_BUILD_TESTS=OFF -DHOLDFAST_BUILD_BENCHMARKS=OFF -DHOLDFAST_BUILD_EXAMPLES=OFF
 cmake --build "$build" --parallel "$(nproc)" --target holdfast_program
 "$build/bin/holdfast" run examples/configs/demo.yaml --output "$output" --overwrite
 

@@ -22,8 +22,8 @@ class AccuracyReport {
       : plan_(plan), results_(results), analysis_(analysis), published_(published) {}
 
   std::string text() {
-    text_ = "# " + plan_.matrix.title + "\n\n";
-    if (!plan_.matrix.about.empty()) text_ += plan_.matrix.about + "\n\n";
+    text_ = "# " + markdown_text(plan_.matrix.title) + "\n\n";
+    if (!plan_.matrix.about.empty()) text_ += markdown_text(plan_.matrix.about) + "\n\n";
     add_counts();
     add_comparisons();
     add_variants();
@@ -245,7 +245,7 @@ class AccuracyReport {
         "sequences, exact, two-sided, on the medians over runs; interval: percentile bootstrap of the median gain, "
         "10,000 draws, fixed seed; fewer than " +
         std::to_string(fewest_pairs_to_test) + " pairs are not tested.";
-    if (plan_.matrix.mode) text_ += " Mode: " + plan_.matrix.mode->text + ".";
+    if (plan_.matrix.mode) text_ += " Mode: " + markdown_text(plan_.matrix.mode->text) + ".";
     text_ += "\n";
   }
 

@@ -18,7 +18,7 @@ std::string scaled(double value, double factor, int decimals) {
 /// What all runs say alike, or what they say differently.
 std::string listed(const std::set<std::string>& texts) {
   std::string text;
-  for (const std::string& each : texts) text += (text.empty() ? "" : "; ") + each;
+  for (const std::string& each : texts) text += (text.empty() ? "" : "; ") + markdown_text(each);
   return text;
 }
 
@@ -91,7 +91,7 @@ std::string cost_report(const RunPlan& plan, const BenchResults& results, const 
   }
   const bool all_alone =
       std::all_of(analysis.cells.begin(), analysis.cells.end(), [](const Cell& cell) { return cell.alone; });
-  std::string text = "# " + plan.matrix.title + ": time and memory\n\n";
+  std::string text = "# " + markdown_text(plan.matrix.title) + ": time and memory\n\n";
   if (!machines.empty()) text += "Machine: " + listed(machines) + ".\n";
   if (!versions.empty()) text += "Holdfast: " + listed(versions) + ".\n";
   if (versions.size() > 1) text += "**Runs of several versions stand side by side**: begin a new folder.\n";

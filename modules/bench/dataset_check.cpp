@@ -8,6 +8,7 @@
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/evaluation/number_text.hpp"
 #include "holdfast/image_files/image_decoder.hpp"
+#include "holdfast/image_files/image_structure.hpp"
 #include "holdfast/image_files/recording_pairs.hpp"
 
 namespace holdfast {
@@ -23,6 +24,17 @@ bool is_file(const fs::path& path) {
   std::error_code ignored;
   return fs::is_regular_file(path, ignored);
 }
+
+/// A count with the first few of what was counted.
+struct Examples {
+  std::size_t count = 0;
+  std::string first;
+
+  void add(const std::string& example) {
+    if (++count <= 3) first += (count == 1 ? "" : ", ") + example;
+  }
+  std::string text() const { return first + (count > 3 ? " and " + std::to_string(count - 3) + " more" : ""); }
+};
 
 class Checker {
  public:
@@ -83,6 +95,8 @@ class Checker {
       }
       check_presence(icl_list, colour);
       check_presence(icl_list, depth);
+      check_ends(icl_list, colour);
+      check_ends(icl_list, depth);
       check_images(colour, [&](const fs::path& file) { return decoder_.read_colour(file); });
       check_images(depth, [&](const fs::path& file) { return decoder_.read_depth(file, 5000.0); });
       check_pairs(colour.size());
@@ -104,45 +118,69 @@ class Checker {
       problem(list + " lists " + counted(images.size(), "image") + "; expected " + std::to_string(*expected) +
               ": the recording was cut or changed");
     check_presence(list, images);
+    check_ends(list, images);
     return images;
   }
 
   void check_presence(const std::string& list, const std::vector<ListedImage>& images) {
-    std::string examples;
-    std::size_t missing = 0;
-    for (const ListedImage& image : images) {
-      if (is_file(folder_ / image.name)) continue;
-      if (++missing <= 3)
-        examples += (missing == 1 ? "" : ", ") + image.name + " (line " + std::to_string(image.line) + ")";
-    }
+    Examples absent;
+    for (const ListedImage& image : images)
+      if (!is_file(folder_ / image.name)) absent.add(image.name + " (line " + std::to_string(image.line) + ")");
+    const std::size_t missing = absent.count;
     if (missing == 0) return;
     if (recipe_ && recipe_->lists_absent_depth && list == "depth.txt" && missing < images.size()) {
       fact(list + " lists " + counted(missing, "image") + " that " + (missing == 1 ? "does" : "do") +
-           " not exist: " + examples + (missing > 3 ? " and " + std::to_string(missing - 3) + " more" : "") +
+           " not exist: " + absent.text() +
            "; this is known of the dataset, and nothing is damaged. A run that pairs one of them needs "
            "`source.tum.on_bad_frame: skip`");
       return;
     }
     problem(list + " lists " + counted(missing, "image") + " that " + (missing == 1 ? "is" : "are") +
-            " missing: " + examples + (missing > 3 ? " and " + std::to_string(missing - 3) + " more" : "") +
-            "; unpack the archive again");
+            " missing: " + absent.text() + "; unpack the archive again");
   }
 
-  /// Decodes the first, the middle and the last image: a broken download shows at its end.
+  /// Looks at the begin and the end of every file: a broken download shows there.
+  void check_ends(const std::string& list, const std::vector<ListedImage>& images) {
+    Examples damaged, of_other_size;
+    for (const ListedImage& image : images) {
+      const fs::path file = folder_ / image.name;
+      if (!is_file(file)) continue;
+      std::string problem_of_file;
+      ImageStructure structure;
+      try {
+        structure = examine_image_ends(file);
+        problem_of_file = structure.problem;
+      } catch (const InputError& error) {
+        problem_of_file = error.what();
+      }
+      const std::string place = image.name + " (line " + std::to_string(image.line) + ")";
+      if (!problem_of_file.empty()) {
+        damaged.add(place + " " + problem_of_file);
+        damaged_.insert(image.name);
+      } else if (recipe_ && (structure.width != recipe_->camera.width || structure.height != recipe_->camera.height)) {
+        of_other_size.add(place + " has " + std::to_string(structure.width) + "x" + std::to_string(structure.height) +
+                          " pixels");
+      }
+    }
+    if (damaged.count > 0)
+      problem(list + " lists " + counted(damaged.count, "image") + " that " + (damaged.count == 1 ? "is" : "are") +
+              " damaged: " + damaged.text() + "; copy or download " + (damaged.count == 1 ? "it" : "them") + " again");
+    if (of_other_size.count > 0)
+      problem(list + " lists " + counted(of_other_size.count, "image") + " of another size: " + of_other_size.text() +
+              "; expected " + std::to_string(recipe_->camera.width) + "x" + std::to_string(recipe_->camera.height) +
+              " of the camera " + recipe_->camera.name + ": is this another recording?");
+  }
+
+  /// Decodes images spread over the whole recording, the first and the last among them.
   template <class Decode>
   void check_images(const std::vector<ListedImage>& images, const Decode& decode) {
+    constexpr std::size_t sample = 11;
     if (images.empty()) return;
-    for (const std::size_t i : std::set<std::size_t>{0, images.size() / 2, images.size() - 1}) {
+    std::set<std::size_t> chosen;
+    for (std::size_t i = 0; i < sample; ++i) chosen.insert(i * (images.size() - 1) / (sample - 1));
+    for (const std::size_t i : chosen) {
       const fs::path file = folder_ / images[i].name;
-      if (!is_file(file)) continue;
-      attempt([&] {
-        const cv::Mat image = decode(file);
-        if (!recipe_ || (image.cols == recipe_->camera.width && image.rows == recipe_->camera.height)) return;
-        problem(file.string() + " has " + std::to_string(image.cols) + "x" + std::to_string(image.rows) +
-                " pixels; expected " + std::to_string(recipe_->camera.width) + "x" +
-                std::to_string(recipe_->camera.height) + " of the camera " + recipe_->camera.name +
-                ": is this another recording?");
-      });
+      if (is_file(file) && !damaged_.contains(images[i].name)) attempt([&] { decode(file); });
     }
   }
 
@@ -199,7 +237,8 @@ class Checker {
   const DatasetRecipe* recipe_;
   DatasetCheck check_;
   ImageDecoder decoder_;
-  std::vector<double> stamps_;  ///< of the colour images
+  std::set<std::string> damaged_;  ///< names of images that are known to be
+  std::vector<double> stamps_;     ///< of the colour images
 };
 
 }  // namespace

@@ -47,13 +47,30 @@ std::string markdown_line(const Row& cells) {
   std::string line = "|";
   for (const std::string& cell : cells) {
     line += ' ';
-    for (const char c : cell) line += c == '|' ? std::string("\\|") : std::string(1, c);
+    for (const char c : markdown_text(cell)) line += c == '|' ? std::string("\\|") : std::string(1, c);
     line += " |";
   }
   return line + "\n";
 }
 
 }  // namespace
+
+std::string markdown_text(const std::string& text) {
+  constexpr const char* digits = "0123456789abcdef";
+  std::string result;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '<')
+      result += "&lt;";
+    else if (c == '\n' || c == '\r' || c == '\t')
+      result += ' ';
+    else if (byte < 0x20 || byte == 0x7f)
+      (result += "\\x") += {digits[byte >> 4], digits[byte & 15]};
+    else
+      result += c;
+  }
+  return result;
+}
 
 std::string to_markdown(const ReportTable& t) {
   std::string text = markdown_line(t.header) + "|";

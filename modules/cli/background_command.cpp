@@ -17,6 +17,7 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/dense_map/background.hpp"
 #include "holdfast/dense_map/static_scene.hpp"
+#include "holdfast/evaluation/number_text.hpp"
 #include "holdfast/run/run.hpp"
 #include "output_folder.hpp"
 #include "terminal.hpp"
@@ -62,13 +63,13 @@ std::size_t write_pictures(const StaticScene& scene, const Map& map, const Argum
 int print_end(const Arguments& arguments, const RunRecord& record, std::size_t pictures) {
   const bool was_interrupted = record.was_interrupted || interrupted();
   if (!record.failure.empty())
-    std::fprintf(stderr, "%s %s\n", red("error:", STDERR_FILENO).c_str(), record.failure.c_str());
+    print_error(record.failure);
   else if (was_interrupted)
     std::fprintf(stderr, "interrupted; what was done is in %s\n", arguments.output.c_str());
   else if (!arguments.quiet)
-    std::printf("%zu keyframes, each before and after, in %s\n", pictures,
+    std::printf("%s, each before and after, in %s\n", counted(pictures, "keyframe").c_str(),
                 (arguments.output / pictures_folder).c_str());
-  if (was_interrupted) return interrupted_exit_code;
+  if (was_interrupted) return interrupted_exit_code();
   return record.failure.empty() && pictures > 0 ? 0 : 1;
 }
 

@@ -24,6 +24,7 @@
 #include "holdfast/pipeline/configured_pipeline.hpp"
 #include "holdfast/plugin/builtin.hpp"
 #include "terminal.hpp"
+#include "usage_error.hpp"
 
 namespace holdfast {
 
@@ -117,7 +118,7 @@ void bench(const Arguments& arguments, int& exit_code) {
     return;
   }
   if (arguments.output.empty())
-    throw ConfigurationError(SourceLocation{"holdfast bench"}, "--output DIR is needed, the folder for the results");
+    throw UsageError("--output is required, the folder for the results");
 
   catch_interrupts();
   prepare_folder(arguments);
@@ -140,7 +141,7 @@ void bench(const Arguments& arguments, int& exit_code) {
                                     [](const auto& result) { return result.has_value(); });
     std::fprintf(stderr, "interrupted; %td of %zu runs are done. Go on with: %s\n", done, plan.runs.size(),
                  command_to_resume(arguments).c_str());
-    exit_code = interrupted_exit_code;
+    exit_code = interrupted_exit_code();
     return;
   }
   if (arguments.quiet) return;
@@ -163,14 +164,14 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       "  cost.md       time and memory, and the machine                 results.json  everything\n"
       "  report.html   all of it to sort, plot and browse, offline\n"
       "  runs/VARIANT/SEQUENCE/RUN  configuration, log and results of every run\n\n"
-      "Exits 0 when every run has a result, 130 on Ctrl-C, 2 when the matrix is wrong or something is missing, 1 for\n"
-      "anything else.\n\n"
+      "Exits 0 when every run has a result, 130 on Ctrl-C, 143 on SIGTERM, 2 when the matrix is wrong or something is\n"
+      "missing, 1 for anything else.\n\n"
       "Examples\n"
       "  holdfast bench benchmarks/simulated.yaml --dry-run\n"
       "  holdfast bench benchmarks/composed.yaml --data HOLDFAST_COMPOSED=/data/composed --output out/composed\n"
       "  holdfast bench benchmarks/composed.yaml --output out/composed --resume");
   command->add_option("MATRIX", arguments->matrix, "Matrix in YAML")->required();
-  command->add_option("--output", arguments->output, "Folder for the results")->type_name("DIR");
+  command->add_option("-o,--output", arguments->output, "Folder for the results")->type_name("DIR");
   command->add_option("--jobs", arguments->jobs, "Runs at once; more than one disturbs times, not errors")
       ->type_name("N")
       ->check(CLI::Range(1, 1024))
@@ -181,7 +182,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
   command->add_option("--data", arguments->data, "NAME=VALUE: of ${NAME} in the matrix; else the environment's")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
-  command->add_flag("--quiet", arguments->quiet, "No progress, no summary");
+  command->add_flag("-q,--quiet", arguments->quiet, "No progress, no summary");
   command->callback([arguments, &exit_code] { bench(*arguments, exit_code); });
 }
 

@@ -3,16 +3,24 @@
 
 #include <CLI/CLI.hpp>
 
+#include "output_file.hpp"
+
 namespace holdfast {
+
+void add_configuration_options(CLI::App& command, std::string& configuration, std::vector<std::string>& overrides) {
+  command.add_option("CONFIG", configuration, "Configuration in YAML; '-': standard input")
+      ->required()
+      ->transform([](const std::string& given) { return input_name(given); });
+  command.add_option("--set", overrides, "key.path=value: as if the file said so; may be repeated")
+      ->allow_extra_args(false);
+}
 
 void add_configured_options(CLI::App& command, ConfiguredArguments& arguments, const std::string& output_help,
                             const std::string& overwrite_help) {
-  command.add_option("CONFIG", arguments.configuration, "Configuration in YAML")->required();
-  command.add_option("--output", arguments.output, output_help)->required();
-  command.add_option("--set", arguments.overrides, "key.path=value: as if the file said so; may be repeated")
-      ->allow_extra_args(false);
+  add_configuration_options(command, arguments.configuration, arguments.overrides);
+  command.add_option("-o,--output", arguments.output, output_help)->required();
   command.add_flag("--overwrite", arguments.overwrite, overwrite_help);
-  command.add_flag("--quiet", arguments.quiet, "No progress, no summary");
+  command.add_flag("-q,--quiet", arguments.quiet, "No progress, no summary");
 }
 
 }  // namespace holdfast

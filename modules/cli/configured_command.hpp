@@ -20,6 +20,9 @@ struct ConfiguredArguments {
   bool quiet = false;
 };
 
+/// Adds CONFIG and --set to a command. The variables must live as long as it.
+void add_configuration_options(CLI::App& command, std::string& configuration, std::vector<std::string>& overrides);
+
 /// Adds CONFIG, --output, --set, --overwrite and --quiet to a command. `arguments` must live as long as it. What is
 /// written into the folder, and what earlier content --overwrite replaces, is said in the command's words.
 void add_configured_options(CLI::App& command, ConfiguredArguments& arguments,

@@ -15,6 +15,7 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/evaluation/number_text.hpp"
+#include "output_file.hpp"
 #include "terminal.hpp"
 
 namespace holdfast {
@@ -111,14 +112,12 @@ void check(const Arguments& arguments, int& exit_code) {
 void associate(const Arguments& arguments, int& exit_code) {
   const DatasetRecipe* recipe = chosen_recipe(arguments);
   const fs::path output = arguments.output.empty() ? arguments.folder / "associations.txt" : arguments.output;
-  std::error_code ignored;
-  if (!arguments.overwrite && fs::exists(output, ignored))
-    throw InputError({output.string()}, "is there already; name another file by --output, or add --overwrite");
+  require_new_files({output}, arguments.overwrite);
   RecordedSequence sequence;
   sequence.frames =
       dataset_pairs(arguments.folder, recipe ? recipe->layout : DatasetLayout::tum, arguments.max_time_difference);
   write_file_atomically(output, associations_text(sequence));
-  std::printf("%zu pairs: %s\n", sequence.frames.size(), output.c_str());
+  std::printf("%s: %s\n", counted(sequence.frames.size(), "pair").c_str(), printable(output.string()).c_str());
   exit_code = 0;
 }
 
@@ -148,10 +147,9 @@ void add_dataset_command(CLI::App& app, int& exit_code) {
 
   CLI::App* check_app = command->add_subcommand("check", "Does a folder hold a recording, whole?");
   check_app->footer(
-      "\nAre the lists there, is every image that they list, do some of them decode, does the truth cover them, are "
-      "there\n"
-      "as many as there should be, has every image of a composed sequence its mask. Exits 1 when something is "
-      "wrong.\n\n"
+      "\nAre the lists there, is every image that they list, has each its end and the size of the camera, do some of\n"
+      "them decode, does the truth cover them, are there as many as there should be, has every image of a composed\n"
+      "sequence its mask. Exits 1 when something is wrong.\n\n"
       "Examples\n"
       "  holdfast dataset check /data/rgbd_dataset_freiburg1_xyz\n"
       "  holdfast dataset check /data/my_copy --recipe fr1_xyz");
@@ -168,14 +166,14 @@ void add_dataset_command(CLI::App& app, int& exit_code) {
         ->type_name("NAME");
   }
   check_app->callback([arguments, &exit_code] { check(*arguments, exit_code); });
-  associate_app->add_option("--output", arguments->output, "File to write instead of FOLDER/associations.txt")
+  associate_app->add_option("-o,--output", arguments->output, "File to write instead of FOLDER/associations.txt")
       ->type_name("FILE");
   associate_app
       ->add_option("--max-time-difference", arguments->max_time_difference,
                    "Images whose stamps differ by less may make a pair [s]")
       ->check(CLI::Range(1e-6, 1.0))
       ->capture_default_str();
-  associate_app->add_flag("--overwrite", arguments->overwrite, "Replace a file that is there");
+  add_overwrite_option(*associate_app, arguments->overwrite);
   associate_app->callback([arguments, &exit_code] { associate(*arguments, exit_code); });
 }
 

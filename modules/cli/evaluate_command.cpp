@@ -10,7 +10,10 @@
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/evaluation/evaluation.hpp"
+#include "output_file.hpp"
+#include "positive_number.hpp"
 #include "terminal.hpp"
+#include "usage_error.hpp"
 
 namespace holdfast {
 
@@ -24,6 +27,7 @@ struct EvaluateArguments {
   std::string json;
   std::string csv;
   std::string plots;
+  bool overwrite = false;
   EvaluationOptions options;
 };
 
@@ -47,32 +51,37 @@ Examples
   holdfast evaluate groundtruth.txt monocular.txt --alignment sim3 --json -
 )";
 
-void write_to(const std::string& target, const std::string& content) {
-  if (target == "-")
-    std::cout << content;
-  else
-    write_file_atomically(target, content);
-}
+/// The names that `run` gives them, too.
+constexpr const char* top_view_file = "trajectory.svg";
+constexpr const char* error_over_time_file = "error.svg";
 
 void write_plots(const std::filesystem::path& folder, const Evaluation& evaluation) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw InputError({folder.string()}, "cannot be created: " + error.message());
-  write_file_atomically(folder / "top_view.svg", top_view_svg(evaluation));
-  write_file_atomically(folder / "error_over_time.svg", error_over_time_svg(evaluation));
+  write_file_atomically(folder / top_view_file, top_view_svg(evaluation));
+  write_file_atomically(folder / error_over_time_file, error_over_time_svg(evaluation));
 }
 
 /// Reads a trajectory, and says what of it does not count.
 Trajectory read_with_notes(const std::string& file) {
   TrajectoryFile read = read_trajectory_file(file);
   if (const std::string omissions = read.omissions(); !omissions.empty())
-    std::cerr << "holdfast evaluate: " << printable(file) << ": leaves out " << omissions << '\n';
+    print_warning(file + ": leaves out " + omissions);
   return std::move(read.poses);
 }
 
 void run(EvaluateArguments arguments) {
+  arguments.truth = input_name(arguments.truth);
+  arguments.estimate = input_name(arguments.estimate);
+  if (arguments.truth == arguments.estimate && arguments.truth == input_name("-"))
+    throw UsageError("only one trajectory can come from standard input; give the other one a file");
   if (arguments.json == "-" && arguments.csv == "-")
-    throw Error("--json and --csv cannot both go to standard output; give one of them a file");
+    throw UsageError("--json and --csv cannot both go to standard output; give one of them a file");
+  const std::filesystem::path plots = arguments.plots;
+  require_new_files({arguments.json, arguments.csv, plots.empty() ? plots : plots / top_view_file,
+                     plots.empty() ? plots : plots / error_over_time_file},
+                    arguments.overwrite);
   arguments.options.alignment = parse_alignment(arguments.alignment).value();
   arguments.options.truth_name = arguments.truth;
   arguments.options.estimate_name = arguments.estimate;
@@ -85,11 +94,9 @@ void run(EvaluateArguments arguments) {
     std::cout << printable(to_text(evaluation));
     if (!frames) std::cout << "Coverage needs --frames LIST.\n";
   }
-  if (!arguments.json.empty()) write_to(arguments.json, to_json(evaluation));
-  if (!arguments.csv.empty()) write_to(arguments.csv, to_csv(evaluation));
+  if (!arguments.json.empty()) write_output(arguments.json, to_json(evaluation));
+  if (!arguments.csv.empty()) write_output(arguments.csv, to_csv(evaluation));
   if (!arguments.plots.empty()) write_plots(arguments.plots, evaluation);
-  std::cout.flush();
-  if (!std::cout) throw Error("standard output could not be written");
 }
 
 }  // namespace
@@ -99,8 +106,8 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("evaluate", "Compare an estimated trajectory with the truth: ATE, RPE, coverage");
   command->footer(explanation);
-  command->add_option("TRUTH", arguments->truth, "True trajectory, TUM format")->required();
-  command->add_option("ESTIMATE", arguments->estimate, "Estimated trajectory, TUM format")->required();
+  command->add_option("TRUTH", arguments->truth, "True trajectory, TUM format; '-': standard input")->required();
+  command->add_option("ESTIMATE", arguments->estimate, "Estimated trajectory, TUM format; '-': standard input")->required();
   command
       ->add_option("--alignment", arguments->alignment,
                    "se3: rotation and translation; sim3: also scale, for monocular runs; none: as they are")
@@ -109,15 +116,15 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->add_option("--max-dt", arguments->options.max_time_difference, "Stamps of a pair are closer than this [s]")
       ->type_name("S")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->capture_default_str();
   command->add_option("--delta", arguments->options.time_step, "Time step of the relative error [s]")
       ->type_name("S")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->capture_default_str();
   command->add_option("--distance", arguments->options.path_step, "Step of true path of the relative error [m]")
       ->type_name("M")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->capture_default_str();
   command
       ->add_option("--frames", arguments->frames,
@@ -128,16 +135,12 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
       ->type_name("FILE");
   command->add_option("--csv", arguments->csv, "Also write the figures as CSV; '-': to standard output, no table")
       ->type_name("FILE");
-  command->add_option("--plots", arguments->plots, "Write top_view.svg and error_over_time.svg into this folder")
+  command->add_option("--plots", arguments->plots, "Write trajectory.svg and error.svg into this folder")
       ->type_name("DIR");
+  add_overwrite_option(*command, arguments->overwrite);
   command->callback([arguments, &exit_code] {
-    try {
-      run(*arguments);
-      exit_code = 0;
-    } catch (const Error& error) {
-      std::cerr << "holdfast evaluate: " << printable(error.what()) << '\n';
-      exit_code = 1;
-    }
+    run(*arguments);
+    exit_code = 0;
   });
 }
 

@@ -22,7 +22,9 @@
 #include "holdfast/pipeline/configured_pipeline.hpp"
 #include "holdfast/plugin/builtin.hpp"
 #include "label_folder.hpp"
+#include "output_file.hpp"
 #include "terminal.hpp"
+#include "usage_error.hpp"
 
 namespace holdfast {
 
@@ -37,7 +39,7 @@ struct Arguments {
   std::string label_map, prediction_map;
   std::string list, json;
   std::uint64_t every = 1;
-  bool quiet = false;
+  bool overwrite = false, quiet = false;
 };
 
 constexpr const char* explanation = R"(
@@ -199,13 +201,13 @@ Outcome segment_source(const Arguments& arguments, const Configuration& configur
 Outcome evaluate_by(const Arguments& arguments) {
   if (arguments.configuration.empty()) {
     if (arguments.labels.empty() || arguments.predictions.empty())
-      throw Error("nothing to compare; expected --labels with --predictions, or a configuration; see --help");
+      throw UsageError("nothing to compare; expected --labels with --predictions, or a configuration");
     return compare_folders(arguments);
   }
   if (!arguments.predictions.empty())
-    throw Error("a configuration and --predictions are two sources of predictions; give one of them");
+    throw UsageError("a configuration and --predictions are two sources of predictions; give one of them");
   if (arguments.images.empty() != arguments.labels.empty())
-    throw Error("--images and --labels belong together; give both, or none to ask the source for the truth");
+    throw UsageError("--images and --labels belong together; give both, or none to ask the source for the truth");
   cv::setNumThreads(1);  // as `run` does; the segmenter may ask for more
   Registry registry;
   register_builtin_plugins(registry);
@@ -216,19 +218,15 @@ Outcome evaluate_by(const Arguments& arguments) {
 
 int run(const Arguments& arguments) {
   catch_interrupts();
+  require_new_files({arguments.json}, arguments.overwrite);
   const Outcome outcome = evaluate_by(arguments);
   if (outcome.evaluation.images == 0) throw Error("no image was compared");
   if (arguments.json != "-") std::cout << to_text(outcome.evaluation);
   if (arguments.json != "-" && outcome.seconds_per_image)
     std::cout << "segmented at " << static_cast<int>(1e4 * *outcome.seconds_per_image + 0.5) / 10.0
               << " ms an image, reading not included\n";
-  if (arguments.json == "-")
-    std::cout << to_json(outcome.evaluation);
-  else if (!arguments.json.empty())
-    write_file_atomically(arguments.json, to_json(outcome.evaluation));
-  std::cout.flush();
-  if (!std::cout) throw Error("standard output could not be written");
-  return interrupted() ? interrupted_exit_code : 0;
+  if (!arguments.json.empty()) write_output(arguments.json, to_json(outcome.evaluation));
+  return interrupted() ? interrupted_exit_code() : 0;
 }
 
 }  // namespace
@@ -256,7 +254,8 @@ void add_evaluate_segmentation_command(CLI::App& app, int& exit_code) {
       ->allow_extra_args(false);
   command->add_option("--json", arguments->json, "Also write the figures as JSON; '-': to standard output, no table")
       ->type_name("FILE");
-  command->add_flag("--quiet", arguments->quiet, "No progress");
+  add_overwrite_option(*command, arguments->overwrite);
+  command->add_flag("-q,--quiet", arguments->quiet, "No progress");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 

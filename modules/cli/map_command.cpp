@@ -10,7 +10,9 @@
 #include "holdfast/map_io/map_export.hpp"
 #include "holdfast/map_io/map_file.hpp"
 #include "holdfast/map_io/map_info.hpp"
+#include "output_file.hpp"
 #include "terminal.hpp"
+#include "usage_error.hpp"
 
 namespace holdfast {
 
@@ -18,7 +20,7 @@ namespace {
 
 struct MapArguments {
   std::string file;
-  bool json = false;
+  bool json = false, overwrite = false;
   std::string points_to, trajectory_to, json_to;
 };
 
@@ -58,40 +60,28 @@ void show_info(const MapArguments& arguments) {
   std::cout << (arguments.json ? to_json(info) : printable(to_text(info)));
 }
 
-void export_to(const std::string& target, const std::string& content) {
-  if (target == "-")
-    std::cout << content;
-  else
-    write_file_atomically(target, content);
-}
-
 void export_map(const MapArguments& arguments) {
   int given = 0, to_output = 0;
   for (const std::string* target : {&arguments.points_to, &arguments.trajectory_to, &arguments.json_to}) {
     given += target->empty() ? 0 : 1;
     to_output += *target == "-" ? 1 : 0;
   }
-  if (given == 0) throw Error("nothing to export; name at least one of --points, --trajectory, --json");
-  if (to_output > 1) throw Error("only one export can go to standard output; give the others a file");
+  if (given == 0) throw UsageError("nothing to export; name at least one of --points, --trajectory, --json");
+  if (to_output > 1) throw UsageError("only one export can go to standard output; give the others a file");
+  require_new_files({arguments.points_to, arguments.trajectory_to, arguments.json_to}, arguments.overwrite);
   const Map map = read_map(arguments.file);
-  if (!arguments.points_to.empty()) export_to(arguments.points_to, points_ply(map));
-  if (!arguments.trajectory_to.empty()) export_to(arguments.trajectory_to, trajectory_text(keyframe_trajectory(map)));
-  if (!arguments.json_to.empty()) export_to(arguments.json_to, map_json(map));
+  if (!arguments.points_to.empty()) write_output(arguments.points_to, points_ply(map));
+  if (!arguments.trajectory_to.empty())
+    write_output(arguments.trajectory_to, trajectory_text(keyframe_trajectory(map)));
+  if (!arguments.json_to.empty()) write_output(arguments.json_to, map_json(map));
 }
 
 template <class Function>
 void answer(CLI::App* command, const std::shared_ptr<MapArguments>& arguments, int& exit_code, Function function) {
   command->add_option("FILE", arguments->file, "The map")->required();
-  command->callback([name = command->get_name(), arguments, &exit_code, function] {
-    try {
-      function(*arguments);
-      std::cout.flush();
-      if (!std::cout) throw Error("standard output could not be written");
-      exit_code = 0;
-    } catch (const Error& error) {
-      std::cerr << "holdfast map " << name << ": " << printable(error.what()) << '\n';
-      exit_code = 1;
-    }
+  command->callback([arguments, &exit_code, function] {
+    function(*arguments);
+    exit_code = 0;
   });
 }
 
@@ -113,6 +103,7 @@ void add_map_command(CLI::App& app, int& exit_code) {
   exporting->add_option("--points", arguments->points_to, "Points as PLY")->type_name("FILE");
   exporting->add_option("--trajectory", arguments->trajectory_to, "Poses of the keyframes")->type_name("FILE");
   exporting->add_option("--json", arguments->json_to, "Keyframes, edges and points")->type_name("FILE");
+  add_overwrite_option(*exporting, arguments->overwrite);
   answer(exporting, arguments, exit_code, export_map);
 }
 

@@ -40,7 +40,7 @@ int print_modules(const Arguments& arguments) {
   try {
     std::fputs(reference(registry, sections, arguments.name, format).c_str(), stdout);
   } catch (const Error& error) {
-    std::fprintf(stderr, "%s %s\n", red("error:", STDERR_FILENO).c_str(), printable(error.what()).c_str());
+    print_error(error.what());
     constexpr int usage_error = 2;
     return usage_error;
   }

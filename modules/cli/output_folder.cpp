@@ -8,8 +8,6 @@
 #include <cerrno>
 #include <utility>
 
-#include "holdfast/core/error.hpp"
-
 namespace holdfast {
 
 namespace fs = std::filesystem;
@@ -35,8 +33,12 @@ FolderLock prepare_output_folder(const fs::path& folder, bool overwrite, const s
   FolderLock lock(folder);
   if (fs::is_empty(folder)) return lock;
   if (!overwrite)
-    throw InputError({folder.string()}, "the output folder is not empty; name another one or add --overwrite");
-  for (const std::string& name : ours) fs::remove_all(folder / name);
+    throw OutputFolderNotEmpty({folder.string()},
+                               "the output folder is not empty; name another one or add --overwrite");
+  for (const std::string& name : ours) {
+    fs::remove_all(folder / name);
+    fs::remove_all(folder / (name + ".tmp"));
+  }
   return lock;
 }
 

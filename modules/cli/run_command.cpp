@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run_command.hpp"
 
-#include <unistd.h>
-
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
@@ -13,8 +11,10 @@
 
 #include "configured_command.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/evaluation/number_text.hpp"
 #include "holdfast/run/results.hpp"
 #include "holdfast/run/run.hpp"
+#include "holdfast/run/trajectory_journal.hpp"
 #include "output_folder.hpp"
 #include "terminal.hpp"
 
@@ -22,9 +22,11 @@ namespace holdfast {
 
 namespace {
 
+constexpr int low_coverage_exit_code = 3;
+
 struct Arguments : ConfiguredArguments {
   std::filesystem::path map;
-  bool localise = false;
+  bool localise = false, strict = false;
 };
 
 /// Results would take the place of the map that the run begins with.
@@ -36,34 +38,70 @@ void keep_map_out_of_results(const Arguments& arguments) {
                      "lies in the output folder, where this run's results would replace it; choose another --output");
 }
 
-/// Shows the progress of a run, prepares its folder and asks for its end after Ctrl-C.
-RunOptions options_of(const Arguments& arguments, const Stopwatch& since_start, std::optional<Progress>& progress,
-                      std::optional<FolderLock>& lock) {
+/// What lives as long as the frames are read.
+struct Running {
+  std::optional<FolderLock> lock;
+  std::optional<Progress> progress;
+  std::optional<TrajectoryJournal> journal;
+};
+
+/// Takes the folder; a run that was killed there is named, so that nobody takes its results for whole ones.
+FolderLock prepare_folder(const Arguments& arguments) {
+  try {
+    return prepare_output_folder(arguments.output, arguments.overwrite, result_names());
+  } catch (const OutputFolderNotEmpty&) {
+    const int poses = poses_of_killed_run(arguments.output);
+    if (poses < 0) throw;
+    throw InputError({arguments.output.string()},
+                     "the output folder holds a run that was killed, with " +
+                         counted(static_cast<std::size_t>(poses), "pose") +
+                         " in trajectory.txt; name another one, or add --overwrite to replace it");
+  }
+}
+
+/// Shows the progress of a run, prepares its folder, keeps its poses as they come and asks for its end after a signal.
+RunOptions options_of(const Arguments& arguments, const Stopwatch& since_start, Running& running) {
   RunOptions options;
   options.pipeline = {
       .output_directory = arguments.output, .map_file = arguments.map, .localise_only = arguments.localise};
   options.since_start = since_start;
   options.stop = interrupted;
   options.on_start = [&](const RunRecord& record) {
-    lock.emplace(prepare_output_folder(arguments.output, arguments.overwrite, result_names()));
+    running.lock.emplace(prepare_folder(arguments));
     write_file_atomically(arguments.output / "config.yaml", to_yaml(record.configuration));
-    progress.emplace(record.source.frame_count, arguments.quiet);
+    running.journal.emplace(arguments.output);
+    running.progress.emplace(record.source.frame_count, arguments.quiet);
   };
-  options.on_frame = [&](const RunProgress& run) { progress->update(run.frames_done, to_string(run.result.status)); };
+  options.on_frame = [&](const RunProgress& run) {
+    if (run.result.T_world_camera) running.journal->add({run.result.timestamp, *run.result.T_world_camera});
+    running.progress->update(run.frames_done, to_string(run.result.status));
+  };
   return options;
 }
 
 int print_end(const Arguments& arguments, const RunRecord& record) {
   if (!arguments.quiet && record.summary.frames() > 0) std::fputs(printable(summary_text(record)).c_str(), stdout);
+  const std::string warning = coverage_warning(record);
   if (!record.failure.empty())
-    std::fprintf(stderr, "%s %s\n", red("error:", STDERR_FILENO).c_str(), printable(record.failure).c_str());
+    print_error(record.failure);
   else if (record.was_interrupted)
     std::fprintf(stderr, "interrupted; what was done is in %s\n", printable(arguments.output.string()).c_str());
   else if (record.trajectory.empty())
-    std::fprintf(stderr, "%s no frame got a pose; is there depth, and enough to see?\n",
-                 red("error:", STDERR_FILENO).c_str());
-  if (record.was_interrupted) return interrupted_exit_code;
-  return record.failure.empty() && !record.trajectory.empty() ? 0 : 1;
+    print_error("no frame got a pose" +
+                (warning.empty() ? std::string("; is there depth, and enough to see?") : ": " + warning));
+  else if (arguments.strict && !warning.empty())
+    print_error(warning);
+  else if (!warning.empty())
+    print_warning(warning);
+  if (record.was_interrupted) return interrupted_exit_code();
+  if (!record.failure.empty() || record.trajectory.empty()) return 1;
+  return arguments.strict && !warning.empty() ? low_coverage_exit_code : 0;
+}
+
+/// The last line: where to look.
+void print_report(const Arguments& arguments) {
+  if (!arguments.quiet)
+    std::printf("%-20s %s\n", "report", printable((arguments.output / "report.html").string()).c_str());
 }
 
 int run_configuration(const Arguments& arguments) {
@@ -74,18 +112,20 @@ int run_configuration(const Arguments& arguments) {
   Registry registry;
   register_builtin_plugins(registry);
   const Configuration configuration = load_configuration(arguments.configuration, arguments.overrides, registry);
-  std::optional<FolderLock> lock;
   print_warnings(configuration.warnings);
-  std::optional<Progress> progress;
-  const RunRecord record = run(configuration, registry, options_of(arguments, since_start, progress, lock));
-  progress.reset();
+  Running running;
+  const RunRecord record = run(configuration, registry, options_of(arguments, since_start, running));
+  running.progress.reset();
+  running.journal.reset();
   try {
     write_results(record, arguments.output);
   } catch (const InputError&) {
     print_end(arguments, record);  // the summary may be all that is left of it
     throw;
   }
-  return print_end(arguments, record);
+  const int exit_code = print_end(arguments, record);
+  print_report(arguments);
+  return exit_code;
 }
 
 }  // namespace
@@ -100,7 +140,9 @@ void add_run_command(CLI::App& app, int& exit_code) {
       "  config.yaml     the configuration with every default     evaluation.json, *.svg  where there is truth\n"
       "  map.hfm         the map, for --map and `holdfast map`    static_map.ply  its points, or with\n"
       "                                                           dense_map.enabled a dense cloud\n"
-      "Exits 0 when the run reached its end with a trajectory, 130 on Ctrl-C (what was done is kept), 2 when the\n"
+      "While it runs, trajectory.txt holds the poses so far; of a run that is killed they are what is left.\n"
+      "Exits 0 when the run reached its end with a trajectory, 3 with --strict when fewer frames than\n"
+      "run.minimum_coverage have a pose, 130 on Ctrl-C, 143 on SIGTERM and SIGHUP (what was done is kept), 2 when the\n"
       "configuration is wrong, 1 for anything else.\n\n"
       "Examples\n"
       "  holdfast run examples/configs/demo.yaml --output out/demo\n"
@@ -113,6 +155,8 @@ void add_run_command(CLI::App& app, int& exit_code) {
       command->add_option("--map", arguments->map, "A map.hfm of an earlier run, to continue; the file stays as it is");
   command->add_flag("--localise", arguments->localise, "Only find the camera in the map, and leave the map as it is")
       ->needs(map);
+  command->add_flag("--strict", arguments->strict,
+                    "Exit with 3 when the share of frames with a pose is below run.minimum_coverage");
   command->callback([arguments, &exit_code] { exit_code = run_configuration(*arguments); });
 }
 

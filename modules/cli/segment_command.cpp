@@ -18,6 +18,7 @@
 #include "holdfast/config/configuration.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/stage_times.hpp"
+#include "holdfast/evaluation/number_text.hpp"
 #include "holdfast/pipeline/configured_pipeline.hpp"
 #include "holdfast/plugin/builtin.hpp"
 #include "label_writer.hpp"
@@ -72,21 +73,21 @@ int segment(const Arguments& arguments) {
   }
   writer.finish();
   const auto done = static_cast<std::size_t>(counts.asked);
-  const std::string written = std::to_string(writer.count()) + " label images are in " + arguments.output.string();
+  const std::string written = counted(writer.count(), "label image") + (writer.count() == 1 ? " is in " : " are in ") +
+                              arguments.output.string();
   if (!failure.empty())
-    std::fprintf(stderr, "%s %s\n%s\n", red("error:", STDERR_FILENO).c_str(), printable(failure).c_str(),
-                 printable(written).c_str());
+    print_error(failure + "\n" + written);
   else if (interrupted())
-    std::fprintf(stderr, "interrupted; %s\n", written.c_str());
+    std::fprintf(stderr, "interrupted; %s\n", printable(written).c_str());
   else if (writer.count() == 0)
-    std::fprintf(stderr, "%s the segmenter '%s' had nothing for any of %zu frames; is it of this recording?\n",
-                 red("error:", STDERR_FILENO).c_str(), configuration.segmenter.name.c_str(), done);
+    print_error("the segmenter '" + configuration.segmenter.name + "' had nothing for any of " +
+                counted(done, "frame") + "; is it of this recording?");
   else if (!arguments.quiet)
-    std::printf("%s, for %zu frames, at %.1f ms a frame\n", written.c_str(), done,
+    std::printf("%s, for %s, at %.1f ms a frame\n", printable(written).c_str(), counted(done, "frame").c_str(),
                 1e3 * counts.seconds / static_cast<double>(done));
   if (!arguments.quiet && writer.count() > 0)
     std::printf("\nTo use them:\n\n%s", writer.configuration(arguments.every == 1).c_str());
-  return interrupted() ? interrupted_exit_code : failure.empty() && writer.count() > 0 ? 0 : 1;
+  return interrupted() ? interrupted_exit_code() : failure.empty() && writer.count() > 0 ? 0 : 1;
 }
 
 }  // namespace
@@ -100,9 +101,8 @@ void add_segment_command(CLI::App& app, int& exit_code) {
       "run after it is fast. Writes into the output folder:\n"
       "  STAMP.png     labels of a frame: index into the classes, 255 = unknown\n"
       "  labels.txt    the list of them          classes.yaml  what the values mean\n"
-      "and prints what to put into a configuration to use them. Exits 0 when the source came to its end, 130 on "
-      "Ctrl-C\n"
-      "(what was done is kept), 2 when the configuration is wrong, 1 for anything else.\n\n"
+      "and prints what to put into a configuration to use them. Exits 0 when the source came to its end, 130\n"
+      "on Ctrl-C, 143 on SIGTERM (what was done is kept), 2 when the configuration is wrong, 1 for anything else.\n\n"
       "Examples\n"
       "  holdfast segment rgbd.yaml --set 'segmenter={onnx: {model: net.onnx, classes: [background, person]}}' \\\n"
       "    --output out/labels\n"

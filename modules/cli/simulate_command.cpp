@@ -14,10 +14,13 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/simulation/scene_file.hpp"
 #include "holdfast/simulation/simulator.hpp"
+#include "output_file.hpp"
 #include "output_folder.hpp"
+#include "positive_number.hpp"
 #include "scene_preview.hpp"
 #include "sequence_writer.hpp"
 #include "terminal.hpp"
+#include "usage_error.hpp"
 
 namespace holdfast {
 
@@ -58,14 +61,14 @@ std::vector<std::string> all_overrides(const Arguments& arguments) {
 
 int simulate(const Arguments& arguments) {
   if (arguments.output.empty() && arguments.preview.empty())
-    throw Error("nothing to write; expected --output FOLDER, --preview FILE.png, or both");
+    throw UsageError("nothing to write; expected --output FOLDER, --preview FILE.png, or both");
   const std::optional<Camera> camera = find_camera(arguments.camera);
   if (!camera) {
     std::string known;
     for (const std::string& name : camera_names()) known += (known.empty() ? "" : ", ") + name;
-    throw Error("camera '" + arguments.camera + "' is not known; expected one of: " + known);
+    throw UsageError("camera '" + arguments.camera + "' is not known; expected one of: " + known);
   }
-  simulation::Scene scene = simulation::read_scene(arguments.scene, all_overrides(arguments));
+  simulation::Scene scene = simulation::read_scene(input_name(arguments.scene.string()), all_overrides(arguments));
   if (scene.seed == 0) scene.seed = 1;
   simulation::Simulator simulator(scene, *camera);
   if (!arguments.preview.empty()) {
@@ -86,7 +89,7 @@ int simulate(const Arguments& arguments) {
   if (!arguments.quiet || interrupted())
     std::cout << (interrupted() ? "interrupted: " : "") << writer.frame_count() << " of " << simulator.frame_count()
               << " frames written to " << arguments.output.string() << '\n';
-  return interrupted() ? interrupted_exit_code : 0;
+  return interrupted() ? interrupted_exit_code() : 0;
 }
 
 }  // namespace
@@ -104,8 +107,8 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
       "  holdfast simulate examples/scenes/crowd.yaml --seed 7 --camera tum_fr3 --output out/crowd\n"
       "  holdfast simulate examples/scenes/walking_xyz.yaml --set people.0.do.0.walk.speed=0.6 --output out/slow\n"
       "  holdfast simulate --path halfsphere --duration 10 --no-sensor-effects --output out/empty");
-  command->add_option("SCENE", arguments->scene, "scene file (YAML)");
-  command->add_option("--output", arguments->output, "folder to write to");
+  command->add_option("SCENE", arguments->scene, "scene file (YAML); '-': standard input");
+  command->add_option("-o,--output", arguments->output, "folder to write to");
   command->add_option("--preview", arguments->preview,
                       "image file (PNG) with frames of the scene and its floor plan; without --output nothing else");
   command->add_option("--set", arguments->overrides, "override a value of the scene: key.path=value; may be repeated")
@@ -114,9 +117,9 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
   command->add_option("--path", arguments->path, "how the camera moves (default: as the scene says)")
       ->check(CLI::IsMember(simulation::path_names()));
   command->add_option("--duration", arguments->duration, "length [s] (default: as the scene says)")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command->add_option("--frame-rate", arguments->frame_rate, "frames per second (default: as the scene says)")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command->add_option("--camera", arguments->camera, "name of a known camera")
       ->check(CLI::IsMember(camera_names()))
       ->capture_default_str();
@@ -126,7 +129,7 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
       ->check(CLI::IsMember({"png", "jpg"}))
       ->capture_default_str();
   command->add_flag("--overwrite", arguments->overwrite, "replace a sequence in a folder that is not empty");
-  command->add_flag("--quiet", arguments->quiet, "no progress, no summary");
+  command->add_flag("-q,--quiet", arguments->quiet, "no progress, no summary");
   command->callback([arguments, &exit_code] { exit_code = simulate(*arguments); });
 }
 

@@ -6,13 +6,14 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <string_view>
 
 namespace holdfast {
 
 namespace {
 
 std::string coloured(const std::string& text, const char* code, int stream) {
-  if (isatty(stream) != 1 || std::getenv("NO_COLOR") != nullptr) return text;
+  if (!obeys_control_characters(stream) || std::getenv("NO_COLOR") != nullptr) return text;
   return std::string("\033[") + code + "m" + text + "\033[0m";
 }
 
@@ -25,9 +26,14 @@ std::string time_text(double seconds) {
   return text;
 }
 
-volatile std::sig_atomic_t interrupt_seen = 0;
+volatile std::sig_atomic_t signal_seen = 0;
 
 }  // namespace
+
+bool obeys_control_characters(int stream) {
+  const char* terminal = std::getenv("TERM");
+  return isatty(stream) == 1 && (terminal == nullptr || std::string_view(terminal) != "dumb");
+}
 
 std::string bold(const std::string& text, int stream) { return coloured(text, "1", stream); }
 std::string red(const std::string& text, int stream) { return coloured(text, "31", stream); }
@@ -50,13 +56,36 @@ std::string printable(const std::string& text) {
   return result;
 }
 
+void print_error(const std::string& message) {
+  std::fprintf(stderr, "%s %s\n", red("error:", STDERR_FILENO).c_str(), printable(message).c_str());
+}
+
+void print_warning(const std::string& message) {
+  std::fprintf(stderr, "%s %s\n", bold("warning:", STDERR_FILENO).c_str(), printable(message).c_str());
+}
+
 void print_warnings(const std::vector<Diagnostic>& warnings) {
-  for (const Diagnostic& warning : warnings)
-    std::fprintf(stderr, "%s %s\n", bold("warning:", STDERR_FILENO).c_str(), printable(warning.to_string()).c_str());
+  for (const Diagnostic& warning : warnings) print_warning(warning.to_string());
+}
+
+std::string progress_text(std::uint64_t done, std::optional<std::uint64_t> total, double seconds,
+                          const std::string& note) {
+  std::string text = "frame " + std::to_string(done);
+  if (total) text += " of " + std::to_string(*total);
+  if (done > 0 && seconds > 0.0) {
+    char rate[48];
+    std::snprintf(rate, sizeof(rate), ", %.1f frames/s", static_cast<double>(done) / seconds);
+    text += rate;
+  }
+  if (total && done > 0) {
+    const double left = *total > done ? seconds / static_cast<double>(done) * static_cast<double>(*total - done) : 0.0;
+    text += ", " + time_text(left) + " left";
+  }
+  return note.empty() ? text : text + ", " + note;
 }
 
 Progress::Progress(std::optional<std::uint64_t> total, bool quiet)
-    : total_(total), quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1), next_(terminal_ ? 0.0 : 10.0) {}
+    : total_(total), quiet_(quiet), terminal_(obeys_control_characters(STDERR_FILENO)), next_(terminal_ ? 0.0 : 10.0) {}
 
 Progress::~Progress() {
   if (terminal_ && !quiet_) std::fputs("\r\033[K", stderr);
@@ -65,25 +94,26 @@ Progress::~Progress() {
 void Progress::update(std::uint64_t done, const std::string& note) {
   if (quiet_ || watch_.seconds() < next_) return;
   next_ = watch_.seconds() + (terminal_ ? 0.2 : 10.0);
-  std::string text = "frame " + std::to_string(done);
-  if (total_ && done > 0) {
-    const double per_frame = watch_.seconds() / static_cast<double>(done);
-    const double left = *total_ > done ? per_frame * static_cast<double>(*total_ - done) : 0.0;
-    text += " of " + std::to_string(*total_) + ", " + time_text(left) + " left";
-  }
-  if (!note.empty()) text += ", " + note;
+  const std::string text = printable(progress_text(done, total_, watch_.seconds(), note));
   std::fprintf(stderr, terminal_ ? "\r\033[K%s" : "%s\n", text.c_str());
   std::fflush(stderr);
 }
 
 void catch_interrupts() {
   struct sigaction action = {};
-  action.sa_handler = [](int) { interrupt_seen = 1; };
+  action.sa_handler = [](int signal) { signal_seen = signal; };
   action.sa_flags = static_cast<int>(SA_RESETHAND);  // the second one ends the program
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  struct sigaction earlier = {};
+  sigaction(SIGHUP, nullptr, &earlier);
+  if (earlier.sa_handler == SIG_IGN) return;
+  action.sa_flags = 0;  // shell and system may both send it when a terminal is closed
+  sigaction(SIGHUP, &action, nullptr);
 }
 
-bool interrupted() { return interrupt_seen != 0; }
+bool interrupted() { return signal_seen != 0; }
+
+int interrupted_exit_code() { return 128 + (signal_seen == SIGHUP ? SIGTERM : static_cast<int>(signal_seen)); }
 
 }  // namespace holdfast

@@ -50,6 +50,11 @@ void set_value(ConfigurationNode& root, const std::string& key_path, Configurati
       node = &node->items[index];
       continue;
     }
+    // A list that is not there has no elements; a map with the name "0" in its place would only confuse what reads it.
+    const bool is_number = std::all_of(part.begin(), part.end(), [](char c) { return c >= '0' && c <= '9'; });
+    if (depth == 1 && is_number && (node->kind != ConfigurationNode::Kind::map || node->entries.empty()))
+      fail("'" + path[0] + "' has no element " + part + " to set; expected the whole list, such as " + path[0] +
+           "=[a, b]");
     const bool chooses = depth == 1 && std::find(choices.begin(), choices.end(), path[0]) != choices.end();
     if (node->kind == ConfigurationNode::Kind::scalar) {
       const ConfigurationNode name = *node;

@@ -19,16 +19,28 @@ struct Entry {
   ModuleDescription description;
   std::string origin;
   std::vector<Parameter> parameters;
+  std::string absence;  // why it cannot be made in this build; empty when it can
 };
 
 std::vector<Entry> all_entries(const Registry& registry, const std::vector<SectionDescription>& sections) {
   std::vector<Entry> entries;
-  for (const std::string& kind : registry.kinds())
+  // Of some kinds the build may have left out all modules.
+  std::vector<std::string> kinds = registry.kinds();
+  kinds.insert(kinds.end(), choice_sections().begin(), choice_sections().end());
+  kinds.insert(kinds.end(), {"filters", "observers"});
+  std::sort(kinds.begin(), kinds.end());
+  kinds.erase(std::unique(kinds.begin(), kinds.end()), kinds.end());
+  for (const std::string& kind : kinds) {
     for (const ModuleEntry* module : registry.of_kind(kind))
-      entries.push_back({kind, module->description, module->origin, module->parameters});
+      entries.push_back({kind, module->description, module->origin, module->parameters,
+                         registry.absence(kind, module->description.name)});
+    for (const std::string& name : registry.left_out(kind))
+      entries.push_back(
+          {kind, {.name = name, .summary = "A module of Holdfast."}, "", {}, registry.absence(kind, name)});
+  }
   const auto add_section = [&](const std::string& name, const std::string& help, std::vector<Parameter> parameters,
                                const std::string& kind = "section") {
-    entries.push_back({kind, {.name = name, .summary = help}, "built in", std::move(parameters)});
+    entries.push_back({kind, {.name = name, .summary = help}, "built in", std::move(parameters), ""});
   };
   std::string cameras;
   for (const std::string& camera : camera_names()) cameras += (cameras.empty() ? "" : ", ") + camera;
@@ -64,13 +76,14 @@ std::string brief_text(const std::vector<Entry>& entries) {
     if (entry.kind != kind) text += (kind.empty() ? "" : "\n") + (kind = entry.kind) + ":\n";
     std::string name = "  " + entry.description.name;
     name.resize(std::max<std::size_t>(name.size() + 1, 22), ' ');
-    text += name + entry.description.summary + "\n";
+    text += name + (entry.absence.empty() ? "" : "[not in this build] ") + entry.description.summary + "\n";
   }
   return text;
 }
 
 std::string full_text(const Entry& entry) {
   std::string text = entry.kind + ": " + entry.description.name + "\n  " + entry.description.summary + "\n";
+  if (!entry.absence.empty()) text += "  Not in this build: " + entry.absence + "\n";
   if (!entry.description.paper.empty()) text += "  Paper: " + entry.description.paper + "\n";
   if (entry.is_module()) text += "  Licence: " + entry.description.licence + "; " + entry.origin + "\n";
   std::size_t width = 0;
@@ -206,6 +219,7 @@ std::string json(const std::vector<Entry>& entries) {
                    {"paper", entry.description.paper},
                    {"licence", entry.description.licence},
                    {"origin", entry.origin},
+                   {"in_this_build", entry.absence.empty()},
                    {"parameters", parameters}});
   }
   return all.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";

@@ -22,6 +22,10 @@ void RunSettings::describe(ParameterTable<RunSettings>& table) {
       .add("keyframe_queue", &S::keyframe_queue,
            "threaded mode: keyframes that wait for local mapping, at most; paced, one that finds no room is put off")
       .range(1, 1000);
+  table
+      .add("minimum_coverage", &S::minimum_coverage,
+           "a run that finds poses for a smaller share of its frames gets a warning, and fails with --strict; 0: never")
+      .range(0.0, 1.0);
 }
 
 std::optional<std::string> RunSettings::contradiction() const {

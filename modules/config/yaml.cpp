@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "holdfast/config/configuration_node.hpp"
+#include "holdfast/core/text_file.hpp"
 
 namespace holdfast {
 
@@ -185,6 +186,9 @@ ConfigurationNode parse_yaml(const std::string& text, const std::string& file_na
 }
 
 ConfigurationNode read_yaml(const std::filesystem::path& file) {
+  if (is_named_pipe(file))
+    throw ConfigurationError(SourceLocation{file.string()},
+                             "is a named pipe, which may never end; expected a configuration in YAML");
   std::ifstream stream(file, std::ios::binary);
   if (!stream || std::filesystem::is_directory(file))
     throw ConfigurationError(SourceLocation{file.string()},
@@ -193,7 +197,10 @@ ConfigurationNode read_yaml(const std::filesystem::path& file) {
                                                                                : "cannot be read") +
                                  "; expected a configuration in YAML");
   const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  return parse_yaml(text, file.string(), std::filesystem::absolute(file).parent_path());
+  // What comes through the system's /dev/stdin lies in no folder: paths in it count from the current one.
+  const bool is_file = !file.string().starts_with("/dev/");
+  return parse_yaml(text, file.string(),
+                    is_file ? std::filesystem::absolute(file).parent_path() : std::filesystem::current_path());
 }
 
 }  // namespace holdfast

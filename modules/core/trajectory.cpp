@@ -52,11 +52,14 @@ std::string known_format(const std::vector<double>& numbers) {
   return "";
 }
 
-/// Appends a number with a fixed number of decimals and a decimal point, independent of the locale.
+/// Appends a number with a fixed number of decimals and a decimal point, independent of the locale. A number that is
+/// rounded to zero has no sign.
 void append_fixed(std::string& text, double value, int decimals) {
   char buffer[400];
   const auto [end, error] = std::to_chars(buffer, buffer + sizeof(buffer), value, std::chars_format::fixed, decimals);
-  text.append(buffer, error == std::errc() ? end : buffer);
+  std::string_view number(buffer, error == std::errc() ? static_cast<std::size_t>(end - buffer) : 0);
+  if (number.starts_with('-') && number.find_first_not_of("-0.") == std::string_view::npos) number.remove_prefix(1);
+  text += number;
 }
 
 constexpr const char* expected_format = "expected a trajectory in TUM format (t tx ty tz qx qy qz qw)";
@@ -100,6 +103,8 @@ TrajectoryFile read_trajectory_file(const std::filesystem::path& file) {
     throw InputError({file.string()}, std::string("no such file; ") + expected_format);
   if (std::filesystem::is_directory(file, status))
     throw InputError({file.string()}, std::string("found a folder; ") + expected_format);
+  if (is_named_pipe(file))
+    throw InputError({file.string()}, std::string("found a named pipe, which may never end; ") + expected_format);
   std::ifstream stream(file);
   if (!stream) throw InputError({file.string()}, std::string("cannot be opened for reading; ") + expected_format);
   skip_byte_order_mark(stream);
@@ -138,20 +143,23 @@ TrajectoryFile read_trajectory_file(const std::filesystem::path& file) {
   return result;
 }
 
-std::string trajectory_text(const Trajectory& trajectory) {
+std::string pose_text(const TimedPose& pose) {
+  const Eigen::Vector3d t = pose.T_world_camera.translation();
+  Eigen::Quaterniond q(pose.T_world_camera.linear());
+  q.normalize();
+  if (q.w() < 0.0) q.coeffs() = -q.coeffs();
   std::string text;
-  for (const TimedPose& pose : trajectory) {
-    const Eigen::Vector3d t = pose.T_world_camera.translation();
-    Eigen::Quaterniond q(pose.T_world_camera.linear());
-    q.normalize();
-    if (q.w() < 0.0) q.coeffs() = -q.coeffs();
-    append_fixed(text, pose.timestamp, 6);
-    for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) {
-      text += ' ';
-      append_fixed(text, value, 9);
-    }
-    text += '\n';
+  append_fixed(text, pose.timestamp, 6);
+  for (const double value : {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) {
+    text += ' ';
+    append_fixed(text, value, 9);
   }
+  return text += '\n';
+}
+
+std::string trajectory_text(const Trajectory& trajectory) {
+  std::string text = trajectory_header;
+  for (const TimedPose& pose : trajectory) text += pose_text(pose);
   return text;
 }
 

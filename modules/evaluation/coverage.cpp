@@ -74,6 +74,10 @@ std::vector<double> read_frame_stamps(const std::filesystem::path& source) {
   if (!std::filesystem::exists(source, status))
     throw InputError({source.string()},
                      "no such file or folder; expected a list of frames or the folder of a TUM sequence");
+  if (is_named_pipe(source))
+    throw InputError(
+        {source.string()},
+        "found a named pipe, which may never end; expected a list of frames or the folder of a TUM sequence");
   if (!std::filesystem::is_directory(source, status)) return read_stamp_list(source);
   const std::vector<double> colour = read_stamp_list(source / "rgb.txt");
   const std::vector<double> depth = read_stamp_list(source / "depth.txt");

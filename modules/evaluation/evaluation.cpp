@@ -31,6 +31,22 @@ std::string describe(const std::string& name, const std::vector<double>& stamps)
          fixed_text(stamps.front(), 6) + " to " + fixed_text(stamps.back(), 6) + " s";
 }
 
+/// The remedy for stamps that are no seconds, which the other trajectory shows; empty where both may be.
+std::string unit_advice(const std::string& name, double stamp, double other_stamp) {
+  struct Unit {
+    double per_second;
+    const char* name;
+  };
+  constexpr double within = 10.0;  // the same clock within a factor
+  for (const Unit& unit : {Unit{1e3, "milliseconds"}, Unit{1e6, "microseconds"}, Unit{1e9, "nanoseconds"}}) {
+    const double ratio = stamp / (other_stamp * unit.per_second);
+    if (other_stamp > 1e6 && ratio > 1.0 / within && ratio < within)
+      return "The stamps of " + name + " look like " + unit.name + ": divide them by " +
+             shortest_text(unit.per_second) + ".";
+  }
+  return "";
+}
+
 [[noreturn]] void throw_too_few_pairs(const EvaluationOptions& options, std::size_t pairs,
                                       const std::vector<double>& truth, const std::vector<double>& estimate) {
   std::string message = "found " + std::to_string(pairs) + (pairs == 1 ? " pair" : " pairs") +
@@ -39,6 +55,10 @@ std::string describe(const std::string& name, const std::vector<double>& stamps)
                         describe(options.estimate_name, estimate) + ". ";
   if (truth.size() < fewest_pairs || estimate.size() < fewest_pairs)
     message += "Give trajectories of at least 3 poses.";
+  else if (const std::string unit = unit_advice(options.truth_name, truth.front(), estimate.front()) +
+                                    unit_advice(options.estimate_name, estimate.front(), truth.front());
+           !unit.empty())
+    message += unit;
   else if (truth.back() < estimate.front() || estimate.back() < truth.front())
     message += "They do not overlap in time: are both of the same sequence, in seconds of the same clock?";
   else
@@ -90,6 +110,7 @@ Evaluation evaluate(const Trajectory& truth_as_given, const Trajectory& estimate
     errors.push_back(pose.error);
     if (k > 0) result.path_length += (pose.truth - result.poses.back().truth).norm();
     result.poses.push_back(pose);
+    result.mean_up -= truth[pairs[k].first].T_world_camera.linear().col(1) / static_cast<double>(pairs.size());
   }
   result.duration = result.poses.back().timestamp - result.poses.front().timestamp;
   result.absolute_error = statistics_of(errors);

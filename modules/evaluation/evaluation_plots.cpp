@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
 
 #include "holdfast/evaluation/evaluation.hpp"
 #include "holdfast/evaluation/number_text.hpp"
@@ -21,18 +22,39 @@ double gap_threshold(const std::vector<double>& stamps) {
   return intervals.empty() ? 0.0 : 2.5 * median(intervals);
 }
 
-/// The two axes in which the truth extends most, in the order x, y, z.
-std::array<int, 2> widest_axes(const std::vector<EvaluatedPose>& poses) {
-  Eigen::Vector3d minimum = poses.front().truth, maximum = poses.front().truth;
-  for (const EvaluatedPose& pose : poses) {
+/// How a path in space is drawn on paper.
+struct Projection {
+  int sight = 2;  ///< the axis that is looked along
+  bool is_top_view = false;
+
+  std::array<int, 2> axes() const { return {sight == 0 ? 1 : 0, sight == 2 ? 1 : 2}; }
+};
+
+/// The axis of the truth along which cameras that are carried upright feel gravity; nothing when they do not tell.
+std::optional<int> vertical_axis(const Eigen::Vector3d& mean_up) {
+  int axis = 2;
+  const double largest = mean_up.cwiseAbs().maxCoeff(&axis);
+  constexpr double decisive = 0.7;  // within 45 degrees on average
+  return largest > decisive ? std::optional(axis) : std::nullopt;
+}
+
+Projection projection_of(const Evaluation& evaluation) {
+  Eigen::Vector3d minimum = evaluation.poses.front().truth, maximum = minimum;
+  for (const EvaluatedPose& pose : evaluation.poses) {
     minimum = minimum.cwiseMin(pose.truth);
     maximum = maximum.cwiseMax(pose.truth);
   }
+  const Eigen::Vector3d extent = maximum - minimum;
   int narrowest = 2;
   // Strictly less, so that the projection axis is z in case of a tie: the actual top view if z points up.
   for (const int axis : {1, 0})
-    if (maximum[axis] - minimum[axis] < maximum[narrowest] - minimum[narrowest]) narrowest = axis;
-  return {narrowest == 0 ? 1 : 0, narrowest == 2 ? 1 : 2};
+    if (extent[axis] < extent[narrowest]) narrowest = axis;
+  const std::optional<int> vertical = vertical_axis(evaluation.mean_up);
+  if (!vertical) return {narrowest, narrowest == 2};
+  // A path in a vertical plane would be a line from above.
+  constexpr double nearly_flat = 0.2;
+  if (narrowest != *vertical && extent[narrowest] < nearly_flat * extent[*vertical]) return {narrowest, false};
+  return {*vertical, true};
 }
 
 void append_track(PlotLine& line, const std::vector<TimedPosition>& track, const std::array<int, 2>& axes) {
@@ -64,13 +86,14 @@ std::string length_text(double metres) {
 }  // namespace
 
 std::string top_view_svg(const Evaluation& evaluation) {
-  const std::array<int, 2> axes = widest_axes(evaluation.poses);
-  const int sight = 3 - axes[0] - axes[1];
+  const Projection projection = projection_of(evaluation);
+  const std::array<int, 2> axes = projection.axes();
   Plot plot;
-  plot.title = (sight == 2 ? std::string("Top view") : std::string("View along ") + axis_names[sight]) + " (" +
-               axis_names[axes[0]] + "-" + axis_names[axes[1]] + "), alignment " +
-               std::string(to_string(evaluation.options.alignment)) + ", ATE RMSE " +
-               length_text(evaluation.absolute_error.rmse);
+  plot.title =
+      (projection.is_top_view ? std::string("Top view") : std::string("View along ") + axis_names[projection.sight]) +
+      " (" + axis_names[axes[0]] + "-" + axis_names[axes[1]] + "), alignment " +
+      std::string(to_string(evaluation.options.alignment)) + ", ATE RMSE " +
+      length_text(evaluation.absolute_error.rmse);
   plot.x_label = std::string(axis_names[axes[0]]) + " [m]";
   plot.y_label = std::string(axis_names[axes[1]]) + " [m]";
   plot.equal_scale = true;

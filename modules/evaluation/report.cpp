@@ -22,6 +22,7 @@ p { margin: 0 0 12px; }
 .highlights { display: flex; flex-wrap: wrap; gap: 12px; margin: 0 0 20px; }
 .highlight { flex: 1 1 130px; background: #fff; border: 1px solid #dcdcd6; border-radius: 6px; padding: 10px 14px; }
 .highlight b { display: block; font-size: 22px; line-height: 1.3; color: #0072b2; white-space: nowrap; }
+.highlight.alarming b { color: #c1121f; }
 .highlight span { color: #666; font-size: 13px; }
 section { background: #fff; border: 1px solid #dcdcd6; border-radius: 6px; padding: 20px 24px; margin-bottom: 20px; }
 table { border-collapse: collapse; width: 100%; margin: 0 0 16px; font-variant-numeric: tabular-nums; }
@@ -109,7 +110,8 @@ std::string to_html(const Report& report) {
     html += "<div class=\"highlights\">\n";
     for (const ReportHighlight& highlight : report.highlights)
       html +=
-          "<div class=\"highlight\">" + element("b", highlight.value) + element("span", highlight.name) + "</div>\n";
+          std::string(highlight.is_alarming ? "<div class=\"highlight alarming\">" : "<div class=\"highlight\">") +
+          element("b", highlight.value) + element("span", highlight.name) + "</div>\n";
     html += "</div>\n";
   }
   for (const ReportSection& section : report.sections) html += to_html(section);

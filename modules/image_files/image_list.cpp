@@ -51,6 +51,11 @@ class ListLine {
     if (error != std::errc() || stop != word.data() + word.size())
       fail("found '" + std::string(word) + "' where a time stamp should be");
     if (!std::isfinite(result.timestamp)) fail("found the time stamp '" + std::string(word) + "', which is not finite");
+    constexpr double no_clock_has_counted = 1e14;  // seconds
+    if (result.timestamp >= no_clock_has_counted)
+      throw InputError({file_.string(), number_}, "found the time stamp '" + std::string(word) +
+                                                      "', which looks like nanoseconds; expected seconds: divide the "
+                                                      "stamps by 1e9");
     if (has_name) result.name = words_[first_word + 1];
     result.line = number_;
     return result;

@@ -36,7 +36,8 @@ SensorFrame ImageSequence::decode(const ImageFiles& files) {
   frame.depth_delay = files.depth_delay;
   frame.colour = read_at(files.colour_listed_at, [&] {
     return decoder_.read_colour(files.colour, [&](const cv::Size& size) {
-      if (size.width != options_.width || size.height != options_.height)
+      is_of_other_size_ = size.width != options_.width || size.height != options_.height;
+      if (is_of_other_size_)
         throw InputError({files.colour.string()},
                          "is " + size_text(size.width, size.height) + " pixels, but the camera is " +
                              size_text(options_.width, options_.height) +
@@ -46,7 +47,8 @@ SensorFrame ImageSequence::decode(const ImageFiles& files) {
   if (files.depth.empty()) return frame;
   frame.depth = read_at(files.depth_listed_at, [&] {
     return decoder_.read_depth(files.depth, options_.depth_factor, [&](const cv::Size& size) {
-      if (size != frame.colour.size())
+      is_of_other_size_ = size != frame.colour.size();
+      if (is_of_other_size_)
         throw InputError({files.depth.string()}, "is " + size_text(size.width, size.height) +
                                                      " pixels, but its colour image '" + files.colour.string() +
                                                      "' is " + size_text(frame.colour.cols, frame.colour.rows) +
@@ -64,6 +66,8 @@ std::optional<SensorFrame> ImageSequence::next() {
       frame.index = index;
       return frame;
     } catch (const InputError& error) {
+      // Where the first image has another size, all have it: to leave out such frames would leave out all.
+      if (!options_.skip_bad_frames && is_of_other_size_ && index == 0) throw;
       if (!options_.skip_bad_frames)
         throw InputError(error.location(), std::string(error.what()).substr(error.location().to_string().size() + 2) +
                                                "; or leave out such frames with `on_bad_frame: skip`");

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <fstream>
+
+#include "holdfast/core/error.hpp"
 
 namespace holdfast {
 
@@ -134,6 +137,45 @@ ImageStructure examine_image(std::span<const std::uint8_t> bytes) {
   else
     image.problem = "is neither a PNG nor a JPEG image";
   return image;
+}
+
+namespace {
+
+/// Up to `count` bytes of a file from `begin` on.
+std::vector<std::uint8_t> bytes_of(std::ifstream& stream, const std::filesystem::path& file, std::uintmax_t begin,
+                                   std::uintmax_t count) {
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(count));
+  stream.seekg(static_cast<std::streamoff>(begin));
+  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(count));
+  if (!stream) throw InputError({file.string()}, "cannot be read to its end; check the disk, or copy the file again");
+  return bytes;
+}
+
+bool is_end(ImageStructure::Format format, const std::vector<std::uint8_t>& last) {
+  static constexpr std::array<std::uint8_t, 12> png_end = {0, 0, 0, 0, 'I', 'E', 'N', 'D', 0xae, 0x42, 0x60, 0x82};
+  static constexpr std::array<std::uint8_t, 2> jpeg_end = {0xff, 0xd9};
+  const auto ends_with = [&](const auto& end) {
+    return last.size() >= end.size() && std::equal(end.rbegin(), end.rend(), last.rbegin());
+  };
+  return format == ImageStructure::Format::png ? ends_with(png_end) : ends_with(jpeg_end);
+}
+
+}  // namespace
+
+ImageStructure examine_image_ends(const std::filesystem::path& file) {
+  constexpr std::uintmax_t begin_size = 1 << 14, end_size = 12;
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  std::ifstream stream(file, std::ios::binary);
+  if (error || !stream) throw InputError({file.string()}, "cannot be read; check its permissions");
+  if (size > begin_size) {
+    ImageStructure image = examine_image(bytes_of(stream, file, 0, begin_size));
+    if (image.width > 0 && is_end(image.format, bytes_of(stream, file, size - end_size, end_size))) {
+      image.problem.clear();
+      return image;
+    }
+  }
+  return examine_image(bytes_of(stream, file, 0, size));
 }
 
 std::vector<std::uint8_t> palette_indices_as_grey(Bytes bytes) {

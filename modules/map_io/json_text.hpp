@@ -28,6 +28,14 @@ inline std::size_t utf8_length(std::string_view text) {
   return is_none ? 0 : length;
 }
 
+/// The control character (U+0001 to U+001F, U+007F to U+009F) that a text begins with; 0 where it begins with none.
+inline unsigned char control_character(std::string_view text) {
+  const auto first = static_cast<unsigned char>(text[0]);
+  if (first < 0x20 || first == 0x7f) return first;
+  const auto second = static_cast<unsigned char>(text.size() > 1 ? text[1] : 0);
+  return first == 0xc2 && second >= 0x80 && second < 0xa0 ? second : 0;
+}
+
 /// Appends JSON to a text. A map has millions of numbers: they go straight into the text, not through a document.
 class JsonText {
  public:
@@ -48,7 +56,8 @@ class JsonText {
   JsonText& operator<<(const Eigen::Vector3d& v) {
     return *this << "[" << v.x() << "," << v.y() << "," << v.z() << "]";
   }
-  /// A string with its quotes; bytes that are not UTF-8 become U+FFFD.
+  /// A string with its quotes; bytes that are not UTF-8 become U+FFFD. Control characters are escaped, those that JSON
+  /// allows too, since JSON may be printed on a terminal.
   JsonText& quote(std::string_view string) {
     text_ += '"';
     while (!string.empty()) {
@@ -58,8 +67,8 @@ class JsonText {
       if (letter == '"' || letter == '\\') text_ += '\\';
       if (length == 0)
         text_ += "\xef\xbf\xbd";
-      else if (static_cast<unsigned char>(letter) < 0x20)
-        (text_ += "\\u00") += {digits[letter >> 4], digits[letter & 15]};
+      else if (const unsigned char control = control_character(string); control != 0 || letter == '\0')
+        (text_ += "\\u00") += {digits[control >> 4], digits[control & 15]};
       else
         text_ += string.substr(0, length);
       string.remove_prefix(std::max<std::size_t>(length, 1));

@@ -84,6 +84,15 @@ class OriginScope {
 
 }  // namespace
 
+bool can_find_plugin(const std::string& name_or_path, const std::vector<fs::path>& search_first) {
+  try {
+    find_plugin(name_or_path, search_first);
+    return true;
+  } catch (const PluginError&) {
+    return false;
+  }
+}
+
 fs::path load_plugin(Registry& registry, const std::string& name_or_path, const std::vector<fs::path>& search_first) {
   const std::string file = find_plugin(name_or_path, search_first).lexically_normal().string();
   const auto refuse = [&](const std::string& reason) { throw PluginError("plugin '" + file + "' " + reason); };

@@ -9,6 +9,8 @@ const ModuleEntry* find_module(const Registry& registry, const std::string& kind
   if (entry == nullptr)
     diagnostics.push_back(
         {place, "there is no " + kind + " module '" + name + "'; " + registry.suggestion(kind, name)});
+  else if (const std::string reason = registry.absence(kind, name); !reason.empty())
+    diagnostics.push_back({place, "the " + kind + " module '" + name + "' cannot be used: " + reason});
   return entry;
 }
 

@@ -42,13 +42,32 @@ std::vector<std::string> Registry::names(const std::string& kind) const {
 }
 
 void Registry::add_left_out(const std::string& kind, const std::string& name, const std::string& option) {
-  left_out_[kind + '/' + name] = option;
+  left_out_[kind][name] = option;
+}
+
+void Registry::add_unusable(const std::string& kind, const std::string& name, const std::string& reason) {
+  unusable_[kind + '/' + name] = reason;
+}
+
+std::string Registry::absence(const std::string& kind, const std::string& name) const {
+  if (const auto found = unusable_.find(kind + '/' + name); found != unusable_.end()) return found->second;
+  const auto of_this_kind = left_out_.find(kind);
+  if (of_this_kind == left_out_.end() || find(kind, name) != nullptr) return "";
+  const auto found = of_this_kind->second.find(name);
+  if (found == of_this_kind->second.end()) return "";
+  return "it was left out of this build; configure Holdfast with -D" + found->second + "=ON";
+}
+
+std::vector<std::string> Registry::left_out(const std::string& kind) const {
+  std::vector<std::string> names;
+  if (const auto of_this_kind = left_out_.find(kind); of_this_kind != left_out_.end())
+    for (const auto& [name, option] : of_this_kind->second) names.push_back(name);
+  return names;
 }
 
 std::string Registry::suggestion(const std::string& kind, const std::string& name) const {
-  if (const auto found = left_out_.find(kind + '/' + name); found != left_out_.end())
-    return "it was left out of this build; configure Holdfast with -D" + found->second + "=ON";
-  return did_you_mean(name, names(kind));
+  const std::string reason = absence(kind, name);
+  return reason.empty() ? did_you_mean(name, names(kind)) : reason;
 }
 
 const ModuleEntry& Registry::require(const std::string& kind, const std::string& name) const {

@@ -5,6 +5,8 @@
 #include <chrono>
 #include <utility>
 
+#include "holdfast/core/thread_name.hpp"
+
 namespace holdfast {
 
 FrameFeeder::FrameFeeder(FrameSource& source, const RunSettings& settings)
@@ -66,6 +68,7 @@ bool FrameFeeder::wait_until_due(double timestamp, Stopwatch& since_due) {
 }
 
 void FrameFeeder::read() {
+  name_this_thread("frame source");
   try {
     while (true) {
       const Stopwatch decoding;

@@ -93,6 +93,8 @@ ReportSection summary_section(const RunRecord& record) {
   ReportSection summary = section("Summary");
   summary.values = summary_rows(record);
   if (!record.failure.empty()) summary.text = "The run ended before its time: " + record.failure;
+  else
+    summary.text = coverage_warning(record);
   if (record.was_interrupted) summary.text = "The run was interrupted; this is what was done until then.";
   return summary;
 }
@@ -126,7 +128,7 @@ std::vector<ReportHighlight> highlights(const RunRecord& record) {
   std::vector<ReportHighlight> result;
   if (record.evaluation)
     result.push_back({"ATE RMSE", fixed_text(record.evaluation->absolute_error.rmse * 1e3, 2) + " mm"});
-  result.push_back({"coverage", percent_text(record.coverage())});
+  result.push_back({"coverage", percent_text(record.coverage()), has_low_coverage(record)});
   result.push_back({"tracking", fixed_text(record.summary.tracking().median * 1e3, 2) + " ms"});
   return result;
 }

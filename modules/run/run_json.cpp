@@ -131,10 +131,12 @@ Json masks_json(const std::vector<double>& ages) {
 
 }  // namespace
 
+const char* build_commit() { return HOLDFAST_COMMIT; }
+
 std::string run_json(const RunRecord& record) {
   const RunSummary& s = record.summary;
   Json json = {{"holdfast", HOLDFAST_VERSION},
-               {"commit", HOLDFAST_COMMIT},
+               {"commit", build_commit()},
                {"configuration", record.configuration.file},
                {"seed", record.configuration.run.seed},
                {"mode", choice_name(record.configuration.run.mode)},
@@ -144,6 +146,7 @@ std::string run_json(const RunRecord& record) {
   json["failure"] = record.failure.empty() ? Json(nullptr) : Json(record.failure);
   Json& warnings = json["warnings"] = Json::array();
   for (const Diagnostic& warning : record.configuration.warnings) warnings.push_back(warning.to_string());
+  if (const std::string warning = coverage_warning(record); !warning.empty()) warnings.push_back(warning);
   json["frames"] = frames_json(record);
   Json& troubles = json["troubles"] = Json::object();
   for (const auto& [trouble, count] : s.troubles()) troubles[to_string(trouble)] = count;

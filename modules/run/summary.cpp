@@ -10,6 +10,28 @@
 
 namespace holdfast {
 
+namespace {
+
+const char* advice(TrackingTrouble trouble) {
+  switch (trouble) {
+    case TrackingTrouble::no_depth:
+      return "Check the depth factor of the source, which gives the metres of a depth value, and that the depth images "
+             "belong to the colour images.";
+    case TrackingTrouble::few_features:
+      return "Check that the images are sharp and bright, `count` of the features, and that masks do not cover "
+             "everything.";
+    case TrackingTrouble::few_matches:
+    case TrackingTrouble::few_inliers:
+      return "Check that `camera` is the camera of this recording and the depth factor of the source fits; then how "
+             "fast the camera moves, and whether filters or masks leave enough of the static world.";
+    case TrackingTrouble::none:
+      break;
+  }
+  return "";
+}
+
+}  // namespace
+
 std::string percent_text(double share) { return fixed_text(share * 100.0, 2) + " %"; }
 
 std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& record) {
@@ -20,26 +42,26 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& r
                     std::to_string(s.frames()) + " of " + std::to_string(record.frames_expected) +
                         (record.skipped.empty() ? "" : ", " + std::to_string(record.skipped.size()) + " skipped"));
   rows.emplace_back("coverage",
-                    percent_text(record.coverage()) + " (" + std::to_string(record.trajectory.size()) + " poses)");
-  rows.emplace_back("lost", std::to_string(s.lost()) + " frames, recovered " + std::to_string(s.recovered()) +
-                                " times, relocalised " + std::to_string(s.relocalised()));
+                    percent_text(record.coverage()) + " (" + counted(record.trajectory.size(), "pose") + ")");
+  rows.emplace_back("lost", counted(s.lost(), "frame") + ", recovered " + counted(s.recovered(), "time") +
+                                ", relocalised " + std::to_string(s.relocalised()));
   const std::uint64_t masked = s.count(TrackingFallback::masked_features);
   if (const std::uint64_t dense = s.count(TrackingFallback::dense_depth); masked + dense > 0)
     rows.emplace_back("fallback", counted(masked, "frame") + " by masked features, " + counted(dense, "frame") +
                                       " by dense depth");
-  rows.emplace_back("map", std::to_string(record.map_keyframes) + " keyframes, " + std::to_string(record.map_points) +
-                               " points; " + fixed_text(s.mean_inliers(), 0) + " inliers a frame");
+  rows.emplace_back("map", counted(record.map_keyframes, "keyframe") + ", " + counted(record.map_points, "point") +
+                               "; " + fixed_text(s.mean_inliers(), 0) + " inliers a frame");
   if (record.configuration.loop_detector.name != "none")
     rows.emplace_back("loops", std::to_string(record.loops.loops.size()) + " closed");
   if (record.evaluation) {
     const Evaluation& e = *record.evaluation;
-    rows.emplace_back("ATE RMSE", fixed_text(e.absolute_error.rmse, 6) + " m (se3, " + std::to_string(e.poses.size()) +
-                                      " pairs, path " + fixed_text(e.path_length, 2) + " m)");
+    rows.emplace_back("ATE RMSE", fixed_text(e.absolute_error.rmse, 6) + " m (se3, " + counted(e.poses.size(), "pair") +
+                                      ", path " + fixed_text(e.path_length, 2) + " m)");
     if (e.error_per_time.pairs > 0)
       rows.emplace_back("RPE per second", fixed_text(e.error_per_time.translation.rmse, 6) + " m, " +
                                               fixed_text(e.error_per_time.rotation.rmse, 4) + " deg");
   } else {
-    rows.emplace_back("error", "unknown: " + record.no_evaluation);
+    rows.emplace_back("accuracy", "unknown, " + record.no_evaluation);
   }
   const StageRow tracking = s.tracking();
   rows.emplace_back("tracking", fixed_text(tracking.median * 1e3, 2) + " ms a frame (median), " +
@@ -54,12 +76,35 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& r
                                              fixed_text(percentile(threads.delays, 95.0) * 1e3, 2) + " ms (p95), " +
                                              percent_text(threads.late_share()) + " above 33 ms; " +
                                              std::to_string(threads.frames.dropped) + " dropped, " +
-                                             std::to_string(threads.keyframes_deferred) + " keyframes put off");
+                                             counted(threads.keyframes_deferred, "keyframe") + " put off");
   }
   rows.emplace_back("start to first pose", fixed_text(record.start_seconds, 3) + " s");
   rows.emplace_back("whole run", fixed_text(record.total_seconds, 1) + " s, peak memory " +
                                      fixed_text(static_cast<double>(record.peak_memory) / 1e6, 0) + " MB");
   return rows;
+}
+
+bool has_low_coverage(const RunRecord& record) { return record.coverage() < record.configuration.run.minimum_coverage; }
+
+std::string coverage_warning(const RunRecord& record) {
+  if (!has_low_coverage(record) || record.was_interrupted || !record.failure.empty()) return "";
+  std::string text = std::to_string(record.trajectory.size()) + " of " + counted(record.frames_expected, "frame") +
+                     (record.trajectory.size() == 1 ? " has" : " have") + " a pose (" +
+                     percent_text(record.coverage()) + "), less than run.minimum_coverage " +
+                     percent_text(record.configuration.run.minimum_coverage) + ".";
+  TrackingTrouble commonest = TrackingTrouble::none;
+  std::uint64_t frames = 0;
+  for (const auto& [trouble, count] : record.summary.troubles())
+    if (trouble != TrackingTrouble::none && count > frames) {
+      commonest = trouble;
+      frames = count;
+    }
+  if (record.skipped.size() > frames)
+    return text + " The commonest trouble: " + counted(record.skipped.size(), "frame") +
+           " skipped. Check the images; run.json says why each was skipped.";
+  if (frames == 0) return text + " Check the camera and the depth factor.";
+  return text + " The commonest trouble: " + to_string(commonest) + " (" + counted(frames, "frame") + "). " +
+         advice(commonest);
 }
 
 std::string summary_text(const RunRecord& record) {

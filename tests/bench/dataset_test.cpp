@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <set>
 
@@ -139,6 +140,29 @@ TEST_F(DatasetCheckTest, ExplainsWhatIsCut) {
   EXPECT_THAT(problems(), Contains(HasSubstr("1 colour image without a mask of the same stamp")));
   fs::resize_file(path("depth/3.png"), fs::file_size(path("depth/3.png")) / 2);
   EXPECT_THAT(problems(), Contains(HasSubstr("depth/3.png")));
+}
+
+/// Every file is looked at, not only a sample: forty frames, of which two in the middle are cut short.
+TEST_F(DatasetCheckTest, LooksAtEveryFile) {
+  std::string list;
+  for (int i = 0; i < 40; ++i) {
+    const std::string name = "rgb/" + std::to_string(100 + i) + ".png";
+    list += std::to_string(10 + i) + ".0 " + name + "\n";
+    cv::Mat noise(480, 640, CV_8UC3);
+    cv::randu(noise, 0, 255);  // does not compress: larger than what is read of a file at first
+    cv::imwrite(path(name).string(), noise);
+  }
+  program_.write("rec/rgb.txt", list);
+  recipe_.colour = 40;
+  EXPECT_THAT(problems(), Not(Contains(HasSubstr("damaged"))));
+  for (const char* name : {"rgb/117.png", "rgb/121.png"}) fs::resize_file(path(name), fs::file_size(path(name)) - 20);
+  EXPECT_THAT(problems(), Contains(AllOf(HasSubstr("rgb.txt lists 2 images that are damaged: rgb/117.png (line 18) is "
+                                                   "truncated"),
+                                         HasSubstr("rgb/121.png (line 22)"), HasSubstr("download them again"))));
+  std::ofstream(path("rgb/117.png")) << "no image";
+  cv::imwrite(path("rgb/121.png").string(), cv::Mat(240, 320, CV_8UC3, cv::Scalar::all(1)));
+  EXPECT_THAT(problems(), AllOf(Contains(HasSubstr("rgb/117.png (line 18) is neither a PNG nor a JPEG image")),
+                                Contains(HasSubstr("1 image of another size: rgb/121.png (line 22) has 320x240"))));
 }
 
 TEST_F(DatasetCheckTest, SaysWhatIsKnownToBeAbsentAsAFact) {

@@ -134,6 +134,23 @@ TEST_F(TablesTest, SaysPlainlyWhatIsNotSignificantAndWhatIsLeftOut) {
                           HasSubstr("1 sequence left out"), HasSubstr("Coverage falls to 40.0 % (`plain`)")));
 }
 
+/// Neither a browser nor a terminal that shows the reports may be commanded by a text of the matrix.
+TEST_F(TablesTest, EscapesTextsFromFiles) {
+  add(0, 0, 0.5);
+  add(1, 0, 0.25);
+  plan_.matrix.title = "<script>alert(1)</script>\nsecond line \x1b[2J";
+  plan_.matrix.about = "an \x07 alarm <img src=x>";
+  published_.results.resize(1);
+  published_.results[0].system = "a | b <b>\n\x7f";
+  published_.results[0].citation = "somebody";
+  published_.results[0].values["s0"] = 0.1;
+  const std::string report = this->report();
+  EXPECT_THAT(report, AllOf(HasSubstr("# &lt;script>alert(1)&lt;/script> second line \\x1b[2J\n"),
+                            HasSubstr("an \\x07 alarm &lt;img src=x>"), HasSubstr("| a \\| b &lt;b> \\x7f |")));
+  for (const char c : cost_report(plan_, results_, analyse(plan_, results_), published_) + report)
+    EXPECT_TRUE(c == '\n' || (static_cast<unsigned char>(c) >= 0x20 && c != 0x7f && c != '<'));
+}
+
 TEST_F(TablesTest, NeverGivesAPublishedFigureWithoutItsSource) {
   add(0, 0, 0.1);
   plan_.matrix.sequences[0].published = "known";

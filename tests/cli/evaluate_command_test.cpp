@@ -1,29 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "evaluate_command.hpp"
-
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
-#include <CLI/CLI.hpp>
-#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "cli/command.hpp"
 #include "evaluation/synthetic_trajectory.hpp"
 
 namespace holdfast {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
 
-struct Outcome {
-  int exit_code = -1;
-  std::string output;
-  std::string errors;
-};
+using Outcome = test::CommandOutcome;
 
 class EvaluateCommand : public ::testing::Test {
  protected:
@@ -50,21 +45,8 @@ class EvaluateCommand : public ::testing::Test {
     return text.str();
   }
   static Outcome run(std::vector<std::string> arguments) {
-    Outcome outcome;
-    CLI::App app{"program"};
-    add_evaluate_command(app, outcome.exit_code);
-    std::reverse(arguments.begin(), arguments.end());  // as CLI11 takes them
-    arguments.push_back("evaluate");
-    ::testing::internal::CaptureStdout();
-    ::testing::internal::CaptureStderr();
-    try {
-      app.parse(arguments);
-    } catch (const CLI::ParseError& error) {
-      outcome.exit_code = app.exit(error);
-    }
-    outcome.output = ::testing::internal::GetCapturedStdout();
-    outcome.errors = ::testing::internal::GetCapturedStderr();
-    return outcome;
+    arguments.insert(arguments.begin(), "evaluate");
+    return test::run_command(arguments);
   }
 
   std::filesystem::path folder_;
@@ -79,8 +61,8 @@ TEST_F(EvaluateCommand, PrintsATableAndWritesFiles) {
   EXPECT_THAT(outcome.errors, IsEmpty());
   EXPECT_EQ(nlohmann::json::parse(content("figures.json"))["coverage"]["poses"], 90);
   EXPECT_THAT(content("figures.csv"), StartsWith("quantity,statistic,value,unit\n"));
-  EXPECT_THAT(content("new/plots/top_view.svg"), StartsWith("<svg"));
-  EXPECT_THAT(content("new/plots/error_over_time.svg"), HasSubstr("frames without a pose"));
+  EXPECT_THAT(content("new/plots/trajectory.svg"), StartsWith("<svg"));
+  EXPECT_THAT(content("new/plots/error.svg"), HasSubstr("frames without a pose"));
 }
 
 TEST_F(EvaluateCommand, PrintsNothingButJsonWhenAsked) {
@@ -96,7 +78,7 @@ TEST_F(EvaluateCommand, SaysWhatDoesNotCount) {
   std::ofstream(path("estimate.txt"), std::ios::app) << "900 nan 0 0 0 0 0 1\n901 0 0 0 0 0 0 0\n";
   const Outcome outcome = run({path("truth.txt"), path("estimate.txt"), "--json", "-"});
   EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_EQ(outcome.errors, "holdfast evaluate: " + path("estimate.txt") +
+  EXPECT_EQ(outcome.errors, "warning: " + path("estimate.txt") +
                                 ": leaves out 1 pose that is not finite, 1 pose with a zero quaternion\n");
   EXPECT_EQ(nlohmann::json::parse(outcome.output)["estimate"]["poses"], 90);
 }
@@ -105,17 +87,59 @@ TEST_F(EvaluateCommand, ExplainsFailureAndReturnsNonZero) {
   const Outcome missing = run({path("absent.txt"), path("estimate.txt")});
   EXPECT_EQ(missing.exit_code, 1);
   EXPECT_THAT(missing.output, IsEmpty());
-  EXPECT_THAT(missing.errors, HasSubstr("absent.txt: no such file"));
+  EXPECT_THAT(missing.errors, HasSubstr("error: " + path("absent.txt") + ": no such file"));
 
   write_trajectory(path("later.txt"), test::wavy_trajectory(50, 30.0, 900.0));
   const Outcome apart = run({path("truth.txt"), path("later.txt"), "--json", path("figures.json")});
   EXPECT_EQ(apart.exit_code, 1);
   EXPECT_THAT(apart.errors, HasSubstr("later.txt holds 50 poses from 900.000000"));
   EXPECT_FALSE(std::filesystem::exists(path("figures.json")));
+}
 
-  EXPECT_NE(run({path("truth.txt"), path("estimate.txt"), "--alignment", "so3"}).exit_code, 0);
-  EXPECT_NE(run({path("truth.txt"), path("estimate.txt"), "--max-dt", "-1"}).exit_code, 0);
-  EXPECT_EQ(run({path("truth.txt"), path("estimate.txt"), "--json", "-", "--csv", "-"}).exit_code, 1);
+TEST_F(EvaluateCommand, UsageErrorsExitWith2) {
+  const auto errors = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {path("truth.txt"), path("estimate.txt")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.errors, AllOf(StartsWith("error: "), HasSubstr("see `holdfast evaluate --help`")));
+    return outcome.errors;
+  };
+  errors({"--alignment", "so3"});
+  EXPECT_THAT(errors({"--json", "-", "--csv", "-"}), HasSubstr("cannot both go to standard output"));
+  for (const char* option : {"--max-dt", "--delta", "--distance"})
+    for (const char* value : {"-1", "0", "nan", "inf", "1x"}) {
+      const std::string text = errors({option, value});
+      EXPECT_THAT(text, HasSubstr(std::string("found '") + value + "'; expected a number above 0"));
+      EXPECT_LT(text.size(), 150U);  // not the largest of all numbers with its 309 digits
+    }
+  EXPECT_THAT(errors({"--alingment", "se3"}),
+              HasSubstr("there is no option '--alingment'; did you mean '--alignment'?"));
+  EXPECT_EQ(run({"-", "-"}).exit_code, 2);
+}
+
+TEST_F(EvaluateCommand, AsksBeforeItReplacesAFile) {
+  for (const char* option : {"--json", "--csv", "--plots"}) {
+    const bool is_folder = std::string(option) == "--plots";
+    const std::string target = path(is_folder ? "." : "figures");
+    std::ofstream(path(is_folder ? "error.svg" : "figures")) << "precious";
+    const Outcome refused = run({path("truth.txt"), path("estimate.txt"), option, target});
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_THAT(refused.errors, HasSubstr("is there already; name another file, or add --overwrite"));
+    EXPECT_EQ(refused.output, "");
+    EXPECT_EQ(content(is_folder ? "error.svg" : "figures"), "precious");
+    EXPECT_EQ(run({path("truth.txt"), path("estimate.txt"), option, target, "--overwrite"}).exit_code, 0);
+    EXPECT_NE(content(is_folder ? "error.svg" : "figures"), "precious");
+  }
+}
+
+TEST_F(EvaluateCommand, RefusesANamedPipe) {
+  ASSERT_EQ(mkfifo(path("pipe").c_str(), 0600), 0);
+  EXPECT_THAT(run({path("pipe"), path("estimate.txt")}).errors, HasSubstr("pipe: found a named pipe"));
+  EXPECT_THAT(run({path("truth.txt"), path("pipe")}).errors, HasSubstr("pipe: found a named pipe"));
+  const Outcome frames = run({path("truth.txt"), path("estimate.txt"), "--frames", path("pipe")});
+  EXPECT_EQ(frames.exit_code, 1);
+  EXPECT_THAT(frames.errors, HasSubstr("pipe: found a named pipe"));
 }
 
 }  // namespace

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "map_command.hpp"
-
 #include <gmock/gmock.h>
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "cli/command.hpp"
 #include "holdfast/map_io/map_export.hpp"
 #include "map_io/map_files.hpp"
 
@@ -18,31 +16,13 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
 
-struct Outcome {
-  int exit_code = -1;
-  std::string output, errors;
-};
+using Outcome = test::CommandOutcome;
 
 class MapCommand : public test::MapFileTest {
  protected:
   MapCommand() : map_(test::random_map(12, 30, 1)) { write_map(path("map.hfm"), map_); }
 
-  static Outcome run(std::vector<std::string> words) {
-    CLI::App app("holdfast");
-    Outcome outcome;
-    add_map_command(app, outcome.exit_code);
-    ::testing::internal::CaptureStdout();
-    ::testing::internal::CaptureStderr();
-    std::reverse(words.begin(), words.end());  // CLI11 takes them from the back
-    try {
-      app.parse(words);
-    } catch (const CLI::ParseError& error) {
-      outcome.exit_code = app.exit(error, std::cout, std::cerr);
-    }
-    outcome.output = ::testing::internal::GetCapturedStdout();
-    outcome.errors = ::testing::internal::GetCapturedStderr();
-    return outcome;
-  }
+  static Outcome run(const std::vector<std::string>& words) { return test::run_command(words); }
   std::string file() const { return path("map.hfm").string(); }
 
   Map map_;
@@ -80,16 +60,28 @@ TEST_F(MapCommand, ExportsToStandardOutput) {
   EXPECT_TRUE(outcome.output == points_ply(map_));
   EXPECT_EQ(run({"map", "export", file(), "--trajectory", "-"}).output, trajectory_text(keyframe_trajectory(map_)));
   const Outcome two = run({"map", "export", file(), "--points", "-", "--json", "-"});
-  EXPECT_EQ(two.exit_code, 1);
+  EXPECT_EQ(two.exit_code, 2);
   EXPECT_THAT(two.errors, HasSubstr("only one export can go to standard output"));
   EXPECT_THAT(two.output, IsEmpty());
+}
+
+TEST_F(MapCommand, AsksBeforeItReplacesAFile) {
+  for (const char* option : {"--points", "--trajectory", "--json"}) {
+    write("there", "precious");
+    const std::string target = path("there").string();
+    const Outcome refused = run({"map", "export", file(), option, target});
+    EXPECT_EQ(refused.exit_code, 1);
+    EXPECT_THAT(refused.errors, HasSubstr("there: is there already; name another file, or add --overwrite"));
+    EXPECT_EQ(content(path("there")), "precious");
+    EXPECT_EQ(run({"map", "export", file(), option, target, "--overwrite"}).exit_code, 0);
+    EXPECT_NE(content(path("there")), "precious");
+  }
 }
 
 TEST_F(MapCommand, SaysWhatIsWrong) {
   const Outcome missing = run({"map", "info", path("nothing.hfm").string()});
   EXPECT_EQ(missing.exit_code, 1);
-  EXPECT_THAT(missing.errors,
-              AllOf(StartsWith("holdfast map info: "), HasSubstr("nothing.hfm"), HasSubstr("no such file")));
+  EXPECT_THAT(missing.errors, AllOf(StartsWith("error: "), HasSubstr("nothing.hfm"), HasSubstr("no such file")));
   EXPECT_THAT(missing.output, IsEmpty());
   const std::string bytes = content(path("map.hfm"));
   write("cut.hfm", bytes.substr(0, 1000));
@@ -102,13 +94,13 @@ TEST_F(MapCommand, SaysWhatIsWrong) {
   }
   EXPECT_FALSE(std::filesystem::exists(path("points.ply")));
   const Outcome nothing = run({"map", "export", file()});
-  EXPECT_EQ(nothing.exit_code, 1);
-  EXPECT_THAT(nothing.errors, HasSubstr("--points, --trajectory, --json"));
+  EXPECT_EQ(nothing.exit_code, 2);
+  EXPECT_THAT(nothing.errors, HasSubstr("--points, --trajectory, --json; see `holdfast map export --help`"));
   const Outcome unwritable = run({"map", "export", file(), "--points", path("nowhere/points.ply").string()});
   EXPECT_EQ(unwritable.exit_code, 1);
   EXPECT_THAT(unwritable.errors, HasSubstr("cannot be written"));
-  EXPECT_NE(run({"map"}).exit_code, 0);
-  EXPECT_NE(run({"map", "show", file()}).exit_code, 0);
+  EXPECT_EQ(run({"map"}).exit_code, 2);
+  EXPECT_EQ(run({"map", "show", file()}).exit_code, 2);
 }
 
 TEST_F(MapCommand, HelpHasExamples) {

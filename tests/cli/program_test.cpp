@@ -32,10 +32,23 @@ TEST_F(ProgramTest, HelpAndVersion) {
   EXPECT_EQ(help.errors, "");
   const Outcome version = program_.run({"--version"});
   EXPECT_EQ(version.exit_code, 0);
-  EXPECT_THAT(version.output, StartsWith("holdfast "));
+  EXPECT_THAT(version.output,
+              AllOf(StartsWith("holdfast "), HasSubstr("\ncommit     "), HasSubstr("Eigen 3."), HasSubstr("OpenCV 4."),
+                    HasSubstr("Ceres "), HasSubstr("yaml-cpp "), HasSubstr("\nSIMD       ")));
+  EXPECT_EQ(program_.run({"-V"}).output, version.output);
   const Outcome run = program_.run({"run", "--help"});
   EXPECT_EQ(run.exit_code, 0);
   EXPECT_THAT(run.output, AllOf(HasSubstr("--set"), HasSubstr("--output"), HasSubstr("trajectory.txt")));
+  EXPECT_EQ(program_.run({"help", "run"}).output, run.output);
+  EXPECT_EQ(program_.run({"help", "map", "info"}).output, program_.run({"map", "info", "--help"}).output);
+  EXPECT_EQ(program_.run({"help"}).output, help.output);
+  EXPECT_EQ(program_.run({"help", "rnu"}).errors, "error: there is no command 'rnu'; did you mean 'run'?\n");
+}
+
+TEST_F(ProgramTest, OptionsHaveShortNames) {
+  for (const char* command : {"run", "segment", "background", "simulate", "bench"})
+    EXPECT_THAT(program_.run({command, "--help"}).output, AllOf(HasSubstr("-o,--output"), HasSubstr("-q,--quiet")))
+        << command;
 }
 
 TEST_F(ProgramTest, WithoutArgumentsItHelpsAndFails) {
@@ -54,12 +67,23 @@ TEST_F(ProgramTest, WrongArguments) {
   };
   expect_error({"rnu"}, "error: there is no command 'rnu'; did you mean 'run'?");
   expect_error({"map", "inof", "map.hfm"}, "error: there is no command 'inof'; did you mean 'info'?");
-  expect_error({"map", "info"}, "error: FILE is required; see `holdfast map --help`");
+  expect_error({"map", "info"}, "error: FILE is required; see `holdfast map info --help`");
+  expect_error({"map", "export", "map.hfm"}, "error: nothing to export; name at least one");
+  expect_error({"run", "good.yaml", "--ouput", "out"},
+               "error: there is no option '--ouput'; did you mean '--output'? see `holdfast run --help`\n");
+  expect_error({"run", "good.yaml", "--output=out", "--overwite", "--quite=1", "-x"},
+               "error: there is no option '--overwite'; did you mean '--overwrite'? see `holdfast run --help`\n"
+               "error: there is no option '--quite'; did you mean '--quiet'? see `holdfast run --help`\n"
+               "error: there is no option '-x'; see `holdfast run --help`\n");
+  expect_error({"simulate"}, "error: nothing to write; expected --output FOLDER");
+  expect_error({"simulate", "--output", "out", "--duration", "-1"}, "found '-1'; expected a number above 0");
+  expect_error({"evaluate-segmentation"}, "error: nothing to compare");
+  expect_error({"bench", "nowhere.yaml"}, "error: ");
   expect_error({"run"}, "error: CONFIG is required; see `holdfast run --help`");
   expect_error({"run", "good.yaml"}, "error: --output is required; see `holdfast run --help`");
   expect_error({"check", "good.yaml", "--fast"}, "--fast");
   expect_error({"check", "good.yaml", "--set"}, "--set");
-  expect_error({"--fast"}, "see `holdfast --help`");
+  expect_error({"--vresion"}, "did you mean '--version'? see `holdfast --help`");
 }
 
 TEST_F(ProgramTest, ModulesPrintsTheReference) {
@@ -93,14 +117,14 @@ TEST_F(ProgramTest, CheckAcceptsWhatIsRight) {
 
 TEST_F(ProgramTest, TheExamplesAreRight) {
   for (const auto& entry : std::filesystem::directory_iterator(HOLDFAST_EXAMPLE_CONFIGURATIONS)) {
-    const Outcome outcome = program_.run({"check", entry.path().string()});
+    const Outcome outcome = program_.run({"check", entry.path().string(), "--without-data"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   }
 }
 
 TEST_F(ProgramTest, CheckWarnsOfAnotherCamera) {
   const Outcome outcome = program_.run({"check", std::string(HOLDFAST_EXAMPLE_CONFIGURATIONS) + "/rgbd.yaml", "--set",
-                                        "source.tum.path=/data/rgbd_dataset_freiburg3_walking_xyz"});
+                                        "source.tum.path=/data/rgbd_dataset_freiburg3_walking_xyz", "--without-data"});
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_THAT(outcome.errors, testing::AllOf(testing::HasSubstr("warning:"), testing::HasSubstr("rgbd.yaml:4:9"),
                                              testing::HasSubstr("expected 'tum_fr3'")));
@@ -129,8 +153,8 @@ TEST_F(ProgramTest, CheckTellsAllMistakes) {
 
 TEST_F(ProgramTest, SetTakesAnyText) {
   // '=', commas, blanks and brackets reach the value whole, and --set takes one argument only.
-  const Outcome outcome = program_.run(
-      {"check", "--set", "source.tum.path=a=b, c d/[x],y", "--set", "features.orb.count=77", "good.yaml", "--print"});
+  const Outcome outcome = program_.run({"check", "--set", "source.tum.path=a=b, c d/[x],y", "--set",
+                                        "features.orb.count=77", "good.yaml", "--print", "--without-data"});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   EXPECT_THAT(outcome.output, AllOf(HasSubstr("/a=b, c d/[x],y\""), HasSubstr("count: 77")));
 }

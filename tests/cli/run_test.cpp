@@ -47,6 +47,17 @@ class RunTest : public ::testing::Test {
     damaged_ = images[9].filename().string();
   }
 
+  /// Starts a run of ten minutes, and returns when it has begun to read frames.
+  pid_t start_long_run(const std::string& folder, const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words = {"run", "room.yaml", "--set", "source.simulated.duration=600", "-o", folder};
+    words.insert(words.end(), more.begin(), more.end());
+    const pid_t process = program_.start(words);
+    for (int i = 0; i < 3000 && !fs::exists(program_.path(folder + "/trajectory.txt")); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    std::this_thread::sleep_for(std::chrono::seconds(2));
+    return process;
+  }
+
   test::Program program_;
   std::string damaged_;
 };
@@ -131,7 +142,7 @@ TEST_F(RunTest, TwoRunsDoNotShareAFolder) {
   EXPECT_THAT(second.errors, AllOf(HasSubstr("another process is writing into this folder"), HasSubstr("wait for")));
   EXPECT_TRUE(fs::exists(program_.path("out/config.yaml"))) << "nothing of the first is removed";
   kill(first, SIGTERM);
-  EXPECT_EQ(program_.finish(first).exit_code, 130);
+  EXPECT_EQ(program_.finish(first).exit_code, 143);
   EXPECT_EQ(program_.run({"run", "room.yaml", "--overwrite", "--output", "out", "--quiet"}).exit_code, 0);
 }
 
@@ -194,6 +205,88 @@ TEST_F(RunTest, KeepsWhatWasDoneWhenInterrupted) {
   EXPECT_GT(poses, 0U);
   EXPECT_LT(poses, 18000U);
   EXPECT_GE(lines(program_.text("out/trajectory.txt")), poses);
+}
+
+TEST_F(RunTest, AHangupEndsItAsSigtermDoes) {
+  for (const int signal : {SIGTERM, SIGHUP}) {
+    const std::string folder = "out" + std::to_string(signal);
+    const pid_t process = start_long_run(folder);
+    kill(process, signal);
+    const Outcome outcome = program_.finish(process);
+    EXPECT_EQ(outcome.exit_code, 143) << outcome.errors;
+    EXPECT_EQ(summary(folder).at("interrupted"), true);
+    EXPECT_TRUE(fs::exists(program_.path(folder + "/map.hfm")));
+  }
+  // Under nohup it goes on.
+  const auto before = std::signal(SIGHUP, SIG_IGN);
+  const pid_t process = start_long_run("ignored");
+  std::signal(SIGHUP, before);
+  kill(process, SIGHUP);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_EQ(waitpid(process, nullptr, WNOHANG), 0) << "still runs";
+  kill(process, SIGTERM);
+  EXPECT_EQ(program_.finish(process).exit_code, 143);
+}
+
+TEST_F(RunTest, AKilledRunLeavesItsPosesAndSaysSo) {
+  const pid_t process = start_long_run("out");
+  // Poses are flushed each second.
+  for (int i = 0; i < 3000 && lines(program_.text("out/trajectory.txt")) < 5; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  kill(process, SIGKILL);
+  EXPECT_EQ(program_.finish(process).exit_code, 1000 + SIGKILL);
+  EXPECT_FALSE(fs::exists(program_.path("out/run.json")));
+  EXPECT_THAT(program_.text("out/trajectory.txt"), testing::StartsWith("# The run has not come to its end"));
+  program_.write("out/trajectory.txt.tmp", "half");  // as of a run that was killed while it wrote its results
+  const Outcome refused = program_.run({"run", "room.yaml", "--output", "out"});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.errors, AllOf(HasSubstr("holds a run that was killed, with "),
+                                    HasSubstr("poses in trajectory.txt"), HasSubstr("--overwrite")));
+  ASSERT_EQ(program_.run({"run", "room.yaml", "--output", "out", "--overwrite"}).exit_code, 0);
+  EXPECT_EQ(summary("out").at("frames").at("poses"), 15);
+  EXPECT_EQ(lines(program_.text("out/trajectory.txt")), 16U);
+  EXPECT_FALSE(fs::exists(program_.path("out/trajectory.txt.tmp")));
+}
+
+TEST_F(RunTest, LowCoverageIsAWarningAndAFailureWhenStrict) {
+  record_with_a_damaged_image();
+  const std::vector<std::string> run = {"run",         "recording.yaml", "--set", "source.tum.on_bad_frame=skip",
+                                        "--overwrite", "--output",       "out"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), run.begin(), run.end());
+    return program_.run(more);
+  };
+  const Outcome enough = with({"--strict"});
+  EXPECT_EQ(enough.exit_code, 0);
+  EXPECT_EQ(enough.errors, "");
+  const std::string warning = "14 of 15 frames have a pose (93.33 %), less than run.minimum_coverage 95.00 %";
+  const Outcome warned = with({"--set", "run.minimum_coverage=0.95"});
+  EXPECT_EQ(warned.exit_code, 0);
+  EXPECT_THAT(warned.errors,
+              AllOf(HasSubstr("warning: " + warning), HasSubstr("The commonest trouble: 1 frame skipped")));
+  const Outcome strict = with({"--set", "run.minimum_coverage=0.95", "--strict"});
+  EXPECT_EQ(strict.exit_code, 3);
+  EXPECT_THAT(strict.errors, HasSubstr("error: " + warning));
+  EXPECT_THAT(program_.text("out/report.html"), HasSubstr("highlight alarming"));
+}
+
+TEST_F(RunTest, TheLastLineNamesTheReport) {
+  const Outcome outcome = program_.run({"run", "room.yaml", "-o", "deep/out"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_TRUE(outcome.output.ends_with("\nreport               deep/out/report.html\n")) << outcome.output;
+  const Outcome quiet = program_.run({"run", "room.yaml", "-q", "-o", "quiet"});
+  EXPECT_EQ(quiet.output + quiet.errors, "");
+}
+
+TEST_F(RunTest, ThreadsHaveNames) {
+  const pid_t process = start_long_run("out", {"--set", "run.mode=threaded"});
+  std::string names;
+  std::error_code gone;
+  for (const auto& thread : fs::directory_iterator("/proc/" + std::to_string(process) + "/task", gone))
+    names += test::content(thread.path() / "comm");
+  kill(process, SIGTERM);
+  program_.finish(process);
+  EXPECT_THAT(names, AllOf(HasSubstr("frame source\n"), HasSubstr("local mapping\n")));
 }
 
 TEST_F(RunTest, ThreadsTrackEveryFrameAndTellWhatTheyDid) {

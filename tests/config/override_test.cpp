@@ -42,6 +42,12 @@ TEST(Override, ReachesIntoLists) {
               ElementsAre("--set filters.0=semantic_mask: '0' is no element of the list, which is empty"));
 }
 
+TEST(Override, AListThatIsNotThereHasNoElements) {
+  EXPECT_THAT(problems(test::good, {"filters.0=semantic_mask"}),
+              ElementsAre("--set filters.0=semantic_mask: 'filters' has no element 0 to set; expected the whole list, "
+                          "such as filters=[a, b]"));
+}
+
 TEST(Override, IsNamedAsThePlaceOfAnError) {
   EXPECT_THAT(
       problems(test::good, {"features.orb.count=abc"}),

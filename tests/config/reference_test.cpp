@@ -22,6 +22,24 @@ TEST(Reference, TextListsEverything) {
     EXPECT_THAT(text, HasSubstr("\n  " + name + " ")) << name;
 }
 
+TEST(Reference, MarksWhatIsNotInThisBuild) {
+  Registry registry = test::test_registry();
+  registry.add_left_out("features", "sift", "HOLDFAST_PLUGIN_SIFT");
+  registry.add_left_out("observers", "overlay", "HOLDFAST_PLUGIN_OVERLAY");  // the only one of its kind here
+  registry.add_unusable("features", "orb", "its library is not there");
+  const auto text_of = [&](const std::string& name, ReferenceFormat format = ReferenceFormat::text) {
+    return reference(registry, test::test_sections(), name, format);
+  };
+  EXPECT_THAT(text_of(""), testing::AllOf(HasSubstr("  orb                 [not in this build] Summary of orb."),
+                                          HasSubstr("  sift                [not in this build] "),
+                                          HasSubstr("\nobservers:\n  overlay             [not in this build] "),
+                                          HasSubstr("  opencv_orb          Summary of opencv_orb.")));
+  EXPECT_THAT(text_of("orb"), HasSubstr("Not in this build: its library is not there\n"));
+  EXPECT_THAT(text_of("sift"), HasSubstr("configure Holdfast with -DHOLDFAST_PLUGIN_SIFT=ON\n"));
+  const auto json = nlohmann::json::parse(text_of("features", ReferenceFormat::json));
+  for (const auto& entry : json) EXPECT_EQ(entry.at("in_this_build"), entry.at("name") == "opencv_orb") << entry;
+}
+
 TEST(Reference, TextOfOneModuleShowsItsTable) {
   const std::string text = reference_of("orb", ReferenceFormat::text);
   EXPECT_THAT(text, HasSubstr("Summary of orb."));

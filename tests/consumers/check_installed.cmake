@@ -22,3 +22,16 @@ file(GLOB_RECURSE libraries ${WORK_FOLDER}/moved/libholdfast*.so)
 foreach(library IN LISTS libraries)
   check_libraries(${library})
 endforeach()
+
+# Without CMake: the package of pkg-config, which was moved, too.
+find_program(PKG_CONFIG pkg-config)
+if(PKG_CONFIG)
+  file(GLOB_RECURSE package ${WORK_FOLDER}/moved/*/holdfast.pc)
+  cmake_path(GET package PARENT_PATH package_folder)
+  run(COMMAND ${CMAKE_COMMAND} -E env PKG_CONFIG_PATH=${package_folder} ${PKG_CONFIG} --cflags --libs holdfast
+      OUTPUT flags)
+  separate_arguments(flags UNIX_COMMAND "${flags}")
+  run(COMMAND ${CXX} ${CMAKE_CURRENT_LIST_DIR}/whole/main.cpp ${flags} -o ${build}/consumer_of_pkg_config)
+  run(COMMAND ${CMAKE_COMMAND} -E env LD_LIBRARY_PATH=${package_folder}/..
+      ${build}/consumer_of_pkg_config ${CMAKE_CURRENT_LIST_DIR}/whole/simulated.yaml)
+endif()

@@ -2,6 +2,7 @@
 #include "holdfast/core/trajectory.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <fstream>
 #include <limits>
@@ -140,7 +141,27 @@ TEST_F(TrajectoryTest, WritesStampsWithSixAndValuesWithNineDecimals) {
   write_trajectory(folder_ / "out.txt", {pose});
   EXPECT_EQ(
       content(folder_ / "out.txt"),
-      "1305031102.175304 1.000000000 -0.250000000 0.000000001 0.000000000 -0.800000000 0.000000000 0.600000000\n");
+      std::string(trajectory_header) +
+          "1305031102.175304 1.000000000 -0.250000000 0.000000001 0.000000000 -0.800000000 0.000000000 0.600000000\n");
+}
+
+TEST_F(TrajectoryTest, WhatIsRoundedToZeroHasNoSign) {
+  TimedPose pose;
+  pose.T_world_camera = Eigen::Translation3d(-0.0, -1e-12, -6e-10) * Eigen::Quaterniond(1.0, -0.0, -1e-11, 0.0);
+  EXPECT_EQ(pose_text(pose),
+            "0.000000 0.000000000 0.000000000 -0.000000001 0.000000000 0.000000000 0.000000000 1.000000000\n");
+}
+
+TEST_F(TrajectoryTest, BeginsWithACommentThatNamesTheColumns) {
+  const std::string text = trajectory_text({});
+  EXPECT_EQ(text, trajectory_header);
+  EXPECT_EQ(text.front(), '#');
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1);
+}
+
+TEST_F(TrajectoryTest, RefusesANamedPipe) {
+  ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  EXPECT_THAT(error_of(folder_ / "pipe"), HasSubstr("pipe: found a named pipe"));
 }
 
 TEST_F(TrajectoryTest, ReadsWhatItWrote) {

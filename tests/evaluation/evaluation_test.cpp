@@ -16,6 +16,7 @@ namespace {
 using test::moved;
 using test::some_transform;
 using test::wavy_trajectory;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 EvaluationOptions with_alignment(AlignmentKind kind) {
@@ -198,15 +199,57 @@ TEST(EvaluationOutput, StatesAlignmentPairingAndPairs) {
   EXPECT_THAT(text, HasSubstr("one-to-one, nearest stamps first, closer than 0.02 s: 100 pairs"));
 }
 
-TEST(EvaluationPlots, LookAlongTheAxisOfLeastExtent) {
-  const Trajectory flat = wavy_trajectory(200, 30.0);  // z extends least
-  EXPECT_THAT(top_view_svg(evaluate(flat, flat)), HasSubstr("Top view (x-y)"));
-  Eigen::Isometry3d turn = Eigen::Isometry3d::Identity();
-  turn.linear() = Eigen::AngleAxisd(M_PI / 2.0, Eigen::Vector3d::UnitX()).toRotationMatrix();
-  const Trajectory upright = moved(flat, turn);
-  const std::string svg = top_view_svg(evaluate(upright, upright));
-  EXPECT_THAT(svg, HasSubstr("View along y (x-z)"));
-  EXPECT_THAT(svg, HasSubstr(">z [m]<"));
+/// A camera on an ellipse with the given half axes [m]; `up` is the direction in the world that is up in its images.
+Trajectory carried(const Eigen::Vector3d& extent, const Eigen::Vector3d& up) {
+  Trajectory trajectory;
+  for (int i = 0; i < 200; ++i) {
+    const double t = i / 30.0;
+    TimedPose pose;
+    pose.timestamp = 100.0 + t;
+    pose.T_world_camera.translation() =
+        extent.cwiseProduct(Eigen::Vector3d(std::sin(t), std::cos(1.7 * t), std::sin(0.9 * t + 1.0)));
+    const Eigen::AngleAxisd nod(0.3 * std::sin(t), Eigen::Vector3d::UnitX());
+    pose.T_world_camera.linear() =
+        (Eigen::Quaterniond::FromTwoVectors(-Eigen::Vector3d::UnitY(), up) * nod).toRotationMatrix();
+    trajectory.push_back(pose);
+  }
+  return trajectory;
+}
+
+TEST(EvaluationPlots, LookAlongGravity) {
+  const auto view = [](const Eigen::Vector3d& extent, const Eigen::Vector3d& up) {
+    const Trajectory truth = carried(extent, up);
+    return top_view_svg(evaluate(truth, truth));
+  };
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(), z = Eigen::Vector3d::UnitZ();
+  // The camera moves up and down more than to the sides: still from above.
+  EXPECT_THAT(view({1, 0.5, 2}, z), HasSubstr("Top view (x-y)"));
+  EXPECT_THAT(view({1, 0.5, 0.1}, z), HasSubstr("Top view (x-y)"));
+  const std::string upright = view({1, 2, 0.5}, -y);
+  EXPECT_THAT(upright, AllOf(HasSubstr("Top view (x-z)"), HasSubstr(">z [m]<")));
+  // In a vertical plane the path would be a line from above.
+  EXPECT_THAT(view({1, 0.05, 1}, z), HasSubstr("View along y (x-z)"));
+  // A camera that is carried aslant does not tell where up is: the plane of the motion decides.
+  EXPECT_THAT(view({0.1, 0.5, 1}, Eigen::Vector3d(1, 1, 1).normalized()), HasSubstr("View along x (y-z)"));
+  EXPECT_THAT(view({1, 0.5, 0.1}, Eigen::Vector3d(1, 1, 1).normalized()), HasSubstr("Top view (x-y)"));
+  EXPECT_THAT(view({1, 0.5, 0.6}, x), HasSubstr("Top view (y-z)"));
+}
+
+TEST(Evaluation, NamesStampsThatAreNoSeconds) {
+  const Trajectory truth = wavy_trajectory(100, 30.0, 1.3e9);
+  for (const auto& [factor, unit] : {std::pair{1e3, "milliseconds: divide them by 1000."},
+                                     {1e6, "microseconds: divide them by 1e+06."},
+                                     {1e9, "nanoseconds: divide them by 1e+09."}}) {
+    Trajectory estimate = truth;
+    for (TimedPose& pose : estimate) pose.timestamp *= factor;
+    try {
+      evaluate(truth, estimate);
+      ADD_FAILURE() << unit;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), HasSubstr(std::string("The stamps of estimate look like ") + unit));
+      EXPECT_THAT(error.what(), ::testing::Not(HasSubstr("overlap")));
+    }
+  }
 }
 
 TEST(EvaluationPlots, ShadeGaps) {

@@ -41,6 +41,14 @@ TEST(Report, NeedsNothingFromOutside) {
     EXPECT_THAT(html, Not(HasSubstr(outside)));
 }
 
+TEST(Report, DrawsAlarmingFiguresInRed) {
+  Report report;
+  report.highlights = {{"ATE RMSE", "9 mm"}, {"coverage", "12 %", true}};
+  const std::string html = to_html(report);
+  EXPECT_THAT(html, HasSubstr("<div class=\"highlight\"><b>9 mm</b>"));
+  EXPECT_THAT(html, HasSubstr("<div class=\"highlight alarming\"><b>12 %</b>"));
+}
+
 TEST(Report, RefusesRaggedTables) {
   Report report = sample();
   report.sections[0].tables[0].rows[1].pop_back();

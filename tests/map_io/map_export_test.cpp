@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "json_text.hpp"
 #include "map_io/map_files.hpp"
 
 namespace holdfast {
@@ -74,6 +75,16 @@ TEST_F(MapExport, TrajectoryByTime) {
     ASSERT_NE(found, trajectory.end());
     EXPECT_TRUE(found->T_world_camera.isApprox(keyframe.frame.T_world_camera(), 1e-12));
   });
+}
+
+TEST(JsonText, EscapesWhatWouldCommandATerminal) {
+  const std::string name = "\x1b[31m\x7f\xc2\x9b caf\xc3\xa9 \xe9 \"quoted\"";
+  map_io::JsonText json;
+  json.quote(name);
+  EXPECT_EQ(json.text(), "\"\\u001b[31m\\u007f\\u009b caf\xc3\xa9 \xef\xbf\xbd \\\"quoted\\\"\"");
+  json.text().clear();
+  json.quote(std::string(1, '\0'));
+  EXPECT_EQ(json.text(), "\"\\u0000\"");
 }
 
 TEST_F(MapExport, AllAsJson) {

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "holdfast/interfaces/segmenter.hpp"
+#include "holdfast/plugin/module_check.hpp"
 
 namespace holdfast {
 namespace {
@@ -50,6 +51,26 @@ TEST(Registry, SuggestsAName) {
   add_segmenter(registry, "unet");
   EXPECT_EQ(plugin_error([&] { registry.create<Segmenter>("uent", {}, {}); }),
             "no segmenter module is called 'uent'; did you mean 'unet'?");
+}
+
+TEST(Registry, SaysWhatIsNotInThisBuild) {
+  Registry registry;
+  add_segmenter(registry, "unet");
+  add_segmenter(registry, "python");
+  registry.add_left_out("segmenter", "onnx", "HOLDFAST_PLUGIN_ONNX");
+  registry.add_unusable("segmenter", "python", "its library is not there");
+  EXPECT_EQ(registry.absence("segmenter", "unet"), "");
+  EXPECT_EQ(registry.absence("segmenter", "nothing"), "");
+  EXPECT_EQ(registry.absence("segmenter", "python"), "its library is not there");
+  EXPECT_EQ(registry.absence("segmenter", "onnx"),
+            "it was left out of this build; configure Holdfast with -DHOLDFAST_PLUGIN_ONNX=ON");
+  EXPECT_EQ(registry.left_out("segmenter"), std::vector<std::string>{"onnx"});
+  // A configuration that chooses it is wrong, at the place of the name.
+  std::vector<Diagnostic> diagnostics;
+  find_module(registry, "segmenter", "python", {"c.yaml", 3, 12}, diagnostics);
+  ASSERT_EQ(diagnostics.size(), 1U);
+  EXPECT_EQ(diagnostics[0].to_string(),
+            "c.yaml:3:12: the segmenter module 'python' cannot be used: its library is not there");
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/map_io/map_file.hpp"
+#include "holdfast/run/trajectory_journal.hpp"
 #include "run/point_run.hpp"
 
 namespace holdfast {
@@ -55,6 +56,24 @@ TEST_F(ResultsTest, EveryResultIsAFileOfItsOwn) {
   EXPECT_EQ(read_map(folder_ / "map.hfm").points().size(), record_.map_points);
   EXPECT_EQ(text("run.json"), run_json(record_));
   folder_ = folder_.parent_path();
+}
+
+/// What a killed run leaves: every pose of the last second at the latest, under a comment that says so.
+TEST_F(ResultsTest, TheJournalKeepsThePosesOfARunThatIsKilled) {
+  fs::create_directories(folder_);
+  EXPECT_EQ(poses_of_killed_run(folder_), -1);
+  {
+    TrajectoryJournal journal(folder_);
+    EXPECT_EQ(poses_of_killed_run(folder_), 0);
+    for (const TimedPose& pose : record_.trajectory) journal.add(pose);
+  }
+  EXPECT_EQ(poses_of_killed_run(folder_), 30);
+  EXPECT_THAT(text("trajectory.txt"), ::testing::StartsWith("# The run has not come to its end"));
+  EXPECT_EQ(read_trajectory(folder_ / "trajectory.txt").size(), 30U);
+  write_results(record_, folder_);
+  EXPECT_EQ(poses_of_killed_run(folder_), -1);
+  EXPECT_EQ(text("trajectory.txt"), trajectory_text(record_.trajectory));
+  EXPECT_THROW(TrajectoryJournal(folder_ / "nowhere"), InputError);
 }
 
 TEST_F(ResultsTest, AMapThatWasOnlyLocalisedInIsNotWritten) {
@@ -121,6 +140,39 @@ TEST_F(ResultsTest, OneThatCannotBeWrittenDoesNotTakeTheOthersWithIt) {
   }
 }
 
+/// A run with poses for 3 of 30 frames, of which most had no depth.
+TEST_F(ResultsTest, LowCoverageIsAWarningWithItsCommonestTrouble) {
+  EXPECT_FALSE(has_low_coverage(record_));
+  EXPECT_EQ(coverage_warning(record_), "");
+  EXPECT_THAT(report_html(record_), ::testing::Not(HasSubstr("highlight alarming")));
+  record_.trajectory.resize(3);
+  for (int i = 0; i < 25; ++i) {
+    FrameResult result;
+    result.trouble = i < 20 ? TrackingTrouble::no_depth : TrackingTrouble::few_features;
+    record_.summary.add(result, 0.0);
+  }
+  EXPECT_TRUE(has_low_coverage(record_));
+  EXPECT_THAT(coverage_warning(record_),
+              AllOf(HasSubstr("3 of 30 frames have a pose (10.00 %), less than run.minimum_coverage 50.00 %"),
+                    HasSubstr("The commonest trouble: no depth (20 frames)"), HasSubstr("Check the depth factor")));
+  EXPECT_THAT(report_html(record_), AllOf(HasSubstr("<div class=\"highlight alarming\"><b>10.00 %</b>"),
+                                          HasSubstr("The commonest trouble: no depth")));
+  EXPECT_THAT(nlohmann::json::parse(run_json(record_)).at("warnings").dump(), HasSubstr("no depth (20 frames)"));
+  record_.skipped.resize(21);
+  EXPECT_THAT(coverage_warning(record_), HasSubstr("The commonest trouble: 21 frames skipped"));
+  record_.configuration.run.minimum_coverage = 0.1;
+  EXPECT_EQ(coverage_warning(record_), "") << "not below";
+  record_.configuration.run.minimum_coverage = 0.5;
+  record_.was_interrupted = true;
+  EXPECT_EQ(coverage_warning(record_), "") << "frames that were not read say nothing";
+}
+
+TEST_F(ResultsTest, CountsHaveTheirPlural) {
+  record_.map_keyframes = 1;
+  record_.trajectory.resize(1);
+  EXPECT_THAT(summary_text(record_), AllOf(HasSubstr("(1 pose)"), HasSubstr("1 keyframe, "), HasSubstr("points")));
+}
+
 TEST_F(ResultsTest, TheReportShowsWhatTheRunHas) {
   record_.evaluation->absolute_error.rmse = 0.0123;
   EXPECT_THAT(report_html(record_), AllOf(HasSubstr("Holdfast: points"), HasSubstr("12.30 mm"), HasSubstr("<svg"),
@@ -131,7 +183,8 @@ TEST_F(ResultsTest, TheReportShowsWhatTheRunHas) {
   record_.evaluation.reset();
   record_.no_evaluation = "the source has no truth";
   EXPECT_THAT(report_html(record_), AllOf(HasSubstr("Skipped frames"), HasSubstr("blurred.png: is cut short"),
-                                          HasSubstr("unknown: the source has no truth")));
+                                          HasSubstr("unknown, the source has no truth")));
+  EXPECT_THAT(summary_text(record_), HasSubstr("\naccuracy             unknown, the source has no truth\n"));
 }
 
 }  // namespace

@@ -67,6 +67,12 @@ TEST_F(ImageListTest, StampsThatAreNotFiniteNameTheirLine) {
   EXPECT_THAT(error_of("1e999 a\n"), StartsWith(place(1)));
 }
 
+TEST_F(ImageListTest, StampsInNanosecondsNameTheirLine) {
+  EXPECT_THAT(
+      error_of("1403636579763555584 a\n"),
+      AllOf(StartsWith(place(1)), HasSubstr("looks like nanoseconds; expected seconds: divide the stamps by 1e9")));
+}
+
 TEST_F(ImageListTest, EmptyAndMissingLists) {
   EXPECT_THAT(error_of(""), HasSubstr("list.txt: is an empty list"));
   EXPECT_THAT(error_of("# only\n\n# comments\n"), HasSubstr("list.txt: is an empty list"));

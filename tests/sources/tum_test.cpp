@@ -247,6 +247,13 @@ TEST_F(TumSourceTest, GreyColour) {
   expect_bad_frame("rgb.txt", colour_name(2), "is an image of 64x48, 1 channel of 8 bits; expected a colour image");
 }
 
+TEST_F(TumSourceTest, DoesNotAdviseToLeaveOutAllFrames) {
+  // Every image has another size than the camera.
+  const std::string message = input_error([&] { read_all(*open({}, 640, 480)); });
+  EXPECT_THAT(message, HasSubstr("is 64x48 pixels, but the camera is 640x480; give the camera of this recording"));
+  EXPECT_THAT(message, testing::Not(HasSubstr("on_bad_frame")));
+}
+
 TEST_F(TumSourceTest, DepthOfAnotherSize) {
   folder_.write_image(depth_name(2), test::depth_image(2, 32, 24));
   expect_bad_frame("depth.txt", depth_name(2),

@@ -41,6 +41,7 @@ struct RunSettings {
   LateFrames late_frames = LateFrames::queue;  ///< only read in a paced run
   int frame_queue = 4;     ///< max. frames waiting for tracking; four frames bridge a pause of 130 ms at 30 Hz
   int keyframe_queue = 4;  ///< max. keyframes waiting for local mapping, and max. waiting for loop closing
+  double minimum_coverage = 0.5;  ///< share of frames with a pose below which a run counts as a failure to track
 
   /// The reason why the fields do not fit together; empty when they do.
   std::optional<std::string> contradiction() const;

@@ -41,7 +41,15 @@ struct TrajectoryFile {
 /// Reads a trajectory as read_trajectory() does, which says nothing about what it leaves out.
 TrajectoryFile read_trajectory_file(const std::filesystem::path& file);
 
-/// Returns the trajectory in TUM format, with 6 decimals for time stamps and 9 for values, independent of the locale.
+/// The comment line that begins every trajectory that is written: the columns and their units.
+inline constexpr const char* trajectory_header =
+    "# timestamp [s] tx ty tz [m] qx qy qz qw, pose of the camera in the world\n";
+
+/// Returns the line of one pose in TUM format, with 6 decimals for the time stamp and 9 for values, independent of the
+/// locale. A value that is rounded to zero has no sign.
+std::string pose_text(const TimedPose& pose);
+
+/// Returns the trajectory in TUM format: trajectory_header, then pose_text() of every pose.
 std::string trajectory_text(const Trajectory& trajectory);
 
 /// Writes trajectory_text() atomically. Throws InputError if the file cannot be written.

@@ -8,12 +8,13 @@
 #include <utility>
 
 #include "holdfast/core/bounded_queue.hpp"
+#include "holdfast/core/thread_name.hpp"
 #include "holdfast/core/worker_counts.hpp"
 
 namespace holdfast {
 
 /// A thread that does jobs one after the other, in the order in which they come. An exception ends it: what waits is
-/// abandoned, and the exception comes back from rethrow().
+/// abandoned, and the exception comes back from rethrow(). Debuggers and `top -H` show the thread by its name.
 template <class Job>
 class Worker {
  public:
@@ -46,6 +47,7 @@ class Worker {
 
  private:
   void run() {
+    name_this_thread(name_);
     while (std::optional<Job> job = queue_.pop()) {
       const Stopwatch watch;
       std::exception_ptr failure;

@@ -75,6 +75,9 @@ struct Evaluation {
   std::optional<Coverage> coverage;           ///< empty if the frames were not given
   std::vector<TimedPosition> truth_track;     ///< ground truth between the first and the last pose of the estimate
   std::vector<TimedPosition> estimate_track;  ///< all poses of the estimate, aligned
+  /// Mean over the compared true poses of the direction that is up in the image (-y of the camera), in the frame of the
+  /// truth. Near 1 in length for a camera that is carried upright: then it is opposite to gravity.
+  Eigen::Vector3d mean_up = Eigen::Vector3d::Zero();
 };
 
 /// Compares an estimate with the ground truth. Stamps need not be sorted; of several poses with the same stamp the last
@@ -95,8 +98,9 @@ std::string to_csv(const Evaluation& evaluation);
 /// "error": [[t, metres], ...]}, time stamps [s] with a precision of 1 ms and positions [m] with 0.1 mm.
 std::string to_tracks_json(const Evaluation& evaluation);
 
-/// Plots the aligned estimate and the ground truth, projected along the axis of the smallest extent of the ground
-/// truth, with equal scales. Self-contained SVG.
+/// Plots the aligned estimate and the ground truth with equal scales, projected along an axis of the ground truth: the
+/// vertical one, which the camera's own upright direction tells, unless the path is nearly flat as seen from above;
+/// else the axis of the smallest extent of the path. Self-contained SVG.
 std::string top_view_svg(const Evaluation& evaluation);
 /// Plots the absolute error over time with its RMSE. Frames without a pose are shaded, or times without a pair if the
 /// frames are unknown. Self-contained SVG.

@@ -36,6 +36,7 @@ struct ReportSection {
 struct ReportHighlight {
   std::string name;
   std::string value;
+  bool is_alarming = false;  ///< drawn in red
 };
 
 /// The content of a report page, from top to bottom.

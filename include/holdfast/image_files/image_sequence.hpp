@@ -55,6 +55,7 @@ class ImageSequence {
   std::size_t position_ = 0;
   ImageDecoder decoder_;
   std::vector<SkippedFrame> skipped_;
+  bool is_of_other_size_ = false;  ///< the image read last
 };
 
 /// Keeps `count` elements (0 = all remaining) from index `start`. Throws InputError at `place` if `start` is beyond the

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,6 +32,11 @@ struct ImageStructure {
 /// fill with grey, or for which they print messages. Bytes after the end of the image are allowed. Only `bytes` are
 /// read.
 ImageStructure examine_image(std::span<const std::uint8_t> bytes);
+
+/// Looks at the begin and the end of a PNG or JPEG file only, which tells a truncated file and the size of the image
+/// without reading all of it; damage between them stays unseen. Where the end is not in its place, all is read and
+/// examined. Throws InputError if the file cannot be read.
+ImageStructure examine_image_ends(const std::filesystem::path& file);
 
 /// Converts an 8-bit palette PNG that examine_image() accepted to a grey PNG whose pixels are the indices, because the
 /// decoding libraries only provide the palette's colours, which are ambiguous for identical entries.

@@ -13,6 +13,9 @@ namespace holdfast {
 /// environment variable HOLDFAST_PLUGIN_PATH (separated by ':'), then the installed plugin folder.
 std::vector<std::filesystem::path> plugin_search_path(const std::vector<std::filesystem::path>& first);
 
+/// Whether load_plugin() would find a file for this name. The file itself is not looked at.
+bool can_find_plugin(const std::string& name_or_path, const std::vector<std::filesystem::path>& search_first = {});
+
 /// Loads a shared plugin, registers its modules and returns the absolute path of its file. The prefix "lib" and the
 /// suffix ".so" may be omitted in a name without a folder. Throws PluginError if the file is not found (the message
 /// lists the folders searched), cannot be loaded, has no entry function, is incompatible with this build (the message

@@ -66,6 +66,13 @@ class Registry {
 
   /// Records that the build left out a module of ours; `option` is the CMake option that builds it.
   void add_left_out(const std::string& kind, const std::string& name, const std::string& option);
+  /// Records that a registered module cannot be made in this build; `reason` says why and how to change it.
+  void add_unusable(const std::string& kind, const std::string& name, const std::string& reason);
+  /// Why a module cannot be made in this build and how to change that, for one that was left out, too; empty for any
+  /// other name.
+  std::string absence(const std::string& kind, const std::string& name) const;
+  /// Names of a kind's modules that were left out of this build, sorted.
+  std::vector<std::string> left_out(const std::string& kind) const;
   /// How to correct a name that the kind does not have, for messages: the CMake option for a module that was left out
   /// of this build, otherwise the similar names.
   std::string suggestion(const std::string& kind, const std::string& name) const;
@@ -88,7 +95,8 @@ class Registry {
   const ModuleEntry& require(const std::string& kind, const std::string& name) const;
 
   std::map<std::string, std::map<std::string, ModuleEntry>> entries_;
-  std::map<std::string, std::string> left_out_;  // "kind/name" to the CMake option
+  std::map<std::string, std::map<std::string, std::string>> left_out_;  // kind, name and CMake option
+  std::map<std::string, std::string> unusable_;                         // "kind/name" and reason
   std::string origin_ = "built in";
 };
 

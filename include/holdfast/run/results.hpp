@@ -20,6 +20,16 @@ const std::vector<std::string>& result_names();
 /// some cannot be written, the others are, and then InputError names those that were not.
 void write_results(const RunRecord& record, const std::filesystem::path& folder);
 
+/// Whether the run found poses for a smaller share of its frames than run.minimum_coverage.
+bool has_low_coverage(const RunRecord& record);
+/// What a run with low coverage most often suffered from, and what to check; in whole sentences. Empty for other
+/// runs, and for one that was interrupted or failed, whose unread frames say nothing.
+std::string coverage_warning(const RunRecord& record);
+
+/// The commit that this library was built from, with "-dirty" for changes that were not committed; "unknown" outside a
+/// checkout.
+const char* build_commit();
+
 /// The content of run.json: version, seed, machine, counts, coverage, stage times and errors.
 std::string run_json(const RunRecord& record);
 /// The content of report.html: one self-contained page.

@@ -11,18 +11,19 @@ namespace holdfast::python_plugin {
 
 namespace {
 
+constexpr const char* library = "holdfast_python";
+constexpr const char* remedy =
+    "To have it: install python3-dev, pybind11-dev and python3-numpy (names of Debian; `sh "
+    "cmake/install_dependencies.sh --python` does it), configure Holdfast with -DHOLDFAST_PYTHON=ON, build and install "
+    "it again; for a program outside that installation name the folder of the library in HOLDFAST_PLUGIN_PATH";
+
 std::unique_ptr<Segmenter> make(const PythonSettings& settings, const CreationContext& context) {
   Registry registry;
   try {
-    load_plugin(registry, "holdfast_python");
+    load_plugin(registry, library);
   } catch (const PluginError& error) {
-    throw PluginError(std::string("the segmenter 'python' needs Python in this build of Holdfast, and its library "
-                                  "'holdfast_python' cannot be used: ") +
-                      error.what() +
-                      ". To have it: install python3-dev, pybind11-dev and python3-numpy (names of Debian; `sh "
-                      "cmake/install_dependencies.sh --python` does it), configure Holdfast with -DHOLDFAST_PYTHON=ON, "
-                      "build and install it again; for a program outside that installation name the folder of the "
-                      "library in HOLDFAST_PLUGIN_PATH");
+    throw PluginError(std::string("the segmenter 'python' needs Python in this build of Holdfast, and its library '") +
+                      library + "' cannot be used: " + error.what() + ". " + remedy);
   }
   return registry.create<Segmenter>("python", ParameterTable<PythonSettings>().values(settings), context);
 }
@@ -36,4 +37,8 @@ HOLDFAST_PLUGIN(python, registry) {
   registry.add<Segmenter, python_plugin::PythonSettings>(
       {.name = "python", .summary = "A segmenter written in Python: a file with `class Segmenter`."},
       python_plugin::make);
+  if (!can_find_plugin(python_plugin::library))
+    registry.add_unusable("segmenter", "python",
+                          std::string("it needs Python in this build of Holdfast, and its library '") +
+                              python_plugin::library + "' is not there. " + python_plugin::remedy);
 }

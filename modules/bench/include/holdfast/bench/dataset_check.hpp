@@ -19,8 +19,8 @@ struct DatasetCheck {
 /// The recipe whose folder, or whose name, a path ends with; nullptr when none does.
 const DatasetRecipe* recipe_of_folder(const std::filesystem::path& folder);
 
-/// Looks at a recording: are the lists there and readable, is every image that they list, do the first, the middle and
-/// the last one decode to the camera's size, does the truth cover them, are there as many as the recipe says, has every
+/// Looks at a recording: are the lists there and readable, is every image that they list, has each its end and the
+/// camera's size, does a sample of them decode, does the truth cover them, are there as many as the recipe says, has every
 /// colour image its mask where there should be masks. Without a recipe: a recording in TUM layout of any camera.
 DatasetCheck check_dataset(const std::filesystem::path& folder, const DatasetRecipe* recipe);
 

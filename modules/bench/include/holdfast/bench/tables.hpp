@@ -9,7 +9,11 @@
 
 namespace holdfast {
 
-/// A table as Markdown, the first column flush left and the others flush right; '|' is escaped.
+/// Text from a file as one line of Markdown: HTML shows as it is written instead of being obeyed, line feeds become
+/// blanks, and other control characters are written out, such as \x1b.
+std::string markdown_text(const std::string& text);
+/// A table as Markdown, the first column flush left and the others flush right. Cells are escaped by markdown_text(),
+/// and '|' is, too.
 std::string to_markdown(const ReportTable& table);
 /// A table as CSV with the header as its first line; quoted as RFC 4180 wants it.
 std::string to_csv(const ReportTable& table);

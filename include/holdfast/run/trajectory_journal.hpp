@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+
+#include "holdfast/core/stage_times.hpp"
+#include "holdfast/core/trajectory.hpp"
+
+namespace holdfast {
+
+/// Writes poses while a run goes, so that a run that is killed leaves them: trajectory.txt in TUM format, one line a
+/// pose, flushed each second. A comment at its head says that the run has not come to its end; write_results() replaces
+/// the file by the corrected trajectory. Used by one thread.
+class TrajectoryJournal {
+ public:
+  /// Begins `folder`/trajectory.txt. Throws InputError if the file cannot be written.
+  explicit TrajectoryJournal(const std::filesystem::path& folder);
+  /// Adds a pose as it was estimated. What can no longer be written, as on a full disk, is dropped: the run goes on,
+  /// and write_results() reports the disk.
+  void add(const TimedPose& pose);
+
+ private:
+  std::ofstream stream_;
+  Stopwatch since_flush_;
+};
+
+/// Number of poses that a killed run has left in a folder; -1 if the folder does not hold such a run.
+int poses_of_killed_run(const std::filesystem::path& folder);
+
+}  // namespace holdfast

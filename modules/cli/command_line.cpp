@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "command_line.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "background_command.hpp"
+#include "bench_command.hpp"
+#include "check_command.hpp"
+#include "completion_command.hpp"
+#include "dataset_command.hpp"
+#include "evaluate_command.hpp"
+#include "evaluate_segmentation_command.hpp"
+#include "holdfast/core/error.hpp"
+#include "manual_command.hpp"
+#include "map_command.hpp"
+#include "modules_command.hpp"
+#include "run_command.hpp"
+#include "segment_command.hpp"
+#include "simulate_command.hpp"
+#include "terminal.hpp"
+#include "unknown_words.hpp"
+#include "usage_error.hpp"
+#include "version_text.hpp"
+
+namespace holdfast {
+
+namespace {
+
+constexpr int usage_exit_code = 2;
+
+constexpr const char* description = R"(Visual SLAM for rooms where people move.
+
+A first look:
+  holdfast run examples/configs/demo.yaml --output out
+Your own recording (TUM layout):
+  holdfast run examples/configs/rgbd.yaml --set source.tum.path=RECORDING --output out
+What a configuration can say:
+  holdfast modules
+  holdfast modules orb
+)";
+
+/// What was printed may not have arrived, as on a full disk: then the exit code says so.
+int after_output(int exit_code) {
+  std::cout.flush();
+  if (exit_code != 0 || (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout)) return exit_code;
+  print_error("standard output could not be written; is the disk full?");
+  return 1;
+}
+
+/// Help and version go to standard output; what is wrong with the arguments to standard error, with where to look.
+int answer_parse_error(const CLI::App& app, const CLI::ParseError& error) {
+  if (error.get_exit_code() == 0) return after_output(app.exit(error));
+  print_error(std::string(error.what()) + "; see `" + name_of_parsed_command(app) + " --help`");
+  return usage_exit_code;
+}
+
+/// `help COMMAND` is another way to write `COMMAND --help`.
+void rewrite_help(std::vector<std::string>& words) {
+  if (words.empty() || words.front() != "help") return;
+  words.erase(words.begin());
+  if (words.empty() || words.back() != "--help") words.emplace_back("--help");
+}
+
+}  // namespace
+
+void add_commands(CLI::App& app, int& exit_code) {
+  app.description(description);
+  app.set_version_flag("-V,--version", version_text(), "Print version, commit, libraries and SIMD level");
+  app.require_subcommand(1);
+  add_run_command(app, exit_code);
+  add_bench_command(app, exit_code);
+  add_dataset_command(app, exit_code);
+  add_evaluate_command(app, exit_code);
+  add_evaluate_segmentation_command(app, exit_code);
+  add_map_command(app, exit_code);
+  add_background_command(app, exit_code);
+  add_simulate_command(app, exit_code);
+  add_segment_command(app, exit_code);
+  add_check_command(app, exit_code);
+  add_modules_command(app, exit_code);
+  add_completion_command(app, exit_code);
+  add_manual_command(app, exit_code);
+  app.add_subcommand("help", "Print the help of a command, as COMMAND --help does");
+}
+
+int run_program(int argument_count, const char* const* arguments) {
+  CLI::App app("", "holdfast");
+  int exit_code = 0;
+  add_commands(app, exit_code);
+  std::vector<std::string> words(arguments + 1, arguments + argument_count);
+  if (words.empty()) {
+    std::fputs(app.help().c_str(), stderr);
+    return usage_exit_code;
+  }
+  rewrite_help(words);
+  if (const std::vector<std::string> unknown = unknown_words(app, words); !unknown.empty()) {
+    for (const std::string& message : unknown) print_error(message);
+    return usage_exit_code;
+  }
+  try {
+    std::reverse(words.begin(), words.end());  // CLI11 takes them from the back
+    app.parse(words);
+  } catch (const CLI::ParseError& error) {
+    return answer_parse_error(app, error);
+  } catch (const ConfigurationError& error) {
+    for (const Diagnostic& diagnostic : error.diagnostics()) print_error(diagnostic.to_string());
+    return usage_exit_code;
+  } catch (const UsageError& error) {
+    print_error(std::string(error.what()) + "; see `" + name_of_parsed_command(app) + " --help`");
+    return usage_exit_code;
+  } catch (const std::exception& error) {
+    print_error(error.what());
+    return 1;
+  }
+  return after_output(exit_code);
+}
+
+}  // namespace holdfast

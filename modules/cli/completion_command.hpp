@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace holdfast {
+
+/// Adds `holdfast completion` to the program. exit_code is set when the command ran.
+void add_completion_command(CLI::App& app, int& exit_code);
+
+}  // namespace holdfast

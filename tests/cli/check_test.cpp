@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// `holdfast check` finds what `holdfast run` would find before its first frame.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include "cli/program.hpp"
+
+namespace holdfast {
+namespace {
+
+using test::Outcome;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+class CheckTest : public ::testing::Test {
+ protected:
+  CheckTest() {
+    program_.write("good.yaml",
+                   "source: { simulated: { duration: 0.1 } }\ncamera: tum_fr1\nfeatures: orb\noptimizer: ceres\n");
+  }
+  /// The answer of `check` with these overrides, which is to be that of `run`.
+  Outcome check(const std::vector<std::string>& overrides) const {
+    std::vector<std::string> words = {"check", "good.yaml"};
+    for (const std::string& text : overrides) words.insert(words.end(), {"--set", text});
+    const Outcome checked = program_.run(words);
+    words.front() = "run";
+    words.insert(words.end(), {"--output", "out", "--quiet"});
+    const Outcome run = program_.run(words);
+    EXPECT_EQ(checked.exit_code, run.exit_code);
+    EXPECT_EQ(checked.errors, run.errors);
+    EXPECT_FALSE(std::filesystem::exists(program_.path("out")));
+    return checked;
+  }
+
+  test::Program program_;
+};
+
+TEST_F(CheckTest, FindsWhatTheModulesOfARunMiss) {
+  Outcome outcome = check({"source.simulated.scene=nowhere.yaml"});
+  EXPECT_NE(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.errors, AllOf(StartsWith("error: "), HasSubstr("nowhere.yaml")));
+  outcome = check({"source.tum.path=nowhere"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.errors, HasSubstr("/nowhere: is missing"));
+  outcome = check({"segmenter={onnx: {model: nowhere.onnx, classes: [background, person]}}"});
+  EXPECT_NE(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.errors, HasSubstr("nowhere.onnx"));
+  outcome = check({"segmenter={python: {file: nowhere.py}}"});
+  EXPECT_NE(outcome.exit_code, 0);
+}
+
+TEST_F(CheckTest, LooksAtTheConfigurationAloneWhenAsked) {
+  const Outcome outcome = program_.run({"check", "good.yaml", "--set", "source.tum.path=nowhere", "--without-data"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_EQ(outcome.output, "ok good.yaml: tum -> orb -> ceres\n");
+}
+
+TEST_F(CheckTest, WritesNothing) {
+  const auto count = [&] { return std::distance(std::filesystem::directory_iterator(program_.path("")), {}); };
+  program_.run({"check", "good.yaml", "--set", "observers=[overlay, objects]"});  // begins stdout and stderr
+  const auto before = count();
+  EXPECT_EQ(program_.run({"check", "good.yaml", "--set", "observers=[overlay, objects]"}).exit_code, 0);
+  EXPECT_EQ(count(), before);
+}
+
+/// The program without the library beside it that holds the segmenter `python`.
+TEST_F(CheckTest, KnowsThatASegmenterIsNotInThisBuild) {
+  std::filesystem::create_directories(program_.path("elsewhere/bin"));
+  std::filesystem::copy_file(HOLDFAST_PROGRAM, program_.path("elsewhere/bin/holdfast"));
+  const auto run = [&](const std::string& arguments) {
+    const std::string line =
+        "cd '" + program_.path("").string() + "' && elsewhere/bin/holdfast " + arguments + " > answer 2>&1";
+    return WEXITSTATUS(std::system(line.c_str()));
+  };
+  EXPECT_EQ(run("check good.yaml --without-data --set 'segmenter={python: {file: mine.py}}'"), 2);
+  EXPECT_THAT(program_.text("answer"),
+              AllOf(HasSubstr("the segmenter module 'python' cannot be used"), HasSubstr("-DHOLDFAST_PYTHON=ON")));
+  EXPECT_EQ(run("modules"), 0);
+  EXPECT_THAT(program_.text("answer"), AllOf(HasSubstr("\n  python              [not in this build] A segmenter"),
+                                             HasSubstr("\n  unet                Segments")));
+}
+
+TEST_F(CheckTest, ReadsStandardInput) {
+  const auto run = [&](const std::string& arguments) {
+    const std::string line = "cd '" + program_.path("").string() + "' && cat good.yaml | '" HOLDFAST_PROGRAM "' " +
+                             arguments + " > answer 2>&1";
+    return WEXITSTATUS(std::system(line.c_str()));
+  };
+  EXPECT_EQ(run("check -"), 0);
+  EXPECT_EQ(program_.text("answer"), "ok /dev/stdin: simulated -> orb -> ceres\n");
+  // Paths in it count from the current folder.
+  EXPECT_EQ(run("check - --set features.orb.count=1"), 2);
+  EXPECT_EQ(run("run - --output out --quiet"), 0) << program_.text("answer");
+  program_.write("good.yaml", "source: { tum: { path: rec } }\ncamera: tum_fr1\nfeatures: orb\noptimizer: ceres\n");
+  EXPECT_EQ(run("check -"), 1);
+  EXPECT_THAT(program_.text("answer"), HasSubstr(program_.path("rec").string() + ": is missing"));
+}
+
+TEST_F(CheckTest, RefusesANamedPipe) {
+  ASSERT_EQ(mkfifo(program_.path("pipe").c_str(), 0600), 0);
+  const Outcome outcome = program_.run({"check", "pipe"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_EQ(outcome.errors, "error: pipe: is a named pipe, which may never end; expected a configuration in YAML\n");
+}
+
+TEST_F(CheckTest, TheDemoIsBuiltWithPython) {
+  const std::string demo = test::content(HOLDFAST_SOURCE_FOLDER "/cmake/demo.sh");
+  EXPECT_THAT(demo, AllOf(HasSubstr("install_dependencies.sh --python"), HasSubstr("-DHOLDFAST_PYTHON=ON")));
+}
+
+}  // namespace
+}  // namespace holdfast
