@@ -8,6 +8,7 @@
 #   sh cmake/install_dependencies.sh --documentation  also what the tests of the documentation need
 #   sh cmake/install_dependencies.sh --benchmarks     also what the benchmarks are built of
 #   sh cmake/install_dependencies.sh --python         also what the segmenter `python` is built of, and numpy
+#   sh cmake/install_dependencies.sh --clang          also clang, for the fuzz targets and the quick sanitizer build
 #   sh cmake/install_dependencies.sh --dry-run        say what would be installed, change nothing
 set -eu
 
@@ -27,9 +28,10 @@ for argument in "$@"; do
     --documentation) packages="$packages python3 doxygen" ;;
     --benchmarks) packages="$packages libbenchmark-dev" ;;
     --python) packages="$packages python3-dev pybind11-dev python3-numpy" ;;
+    --clang) packages="$packages clang libclang-rt-14-dev llvm" ;;
     --dry-run) dry_run=yes ;;
-    -h | --help) sed -n '3,11s/^# \{0,1\}//p' "$0"; exit 0 ;;
-    *) fail "unknown argument '$argument'; known are --training, --documentation, --benchmarks, --python, --dry-run and --help" ;;
+    -h | --help) sed -n '3,12s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) fail "unknown argument '$argument'; known are --training, --documentation, --benchmarks, --python, --clang, --dry-run and --help" ;;
   esac
 done
 

@@ -36,6 +36,9 @@ void set_value(ConfigurationNode& root, const std::string& key_path, Configurati
   const std::vector<std::string> path = split(key_path);
   if (std::any_of(path.begin(), path.end(), [](const std::string& part) { return part.empty(); }))
     fail("the key '" + key_path + "' has an empty part; expected a key path, such as features.orb.count");
+  constexpr std::size_t most_parts = 100;  // as deep as YAML may be, so that trees can be walked recursively
+  if (path.size() > most_parts)
+    fail("the key has " + std::to_string(path.size()) + " parts; expected at most " + std::to_string(most_parts));
 
   ConfigurationNode* node = &root;
   for (std::size_t depth = 0; depth < path.size(); ++depth) {

@@ -88,12 +88,11 @@ LabelMap::LabelMap(const TextMap& labels, const std::string& where)
       label = static_cast<std::size_t>(std::find(classes_.begin(), classes_.end(), name) - classes_.begin());
       if (label == classes_.size()) classes_.push_back(name);
     }
-    const std::string* other = nullptr;
     for (std::size_t value = range->first; value <= range->second; ++value) {
-      if (named_by[value] != nullptr && other == nullptr) {
-        other = named_by[value];
-        problem("'" + key + "' and '" + *other + "' both name the value " + std::to_string(value) +
+      if (named_by[value] != nullptr) {
+        problem("'" + key + "' and '" + *named_by[value] + "' both name the value " + std::to_string(value) +
                 "; expected ranges that do not overlap");
+        break;  // the first value is enough to say, and many overlapping ranges would take long
       }
       named_by[value] = &key;
       label_of_value_[value] = static_cast<std::uint16_t>(label);

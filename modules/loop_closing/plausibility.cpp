@@ -29,7 +29,8 @@ double way_between(const Map& map, KeyFrameId from, KeyFrameId to) {
   way[from.slot] = 0.0;
   queue.emplace(0.0, from);
   while (!queue.empty()) {
-    const auto [length, id] = queue.top();
+    const double length = queue.top().first;
+    const KeyFrameId id = queue.top().second;
     queue.pop();
     if (id == to) return length;
     if (length > way[id.slot]) continue;

@@ -16,7 +16,9 @@ namespace {
 /// Reads a file at given offsets; reading beyond its end fails.
 class ElfFile {
  public:
-  explicit ElfFile(const std::filesystem::path& file) : stream_(file, std::ios::binary) {}
+  explicit ElfFile(const std::filesystem::path& file) : stream_(file, std::ios::binary) {
+    if (stream_.seekg(0, std::ios::end)) size_ = static_cast<std::uint64_t>(stream_.tellg());
+  }
 
   bool read(std::uint64_t offset, void* into, std::uint64_t size) {
     stream_.clear();
@@ -25,14 +27,15 @@ class ElfFile {
   }
   template <class Item>
   std::vector<Item> table(std::uint64_t offset, std::uint64_t count) {
-    constexpr std::uint64_t max_size = 1U << 24U;  // a damaged file must not exhaust the memory
-    std::vector<Item> items(count <= max_size ? count : 0);
+    // A damaged file must not exhaust the memory: no table is larger than the file.
+    std::vector<Item> items(offset <= size_ && count <= (size_ - offset) / sizeof(Item) ? count : 0);
     if (items.empty() || !read(offset, items.data(), items.size() * sizeof(Item))) items.clear();
     return items;
   }
 
  private:
   std::ifstream stream_;
+  std::uint64_t size_ = 0;
 };
 
 /// File offset of a virtual address of the library.
@@ -45,15 +48,16 @@ std::optional<std::uint64_t> file_offset(const std::vector<Elf64_Phdr>& segments
 
 std::optional<Elf64_Sym> find_symbol(ElfFile& file, const Elf64_Ehdr& header, const std::string& wanted) {
   const auto sections = file.table<Elf64_Shdr>(header.e_shoff, header.e_shnum);
-  for (const Elf64_Shdr& section : sections) {
-    if (section.sh_type != SHT_DYNSYM || section.sh_link >= sections.size()) continue;
-    const Elf64_Shdr& text = sections[section.sh_link];
-    const auto names = file.table<char>(text.sh_offset, text.sh_size);
-    for (const Elf64_Sym& symbol : file.table<Elf64_Sym>(section.sh_offset, section.sh_size / sizeof(Elf64_Sym))) {
-      if (symbol.st_shndx == SHN_UNDEF || symbol.st_name >= names.size()) continue;
-      const char* name = names.data() + symbol.st_name;
-      if (wanted == std::string(name, strnlen(name, names.size() - symbol.st_name))) return symbol;
-    }
+  // A library has one section of dynamic symbols.
+  const auto section = std::find_if(sections.begin(), sections.end(),
+                                    [](const Elf64_Shdr& candidate) { return candidate.sh_type == SHT_DYNSYM; });
+  if (section == sections.end() || section->sh_link >= sections.size()) return std::nullopt;
+  const Elf64_Shdr& text = sections[section->sh_link];
+  const auto names = file.table<char>(text.sh_offset, text.sh_size);
+  for (const Elf64_Sym& symbol : file.table<Elf64_Sym>(section->sh_offset, section->sh_size / sizeof(Elf64_Sym))) {
+    if (symbol.st_shndx == SHN_UNDEF || symbol.st_name >= names.size()) continue;
+    const char* name = names.data() + symbol.st_name;
+    if (wanted == std::string(name, strnlen(name, names.size() - symbol.st_name))) return symbol;
   }
   return std::nullopt;
 }
@@ -90,7 +94,7 @@ bool is_cut_off(const std::filesystem::path& path) {
   if (error || !header) return false;
   const auto segments = file.table<Elf64_Phdr>(header->e_phoff, header->e_phnum);
   return segments.empty() || std::any_of(segments.begin(), segments.end(), [&](const Elf64_Phdr& segment) {
-           return segment.p_type == PT_LOAD && segment.p_offset + segment.p_filesz > size;
+           return segment.p_type == PT_LOAD && (segment.p_offset > size || segment.p_filesz > size - segment.p_offset);
          });
 }
 

@@ -137,8 +137,9 @@ void RoomBuilder::row_of_books(Object& object, double from, double to, double fr
     const double thick = std::min(random.uniform(0.022, 0.062), to - x),
                  height = most_height * random.uniform(0.72, 0.97);
     const double back_off = random.uniform(0.0, 0.03), deep = random.uniform(0.13, 0.19);
+    const auto place = static_cast<std::int64_t>(x * 1e4);  // may be negative
     const TextureArea spine =
-        paint(pictures::book_spine(texels(thick, height, 700.0), random.fork(static_cast<std::uint64_t>(x * 1e4))));
+        paint(pictures::book_spine(texels(thick, height, 700.0), random.fork(static_cast<std::uint64_t>(place))));
     // Covers continue the colour of the spine's upper end. Backs and undersides are never seen.
     const TextureArea cover{spine.texture, 0.3F * spine.width, 2.0F, 0.4F * spine.width, 0.1F * spine.height};
     const Vector3f low(Eigen::Vector3d(x, front_y + back_off, ground).cast<float>());

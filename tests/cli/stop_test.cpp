@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Runs that are stopped at any moment leave a folder that can be read. HOLDFAST_STOPS sets how often.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "cli/program.hpp"
+#include "holdfast/core/random.hpp"
+
+namespace holdfast {
+namespace {
+
+namespace fs = std::filesystem;
+
+class StopTest : public ::testing::Test {
+ protected:
+  StopTest() {
+    program_.write("room.yaml",
+                   "source: { simulated: { duration: 2 } }\n"
+                   "camera: { width: 160, height: 120, fx: 135, fy: 135, cx: 79.5, cy: 59.5 }\n"
+                   "features: { orb: { count: 300 } }\noptimizer: ceres\nloop_detector: flann\nsegmenter: truth\n"
+                   "filters: [semantic_mask, multi_view_depth]\n"
+                   "run: { mode: threaded, pace: timestamps, late_frames: drop }\n");
+  }
+
+  void expect_readable() const {
+    if (!fs::exists(program_.path("out"))) return;
+    for (const auto& entry : fs::directory_iterator(program_.path("out"))) {
+      const std::string name = entry.path().filename().string(), text = test::content(entry.path());
+      EXPECT_NE(entry.path().extension(), ".tmp") << name;
+      if (entry.path().extension() == ".json") EXPECT_TRUE(nlohmann::json::accept(text)) << name;
+      if (entry.path().extension() == ".txt" && !text.empty()) EXPECT_EQ(text.back(), '\n') << name;
+      if (entry.path().extension() == ".hfm")
+        EXPECT_EQ(program_.run({"map", "info", entry.path().string()}).exit_code, 0) << name;
+    }
+  }
+
+  test::Program program_;
+};
+
+TEST_F(StopTest, LeavesAReadableFolder) {
+  const char* wanted = std::getenv("HOLDFAST_STOPS");
+  const int count = wanted == nullptr ? 6 : std::atoi(wanted);
+  Random random(static_cast<std::uint64_t>(count));
+  int with_results = 0;
+  for (int i = 0; i < count; ++i) {
+    const int moment = static_cast<int>(random.below(2500)), signal = i % 3 == 2 ? SIGTERM : SIGINT;
+    SCOPED_TRACE("signal " + std::to_string(signal) + " after " + std::to_string(moment) + " ms");
+    fs::remove_all(program_.path("out"));
+    const pid_t process = program_.start({"run", "room.yaml", "--output", "out", "--quiet"});
+    std::this_thread::sleep_for(std::chrono::milliseconds(moment));
+    kill(process, signal);
+    const test::Outcome outcome = program_.finish(process);
+    // Finished, without a pose yet, stopped, or ended by the signal before the program asked for it.
+    EXPECT_TRUE(outcome.exit_code == 0 || outcome.exit_code == 1 || outcome.exit_code == 128 + SIGINT ||
+                outcome.exit_code == 128 + SIGTERM || outcome.exit_code == 1000 + signal)
+        << outcome.exit_code << "\n"
+        << outcome.errors;
+    expect_readable();
+    with_results += fs::exists(program_.path("out/run.json")) ? 1 : 0;
+  }
+  EXPECT_GT(with_results, 0);
+}
+
+}  // namespace
+}  // namespace holdfast

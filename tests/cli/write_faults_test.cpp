@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A disk that refuses one write or rename: the command says so, and every file is whole or absent.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "cli/program.hpp"
+
+namespace holdfast {
+namespace {
+
+namespace fs = std::filesystem;
+using Files = std::map<std::string, std::string>;  // content by path below the folder
+
+Files files_below(const fs::path& folder) {
+  Files files;
+  if (!fs::exists(folder)) return files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) files[fs::relative(entry.path(), folder).string()] = test::content(entry.path());
+  return files;
+}
+
+bool ends_with(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/// Whether a file that holds times of this run is whole.
+bool is_whole(const std::string& name, const std::string& content) {
+  if (ends_with(name, ".json")) return nlohmann::json::accept(content);
+  if (ends_with(name, ".html")) return ends_with(content, "</html>\n");
+  if (ends_with(name, ".hfm") || ends_with(name, ".ply"))
+    return true;  // compared with those of the run without a fault
+  return !content.empty() && content.back() == '\n';
+}
+
+class WriteFaultsTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    program_.write(
+        "room.yaml",
+        "source: { simulated: { duration: 0.2 } }\ncamera: { width: 160, height: 120, fx: 130, fy: 130, cx: 80, "
+        "cy: 60 }\nfeatures: { orb: { count: 300 } }\noptimizer: ceres\nrun: { mode: sequential }\n");
+    program_.write(
+        "segmented.yaml",
+        "source: { simulated: { duration: 0.2 } }\ncamera: { width: 160, height: 120, fx: 130, fy: 130, cx: 80, "
+        "cy: 60 }\nfeatures: orb\noptimizer: ceres\nsegmenter: truth\nfilters: [semantic_mask]\n");
+    program_.write("matrix.yaml",
+                   "base: room.yaml\nsequences:\n  room: { source: { simulated: { duration: 0.2 } } }\n");
+  }
+
+  /// Runs the command with the n-th operation below `out` failing; 0 fails nothing. Returns how many there were.
+  long run(const std::vector<std::string>& arguments, long fail_at) {
+    const std::string count = program_.path("count").string(), folder = program_.path("out").string();
+    fs::remove(count);
+    setenv("LD_PRELOAD", HOLDFAST_FAILING_FILES, 1);
+    setenv("HOLDFAST_FAIL_FOLDER", folder.c_str(), 1);
+    setenv("HOLDFAST_FAIL_AT", std::to_string(fail_at).c_str(), 1);
+    setenv("HOLDFAST_FAIL_PARENT", std::to_string(getpid()).c_str(), 1);
+    setenv("HOLDFAST_FAIL_COUNT", count.c_str(), 1);
+    const pid_t process = program_.start(arguments);
+    for (const char* name :
+         {"LD_PRELOAD", "HOLDFAST_FAIL_FOLDER", "HOLDFAST_FAIL_AT", "HOLDFAST_FAIL_PARENT", "HOLDFAST_FAIL_COUNT"})
+      unsetenv(name);
+    outcome_ = program_.finish(process);
+    const std::string text = program_.text("count");
+    return text.empty() ? -1 : std::stol(text);
+  }
+
+  /// Lets the command meet each of at most `most` faults, evenly over all its operations, in a new folder. Files that
+  /// `may_differ` report what was done, and are whole with less in them.
+  void expect_whole_or_absent(
+      const std::vector<std::string>& arguments, long most,
+      const std::function<bool(const std::string&)>& may_differ = [](const std::string&) { return false; }) {
+    empty_folder();
+    const long operations = run(arguments, 0);
+    ASSERT_EQ(outcome_.exit_code, 0) << outcome_.errors;
+    ASSERT_GT(operations, 0) << "the layer counts nothing";
+    const Files whole = files_below(program_.path("out"));
+    empty_folder();
+    run(arguments, 0);
+    const Files again = files_below(program_.path("out"));
+    const long step = std::max(1L, (operations + most - 1) / most);
+    for (long n = 1; n <= operations; n += step) {
+      SCOPED_TRACE("operation " + std::to_string(n) + " of " + std::to_string(operations));
+      empty_folder();
+      run(arguments, n);
+      EXPECT_GT(outcome_.exit_code, 0);
+      EXPECT_LT(outcome_.exit_code, 1000) << "killed by a signal";
+      EXPECT_NE(outcome_.errors, "");
+      for (const auto& [name, content] : files_below(program_.path("out"))) {
+        if (name.find(".incomplete-") != std::string::npos) continue;          // a folder that says so by its name
+        if (ends_with(name, ".lock") || ends_with(name, "log.txt")) continue;  // no result, and may be empty
+        const auto expected = whole.find(name);
+        if (expected == whole.end())
+          ADD_FAILURE() << name << " is not there without the fault";
+        else if (!may_differ(name) && again.count(name) > 0 && expected->second == again.at(name))
+          EXPECT_TRUE(content == expected->second) << name << " is not whole";
+        else
+          EXPECT_TRUE(is_whole(name, content)) << name << " is not whole";
+      }
+    }
+  }
+
+  void empty_folder() const {
+    fs::remove_all(program_.path("out"));
+    fs::create_directory(program_.path("out"));
+  }
+
+  test::Program program_;
+  test::Outcome outcome_;
+};
+
+TEST_F(WriteFaultsTest, Run) { expect_whole_or_absent({"run", "room.yaml", "--output", "out"}, 12); }
+
+TEST_F(WriteFaultsTest, Simulate) {
+  expect_whole_or_absent({"simulate", "--output", "out", "--duration", "0.1", "--camera", "tum_fr1"}, 10);
+}
+
+TEST_F(WriteFaultsTest, Segment) {
+  expect_whole_or_absent({"segment", "segmented.yaml", "--output", "out"}, 8,
+                         [](const std::string& name) { return name == "labels.txt"; });
+}
+
+TEST_F(WriteFaultsTest, Bench) {
+  expect_whole_or_absent({"bench", "matrix.yaml", "--output", "out"}, 8, [](const std::string&) { return true; });
+}
+
+TEST_F(WriteFaultsTest, MapExport) {
+  ASSERT_EQ(program_.run({"run", "room.yaml", "--output", "made"}).exit_code, 0);
+  for (const char* format : {"--points", "--json", "--trajectory"})
+    expect_whole_or_absent({"map", "export", "made/map.hfm", format, "out/exported"}, 8);
+}
+
+TEST_F(WriteFaultsTest, WhatWasWholeStaysWhenItCannotBeReplaced) {
+  ASSERT_EQ(program_.run({"run", "room.yaml", "--output", "made"}).exit_code, 0);
+  fs::create_directory(program_.path("out"));
+  const std::vector<std::string> command = {"map", "export", "made/map.hfm", "--points", "out/a.ply"};
+  run(command, 0);
+  const std::string before = program_.text("out/a.ply");
+  ASSERT_EQ(outcome_.exit_code, 0) << outcome_.errors;
+  for (const long n : {1, 2}) {
+    run(command, n);
+    EXPECT_TRUE(program_.text("out/a.ply") == before);
+    EXPECT_EQ(files_below(program_.path("out")).size(), 1U);
+  }
+}
+
+}  // namespace
+}  // namespace holdfast

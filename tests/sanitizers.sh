@@ -1,0 +1,99 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# Builds Holdfast with sanitizers and runs it: tests, and whole short runs on simulated scenes. Any report ends a
+# program with an error. What the libraries below us do to themselves is listed in
+# cmake/thread_sanitizer_suppressions.txt.
+#
+#   sh tests/sanitizers.sh            everything: all quick tests and all runs with the address and the undefined
+#                                     behaviour sanitizer, then the threaded runs with the thread sanitizer
+#   sh tests/sanitizers.sh --quick    a selection: the tests of borders and of the pipeline, and one run of each mode,
+#                                     with the address and the undefined behaviour sanitizer
+#
+# Environment: CXX (clang++ by default, which compiles this in two thirds of the time of g++); CCACHE=ON uses ccache.
+set -eu
+
+cd "$(dirname "$0")/.."
+case "${1:-}" in
+  '') quick=no ;;
+  --quick) quick=yes ;;
+  *) sed -n '3,13s/^# \{0,1\}//p' tests/sanitizers.sh >&2; exit 2 ;;
+esac
+root=$PWD
+jobs=$(nproc)
+export ASAN_OPTIONS="detect_leaks=0:${ASAN_OPTIONS:-}"
+export UBSAN_OPTIONS="halt_on_error=1:print_stacktrace=1:${UBSAN_OPTIONS:-}"
+export TSAN_OPTIONS="halt_on_error=1:suppressions=$root/cmake/thread_sanitizer_suppressions.txt:${TSAN_OPTIONS:-}"
+CXX=${CXX:-clang++}
+[ "$CXX" != clang++ ] || sh cmake/install_dependencies.sh --clang
+
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+failures=0
+
+# step NAME COMMAND...: runs a command, and shows its output only if it fails.
+step() {
+  name=$1
+  shift
+  if "$@" > "$work/log" 2>&1; then
+    echo "clean: $name"
+  else
+    failures=$((failures + 1))
+    echo "FAILED: $name: $*" >&2
+    tail -n 60 "$work/log" >&2
+  fi
+}
+
+# build PRESET TARGET...
+build() {
+  preset=$1
+  shift
+  cmake --preset "$preset" -DCMAKE_CXX_COMPILER="$CXX" -DHOLDFAST_BUILD_TESTS=ON -DHOLDFAST_BUILD_EXAMPLES=OFF \
+    ${CCACHE:+-DCMAKE_CXX_COMPILER_LAUNCHER=ccache} ${flags:+"-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=$flags"}
+  cmake --build "build-$preset" --parallel "$jobs" --target "$@"
+}
+
+# run PRESET CONFIGURATION MODE DURATION: a whole run among walking people.
+run() {
+  step "$1: $2, $3" "build-$1/bin/holdfast" run "examples/configs/$2.yaml" --output "$work/$1-$2-$3" --quiet \
+    --set "source={simulated: {scene: $root/examples/scenes/walking_xyz.yaml, duration: $4}}" --set camera=tum_fr3 \
+    --set segmenter=truth --set "run.mode=$3"
+}
+
+if [ "$quick" = yes ]; then
+  flags="-O1 -DNDEBUG"  # without line numbers it compiles faster; the full mode tells them
+  build asan holdfast_program config_test map_io_test pipeline_test program_test fuzz_replays
+  for test in config_test map_io_test pipeline_test program_test; do step "asan: $test" "build-asan/tests/$test"; done
+  step "asan: replays of tests/fuzz" ctest --test-dir build-asan --output-on-failure --no-tests=error -R '^fuzz_'
+  run asan full sequential 1
+  run asan objects threaded 1
+else
+  build asan all
+  step "asan: quick tests" ctest --test-dir build-asan --parallel "$jobs" --output-on-failure --no-tests=error \
+    --label-regex '^quick$'
+  for configuration in full paper objects; do
+    for mode in sequential threaded; do run asan "$configuration" "$mode" 3; done
+  done
+  map=$work/asan-full-sequential/map.hfm
+  step "asan: map export" build-asan/bin/holdfast map export "$map" --points "$work/points.ply" \
+    --trajectory "$work/keyframes.txt" --json "$work/map.json"
+  step "asan: a map continued" build-asan/bin/holdfast run examples/configs/full.yaml --output "$work/continued" \
+    --quiet --map "$map" --set "source={simulated: {scene: $root/examples/scenes/walking_xyz.yaml, duration: 1}}" \
+    --set camera=tum_fr3 --set segmenter=truth
+  step "asan: simulate" build-asan/bin/holdfast simulate examples/scenes/crowd.yaml --duration 0.3 \
+    --output "$work/crowd" --preview "$work/preview.png"
+  cat > "$work/matrix.yaml" <<END
+base: $root/examples/configs/rgbd.yaml
+sequences:
+  crowd: { source: { simulated: { scene: $root/examples/scenes/crowd.yaml, duration: 0.5 } } }
+END
+  step "asan: bench" build-asan/bin/holdfast bench "$work/matrix.yaml" --output "$work/bench"
+  step "asan: bench again" build-asan/bin/holdfast bench "$work/matrix.yaml" --output "$work/bench" --resume
+  build tsan holdfast_program pipeline_test run_library_test busy_threads_test
+  for test in pipeline_test run_library_test busy_threads_test; do
+    step "tsan: $test" "build-tsan/tests/$test"
+  done
+  for configuration in full paper objects; do run tsan "$configuration" threaded 2; done
+fi
+
+[ "$failures" -eq 0 ] && echo "No sanitizer has a report." || echo "$failures steps failed: see above." >&2
+exit "$((failures > 0))"

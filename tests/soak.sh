@@ -1,0 +1,80 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# A long threaded run: memory must level off, and descriptors and threads must stay as many as they are. Then pipelines
+# that are made and dropped, and runs that are stopped at random moments.
+#
+#   sh tests/soak.sh [MINUTES] [BUILD_FOLDER]      60 minutes of a crowd, and as long of a looped recording where
+#                                                  HOLDFAST_DATA names a folder with tum_fr1_xyz; build by default
+set -eu
+
+cd "$(dirname "$0")/.."
+minutes=${1:-60}
+build=${2:-build}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+verdict=0
+
+# watch NAME OVERRIDE...: runs a configuration for the minutes, writes a line each 10 s to out/soak/NAME.csv and judges.
+watch() {
+  name=$1
+  shift
+  mkdir -p out/soak
+  table=out/soak/$name.csv
+  echo "seconds,memory_kB,descriptors,threads" > "$table"
+  "$build/bin/holdfast" run examples/configs/full.yaml --output "$work/$name" --quiet --set run.mode=threaded "$@" \
+    > "$work/log" 2>&1 &
+  process=$!
+  start=$(date +%s)
+  now=0
+  while [ "$now" -lt $((minutes * 60)) ] && kill -0 "$process" 2> /dev/null; do
+    sleep 10
+    now=$(($(date +%s) - start))
+    memory=$(sed -n 's/^VmRSS:[^0-9]*\([0-9]*\).*/\1/p' "/proc/$process/status" 2> /dev/null || true)
+    [ -n "$memory" ] || break
+    echo "$now,$memory,$(ls "/proc/$process/fd" | wc -l),$(ls "/proc/$process/task" | wc -l)" >> "$table"
+  done
+  kill -TERM "$process" 2> /dev/null || true
+  wait "$process" || code=$?
+  case "${code:-0}" in 0 | 130 | 143) ;; *) verdict=1; echo "$name: exit code $code" >&2; tail -n 20 "$work/log" >&2 ;; esac
+  # Least squares over the lines after the first sixth of the time, which fills the map and the caches.
+  awk -F, -v name="$name" -v begin=$((minutes * 10)) '
+    NR > 1 && $1 >= begin { n++; x += $1; y += $2; xx += $1 * $1; xy += $1 * $2
+      if (n == 1) { d = $3; t = $4 } else if ($3 != d || $4 != t) changed = 1 }
+    END {
+      if (n < 3) { print name ": too short to judge"; exit 0 }
+      slope = (n * xy - x * y) / (n * xx - x * x) * 600 / 1024
+      printf "%s: %.2f MB per 10 minutes, %d descriptors, %d threads%s\n", name, slope, d, t,
+        changed ? ", which changed" : ""
+      exit slope > 1.0 || changed }' "$table" || verdict=1
+}
+
+watch crowd --set camera=tum_fr3 --set segmenter=truth \
+  --set "source={simulated: {scene: $PWD/examples/scenes/crowd.yaml, duration: $((minutes * 120))}}"
+
+# A recording played forwards and backwards again and again.
+recording=${HOLDFAST_DATA:-}/tum_fr1_xyz
+if [ -n "${HOLDFAST_DATA:-}" ] && [ -d "$recording" ]; then
+  mkdir "$work/looped"
+  for kind in rgb depth; do
+    ln -s "$recording/$kind" "$work/looped/$kind"
+    grep -v '^#' "$recording/$kind.txt" | awk -v minutes="$minutes" '
+      { stamp[NR] = $1; name[NR] = $2 }
+      END {
+        length_of = stamp[NR] - stamp[1]
+        for (k = 0; 2 * k * length_of < minutes * 60 + 60; k++) {
+          begin = stamp[1] + 2 * k * length_of
+          for (i = 1; i < NR; i++) printf "%.6f %s\n", begin + stamp[i] - stamp[1], name[i]
+          for (i = NR; i > 1; i--) printf "%.6f %s\n", begin + length_of + stamp[NR] - stamp[i], name[i]
+        }
+      }' > "$work/looped/$kind.txt"
+  done
+  watch recording --set camera=tum_fr1 --set source.tum.path="$work/looped" --set segmenter=none \
+    --set 'filters=[multi_view_depth]'
+else
+  echo "recording: skipped, because HOLDFAST_DATA names no folder with tum_fr1_xyz"
+fi
+
+HOLDFAST_PIPELINES=1000 "$build/tests/pipeline_test" --gtest_filter='Growth.*' || verdict=1
+HOLDFAST_STOPS=200 "$build/tests/stop_test" || verdict=1
+HOLDFAST_STOPS=200 "$build/tests/busy_threads_test" --gtest_filter='*AStopAtAnyMoment*' || verdict=1
+exit "$verdict"
