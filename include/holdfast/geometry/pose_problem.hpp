@@ -22,7 +22,7 @@ inline constexpr double chi_square_three = 7.815;
 /// at every distance, and independent of the noise of the pixel (Khoshelham and Elberink 2012, equation 13, with the
 /// errors that neighbouring pixels share). Its cost is linear beyond `disparity_threshold` deviations, because a wrong
 /// depth says nothing against the pixel.
-inline constexpr double disparity_sigma = 0.5;  ///< [px]
+inline constexpr double disparity_sigma = 0.7;  ///< [px]
 inline constexpr double disparity_threshold = 1.5;
 
 /// Points nearer to the image plane than this, or behind it, are outliers [m].
