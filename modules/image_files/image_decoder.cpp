@@ -24,9 +24,8 @@ void require_decodable(const std::filesystem::path& file, const ImageStructure& 
                                           std::to_string(largest_side) + " pixels in width and height");
 }
 
-cv::Mat decode(const std::filesystem::path& file, const ImageStructure& structure, std::vector<std::uint8_t>& bytes,
-               int flags, cv::Mat& target) {
-  if (structure.format == ImageStructure::Format::png) drop_png_annotations(bytes);
+cv::Mat decode(const std::filesystem::path& file, std::vector<std::uint8_t>& bytes, int flags, cv::Mat& target) {
+  drop_png_annotations(bytes);
   cv::Mat image;
   try {
     image = cv::imdecode(bytes, flags, &target);
@@ -64,7 +63,7 @@ cv::Mat ImageDecoder::read_colour(const std::filesystem::path& file, const SizeC
                                           "; expected a colour image, 3 channels of 8 bits; convert it");
   if (check_size) check_size({image.width, image.height});
   cv::Mat colour;
-  return decode(file, image, bytes_, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION, colour);
+  return decode(file, bytes_, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION, colour);
 }
 
 cv::Mat ImageDecoder::read_depth(const std::filesystem::path& file, double depth_factor, const SizeCheck& check_size) {
@@ -78,7 +77,7 @@ cv::Mat ImageDecoder::read_depth(const std::filesystem::path& file, double depth
                                           "; expected a depth image, a PNG of 1 channel of 16 bits; export the depth "
                                           "without conversion");
   if (check_size) check_size({image.width, image.height});
-  raw_depth_ = decode(file, image, bytes_, cv::IMREAD_UNCHANGED, raw_depth_);
+  raw_depth_ = decode(file, bytes_, cv::IMREAD_UNCHANGED, raw_depth_);
   cv::Mat depth(raw_depth_.size(), CV_32FC1);
   for (int y = 0; y < depth.rows; ++y) {
     const auto* from = raw_depth_.ptr<std::uint16_t>(y);
@@ -108,7 +107,7 @@ cv::Mat ImageDecoder::read_labels(const std::filesystem::path& file, const SizeC
   if (check_size) check_size({image.width, image.height});
   if (is_indexed) bytes_ = palette_indices_as_grey(bytes_);
   cv::Mat labels;
-  return decode(file, image, bytes_, cv::IMREAD_UNCHANGED, labels);
+  return decode(file, bytes_, cv::IMREAD_UNCHANGED, labels);
 }
 
 }  // namespace holdfast

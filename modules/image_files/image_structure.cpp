@@ -51,6 +51,10 @@ std::string truncated(std::size_t size, const char* expected) {
 
 constexpr std::array<std::uint8_t, 8> png_signature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
 
+bool is_png(Bytes bytes) {
+  return bytes.size() >= png_signature.size() && std::equal(png_signature.begin(), png_signature.end(), bytes.begin());
+}
+
 /// Whether the 13 bytes of an IHDR chunk describe one of the kinds of images that exist (table 11.1).
 bool is_png_header(const std::uint8_t* data) {
   const int bits = data[8], colour_type = data[9];
@@ -154,7 +158,7 @@ ImageStructure examine_image(std::span<const std::uint8_t> bytes) {
   ImageStructure image;
   if (bytes.empty())
     image.problem = "is empty (0 bytes)";
-  else if (bytes.size() >= 8 && std::equal(png_signature.begin(), png_signature.end(), bytes.begin()))
+  else if (is_png(bytes))
     examine_png(bytes, image);
   else if (bytes.size() >= 3 && bytes[0] == 0xff && bytes[1] == 0xd8 && bytes[2] == 0xff)
     examine_jpeg(bytes, image);
@@ -203,6 +207,7 @@ ImageStructure examine_image_ends(const std::filesystem::path& file) {
 }
 
 void drop_png_annotations(std::vector<std::uint8_t>& bytes) {
+  if (!is_png(bytes)) return;
   auto end = bytes.begin() + static_cast<std::ptrdiff_t>(png_signature.size());
   bool palette = false;
   for (std::size_t at = png_signature.size(); bytes.size() - at >= 12;) {

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <functional>
 #include <iostream>
@@ -11,6 +12,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <sstream>
 
 #include "cli/program.hpp"
 
@@ -30,6 +32,17 @@ Files files_below(const fs::path& folder) {
 
 bool ends_with(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/// Whether these are the poses that a run writes as it goes, whole lines of them, and says so: where they cannot be
+/// replaced by the corrected ones, they stay.
+bool is_journal(const std::string& name, const std::string& content) {
+  if (name != "trajectory.txt" || !content.starts_with("# The run has not come to its end")) return false;
+  std::istringstream stream(content);
+  std::string line;
+  while (std::getline(stream, line))
+    if (!line.starts_with('#') && std::count(line.begin(), line.end(), ' ') != 7) return false;
+  return content.back() == '\n';
 }
 
 /// Whether a file that holds times of this run is whole.
@@ -114,7 +127,7 @@ class WriteFaultsTest : public ::testing::Test {
         if (expected == whole.end())
           ADD_FAILURE() << name << " is not there without the fault";
         else if (!may_differ(name) && again.count(name) > 0 && expected->second == again.at(name))
-          EXPECT_TRUE(content == expected->second) << name << " is not whole";
+          EXPECT_TRUE(content == expected->second || is_journal(name, content)) << name << " is not whole";
         else
           EXPECT_TRUE(is_whole(name, content)) << name << " is not whole";
       }

@@ -40,7 +40,7 @@ ImageStructure examine_image_ends(const std::filesystem::path& file);
 
 /// Removes from a PNG that examine_image() accepted what its pixels do not depend on: ancillary chunks (colour profile,
 /// background, text, times), a suggested palette, bytes after the end. The decoding library prints messages about
-/// contents that it dislikes, such as a known faulty profile that many programs write.
+/// contents that it dislikes, such as a faulty profile that many programs write. JPEG files stay as they are.
 void drop_png_annotations(std::vector<std::uint8_t>& bytes);
 
 /// Converts an 8-bit palette PNG that examine_image() accepted to a grey PNG whose pixels are the indices, because the
