@@ -216,7 +216,8 @@ void drop_png_annotations(std::vector<std::uint8_t>& bytes) {
     if (name == "IHDR") palette = bytes[at + 17] == 3;
     if (is_critical(name) && (name != "PLTE" || palette)) {
       const auto begin = bytes.begin() + static_cast<std::ptrdiff_t>(at);
-      end = std::copy(begin, begin + static_cast<std::ptrdiff_t>(length), end);
+      if (end != begin) std::copy(begin, begin + static_cast<std::ptrdiff_t>(length), end);
+      end += static_cast<std::ptrdiff_t>(length);
     }
     if (name == "IEND") break;
     at += length;
