@@ -132,7 +132,8 @@ class WriteFaultsTest : public ::testing::Test {
           EXPECT_TRUE(is_whole(name, content)) << name << " is not whole";
       }
     }
-    std::cout << arguments.front() << ": " << faults << " of " << operations << " operations failed in turn\n";
+    std::cout << arguments.front() << ": " << faults << " of " << operations << " operations failed in turn"
+              << std::endl;
   }
 
   void empty_folder() const {
