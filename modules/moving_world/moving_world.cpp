@@ -94,6 +94,7 @@ bool MovingWorld::sees_movable(const Frame& frame) {
 void MovingWorld::next_frame(double timestamp) {
   ++next_frame_number_;
   timestamp_ = timestamp;
+  if (queue_) queue_->wait_for_due(next_frame_number_ - 1);
 }
 
 std::optional<ArrivedMask> MovingWorld::take_mask(StageTimes& times) {
