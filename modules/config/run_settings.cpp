@@ -9,8 +9,7 @@ void RunSettings::describe(ParameterTable<RunSettings>& table) {
   using S = RunSettings;
   table.add("mode", &S::mode,
             "sequential: one thread for the work of all frames, the same bits on every run; threaded: tracking beside "
-            "local mapping, loop closing "
-            "and segmentation, each in its own thread");
+            "local mapping, loop closing and segmentation, each in its own thread");
   table.add("seed", &S::seed, "the only source of chance").at_least(0);
   table.add(
       "pace", &S::pace,
