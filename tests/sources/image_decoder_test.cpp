@@ -50,7 +50,7 @@ TEST_F(ImageDecoderTest, DepthIsTheQuotientExactly) {
   for (int value = 0; value < 65536; ++value)
     original.at<std::uint16_t>(value / 256, value % 256) = static_cast<std::uint16_t>(value);
   folder_.write_image("d.png", original);
-  for (const double factor : {5000.0, 1000.0, 4999.5}) {
+  for (const double factor : {5000.0, 1000.0, 4999.5, 5000.1}) {
     const cv::Mat depth = decoder_.read_depth(file("d.png"), factor);
     ASSERT_EQ(depth.type(), CV_32FC1);
     for (int value = 0; value < 65536; ++value)
