@@ -7,8 +7,8 @@
 #   sh tests/sanitizers.sh            everything: all quick tests and all runs with the address and the undefined
 #                                     behaviour sanitizer, then the threaded runs with the thread sanitizer
 #   sh tests/sanitizers.sh --quick    a selection that compiles in minutes, with the address and the undefined behaviour
-#                                     sanitizer: the tests of configurations, maps and the pipeline, which run it
-#                                     sequentially and in threads, and replays of tests/fuzz
+#                                     sanitizer: the tests of the pipeline, which run it sequentially and in threads,
+#                                     and the replays of tests/fuzz that need neither the program nor its plugins
 #
 # Environment: CXX (clang++ by default, which compiles this in two thirds of the time of g++); CCACHE=ON uses ccache.
 set -eu
@@ -62,10 +62,10 @@ run() {
 
 if [ "$quick" = yes ]; then
   flags="-O1 -DNDEBUG"  # without line numbers it compiles faster; the full mode tells them
-  # Borders whose readers need neither the program nor the plugins, which are most of what there is to compile.
+  # The program and the plugins are most of what there is to compile.
   borders="image_header image_lists map_file onnx_signature override plugin_record trajectory"
-  build asan config_test map_io_test pipeline_test $(printf 'fuzz_%s ' $borders)
-  for test in config_test map_io_test pipeline_test; do step "asan: $test" "build-asan/tests/$test"; done
+  build asan pipeline_test $(printf 'fuzz_%s ' $borders)
+  step "asan: pipeline_test" build-asan/tests/pipeline_test
   for border in $borders; do
     step "asan: fuzz_$border" "build-asan/tests/fuzz_$border" "tests/fuzz/corpus/$border"
   done
