@@ -97,7 +97,8 @@ Outcome run_office(int prefetch, Reading& reading, const Faults& faults = {}, co
   configuration.loop_detector.name = "none";
   configuration.run.prefetch = prefetch;
   Outcome outcome{run(built, configuration, options), {}};
-  for (const auto& [id, point] : built.pipeline.map().points()) outcome.points.push_back(point.position);
+  built.pipeline.map().points().for_each(
+      [&](MapPointId, const MapPoint& point) { outcome.points.push_back(point.position); });
   return outcome;
 }
 
