@@ -27,7 +27,8 @@ void require_decodable(const std::filesystem::path& file, const ImageStructure& 
                                           std::to_string(largest_side) + " pixels in width and height");
 }
 
-cv::Mat decode(const std::filesystem::path& file, const std::vector<std::uint8_t>& bytes, int flags, cv::Mat& target) {
+cv::Mat decode(const std::filesystem::path& file, std::vector<std::uint8_t>& bytes, int flags, cv::Mat& target) {
+  drop_png_annotations(bytes);
   cv::Mat image;
   try {
     image = cv::imdecode(bytes, flags, &target);

@@ -24,15 +24,6 @@ namespace holdfast {
 
 namespace {
 
-/// What the loop closing thread works on: a keyframe that local mapping is done with, and those that it removed.
-struct LoopJob {
-  KeyFrameId keyframe;
-  std::vector<KeyFrameId> removed;
-};
-
-/// What the full adjustment thread works on: the whole map.
-struct AdjustmentJob {};
-
 PipelineParts checked(PipelineParts parts) {
   HOLDFAST_CHECK(parts.features != nullptr && parts.optimizer != nullptr,
                  "features " << (parts.features != nullptr) << " optimizer " << (parts.optimizer != nullptr));
@@ -55,6 +46,15 @@ MovingWorldParts moving_world_parts(PipelineParts& parts) {
 }  // namespace
 
 struct Pipeline::State {
+  /// What the loop closing thread works on: a keyframe that local mapping is done with, and those that it removed.
+  struct LoopJob {
+    KeyFrameId keyframe;
+    std::vector<KeyFrameId> removed;
+  };
+
+  /// What the full adjustment thread works on: the whole map.
+  struct AdjustmentJob {};
+
   explicit State(PipelineParts given)
       : parts(std::move(given)),
         map(std::move(parts.map)),
@@ -183,7 +183,7 @@ void Pipeline::State::check_stamp(const SensorFrame& frame) {
   last_timestamp = frame.timestamp;
 }
 
-LoopJob Pipeline::State::refine(KeyFrameId keyframe, StageTimes& times) {
+Pipeline::State::LoopJob Pipeline::State::refine(KeyFrameId keyframe, StageTimes& times) {
   LoopJob job{keyframe, {}};
   {
     const std::lock_guard surgeon(surgery);
@@ -318,11 +318,10 @@ FrameResult Pipeline::feed(const SensorFrame& frame) {
       ++s.keyframes_deferred;
     }
     if (result.is_keyframe) {
-      // Without a map, or with little of it in view, there is nothing to track by until the mask comes. Where people
-      // are, others may have come into the new view, and a keyframe without points is better than one on people.
+      // Without a map, or with little of it in view, there is nothing to track by until the mask comes, which takes the
+      // points on people back.
       const bool is_new_view = result.status == TrackingStatus::initialised ||
-                               (result.inliers < s.parts.segmentation.new_view_share * result.static_features &&
-                                !MovingWorld::sees_movable(s.tracker.frame()));
+                               result.inliers < s.parts.segmentation.new_view_share * result.static_features;
       const bool wait_for_mask = s.moving_world.expects_masks() && !is_new_view;
       result.keyframe = s.mapper.insert(s.tracker.frame(), wait_for_mask, result.times);
       if (s.mapping || s.moving_world.expects_masks()) s.tracker.keyframe_added(result.keyframe);
