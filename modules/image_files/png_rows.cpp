@@ -35,24 +35,27 @@ bool decompress(const std::vector<std::uint8_t>& compressed, std::vector<std::ui
 bool PngRows::read_chunks(std::span<const std::uint8_t> file) {
   constexpr std::size_t signature = 8, header = 8, checksum = 4;
   compressed_.clear();
+  std::string_view last_name;
   for (std::size_t at = signature; file.size() - at >= header + checksum;) {
     const std::size_t length = big_endian(&file[at]);
     const std::string_view name(reinterpret_cast<const char*>(&file[at + 4]), 4);
     const std::uint8_t* data = &file[at + header];
-    if (name == "IHDR") {
+    if (at == signature) {
+      if (name != "IHDR" || length != 13) return false;
       width_ = static_cast<int>(big_endian(data));
       height_ = static_cast<int>(big_endian(data + 4));
       const int bits = data[8], colour_type = data[9];
       const bool is_plain = data[10] == 0 && data[11] == 0 && data[12] == 0;  // compression, filters, interlacing
       bytes_per_pixel_ = colour_type == 0 && bits == 16 ? 2 : colour_type == 2 && bits == 8 ? 3 : 0;
       if (bytes_per_pixel_ == 0 || !is_plain) return false;
-    } else if (name == "IDAT") {
+    } else if (name == "IDAT" && (compressed_.empty() || last_name == "IDAT")) {
       compressed_.insert(compressed_.end(), data, data + length);
-    } else if (name == "tRNS") {
-      return false;
     } else if (name == "IEND") {
-      return bytes_per_pixel_ != 0;
+      return true;
+    } else if (name == "tRNS" || (name[0] & 0x20) == 0) {  // transparency, or a chunk that must not be ignored
+      return false;
     }
+    last_name = name;
     at += header + length + checksum;
   }
   return false;

@@ -97,7 +97,8 @@ Outcome run_office(int prefetch, Reading& reading, const Faults& faults = {}, co
   configuration.loop_detector.name = "none";
   configuration.run.prefetch = prefetch;
   Outcome outcome{run(built, configuration, options), {}};
-  for (const auto& [id, point] : built.pipeline.map().points()) outcome.points.push_back(point.position);
+  built.pipeline.map().points().for_each(
+      [&](MapPointId, const MapPoint& point) { outcome.points.push_back(point.position); });
   return outcome;
 }
 
@@ -165,7 +166,7 @@ TEST(Prefetch, AnErrorComesAtItsFrame) {
 
 TEST(Prefetch, AStoppedRunHasSkippedWhatComesBeforeItsEnd) {
   const Faults faults{.skipped_frames = {2, 8, 11, frame_count - 1}};
-  for (const std::uint64_t last : {0U, 8U, 9U}) {
+  for (const std::uint64_t last : {0U, 7U, 9U}) {
     std::uint64_t done = 0;
     RunOptions options;
     options.on_frame = [&](const RunProgress& progress) {
@@ -176,7 +177,7 @@ TEST(Prefetch, AStoppedRunHasSkippedWhatComesBeforeItsEnd) {
     const Outcome plain = run_office(0, faults, options);
     EXPECT_TRUE(plain.record.was_interrupted);
     EXPECT_EQ(plain.record.summary.frames(), last);
-    EXPECT_EQ(plain.record.skipped.size(), last == 0U ? 0U : last == 8U ? 1U : 2U);
+    EXPECT_EQ(plain.record.skipped.size(), last == 0U ? 0U : last == 7U ? 1U : 2U);
     done = 0;
     expect_equal(run_office(2, faults, options), plain);
   }

@@ -134,6 +134,7 @@ TEST(PngRows, LeavesOtherFilesToAnotherDecoder) {
   };
 #if defined(HOLDFAST_LIBDEFLATE)
   EXPECT_TRUE(decodes(grey, filtered));
+  EXPECT_TRUE(decodes(grey, filtered, "tEXt"));
 #else
   EXPECT_FALSE(decodes(grey, filtered));
 #endif
@@ -143,6 +144,9 @@ TEST(PngRows, LeavesOtherFilesToAnotherDecoder) {
   EXPECT_FALSE(decodes({.width = 5, .height = 4, .colour_type = 2}, any_rows(random, grey, 6, 0)));
   EXPECT_FALSE(decodes({.width = 5, .height = 4, .interlaced = 1}, filtered));
   EXPECT_FALSE(decodes(grey, filtered, "tRNS"));
+  EXPECT_FALSE(decodes(grey, filtered, "IHDR"));
+  EXPECT_FALSE(decodes(grey, filtered, "IDAT"));
+  EXPECT_FALSE(decodes(grey, filtered, "CgBI"));
   // Too few and too many pixels, a filter that does not exist, a wrong checksum of zlib, a size out of proportion.
   EXPECT_FALSE(decodes({.width = 5, .height = 5}, filtered));
   EXPECT_FALSE(decodes({.width = 5, .height = 3}, filtered));
