@@ -34,14 +34,28 @@ class BuildByCMake(build_ext):
         build.mkdir(parents=True, exist_ok=True)
         self.run_step(
             ["cmake", "-S", str(here), "-B", str(build), "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release"]
-            + ["-DHOLDFAST_PYTHON=ON", "-DHOLDFAST_PYTHON_PACKAGE=ON", "-DHOLDFAST_UNITY=ON", "-DHOLDFAST_BUILD_TESTS=OFF"]
+            + [
+                "-DHOLDFAST_PYTHON=ON",
+                "-DHOLDFAST_PYTHON_PACKAGE=ON",
+                "-DHOLDFAST_UNITY=ON",
+                "-DHOLDFAST_BUILD_TESTS=OFF",
+            ]
             + ["-DHOLDFAST_BUILD_EXAMPLES=OFF", "-DHOLDFAST_BUILD_BENCHMARKS=OFF", "-DHOLDFAST_PYTHON_FOLDER=."]
             + [f"-DPython3_EXECUTABLE={sys.executable}"]
             + shlex.split(os.environ.get("CMAKE_ARGS", ""))
         )
         self.run_step(["cmake", "--build", str(build), "--target", "holdfast_python_package"])
         self.run_step(
-            ["cmake", "--install", str(build), "--prefix", str(package.parent), "--component", "python_package", "--strip"]
+            [
+                "cmake",
+                "--install",
+                str(build),
+                "--prefix",
+                str(package.parent),
+                "--component",
+                "python_package",
+                "--strip",
+            ]
         )
 
     @staticmethod

@@ -18,18 +18,22 @@ class Bright(holdfast.Segmenter):
 
     classes = ["background", "person"]
 
-    def __init__(self, threshold: Annotated[int, holdfast.Parameter("grey level", minimum=0, maximum=255)] = 200) -> None:
+    def __init__(
+        self, threshold: Annotated[int, holdfast.Parameter("grey level", minimum=0, maximum=255)] = 200
+    ) -> None:
         self.threshold = threshold
 
     def segment(self, frame: holdfast.Frame) -> numpy.typing.NDArray[numpy.uint8]:
-        return (frame.colour.mean(axis=2) > self.threshold).astype(numpy.uint8)
+        return numpy.where(frame.colour.mean(axis=2) > self.threshold, 1, 0).astype(numpy.uint8)
 
 
 @holdfast.register("near_border")
 class NearBorder(holdfast.DynamicFilter):
     """Distrusts features near the border of the image."""
 
-    def __init__(self, margin: Annotated[float, holdfast.Parameter("width of the border", minimum=0, unit="px")] = 20.0) -> None:
+    def __init__(
+        self, margin: Annotated[float, holdfast.Parameter("width of the border", minimum=0, unit="px")] = 20.0
+    ) -> None:
         self.margin = margin
 
     def apply(self, context: holdfast.FilterContext, evidence: holdfast.StaticEvidence) -> None:

@@ -2,10 +2,11 @@
 """A segmenter by PyTorch or ONNX Runtime, whichever the file of the network needs; import it before holdfast.run:
 
     import torch_segmenter, holdfast
-    holdfast.run("run.yaml", {"segmenter": {"network_file": {"file": "network.pt", "classes": ["background", "person"]}}})
+    holdfast.run("run.yaml", {"segmenter": {"network_file": {"file": "network.pt", "classes": ["background",
+    "person"]}}})
 
-The network takes float32 (1, 3, rows, columns), red green blue from 0 to 1, and gives scores (1, classes, rows, columns). A
-file *.pt or *.pth is TorchScript, *.onnx runs by ONNX Runtime.
+The network takes float32 (1, 3, rows, columns), red green blue from 0 to 1, and gives scores (1, classes, rows,
+columns). A file *.pt or *.pth is TorchScript, *.onnx runs by ONNX Runtime.
 """
 import pathlib
 from typing import Annotated, Any, Callable, List, Tuple
@@ -23,7 +24,7 @@ def torch_network(file: pathlib.Path) -> Callable[[Images], Images]:
     import torch
 
     device = "cuda" if torch.cuda.is_available() else "cpu"
-    network = torch.jit.load(str(file), map_location=device).eval()
+    network: Any = torch.jit.load(str(file), map_location=device).eval()  # type: ignore[attr-defined]
 
     def infer(image: Images) -> Images:
         with torch.no_grad():
@@ -35,7 +36,7 @@ def torch_network(file: pathlib.Path) -> Callable[[Images], Images]:
 
 def onnx_network(file: pathlib.Path) -> Callable[[Images], Images]:
     """A network by ONNX Runtime with the providers that it has."""
-    import onnxruntime
+    import onnxruntime  # type: ignore[import]
 
     session = onnxruntime.InferenceSession(str(file), providers=onnxruntime.get_available_providers())
     name = session.get_inputs()[0].name
@@ -54,7 +55,10 @@ class NetworkFile(holdfast.Segmenter):
     def __init__(
         self,
         file: Annotated[pathlib.Path, holdfast.Parameter("network, *.pt or *.onnx")],
-        classes: Annotated[List[str], holdfast.Parameter("class names by label, the background first")] = ["background", "person"],
+        classes: Annotated[List[str], holdfast.Parameter("class names by label, the background first")] = [
+            "background",
+            "person",
+        ],
     ) -> None:
         self.classes = list(classes)
         self.infer = onnx_network(file) if file.suffix == ".onnx" else torch_network(file)

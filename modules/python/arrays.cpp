@@ -33,8 +33,9 @@ Eigen::Isometry3d checked_pose(const double* row_major, const std::string& what)
                         (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-4 &&
                         rotation.determinant() > 0.0;
   if (!is_rigid)
-    throw InputError({what}, "is no rigid motion; expected a rotation matrix and a finite translation [m] above the row "
-                             "0 0 0 1");
+    throw InputError({what},
+                     "is no rigid motion; expected a rotation matrix and a finite translation [m] above the row "
+                     "0 0 0 1");
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.matrix() = matrix;
   return pose;
@@ -94,8 +95,8 @@ Trajectory to_trajectory(const py::object& stamps, const py::object& poses) {
 std::vector<float> to_numbers(const py::object& object, std::size_t count, const std::string& what) {
   const Numbers array = numbers_of(object, what);
   if (array.ndim() != 1 || static_cast<std::size_t>(array.shape(0)) != count)
-    throw InputError({what}, "found an array of shape " + shape_of(array) + "; expected (" + std::to_string(count) +
-                                 ",)");
+    throw InputError({what},
+                     "found an array of shape " + shape_of(array) + "; expected (" + std::to_string(count) + ",)");
   std::vector<float> numbers(count);
   for (std::size_t i = 0; i < count; ++i) {
     numbers[i] = static_cast<float>(array.data()[i]);

@@ -18,8 +18,9 @@ Camera known_camera(const std::string& name) {
 }
 
 std::string camera_text(const Camera& camera) {
-  const py::str text = py::str("Camera(name={!r}, width={}, height={}, fx={:g}, fy={:g}, cx={:g}, cy={:g})")
-                           .format(camera.name, camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy);
+  const py::str text =
+      py::str("Camera(name={!r}, width={}, height={}, fx={:g}, fy={:g}, cx={:g}, cy={:g})")
+          .format(camera.name, camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy);
   return text;
 }
 
@@ -28,15 +29,16 @@ std::string camera_text(const Camera& camera) {
 void bind_cameras(py::module_& module) {
   py::class_<Camera>(module, "Camera",
                      "A pinhole camera with radial-tangential distortion [px]; baseline [m], frame_rate [1/s].")
-      .def(py::init([](int width, int height, double fx, double fy, double cx, double cy, double k1, double k2, double p1,
-                       double p2, double k3, double baseline, double frame_rate, const std::string& name) {
+      .def(py::init([](int width, int height, double fx, double fy, double cx, double cy, double k1, double k2,
+                       double p1, double p2, double k3, double baseline, double frame_rate, const std::string& name) {
              if (width < 1 || height < 1 || !(fx > 0.0) || !(fy > 0.0))
-               throw InputError({"camera"}, "has no area or no focal length; expected width, height, fx and fy above 0");
+               throw InputError({"camera"},
+                                "has no area or no focal length; expected width, height, fx and fy above 0");
              return Camera{name, width, height, fx, fy, cx, cy, {k1, k2, p1, p2, k3}, baseline, frame_rate};
            }),
-           py::kw_only(), py::arg("width"), py::arg("height"), py::arg("fx"), py::arg("fy"), py::arg("cx"), py::arg("cy"),
-           py::arg("k1") = 0.0, py::arg("k2") = 0.0, py::arg("p1") = 0.0, py::arg("p2") = 0.0, py::arg("k3") = 0.0,
-           py::arg("baseline") = 0.08, py::arg("frame_rate") = 30.0, py::arg("name") = "")
+           py::kw_only(), py::arg("width"), py::arg("height"), py::arg("fx"), py::arg("fy"), py::arg("cx"),
+           py::arg("cy"), py::arg("k1") = 0.0, py::arg("k2") = 0.0, py::arg("p1") = 0.0, py::arg("p2") = 0.0,
+           py::arg("k3") = 0.0, py::arg("baseline") = 0.08, py::arg("frame_rate") = 30.0, py::arg("name") = "")
       .def_readonly("name", &Camera::name)
       .def_readonly("width", &Camera::width)
       .def_readonly("height", &Camera::height)

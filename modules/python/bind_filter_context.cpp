@@ -67,19 +67,19 @@ void bind_features_view(py::module_& module) {
       .def_property_readonly("raw_x", [](const FeaturesView& view) { return number_array(view.get().features.x); })
       .def_property_readonly("raw_y", [](const FeaturesView& view) { return number_array(view.get().features.y); })
       .def_property_readonly("angle", [](const FeaturesView& view) { return number_array(view.get().features.angle); })
-      .def_property_readonly("octave", [](const FeaturesView& view) { return number_array(view.get().features.octave); })
+      .def_property_readonly("octave",
+                             [](const FeaturesView& view) { return number_array(view.get().features.octave); })
       .def_property_readonly("descriptors", &descriptors)
       .def_property_readonly("point_ids", &point_ids)
       .def_property_readonly("labels", &labels_at_features)
-      .def_property_readonly("T_world_camera", [](const FeaturesView& view) { return pose_array(view.get().T_world_camera()); })
-      .def_property_readonly("cell_depth",
-                             [](const FeaturesView& view) {
-                               return cell_array(view.get().coarse.grid, view.get().coarse.depth);
-                             })
-      .def_property_readonly("cell_labels",
-                             [](const FeaturesView& view) {
-                               return cell_array(view.get().coarse.grid, view.get().coarse.mask.labels);
-                             })
+      .def_property_readonly("T_world_camera",
+                             [](const FeaturesView& view) { return pose_array(view.get().T_world_camera()); })
+      .def_property_readonly(
+          "cell_depth",
+          [](const FeaturesView& view) { return cell_array(view.get().coarse.grid, view.get().coarse.depth); })
+      .def_property_readonly(
+          "cell_labels",
+          [](const FeaturesView& view) { return cell_array(view.get().coarse.grid, view.get().coarse.mask.labels); })
       .def_property_readonly("cell_confidence", [](const FeaturesView& view) {
         return cell_array(view.get().coarse.grid, view.get().coarse.mask.confidence);
       });
@@ -131,8 +131,7 @@ void add_evidence(const EvidenceView& view, const py::object& log_odds, const st
   const std::vector<float> numbers = to_numbers(log_odds, evidence.size(), "log_odds");
   for (std::size_t i = 0; i < numbers.size(); ++i)
     if (numbers[i] != 0.0F)
-      evidence.add(i, numbers[i],
-                   kind == "prior" ? StaticEvidence::Kind::prior : StaticEvidence::Kind::measurement);
+      evidence.add(i, numbers[i], kind == "prior" ? StaticEvidence::Kind::prior : StaticEvidence::Kind::measurement);
 }
 
 void add_point_evidence(const EvidenceView& view, const std::vector<std::uint64_t>& ids, const py::object& log_odds) {
@@ -162,8 +161,8 @@ py::object shown_snapshot(const MapSnapshot& snapshot) {
 void bind_filter_context(py::module_& module) {
   bind_features_view(module);
   bind_context_view(module);
-  py::class_<EvidenceView, std::shared_ptr<EvidenceView>>(module, "StaticEvidence",
-                                                          "Takes log-odds of standing still: 0 = unknown, above = static.")
+  py::class_<EvidenceView, std::shared_ptr<EvidenceView>>(
+      module, "StaticEvidence", "Takes log-odds of standing still: 0 = unknown, above = static.")
       .def("__len__", [](const EvidenceView& view) { return view.get().size(); })
       .def("add", &add_evidence, py::arg("log_odds"), py::arg("kind") = "measurement")
       .def("add_points", &add_point_evidence, py::arg("ids"), py::arg("log_odds"))

@@ -81,16 +81,16 @@ void bind_frames(py::module_& module) {
                              [](const SensorFrame& frame) {
                                return of_truth(frame, [](const FrameTruth& t) { return pose_array(t.T_world_camera); });
                              })
-      .def_property_readonly(
-          "object_mask",
-          [](const SensorFrame& frame) {
-            return of_truth(frame, [](const FrameTruth& truth) { return array_of_image(truth.object_mask); });
-          })
-      .def_property_readonly(
-          "class_labels",
-          [](const SensorFrame& frame) {
-            return of_truth(frame, [](const FrameTruth& truth) { return array_of_image(truth.class_labels); });
-          })
+      .def_property_readonly("object_mask",
+                             [](const SensorFrame& frame) {
+                               return of_truth(
+                                   frame, [](const FrameTruth& truth) { return array_of_image(truth.object_mask); });
+                             })
+      .def_property_readonly("class_labels",
+                             [](const SensorFrame& frame) {
+                               return of_truth(
+                                   frame, [](const FrameTruth& truth) { return array_of_image(truth.class_labels); });
+                             })
       .def_property_readonly("moving_objects",
                              [](const SensorFrame& frame) {
                                return of_truth(frame, [](const FrameTruth& truth) {

@@ -60,7 +60,8 @@ void bind_snapshots(py::module_& module) {
   py::class_<MapSnapshot>(module, "MapSnapshot", "Keyframes, points and loops of a map at one time.")
       .def_property_readonly("keyframe_ids",
                              [](const MapSnapshot& s) {
-                               return column<std::uint64_t>(s.keyframes, [](const KeyFrame& k) { return number_of(k.id); });
+                               return column<std::uint64_t>(s.keyframes,
+                                                            [](const KeyFrame& k) { return number_of(k.id); });
                              })
       .def("keyframe_arrays", &keyframe_arrays)
       .def_property_readonly("point_ids",
@@ -89,12 +90,16 @@ void bind_maps(py::module_& module) {
   bind_snapshots(module);
   using Release = py::call_guard<Unlock>;
   py::class_<Map, std::shared_ptr<Map>>(module, "Map", "Keyframes and points of a run, as map.hfm holds them.")
-      .def("snapshot", [](const Map& map) { return make_snapshot(map); }, Release())
-      .def("write", [](const Map& map, const std::filesystem::path& file) { write_map(file, map); }, py::arg("file"),
-           Release())
-      .def("write_ply", [](const Map& map, const std::filesystem::path& file) { write_points_ply(file, map); },
-           py::arg("file"), Release())
-      .def("to_json", [](const Map& map) { return map_json(map); }, Release())
+      .def(
+          "snapshot", [](const Map& map) { return make_snapshot(map); }, Release())
+      .def(
+          "write", [](const Map& map, const std::filesystem::path& file) { write_map(file, map); }, py::arg("file"),
+          Release())
+      .def(
+          "write_ply", [](const Map& map, const std::filesystem::path& file) { write_points_ply(file, map); },
+          py::arg("file"), Release())
+      .def(
+          "to_json", [](const Map& map) { return map_json(map); }, Release())
       .def_property_readonly("keyframe_count", [](const Map& map) { return map.keyframes().size(); })
       .def_property_readonly("point_count", [](const Map& map) { return map.points().size(); })
       .def("__repr__", [](const Map& map) {
@@ -104,8 +109,9 @@ void bind_maps(py::module_& module) {
   module.def(
       "read_map", [](const std::filesystem::path& file) { return std::make_shared<Map>(read_map(file)); },
       py::arg("file"), Release());
-  module.def("map_info_json", [](const std::filesystem::path& file) { return to_json(read_map_info(file)); },
-             py::arg("file"), Release());
+  module.def(
+      "map_info_json", [](const std::filesystem::path& file) { return to_json(read_map_info(file)); }, py::arg("file"),
+      Release());
 }
 
 }  // namespace holdfast::python

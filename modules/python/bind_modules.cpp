@@ -9,7 +9,6 @@
 #include "bindings.hpp"
 #include "fed_frames.hpp"
 #include "holdfast/plugin/builtin.hpp"
-#include "holdfast/interfaces/all.hpp"
 #include "instance.hpp"
 #include "registry.hpp"
 
@@ -39,21 +38,27 @@ const std::map<std::string, Maker>& makers() {
 }
 
 ParameterType type_of(const std::string& name) {
-  for (const ParameterType type : {ParameterType::boolean, ParameterType::integer, ParameterType::real,
-                                   ParameterType::text, ParameterType::path, ParameterType::text_list,
-                                   ParameterType::real_list})
+  for (const ParameterType type :
+       {ParameterType::boolean, ParameterType::integer, ParameterType::real, ParameterType::text, ParameterType::path,
+        ParameterType::text_list, ParameterType::real_list})
     if (name == to_string(type)) return type;
   throw PluginError("there is no parameter type '" + name + "'");
 }
 
 ParameterValue value_of(const py::handle& value, ParameterType type) {
   switch (type) {
-    case ParameterType::boolean: return value.cast<bool>();
-    case ParameterType::integer: return value.cast<std::int64_t>();
-    case ParameterType::real: return value.cast<double>();
-    case ParameterType::text_list: return value.cast<std::vector<std::string>>();
-    case ParameterType::real_list: return value.cast<std::vector<double>>();
-    default: return std::string(py::str(value));
+    case ParameterType::boolean:
+      return value.cast<bool>();
+    case ParameterType::integer:
+      return value.cast<std::int64_t>();
+    case ParameterType::real:
+      return value.cast<double>();
+    case ParameterType::text_list:
+      return value.cast<std::vector<std::string>>();
+    case ParameterType::real_list:
+      return value.cast<std::vector<double>>();
+    default:
+      return std::string(py::str(value));
   }
 }
 
@@ -91,9 +96,9 @@ void register_module(const std::string& kind, const std::string& name, const std
   register_builtin_plugins(builtin);
   const auto found = registered().find({kind, name});
   if (builtin.find(kind, name) != nullptr || (found != registered().end() && !replace))
-    throw PluginError(kind + " module '" + name + "' of " + origin + " cannot be registered: the name is taken by one of " +
-                      (found != registered().end() ? found->second.origin : "Holdfast itself") +
-                      "; rename one of them");
+    throw PluginError(
+        kind + " module '" + name + "' of " + origin + " cannot be registered: the name is taken by one of " +
+        (found != registered().end() ? found->second.origin : "Holdfast itself") + "; rename one of them");
   ModuleEntry entry{kind, {.name = name, .summary = summary, .paper = paper, .licence = ""}, origin, {}, {}};
   for (const py::dict& row : parameters) entry.parameters.push_back(parameter_of(row));
   entry.create = [make = maker->second, shared = SharedObject(factory), file](const ParameterValues& values,
@@ -116,27 +121,13 @@ py::list registered_names() {
   return names;
 }
 
-template <class Interface>
-void add(Registry& registry, const ModuleEntry& entry) {
-  registry.add<Interface, NoSettings>(entry.description, {});
-}
-/// DEVELOPMENT ONLY
-void add(Registry& registry, const ModuleEntry& entry) {
-  if (entry.kind == "source") add<FrameSource>(registry, entry);
-  if (entry.kind == "features") add<FeatureExtractor>(registry, entry);
-  if (entry.kind == "segmenter") add<Segmenter>(registry, entry);
-  if (entry.kind == "filters") add<DynamicFilter>(registry, entry);
-  if (entry.kind == "observers") add<Observer>(registry, entry);
-  const_cast<ModuleEntry&>(*registry.find(entry.kind, entry.description.name)) = entry;
-}
-
 }  // namespace
 
 Registry make_registry() {
   Registry registry;
   register_builtin_plugins(registry);
   register_fed_frames(registry);
-  for (const auto& [key, entry] : registered()) add(registry, entry);
+  for (const auto& [key, entry] : registered()) registry.add(entry);
   return registry;
 }
 

@@ -68,8 +68,12 @@ class FedPipeline {
     pipeline_.reset();
   }
 
-  py::tuple trajectory() { return trajectory_arrays(ask([](const Pipeline& p) { return p.trajectory(); })); }
-  py::tuple keyframes() { return trajectory_arrays(ask([](const Pipeline& p) { return p.keyframe_trajectory(); })); }
+  py::tuple trajectory() {
+    return trajectory_arrays(ask([](const Pipeline& p) { return p.trajectory(); }));
+  }
+  py::tuple keyframes() {
+    return trajectory_arrays(ask([](const Pipeline& p) { return p.keyframe_trajectory(); }));
+  }
   MapSnapshot map_snapshot() {
     const Unlock unlock;
     const std::lock_guard lock(life_);

@@ -212,9 +212,9 @@ void bind_run(py::module_& module) {
       "run",
       [](const Configuration& configuration, const std::filesystem::path& output, const std::filesystem::path& map,
          bool localise_only, bool overwrite, const py::object& on_frame, double interval) {
-        return run_configuration(
-            configuration, {.output_directory = output, .map_file = map, .localise_only = localise_only}, overwrite,
-            on_frame, interval);
+        return run_configuration(configuration,
+                                 {.output_directory = output, .map_file = map, .localise_only = localise_only},
+                                 overwrite, on_frame, interval);
       },
       py::arg("configuration"), py::arg("output"), py::arg("map"), py::arg("localise_only"), py::arg("overwrite"),
       py::arg("on_frame"), py::arg("interval"));

@@ -20,8 +20,8 @@ EvaluationOptions options_of(const std::string& alignment, double max_time_diffe
   EvaluationOptions options;
   const std::optional<AlignmentKind> kind = parse_alignment(alignment);
   if (!kind)
-    throw InputError({"alignment"}, "there is no alignment '" + alignment + "'; " +
-                                        did_you_mean(alignment, {"se3", "sim3", "none"}));
+    throw InputError({"alignment"},
+                     "there is no alignment '" + alignment + "'; " + did_you_mean(alignment, {"se3", "sim3", "none"}));
   options.alignment = *kind;
   options.max_time_difference = max_time_difference;
   options.time_step = time_step;
@@ -55,8 +55,9 @@ void bind_trajectories(py::module_& module) {
       "trajectory_text",
       [](const py::object& stamps, const py::object& poses) { return trajectory_text(to_trajectory(stamps, poses)); },
       py::arg("timestamps"), py::arg("poses"));
-  module.def("check_trajectory", [](const py::object& stamps, const py::object& poses) { to_trajectory(stamps, poses); },
-             py::arg("timestamps"), py::arg("poses"));
+  module.def(
+      "check_trajectory", [](const py::object& stamps, const py::object& poses) { to_trajectory(stamps, poses); },
+      py::arg("timestamps"), py::arg("poses"));
 
   py::class_<Evaluation>(module, "Evaluation")
       .def("to_json", [](const Evaluation& evaluation) { return to_json(evaluation); })

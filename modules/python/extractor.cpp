@@ -62,7 +62,8 @@ class ExtractorOfPython final : public FeatureExtractor {
         instance_.refuse("extract", feature + "octave " + std::to_string(octaves[i]),
                          "a level from 0 to " + std::to_string(pyramid_.levels() - 1) + ", below `levels`");
       if (found.angle[i] < 0.0F || found.angle[i] >= 2.0F * std::numbers::pi_v<float>)
-        instance_.refuse("extract", feature + "angle " + std::to_string(found.angle[i]), "radians from 0 to below 2 pi");
+        instance_.refuse("extract", feature + "angle " + std::to_string(found.angle[i]),
+                         "radians from 0 to below 2 pi");
       found.octave.push_back(static_cast<std::uint8_t>(octaves[i]));
     }
     read_descriptors(features.attr("descriptors"), count, found);

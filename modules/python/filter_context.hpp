@@ -21,7 +21,8 @@ class View {
   explicit View(Seen& seen, const char* name) : seen_(&seen), name_(name) {}
   Seen& get() const {
     if (seen_ == nullptr)
-      throw Error(std::string(name_) + ": is valid during the call only that it was given to; copy what is needed later");
+      throw Error(std::string(name_) +
+                  ": is valid during the call only that it was given to; copy what is needed later");
     return *seen_;
   }
   void end() { seen_ = nullptr; }

@@ -52,9 +52,12 @@ struct Layout {
 
 Layout layout_of(ImageKind kind) {
   switch (kind) {
-    case ImageKind::colour: return {"uint8", "(rows, columns, 3), blue green red as cv2 reads it", 'u', 1, 3, CV_8UC3};
-    case ImageKind::depth: return {"float32", "(rows, columns) in metres, 0 where there is none", 'f', 4, 1, CV_32FC1};
-    case ImageKind::label: break;
+    case ImageKind::colour:
+      return {"uint8", "(rows, columns, 3), blue green red as cv2 reads it", 'u', 1, 3, CV_8UC3};
+    case ImageKind::depth:
+      return {"float32", "(rows, columns) in metres, 0 where there is none", 'f', 4, 1, CV_32FC1};
+    case ImageKind::label:
+      break;
   }
   return {"uint8", "(rows, columns)", 'u', 1, 1, CV_8UC1};
 }
@@ -71,12 +74,13 @@ py::array checked(const py::object& object, ImageKind kind, const std::string& n
   const std::string expected =
       std::string("; expected a numpy array of ") + layout.dtype + " with shape " + layout.shape;
   if (!py::isinstance<py::array>(object))
-    throw InputError({name}, "found an object of type " + std::string(py::str(py::type::of(object).attr("__name__"))) +
-                                 expected);
+    throw InputError(
+        {name}, "found an object of type " + std::string(py::str(py::type::of(object).attr("__name__"))) + expected);
   auto array = py::reinterpret_borrow<py::array>(object);
   const py::dtype dtype = array.dtype();
   if (dtype.kind() != layout.kind || dtype.itemsize() != layout.item_size || !dtype.attr("isnative").cast<bool>())
-    throw InputError({name}, "found an array of " + std::string(py::str(py::handle(dtype))) + expected + remedy(array, kind));
+    throw InputError({name},
+                     "found an array of " + std::string(py::str(py::handle(dtype))) + expected + remedy(array, kind));
   const bool has_channels = layout.channels > 1;
   if (array.ndim() != (has_channels ? 3 : 2) || array.size() == 0 ||
       (has_channels && array.shape(2) != layout.channels))

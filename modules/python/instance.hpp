@@ -19,7 +19,8 @@ class Instance {
  public:
   /// The lock must be held.
   Instance(pybind11::object object, std::filesystem::path file)
-      : object_(object), file_(std::move(file)),
+      : object_(object),
+        file_(std::move(file)),
         class_name_(pybind11::str(pybind11::type::of(object).attr("__name__"))) {}
 
   const std::filesystem::path& file() const { return file_; }

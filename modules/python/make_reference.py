@@ -38,7 +38,9 @@ def short(text: str) -> str:
 
 def documented(thing: object) -> str:
     text = inspect.cleandoc(getattr(thing, "__doc__", None) or "")
-    return re.sub(r"::\n\n((?:    .*\n|\n)+)", lambda block: f":\n\n```python\n{inspect.cleandoc(block[1])}\n```\n", text + "\n").strip()
+    return re.sub(
+        r"::\n\n((?:    .*\n|\n)+)", lambda block: f":\n\n```python\n{inspect.cleandoc(block[1])}\n```\n", text + "\n"
+    ).strip()
 
 
 def python_signature(function: object) -> str:
@@ -92,12 +94,17 @@ def entry(name: str) -> "list[str]":
 def main() -> None:
     names = [name for name in holdfast.__all__ if name != "__version__"]
     functions = [name for name in names if not inspect.isclass(getattr(holdfast, name))]
-    errors = [name for name in names if inspect.isclass(getattr(holdfast, name)) and issubclass(getattr(holdfast, name), Exception)]
+    errors = [
+        name
+        for name in names
+        if inspect.isclass(getattr(holdfast, name)) and issubclass(getattr(holdfast, name), Exception)
+    ]
     classes = [name for name in names if name not in functions and name not in errors]
     lines = [
         "# Reference of the Python package",
         "",
-        "Generated from the docstrings by `modules/python/make_reference.py`; a test compares it. [python.md](python.md) explains the use.",
+        "Generated from the docstrings by `modules/python/make_reference.py`; a test compares it. The use:"
+        " [python.md](python.md).",
         "",
         documented(holdfast).split("\n\n")[-1].replace("\n", " "),
     ]

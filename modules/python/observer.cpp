@@ -15,8 +15,11 @@ namespace {
 class ObserverOfPython final : public Observer {
  public:
   explicit ObserverOfPython(Instance instance)
-      : instance_(std::move(instance)), sees_frames_(defines("on_frame")), sees_keyframes_(defines("on_keyframe")),
-        sees_loops_(defines("on_loop")), sees_end_(defines("on_finish")) {
+      : instance_(std::move(instance)),
+        sees_frames_(defines("on_frame")),
+        sees_keyframes_(defines("on_keyframe")),
+        sees_loops_(defines("on_loop")),
+        sees_end_(defines("on_finish")) {
     if (!sees_frames_ && !sees_keyframes_ && !sees_loops_ && !sees_end_)
       throw InputError({instance_.file().string()}, instance_.class_name() +
                                                         " observes nothing; expected one of on_frame, on_keyframe, "
@@ -46,7 +49,8 @@ class ObserverOfPython final : public Observer {
   }
   void on_finish(const Map& map) override {
     if (!sees_end_) return;
-    instance_.with_lock("on_finish", [&](const py::object& object) { object.attr("on_finish")(shown_snapshot(make_snapshot(map))); });
+    instance_.with_lock(
+        "on_finish", [&](const py::object& object) { object.attr("on_finish")(shown_snapshot(make_snapshot(map))); });
   }
 
  private:

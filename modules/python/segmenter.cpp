@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "class_names.hpp"
 #include "holdfast/interfaces/segmenter.hpp"
+#include "class_names.hpp"
 #include "instance.hpp"
 #include "labels.hpp"
 

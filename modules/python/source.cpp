@@ -32,10 +32,10 @@ SourceDescription describe(const Instance& instance) {
   description.name = attribute<std::string>(instance, "name", instance.class_name(), "a text");
   description.has_depth = attribute(instance, "has_depth", true, "True or False");
   description.class_names = attribute<std::vector<std::string>>(instance, "class_names", {}, "a list of names");
-  description.frame_count = attribute<std::optional<std::uint64_t>>(instance, "frame_count", std::nullopt,
-                                                                    "a number of frames, or None for an endless source");
-  description.camera =
-      attribute<std::optional<Camera>>(instance, "camera", std::nullopt, "a holdfast.Camera, such as holdfast.camera('tum_fr1')");
+  description.frame_count = attribute<std::optional<std::uint64_t>>(
+      instance, "frame_count", std::nullopt, "a number of frames, or None for an endless source");
+  description.camera = attribute<std::optional<Camera>>(instance, "camera", std::nullopt,
+                                                        "a holdfast.Camera, such as holdfast.camera('tum_fr1')");
   return description;
 }
 
@@ -58,8 +58,9 @@ class SourceOfPython final : public FrameSource {
       if (!item) return std::nullopt;
       SensorFrame frame = frame_of(item);
       if (frame.timestamp <= last_)
-        instance_.refuse("__iter__", "yielded the time stamp " + std::string(py::str(py::float_(frame.timestamp))) +
-                                         " after " + std::string(py::str(py::float_(last_))),
+        instance_.refuse("__iter__",
+                         "yielded the time stamp " + std::string(py::str(py::float_(frame.timestamp))) + " after " +
+                             std::string(py::str(py::float_(last_))),
                          "time stamps in seconds that rise strictly");
       last_ = frame.timestamp;
       frame.index = index_++;

@@ -15,7 +15,9 @@ def turned(angle):
 
 def spiral(count=50):
     poses = numpy.stack([turned(0.1 * index) for index in range(count)])
-    poses[:, :3, 3] = numpy.stack([numpy.cos(numpy.arange(count) / 5), numpy.sin(numpy.arange(count) / 5), numpy.arange(count) / 20], 1)
+    poses[:, :3, 3] = numpy.stack(
+        [numpy.cos(numpy.arange(count) / 5), numpy.sin(numpy.arange(count) / 5), numpy.arange(count) / 20], 1
+    )
     return holdfast.Trajectory(numpy.arange(count) / 10, poses)
 
 
@@ -23,7 +25,9 @@ def test_trajectory_is_read_as_written(tmp_path):
     trajectory = spiral()
     trajectory.write(tmp_path / "poses.txt")
     read = holdfast.read_trajectory(tmp_path / "poses.txt")
-    assert numpy.allclose(read.timestamps, trajectory.timestamps) and numpy.allclose(read.poses, trajectory.poses, atol=1e-8)
+    assert numpy.allclose(read.timestamps, trajectory.timestamps) and numpy.allclose(
+        read.poses, trajectory.poses, atol=1e-8
+    )
     rows = numpy.loadtxt(tmp_path / "poses.txt")
     assert numpy.allclose(rows[:, 1:4], trajectory.positions, atol=1e-8)
     signs = numpy.sign((rows[:, 4:] * trajectory.quaternions).sum(axis=1, keepdims=True))
@@ -91,7 +95,9 @@ def test_simulation_is_a_sequence_with_truth():
 
 
 def test_bench_tables_are_records(tmp_path):
-    (tmp_path / "runs.csv").write_text('variant,sequence,poses,ate_rmse_m,counts\n"a, b",xyz,-3,0.25,true\nc,rpy,,,false\n')
+    (tmp_path / "runs.csv").write_text(
+        'variant,sequence,poses,ate_rmse_m,counts\n"a, b",xyz,-3,0.25,true\nc,rpy,,,false\n'
+    )
     (tmp_path / "cells.csv").write_text("variant,coverage\na,1\n")
     results = holdfast.read_bench(tmp_path)
     assert results.runs == [

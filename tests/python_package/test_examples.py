@@ -26,7 +26,11 @@ def environment():
 )
 def test_example_runs(name, expected, tmp_path):
     outcome = subprocess.run(
-        [sys.executable, str(EXAMPLES / "python" / name), "1.0"], capture_output=True, text=True, env=environment(), cwd=tmp_path
+        [sys.executable, str(EXAMPLES / "python" / name), "1.0"],
+        capture_output=True,
+        text=True,
+        env=environment(),
+        cwd=tmp_path,
     )
     assert outcome.returncode == 0, outcome.stderr
     assert expected in outcome.stdout

@@ -9,7 +9,18 @@ import sys
 import pytest
 
 SOURCE = pathlib.Path(os.environ["HOLDFAST_SOURCE_DIR"])
-FILES = ("CMakeLists.txt", "LICENSE", "README.md", "pyproject.toml", "setup.py", "cmake", "include", "modules", "plugins", "examples")
+FILES = (
+    "CMakeLists.txt",
+    "LICENSE",
+    "README.md",
+    "pyproject.toml",
+    "setup.py",
+    "cmake",
+    "include",
+    "modules",
+    "plugins",
+    "examples",
+)
 
 USE = """
 import holdfast, pathlib

@@ -62,7 +62,11 @@ def test_arrays_live_as_long_as_their_images(frames):
 @pytest.mark.parametrize(
     "colour, depth, message",
     [
-        (numpy.zeros((480, 640), numpy.uint8), None, r"colour: found an array of shape \(480, 640\); expected .*uint8"),
+        (
+            numpy.zeros((480, 640), numpy.uint8),
+            None,
+            r"colour: found an array of shape \(480, 640\); expected .*uint8",
+        ),
         (numpy.zeros((480, 640, 3)), None, r"colour: found an array of float64.*\.astype\(numpy.uint8\)"),
         (numpy.zeros((480, 640, 3), numpy.uint8), numpy.zeros((480, 640), numpy.uint16), "depth: .*/ 5000"),
         (numpy.zeros((480, 640, 3), numpy.uint8), numpy.zeros((480, 640)), r"depth: .*float64.*float32"),

@@ -51,7 +51,9 @@ def test_segmenter_from_yaml(config, tmp_path, mode):
         if "segmenter: none" in holdfast.load_config(config).to_yaml()
         else "segmenter: { bright: { threshold: 120 } }\n" + yaml_of(config)
     )
-    result = holdfast.run(file, {"source.simulated.duration": 0.5, "run.mode": mode}, tmp_path / "out", progress=False)
+    result = holdfast.run(
+        file, {"source.simulated.duration": 0.5, "run.mode": mode}, tmp_path / "out", progress=False
+    )
     assert made[-1].threshold == 120 and made[-1].frames
     assert len(result.trajectory) > 0
     assert "bright" in (tmp_path / "out" / "config.yaml").read_text()

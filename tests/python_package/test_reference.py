@@ -15,11 +15,16 @@ SOURCE = pathlib.Path(os.environ["HOLDFAST_SOURCE_DIR"])
 def test_reference_is_up_to_date():
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     outcome = subprocess.run(
-        [sys.executable, str(SOURCE / "modules/python/make_reference.py")], capture_output=True, text=True, env=environment
+        [sys.executable, str(SOURCE / "modules/python/make_reference.py")],
+        capture_output=True,
+        text=True,
+        env=environment,
     )
     assert outcome.returncode == 0, outcome.stderr
     page = (SOURCE / "docs/python_reference.md").read_text(encoding="utf-8")
-    assert page == outcome.stdout, "write it anew: python3 modules/python/make_reference.py > docs/python_reference.md"
+    assert (
+        page == outcome.stdout
+    ), "write it anew: python3 modules/python/make_reference.py > docs/python_reference.md"
 
 
 def test_every_public_name_is_documented():

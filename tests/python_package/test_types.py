@@ -13,7 +13,9 @@ from holdfast import _core
 
 SOURCE = pathlib.Path(os.environ["HOLDFAST_SOURCE_DIR"])
 # Files of the segmenter `python` stand alone: they know nothing of the package.
-EXAMPLES = [file for file in sorted((SOURCE / "examples/python").glob("*.py")) if "import holdfast" in file.read_text()]
+EXAMPLES = [
+    file for file in sorted((SOURCE / "examples/python").glob("*.py")) if "import holdfast" in file.read_text()
+]
 
 
 def test_type_checker_finds_nothing(tmp_path):
@@ -21,7 +23,17 @@ def test_type_checker_finds_nothing(tmp_path):
     targets = [SOURCE / "modules/python/holdfast", *EXAMPLES]
     environment = {**os.environ, "MYPYPATH": str(SOURCE / "modules/python"), "PYTHONPATH": ""}
     outcome = subprocess.run(
-        [sys.executable, "-m", "mypy", "--strict", "--python-version", "3.9", "--cache-dir", str(tmp_path), *map(str, targets)],
+        [
+            sys.executable,
+            "-m",
+            "mypy",
+            "--strict",
+            "--python-version",
+            "3.9",
+            "--cache-dir",
+            str(tmp_path),
+            *map(str, targets),
+        ],
         capture_output=True,
         text=True,
         env=environment,

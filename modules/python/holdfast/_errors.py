@@ -31,7 +31,8 @@ class ConfigurationError(Error, ValueError):
 class InputError(Error, ValueError):
     """A file, an array or a frame that cannot be used. `location` is (file, line, column).
 
-    Where code in Python raised it, as in a segmenter, its own exception is `__cause__`, and the traceback is in the text.
+    Where code in Python raised it, as in a segmenter, its own exception is `__cause__`, and the traceback is in the
+    text.
     """
 
     location: Tuple[str, int, int] = ("", 0, 0)

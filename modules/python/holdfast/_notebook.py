@@ -33,7 +33,12 @@ def table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
 def stage_table(stages: List[Dict[str, Any]]) -> str:
     """Times of the stages of a run."""
     rows = [
-        [stage["stage"], f"{1e3 * stage['median_s']:.2f}", f"{1e3 * stage['p95_s']:.2f}", f"{100 * stage['share']:.1f}"]
+        [
+            stage["stage"],
+            f"{1e3 * stage['median_s']:.2f}",
+            f"{1e3 * stage['p95_s']:.2f}",
+            f"{100 * stage['share']:.1f}",
+        ]
         for stage in stages
     ]
     return table(["stage", "median [ms]", "95 % [ms]", "share [%]"], rows)

@@ -72,8 +72,8 @@ class BenchResults:
             import pandas  # type: ignore[import]
         except ImportError as error:
             raise ImportError(
-                "data frames need pandas, which is not installed; install python3-pandas (Debian) or pandas (pip), or use "
-                "table()"
+                "data frames need pandas, which is not installed; install python3-pandas (Debian) or "
+                "pandas (pip), or use table()"
             ) from error
         return pandas.DataFrame.from_records(self.table(name))
 

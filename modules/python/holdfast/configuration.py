@@ -51,8 +51,8 @@ def load_config(config: Config, overrides: Overrides = {}) -> Configuration:
     """Reads and checks a configuration, as `holdfast check --without-data` does.
 
     `config` is a file, or a mapping with the sections of one (relative paths in it start from the working directory).
-    `overrides` are values by key path, {"features.orb.count": 1500} or ["features.orb.count=1500"]; they count as if the
-    configuration contained them.
+    `overrides` are values by key path, {"features.orb.count": 1500} or ["features.orb.count=1500"]; they count as if
+    the configuration contained them.
 
     Raises ConfigurationError with every problem found, each with file, line and column.
     """
@@ -60,7 +60,8 @@ def load_config(config: Config, overrides: Overrides = {}) -> Configuration:
 
 
 def modules() -> List[Dict[str, Any]]:
-    """The reference of all modules and plain sections, those registered in Python included, as `holdfast modules --json`.
+    """The reference of all modules and plain sections, those registered in Python included, as `holdfast modules
+    --json`.
 
     Each entry has `kind`, `name`, `summary` and `parameters` with name, type, default, range, unit and help.
     """

@@ -42,8 +42,10 @@ class Evaluation(Mapping[str, Any]):
 
     @property
     def tracks(self) -> Dict[str, npt.NDArray[np.float64]]:
-        """`truth` and `estimate` as (N, 4) of time [s] and aligned position [m], `error` as (N, 2) of time and error."""
-        return {name: np.array(rows, dtype=np.float64) for name, rows in json.loads(self._core.to_tracks_json()).items()}
+        """`truth` and `estimate` (N, 4): time [s], aligned position [m]; `error` (N, 2): time [s], error [m]."""
+        return {
+            name: np.array(rows, dtype=np.float64) for name, rows in json.loads(self._core.to_tracks_json()).items()
+        }
 
     def to_text(self) -> str:
         """The table that `holdfast evaluate` prints."""
@@ -86,9 +88,9 @@ def evaluate(
 ) -> Evaluation:
     """Computes absolute and relative errors of an estimate (ATE and RPE), as `holdfast evaluate` does.
 
-    `truth` and `estimate` are trajectories or files in TUM's format. `alignment` is "se3", "sim3" (monocular) or "none";
-    poses belong together within `max_time_difference` [s]; `time_step` [s] and `path_step` [m] are those of the relative
-    errors. With `frame_stamps` (N,) [s], the times of all frames, the coverage is computed.
+    `truth` and `estimate` are trajectories or files in TUM's format. `alignment` is "se3", "sim3" (monocular) or
+    "none"; poses belong together within `max_time_difference` [s]; `time_step` [s] and `path_step` [m] are those of
+    the relative errors. With `frame_stamps` (N,) [s], the times of all frames, the coverage is computed.
 
     Raises Error for options out of range, and for fewer than three pairs of poses with the reason.
     """

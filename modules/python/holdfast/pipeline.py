@@ -24,14 +24,14 @@ _open_pipelines: "weakref.WeakSet[Pipeline]" = weakref.WeakSet()
 class Pipeline:
     """Visual SLAM from frames to poses and a map.
 
-    `config` is a file, a mapping or a Configuration. Its source is not opened: frames come from feed(). Without the section
-    `camera` give `camera`, a known name or a Camera. `map` is a map.hfm to continue, or with `localise` to find poses in
-    without changing it. `output` is a folder for modules that write files. `class_names` are those of the frames'
-    `class_labels`, for the segmenter `truth`.
+    `config` is a file, a mapping or a Configuration. Its source is not opened: frames come from feed(). Without the
+    section `camera` give `camera`, a known name or a Camera. `map` is a map.hfm to continue, or with `localise` to
+    find poses in without changing it. `output` is a folder for modules that write files. `class_names` are those of
+    the frames' `class_labels`, for the segmenter `truth`.
 
     Pipelines share nothing: any number may live at once. Any thread may call any method; feed() and finish() of one
-    pipeline wait for each other. C++ works without Python's lock (GIL). Used as a context manager, it is finished at the end
-    of the block, and closed: trajectory, keyframes and map stay.
+    pipeline wait for each other. C++ works without Python's lock (GIL). Used as a context manager, it is finished at
+    the end of the block, and closed: trajectory, keyframes and map stay.
 
     Raises ConfigurationError with every problem found, InputError for a map that cannot be used.
     """
@@ -60,28 +60,32 @@ class Pipeline:
         _open_pipelines.add(self)
 
     @overload
-    def feed(self, timestamp: float, colour: npt.NDArray[np.uint8], depth: Optional[npt.NDArray[np.float32]]) -> FrameResult: ...
+    def feed(
+        self, timestamp: float, colour: npt.NDArray[np.uint8], depth: Optional[npt.NDArray[np.float32]]
+    ) -> FrameResult:
+        ...
 
     @overload
-    def feed(self, timestamp: Frame) -> FrameResult: ...
+    def feed(self, timestamp: Frame) -> FrameResult:
+        ...
 
     def feed(self, timestamp: Any, colour: Any = None, depth: Any = None) -> FrameResult:
         """Processes one frame and returns what tracking found.
 
         `timestamp` [s] rises strictly. `colour` is uint8 (rows, columns, 3), blue green red as cv2 reads it; `depth` is
-        float32 (rows, columns) along the optical axis [m], 0 where there is none. A Frame is accepted in their place. The
-        images are shared, not copied: do not write to them afterwards; a camera that reuses its buffer hands over copies.
-        Only arrays whose rows are not contiguous, such as image[:, :, ::-1], are copied.
+        float32 (rows, columns) along the optical axis [m], 0 where there is none. A Frame is accepted in their place.
+        The images are shared, not copied: do not write to them afterwards; a camera that reuses its buffer hands over
+        copies. Only arrays whose rows are not contiguous, such as image[:, :, ::-1], are copied.
 
-        Trouble with a frame is a result, not an exception. Raises InputError for arrays of another kind and for time stamps
-        that do not rise, and what a thread of the pipeline raised.
+        Trouble with a frame is a result, not an exception. Raises InputError for arrays of another kind and for time
+        stamps that do not rise, and what a thread of the pipeline raised.
         """
         if isinstance(timestamp, Frame):
             return self._core.feed(timestamp)
         return self._core.feed_arrays(timestamp, colour, depth)
 
     def finish(self) -> None:
-        """Ends the run: waits for background work, adjusts the map once more where that helps, and tells the observers."""
+        """Ends the run: waits for background work, adjusts the map once more where that helps, tells the observers."""
         self._core.finish()
 
     def close(self) -> None:

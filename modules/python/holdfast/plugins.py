@@ -18,8 +18,9 @@ decorator `register`::
 
 The parameters of `__init__` with their annotations and defaults are those of the configuration, which may then say
 `segmenter: { bright: { threshold: 200 } }`. Types are bool, int, float, str, pathlib.Path, List[str] and List[float]; a
-parameter without a default is required. A parameter `context: holdfast.Creation` receives camera, seed and folder of the
-run. Any exception ends the run with its traceback. Python's lock (GIL) is held during calls, and never while C++ works.
+parameter without a default is required. A parameter `context: holdfast.Creation` receives camera, seed and folder of
+the run. Any exception ends the run with its traceback. Python's lock (GIL) is held during calls, and never while C++
+works.
 """
 
 from __future__ import annotations
@@ -28,7 +29,21 @@ import collections.abc
 import inspect
 import pathlib
 import re
-from typing import Any, Callable, Dict, Iterable, Iterator, List, NamedTuple, Optional, Sequence, Tuple, Type, TypeVar, Union
+from typing import (
+    Any,
+    Callable,
+    Dict,
+    Iterable,
+    Iterator,
+    List,
+    NamedTuple,
+    Optional,
+    Sequence,
+    Tuple,
+    Type,
+    TypeVar,
+    Union,
+)
 from typing import get_args, get_origin, get_type_hints
 
 import numpy as np
@@ -44,8 +59,8 @@ from .trajectory import Trajectory
 class Parameter:
     """What the reference says of a parameter and what it may be: `Annotated[int, Parameter("help", minimum=0)]`.
 
-    `minimum` and `maximum` bound a number or every number of a list, `one_of` lists the texts that are allowed, `unit` is
-    that of a number.
+    `minimum` and `maximum` bound a number or every number of a list, `one_of` lists the texts that are allowed,
+    `unit` is that of a number.
     """
 
     def __init__(
@@ -79,8 +94,8 @@ class Module:
 class Segmenter(Module):
     """Assigns a class to every pixel.
 
-    `classes` lists 1 to 255 names by label, the first being the background; `movable` the subset that can move, if known.
-    Used by one thread at a time; in threaded mode tracking does not wait for it.
+    `classes` lists 1 to 255 names by label, the first being the background; `movable` the subset that can move, if
+    known. Used by one thread at a time; in threaded mode tracking does not wait for it.
     """
 
     _kind = "segmenter"
@@ -91,8 +106,8 @@ class Segmenter(Module):
     ) -> Union[None, npt.NDArray[np.uint8], Tuple[npt.NDArray[np.uint8], Optional[npt.NDArray[np.uint8]]]]:
         """Labels, (labels, confidence), or None for a frame without segmentation.
 
-        Both are uint8 (rows, columns) of the size of `frame.colour`: indices into `classes`, 255 = unknown; confidence 255 =
-        certain. `frame.colour` must not be written to.
+        Both are uint8 (rows, columns) of the size of `frame.colour`: indices into `classes`, 255 = unknown;
+        confidence 255 = certain. `frame.colour` must not be written to.
         """
         raise NotImplementedError("segment")
 
@@ -100,8 +115,8 @@ class Segmenter(Module):
 class DynamicFilter(Module):
     """Adds evidence about which features belong to the static world.
 
-    `needs` lists the inputs without which it cannot work: "depth", "segmentation", "pose_prior", "matches". In a single frame
-    one may be missing all the same.
+    `needs` lists the inputs without which it cannot work: "depth", "segmentation", "pose_prior", "matches". In a
+    single frame one may be missing all the same.
     """
 
     _kind = "filters"
@@ -118,8 +133,8 @@ class DynamicFilter(Module):
 class Features:
     """Features of one image; entry i of every array belongs to feature i.
 
-    `x`, `y` are pixels of the full image, `descriptors` uint8 (n, 32). `octave` is the pyramid level, `angle` the orientation
-    [rad, 0 to 2 pi), `response` the strength; each may be left out for zeros.
+    `x`, `y` are pixels of the full image, `descriptors` uint8 (n, 32). `octave` is the pyramid level, `angle` the
+    orientation [rad, 0 to 2 pi), `response` the strength; each may be left out for zeros.
     """
 
     def __init__(
@@ -141,7 +156,8 @@ class Features:
 class FeatureExtractor(Module):
     """Detects and describes features with binary descriptors of 256 bits.
 
-    `levels` and `factor` are those of the scale pyramid to which Features.octave refers: level i is smaller by factor ** i.
+    `levels` and `factor` are those of the scale pyramid to which Features.octave refers: level i is smaller by factor
+    ** i.
     """
 
     _kind = "features"
@@ -159,7 +175,8 @@ class FeatureExtractor(Module):
 class FrameSource(Module):
     """Provides frames: iterate over it to get holdfast.Frame or (timestamp, colour, depth) with rising time stamps.
 
-    Set `camera` to its calibration, or leave it to the configuration. `frame_count` is the number of frames if it is known.
+    Set `camera` to its calibration, or leave it to the configuration. `frame_count` is the number of frames if it is
+    known.
     """
 
     _kind = "source"
@@ -170,7 +187,7 @@ class FrameSource(Module):
     class_names: Sequence[str] = ()
 
     def __iter__(self) -> Iterator[Union[Frame, Tuple[float, Any, Any]]]:
-        """The frames, in order; called once per run. In threaded mode another thread than the tracking one asks for them."""
+        """The frames, in order; called once per run, in threaded mode by a thread of its own."""
         raise NotImplementedError("__iter__")
 
     def truth(self) -> Optional[Trajectory]:
@@ -181,7 +198,8 @@ class FrameSource(Module):
 class Observer(Module):
     """Observes a run; define the methods that are of interest. An exception ends the run.
 
-    In sequential mode the thread that feeds frames calls all of them. `features` and `map` are valid during the call only.
+    In sequential mode the thread that feeds frames calls all of them. `features` and `map` are valid during the call
+    only.
     """
 
     _kind = "observers"
@@ -237,8 +255,8 @@ def _row(owner: str, parameter: inspect.Parameter, annotation: Any) -> Dict[str,
     name = _type_name(annotation)
     if name is None:
         raise PluginError(
-            f"{owner}: the parameter '{parameter.name}' of __init__ has the type {annotation!r}; expected one of bool, int, "
-            "float, str, pathlib.Path, List[str] and List[float]"
+            f"{owner}: the parameter '{parameter.name}' of __init__ has the type {annotation!r}; expected one of "
+            "bool, int, float, str, pathlib.Path, List[str] and List[float]"
         )
     empty: Dict[str, Any] = {"boolean": False, "integer": 0, "real": 0.0, "list of texts": [], "list of reals": []}
     return {
@@ -293,12 +311,14 @@ def _summary(definition: type) -> str:
 def register(name: str, *, paper: str = "") -> Callable[[ModuleClass], ModuleClass]:
     """Decorator that registers a class as a module, so that configurations of this process can select it by `name`.
 
-    The summary in the reference is the first paragraph of the docstring; `paper` is the publication that it implements. A
-    class that is defined again, as in a notebook, takes the place of the earlier one. Raises PluginError for a name that is
-    taken, for a class below none of the interfaces, and for parameters of other types.
+    The summary in the reference is the first paragraph of the docstring; `paper` is the publication that it
+    implements. A class that is defined again, as in a notebook, takes the place of the earlier one. Raises
+    PluginError for a name that is taken, for a class below none of the interfaces, and for parameters of other types.
     """
     if not re.fullmatch(r"[a-z][a-z0-9_]*", name):
-        raise PluginError(f"'{name}' is no name of a module; expected lower case words joined by _, such as my_segmenter")
+        raise PluginError(
+            f"'{name}' is no name of a module; expected lower case words joined by _, such as my_segmenter"
+        )
 
     def decorate(definition: ModuleClass) -> ModuleClass:
         owner = definition.__name__
@@ -308,7 +328,9 @@ def register(name: str, *, paper: str = "") -> Callable[[ModuleClass], ModuleCla
             raise PluginError(f"{owner} is not below one of the interfaces; expected a class below one of {expected}")
         for method in _METHODS[bases[0]]:
             if getattr(definition, method) is getattr(bases[0], method):
-                raise PluginError(f"{owner} does not define {method}; expected what holdfast.{bases[0].__name__} describes")
+                raise PluginError(
+                    f"{owner} does not define {method}; expected what holdfast.{bases[0].__name__} describes"
+                )
         rows: List[Dict[str, Any]] = []
         paths: List[str] = []
         takes_context = False
@@ -339,7 +361,10 @@ _origins: Dict[Tuple[str, str], str] = {}
 
 
 def unregister(kind: str, name: str) -> bool:
-    """Takes a module away again; whether there was one. `kind` is "segmenter", "filters", "features", "source", "observers"."""
+    """Takes a module away again and returns whether there was one.
+
+    `kind` is "segmenter", "filters", "features", "source" or "observers".
+    """
     _origins.pop((kind, name), None)
     return _core.unregister_module(kind, name)
 

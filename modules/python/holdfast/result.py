@@ -41,7 +41,7 @@ class Result:
 
     @property
     def dense_map(self) -> Optional[Tuple[npt.NDArray[np.float32], npt.NDArray[np.uint8]]]:
-        """Positions (N, 3) [m] and colours (N, 3) red green blue of the static scene; None without dense_map.enabled."""
+        """Positions (N, 3) [m] and colours (N, 3, red green blue) of the scene; None without dense_map.enabled."""
         return self._core.dense_map
 
     @property

@@ -32,7 +32,12 @@ class _Line:
         self._last = now
         of = f" of {total}" if total is not None else ""
         text = f"frame {done}{of}, {done / max(now - self._begin, 1e-9):.1f} frames/s, {result.status}"
-        print(f"\r{text}\033[K" if self._terminal else text, end="" if self._terminal else "\n", file=sys.stderr, flush=True)
+        print(
+            f"\r{text}\033[K" if self._terminal else text,
+            end="" if self._terminal else "\n",
+            file=sys.stderr,
+            flush=True,
+        )
         self._shown = True
 
     def clear(self) -> None:
@@ -55,11 +60,11 @@ def run(
     `config` is a file, a mapping or a Configuration; `overrides` are values by key path, such as {"run.seed": 2}.
     With `output`, the files of `holdfast run` are written into that folder; one that is not empty needs `overwrite`.
     `progress` is True for a line on standard error, False for none, or a function (frames done, frame count or None,
-    FrameResult) that is called at most ten times a second; an exception of it ends the run. `map` is a map.hfm to continue,
-    or with `localise` to find poses in without changing it.
+    FrameResult) that is called at most ten times a second; an exception of it ends the run. `map` is a map.hfm to
+    continue, or with `localise` to find poses in without changing it.
 
-    Python's lock (GIL) is released; other threads go on. Ctrl-C ends the run after the current frame: what was computed is
-    written into `output`, then KeyboardInterrupt is raised.
+    Python's lock (GIL) is released; other threads go on. Ctrl-C ends the run after the current frame: what was
+    computed is written into `output`, then KeyboardInterrupt is raised.
 
     Raises ConfigurationError with every problem found; InputError for files that cannot be used; RunError when an error
     ended the run early, whose `result` holds what was computed until then.

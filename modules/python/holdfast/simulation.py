@@ -58,8 +58,8 @@ def simulate(
 ) -> Simulation:
     """A simulated scene as a sequence of frames with truth.
 
-    `scene` is a scene file (docs/scenes.md of the project), "" the empty office; `overrides` are values by key path, such
-    as {"duration": 2, "camera.path": "halfsphere"}. Raises ConfigurationError with every problem found.
+    `scene` is a scene file (docs/scenes.md of the project), "" the empty office; `overrides` are values by key path,
+    such as {"duration": 2, "camera.path": "halfsphere"}. Raises ConfigurationError with every problem found.
     """
     known = _core.camera(camera) if isinstance(camera, str) else camera
     return Simulation(_core.Simulator(os.fspath(scene), _override_texts(overrides), known))

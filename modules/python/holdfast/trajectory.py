@@ -23,7 +23,9 @@ class Trajectory:
 
     def __init__(self, timestamps: npt.ArrayLike, poses: npt.ArrayLike) -> None:
         self.timestamps: Array = np.array(timestamps, dtype=np.float64)
-        self.poses: Array = np.array(poses, dtype=np.float64).reshape((-1, 4, 4) if np.size(poses) == 0 else np.shape(poses))
+        self.poses: Array = np.array(poses, dtype=np.float64).reshape(
+            (-1, 4, 4) if np.size(poses) == 0 else np.shape(poses)
+        )
         _core.check_trajectory(self.timestamps, self.poses)
 
     @classmethod
@@ -114,7 +116,7 @@ class Trajectory:
 def read_trajectory(file: Union[str, "os.PathLike[str]"]) -> Trajectory:
     """Reads a trajectory in TUM's format: timestamp tx ty tz qx qy qz qw.
 
-    Poses are sorted by time; of several with one time the last counts, and those that are not finite are left out. Raises
-    InputError with file and line for anything else.
+    Poses are sorted by time; of several with one time the last counts, and those that are not finite are left out.
+    Raises InputError with file and line for anything else.
     """
     return Trajectory._of(_core.read_trajectory(file))

@@ -21,8 +21,8 @@ std::string text_of(const py::handle& object) { return py::str(object); }
 std::string type_of(const py::handle& object) { return text_of(py::type::of(object).attr("__name__")); }
 
 /// HxW uint8 of the frame's size, copied.
-cv::Mat read_image(const py::object& object, const cv::Size& size, const std::string& what,
-                   const std::string& owner, const std::filesystem::path& file) {
+cv::Mat read_image(const py::object& object, const cv::Size& size, const std::string& what, const std::string& owner,
+                   const std::filesystem::path& file) {
   const std::string expected = "; expected " + what + " as a numpy array of uint8 with shape (" +
                                std::to_string(size.height) + ", " + std::to_string(size.width) +
                                "), rows and columns of the image";
@@ -58,8 +58,8 @@ void check_labels(const cv::Mat& labels, std::size_t classes, const std::string&
 
 }  // namespace
 
-Segmentation read_result(const py::object& result, const cv::Size& size, std::size_t classes,
-                         const std::string& owner, const std::filesystem::path& file) {
+Segmentation read_result(const py::object& result, const cv::Size& size, std::size_t classes, const std::string& owner,
+                         const std::filesystem::path& file) {
   if (result.is_none()) return {};
   Segmentation segmentation;
   if (py::isinstance<py::tuple>(result)) {
