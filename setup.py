@@ -26,7 +26,7 @@ class CMakeExtension(Extension):
 
 
 class BuildByCMake(build_ext):
-    """Configures, builds and installs the component python_package into the folder that setuptools packs."""
+    """Configures, builds and installs the component bindings into the folder that setuptools packs."""
 
     def build_extension(self, extension: Extension) -> None:
         package = Path(self.get_ext_fullpath(extension.name)).resolve().parent
@@ -53,7 +53,7 @@ class BuildByCMake(build_ext):
                 "--prefix",
                 str(package.parent),
                 "--component",
-                "python_package",
+                "bindings",
                 "--strip",
             ]
         )

@@ -46,7 +46,7 @@ void translate(std::exception_ptr thrown) {
     std::rethrow_exception(thrown);
   } catch (const CausedError& error) {
     if (PyErr_GivenExceptionMatches(error.cause().get().ptr(), PyExc_KeyboardInterrupt) != 0) {
-      PyErr_SetNone(PyExc_KeyboardInterrupt);
+      if (PyErr_CheckSignals() == 0) PyErr_SetNone(PyExc_KeyboardInterrupt);
       return;
     }
     raise("InputError", error, "location", location_of(error.location()), &error.cause());
@@ -70,6 +70,8 @@ void translate_errors() { py::register_exception_translator(translate); }
 void throw_caused_error(const py::error_already_set& raised, const std::filesystem::path& file,
                         const std::string& doing) {
   const SharedObject cause(raised.value());
+  // A run that it ends asks for signals at its end.
+  if (raised.matches(PyExc_KeyboardInterrupt)) PyErr_SetInterrupt();
   try {
     python_plugin::throw_python_error(raised, file, doing, "");
   } catch (const InputError& error) {
