@@ -59,7 +59,7 @@ void bind_trajectories(py::module_& module) {
       "check_trajectory", [](const py::object& stamps, const py::object& poses) { to_trajectory(stamps, poses); },
       py::arg("timestamps"), py::arg("poses"));
 
-  py::class_<Evaluation>(module, "Evaluation")
+  py::class_<Evaluation, std::shared_ptr<Evaluation>>(module, "Evaluation")
       .def("to_json", [](const Evaluation& evaluation) { return to_json(evaluation); })
       .def("to_tracks_json", [](const Evaluation& evaluation) { return to_tracks_json(evaluation); })
       .def("to_text", [](const Evaluation& evaluation) { return to_text(evaluation); })
