@@ -37,6 +37,8 @@ const char* to_string(TrackingFallback fallback) {
   switch (fallback) {
     case TrackingFallback::none:
       return "none";
+    case TrackingFallback::odometry:
+      return "odometry";
     case TrackingFallback::masked_features:
       return "masked features";
     case TrackingFallback::dense_depth:

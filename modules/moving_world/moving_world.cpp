@@ -84,13 +84,6 @@ void MovingWorld::end_frame(const Frame& frame, bool has_pose) {
   propagator_->set_pose(has_pose ? std::optional(frame.T_camera_world) : std::nullopt, frame.coarse, moving);
 }
 
-bool MovingWorld::sees_movable(const Frame& frame) {
-  constexpr double small_share = 0.02;
-  const std::vector<float>& cells = frame.coarse.static_log_odds;
-  const auto suspects = std::count_if(cells.begin(), cells.end(), [](float log_odds) { return log_odds < 0.0F; });
-  return static_cast<double>(suspects) > small_share * static_cast<double>(cells.size());
-}
-
 void MovingWorld::next_frame(double timestamp) {
   ++next_frame_number_;
   timestamp_ = timestamp;

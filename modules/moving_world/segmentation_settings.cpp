@@ -25,7 +25,7 @@ void SegmentationSettings::describe(ParameterTable<SegmentationSettings>& table)
   table
       .add("new_view_share", &S::new_view_share,
            "the points of a keyframe wait for its mask, unless less than this share of its static features shows map "
-           "points and nobody is in view")
+           "points")
       .range(0, 1);
 }
 

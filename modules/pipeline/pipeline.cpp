@@ -318,11 +318,10 @@ FrameResult Pipeline::feed(const SensorFrame& frame) {
       ++s.keyframes_deferred;
     }
     if (result.is_keyframe) {
-      // Without a map, or with little of it in view, there is nothing to track by until the mask comes. Where people
-      // are, others may have come into the new view, and a keyframe without points is better than one on people.
+      // Without a map, or with little of it in view, there is nothing to track by until the mask comes, which takes the
+      // points on people back.
       const bool is_new_view = result.status == TrackingStatus::initialised ||
-                               (result.inliers < s.parts.segmentation.new_view_share * result.static_features &&
-                                !MovingWorld::sees_movable(s.tracker.frame()));
+                               result.inliers < s.parts.segmentation.new_view_share * result.static_features;
       const bool wait_for_mask = s.moving_world.expects_masks() && !is_new_view;
       result.keyframe = s.mapper.insert(s.tracker.frame(), wait_for_mask, result.times);
       if (s.mapping || s.moving_world.expects_masks()) s.tracker.keyframe_added(result.keyframe);

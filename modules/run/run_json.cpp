@@ -103,6 +103,7 @@ Json frames_json(const RunRecord& record) {
           {"lost", s.lost()},
           {"recovered", s.recovered()},
           {"relocalised", s.relocalised()},
+          {"by_odometry", s.count(TrackingFallback::odometry)},
           {"by_masked_features", s.count(TrackingFallback::masked_features)},
           {"by_dense_depth", s.count(TrackingFallback::dense_depth)},
           {"poses", record.trajectory.size()},

@@ -45,10 +45,12 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& r
                     percent_text(record.coverage()) + " (" + counted(record.trajectory.size(), "pose") + ")");
   rows.emplace_back("lost", counted(s.lost(), "frame") + ", recovered " + counted(s.recovered(), "time") +
                                 ", relocalised " + std::to_string(s.relocalised()));
+  const std::uint64_t odometry = s.count(TrackingFallback::odometry);
   const std::uint64_t masked = s.count(TrackingFallback::masked_features);
-  if (const std::uint64_t dense = s.count(TrackingFallback::dense_depth); masked + dense > 0)
-    rows.emplace_back("fallback", counted(masked, "frame") + " by masked features, " + counted(dense, "frame") +
-                                      " by dense depth");
+  const std::uint64_t dense = s.count(TrackingFallback::dense_depth);
+  if (odometry + masked + dense > 0)
+    rows.emplace_back("fallback", counted(odometry, "frame") + " by odometry, " + std::to_string(masked) +
+                                      " by masked features, " + std::to_string(dense) + " by dense depth");
   rows.emplace_back("map", counted(record.map_keyframes, "keyframe") + ", " + counted(record.map_points, "point") +
                                "; " + fixed_text(s.mean_inliers(), 0) + " inliers a frame");
   if (record.configuration.loop_detector.name != "none")

@@ -9,20 +9,32 @@
 namespace holdfast {
 
 int FrameMatcher::match_previous(Frame& previous, float radius, Frame& frame) {
+  return search_previous(previous, radius, frame, nullptr);
+}
+
+int FrameMatcher::match_previous_features(Frame& previous, float radius, Frame& frame,
+                                          std::vector<OdometryMatch>& odometry) {
+  odometry.clear();
+  return search_previous(previous, radius, frame, &odometry);
+}
+
+int FrameMatcher::search_previous(Frame& previous, float radius, Frame& frame, std::vector<OdometryMatch>* odometry) {
   std::fill(frame.map_points.begin(), frame.map_points.end(), MapPointId());
   windows_.clear();
   const FrameProjection projection = projection_into(frame, frame.T_camera_world);
   const Eigen::Isometry3d T_previous_current = previous.T_camera_world * frame.T_camera_world.inverse();
   const double forward = T_previous_current.translation().z(), baseline = frame.camera->baseline;
   const int top_octave = frame.pyramid->levels() - 1;
+  const Eigen::Isometry3d T_world_previous = previous.T_world_camera();
   for (std::size_t i = 0; i < previous.size(); ++i) {
-    if (!previous.map_points[i].valid()) continue;
-    const MapPoint* point = map_.find_point(previous.map_points[i]);
-    if (point == nullptr) {
-      previous.map_points[i] = MapPointId();
-      continue;
+    const MapPoint* point = nullptr;
+    if (previous.map_points[i].valid()) {
+      point = map_.find_point(previous.map_points[i]);
+      if (point == nullptr) previous.map_points[i] = MapPointId();
     }
-    const std::optional<matching::PredictedPixel> pixel = projection.project(point->position.cast<float>());
+    if (point == nullptr && (odometry == nullptr || !previous.has_depth(i) || !is_static(previous, i))) continue;
+    const Eigen::Vector3d position = point ? point->position : T_world_previous * previous.camera_point(i);
+    const std::optional<matching::PredictedPixel> pixel = projection.project(position.cast<float>());
     if (!pixel) continue;
     const int octave = previous.features.octave[i];
     // When the camera moves forward, a feature can only be found at a coarser octave, and the other way round.
@@ -35,8 +47,11 @@ int FrameMatcher::match_previous(Frame& previous, float radius, Frame& frame) {
   mark_unmatched(frame, usable_);
   const auto& matches = search_.match(frame, {windows_, previous.features.descriptors, previous.features.angle},
                                       {.max_distance = static_cast<float>(settings_.loose_distance)}, usable_);
-  for (const matching::BinaryMatch& match : matches)
+  for (const matching::BinaryMatch& match : matches) {
     frame.map_points[match.feature] = previous.map_points[match.source];
+    if (!previous.map_points[match.source].valid())
+      odometry->push_back({match.feature, T_world_previous * previous.camera_point(match.source)});
+  }
   return static_cast<int>(matches.size());
 }
 

@@ -30,6 +30,23 @@ void PoseEstimator::build_problem(Frame& frame) {
 
 int PoseEstimator::adjust(Frame& frame) {
   build_problem(frame);
+  return solve(frame);
+}
+
+int PoseEstimator::adjust(Frame& frame, std::vector<OdometryMatch>& odometry) {
+  build_problem(frame);
+  // A feature that has found a map point since says more by that.
+  std::erase_if(odometry, [&](const OdometryMatch& match) { return frame.map_points[match.feature].valid(); });
+  for (const OdometryMatch& match : odometry) add_observation(problem_, frame, match.feature, match.position);
+  problem_.inlier.assign(problem_.size(), 0);
+  const int inliers = solve(frame);
+  drop_outliers(frame);
+  std::size_t observation = features_.size();
+  std::erase_if(odometry, [&](const OdometryMatch&) { return problem_.inlier[observation++] == 0; });
+  return inliers;
+}
+
+int PoseEstimator::solve(Frame& frame) {
   const PoseSummary summary = optimizer_.optimize_pose(problem_);
   position_deviation_ = summary.usable ? std::sqrt(summary.covariance.topLeftCorner<3, 3>().trace()) : 0.0;
   if (!summary.usable) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "holdfast/geometry/se3.hpp"
+#include "holdfast/matching/frame_features.hpp"
 
 namespace holdfast {
 
@@ -35,10 +36,7 @@ void Tracker::begin(const SensorFrame& sensor_frame, FrameResult& result) {
 
 void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
   if (state_ == State::waiting) {
-    if (start_map(result)) {
-      state_ = State::tracking;
-      result.status = TrackingStatus::initialised;
-    }
+    start_map(Eigen::Isometry3d::Identity(), result);
     end_frame(result);
     return;
   }
@@ -46,6 +44,10 @@ void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
   TrackedView view{sensor_frame, history_.has_previous() ? &previous_ : nullptr, current_};
   moving_world_.evaluate(FilterStage::before_matching, view, result.times);
   const bool found = find_pose(view, result);
+  if (!found && is_stillborn() && start_map(predicted_pose(), result)) {
+    end_frame(result);
+    return;
+  }
   state_ = found ? State::tracking : State::lost;
   result.status = found ? TrackingStatus::tracked : TrackingStatus::lost;
   if (found) {
@@ -68,7 +70,22 @@ void Tracker::align_depth(const SensorFrame& sensor_frame, const Eigen::Isometry
   builder_.align_depth(sensor_frame, geometry::exp_se3(steps * geometry::log_se3(step)), current_, times);
 }
 
-bool Tracker::start_map(FrameResult& result) {
+bool Tracker::is_stillborn() const {
+  if (localises_only_ || history_.empty()) return false;
+  // The next frames or a mask that is on its way may help; the longer the map has been tracked by, the longer it is worth
+  // waiting for a view of it.
+  constexpr double min_patience = 0.1, patience_share = 0.5;  // s; share of the map's age
+  const double age = history_.last_timestamp() - map_start_time_;
+  const double lost_for = current_.timestamp - history_.last_timestamp();
+  return age < settings_.young_map_time && lost_for > std::max(min_patience, patience_share * age);
+}
+
+Eigen::Isometry3d Tracker::predicted_pose() const {
+  const bool coasts = current_.timestamp <= history_.last_timestamp() + settings_.coasting_time;
+  return history_.extrapolate(current_.timestamp, coasts ? 1.0 : 0.0) * history_.last_pose(map_);
+}
+
+bool Tracker::start_map(const Eigen::Isometry3d& T_camera_world, FrameResult& result) {
   int with_depth = 0;
   for (std::size_t i = 0; i < current_.size(); ++i) with_depth += current_.has_depth(i) ? 1 : 0;
   if (with_depth < settings_.minimum_start_points) {
@@ -76,7 +93,13 @@ bool Tracker::start_map(FrameResult& result) {
         result.features < settings_.minimum_start_points ? TrackingTrouble::few_features : TrackingTrouble::no_depth;
     return false;
   }
-  current_.T_camera_world.setIdentity();
+  current_.T_camera_world = T_camera_world;
+  std::fill(current_.map_points.begin(), current_.map_points.end(), MapPointId());
+  map_start_time_ = last_feature_time_ = current_.timestamp;
+  state_ = State::tracking;
+  result.status = TrackingStatus::initialised;
+  result.method = TrackingMethod::none;
+  result.trouble = TrackingTrouble::none;
   result.is_keyframe = true;
   result.inliers = 0;
   return true;
@@ -85,7 +108,7 @@ bool Tracker::start_map(FrameResult& result) {
 bool Tracker::find_pose(TrackedView& view, FrameResult& result) {
   if (state_ == State::tracking) {
     const bool predicted = predict(result);
-    if ((predicted && refine(view, result)) || fall_back(view, result)) return true;
+    if ((predicted && refine(view, result)) || track_odometry(view, result) || fall_back(view, result)) return true;
     if (predicted) return false;
   }
   {
@@ -107,6 +130,40 @@ bool Tracker::refine(TrackedView& view, FrameResult& result) {
     align_depth(view.sensor_frame, current_.T_camera_world * previous_.T_world_camera(), result.times);
   evaluate_with_pose(view, result);
   return track_local_map(view, result);
+}
+
+bool Tracker::track_odometry(TrackedView& view, FrameResult& result) {
+  if (!history_.has_previous() || current_.timestamp > last_feature_time_ + settings_.odometry_time) return false;
+  const StageTimer timer(result.times, "odometry");
+  const TrackingTrouble trouble = result.trouble;
+  const Eigen::Isometry3d predicted = history_.predicted_step(current_.timestamp) * previous_.T_camera_world;
+  const float window = static_cast<float>(settings_.motion_window);
+  const auto match = [&](float radius) {
+    current_.T_camera_world = predicted;
+    return matcher_.match_previous_features(previous_, radius, current_, odometry_) >= settings_.minimum_matches &&
+           estimator_.adjust(current_, odometry_) >= settings_.minimum_matches;
+  };
+  if (!match(window) && !match(static_cast<float>(settings_.motion_window_retry) * window)) return false;
+  moving_world_.evaluate(FilterStage::with_pose, view, result.times);
+  estimator_.adjust(current_, odometry_);
+  matcher_.match_local_map(static_cast<float>(settings_.local_map_window), current_);
+  // Points of one frame are less certain than those of the map: twice as many have to agree.
+  const int inliers = estimator_.adjust(current_, odometry_);
+  if (inliers < 2 * settings_.minimum_inliers || estimator_.position_deviation() > settings_.maximum_deviation ||
+      moving_world_.contradicts_depth(current_, inliers, false, reference_keyframe_))
+    return false;
+  result.method = TrackingMethod::motion_model;
+  result.fallback = TrackingFallback::odometry;
+  result.matches = estimator_.matches();
+  result.inliers = result.static_features = 0;
+  for (std::size_t i = 0; i < current_.size(); ++i) {
+    if (!is_static(current_, i)) continue;
+    ++result.static_features;
+    result.inliers += current_.map_points[i].valid() ? 1 : 0;
+  }
+  result.trouble = trouble;
+  moving_world_.accumulate(current_);
+  return true;
 }
 
 bool Tracker::fall_back(TrackedView& view, FrameResult& result) {

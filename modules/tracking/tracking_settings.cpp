@@ -47,6 +47,11 @@ void describe_poses(ParameterTable<S>& table) {
       .range(1e-4, 1000)
       .unit("m");
   table
+      .add("odometry_time", &S::odometry_time,
+           "time for which poses can be based on the previous frame alone, because too little of the map is in view")
+      .range(0, 100)
+      .unit("s");
+  table
       .add("depth_only_time", &S::depth_only_time,
            "time for which poses can be based on dense depth alone, because matches do not determine them")
       .range(0, 100)
@@ -97,6 +102,11 @@ void describe_keyframes(ParameterTable<S>& table) {
 }
 
 void describe_relocalisation(ParameterTable<S>& table) {
+  table
+      .add("young_map_time", &S::young_map_time,
+           "a camera that is lost so soon after its map began starts anew where the motion model puts it, after half that time; 0 = never")
+      .range(0, 100)
+      .unit("s");
   table.add("coasting_time", &S::coasting_time, "a lost camera is searched for along its last velocity for this long")
       .range(0, 100)
       .unit("s");

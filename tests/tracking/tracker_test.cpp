@@ -154,6 +154,8 @@ TrackingSettings without_relocalisation() {
   settings.coasting_time = 0.0;
   settings.recovery_keyframes = 0;
   settings.relocalisation_candidates = 0;
+  settings.young_map_time = 0.0;
+  settings.odometry_time = 0.0;
   return settings;
 }
 
@@ -356,6 +358,72 @@ TEST(Tracker, WithoutFeaturesDenseDepthSufficesForAWhile) {
   }
   EXPECT_GE(frames, 8);
   EXPECT_LE(frames, 15);  // 0.5 s
+}
+
+/// The camera turns to the right by `angle` [rad].
+Isometry3d turned(double angle) {
+  Isometry3d T = Isometry3d::Identity();
+  T.linear() = Eigen::AngleAxisd(angle, Vector3d::UnitY()).toRotationMatrix();
+  return T;
+}
+
+TEST(Tracker, WhereTheMapEndsThePreviousFrameSufficesForAWhile) {
+  // The map is what the first view shows; the camera turns out of it within half a second, and no keyframe is made.
+  for (const double odometry_time : {0.0, 0.3}) {
+    TrackingSettings settings = without_relocalisation();
+    settings.odometry_time = odometry_time;
+    Bench bench(settings);
+    bench.feed(0.0, turned(0.0));
+    bench.tracker.localise_only();
+    int by_odometry = 0;
+    double time = 1.0 / 30.0, last_by_map = 0.0, lost_at = 0.0;
+    for (; time < 2.0 && lost_at == 0.0; time += 1.0 / 30.0) {
+      const FrameResult result = bench.feed(time, turned(1.2 * time));
+      if (result.status == TrackingStatus::lost) {
+        lost_at = time;
+        continue;
+      }
+      EXPECT_LT(error(result, turned(1.2 * time)), 0.03) << time;
+      if (result.fallback == TrackingFallback::odometry) {
+        ++by_odometry;
+        EXPECT_LT(result.inliers, settings.minimum_inliers) << "features of the map alone would have done";
+        EXPECT_FALSE(result.is_keyframe);
+      } else {
+        last_by_map = time;
+      }
+    }
+    ASSERT_GT(lost_at, 0.0) << "the world ends somewhere";
+    EXPECT_NEAR(lost_at - last_by_map, odometry_time, 0.07);
+    EXPECT_EQ(by_odometry > 0, odometry_time > 0.0);
+  }
+}
+
+TEST(Tracker, AMapThatIsLostSoonAfterItsStartBeginsAnew) {
+  struct Case {
+    double young_map_time, lost_at;
+    bool begins_anew;
+  };
+  for (const Case& c : {Case{1.0, 0.5, true}, Case{0.0, 0.5, false}, Case{0.4, 0.5, false}}) {
+    TrackingSettings settings = without_relocalisation();
+    settings.young_map_time = c.young_map_time;
+    settings.coasting_time = 1.0;
+    settings.coasting_shares = {};
+    settings.minimum_start_points = 50;
+    Bench bench(settings);
+    bench.walk(0.0, c.lost_at);
+    const auto elsewhere = [](double time) { return at(Bench::speed * time, 0.0) * turned(1.15); };
+    const std::size_t keyframes = bench.map.keyframes().size();
+    for (const double time : {c.lost_at, c.lost_at + 0.15})
+      EXPECT_EQ(bench.feed(time, elsewhere(time)).status, TrackingStatus::lost) << "a view of the map may come back";
+    const double later = c.lost_at + 0.3;
+    const FrameResult result = bench.feed(later, elsewhere(later));
+    EXPECT_EQ(result.status, c.begins_anew ? TrackingStatus::initialised : TrackingStatus::lost);
+    EXPECT_EQ(bench.map.keyframes().size(), keyframes + (c.begins_anew ? 1U : 0U));
+    if (!c.begins_anew) continue;
+    EXPECT_TRUE(result.is_keyframe);
+    EXPECT_LT(error(result, at(Bench::speed * later)), 0.03) << "where the motion model puts it";
+    EXPECT_EQ(bench.feed(later + 0.03, elsewhere(later + 0.03)).status, TrackingStatus::tracked);
+  }
 }
 
 TEST(Tracker, KeyframesAreMadeWhenThePolicySaysSo) {

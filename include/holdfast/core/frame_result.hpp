@@ -32,6 +32,7 @@ enum class TrackingMethod {
 /// What a pose is based on when the static features of a frame did not determine it.
 enum class TrackingFallback {
   none,
+  odometry,         ///< static features of the previous frame, with their depth; too little of the map is in view
   masked_features,  ///< features on masks of movable classes as well; dense depth confirms the pose
   dense_depth,      ///< alignment of the depth image with those of keyframes, refined by features where they agree
 };

@@ -102,8 +102,6 @@ class MovingWorld {
   const std::vector<MovingObject>& objects() const { return filters_.evidence().objects(); }
   /// Age of the propagated mask [s]; 0 without a mask.
   double mask_age() const { return propagator_ ? propagator_->mask().age : 0.0; }
-  /// Whether a part of the frame's view that matters lies on masks of movable classes, or moves.
-  static bool sees_movable(const Frame& frame);
   /// Whether so many keyframes wait for their masks that only a frame that is about to be lost should become another.
   bool holds_keyframes() const { return queue_ && queue_->is_full(); }
 

@@ -19,7 +19,7 @@ struct SegmentationSettings {
   int latency = 5;      ///< in sequential mode, frames after which a mask is applied; about a small network's 0.15 s
   double memory = 1.0;  ///< time after which the confidence of a propagated mask has halved [s]
   /// The points of a keyframe wait for its mask unless less than this share of its static features shows map points: a
-  /// camera that turns to a new view would be lost before the mask arrives. With people in view they always wait.
+  /// camera that turns to a new view would be lost before the mask arrives.
   double new_view_share = 0.3;
 
   static void describe(ParameterTable<SegmentationSettings>& table);

@@ -12,6 +12,12 @@
 
 namespace holdfast {
 
+/// A feature of a frame that shows a point which is not in the map: where the previous frame's depth puts it.
+struct OdometryMatch {
+  std::uint32_t feature = 0;
+  Eigen::Vector3d position;  ///< world [m]
+};
+
 /// Matches the features of a frame with map points, by each of the priors that tracking has: the previous frame, a
 /// keyframe's descriptors alone, or the local map. Results are written to frame.map_points. Keeps its buffers; one
 /// thread. The caller holds the map's lock.
@@ -25,6 +31,9 @@ class FrameMatcher {
   /// features found within `radius` pixels, times the scale of the octave. Names of points that are gone are cleared in
   /// `previous`. Returns the number of matches.
   int match_previous(Frame& previous, float radius, Frame& frame);
+  /// The same with all static features of the previous frame that have depth, as visual odometry does: those without a map
+  /// point go to `odometry`, whose earlier content is dropped. Returns the number of matches of both kinds.
+  int match_previous_features(Frame& previous, float radius, Frame& frame, std::vector<OdometryMatch>& odometry);
   /// Replaces the frame's matches by mutual nearest neighbours among the descriptors of a keyframe's map points.
   /// Returns the number of matches.
   int match_keyframe(const Frame& keyframe_frame, Frame& frame);
@@ -35,6 +44,8 @@ class FrameMatcher {
   LocalMap& local_map() { return local_map_; }
 
  private:
+  int search_previous(Frame& previous, float radius, Frame& frame, std::vector<OdometryMatch>* odometry);
+
   const TrackingSettings settings_;
   Map& map_;
   LocalMap local_map_;

@@ -8,6 +8,7 @@
 #include "holdfast/core/map.hpp"
 #include "holdfast/interfaces/optimizer.hpp"
 #include "holdfast/moving_world/moving_world.hpp"
+#include "holdfast/tracking/frame_matcher.hpp"
 
 namespace holdfast {
 
@@ -25,6 +26,9 @@ class PoseEstimator {
   /// Builds the problem and adjusts the pose to it (motion-only bundle adjustment). Returns the number of inliers,
   /// without those that are probably moving; 0 leaves the pose as it was.
   int adjust(Frame& frame);
+  /// The same with points that are not in the map beside those that are. Drops the outliers of both from the frame's
+  /// matches and from `odometry`.
+  int adjust(Frame& frame, std::vector<OdometryMatch>& odometry);
   /// Removes the matches that are outliers of the last problem.
   void drop_outliers(Frame& frame) const;
 
@@ -36,6 +40,8 @@ class PoseEstimator {
   double position_deviation() const { return position_deviation_; }
 
  private:
+  int solve(Frame& frame);
+
   Optimizer& optimizer_;
   const MovingWorld& moving_world_;
   const Map& map_;

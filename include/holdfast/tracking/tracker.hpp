@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "holdfast/core/frame.hpp"
 #include "holdfast/core/frame_result.hpp"
@@ -35,8 +36,8 @@ struct TrackerParts {
 /// Where am I: estimates the pose of every frame against the map (Mur-Artal and Tardos 2017, section III). The motion
 /// model, or the reference keyframe when that fails, gives a first pose; the local map refines it; KeyframePolicy
 /// decides on a keyframe. MovingWorld decides what to trust in each step. A frame that static features do not determine
-/// is tracked by masked ones as well, or by dense depth (TrackingFallback), as long as depth confirms the pose. A lost
-/// camera is relocalised (Relocaliser).
+/// is tracked relative to the previous one, by masked features as well, or by dense depth (TrackingFallback). A lost
+/// camera is relocalised (Relocaliser); one that is lost right after the start begins the map anew.
 ///
 /// The tracker writes to the map only what it observes of points: how often they are visible and found, and their
 /// static log-odds (through MovingWorld). One thread.
@@ -72,12 +73,21 @@ class Tracker {
   /// Corrects the depth of the current frame for the motion between the exposures of colour and depth, a share of the
   /// motion since the previous frame: step = T_current_previous.
   void align_depth(const SensorFrame& sensor_frame, const Eigen::Isometry3d& step, StageTimes& times);
-  bool start_map(FrameResult& result);
+  /// Whether the camera was lost so soon after the map began that waiting for a known view is not worth it: with a first
+  /// keyframe on people, or a wrong first mask, next to nothing of the map may be left.
+  bool is_stillborn() const;
+  /// Where the motion model puts a lost camera; after the coasting time, where it was last seen.
+  Eigen::Isometry3d predicted_pose() const;
+  /// Makes the current frame the first keyframe of what comes, at the given pose, if enough of its features have depth.
+  bool start_map(const Eigen::Isometry3d& T_camera_world, FrameResult& result);
   bool find_pose(TrackedView& view, FrameResult& result);
   /// A first pose of a camera that is not lost, from the motion model or the reference keyframe.
   bool predict(FrameResult& result);
   /// Takes a first pose to the final one. False if the local map does not confirm it.
   bool refine(TrackedView& view, FrameResult& result);
+  /// Estimates the pose relative to the previous frame, whose static features with depth stand in for the map: a camera
+  /// that swings to an unknown view, among people, has nothing else until the mask of the next keyframe is there.
+  bool track_odometry(TrackedView& view, FrameResult& result);
   bool fall_back(TrackedView& view, FrameResult& result);
   bool track_dense_depth(const TrackedView& view, FrameResult& result);
   bool predict_with_velocity(FrameResult& result);
@@ -100,10 +110,12 @@ class Tracker {
   State state_;
   bool localises_only_ = false;
   Frame current_, previous_;
+  std::vector<OdometryMatch> odometry_;
   KeyFrameId reference_keyframe_;
   KeyFrameId last_keyframe_;
   double last_keyframe_time_ = 0.0;  // [s]
-  double last_feature_time_ = 0.0;   // [s], of the last pose that matches determined
+  double map_start_time_ = 0.0;      // [s], of the frame that began the map, or began it anew
+  double last_feature_time_ = 0.0;   // [s], of the last pose that matches with the map determined
 };
 
 }  // namespace holdfast

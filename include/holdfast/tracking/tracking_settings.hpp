@@ -29,6 +29,7 @@ struct TrackingSettings {
   int minimum_inliers = 30;         ///< map points that must agree with a pose
   double maximum_deviation = 0.02;  ///< standard deviation of the position [m]
   int local_keyframes = 80;         ///< whose points make the local map
+  double odometry_time = 1.0;       ///< how long poses can be based on the previous frame, without the map [s]
   double depth_only_time = 1.0;     ///< how long poses can be based on dense depth alone [s]
 
   // Keyframes.
@@ -42,6 +43,7 @@ struct TrackingSettings {
   int keyframe_close_possible = 70;   ///< features
 
   // Relocalisation.
+  double young_map_time = 5.0;                            ///< [s]; a map that is lost so soon after its start begins anew
   double coasting_time = 1.0;                             ///< [s]
   std::vector<double> coasting_shares = {1.0, 0.5, 0.0};  ///< of the last velocity: it goes on, slows down, or stops
   double coasting_window = 3.0;                           ///< factor on local_map_window
