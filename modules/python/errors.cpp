@@ -70,11 +70,11 @@ void translate_errors() { py::register_exception_translator(translate); }
 void throw_caused_error(const py::error_already_set& raised, const std::filesystem::path& file,
                         const std::string& doing) {
   const SharedObject cause(raised.value());
-  // A run that it ends asks for signals at its end.
-  if (raised.matches(PyExc_KeyboardInterrupt)) PyErr_SetInterrupt();
   try {
     python_plugin::throw_python_error(raised, file, doing, "");
   } catch (const InputError& error) {
+    // A run that it ends asks for signals at its end. Only now: any code of Python would take it.
+    if (raised.matches(PyExc_KeyboardInterrupt)) PyErr_SetInterrupt();
     throw CausedError(error, cause);
   }
 }

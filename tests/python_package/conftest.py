@@ -13,6 +13,11 @@ import holdfast
 SOURCE = pathlib.Path(os.environ["HOLDFAST_SOURCE_DIR"])
 
 
+def pytest_configure(config: Any) -> None:
+    """Names the marks of these tests."""
+    config.addinivalue_line("markers", "data: needs a recording in the folder HOLDFAST_DATA")
+
+
 @pytest.fixture
 def config() -> Dict[str, Any]:
     """A run of a second through the empty office."""
