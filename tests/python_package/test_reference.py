@@ -15,7 +15,7 @@ SOURCE = pathlib.Path(os.environ["HOLDFAST_SOURCE_DIR"])
 def test_reference_is_up_to_date():
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     outcome = subprocess.run(
-        [sys.executable, str(SOURCE / "modules/python/make_reference.py")],
+        [sys.executable, str(SOURCE / "docs/make_python_reference.py")],
         capture_output=True,
         text=True,
         env=environment,
@@ -24,7 +24,7 @@ def test_reference_is_up_to_date():
     page = (SOURCE / "docs/python_reference.md").read_text(encoding="utf-8")
     assert (
         page == outcome.stdout
-    ), "write it anew: python3 modules/python/make_reference.py > docs/python_reference.md"
+    ), "write it anew: python3 docs/make_python_reference.py > docs/python_reference.md"
 
 
 def test_every_public_name_is_documented():

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Writes the reference of the package from its docstrings, signatures and stub: docs/python_reference.md.
 
-PYTHONPATH=build/python python3 modules/python/make_reference.py > docs/python_reference.md
+PYTHONPATH=build/python python3 docs/make_python_reference.py > docs/python_reference.md
 """
 import ast
 import inspect
@@ -103,7 +103,7 @@ def main() -> None:
     lines = [
         "# Reference of the Python package",
         "",
-        "Generated from the docstrings by `modules/python/make_reference.py`; a test compares it. The use:"
+        "Generated from the docstrings by `docs/make_python_reference.py`; a test compares it. The use:"
         " [python.md](python.md).",
         "",
         documented(holdfast).split("\n\n")[-1].replace("\n", " "),
