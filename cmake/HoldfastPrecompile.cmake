@@ -16,14 +16,22 @@ if(HOLDFAST_PRECOMPILE)
     <fstream> <functional> <limits> <map> <memory> <mutex> <numbers> <optional> <set> <span> <sstream> <stdexcept>
     <string> <string_view> <thread> <tuple> <utility> <variant> <vector>
     <Eigen/Dense> <opencv2/core.hpp>)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    # What ccache brings back is as good as what clang just made.
+    target_compile_options(holdfast_precompiled PRIVATE "SHELL:-Xclang -fno-pch-timestamp")
+  endif()
 endif()
 
 # Makes a target read the precompiled header. Sources with compile options of their own must have the property
 # SKIP_PRECOMPILE_HEADERS, because the header holds for one set of options.
 function(holdfast_precompile target)
-  if(TARGET holdfast_precompiled AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  if(TARGET holdfast_precompiled AND CMAKE_CXX_COMPILER_ID MATCHES "^(GNU|Clang)$")
     target_precompile_headers(${target} REUSE_FROM holdfast_precompiled)
-    # Lets ccache see which precompiled header an object was made of.
-    target_compile_options(${target} PRIVATE -fpch-preprocess)
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+      # Lets ccache see which precompiled header an object was made of.
+      target_compile_options(${target} PRIVATE -fpch-preprocess)
+    else()
+      target_compile_options(${target} PRIVATE "SHELL:-Xclang -fno-pch-timestamp")
+    endif()
   endif()
 endfunction()

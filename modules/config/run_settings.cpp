@@ -8,8 +8,8 @@ namespace holdfast {
 void RunSettings::describe(ParameterTable<RunSettings>& table) {
   using S = RunSettings;
   table.add("mode", &S::mode,
-            "sequential: one thread, the same bits on every run; threaded: tracking beside local mapping, loop closing "
-            "and segmentation, each in its own thread");
+            "sequential: one thread for the work of all frames, the same bits on every run; threaded: tracking beside "
+            "local mapping, loop closing and segmentation, each in its own thread");
   table.add("seed", &S::seed, "the only source of chance").at_least(0);
   table.add(
       "pace", &S::pace,
@@ -17,6 +17,12 @@ void RunSettings::describe(ParameterTable<RunSettings>& table) {
   table.add("late_frames", &S::late_frames,
             "threaded mode, paced; queue: a frame that tracking has no time for waits, and the camera waits with it; "
             "drop: the oldest one that waits is left out");
+  table
+      .add(
+          "prefetch", &S::prefetch,
+          "sequential mode: frames that a thread reads ahead, from sources that allow it; results do not depend on it; "
+          "0: frames are read when they are needed")
+      .range(0, 1000);
   table.add("frame_queue", &S::frame_queue, "threaded mode: frames that wait for tracking, at most").range(1, 1000);
   table
       .add("keyframe_queue", &S::keyframe_queue,

@@ -71,21 +71,26 @@ void Map::update_point(MapPointId point_id) {
 
   // The descriptor with the smallest median distance to all others represents the point.
   const std::size_t count = point.observations.size();
-  std::vector<const Descriptor*> descriptors(count);
+  std::vector<Descriptor> descriptors(count);
+  std::vector<std::uint32_t> candidates(count);
   for (std::size_t i = 0; i < count; ++i) {
     const Observation& observation = point.observations[i];
-    descriptors[i] = &keyframes_.at(observation.keyframe).frame.features.descriptors[observation.feature];
+    descriptors[i] = keyframes_.at(observation.keyframe).frame.features.descriptors[observation.feature];
+    candidates[i] = static_cast<std::uint32_t>(i);
   }
   std::size_t best = 0;
   int best_median = 257;
-  std::vector<int> distances(count);
+  std::vector<std::uint16_t> distances(count * count, 0), row(count);
   for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t j = 0; j < count; ++j) distances[j] = hamming_distance(*descriptors[i], *descriptors[j]);
-    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>((count - 1) / 2);
-    std::nth_element(distances.begin(), middle, distances.end());
+    std::uint16_t* of_this = &distances[i * count];
+    hamming_distances(descriptors[i], descriptors.data(), std::span(candidates).subspan(i + 1), of_this + i + 1);
+    for (std::size_t j = 0; j < i; ++j) of_this[j] = distances[j * count + i];
+    row.assign(of_this, of_this + count);
+    const auto middle = row.begin() + static_cast<std::ptrdiff_t>((count - 1) / 2);
+    std::nth_element(row.begin(), middle, row.end());
     if (*middle < best_median) best_median = *middle, best = i;
   }
-  point.descriptor = *descriptors[best];
+  point.descriptor = descriptors[best];
 }
 
 void Map::update_point_geometry(MapPointId point_id) {

@@ -2,11 +2,14 @@
 #include "holdfast/image_files/image_decoder.hpp"
 
 #include <cstdio>
+#include <cstring>
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/image_files/image_structure.hpp"
+#include "png_rows.hpp"
 
 namespace holdfast {
 
@@ -24,7 +27,8 @@ void require_decodable(const std::filesystem::path& file, const ImageStructure& 
                                           std::to_string(largest_side) + " pixels in width and height");
 }
 
-cv::Mat decode(const std::filesystem::path& file, const std::vector<std::uint8_t>& bytes, int flags, cv::Mat& target) {
+cv::Mat decode(const std::filesystem::path& file, std::vector<std::uint8_t>& bytes, int flags, cv::Mat& target) {
+  drop_png_annotations(bytes);
   cv::Mat image;
   try {
     image = cv::imdecode(bytes, flags, &target);
@@ -36,7 +40,49 @@ cv::Mat decode(const std::filesystem::path& file, const std::vector<std::uint8_t
   return image;
 }
 
+/// The decoded pixels as an image that shares their memory; `type` has their number of bytes.
+cv::Mat as_image(const PngRows& png, int type) {
+  return {png.height(), png.width(), type, const_cast<std::uint8_t*>(png.row(0)), png.bytes_to_next_row()};
+}
+
+/// How the 16 bits of a number are stored.
+struct BigEndian {
+  int operator()(const std::uint8_t* p) const { return p[0] << 8 | p[1]; }
+};
+struct Native {
+  int operator()(const std::uint8_t* p) const {
+    std::uint16_t value;
+    std::memcpy(&value, p, sizeof(value));
+    return value;
+  }
+};
+
+/// Converts stored 16-bit depth to metres, each the float nearest to the true quotient, hence a division and no
+/// multiplication by an inverse. Float arithmetic is exact in this sense where the factor is a float.
+template <class Number>
+cv::Mat metres(const cv::Mat& stored, Number number, double depth_factor) {
+  cv::Mat depth(stored.size(), CV_32FC1);
+  const auto convert = [&](auto factor) {
+    for (int y = 0; y < depth.rows; ++y) {
+      const auto* from = stored.ptr<std::uint8_t>(y);
+      auto* to = depth.ptr<float>(y);
+      for (int x = 0; x < depth.cols; ++x)
+        to[x] = static_cast<float>(static_cast<decltype(factor)>(number(from + 2 * x)) / factor);
+    }
+  };
+  if (const auto factor = static_cast<float>(depth_factor); factor == depth_factor)
+    convert(factor);
+  else
+    convert(depth_factor);
+  return depth;
+}
+
 }  // namespace
+
+ImageDecoder::ImageDecoder() : png_(std::make_unique<PngRows>()) {}
+ImageDecoder::~ImageDecoder() = default;
+ImageDecoder::ImageDecoder(ImageDecoder&&) noexcept = default;
+ImageDecoder& ImageDecoder::operator=(ImageDecoder&&) noexcept = default;
 
 void ImageDecoder::load(const std::filesystem::path& file) {
   std::error_code error;
@@ -62,6 +108,10 @@ cv::Mat ImageDecoder::read_colour(const std::filesystem::path& file, const SizeC
                                           "; expected a colour image, 3 channels of 8 bits; convert it");
   if (check_size) check_size({image.width, image.height});
   cv::Mat colour;
+  if (image.format == ImageStructure::Format::png && png_->decode(bytes_)) {
+    cv::cvtColor(as_image(*png_, CV_8UC3), colour, cv::COLOR_RGB2BGR);
+    return colour;
+  }
   return decode(file, bytes_, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION, colour);
 }
 
@@ -76,15 +126,9 @@ cv::Mat ImageDecoder::read_depth(const std::filesystem::path& file, double depth
                                           "; expected a depth image, a PNG of 1 channel of 16 bits; export the depth "
                                           "without conversion");
   if (check_size) check_size({image.width, image.height});
+  if (png_->decode(bytes_)) return metres(as_image(*png_, CV_8UC2), BigEndian(), depth_factor);
   raw_depth_ = decode(file, bytes_, cv::IMREAD_UNCHANGED, raw_depth_);
-  cv::Mat depth(raw_depth_.size(), CV_32FC1);
-  for (int y = 0; y < depth.rows; ++y) {
-    const auto* from = raw_depth_.ptr<std::uint16_t>(y);
-    auto* to = depth.ptr<float>(y);
-    // Divided, not multiplied by an inverse: every value is the float nearest to the true quotient.
-    for (int x = 0; x < depth.cols; ++x) to[x] = static_cast<float>(from[x] / depth_factor);
-  }
-  return depth;
+  return metres(raw_depth_, Native(), depth_factor);
 }
 
 cv::Mat ImageDecoder::read_labels(const std::filesystem::path& file, const SizeCheck& check_size) {

@@ -51,10 +51,27 @@ std::string truncated(std::size_t size, const char* expected) {
 
 constexpr std::array<std::uint8_t, 8> png_signature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
 
+bool is_png(Bytes bytes) {
+  return bytes.size() >= png_signature.size() && std::equal(png_signature.begin(), png_signature.end(), bytes.begin());
+}
+
+/// Whether the 13 bytes of an IHDR chunk describe one of the kinds of images that exist (table 11.1).
+bool is_png_header(const std::uint8_t* data) {
+  const int bits = data[8], colour_type = data[9];
+  const auto is_one_of = [bits](auto... allowed) { return ((bits == allowed) || ...); };
+  const bool fits = colour_type == 0   ? is_one_of(1, 2, 4, 8, 16)
+                    : colour_type == 3 ? is_one_of(1, 2, 4, 8)
+                                       : (colour_type == 2 || colour_type == 4 || colour_type == 6) && is_one_of(8, 16);
+  return fits && data[10] == 0 && data[11] == 0 && data[12] <= 1;
+}
+
+/// Chunks that a decoder must understand begin with an upper-case letter.
+bool is_critical(const std::string& chunk) { return (chunk[0] & 0x20) == 0; }
+
 void examine_png(Bytes bytes, ImageStructure& image) {
   image.format = ImageStructure::Format::png;
   constexpr const char* end = "its IEND chunk";
-  bool has_data = false;
+  bool has_data = false, has_palette = false;
   for (std::size_t at = png_signature.size();;) {
     if (bytes.size() - at < 12) return void(image.problem = truncated(bytes.size(), end));
     const std::size_t length = big_endian_32(&bytes[at]);
@@ -67,6 +84,7 @@ void examine_png(Bytes bytes, ImageStructure& image) {
     if (at == png_signature.size()) {
       if (name != "IHDR" || length != 13)
         return void(image.problem = "is damaged: it does not begin with an IHDR chunk");
+      if (!is_png_header(data)) return void(image.problem = "is damaged: its header describes no kind of image");
       image.width = static_cast<int>(std::min<std::uint32_t>(big_endian_32(data), 0x7fffffffu));
       image.height = static_cast<int>(std::min<std::uint32_t>(big_endian_32(data + 4), 0x7fffffffu));
       const int colour_type = data[9];
@@ -75,12 +93,22 @@ void examine_png(Bytes bytes, ImageStructure& image) {
       image.index_bits = palette ? data[8] : 8;
       image.bits = palette ? 8 : data[8];
       image.channels = palette || colour_type == 2 ? 3 : colour_type == 6 ? 4 : colour_type == 4 ? 2 : 1;
+    } else if (is_critical(name) && name != "PLTE" && name != "IDAT" && name != "IEND") {
+      return void(image.problem = "holds a chunk at byte " + std::to_string(at) + " that no PNG image has there");
+    }
+    if (name == "PLTE" && image.palette) {
+      if (has_palette || has_data || length == 0 || length % 3 != 0 || length > 3U << image.index_bits)
+        return void(image.problem = "is damaged: its palette has a wrong size or place");
+      has_palette = true;
     }
     has_data |= name == "IDAT";
     if (name == "IEND") break;
     at += 12 + length;
   }
-  if (!has_data) image.problem = "is damaged: it holds no image data (no IDAT chunk)";
+  if (!has_data)
+    image.problem = "is damaged: it holds no image data (no IDAT chunk)";
+  else if (image.palette && !has_palette)
+    image.problem = "is damaged: it holds no palette (no PLTE chunk)";
 }
 
 void examine_jpeg(Bytes bytes, ImageStructure& image) {
@@ -130,7 +158,7 @@ ImageStructure examine_image(std::span<const std::uint8_t> bytes) {
   ImageStructure image;
   if (bytes.empty())
     image.problem = "is empty (0 bytes)";
-  else if (bytes.size() >= 8 && std::equal(png_signature.begin(), png_signature.end(), bytes.begin()))
+  else if (is_png(bytes))
     examine_png(bytes, image);
   else if (bytes.size() >= 3 && bytes[0] == 0xff && bytes[1] == 0xd8 && bytes[2] == 0xff)
     examine_jpeg(bytes, image);
@@ -176,6 +204,25 @@ ImageStructure examine_image_ends(const std::filesystem::path& file) {
     }
   }
   return examine_image(bytes_of(stream, file, 0, size));
+}
+
+void drop_png_annotations(std::vector<std::uint8_t>& bytes) {
+  if (!is_png(bytes)) return;
+  auto end = bytes.begin() + static_cast<std::ptrdiff_t>(png_signature.size());
+  bool palette = false;
+  for (std::size_t at = png_signature.size(); bytes.size() - at >= 12;) {
+    const std::size_t length = big_endian_32(&bytes[at]) + 12;
+    const std::string name(reinterpret_cast<const char*>(&bytes[at + 4]), 4);
+    if (name == "IHDR") palette = bytes[at + 17] == 3;
+    if (is_critical(name) && (name != "PLTE" || palette)) {
+      const auto begin = bytes.begin() + static_cast<std::ptrdiff_t>(at);
+      if (end != begin) std::copy(begin, begin + static_cast<std::ptrdiff_t>(length), end);
+      end += static_cast<std::ptrdiff_t>(length);
+    }
+    if (name == "IEND") break;
+    at += length;
+  }
+  bytes.erase(end, bytes.end());
 }
 
 std::vector<std::uint8_t> palette_indices_as_grey(Bytes bytes) {

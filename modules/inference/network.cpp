@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <future>
 #include <iterator>
+#include <mutex>
 #include <opencv2/core/utility.hpp>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/dnn.hpp>
@@ -21,16 +23,25 @@ namespace holdfast {
 
 namespace {
 
-/// OpenCV prints what it then throws; the message of the exception is enough.
+/// OpenCV prints what it then throws; the message of the exception is enough. Several threads may want silence at the
+/// same time: the last one ends it.
 class QuietLibrary {
  public:
-  QuietLibrary() : before_(cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT)) {}
-  ~QuietLibrary() { cv::utils::logging::setLogLevel(before_); }
+  QuietLibrary() {
+    const std::lock_guard lock(mutex);
+    if (count++ == 0) before = cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  }
+  ~QuietLibrary() {
+    const std::lock_guard lock(mutex);
+    if (--count == 0) cv::utils::logging::setLogLevel(before);
+  }
   QuietLibrary(const QuietLibrary&) = delete;
   QuietLibrary& operator=(const QuietLibrary&) = delete;
 
  private:
-  cv::utils::logging::LogLevel before_;
+  static inline std::mutex mutex;
+  static inline int count = 0;
+  static inline cv::utils::logging::LogLevel before = cv::utils::logging::LOG_LEVEL_WARNING;
 };
 
 std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file) {
@@ -115,6 +126,20 @@ void require_three(const NetworkOptions& options) {
     if (!(value > 0.0)) fail("standard_deviation", "found " + std::to_string(value) + "; expected numbers above 0");
 }
 
+cv::dnn::Net load(const std::filesystem::path& model, std::span<const std::uint8_t> bytes) {
+  const QuietLibrary quiet;
+  try {
+    cv::dnn::Net net = cv::dnn::readNetFromONNX(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
+    net.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
+    return net;
+  } catch (const cv::Exception& error) {
+    throw InputError({model.string()}, "cannot be loaded by OpenCV " CV_VERSION " (" + one_line(error.err) +
+                                           "); expected layers that it knows; export with a lower opset, or simplify "
+                                           "the network");
+  }
+}
+
 }  // namespace
 
 struct Network::Parts {
@@ -122,6 +147,7 @@ struct Network::Parts {
   cv::Size size;
   std::string output;
   cv::dnn::Net net;
+  std::future<cv::dnn::Net> loading;  ///< valid while the network is loaded in the background
   cv::Mat resized, input;
   bool has_run = false;
   std::array<std::array<float, 256>, 3> value;  ///< of a pixel's value, by channel of the network
@@ -157,6 +183,7 @@ struct Network::Parts {
   }
 
   cv::Mat forward() {
+    if (loading.valid()) net = loading.get();
     std::optional<QuietLibrary> quiet;
     if (!has_run) quiet.emplace();  // what does not fit shows in the first run
     try {
@@ -174,6 +201,7 @@ struct Network::Parts {
 };
 
 Network::Network(const NetworkOptions& options) : parts_(std::make_unique<Parts>()) {
+  HOLDFAST_CHECK(!options.in_background || !options.bytes.empty(), "a file is not loaded in the background");
   require_three(options);
   parts_->options = options;
   const std::vector<std::uint8_t> file =
@@ -191,16 +219,10 @@ Network::Network(const NetworkOptions& options) : parts_(std::make_unique<Parts>
       parts_->value[channel][value] = static_cast<float>(
           (static_cast<double>(value) * options.scale - options.mean[channel]) / options.standard_deviation[channel]);
   if (options.threads > 0) cv::setNumThreads(options.threads);
-  const QuietLibrary quiet;
-  try {
-    parts_->net = cv::dnn::readNetFromONNX(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    parts_->net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
-    parts_->net.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
-  } catch (const cv::Exception& error) {
-    throw InputError({options.model.string()}, "cannot be loaded by OpenCV " CV_VERSION " (" + one_line(error.err) +
-                                                   "); expected layers that it knows; export with a lower opset, or "
-                                                   "simplify the network");
-  }
+  if (options.in_background)
+    parts_->loading = std::async(std::launch::async, [model = options.model, bytes] { return load(model, bytes); });
+  else
+    parts_->net = load(options.model, bytes);
   const int h = parts_->size.height, w = parts_->size.width;
   const int channels_first[] = {1, 3, h, w}, channels_last[] = {1, h, w, 3};
   parts_->input.create(4, options.channels_last ? channels_last : channels_first, CV_32F);

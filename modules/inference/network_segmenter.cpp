@@ -11,10 +11,15 @@ namespace holdfast {
 
 NetworkSegmenter::NetworkSegmenter(const NetworkOptions& options, OutputForm form, std::vector<std::string> classes,
                                    std::vector<std::string> movable)
-    : classes_(std::move(classes)), movable_(std::move(movable)), form_(std::move(form)), network_(options) {
+    : classes_(std::move(classes)),
+      movable_(std::move(movable)),
+      form_(std::move(form)),
+      is_loaded_in_background_(options.in_background),
+      network_(options) {
   form_.classes = static_cast<int>(classes_.size());
   const auto unknown = std::find(classes_.begin(), classes_.end(), "unknown");
   if (unknown != classes_.end()) unknown_label_ = static_cast<int>(unknown - classes_.begin());
+  if (is_loaded_in_background_) return;
   SensorFrame trial;
   trial.colour = cv::Mat::zeros(network_.height(), network_.width(), CV_8UC3);
   NetworkSegmenter::segment(trial);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/moving_world/depth_agreement.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "holdfast/geometry/se3.hpp"
@@ -50,28 +51,33 @@ DepthAgreement::Counts DepthAgreement::count(const Frame& frame, const Eigen::Is
   constexpr int stride = 4;  // cells
   const CoarseGrid& grid = frame.coarse.grid;
   const geometry::Pinhole camera = geometry::pinhole_of(*frame.camera);
+  const int columns = std::max(0, (grid.columns - stride / 2 + stride - 1) / stride);
+  Eigen::ArrayXf rays_x(columns), depths(columns);
+  geometry::WarpedRow warped;
   Counts counts;
   for (const Frame* keyframe : keyframes_) {
     if (!(keyframe->coarse.grid == grid)) continue;
     const geometry::Warp warp(keyframe->T_view_world() * T_view_world.inverse(), camera);
     const std::vector<float>& known = keyframe->coarse.static_log_odds;
-    for (int row = stride / 2; row < grid.rows; row += stride)
-      for (int column = stride / 2; column < grid.columns; column += stride) {
-        const float depth = frame.coarse.depth[static_cast<std::size_t>(row * grid.columns + column)];
-        if (depth == 0.0F) continue;
-        const auto warped = warp(warp.ray_x(grid.x_of(column)), warp.ray_y(grid.y_of(row)), depth);
-        if (!warped) continue;
-        const int cell = grid.cell_of(warped->x, warped->y);
+    for (int i = 0; i < columns; ++i) rays_x[i] = warp.ray_x(grid.x_of(stride / 2 + i * stride));
+    for (int row = stride / 2; row < grid.rows; row += stride) {
+      const float* here = &frame.coarse.depth[static_cast<std::size_t>(row * grid.columns + stride / 2)];
+      for (int i = 0; i < columns; ++i) depths[i] = here[i * stride];
+      warp.row(rays_x, warp.ray_y(grid.y_of(row)), depths, warped);
+      for (int i = 0; i < columns; ++i) {
+        const float expected = warped.z[i];
+        if (depths[i] == 0.0F || !warp.is_visible(expected)) continue;
+        const int cell = grid.cell_of(warped.x[i], warped.y[i]);
         if (cell < 0) continue;
         const std::size_t index = static_cast<std::size_t>(cell);
         if (!known.empty() && known[index] < 0.0F) continue;
         const float seen = keyframe->coarse.depth[index];
         if (seen == 0.0F) continue;
         ++counts.compared;
-        const float expected = warped->point.z();
         counts.agreeing += std::abs(seen - expected) < 0.01F + 0.01F * expected ? 1 : 0;
         counts.farther += expected - seen > 0.05F + 0.03F * expected ? 1 : 0;
       }
+    }
   }
   return counts;
 }

@@ -109,8 +109,8 @@ void MaskPropagator::renew_points(const Frame& frame) {
   const auto is_wanted = [&](int cell) {
     return !remembered_.empty() || CellMask::is_object(labels_.labels[static_cast<std::size_t>(cell)]);
   };
-  const auto bucket_of = [&](int cell) {
-    return static_cast<std::size_t>((cell / grid.columns / bucket) * columns + cell % grid.columns / bucket);
+  const auto bucket_at = [&](int column, int row) {
+    return static_cast<std::size_t>((row / bucket) * columns + column / bucket);
   };
   follower_.filter([&](std::size_t i) {
     const int cell = grid.cell_of(points.x[i], points.y[i]);
@@ -120,17 +120,21 @@ void MaskPropagator::renew_points(const Frame& frame) {
   bucket_cell_.assign(static_cast<std::size_t>(columns * rows), -1);
   bucket_strength_.assign(static_cast<std::size_t>(columns * rows), min_strength);
   for (std::size_t i = 0; i < points.size(); ++i)
-    bucket_strength_[bucket_of(grid.cell_of(points.x[i], points.y[i]))] = std::numeric_limits<int>::max();
-  for (int cell = 0; cell < grid.size(); ++cell) {
-    const std::size_t place = bucket_of(cell);
-    const std::int32_t raw = sampler_.raw_pixel(cell);
-    if (raw < 0 || bucket_strength_[place] == std::numeric_limits<int>::max() || !is_wanted(cell)) continue;
-    const int strength =
-        follower_.corner_strength(static_cast<float>(raw % camera_.width), static_cast<float>(raw / camera_.width));
-    if (strength <= bucket_strength_[place]) continue;
-    bucket_strength_[place] = strength;
-    bucket_cell_[place] = cell;
-  }
+    bucket_strength_[bucket_at(grid.column_of(points.x[i]), grid.row_of(points.y[i]))] =
+        std::numeric_limits<int>::max();
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) {
+      const int cell = row * grid.columns + column;
+      if (!is_wanted(cell)) continue;
+      const std::size_t place = bucket_at(column, row);
+      const std::int32_t raw = sampler_.raw_pixel(cell);
+      if (raw < 0 || bucket_strength_[place] == std::numeric_limits<int>::max()) continue;
+      const int strength =
+          follower_.corner_strength(static_cast<float>(raw % camera_.width), static_cast<float>(raw / camera_.width));
+      if (strength <= bucket_strength_[place]) continue;
+      bucket_strength_[place] = strength;
+      bucket_cell_[place] = cell;
+    }
   for (const std::int32_t cell : bucket_cell_) {
     if (cell < 0) continue;
     const std::int32_t raw = sampler_.raw_pixel(cell);

@@ -63,7 +63,8 @@ struct MaskTransfer::Job {
   const CellMask& from;
   const CoarseView& to_view;
   CellMask& to;
-  geometry::Warp warp;  // by T_from_to
+  geometry::Warp warp;          // by T_from_to
+  geometry::WarpedRow& warped;  // cells of the row in work, with their depth
 
   void take(std::size_t cell, std::size_t source) const {
     to.labels[cell] = from.labels[source];
@@ -84,8 +85,15 @@ void MaskTransfer::transfer(const CoarseView& from_view, const CellMask& from, c
                 .from = from,
                 .to_view = to_view,
                 .to = to,
-                .warp = geometry::Warp(T_to_from.inverse(), geometry::pinhole_of(camera_), min_depth)};
-  for (int row = 0; row < grid.rows; ++row)
+                .warp = geometry::Warp(T_to_from.inverse(), geometry::pinhole_of(camera_), min_depth),
+                .warped = warped_};
+  rays_x_.resize(grid.columns);
+  for (int column = 0; column < grid.columns; ++column) rays_x_[column] = job.warp.ray_x(grid.x_of(column));
+  for (int row = 0; row < grid.rows; ++row) {
+    job.warp.row(
+        rays_x_, job.warp.ray_y(grid.y_of(row)),
+        Eigen::Map<const Eigen::ArrayXf>(&to_view.depth[static_cast<std::size_t>(row * grid.columns)], grid.columns),
+        warped_);
     for (int column = 0; column < grid.columns; ++column) {
       const std::size_t cell = static_cast<std::size_t>(row * grid.columns + column);
       if (take_by_ego_motion(job, column, row)) continue;
@@ -93,6 +101,7 @@ void MaskTransfer::transfer(const CoarseView& from_view, const CellMask& from, c
       if (to_view.depth[cell] > 0.0F || to.labels[cell] != 0) continue;
       take_without_depth(job, column, row);
     }
+  }
   grow(to_view, to);
   fill_holes(to_view, to);
 }
@@ -100,11 +109,10 @@ void MaskTransfer::transfer(const CoarseView& from_view, const CellMask& from, c
 bool MaskTransfer::take_by_ego_motion(const Job& job, int column, int row) {
   const CoarseGrid& grid = job.to_view.grid;
   const std::size_t cell = static_cast<std::size_t>(row * grid.columns + column);
-  const float depth = job.to_view.depth[cell];
-  if (!(depth > 0.0F)) return false;
-  const auto warped = job.warp(job.warp.ray_x(grid.x_of(column)), job.warp.ray_y(grid.y_of(row)), depth);
-  const int source = warped ? grid.cell_of(warped->x, warped->y) : -1;
-  const float z = warped ? warped->point.z() : 0.0F;
+  if (!(job.to_view.depth[cell] > 0.0F)) return false;
+  const bool is_visible = job.warp.is_visible(job.warped.z[column]);
+  const int source = is_visible ? grid.cell_of(job.warped.x[column], job.warped.y[column]) : -1;
+  const float z = is_visible ? job.warped.z[column] : 0.0F;
   const float before = source < 0 ? 0.0F : job.from_view.depth[static_cast<std::size_t>(source)];
   if (before == 0.0F) {
     previous_state_[cell] = CellState::unobserved;

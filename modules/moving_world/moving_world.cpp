@@ -87,6 +87,7 @@ void MovingWorld::end_frame(const Frame& frame, bool has_pose) {
 void MovingWorld::next_frame(double timestamp) {
   ++next_frame_number_;
   timestamp_ = timestamp;
+  if (queue_) queue_->wait_for_due(next_frame_number_ - 1);
 }
 
 std::optional<ArrivedMask> MovingWorld::take_mask(StageTimes& times) {

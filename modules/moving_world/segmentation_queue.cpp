@@ -10,12 +10,7 @@ namespace holdfast {
 SegmentationQueue::SegmentationQueue(Segmenter& segmenter, const SegmentationSettings& settings, bool threaded)
     : segmenter_(segmenter), settings_(settings) {
   if (!threaded) return;
-  worker_.emplace("segmentation", 1, [this](std::shared_ptr<Job>& job) {
-    StageTimes times;
-    segment(*job, times);
-    const std::lock_guard lock(mutex_);
-    times_.push_back(std::move(times));
-  });
+  worker_.emplace("segmentation", 1, [this](std::shared_ptr<Job>& job) { segment_in_background(*job); });
 }
 
 void SegmentationQueue::segment(Job& job, StageTimes& times) {
@@ -29,6 +24,13 @@ void SegmentationQueue::segment(Job& job, StageTimes& times) {
   job.done = true;
 }
 
+void SegmentationQueue::segment_in_background(Job& job) {
+  StageTimes times;
+  segment(job, times);
+  const std::lock_guard lock(mutex_);
+  times_.push_back(std::move(times));
+}
+
 bool SegmentationQueue::wants(std::uint64_t frame_number) const {
   return settings_.on == SegmentedFrames::every_n && frame_number % static_cast<std::uint64_t>(settings_.every) == 0;
 }
@@ -40,21 +42,34 @@ void SegmentationQueue::push(const SensorFrame& frame, KeyFrameId keyframe, Stag
   job->due = frame_number_ + static_cast<std::uint64_t>(settings_.latency);
   if (keyframe.valid()) ++keyframes_inside_;
   jobs_.push_back(job);
-  if (worker_)
+  const bool waits = std::exchange(is_first_, false) && segmenter_.first_call_waits();
+  if (worker_) {
     worker_->queue().push(std::move(job));
-  else
+  } else if (waits) {
+    first_ = std::async(std::launch::async, [this, job] {
+      name_this_thread("segmentation");
+      segment_in_background(*job);
+    });
+  } else {
+    finish_first();
     segment(*job, times);
+  }
+}
+
+void SegmentationQueue::wait_for_due(std::uint64_t frame_number) {
+  if (!worker_ && !jobs_.empty() && is_due(frame_number)) finish_first();
 }
 
 std::optional<SegmentedFrame> SegmentationQueue::pop(std::uint64_t frame_number) {
   frame_number_ = frame_number;
   if (jobs_.empty()) return std::nullopt;
+  wait_for_due(frame_number);
   Job& first = *jobs_.front();
   {
     const std::lock_guard lock(mutex_);
     if (!first.done) return std::nullopt;
   }
-  if (!worker_ && !all_due_ && first.due > frame_number) return std::nullopt;
+  if (!worker_ && !is_due(frame_number)) return std::nullopt;
   SegmentedFrame segmented = std::move(first.segmented);
   jobs_.pop_front();
   if (segmented.keyframe.valid()) --keyframes_inside_;
@@ -63,6 +78,7 @@ std::optional<SegmentedFrame> SegmentationQueue::pop(std::uint64_t frame_number)
 
 void SegmentationQueue::finish() {
   if (worker_) worker_->finish();
+  finish_first();
   all_due_ = true;
 }
 

@@ -24,15 +24,6 @@ namespace holdfast {
 
 namespace {
 
-/// What the loop closing thread works on: a keyframe that local mapping is done with, and those that it removed.
-struct LoopJob {
-  KeyFrameId keyframe;
-  std::vector<KeyFrameId> removed;
-};
-
-/// What the full adjustment thread works on: the whole map.
-struct AdjustmentJob {};
-
 PipelineParts checked(PipelineParts parts) {
   HOLDFAST_CHECK(parts.features != nullptr && parts.optimizer != nullptr,
                  "features " << (parts.features != nullptr) << " optimizer " << (parts.optimizer != nullptr));
@@ -55,6 +46,15 @@ MovingWorldParts moving_world_parts(PipelineParts& parts) {
 }  // namespace
 
 struct Pipeline::State {
+  /// What the loop closing thread works on: a keyframe that local mapping is done with, and those that it removed.
+  struct LoopJob {
+    KeyFrameId keyframe;
+    std::vector<KeyFrameId> removed;
+  };
+
+  /// What the full adjustment thread works on: the whole map.
+  struct AdjustmentJob {};
+
   explicit State(PipelineParts given)
       : parts(std::move(given)),
         map(std::move(parts.map)),
@@ -183,7 +183,7 @@ void Pipeline::State::check_stamp(const SensorFrame& frame) {
   last_timestamp = frame.timestamp;
 }
 
-LoopJob Pipeline::State::refine(KeyFrameId keyframe, StageTimes& times) {
+Pipeline::State::LoopJob Pipeline::State::refine(KeyFrameId keyframe, StageTimes& times) {
   LoopJob job{keyframe, {}};
   {
     const std::lock_guard surgeon(surgery);

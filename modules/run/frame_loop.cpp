@@ -3,6 +3,7 @@
 
 #include <exception>
 #include <optional>
+#include <utility>
 
 #include "holdfast/run/frame_feeder.hpp"
 
@@ -17,6 +18,29 @@ class FrameLoop {
       : pipeline_(pipeline), options_(options), record_(record) {}
 
   bool stopped() const { return options_.stop && options_.stop(); }
+  /// Feeds the frame that `read` gives. False at the end of the source.
+  template <class Read>
+  bool feed_next(const Read& read) {
+    source_has_more_ = false;
+    const std::optional<FedFrame> fed = read();
+    if (!fed) return false;
+    source_has_more_ = true;
+    record_.frame_stamps.push_back(fed->frame.timestamp);
+    last_index_ = fed->frame.index;
+    feed(fed->frame, fed->decode_seconds);
+    if (record_.threads) record_.threads->delays.push_back(fed->since_due.seconds());
+    return true;
+  }
+  void take_background_times() {
+    for (const StageTimes& times : pipeline_.take_background_times()) record_.summary.add(times);
+  }
+  /// Whether the source would have skipped this frame if frames were read one by one: reading ahead skips frames that
+  /// come after the last frame of a run that was ended before its source.
+  bool has_reached(const SkippedFrame& skipped) const {
+    return !source_has_more_ || (last_index_ && skipped.index < *last_index_);
+  }
+
+ private:
   void feed(const SensorFrame& frame, double decode_seconds) {
     const FrameResult result = pipeline_.feed(frame);
     record_.summary.add(result, decode_seconds);
@@ -25,51 +49,40 @@ class FrameLoop {
     ++done_;
     if (options_.on_frame) options_.on_frame({done_, record_.source.frame_count, result});
   }
-  void take_background_times() {
-    for (const StageTimes& times : pipeline_.take_background_times()) record_.summary.add(times);
-  }
 
- private:
   Pipeline& pipeline_;
   const RunOptions& options_;
   RunRecord& record_;
   std::uint64_t done_ = 0;
+  bool source_has_more_ = true;
+  std::optional<std::uint64_t> last_index_;
 };
 
-void feed_sequentially(FrameSource& source, FrameLoop& loop, RunRecord& record) {
-  while (!loop.stopped()) {
-    const Stopwatch decoding;
-    const std::optional<SensorFrame> frame = source.next();
-    if (!frame) break;
-    const double decode_seconds = decoding.seconds();
-    record.frame_stamps.push_back(frame->timestamp);
-    loop.feed(*frame, decode_seconds);
-  }
+std::optional<FedFrame> read_now(FrameSource& source) {
+  const Stopwatch decoding;
+  std::optional<SensorFrame> frame = source.next();
+  if (!frame) return std::nullopt;
+  return FedFrame{std::move(*frame), decoding.seconds(), Stopwatch()};
 }
 
-void feed_from_thread(FrameFeeder& feeder, FrameLoop& loop, ThreadRecord& threads) {
-  while (!loop.stopped()) {
-    const std::optional<FedFrame> fed = feeder.next();
-    if (!fed) break;
-    loop.feed(fed->frame, fed->decode_seconds);
-    threads.delays.push_back(fed->since_due.seconds());
+/// Starts the thread that reads the source: always in threaded mode, otherwise where reading ahead cannot change the
+/// frames.
+void start_reader(FrameSource& source, const RunRecord& record, std::optional<FrameFeeder>& feeder) {
+  RunSettings settings = record.configuration.run;
+  if (!settings.threaded()) {
+    if (settings.prefetch == 0 || !record.source.can_read_ahead) return;
+    settings.frame_queue = settings.prefetch;
   }
+  feeder.emplace(source, settings);
 }
 
-}  // namespace
-
-void feed_frames(BuiltPipeline& built, const RunOptions& options, RunRecord& record) {
-  FrameLoop loop(built.pipeline, options, record);
+/// Feeds frames and finishes the pipeline. No thread reads the source afterwards.
+void feed_all(BuiltPipeline& built, FrameLoop& loop, RunRecord& record) {
   std::optional<FrameFeeder> feeder;
-  if (record.configuration.run.threaded()) {
-    record.threads.emplace();
-    feeder.emplace(*built.source, record.configuration.run);
-  }
+  start_reader(*built.source, record, feeder);
   try {
-    if (feeder)
-      feed_from_thread(*feeder, loop, *record.threads);
-    else
-      feed_sequentially(*built.source, loop, record);
+    while (!loop.stopped() && loop.feed_next([&] { return feeder ? feeder->next() : read_now(*built.source); })) {
+    }
   } catch (const std::exception& error) {  // the results until here are kept
     record.failure = error.what();
   }
@@ -82,13 +95,23 @@ void feed_frames(BuiltPipeline& built, const RunOptions& options, RunRecord& rec
     if (record.failure.empty()) record.failure = error.what();
   }
   loop.take_background_times();
-  if (!feeder) return;
+  if (!record.threads) return;
   record.frame_stamps = feeder->stamps();
   record.threads->frames = feeder->counts();
   record.threads->late = feeder->late();
   record.threads->latest = feeder->latest();
   record.threads->workers = built.pipeline.worker_counts();
   record.threads->keyframes_deferred = built.pipeline.keyframes_deferred();
+}
+
+}  // namespace
+
+void feed_frames(BuiltPipeline& built, const RunOptions& options, RunRecord& record) {
+  if (record.configuration.run.threaded()) record.threads.emplace();
+  FrameLoop loop(built.pipeline, options, record);
+  feed_all(built, loop, record);
+  for (SkippedFrame& skipped : built.source->skipped())
+    if (record.threads || loop.has_reached(skipped)) record.skipped.push_back(std::move(skipped));
 }
 
 }  // namespace holdfast

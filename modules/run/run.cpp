@@ -74,7 +74,6 @@ RunRecord run(BuiltPipeline& built, const Configuration& configuration, const Ru
   if (options.on_start) options.on_start(record);
   feed_frames(built, options, record);
 
-  record.skipped = built.source->skipped();
   record.frames_expected = record.source.frame_count ? static_cast<std::size_t>(*record.source.frame_count)
                                                      : record.frame_stamps.size() + record.skipped.size();
   record_pipeline(built.pipeline, record);

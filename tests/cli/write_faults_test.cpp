@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A disk that refuses one write or rename: the command says so, and every file is whole or absent.
+// A disk that refuses one write or rename: the command says so, and every file is whole or absent. Each command meets
+// a sample of the faults; HOLDFAST_WRITE_FAULTS sets how many of them, and `all` tries every one.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <functional>
+#include <iostream>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <sstream>
 
 #include "cli/program.hpp"
 
@@ -27,6 +32,17 @@ Files files_below(const fs::path& folder) {
 
 bool ends_with(const std::string& text, const std::string& end) {
   return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/// Whether these are the poses that a run writes as it goes, whole lines of them, and says so: where they cannot be
+/// replaced by the corrected ones, they stay.
+bool is_journal(const std::string& name, const std::string& content) {
+  if (name != "trajectory.txt" || !content.starts_with("# The run has not come to its end")) return false;
+  std::istringstream stream(content);
+  std::string line;
+  while (std::getline(stream, line))
+    if (!line.starts_with('#') && std::count(line.begin(), line.end(), ' ') != 7) return false;
+  return content.back() == '\n';
 }
 
 /// Whether a file that holds times of this run is whole.
@@ -71,10 +87,17 @@ class WriteFaultsTest : public ::testing::Test {
     return text.empty() ? -1 : std::stol(text);
   }
 
-  /// Lets the command meet each of at most `most` faults, evenly over all its operations, in a new folder. Files that
+  /// How many faults a command meets: `usual`, or what the environment asks for.
+  static long wanted_faults(long usual) {
+    const char* wanted = std::getenv("HOLDFAST_WRITE_FAULTS");
+    if (wanted == nullptr) return usual;
+    return std::string(wanted) == "all" ? std::numeric_limits<int>::max() : std::max(1L, std::atol(wanted));
+  }
+
+  /// Lets the command meet each of at most `usual` faults, evenly over all its operations, in a new folder. Files that
   /// `may_differ` report what was done, and are whole with less in them.
   void expect_whole_or_absent(
-      const std::vector<std::string>& arguments, long most,
+      const std::vector<std::string>& arguments, long usual,
       const std::function<bool(const std::string&)>& may_differ = [](const std::string&) { return false; }) {
     empty_folder();
     const long operations = run(arguments, 0);
@@ -84,8 +107,9 @@ class WriteFaultsTest : public ::testing::Test {
     empty_folder();
     run(arguments, 0);
     const Files again = files_below(program_.path("out"));
-    const long step = std::max(1L, (operations + most - 1) / most);
-    for (long n = 1; n <= operations; n += step) {
+    const long most = wanted_faults(usual), step = std::max(1L, (operations + most - 1) / most);
+    long faults = 0;
+    for (long n = 1; n <= operations; n += step, ++faults) {
       SCOPED_TRACE("operation " + std::to_string(n) + " of " + std::to_string(operations));
       empty_folder();
       run(arguments, n);
@@ -103,11 +127,13 @@ class WriteFaultsTest : public ::testing::Test {
         if (expected == whole.end())
           ADD_FAILURE() << name << " is not there without the fault";
         else if (!may_differ(name) && again.count(name) > 0 && expected->second == again.at(name))
-          EXPECT_TRUE(content == expected->second) << name << " is not whole";
+          EXPECT_TRUE(content == expected->second || is_journal(name, content)) << name << " is not whole";
         else
           EXPECT_TRUE(is_whole(name, content)) << name << " is not whole";
       }
     }
+    std::cout << arguments.front() << ": " << faults << " of " << operations << " operations failed in turn"
+              << std::endl;
   }
 
   void empty_folder() const {

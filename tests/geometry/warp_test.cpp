@@ -46,6 +46,34 @@ TEST(Warp, LeadsBackAgain) {
   EXPECT_NEAR(again->point.z(), 2.0F, 1e-5);
 }
 
+TEST(Warp, ARowHasTheBitsOfItsPixels) {
+  for (const double back : {0.0, 1.5}) {
+    Eigen::Isometry3d T_to_from = small_motion();
+    T_to_from.translation().z() -= back;
+    const Warp warp(T_to_from, narrow, wide, 0.2F);
+    constexpr int count = 37;  // no multiple of a vector's length
+    Eigen::ArrayXf rays_x(count), depth(count);
+    for (int i = 0; i < count; ++i) {
+      rays_x[i] = warp.ray_x(static_cast<float>(17 * i));
+      depth[i] = i % 5 == 0 ? 0.0F : 0.3F + 0.07F * static_cast<float>(i);
+    }
+    WarpedRow row;
+    warp.row(rays_x, warp.ray_y(123.0F), depth, row);
+    int visible = 0;
+    for (int i = 0; i < count; ++i) {
+      if (depth[i] == 0.0F) continue;
+      const auto warped = warp(rays_x[i], warp.ray_y(123.0F), depth[i]);
+      ASSERT_EQ(warped.has_value(), warp.is_visible(row.z[i])) << i;
+      if (!warped) continue;
+      ++visible;
+      EXPECT_EQ(warped->point.z(), row.z[i]) << i;
+      EXPECT_EQ(warped->x, row.x[i]) << i;
+      EXPECT_EQ(warped->y, row.y[i]) << i;
+    }
+    EXPECT_EQ(visible == 29, back == 0.0) << visible;
+  }
+}
+
 TEST(Warp, PointsBehindOrTooNearHaveNoPixel) {
   Eigen::Isometry3d T_to_from = Eigen::Isometry3d::Identity();
   T_to_from.translation().z() = -1.0;  // the second camera stands one metre ahead

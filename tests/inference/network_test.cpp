@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
 #include <opencv2/core.hpp>
+
+#include "holdfast/core/error.hpp"
 
 namespace holdfast {
 namespace {
@@ -34,6 +38,31 @@ TEST(Network, InputIsScaledByChannelInTheOrderAskedFor) {
     EXPECT_NEAR(output_at(output, 1, 3, 4), 8.0 * (first - 0.5), 1e-4);
     EXPECT_NEAR(output_at(output, 2, 11, 15), 8.0 * (second - 0.5), 1e-4);
   }
+}
+
+TEST(Network, LoadedInTheBackgroundItGivesTheSame) {
+  const cv::Mat colour(12, 16, CV_8UC3, cv::Scalar(10, 102, 204));
+  const NetworkOptions file = options("logits");
+  const cv::Mat expected = Network(file).run(colour).clone();
+  std::ifstream stream(file.model, std::ios::binary);
+  const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  NetworkOptions background = file;
+  background.bytes = bytes;
+  background.in_background = true;
+  Network network(background);
+  EXPECT_EQ(network.input_text(), "1x3x12x16");
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(cv::norm(network.run(colour), expected, cv::NORM_INF), 0.0);
+  const Network never_run(background);
+}
+
+TEST(Network, InTheBackgroundDeclarationsAreCheckedAtOnce) {
+  const std::vector<std::uint8_t> bytes(100, 7);
+  NetworkOptions background = options("logits");
+  background.bytes = bytes;
+  background.in_background = true;
+  EXPECT_THROW(Network{background}, InputError);
+  background.bytes = {};
+  EXPECT_THROW(Network{background}, CheckError);
 }
 
 TEST(Network, ImagesOfAnySizeAreResized) {

@@ -16,6 +16,7 @@ namespace {
 class Stamper final : public Segmenter {
  public:
   const std::vector<std::string>& classes() const override { return names_; }
+  bool first_call_waits() const override { return is_loading; }
   Segmentation segment(const SensorFrame& frame) override {
     if (frame.index == bad) throw InputError({"mask.png"}, "is broken");
     if (frame.index == held) gate.get_future().wait();
@@ -28,6 +29,7 @@ class Stamper final : public Segmenter {
   static constexpr std::uint64_t none = ~std::uint64_t{0};
   std::uint64_t bad = none, held = none, nothing_for = none;
   int more_rows = 0, type = CV_8UC1;
+  bool is_loading = false;
   std::promise<void> gate;
   std::atomic<int> count = 0;
   std::thread::id thread;
@@ -97,6 +99,57 @@ TEST(SegmentationQueue, SequentialWorkIsDoneInTheCallersThreadAndTimed) {
   EXPECT_TRUE(queue.has_room());
   EXPECT_TRUE(queue.take_times().empty());
   EXPECT_FALSE(queue.worker_counts().has_value());
+}
+
+TEST(SegmentationQueue, TheFirstFrameOfALoadingSegmenterHoldsNobodyUp) {
+  Stamper segmenter;
+  segmenter.is_loading = true;
+  segmenter.held = 0;
+  SegmentationQueue queue(segmenter, {.latency = 3}, false);
+  StageTimes times;
+  queue.push(frame_at(0), keyframe_at(0), times);  // returns although the segmenter waits
+  for (std::uint64_t i = 1; i < 3; ++i) EXPECT_FALSE(queue.pop(i));
+  EXPECT_TRUE(times.entries().empty());
+  segmenter.gate.set_value();
+  const auto segmented = queue.pop(3);  // waits, whatever the timing
+  ASSERT_TRUE(segmented);
+  EXPECT_EQ(segmented->frame.index, 0U);
+  EXPECT_NE(segmenter.thread, std::this_thread::get_id());
+  EXPECT_EQ(queue.take_times().size(), 1U);
+  queue.push(frame_at(3), keyframe_at(3), times);
+  EXPECT_EQ(segmenter.thread, std::this_thread::get_id());
+}
+
+TEST(SegmentationQueue, ALoadingSegmenterChangesNoResult) {
+  for (const int latency : {0, 1, 5}) {
+    std::vector<std::pair<std::uint64_t, std::uint64_t>> expected;
+    for (const bool is_loading : {false, true}) {
+      Stamper segmenter;
+      segmenter.is_loading = is_loading;
+      SegmentationQueue queue(segmenter, {.latency = latency}, false);
+      const auto returned = returns(queue, 20, 2);
+      EXPECT_EQ(segmenter.count, 10);
+      if (is_loading)
+        EXPECT_EQ(returned, expected);
+      else
+        expected = returned;
+    }
+  }
+}
+
+TEST(SegmentationQueue, WhatALoadingSegmenterThrowsComesWhenItsResultIsNeeded) {
+  StageTimes times;
+  Stamper segmenter;
+  segmenter.is_loading = true;
+  segmenter.bad = 0;
+  SegmentationQueue due(segmenter, {.latency = 2}, false), pushed(segmenter, {.latency = 2}, false),
+      finished(segmenter, {.latency = 2}, false), abandoned(segmenter, {.latency = 2}, false);
+  for (SegmentationQueue* queue : {&due, &pushed, &finished, &abandoned})
+    EXPECT_NO_THROW(queue->push(frame_at(0), keyframe_at(0), times));
+  EXPECT_FALSE(due.pop(1));
+  EXPECT_THROW(due.pop(2), InputError);
+  EXPECT_THROW(pushed.push(frame_at(1), keyframe_at(1), times), InputError);
+  EXPECT_THROW(finished.finish(), InputError);
 }
 
 TEST(SegmentationQueue, WantsEveryNthFrameOnlyWhenAsked) {

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# Holds whole sequential runs to stored results, byte for byte: SHA-256 of the poses in trajectory.txt and of map.hfm for four
-# configurations on three simulated scenes and on 200 frames of a recording. A change that is not meant to change
-# results passes it; a change that is meant to rewrites values.txt, so that it shows as lines of the commit.
+# Holds whole sequential runs to stored results, byte for byte: SHA-256 of the poses in trajectory.txt and of map.hfm
+# for four configurations on three simulated scenes and on 200 frames of a recording. A change that is not meant to
+# change results passes it; a change that is meant to rewrites values.txt, so that it shows as lines of the commit.
 #
 #   sh tests/oracle/oracle.sh PROGRAM                        runs every case and compares
 #   sh tests/oracle/oracle.sh PROGRAM CONFIGURATION SCENE    runs one case, such as: full walking_xyz
@@ -10,13 +10,13 @@
 #                                                            with CONFIGURATION SCENE the value of that case
 #
 # PROGRAM is the program `holdfast`. Segmenters give exact masks (the simulator's; for the recording the label images
-# beside it), so that no network takes part. The recording is $HOLDFAST_DATA/tum_fr1_xyz; without HOLDFAST_DATA its cases
-# are skipped, and --write keeps their values.
+# beside it), so that no network takes part. The recording is $HOLDFAST_DATA/tum_fr1_xyz; without HOLDFAST_DATA its
+# cases are skipped, and --write keeps their values.
 #
 # The values belong to Debian 12 on amd64 with AVX2 and FMA: another version of Eigen, Ceres or OpenCV, or another C
 # library, may round differently. Elsewhere every case is skipped. Processors of other makers may round differently too:
-# a case that differs on a processor other than that named in values.txt is skipped, and says so. Exit status: 0 all compared cases are equal, 1 some
-# differ, 2 wrong call, 77 skipped.
+# a case that differs on a processor other than that named in values.txt is skipped, and says so. Exit status: 0 all
+# compared cases are equal, 1 some differ, 2 wrong call, 77 skipped.
 set -eu
 
 here=$(cd "$(dirname "$0")" && pwd)
@@ -43,8 +43,8 @@ on_reference_system() {
 
 # Maker, family and model of the processor, such as "AuthenticAMD 25 17".
 processor() {
-  awk -F ': *' '/^vendor_id|^cpu family|^model\t/ { text = text $2 " " } /^$/ { exit } END { sub(/ $/, "", text); print text }' \
-    /proc/cpuinfo
+  awk -F ': *' '/^vendor_id|^cpu family|^model\t/ { text = text $2 " " } /^$/ { exit }
+                END { sub(/ $/, "", text); print text }' /proc/cpuinfo
 }
 
 work=$(mktemp -d)

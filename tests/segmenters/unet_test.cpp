@@ -88,8 +88,16 @@ TEST(UnetSegmenter, SaysWhatItKnowsAndWhatMoves) {
   EXPECT_THAT(segmenter->movable(), ElementsAre("person"));
 }
 
+TEST(UnetSegmenter, OnlyTheBuiltInWeightsAreLoadedInTheBackground) {
+  EXPECT_TRUE(make()->first_call_waits());
+  EXPECT_TRUE(make({{"size", std::string("small")}})->first_call_waits());
+  EXPECT_FALSE(make({{"width", 64}, {"height", 64}})->first_call_waits());
+}
+
 TEST(UnetSegmenter, AWrongSideSaysWhichOnesFit) {
-  EXPECT_THAT(error_of([] { make({{"width", 200}}); }),
+  EXPECT_THAT(error_of([] {
+                make({{"width", 200}});
+              }),
               HasSubstr("segmenter.unet.width is 200; expected a multiple of 32, such as 192 or 224"));
   EXPECT_THAT(error_of([] { make({{"height", 20}}); }), HasSubstr("expected a multiple of 32, such as 32"));
 }

@@ -50,7 +50,7 @@ TEST_F(ImageDecoderTest, DepthIsTheQuotientExactly) {
   for (int value = 0; value < 65536; ++value)
     original.at<std::uint16_t>(value / 256, value % 256) = static_cast<std::uint16_t>(value);
   folder_.write_image("d.png", original);
-  for (const double factor : {5000.0, 1000.0, 4999.5}) {
+  for (const double factor : {5000.0, 1000.0, 4999.5, 5000.1}) {
     const cv::Mat depth = decoder_.read_depth(file("d.png"), factor);
     ASSERT_EQ(depth.type(), CV_32FC1);
     for (int value = 0; value < 65536; ++value)
@@ -107,6 +107,29 @@ TEST_F(ImageDecoderTest, DamagedPngIsFoundByItsChecksum) {
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x10);
   folder_.write("d.png", bytes);
   EXPECT_THAT(depth_error("d.png"), HasSubstr("is damaged: the checksum"));
+}
+
+TEST_F(ImageDecoderTest, WhatAPngSaysBesidesItsPixelsIsIgnoredInSilence) {
+  const cv::Mat original = test::colour_image(1);
+  folder_.write_image("c.png", original);
+  std::string bytes = folder_.read("c.png");
+  // A colour profile, a background and a palette of one byte, behind the header of 33 bytes, each with its checksum.
+  bytes.insert(33, std::string("\0\0\0\1iCCPx\x4d\x18\x82\x31", 13) + std::string("\0\0\0\1bKGDx\xd6\xdb\xe4\x46", 13) +
+                       std::string("\0\0\0\1PLTEx\x97\x96\x1b\x71", 13));
+  folder_.write("c.png", bytes);
+  testing::internal::CaptureStderr();
+  const cv::Mat image = decoder_.read_colour(file("c.png"));
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(cv::norm(image, original, cv::NORM_INF), 0.0);
+}
+
+TEST_F(ImageDecoderTest, AHeaderThatDescribesNoImageIsDamage) {
+  folder_.write_image("d.png", test::depth_image(1));
+  std::string bytes = folder_.read("d.png");
+  bytes[24] = 3;  // bits of a channel, and the checksum of such a header
+  bytes.replace(29, 4, "\xf3\xf0\x12\xd2");
+  folder_.write("d.png", bytes);
+  EXPECT_THAT(depth_error("d.png"), HasSubstr("its header describes no kind of image"));
 }
 
 TEST_F(ImageDecoderTest, JpegWithoutDataIsDamaged) {

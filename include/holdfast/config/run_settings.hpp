@@ -12,8 +12,8 @@ namespace holdfast {
 template <class Settings>
 class ParameterTable;
 
-/// sequential: one thread does all the work and gives the same bits on every run. threaded: tracking, local mapping,
-/// loop closing, full adjustment and segmentation have one thread each.
+/// sequential: one thread does all the work of a frame and gives the same bits on every run. threaded: tracking, local
+/// mapping, loop closing, full adjustment and segmentation have one thread each.
 enum class RunMode { sequential, threaded };
 /// When frames reach tracking. none: as fast as they can be read and tracked. timestamps: at their time stamps.
 enum class Pace { none, timestamps };
@@ -39,6 +39,7 @@ struct RunSettings {
   /// is deferred. Otherwise tracking waits for room in that queue.
   Pace pace = Pace::none;
   LateFrames late_frames = LateFrames::queue;  ///< only read in a paced run
+  int prefetch = 2;        ///< sequential mode: frames that another thread reads ahead; 0 = read by the same thread
   int frame_queue = 4;     ///< max. frames waiting for tracking; four frames bridge a pause of 130 ms at 30 Hz
   int keyframe_queue = 4;  ///< max. keyframes waiting for local mapping, and max. waiting for loop closing
   double minimum_coverage = 0.5;  ///< share of frames with a pose below which a run counts as a failure to track

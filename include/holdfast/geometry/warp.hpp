@@ -18,6 +18,12 @@ struct WarpedPoint {
   float x, y;             ///< pixel in the other view, perhaps outside its image [px]
 };
 
+/// The pixels of a row of one view as another view would see them: entry i of each array belongs to pixel i.
+struct WarpedRow {
+  Eigen::ArrayXf z;     ///< depth in the other view [m]
+  Eigen::ArrayXf x, y;  ///< pixel in the other view [px]
+};
+
 /// Takes pixels with depth from one view to another:
 ///
 ///   point = depth * R * (ray_x, ray_y, 1) + t,  x = fx * point.x / point.z + cx,  y = fy * point.y / point.z + cy
@@ -25,6 +31,13 @@ struct WarpedPoint {
 /// with R and t of T_to_from, a ray ((x - cx) / fx, (y - cy) / fy) of the first camera, and the intrinsics of the
 /// second one. Immutable; any thread.
 class Warp {
+ private:
+  /// Coordinate i of the point, of a number or an array of them. Both are computed in this order, for the same bits.
+  template <class Numbers>
+  auto coordinate(int i, const Numbers& ray_x, float ray_y, const Numbers& depth) const {
+    return depth * R_(i, 0) * ray_x + (depth * R_(i, 1) * ray_y + depth * R_(i, 2)) + t_[i];
+  }
+
  public:
   /// Points nearer to the second camera than `minimum_depth` [m] have no pixel there.
   Warp(const Eigen::Isometry3d& T_to_from, const Pinhole& from, const Pinhole& to, float minimum_depth = 0.1F)
@@ -45,14 +58,25 @@ class Warp {
   /// Where the second view sees the point that the first one measured along a ray at a depth [m] along its optical
   /// axis.
   std::optional<WarpedPoint> operator()(float ray_x, float ray_y, float depth) const {
-    return project(depth * (R_ * Eigen::Vector3f(ray_x, ray_y, 1.0F)) + t_);
+    return project(
+        {coordinate(0, ray_x, ray_y, depth), coordinate(1, ray_x, ray_y, depth), coordinate(2, ray_x, ray_y, depth)});
   }
   /// Where the second view sees a point that is given in its camera frame [m].
   std::optional<WarpedPoint> project(const Eigen::Vector3f& point) const {
-    if (!(point.z() >= minimum_depth_)) return std::nullopt;
+    if (!is_visible(point.z())) return std::nullopt;
     const float inverse = 1.0F / point.z();
     return WarpedPoint{point, to_.fx * point.x() * inverse + to_.cx, to_.fy * point.y() * inverse + to_.cy};
   }
+  /// The same for a row of pixels, with the same bits and vectorised: `rays_x` and `depth` have an entry for each of
+  /// them. x and y mean nothing where !is_visible(z), and nothing does where depth is not positive.
+  void row(const Eigen::Ref<const Eigen::ArrayXf>& rays_x, float ray_y, const Eigen::Ref<const Eigen::ArrayXf>& depth,
+           WarpedRow& to) const {
+    to.z = coordinate(2, rays_x, ray_y, depth);
+    to.x = to_.fx * coordinate(0, rays_x, ray_y, depth) * (1.0F / to.z) + to_.cx;
+    to.y = to_.fy * coordinate(1, rays_x, ray_y, depth) * (1.0F / to.z) + to_.cy;
+  }
+  /// Whether a point at depth z [m] in the second view has a pixel there, perhaps outside its image.
+  bool is_visible(float z) const { return z >= minimum_depth_; }
   /// Where the second view sees a point at infinite distance along a ray of the first view: the effect of rotation
   /// alone.
   std::optional<WarpedPoint> project_direction(float ray_x, float ray_y) const {

@@ -4,16 +4,25 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
 namespace holdfast {
 
+class PngRows;
+
 /// Decodes PNG and JPEG files strictly: an image that the decoding library would repair or convert silently (a
 /// truncated file, a grey image instead of colour, 8-bit depth) is an InputError that states the file, what was found,
-/// what was expected and how to correct it. Keeps its buffers between images; used by one thread.
+/// what was expected and how to correct it. Common PNG files are decoded by libdeflate in a build with it, with the
+/// same result as by OpenCV in less than half the time. Keeps its buffers between images; used by one thread.
 class ImageDecoder {
  public:
+  ImageDecoder();
+  ~ImageDecoder();
+  ImageDecoder(ImageDecoder&&) noexcept;
+  ImageDecoder& operator=(ImageDecoder&&) noexcept;
+
   /// Gets the size of an image before it is decoded, and throws if it is not the expected one: a small file can hold an
   /// image that takes gigabytes.
   using SizeCheck = std::function<void(const cv::Size&)>;
@@ -32,6 +41,7 @@ class ImageDecoder {
 
   std::vector<std::uint8_t> bytes_;
   cv::Mat raw_depth_;
+  std::unique_ptr<PngRows> png_;
 };
 
 }  // namespace holdfast

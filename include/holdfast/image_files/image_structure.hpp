@@ -38,6 +38,11 @@ ImageStructure examine_image(std::span<const std::uint8_t> bytes);
 /// examined. Throws InputError if the file cannot be read.
 ImageStructure examine_image_ends(const std::filesystem::path& file);
 
+/// Removes from a PNG that examine_image() accepted what its pixels do not depend on: ancillary chunks (colour profile,
+/// background, text, times), a suggested palette, bytes after the end. The decoding library prints messages about
+/// contents that it dislikes, such as a faulty profile that many programs write. JPEG files stay as they are.
+void drop_png_annotations(std::vector<std::uint8_t>& bytes);
+
 /// Converts an 8-bit palette PNG that examine_image() accepted to a grey PNG whose pixels are the indices, because the
 /// decoding libraries only provide the palette's colours, which are ambiguous for identical entries.
 std::vector<std::uint8_t> palette_indices_as_grey(std::span<const std::uint8_t> bytes);

@@ -15,8 +15,12 @@ namespace holdfast {
 /// aspect ratio, with every channel normalised as (value * scale - mean) / standard_deviation.
 struct NetworkOptions {
   std::filesystem::path model;  ///< ONNX, float32
-  /// The model in memory; if it is not empty, `model` only names it in messages. It is read during construction only.
+  /// The model in memory; if it is not empty, `model` only names it in messages. It is read during construction only,
+  /// or, with in_background, until the first run.
   std::span<const std::uint8_t> bytes = {};
+  /// Load `bytes` in another thread, for which the first run waits. For models that are known to be good: layers that
+  /// OpenCV cannot load are then an error of the first run.
+  bool in_background = false;
   int width = 0;  ///< of the input [px]; 0 = as declared by the model
   int height = 0;
   bool rgb = true;  ///< order of the channels: red green blue, or blue green red
@@ -33,9 +37,10 @@ struct NetworkOptions {
 /// processor, so that the last bits may differ on another processor. Used by one thread at a time.
 class Network {
  public:
-  /// Loads the model. Throws InputError, which states what was found and what was expected, for a missing file, a file
-  /// that is not an ONNX model, float16 weights (not supported by OpenCV), an input that is not one image with three
-  /// channels, a size other than the declared one, an unknown output name, and layers that OpenCV cannot run.
+  /// Loads the model, or begins to with in_background. Throws InputError, which states what was found and what was
+  /// expected, for a missing file, a file that is not an ONNX model, float16 weights (not supported by OpenCV), an
+  /// input that is not one image with three channels, a size other than the declared one, an unknown output name, and
+  /// layers that OpenCV cannot run.
   explicit Network(const NetworkOptions& options);
   ~Network();
   Network(const Network&) = delete;

@@ -14,7 +14,8 @@ namespace holdfast {
 /// A Segmenter that runs a semantic segmentation network and decodes its output to labels and confidence.
 class NetworkSegmenter : public Segmenter {
  public:
-  /// Loads the network and runs it once, so that errors are reported before the first frame. `classes` are the names by
+  /// Loads the network and runs it once, so that errors are reported before the first frame; with
+  /// NetworkOptions::in_background it begins to load, and the first frame waits. `classes` are the names by
   /// channel or label; the name 'unknown' denotes unlabelled pixels. `form.classes` is set from them. Throws the
   /// exceptions of Network and decode_segmentation().
   NetworkSegmenter(const NetworkOptions& options, OutputForm form, std::vector<std::string> classes,
@@ -22,6 +23,7 @@ class NetworkSegmenter : public Segmenter {
 
   const std::vector<std::string>& classes() const override { return classes_; }
   std::vector<std::string> movable() const override { return movable_; }
+  bool first_call_waits() const override { return is_loaded_in_background_; }
   Segmentation segment(const SensorFrame& frame) override;
 
  protected:
@@ -34,6 +36,7 @@ class NetworkSegmenter : public Segmenter {
  private:
   std::vector<std::string> classes_, movable_;
   OutputForm form_;
+  bool is_loaded_in_background_;
   Network network_;
   int unknown_label_ = -1;
 };

@@ -23,6 +23,9 @@ struct SkippedFrame {
 struct SourceDescription {
   std::string name;  ///< name of the sequence, for titles
   bool has_depth = false;
+  /// Frames do not depend on what happens between two calls of next(), as those of a recording, so that a sequential
+  /// run may read ahead in another thread. False for a source that other code influences during a run.
+  bool can_read_ahead = false;
   std::string truth_frame = "raw";           ///< of FrameSource::truth(): "raw" as recorded, or "transformed"
   std::vector<std::string> class_names;      ///< class names of FrameTruth::class_labels, by index
   std::optional<std::uint64_t> frame_count;  ///< empty if the source is endless

@@ -29,6 +29,10 @@ class Segmenter : public Module {
   virtual const std::vector<std::string>& classes() const = 0;
   /// The subset of classes() whose members can move or be moved; empty if the segmenter does not specify it.
   virtual std::vector<std::string> movable() const { return {}; }
+  /// Whether the first call of segment() may have to wait for work that the constructor began in another thread, such
+  /// as loading weights. Sequential mode then makes this call in another thread, which does not change results.
+  /// Constant after construction.
+  virtual bool first_call_waits() const { return false; }
   /// Segments a frame. An empty result means that there is no segmentation for this frame, which is not an error.
   /// Throws InputError for a frame that it cannot use. The frame is not written to, and later calls do not modify an
   /// earlier result. The same frames in the same order give the same results.

@@ -8,6 +8,7 @@
 #include "holdfast/core/camera.hpp"
 #include "holdfast/core/cell_mask.hpp"
 #include "holdfast/core/coarse_view.hpp"
+#include "holdfast/geometry/warp.hpp"
 
 namespace holdfast {
 
@@ -61,6 +62,8 @@ class MaskTransfer {
   /// Ego-motion-compensated state of a cell in the previous view.
   enum class CellState : std::uint8_t { same_surface, free_space, occluded, unobserved };
   std::vector<CellState> previous_state_;
+  Eigen::ArrayXf rays_x_;
+  geometry::WarpedRow warped_;
   std::vector<float> start_depth_;  // depth at which the growth into this cell began [m]
   std::vector<std::int32_t> front_, next_front_;
 };

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <future>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -26,8 +27,9 @@ struct SegmentedFrame {
 
 /// Frames that wait for their segmentation, and results that wait to be applied. Sequential mode: push() segments at
 /// once, and pop() returns the result after the configured number of frames, so that results are those of a slow
-/// network and always the same. Threaded mode: a thread segments, at most one frame waits for it, and pop() returns a
-/// result as soon as it exists. First in, first out. One thread uses it.
+/// network and always the same; the first frame is segmented in a thread if the segmenter may still be loading.
+/// Threaded mode: a thread segments, at most one frame waits for it, and pop() returns a result as soon as it exists.
+/// First in, first out. One thread uses it.
 class SegmentationQueue {
  public:
   /// The segmenter must outlive the queue.
@@ -36,7 +38,11 @@ class SegmentationQueue {
   /// Whether a frame that is not a keyframe should be segmented. Frames are counted from 0.
   bool wants(std::uint64_t frame_number) const;
   bool has_room() const { return !worker_ || worker_->queue().has_room(); }
-  /// Adds a frame; there must be room. `times` gets the stage "segmentation" in sequential mode.
+  /// Waits for the result that is due at this frame, if any, so that pop() does not have to.
+  void wait_for_due(std::uint64_t frame_number);
+  /// Adds a frame; there must be room. Sequential mode throws what the segmenter throws here, for the first frame of a
+  /// loading segmenter in the next call of push() or when its result is due. `times` gets the stage "segmentation" in
+  /// sequential mode.
   void push(const SensorFrame& frame, KeyFrameId keyframe, StageTimes& times);
   /// The next result that is available at this frame, if any. Call it at least once per frame.
   std::optional<SegmentedFrame> pop(std::uint64_t frame_number);
@@ -62,6 +68,12 @@ class SegmentationQueue {
     bool done = false;
   };
   void segment(Job& job, StageTimes& times);
+  void segment_in_background(Job& job);
+  bool is_due(std::uint64_t frame_number) const { return all_due_ || jobs_.front()->due <= frame_number; }
+  /// Waits for the first frame and throws what the segmenter threw.
+  void finish_first() {
+    if (first_.valid()) first_.get();
+  }
 
   Segmenter& segmenter_;
   SegmentationSettings settings_;
@@ -71,7 +83,10 @@ class SegmentationQueue {
   bool all_due_ = false;
   mutable std::mutex mutex_;  // protects Job::done, the content of jobs that are not done, and times_
   std::vector<StageTimes> times_;
-  std::optional<Worker<std::shared_ptr<Job>>> worker_;  // last: it uses all the others
+  bool is_first_ = true;
+  // Last: they use all the others.
+  std::optional<Worker<std::shared_ptr<Job>>> worker_;
+  std::future<void> first_;  // sequential mode: segments the first frame in a thread
 };
 
 }  // namespace holdfast

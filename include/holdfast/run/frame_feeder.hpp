@@ -25,7 +25,7 @@ struct FedFrame {
 };
 
 /// Reads a source in a separate thread, so that decoding and tracking overlap. Of the settings it uses pace,
-/// late_frames and frame_queue.
+/// late_frames and frame_queue. Images are not copied.
 class FrameFeeder {
  public:
   /// Starts reading. The source must outlive the feeder, and no other code may use it during that time.

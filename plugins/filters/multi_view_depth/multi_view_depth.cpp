@@ -84,16 +84,17 @@ void MultiViewDepth::compare(const FilterContext& context) {
     const geometry::Warp warp(other.frame->T_view_world() * T_view_world.inverse(), camera);
     const std::vector<float>& there = other.frame->coarse.depth;
     const std::vector<float>& known = other.frame->coarse.static_log_odds;
+    rays_x_.resize(columns_);
+    for (int column = 0; column < columns_; ++column) rays_x_[column] = warp.ray_x(grid.x_of(column * stride));
     for (int row = 0; row < rows_; ++row) {
-      const float ray_y = warp.ray_y(grid.y_of(row * stride));
+      const float* depths = &depth_[static_cast<std::size_t>(row * columns_)];
+      warp.row(rays_x_, warp.ray_y(grid.y_of(row * stride)), Eigen::Map<const Eigen::ArrayXf>(depths, columns_),
+               warped_);
       for (int column = 0; column < columns_; ++column) {
+        const float z = warped_.z[column];
+        if (depths[column] == 0.0F || !warp.is_visible(z)) continue;
         const std::size_t block = static_cast<std::size_t>(row * columns_ + column);
-        const float depth = depth_[block];
-        if (depth == 0.0F) continue;
-        const auto warped = warp(warp.ray_x(grid.x_of(column * stride)), ray_y, depth);
-        if (!warped) continue;
-        const float z = warped->point.z();
-        const int c = grid.column_of(warped->x), r = grid.row_of(warped->y);
+        const int c = grid.column_of(warped_.x[column]), r = grid.row_of(warped_.y[column]);
         if (c < 1 || r < 1 || c + 1 >= grid.columns || r + 1 >= grid.rows) continue;
         const std::size_t cell = static_cast<std::size_t>(r * grid.columns + c);
         const float seen = there[cell];

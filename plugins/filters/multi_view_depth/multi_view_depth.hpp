@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "holdfast/geometry/warp.hpp"
 #include "holdfast/interfaces/dynamic_filter.hpp"
 #include "holdfast/settings/multi_view_depth.hpp"
 
@@ -47,6 +48,8 @@ class MultiViewDepth final : public DynamicFilter {
   std::vector<Candidate> candidates_;
   std::vector<View> views_;
   int columns_ = 0, rows_ = 0;  // blocks
+  Eigen::ArrayXf rays_x_;
+  geometry::WarpedRow warped_;
   std::vector<float> depth_, through_, same_, score_;
   std::vector<std::uint8_t> moving_, evaluated_;
   std::vector<int> front_, next_front_;

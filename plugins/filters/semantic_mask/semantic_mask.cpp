@@ -104,18 +104,45 @@ class SemanticMask final : public DynamicFilter {
     }
   }
 
-  void apply_propagated(const Frame& frame, StaticEvidence& evidence) const {
+  /// Marks the cells within `reach` columns and rows of a movable one.
+  void mark_near_movable(const CellMask& mask, const CoarseGrid& grid, int reach) {
+    const int columns = grid.columns, rows = grid.rows;
+    const auto row_of = [columns](std::vector<std::uint8_t>& cells, int row) {
+      return cells.data() + static_cast<std::ptrdiff_t>(row) * columns;
+    };
+    movable_cells_.resize(mask.labels.size());
+    for (std::size_t cell = 0; cell < mask.labels.size(); ++cell) movable_cells_[cell] = movable_[mask.labels[cell]];
+    beside_movable_ = movable_cells_;
+    for (int row = 0; row < rows; ++row) {
+      const std::uint8_t* from = row_of(movable_cells_, row);
+      std::uint8_t* to = row_of(beside_movable_, row);
+      for (int shift = 1; shift <= std::min(reach, columns - 1); ++shift) {
+        for (int column = shift; column < columns; ++column) to[column] |= from[column - shift];
+        for (int column = shift; column < columns; ++column) to[column - shift] |= from[column];
+      }
+    }
+    near_movable_ = beside_movable_;
+    for (int row = 0; row < rows; ++row)
+      for (int other = std::max(0, row - reach); other <= std::min(rows - 1, row + reach); ++other) {
+        const std::uint8_t* from = row_of(beside_movable_, other);
+        std::uint8_t* to = row_of(near_movable_, row);
+        for (int column = 0; column < columns; ++column) to[column] |= from[column];
+      }
+  }
+
+  void apply_propagated(const Frame& frame, StaticEvidence& evidence) {
     const CellMask& mask = frame.coarse.mask;
     const CoarseGrid& grid = frame.coarse.grid;
     const auto cells = [](int pixels) { return (pixels + CoarseGrid::step / 2) / CoarseGrid::step; };
     const int reach = cells(settings_.dilate), edge = cells(settings_.edge);
+    mark_near_movable(mask, grid, reach);
     for (std::size_t i = 0; i < frame.size(); ++i) {
       const int column = grid.column_of(frame.x[i]), row = grid.row_of(frame.y[i]);
       if (column < 0 || row < 0 || column >= grid.columns || row >= grid.rows) continue;
       const std::size_t cell = static_cast<std::size_t>(row * grid.columns + column);
       bool movable = movable_[mask.labels[cell]] != 0;
       std::uint8_t certainty = mask.confidence[cell];
-      for (int dr = -reach; dr <= reach && !movable; ++dr)
+      for (int dr = -reach; dr <= reach && !movable && near_movable_[cell] != 0; ++dr)
         for (int dc = -reach; dc <= reach && !movable; ++dc) {
           const int c = column + dc, r = row + dr;
           if (c < 0 || r < 0 || c >= grid.columns || r >= grid.rows) continue;
@@ -143,6 +170,7 @@ class SemanticMask final : public DynamicFilter {
   static constexpr std::uint8_t unknown = 255;
   SemanticMaskSettings settings_;
   std::array<std::uint8_t, 256> movable_{};
+  std::vector<std::uint8_t> movable_cells_, beside_movable_, near_movable_;  // 1 = yes, by cell
 };
 
 }  // namespace

@@ -73,6 +73,8 @@ NetworkOptions network_options(const UnetSettings& settings) {
     check_side("height", options.height);
     options.model = "unet.onnx";
     options.bytes = shipped_unet();
+    // Nothing can be wrong with them at the sizes that they were made for.
+    options.in_background = settings.width == 0 && settings.height == 0;
   }
   return options;
 }

@@ -135,6 +135,7 @@ class FolderSource final : public FrameSource {
     SourceDescription description;
     description.name = folder_name(settings.path);
     description.has_depth = !settings.depth.empty();
+    description.can_read_ahead = true;
     if (settings.intrinsics.empty()) return description;
     description.camera = read_intrinsics(settings.intrinsics, camera);
     if (settings.stamps.empty()) description.camera->frame_rate = settings.frame_rate;

@@ -51,6 +51,7 @@ class SimulatedSource final : public FrameSource {
     description.name = "simulated " + scene.name + ", " + simulation::to_string(scene.room) + ", path " +
                        simulation::to_string(scene.camera.path) + ", seed " + std::to_string(scene.seed);
     description.has_depth = true;
+    description.can_read_ahead = true;
     description.class_names = simulator_.class_names();
     description.frame_count = simulator_.frame_count();
     description.camera = simulator_.camera();

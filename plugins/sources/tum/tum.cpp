@@ -79,6 +79,7 @@ class TumSource final : public FrameSource {
                                          settings.on_bad_frame == "skip"}) {
     description_.name = folder_name(settings.path);
     description_.has_depth = true;
+    description_.can_read_ahead = true;
     description_.frame_count = sequence_.size();
     const TruthTransform transform = make_truth_transform(settings.truth_left, settings.truth_right, "source.tum");
     description_.truth_frame = transform.frame();
