@@ -30,6 +30,7 @@ def short(text: str) -> str:
         (r"(numpy\.typing|npt)\.NDArray\[(np|numpy)\.(\w+)\]", r"ndarray[\3]"),
         (r"Union\[str, '?os\.PathLike\[str\]'?\]", "path"),
         (r"holdfast\.\w+\.(?=[A-Z])|typing\.|npt\.|\b_core\.", ""),
+        (r"""['"]([\w\[\], .']*\])['"]""", r"\1"),
         (r"'(\w+)'", r"\1"),
     ):
         text = re.sub(long, name, text)

@@ -55,8 +55,9 @@ void bind_cameras(py::module_& module) {
       .def_readonly("frame_rate", &Camera::frame_rate)
       .def("__eq__", [](const Camera& a, const Camera& b) { return a == b; })
       .def("__repr__", &camera_text);
-  module.def("camera", &known_camera, py::arg("name"));
-  module.def("camera_names", &camera_names);
+  module.def("camera", &known_camera, py::arg("name"),
+             "The calibration of a known camera. Raises InputError with the nearest name for another.");
+  module.def("camera_names", &camera_names, "The names that camera() knows, sorted.");
 }
 
 }  // namespace holdfast::python
