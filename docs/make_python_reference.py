@@ -31,7 +31,7 @@ def short(text: str) -> str:
         (r"Union\[str, '?os\.PathLike\[str\]'?\]", "path"),
         (r"holdfast\.\w+\.(?=[A-Z])|typing\.|npt\.|\b_core\.", ""),
         (r"""['"]([\w\[\], .']*\])['"]""", r"\1"),
-        (r"'(\w+)'", r"\1"),
+        (r"(?<!= )'(\w+)'", r"\1"),
     ):
         text = re.sub(long, name, text)
     return text

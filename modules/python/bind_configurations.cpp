@@ -88,7 +88,8 @@ std::vector<SectionDescription> all_sections() {
 }  // namespace
 
 void bind_configurations(py::module_& module) {
-  py::class_<Configuration>(module, "Configuration")
+  py::class_<Configuration>(module, "Configuration",
+                            "A configuration in which every name is known and every value is in range.")
       .def_readonly("file", &Configuration::file)
       .def_property_readonly("warnings", &warnings_of)
       .def("to_yaml", [](const Configuration& configuration) { return to_yaml(configuration); })
