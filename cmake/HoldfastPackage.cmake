@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # `cpack -G DEB` makes packages: libholdfast (shared libraries, when they are shared, and the licence), libholdfast-dev
-# (headers, static libraries, CMake package), holdfast (the program) and, where the segmenter `python` was built,
-# holdfast-python. Included after the install rules.
+# (headers, static libraries, CMake package), holdfast (the program) and, where they were built, holdfast-python (the
+# segmenter `python`) and python3-holdfast (the Python package). Included after the install rules.
 set(CPACK_PACKAGE_NAME holdfast)
 set(CPACK_PACKAGE_VENDOR "The Holdfast authors")
 set(CPACK_PACKAGE_CONTACT "The Holdfast authors <holdfast@localhost>")
@@ -52,8 +52,19 @@ if(TARGET holdfast_python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS python3-numpy)
   set(CPACK_COMPONENT_PYTHON_DESCRIPTION "${holdfast_DESCRIPTION}: segmenters written in Python")
 endif()
+if(TARGET holdfast_python_package)
+  list(APPEND CPACK_COMPONENTS_ALL bindings)
+  set(CPACK_DEBIAN_BINDINGS_PACKAGE_NAME python3-holdfast)
+  set(CPACK_DEBIAN_BINDINGS_PACKAGE_SECTION python)
+  # The extension is compiled for this minor version of Python alone.
+  math(EXPR next_python "${HOLDFAST_PYTHON_MINOR} + 1")
+  set(CPACK_DEBIAN_BINDINGS_PACKAGE_DEPENDS
+      "python3 (>= 3.${HOLDFAST_PYTHON_MINOR}), python3 (<< 3.${next_python}), python3-numpy")
+  set(CPACK_COMPONENT_BINDINGS_DESCRIPTION "${holdfast_DESCRIPTION}: Python package")
+endif()
 if(HOLDFAST_SHLIBDEPS)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_BINDINGS_PACKAGE_SHLIBDEPS ON)
   set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
   if(BUILD_SHARED_LIBS)
     set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)

@@ -7,7 +7,9 @@
 #   sh cmake/install_dependencies.sh --training       also what the training of the U-Net and its test need
 #   sh cmake/install_dependencies.sh --documentation  also what the tests of the documentation need
 #   sh cmake/install_dependencies.sh --benchmarks     also what the benchmarks are built of
-#   sh cmake/install_dependencies.sh --python         also what the segmenter `python` is built of, and numpy
+#   sh cmake/install_dependencies.sh --python         also what the segmenter `python` and the Python package are built
+#                                                     of, and numpy
+#   sh cmake/install_dependencies.sh --python-tests   the same, and what the tests of the Python package need
 #   sh cmake/install_dependencies.sh --clang          also clang, for the fuzz targets and the quick sanitizer build
 #   sh cmake/install_dependencies.sh --dry-run        say what would be installed, change nothing
 set -eu
@@ -27,11 +29,15 @@ for argument in "$@"; do
     --training) packages="$packages python3 python3-numpy python3-opencv python3-torch" ;;
     --documentation) packages="$packages python3 doxygen" ;;
     --benchmarks) packages="$packages libbenchmark-dev" ;;
-    --python) packages="$packages python3-dev pybind11-dev python3-numpy" ;;
+    --python | --python-tests)
+      packages="$packages python3-dev pybind11-dev python3-numpy python3-pip python3-setuptools python3-venv python3-wheel"
+      [ "$argument" = --python ] ||
+        packages="$packages mypy python3-matplotlib python3-nbformat python3-pandas python3-psutil python3-pytest"
+      ;;
     --clang) packages="$packages clang libclang-rt-14-dev llvm" ;;
     --dry-run) dry_run=yes ;;
-    -h | --help) sed -n '3,12s/^# \{0,1\}//p' "$0"; exit 0 ;;
-    *) fail "unknown argument '$argument'; known are --training, --documentation, --benchmarks, --python, --clang, --dry-run and --help" ;;
+    -h | --help) sed -n '3,14s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) fail "unknown argument '$argument'; known are --training, --documentation, --benchmarks, --python, --python-tests, --clang, --dry-run and --help" ;;
   esac
 done
 

@@ -10,9 +10,10 @@ cd "$(dirname "$0")/.."
 build=${1:-build}
 jobs=$(nproc)
 
-sh cmake/install_dependencies.sh --training --documentation --benchmarks --python
+sh cmake/install_dependencies.sh --training --documentation --benchmarks --python-tests
 cmake --preset release -B "$build" \
-  -DHOLDFAST_UNITY=ON -DHOLDFAST_BUILD_TESTS=ON -DHOLDFAST_BUILD_BENCHMARKS=ON -DHOLDFAST_BUILD_EXAMPLES=ON -DHOLDFAST_PYTHON=ON
+  -DHOLDFAST_UNITY=ON -DHOLDFAST_BUILD_TESTS=ON -DHOLDFAST_BUILD_BENCHMARKS=ON -DHOLDFAST_BUILD_EXAMPLES=ON -DHOLDFAST_PYTHON=ON \
+  -DHOLDFAST_PYTHON_PACKAGE=ON
 cmake --build "$build" --parallel "$jobs"
 
 run_tests() { ctest --test-dir "$build" --parallel "$jobs" --output-on-failure --no-tests=error "$@"; }

@@ -14,6 +14,22 @@ namespace holdfast {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// The plugin folder beside the library that this code is linked into: `holdfast/plugins`, as in an installation, or
+/// `plugins` in a folder that is called holdfast, as in the Python package. Empty for a program.
+fs::path folder_beside_library() {
+  Dl_info own = {};
+  if (dladdr(reinterpret_cast<void*>(&can_find_plugin), &own) == 0 || own.dli_fname == nullptr) return {};
+  std::error_code unknown;
+  const fs::path library = fs::canonical(own.dli_fname, unknown);
+  if (unknown || library == fs::read_symlink("/proc/self/exe", unknown)) return {};
+  const fs::path folder = library.parent_path();
+  return folder.filename() == "holdfast" ? folder / "plugins" : folder / "holdfast/plugins";
+}
+
+}  // namespace
+
 std::vector<fs::path> plugin_search_path(const std::vector<fs::path>& first) {
   std::vector<fs::path> folders = first;
   if (const char* variable = std::getenv("HOLDFAST_PLUGIN_PATH")) {
@@ -29,6 +45,9 @@ std::vector<fs::path> plugin_search_path(const std::vector<fs::path>& first) {
   if (!no_program)
     folders.push_back(
         (program.parent_path().parent_path() / HOLDFAST_LIBRARY_FOLDER / "holdfast/plugins").lexically_normal());
+  // In a process of another program, such as Python's, that is the place that was installed with this code.
+  const fs::path beside = folder_beside_library();
+  if (!beside.empty() && std::find(folders.begin(), folders.end(), beside) == folders.end()) folders.push_back(beside);
   return folders;
 }
 

@@ -5,7 +5,7 @@
 
 namespace holdfast {
 
-void Registry::add_entry(ModuleEntry entry) {
+void Registry::add(ModuleEntry entry) {
   auto& of_this_kind = entries_[entry.kind];
   if (const auto found = of_this_kind.find(entry.description.name); found != of_this_kind.end())
     throw PluginError(entry.kind + " module '" + entry.description.name + "' of " + entry.origin +

@@ -10,7 +10,8 @@
 namespace holdfast {
 
 /// The folders in which load_plugin searches for a name without a folder, in order: the given folders, those of the
-/// environment variable HOLDFAST_PLUGIN_PATH (separated by ':'), then the installed plugin folder.
+/// environment variable HOLDFAST_PLUGIN_PATH (separated by ':'), then the installed plugin folder, which is
+/// found from the running program, and the one beside the library that contains the loader.
 std::vector<std::filesystem::path> plugin_search_path(const std::vector<std::filesystem::path>& first);
 
 /// Whether load_plugin() would find a file for this name. The file itself is not looked at.

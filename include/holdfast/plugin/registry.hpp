@@ -45,7 +45,7 @@ class Registry {
     entry.create = [table, create = std::move(create)](const ParameterValues& values, const CreationContext& context) {
       return std::unique_ptr<Module>(create(table->settings(values), context));
     };
-    add_entry(std::move(entry));
+    add(std::move(entry));
   }
 
   /// Registers a module that has a constructor Implementation(const Settings&, const CreationContext&).
@@ -55,6 +55,10 @@ class Registry {
       return std::unique_ptr<Interface>(std::make_unique<Implementation>(settings, context));
     });
   }
+
+  /// Registers an entry whose parameter table is known at run time only, such as that of a module in another language;
+  /// its origin stays as given. Throws PluginError if a module of this kind and name is already registered.
+  void add(ModuleEntry entry);
 
   const ModuleEntry* find(const std::string& kind, const std::string& name) const;
   /// Entries of a kind, sorted by name.
@@ -91,7 +95,6 @@ class Registry {
   const std::string& origin() const { return origin_; }
 
  private:
-  void add_entry(ModuleEntry entry);
   const ModuleEntry& require(const std::string& kind, const std::string& name) const;
 
   std::map<std::string, std::map<std::string, ModuleEntry>> entries_;

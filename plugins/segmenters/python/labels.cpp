@@ -21,13 +21,13 @@ std::string text_of(const py::handle& object) { return py::str(object); }
 std::string type_of(const py::handle& object) { return text_of(py::type::of(object).attr("__name__")); }
 
 /// HxW uint8 of the frame's size, copied.
-cv::Mat read_image(const py::object& object, const cv::Size& size, const std::string& what,
+cv::Mat read_image(const py::object& object, const cv::Size& size, const std::string& what, const std::string& owner,
                    const std::filesystem::path& file) {
   const std::string expected = "; expected " + what + " as a numpy array of uint8 with shape (" +
                                std::to_string(size.height) + ", " + std::to_string(size.width) +
                                "), rows and columns of the image";
   const auto refuse = [&](const std::string& found, const std::string& remedy = "") {
-    throw InputError({file.string()}, "Segmenter.segment returned " + found + expected + remedy);
+    throw InputError({file.string()}, owner + ".segment returned " + found + expected + remedy);
   };
   if (!py::isinstance<py::array>(object)) refuse("an object of type " + type_of(object));
   const auto array = py::reinterpret_borrow<py::array>(object);
@@ -43,12 +43,13 @@ cv::Mat read_image(const py::object& object, const cv::Size& size, const std::st
   return image;
 }
 
-void check_labels(const cv::Mat& labels, std::size_t classes, const std::filesystem::path& file) {
+void check_labels(const cv::Mat& labels, std::size_t classes, const std::string& owner,
+                  const std::filesystem::path& file) {
   for (int y = 0; y < labels.rows; ++y)
     for (int x = 0; x < labels.cols; ++x) {
       const std::uint8_t label = labels.at<std::uint8_t>(y, x);
       if (label < classes || label == unknown) continue;
-      throw InputError({file.string()}, "Segmenter.segment returned the label " + std::to_string(label) + " at row " +
+      throw InputError({file.string()}, owner + ".segment returned the label " + std::to_string(label) + " at row " +
                                             std::to_string(y) + ", column " + std::to_string(x) +
                                             "; expected an index into `classes`, 0 to " + std::to_string(classes - 1) +
                                             ", or 255 for unknown");
@@ -57,21 +58,21 @@ void check_labels(const cv::Mat& labels, std::size_t classes, const std::filesys
 
 }  // namespace
 
-Segmentation read_result(const py::object& result, const cv::Size& size, std::size_t classes,
+Segmentation read_result(const py::object& result, const cv::Size& size, std::size_t classes, const std::string& owner,
                          const std::filesystem::path& file) {
   if (result.is_none()) return {};
   Segmentation segmentation;
   if (py::isinstance<py::tuple>(result)) {
     const auto pair = py::reinterpret_borrow<py::tuple>(result);
     if (pair.size() != 2)
-      throw InputError({file.string()}, "Segmenter.segment returned a tuple of " + std::to_string(pair.size()) +
+      throw InputError({file.string()}, owner + ".segment returned a tuple of " + std::to_string(pair.size()) +
                                             "; expected labels, (labels, confidence), or None");
-    segmentation.labels = read_image(pair[0], size, "labels", file);
-    if (!pair[1].is_none()) segmentation.confidence = read_image(pair[1], size, "confidence", file);
+    segmentation.labels = read_image(pair[0], size, "labels", owner, file);
+    if (!pair[1].is_none()) segmentation.confidence = read_image(pair[1], size, "confidence", owner, file);
   } else {
-    segmentation.labels = read_image(result, size, "labels", file);
+    segmentation.labels = read_image(result, size, "labels", owner, file);
   }
-  check_labels(segmentation.labels, classes, file);
+  check_labels(segmentation.labels, classes, owner, file);
   return segmentation;
 }
 

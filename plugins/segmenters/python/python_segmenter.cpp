@@ -10,8 +10,8 @@
 #include <filesystem>
 #include <utility>
 
+#include "class_names.hpp"
 #include "holdfast/core/error.hpp"
-#include "holdfast/plugin/did_you_mean.hpp"
 #include "interpreter.hpp"
 #include "labels.hpp"
 #include "python_error.hpp"
@@ -72,22 +72,6 @@ py::array image_of(const cv::Mat& colour, bool rgb) {
   return image;
 }
 
-std::vector<std::string> read_names(const py::object& names, const std::string& attribute,
-                                    const std::filesystem::path& file) {
-  const auto refuse = [&](const std::string& found) {
-    throw InputError({file.string()}, "Segmenter." + attribute + " is " + found +
-                                          "; expected a list of different names, such as ['background', 'person']");
-  };
-  if (!py::isinstance<py::list>(names) && !py::isinstance<py::tuple>(names)) refuse(py::repr(names));
-  std::vector<std::string> result;
-  for (const py::handle& name : names) {
-    if (!py::isinstance<py::str>(name)) refuse(py::repr(names));
-    result.push_back(name.cast<std::string>());
-    if (result.back().empty() || std::count(result.begin(), result.end(), result.back()) > 1) refuse(py::repr(names));
-  }
-  return result;
-}
-
 }  // namespace
 
 PythonSegmenter::PythonSegmenter(const PythonSettings& settings, const CreationContext&)
@@ -101,7 +85,8 @@ PythonSegmenter::PythonSegmenter(const PythonSettings& settings, const CreationC
   const Lock lock;
   try {
     load(settings);
-    read_classes();
+    classes_ = read_classes(python_->instance, "Segmenter", file_);
+    movable_ = read_movable(python_->instance, "Segmenter", classes_, file_);
   } catch (...) {
     python_->segment = python_->instance = py::object();  // while the lock is held
     throw;
@@ -143,23 +128,6 @@ void PythonSegmenter::load(const PythonSettings& settings) {
   python_->segment = python_->instance.attr("segment");
 }
 
-void PythonSegmenter::read_classes() {
-  if (!py::hasattr(python_->instance, "classes"))
-    throw InputError({file_.string()},
-                     "`class Segmenter` has no `classes`; expected a list of names by label, such as "
-                     "classes = ['background', 'person']");
-  classes_ = read_names(python_->instance.attr("classes"), "classes", file_);
-  if (classes_.empty() || classes_.size() > 255)
-    throw InputError({file_.string()}, "Segmenter.classes has " + std::to_string(classes_.size()) +
-                                           " names; expected 1 to 255, the first being the background");
-  if (!py::hasattr(python_->instance, "movable")) return;
-  movable_ = read_names(python_->instance.attr("movable"), "movable", file_);
-  for (const std::string& name : movable_)
-    if (std::find(classes_.begin(), classes_.end(), name) == classes_.end())
-      throw InputError({file_.string()}, "Segmenter.movable names '" + name + "', which is none of the classes; " +
-                                             did_you_mean(name, classes_));
-}
-
 Segmentation PythonSegmenter::segment(const SensorFrame& frame) {
   const cv::Mat& colour = frame.colour;
   if (colour.empty() || colour.type() != CV_8UC3)
@@ -168,7 +136,7 @@ Segmentation PythonSegmenter::segment(const SensorFrame& frame) {
   const Lock lock;
   try {
     const py::object result = python_->segment(image_of(colour, rgb_));
-    return read_result(result, colour.size(), classes_.size(), file_);
+    return read_result(result, colour.size(), classes_.size(), "Segmenter", file_);
   } catch (const py::error_already_set& raised) {
     throw_python_error(raised, file_, "Segmenter.segment", "labels for frame " + std::to_string(frame.index));
   }

@@ -26,7 +26,6 @@ class PythonSegmenter final : public Segmenter {
  private:
   struct Python;  // its objects, which the lock guards
   void load(const PythonSettings& settings);
-  void read_classes();
 
   std::filesystem::path file_;
   bool rgb_;

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <cmath>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "frames.hpp"
+#include "holdfast/core/error.hpp"
+#include "images.hpp"
+
+namespace holdfast::python {
+
+namespace py = pybind11;
+
+namespace {
+
+std::shared_ptr<const FrameTruth> truth_of(const py::object& pose, const py::object& object_mask,
+                                           const py::object& class_labels, const py::object& moving_objects) {
+  if (pose.is_none() && object_mask.is_none() && class_labels.is_none() && moving_objects.is_none()) return nullptr;
+  auto truth = std::make_shared<FrameTruth>();
+  if (!pose.is_none()) truth->T_world_camera = to_pose(pose, "true_pose");
+  truth->object_mask = image_of_array(object_mask, ImageKind::label, "object_mask");
+  truth->class_labels = image_of_array(class_labels, ImageKind::label, "class_labels");
+  if (!moving_objects.is_none()) truth->moving_objects = moving_objects.cast<std::vector<std::uint8_t>>();
+  return truth;
+}
+
+template <class Value>
+py::object of_truth(const SensorFrame& frame, Value value) {
+  if (!frame.truth) return py::none();
+  return value(*frame.truth);
+}
+
+std::string frame_text(const SensorFrame& frame) {
+  const py::str text = py::str("Frame(index={}, timestamp={:.6f} s, {} x {} px, {})")
+                           .format(frame.index, frame.timestamp, frame.colour.cols, frame.colour.rows,
+                                   frame.depth.empty() ? "no depth" : "with depth");
+  return text;
+}
+
+}  // namespace
+
+SensorFrame make_frame(double timestamp, const py::object& colour, const py::object& depth) {
+  SensorFrame frame;
+  if (!std::isfinite(timestamp))
+    throw InputError({"timestamp"}, "is not finite; expected the time of the colour image in seconds");
+  frame.timestamp = timestamp;
+  frame.colour = image_of_array(colour, ImageKind::colour, "colour");
+  frame.depth = image_of_array(depth, ImageKind::depth, "depth");
+  if (frame.colour.empty())
+    throw InputError({"colour"}, "is None; expected an image, a numpy array of uint8 with shape (rows, columns, 3)");
+  if (!frame.depth.empty() && frame.depth.size() != frame.colour.size())
+    throw InputError({"depth"}, "has " + std::to_string(frame.depth.cols) + " x " + std::to_string(frame.depth.rows) +
+                                    " px; expected the size of the colour image, " + std::to_string(frame.colour.cols) +
+                                    " x " + std::to_string(frame.colour.rows) + " px");
+  return frame;
+}
+
+void bind_frames(py::module_& module) {
+  py::class_<SensorFrame>(module, "Frame", "A colour image with its time and, where there is one, its depth image.")
+      .def(py::init([](double timestamp, const py::object& colour, const py::object& depth, std::uint64_t index,
+                       double depth_delay, const py::object& true_pose, const py::object& object_mask,
+                       const py::object& class_labels, const py::object& moving_objects) {
+             SensorFrame frame = make_frame(timestamp, colour, depth);
+             frame.index = index;
+             frame.depth_delay = depth_delay;
+             frame.truth = truth_of(true_pose, object_mask, class_labels, moving_objects);
+             return frame;
+           }),
+           py::arg("timestamp"), py::arg("colour"), py::arg("depth") = py::none(), py::kw_only(), py::arg("index") = 0,
+           py::arg("depth_delay") = 0.0, py::arg("true_pose") = py::none(), py::arg("object_mask") = py::none(),
+           py::arg("class_labels") = py::none(), py::arg("moving_objects") = py::none())
+      .def_readonly("index", &SensorFrame::index)
+      .def_readonly("timestamp", &SensorFrame::timestamp)
+      .def_readonly("depth_delay", &SensorFrame::depth_delay)
+      .def_property_readonly("colour", [](const SensorFrame& frame) { return array_of_image(frame.colour); })
+      .def_property_readonly("depth", [](const SensorFrame& frame) { return array_of_image(frame.depth); })
+      .def_property_readonly("true_pose",
+                             [](const SensorFrame& frame) {
+                               return of_truth(frame, [](const FrameTruth& t) { return pose_array(t.T_world_camera); });
+                             })
+      .def_property_readonly("object_mask",
+                             [](const SensorFrame& frame) {
+                               return of_truth(
+                                   frame, [](const FrameTruth& truth) { return array_of_image(truth.object_mask); });
+                             })
+      .def_property_readonly("class_labels",
+                             [](const SensorFrame& frame) {
+                               return of_truth(
+                                   frame, [](const FrameTruth& truth) { return array_of_image(truth.class_labels); });
+                             })
+      .def_property_readonly("moving_objects",
+                             [](const SensorFrame& frame) {
+                               return of_truth(frame, [](const FrameTruth& truth) {
+                                 py::list objects;
+                                 for (const std::uint8_t object : truth.moving_objects) objects.append(object);
+                                 return py::object(objects);
+                               });
+                             })
+      .def("__repr__", &frame_text);
+}
+
+}  // namespace holdfast::python

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <mutex>
+#include <optional>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "frames.hpp"
+#include "gil.hpp"
+#include "holdfast/pipeline/configured_pipeline.hpp"
+#include "registry.hpp"
+
+namespace holdfast::python {
+
+namespace py = pybind11;
+
+namespace {
+
+/// A pipeline that Python feeds. Any thread may call anything: calls that C++ allows one thread at a time wait for each
+/// other, without Python's lock.
+class FedPipeline {
+ public:
+  FedPipeline(const Configuration& configuration, const PipelineOptions& options) {
+    Registry registry = make_registry();
+    const Unlock unlock;
+    load_plugins(configuration, registry);
+    pipeline_.emplace(std::move(build_pipeline(configuration, registry, options).pipeline));
+    camera_ = pipeline_->camera();
+  }
+  /// Ending the threads of the pipeline may need Python's lock in them.
+  ~FedPipeline() {
+    const Unlock unlock;
+    pipeline_.reset();
+  }
+  FedPipeline(const FedPipeline&) = delete;
+  FedPipeline& operator=(const FedPipeline&) = delete;
+
+  FrameResult feed(const SensorFrame& frame) {
+    const Unlock unlock;
+    const std::lock_guard lock(calls_);
+    SensorFrame numbered = frame;
+    numbered.index = fed_;
+    FrameResult result = running("feed").feed(numbered);
+    ++fed_;
+    return result;
+  }
+  FrameResult feed_arrays(double timestamp, const py::object& colour, const py::object& depth) {
+    return feed(make_frame(timestamp, colour, depth));
+  }
+
+  void finish() {
+    const Unlock unlock;
+    const std::lock_guard lock(calls_);
+    Pipeline& pipeline = running("finish");
+    finished_ = true;
+    pipeline.finish();
+  }
+  void interrupt() {
+    const Unlock unlock;
+    const std::lock_guard lock(life_);
+    if (pipeline_) pipeline_->interrupt();
+  }
+  void close() {
+    const Unlock unlock;
+    const std::scoped_lock lock(calls_, life_);
+    pipeline_.reset();
+  }
+
+  py::tuple trajectory() {
+    return trajectory_arrays(ask([](const Pipeline& p) { return p.trajectory(); }));
+  }
+  py::tuple keyframes() {
+    return trajectory_arrays(ask([](const Pipeline& p) { return p.keyframe_trajectory(); }));
+  }
+  MapSnapshot map_snapshot() {
+    const Unlock unlock;
+    const std::lock_guard lock(life_);
+    return open("map_snapshot").map_snapshot();
+  }
+  std::shared_ptr<Map> take_map() {
+    const Unlock unlock;
+    const std::lock_guard lock(calls_);
+    Pipeline& pipeline = open("take_map");
+    if (!finished_) throw Error("take_map: the pipeline is not finished; call finish() first");
+    auto map = std::make_shared<Map>(pipeline.take_map());
+    const std::lock_guard life(life_);
+    pipeline_.reset();
+    return map;
+  }
+
+  const Camera& camera() const { return camera_; }
+  std::uint64_t fed() const { return fed_; }
+  bool is_finished() const { return finished_; }
+  bool is_closed() const { return !pipeline_; }
+
+ private:
+  template <class Question>
+  Trajectory ask(Question question) {
+    const Unlock unlock;
+    const std::lock_guard lock(calls_);
+    return question(open("trajectory"));
+  }
+  Pipeline& open(const char* call) {
+    if (!pipeline_)
+      throw Error(std::string(call) + ": the pipeline is closed; make a new one, or ask before it is closed");
+    return *pipeline_;
+  }
+  Pipeline& running(const char* call) {
+    Pipeline& pipeline = open(call);
+    if (finished_) throw Error(std::string(call) + ": the pipeline is finished; make a new one for more frames");
+    return pipeline;
+  }
+
+  std::mutex calls_;  // of everything that one thread at a time may call
+  std::mutex life_;   // of the pipeline's existence, for what any thread may call at any time
+  std::optional<Pipeline> pipeline_;
+  Camera camera_;
+  std::atomic<std::uint64_t> fed_ = 0;
+  std::atomic<bool> finished_ = false;
+};
+
+}  // namespace
+
+void bind_pipeline(py::module_& module) {
+  py::class_<FedPipeline>(module, "Pipeline")
+      .def(py::init([](const Configuration& configuration, const std::filesystem::path& output,
+                       const std::filesystem::path& map, bool localise_only) {
+             return std::make_unique<FedPipeline>(
+                 configuration,
+                 PipelineOptions{.output_directory = output, .map_file = map, .localise_only = localise_only});
+           }),
+           py::arg("configuration"), py::arg("output"), py::arg("map"), py::arg("localise_only"))
+      .def("feed", &FedPipeline::feed, py::arg("frame"))
+      .def("feed_arrays", &FedPipeline::feed_arrays, py::arg("timestamp"), py::arg("colour"), py::arg("depth"))
+      .def("finish", &FedPipeline::finish)
+      .def("interrupt", &FedPipeline::interrupt)
+      .def("close", &FedPipeline::close)
+      .def("trajectory", &FedPipeline::trajectory)
+      .def("keyframes", &FedPipeline::keyframes)
+      .def("map_snapshot", &FedPipeline::map_snapshot)
+      .def("take_map", &FedPipeline::take_map)
+      .def_property_readonly("camera", &FedPipeline::camera)
+      .def_property_readonly("fed", &FedPipeline::fed)
+      .def_property_readonly("is_finished", &FedPipeline::is_finished)
+      .def_property_readonly("is_closed", &FedPipeline::is_closed);
+}
+
+}  // namespace holdfast::python

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/stl.h>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "holdfast/core/frame_result.hpp"
+#include "ids.hpp"
+
+namespace holdfast::python {
+
+namespace py = pybind11;
+
+namespace {
+
+py::dict stage_times(const FrameResult& result) {
+  py::dict times;
+  for (const StageTimes::Entry& entry : result.times.entries())
+    times[py::str(entry.stage.data(), entry.stage.size())] = entry.seconds;
+  return times;
+}
+
+std::string result_text(const FrameResult& result) {
+  std::string text = "FrameResult(index=" + std::to_string(result.index) + ", " + to_string(result.status);
+  if (result.trouble != TrackingTrouble::none) text += std::string(", ") + to_string(result.trouble);
+  return text + ", " + std::to_string(result.inliers) + " inliers" + (result.is_keyframe ? ", keyframe)" : ")");
+}
+
+void bind_objects(py::module_& module) {
+  py::class_<MovingObject>(module, "MovingObject", "A rigid object that moves or has moved; metres, world frame.")
+      .def_readonly("id", &MovingObject::id)
+      .def_readonly("class_name", &MovingObject::class_name)
+      .def_property_readonly("T_world_object", [](const MovingObject& o) { return pose_array(o.T_world_object); })
+      .def_property_readonly("velocity", [](const MovingObject& o) { return vector_array(o.velocity); })
+      .def_property_readonly("angular_velocity", [](const MovingObject& o) { return vector_array(o.angular_velocity); })
+      .def_property_readonly("box",
+                             [](const MovingObject& o) {
+                               return py::make_tuple(vector_array(o.box.min().cast<double>()),
+                                                     vector_array(o.box.max().cast<double>()));
+                             })
+      .def_readonly("speed_deviation", &MovingObject::speed_deviation)
+      .def_readonly("moving", &MovingObject::moving)
+      .def_readonly("first_seen", &MovingObject::first_seen)
+      .def_readonly("last_seen", &MovingObject::last_seen)
+      .def_property_readonly("speed", &MovingObject::speed);
+}
+
+}  // namespace
+
+void bind_results(py::module_& module) {
+  bind_objects(module);
+  py::class_<FrameResult>(module, "FrameResult", "What tracking found in one frame.")
+      .def_readonly("index", &FrameResult::index)
+      .def_readonly("timestamp", &FrameResult::timestamp)
+      .def_property_readonly("status", [](const FrameResult& r) { return to_string(r.status); })
+      .def_property_readonly("method", [](const FrameResult& r) { return to_string(r.method); })
+      .def_property_readonly("fallback", [](const FrameResult& r) { return to_string(r.fallback); })
+      .def_property_readonly("trouble", [](const FrameResult& r) { return to_string(r.trouble); })
+      .def_property_readonly("T_world_camera", [](const FrameResult& r) { return pose_array(r.T_world_camera); })
+      .def_readonly("features", &FrameResult::features)
+      .def_readonly("static_features", &FrameResult::static_features)
+      .def_readonly("matches", &FrameResult::matches)
+      .def_readonly("inliers", &FrameResult::inliers)
+      .def_readonly("is_keyframe", &FrameResult::is_keyframe)
+      .def_property_readonly("keyframe", [](const FrameResult& r) { return number_of(r.keyframe); })
+      .def_readonly("objects", &FrameResult::objects)
+      .def_readonly("tracking_seconds", &FrameResult::tracking_seconds)
+      .def_property_readonly("stage_seconds", &stage_times)
+      .def("__repr__", &result_text);
+}
+
+}  // namespace holdfast::python

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""SLAM frame by frame."""
+
+from __future__ import annotations
+
+import atexit
+import os
+import weakref
+from types import TracebackType
+from typing import Any, Dict, Optional, Sequence, Type, Union, overload
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._core import Camera, Frame, FrameResult
+from .configuration import Config, Overrides, _load, _override_texts
+from .maps import Map, MapSnapshot
+from .trajectory import Trajectory
+
+_open_pipelines: "weakref.WeakSet[Pipeline]" = weakref.WeakSet()
+
+
+class Pipeline:
+    """Visual SLAM from frames to poses and a map.
+
+    `config` is a file, a mapping or a Configuration. Its source is not opened: frames come from feed(). Without the
+    section `camera` give `camera`, a known name or a Camera. `map` is a map.hfm to continue, or with `localise` to
+    find poses in without changing it. `output` is a folder for modules that write files. `class_names` are those of
+    the frames' `class_labels`, for the segmenter `truth`.
+
+    Pipelines share nothing: any number may live at once. Any thread may call any method; feed() and finish() of one
+    pipeline wait for each other. C++ works without Python's lock (GIL). Used as a context manager, it is finished at
+    the end of the block, and closed: trajectory, keyframes and map stay.
+
+    Raises ConfigurationError with every problem found, InputError for a map that cannot be used.
+    """
+
+    def __init__(
+        self,
+        config: Config,
+        overrides: Overrides = {},
+        *,
+        camera: Union[str, Camera, None] = None,
+        map: Union[str, "os.PathLike[str]", None] = None,
+        localise: bool = False,
+        output: Union[str, "os.PathLike[str]", None] = None,
+        class_names: Sequence[str] = (),
+    ) -> None:
+        if localise and map is None:
+            raise ValueError("localise needs a map; give map='map.hfm' of an earlier run")
+        more: Dict[str, Any] = {}
+        if camera is not None:
+            more["camera"] = camera if isinstance(camera, str) else _camera_section(camera)
+        if class_names:
+            more["source"] = {"fed_frames": {"class_names": list(class_names)}}
+        configuration = _load(config, _override_texts(overrides) + _override_texts(more), fed=True)
+        self._finished: Optional[_Finished] = None
+        self._core = _core.Pipeline(configuration, os.fspath(output or ""), os.fspath(map or ""), localise)
+        _open_pipelines.add(self)
+
+    @overload
+    def feed(
+        self, timestamp: float, colour: npt.NDArray[np.uint8], depth: Optional[npt.NDArray[np.float32]]
+    ) -> FrameResult:
+        ...
+
+    @overload
+    def feed(self, timestamp: Frame) -> FrameResult:
+        ...
+
+    def feed(self, timestamp: Any, colour: Any = None, depth: Any = None) -> FrameResult:
+        """Processes one frame and returns what tracking found.
+
+        `timestamp` [s] rises strictly. `colour` is uint8 (rows, columns, 3), blue green red as cv2 reads it; `depth` is
+        float32 (rows, columns) along the optical axis [m], 0 where there is none. A Frame is accepted in their place.
+        The images are shared, not copied: do not write to them afterwards; a camera that reuses its buffer hands over
+        copies. Only arrays whose rows are not contiguous, such as image[:, :, ::-1], are copied.
+
+        Trouble with a frame is a result, not an exception. Raises InputError for arrays of another kind and for time
+        stamps that do not rise, and what a thread of the pipeline raised.
+        """
+        if isinstance(timestamp, Frame):
+            return self._core.feed(timestamp)
+        return self._core.feed_arrays(timestamp, colour, depth)
+
+    def finish(self) -> None:
+        """Ends the run: waits for background work, adjusts the map once more where that helps, tells the observers."""
+        self._core.finish()
+
+    def close(self) -> None:
+        """Ends the threads and frees the memory. A pipeline that is not finished loses what waits for its threads."""
+        if self._finished is None and self._core.is_finished and not self._core.is_closed:
+            self._finished = _Finished(self._core)
+        self._core.close()
+
+    def interrupt(self) -> None:
+        """Makes long adjustments in progress end after their current iteration. From any thread."""
+        self._core.interrupt()
+
+    def trajectory(self) -> Trajectory:
+        """Poses of all tracked frames so far, corrected by all that came later."""
+        if self._finished is not None:
+            return self._finished.trajectory
+        return Trajectory._of(self._core.trajectory())
+
+    def keyframes(self) -> Trajectory:
+        """Poses of the keyframes in the map, by time."""
+        if self._finished is not None:
+            return self._finished.keyframes
+        return Trajectory._of(self._core.keyframes())
+
+    def map_snapshot(self) -> MapSnapshot:
+        """A copy of the map's geometry as it is now, while frames and background work go on."""
+        if self._finished is not None:
+            return self._finished.map.snapshot()
+        return MapSnapshot(self._core.map_snapshot())
+
+    @property
+    def map(self) -> Map:
+        """The map of a finished pipeline, which is closed thereby. Raises Error before finish()."""
+        if self._finished is None:
+            if not self._core.is_finished:
+                self._core.take_map()  # raises and says why
+            self._finished = _Finished(self._core)
+        return self._finished.map
+
+    @property
+    def camera(self) -> Camera:
+        """The camera of the frames."""
+        return self._core.camera
+
+    def __enter__(self) -> "Pipeline":
+        return self
+
+    def __exit__(
+        self, kind: Optional[Type[BaseException]], error: Optional[BaseException], trace: Optional[TracebackType]
+    ) -> None:
+        try:
+            if kind is None and not self._core.is_finished and not self._core.is_closed:
+                self._core.finish()
+        finally:
+            self.close()
+
+    def __repr__(self) -> str:
+        state = "closed" if self._core.is_closed else "finished" if self._core.is_finished else "running"
+        return f"Pipeline({self._core.fed} frames, {state})"
+
+
+class _Finished:
+    """What stays of a pipeline that was closed after its end."""
+
+    def __init__(self, core: _core.Pipeline) -> None:
+        self.trajectory = Trajectory._of(core.trajectory())
+        self.keyframes = Trajectory._of(core.keyframes())
+        self.map = Map(core.take_map())
+
+
+def _camera_section(camera: Camera) -> Any:
+    k1, k2, p1, p2, k3 = camera.distortion
+    names = ("name", "width", "height", "fx", "fy", "cx", "cy", "baseline", "frame_rate")
+    section = {name: getattr(camera, name) for name in names if name != "name" or camera.name in _core.camera_names()}
+    return {**section, "k1": k1, "k2": k2, "p1": p1, "p2": p2, "k3": k3}
+
+
+@atexit.register
+def _close_pipelines() -> None:
+    """Threads of C++ that still call Python must end before Python does."""
+    for pipeline in list(_open_pipelines):
+        pipeline._core.close()
