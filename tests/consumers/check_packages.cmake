@@ -49,7 +49,7 @@ run(COMMAND ${folder}/root/usr/bin/holdfast modules orb OUTPUT reference)
 if(NOT reference MATCHES "fast_threshold")
   message(FATAL_ERROR "the packaged program does not know its modules:\n${reference}")
 endif()
-find_program(PYTHON python3)
+find_program(PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)  # the one that the package depends on
 if(extensions AND PYTHON)
   run(COMMAND ${CMAKE_COMMAND} -E env PYTHONPATH=${folder}/root/usr/lib/python3/dist-packages ${PYTHON} -m holdfast
               modules orb OUTPUT reference)
