@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/moving_world/moving_world.hpp"
 
-#include <algorithm>
 #include <utility>
 
 namespace holdfast {

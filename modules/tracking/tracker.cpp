@@ -44,7 +44,7 @@ void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
   TrackedView view{sensor_frame, history_.has_previous() ? &previous_ : nullptr, current_};
   moving_world_.evaluate(FilterStage::before_matching, view, result.times);
   const bool found = find_pose(view, result);
-  if (!found && is_stillborn() && start_map(predicted_pose(), result)) {
+  if (!found && was_lost_at_start() && start_map(coasting_pose(), result)) {
     end_frame(result);
     return;
   }
@@ -70,10 +70,10 @@ void Tracker::align_depth(const SensorFrame& sensor_frame, const Eigen::Isometry
   builder_.align_depth(sensor_frame, geometry::exp_se3(steps * geometry::log_se3(step)), current_, times);
 }
 
-bool Tracker::is_stillborn() const {
+bool Tracker::was_lost_at_start() const {
   if (localises_only_ || history_.empty()) return false;
-  // The next frames or a mask that is on its way may help; the longer the map has been tracked by, the longer it is worth
-  // waiting for a view of it.
+  // The next frames or a mask that is on its way may help; the longer the map has been tracked by, the longer it is
+  // worth waiting for a view of it.
   constexpr double min_patience = 0.1, patience_share = 0.5;  // s; share of the map's age
   const double age = history_.last_timestamp() - map_start_time_;
   const double lost_for = current_.timestamp - history_.last_timestamp();
@@ -81,6 +81,10 @@ bool Tracker::is_stillborn() const {
 }
 
 Eigen::Isometry3d Tracker::predicted_pose() const {
+  return history_.predicted_step(current_.timestamp) * previous_.T_camera_world;
+}
+
+Eigen::Isometry3d Tracker::coasting_pose() const {
   const bool coasts = current_.timestamp <= history_.last_timestamp() + settings_.coasting_time;
   return history_.extrapolate(current_.timestamp, coasts ? 1.0 : 0.0) * history_.last_pose(map_);
 }
@@ -136,7 +140,7 @@ bool Tracker::track_odometry(TrackedView& view, FrameResult& result) {
   if (!history_.has_previous() || current_.timestamp > last_feature_time_ + settings_.odometry_time) return false;
   const StageTimer timer(result.times, "odometry");
   const TrackingTrouble trouble = result.trouble;
-  const Eigen::Isometry3d predicted = history_.predicted_step(current_.timestamp) * previous_.T_camera_world;
+  const Eigen::Isometry3d predicted = predicted_pose();
   const float window = static_cast<float>(settings_.motion_window);
   const auto match = [&](float radius) {
     current_.T_camera_world = predicted;
@@ -179,7 +183,7 @@ bool Tracker::fall_back(TrackedView& view, FrameResult& result) {
 }
 
 bool Tracker::track_dense_depth(const TrackedView& view, FrameResult& result) {
-  const Eigen::Isometry3d predicted = history_.predicted_step(current_.timestamp) * previous_.T_camera_world;
+  const Eigen::Isometry3d predicted = predicted_pose();
   const auto aligned = moving_world_.align_depth(current_, predicted, reference_keyframe_, result.times);
   if (!aligned) return false;
   result.method = TrackingMethod::motion_model;
@@ -201,10 +205,10 @@ bool Tracker::track_dense_depth(const TrackedView& view, FrameResult& result) {
 
 bool Tracker::predict_with_velocity(FrameResult& result) {
   if (!history_.has_previous()) return false;
-  const Eigen::Isometry3d step = history_.predicted_step(current_.timestamp);
+  const Eigen::Isometry3d predicted = predicted_pose();
   const float window = static_cast<float>(settings_.motion_window);
   for (const float radius : {window, static_cast<float>(settings_.motion_window_retry) * window}) {
-    current_.T_camera_world = step * previous_.T_camera_world;
+    current_.T_camera_world = predicted;
     if (matcher_.match_previous(previous_, radius, current_) < settings_.minimum_matches) continue;
     const int inliers = estimator_.adjust(current_);
     estimator_.drop_outliers(current_);
@@ -225,7 +229,7 @@ bool Tracker::predict_with_reference(FrameResult& result) {
 void Tracker::evaluate_with_pose(const TrackedView& view, FrameResult& result) {
   if (!moving_world_.has(FilterStage::with_pose)) return;
   if (history_.has_velocity()) {
-    const PosePrediction prediction{history_.predicted_step(current_.timestamp) * previous_.T_camera_world,
+    const PosePrediction prediction{predicted_pose(),
                                     previous_.T_world_camera()};
     moving_world_.check_pose(prediction, reference_keyframe_, current_, result.times);
   }

@@ -48,7 +48,8 @@ void describe_poses(ParameterTable<S>& table) {
       .unit("m");
   table
       .add("odometry_time", &S::odometry_time,
-           "time for which poses can be based on the previous frame alone, because too little of the map is in view")
+           "time for which poses can be based on the previous frame alone, because too little of the map is in view; "
+           "0 = never")
       .range(0, 100)
       .unit("s");
   table
@@ -104,7 +105,8 @@ void describe_keyframes(ParameterTable<S>& table) {
 void describe_relocalisation(ParameterTable<S>& table) {
   table
       .add("young_map_time", &S::young_map_time,
-           "a camera that is lost so soon after its map began starts anew where the motion model puts it, after half that time; 0 = never")
+           "a camera that is lost so soon after its map began, for longer than half of the time tracked until then, begins "
+           "the map anew where the motion model puts it; 0 = never")
       .range(0, 100)
       .unit("s");
   table.add("coasting_time", &S::coasting_time, "a lost camera is searched for along its last velocity for this long")

@@ -426,6 +426,20 @@ TEST(Tracker, AMapThatIsLostSoonAfterItsStartBeginsAnew) {
   }
 }
 
+TEST(Tracker, ALoadedMapDoesNotBeginAnew) {
+  Bench maker;
+  maker.walk(0.0, 1.0);
+  TrackingSettings settings;
+  settings.odometry_time = 0.0;
+  settings.minimum_start_points = 50;
+  Bench bench(settings, false, std::move(maker.map));
+  const std::size_t keyframes = bench.map.keyframes().size();
+  ASSERT_EQ(bench.feed(0.0, at(0.2)).status, TrackingStatus::tracked);  // stamps begin at 0, as those of simulations
+  for (const double time : {0.03, 0.2, 0.5})
+    EXPECT_EQ(bench.feed(time, turned(1.15)).status, TrackingStatus::lost) << time;
+  EXPECT_EQ(bench.map.keyframes().size(), keyframes);
+}
+
 TEST(Tracker, KeyframesAreMadeWhenThePolicySaysSo) {
   // Each reason by itself: settings leave the others out.
   TrackingSettings none;

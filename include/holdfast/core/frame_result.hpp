@@ -15,7 +15,7 @@ namespace holdfast {
 /// Tracking state of a frame.
 enum class TrackingStatus {
   waiting,      ///< there is no map yet, and this frame could not initialise one
-  initialised,  ///< this frame initialised the map
+  initialised,  ///< this frame began the map, or began it anew after a loss right at its start
   tracked,      ///< the pose was estimated
   lost,         ///< a map exists, but the pose could not be estimated
 };

@@ -31,8 +31,8 @@ class FrameMatcher {
   /// features found within `radius` pixels, times the scale of the octave. Names of points that are gone are cleared in
   /// `previous`. Returns the number of matches.
   int match_previous(Frame& previous, float radius, Frame& frame);
-  /// The same with all static features of the previous frame that have depth, as visual odometry does: those without a map
-  /// point go to `odometry`, whose earlier content is dropped. Returns the number of matches of both kinds.
+  /// The same with all static features of the previous frame that have depth, as visual odometry does: those without a
+  /// map point go to `odometry`, whose earlier content is dropped. Returns the number of matches of both kinds.
   int match_previous_features(Frame& previous, float radius, Frame& frame, std::vector<OdometryMatch>& odometry);
   /// Replaces the frame's matches by mutual nearest neighbours among the descriptors of a keyframe's map points.
   /// Returns the number of matches.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "holdfast/core/frame.hpp"
@@ -73,11 +74,13 @@ class Tracker {
   /// Corrects the depth of the current frame for the motion between the exposures of colour and depth, a share of the
   /// motion since the previous frame: step = T_current_previous.
   void align_depth(const SensorFrame& sensor_frame, const Eigen::Isometry3d& step, StageTimes& times);
-  /// Whether the camera was lost so soon after the map began that waiting for a known view is not worth it: with a first
-  /// keyframe on people, or a wrong first mask, next to nothing of the map may be left.
-  bool is_stillborn() const;
-  /// Where the motion model puts a lost camera; after the coasting time, where it was last seen.
+  /// Whether the camera was lost so soon after the map began that waiting for a known view is not worth it: with a
+  /// first keyframe on people, or a wrong first mask, next to nothing of the map may be left.
+  bool was_lost_at_start() const;
+  /// T_camera_world of a camera that goes on from the previous frame with its last velocity.
   Eigen::Isometry3d predicted_pose() const;
+  /// T_camera_world where the motion model puts a lost camera; after the coasting time, where it was last seen.
+  Eigen::Isometry3d coasting_pose() const;
   /// Makes the current frame the first keyframe of what comes, at the given pose, if enough of its features have depth.
   bool start_map(const Eigen::Isometry3d& T_camera_world, FrameResult& result);
   bool find_pose(TrackedView& view, FrameResult& result);
@@ -114,7 +117,8 @@ class Tracker {
   KeyFrameId reference_keyframe_;
   KeyFrameId last_keyframe_;
   double last_keyframe_time_ = 0.0;  // [s]
-  double map_start_time_ = 0.0;      // [s], of the frame that began the map, or began it anew
+  // [s], of the frame that began the map, or began it anew; a loaded map began long ago
+  double map_start_time_ = -std::numeric_limits<double>::infinity();
   double last_feature_time_ = 0.0;   // [s], of the last pose that matches with the map determined
 };
 

@@ -43,7 +43,7 @@ struct TrackingSettings {
   int keyframe_close_possible = 70;   ///< features
 
   // Relocalisation.
-  double young_map_time = 1.0;                            ///< [s]; a map that is lost so soon after its start begins anew
+  double young_map_time = 1.0;                            ///< [s]; a map lost so soon after its start begins anew
   double coasting_time = 1.0;                             ///< [s]
   std::vector<double> coasting_shares = {1.0, 0.5, 0.0};  ///< of the last velocity: it goes on, slows down, or stops
   double coasting_window = 3.0;                           ///< factor on local_map_window
