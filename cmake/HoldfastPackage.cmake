@@ -60,6 +60,8 @@ if(TARGET holdfast_python_package)
   math(EXPR next_python "${HOLDFAST_PYTHON_MINOR} + 1")
   set(CPACK_DEBIAN_BINDINGS_PACKAGE_DEPENDS
       "python3 (>= 3.${HOLDFAST_PYTHON_MINOR}), python3 (<< 3.${next_python}), python3-numpy")
+  set(CPACK_DEBIAN_BINDINGS_PACKAGE_CONTROL_EXTRA ${holdfast_SOURCE_DIR}/cmake/debian/prerm)
+  set(CPACK_DEBIAN_BINDINGS_PACKAGE_CONTROL_STRICT_PERMISSION TRUE)
   set(CPACK_COMPONENT_BINDINGS_DESCRIPTION "${holdfast_DESCRIPTION}: Python package")
 endif()
 if(HOLDFAST_SHLIBDEPS)

@@ -11,6 +11,7 @@
 #                                                     of, and numpy
 #   sh cmake/install_dependencies.sh --python-tests   the same, and what the tests of the Python package need
 #   sh cmake/install_dependencies.sh --clang          also clang, for the fuzz targets and the quick sanitizer build
+#   sh cmake/install_dependencies.sh --clean-root     also mmdebstrap, for tests/clean_root.sh
 #   sh cmake/install_dependencies.sh --dry-run        say what would be installed, change nothing
 set -eu
 
@@ -35,9 +36,10 @@ for argument in "$@"; do
         packages="$packages mypy python3-matplotlib python3-nbformat python3-pandas python3-psutil python3-pytest"
       ;;
     --clang) packages="$packages clang libclang-rt-14-dev llvm" ;;
+    --clean-root) packages="$packages mmdebstrap" ;;
     --dry-run) dry_run=yes ;;
-    -h | --help) sed -n '3,14s/^# \{0,1\}//p' "$0"; exit 0 ;;
-    *) fail "unknown argument '$argument'; known are --training, --documentation, --benchmarks, --python, --python-tests, --clang, --dry-run and --help" ;;
+    -h | --help) sed -n '3,15s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) fail "unknown argument '$argument'; known are --training, --documentation, --benchmarks, --python, --python-tests, --clang, --clean-root, --dry-run and --help" ;;
   esac
 done
 

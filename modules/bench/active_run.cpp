@@ -68,8 +68,10 @@ Process ActiveRun::start(const RunPlan& plan, const PlannedRun& run, const Bench
   if (!variant.is_external()) {
     const fs::path configuration = folder / configuration_file;
     write_file_atomically(configuration, run.request);
-    request.command = {
-        options.program.string(), "run", configuration.string(), "--output", folder.string(), "--overwrite", "--quiet"};
+    request.command = options.program;
+    for (const std::string& word : {std::string("run"), configuration.string(), std::string("--output"),
+                                    folder.string(), std::string("--overwrite"), std::string("--quiet")})
+      request.command.push_back(word);
     return Process(request);
   }
   const ExternalSystem& system = plan.matrix.systems[*variant.system];

@@ -20,6 +20,7 @@
 #include "holdfast/evaluation/number_text.hpp"
 #include "holdfast/run/run.hpp"
 #include "output_folder.hpp"
+#include "program_host.hpp"
 #include "terminal.hpp"
 
 namespace holdfast {
@@ -73,11 +74,10 @@ int print_end(const Arguments& arguments, const RunRecord& record, std::size_t p
   return record.failure.empty() && pictures > 0 ? 0 : 1;
 }
 
-int draw_background(const Arguments& arguments) {
+int draw_background(const Arguments& arguments, const ProgramHost& host) {
   cv::setNumThreads(1);
   catch_interrupts();
-  Registry registry;
-  register_builtin_plugins(registry);
+  Registry registry = host.modules();
   std::vector<std::string> overrides = {"dense_map.enabled=true"};
   overrides.insert(overrides.end(), arguments.overrides.begin(), arguments.overrides.end());
   const Configuration configuration = load_configuration(arguments.configuration, overrides, registry);
@@ -100,7 +100,7 @@ int draw_background(const Arguments& arguments) {
 
 }  // namespace
 
-void add_background_command(CLI::App& app, int& exit_code) {
+void add_background_command(CLI::App& app, int& exit_code, const ProgramHost& host) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("background", "Draw keyframes with what moves replaced by what is behind it");
   command->footer(
@@ -117,7 +117,7 @@ void add_background_command(CLI::App& app, int& exit_code) {
   command->add_option("--every", arguments->every, "Draw every N-th of the kept keyframes")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  command->callback([arguments, &exit_code] { exit_code = draw_background(*arguments); });
+  command->callback([arguments, host, &exit_code] { exit_code = draw_background(*arguments, host); });
 }
 
 }  // namespace holdfast

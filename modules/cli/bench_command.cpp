@@ -22,7 +22,7 @@
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/evaluation/number_text.hpp"
 #include "holdfast/pipeline/configured_pipeline.hpp"
-#include "holdfast/plugin/builtin.hpp"
+#include "program_host.hpp"
 #include "terminal.hpp"
 #include "usage_error.hpp"
 
@@ -92,22 +92,24 @@ void prepare_folder(const Arguments& arguments) {
     throw InputError({arguments.output.string()}, "the output folder cannot be made");
 }
 
-std::string command_to_resume(const Arguments& arguments) {
-  std::string text = "holdfast bench " + arguments.matrix + " --output " + arguments.output.string() + " --resume";
+std::string command_to_resume(const Arguments& arguments, const ProgramHost& host) {
+  std::string text;
+  for (const std::string& word : host.command) text += word + " ";
+  if (text.empty()) text = "holdfast ";
+  text += "bench " + arguments.matrix + " --output " + arguments.output.string() + " --resume";
   if (arguments.jobs != 1) text += " --jobs " + std::to_string(arguments.jobs);
   if (arguments.timing) text += " --timing";
   for (const std::string& each : arguments.data) text += " --data " + each;
   return text;
 }
 
-void bench(const Arguments& arguments, int& exit_code) {
+void bench(const Arguments& arguments, const ProgramHost& host, int& exit_code) {
   std::vector<Diagnostic> diagnostics;
   Matrix matrix = read_matrix(arguments.matrix, variables_of(arguments.data), diagnostics);
   matrix.timing = matrix.timing || arguments.timing;
   PublishedResults published;
   if (matrix.published) published = read_published(matrix.published->text, diagnostics);
-  Registry registry;
-  register_builtin_plugins(registry);
+  Registry registry = host.modules();
   const RunPlan plan = make_run_plan(std::move(matrix), registry, pipeline_sections(), diagnostics);
   if (!arguments.dry_run) diagnostics.insert(diagnostics.end(), plan.missing.begin(), plan.missing.end());
   sort_diagnostics(diagnostics);
@@ -117,14 +119,13 @@ void bench(const Arguments& arguments, int& exit_code) {
     std::fputs(plan_text(plan).c_str(), stdout);
     return;
   }
-  if (arguments.output.empty())
-    throw UsageError("--output is required, the folder for the results");
+  if (arguments.output.empty()) throw UsageError("--output is required, the folder for the results");
 
   catch_interrupts();
   prepare_folder(arguments);
   BenchOptions options;
   options.output = fs::absolute(arguments.output);
-  options.program = own_program();
+  options.program = host.command.empty() ? std::vector<std::string>{own_program().string()} : host.command;
   options.jobs = arguments.jobs;
   options.stop = interrupted;
   const BenchResults results = run_bench(
@@ -140,7 +141,7 @@ void bench(const Arguments& arguments, int& exit_code) {
     const auto done = std::count_if(results.results.begin(), results.results.end(),
                                     [](const auto& result) { return result.has_value(); });
     std::fprintf(stderr, "interrupted; %td of %zu runs are done. Go on with: %s\n", done, plan.runs.size(),
-                 command_to_resume(arguments).c_str());
+                 command_to_resume(arguments, host).c_str());
     exit_code = interrupted_exit_code();
     return;
   }
@@ -153,7 +154,7 @@ void bench(const Arguments& arguments, int& exit_code) {
 
 }  // namespace
 
-void add_bench_command(CLI::App& app, int& exit_code) {
+void add_bench_command(CLI::App& app, int& exit_code, const ProgramHost& host) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("bench", "Run a matrix of systems, configurations, sequences and repeats");
   command->footer(
@@ -183,7 +184,7 @@ void add_bench_command(CLI::App& app, int& exit_code) {
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   command->add_flag("-q,--quiet", arguments->quiet, "No progress, no summary");
-  command->callback([arguments, &exit_code] { bench(*arguments, exit_code); });
+  command->callback([arguments, host, &exit_code] { bench(*arguments, host, exit_code); });
 }
 
 }  // namespace holdfast

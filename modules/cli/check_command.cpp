@@ -12,7 +12,7 @@
 #include "configured_command.hpp"
 #include "holdfast/config/configuration.hpp"
 #include "holdfast/pipeline/configured_pipeline.hpp"
-#include "holdfast/plugin/builtin.hpp"
+#include "program_host.hpp"
 #include "terminal.hpp"
 
 namespace holdfast {
@@ -25,9 +25,8 @@ struct Arguments {
   bool print = false, without_data = false;
 };
 
-void check(const Arguments& arguments) {
-  Registry registry;
-  register_builtin_plugins(registry);
+void check(const Arguments& arguments, const ProgramHost& host) {
+  Registry registry = host.modules();
   const Configuration configuration = load_configuration(arguments.configuration, arguments.overrides, registry);
   print_warnings(configuration.warnings);
   // Makes every module and looks at the data as `run` does before the first frame; nothing is written.
@@ -47,7 +46,7 @@ void check(const Arguments& arguments) {
 
 }  // namespace
 
-void add_check_command(CLI::App& app, int&) {
+void add_check_command(CLI::App& app, int&, const ProgramHost& host) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("check", "Check a configuration without running it");
   command->footer(
@@ -61,7 +60,7 @@ void add_check_command(CLI::App& app, int&) {
   command->add_flag("--without-data", arguments->without_data,
                     "Look at the configuration alone: the recordings and files that it names may be elsewhere");
   command->add_flag("--print", arguments->print, "Print the resolved configuration: every default written out");
-  command->callback([arguments] { check(*arguments); });
+  command->callback([arguments, host] { check(*arguments, host); });
 }
 
 }  // namespace holdfast

@@ -7,7 +7,9 @@ class App;
 
 namespace holdfast {
 
+struct ProgramHost;
+
 /// Adds `holdfast check` to the program. exit_code is set when the command ran.
-void add_check_command(CLI::App& app, int& exit_code);
+void add_check_command(CLI::App& app, int& exit_code, const ProgramHost& host);
 
 }  // namespace holdfast

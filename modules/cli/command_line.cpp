@@ -69,30 +69,30 @@ void rewrite_help(std::vector<std::string>& words) {
 
 }  // namespace
 
-void add_commands(CLI::App& app, int& exit_code) {
+void add_commands(CLI::App& app, int& exit_code, const ProgramHost& host) {
   app.description(description);
   app.set_version_flag("-V,--version", version_text(), "Print version, commit, libraries and SIMD level");
   app.require_subcommand(1);
-  add_run_command(app, exit_code);
-  add_bench_command(app, exit_code);
+  add_run_command(app, exit_code, host);
+  add_bench_command(app, exit_code, host);
   add_dataset_command(app, exit_code);
   add_evaluate_command(app, exit_code);
-  add_evaluate_segmentation_command(app, exit_code);
+  add_evaluate_segmentation_command(app, exit_code, host);
   add_map_command(app, exit_code);
-  add_background_command(app, exit_code);
+  add_background_command(app, exit_code, host);
   add_simulate_command(app, exit_code);
-  add_segment_command(app, exit_code);
-  add_check_command(app, exit_code);
-  add_modules_command(app, exit_code);
+  add_segment_command(app, exit_code, host);
+  add_check_command(app, exit_code, host);
+  add_modules_command(app, exit_code, host);
   add_completion_command(app, exit_code);
   add_manual_command(app, exit_code);
   app.add_subcommand("help", "Print the help of a command, as COMMAND --help does");
 }
 
-int run_program(int argument_count, const char* const* arguments) {
+int run_program(int argument_count, const char* const* arguments, const ProgramHost& host) {
   CLI::App app("", "holdfast");
   int exit_code = 0;
-  add_commands(app, exit_code);
+  add_commands(app, exit_code, host);
   std::vector<std::string> words(arguments + 1, arguments + argument_count);
   if (words.empty()) {
     std::fputs(app.help().c_str(), stderr);

@@ -20,9 +20,9 @@
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/evaluation/segmentation_evaluation.hpp"
 #include "holdfast/pipeline/configured_pipeline.hpp"
-#include "holdfast/plugin/builtin.hpp"
 #include "label_folder.hpp"
 #include "output_file.hpp"
+#include "program_host.hpp"
 #include "terminal.hpp"
 #include "usage_error.hpp"
 
@@ -198,7 +198,7 @@ Outcome segment_source(const Arguments& arguments, const Configuration& configur
   return {evaluator.result(), seconds / static_cast<double>(evaluator.result().images)};
 }
 
-Outcome evaluate_by(const Arguments& arguments) {
+Outcome evaluate_by(const Arguments& arguments, const ProgramHost& host) {
   if (arguments.configuration.empty()) {
     if (arguments.labels.empty() || arguments.predictions.empty())
       throw UsageError("nothing to compare; expected --labels with --predictions, or a configuration");
@@ -209,17 +209,16 @@ Outcome evaluate_by(const Arguments& arguments) {
   if (arguments.images.empty() != arguments.labels.empty())
     throw UsageError("--images and --labels belong together; give both, or none to ask the source for the truth");
   cv::setNumThreads(1);  // as `run` does; the segmenter may ask for more
-  Registry registry;
-  register_builtin_plugins(registry);
+  Registry registry = host.modules();
   const Configuration configuration = load_configuration(arguments.configuration, arguments.overrides, registry);
   return arguments.images.empty() ? segment_source(arguments, configuration, registry)
                                   : segment_images(arguments, configuration, registry);
 }
 
-int run(const Arguments& arguments) {
+int run(const Arguments& arguments, const ProgramHost& host) {
   catch_interrupts();
   require_new_files({arguments.json}, arguments.overwrite);
-  const Outcome outcome = evaluate_by(arguments);
+  const Outcome outcome = evaluate_by(arguments, host);
   if (outcome.evaluation.images == 0) throw Error("no image was compared");
   if (arguments.json != "-") std::cout << to_text(outcome.evaluation);
   if (arguments.json != "-" && outcome.seconds_per_image)
@@ -231,7 +230,7 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_evaluate_segmentation_command(CLI::App& app, int& exit_code) {
+void add_evaluate_segmentation_command(CLI::App& app, int& exit_code, const ProgramHost& host) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command =
       app.add_subcommand("evaluate-segmentation", "Compare label images, or a segmenter, with the truth");
@@ -256,7 +255,7 @@ void add_evaluate_segmentation_command(CLI::App& app, int& exit_code) {
       ->type_name("FILE");
   add_overwrite_option(*command, arguments->overwrite);
   command->add_flag("-q,--quiet", arguments->quiet, "No progress");
-  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+  command->callback([arguments, host, &exit_code] { exit_code = run(*arguments, host); });
 }
 
 }  // namespace holdfast

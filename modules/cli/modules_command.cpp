@@ -12,9 +12,9 @@
 
 #include "holdfast/config/reference.hpp"
 #include "holdfast/pipeline/configured_pipeline.hpp"
-#include "holdfast/plugin/builtin.hpp"
 #include "holdfast/plugin/loader.hpp"
 #include "holdfast/simulation/scene_file.hpp"
+#include "program_host.hpp"
 #include "terminal.hpp"
 
 namespace holdfast {
@@ -28,9 +28,8 @@ struct Arguments {
   bool json = false;
 };
 
-int print_modules(const Arguments& arguments) {
-  Registry registry;
-  register_builtin_plugins(registry);
+int print_modules(const Arguments& arguments, const ProgramHost& host) {
+  Registry registry = host.modules();
   for (const std::string& plugin : arguments.plugins) load_plugin(registry, plugin);
   const ReferenceFormat format = arguments.json       ? ReferenceFormat::json
                                  : arguments.markdown ? ReferenceFormat::markdown
@@ -49,7 +48,7 @@ int print_modules(const Arguments& arguments) {
 
 }  // namespace
 
-void add_modules_command(CLI::App& app, int& exit_code) {
+void add_modules_command(CLI::App& app, int& exit_code, const ProgramHost& host) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("modules", "Print what a configuration can say: modules and their parameters");
   command->footer(
@@ -65,7 +64,7 @@ void add_modules_command(CLI::App& app, int& exit_code) {
       ->allow_extra_args(false);
   CLI::Option* markdown = command->add_flag("--markdown", arguments->markdown, "As Markdown, complete");
   command->add_flag("--json", arguments->json, "As JSON, complete")->excludes(markdown);
-  command->callback([arguments, &exit_code] { exit_code = print_modules(*arguments); });
+  command->callback([arguments, host, &exit_code] { exit_code = print_modules(*arguments, host); });
 }
 
 }  // namespace holdfast

@@ -7,7 +7,9 @@ class App;
 
 namespace holdfast {
 
+struct ProgramHost;
+
 /// Adds `holdfast modules` to the program. exit_code is set when the command ran.
-void add_modules_command(CLI::App& app, int& exit_code);
+void add_modules_command(CLI::App& app, int& exit_code, const ProgramHost& host);
 
 }  // namespace holdfast

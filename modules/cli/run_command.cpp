@@ -16,6 +16,7 @@
 #include "holdfast/run/run.hpp"
 #include "holdfast/run/trajectory_journal.hpp"
 #include "output_folder.hpp"
+#include "program_host.hpp"
 #include "terminal.hpp"
 
 namespace holdfast {
@@ -104,13 +105,12 @@ void print_report(const Arguments& arguments) {
     std::printf("%-20s %s\n", "report", printable((arguments.output / "report.html").string()).c_str());
 }
 
-int run_configuration(const Arguments& arguments) {
+int run_configuration(const Arguments& arguments, const ProgramHost& host) {
   const Stopwatch since_start;
   cv::setNumThreads(1);  // OpenCV's own threads would change neither result nor, at this size, time for the better
   catch_interrupts();
   keep_map_out_of_results(arguments);
-  Registry registry;
-  register_builtin_plugins(registry);
+  Registry registry = host.modules();
   const Configuration configuration = load_configuration(arguments.configuration, arguments.overrides, registry);
   print_warnings(configuration.warnings);
   Running running;
@@ -130,7 +130,7 @@ int run_configuration(const Arguments& arguments) {
 
 }  // namespace
 
-void add_run_command(CLI::App& app, int& exit_code) {
+void add_run_command(CLI::App& app, int& exit_code, const ProgramHost& host) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("run", "Track a camera through a recording or a simulation");
   command->footer(
@@ -157,7 +157,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
       ->needs(map);
   command->add_flag("--strict", arguments->strict,
                     "Exit with 3 when the share of frames with a pose is below run.minimum_coverage");
-  command->callback([arguments, &exit_code] { exit_code = run_configuration(*arguments); });
+  command->callback([arguments, host, &exit_code] { exit_code = run_configuration(*arguments, host); });
 }
 
 }  // namespace holdfast

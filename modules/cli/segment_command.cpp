@@ -20,8 +20,8 @@
 #include "holdfast/core/stage_times.hpp"
 #include "holdfast/evaluation/number_text.hpp"
 #include "holdfast/pipeline/configured_pipeline.hpp"
-#include "holdfast/plugin/builtin.hpp"
 #include "label_writer.hpp"
+#include "program_host.hpp"
 #include "terminal.hpp"
 
 namespace holdfast {
@@ -55,11 +55,10 @@ void segment_frames(BuiltSegmenter& built, const Arguments& arguments, LabelWrit
   }
 }
 
-int segment(const Arguments& arguments) {
+int segment(const Arguments& arguments, const ProgramHost& host) {
   cv::setNumThreads(1);  // as `run` does; the segmenter may ask for more
   catch_interrupts();
-  Registry registry;
-  register_builtin_plugins(registry);
+  Registry registry = host.modules();
   const Configuration configuration = load_configuration(arguments.configuration, arguments.overrides, registry);
   BuiltSegmenter built = build_segmenter(configuration, registry);
   LabelWriter writer(arguments.output, built.segmenter->classes(), arguments.overwrite);
@@ -92,7 +91,7 @@ int segment(const Arguments& arguments) {
 
 }  // namespace
 
-void add_segment_command(CLI::App& app, int& exit_code) {
+void add_segment_command(CLI::App& app, int& exit_code, const ProgramHost& host) {
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("segment", "Segment a recording once, for the segmenter 'precomputed'");
   command->footer(
@@ -112,7 +111,7 @@ void add_segment_command(CLI::App& app, int& exit_code) {
   command->add_option("--every", arguments->every, "Segment every N-th frame only")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1000000}))
       ->capture_default_str();
-  command->callback([arguments, &exit_code] { exit_code = segment(*arguments); });
+  command->callback([arguments, host, &exit_code] { exit_code = segment(*arguments, host); });
 }
 
 }  // namespace holdfast

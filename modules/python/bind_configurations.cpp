@@ -30,10 +30,10 @@ void apply_overrides(ConfigurationNode& root, const std::vector<std::string>& ov
 }
 
 /// `text` is YAML and `name` its place in messages; without `text`, `name` is a file. With `fed`, frames come from the
-/// caller whatever the source is.
+/// caller whatever the source is. `modules` are those of make_registry().
 Configuration load(const std::string& name, const std::optional<std::string>& text, const std::filesystem::path& folder,
-                   const std::vector<std::string>& overrides, bool fed) {
-  Registry registry = make_registry();
+                   const std::vector<std::string>& overrides, bool fed, const py::list& modules) {
+  Registry registry = make_registry(modules);
   const Unlock unlock;
   ConfigurationNode root = text ? parse_yaml(*text, name, folder) : read_yaml(name);
   apply_overrides(root, overrides);
@@ -95,7 +95,7 @@ void bind_configurations(py::module_& module) {
       .def("to_yaml", [](const Configuration& configuration) { return to_yaml(configuration); })
       .def("to_dict", &to_dictionary);
   module.def("load_configuration", &load, py::arg("name"), py::arg("text"), py::arg("folder"), py::arg("overrides"),
-             py::arg("fed") = false);
+             py::arg("fed"), py::arg("modules"));
   module.def("reference_json", [] { return reference(make_registry(), all_sections(), "", ReferenceFormat::json); });
 }
 

@@ -86,10 +86,21 @@ py::dict dictionary_of(const CreationContext& context) {
   return dictionary;
 }
 
+/// What making a module raises in Python becomes an InputError.
+template <class Making>
+std::unique_ptr<Module> guarded(const std::filesystem::path& file, Making making) {
+  try {
+    return making();
+  } catch (const py::error_already_set& raised) {
+    throw_caused_error(raised, file, "making the module");
+  }
+}
+
 /// Registers `factory`(values, context) as the module of this kind and name.
 void register_module(const std::string& kind, const std::string& name, const std::string& summary,
-                     const std::string& paper, const std::string& origin, const std::filesystem::path& file,
-                     const std::vector<py::dict>& parameters, const py::object& factory, bool replace) {
+                     const std::string& paper, const std::string& licence, const std::string& origin,
+                     const std::filesystem::path& file, const std::vector<py::dict>& parameters,
+                     const py::object& factory, bool replace) {
   const auto maker = makers().find(kind);
   if (maker == makers().end()) throw PluginError("Python modules of the kind '" + kind + "' are not supported");
   Registry builtin;
@@ -99,20 +110,32 @@ void register_module(const std::string& kind, const std::string& name, const std
     throw PluginError(
         kind + " module '" + name + "' of " + origin + " cannot be registered: the name is taken by one of " +
         (found != registered().end() ? found->second.origin : "Holdfast itself") + "; rename one of them");
-  ModuleEntry entry{kind, {.name = name, .summary = summary, .paper = paper, .licence = ""}, origin, {}, {}};
+  ModuleEntry entry{kind, {.name = name, .summary = summary, .paper = paper, .licence = licence}, origin, {}, {}};
   for (const py::dict& row : parameters) entry.parameters.push_back(parameter_of(row));
   entry.create = [make = maker->second, shared = SharedObject(factory), file](const ParameterValues& values,
                                                                               const CreationContext& context) {
     const Lock lock;
-    py::object object;
-    try {
-      object = shared.get()(values, dictionary_of(context));
-      return make(Instance(object, file));
-    } catch (const py::error_already_set& raised) {
-      throw_caused_error(raised, file, "making the module");
-    }
+    return guarded(file, [&] { return make(Instance(shared.get()(values, dictionary_of(context)), file)); });
   };
   registered().insert_or_assign({kind, name}, std::move(entry));
+}
+
+/// Adds a module that exists already, under a name by which a configuration selects it.
+void add_given(Registry& registry, const py::tuple& given) {
+  const auto kind = given[0].cast<std::string>();
+  const std::filesystem::path file = given[2].cast<std::string>();
+  ModuleEntry entry{
+      kind,
+      {.name = given[1].cast<std::string>(), .summary = "Given as an object.", .paper = "", .licence = ""},
+      file.string(),
+      {},
+      {}};
+  entry.create = [make = makers().at(kind), shared = SharedObject(given[3]), file](const ParameterValues&,
+                                                                                   const CreationContext&) {
+    const Lock lock;
+    return guarded(file, [&] { return make(Instance(shared.get(), file)); });
+  };
+  registry.add(std::move(entry));
 }
 
 py::list registered_names() {
@@ -121,24 +144,37 @@ py::list registered_names() {
   return names;
 }
 
+/// The registered modules for another extension.
+py::capsule registered_registry() {
+  auto registry = std::make_unique<Registry>();
+  add_registered(*registry);
+  return {registry.release(), [](void* held) { delete static_cast<Registry*>(held); }};
+}
+
 }  // namespace
 
-Registry make_registry() {
+Registry make_registry(const py::list& given) {
   Registry registry;
   register_builtin_plugins(registry);
   register_fed_frames(registry);
-  for (const auto& [key, entry] : registered()) registry.add(entry);
+  add_registered(registry);
+  for (const py::handle& module : given) add_given(registry, py::reinterpret_borrow<py::tuple>(module));
   return registry;
+}
+
+void add_registered(Registry& registry) {
+  for (const auto& [key, entry] : registered()) registry.add(entry);
 }
 
 void bind_modules(py::module_& module) {
   module.def("register_module", &register_module, py::arg("kind"), py::arg("name"), py::arg("summary"),
-             py::arg("paper"), py::arg("origin"), py::arg("file"), py::arg("parameters"), py::arg("factory"),
-             py::arg("replace"));
+             py::arg("paper"), py::arg("licence"), py::arg("origin"), py::arg("file"), py::arg("parameters"),
+             py::arg("factory"), py::arg("replace"));
   module.def("unregister_module", [](const std::string& kind, const std::string& name) {
     return registered().erase({kind, name}) > 0;
   });
   module.def("registered_modules", &registered_names);
+  module.def("registered_registry", &registered_registry);
 }
 
 }  // namespace holdfast::python

@@ -4,12 +4,15 @@
 
 #include <mutex>
 #include <optional>
+#include <thread>
+#include <utility>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "frames.hpp"
 #include "gil.hpp"
 #include "holdfast/pipeline/configured_pipeline.hpp"
+#include "module_call.hpp"
 #include "registry.hpp"
 
 namespace holdfast::python {
@@ -19,25 +22,33 @@ namespace py = pybind11;
 namespace {
 
 /// A pipeline that Python feeds. Any thread may call anything: calls that C++ allows one thread at a time wait for each
-/// other, without Python's lock.
+/// other, without Python's lock. Inside a call of one of the pipeline's own modules they would wait for ever, and throw
+/// Error; interrupt() is allowed there, and map_snapshot() unless the pipeline holds its map's lock.
 class FedPipeline {
  public:
-  FedPipeline(const Configuration& configuration, const PipelineOptions& options) {
-    Registry registry = make_registry();
+  /// `modules` are those of make_registry().
+  FedPipeline(const Configuration& configuration, const PipelineOptions& options, const py::list& modules) {
+    Registry registry = make_registry(modules);
+    const ModuleMaking making(this);
     const Unlock unlock;
     load_plugins(configuration, registry);
     pipeline_.emplace(std::move(build_pipeline(configuration, registry, options).pipeline));
     camera_ = pipeline_->camera();
   }
-  /// Ending the threads of the pipeline may need Python's lock in them.
+  /// Ending the threads of the pipeline may need Python's lock in them. Garbage collection may run in one of these
+  /// threads, which cannot wait for its own end.
   ~FedPipeline() {
     const Unlock unlock;
-    pipeline_.reset();
+    if (pipeline_ && ModuleCall::of(this) != nullptr)
+      std::thread([ended = std::move(*pipeline_)] {}).detach();
+    else
+      pipeline_.reset();
   }
   FedPipeline(const FedPipeline&) = delete;
   FedPipeline& operator=(const FedPipeline&) = delete;
 
   FrameResult feed(const SensorFrame& frame) {
+    refuse_modules("feed");
     const Unlock unlock;
     const std::lock_guard lock(calls_);
     SensorFrame numbered = frame;
@@ -51,6 +62,7 @@ class FedPipeline {
   }
 
   void finish() {
+    refuse_modules("finish");
     const Unlock unlock;
     const std::lock_guard lock(calls_);
     Pipeline& pipeline = running("finish");
@@ -63,9 +75,10 @@ class FedPipeline {
     if (pipeline_) pipeline_->interrupt();
   }
   void close() {
+    refuse_modules("close");
     const Unlock unlock;
-    const std::scoped_lock lock(calls_, life_);
-    pipeline_.reset();
+    const std::lock_guard lock(calls_);
+    end();
   }
 
   py::tuple trajectory() {
@@ -75,18 +88,19 @@ class FedPipeline {
     return trajectory_arrays(ask([](const Pipeline& p) { return p.keyframe_trajectory(); }));
   }
   MapSnapshot map_snapshot() {
+    refuse_modules("map_snapshot", MapLock::held);
     const Unlock unlock;
     const std::lock_guard lock(life_);
     return open("map_snapshot").map_snapshot();
   }
   std::shared_ptr<Map> take_map() {
+    refuse_modules("take_map");
     const Unlock unlock;
     const std::lock_guard lock(calls_);
     Pipeline& pipeline = open("take_map");
     if (!finished_) throw Error("take_map: the pipeline is not finished; call finish() first");
     auto map = std::make_shared<Map>(pipeline.take_map());
-    const std::lock_guard life(life_);
-    pipeline_.reset();
+    end();
     return map;
   }
 
@@ -98,6 +112,7 @@ class FedPipeline {
  private:
   template <class Question>
   Trajectory ask(Question question) {
+    refuse_modules("trajectory");
     const Unlock unlock;
     const std::lock_guard lock(calls_);
     return question(open("trajectory"));
@@ -106,6 +121,20 @@ class FedPipeline {
     if (!pipeline_)
       throw Error(std::string(call) + ": the pipeline is closed; make a new one, or ask before it is closed");
     return *pipeline_;
+  }
+  /// Throws Error inside a call of one of the pipeline's modules; with `only` held in one under the map's lock.
+  void refuse_modules(const char* call, MapLock only = MapLock::free) const {
+    const ModuleCall* module = ModuleCall::of(this);
+    if (module != nullptr && (only == MapLock::free || module->map_lock() == MapLock::held))
+      throw Error(std::string(call) + ": was called by " + module->name() +
+                  ", a module of this pipeline, which waits until the module returns; call it after that, such as "
+                  "from the loop that feeds");
+  }
+  /// Without life_ while the threads end: one of their modules may be asking for a snapshot.
+  void end() {
+    std::optional<Pipeline> ended;
+    const std::lock_guard lock(life_);
+    std::swap(ended, pipeline_);
   }
   Pipeline& running(const char* call) {
     Pipeline& pipeline = open(call);
@@ -126,12 +155,12 @@ class FedPipeline {
 void bind_pipeline(py::module_& module) {
   py::class_<FedPipeline>(module, "Pipeline")
       .def(py::init([](const Configuration& configuration, const std::filesystem::path& output,
-                       const std::filesystem::path& map, bool localise_only) {
+                       const std::filesystem::path& map, bool localise_only, const py::list& modules) {
              return std::make_unique<FedPipeline>(
                  configuration,
-                 PipelineOptions{.output_directory = output, .map_file = map, .localise_only = localise_only});
+                 PipelineOptions{.output_directory = output, .map_file = map, .localise_only = localise_only}, modules);
            }),
-           py::arg("configuration"), py::arg("output"), py::arg("map"), py::arg("localise_only"))
+           py::arg("configuration"), py::arg("output"), py::arg("map"), py::arg("localise_only"), py::arg("modules"))
       .def("feed", &FedPipeline::feed, py::arg("frame"))
       .def("feed_arrays", &FedPipeline::feed_arrays, py::arg("timestamp"), py::arg("colour"), py::arg("depth"))
       .def("finish", &FedPipeline::finish)

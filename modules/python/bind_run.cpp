@@ -144,8 +144,9 @@ void keep_map(const PipelineOptions& options) {
 }
 
 std::shared_ptr<RunRecord> run_configuration(const Configuration& configuration, PipelineOptions options,
-                                             bool overwrite, const py::object& on_frame, double interval) {
-  Registry registry = make_registry();
+                                             bool overwrite, const py::object& on_frame, double interval,
+                                             const py::list& modules) {
+  Registry registry = make_registry(modules);
   Supervisor supervisor(on_frame, interval);
   auto record = std::make_shared<RunRecord>();
   {
@@ -211,13 +212,13 @@ void bind_run(py::module_& module) {
   module.def(
       "run",
       [](const Configuration& configuration, const std::filesystem::path& output, const std::filesystem::path& map,
-         bool localise_only, bool overwrite, const py::object& on_frame, double interval) {
+         bool localise_only, bool overwrite, const py::object& on_frame, double interval, const py::list& modules) {
         return run_configuration(configuration,
                                  {.output_directory = output, .map_file = map, .localise_only = localise_only},
-                                 overwrite, on_frame, interval);
+                                 overwrite, on_frame, interval, modules);
       },
       py::arg("configuration"), py::arg("output"), py::arg("map"), py::arg("localise_only"), py::arg("overwrite"),
-      py::arg("on_frame"), py::arg("interval"));
+      py::arg("on_frame"), py::arg("interval"), py::arg("modules"));
 }
 
 }  // namespace holdfast::python

@@ -40,7 +40,7 @@ class FilterOfPython final : public DynamicFilter {
 
   Needs needs() const override { return needs_; }
   void apply(const FilterContext& context, StaticEvidence& evidence) override {
-    instance_.with_lock("apply", [&](const py::object& object) {
+    const auto apply = [&](const py::object& object) {
       const Shown<const FilterContext> shown_context(context, "FilterContext");
       const Shown<StaticEvidence> shown_evidence(evidence, "StaticEvidence");
       const Shown<const Frame> features(context.frame, "FilterContext.features");
@@ -53,7 +53,8 @@ class FilterOfPython final : public DynamicFilter {
       if (!result.is_none())
         instance_.refuse("apply", "returned an object of type " + type_name(result),
                          "None; evidence is added by evidence.add(log_odds)");
-    });
+    };
+    instance_.with_lock("apply", apply, MapLock::held);
   }
 
  private:

@@ -11,6 +11,7 @@
 #include "errors.hpp"
 #include "gil.hpp"
 #include "holdfast/core/module.hpp"
+#include "module_call.hpp"
 
 namespace holdfast::python {
 
@@ -21,7 +22,8 @@ class Instance {
   Instance(pybind11::object object, std::filesystem::path file)
       : object_(object),
         file_(std::move(file)),
-        class_name_(pybind11::str(pybind11::type::of(object).attr("__name__"))) {}
+        class_name_(pybind11::str(pybind11::type::of(object).attr("__name__"))),
+        pipeline_(ModuleMaking::pipeline()) {}
 
   const std::filesystem::path& file() const { return file_; }
   const std::string& class_name() const { return class_name_; }
@@ -32,7 +34,8 @@ class Instance {
   /// Calls `action` with the lock; what Python raises in it becomes an InputError with the traceback. `member` is what
   /// is called, for the message.
   template <class Action>
-  auto with_lock(const char* member, Action action) const {
+  auto with_lock(const char* member, Action action, MapLock map_lock = MapLock::free) const {
+    const ModuleCall call(pipeline_, class_name_, member, map_lock);
     const Lock lock;
     try {
       return action(object());
@@ -49,6 +52,7 @@ class Instance {
   SharedObject object_;
   std::filesystem::path file_;
   std::string class_name_;
+  PipelineIdentity pipeline_;
 };
 
 /// The name of an object's type. The lock must be held.

@@ -107,6 +107,9 @@ def test_bench_tables_are_records(tmp_path):
     assert "<table>" in results._repr_html_()
     with pytest.raises(holdfast.InputError, match="the folder holds runs, cells"):
         results.comparisons
+    (tmp_path / "bench").mkdir()  # as `holdfast bench` writes them
+    (tmp_path / "bench" / "tables").symlink_to(tmp_path)
+    assert holdfast.read_bench(tmp_path / "bench").runs == results.runs
     with pytest.raises(holdfast.InputError, match="holds no results"):
         holdfast.read_bench(tmp_path / "nothing")
     pandas = pytest.importorskip("pandas")

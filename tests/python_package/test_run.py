@@ -160,3 +160,75 @@ def test_module_is_the_program(tmp_path):
             program.stdout,
             program.stderr,
         )
+
+
+OWN_CODE = """
+import numpy, holdfast
+@holdfast.register("darkness")
+class Darkness(holdfast.Segmenter):
+    classes = ["background", "person"]
+    def __init__(self, threshold: int = 3):
+        self.threshold = threshold
+    def segment(self, frame):
+        return (frame.colour.mean(axis=2) < self.threshold).astype(numpy.uint8)
+"""
+
+
+def run_module(folder, *words):
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    return subprocess.run(
+        [sys.executable, "-m", "holdfast", *words], capture_output=True, text=True, env=environment, cwd=folder
+    )
+
+
+@pytest.mark.parametrize("imports", [["--import", "own_code"], ["--import=own_code.py"]])
+def test_program_imports_modules_in_python(config, tmp_path, imports):
+    (tmp_path / "own_code.py").write_text(OWN_CODE)
+    (tmp_path / "run.yaml").write_text(holdfast.load_config(config).to_yaml())
+    choice = ["--set", "segmenter={darkness: {threshold: 5}}", "--set", "source.simulated.duration=0.3"]
+    outcome = run_module(tmp_path, *imports, "run", "run.yaml", "--output", "out", *choice)
+    assert outcome.returncode == 0, outcome.stderr
+    assert "darkness:" in (tmp_path / "out" / "config.yaml").read_text()
+    assert run_module(tmp_path, *imports, "check", "run.yaml", *choice).returncode == 0
+    assert "threshold" in run_module(tmp_path, *imports, "modules", "darkness").stdout
+    unknown = run_module(tmp_path, "check", "run.yaml", *choice)
+    assert unknown.returncode == 2 and "there is no segmenter module 'darkness'" in unknown.stderr
+    wrong = run_module(tmp_path, *imports, "check", "run.yaml", "--set", "segmenter={darkness: {treshold: 5}}")
+    assert wrong.returncode == 2 and "threshold" in wrong.stderr
+
+
+def test_matrix_of_the_program_knows_modules_in_python(config, tmp_path):
+    (tmp_path / "own_code.py").write_text(OWN_CODE)
+    config["segmenter"] = "none"
+    (tmp_path / "base.yaml").write_text(holdfast.load_config(config).to_yaml())
+    (tmp_path / "matrix.yaml").write_text(
+        "title: own\nbase: base.yaml\naxes: { mask: { none: {}, dark: { segmenter: darkness } } }\nbaseline: none\n"
+        "sequences: { office: { source: { simulated: { duration: 0.3 } } } }\n"
+    )
+    outcome = run_module(tmp_path, "--import", "own_code.py", "bench", "matrix.yaml", "--output", "out")
+    assert outcome.returncode == 0, outcome.stderr
+    statuses = {row["variant"]: row["status"] for row in holdfast.read_bench(tmp_path / "out").runs}
+    assert statuses == {"none": "finished", "dark": "finished"}
+
+
+@pytest.mark.parametrize(
+    "words, message",
+    [
+        (["--import"], "error: --import: expected a name"),
+        (["--import", "nowhere", "modules"], "error: --import: nowhere: there is no module 'nowhere'"),
+        (["--import", "nowhere.py", "modules"], "nowhere.py: there is no such file"),
+        (["--import", "numpy.py", "modules"], "a module 'numpy' is imported already; rename the file"),
+        (["modules", "--import", "x"], "--import"),
+    ],
+)
+def test_imports_that_are_not_there(tmp_path, words, message):
+    (tmp_path / "numpy.py").write_text("")
+    outcome = run_module(tmp_path / "..", *[str(tmp_path / word) if word == "numpy.py" else word for word in words])
+    assert outcome.returncode == 2 and message in outcome.stderr and not outcome.stdout
+
+
+def test_errors_of_imported_code_have_their_traceback(tmp_path):
+    (tmp_path / "own_code.py").write_text("import holdfast\nimport a_package_that_is_missing\n")
+    for name in ("own_code", "own_code.py"):
+        outcome = run_module(tmp_path, "--import", name, "modules")
+        assert outcome.returncode == 1 and "Traceback" in outcome.stderr and "own_code.py" in outcome.stderr

@@ -33,10 +33,11 @@ class BenchResults:
     """
 
     def __init__(self, folder: Union[str, "os.PathLike[str]"]) -> None:
-        self.folder = Path(folder)
+        tables = Path(folder) / "tables"
+        self.folder = tables if tables.is_dir() else Path(folder)
         if not any((self.folder / f"{name}.csv").is_file() for name in _TABLES):
             raise InputError(
-                f"{self.folder}: holds no results; expected the output folder of `holdfast bench`, with runs.csv"
+                f"{self.folder}: holds no results; expected the output folder of `holdfast bench`, or its folder tables"
             )
 
     def table(self, name: str) -> List[Record]:
@@ -93,5 +94,5 @@ def _text(value: Any) -> str:
 
 
 def read_bench(folder: Union[str, "os.PathLike[str]"]) -> BenchResults:
-    """The results that `holdfast bench` wrote into a folder. Raises InputError for a folder without them."""
+    """The results that `holdfast bench` wrote into a folder. Raises InputError for a folder without its tables."""
     return BenchResults(folder)

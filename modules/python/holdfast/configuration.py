@@ -5,10 +5,12 @@ from __future__ import annotations
 
 import json
 import os
-from typing import Any, Dict, List, Mapping, Sequence, Union
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Union
 
 from . import _core
 from ._core import Configuration
+from ._parts import Parts
+from .plugins import Module
 
 Config = Union[str, "os.PathLike[str]", Mapping[str, Any], Configuration]
 Overrides = Union[Mapping[str, Any], Sequence[str]]
@@ -20,6 +22,11 @@ def _plain(value: Any) -> Any:
         return os.fspath(value)
     if hasattr(value, "tolist"):
         return value.tolist()
+    if isinstance(value, Module):
+        raise TypeError(
+            f"a configuration names its modules and cannot hold a {type(value).__name__}; give it to holdfast.run or "
+            "holdfast.Pipeline, in the section of its kind"
+        )
     raise TypeError(f"a configuration cannot hold {value!r}; expected numbers, texts, lists and mappings")
 
 
@@ -36,15 +43,28 @@ def _override_texts(overrides: Overrides) -> List[str]:
     return list(overrides)
 
 
-def _load(config: Config, overrides: Overrides, fed: bool) -> Configuration:
-    texts = _override_texts(overrides)
+def _load(
+    config: Config,
+    overrides: Overrides,
+    fed: bool,
+    parts: Optional[Parts] = None,
+    more: Mapping[str, Any] = {},
+) -> Configuration:
+    """`more` are overrides that come last. Modules in the configuration and in overrides need `parts`."""
+    if parts is not None:
+        config = parts.named(config) if isinstance(config, Mapping) else config
+        overrides = parts.named(overrides) if isinstance(overrides, Mapping) else overrides
+        more = parts.named(more)
+    texts = _override_texts(overrides) + _override_texts(more)
+    modules = parts.modules if parts is not None else []
     if isinstance(config, Configuration):
         if not texts and not fed:
             return config
-        return _core.load_configuration(config.file or "configuration", config.to_yaml(), os.getcwd(), texts, fed)
+        name, text = config.file or "configuration", config.to_yaml()
+        return _core.load_configuration(name, text, os.getcwd(), texts, fed, modules)
     if isinstance(config, Mapping):
-        return _core.load_configuration("configuration", _yaml(config), os.getcwd(), texts, fed)
-    return _core.load_configuration(os.fspath(config), None, "", texts, fed)
+        return _core.load_configuration("configuration", _yaml(config), os.getcwd(), texts, fed, modules)
+    return _core.load_configuration(os.fspath(config), None, "", texts, fed, modules)
 
 
 def load_config(config: Config, overrides: Overrides = {}) -> Configuration:

@@ -14,7 +14,8 @@ import numpy.typing as npt
 
 from . import _core
 from ._core import Camera, Frame, FrameResult
-from .configuration import Config, Overrides, _load, _override_texts
+from ._parts import Part, Parts, given
+from .configuration import Config, Overrides, _load
 from .maps import Map, MapSnapshot
 from .trajectory import Trajectory
 
@@ -29,9 +30,16 @@ class Pipeline:
     find poses in without changing it. `output` is a folder for modules that write files. `class_names` are those of
     the frames' `class_labels`, for the segmenter `truth`.
 
+    `features`, `segmenter`, `filters` and `observers` take the place of these sections of the configuration: a name,
+    {name: parameters}, or a module, which is an instance of a class below FeatureExtractor, Segmenter, DynamicFilter or
+    Observer; lists of them for filters and observers. A mapping may hold modules in the same places. One module may
+    serve several pipelines one after the other.
+
     Pipelines share nothing: any number may live at once. Any thread may call any method; feed() and finish() of one
     pipeline wait for each other. C++ works without Python's lock (GIL). Used as a context manager, it is finished at
-    the end of the block, and closed: trajectory, keyframes and map stay.
+    the end of the block, and closed: trajectory, keyframes and map stay. A module that is called by a pipeline may ask
+    it for map_snapshot() (a filter may not) and interrupt(); other calls would wait for the module itself, and raise
+    Error.
 
     Raises ConfigurationError with every problem found, InputError for a map that cannot be used.
     """
@@ -46,17 +54,24 @@ class Pipeline:
         localise: bool = False,
         output: Union[str, "os.PathLike[str]", None] = None,
         class_names: Sequence[str] = (),
+        features: Optional[Part] = None,
+        segmenter: Optional[Part] = None,
+        filters: Optional[Sequence[Part]] = None,
+        observers: Optional[Sequence[Part]] = None,
     ) -> None:
         if localise and map is None:
             raise ValueError("localise needs a map; give map='map.hfm' of an earlier run")
-        more: Dict[str, Any] = {}
+        more: Dict[str, Any] = given(features=features, segmenter=segmenter, filters=filters, observers=observers)
         if camera is not None:
             more["camera"] = camera if isinstance(camera, str) else _camera_section(camera)
         if class_names:
             more["source"] = {"fed_frames": {"class_names": list(class_names)}}
-        configuration = _load(config, _override_texts(overrides) + _override_texts(more), fed=True)
+        parts = Parts()
+        configuration = _load(config, overrides, fed=True, parts=parts, more=more)
         self._finished: Optional[_Finished] = None
-        self._core = _core.Pipeline(configuration, os.fspath(output or ""), os.fspath(map or ""), localise)
+        self._core = _core.Pipeline(
+            configuration, os.fspath(output or ""), os.fspath(map or ""), localise, parts.modules
+        )
         _open_pipelines.add(self)
 
     @overload
@@ -78,9 +93,11 @@ class Pipeline:
         copies. Only arrays whose rows are not contiguous, such as image[:, :, ::-1], are copied.
 
         Trouble with a frame is a result, not an exception. Raises InputError for arrays of another kind and for time
-        stamps that do not rise, and what a thread of the pipeline raised.
+        stamps that do not rise, and what a thread of the pipeline raised. Stereo (`right`) is not supported.
         """
         if isinstance(timestamp, Frame):
+            if colour is not None or depth is not None:
+                raise TypeError("feed: a Frame holds its images; expected a Frame alone, or timestamp, colour, depth")
             return self._core.feed(timestamp)
         return self._core.feed_arrays(timestamp, colour, depth)
 

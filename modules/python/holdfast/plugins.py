@@ -308,12 +308,28 @@ def _summary(definition: type) -> str:
     return " ".join(text.split())
 
 
-def register(name: str, *, paper: str = "") -> Callable[[ModuleClass], ModuleClass]:
+def _check_methods(definition: type, base: Type[Module]) -> None:
+    for method in _METHODS[base]:
+        if getattr(definition, method) is getattr(base, method):
+            raise PluginError(
+                f"{definition.__name__} does not define {method}; expected what holdfast.{base.__name__} describes"
+            )
+
+
+def _file_of(definition: type) -> str:
+    try:
+        return inspect.getfile(definition)
+    except (TypeError, OSError):  # in a notebook or an interactive session
+        return f"<{definition.__module__}>"
+
+
+def register(name: str, *, paper: str = "", licence: str = "not stated") -> Callable[[ModuleClass], ModuleClass]:
     """Decorator that registers a class as a module, so that configurations of this process can select it by `name`.
 
     The summary in the reference is the first paragraph of the docstring; `paper` is the publication that it
-    implements. A class that is defined again, as in a notebook, takes the place of the earlier one. Raises
-    PluginError for a name that is taken, for a class below none of the interfaces, and for parameters of other types.
+    implements, `licence` that of the code, such as "BSD-3-Clause". A class that is defined again, as in a notebook,
+    takes the place of the earlier one. Raises PluginError for a name that is taken, for a class below none of the
+    interfaces, and for parameters of other types.
     """
     if not re.fullmatch(r"[a-z][a-z0-9_]*", name):
         raise PluginError(
@@ -326,11 +342,7 @@ def register(name: str, *, paper: str = "") -> Callable[[ModuleClass], ModuleCla
         if len(bases) != 1:
             expected = ", ".join(f"holdfast.{base.__name__}" for base in _METHODS)
             raise PluginError(f"{owner} is not below one of the interfaces; expected a class below one of {expected}")
-        for method in _METHODS[bases[0]]:
-            if getattr(definition, method) is getattr(bases[0], method):
-                raise PluginError(
-                    f"{owner} does not define {method}; expected what holdfast.{bases[0].__name__} describes"
-                )
+        _check_methods(definition, bases[0])
         rows: List[Dict[str, Any]] = []
         paths: List[str] = []
         takes_context = False
@@ -345,12 +357,10 @@ def register(name: str, *, paper: str = "") -> Callable[[ModuleClass], ModuleCla
 
         kind = bases[0]._kind
         origin = f"{definition.__module__}.{definition.__qualname__}"
-        try:
-            file = inspect.getfile(definition)
-        except (TypeError, OSError):
-            file = f"<{definition.__module__}>"
         replace = _origins.get((kind, name)) == origin
-        _core.register_module(kind, name, _summary(definition), paper, origin, file, rows, make, replace)
+        _core.register_module(
+            kind, name, _summary(definition), paper, licence, origin, _file_of(definition), rows, make, replace
+        )
         _origins[(kind, name)] = origin
         return definition
 

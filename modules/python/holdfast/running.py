@@ -6,11 +6,12 @@ from __future__ import annotations
 import os
 import sys
 import time
-from typing import Any, Callable, Optional, Union
+from typing import Any, Callable, Optional, Sequence, Union
 
 from . import _core
 from ._core import FrameResult
 from ._errors import RunError
+from ._parts import Part, Parts, given
 from .configuration import Config, Overrides, _load
 from .result import Result
 
@@ -54,6 +55,11 @@ def run(
     map: Union[str, "os.PathLike[str]", None] = None,
     localise: bool = False,
     overwrite: bool = False,
+    source: Optional[Part] = None,
+    features: Optional[Part] = None,
+    segmenter: Optional[Part] = None,
+    filters: Optional[Sequence[Part]] = None,
+    observers: Optional[Sequence[Part]] = None,
 ) -> Result:
     """Runs a configuration from the first frame of its source to the last, as `holdfast run` does, with the same bytes.
 
@@ -61,7 +67,9 @@ def run(
     With `output`, the files of `holdfast run` are written into that folder; one that is not empty needs `overwrite`.
     `progress` is True for a line on standard error, False for none, or a function (frames done, frame count or None,
     FrameResult) that is called at most ten times a second; an exception of it ends the run. `map` is a map.hfm to
-    continue, or with `localise` to find poses in without changing it.
+    continue, or with `localise` to find poses in without changing it. `source`, `features`, `segmenter`, `filters` and
+    `observers` take the place of these sections, by name or as modules, as holdfast.Pipeline has it; config.yaml names
+    such a module own_ and the words of its class.
 
     Python's lock (GIL) is released; other threads go on. Ctrl-C ends the run after the current frame: what was
     computed is written into `output`, then KeyboardInterrupt is raised.
@@ -71,12 +79,21 @@ def run(
     """
     if localise and map is None:
         raise ValueError("localise needs a map; give map='map.hfm' of an earlier run")
-    configuration = _load(config, overrides, fed=False)
+    parts = Parts()
+    more = given(source=source, features=features, segmenter=segmenter, filters=filters, observers=observers)
+    configuration = _load(config, overrides, fed=False, parts=parts, more=more)
     line = _Line() if progress is True else None
     on_frame: Any = line if line is not None else (progress or None)
     try:
         record = _core.run(
-            configuration, os.fspath(output or ""), os.fspath(map or ""), localise, overwrite, on_frame, 0.1
+            configuration,
+            os.fspath(output or ""),
+            os.fspath(map or ""),
+            localise,
+            overwrite,
+            on_frame,
+            0.1,
+            parts.modules,
         )
     finally:
         if line is not None:

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "holdfast/bench/run_plan.hpp"
@@ -14,8 +15,8 @@ namespace holdfast {
 
 /// Options for the execution of the runs of a benchmark.
 struct BenchOptions {
-  std::filesystem::path output;   ///< results of run ID go to output/runs/ID
-  std::filesystem::path program;  ///< path of the program `holdfast`
+  std::filesystem::path output;      ///< results of run ID go to output/runs/ID
+  std::vector<std::string> program;  ///< command line that starts the program `holdfast`, without its arguments
   int jobs = 1;         ///< maximum number of concurrent runs; does not apply to runs that must be executed alone
   double grace = 10.0;  ///< time between asking a process to end and killing it [s]
   /// Polled several times per second; if it returns true, unfinished runs are aborted.

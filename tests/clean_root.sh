@@ -1,0 +1,187 @@
+#!/bin/sh
+# SPDX-License-Identifier: BSD-3-Clause
+# The proof that a Debian 12 with nothing on it suffices: clean roots are made by mmdebstrap, the README's two commands
+# run in one, and the Debian packages are installed by dpkg in others, where a program is built on them and Python
+# imports them, with static and with shared libraries. By hand and in the nightly run, because it takes hours.
+#
+#   sh tests/clean_root.sh                            all of it
+#   sh tests/clean_root.sh readme                     the README's two commands, on what is committed
+#   sh tests/clean_root.sh packages BUILD_FOLDER...   the packages of trees that are built here (Debian 12)
+#
+# Runs as root. `sh cmake/install_dependencies.sh --clean-root` installs mmdebstrap. Variables:
+#   HOLDFAST_MIRROR      http://deb.debian.org/debian by default
+#   HOLDFAST_CLEAN_ROOT  folder for the roots, 15 GB for all of it; one that is kept makes the next time quicker. Not
+#                        set: a folder below /tmp, which is removed at the end
+#   HOLDFAST_CCACHE      a ccache folder to lend to the builds, for trials of this script
+set -eu
+
+cd "$(dirname "$0")/.."
+source=$PWD
+suite=bookworm
+mirror=${HOLDFAST_MIRROR:-http://deb.debian.org/debian}
+say() { printf 'clean_root: %s\n' "$*"; }
+fail() { say "$@" >&2; exit 1; }
+
+case "${1:-all}" in
+  all | readme) part=${1:-all} ;;
+  packages)
+    part=packages
+    shift
+    [ $# -gt 0 ] || fail "packages of which build folder? expected sh tests/clean_root.sh packages BUILD_FOLDER..."
+    ;;
+  -h | --help) sed -n '3,17s/^# \{0,1\}//p' "$0"; exit 0 ;;
+  *) fail "unknown argument '$1'; expected readme, packages BUILD_FOLDER..., or nothing" ;;
+esac
+[ "$(id -u)" -eq 0 ] || fail "needs root: roots have owners, and chroot is root's"
+command -v mmdebstrap > /dev/null ||
+  fail "mmdebstrap is missing; \`sh cmake/install_dependencies.sh --clean-root\` installs it"
+
+if [ -n "${HOLDFAST_CLEAN_ROOT:-}" ]; then
+  roots=$HOLDFAST_CLEAN_ROOT
+  mkdir -p "$roots"
+  is_kept=yes
+else
+  roots=$(mktemp -d)
+  is_kept=no
+fi
+release() {  # ROOT: nothing of this machine is in it any more
+  for place in ccache dev/shm proc; do
+    if mountpoint -q "$1/$place"; then umount "$1/$place"; fi
+  done
+}
+clean_up() {
+  for each in "$roots"/*/; do release "${each%/}"; done
+  # A root that could not be released still shows this machine's files: --one-file-system leaves those alone.
+  [ "$is_kept" = yes ] || rm -rf --one-file-system "$roots"
+}
+trap clean_up EXIT
+
+# make_root NAME: a root with the packages that Debian calls required, and apt.
+make_root() {
+  if [ ! -s "$roots/base.tar" ]; then
+    say "asking $mirror for a clean $suite"
+    mmdebstrap --quiet --variant=minbase --include=ca-certificates "$suite" "$roots/base.tar.part" "$mirror"
+    mv "$roots/base.tar.part" "$roots/base.tar"
+  fi
+  release "$roots/$1"
+  rm -rf --one-file-system "${roots:?}/$1"
+  mkdir "$roots/$1"
+  tar -xf "$roots/base.tar" -C "$roots/$1"
+  cp /etc/resolv.conf "$roots/$1/etc/resolv.conf"
+  mount -t proc proc "$roots/$1/proc"
+  mkdir -p "$roots/$1/dev/shm"
+  mount -t tmpfs tmpfs "$roots/$1/dev/shm"
+  if [ -n "${HOLDFAST_CCACHE:-}" ]; then
+    mkdir -p "$roots/$1/ccache"
+    mount --bind "$HOLDFAST_CCACHE" "$roots/$1/ccache"
+  fi
+}
+
+# inside NAME COMMAND: a shell of the root, with nothing of our environment.
+inside() {
+  cache=""
+  if [ -n "${HOLDFAST_CCACHE:-}" ]; then cache="CCACHE_DIR=/ccache"; fi
+  env -i HOME=/root LANG=C.UTF-8 TERM=dumb DEBIAN_FRONTEND=noninteractive $cache \
+    PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin chroot "$roots/$1" /bin/sh -euc "$2"
+}
+
+# The README's two commands on a clone of what is committed; then, for `all`, its packages and those of a shared build.
+try_readme() {
+  make_root readme
+  git clone --quiet "$source" "$roots/readme/root/holdfast"
+  say "sh cmake/demo.sh"
+  inside readme "cd /root/holdfast && sh cmake/demo.sh && test -s out/demo/report.html"
+  say "sh cmake/test.sh"
+  inside readme "cd /root/holdfast && sh cmake/test.sh"
+  say "the README's two commands work in a clean root"
+}
+
+# pack NAME BUILD_FOLDER: the packages of a tree into $roots/NAME.
+pack() {
+  rm -rf "${roots:?}/$1"
+  mkdir "$roots/$1"
+  cpack -G DEB -B "$roots/$1" --config "$2/CPackConfig.cmake" > "$roots/$1.log" 2>&1 ||
+    { cat "$roots/$1.log" >&2; fail "cpack of $2 failed"; }
+}
+
+# install_packages EXTRA...: those in /packages of the root `target`, by dpkg; before, what they need from the mirror, and
+# EXTRA.
+install_packages() {
+  needed=$(for file in "$roots/target/packages"/*.deb; do dpkg-deb --field "$file" Depends | tr ',' '\n'; done |
+    sed 's/^ *//; /^libholdfast/d; /^holdfast/d; /^$/d' | sort -u | paste -s -d , -)
+  for extra in "$@"; do needed="$needed,$extra"; done
+  inside target "apt-get -qq satisfy --yes --no-install-recommends '$needed' > /log 2>&1 || { cat /log; exit 1; }
+    dpkg --install /packages/*.deb
+    test -z \"\$(dpkg --audit)\""
+}
+
+# try_packages FOLDER: of $roots/FOLDER, in a root of their own.
+try_packages() {
+  ls "$roots/$1"/*.deb > /dev/null || fail "$roots/$1 holds no packages"
+  make_root target
+  mkdir "$roots/target/packages"
+  inside target "apt-get -qq update"
+  # First what users of the program and of Python install.
+  cp "$roots/$1"/*.deb "$roots/target/packages"
+  rm "$roots/target/packages"/libholdfast-dev_*.deb
+  say "$1: the program and the Python package"
+  install_packages
+  inside target "holdfast run /usr/share/holdfast/configs/demo.yaml --set source.simulated.duration=1 \
+      --output /tmp/out --quiet
+    test -s /tmp/out/report.html"
+  cat > "$roots/target/tmp/use.py" << 'END'
+import holdfast
+result = holdfast.run("/usr/share/holdfast/configs/demo.yaml", {"source.simulated.duration": 1}, progress=False)
+assert result.trajectory.to_text() == open("/tmp/out/trajectory.txt").read(), "the bytes of the program"
+print(result)
+END
+  inside target "python3 /tmp/use.py && python3 -m holdfast --version"
+  # Then what a program that is built on the library needs.
+  say "$1: a program on libholdfast-dev"
+  cp "$roots/$1"/libholdfast-dev_*.deb "$roots/target/packages"
+  install_packages cmake g++ make
+  mkdir "$roots/target/consumers"
+  for each in embedded installed plugin whole; do cp -R "tests/consumers/$each" "$roots/target/consumers"; done
+  inside target "cd /consumers
+    for each in installed plugin whole; do
+      { cmake -S \$each -B build_\$each && cmake --build build_\$each; } > /log 2>&1 || { cat /log; exit 1; }
+    done
+    build_installed/consumer && build_installed/geometry_consumer
+    HOLDFAST_PLUGIN_PATH=/consumers/build_plugin holdfast run plugin/run.yaml --output /tmp/plugin --quiet
+    build_whole/consumer whole/simulated.yaml > /dev/null"
+  # And away again, without a trace.
+  inside target "dpkg --purge \$(dpkg-query --show --showformat='\${Package}\\n' '*holdfast*') > /dev/null
+    test -z \"\$(find /usr /etc -name '*holdfast*')\""
+  release "$roots/target"
+  say "$1: the packages work in a clean root"
+}
+
+case "$part" in
+  packages)
+    number=0
+    for build in "$@"; do
+      number=$((number + 1))
+      pack "packages_$number" "$build"
+      try_packages "packages_$number"
+    done
+    ;;
+  readme) try_readme ;;
+  all)
+    try_readme
+    for kind in static shared; do
+      build=/root/holdfast/build
+      if [ "$kind" = shared ]; then
+        build=/root/holdfast/build-shared
+        inside readme "cd /root/holdfast
+          cmake --preset release -B $build -DBUILD_SHARED_LIBS=ON -DHOLDFAST_UNITY=ON -DHOLDFAST_BUILD_TESTS=OFF \
+            -DHOLDFAST_BUILD_EXAMPLES=OFF -DHOLDFAST_PYTHON=ON -DHOLDFAST_PYTHON_PACKAGE=ON
+          cmake --build $build --parallel $(nproc)"
+      fi
+      inside readme "cd /root && rm -rf $kind && cpack -G DEB -B $kind --config $build/CPackConfig.cmake > /dev/null"
+      rm -rf "${roots:?}/packages_$kind"
+      cp -R "$roots/readme/root/$kind" "$roots/packages_$kind"
+      try_packages "packages_$kind"
+    done
+    ;;
+esac
+say "everything passed"
