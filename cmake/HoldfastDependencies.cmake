@@ -18,7 +18,7 @@ endif()
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 # What only some plugins need is looked for only when these are built.
-set(HOLDFAST_OPENCV_COMPONENTS core imgproc imgcodecs video)
+set(HOLDFAST_OPENCV_COMPONENTS core calib3d imgproc imgcodecs video)
 if(HOLDFAST_PLUGIN_OPENCV_ORB)
   list(APPEND HOLDFAST_OPENCV_COMPONENTS features2d)
 endif()
