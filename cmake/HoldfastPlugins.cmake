@@ -6,6 +6,7 @@ include_guard()
 # Kind of the modules, name, folder below plugins/.
 set(HOLDFAST_PLUGIN_TABLE
   "source          folder                sources/folder"
+  "source          kitti                 sources/kitti"
   "source          simulated             sources/simulated"
   "source          tum                   sources/tum"
   "features        opencv_orb            features/opencv_orb"

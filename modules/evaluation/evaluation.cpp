@@ -117,6 +117,7 @@ Evaluation evaluate(const Trajectory& truth_as_given, const Trajectory& estimate
   const double scale = result.alignment.scale;
   result.error_per_time = relative_error_per_time(truth, estimate, options.time_step, scale);
   result.error_per_way = relative_error_per_way(truth, estimate, options.path_step, scale);
+  result.segment_error = segment_error(truth, estimate, scale);
 
   if (frame_stamps) {
     std::vector<double> frames = *frame_stamps;

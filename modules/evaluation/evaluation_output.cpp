@@ -107,6 +107,16 @@ std::string to_text(const Evaluation& evaluation) {
   const std::string path_step = "RPE per " + shortest_text(options.path_step) + " m";
   text += table_row(path_step + ", translation", "[m]", evaluation.error_per_way.translation);
   text += table_row(path_step + ", rotation", "[deg]", evaluation.error_per_way.rotation);
+  if (const SegmentError& error = evaluation.segment_error; error.segments > 0) {
+    text += '\n' + filled("KITTI, segments of", 34) + "  segments  translation [%]  rotation [deg/m]\n";
+    const auto row = [&](const std::string& name, std::size_t segments, double translation, double rotation) {
+      text += filled("  " + name, 34) + padded(std::to_string(segments), 10) + padded(fixed_text(translation, 4), 17) +
+              padded(fixed_text(rotation, 6), 18) + '\n';
+    };
+    for (const SegmentError::OfLength& of_length : error.lengths)
+      row(shortest_text(of_length.length) + " m", of_length.segments, of_length.translation, of_length.rotation);
+    row("all", error.segments, error.translation, error.rotation);
+  }
   if (evaluation.error_per_time.pairs == 0)
     text += "No pair of poses is " + shortest_text(options.time_step) + " s apart.\n";
   if (evaluation.error_per_way.pairs == 0)
@@ -151,6 +161,19 @@ std::string to_json(const Evaluation& evaluation) {
                          {"omitted_pairs", evaluation.error_per_way.omitted_pairs},
                          {"translation_m", to_json_value(evaluation.error_per_way.translation)},
                          {"rotation_deg", to_json_value(evaluation.error_per_way.rotation)}};
+  json["kitti_segments"] = nullptr;
+  if (const SegmentError& error = evaluation.segment_error; error.segments > 0) {
+    Json lengths = Json::array();
+    for (const SegmentError::OfLength& of_length : error.lengths)
+      lengths.push_back({{"length_m", of_length.length},
+                         {"segments", of_length.segments},
+                         {"translation_percent", of_length.translation},
+                         {"rotation_deg_per_m", of_length.rotation}});
+    json["kitti_segments"] = {{"segments", error.segments},
+                              {"translation_percent", error.translation},
+                              {"rotation_deg_per_m", error.rotation},
+                              {"lengths", lengths}};
+  }
   json["coverage"] = nullptr;
   if (const auto& coverage = evaluation.coverage)
     json["coverage"] = {{"ratio", coverage->ratio()},    {"frames", coverage->frames},
@@ -203,6 +226,11 @@ std::string to_csv(const Evaluation& evaluation) {
   rows.add("rpe_per_way", "omitted_pairs", evaluation.error_per_way.omitted_pairs);
   rows.add("rpe_per_way_translation", evaluation.error_per_way.translation, "m");
   rows.add("rpe_per_way_rotation", evaluation.error_per_way.rotation, "deg");
+  if (const SegmentError& error = evaluation.segment_error; error.segments > 0) {
+    rows.add("kitti_segments", "segments", error.segments);
+    rows.add("kitti_segments", "translation", shortest_text(error.translation), "%");
+    rows.add("kitti_segments", "rotation", shortest_text(error.rotation), "deg/m");
+  }
   if (const auto& coverage = evaluation.coverage) {
     rows.add("coverage", "ratio", shortest_text(coverage->ratio()), "");
     rows.add("coverage", "frames", coverage->frames);

@@ -41,6 +41,19 @@ class NearestTruth {
   std::vector<char> near_;
 };
 
+/// The length of the path to each pose [m].
+std::vector<double> way_to_each(const Trajectory& trajectory) {
+  std::vector<double> way(trajectory.size(), 0.0);
+  for (std::size_t k = 1; k < trajectory.size(); ++k)
+    way[k] = way[k - 1] +
+             (trajectory[k].T_world_camera.translation() - trajectory[k - 1].T_world_camera.translation()).norm();
+  return way;
+}
+
+double angle_of(const Eigen::Matrix3d& rotation) {
+  return std::acos(std::clamp((rotation.trace() - 1.0) / 2.0, -1.0, 1.0)) * 180.0 / std::numbers::pi;
+}
+
 /// Collects the errors of pairs and sums them up.
 class Collector {
  public:
@@ -53,8 +66,7 @@ class Collector {
     const Eigen::Isometry3d truly_moved = truth_[truth_i].T_world_camera.inverse() * truth_[truth_j].T_world_camera;
     const Eigen::Isometry3d error = moved * truly_moved.inverse();
     translation_.push_back(error.translation().norm());
-    const double cosine = std::clamp((error.linear().trace() - 1.0) / 2.0, -1.0, 1.0);
-    rotation_.push_back(std::acos(cosine) * 180.0 / std::numbers::pi);
+    rotation_.push_back(angle_of(error.linear()));
   }
 
   void finish(RelativeError& result) const {
@@ -98,9 +110,7 @@ RelativeError relative_error_per_time(const Trajectory& truth, const Trajectory&
 RelativeError relative_error_per_way(const Trajectory& truth, const Trajectory& estimate, double path_step,
                                      double scale) {
   const NearestTruth nearest(stamps_of(truth), stamps_of(estimate));
-  std::vector<double> way(truth.size(), 0.0);
-  for (std::size_t k = 1; k < truth.size(); ++k)
-    way[k] = way[k - 1] + (truth[k].T_world_camera.translation() - truth[k - 1].T_world_camera.translation()).norm();
+  const std::vector<double> way = way_to_each(truth);
   Collector collector(truth, estimate, scale);
   RelativeError result;
   // The path length never decreases with time, so that the end of the pair never moves back.
@@ -115,6 +125,42 @@ RelativeError relative_error_per_way(const Trajectory& truth, const Trajectory& 
       collector.add(i, j, nearest[i], nearest[j]);
   }
   collector.finish(result);
+  return result;
+}
+
+SegmentError segment_error(const Trajectory& truth, const Trajectory& estimate, double scale) {
+  constexpr double shortest = 100.0, longest = 800.0;  // m; in steps of the shortest
+  constexpr std::size_t stride = 10;
+  const NearestTruth nearest(stamps_of(truth), stamps_of(estimate));
+  const std::vector<double> way = way_to_each(truth);
+  SegmentError result;
+  for (double length = shortest; length <= longest; length += shortest) {
+    SegmentError::OfLength of_length{.length = length};
+    std::size_t j = 0;
+    for (std::size_t i = 0; i < estimate.size(); i += stride) {
+      if (!nearest.is_near(i)) continue;
+      while (j < estimate.size() && (!nearest.is_near(j) || way[nearest[j]] - way[nearest[i]] <= length)) ++j;
+      if (j == estimate.size()) break;
+      Eigen::Isometry3d moved = estimate[i].T_world_camera.inverse() * estimate[j].T_world_camera;
+      moved.translation() *= scale;
+      const Eigen::Isometry3d truly_moved =
+          truth[nearest[i]].T_world_camera.inverse() * truth[nearest[j]].T_world_camera;
+      const Eigen::Isometry3d error = moved.inverse() * truly_moved;
+      ++of_length.segments;
+      of_length.translation += 100.0 * error.translation().norm() / length;
+      of_length.rotation += angle_of(error.linear()) / length;
+    }
+    if (of_length.segments == 0) break;
+    result.segments += of_length.segments;
+    result.translation += of_length.translation;
+    result.rotation += of_length.rotation;
+    of_length.translation /= static_cast<double>(of_length.segments);
+    of_length.rotation /= static_cast<double>(of_length.segments);
+    result.lengths.push_back(of_length);
+  }
+  if (result.segments == 0) return result;
+  result.translation /= static_cast<double>(result.segments);
+  result.rotation /= static_cast<double>(result.segments);
   return result;
 }
 

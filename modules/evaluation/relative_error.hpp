@@ -12,6 +12,9 @@ RelativeError relative_error_per_time(const Trajectory& truth, const Trajectory&
 RelativeError relative_error_per_way(const Trajectory& truth, const Trajectory& estimate, double path_step,
                                      double scale);
 
+/// See SegmentError; the same requirements.
+SegmentError segment_error(const Trajectory& truth, const Trajectory& estimate, double scale);
+
 /// The stamps of a trajectory.
 std::vector<double> stamps_of(const Trajectory& trajectory);
 

@@ -115,6 +115,40 @@ cv::Mat ImageDecoder::read_colour(const std::filesystem::path& file, const SizeC
   return decode(file, bytes_, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION, colour);
 }
 
+cv::Mat ImageDecoder::read_grey_or_colour(const std::filesystem::path& file, const SizeCheck& check_size) {
+  load(file);
+  const ImageStructure image = examine_image(bytes_);
+  require_decodable(file, image);
+  if ((image.channels != 1 && image.channels != 3) || image.bits != 8)
+    throw InputError({file.string()}, "is an image of " + image.to_string() +
+                                          "; expected a grey or colour image, 1 or 3 channels of 8 bits; convert it");
+  if (check_size) check_size({image.width, image.height});
+  cv::Mat decoded;
+  if (image.format == ImageStructure::Format::png && png_->decode(bytes_)) {
+    if (image.channels == 1) return as_image(*png_, CV_8UC1).clone();
+    cv::cvtColor(as_image(*png_, CV_8UC3), decoded, cv::COLOR_RGB2BGR);
+    return decoded;
+  }
+  const int flags = (image.channels == 1 ? cv::IMREAD_GRAYSCALE : cv::IMREAD_COLOR) | cv::IMREAD_IGNORE_ORIENTATION;
+  return decode(file, bytes_, flags, decoded);
+}
+
+cv::Mat ImageDecoder::read_grey(const std::filesystem::path& file, const SizeCheck& check_size) {
+  const cv::Mat decoded = read_grey_or_colour(file, check_size);
+  if (decoded.channels() == 1) return decoded;
+  cv::Mat grey;
+  cv::cvtColor(decoded, grey, cv::COLOR_BGR2GRAY);
+  return grey;
+}
+
+cv::Mat ImageDecoder::read_widened(const std::filesystem::path& file, const SizeCheck& check_size) {
+  const cv::Mat decoded = read_grey_or_colour(file, check_size);
+  if (decoded.channels() == 3) return decoded;
+  cv::Mat colour;
+  cv::cvtColor(decoded, colour, cv::COLOR_GRAY2BGR);
+  return colour;
+}
+
 cv::Mat ImageDecoder::read_depth(const std::filesystem::path& file, double depth_factor, const SizeCheck& check_size) {
   load(file);
   const ImageStructure image = examine_image(bytes_);

@@ -34,16 +34,21 @@ SensorFrame ImageSequence::decode(const ImageFiles& files) {
   SensorFrame frame;
   frame.timestamp = files.timestamp;
   frame.depth_delay = files.depth_delay;
-  frame.colour = read_at(files.colour_listed_at, [&] {
-    return decoder_.read_colour(files.colour, [&](const cv::Size& size) {
+  const auto of_camera_size = [&](const std::filesystem::path& file) {
+    return [&](const cv::Size& size) {
       is_of_other_size_ = size.width != options_.width || size.height != options_.height;
       if (is_of_other_size_)
-        throw InputError({files.colour.string()},
+        throw InputError({file.string()},
                          "is " + size_text(size.width, size.height) + " pixels, but the camera is " +
                              size_text(options_.width, options_.height) +
                              "; give the camera of this recording under `camera:`, or scale the images");
-    });
+    };
+  };
+  frame.colour = read_at(files.colour_listed_at, [&] {
+    return options_.colour_may_be_grey ? decoder_.read_widened(files.colour, of_camera_size(files.colour))
+                                       : decoder_.read_colour(files.colour, of_camera_size(files.colour));
   });
+  if (!files.right.empty()) frame.right = decoder_.read_grey(files.right, of_camera_size(files.right));
   if (files.depth.empty()) return frame;
   frame.depth = read_at(files.depth_listed_at, [&] {
     return decoder_.read_depth(files.depth, options_.depth_factor, [&](const cv::Size& size) {

@@ -14,6 +14,8 @@ std::vector<SectionDescription> pipeline_sections() {
   return {
       {"tracking", "How poses are found, and when a frame becomes a keyframe.",
        ParameterTable<TrackingSettings>().parameters()},
+      {"stereo", "How features get their depth from the right image of a rectified pair.",
+       ParameterTable<StereoSettings>().parameters()},
       {"segmentation", "Which frames the segmenter sees, and when its answer counts.",
        ParameterTable<SegmentationSettings>().parameters()},
       {"evidence", "What becomes of the evidence that filters give.", ParameterTable<EvidenceSettings>().parameters()},
@@ -96,6 +98,7 @@ class ConfigurationReader {
   }
   void choose_settings() {
     builder_.tracking(section<TrackingSettings>("tracking"))
+        .stereo(section<StereoSettings>("stereo"))
         .segmentation(section<SegmentationSettings>("segmentation"))
         .evidence(section<EvidenceSettings>("evidence"))
         .mapping(section<MappingSettings>("mapping"))

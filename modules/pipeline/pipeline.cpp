@@ -43,6 +43,14 @@ MovingWorldParts moving_world_parts(PipelineParts& parts) {
           .threaded = parts.run.threaded()};
 }
 
+std::optional<StereoParts> stereo_parts(const PipelineParts& parts) {
+  if (!parts.is_stereo) return std::nullopt;
+  const bool has_segmenter = dynamic_cast<NullSegmenter*>(parts.segmenter.get()) == nullptr;
+  return StereoParts{.settings = parts.stereo,
+                     .right_features = parts.right_features.get(),
+                     .is_dense = has_segmenter || !parts.filters.empty()};
+}
+
 }  // namespace
 
 struct Pipeline::State {
@@ -60,8 +68,8 @@ struct Pipeline::State {
         map(std::move(parts.map)),
         moving_world(moving_world_parts(parts), map),
         detector(*parts.loop_detector),
-        tracker(parts.tracking,
-                {parts.camera, *parts.features, *parts.optimizer, detector, moving_world, map, parts.run.seed}),
+        tracker(parts.tracking, {parts.camera, *parts.features, *parts.optimizer, detector, moving_world, map,
+                                 parts.run.seed, stereo_parts(parts)}),
         mapper(parts.mapping, parts.tracking.close_depth_factor, map, map_mutex, *parts.optimizer),
         closer(parts.loop_closing, {map, map_mutex, surgery}, detector, *parts.optimizer, parts.run.seed),
         adjustment(parts.loop_closing, {map, map_mutex, surgery}, *parts.optimizer) {

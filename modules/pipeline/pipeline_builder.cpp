@@ -48,6 +48,7 @@ PipelineBuilder& PipelineBuilder::source(const SourceDescription& description) {
   source_camera_ = description.camera;
   source_name_ = description.name;
   has_depth_ = description.has_depth;
+  has_right_ = description.has_right;
   context_.class_names = description.class_names;
   return *this;
 }
@@ -79,6 +80,10 @@ PipelineBuilder& PipelineBuilder::observer(ModuleOf<Observer> module) {
 
 PipelineBuilder& PipelineBuilder::tracking(const TrackingSettings& settings) {
   parts_.tracking = settings;
+  return *this;
+}
+PipelineBuilder& PipelineBuilder::stereo(const StereoSettings& settings) {
+  parts_.stereo = settings;
   return *this;
 }
 PipelineBuilder& PipelineBuilder::segmentation(const SegmentationSettings& settings) {
@@ -154,6 +159,8 @@ void PipelineBuilder::check(const Settings& settings, const char* section) {
 }
 
 void PipelineBuilder::check_camera() {
+  // The baseline of a real pair is the source's; that of the configured camera is of a virtual one.
+  if (source_camera_ && has_right_ && !has_depth_) parts_.camera.baseline = source_camera_->baseline;
   if (source_camera_ && has_camera_ && have_other_numbers(*source_camera_, parts_.camera))
     complain(source_place_, "the source '" + source_name_ +
                                 "' brings its own camera, and 'camera' names one with other numbers; remove one of "
@@ -171,6 +178,7 @@ void PipelineBuilder::check_camera() {
 
 void PipelineBuilder::check_settings() {
   check(parts_.tracking, "tracking");
+  check(parts_.stereo, "stereo");
   check(parts_.segmentation, "segmentation");
   check(parts_.evidence, "evidence");
   check(parts_.mapping, "mapping");
@@ -181,7 +189,7 @@ void PipelineBuilder::check_settings() {
 }
 
 void PipelineBuilder::check_filter(const ModuleOf<DynamicFilter>& module, const Needs& needs) {
-  if (needs.depth && !has_depth_)
+  if (needs.depth && !has_depth_ && !has_right_)
     complain(module.place, "the filter '" + module.name + "' needs depth, which the source '" + source_name_ +
                                "' does not have; remove one of them");
   if (needs.segmentation && is_absent(segmenter_))
@@ -199,6 +207,25 @@ void PipelineBuilder::check_map() const {
                                         "', and the run has '" + parts_.camera.name +
                                         "' with other numbers; expected the same camera");
   });
+}
+
+void PipelineBuilder::choose_sensor() {
+  parts_.is_stereo = !has_depth_ && has_right_;
+  if (!has_depth_ && !has_right_)
+    complain(source_place_, "the source '" + source_name_ +
+                                "' has neither depth nor a right image; this version tracks colour with depth, or a "
+                                "rectified stereo pair");
+  if (!parts_.is_stereo) return;
+  if (parts_.dense_map.enabled)
+    complain(place_, "dense_map needs depth images, and the source '" + source_name_ +
+                         "' has a right image in their place; remove `dense_map`");
+  if (!parts_.camera.distortion.is_zero())
+    complain(place_, "the camera of a stereo pair has distortion; expected rectified images, whose camera has none");
+  // An extractor that was given as an object exists once: it finds the features of one image after the other.
+  if (!features_ || features_->object) return;
+  ModuleOf<FeatureExtractor> right(features_->name, features_->values);
+  right.place = features_->place;
+  parts_.right_features = make(right);
 }
 
 void PipelineBuilder::make_modules() {
@@ -223,10 +250,8 @@ Pipeline PipelineBuilder::build() {
   if (!features_) complain(place_, "features() is missing; choose an extractor, such as 'orb'");
   if (!optimizer_) complain(place_, "optimizer() is missing; choose one, such as 'ceres'");
   check_settings();
+  choose_sensor();
   make_modules();
-  if (!has_depth_)
-    complain(source_place_,
-             "the source '" + source_name_ + "' has no depth; this version tracks colour with depth only");
   if (has_map_ && is_absent(loop_detector_))
     complain(loop_detector_ ? loop_detector_->place : place_,
              "a camera in a loaded map finds its place by place recognition, but the loop detector is 'none'; choose "

@@ -31,6 +31,13 @@ void FrameBuilder::begin(const SensorFrame& sensor_frame, Frame& frame, StageTim
     throw InputError({"frame " + std::to_string(sensor_frame.index)},
                      "the depth image is " + size_text(depth.cols, depth.rows) +
                          "; expected one 32 bit float channel [m] of the colour image's size");
+  const cv::Mat& right = sensor_frame.right;
+  if (stereo_ && ((right.type() != CV_8UC1 && right.type() != CV_8UC3) || right.size() != colour.size()))
+    throw InputError({"frame " + std::to_string(sensor_frame.index)},
+                     right.empty() ? std::string("has no right image; expected one in every frame of a stereo pair")
+                                   : "the right image is " + size_text(right.cols, right.rows) + " with " +
+                                         std::to_string(right.channels()) +
+                                         " channels; expected 1 or 3 channels of 8 bit, of the left image's size");
   const StageTimer timer(times, "frame");
   frame.index = sensor_frame.index;
   frame.timestamp = sensor_frame.timestamp;
@@ -38,18 +45,32 @@ void FrameBuilder::begin(const SensorFrame& sensor_frame, Frame& frame, StageTim
   frame.pyramid = pyramid_;
   frame.T_camera_world.setIdentity();
   cv::cvtColor(colour, grey_, cv::COLOR_BGR2GRAY);
-  coarse_sampler_.sample_depth(depth, frame.coarse);
+  if (!stereo_) {
+    coarse_sampler_.sample_depth(depth, frame.coarse);
+    return;
+  }
+  if (right.channels() == 3)
+    cv::cvtColor(right, grey_right_, cv::COLOR_BGR2GRAY);
+  else
+    grey_right_ = right;
+  coarse_sampler_.sample_depth(stereo_->dense(grey_, grey_right_), frame.coarse);
 }
 
 void FrameBuilder::find_features(const SensorFrame& sensor_frame, const cv::Mat& ignore, Frame& frame,
                                  StageTimes& times) {
   {
     const StageTimer timer(times, "features");
-    extractor_.extract(grey_, ignore, frame.features);
+    if (stereo_)
+      stereo_->extract(grey_, grey_right_, ignore, extractor_, frame);
+    else
+      extractor_.extract(grey_, ignore, frame.features);
   }
   const StageTimer timer(times, "frame");
   undistortion_.undistort(frame.features.x, frame.features.y, frame.x, frame.y);
-  depth_reader_.read(sensor_frame.depth, frame);
+  if (stereo_)
+    stereo_->depth(grey_, grey_right_, frame);
+  else
+    depth_reader_.read(sensor_frame.depth, frame);
   frame.map_points.assign(frame.size(), MapPointId());
   frame.static_probability.assign(frame.size(), 1.0F);
   frame.measured_log_odds.assign(frame.size(), 0.0F);

@@ -28,7 +28,9 @@ Tracker::Tracker(const TrackingSettings& settings, const TrackerParts& parts)
       estimator_(parts.optimizer, parts.moving_world, parts.map),
       relocaliser_(settings, {parts.detector, parts.map, matcher_, estimator_, history_}, parts.seed),
       keyframe_policy_(settings),
-      state_(parts.map.keyframes().empty() ? State::waiting : State::lost) {}
+      state_(parts.map.keyframes().empty() ? State::waiting : State::lost) {
+  if (parts.stereo) builder_.use_stereo(*parts.stereo);
+}
 
 void Tracker::begin(const SensorFrame& sensor_frame, FrameResult& result) {
   result.index = sensor_frame.index;

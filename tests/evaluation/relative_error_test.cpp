@@ -37,6 +37,41 @@ TEST(RelativeError, PerWayOfAConstantDrift) {
   EXPECT_LE(error.pairs, 161u);
 }
 
+TEST(SegmentError, IsAShareOfTheLengthAsInKittisTool) {
+  // 320 m along x, a pose each metre; the estimate is 2 % too long.
+  const Trajectory truth = straight_trajectory(321, 10.0, 10.0), estimate = straight_trajectory(321, 10.0, 10.2);
+  const SegmentError error = evaluate(truth, estimate).segment_error;
+  ASSERT_EQ(error.lengths.size(), 3u);
+  EXPECT_EQ(error.lengths[0].length, 100.0);
+  // The segments begin at 0, 10, ... m and end at the first pose after 100 m.
+  EXPECT_EQ(error.lengths[0].segments, 22u);
+  EXPECT_EQ(error.lengths[2].segments, 2u);
+  EXPECT_EQ(error.segments, 22u + 12u + 2u);
+  EXPECT_NEAR(error.lengths[0].translation, 2.0, 0.021);
+  EXPECT_NEAR(error.lengths[2].translation, 2.0, 0.007);
+  EXPECT_NEAR(error.rotation, 0.0, 1e-6);
+}
+
+TEST(SegmentError, RotationIsPerMetre) {
+  // The estimate turns by a degree between the poses at 50 and 51 m.
+  const Trajectory truth = straight_trajectory(121, 10.0, 10.0);
+  Trajectory estimate = truth;
+  for (std::size_t i = 51; i < estimate.size(); ++i)
+    estimate[i].T_world_camera.linear() =
+        Eigen::AngleAxisd(M_PI / 180.0, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  const SegmentError error = evaluate(truth, estimate).segment_error;
+  ASSERT_EQ(error.lengths.size(), 1u);
+  EXPECT_EQ(error.segments, 2u);
+  EXPECT_NEAR(error.rotation, 0.01, 1e-6);
+}
+
+TEST(SegmentError, AShortPathHasNone) {
+  const TooLong world;
+  const Evaluation evaluation = evaluate(world.truth, world.estimate);
+  EXPECT_EQ(evaluation.segment_error.segments, 0u);
+  EXPECT_EQ(to_text(evaluation).find("KITTI"), std::string::npos);
+}
+
 TEST(RelativeError, TakesTheOrderOfTheBenchmarksTool) {
   // Between i and j the truth goes 1 m along x; the estimate does the same and turns by 90 degrees about z.
   Trajectory truth = straight_trajectory(3, 1.0, 1.0);

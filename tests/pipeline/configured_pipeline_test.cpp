@@ -160,7 +160,7 @@ TEST_F(ConfiguredPipeline, FiltersGetWhatTheyNeed) {
 
 TEST_F(ConfiguredPipeline, DepthIsNeeded) {
   world_.source.has_depth = false;
-  EXPECT_THAT(complaints("camera: tum_fr1\n"), HasSubstr("c.yaml:1:9: the source 'fake' has no depth"));
+  EXPECT_THAT(complaints("camera: tum_fr1\n"), HasSubstr("c.yaml:1:9: the source 'fake' has neither depth nor a right image"));
   world_.needs.depth = true;
   EXPECT_THAT(complaints("camera: tum_fr1\nfilters: [ filter ]\n"),
               HasSubstr("c.yaml:5:12: the filter 'filter' needs depth, which the source 'fake' does not have"));
@@ -187,8 +187,8 @@ TEST_F(ConfiguredPipeline, DescribesItsSections) {
       EXPECT_FALSE(parameter.reject(parameter.default_value).has_value()) << parameter.name;
     }
   }
-  EXPECT_THAT(names,
-              ::testing::ElementsAre("tracking", "segmentation", "evidence", "mapping", "loop_closing", "dense_map"));
+  EXPECT_THAT(names, ::testing::ElementsAre("tracking", "stereo", "segmentation", "evidence", "mapping", "loop_closing",
+                                            "dense_map"));
 }
 
 }  // namespace

@@ -120,7 +120,7 @@ TEST(PipelineBuilder, CameraAndMapMustFit) {
   PipelineBuilder two = builder_for(world);
   const std::string text = complaints(two.source(source));
   EXPECT_THAT(text, HasSubstr("the source 'robot' brings its own camera, and 'camera' names one with other numbers"));
-  EXPECT_THAT(text, HasSubstr("the source 'robot' has no depth"));
+  EXPECT_THAT(text, HasSubstr("the source 'robot' has neither depth nor a right image"));
 
   Map map;
   {

@@ -20,7 +20,8 @@ struct FrameTruth {
   std::vector<std::uint8_t> moving_objects;
 };
 
-/// One pair of images from a camera. The images are shared, not copied, and must not be written to.
+/// The images that a camera, or a stereo pair of cameras, took at one moment. They are shared, not copied, and must not
+/// be written to.
 struct SensorFrame {
   std::uint64_t index = 0;  ///< number of the frame in its source, from 0; skipped frames are counted
   double timestamp = 0.0;   ///< time stamp of the colour image [s]
@@ -29,6 +30,10 @@ struct SensorFrame {
   double depth_delay = 0.0;
   cv::Mat colour;  ///< 8UC3, blue green red
   cv::Mat depth;   ///< 32FC1 along the optical axis [m], 0 = no value; same size as colour; may be empty
+  /// 8UC1 or 8UC3, the image of the right camera of a rectified stereo pair, whose left camera took `colour`: a point
+  /// lies in the same row of both, Camera::baseline * fx / depth columns further left in this one. Same size as colour;
+  /// may be empty.
+  cv::Mat right;
   std::shared_ptr<const FrameTruth> truth;  ///< nullptr if the source has none
 };
 

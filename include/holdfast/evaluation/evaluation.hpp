@@ -60,6 +60,22 @@ struct RelativeError {
   std::size_t omitted_pairs = 0;  ///< per distance: excluded pairs that exceed path_step by more than a tenth
 };
 
+/// The errors of the KITTI odometry benchmark (Geiger et al. 2012, section 3.1, as its tool computes them): over segments
+/// of 100, 200, ... 800 m of true path that begin at every tenth pose, the error inv(E) G of the relative pose (E of the
+/// estimate, G of the truth, from the first to the last pose of the segment), divided by the length of the segment.
+struct SegmentError {
+  struct OfLength {
+    double length = 0.0;       ///< [m]
+    std::size_t segments = 0;  ///< at least 1
+    double translation = 0.0;  ///< mean [% of the length]
+    double rotation = 0.0;     ///< mean [deg/m]
+  };
+  std::vector<OfLength> lengths;  ///< those that the path has segments of, increasing
+  std::size_t segments = 0;       ///< of all lengths; 0 if the path is shorter than 100 m
+  double translation = 0.0;       ///< mean over all segments [% of the length]
+  double rotation = 0.0;          ///< the same [deg/m]
+};
+
 /// Result of evaluate(). The statistics of the absolute error are over `poses`.
 struct Evaluation {
   EvaluationOptions options;
@@ -72,6 +88,7 @@ struct Evaluation {
   Statistics absolute_error;         ///< ATE [m]: distances of the aligned positions
   RelativeError error_per_time;
   RelativeError error_per_way;
+  SegmentError segment_error;
   std::optional<Coverage> coverage;           ///< empty if the frames were not given
   std::vector<TimedPosition> truth_track;     ///< ground truth between the first and the last pose of the estimate
   std::vector<TimedPosition> estimate_track;  ///< all poses of the estimate, aligned

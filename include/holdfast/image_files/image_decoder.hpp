@@ -30,6 +30,11 @@ class ImageDecoder {
   /// Decodes an 8-bit image with three channels to 8UC3, blue green red, in the orientation of the sensor (EXIF is not
   /// applied).
   cv::Mat read_colour(const std::filesystem::path& file, const SizeCheck& check_size = {});
+  /// Decodes an 8-bit image with one or three channels to 8UC1, in the orientation of the sensor. Of colour, the
+  /// weighted mean of OpenCV's conversion to grey.
+  cv::Mat read_grey(const std::filesystem::path& file, const SizeCheck& check_size = {});
+  /// The same for an image with one or three channels to 8UC3; the three channels of a grey image are equal.
+  cv::Mat read_widened(const std::filesystem::path& file, const SizeCheck& check_size = {});
   /// Decodes a 16-bit PNG with one channel to 32FC1 [m]: value / depth_factor, 0 = no value.
   cv::Mat read_depth(const std::filesystem::path& file, double depth_factor, const SizeCheck& check_size = {});
   /// Decodes a PNG of labels to the stored type, 8UC1 or 16UC1. For a PNG with a palette (8 bits, such as those of
@@ -37,6 +42,7 @@ class ImageDecoder {
   cv::Mat read_labels(const std::filesystem::path& file, const SizeCheck& check_size = {});
 
  private:
+  cv::Mat read_grey_or_colour(const std::filesystem::path& file, const SizeCheck& check_size);
   void load(const std::filesystem::path& file);
 
   std::vector<std::uint8_t> bytes_;

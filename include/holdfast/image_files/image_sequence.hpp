@@ -23,6 +23,7 @@ struct ImageFiles {
   std::filesystem::path depth;      ///< empty for a recording without depth
   SourceLocation colour_listed_at;  ///< the line of the list with the image; no file without a list
   SourceLocation depth_listed_at;
+  std::filesystem::path right = {};  ///< of a rectified stereo pair; empty for a recording without
 };
 
 /// How the images of a sequence are read.
@@ -30,7 +31,8 @@ struct ImageSequenceOptions {
   double depth_factor = 5000.0;  ///< value of one metre in a depth image
   int width = 0;                 ///< of every image [px]
   int height = 0;
-  bool skip_bad_frames = false;  ///< skip and count bad frames instead of throwing InputError
+  bool skip_bad_frames = false;     ///< skip and count bad frames instead of throwing InputError
+  bool colour_may_be_grey = false;  ///< grey images are widened to three equal channels
 };
 
 /// Decodes the frames of a recording one by one; the common part of all sources that read image files. Used by one

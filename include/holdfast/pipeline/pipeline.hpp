@@ -23,6 +23,7 @@
 #include "holdfast/mapping/mapping_settings.hpp"
 #include "holdfast/moving_world/evidence_settings.hpp"
 #include "holdfast/moving_world/segmentation_settings.hpp"
+#include "holdfast/tracking/stereo_settings.hpp"
 #include "holdfast/tracking/tracking_settings.hpp"
 
 namespace holdfast {
@@ -33,12 +34,15 @@ class StaticScene;
 struct PipelineParts {
   Camera camera;
   std::unique_ptr<FeatureExtractor> features;
+  bool is_stereo = false;                            ///< depth comes from the right image of a pair
+  std::unique_ptr<FeatureExtractor> right_features;  ///< of a stereo pair; may be nullptr, see StereoParts
   std::unique_ptr<Segmenter> segmenter;
   std::vector<std::pair<std::string, std::unique_ptr<DynamicFilter>>> filters;  ///< by name, in order
   std::unique_ptr<Optimizer> optimizer;
   std::unique_ptr<LoopDetector> loop_detector;
   std::vector<std::unique_ptr<Observer>> observers;
   TrackingSettings tracking;
+  StereoSettings stereo;
   EvidenceSettings evidence;
   SegmentationSettings segmentation;
   MappingSettings mapping;

@@ -79,8 +79,8 @@ class PipelineBuilder {
   PipelineBuilder& camera(const Camera& camera);
   /// A known name, see camera_names().
   PipelineBuilder& camera(const std::string& name);
-  /// The description of the frame source: its camera, whether it has depth, and its class names for the segmenter
-  /// `truth`.
+  /// The description of the frame source: its camera, whether it has depth or a right image, and its class names for
+  /// the segmenter `truth`.
   PipelineBuilder& source(const SourceDescription& description);
 
   PipelineBuilder& features(ModuleOf<FeatureExtractor> module);
@@ -92,6 +92,7 @@ class PipelineBuilder {
   PipelineBuilder& observer(ModuleOf<Observer> module);
 
   PipelineBuilder& tracking(const TrackingSettings& settings);
+  PipelineBuilder& stereo(const StereoSettings& settings);
   PipelineBuilder& segmentation(const SegmentationSettings& settings);
   PipelineBuilder& evidence(const EvidenceSettings& settings);
   PipelineBuilder& mapping(const MappingSettings& settings);
@@ -128,6 +129,7 @@ class PipelineBuilder {
   void make_modules();
   std::unique_ptr<Segmenter> build_segmenter();
   void throw_complaints();
+  void choose_sensor();
   void check_filter(const ModuleOf<DynamicFilter>& module, const Needs& needs);
   void check_map() const;
   void complain(const SourceLocation& place, std::string message);
@@ -138,6 +140,7 @@ class PipelineBuilder {
   std::optional<Camera> source_camera_;
   bool has_camera_ = false;
   bool has_depth_ = true;
+  bool has_right_ = false;
   bool has_map_ = false;
   std::string map_name_ = "the map";
   std::string source_name_;                                          // empty: source() was not called

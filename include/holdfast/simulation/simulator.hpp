@@ -31,8 +31,11 @@ class Simulator {
   /// The images of the sensors with ground truth: the pose, object_mask (numbers of numbered_objects()), class_labels
   /// (indices into class_names()) and the numbered objects that move at this time.
   SensorFrame frame(std::uint64_t index);
+  /// The same with the image of a second camera, `baseline` [m] to the right of the first, in place of depth. Both
+  /// images have noise of their own.
+  SensorFrame stereo_frame(std::uint64_t index, double baseline);
   /// The rendered images without sensor effects.
-  RenderedFrame render(std::uint64_t index);
+  RenderedFrame render(std::uint64_t index) { return render(index, Eigen::Isometry3d::Identity()); }
 
   const World& world() const { return scene_world_.world; }
   const Stage& stage() const { return scene_world_.stage; }
@@ -44,6 +47,11 @@ class Simulator {
   const std::vector<std::string>& class_names() const { return class_names_; }
 
  private:
+  /// Of a camera at the given pose relative to the first.
+  RenderedFrame render(std::uint64_t index, const Eigen::Isometry3d& T_first_camera);
+  /// The colour image with truth, without depth.
+  SensorFrame colour_frame(std::uint64_t index, const RenderedFrame& rendered) const;
+  void sense(cv::Mat& colour, std::uint64_t seed, double time) const;
   bool is_dark(double time) const;
 
   Scene scene_;
@@ -52,6 +60,7 @@ class Simulator {
   CameraPath path_;
   Renderer renderer_;
   std::uint64_t frame_count_ = 0;
+  std::uint64_t depth_seed_ = 0, colour_seed_ = 0, right_seed_ = 0;
   std::vector<std::string> class_names_;
   std::vector<std::uint8_t> mask_values_;   // by object id
   std::vector<std::uint8_t> class_values_;  // by object id

@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 
 #include "holdfast/core/coarse_view.hpp"
 #include "holdfast/core/frame.hpp"
@@ -11,16 +12,20 @@
 #include "holdfast/core/stage_times.hpp"
 #include "holdfast/interfaces/feature_extractor.hpp"
 #include "holdfast/tracking/depth_reader.hpp"
+#include "holdfast/tracking/stereo_depth.hpp"
 #include "holdfast/tracking/undistortion_table.hpp"
 
 namespace holdfast {
 
-/// Makes frames of images: features, undistorted positions, depth, virtual right column, grid. Reuses its buffers and
-/// those of the frame it fills. One thread.
+/// Makes frames of images: features, undistorted positions, depth, right column, grid. Depth comes from the depth
+/// image, or from the right image of a stereo pair. Reuses its buffers and those of the frame it fills. One thread.
 class FrameBuilder {
  public:
   /// The extractor must outlive the builder. depth_edge_ratio: see TrackingSettings.
   FrameBuilder(const Camera& camera, FeatureExtractor& extractor, double depth_edge_ratio);
+
+  /// From now on the right image gives depth in place of the depth image. The camera must have no distortion.
+  void use_stereo(const StereoParts& parts) { stereo_.emplace(*camera_, parts); }
 
   /// Replaces the content of `frame`; poses and map points are reset. The images must have the camera's size
   /// (InputError otherwise). Adds the stages "features" and "frame".
@@ -33,10 +38,11 @@ class FrameBuilder {
   /// The second half; no features where `ignore` (8UC1 of the image's size, or empty) is not 0.
   void find_features(const SensorFrame& sensor_frame, const cv::Mat& ignore, Frame& frame, StageTimes& times);
 
-  /// Reads the depth of the features again, for a camera that moved by T_depth_colour between the exposures of the
-  /// colour and the depth image. Adds to the stage "frame".
+  /// Reads the depth of the features in the depth image again, for a camera that moved by T_depth_colour between the
+  /// exposures of the colour and the depth image. Does nothing for a stereo pair. Adds to the stage "frame".
   void align_depth(const SensorFrame& sensor_frame, const Eigen::Isometry3d& T_depth_colour, Frame& frame,
                    StageTimes& times) const {
+    if (stereo_) return;
     const StageTimer timer(times, "frame");
     depth_reader_.align(sensor_frame.depth, T_depth_colour, frame);
   }
@@ -54,7 +60,9 @@ class FrameBuilder {
   UndistortionTable undistortion_;
   CoarseSampler coarse_sampler_;
   Eigen::Vector2d minimum_, maximum_;
+  std::optional<StereoDepth> stereo_;
   cv::Mat grey_;
+  cv::Mat grey_right_;
 };
 
 }  // namespace holdfast

@@ -31,7 +31,8 @@ struct TrackerParts {
   const LoopDetector& detector;
   MovingWorld& moving_world;
   Map& map;
-  std::uint64_t seed = 1;  ///< of the random samples of relocalisation
+  std::uint64_t seed = 1;                  ///< of the random samples of relocalisation
+  std::optional<StereoParts> stereo = {};  ///< depth comes from a right image
 };
 
 /// Where am I: estimates the pose of every frame against the map (Mur-Artal and Tardos 2017, section III). The motion

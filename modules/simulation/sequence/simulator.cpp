@@ -42,6 +42,8 @@ Simulator::Simulator(const Scene& scene, const Camera& camera)
     throw ConfigurationError(SourceLocation{}, text.str());
   }
   frame_count_ = static_cast<std::uint64_t>(count);
+  Random random = Random(scene_.seed).fork(0x5e4503);
+  depth_seed_ = random.next(), colour_seed_ = random.next(), right_seed_ = random.next();
   class_names_ = simulation::class_names(world());
   mask_values_.assign(world().objects.size() + 1, 0);
   class_values_ = {0};
@@ -63,19 +65,19 @@ Trajectory Simulator::truth() const {
   return trajectory;
 }
 
-RenderedFrame Simulator::render(std::uint64_t index) {
+RenderedFrame Simulator::render(std::uint64_t index, const Eigen::Isometry3d& T_first_camera) {
   const double shutter = scene_.colour_sensor.shutter;
   // Before the first frame the camera stands still, for half a shutter's time.
-  const auto pose = [this](double time) { return path_.pose(std::max(time, 0.0)); };
+  const auto pose = [&](double time) { return path_.pose(std::max(time, 0.0)) * T_first_camera; };
   return renderer_.render(pose, timestamp(index), shutter);
 }
 
-SensorFrame Simulator::frame(std::uint64_t index) {
-  HOLDFAST_CHECK(index < frame_count_, "index " << index << " of " << frame_count_);
-  RenderedFrame rendered = render(index);
-  Random random = Random(scene_.seed).fork(0x5e4503);
-  const std::uint64_t depth_seed = random.next(), colour_seed = random.next();
+void Simulator::sense(cv::Mat& colour, std::uint64_t seed, double time) const {
+  sense_colour(colour, scene_.colour_sensor, seed, time, is_dark(time) ? 0.0 : 1.0);
+}
 
+SensorFrame Simulator::colour_frame(std::uint64_t index, const RenderedFrame& rendered) const {
+  HOLDFAST_CHECK(index < frame_count_, "index " << index << " of " << frame_count_);
   auto truth = std::make_shared<FrameTruth>();
   truth->T_world_camera = T_world_camera(index);
   truth->object_mask = look_up(rendered.object_ids, mask_values_);
@@ -86,10 +88,25 @@ SensorFrame Simulator::frame(std::uint64_t index) {
   SensorFrame frame;
   frame.index = index;
   frame.timestamp = timestamp(index);
-  frame.depth = sense_depth(rendered.depth, rendered.cosine, camera_, scene_.depth_sensor, depth_seed, frame.timestamp);
   frame.colour = rendered.colour;
-  sense_colour(frame.colour, scene_.colour_sensor, colour_seed, frame.timestamp, is_dark(frame.timestamp) ? 0.0 : 1.0);
+  sense(frame.colour, colour_seed_, frame.timestamp);
   frame.truth = std::move(truth);
+  return frame;
+}
+
+SensorFrame Simulator::frame(std::uint64_t index) {
+  const RenderedFrame rendered = render(index);
+  SensorFrame frame = colour_frame(index, rendered);
+  frame.depth =
+      sense_depth(rendered.depth, rendered.cosine, camera_, scene_.depth_sensor, depth_seed_, frame.timestamp);
+  return frame;
+}
+
+SensorFrame Simulator::stereo_frame(std::uint64_t index, double baseline) {
+  SensorFrame frame = colour_frame(index, render(index));
+  const Eigen::Isometry3d T_left_right(Eigen::Translation3d(baseline, 0.0, 0.0));
+  frame.right = render(index, T_left_right).colour;
+  sense(frame.right, right_seed_, frame.timestamp);
   return frame;
 }
 

@@ -4,10 +4,10 @@
 #include "holdfast/core/folder_name.hpp"
 #include "holdfast/image_files/image_list.hpp"
 #include "holdfast/image_files/image_sequence.hpp"
+#include "holdfast/image_files/numbered_files.hpp"
 #include "holdfast/interfaces/frame_source.hpp"
 #include "holdfast/plugin/plugin.hpp"
 #include "intrinsics.hpp"
-#include "numbered_files.hpp"
 
 namespace holdfast {
 

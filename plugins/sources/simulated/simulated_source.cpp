@@ -17,6 +17,7 @@ struct SimulatedSourceSettings {
   std::string path = "as_scene";
   double duration = 0.0;
   std::int64_t seed = 0;
+  double stereo_baseline = 0.0;
   std::vector<std::string> set;
 
   static std::vector<std::string> paths() {
@@ -36,6 +37,11 @@ struct SimulatedSourceSettings {
         .add("seed", &S::seed,
              "seed of textures, small objects, people, path and noise; 0 = the seed of the scene, or else of the run")
         .at_least(0.0);
+    table
+        .add("stereo_baseline", &S::stereo_baseline,
+             "a second camera so far to the right of the first takes the place of the depth sensor; 0 = none")
+        .range(0.0, 10.0)
+        .unit("m");
     table.add("set", &S::set, "values of the scene to override, each \"key.path=value\"");
   }
 };
@@ -43,24 +49,27 @@ struct SimulatedSourceSettings {
 class SimulatedSource final : public FrameSource {
  public:
   SimulatedSource(const SimulatedSourceSettings& settings, const CreationContext& context)
-      : simulator_(scene_of(settings, context), context.camera) {}
+      : simulator_(scene_of(settings, context), context.camera), stereo_baseline_(settings.stereo_baseline) {}
 
   SourceDescription describe() const override {
     const simulation::Scene& scene = simulator_.scene();
     SourceDescription description;
     description.name = "simulated " + scene.name + ", " + simulation::to_string(scene.room) + ", path " +
                        simulation::to_string(scene.camera.path) + ", seed " + std::to_string(scene.seed);
-    description.has_depth = true;
+    description.has_depth = !is_stereo();
+    description.has_right = is_stereo();
     description.can_read_ahead = true;
     description.class_names = simulator_.class_names();
     description.frame_count = simulator_.frame_count();
     description.camera = simulator_.camera();
+    if (is_stereo()) description.camera->baseline = stereo_baseline_;
     return description;
   }
 
   std::optional<SensorFrame> next() override {
     if (next_ >= simulator_.frame_count()) return std::nullopt;
-    return simulator_.frame(next_++);
+    const std::uint64_t index = next_++;
+    return is_stereo() ? simulator_.stereo_frame(index, stereo_baseline_) : simulator_.frame(index);
   }
 
   Trajectory truth() const override { return simulator_.truth(); }
@@ -77,7 +86,10 @@ class SimulatedSource final : public FrameSource {
     return scene;
   }
 
+  bool is_stereo() const { return stereo_baseline_ > 0.0; }
+
   simulation::Simulator simulator_;
+  double stereo_baseline_;
   std::uint64_t next_ = 0;
 };
 

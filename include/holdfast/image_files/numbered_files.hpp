@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace holdfast::folder_plugin {
+namespace holdfast {
 
 /// The numbers in a file name, in their order, without leading zeros: {"12"} for left_0012.png.
 using FileNumbers = std::vector<std::string>;
@@ -44,4 +44,4 @@ std::vector<NumberedFile> find_numbered_files(const std::filesystem::path& folde
 /// Natural order: numbers by their value.
 bool comes_before(const FileNumbers& left, const FileNumbers& right);
 
-}  // namespace holdfast::folder_plugin
+}  // namespace holdfast

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "numbered_files.hpp"
+#include "holdfast/image_files/numbered_files.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -8,7 +8,7 @@
 
 #include "holdfast/core/error.hpp"
 
-namespace holdfast::folder_plugin {
+namespace holdfast {
 
 namespace {
 
@@ -137,4 +137,4 @@ bool comes_before(const FileNumbers& left, const FileNumbers& right) {
                                       });
 }
 
-}  // namespace holdfast::folder_plugin
+}  // namespace holdfast

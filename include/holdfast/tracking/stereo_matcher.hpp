@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "holdfast/core/frame.hpp"
+#include "holdfast/tracking/stereo_settings.hpp"
+
+namespace holdfast {
+
+/// Gives the features of the left image of a rectified pair depth: each is searched for in its row of the right image
+/// by its descriptor, each right feature belongs to at most one left feature, and the column is refined by comparing
+/// image patches, to a fraction of a pixel by a parabola. After Mur-Artal and Tardos 2017, section III-A, who search
+/// along the rows in the same way; here the patches are those of the full image, so that the disparity of coarse
+/// features is as precise as that of fine ones, and differ by a constant brightness at most. Keeps its buffers; one
+/// thread.
+class StereoMatcher {
+ public:
+  explicit StereoMatcher(const StereoSettings& settings) : settings_(settings) {}
+
+  /// Writes frame.depth [m] and frame.right_x [px], which get one entry for each feature. `left` and `right`: 8UC1 of
+  /// the camera's size. The camera must have no distortion.
+  void match(const cv::Mat& left, const cv::Mat& right, const Features& right_features, Frame& frame);
+
+ private:
+  struct Match {
+    std::uint32_t left, right;
+    int distance;  // of the descriptors [bits]
+  };
+  void sort_by_row(const Features& features, int rows);
+  void find_matches(const Frame& frame, const Features& right, float max_disparity);
+  void keep_best_of_each_right_feature(const Features& right);
+  /// The disparity [px] of a match, and how different the patches are; negative for one that cannot be refined.
+  float refine(const cv::Mat& left, const cv::Mat& right, float left_x, float left_y, float right_x, float scale,
+               float& difference) const;
+
+  StereoSettings settings_;
+  std::vector<std::uint32_t> row_begin_, by_row_;  // right features of each row, by counting sort
+  std::vector<Match> matches_;
+  std::vector<std::int32_t> match_of_right_;
+  std::vector<float> disparity_, difference_, sorted_;
+};
+
+}  // namespace holdfast

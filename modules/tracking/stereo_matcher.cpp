@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/tracking/stereo_matcher.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+namespace holdfast {
+
+void StereoMatcher::sort_by_row(const Features& features, int rows) {
+  const auto row_of = [&](std::size_t i) {
+    return static_cast<std::size_t>(std::clamp(static_cast<int>(features.y[i]), 0, rows - 1));
+  };
+  row_begin_.assign(static_cast<std::size_t>(rows) + 1, 0);
+  for (std::size_t i = 0; i < features.size(); ++i) ++row_begin_[row_of(i) + 1];
+  for (std::size_t row = 0; row < static_cast<std::size_t>(rows); ++row) row_begin_[row + 1] += row_begin_[row];
+  by_row_.resize(features.size());
+  for (std::size_t i = features.size(); i-- > 0;) by_row_[--row_begin_[row_of(i) + 1]] = static_cast<std::uint32_t>(i);
+  // The decrements have moved the beginning of each row to its predecessor's place.
+  std::rotate(row_begin_.begin(), row_begin_.begin() + 1, row_begin_.end());
+  row_begin_.back() = static_cast<std::uint32_t>(features.size());
+}
+
+void StereoMatcher::find_matches(const Frame& frame, const Features& right, float max_disparity) {
+  const Features& left = frame.features;
+  const int rows = static_cast<int>(row_begin_.size()) - 1;
+  matches_.clear();
+  for (std::size_t i = 0; i < left.size(); ++i) {
+    const float tolerance = static_cast<float>(settings_.row_tolerance) * frame.pyramid->scale[left.octave[i]];
+    const int first = std::clamp(static_cast<int>(left.y[i] - tolerance), 0, rows - 1);
+    const int last = std::clamp(static_cast<int>(left.y[i] + tolerance), 0, rows - 1);
+    // Both positions have an error of the size of a pixel of their level.
+    const float least = left.x[i] - max_disparity, most = left.x[i] + frame.pyramid->scale[left.octave[i]];
+    Match best{static_cast<std::uint32_t>(i), 0, settings_.maximum_distance + 1};
+    for (std::uint32_t k = row_begin_[static_cast<std::size_t>(first)];
+         k < row_begin_[static_cast<std::size_t>(last) + 1]; ++k) {
+      const std::uint32_t candidate = by_row_[k];
+      if (right.x[candidate] < least || right.x[candidate] > most ||
+          std::abs(right.y[candidate] - left.y[i]) > tolerance ||
+          std::abs(static_cast<int>(right.octave[candidate]) - static_cast<int>(left.octave[i])) > 1)
+        continue;
+      const int distance = hamming_distance(left.descriptors[i], right.descriptors[candidate]);
+      if (distance < best.distance) best.right = candidate, best.distance = distance;
+    }
+    if (best.distance <= settings_.maximum_distance) matches_.push_back(best);
+  }
+}
+
+void StereoMatcher::keep_best_of_each_right_feature(const Features& right) {
+  match_of_right_.assign(right.size(), -1);
+  for (std::size_t k = 0; k < matches_.size(); ++k) {
+    std::int32_t& best = match_of_right_[matches_[k].right];
+    if (best < 0 || matches_[k].distance < matches_[static_cast<std::size_t>(best)].distance)
+      best = static_cast<std::int32_t>(k);
+  }
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < matches_.size(); ++k)
+    if (match_of_right_[matches_[k].right] == static_cast<std::int32_t>(k)) matches_[kept++] = matches_[k];
+  matches_.resize(kept);
+}
+
+float StereoMatcher::refine(const cv::Mat& left, const cv::Mat& right, float left_x, float left_y, float right_x,
+                            float scale, float& difference) const {
+  constexpr int max_reach = 12;
+  const int radius = settings_.patch_radius;
+  const int reach = std::min(max_reach, 2 + static_cast<int>(std::ceil(2.0F * scale)));
+  const int x = static_cast<int>(std::lround(left_x)), y = static_cast<int>(std::lround(left_y));
+  const int there = static_cast<int>(std::lround(right_x));
+  if (y - radius < 0 || y + radius >= left.rows || x - radius < 0 || x + radius >= left.cols) return -1.0F;
+  const int first = std::max(there - reach, radius), last = std::min(there + reach, right.cols - 1 - radius);
+  if (last - first < 2) return -1.0F;
+
+  // The mean difference is that of exposure; what remains is summed up.
+  const int side = 2 * radius + 1, area = side * side;
+  std::array<int, 2 * max_reach + 1> costs{};
+  for (int column = first; column <= last; ++column) {
+    int sum = 0;
+    for (int row = -radius; row <= radius; ++row) {
+      const std::uint8_t* a = left.ptr<std::uint8_t>(y + row) + x - radius;
+      const std::uint8_t* b = right.ptr<std::uint8_t>(y + row) + column - radius;
+      for (int k = 0; k < side; ++k) sum += static_cast<int>(a[k]) - static_cast<int>(b[k]);
+    }
+    const int mean = sum / area;
+    int cost = 0;
+    for (int row = -radius; row <= radius; ++row) {
+      const std::uint8_t* a = left.ptr<std::uint8_t>(y + row) + x - radius;
+      const std::uint8_t* b = right.ptr<std::uint8_t>(y + row) + column - radius;
+      for (int k = 0; k < side; ++k) cost += std::abs(static_cast<int>(a[k]) - static_cast<int>(b[k]) - mean);
+    }
+    costs[static_cast<std::size_t>(column - first)] = cost;
+  }
+  const auto count = static_cast<std::size_t>(last - first + 1);
+  const std::size_t best = static_cast<std::size_t>(
+      std::min_element(costs.begin(), costs.begin() + static_cast<std::ptrdiff_t>(count)) - costs.begin());
+  if (best == 0 || best + 1 == count) return -1.0F;
+  const float before = static_cast<float>(costs[best - 1]), at = static_cast<float>(costs[best]),
+              after = static_cast<float>(costs[best + 1]);
+  const float curvature = before + after - 2.0F * at;
+  const float fraction = curvature > 0.0F ? 0.5F * (before - after) / curvature : 0.0F;
+  difference = at / static_cast<float>(area);
+  return static_cast<float>(x - first - static_cast<int>(best)) - fraction;
+}
+
+void StereoMatcher::match(const cv::Mat& left, const cv::Mat& right, const Features& right_features, Frame& frame) {
+  const std::size_t count = frame.size();
+  frame.depth.assign(count, 0.0F);
+  frame.right_x.assign(count, std::numeric_limits<float>::quiet_NaN());
+  const float fx_baseline = static_cast<float>(frame.camera->fx * frame.camera->baseline);
+  const float max_disparity = fx_baseline / static_cast<float>(settings_.minimum_depth);
+  sort_by_row(right_features, left.rows);
+  find_matches(frame, right_features, max_disparity);
+  keep_best_of_each_right_feature(right_features);
+
+  disparity_.resize(matches_.size());
+  difference_.resize(matches_.size());
+  sorted_.clear();
+  for (std::size_t k = 0; k < matches_.size(); ++k) {
+    const std::size_t i = matches_[k].left;
+    disparity_[k] = refine(left, right, frame.features.x[i], frame.features.y[i], right_features.x[matches_[k].right],
+                           frame.pyramid->scale[frame.features.octave[i]], difference_[k]);
+    if (disparity_[k] >= 0.0F) sorted_.push_back(difference_[k]);
+  }
+  if (sorted_.empty()) return;
+  // Patches that differ much more than those of the others do not show the same surface.
+  const auto middle = sorted_.begin() + static_cast<std::ptrdiff_t>(sorted_.size() / 2);
+  std::nth_element(sorted_.begin(), middle, sorted_.end());
+  const float limit = 2.1F * *middle;  // 1.5 standard deviations of 1.4 medians, as Mur-Artal and Tardos
+  for (std::size_t k = 0; k < matches_.size(); ++k) {
+    const float disparity = disparity_[k];
+    if (disparity < static_cast<float>(settings_.minimum_disparity) || disparity > max_disparity ||
+        difference_[k] > limit)
+      continue;
+    const std::size_t i = matches_[k].left;
+    frame.depth[i] = fx_baseline / disparity;
+    frame.right_x[i] = frame.x[i] - disparity;
+  }
+}
+
+}  // namespace holdfast

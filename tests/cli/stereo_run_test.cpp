@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "cli/program.hpp"
+
+namespace holdfast {
+namespace {
+
+nlohmann::json run_stereo(const test::Program& program, const std::string& output,
+                          const std::vector<std::string>& settings) {
+  std::vector<std::string> arguments{"run", std::string(HOLDFAST_EXAMPLE_CONFIGURATIONS) + "/stereo.yaml"};
+  for (const std::string& setting : settings) arguments.insert(arguments.end(), {"--set", setting});
+  arguments.insert(arguments.end(), {"--output", output, "--quiet"});
+  const test::Outcome outcome = program.run(arguments);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  return nlohmann::json::parse(program.text(output + "/run.json"));
+}
+
+TEST(StereoRun, DrivesAlongARealStreetAndTwiceTheSame) {
+  const char* data = std::getenv("HOLDFAST_DATA");
+  if (data == nullptr) GTEST_SKIP() << "HOLDFAST_DATA does not name the folder with kitti_stereo_51";
+  const test::Program program;
+  const std::vector<std::string> street{std::string("source.kitti.path=") + data + "/kitti_stereo_51"};
+  const nlohmann::json summary = run_stereo(program, "a", street);
+  EXPECT_EQ(summary.at("frames").at("poses"), 51);
+  EXPECT_LE(summary.at("evaluation").at("ate_m").at("rmse"), 0.25);  // of a way of 60 m
+  run_stereo(program, "b", street);
+  EXPECT_EQ(program.text("a/trajectory.txt"), program.text("b/trajectory.txt"));
+}
+
+TEST(StereoRun, ASimulatedPairIsTrackedToAMillimetre) {
+  const test::Program program;
+  const nlohmann::json summary =
+      run_stereo(program, "out",
+                 {"source={simulated: {path: xyz, duration: 4, stereo_baseline: 0.11, seed: 1}}", "camera=tum_fr3"});
+  EXPECT_EQ(summary.at("frames").at("poses"), 120);
+  EXPECT_LE(summary.at("evaluation").at("ate_m").at("rmse"), 0.003);
+}
+
+TEST(StereoRun, FiltersWorkOnTheDepthOfThePair) {
+  // Two people walk through the view of the pair.
+  const test::Program program;
+  const std::vector<std::string> walkers{
+      "source={simulated: {scene: " + std::string(HOLDFAST_EXAMPLE_CONFIGURATIONS) +
+          "/../scenes/walking_static.yaml, duration: 6, stereo_baseline: 0.11, seed: 1}}",
+      "camera=tum_fr3"};
+  std::vector<std::string> with_filters = walkers;
+  with_filters.insert(with_filters.end(), {"segmenter=truth", "filters=[{semantic_mask: {}}, {multi_view_depth: {}}]",
+                                           "tracking.minimum_inliers=15"});
+  const auto error = [](const nlohmann::json& summary) {
+    return summary.at("evaluation").at("ate_m").at("rmse").get<double>();
+  };
+  const double without = error(run_stereo(program, "without", walkers));
+  EXPECT_LE(error(run_stereo(program, "with", with_filters)), std::min(0.01, without / 3.0)) << "without: " << without;
+}
+
+}  // namespace
+}  // namespace holdfast

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/tracking/stereo_matcher.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <opencv2/imgproc.hpp>
+
+#include "holdfast/core/random.hpp"
+
+namespace holdfast {
+namespace {
+
+constexpr int width = 320, height = 240;
+
+/// A pair of images of one texture, whose disparity changes from row to row, and features with descriptors of their
+/// own.
+class StereoMatcherTest : public ::testing::Test {
+ protected:
+  StereoMatcherTest() : left_(height, width, CV_8UC1) {
+    Camera camera;
+    camera.width = width, camera.height = height;
+    camera.fx = camera.fy = 200.0;
+    camera.cx = 160.0, camera.cy = 120.0;
+    camera.baseline = 0.1;
+    frame_.camera = std::make_shared<const Camera>(camera);
+    frame_.pyramid = std::make_shared<const ScalePyramid>();
+    for (int row = 0; row < height; ++row)
+      for (int column = 0; column < width; ++column)
+        left_.at<std::uint8_t>(row, column) = static_cast<std::uint8_t>(random_.next() % 200);
+    cv::GaussianBlur(left_, left_, cv::Size(), 1.5);
+    cv::normalize(left_, left_, 10, 200, cv::NORM_MINMAX);
+    cv::Mat map_x(height, width, CV_32FC1), map_y(height, width, CV_32FC1);
+    for (int row = 0; row < height; ++row)
+      for (int column = 0; column < width; ++column) {
+        map_x.at<float>(row, column) = static_cast<float>(column) + disparity_at(static_cast<float>(row));
+        map_y.at<float>(row, column) = static_cast<float>(row);
+      }
+    cv::remap(left_, right_, map_x, map_y, cv::INTER_CUBIC, cv::BORDER_REFLECT);
+    right_ += cv::Scalar(12);  // its exposure differs
+    for (int y = 20; y < height - 20; y += 20)
+      for (int x = 60; x < width - 20; x += 20) add(static_cast<float>(x), static_cast<float>(y));
+  }
+
+  static float disparity_at(float row) { return 8.0F + 0.043F * row; }
+
+  void add(float x, float y) {
+    Descriptor descriptor;
+    for (std::uint64_t& word : descriptor.words) word = random_.next();
+    // The keypoint in the right image is off by up to a pixel.
+    const auto noise = [&] { return static_cast<float>(random_.uniform(-1.0, 1.0)); };
+    push(frame_.features, x, y, descriptor);
+    push(right_features_, x - disparity_at(y) + noise(), y + noise(), descriptor);
+    frame_.x.push_back(x), frame_.y.push_back(y);
+  }
+  static void push(Features& features, float x, float y, const Descriptor& descriptor) {
+    features.x.push_back(x), features.y.push_back(y), features.angle.push_back(0), features.response.push_back(1);
+    features.octave.push_back(0), features.descriptors.push_back(descriptor);
+  }
+  void match(const StereoSettings& settings = {}) {
+    StereoMatcher(settings).match(left_, right_, right_features_, frame_);
+  }
+  std::size_t with_depth() const {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < frame_.size(); ++i) count += frame_.has_depth(i) ? 1 : 0;
+    return count;
+  }
+
+  Random random_{7};
+  cv::Mat left_, right_;
+  Frame frame_;
+  Features right_features_;
+};
+
+TEST_F(StereoMatcherTest, TheDisparityIsThatOfTheImagesNotThatOfTheKeypoints) {
+  match();
+  EXPECT_GT(with_depth(), frame_.size() * 9 / 10);
+  for (std::size_t i = 0; i < frame_.size(); ++i) {
+    if (!frame_.has_depth(i)) continue;
+    const float disparity = frame_.x[i] - frame_.right_x[i];
+    EXPECT_NEAR(disparity, disparity_at(frame_.y[i]), 0.15F) << i;
+    EXPECT_NEAR(frame_.depth[i], 20.0F / disparity, 1e-4F) << i;
+  }
+}
+
+TEST_F(StereoMatcherTest, AFeatureWithoutItsLikeInTheRowHasNoDepth) {
+  right_features_.descriptors[5].words = {1, 2, 3, 4};
+  right_features_.y[6] += 5.0F;
+  right_features_.octave[7] = 3;
+  right_features_.x[8] += 40.0F;
+  match();
+  for (const std::size_t i : {5U, 6U, 7U, 8U}) {
+    EXPECT_FALSE(frame_.has_depth(i)) << i;
+    EXPECT_TRUE(std::isnan(frame_.right_x[i])) << i;
+  }
+}
+
+TEST_F(StereoMatcherTest, ARightFeatureBelongsToTheLeftOneThatIsMoreAlike) {
+  // Feature 1 has the descriptor of feature 0 but for one bit, and stands beside it.
+  frame_.features.x[1] = frame_.x[1] = frame_.x[0] + 1.0F;
+  frame_.features.descriptors[1] = frame_.features.descriptors[0];
+  frame_.features.descriptors[1].words[0] ^= 1U;
+  right_features_.descriptors[1].words = {1, 2, 3, 4};
+  match();
+  EXPECT_TRUE(frame_.has_depth(0));
+  EXPECT_FALSE(frame_.has_depth(1));
+}
+
+TEST_F(StereoMatcherTest, DepthsOutsideTheRangeAreLeftOut) {
+  StereoSettings near;
+  near.minimum_depth = 20.0 / 12.0;  // 12 px
+  match(near);
+  EXPECT_LT(with_depth(), frame_.size() * 6 / 10);
+  for (std::size_t i = 0; i < frame_.size(); ++i) {
+    if (frame_.has_depth(i)) EXPECT_LE(frame_.x[i] - frame_.right_x[i], 12.0F);
+  }
+  StereoSettings far;
+  far.minimum_disparity = 12.0;
+  match(far);
+  for (std::size_t i = 0; i < frame_.size(); ++i) {
+    if (frame_.has_depth(i)) EXPECT_GE(frame_.x[i] - frame_.right_x[i], 12.0F);
+  }
+}
+
+TEST_F(StereoMatcherTest, WithoutRightFeaturesNothingHasDepth) {
+  right_features_.clear();
+  match();
+  EXPECT_EQ(with_depth(), 0U);
+}
+
+}  // namespace
+}  // namespace holdfast
