@@ -4,8 +4,9 @@
 # program with an error. What the libraries below us do to themselves is listed in
 # cmake/thread_sanitizer_suppressions.txt.
 #
-#   sh tests/sanitizers.sh            everything: all quick tests and all runs with the address and the undefined
-#                                     behaviour sanitizer, then the threaded runs with the thread sanitizer
+#   sh tests/sanitizers.sh            everything, which is both of these:
+#   sh tests/sanitizers.sh --address  all quick tests and all runs with the address and the undefined behaviour sanitizer
+#   sh tests/sanitizers.sh --thread   the tests that start threads, and threaded runs, with the thread sanitizer
 #   sh tests/sanitizers.sh --quick    a selection that compiles in minutes, with the address and the undefined behaviour
 #                                     sanitizer: the tests of the pipeline, which run it sequentially and in threads,
 #                                     and the replays of tests/fuzz that need neither the program nor its plugins
@@ -15,9 +16,9 @@ set -eu
 
 cd "$(dirname "$0")/.."
 case "${1:-}" in
-  '') quick=no ;;
-  --quick) quick=yes ;;
-  *) sed -n '3,13s/^# \{0,1\}//p' tests/sanitizers.sh >&2; exit 2 ;;
+  '') parts="address thread" ;;
+  --quick | --address | --thread) parts=${1#--} ;;
+  *) sed -n '3,15s/^# \{0,1\}//p' tests/sanitizers.sh >&2; exit 2 ;;
 esac
 root=$PWD
 jobs=$(nproc)
@@ -60,7 +61,7 @@ run() {
     --set segmenter=truth --set "run.mode=$3"
 }
 
-if [ "$quick" = yes ]; then
+test_quick() {
   flags="-O1 -DNDEBUG"  # without line numbers it compiles faster; the full mode tells them
   # The program and the plugins are most of what there is to compile.
   borders="image_header image_lists map_file onnx_signature override plugin_record trajectory"
@@ -69,7 +70,9 @@ if [ "$quick" = yes ]; then
   for border in $borders; do
     step "asan: fuzz_$border" "build-asan/tests/fuzz_$border" "tests/fuzz/corpus/$border"
   done
-else
+}
+
+test_address() {
   build asan all
   step "asan: quick tests" ctest --test-dir build-asan --parallel "$jobs" --output-on-failure --no-tests=error \
     --label-regex '^quick$'
@@ -91,12 +94,18 @@ sequences:
 END
   step "asan: bench" build-asan/bin/holdfast bench "$work/matrix.yaml" --output "$work/bench"
   step "asan: bench again" build-asan/bin/holdfast bench "$work/matrix.yaml" --output "$work/bench" --resume
-  build tsan holdfast_program pipeline_test run_library_test busy_threads_test
-  for test in pipeline_test run_library_test busy_threads_test; do
+}
+
+test_thread() {
+  tests="pipeline_test run_library_test prefetch_test busy_threads_test stop_test"
+  build tsan holdfast_program $tests
+  for test in $tests; do
     step "tsan: $test" "build-tsan/tests/$test"
   done
   for configuration in full paper objects; do run tsan "$configuration" threaded 2; done
-fi
+}
+
+for part in $parts; do "test_$part"; done
 
 [ "$failures" -eq 0 ] && echo "No sanitizer has a report." || echo "$failures steps failed: see above." >&2
 exit "$((failures > 0))"
