@@ -19,24 +19,24 @@ namespace holdfast {
 
 namespace {
 
-using Bytes = std::vector<std::uint8_t>;
+using Buffer = std::vector<std::uint8_t>;
 
-std::size_t big_endian(const std::uint8_t* p) {
+std::size_t number_at(const std::uint8_t* p) {
   return std::size_t{p[0]} << 24 | std::size_t{p[1]} << 16 | std::size_t{p[2]} << 8 | p[3];
 }
 
-void append_big_endian(Bytes& to, std::size_t value) {
+void append_big_endian(Buffer& to, std::size_t value) {
   for (const int shift : {24, 16, 8, 0}) to.push_back(static_cast<std::uint8_t>(value >> shift));
 }
 
 /// What the pixels of a file depend on.
 struct Parts {
   std::span<const std::uint8_t> header;  ///< the 13 bytes of IHDR
-  Bytes palette;                         ///< of PLTE; empty where the pixels are no indices
-  Bytes compressed;                      ///< of all IDAT chunks
+  Buffer palette;                        ///< of PLTE; empty where the pixels are no indices
+  Buffer compressed;                     ///< of all IDAT chunks
 
-  std::size_t width() const { return big_endian(header.data()); }
-  std::size_t height() const { return big_endian(&header[4]); }
+  std::size_t width() const { return number_at(header.data()); }
+  std::size_t height() const { return number_at(&header[4]); }
   std::size_t bits_per_pixel() const {
     const int colour_type = header[9];
     const std::size_t channels = colour_type == 2 ? 3 : colour_type == 4 ? 2 : colour_type == 6 ? 4 : 1;
@@ -49,7 +49,7 @@ struct Parts {
 Parts parts_of(std::span<const std::uint8_t> file) {
   Parts parts;
   for (std::size_t at = 8; file.size() - at >= 12;) {
-    const std::size_t length = big_endian(&file[at]);
+    const std::size_t length = number_at(&file[at]);
     const std::string_view name(reinterpret_cast<const char*>(&file[at + 4]), 4);
     const std::span<const std::uint8_t> data = file.subspan(at + 8, length);
     if (name == "IHDR") parts.header = data;
@@ -88,13 +88,13 @@ std::vector<Pass> passes_of(const Parts& parts) {
 }
 
 /// The filtered rows of all passes; nothing where the data are damaged. Data after the end of the stream are allowed.
-std::optional<Bytes> filtered_rows(const Parts& parts) {
+std::optional<Buffer> filtered_rows(const Parts& parts) {
   const std::vector<Pass> passes = passes_of(parts);
   std::size_t size = 0;
   for (const Pass& pass : passes) size += pass.size();
   constexpr std::size_t best_compression = 1032;  // of deflate
   if (size > best_compression * parts.compressed.size()) return {};
-  Bytes rows(size);
+  Buffer rows(size);
   const std::unique_ptr<libdeflate_decompressor, void (*)(libdeflate_decompressor*)> decompressor(
       libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
   std::size_t decompressed = 0;
@@ -111,9 +111,9 @@ std::optional<Bytes> filtered_rows(const Parts& parts) {
 }
 
 /// A stream of zlib (RFC 1950) that holds the bytes in stored blocks (RFC 1951, section 3.2.4).
-Bytes stored_stream(const Bytes& content) {
+Buffer stored_stream(const Buffer& content) {
   constexpr std::size_t largest_block = 65535;
-  Bytes stream = {0x78, 0x01};
+  Buffer stream = {0x78, 0x01};
   stream.reserve(content.size() + content.size() / largest_block * 5 + 16);
   for (std::size_t at = 0; at < content.size();) {
     const std::size_t length = std::min(content.size() - at, largest_block);
@@ -128,7 +128,7 @@ Bytes stored_stream(const Bytes& content) {
   return stream;
 }
 
-void append_chunk(Bytes& to, std::string_view name, std::span<const std::uint8_t> data) {
+void append_chunk(Buffer& to, std::string_view name, std::span<const std::uint8_t> data) {
   append_big_endian(to, data.size());
   const std::size_t begin = to.size();
   to.insert(to.end(), name.begin(), name.end());
@@ -140,9 +140,9 @@ void append_chunk(Bytes& to, std::string_view name, std::span<const std::uint8_t
 
 std::optional<std::vector<std::uint8_t>> plain_png(std::span<const std::uint8_t> file) {
   const Parts parts = parts_of(file);
-  const std::optional<Bytes> rows = filtered_rows(parts);
+  const std::optional<Buffer> rows = filtered_rows(parts);
   if (!rows) return {};
-  Bytes plain(file.begin(), file.begin() + 8);  // the signature
+  Buffer plain(file.begin(), file.begin() + 8);  // the signature
   plain.reserve(rows->size() + rows->size() / 1000 + 1024);
   append_chunk(plain, "IHDR", parts.header);
   if (parts.is_indexed()) append_chunk(plain, "PLTE", parts.palette);
