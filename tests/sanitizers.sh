@@ -8,8 +8,8 @@
 #   sh tests/sanitizers.sh --address  all quick tests and all runs with the address and the undefined behaviour sanitizer
 #   sh tests/sanitizers.sh --thread   the tests that start threads, and threaded runs, with the thread sanitizer
 #   sh tests/sanitizers.sh --quick    a selection that compiles in minutes, with the address and the undefined behaviour
-#                                     sanitizer: the tests of the pipeline, which run it sequentially and in threads,
-#                                     and the replays of tests/fuzz that need neither the program nor its plugins
+#                                     sanitizer: a sequential and a threaded run, the tests of the pipeline and of
+#                                     readers, and the replays of tests/fuzz that do not need the program
 #
 # Environment: CXX (clang++ by default, which compiles this in two thirds of the time of g++); CCACHE=ON uses ccache.
 set -eu
@@ -49,7 +49,7 @@ step() {
 build() {
   preset=$1
   shift
-  cmake --preset "$preset" -DCMAKE_CXX_COMPILER="$CXX" -DHOLDFAST_BUILD_TESTS=ON -DHOLDFAST_BUILD_EXAMPLES=OFF \
+  cmake --preset "$preset" -DCMAKE_CXX_COMPILER="$CXX" -DHOLDFAST_BUILD_TESTS=ON -DHOLDFAST_BUILD_EXAMPLES=ON \
     ${CCACHE:+-DCMAKE_CXX_COMPILER_LAUNCHER=ccache} ${flags:+"-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=$flags"}
   cmake --build "build-$preset" --parallel "$jobs" --target "$@"
 }
@@ -63,10 +63,23 @@ run() {
 
 test_quick() {
   flags="-O1 -DNDEBUG"  # without line numbers it compiles faster; the full mode tells them
-  # The program and the plugins are most of what there is to compile.
-  borders="image_header image_lists map_file onnx_signature override plugin_record trajectory"
-  build asan pipeline_test $(printf 'fuzz_%s ' $borders)
-  step "asan: pipeline_test" build-asan/tests/pipeline_test
+  # Without the program and the bench, which are half of what there is to compile.
+  borders="configuration image_header image_lists map_file onnx_signature override plugin_record scene trajectory"
+  build asan pipeline_test config_test map_io_test sources_test holdfast_example_run_and_report \
+    $(printf 'fuzz_%s ' $borders)
+  for test in pipeline_test config_test map_io_test sources_test; do
+    step "asan: $test" "build-asan/tests/$test"
+  done
+  for mode in sequential threaded; do
+    grep -v '^\(source\|camera\|segmenter\|run\):' examples/configs/full.yaml > "$work/$mode.yaml"
+    cat >> "$work/$mode.yaml" <<END
+source: { simulated: { scene: $root/examples/scenes/walking_xyz.yaml, duration: 1 } }
+camera: { width: 320, height: 240, fx: 270, fy: 270, cx: 159.5, cy: 119.5 }
+segmenter: truth
+run: { mode: $mode }
+END
+    step "asan: a $mode run" build-asan/examples/run_and_report "$work/$mode.yaml" "$work/$mode"
+  done
   for border in $borders; do
     step "asan: fuzz_$border" "build-asan/tests/fuzz_$border" "tests/fuzz/corpus/$border"
   done
