@@ -73,7 +73,7 @@ test_quick() {
   for mode in sequential threaded; do
     grep -v '^\(source\|camera\|segmenter\|run\):' examples/configs/full.yaml > "$work/$mode.yaml"
     cat >> "$work/$mode.yaml" <<END
-source: { simulated: { scene: $root/examples/scenes/walking_xyz.yaml, duration: 1 } }
+source: { simulated: { scene: $root/examples/scenes/walking_xyz.yaml, duration: 0.5 } }
 camera: { width: 320, height: 240, fx: 270, fy: 270, cx: 159.5, cy: 119.5 }
 segmenter: truth
 run: { mode: $mode }
