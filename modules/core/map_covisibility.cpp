@@ -49,12 +49,19 @@ void Map::update_covisibility(KeyFrameId id, int minimum_weight) {
   if (keyframe.sequence == 0 || keyframe.parent.valid()) return;
   // The parent is the strongest neighbour that is older, so that the spanning tree has no cycle.
   for (const CovisibilityEdge& edge : keyframe.covisible) {
-    KeyFrame& neighbour = keyframes_.at(edge.keyframe);
-    if (neighbour.sequence >= keyframe.sequence) continue;
-    keyframe.parent = edge.keyframe;
-    neighbour.children.push_back(id);
+    if (keyframes_.at(edge.keyframe).sequence >= keyframe.sequence) continue;
+    hang_on(id, edge.keyframe);
     return;
   }
+}
+
+void Map::hang_on(KeyFrameId id, KeyFrameId older) {
+  KeyFrame& keyframe = keyframes_.at(id);
+  KeyFrame& parent = keyframes_.at(older);
+  HOLDFAST_CHECK(!keyframe.parent.valid() && parent.sequence < keyframe.sequence,
+                 "keyframe " << keyframe.sequence << " cannot become a child of keyframe " << parent.sequence);
+  keyframe.parent = older;
+  parent.children.push_back(id);
 }
 
 void Map::find_new_parents(KeyFrameId removed) {

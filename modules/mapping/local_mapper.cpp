@@ -17,6 +17,11 @@ KeyFrameId LocalMapper::insert(const Frame& frame, bool points_wait, StageTimes&
   for (const MapPointId point : map_.keyframe(keyframe).frame.map_points)
     if (point.valid()) map_.update_point(point);
   map_.update_covisibility(keyframe, settings_.covisibility_minimum);
+  if (map_.keyframes().size() > 1 && !map_.keyframe(keyframe).parent.valid()) {
+    // Where the map ended, odometry goes on from the last keyframe.
+    const std::vector<KeyFrameId> by_age = map_.keyframes_by_age();
+    map_.hang_on(keyframe, by_age[by_age.size() - 2]);
+  }
   map_.touch();
   return keyframe;
 }

@@ -25,6 +25,7 @@ std::vector<KeyFrameId> LocalMapper::fusion_targets(KeyFrameId id) const {
   };
   const std::vector<KeyFrameId> neighbours = map_.best_covisible(id, settings_.neighbours);
   for (const KeyFrameId neighbour : neighbours) take(neighbour);
+  if (neighbours.empty() && map_.keyframe(id).parent.valid()) take(map_.keyframe(id).parent);
   for (const KeyFrameId neighbour : neighbours)
     for (const KeyFrameId second : map_.best_covisible(neighbour, settings_.second_neighbours)) take(second);
   return targets;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -10,6 +11,13 @@
 #include "holdfast/matching/frame_features.hpp"
 
 namespace holdfast {
+
+namespace {
+
+/// Times minimum_inliers: so many features that agree with a pose need no other support.
+constexpr int sure_inliers = 4;
+
+}  // namespace
 
 Tracker::Tracker(const TrackingSettings& settings, const TrackerParts& parts)
     : settings_(settings),
@@ -43,6 +51,7 @@ void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
   if (history_.has_previous()) previous_.T_camera_world = history_.last_pose(map_);
   TrackedView view{sensor_frame, history_.has_previous() ? &previous_ : nullptr, current_};
   moving_world_.evaluate(FilterStage::before_matching, view, result.times);
+  odometry_extends_map_ = false;
   const bool found = find_pose(view, result);
   if (!found && was_lost_at_start() && start_map(coasting_pose(), result)) {
     end_frame(result);
@@ -52,9 +61,9 @@ void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
   result.status = found ? TrackingStatus::tracked : TrackingStatus::lost;
   if (found) {
     const StageTimer timer(result.times, "keyframe");
-    const bool by_features = result.inliers >= settings_.minimum_inliers;
-    if (by_features) last_feature_time_ = current_.timestamp;
-    result.is_keyframe = by_features && !localises_only_ && needs_keyframe(result);
+    const bool on_map = result.inliers >= settings_.minimum_inliers;
+    result.is_keyframe = !localises_only_ && (on_map ? needs_keyframe(result) : odometry_extends_map_);
+    if (on_map || result.is_keyframe) last_feature_time_ = current_.timestamp;
     result.trouble = TrackingTrouble::none;
     result.objects = moving_world_.objects();
     if (result.is_keyframe) matcher_.local_map().write_counts(map_);  // local mapping evaluates points by them
@@ -153,9 +162,15 @@ bool Tracker::track_odometry(TrackedView& view, FrameResult& result) {
   matcher_.match_local_map(static_cast<float>(settings_.local_map_window), current_);
   // Points of one frame are less certain than those of the map: twice as many have to agree.
   const int inliers = estimator_.adjust(current_, odometry_);
-  if (inliers < 2 * settings_.minimum_inliers || estimator_.position_deviation() > settings_.maximum_deviation ||
+  if (inliers < 2 * settings_.minimum_inliers || contradicts_motion(inliers) ||
+      estimator_.position_deviation() > settings_.maximum_deviation ||
       moving_world_.contradicts_depth(current_, inliers, false, reference_keyframe_))
     return false;
+  // Where the map ends, the camera would be lost before long; a pose as certain as this begins new map.
+  constexpr int certain_inliers = 8;          // times minimum_inliers
+  constexpr double certain_deviation = 0.25;  // of maximum_deviation
+  odometry_extends_map_ = inliers >= certain_inliers * settings_.minimum_inliers &&
+                          estimator_.position_deviation() <= certain_deviation * settings_.maximum_deviation;
   result.method = TrackingMethod::motion_model;
   result.fallback = TrackingFallback::odometry;
   result.matches = estimator_.matches();
@@ -229,14 +244,27 @@ bool Tracker::predict_with_reference(FrameResult& result) {
 void Tracker::evaluate_with_pose(const TrackedView& view, FrameResult& result) {
   if (!moving_world_.has(FilterStage::with_pose)) return;
   if (history_.has_velocity()) {
-    const PosePrediction prediction{predicted_pose(),
-                                    previous_.T_world_camera()};
+    const PosePrediction prediction{predicted_pose(), previous_.T_world_camera()};
     moving_world_.check_pose(prediction, reference_keyframe_, current_, result.times);
   }
   moving_world_.evaluate(FilterStage::with_pose, view, result.times);
   const Eigen::Isometry3d evaluated_with = current_.T_camera_world;
   if (estimator_.adjust(current_) < settings_.minimum_matches / 2) current_.T_camera_world = evaluated_with;
   estimator_.drop_outliers(current_);
+}
+
+bool Tracker::contradicts_motion(int inliers) const {
+  // Two groups of features move rigidly where a person fills much of the view, and the person's may be the larger one.
+  // A camera has inertia: from one frame to the next, its velocity changes by little.
+  if (inliers >= sure_inliers * settings_.minimum_inliers || !history_.has_previous() || !history_.has_velocity())
+    return false;
+  constexpr double frame_interval = 1.0 / 30.0, max_interval = 0.2;  // s; later, the prediction says little
+  const double interval = current_.timestamp - history_.last_timestamp();
+  if (interval > max_interval) return false;
+  const Eigen::Isometry3d change = current_.T_camera_world * predicted_pose().inverse();
+  const double frames = std::max(1.0, interval / frame_interval);
+  return change.translation().norm() > settings_.jump_distance * frames ||
+         Eigen::AngleAxisd(change.linear()).angle() > settings_.jump_angle * std::numbers::pi / 180.0 * frames;
 }
 
 bool Tracker::track_local_map(const TrackedView& view, FrameResult& result) {
@@ -255,7 +283,10 @@ bool Tracker::track_local_map(const TrackedView& view, FrameResult& result) {
   estimator_.drop_outliers(current_);
   matcher_.local_map().count_found(current_);
   const bool was_lost = result.method == TrackingMethod::recovered || result.method == TrackingMethod::relocalised;
-  if (result.inliers < settings_.minimum_inliers || estimator_.position_deviation() > settings_.maximum_deviation ||
+  // A wide search finds some agreement anywhere: twice as many have to agree.
+  const int required = was_lost ? 2 * settings_.minimum_inliers : settings_.minimum_inliers;
+  if (result.inliers < required || (!was_lost && contradicts_motion(result.inliers)) ||
+      estimator_.position_deviation() > settings_.maximum_deviation ||
       moving_world_.contradicts_depth(current_, result.inliers, was_lost, reference_keyframe_)) {
     result.trouble = TrackingTrouble::few_inliers;
     return false;

@@ -47,6 +47,13 @@ void describe_poses(ParameterTable<S>& table) {
       .range(1e-4, 1000)
       .unit("m");
   table
+      .add("jump_distance", &S::jump_distance,
+           "a pose with fewer inliers than four times minimum_inliers is rejected if it is farther than this from the "
+           "prediction of constant velocity, per 1/30 s")
+      .range(0.001, 1000)
+      .unit("m");
+  table.add("jump_angle", &S::jump_angle, "the same for the rotation").range(0.01, 360).unit("deg");
+  table
       .add("odometry_time", &S::odometry_time,
            "time for which poses can be based on the previous frame alone, because too little of the map is in view; "
            "0 = never")

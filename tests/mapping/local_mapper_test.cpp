@@ -86,6 +86,17 @@ TEST_F(LocalMapperTest, PointsSeenTwiceBecomeOne) {
   EXPECT_GT(seen_twice, first * 8 / 10);
 }
 
+TEST_F(LocalMapperTest, AKeyframeThatMatchesNothingHangsOnTheLastOne) {
+  // Its pose is by odometry: what both keyframes show is found by fusion.
+  const KeyFrameId first = add_keyframe(frame_at(beside(0)));
+  const std::size_t points = map.points().size();
+  const KeyFrameId second = add_keyframe(frame_at(beside(0.05)));
+  EXPECT_EQ(map.keyframe(second).parent, first);
+  EXPECT_EQ(map.keyframe(first).children, std::vector<KeyFrameId>{second});
+  EXPECT_LT(map.points().size(), points * 12 / 10);
+  EXPECT_FALSE(map.keyframe(second).covisible.empty());
+}
+
 TEST_F(LocalMapperTest, FeaturesWithoutDepthAreTriangulated) {
   const auto without_far_depth = [](Frame frame) {
     for (std::size_t i = 0; i < frame.size(); ++i)

@@ -289,7 +289,9 @@ TEST(Tracker, APoseThatContradictsDepthIsRefused) {
   // 40 features agree that the camera moved by 6 cm; the depth of the room shows that it did not.
   for (const bool contradicts : {true, false})
     for (const bool with_filter : {true, false}) {
-      Bench bench(without_relocalisation(), with_filter);
+      TrackingSettings settings = without_relocalisation();
+      settings.jump_distance = 0.1;
+      Bench bench(settings, with_filter);
       for (int i = 0; i < 10; ++i) bench.feed(i / 30.0, at(0.0));
       bench.extractor.every = bench.world.seen().size() / 42;
       const Isometry3d moved = at(0.06);
@@ -438,6 +440,42 @@ TEST(Tracker, ALoadedMapDoesNotBeginAnew) {
   for (const double time : {0.03, 0.2, 0.5})
     EXPECT_EQ(bench.feed(time, turned(1.15)).status, TrackingStatus::lost) << time;
   EXPECT_EQ(bench.map.keyframes().size(), keyframes);
+}
+
+TEST(Tracker, WhereTheMapEndsCertainOdometryBeginsNewMap) {
+  // As above, but the tracker may make keyframes; no rule but this one makes any.
+  TrackingSettings settings = without_relocalisation();
+  settings.odometry_time = 0.3;
+  settings.keyframe_close_tracked = 0;
+  settings.keyframe_tracked_ratio = settings.keyframe_first_ratio = settings.keyframe_due_ratio = 0.0;
+  settings.minimum_inliers = 15;
+  Bench bench(settings);
+  bench.feed(0.0, turned(0.0));
+  int by_odometry = 0;
+  for (double time = 1.0 / 30.0; time < 1.2; time += 1.0 / 30.0) {
+    const FrameResult result = bench.feed(time, turned(1.2 * time));
+    ASSERT_EQ(result.status, TrackingStatus::tracked) << time;
+    EXPECT_LT(error(result, turned(1.2 * time)), 0.03) << time;
+    if (result.fallback != TrackingFallback::odometry) continue;
+    ++by_odometry;
+    EXPECT_TRUE(result.is_keyframe) << time;
+  }
+  EXPECT_GT(by_odometry, 0);
+  EXPECT_GT(bench.map.keyframes().size(), 1U);
+}
+
+TEST(Tracker, FewFeaturesThatJumpAreRefused) {
+  // Every twelfth feature is enough for a pose, but does not outweigh inertia; every second one does.
+  for (const std::size_t every : {2U, 12U}) {
+    Bench bench(without_relocalisation());
+    bench.walk(0.0, 0.5);
+    bench.extractor.every = every;
+    bench.feed(0.5, at(Bench::speed * 0.5));
+    ASSERT_TRUE(bench.feed(0.5 + 1.0 / 30.0, at(Bench::speed * 0.5333)).T_world_camera);
+    const Isometry3d jumped = at(Bench::speed * 0.5667 + 0.1);
+    const FrameResult result = bench.feed(0.5 + 2.0 / 30.0, jumped);
+    EXPECT_EQ(result.status, every == 2 ? TrackingStatus::tracked : TrackingStatus::lost) << every;
+  }
 }
 
 TEST(Tracker, KeyframesAreMadeWhenThePolicySaysSo) {

@@ -69,6 +69,9 @@ class Map {
   /// needs at least `minimum_weight` shared points; the strongest neighbour is always kept. Sets the spanning-tree
   /// parent of a new keyframe.
   void update_covisibility(KeyFrameId keyframe, int minimum_weight = 15);
+  /// Makes `older` the spanning-tree parent of a keyframe that has none, because it shares no point with an older one:
+  /// its pose was estimated without the map.
+  void hang_on(KeyFrameId keyframe, KeyFrameId older);
   /// Removes a keyframe with its observations, covisibility edges and loop edges. Its children in the spanning tree get
   /// new parents among their neighbours. Its pose stays available relative to its parent; see pose_of().
   void remove_keyframe(KeyFrameId keyframe);

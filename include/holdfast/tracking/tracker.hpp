@@ -84,6 +84,8 @@ class Tracker {
   /// Makes the current frame the first keyframe of what comes, at the given pose, if enough of its features have depth.
   bool start_map(const Eigen::Isometry3d& T_camera_world, FrameResult& result);
   bool find_pose(TrackedView& view, FrameResult& result);
+  /// The pose, on which few inliers agree, is far from where constant velocity takes the camera.
+  bool contradicts_motion(int inliers) const;
   /// A first pose of a camera that is not lost, from the motion model or the reference keyframe.
   bool predict(FrameResult& result);
   /// Takes a first pose to the final one. False if the local map does not confirm it.
@@ -119,7 +121,8 @@ class Tracker {
   double last_keyframe_time_ = 0.0;  // [s]
   // [s], of the frame that began the map, or began it anew; a loaded map began long ago
   double map_start_time_ = -std::numeric_limits<double>::infinity();
-  double last_feature_time_ = 0.0;   // [s], of the last pose that matches with the map determined
+  double last_feature_time_ = 0.0;     // [s], of the last pose that matches with the map determined
+  bool odometry_extends_map_ = false;  // the pose of this frame is by odometry, and certain enough for a keyframe
 };
 
 }  // namespace holdfast

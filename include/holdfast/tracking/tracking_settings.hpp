@@ -28,6 +28,8 @@ struct TrackingSettings {
   int loose_distance = 100;         ///< [bits] of 256; a match near its prediction
   int minimum_inliers = 30;         ///< map points that must agree with a pose
   double maximum_deviation = 0.02;  ///< standard deviation of the position [m]
+  double jump_distance = 0.06;      ///< [m] from constant velocity in 1/30 s: 54 m/s^2
+  double jump_angle = 3.0;          ///< [deg], the same
   int local_keyframes = 80;         ///< whose points make the local map
   double odometry_time = 0.3;       ///< how long poses can be based on the previous frame, without the map [s]
   double depth_only_time = 1.0;     ///< how long poses can be based on dense depth alone [s]
