@@ -4,20 +4,21 @@
 # program with an error. What the libraries below us do to themselves is listed in
 # cmake/thread_sanitizer_suppressions.txt.
 #
-#   sh tests/sanitizers.sh            everything: all quick tests and all runs with the address and the undefined
-#                                     behaviour sanitizer, then the threaded runs with the thread sanitizer
+#   sh tests/sanitizers.sh            everything, which is both of these:
+#   sh tests/sanitizers.sh --address  all quick tests and all runs with the address and the undefined behaviour sanitizer
+#   sh tests/sanitizers.sh --thread   the tests that start threads, and threaded runs, with the thread sanitizer
 #   sh tests/sanitizers.sh --quick    a selection that compiles in minutes, with the address and the undefined behaviour
-#                                     sanitizer: the tests of the pipeline, which run it sequentially and in threads,
-#                                     and the replays of tests/fuzz that need neither the program nor its plugins
+#                                     sanitizer: a sequential and a threaded run, the tests of the pipeline and of
+#                                     readers, and the replays of tests/fuzz that do not need the program
 #
 # Environment: CXX (clang++ by default, which compiles this in two thirds of the time of g++); CCACHE=ON uses ccache.
 set -eu
 
 cd "$(dirname "$0")/.."
 case "${1:-}" in
-  '') quick=no ;;
-  --quick) quick=yes ;;
-  *) sed -n '3,13s/^# \{0,1\}//p' tests/sanitizers.sh >&2; exit 2 ;;
+  '') parts="address thread" ;;
+  --quick | --address | --thread) parts=${1#--} ;;
+  *) sed -n '3,15s/^# \{0,1\}//p' tests/sanitizers.sh >&2; exit 2 ;;
 esac
 root=$PWD
 jobs=$(nproc)
@@ -48,7 +49,7 @@ step() {
 build() {
   preset=$1
   shift
-  cmake --preset "$preset" -DCMAKE_CXX_COMPILER="$CXX" -DHOLDFAST_BUILD_TESTS=ON -DHOLDFAST_BUILD_EXAMPLES=OFF \
+  cmake --preset "$preset" -DCMAKE_CXX_COMPILER="$CXX" -DHOLDFAST_BUILD_TESTS=ON -DHOLDFAST_BUILD_EXAMPLES=ON \
     ${CCACHE:+-DCMAKE_CXX_COMPILER_LAUNCHER=ccache} ${flags:+"-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=$flags"}
   cmake --build "build-$preset" --parallel "$jobs" --target "$@"
 }
@@ -60,16 +61,31 @@ run() {
     --set segmenter=truth --set "run.mode=$3"
 }
 
-if [ "$quick" = yes ]; then
+test_quick() {
   flags="-O1 -DNDEBUG"  # without line numbers it compiles faster; the full mode tells them
-  # The program and the plugins are most of what there is to compile.
-  borders="image_header image_lists map_file onnx_signature override plugin_record trajectory"
-  build asan pipeline_test $(printf 'fuzz_%s ' $borders)
-  step "asan: pipeline_test" build-asan/tests/pipeline_test
+  # Without the program and the bench, which are half of what there is to compile.
+  borders="configuration image_header image_lists map_file onnx_signature override plugin_record scene trajectory"
+  build asan pipeline_test config_test map_io_test sources_test holdfast_example_run_and_report \
+    $(printf 'fuzz_%s ' $borders)
+  for test in pipeline_test config_test map_io_test sources_test; do
+    step "asan: $test" "build-asan/tests/$test"
+  done
+  for mode in sequential threaded; do
+    grep -v '^\(source\|camera\|segmenter\|run\):' examples/configs/full.yaml > "$work/$mode.yaml"
+    cat >> "$work/$mode.yaml" <<END
+source: { simulated: { scene: $root/examples/scenes/walking_xyz.yaml, duration: 0.5 } }
+camera: { width: 320, height: 240, fx: 270, fy: 270, cx: 159.5, cy: 119.5 }
+segmenter: truth
+run: { mode: $mode }
+END
+    step "asan: a $mode run" build-asan/examples/run_and_report "$work/$mode.yaml" "$work/$mode"
+  done
   for border in $borders; do
     step "asan: fuzz_$border" "build-asan/tests/fuzz_$border" "tests/fuzz/corpus/$border"
   done
-else
+}
+
+test_address() {
   build asan all
   step "asan: quick tests" ctest --test-dir build-asan --parallel "$jobs" --output-on-failure --no-tests=error \
     --label-regex '^quick$'
@@ -91,12 +107,18 @@ sequences:
 END
   step "asan: bench" build-asan/bin/holdfast bench "$work/matrix.yaml" --output "$work/bench"
   step "asan: bench again" build-asan/bin/holdfast bench "$work/matrix.yaml" --output "$work/bench" --resume
-  build tsan holdfast_program pipeline_test run_library_test busy_threads_test
-  for test in pipeline_test run_library_test busy_threads_test; do
+}
+
+test_thread() {
+  tests="pipeline_test run_library_test prefetch_test busy_threads_test stop_test"
+  build tsan holdfast_program $tests
+  for test in $tests; do
     step "tsan: $test" "build-tsan/tests/$test"
   done
   for configuration in full paper objects; do run tsan "$configuration" threaded 2; done
-fi
+}
+
+for part in $parts; do "test_$part"; done
 
 [ "$failures" -eq 0 ] && echo "No sanitizer has a report." || echo "$failures steps failed: see above." >&2
 exit "$((failures > 0))"

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <yaml-cpp/eventhandler.h>
-#include <yaml-cpp/yaml.h>
+#include <yaml-cpp/exceptions.h>
 
 #include <fstream>
 #include <iterator>
 #include <map>
-#include <sstream>
 
 #include "holdfast/config/configuration_node.hpp"
 #include "holdfast/core/text_file.hpp"
+#include "yaml_tree.hpp"
 
 namespace holdfast {
 
@@ -38,18 +37,20 @@ std::string ConfigurationNode::found() const {
 
 namespace {
 
+/// Makes configuration nodes of the nodes of YAML, and finds what is no configuration.
 class Converter {
  public:
-  Converter(std::string file, std::filesystem::path folder) : file_(std::move(file)), folder_(std::move(folder)) {}
+  Converter(const YamlTree& tree, std::string file, std::filesystem::path folder)
+      : tree_(tree), file_(std::move(file)), folder_(std::move(folder)) {}
 
-  ConfigurationNode convert(const YAML::Node& node) {
+  ConfigurationNode convert(std::size_t index) {
     // Aliases share nodes, so a short text can stand for an endless or an exponentially large tree.
     if (++depth_ > most_depth)
-      throw ConfigurationError(location(node), "nested too deeply; an alias may name its own parent");
+      throw ConfigurationError(location(index), "nested too deeply; an alias may name its own parent");
     if (++count_ > most_nodes)
-      throw ConfigurationError(location(node),
+      throw ConfigurationError(location(index),
                                "aliases make the file larger than " + std::to_string(most_nodes) + " values");
-    ConfigurationNode result = convert_inside(node);
+    ConfigurationNode result = convert_inside(index);
     --depth_;
     return result;
   }
@@ -60,127 +61,83 @@ class Converter {
   static constexpr int most_depth = 100;
   static constexpr int most_nodes = 100000;
 
-  ConfigurationNode convert_inside(const YAML::Node& node) {
+  ConfigurationNode convert_inside(std::size_t index) {
+    const YamlTree::Node& node = tree_.nodes[index];
     ConfigurationNode result;
-    result.location = location(node);
+    result.location = location(index);
     result.folder = folder_;
-    switch (node.Type()) {
-      case YAML::NodeType::Scalar:
+    switch (node.kind) {
+      case YamlTree::Kind::scalar:
         result.kind = ConfigurationNode::Kind::scalar;
-        result.text = node.Scalar();
-        result.quoted = node.Tag() == "!";  // what the parser gives to quoted scalars
+        result.text = node.text;
+        result.quoted = node.quoted;
         break;
-      case YAML::NodeType::Sequence:
+      case YamlTree::Kind::list:
         result.kind = ConfigurationNode::Kind::list;
-        for (const YAML::Node& item : node) result.items.push_back(convert(item));
+        for (const std::size_t item : node.children) result.items.push_back(convert(item));
         break;
-      case YAML::NodeType::Map:
+      case YamlTree::Kind::map:
         result.kind = ConfigurationNode::Kind::map;
-        add_entries(node, result);
+        add_entries(node.children, result);
         break;
-      case YAML::NodeType::Null:
-      case YAML::NodeType::Undefined:
+      case YamlTree::Kind::nothing:
         break;
     }
     return result;
   }
 
-  SourceLocation location(const YAML::Node& node) const {
-    const YAML::Mark mark = node.Mark();  // counts from 0, -1 = unknown
+  SourceLocation location(std::size_t index) const {
+    const YAML::Mark& mark = tree_.nodes[index].mark;
     return {file_, mark.line + 1, mark.column + 1};
   }
 
-  void add_entries(const YAML::Node& node, ConfigurationNode& map) {
+  void add_entries(const std::vector<std::size_t>& keys_and_values, ConfigurationNode& map) {
     std::map<std::string, int> lines;  // of the keys so far
-    for (const auto& pair : node) add_entry(pair.first, pair.second, lines, map);
+    for (std::size_t i = 0; i + 1 < keys_and_values.size(); i += 2)
+      add_entry(keys_and_values[i], keys_and_values[i + 1], lines, map);
   }
 
-  void add_entry(const YAML::Node& key, const YAML::Node& value, std::map<std::string, int>& lines,
-                 ConfigurationNode& map) {
-    const SourceLocation place = location(key);
-    if (!key.IsScalar()) {
+  void add_entry(std::size_t key_index, std::size_t value, std::map<std::string, int>& lines, ConfigurationNode& map) {
+    const YamlTree::Node& key = tree_.nodes[key_index];
+    const SourceLocation place = location(key_index);
+    if (key.kind != YamlTree::Kind::scalar) {
       diagnostics.push_back({place, "found a key that is no plain text; expected a name"});
       return;
     }
-    if (key.Scalar() == "<<") {
+    if (key.text == "<<") {
       diagnostics.push_back({place,
                              "merge keys (<<) are not supported; repeat the values, or use an alias (*name) for a "
                              "whole value"});
       return;
     }
-    if (const auto [first, is_new] = lines.emplace(key.Scalar(), place.line); !is_new) {
-      diagnostics.push_back({place, "duplicate key '" + key.Scalar() + "'; it stands already in line " +
+    if (const auto [first, is_new] = lines.emplace(key.text, place.line); !is_new) {
+      diagnostics.push_back({place, "duplicate key '" + key.text + "'; it stands already in line " +
                                         std::to_string(first->second) + "; keep one of them"});
       return;
     }
-    map.entries.push_back({key.Scalar(), place, convert(value)});
+    map.entries.push_back({key.text, place, convert(value)});
   }
 
+  const YamlTree& tree_;
   std::string file_;
   std::filesystem::path folder_;
   int depth_ = 0;
   int count_ = 0;
 };
 
-/// Where the documents of a text begin; builds nothing.
-class DocumentStarts : public YAML::EventHandler {
- public:
-  void OnDocumentStart(const YAML::Mark& mark) override { starts.push_back(mark); }
-  void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnAlias(const YAML::Mark&, YAML::anchor_t) override {}
-  void OnScalar(const YAML::Mark&, const std::string&, YAML::anchor_t, const std::string&) override {}
-  void OnSequenceStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
-  void OnSequenceEnd() override {}
-  void OnMapStart(const YAML::Mark&, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {}
-  void OnMapEnd() override {}
-
-  std::vector<YAML::Mark> starts;
-};
-
-/// The line that separates a second document from the first, which begins at `mark`; 0 where there is none.
-int separator_line(const std::string& text, const YAML::Mark& mark) {
-  std::istringstream lines(text);
-  bool began = false;
-  int number = 1;
-  for (std::string line; number <= mark.line + 1 && std::getline(lines, line); ++number) {
-    const bool is_mark = line.starts_with("---") || line.starts_with("...");
-    if (is_mark && began) return number;
-    if (!is_mark && line.find_first_not_of(" \t\r") != std::string::npos && line.front() != '#') began = true;
-  }
-  return 0;
-}
-
-/// Throws where the text goes on after its first document. The parser takes what it cannot continue with, such as a
-/// comma, for one more document and stays where it is: asked for all documents, it would never end.
-void require_one_document(const std::string& text, const std::string& file) {
-  std::istringstream stream(text);
-  YAML::Parser parser(stream);
-  DocumentStarts documents;
-  if (!parser.HandleNextDocument(documents) || !parser.HandleNextDocument(documents)) return;
-  const YAML::Mark& second = documents.starts.back();
-  if (const int line = separator_line(text, second); line > 0)
-    throw ConfigurationError({file, line, 1},
-                             "found a second document; expected one: remove the line '---' or what follows it");
-  throw ConfigurationError({file, second.line + 1, second.column + 1},
-                           "syntax error: found text that continues no key, list or value; remove it, or put a value "
-                           "that begins with ',' into quotes");
-}
-
 }  // namespace
 
 ConfigurationNode parse_yaml(const std::string& text, const std::string& file_name,
                              const std::filesystem::path& folder) {
-  YAML::Node document;
+  YamlTree tree;
   try {
-    require_one_document(text, file_name);
-    document = YAML::Load(text);
+    tree = read_yaml_tree(text, file_name);
   } catch (const YAML::Exception& error) {
     throw ConfigurationError(SourceLocation{file_name, error.mark.line + 1, error.mark.column + 1},
                              "syntax error: " + error.msg);
   }
-  Converter converter(file_name, folder);
-  ConfigurationNode root = converter.convert(document);
+  Converter converter(tree, file_name, folder);
+  ConfigurationNode root = converter.convert(tree.root);
   if (!converter.diagnostics.empty()) throw ConfigurationError(converter.diagnostics);
   return root;
 }

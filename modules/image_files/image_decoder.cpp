@@ -3,12 +3,16 @@
 
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/image_files/image_structure.hpp"
+#include "jpeg_pixels.hpp"
+#include "png_plain.hpp"
 #include "png_rows.hpp"
 
 namespace holdfast {
@@ -27,17 +31,29 @@ void require_decodable(const std::filesystem::path& file, const ImageStructure& 
                                           std::to_string(largest_side) + " pixels in width and height");
 }
 
-cv::Mat decode(const std::filesystem::path& file, std::vector<std::uint8_t>& bytes, int flags, cv::Mat& target) {
-  drop_png_annotations(bytes);
+[[noreturn]] void throw_damaged(const std::filesystem::path& file) {
+  throw InputError({file.string()}, "is damaged: it cannot be decoded; copy or download the file again");
+}
+
+cv::Mat decode(const std::filesystem::path& file, std::span<const std::uint8_t> bytes, int flags, cv::Mat& target) {
+  if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+    throw InputError({file.string()},
+                     "takes too much memory to decode; expected less than 2 GB; make the image smaller");
   cv::Mat image;
   try {
-    image = cv::imdecode(bytes, flags, &target);
+    const cv::Mat input(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<std::uint8_t*>(bytes.data()));
+    image = cv::imdecode(input, flags, &target);
   } catch (const cv::Exception& error) {
     throw InputError({file.string()}, "cannot be decoded (" + error.err + "); copy or download the file again");
   }
-  if (image.empty())
-    throw InputError({file.string()}, "is damaged: it cannot be decoded; copy or download the file again");
+  if (image.empty()) throw_damaged(file);
   return image;
+}
+
+cv::Mat decode_png(const std::filesystem::path& file, std::span<const std::uint8_t> bytes, int flags, cv::Mat& target) {
+  const std::optional<std::vector<std::uint8_t>> plain = plain_png(bytes);
+  if (!plain) throw_damaged(file);
+  return decode(file, *plain, flags, target);
 }
 
 /// The decoded pixels as an image that shares their memory; `type` has their number of bytes.
@@ -108,11 +124,13 @@ cv::Mat ImageDecoder::read_colour(const std::filesystem::path& file, const SizeC
                                           "; expected a colour image, 3 channels of 8 bits; convert it");
   if (check_size) check_size({image.width, image.height});
   cv::Mat colour;
-  if (image.format == ImageStructure::Format::png && png_->decode(bytes_)) {
+  if (image.format == ImageStructure::Format::png) {
+    if (!png_->decode(bytes_)) return decode_png(file, bytes_, cv::IMREAD_COLOR, colour);
     cv::cvtColor(as_image(*png_, CV_8UC3), colour, cv::COLOR_RGB2BGR);
     return colour;
   }
-  return decode(file, bytes_, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION, colour);
+  if (!decode_jpeg(bytes_, {image.width, image.height}, colour)) throw_damaged(file);
+  return colour;
 }
 
 cv::Mat ImageDecoder::read_grey_or_colour(const std::filesystem::path& file, const SizeCheck& check_size) {
@@ -124,13 +142,16 @@ cv::Mat ImageDecoder::read_grey_or_colour(const std::filesystem::path& file, con
                                           "; expected a grey or colour image, 1 or 3 channels of 8 bits; convert it");
   if (check_size) check_size({image.width, image.height});
   cv::Mat decoded;
-  if (image.format == ImageStructure::Format::png && png_->decode(bytes_)) {
-    if (image.channels == 1) return as_image(*png_, CV_8UC1).clone();
-    cv::cvtColor(as_image(*png_, CV_8UC3), decoded, cv::COLOR_RGB2BGR);
+  if (image.format == ImageStructure::Format::jpeg) {
+    // A grey JPEG comes in three equal channels.
+    if (!decode_jpeg(bytes_, {image.width, image.height}, decoded)) throw_damaged(file);
     return decoded;
   }
-  const int flags = (image.channels == 1 ? cv::IMREAD_GRAYSCALE : cv::IMREAD_COLOR) | cv::IMREAD_IGNORE_ORIENTATION;
-  return decode(file, bytes_, flags, decoded);
+  if (!png_->decode(bytes_))
+    return decode_png(file, bytes_, image.channels == 1 ? cv::IMREAD_GRAYSCALE : cv::IMREAD_COLOR, decoded);
+  if (image.channels == 1) return as_image(*png_, CV_8UC1).clone();
+  cv::cvtColor(as_image(*png_, CV_8UC3), decoded, cv::COLOR_RGB2BGR);
+  return decoded;
 }
 
 cv::Mat ImageDecoder::read_grey(const std::filesystem::path& file, const SizeCheck& check_size) {
@@ -161,7 +182,7 @@ cv::Mat ImageDecoder::read_depth(const std::filesystem::path& file, double depth
                                           "without conversion");
   if (check_size) check_size({image.width, image.height});
   if (png_->decode(bytes_)) return metres(as_image(*png_, CV_8UC2), BigEndian(), depth_factor);
-  raw_depth_ = decode(file, bytes_, cv::IMREAD_UNCHANGED, raw_depth_);
+  raw_depth_ = decode_png(file, bytes_, cv::IMREAD_UNCHANGED, raw_depth_);
   return metres(raw_depth_, Native(), depth_factor);
 }
 
@@ -184,7 +205,7 @@ cv::Mat ImageDecoder::read_labels(const std::filesystem::path& file, const SizeC
   if (check_size) check_size({image.width, image.height});
   if (is_indexed) bytes_ = palette_indices_as_grey(bytes_);
   cv::Mat labels;
-  return decode(file, bytes_, cv::IMREAD_UNCHANGED, labels);
+  return decode_png(file, bytes_, cv::IMREAD_UNCHANGED, labels);
 }
 
 }  // namespace holdfast

@@ -22,13 +22,15 @@ cmake --preset fuzz -B "$build"
 for border in "$@"; do targets="${targets:-} fuzz_$border"; done
 cmake --build "$build" --target $targets
 
+# Most borders read files: those of the inputs stay in memory.
+[ ! -d /dev/shm ] || export TMPDIR="${TMPDIR:-/dev/shm}"
 export UBSAN_OPTIONS="halt_on_error=1:print_stacktrace=1:${UBSAN_OPTIONS:-}"
 verdict=0
 for border in "$@"; do
   found=$build/fuzz/$border
   mkdir -p "$found/corpus"
   echo "== $border"
-  # Nearly all the time of these goes into scanning YAML, twice; what their readers do differs by keys, not by length.
+  # Nearly all the time of these goes into scanning YAML; what their readers do differs by keys, not by length.
   case "$border" in configuration | matrix | scene) limit=400 ;; *) limit=0 ;; esac
   "$build/tests/fuzz_$border" -max_total_time="$seconds" -runs="${RUNS:--1}" -rss_limit_mb=1024 \
     -timeout=5 -max_len="$limit" -artifact_prefix="$found/" -print_final_stats=1 \

@@ -137,6 +137,42 @@ TEST_F(ImageDecoderTest, JpegWithoutDataIsDamaged) {
   EXPECT_THAT(colour_error("a.jpg"), HasSubstr("holds no image data"));
 }
 
+#if defined(HOLDFAST_LIBJPEG)
+
+TEST_F(ImageDecoderTest, DamagedJpegIsFoundInSilence) {
+  cv::Mat noise(48, 64, CV_8UC3);
+  cv::randu(noise, 0, 256);
+  for (const int progressive : {0, 1}) {
+    cv::imwrite(file("a.jpg").string(), noise, {cv::IMWRITE_JPEG_PROGRESSIVE, progressive});
+    const std::string whole = folder_.read("a.jpg");
+    // A marker that restarts the coding where nothing restarts, and the end of a scan before its time.
+    for (const char* marker : {"\xff\xd3", "\xff\xd9"}) {
+      std::string damaged = whole;
+      damaged.replace(whole.size() - 300, 2, marker);
+      folder_.write("damaged.jpg", damaged);
+      EXPECT_THAT(colour_error("damaged.jpg"), HasSubstr("is damaged: it cannot be decoded"));
+    }
+    std::string without_tables = whole;
+    without_tables[whole.find("\xff\xdb") + 4] = 3;  // the number of the first quantisation table
+    folder_.write("without_tables.jpg", without_tables);
+    EXPECT_THAT(colour_error("without_tables.jpg"), HasSubstr("is damaged: it cannot be decoded"));
+  }
+}
+
+TEST_F(ImageDecoderTest, BytesBetweenTheSegmentsOfAJpegAreAllowedInSilence) {
+  folder_.write_image("a.jpg", test::colour_image(3));
+  const cv::Mat expected = decoder_.read_colour(file("a.jpg"));
+  std::string padded = folder_.read("a.jpg");
+  padded.insert(padded.size() - 2, 3, '\0');
+  folder_.write("padded.jpg", padded);
+  testing::internal::CaptureStderr();
+  const cv::Mat image = decoder_.read_colour(file("padded.jpg"));
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(cv::norm(image, expected, cv::NORM_INF), 0.0);
+}
+
+#endif
+
 TEST_F(ImageDecoderTest, ColourOfAnotherKindIsNotConverted) {
   folder_.write_image("grey.jpg", cv::Mat(48, 64, CV_8UC1, cv::Scalar(7)));
   EXPECT_THAT(colour_error("grey.jpg"),

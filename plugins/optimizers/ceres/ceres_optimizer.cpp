@@ -3,6 +3,8 @@
 
 #include <glog/logging.h>
 
+#include <mutex>
+
 #include "bundle_adjustment.hpp"
 #include "holdfast/geometry/pose_problem.hpp"
 #include "holdfast/plugin/plugin.hpp"
@@ -12,7 +14,11 @@ namespace holdfast::ceres_plugin {
 
 CeresOptimizer::CeresOptimizer(const CeresSettings& settings, const CreationContext&) : settings_(settings) {
   // Ceres warns through glog, which writes to stderr until somebody initialises it. Whoever does so keeps their levels.
-  if (!google::IsGoogleLoggingInitialized()) FLAGS_minloglevel = google::GLOG_FATAL;
+  // Once, because the level belongs to the process, and other threads may make optimizers, and log, at the same time.
+  static std::once_flag is_silenced;
+  std::call_once(is_silenced, [] {
+    if (!google::IsGoogleLoggingInitialized()) FLAGS_minloglevel = google::GLOG_FATAL;
+  });
 }
 
 PoseSummary CeresOptimizer::optimize_pose(PoseProblem& problem) {
