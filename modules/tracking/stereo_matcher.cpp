@@ -6,6 +6,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <numeric>
+
+#include "holdfast/core/hamming.hpp"
 
 namespace holdfast {
 
@@ -33,7 +36,7 @@ void StereoMatcher::find_matches(const Frame& frame, const Features& right, floa
     const int last = std::clamp(static_cast<int>(left.y[i] + tolerance), 0, rows - 1);
     // Both positions have an error of the size of a pixel of their level.
     const float least = left.x[i] - max_disparity, most = left.x[i] + frame.pyramid->scale[left.octave[i]];
-    Match best{static_cast<std::uint32_t>(i), 0, settings_.maximum_distance + 1};
+    candidates_.clear();
     for (std::uint32_t k = row_begin_[static_cast<std::size_t>(first)];
          k < row_begin_[static_cast<std::size_t>(last) + 1]; ++k) {
       const std::uint32_t candidate = by_row_[k];
@@ -41,9 +44,14 @@ void StereoMatcher::find_matches(const Frame& frame, const Features& right, floa
           std::abs(right.y[candidate] - left.y[i]) > tolerance ||
           std::abs(static_cast<int>(right.octave[candidate]) - static_cast<int>(left.octave[i])) > 1)
         continue;
-      const int distance = hamming_distance(left.descriptors[i], right.descriptors[candidate]);
-      if (distance < best.distance) best.right = candidate, best.distance = distance;
+      candidates_.push_back(candidate);
     }
+    if (candidates_.empty()) continue;
+    distances_.resize(candidates_.size());
+    hamming_distances(left.descriptors[i], right.descriptors.data(), candidates_, distances_.data());
+    const auto nearest = std::min_element(distances_.begin(), distances_.end());
+    const Match best{static_cast<std::uint32_t>(i), candidates_[static_cast<std::size_t>(nearest - distances_.begin())],
+                     *nearest};
     if (best.distance <= settings_.maximum_distance) matches_.push_back(best);
   }
 }
@@ -61,9 +69,56 @@ void StereoMatcher::keep_best_of_each_right_feature(const Features& right) {
   matches_.resize(kept);
 }
 
+namespace {
+
+constexpr int max_reach = 12, max_radius = 15;  // px, of the search and of the patch
+constexpr int lanes = 8;                        // columns that are compared at once
+constexpr int max_shifts = (2 * max_reach + 1 + lanes - 1) / lanes * lanes, max_side = 2 * max_radius + 1;
+
+/// Sums of absolute differences between a patch of the left image and those of the right image in the same rows that
+/// are centred in the columns from `first` on. The mean difference is subtracted: it is one of exposure.
+void compare_patches(const cv::Mat& left, const cv::Mat& right, int x, int y, int first, int shifts, int radius,
+                     std::array<int, max_shifts>& costs) {
+  const int side = 2 * radius + 1, width = side - 1 + shifts;
+  int left_sum = 0;
+  std::array<int, max_side + max_shifts> column_sums{};
+  for (int row = y - radius; row <= y + radius; ++row) {
+    const std::uint8_t* a = left.ptr<std::uint8_t>(row) + x - radius;
+    const std::uint8_t* b = right.ptr<std::uint8_t>(row) + first - radius;
+    for (int k = 0; k < side; ++k) left_sum += a[k];
+    for (int k = 0; k < width; ++k) column_sums[static_cast<std::size_t>(k)] += b[k];
+  }
+  std::array<std::int16_t, max_shifts> means{};
+  int right_sum = std::accumulate(column_sums.begin(), column_sums.begin() + side, 0);
+  for (int shift = 0; shift < shifts; ++shift) {
+    means[static_cast<std::size_t>(shift)] = static_cast<std::int16_t>((left_sum - right_sum) / (side * side));
+    right_sum += column_sums[static_cast<std::size_t>(shift + side)] - column_sums[static_cast<std::size_t>(shift)];
+  }
+
+  costs.fill(0);
+  std::array<std::int16_t, max_side + max_shifts> strip{};
+  for (int row = y - radius; row <= y + radius; ++row) {
+    const std::uint8_t* a = left.ptr<std::uint8_t>(row) + x - radius;
+    const std::uint8_t* b = right.ptr<std::uint8_t>(row) + first - radius;
+    for (int k = 0; k < width; ++k) strip[static_cast<std::size_t>(k)] = b[k];
+    for (int block = 0; block < shifts; block += lanes) {
+      // The differences of one row, 31 times 510 at most, fit into 16 bits.
+      std::array<std::int16_t, lanes> sums{};
+      for (int k = 0; k < side; ++k)
+        for (std::size_t lane = 0; lane < lanes; ++lane) {
+          const auto there = static_cast<std::size_t>(block) + lane;
+          const int difference = a[k] - strip[there + static_cast<std::size_t>(k)] - means[there];
+          sums[lane] = static_cast<std::int16_t>(sums[lane] + (difference < 0 ? -difference : difference));
+        }
+      for (std::size_t lane = 0; lane < lanes; ++lane) costs[static_cast<std::size_t>(block) + lane] += sums[lane];
+    }
+  }
+}
+
+}  // namespace
+
 float StereoMatcher::refine(const cv::Mat& left, const cv::Mat& right, float left_x, float left_y, float right_x,
                             float scale, float& difference) const {
-  constexpr int max_reach = 12;
   const int radius = settings_.patch_radius;
   const int reach = std::min(max_reach, 2 + static_cast<int>(std::ceil(2.0F * scale)));
   const int x = static_cast<int>(std::lround(left_x)), y = static_cast<int>(std::lround(left_y));
@@ -72,25 +127,9 @@ float StereoMatcher::refine(const cv::Mat& left, const cv::Mat& right, float lef
   const int first = std::max(there - reach, radius), last = std::min(there + reach, right.cols - 1 - radius);
   if (last - first < 2) return -1.0F;
 
-  // The mean difference is that of exposure; what remains is summed up.
+  std::array<int, max_shifts> costs;
+  compare_patches(left, right, x, y, first, last - first + 1, radius, costs);
   const int side = 2 * radius + 1, area = side * side;
-  std::array<int, 2 * max_reach + 1> costs{};
-  for (int column = first; column <= last; ++column) {
-    int sum = 0;
-    for (int row = -radius; row <= radius; ++row) {
-      const std::uint8_t* a = left.ptr<std::uint8_t>(y + row) + x - radius;
-      const std::uint8_t* b = right.ptr<std::uint8_t>(y + row) + column - radius;
-      for (int k = 0; k < side; ++k) sum += static_cast<int>(a[k]) - static_cast<int>(b[k]);
-    }
-    const int mean = sum / area;
-    int cost = 0;
-    for (int row = -radius; row <= radius; ++row) {
-      const std::uint8_t* a = left.ptr<std::uint8_t>(y + row) + x - radius;
-      const std::uint8_t* b = right.ptr<std::uint8_t>(y + row) + column - radius;
-      for (int k = 0; k < side; ++k) cost += std::abs(static_cast<int>(a[k]) - static_cast<int>(b[k]) - mean);
-    }
-    costs[static_cast<std::size_t>(column - first)] = cost;
-  }
   const auto count = static_cast<std::size_t>(last - first + 1);
   const std::size_t best = static_cast<std::size_t>(
       std::min_element(costs.begin(), costs.begin() + static_cast<std::ptrdiff_t>(count)) - costs.begin());

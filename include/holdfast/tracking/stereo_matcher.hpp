@@ -38,6 +38,8 @@ class StereoMatcher {
 
   StereoSettings settings_;
   std::vector<std::uint32_t> row_begin_, by_row_;  // right features of each row, by counting sort
+  std::vector<std::uint32_t> candidates_;
+  std::vector<std::uint16_t> distances_;
   std::vector<Match> matches_;
   std::vector<std::int32_t> match_of_right_;
   std::vector<float> disparity_, difference_, sorted_;
