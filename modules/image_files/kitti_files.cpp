@@ -56,7 +56,7 @@ void read_lines(const std::filesystem::path& file, const char* content, Use&& us
   if (!stream) throw InputError({file.string()}, "cannot be read; check its permissions");
   skip_byte_order_mark(stream);
   std::string text;
-  for (std::size_t number = 1; std::getline(stream, text); ++number) {
+  for (int number = 1; std::getline(stream, text); ++number) {
     const SourceLocation place{file.string(), number};
     if (const auto line = parse_line(place, text, content)) use(place, *line);
   }
