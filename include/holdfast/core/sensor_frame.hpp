@@ -20,8 +20,8 @@ struct FrameTruth {
   std::vector<std::uint8_t> moving_objects;
 };
 
-/// The images that a camera, or a stereo pair of cameras, took at one moment. They are shared, not copied, and must not
-/// be written to.
+/// What a camera, or a stereo pair of cameras, took at one moment. The images are shared, not copied, and must not be
+/// written to.
 struct SensorFrame {
   std::uint64_t index = 0;  ///< number of the frame in its source, from 0; skipped frames are counted
   double timestamp = 0.0;   ///< time stamp of the colour image [s]

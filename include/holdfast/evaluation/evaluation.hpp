@@ -64,6 +64,7 @@ struct RelativeError {
 /// of 100, 200, ... 800 m of true path that begin at every tenth pose, the error inv(E) G of the relative pose (E of the
 /// estimate, G of the truth, from the first to the last pose of the segment), divided by the length of the segment.
 struct SegmentError {
+  /// The error over all segments of one length.
   struct OfLength {
     double length = 0.0;       ///< [m]
     std::size_t segments = 0;  ///< at least 1

@@ -11,6 +11,7 @@ namespace holdfast {
 /// The numbers in a file name, in their order, without leading zeros: {"12"} for left_0012.png.
 using FileNumbers = std::vector<std::string>;
 
+/// A file by the numbers in its name.
 struct NumberedFile {
   FileNumbers numbers;
   std::filesystem::path path;
