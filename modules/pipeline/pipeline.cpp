@@ -32,23 +32,25 @@ PipelineParts checked(PipelineParts parts) {
   return parts;
 }
 
+bool has_segmenter(const PipelineParts& parts) {
+  return dynamic_cast<const NullSegmenter*>(parts.segmenter.get()) == nullptr;
+}
+
 MovingWorldParts moving_world_parts(PipelineParts& parts) {
   FilterChain chain(parts.evidence);
   for (auto& [name, filter] : parts.filters) chain.add(name, std::move(filter));
-  const bool has_segmenter = dynamic_cast<NullSegmenter*>(parts.segmenter.get()) == nullptr;
   return {.camera = parts.camera,
           .filters = std::move(chain),
-          .segmenter = has_segmenter ? parts.segmenter.get() : nullptr,
+          .segmenter = has_segmenter(parts) ? parts.segmenter.get() : nullptr,
           .segmentation = parts.segmentation,
           .threaded = parts.run.threaded()};
 }
 
 std::optional<StereoParts> stereo_parts(const PipelineParts& parts) {
   if (!parts.is_stereo) return std::nullopt;
-  const bool has_segmenter = dynamic_cast<NullSegmenter*>(parts.segmenter.get()) == nullptr;
   return StereoParts{.settings = parts.stereo,
                      .right_features = parts.right_features.get(),
-                     .is_dense = has_segmenter || !parts.filters.empty()};
+                     .is_dense = has_segmenter(parts) || !parts.filters.empty()};
 }
 
 }  // namespace

@@ -49,6 +49,7 @@ PipelineBuilder& PipelineBuilder::source(const SourceDescription& description) {
   source_name_ = description.name;
   has_depth_ = description.has_depth;
   has_right_ = description.has_right;
+  parts_.is_stereo = !has_depth_ && has_right_;
   context_.class_names = description.class_names;
   return *this;
 }
@@ -160,7 +161,7 @@ void PipelineBuilder::check(const Settings& settings, const char* section) {
 
 void PipelineBuilder::check_camera() {
   // The baseline of a real pair is the source's; that of the configured camera is of a virtual one.
-  if (source_camera_ && has_right_ && !has_depth_) parts_.camera.baseline = source_camera_->baseline;
+  if (source_camera_ && parts_.is_stereo) parts_.camera.baseline = source_camera_->baseline;
   if (source_camera_ && has_camera_ && have_other_numbers(*source_camera_, parts_.camera))
     complain(source_place_, "the source '" + source_name_ +
                                 "' brings its own camera, and 'camera' names one with other numbers; remove one of "
@@ -210,7 +211,6 @@ void PipelineBuilder::check_map() const {
 }
 
 void PipelineBuilder::choose_sensor() {
-  parts_.is_stereo = !has_depth_ && has_right_;
   if (!has_depth_ && !has_right_)
     complain(source_place_, "the source '" + source_name_ +
                                 "' has neither depth nor a right image; this version tracks colour with depth, or a "

@@ -49,10 +49,8 @@ void FrameBuilder::begin(const SensorFrame& sensor_frame, Frame& frame, StageTim
     coarse_sampler_.sample_depth(depth, frame.coarse);
     return;
   }
-  if (right.channels() == 3)
-    cv::cvtColor(right, grey_right_, cv::COLOR_BGR2GRAY);
-  else
-    grey_right_ = right;
+  if (right.channels() == 3) cv::cvtColor(right, converted_right_, cv::COLOR_BGR2GRAY);
+  grey_right_ = right.channels() == 3 ? converted_right_ : right;
   coarse_sampler_.sample_depth(stereo_->dense(grey_, grey_right_), frame.coarse);
 }
 

@@ -29,19 +29,15 @@ cv::Ptr<cv::StereoSGBM> semi_global_matcher(double max_disparity, int width) {
 StereoDepth::StereoDepth(const Camera& camera, const StereoParts& parts)
     : parts_(parts), fx_baseline_(camera.fx * camera.baseline), matcher_(parts.settings) {
   if (!parts.is_dense) return;
-  dense_matcher_ = std::make_unique<cv::Ptr<cv::StereoSGBM>>(
-      semi_global_matcher(fx_baseline_ / parts.settings.minimum_depth, camera.width));
+  dense_matcher_ = semi_global_matcher(fx_baseline_ / parts.settings.minimum_depth, camera.width);
 }
-StereoDepth::~StereoDepth() = default;
-StereoDepth::StereoDepth(StereoDepth&&) noexcept = default;
-StereoDepth& StereoDepth::operator=(StereoDepth&&) noexcept = default;
 
 const cv::Mat& StereoDepth::dense(const cv::Mat& left, const cv::Mat& right) {
   if (!dense_matcher_) return dense_;
   const cv::Size half(left.cols / 2, left.rows / 2);
   cv::resize(left, half_left_, half, 0, 0, cv::INTER_AREA);
   cv::resize(right, half_right_, half, 0, 0, cv::INTER_AREA);
-  (*dense_matcher_)->compute(half_left_, half_right_, disparity_);
+  dense_matcher_->compute(half_left_, half_right_, disparity_);
   dense_.create(left.size(), CV_32FC1);
   // Disparities are sixteenths of a pixel of the half resolution.
   const float numerator = static_cast<float>(fx_baseline_ * 16.0 / 2.0);

@@ -49,6 +49,28 @@ TEST(FrameBuilder, FeaturesLieWhereTheWorldIs) {
   }
 }
 
+TEST(FrameBuilder, ARightImageIsNotWrittenToAndMustFit) {
+  test::PointWorld world(Camera{});
+  test::PointExtractor extractor(world);
+  FrameBuilder builder(world.camera(), extractor, 0.0);
+  builder.use_stereo({});
+  const cv::Size size(world.camera().width, world.camera().height);
+  Frame frame;
+  StageTimes times;
+  SensorFrame grey = world.frame(0, 0.0, Eigen::Isometry3d::Identity());
+  grey.right = cv::Mat(size, CV_8UC1, cv::Scalar(7));
+  builder.begin(grey, frame, times);
+  SensorFrame colour = world.frame(1, 0.1, Eigen::Isometry3d::Identity());
+  colour.right = cv::Mat(size, CV_8UC3, cv::Scalar::all(200));
+  builder.begin(colour, frame, times);
+  EXPECT_EQ(grey.right.at<std::uint8_t>(100, 100), 7) << "the caller may still look at it";
+
+  colour.right = cv::Mat(size / 2, CV_8UC1, cv::Scalar(7));
+  EXPECT_THROW(builder.begin(colour, frame, times), InputError);
+  colour.right.release();
+  EXPECT_THROW(builder.begin(colour, frame, times), InputError);
+}
+
 TEST(FrameBuilder, WithoutDepthNothingHasDepth) {
   test::PointWorld world(Camera{});
   test::PointExtractor extractor(world);

@@ -62,7 +62,8 @@ class FrameBuilder {
   Eigen::Vector2d minimum_, maximum_;
   std::optional<StereoDepth> stereo_;
   cv::Mat grey_;
-  cv::Mat grey_right_;
+  cv::Mat grey_right_;       // of the sensor frame, or of the buffer
+  cv::Mat converted_right_;  // the buffer: images of a sensor frame must not be written to
 };
 
 }  // namespace holdfast

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <memory>
 #include <opencv2/core/mat.hpp>
-#include <vector>
 
 #include "holdfast/core/frame.hpp"
 #include "holdfast/interfaces/feature_extractor.hpp"
@@ -30,9 +28,6 @@ struct StereoParts {
 class StereoDepth {
  public:
   StereoDepth(const Camera& camera, const StereoParts& parts);
-  ~StereoDepth();
-  StereoDepth(StereoDepth&&) noexcept;
-  StereoDepth& operator=(StereoDepth&&) noexcept;
 
   /// The depth image of a pair of 8UC1 images: 32FC1 [m] of the same size, 0 = none; blocks of 2 x 2 pixels have one
   /// depth. Empty unless parts.is_dense. Valid until the next call.
@@ -51,7 +46,7 @@ class StereoDepth {
   double fx_baseline_;
   StereoMatcher matcher_;
   Features right_features_;
-  std::unique_ptr<cv::Ptr<cv::StereoSGBM>> dense_matcher_;
+  cv::Ptr<cv::StereoSGBM> dense_matcher_;  // none unless parts_.is_dense
   cv::Mat half_left_, half_right_, disparity_, dense_;
 };
 
