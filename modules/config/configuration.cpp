@@ -121,6 +121,7 @@ class Resolver {
     result_.filters = chain("filters");
     result_.observers = chain("observers");
     read_camera();
+    read_sensor();
     read_run();
     for (const SectionDescription& section : sections_) read_section(section);
     // As a reader goes through the file; what has no line comes last.
@@ -169,7 +170,7 @@ class Resolver {
 
   void check_section_names() {
     std::vector<std::string> known = choice_sections();
-    known.insert(known.end(), {"filters", "observers", "camera", "run", "plugins"});
+    known.insert(known.end(), {"filters", "observers", "camera", "sensor", "run", "plugins"});
     for (const SectionDescription& section : sections_) known.push_back(section.name);
     for (const ConfigurationNode::Entry& entry : root_.entries)
       if (std::find(known.begin(), known.end(), entry.key) == known.end())
@@ -253,6 +254,17 @@ class Resolver {
       result_.warnings.push_back({node.location, "found the camera '" + result_.camera->name + "' for the folder '" +
                                                      folder + "'; expected '" + *named +
                                                      "' by the name of the folder; write 'camera: auto' to follow it"});
+  }
+
+  void read_sensor() {
+    const ConfigurationNode& node = at("sensor");
+    if (node.kind == Kind::nothing || (node.kind == Kind::scalar && node.text == "auto")) return;
+    if (node.kind == Kind::scalar) result_.sensor = find_sensor(node.text);
+    if (result_.sensor) return;
+    std::vector<std::string> known = sensor_names();
+    known.insert(known.begin(), "auto");
+    complain(node.location, "found " + node.found() + " for 'sensor'; " +
+                                did_you_mean(node.kind == Kind::scalar ? node.text : "", known));
   }
 
   /// The name of the folder that the source reads; "" for a source without one.

@@ -37,6 +37,7 @@ std::string to_yaml(const Configuration& configuration) {
     yaml += "camera:\n";
     add_values(ParameterTable<CameraSettings>().values(camera_settings(*configuration.camera)), "  ", yaml);
   }
+  yaml += std::string("sensor: ") + (configuration.sensor ? sensor_name(*configuration.sensor) : "auto") + "\n";
   add_choice(configuration.features, yaml);
   add_choice(configuration.segmenter, yaml);
   add_chain("filters", configuration.filters, yaml);

@@ -59,6 +59,10 @@ const char* to_string(TrackingTrouble trouble) {
       return "too few matches";
     case TrackingTrouble::few_inliers:
       return "too few inliers";
+    case TrackingTrouble::little_parallax:
+      return "too little parallax";
+    case TrackingTrouble::no_mask:
+      return "no mask yet";
   }
   return "?";
 }

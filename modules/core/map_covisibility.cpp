@@ -95,7 +95,8 @@ void Map::remove_keyframe(KeyFrameId id) {
   for (const CovisibilityEdge& edge : keyframe.covisible) erase_edge(keyframes_.at(edge.keyframe), id);
   for (const KeyFrameId other : keyframe.loop_edges) std::erase(keyframes_.at(other).loop_edges, id);
   removed_keyframes_[id] = {keyframe.parent,
-                            keyframe.frame.T_camera_world * keyframes_.at(keyframe.parent).frame.T_world_camera()};
+                            keyframe.frame.T_camera_world * keyframes_.at(keyframe.parent).frame.T_world_camera(),
+                            keyframe.scale, keyframes_.at(keyframe.parent).scale};
   keyframes_.erase(id);
 }
 
@@ -131,7 +132,20 @@ Eigen::Isometry3d Map::pose_of(KeyFrameId id) const {
     if (const KeyFrame* keyframe = keyframes_.find(id)) return T_camera_ancestor * keyframe->frame.T_camera_world;
     const auto removed = removed_keyframes_.find(id);
     HOLDFAST_CHECK(removed != removed_keyframes_.end(), "keyframe " << id.slot << " was never in the map");
-    T_camera_ancestor = T_camera_ancestor * removed->second.T_camera_parent;
+    Eigen::Isometry3d T_camera_parent = removed->second.T_camera_parent;
+    T_camera_parent.translation() *= scale_of(removed->second.parent) / removed->second.parent_scale;
+    T_camera_ancestor = T_camera_ancestor * T_camera_parent;
+    id = removed->second.parent;
+  }
+}
+
+double Map::scale_of(KeyFrameId id) const {
+  double since_removal = 1.0;
+  while (true) {
+    if (const KeyFrame* keyframe = keyframes_.find(id)) return since_removal * keyframe->scale;
+    const auto removed = removed_keyframes_.find(id);
+    HOLDFAST_CHECK(removed != removed_keyframes_.end(), "keyframe " << id.slot << " was never in the map");
+    since_removal *= removed->second.scale / removed->second.parent_scale;
     id = removed->second.parent;
   }
 }

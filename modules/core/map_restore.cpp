@@ -207,6 +207,7 @@ void Map::restore(MapContent content) {
   for (KeyFrame& keyframe : content.keyframes) keyframes_.emplace(std::move(keyframe));
   for (MapPoint& point : content.points) points_.emplace(std::move(point));
   next_sequence_ = content.next_sequence;
+  sensor_ = content.sensor;
   version_ = version + 1;
 }
 

@@ -102,6 +102,7 @@ std::optional<LoopMeasurement> LoopCloser::check(LoopTrial& trial) {
   // The surgery mutex is held: keyframes stay, and so do the poses and features that are read without the map's lock.
   const Frame* frame = nullptr;
   PlacePoints place;
+  SolidFeatures solid;
   std::uint64_t sequence = 0;
   {
     const std::lock_guard lock(map_mutex_);
@@ -109,12 +110,13 @@ std::optional<LoopMeasurement> LoopCloser::check(LoopTrial& trial) {
     if (keyframe == nullptr || map_.find_keyframe(trial.candidate) == nullptr) return std::nullopt;
     frame = &keyframe->frame;
     sequence = keyframe->sequence;
+    solid = solid_features(*frame, map_);
     std::vector<KeyFrameId> side = {trial.candidate};
     for (const KeyFrameId neighbour : map_.best_covisible(trial.candidate, settings_.neighbours))
       side.push_back(neighbour);
     place = copy_points_seen_by(map_, side);
   }
-  const CheckedPlace checked = check_place(settings_, optimizer_, *frame, place, Random(seed_).fork(sequence).next());
+  const CheckedPlace checked = check_place(settings_, optimizer_, *frame, solid, place, Random(seed_).fork(sequence).next());
   trial.verdict = checked.verdict;
   trial.matches = checked.matches;
   trial.aligned = checked.aligned;
@@ -130,14 +132,16 @@ std::optional<LoopMeasurement> LoopCloser::check(LoopTrial& trial) {
     old_points = old_points_in_view(settings_, map_, trial.keyframe);
   }
   trial.correction = pose_change(frame->T_camera_world, checked.T_camera_world);
-  const PoseChange believed = believed_drift(settings_, trial.way);
+  trial.scale = checked.scale;
+  const PoseChange believed = believed_drift(settings_, trial.way, solid.with_scale);
   if (trial.correction.metres > believed.metres || trial.correction.degrees > believed.degrees)
     trial.verdict = LoopVerdict::implausible_correction;
   else if (present_pose_is_confirmed(settings_, optimizer_, *frame, old_points, checked.T_camera_world))
     trial.verdict = LoopVerdict::pose_confirmed;
   if (trial.verdict != LoopVerdict::closed) return std::nullopt;
 
-  LoopMeasurement measurement{trial.keyframe, trial.candidate, checked.T_camera_world, {}};
+  LoopMeasurement measurement{trial.keyframe, trial.candidate, checked.T_camera_world, {}, solid.with_scale,
+                              checked.scale};
   for (const matching::BinaryMatch& match : checked.inliers)
     measurement.points.emplace_back(place.block.ids[match.source], match.feature);
   return measurement;
@@ -150,7 +154,8 @@ std::optional<ClosedLoop> LoopCloser::correct(LoopTrial& trial, const LoopMeasur
                   .candidate = trial.candidate,
                   .inliers = trial.inliers,
                   .way = trial.way,
-                  .correction = trial.correction};
+                  .correction = trial.correction,
+                  .scale = trial.scale};
   {
     const std::lock_guard lock(map_mutex_);
     const Eigen::Isometry3d T_world_candidate = map_.keyframe(trial.candidate).frame.T_world_camera();

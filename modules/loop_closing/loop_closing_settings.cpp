@@ -71,6 +71,11 @@ void LoopClosingSettings::describe(ParameterTable<LoopClosingSettings>& table) {
            "additional plausible correction per metre (and radian) of the path between the places")
       .unit("m")
       .range(0, 1);
+  table
+      .add("scale_drift_per_metre", &S::scale_drift_per_metre,
+           "the same with one camera, whose scale drifts and with it the length of the path")
+      .unit("m")
+      .range(0, 10);
   table.add("turn_constant", &S::turn_constant, "plausible rotation for a path of zero length between the places")
       .unit("deg")
       .range(0, 180);

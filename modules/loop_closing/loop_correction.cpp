@@ -26,7 +26,9 @@ bool LoopCorrection::run() {
     build_graph();
     add_loop_edges();
   }
-  if (!optimizer_.optimize_pose_graph(graph_).usable) return false;
+  const GraphSummary summary =
+      loop_.with_scale ? optimizer_.optimize_similarity_graph(graph_) : optimizer_.optimize_pose_graph(graph_);
+  if (!summary.usable) return false;
   {
     const std::lock_guard lock(map_mutex_);
     move_map();
@@ -84,7 +86,14 @@ void LoopCorrection::add_loop_edges() {
   const auto add = [&](KeyFrameId current, KeyFrameId place) {
     const bool is_same = std::find(current_side_.begin(), current_side_.end(), place) != current_side_.end();
     if (is_same || current == place) return;
-    graph_.edges.push_back({node(current), node(place), pose(place) * motion * pose(current).inverse(), 1.0});
+    Eigen::Isometry3d T_place_current = pose(place) * motion * pose(current).inverse();
+    if (loop_.with_scale) {
+      // The centre of the camera, by the similarity that takes the keyframe's surroundings to the place.
+      const Eigen::Vector3d centre = pose(current).inverse().translation();
+      T_place_current.translation() =
+          pose(place) * (loop_.T_camera_world.inverse() * (loop_.scale * (pose(loop_.keyframe) * centre)));
+    }
+    graph_.edges.push_back({node(current), node(place), T_place_current, 1.0, loop_.scale});
   };
   for (const KeyFrameId place : place_side_) add(loop_.keyframe, place);
   for (std::size_t i = 1; i < current_side_.size(); ++i) add(current_side_[i], loop_.candidate);
@@ -92,10 +101,17 @@ void LoopCorrection::add_loop_edges() {
 
 void LoopCorrection::move_map() {
   std::vector<Eigen::Isometry3d> poses;
-  for (const PoseGraphProblem::Node& node : graph_.nodes) poses.push_back(node.T_camera_world);
-  const MapMotion motion(map_, nodes_, poses);
+  std::vector<double> scales;
+  for (const PoseGraphProblem::Node& node : graph_.nodes) {
+    poses.push_back(node.T_camera_world);
+    scales.push_back(node.scale);
+  }
+  const MapMotion motion(map_, nodes_, poses, scales);
   motion.move_keyframes(map_);
-  for (const MapPointId id : map_.points().ids()) motion.move_point(map_.point(id));
+  for (const MapPointId id : map_.points().ids()) {
+    motion.move_point(map_.point(id));
+    if (loop_.with_scale) map_.update_point_geometry(id);  // the distances from which it can be matched have changed
+  }
 }
 
 void LoopCorrection::fuse_matches() {

@@ -18,6 +18,8 @@ struct LoopMeasurement {
   KeyFrameId candidate;
   Eigen::Isometry3d T_camera_world;                          ///< of the keyframe, where the candidate's points are
   std::vector<std::pair<MapPointId, std::uint32_t>> points;  ///< of the place, and features of the keyframe
+  bool with_scale = false;                                   ///< of one camera, whose scale drifts
+  double scale = 1.0;                                        ///< length at the place that is 1 around the keyframe
 };
 
 /// Closes a loop in the map (Mur-Artal et al. 2015, sections VII-C and VII-D). The caller holds the surgery mutex, not

@@ -5,41 +5,55 @@
 
 namespace holdfast {
 
-MapMotion::MapMotion(const Map& map, std::span<const KeyFrameId> keyframes, std::span<const Eigen::Isometry3d> poses)
-    : motion_(map.keyframes().slot_count(), Eigen::Isometry3d::Identity()) {
+MapMotion::MapMotion(const Map& map, std::span<const KeyFrameId> keyframes, std::span<const Eigen::Isometry3d> poses,
+                     std::span<const double> scales)
+    : motion_(map.keyframes().slot_count(), Eigen::Isometry3d::Identity()), scale_(motion_.size(), 1.0) {
   std::vector<const Eigen::Isometry3d*> given(motion_.size(), nullptr);
-  for (std::size_t i = 0; i < keyframes.size(); ++i)
-    if (map.find_keyframe(keyframes[i]) != nullptr) given[keyframes[i].slot] = &poses[i];
+  for (std::size_t i = 0; i < keyframes.size(); ++i) {
+    if (map.find_keyframe(keyframes[i]) == nullptr) continue;
+    given[keyframes[i].slot] = &poses[i];
+    if (!scales.empty()) scale_[keyframes[i].slot] = scales[i];
+  }
 
   // Parents are older than their children, so their motion is known when the children's turn comes.
   Eigen::Isometry3d before = Eigen::Isometry3d::Identity();
+  double scale_before = 1.0;
   for (const KeyFrameId id : map.keyframes_by_age()) {
     const KeyFrame& keyframe = map.keyframe(id);
     const Eigen::Isometry3d& old_pose = keyframe.frame.T_camera_world;
     Eigen::Isometry3d& motion = motion_[id.slot];
+    double& scale = scale_[id.slot];
+    // With a scale, new camera = scale * old camera for every point; a pose keeps its rotation and unit of length.
+    Eigen::Isometry3d scaled_pose = old_pose;
     if (given[id.slot] != nullptr) {
-      poses_.push_back({id, *given[id.slot], false});
-      motion = geometry::orthonormalised(given[id.slot]->inverse() * old_pose);
+      scaled_pose.translation() *= scale;
+      poses_.push_back({id, *given[id.slot], false, scale});
+      motion = geometry::orthonormalised(given[id.slot]->inverse() * scaled_pose);
     } else {
       motion = keyframe.parent.valid() ? motion_[keyframe.parent.slot] : before;
-      poses_.push_back({id, geometry::orthonormalised(old_pose * motion.inverse()), true});
+      scale = keyframe.parent.valid() ? scale_[keyframe.parent.slot] : scale_before;
+      scaled_pose.translation() *= scale;
+      poses_.push_back({id, geometry::orthonormalised(scaled_pose * motion.inverse()), true, scale});
     }
     before = motion;
+    scale_before = scale;
   }
 }
 
 int MapMotion::move_keyframes(Map& map) const {
   int carried = 0;
   for (const Pose& pose : poses_) {
-    map.keyframe(pose.keyframe).frame.T_camera_world = pose.T_camera_world;
+    KeyFrame& keyframe = map.keyframe(pose.keyframe);
+    keyframe.frame.T_camera_world = pose.T_camera_world;
+    keyframe.scale *= pose.scale;
     carried += pose.carried ? 1 : 0;
   }
   return carried;
 }
 
 void MapMotion::move_point(MapPoint& point) const {
-  const Eigen::Isometry3d& motion = around(point.reference_keyframe);
-  point.position = motion * point.position;
+  const Eigen::Isometry3d& motion = motion_[point.reference_keyframe.slot];
+  point.position = motion * (scale_[point.reference_keyframe.slot] * point.position);
   point.viewing_direction = motion.linear() * point.viewing_direction;
 }
 

@@ -11,16 +11,17 @@ namespace holdfast {
 
 /// New poses for some keyframes of a map, and what they mean for the rest: a keyframe without one of its own moves with
 /// its parent (or with the keyframe before it, should it have none), as rigidly as if bolted to it, and a point moves
-/// with its reference keyframe. The caller holds the map's lock.
+/// with its reference keyframe. With one camera, the world around a keyframe changes its scale as well. The caller holds
+/// the map's lock.
 class MapMotion {
  public:
   /// `poses[i]` is the new T_camera_world of `keyframes[i]`; those that left the map are passed over.
-  MapMotion(const Map& map, std::span<const KeyFrameId> keyframes, std::span<const Eigen::Isometry3d> poses);
+  /// `scales[i]`, where there are any, is what lengths around that keyframe are multiplied by.
+  MapMotion(const Map& map, std::span<const KeyFrameId> keyframes, std::span<const Eigen::Isometry3d> poses,
+            std::span<const double> scales = {});
 
   /// Sets the poses of all keyframes; returns how many were carried along.
   int move_keyframes(Map& map) const;
-  /// The motion of the world around a keyframe, new from old.
-  const Eigen::Isometry3d& around(KeyFrameId keyframe) const { return motion_[keyframe.slot]; }
   /// Moves a point and its viewing direction with its reference keyframe.
   void move_point(MapPoint& point) const;
 
@@ -29,9 +30,12 @@ class MapMotion {
     KeyFrameId keyframe;
     Eigen::Isometry3d T_camera_world;
     bool carried = false;
+    double scale = 1.0;
   };
   std::vector<Pose> poses_;                // of all keyframes
-  std::vector<Eigen::Isometry3d> motion_;  // by slot
+  // By slot, the motion of the world around a keyframe, new from old: a point is scaled, turned and moved.
+  std::vector<Eigen::Isometry3d> motion_;
+  std::vector<double> scale_;
 };
 
 }  // namespace holdfast

@@ -12,19 +12,11 @@
 namespace holdfast {
 namespace {
 
-/// Features with depth that are static as far as is known.
-std::vector<std::uint32_t> solid_features(const Frame& frame) {
-  std::vector<std::uint32_t> features;
-  for (std::uint32_t i = 0; i < frame.size(); ++i)
-    if (frame.has_depth(i) && is_static(frame, i)) features.push_back(i);
-  return features;
-}
-
 /// Nearest point of the place for each feature; each point keeps its nearest feature. Only a point elsewhere is a rival
 /// in the ratio test: a place that was mapped twice is no reason to doubt a match. Match::source is the feature of the
 /// frame, Match::feature the point.
 std::vector<matching::BinaryMatch> match_descriptors(const LoopClosingSettings& settings, const Frame& frame,
-                                                     const PlacePoints& place) {
+                                                     const SolidFeatures& solid, const PlacePoints& place) {
   constexpr double same_spot = 0.1;  // m
   std::vector<std::uint32_t> all(place.size());
   std::iota(all.begin(), all.end(), 0U);
@@ -33,7 +25,7 @@ std::vector<matching::BinaryMatch> match_descriptors(const LoopClosingSettings& 
   };
   matching::DescriptorMatcher<matching::BinaryDescriptors> matcher;
   return matcher.match(
-      {frame.features.descriptors, solid_features(frame)}, {place.block.descriptors, all},
+      {frame.features.descriptors, solid.features}, {place.block.descriptors, all},
       {.max_distance = static_cast<float>(settings.match_distance), .ratio = static_cast<float>(settings.match_ratio)},
       is_elsewhere);
 }
@@ -51,30 +43,64 @@ int filled_cells(const Frame& frame, std::span<const matching::BinaryMatch> matc
   return static_cast<int>(std::count_if(cells.begin(), cells.end(), [](int n) { return n >= 2; }));
 }
 
+/// Length at the place that is 1 around the keyframe: the median over the matches of the ratio of depths.
+double scale_of_place(const SolidFeatures& solid, const PlacePoints& place, const CheckedPlace& checked) {
+  std::vector<double> ratios;
+  for (const matching::BinaryMatch& match : checked.inliers) {
+    const double own = solid.in_camera[match.feature].z();
+    const double there = (checked.T_camera_world * place.positions[match.source]).z();
+    if (own > 0.0 && there > 0.0) ratios.push_back(there / own);
+  }
+  if (ratios.empty()) return checked.scale;
+  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+  std::nth_element(ratios.begin(), middle, ratios.end());
+  return *middle;
+}
+
 }  // namespace
 
+SolidFeatures solid_features(const Frame& frame, const Map& map) {
+  SolidFeatures solid;
+  solid.with_scale = !frame.has_any_depth();
+  solid.in_camera.assign(frame.size(), Eigen::Vector3d::Zero());
+  for (std::uint32_t i = 0; i < frame.size(); ++i) {
+    if (!is_static(frame, i)) continue;
+    if (frame.has_depth(i)) {
+      solid.in_camera[i] = frame.camera_point(i);
+    } else {
+      const MapPoint* point = solid.with_scale ? map.find_point(frame.map_points[i]) : nullptr;
+      if (point == nullptr) continue;
+      solid.in_camera[i] = frame.T_camera_world * point->position;
+    }
+    solid.features.push_back(i);
+  }
+  return solid;
+}
+
 CheckedPlace check_place(const LoopClosingSettings& settings, Optimizer& optimizer, const Frame& frame,
-                         const PlacePoints& place, std::uint64_t seed) {
+                         const SolidFeatures& solid, const PlacePoints& place, std::uint64_t seed) {
   CheckedPlace result;
   if (place.size() == 0) return result;
-  const std::vector<matching::BinaryMatch> matches = match_descriptors(settings, frame, place);
+  const std::vector<matching::BinaryMatch> matches = match_descriptors(settings, frame, solid, place);
   result.matches = static_cast<int>(matches.size());
   if (result.matches < settings.minimum_aligned) return result;
 
   result.verdict = LoopVerdict::no_alignment;
   std::vector<Eigen::Vector3d> in_camera, in_world;
   for (const matching::BinaryMatch& match : matches) {
-    in_camera.push_back(frame.camera_point(match.source));
+    in_camera.push_back(solid.in_camera[match.source]);
     in_world.push_back(place.positions[match.feature]);
   }
   const auto aligned = geometry::align_points_ransac(in_camera, in_world,
-                                                     {.threshold = settings.alignment_threshold,
+                                                     {.with_scale = solid.with_scale,
+                                                      .threshold = settings.alignment_threshold,
                                                       .iterations = settings.alignment_iterations,
                                                       .minimum_inliers = settings.minimum_aligned,
                                                       .seed = seed});
   if (!aligned) return result;
   result.aligned = aligned->inliers;
   result.T_camera_world = aligned->similarity.motion().inverse();
+  result.scale = aligned->similarity.scale;
 
   // The alignment is as good as depth is; the second search starts from a pose adjusted to pixels.
   result.verdict = LoopVerdict::few_inliers;
@@ -88,6 +114,7 @@ CheckedPlace check_place(const LoopClosingSettings& settings, Optimizer& optimiz
     for (std::size_t i = 0; i < search.matches.size(); ++i)
       if (problem.inlier[i] != 0) result.inliers.push_back(search.matches[i]);
   }
+  if (solid.with_scale) result.scale = scale_of_place(solid, place, result);
   result.expected = search.expected;
   result.cells = filled_cells(frame, result.inliers);
   const int inliers = static_cast<int>(result.inliers.size());

@@ -56,8 +56,10 @@ PoseChange pose_change(const Eigen::Isometry3d& before, const Eigen::Isometry3d&
   return {(centre_of(before) - centre_of(after)).norm(), turn_between(before, after) * degrees_per_radian};
 }
 
-PoseChange believed_drift(const LoopClosingSettings& settings, double way) {
-  return {settings.drift_constant + settings.drift_per_metre * way,
+PoseChange believed_drift(const LoopClosingSettings& settings, double way, bool with_scale) {
+  // The scale of one camera drifts, and with it the length of the way.
+  const double per_metre = with_scale ? settings.scale_drift_per_metre : settings.drift_per_metre;
+  return {settings.drift_constant + per_metre * way,
           settings.turn_constant + settings.turn_per_metre * way};
 }
 

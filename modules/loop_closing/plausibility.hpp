@@ -17,7 +17,7 @@ double way_between(const Map& map, KeyFrameId from, KeyFrameId to);
 PoseChange pose_change(const Eigen::Isometry3d& T_camera_world_before, const Eigen::Isometry3d& T_camera_world_after);
 
 /// What odometry may have drifted on a way.
-PoseChange believed_drift(const LoopClosingSettings& settings, double way);
+PoseChange believed_drift(const LoopClosingSettings& settings, double way, bool with_scale);
 
 /// Points of the map that the keyframe should see from its present pose, and that neither it nor its neighbourhood nor
 /// any keyframe younger than `minimum_gap` has seen.

@@ -46,7 +46,7 @@ std::string encode(const FileHeader& header) {
   writer.put(header.sections);
   writer.put(header.keyframes);
   writer.put(header.points);
-  writer.put(std::uint32_t{0});
+  writer.put(header.sensor);
   writer.put(header.observations);
   writer.put(header.next_sequence);
   writer.put(crc32c(writer.bytes().data(), writer.size()));
@@ -126,7 +126,7 @@ void ContainerReader::read_header() {
   header_.sections = reader.get<std::uint32_t>();
   header_.keyframes = reader.get<std::uint32_t>();
   header_.points = reader.get<std::uint32_t>();
-  reader.get<std::uint32_t>();
+  header_.sensor = reader.get<std::uint32_t>();
   header_.observations = reader.get<std::uint64_t>();
   header_.next_sequence = reader.get<std::uint64_t>();
   if (header_.file_size != size_)

@@ -26,6 +26,7 @@ struct FileHeader {
   std::uint32_t points = 0;
   std::uint64_t observations = 0;
   std::uint64_t next_sequence = 0;
+  std::uint32_t sensor = 0;
 };
 
 /// The bytes of the header, checksum included.

@@ -20,6 +20,11 @@ class ContentReader {
            std::to_string(feature_counts_.size()) + " and a section '" + point_section + "'");
     check_header();
     content_.map.next_sequence = container_.header().next_sequence;
+    const std::uint32_t sensor = container_.header().sensor;
+    if (sensor >= sensor_names().size())
+      fail("found sensor number " + std::to_string(sensor) + "; expected less than " +
+           std::to_string(sensor_names().size()));
+    content_.map.sensor = static_cast<Sensor>(sensor);
     return std::move(content_);
   }
 

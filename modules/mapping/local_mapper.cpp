@@ -26,6 +26,24 @@ KeyFrameId LocalMapper::insert(const Frame& frame, bool points_wait, StageTimes&
   return keyframe;
 }
 
+KeyFrameId LocalMapper::begin(const Frame& frame, std::span<const std::pair<Eigen::Vector3d, std::uint32_t>> points,
+                              std::vector<MapPointId>& ids, StageTimes& times) {
+  const StageTimer timer(times, "mapping: insertion");
+  const KeyFrameId keyframe = map_.add_keyframe(frame);
+  ++counts_.keyframes_made;
+  ids.clear();
+  for (const auto& [position, feature] : points) {
+    const MapPointId point = map_.add_point(position, map_.keyframe(keyframe).sequence);
+    map_.add_observation(point, keyframe, feature);
+    map_.update_point(point);
+    recent_points_.push_back(point);
+    ids.push_back(point);
+    ++counts_.points_triangulated;
+  }
+  map_.update_covisibility(keyframe, settings_.covisibility_minimum);
+  return keyframe;
+}
+
 std::vector<KeyFrameId> LocalMapper::refine(KeyFrameId keyframe, StageTimes& times) {
   stop_ = false;
   {
@@ -125,10 +143,12 @@ std::vector<KeyFrameId> LocalMapper::remove_redundant_keyframes(KeyFrameId id) {
     if (!keyframe.parent.valid() || !keyframe.loop_edges.empty()) continue;
     if (keyframe.sequence > sequence) continue;  // waits to be refined itself
     const Frame& frame = keyframe.frame;
+    const bool has_depth = frame.has_any_depth();
     const float close = static_cast<float>(close_depth_factor_ * frame.camera->baseline);
     int points = 0, redundant = 0;
     for (std::uint32_t feature = 0; feature < frame.size(); ++feature) {
-      if (!frame.map_points[feature].valid() || !frame.has_depth(feature) || frame.depth[feature] > close) continue;
+      if (!frame.map_points[feature].valid()) continue;
+      if (has_depth && (!frame.has_depth(feature) || frame.depth[feature] > close)) continue;
       ++points;
       const MapPoint& point = map_.point(frame.map_points[feature]);
       constexpr int enough = 3;

@@ -88,6 +88,20 @@ std::optional<Eigen::Vector3d> triangulate(const TwoKeyframes& views, const Feat
   return in_frame;
 }
 
+/// A shorter way between two keyframes gives too little parallax: the baseline of the stereo pair, or, for one camera,
+/// a hundredth of the median depth of the points that the neighbour sees (Mur-Artal et al. 2015, section VI-D).
+double shortest_baseline(const Map& map, const Frame& neighbour) {
+  if (neighbour.has_any_depth()) return neighbour.camera->baseline;
+  constexpr double share = 0.01;
+  std::vector<double> depths;
+  for (const MapPointId id : neighbour.map_points)
+    if (const MapPoint* point = map.find_point(id)) depths.push_back((neighbour.T_camera_world * point->position).z());
+  if (depths.empty()) return neighbour.camera->baseline;
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  return share * *middle;
+}
+
 /// Static features that show no map point yet.
 std::vector<std::uint32_t> free_features(const Frame& frame) {
   std::vector<std::uint32_t> free;
@@ -116,7 +130,7 @@ void LocalMapper::triangulate_with(KeyFrameId id, KeyFrameId neighbour_id) {
   const Frame& neighbour = map_.keyframe(neighbour_id).frame;
   const Eigen::Isometry3d T_frame_neighbour = frame.T_camera_world * neighbour.T_world_camera();
   const TwoKeyframes views{frame, neighbour, T_frame_neighbour, T_frame_neighbour.inverse()};
-  if (T_frame_neighbour.translation().norm() < frame.camera->baseline) return;
+  if (T_frame_neighbour.translation().norm() < shortest_baseline(map_, neighbour)) return;
 
   std::vector<std::uint32_t> candidates = free_features(neighbour);
   if (candidates.empty()) return;

@@ -6,7 +6,7 @@
 namespace holdfast {
 
 MovingWorld::MovingWorld(MovingWorldParts parts, Map& map)
-    : map_(map), filters_(std::move(parts.filters)), sampler_(parts.camera) {
+    : map_(map), filters_(std::move(parts.filters)), has_depth_(parts.has_depth), sampler_(parts.camera) {
   if (parts.segmenter == nullptr) return;
   classes_ = parts.segmenter->classes();
   movable_ = parts.segmenter->movable();
@@ -45,7 +45,7 @@ bool MovingWorld::evaluate(FilterStage stage, const TrackedView& view, StageTime
 
 void MovingWorld::check_pose(const PosePrediction& prediction, KeyFrameId reference, Frame& frame, StageTimes& times) {
   const StageTimer timer(times, "filters");
-  if (!depth_agreement_.choose(map_, reference, frame.timestamp)) return;
+  if (!has_depth_ || !depth_agreement_.choose(map_, reference, frame.timestamp)) return;
   if (depth_agreement_.share(frame, prediction.T_camera_world) >
       depth_agreement_.share(frame, frame.T_camera_world) + filters_.settings().prediction_lead)
     frame.T_camera_world = prediction.T_camera_world;
@@ -55,6 +55,7 @@ void MovingWorld::check_pose(const PosePrediction& prediction, KeyFrameId refere
 
 bool MovingWorld::contradicts_depth(const Frame& frame, int inliers, bool was_lost, KeyFrameId reference) {
   const EvidenceSettings& limits = filters_.settings();
+  if (!has_depth_) return filters_.discounts_priors();  // what needs the support of depth has none
   if (filters_.discounts_priors())
     return !depth_agreement_.choose(map_, reference, frame.timestamp) ||
            depth_agreement_.support(frame, frame.T_view_world()) < limits.fallback_share;
@@ -68,7 +69,7 @@ bool MovingWorld::contradicts_depth(const Frame& frame, int inliers, bool was_lo
 std::optional<Eigen::Isometry3d> MovingWorld::align_depth(const Frame& frame, const Eigen::Isometry3d& predicted,
                                                           KeyFrameId reference, StageTimes& times) {
   const EvidenceSettings& limits = filters_.settings();
-  if (!limits.fallback) return std::nullopt;
+  if (!limits.fallback || !has_depth_) return std::nullopt;
   const StageTimer timer(times, "depth alignment");
   if (!depth_agreement_.choose(map_, reference, frame.timestamp)) return std::nullopt;
   const Eigen::Isometry3d aligned = depth_agreement_.align(frame, frame.coarse.T_view_world(predicted));
@@ -115,9 +116,10 @@ void MovingWorld::evaluate_keyframe(const ArrivedMask& arrived, StageTimes& time
   filters_.evaluate_keyframe(inputs, keyframe->frame);
 }
 
-bool MovingWorld::request_mask(const SensorFrame& sensor_frame, KeyFrameId keyframe, StageTimes& times) {
+bool MovingWorld::request_mask(const SensorFrame& sensor_frame, KeyFrameId keyframe, StageTimes& times,
+                               bool is_needed) {
   if (!queue_ || !queue_->has_room()) return false;
-  if (!keyframe.valid() && !queue_->wants(next_frame_number_ - 1)) return false;
+  if (!keyframe.valid() && !is_needed && !queue_->wants(next_frame_number_ - 1)) return false;
   propagator_->remember();
   queue_->push(sensor_frame, keyframe, times);
   return true;

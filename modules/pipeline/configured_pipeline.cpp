@@ -60,6 +60,7 @@ class ConfigurationReader {
   PipelineBuilder read(const SourceDescription& source) {
     builder_.source(source);
     if (configuration_.camera) builder_.camera(*configuration_.camera);
+    if (configuration_.sensor) builder_.sensor(*configuration_.sensor);
     builder_.source_name_ = configuration_.source.name;
     builder_.source_place_ = configuration_.source.location;
     choose_modules();

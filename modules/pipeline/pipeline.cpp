@@ -43,11 +43,12 @@ MovingWorldParts moving_world_parts(PipelineParts& parts) {
           .filters = std::move(chain),
           .segmenter = has_segmenter(parts) ? parts.segmenter.get() : nullptr,
           .segmentation = parts.segmentation,
-          .threaded = parts.run.threaded()};
+          .threaded = parts.run.threaded(),
+          .has_depth = parts.sensor != Sensor::mono};
 }
 
 std::optional<StereoParts> stereo_parts(const PipelineParts& parts) {
-  if (!parts.is_stereo) return std::nullopt;
+  if (parts.sensor != Sensor::stereo) return std::nullopt;
   return StereoParts{.settings = parts.stereo,
                      .right_features = parts.right_features.get(),
                      .is_dense = has_segmenter(parts) || !parts.filters.empty()};
@@ -71,10 +72,11 @@ struct Pipeline::State {
         moving_world(moving_world_parts(parts), map),
         detector(*parts.loop_detector),
         tracker(parts.tracking, {parts.camera, *parts.features, *parts.optimizer, detector, moving_world, map,
-                                 parts.run.seed, stereo_parts(parts)}),
+                                 parts.run.seed, stereo_parts(parts), parts.sensor != Sensor::mono}),
         mapper(parts.mapping, parts.tracking.close_depth_factor, map, map_mutex, *parts.optimizer),
         closer(parts.loop_closing, {map, map_mutex, surgery}, detector, *parts.optimizer, parts.run.seed),
         adjustment(parts.loop_closing, {map, map_mutex, surgery}, *parts.optimizer) {
+    map.set_sensor(parts.sensor);
     map.set_evidence_limit(static_cast<float>(parts.evidence.limit));
     closer.set_full_adjustment(&adjustment);
     for (const KeyFrameId keyframe : map.keyframes_by_age())
@@ -92,6 +94,10 @@ struct Pipeline::State {
 
   void start_threads();
   void check_stamp(const SensorFrame& frame);
+  /// The frame as given, or in `without` what the sensor of this pipeline has of it.
+  const SensorFrame& used_images(const SensorFrame& given, SensorFrame& without) const;
+  /// Inserts the first of the two keyframes with which the map of one camera begins; the caller holds the map's lock.
+  KeyFrameId begin_map(const TwoViewStart& start, StageTimes& times);
   LoopJob refine(KeyFrameId keyframe, StageTimes& times);
   /// True when a loop was closed and the whole map should be adjusted.
   bool close_loops(const LoopJob& job, StageTimes& times);
@@ -191,6 +197,25 @@ void Pipeline::State::check_stamp(const SensorFrame& frame) {
   }
   has_frame = true;
   last_timestamp = frame.timestamp;
+}
+
+const SensorFrame& Pipeline::State::used_images(const SensorFrame& given, SensorFrame& without) const {
+  const bool drops_depth = parts.sensor != Sensor::rgbd && !given.depth.empty();
+  const bool drops_right = parts.sensor != Sensor::stereo && !given.right.empty();
+  if (!drops_depth && !drops_right) return given;
+  without = given;
+  if (drops_depth) without.depth.release();
+  if (drops_right) without.right.release();
+  return without;
+}
+
+KeyFrameId Pipeline::State::begin_map(const TwoViewStart& start, StageTimes& times) {
+  std::vector<std::pair<Eigen::Vector3d, std::uint32_t>> points;
+  for (const TwoViewStart::Point& point : start.points) points.emplace_back(point.position, point.in_reference);
+  std::vector<MapPointId> ids;
+  const KeyFrameId first = mapper.begin(start.reference, points, ids, times);
+  tracker.map_begun(first, ids);
+  return first;
 }
 
 Pipeline::State::LoopJob Pipeline::State::refine(KeyFrameId keyframe, StageTimes& times) {
@@ -295,7 +320,8 @@ double Pipeline::State::take_masks(StageTimes& times) {
 
 void Pipeline::State::request_mask(const SensorFrame& frame, const FrameResult& result, StageTimes& times) {
   const KeyFrameId keyframe = result.is_keyframe ? result.keyframe : KeyFrameId();
-  if (moving_world.request_mask(frame, keyframe, times) || !result.is_keyframe) return;
+  const bool is_needed = result.trouble == TrackingTrouble::no_mask;
+  if (moving_world.request_mask(frame, keyframe, times, is_needed) || !result.is_keyframe) return;
   keep_view(keyframe, frame, tracker.frame().coarse, {}, times);
   hand_to_mapping(keyframe, times);
 }
@@ -307,8 +333,10 @@ Pipeline::~Pipeline() {
 Pipeline::Pipeline(Pipeline&&) noexcept = default;
 Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
 
-FrameResult Pipeline::feed(const SensorFrame& frame) {
+FrameResult Pipeline::feed(const SensorFrame& given) {
   State& s = *state_;
+  SensorFrame without;
+  const SensorFrame& frame = s.used_images(given, without);
   s.check_stamp(frame);
   s.rethrow_failures();
   if (s.mapping && !s.parts.run.paced()) s.mapping->queue().wait_for_room();
@@ -317,6 +345,7 @@ FrameResult Pipeline::feed(const SensorFrame& frame) {
   s.moving_world.next_frame(frame.timestamp);
   s.hand_on_kept_keyframes();
   const double mask_seconds = s.take_masks(result.times);
+  KeyFrameId first_keyframe;
   const Stopwatch watch;
   s.tracker.begin(frame, result);
   {
@@ -333,10 +362,12 @@ FrameResult Pipeline::feed(const SensorFrame& frame) {
       const bool is_new_view = result.status == TrackingStatus::initialised ||
                                result.inliers < s.parts.segmentation.new_view_share * result.static_features;
       const bool wait_for_mask = s.moving_world.expects_masks() && !is_new_view;
+      if (const TwoViewStart* start = s.tracker.two_view_start()) first_keyframe = s.begin_map(*start, result.times);
       result.keyframe = s.mapper.insert(s.tracker.frame(), wait_for_mask, result.times);
       if (s.mapping || s.moving_world.expects_masks()) s.tracker.keyframe_added(result.keyframe);
     }
   }
+  if (first_keyframe.valid()) s.hand_to_mapping(first_keyframe, result.times);
   s.request_mask(frame, result, result.times);
   if (result.is_keyframe) {
     if (!s.mapping && !s.moving_world.expects_masks()) s.tracker.keyframe_added(result.keyframe);
@@ -415,6 +446,7 @@ LoopRecord Pipeline::loop_record() const {
   const std::lock_guard lock(state_->record_mutex);
   return state_->loop_record;
 }
+Sensor Pipeline::sensor() const { return state_->parts.sensor; }
 const Camera& Pipeline::camera() const { return state_->parts.camera; }
 
 }  // namespace holdfast

@@ -49,8 +49,12 @@ PipelineBuilder& PipelineBuilder::source(const SourceDescription& description) {
   source_name_ = description.name;
   has_depth_ = description.has_depth;
   has_right_ = description.has_right;
-  parts_.is_stereo = !has_depth_ && has_right_;
   context_.class_names = description.class_names;
+  return *this;
+}
+
+PipelineBuilder& PipelineBuilder::sensor(Sensor sensor) {
+  sensor_ = sensor;
   return *this;
 }
 
@@ -160,13 +164,17 @@ void PipelineBuilder::check(const Settings& settings, const char* section) {
 }
 
 void PipelineBuilder::check_camera() {
+  const Sensor offered = has_depth_ ? Sensor::rgbd : has_right_ ? Sensor::stereo : Sensor::mono;
+  parts_.sensor = sensor_.value_or(offered);
   // The baseline of a real pair is the source's; that of the configured camera is of a virtual one.
-  if (source_camera_ && parts_.is_stereo) parts_.camera.baseline = source_camera_->baseline;
+  if (source_camera_ && parts_.sensor != Sensor::rgbd) parts_.camera.baseline = source_camera_->baseline;
   if (source_camera_ && has_camera_ && have_other_numbers(*source_camera_, parts_.camera))
     complain(source_place_, "the source '" + source_name_ +
                                 "' brings its own camera, and 'camera' names one with other numbers; remove one of "
                                 "them");
   if (source_camera_) parts_.camera = *source_camera_;
+  // Without a pair, the baseline only says what counts as near, in the map's own unit.
+  if (parts_.sensor == Sensor::mono) parts_.camera.baseline = Camera().baseline;
   if (!source_camera_ && !has_camera_) {
     std::string known;
     for (const std::string& name : camera_names()) known += (known.empty() ? "" : ", ") + name;
@@ -190,9 +198,10 @@ void PipelineBuilder::check_settings() {
 }
 
 void PipelineBuilder::check_filter(const ModuleOf<DynamicFilter>& module, const Needs& needs) {
-  if (needs.depth && !has_depth_ && !has_right_)
-    complain(module.place, "the filter '" + module.name + "' needs depth, which the source '" + source_name_ +
-                               "' does not have; remove one of them");
+  if (needs.depth && parts_.sensor == Sensor::mono)
+    complain(module.place, "the filter '" + module.name +
+                               "' needs depth, and one camera has none; remove it, or choose one that does without, "
+                               "such as 'epipolar_consistency'");
   if (needs.segmentation && is_absent(segmenter_))
     complain(module.place,
              "the filter '" + module.name + "' needs a segmentation, but the segmenter is 'none'; choose a segmenter");
@@ -202,6 +211,11 @@ void PipelineBuilder::check_filter(const ModuleOf<DynamicFilter>& module, const 
 void PipelineBuilder::check_map() const {
   if (parts_.map.keyframes().empty())
     throw InputError({map_name_}, "is a map without keyframes; expected one that a run has saved");
+  if (parts_.map.sensor() != parts_.sensor)
+    throw InputError({map_name_}, std::string("was made with the sensor '") + sensor_name(parts_.map.sensor()) +
+                                      "', and the run has '" + sensor_name(parts_.sensor) +
+                                      "'; expected the same sensor, because keyframes of another one fit neither its "
+                                      "scale nor its adjustment");
   parts_.map.keyframes().for_each([&](KeyFrameId, const KeyFrame& keyframe) {
     if (have_other_numbers(*keyframe.frame.camera, parts_.camera))
       throw InputError({map_name_}, "was made with the camera '" + keyframe.frame.camera->name +
@@ -211,14 +225,16 @@ void PipelineBuilder::check_map() const {
 }
 
 void PipelineBuilder::choose_sensor() {
-  if (!has_depth_ && !has_right_)
-    complain(source_place_, "the source '" + source_name_ +
-                                "' has neither depth nor a right image; this version tracks colour with depth, or a "
-                                "rectified stereo pair");
-  if (!parts_.is_stereo) return;
-  if (parts_.dense_map.enabled)
-    complain(place_, "dense_map needs depth images, and the source '" + source_name_ +
-                         "' has a right image in their place; remove `dense_map`");
+  const bool lacks_depth = parts_.sensor == Sensor::rgbd && !has_depth_;
+  const bool lacks_right = parts_.sensor == Sensor::stereo && !has_right_;
+  if (lacks_depth || lacks_right)
+    complain(source_place_, "the sensor is '" + std::string(sensor_name(parts_.sensor)) + "', and the source '" +
+                                source_name_ + "' has no " + (lacks_depth ? "depth" : "right") +
+                                " images; expected another source, or another 'sensor'");
+  if (parts_.dense_map.enabled && parts_.sensor != Sensor::rgbd)
+    complain(place_, "dense_map needs depth images, and the sensor is '" + std::string(sensor_name(parts_.sensor)) +
+                         "'; remove `dense_map`");
+  if (parts_.sensor != Sensor::stereo) return;
   if (!parts_.camera.distortion.is_zero())
     complain(place_, "the camera of a stereo pair has distortion; expected rectified images, whose camera has none");
   // An extractor that was given as an object exists once: it finds the features of one image after the other.

@@ -41,6 +41,8 @@ void evaluate_run(const FrameSource& source, RunRecord& record) {
   for (const SkippedFrame& skipped : record.skipped) record.frame_stamps.push_back(skipped.timestamp);
   std::sort(record.frame_stamps.begin(), record.frame_stamps.end());
   EvaluationOptions options;
+  // The unit of one camera's map is arbitrary.
+  options.alignment = record.sensor == Sensor::mono ? AlignmentKind::sim3 : AlignmentKind::se3;
   options.truth_name = "truth";
   options.truth_frame = record.source.truth_frame;
   options.estimate_name = "trajectory.txt";
@@ -70,6 +72,7 @@ RunRecord run(BuiltPipeline& built, const Configuration& configuration, const Ru
   record.configuration = configuration;
   record.source = built.source->describe();
   record.camera = built.pipeline.camera();
+  record.sensor = built.pipeline.sensor();
   record.localised_only = options.pipeline.localise_only;
   if (options.on_start) options.on_start(record);
   feed_frames(built, options, record);

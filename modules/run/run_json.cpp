@@ -143,6 +143,7 @@ std::string run_json(const RunRecord& record) {
                {"mode", choice_name(record.configuration.run.mode)},
                {"machine", machine_json()},
                {"sequence", record.source.name},
+               {"sensor", sensor_name(record.sensor)},
                {"interrupted", record.was_interrupted}};
   json["failure"] = record.failure.empty() ? Json(nullptr) : Json(record.failure);
   Json& warnings = json["warnings"] = Json::array();

@@ -16,7 +16,10 @@ void FrameHistory::add(const Frame& frame, KeyFrameId reference, const Map& map)
   }
   has_previous_ = true;
   Record record{frame.timestamp, reference, Eigen::Isometry3d::Identity()};
-  if (reference.valid()) record.T_camera_reference = frame.T_camera_world * map.pose_of(reference).inverse();
+  if (reference.valid()) {
+    record.T_camera_reference = frame.T_camera_world * map.pose_of(reference).inverse();
+    record.reference_scale = map.scale_of(reference);
+  }
   records_.push_back(record);
 }
 
@@ -26,8 +29,13 @@ void FrameHistory::became_keyframe(KeyFrameId keyframe, double timestamp) {
 }
 
 Eigen::Isometry3d FrameHistory::last_pose(const Map& map) const {
-  const Record& last = records_.back();
-  return last.T_camera_reference * map.pose_of(last.reference);
+  return pose(records_.back(), map);
+}
+
+Eigen::Isometry3d FrameHistory::pose(const Record& record, const Map& map) {
+  Eigen::Isometry3d T_camera_reference = record.T_camera_reference;
+  T_camera_reference.translation() *= map.scale_of(record.reference) / record.reference_scale;
+  return T_camera_reference * map.pose_of(record.reference);
 }
 
 Eigen::Isometry3d FrameHistory::predicted_step(double timestamp) const {
@@ -49,7 +57,7 @@ Trajectory FrameHistory::trajectory(const Map& map) const {
   Trajectory trajectory;
   trajectory.reserve(records_.size());
   for (const Record& record : records_)
-    trajectory.push_back({record.timestamp, (record.T_camera_reference * map.pose_of(record.reference)).inverse()});
+    trajectory.push_back({record.timestamp, pose(record, map).inverse()});
   return trajectory;
 }
 

@@ -30,6 +30,7 @@ Tracker::Tracker(const TrackingSettings& settings, const TrackerParts& parts)
       keyframe_policy_(settings),
       state_(parts.map.keyframes().empty() ? State::waiting : State::lost) {
   if (parts.stereo) builder_.use_stereo(*parts.stereo);
+  if (!parts.has_depth) mono_.emplace(settings, parts.optimizer, parts.seed);
 }
 
 void Tracker::begin(const SensorFrame& sensor_frame, FrameResult& result) {
@@ -45,8 +46,12 @@ void Tracker::begin(const SensorFrame& sensor_frame, FrameResult& result) {
 }
 
 void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
+  begins_with_two_views_ = false;
   if (state_ == State::waiting) {
-    start_map(Eigen::Isometry3d::Identity(), result);
+    if (mono_)
+      start_with_two_views(sensor_frame, result);
+    else
+      start_map(Eigen::Isometry3d::Identity(), result);
     end_frame(result);
     return;
   }
@@ -110,6 +115,33 @@ bool Tracker::start_map(const Eigen::Isometry3d& T_camera_world, FrameResult& re
   }
   current_.T_camera_world = T_camera_world;
   std::fill(current_.map_points.begin(), current_.map_points.end(), MapPointId());
+  begin_map(result);
+  return true;
+}
+
+void Tracker::start_with_two_views(const SensorFrame& sensor_frame, FrameResult& result) {
+  if (moving_world_.expects_masks() && !moving_world_.has_mask()) {
+    result.trouble = TrackingTrouble::no_mask;
+    return;
+  }
+  const TrackedView view{sensor_frame, nullptr, current_};
+  moving_world_.evaluate(FilterStage::before_matching, view, result.times);
+  moving_world_.weight_features(current_);
+  const StageTimer timer(result.times, "initialisation");
+  result.trouble = mono_->add(current_);
+  if (result.trouble != TrackingTrouble::none) return;
+  begins_with_two_views_ = true;
+  begin_map(result);
+  result.inliers = static_cast<int>(mono_->start().points.size());
+}
+
+void Tracker::map_begun(KeyFrameId reference, const std::vector<MapPointId>& points) {
+  const TwoViewStart& start = mono_->start();
+  for (std::size_t i = 0; i < points.size(); ++i) current_.map_points[start.points[i].in_frame] = points[i];
+  history_.add_before_last(reference, start.reference.timestamp);
+}
+
+void Tracker::begin_map(FrameResult& result) {
   map_start_time_ = last_feature_time_ = current_.timestamp;
   state_ = State::tracking;
   result.status = TrackingStatus::initialised;
@@ -117,7 +149,6 @@ bool Tracker::start_map(const Eigen::Isometry3d& T_camera_world, FrameResult& re
   result.trouble = TrackingTrouble::none;
   result.is_keyframe = true;
   result.inliers = 0;
-  return true;
 }
 
 bool Tracker::find_pose(TrackedView& view, FrameResult& result) {

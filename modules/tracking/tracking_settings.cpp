@@ -10,8 +10,15 @@ namespace {
 using S = TrackingSettings;
 
 void describe_poses(ParameterTable<S>& table) {
-  table.add("minimum_start_points", &S::minimum_start_points, "points with depth that the first frame must have")
+  table
+      .add("minimum_start_points", &S::minimum_start_points,
+           "points with depth that the first frame must have; with one camera, matches of the first two keyframes")
       .range(10, 100000);
+  table
+      .add("start_depth", &S::start_depth,
+           "with one camera, the median depth that the first points get, which sets the unit of the map: parameters in "
+           "metres are in this unit then")
+      .range(0.01, 1000);
   table
       .add("close_depth_factor", &S::close_depth_factor,
            "depth up to this many baselines is trusted alone; farther points are triangulated")

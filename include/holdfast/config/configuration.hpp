@@ -10,6 +10,7 @@
 #include "holdfast/config/configuration_node.hpp"
 #include "holdfast/config/run_settings.hpp"
 #include "holdfast/core/camera.hpp"
+#include "holdfast/core/sensor.hpp"
 #include "holdfast/plugin/registry.hpp"
 
 namespace holdfast {
@@ -57,6 +58,7 @@ struct Configuration {
   std::vector<ModuleChoice> filters;  ///< a chain
   std::vector<ModuleChoice> observers;
   std::optional<Camera> camera;  ///< empty: the source must know it
+  std::optional<Sensor> sensor;  ///< empty: all that the source has
   /// What is no mistake and may still be unintended, with its place: a folder that is named after another camera.
   std::vector<Diagnostic> warnings;
   RunSettings run;

@@ -38,7 +38,15 @@ enum class TrackingFallback {
 };
 
 /// Why a frame has no pose.
-enum class TrackingTrouble { none, no_depth, few_features, few_matches, few_inliers };
+enum class TrackingTrouble {
+  none,
+  no_depth,
+  few_features,
+  few_matches,
+  few_inliers,
+  little_parallax,  ///< one camera has not moved enough to begin a map
+  no_mask,          ///< the map of one camera begins when the first mask says where people are
+};
 
 const char* to_string(TrackingStatus status);
 const char* to_string(TrackingMethod method);

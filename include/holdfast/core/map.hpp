@@ -8,6 +8,7 @@
 
 #include "holdfast/core/keyframe.hpp"
 #include "holdfast/core/map_point.hpp"
+#include "holdfast/core/sensor.hpp"
 #include "holdfast/core/slot_map.hpp"
 
 namespace holdfast {
@@ -18,6 +19,7 @@ struct MapContent {
   std::vector<KeyFrame> keyframes;  ///< by increasing sequence; Frame::grid is not set
   std::vector<MapPoint> points;
   std::uint64_t next_sequence = 0;  ///< greater than every keyframe's sequence
+  Sensor sensor = Sensor::rgbd;
 };
 
 /// Keyframes and map points, referred to by ids. The map keeps all links between them consistent: a feature of a
@@ -87,6 +89,8 @@ class Map {
   /// T_camera_world of a keyframe. For a removed keyframe, it is composed from the current pose of its parent and the
   /// relative pose at the time of removal.
   Eigen::Isometry3d pose_of(KeyFrameId keyframe) const;
+  /// KeyFrame::scale of a keyframe; that of a removed one goes on with its parent's.
+  double scale_of(KeyFrameId keyframe) const;
 
   /// Bound on the magnitude of the static log-odds that fuse_points() leaves on a point (EvidenceSettings::limit). It
   /// belongs to the run, not to the content: files do not keep it, and clear() and restore() leave it as it is.
@@ -95,6 +99,11 @@ class Map {
 
   /// Sequence number of the next keyframe.
   std::uint64_t next_sequence() const { return next_sequence_; }
+
+  /// The sensor that made the map.
+  Sensor sensor() const { return sensor_; }
+  void set_sensor(Sensor sensor) { sensor_ = sensor; }
+
 
   /// Incremented by touch(); a holder of copied map data compares versions to detect that the copy is outdated.
   std::uint64_t version() const { return version_; }
@@ -114,6 +123,7 @@ class Map {
   struct Removed {
     KeyFrameId parent;
     Eigen::Isometry3d T_camera_parent;
+    double scale, parent_scale;  // at the time of removal
   };
   void set_edge(KeyFrame& keyframe, KeyFrameId neighbour, int weight);
   void erase_edge(KeyFrame& keyframe, KeyFrameId neighbour);
@@ -123,6 +133,7 @@ class Map {
   MapPoints points_;
   std::map<KeyFrameId, Removed> removed_keyframes_;
   std::uint64_t next_sequence_ = 0;
+  Sensor sensor_ = Sensor::rgbd;
   std::uint64_t version_ = 0;
   float evidence_limit_ = 4.0F;  // the default of EvidenceSettings::limit
 };

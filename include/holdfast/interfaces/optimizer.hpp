@@ -104,13 +104,15 @@ struct PoseGraphProblem {
   struct Node {
     Eigen::Isometry3d T_camera_world;  ///< in and out
     bool fixed = false;
+    double scale = 1.0;  ///< out, of optimize_similarity_graph(): what a length around this node is multiplied by
   };
   /// A measured relative pose of two nodes, which `from` and `to` name by their index.
   struct Edge {
     std::uint32_t from = 0;
     std::uint32_t to = 0;
-    Eigen::Isometry3d T_to_from;  ///< measured: maps camera `from` to camera `to`
+    Eigen::Isometry3d T_to_from;  ///< measured: maps camera `from` to camera `to`, in the unit of lengths around `to`
     double weight = 1.0;
+    double scale = 1.0;  ///< measured: length around `to` that is 1 around `from`; optimize_similarity_graph() alone
   };
   std::vector<Node> nodes;
   std::vector<Edge> edges;
@@ -139,6 +141,11 @@ class Optimizer : public Module {
   /// `stop` is read between iterations.
   virtual BundleSummary optimize_bundle(BundleProblem& problem, const std::atomic<bool>& stop) = 0;
   virtual GraphSummary optimize_pose_graph(PoseGraphProblem& problem) = 0;
+  /// The pose graph of one camera, whose scale drifts along the way (Strasdat, Montiel and Davison, "Scale drift-aware
+  /// large scale monocular SLAM", RSS 2010): poses and scales together. The default finds the scales first, which are
+  /// linear in their logarithms, and then, in the units that follow, the poses by optimize_pose_graph(). Nodes keep
+  /// scale 1 when the summary is not usable.
+  virtual GraphSummary optimize_similarity_graph(PoseGraphProblem& problem);
 };
 
 }  // namespace holdfast

@@ -16,6 +16,7 @@ struct ClosedLoop {
   int points_fused = 0;
   double way = 0.0;       ///< length of the shortest path between the two before the correction [m]
   PoseChange correction;  ///< measured correction of the keyframe
+  double scale = 1.0;     ///< length at the place that was 1 around the keyframe; 1 where depth is measured
   /// Measured relative pose, which maps points of the candidate's camera frame to the keyframe's.
   Eigen::Isometry3d T_keyframe_candidate = Eigen::Isometry3d::Identity();
   double seconds = 0.0;  ///< duration of the correction

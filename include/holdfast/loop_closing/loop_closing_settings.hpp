@@ -33,6 +33,7 @@ struct LoopClosingSettings {
   double drift_constant = 0.15;  ///< plausible correction for a loop of zero length [m]
   /// Additional plausible correction for each metre (and each radian) of the path around the loop [m].
   double drift_per_metre = 0.02;
+  double scale_drift_per_metre = 0.15;  ///< the same for one camera, whose scale drifts
   double turn_constant = 5.0;  ///< plausible rotation of the correction for a loop of zero length [deg]
   /// Additional plausible rotation for each metre (and each radian) of the path around the loop [deg].
   double turn_per_metre = 0.5;

@@ -44,6 +44,7 @@ struct LoopTrial {
   int cells = 0;          ///< number of 16 cells over the image with at least two inliers
   double way = 0.0;       ///< length of the path between the two in the map [m], with one metre per radian
   PoseChange correction;  ///< correction that the loop requires
+  double scale = 1.0;     ///< length at the place that is 1 around the keyframe; 1 where depth is measured
 };
 
 /// Cumulative loop-closing statistics.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "holdfast/core/camera.hpp"
+#include "holdfast/core/sensor.hpp"
 
 namespace holdfast {
 
@@ -17,6 +18,7 @@ struct MapInfo {
   std::uint64_t file_size = 0;  ///< [bytes]
   std::uint32_t format_version = 0;
   std::string made_by;  ///< version of Holdfast that wrote the file
+  Sensor sensor = Sensor::rgbd;
   std::vector<Camera> cameras;
   std::uint64_t keyframes = 0;
   std::uint64_t features = 0;

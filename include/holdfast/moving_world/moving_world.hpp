@@ -30,6 +30,7 @@ struct MovingWorldParts {
   Segmenter* segmenter = nullptr;  ///< nullptr = none; must outlive the MovingWorld
   SegmentationSettings segmentation = {};
   bool threaded = false;  ///< the segmenter has a thread of its own
+  bool has_depth = true;  ///< false for one camera: no pose is compared with dense depth then
 };
 
 /// The frame that is being tracked, as filters see it.
@@ -100,6 +101,8 @@ class MovingWorld {
 
   /// Objects that filters track in this frame.
   const std::vector<MovingObject>& objects() const { return filters_.evidence().objects(); }
+  /// Whether a mask has arrived.
+  bool has_mask() const { return propagator_ && !propagator_->mask().empty(); }
   /// Age of the propagated mask [s]; 0 without a mask.
   double mask_age() const { return propagator_ ? propagator_->mask().age : 0.0; }
   /// Whether so many keyframes wait for their masks that only a frame that is about to be lost should become another.
@@ -116,8 +119,10 @@ class MovingWorld {
   /// is empty. Adds the stage "masks".
   void evaluate_keyframe(const ArrivedMask& arrived, StageTimes& times);
   /// Requests the mask of the frame last tracked, which became `keyframe` or, when that is invalid, none. False when
-  /// the frame is not to be segmented or the queue has no room. In sequential mode this adds the stage "segmentation".
-  bool request_mask(const SensorFrame& sensor_frame, KeyFrameId keyframe, StageTimes& times);
+  /// the frame is not to be segmented or the queue has no room; `is_needed`: a frame that is no keyframe is segmented
+  /// nevertheless. In sequential mode this adds the stage "segmentation".
+  bool request_mask(const SensorFrame& sensor_frame, KeyFrameId keyframe, StageTimes& times,
+                    bool is_needed = false);
   /// Waits until every requested mask can be taken. Throws what the segmenter threw.
   void finish();
   /// Throws what the segmenter threw in its thread.
@@ -135,6 +140,7 @@ class MovingWorld {
 
   Map& map_;
   FilterChain filters_;
+  bool has_depth_;
   DepthAgreement depth_agreement_;
   CoarseSampler sampler_;
   std::vector<std::string> classes_, movable_;

@@ -12,6 +12,7 @@
 #include "holdfast/core/frame_result.hpp"
 #include "holdfast/core/map.hpp"
 #include "holdfast/core/map_snapshot.hpp"
+#include "holdfast/core/sensor.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/core/worker_counts.hpp"
 #include "holdfast/dense_map/dense_map_settings.hpp"
@@ -34,7 +35,7 @@ class StaticScene;
 struct PipelineParts {
   Camera camera;
   std::unique_ptr<FeatureExtractor> features;
-  bool is_stereo = false;                            ///< depth comes from the right image of a pair
+  Sensor sensor = Sensor::rgbd;
   std::unique_ptr<FeatureExtractor> right_features;  ///< of a stereo pair; may be nullptr, see StereoParts
   std::unique_ptr<Segmenter> segmenter;
   std::vector<std::pair<std::string, std::unique_ptr<DynamicFilter>>> filters;  ///< by name, in order
@@ -110,6 +111,7 @@ class Pipeline {
   const MappingCounts& mapping_counts() const;
   LoopRecord loop_record() const;
   const Camera& camera() const;
+  Sensor sensor() const;
 
   /// Stage times of background work done since the last call; in sequential mode they are in each FrameResult.
   std::vector<StageTimes> take_background_times();

@@ -83,6 +83,10 @@ class PipelineBuilder {
   /// the segmenter `truth`.
   PipelineBuilder& source(const SourceDescription& description);
 
+  /// What is used of the frames; without it, all that the source has: depth before a right image, and colour alone
+  /// when there is neither.
+  PipelineBuilder& sensor(Sensor sensor);
+
   PipelineBuilder& features(ModuleOf<FeatureExtractor> module);
   PipelineBuilder& optimizer(ModuleOf<Optimizer> module);
   PipelineBuilder& segmenter(ModuleOf<Segmenter> module);
@@ -141,6 +145,7 @@ class PipelineBuilder {
   bool has_camera_ = false;
   bool has_depth_ = true;
   bool has_right_ = false;
+  std::optional<Sensor> sensor_;
   bool has_map_ = false;
   std::string map_name_ = "the map";
   std::string source_name_;                                          // empty: source() was not called

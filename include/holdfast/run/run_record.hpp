@@ -35,6 +35,7 @@ struct RunRecord {
   Configuration configuration;
   SourceDescription source;
   Camera camera;
+  Sensor sensor = Sensor::rgbd;
   RunSummary summary;  ///< counts and stage times over all frames
   std::vector<SkippedFrame> skipped;
   std::vector<double> frame_stamps;  ///< time stamps of all frames of the source, skipped ones included, sorted [s]

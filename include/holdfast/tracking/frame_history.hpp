@@ -24,6 +24,11 @@ class FrameHistory {
   /// Makes the last tracked frame, if that is its time stamp, the reference of itself: it became this keyframe.
   void became_keyframe(KeyFrameId keyframe, double timestamp);
 
+  /// Adds a keyframe that was taken before the last tracked frame, but after all others.
+  void add_before_last(KeyFrameId keyframe, double timestamp) {
+    records_.insert(records_.end() - (records_.empty() ? 0 : 1), {timestamp, keyframe, Eigen::Isometry3d::Identity(), 1.0});
+  }
+
   bool empty() const { return records_.empty(); }
   /// Whether the frame before the current one was tracked.
   bool has_previous() const { return has_previous_; }
@@ -46,7 +51,9 @@ class FrameHistory {
     double timestamp;
     KeyFrameId reference;
     Eigen::Isometry3d T_camera_reference;
+    double reference_scale = 1.0;  // KeyFrame::scale of the reference when it was added
   };
+  static Eigen::Isometry3d pose(const Record& record, const Map& map);
 
   std::vector<Record> records_;
   bool has_previous_ = false;

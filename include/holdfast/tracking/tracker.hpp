@@ -17,6 +17,7 @@
 #include "holdfast/tracking/frame_history.hpp"
 #include "holdfast/tracking/frame_matcher.hpp"
 #include "holdfast/tracking/keyframe_policy.hpp"
+#include "holdfast/tracking/mono_initialiser.hpp"
 #include "holdfast/tracking/pose_estimator.hpp"
 #include "holdfast/tracking/relocaliser.hpp"
 #include "holdfast/tracking/tracking_settings.hpp"
@@ -33,6 +34,7 @@ struct TrackerParts {
   Map& map;
   std::uint64_t seed = 1;                  ///< of the random samples of relocalisation
   std::optional<StereoParts> stereo = {};  ///< depth comes from a right image
+  bool has_depth = true;                   ///< false for one camera; stereo pairs have depth
 };
 
 /// Where am I: estimates the pose of every frame against the map (Mur-Artal and Tardos 2017, section III). The motion
@@ -59,6 +61,13 @@ class Tracker {
   /// frame() to local mapping and call keyframe_added() before the next frame.
   void locate(const SensorFrame& sensor_frame, FrameResult& result);
 
+  /// The views that begin the map of one camera, when the frame just located did so: hand the reference to local
+  /// mapping, call map_begun(), and go on with frame() as with any keyframe. Otherwise nullptr.
+  const TwoViewStart* two_view_start() const { return begins_with_two_views_ ? &mono_->start() : nullptr; }
+  /// The reference became `reference`, and the points of the start, in their order, became `points`; the caller holds
+  /// the lock of the map.
+  void map_begun(KeyFrameId reference, const std::vector<MapPointId>& points);
+
   /// The frame last tracked, with features, matches and pose.
   const Frame& frame() const { return current_; }
   /// Takes over the matches and the pose of the keyframe that the tracked frame became, as local mapping left them; the
@@ -84,6 +93,9 @@ class Tracker {
   Eigen::Isometry3d coasting_pose() const;
   /// Makes the current frame the first keyframe of what comes, at the given pose, if enough of its features have depth.
   bool start_map(const Eigen::Isometry3d& T_camera_world, FrameResult& result);
+  /// The same for one camera, whose map begins with two views.
+  void start_with_two_views(const SensorFrame& sensor_frame, FrameResult& result);
+  void begin_map(FrameResult& result);
   bool find_pose(TrackedView& view, FrameResult& result);
   /// The pose, on which few inliers agree, is far from where constant velocity takes the camera.
   bool contradicts_motion(int inliers) const;
@@ -112,9 +124,11 @@ class Tracker {
   PoseEstimator estimator_;
   Relocaliser relocaliser_;
   KeyframePolicy keyframe_policy_;
+  std::optional<MonoInitialiser> mono_;
 
   State state_;
   bool localises_only_ = false;
+  bool begins_with_two_views_ = false;
   Frame current_, previous_;
   std::vector<OdometryMatch> odometry_;
   KeyFrameId reference_keyframe_;

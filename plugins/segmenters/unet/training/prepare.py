@@ -3,7 +3,7 @@
 """Pack pictures of people and of rooms for training.
 
 Reads, as far as they are named:
-  --people DIR      with voc_person/, penn_fudan/ and human_290/ (their layout: README.md)
+  --people DIR      with voc_person/, penn_fudan/, human_290/ and, if there is one, more/ (their layout: README.md)
   --room DIR        a sequence in TUM layout with labels_pseudo/: 0 nobody, 15 person, 255 unsure
   --simulated DIR   sequences that `holdfast simulate` wrote; DIR itself, or folders in it
   --composed DIR    folders of sequences that benchmarks/tools/compose_people.py wrote from frames of --room
@@ -11,6 +11,7 @@ and writes one .npz.  Entries that --validation lists (or that its rule chooses,
 never trained on.
 """
 import argparse
+import functools
 import json
 import pathlib
 import sys
@@ -64,6 +65,14 @@ def human_290(folder):
         people = np.where(grey(path) > 0, PERSON, 0).astype(np.uint8)
         picture = folder / "images" / f"{path.stem}.jpg"
         yield path.stem, colour(picture), with_ignored(people, folder / "unlabelled_people" / path.name)
+
+
+def more_people(folder, source):
+    """Pictures of several collections in one folder: labels 0 other, 1 person, 255 void; of some, also VOC's numbers."""
+    for path in sorted((folder / "labels").glob(f"{source}_*.png")):
+        classes = folder / "labels_voc" / path.name
+        labels = relabelled(grey(classes), VOC) if classes.exists() else relabelled(grey(path), {1: PERSON, 255: IGNORED})
+        yield path.stem, colour(folder / "images" / f"{path.stem}.jpg"), labels
 
 
 def furniture(labels):
@@ -127,6 +136,10 @@ def main():
     if arguments.people:
         for reader in (voc_person, penn_fudan, human_290):
             readers.append((reader.__name__, reader, arguments.people / reader.__name__))
+        more = arguments.people / "more"
+        sources = sorted({path.name.split("_")[0] for path in (more / "labels").glob("*.png")})
+        for source in sources:
+            readers.append((source, functools.partial(more_people, source=source), more))
     if arguments.room:
         readers.append(("room", room, arguments.room))
     if arguments.simulated:

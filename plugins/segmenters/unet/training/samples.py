@@ -11,11 +11,12 @@ from photographs import random_camera, random_view
 MEAN, DEVIATION = 0.5, 0.25  # of a pixel divided by 255, every channel
 
 #: How often a sample is a plain view of a picture of this source.
-PLAIN = {"voc_person": 0.50, "human_290": 0.09, "penn_fudan": 0.05, "room": 0.04, "simulated": 0.08, "walking": 0.07}
-COMPOSED = 0.30
+PLAIN = {"voc_person": 0.21, "sbd": 0.20, "coco": 0.07, "human_290": 0.05, "penn_fudan": 0.03, "ccp": 0.05, "nyu": 0.08,
+         "camvid": 0.02, "davis": 0.005, "room": 0.03, "simulated": 0.06, "walking": 0.05}
+COMPOSED = 0.22
 #: How often a picture of this source is the background of a composed sample, and how often its people are in it.
-BACKGROUNDS = {"room": 0.3, "simulated": 0.3, "voc_person": 0.4}
-PEOPLE = {"voc_person": 0.3, "human_290": 0.3, "penn_fudan": 0.3, "simulated": 0.1}
+BACKGROUNDS = {"room": 0.15, "simulated": 0.2, "voc_person": 0.15, "sbd": 0.15, "nyu": 0.35}
+PEOPLE = {"voc_person": 0.2, "human_290": 0.25, "penn_fudan": 0.25, "ccp": 0.15, "sbd": 0.1, "simulated": 0.05}
 
 
 def to_tensor(picture):

@@ -18,7 +18,7 @@ import torch
 
 from measure import found_labels
 from pack import PackError, read_pack
-from weights import load_onnx, load_weights, with_normalisation
+from weights import in_order, load_onnx, load_weights, with_normalisation
 
 HERE = pathlib.Path(__file__).parent
 
@@ -53,12 +53,20 @@ def main():
     model, input_size = load_weights(arguments.output / "weights.npz")
     pictures = torch.rand(2, 3, input_size[1], input_size[0])
     with torch.no_grad():
-        read_back = with_normalisation(load_onnx(onnx), [pictures])
+        read_back = load_onnx(onnx)
+        read_back = with_normalisation(read_back, [pictures], in_order(read_back))
         difference = float((read_back(pictures) - model(pictures)).abs().max())
     if not difference < 1e-3:
         raise PackError(f"{onnx}: scores differ by {difference} from those of weights.npz; expected the same")
     run("train.py", pack, "--output", arguments.output / "further", "--size", "tiny", "--batch", 4, "--workers", 0,
         "--steps", 2, "--start-from", onnx)
+    run("train.py", pack, "--output", arguments.output / "paper", "--preset", "paper", "--batch", 2, "--workers", 0,
+        "--width", 32, "--height", 32, "--steps", 2)
+    for size in ("mobile", "plain"):
+        folder = arguments.output / size
+        run("train.py", pack, "--output", folder, "--size", size, "--batch", 2, "--workers", 0, "--width", 64,
+            "--height", 64, "--steps", 2)
+        run("export.py", folder / "weights.npz", folder / "unet.onnx")
     picture = read_pack(pack)[0][0].picture
     cv2.imwrite(str(arguments.output / "picture.png"), picture)
     cv2.imwrite(str(arguments.output / "labels.png"), found_labels(model, picture, input_size).astype(np.uint8))

@@ -25,10 +25,19 @@ from torch.nn import functional
 from classes import CLASSES, IGNORED, NOT_PERSON, PERSON, TOLD_APART, is_other_thing
 from curves import draw_curves
 from measure import Validation
-from model import SIZES, UNet, multiple
+from model import SIZES, make_model, multiple
+from mobile_unet import MobileUNet
 from pack import PackError, read_pack
-from samples import Samples
-from weights import load_onnx, load_weights, save_weights, with_normalisation
+from pretrained import load_encoder
+from samples import DEVIATION, Samples
+from weights import in_order, load_onnx, load_weights, save_weights, with_normalisation
+
+
+PRESETS = {
+    # Zeng et al., Remote Sensing 2023, 15, 5479, section 4.1.
+    "paper": dict(size="paper", optimizer="adam", learning_rate=1e-4, weight_decay=2e-5, batch=8, dropout=0.1,
+                  class_weights=[1.0, 1.0, 1.0, 1.0, 1.0]),
+}
 
 
 def soft_dice(scores, labels):
@@ -69,20 +78,34 @@ class Training:
     def __init__(self, arguments, first_batches):
         torch.manual_seed(arguments.seed)
         self.input_size = (arguments.width, arguments.height)
-        self.model = UNet(arguments.size, arguments.dropout)
+        self.model = make_model(arguments.size, arguments.dropout)
         if arguments.start_from:
-            exported = arguments.start_from.suffix == ".onnx"
-            weights = load_onnx(arguments.start_from) if exported else load_weights(arguments.start_from)[0]
-            if exported:
-                weights = with_normalisation(weights, first_batches)
-            if weights.size != arguments.size:
-                raise PackError(f"{arguments.start_from}: holds size '{weights.size}', expected '{arguments.size}'")
-            self.model.load_state_dict(weights.state_dict())
+            self.start_from(arguments.start_from, first_batches)
         self.model = self.model.to(memory_format=torch.channels_last)
         self.average = copy.deepcopy(self.model.state_dict())
-        self.optimizer = torch.optim.AdamW(self.model.parameters(), lr=arguments.learning_rate, betas=(0.9, 0.999),
-                                           weight_decay=arguments.weight_decay, foreach=True)
+        encoder = [value for part in (self.model.stem, self.model.down) for value in part.parameters()]
+        known = set(encoder)
+        others = [value for value in self.model.parameters() if value not in known]
+        kind = {"adamw": torch.optim.AdamW, "adam": torch.optim.Adam}[arguments.optimizer]
+        self.optimizer = kind([dict(params=encoder, share=arguments.encoder_rate), dict(params=others, share=1.0)],
+                              lr=arguments.learning_rate, betas=(0.9, 0.999), weight_decay=arguments.weight_decay,
+                              foreach=True)
         self.step, self.seconds = 0, 0.0
+
+    def start_from(self, path, first_batches):
+        if path.suffix == ".tflite":
+            if not isinstance(self.model, MobileUNet):
+                raise PackError(f"{path}: holds weights of MobileNetV2, expected with --size mobile")
+            layers = load_encoder(self.model, path, DEVIATION / 0.5)
+            with_normalisation(self.model, first_batches, layers)
+            return
+        exported = path.suffix == ".onnx"
+        weights = load_onnx(path) if exported else load_weights(path)[0]
+        if exported:
+            weights = with_normalisation(weights, first_batches, in_order(weights))
+        if weights.size != self.model.size:
+            raise PackError(f"{path}: holds size '{weights.size}', expected '{self.model.size}'")
+        self.model.load_state_dict(weights.state_dict())
 
     def average_weights(self, fraction=0.999):
         """Running mean over the steps: smoother, and better, than the last step's weights."""
@@ -167,7 +190,7 @@ def train(arguments):
     while progress() < 1.0:
         rate = learning_rate(progress(), training.step, arguments.learning_rate)
         for group in training.optimizer.param_groups:
-            group["lr"] = rate
+            group["lr"] = rate * group["share"]
         pictures, labels = next(batches)
         training.model.train()
         training.optimizer.zero_grad(set_to_none=True)
@@ -206,7 +229,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("pack", type=pathlib.Path, help="pictures and labels, from prepare.py")
     parser.add_argument("--output", type=pathlib.Path, required=True, help="folder of this run")
-    parser.add_argument("--size", choices=SIZES, default="base")
+    parser.add_argument("--size", choices=SIZES, default="mobile")
     parser.add_argument("--width", type=int, help="of the input [px] (default: as the size ships with)")
     parser.add_argument("--height", type=int)
     parser.add_argument("--also", type=size_of, metavar="WxH",
@@ -215,11 +238,17 @@ def main():
     length.add_argument("--minutes", type=float, default=60.0, help="length of the run (default: 60)")
     length.add_argument("--steps", type=int, help="length of the run, exactly repeatable")
     parser.add_argument("--start-from", type=pathlib.Path,
-                        help="weights.npz of an earlier run, or unet.onnx as export.py writes it")
+                        help="weights.npz of an earlier run, unet.onnx as export.py writes it, or a .tflite file with "
+                             "MobileNetV2's weights for the contracting path of --size mobile")
+    parser.add_argument("--preset", choices=PRESETS, help="other defaults; paper: those of Zeng et al. 2023, for a GPU")
     parser.add_argument("--resume", action="store_true", help="go on from the checkpoint in --output, if there is one")
     parser.add_argument("--batch", type=int, default=16)
     parser.add_argument("--learning-rate", type=float, default=1.5e-3, help="the highest (default: 1.5e-3)")
-    parser.add_argument("--weight-decay", type=float, default=1e-2, help="decoupled from the gradient (default: 1e-2)")
+    parser.add_argument("--encoder-rate", type=float, default=1.0, metavar="SHARE",
+                        help="the contracting path's learning rate, as a share of the others' (default: 1)")
+    parser.add_argument("--optimizer", choices=("adamw", "adam"), default="adamw")
+    parser.add_argument("--weight-decay", type=float, default=1e-2,
+                        help="with adamw decoupled from the gradient (default: 1e-2)")
     parser.add_argument("--dropout", type=float, default=0.1)
     parser.add_argument("--class-weights", type=float, nargs=5, default=[1.0, 1.3, 1.0, 1.0, 1.0],
                         help="in the loss: background, person, chair, table, tv")
@@ -230,6 +259,9 @@ def main():
     parser.add_argument("--workers", type=int, default=1, help="processes that make samples (default: 1; 0 = none)")
     parser.add_argument("--measure-every", type=float, default=4.0, metavar="MINUTES")
     parser.add_argument("--save-every", type=float, default=4.0, metavar="MINUTES")
+    preset = parser.parse_known_args()[0].preset
+    if preset:
+        parser.set_defaults(**PRESETS[preset])
     arguments = parser.parse_args()
     arguments.width = arguments.width or SIZES[arguments.size][1][0]
     arguments.height = arguments.height or SIZES[arguments.size][1][1]

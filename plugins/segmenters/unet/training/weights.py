@@ -7,7 +7,7 @@ import numpy as np
 import torch
 from torch import nn
 
-from model import SIZES, UNet
+from model import SIZES, make_model, multiple
 from pack import PackError
 
 
@@ -24,7 +24,7 @@ def load_weights(path):
         size, input_size = str(arrays.pop("__size__")), tuple(int(value) for value in arrays.pop("__input__"))
         if size not in SIZES:
             raise ValueError(f"size '{size}', expected one of {', '.join(SIZES)}")
-        model = UNet(size)
+        model = make_model(size)
         state = {name: torch.from_numpy(value) for name, value in arrays.items()}
         missing, unexpected = model.load_state_dict(state, strict=False)
         missing = [name for name in missing if not name.endswith("num_batches_tracked")]
@@ -43,38 +43,57 @@ def load_onnx(path):
         raise PackError(f"{path}: cannot be read ({error.err}); expected unet.onnx as export.py writes it") from error
     blobs = [layer.blobs for layer in map(net.getLayer, net.getLayerNames()) if len(layer.blobs) == 2]
     for size in SIZES:
-        model = UNet(size)
+        model = make_model(size).eval()
         layers = in_order(model)
         if [tuple(layer.weight.shape) for layer, _ in layers] == [weight.shape for weight, _ in blobs]:
             break
     else:
         raise PackError(f"{path}: holds a network of another shape; expected one of {', '.join(SIZES)}")
+    for (layer, norm), (weight, bias) in zip(layers, blobs):
+        set_folded(layer, norm, torch.from_numpy(weight), torch.from_numpy(bias.reshape(-1)))
     with torch.no_grad():
-        for (layer, norm), (weight, bias) in zip(layers, blobs):
-            layer.weight.copy_(torch.from_numpy(weight))
-            (norm or layer).bias.copy_(torch.from_numpy(bias.reshape(-1)))
-            if norm:
-                norm.weight.fill_((1.0 + norm.eps) ** 0.5)
         for head in model.coarse_heads:
             head.weight.zero_()
             head.bias.zero_()
-    return model.eval()
+    return model
+
+
+def set_folded(layer, norm, weight, bias):
+    """Gives a convolution and its normalisation (or None) weights that contain the normalisation already."""
+    with torch.no_grad():
+        layer.weight.copy_(weight)
+        (norm or layer).bias.copy_(bias)
+        if norm:
+            norm.running_mean.zero_()
+            norm.running_var.fill_(1.0)
+            norm.weight.fill_((1.0 + norm.eps) ** 0.5)
 
 
 def in_order(model):
     """Convolutions with their normalisation, or None, in the order in which a picture meets them."""
-    def stage(layers):
-        return [(layers[0], layers[1]), (layers[3], layers[4])]
+    found, handles = [], []
 
-    found = [(model.stem, None)] + [pair for layers in model.down for pair in stage(layers)]
-    for grow, up in reversed(list(zip(model.grow, model.up))):
-        found += [(grow, None)] + stage(up)
-    return found + [(model.head, None)]
+    def meet(layer, _inputs, _output):
+        if isinstance(layer, nn.BatchNorm2d):
+            found[-1] = (found[-1][0], layer)
+        else:
+            found.append((layer, None))
+
+    for layer in model.modules():
+        if isinstance(layer, (nn.Conv2d, nn.ConvTranspose2d, nn.BatchNorm2d)):
+            handles.append(layer.register_forward_hook(meet))
+    was_training = model.training
+    with torch.no_grad():
+        model.eval()(torch.zeros(1, 3, multiple(model.size), multiple(model.size)))
+    model.train(was_training)
+    for handle in handles:
+        handle.remove()
+    return found
 
 
-def with_normalisation(model, batches):
-    """The same function, its batch normalisation, which export took away, ready to train on: mean and variance are those
-    of the pictures (tensors) in `batches`, and scale and offset undo them."""
+def with_normalisation(model, batches, layers):
+    """The same function, the batch normalisation of `layers` (of in_order), which export took away, ready to train on:
+    mean and variance are those of the pictures (tensors) in `batches`, and scale and offset undo them."""
     sums, handles = {}, []
 
     def take_sums(norm, inputs):
@@ -83,7 +102,7 @@ def with_normalisation(model, batches):
         sums[norm] = sums.get(norm, 0) + torch.stack(
             [torch.full_like(values[0, :, 0, 0], count), values.sum((0, 2, 3)), (values ** 2).sum((0, 2, 3))])
 
-    for _, norm in in_order(model):
+    for _, norm in layers:
         if norm:
             handles.append(norm.register_forward_pre_hook(take_sums))
     with torch.no_grad():
@@ -103,13 +122,19 @@ def with_normalisation(model, batches):
 
 def folded(model):
     """The same function without batch normalisation: its scale and offset go into the convolution before it."""
-    for stage in list(model.down) + list(model.up):
-        for i in (0, 3):
-            convolution, norm = stage[i], stage[i + 1]
+    names = {layer: name for name, layer in model.named_modules()}
+
+    def put(layer, other):
+        parent, _, child = names[layer].rpartition(".")
+        setattr(model.get_submodule(parent), child, other)
+
+    for convolution, norm in in_order(model):
+        if norm:
             scale = norm.weight / torch.sqrt(norm.running_var + norm.eps)
-            weight = (convolution.weight * scale[:, None, None, None]).detach()
-            bias = (norm.bias - norm.running_mean * scale).detach()
-            plain = nn.Conv2d(convolution.in_channels, convolution.out_channels, 3, padding=1)
-            plain.weight, plain.bias = nn.Parameter(weight), nn.Parameter(bias)
-            stage[i], stage[i + 1] = plain, nn.Identity()
+            plain = nn.Conv2d(convolution.in_channels, convolution.out_channels, convolution.kernel_size,
+                              convolution.stride, convolution.padding, groups=convolution.groups)
+            plain.weight = nn.Parameter((convolution.weight * scale[:, None, None, None]).detach())
+            plain.bias = nn.Parameter((norm.bias - norm.running_mean * scale).detach())
+            put(convolution, plain)
+            put(norm, nn.Identity())
     return model

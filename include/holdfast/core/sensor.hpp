@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace holdfast {
+
+/// What a pipeline uses of a frame, and with it what a map is measured in.
+enum class Sensor {
+  rgbd,    ///< colour and depth; the map is in metres
+  stereo,  ///< a rectified pair; the map is in metres
+  mono,    ///< colour alone; the unit of the map is arbitrary (TrackingSettings::start_depth)
+};
+
+/// rgbd, stereo or mono.
+const char* sensor_name(Sensor sensor);
+/// The sensor of that name, or nothing.
+std::optional<Sensor> find_sensor(const std::string& name);
+/// All names, in the order of Sensor.
+const std::vector<std::string>& sensor_names();
+
+}  // namespace holdfast

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "holdfast/core/frame.hpp"
+#include "holdfast/core/frame_result.hpp"
+#include "holdfast/core/random.hpp"
+#include "holdfast/geometry/two_view_motion.hpp"
+#include "holdfast/interfaces/optimizer.hpp"
+#include "holdfast/matching/descriptor_matching.hpp"
+#include "holdfast/matching/frame_features.hpp"
+#include "holdfast/tracking/tracking_settings.hpp"
+
+namespace holdfast {
+
+/// Two views from which the map of one camera begins. The world frame is the reference's camera; its unit is such that
+/// the median depth of the points is TrackingSettings::start_depth.
+struct TwoViewStart {
+  /// A point that both views show.
+  struct Point {
+    Eigen::Vector3d position;  ///< world
+    std::uint32_t in_reference = 0, in_frame = 0;
+  };
+  Frame reference;             ///< the earlier view; its pose is the identity
+  std::vector<Point> points;   ///< by increasing in_frame
+};
+
+/// Begins the map of one camera, which knows no depth (Mur-Artal et al. 2015, section IV): static features of a frame
+/// are matched with those of a reference, the motion between both is found by find_two_view_motion(), and both poses and
+/// the points are adjusted. A frame with too few matches becomes the new reference. One thread.
+class MonoInitialiser {
+ public:
+  /// The optimizer must outlive the initialiser. Random samples come from the seed.
+  MonoInitialiser(const TrackingSettings& settings, Optimizer& optimizer, std::uint64_t seed)
+      : settings_(settings), optimizer_(optimizer), random_(Random(seed).fork(2)) {}
+
+  /// Tries to begin the map with a frame whose features are weighted (Frame::static_probability). On success, the
+  /// frame's pose is set, and start() holds the other view and the points; otherwise the trouble is returned.
+  TrackingTrouble add(Frame& frame);
+
+  /// Valid after add() returned no trouble, until the next call.
+  const TwoViewStart& start() const { return start_; }
+
+ private:
+  void take_reference(const Frame& frame);
+  void match(const Frame& frame);
+  /// Adjusts both poses and the points, and gives the map its unit. False if too few points are left.
+  bool adjust(const geometry::TwoViewMotion& motion, Frame& frame);
+
+  TrackingSettings settings_;
+  Optimizer& optimizer_;
+  Random random_;
+  bool has_reference_ = false;
+  TwoViewStart start_;
+  matching::DescriptorMatcher<matching::BinaryDescriptors> matcher_;
+  std::vector<matching::BinaryMatch> matches_;  // source: of the reference, feature: of the frame
+};
+
+}  // namespace holdfast
