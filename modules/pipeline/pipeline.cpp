@@ -63,6 +63,13 @@ struct Pipeline::State {
     std::vector<KeyFrameId> removed;
   };
 
+  /// What the mapping thread works on. A keyframe whose mask has not come yet comes again with it, and only then
+  /// becomes a place.
+  struct MappingJob {
+    KeyFrameId keyframe;
+    bool is_final = true;
+  };
+
   /// What the full adjustment thread works on: the whole map.
   struct AdjustmentJob {};
 
@@ -98,7 +105,7 @@ struct Pipeline::State {
   const SensorFrame& used_images(const SensorFrame& given, SensorFrame& without) const;
   /// Inserts the first of the two keyframes with which the map of one camera begins; the caller holds the map's lock.
   KeyFrameId begin_map(const TwoViewStart& start, StageTimes& times);
-  LoopJob refine(KeyFrameId keyframe, StageTimes& times);
+  LoopJob refine(const MappingJob& job, StageTimes& times);
   /// True when a loop was closed and the whole map should be adjusted.
   bool close_loops(const LoopJob& job, StageTimes& times);
   void adjust_map(StageTimes& times);
@@ -112,7 +119,7 @@ struct Pipeline::State {
   void keep_view(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse, const cv::Mat& labels,
                  StageTimes& times);
   /// Paced mode never waits here: a keyframe that finds no room is kept and handed on with a later frame.
-  void hand_to_mapping(KeyFrameId keyframe, StageTimes& times);
+  void hand_to_mapping(const MappingJob& job, StageTimes& times);
   void hand_on_kept_keyframes();
   /// Does work that fills stage times, and keeps them for take_background_times().
   template <class Work>
@@ -151,7 +158,7 @@ struct Pipeline::State {
   bool has_frame = false;
   double last_timestamp = 0.0;
   std::uint64_t keyframes_deferred = 0;
-  std::deque<KeyFrameId> keyframes_kept;  // they have their masks, but mapping had no room
+  std::deque<MappingJob> keyframes_kept;  // they have their masks, but mapping had no room
   std::optional<StaticScene> scene;
   std::vector<bool> left_out;  // of the static scene, by label
 
@@ -162,7 +169,7 @@ struct Pipeline::State {
   // Threads last: they use everything above, and each hands its work on to the one before it here.
   std::optional<Worker<AdjustmentJob>> full_adjustment;
   std::optional<Worker<LoopJob>> loop_closing;
-  std::optional<Worker<KeyFrameId>> mapping;
+  std::optional<Worker<MappingJob>> mapping;
 };
 
 void Pipeline::State::start_threads() {
@@ -174,9 +181,9 @@ void Pipeline::State::start_threads() {
     in_background([&](StageTimes& times) { closed = close_loops(job, times); });
     if (closed) full_adjustment->queue().push_newest({});
   });
-  mapping.emplace("local mapping", capacity, [this](KeyFrameId& keyframe) {
+  mapping.emplace("local mapping", capacity, [this](MappingJob& refined) {
     LoopJob job;
-    in_background([&](StageTimes& times) { job = refine(keyframe, times); });
+    in_background([&](StageTimes& times) { job = refine(refined, times); });
     loop_closing->queue().push(std::move(job));
   });
 }
@@ -218,25 +225,26 @@ KeyFrameId Pipeline::State::begin_map(const TwoViewStart& start, StageTimes& tim
   return first;
 }
 
-Pipeline::State::LoopJob Pipeline::State::refine(KeyFrameId keyframe, StageTimes& times) {
-  LoopJob job{keyframe, {}};
+Pipeline::State::LoopJob Pipeline::State::refine(const MappingJob& given, StageTimes& times) {
+  LoopJob job{given.is_final ? given.keyframe : KeyFrameId(), {}};
   {
     const std::lock_guard surgeon(surgery);
-    job.removed = mapper.refine(keyframe, times);
+    job.removed = mapper.refine(given.keyframe, times);
   }
-  if (parts.observers.empty() || !has_keyframe(keyframe)) return job;
+  if (!given.is_final || parts.observers.empty() || !has_keyframe(given.keyframe)) return job;
   const ObservedMap observed = observed_map();
-  for (const auto& observer : parts.observers) observer->on_keyframe(keyframe, observed);
+  for (const auto& observer : parts.observers) observer->on_keyframe(given.keyframe, observed);
   return job;
 }
 
 bool Pipeline::State::close_loops(const LoopJob& job, StageTimes& times) {
-  const std::optional<ClosedLoop> loop = closer.process(job.keyframe, times);
+  std::optional<ClosedLoop> loop;
+  if (job.keyframe.valid()) loop = closer.process(job.keyframe, times);
   for (const KeyFrameId id : job.removed) closer.forget(id);
   if (!loop) {
     const std::lock_guard lock(record_mutex);
     loop_record.counts = closer.counts();
-    if (!loop_record.loops.empty() && parts.loop_closing.full_adjustment) ++keyframes_since_adjustment;
+    if (job.keyframe.valid() && !loop_record.loops.empty() && parts.loop_closing.full_adjustment) ++keyframes_since_adjustment;
     return false;
   }
   LoopEvent event{.loop = *loop};
@@ -265,22 +273,22 @@ void Pipeline::State::adjust_map(StageTimes& times) {
   loop_record.adjustments.push_back(summary);
 }
 
-void Pipeline::State::hand_to_mapping(KeyFrameId keyframe, StageTimes& times) {
+void Pipeline::State::hand_to_mapping(const MappingJob& job, StageTimes& times) {
   if (!mapping) {
-    if (close_loops(refine(keyframe, times), times)) adjust_map(times);
+    if (close_loops(refine(job, times), times)) adjust_map(times);
     return;
   }
   if (!parts.run.paced()) {
-    mapping->queue().push(keyframe);
+    mapping->queue().push(job);
     return;
   }
   // Tracking needs the points of this keyframe adjusted soon; an older adjustment has done most of its good.
   mapper.request_stop();
   if (keyframes_kept.empty() && mapping->queue().has_room()) {
-    mapping->queue().push(keyframe);  // no other thread adds to the queue, so that this does not wait
+    mapping->queue().push(job);  // no other thread adds to the queue, so that this does not wait
     return;
   }
-  keyframes_kept.push_back(keyframe);
+  keyframes_kept.push_back(job);
   ++keyframes_deferred;
 }
 
@@ -314,16 +322,24 @@ double Pipeline::State::take_masks(StageTimes& times) {
       if (const KeyFrame* keyframe = map.find_keyframe(arrived->keyframe))
         keep_view(arrived->keyframe, arrived->frame, keyframe->frame.coarse, arrived->segmentation.labels, times);
     }
-    hand_to_mapping(arrived->keyframe, times);
+    hand_to_mapping({arrived->keyframe}, times);
   }
 }
 
 void Pipeline::State::request_mask(const SensorFrame& frame, const FrameResult& result, StageTimes& times) {
   const KeyFrameId keyframe = result.is_keyframe ? result.keyframe : KeyFrameId();
-  const bool is_needed = result.trouble == TrackingTrouble::no_mask;
-  if (moving_world.request_mask(frame, keyframe, times, is_needed) || !result.is_keyframe) return;
+  // One camera looks for its first two views by masks that are as fresh as they can be.
+  const bool is_needed = parts.sensor == Sensor::mono && result.status == TrackingStatus::waiting;
+  const bool is_requested = moving_world.request_mask(frame, keyframe, times, is_needed);
+  if (!result.is_keyframe) return;
+  if (is_requested) {
+    // One camera makes all its points by triangulation, and would be lost before the mask arrives: a propagated mask
+    // has to do until then.
+    if (parts.sensor == Sensor::mono) hand_to_mapping({keyframe, false}, times);
+    return;
+  }
   keep_view(keyframe, frame, tracker.frame().coarse, {}, times);
-  hand_to_mapping(keyframe, times);
+  hand_to_mapping({keyframe}, times);
 }
 
 Pipeline::Pipeline(PipelineParts parts) : state_(std::make_unique<State>(checked(std::move(parts)))) {}
@@ -367,7 +383,7 @@ FrameResult Pipeline::feed(const SensorFrame& given) {
       if (s.mapping || s.moving_world.expects_masks()) s.tracker.keyframe_added(result.keyframe);
     }
   }
-  if (first_keyframe.valid()) s.hand_to_mapping(first_keyframe, result.times);
+  if (first_keyframe.valid()) s.hand_to_mapping({first_keyframe}, result.times);
   s.request_mask(frame, result, result.times);
   if (result.is_keyframe) {
     if (!s.mapping && !s.moving_world.expects_masks()) s.tracker.keyframe_added(result.keyframe);
@@ -385,7 +401,7 @@ void Pipeline::finish() {
     s.moving_world.finish();
     s.in_background([&](StageTimes& times) { s.take_masks(times); });
   }
-  for (const KeyFrameId keyframe : std::exchange(s.keyframes_kept, {})) s.mapping->queue().push(keyframe);
+  for (const State::MappingJob& job : std::exchange(s.keyframes_kept, {})) s.mapping->queue().push(job);
   if (s.mapping) s.mapping->finish();
   if (s.loop_closing) s.loop_closing->finish();
   if (s.full_adjustment) s.full_adjustment->finish();

@@ -75,6 +75,12 @@ bool Relocaliser::align_with_keyframe(KeyFrameId keyframe, const std::optional<E
       in_camera.push_back(frame.camera_point(i));
     }
   frame.T_camera_world = start.value_or(found->frame.T_camera_world);
+  if (in_camera.empty()) {
+    // One camera has no depth: three points and their directions give a pose as well.
+    parts_.estimator.build_problem(frame);
+    if (geometry::find_pose(parts_.estimator.problem(), geometry::PnpOptions{.seed = random_.next()}).usable)
+      frame.T_camera_world = parts_.estimator.problem().T_camera_world;
+  }
   const geometry::AlignmentRansacOptions options{.threshold = settings_.alignment_threshold, .seed = random_.next()};
   if (const auto aligned = geometry::align_points_ransac(in_world, in_camera, options))
     frame.T_camera_world = aligned->similarity.motion();
