@@ -3,6 +3,7 @@
 #include <cmath>
 #include <vector>
 
+#include "holdfast/core/check.hpp"
 #include "holdfast/interfaces/optimizer.hpp"
 
 namespace holdfast {
@@ -21,6 +22,8 @@ std::vector<double> log_scales(const PoseGraphProblem& problem) {
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::VectorXd right = Eigen::VectorXd::Zero(count);
   for (const PoseGraphProblem::Edge& edge : problem.edges) {
+    HOLDFAST_CHECK(edge.from < problem.nodes.size() && edge.to < problem.nodes.size(),
+                   "edge from " << edge.from << " to " << edge.to << " of " << problem.nodes.size() << " nodes");
     const double measured = std::log(edge.scale);
     if (!std::isfinite(measured) || !std::isfinite(edge.weight)) return {};
     const int from = unknown[edge.from], to = unknown[edge.to];

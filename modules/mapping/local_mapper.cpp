@@ -118,13 +118,16 @@ void LocalMapper::remove_moving_points() {
 
 void LocalMapper::remove_weak_points(KeyFrameId id) {
   const std::uint64_t now = map_.keyframe(id).sequence;
+  // A triangulated point begins with two observations; one that no third keyframe confirms was a wrong match, or moved
+  // (Mur-Artal et al. 2015, section VI-B). Depth confirms a point as well as another view does.
+  const std::size_t required = map_.keyframe(id).frame.has_any_depth() ? 2 : 3;
   std::erase_if(recent_points_, [&](MapPointId point_id) {
     const MapPoint* point = map_.find_point(point_id);
     if (point == nullptr) return true;
     const std::uint64_t age = now - point->created_at;
     const bool rarely_found = point->found_ratio() < static_cast<float>(settings_.weak_found_ratio);
-    const bool seen_once = age >= 2 && point->observations.size() < 2;
-    if (rarely_found || seen_once) {
+    const bool unconfirmed = age >= 2 && point->observations.size() < required;
+    if (rarely_found || unconfirmed) {
       map_.remove_point(point_id);
       ++counts_.points_removed;
       return true;

@@ -43,6 +43,7 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& r
   const RunSummary& s = record.summary;
   std::vector<std::pair<std::string, std::string>> rows;
   rows.emplace_back("sequence", record.source.name);
+  if (record.sensor != Sensor::rgbd) rows.emplace_back("sensor", sensor_name(record.sensor));
   rows.emplace_back("frames",
                     std::to_string(s.frames()) + " of " + std::to_string(record.frames_expected) +
                         (record.skipped.empty() ? "" : ", " + std::to_string(record.skipped.size()) + " skipped"));

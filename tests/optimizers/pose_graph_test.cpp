@@ -80,6 +80,38 @@ TEST_P(PoseGraph, SameBytesEveryTime) {
     EXPECT_EQ(a.problem.nodes[i].T_camera_world.matrix(), b.problem.nodes[i].T_camera_world.matrix());
 }
 
+TEST_P(PoseGraph, FindsPosesAndScalesOfOneCamera) {
+  // The unit of length shrinks along the walk, as that of one camera does; the last edge says by how much.
+  constexpr int count = 60;
+  Loop loop(count);
+  const auto unit = [](int i) { return std::exp(-0.3 * i / count); };
+  const auto step = [&](int i) {
+    Eigen::Isometry3d motion = loop.truth[i] * loop.truth[i - 1].inverse();
+    motion.translation() *= unit(i);
+    return motion;
+  };
+  for (int i = 1; i < count; ++i) {
+    loop.problem.nodes[i].T_camera_world = step(i) * loop.problem.nodes[i - 1].T_camera_world;
+    loop.problem.edges[i - 1].T_to_from = step(i);
+  }
+  loop.problem.edges.back().scale = 1.0 / unit(count - 1);
+  const double before = loop.largest_error();
+  ASSERT_TRUE(make()->optimize_similarity_graph(loop.problem).usable);
+  EXPECT_GT(before, 0.3);
+  EXPECT_LT(loop.largest_error(), 0.01);
+  for (int i = 0; i < count; ++i) EXPECT_NEAR(loop.problem.nodes[i].scale * unit(i), 1.0, 0.01) << i;
+}
+
+TEST_P(PoseGraph, WithoutScalesBothGraphsAreTheSame) {
+  Loop rigid(30), similar(30);
+  ASSERT_TRUE(make()->optimize_pose_graph(rigid.problem).usable);
+  ASSERT_TRUE(make()->optimize_similarity_graph(similar.problem).usable);
+  for (std::size_t i = 0; i < rigid.truth.size(); ++i) {
+    EXPECT_LT(synthetic::distance(rigid.problem.nodes[i].T_camera_world, similar.problem.nodes[i].T_camera_world), 1e-9);
+    EXPECT_NEAR(similar.problem.nodes[i].scale, 1.0, 1e-12);
+  }
+}
+
 TEST_P(PoseGraph, RefusesWhatCannotBeSolved) {
   Loop loose(10);
   loose.problem.nodes[0].fixed = false;
@@ -91,6 +123,10 @@ TEST_P(PoseGraph, RefusesWhatCannotBeSolved) {
   Loop broken(10);
   broken.problem.edges[3].to = 10;
   EXPECT_THROW(make()->optimize_pose_graph(broken.problem), CheckError);
+  EXPECT_THROW(make()->optimize_similarity_graph(broken.problem), CheckError);
+  Loop unknown(10);
+  unknown.problem.edges.back().scale = 0.0;
+  EXPECT_FALSE(make()->optimize_similarity_graph(unknown.problem).usable);
 }
 
 }  // namespace

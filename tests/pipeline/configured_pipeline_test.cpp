@@ -158,12 +158,18 @@ TEST_F(ConfiguredPipeline, FiltersGetWhatTheyNeed) {
   EXPECT_EQ(complaints(filter + "segmenter: fake\n"), "");
 }
 
-TEST_F(ConfiguredPipeline, DepthIsNeeded) {
+TEST_F(ConfiguredPipeline, TheSensorNeedsItsImages) {
+  const std::string camera = "camera: tum_fr1\n";
   world_.source.has_depth = false;
-  EXPECT_THAT(complaints("camera: tum_fr1\n"), HasSubstr("c.yaml:1:9: the source 'fake' has neither depth nor a right image"));
+  EXPECT_EQ(complaints(camera), "");  // one camera
+  EXPECT_EQ(complaints(camera + "sensor: auto\n"), "");
+  EXPECT_THAT(complaints(camera + "sensor: rgbd\n"),
+              HasSubstr("c.yaml:1:9: the sensor is 'rgbd', and the source 'fake' has no depth images"));
+  EXPECT_THAT(complaints(camera + "sensor: stereo\n"), HasSubstr("the source 'fake' has no right images"));
+  EXPECT_THAT(complaints(camera + "sensor: rgb\n"), HasSubstr("c.yaml:5:9: found the text 'rgb' for 'sensor'; did you mean 'rgbd'?"));
   world_.needs.depth = true;
-  EXPECT_THAT(complaints("camera: tum_fr1\nfilters: [ filter ]\n"),
-              HasSubstr("c.yaml:5:12: the filter 'filter' needs depth, which the source 'fake' does not have"));
+  EXPECT_THAT(complaints(camera + "filters: [ filter ]\n"),
+              HasSubstr("c.yaml:5:12: the filter 'filter' needs depth, and one camera has none"));
 }
 
 TEST_F(ConfiguredPipeline, TellsAllMisfitsAtOnce) {
@@ -173,7 +179,7 @@ TEST_F(ConfiguredPipeline, TellsAllMisfitsAtOnce) {
     build("filters: [ filter, filter ]\n");
     FAIL();
   } catch (const ConfigurationError& error) {
-    EXPECT_EQ(error.diagnostics().size(), 6U) << error.what();  // no camera, two for each filter, no depth
+    EXPECT_EQ(error.diagnostics().size(), 5U) << error.what();  // no camera, two for each filter
   }
 }
 

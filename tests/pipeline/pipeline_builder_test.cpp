@@ -118,9 +118,9 @@ TEST(PipelineBuilder, CameraAndMapMustFit) {
   source.camera = find_camera("tum_fr2");
   source.has_depth = false;
   PipelineBuilder two = builder_for(world);
-  const std::string text = complaints(two.source(source));
+  const std::string text = complaints(two.source(source).sensor(Sensor::rgbd));
   EXPECT_THAT(text, HasSubstr("the source 'robot' brings its own camera, and 'camera' names one with other numbers"));
-  EXPECT_THAT(text, HasSubstr("the source 'robot' has neither depth nor a right image"));
+  EXPECT_THAT(text, HasSubstr("the sensor is 'rgbd', and the source 'robot' has no depth images"));
 
   Map map;
   {

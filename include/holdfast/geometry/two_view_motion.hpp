@@ -30,6 +30,7 @@ struct TwoViewOptions {
   int iterations = 200;             ///< samples of eight pairs, for both models
   double homography_share = 0.45;   ///< of both scores; above it the scene is taken for planar (equation 5)
   int minimum_points = 50;          ///< triangulated with enough parallax, in front of both cameras
+  double minimum_inliers = 0.5;     ///< share of the pairs that the model must explain; others move, or are wrong matches
   double minimum_share = 0.75;      ///< of the model's inliers that must be in front of both cameras and reproject well
   double rival_share = 0.75;        ///< a second motion that explains more than this share makes the result ambiguous
   double max_parallax_cosine = 0.99985;  ///< 1 degree
@@ -163,6 +164,7 @@ std::optional<TwoViewMotion> find_two_view_motion(const Camera& camera_model, st
   }
   const int inliers = static_cast<int>(std::count(model.inlier.begin(), model.inlier.end(), std::uint8_t{1}));
 
+  if (inliers < options.minimum_inliers * static_cast<double>(pairs.size())) return std::nullopt;
   Eigen::Matrix3d to_pixel;
   to_pixel << camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1;
   std::array<Eigen::Isometry3d, 4> motions;
