@@ -58,9 +58,9 @@ trap clean_up EXIT
 
 # make_root NAME: a root with the packages that Debian calls required, and apt.
 make_root() {
-  if [ ! -s "$roots/base.tar" ]; then
+  if [ ! -f "$roots/base.tar" ]; then
     say "asking $mirror for a clean $suite"
-    mmdebstrap --quiet --variant=minbase --include=ca-certificates "$suite" "$roots/base.tar.part" "$mirror"
+    mmdebstrap --quiet --format=tar --variant=minbase --include=ca-certificates "$suite" "$roots/base.tar.part" "$mirror"
     mv "$roots/base.tar.part" "$roots/base.tar"
   fi
   release "$roots/$1"
