@@ -29,12 +29,16 @@ endfunction()
 
 # holdfast_add_module(NAME [SOURCES a.cpp ...] [DEPENDS target ...] [PRIVATE_DEPENDS target ...] [INTERNAL])
 # The library holdfast_NAME, known as holdfast::NAME in the build tree and after installation alike. Without SOURCES
-# it is header-only.
+# it is header-only. INTERNAL ones are not installed: they are archives inside what links them, shared libraries or not.
 function(holdfast_add_module name)
   cmake_parse_arguments(PARSE_ARGV 1 arg "INTERNAL" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS")
   set(target holdfast_${name})
   if(arg_SOURCES)
-    add_library(${target} ${arg_SOURCES})
+    set(type "")
+    if(arg_INTERNAL)
+      set(type STATIC)
+    endif()
+    add_library(${target} ${type} ${arg_SOURCES})
     set(scope PUBLIC)
     holdfast_target_defaults(${target})
     holdfast_precompile(${target})

@@ -45,7 +45,7 @@ else
   is_kept=no
 fi
 release() {  # ROOT: nothing of this machine is in it any more
-  for place in ccache dev/shm proc; do
+  for place in ccache dev/pts dev/shm proc; do
     if mountpoint -q "$1/$place"; then umount "$1/$place"; fi
   done
 }
@@ -58,9 +58,9 @@ trap clean_up EXIT
 
 # make_root NAME: a root with the packages that Debian calls required, and apt.
 make_root() {
-  if [ ! -s "$roots/base.tar" ]; then
+  if [ ! -f "$roots/base.tar" ]; then
     say "asking $mirror for a clean $suite"
-    mmdebstrap --quiet --variant=minbase --include=ca-certificates "$suite" "$roots/base.tar.part" "$mirror"
+    mmdebstrap --quiet --format=tar --variant=minbase --include=ca-certificates "$suite" "$roots/base.tar.part" "$mirror"
     mv "$roots/base.tar.part" "$roots/base.tar"
   fi
   release "$roots/$1"
@@ -69,8 +69,9 @@ make_root() {
   tar -xf "$roots/base.tar" -C "$roots/$1"
   cp /etc/resolv.conf "$roots/$1/etc/resolv.conf"
   mount -t proc proc "$roots/$1/proc"
-  mkdir -p "$roots/$1/dev/shm"
+  mkdir -p "$roots/$1/dev/shm" "$roots/$1/dev/pts"
   mount -t tmpfs tmpfs "$roots/$1/dev/shm"
+  mount -t devpts -o mode=620,ptmxmode=666 devpts "$roots/$1/dev/pts"
   if [ -n "${HOLDFAST_CCACHE:-}" ]; then
     mkdir -p "$roots/$1/ccache"
     mount --bind "$HOLDFAST_CCACHE" "$roots/$1/ccache"

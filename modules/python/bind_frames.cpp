@@ -36,47 +36,59 @@ py::object of_truth(const SensorFrame& frame, Value value) {
 std::string frame_text(const SensorFrame& frame) {
   const py::str text = py::str("Frame(index={}, timestamp={:.6f} s, {} x {} px, {})")
                            .format(frame.index, frame.timestamp, frame.colour.cols, frame.colour.rows,
-                                   frame.depth.empty() ? "no depth" : "with depth");
+                                   !frame.depth.empty()   ? "with depth"
+                                   : !frame.right.empty() ? "with right image"
+                                                          : "no depth");
   return text;
+}
+
+/// Throws InputError if the image is there and has another size than the colour image.
+void check_size(const char* name, const cv::Mat& image, const cv::Mat& colour) {
+  if (image.empty() || image.size() == colour.size()) return;
+  const auto text = [](const cv::Mat& of) { return std::to_string(of.cols) + " x " + std::to_string(of.rows) + " px"; };
+  throw InputError({name}, "has " + text(image) + "; expected the size of the colour image, " + text(colour));
 }
 
 }  // namespace
 
-SensorFrame make_frame(double timestamp, const py::object& colour, const py::object& depth) {
+SensorFrame make_frame(double timestamp, const py::object& colour, const py::object& depth, const py::object& right) {
   SensorFrame frame;
   if (!std::isfinite(timestamp))
     throw InputError({"timestamp"}, "is not finite; expected the time of the colour image in seconds");
   frame.timestamp = timestamp;
   frame.colour = image_of_array(colour, ImageKind::colour, "colour");
   frame.depth = image_of_array(depth, ImageKind::depth, "depth");
+  frame.right = image_of_array(right, ImageKind::right, "right");
   if (frame.colour.empty())
     throw InputError({"colour"}, "is None; expected an image, a numpy array of uint8 with shape (rows, columns, 3)");
-  if (!frame.depth.empty() && frame.depth.size() != frame.colour.size())
-    throw InputError({"depth"}, "has " + std::to_string(frame.depth.cols) + " x " + std::to_string(frame.depth.rows) +
-                                    " px; expected the size of the colour image, " + std::to_string(frame.colour.cols) +
-                                    " x " + std::to_string(frame.colour.rows) + " px");
+  check_size("depth", frame.depth, frame.colour);
+  check_size("right", frame.right, frame.colour);
   return frame;
 }
 
 void bind_frames(py::module_& module) {
-  py::class_<SensorFrame>(module, "Frame", "A colour image with its time and, where there is one, its depth image.")
-      .def(py::init([](double timestamp, const py::object& colour, const py::object& depth, std::uint64_t index,
-                       double depth_delay, const py::object& true_pose, const py::object& object_mask,
-                       const py::object& class_labels, const py::object& moving_objects) {
-             SensorFrame frame = make_frame(timestamp, colour, depth);
-             frame.index = index;
-             frame.depth_delay = depth_delay;
-             frame.truth = truth_of(true_pose, object_mask, class_labels, moving_objects);
-             return frame;
-           }),
-           py::arg("timestamp"), py::arg("colour"), py::arg("depth") = py::none(), py::kw_only(), py::arg("index") = 0,
-           py::arg("depth_delay") = 0.0, py::arg("true_pose") = py::none(), py::arg("object_mask") = py::none(),
-           py::arg("class_labels") = py::none(), py::arg("moving_objects") = py::none())
+  py::class_<SensorFrame>(module, "Frame",
+                          "A colour image with its time and its depth image, or the right image of a stereo pair.")
+      .def(
+          py::init([](double timestamp, const py::object& colour, const py::object& depth, const py::object& right,
+                      std::uint64_t index, double depth_delay, const py::object& true_pose,
+                      const py::object& object_mask, const py::object& class_labels, const py::object& moving_objects) {
+            SensorFrame frame = make_frame(timestamp, colour, depth, right);
+            frame.index = index;
+            frame.depth_delay = depth_delay;
+            frame.truth = truth_of(true_pose, object_mask, class_labels, moving_objects);
+            return frame;
+          }),
+          py::arg("timestamp"), py::arg("colour"), py::arg("depth") = py::none(), py::kw_only(),
+          py::arg("right") = py::none(), py::arg("index") = 0, py::arg("depth_delay") = 0.0,
+          py::arg("true_pose") = py::none(), py::arg("object_mask") = py::none(), py::arg("class_labels") = py::none(),
+          py::arg("moving_objects") = py::none())
       .def_readonly("index", &SensorFrame::index)
       .def_readonly("timestamp", &SensorFrame::timestamp)
       .def_readonly("depth_delay", &SensorFrame::depth_delay)
       .def_property_readonly("colour", [](const SensorFrame& frame) { return array_of_image(frame.colour); })
       .def_property_readonly("depth", [](const SensorFrame& frame) { return array_of_image(frame.depth); })
+      .def_property_readonly("right", [](const SensorFrame& frame) { return array_of_image(frame.right); })
       .def_property_readonly("true_pose",
                              [](const SensorFrame& frame) {
                                return of_truth(frame, [](const FrameTruth& t) { return pose_array(t.T_world_camera); });

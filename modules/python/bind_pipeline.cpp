@@ -32,7 +32,9 @@ class FedPipeline {
     const ModuleMaking making(this);
     const Unlock unlock;
     load_plugins(configuration, registry);
-    pipeline_.emplace(std::move(build_pipeline(configuration, registry, options).pipeline));
+    BuiltPipeline built = build_pipeline(configuration, registry, options);
+    is_stereo_ = built.source->describe().has_right;
+    pipeline_.emplace(std::move(built.pipeline));
     camera_ = pipeline_->camera();
   }
   /// Ending the threads of the pipeline may need Python's lock in them. Garbage collection may run in one of these
@@ -57,8 +59,11 @@ class FedPipeline {
     ++fed_;
     return result;
   }
-  FrameResult feed_arrays(double timestamp, const py::object& colour, const py::object& depth) {
-    return feed(make_frame(timestamp, colour, depth));
+  FrameResult feed_arrays(double timestamp, const py::object& colour, const py::object& depth,
+                          const py::object& right) {
+    if (!is_stereo_ && !right.is_none())
+      throw InputError({"right"}, "the pipeline expects depth images; make it with stereo=True for stereo pairs");
+    return feed(make_frame(timestamp, colour, depth, right));
   }
 
   void finish() {
@@ -146,6 +151,7 @@ class FedPipeline {
   std::mutex life_;   // of the pipeline's existence, for what any thread may call at any time
   std::optional<Pipeline> pipeline_;
   Camera camera_;
+  bool is_stereo_ = false;
   std::atomic<std::uint64_t> fed_ = 0;
   std::atomic<bool> finished_ = false;
 };
@@ -162,7 +168,8 @@ void bind_pipeline(py::module_& module) {
            }),
            py::arg("configuration"), py::arg("output"), py::arg("map"), py::arg("localise_only"), py::arg("modules"))
       .def("feed", &FedPipeline::feed, py::arg("frame"))
-      .def("feed_arrays", &FedPipeline::feed_arrays, py::arg("timestamp"), py::arg("colour"), py::arg("depth"))
+      .def("feed_arrays", &FedPipeline::feed_arrays, py::arg("timestamp"), py::arg("colour"), py::arg("depth"),
+           py::arg("right"))
       .def("finish", &FedPipeline::finish)
       .def("interrupt", &FedPipeline::interrupt)
       .def("close", &FedPipeline::close)

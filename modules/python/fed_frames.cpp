@@ -15,28 +15,31 @@ namespace {
 
 struct FedFramesSettings {
   std::vector<std::string> class_names;
+  bool stereo = false;
 
   static void describe(ParameterTable<FedFramesSettings>& table) {
     table.add("class_names", &FedFramesSettings::class_names,
               "class names of the frames' true class labels, by index, for the segmenter `truth`");
+    table.add("stereo", &FedFramesSettings::stereo, "frames are rectified stereo pairs, without depth images");
   }
 };
 
 class FedFrames final : public FrameSource {
  public:
-  FedFrames(const FedFramesSettings& settings, const CreationContext&) : class_names_(settings.class_names) {}
+  FedFrames(const FedFramesSettings& settings, const CreationContext&) : settings_(settings) {}
 
   SourceDescription describe() const override {
     SourceDescription description;
     description.name = "frames fed from Python";
-    description.has_depth = true;
-    description.class_names = class_names_;
+    description.has_depth = !settings_.stereo;
+    description.has_right = settings_.stereo;
+    description.class_names = settings_.class_names;
     return description;
   }
   std::optional<SensorFrame> next() override { return std::nullopt; }
 
  private:
-  std::vector<std::string> class_names_;
+  FedFramesSettings settings_;
 };
 
 }  // namespace

@@ -13,7 +13,7 @@ inline constexpr const char* fed_frames = "fed_frames";
 
 /// Registers the source.
 void register_fed_frames(Registry& registry);
-/// Replaces the source of a configuration; its class names stay those of a source `fed_frames` that it has already.
+/// Replaces the source of a configuration by `fed_frames`, unless it is that one already, with its parameters.
 void feed_from_caller(ConfigurationNode& root);
 
 }  // namespace holdfast::python

@@ -8,6 +8,7 @@
 namespace holdfast::python {
 
 /// A frame of arrays, which it refers to (images.hpp). Throws InputError for images that are not what Frame promises.
-SensorFrame make_frame(double timestamp, const pybind11::object& colour, const pybind11::object& depth);
+SensorFrame make_frame(double timestamp, const pybind11::object& colour, const pybind11::object& depth,
+                       const pybind11::object& right);
 
 }  // namespace holdfast::python

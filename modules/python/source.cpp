@@ -31,6 +31,7 @@ SourceDescription describe(const Instance& instance) {
   SourceDescription description;
   description.name = attribute<std::string>(instance, "name", instance.class_name(), "a text");
   description.has_depth = attribute(instance, "has_depth", true, "True or False");
+  description.has_right = attribute(instance, "has_right", false, "True or False");
   description.class_names = attribute<std::vector<std::string>>(instance, "class_names", {}, "a list of names");
   description.frame_count = attribute<std::optional<std::uint64_t>>(
       instance, "frame_count", std::nullopt, "a number of frames, or None for an endless source");
@@ -74,11 +75,11 @@ class SourceOfPython final : public FrameSource {
     if (py::isinstance<SensorFrame>(item)) return item.cast<SensorFrame>();
     if (py::isinstance<py::tuple>(item)) {
       const auto parts = py::reinterpret_borrow<py::tuple>(item);
-      if (parts.size() == 2 || parts.size() == 3)
-        return make_frame(parts[0].cast<double>(), parts[1], parts.size() == 3 ? py::object(parts[2]) : py::none());
+      const auto part = [&](std::size_t index) { return parts.size() > index ? py::object(parts[index]) : py::none(); };
+      if (parts.size() >= 2 && parts.size() <= 4) return make_frame(parts[0].cast<double>(), part(1), part(2), part(3));
     }
     instance_.refuse("__iter__", "yielded an object of type " + type_name(item),
-                     "holdfast.Frame, or (timestamp, colour, depth)");
+                     "holdfast.Frame, or (timestamp, colour, depth) or (timestamp, colour, depth, right)");
   }
   Trajectory read_truth() const {
     if (!instance_.has("truth")) return {};

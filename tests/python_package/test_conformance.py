@@ -36,6 +36,13 @@ def test_modules_keep_their_contracts():
     assert "SKIPPED" not in outcome.stdout and "FAILED" not in outcome.stdout
 
 
+def test_modules_of_the_example_keep_their_contracts():
+    source = pathlib.Path(os.environ["HOLDFAST_SOURCE_DIR"])
+    outcome = conformance(source / "examples/python/own_modules.py")
+    assert outcome.returncode == 0, outcome.stdout + outcome.stderr
+    assert "segmenter/bright" in outcome.stdout and "filters/near_border" in outcome.stdout
+
+
 def test_broken_contracts_are_found():
     outcome = conformance("broken_modules.py")
     assert outcome.returncode == 1

@@ -1,6 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Trajectories, evaluation, simulation and tables of a benchmark."""
 
+import os
+import pathlib
+import subprocess
+import sys
+
 import numpy
 import pytest
 
@@ -121,3 +126,23 @@ def test_plots():
     matplotlib.use("Agg")
     axes = spiral().plot(label="spiral")
     assert len(axes.lines) == 1 and axes.get_xlabel() == "x [m]"
+
+
+def test_missing_extension_is_explained(tmp_path):
+    package = tmp_path / "holdfast"
+    package.mkdir()
+    for file in pathlib.Path(holdfast.__file__).parent.glob("*.py"):
+        (package / file.name).write_bytes(file.read_bytes())
+    (package / "_core.cpython-32-x86_64-linux-gnu.so").touch()
+    outcome = subprocess.run(
+        [sys.executable, "-c", "import holdfast"],
+        capture_output=True,
+        text=True,
+        env={**os.environ, "PYTHONPATH": str(tmp_path)},
+        cwd=tmp_path,
+    )
+    assert outcome.returncode == 1
+    last = outcome.stderr.splitlines()[-1]
+    version = f"Python 3.{sys.version_info[1]} ({sys.executable})"
+    assert last.startswith(f"ImportError: {package} holds no extension for {version}")
+    assert "found: _core.cpython-32-x86_64-linux-gnu.so" in last and "pip install ." in last

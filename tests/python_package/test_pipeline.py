@@ -81,6 +81,61 @@ def test_other_images_are_refused_with_a_remedy(colour, depth, message):
             pipeline.feed(0.0, colour, depth)
 
 
+def test_stamps_are_numbers(frames):
+    with holdfast.Pipeline(PIPELINE) as pipeline:
+        with pytest.raises(TypeError, match="^feed: the time stamp is of type str; expected seconds, or a Frame$"):
+            pipeline.feed("1.0", frames[0].colour, frames[0].depth)
+        assert pipeline.feed(numpy.float64(1.0), frames[0].colour, frames[0].depth).timestamp == 1.0
+
+
+@pytest.fixture(scope="module")
+def pairs():
+    """A simulated stereo camera."""
+    return holdfast.simulate(overrides={"duration": 0.5}, camera="tum_fr3", stereo_baseline=0.11)
+
+
+def test_stereo_pairs_give_the_poses_of_a_run(pairs):
+    source = {"simulated": {"duration": 0.5, "stereo_baseline": 0.11}}
+    config = {**PIPELINE, "camera": "tum_fr3", "source": source, "run": {"mode": "sequential"}}
+    result = holdfast.run(config, progress=False)
+    assert pairs[0].depth is None and pairs[0].right.shape == (480, 640, 3) and pairs.camera.baseline == 0.11
+    fed = {**PIPELINE, "run": {"mode": "sequential"}}
+    with holdfast.Pipeline(fed, camera=pairs.camera, stereo=True) as pipeline:
+        for frame in pairs:
+            last = pipeline.feed(frame.timestamp, frame.colour, right=frame.right)
+    assert last.status == "tracked" and len(result.trajectory) == len(pairs)
+    assert numpy.array_equal(pipeline.trajectory().poses, result.trajectory.poses)
+    with holdfast.Pipeline(fed, camera=pairs.camera, stereo=True) as pipeline:
+        for frame in pairs:
+            pipeline.feed(frame)
+    assert numpy.array_equal(pipeline.trajectory().poses, result.trajectory.poses)
+
+
+def test_right_images_are_shared_and_may_be_grey(pairs):
+    for right in (numpy.array(pairs[0].right), numpy.array(pairs[0].right[:, :, 1])):
+        assert holdfast.Frame(0.0, pairs[0].colour, right=right).right.ctypes.data == right.ctypes.data
+        with holdfast.Pipeline(PIPELINE, camera=pairs.camera, stereo=True) as pipeline:
+            assert pipeline.feed(0.0, pairs[0].colour, right=right).status == "initialised"
+
+
+def test_right_images_belong_to_stereo_pipelines(frames, pairs):
+    left, right = pairs[0].colour, pairs[0].right
+    with holdfast.Pipeline(PIPELINE) as pipeline:
+        with pytest.raises(holdfast.InputError, match="right: the pipeline expects depth images; .*stereo=True"):
+            pipeline.feed(0.0, left, right=right)
+    with holdfast.Pipeline(PIPELINE, camera=pairs.camera, stereo=True) as pipeline:
+        with pytest.raises(holdfast.InputError, match="has no right image"):
+            pipeline.feed(0.0, left, frames[0].depth)
+        with pytest.raises(holdfast.InputError, match="right: has 640 x 240 px; expected .* 640 x 480 px"):
+            pipeline.feed(0.0, left, right=right[:240])
+        with pytest.raises(holdfast.InputError, match="right: found an array of float64"):
+            pipeline.feed(0.0, left, right=right / 255)
+    with pytest.raises(holdfast.ConfigurationError, match="the camera of a stereo pair has distortion"):
+        holdfast.Pipeline(PIPELINE, camera="tum_fr1", stereo=True)
+    with pytest.raises(holdfast.InputError, match="stereo_baseline: is -"):
+        holdfast.simulate(stereo_baseline=-0.1)
+
+
 def test_stamps_rise(frames):
     with holdfast.Pipeline(PIPELINE) as pipeline:
         pipeline.feed(1.0, frames[0].colour, frames[0].depth)

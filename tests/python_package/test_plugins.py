@@ -264,6 +264,29 @@ def test_source_yields_frames(config):
             assert numpy.array_equal(result.trajectory.poses, expected.trajectory.poses)
 
 
+def test_source_yields_stereo_pairs(config):
+    simulation = holdfast.simulate(overrides={"duration": 0.5}, camera="tum_fr3", stereo_baseline=0.11)
+
+    @holdfast.register("own_pairs")
+    class OwnPairs(holdfast.FrameSource):
+        camera = simulation.camera
+        has_depth = False
+        has_right = True
+
+        def __iter__(self):
+            for frame in simulation:
+                yield frame.timestamp, frame.colour, None, frame.right
+
+    config["source"] = {"simulated": {"stereo_baseline": 0.11}}
+    config["camera"] = "tum_fr3"
+    expected = run(config)
+    del config["camera"]
+    config["source"] = "own_pairs"
+    assert len(expected.trajectory) == len(simulation)
+    result = holdfast.run(config, progress=False)
+    assert numpy.array_equal(result.trajectory.poses, expected.trajectory.poses)
+
+
 @pytest.mark.parametrize(
     "items, message",
     [

@@ -20,6 +20,7 @@ Units are metres, seconds, radians and pixels. A pose `T_world_camera` is float6
 frame (x right, y down, z forward) to the world frame.
 """
 
+from . import _extension as _extension  # first: it explains a missing extension
 from ._core import (
     Camera,
     Configuration,

@@ -28,7 +28,8 @@ class Pipeline:
     `config` is a file, a mapping or a Configuration. Its source is not opened: frames come from feed(). Without the
     section `camera` give `camera`, a known name or a Camera. `map` is a map.hfm to continue, or with `localise` to
     find poses in without changing it. `output` is a folder for modules that write files. `class_names` are those of
-    the frames' `class_labels`, for the segmenter `truth`.
+    the frames' `class_labels`, for the segmenter `truth`. With `stereo` frames are rectified stereo pairs in place of
+    colour and depth: the camera has no distortion, and its `baseline` is the distance of the pair's cameras [m].
 
     `features`, `segmenter`, `filters` and `observers` take the place of these sections of the configuration: a name,
     {name: parameters}, or a module, which is an instance of a class below FeatureExtractor, Segmenter, DynamicFilter or
@@ -54,6 +55,7 @@ class Pipeline:
         localise: bool = False,
         output: Union[str, "os.PathLike[str]", None] = None,
         class_names: Sequence[str] = (),
+        stereo: bool = False,
         features: Optional[Part] = None,
         segmenter: Optional[Part] = None,
         filters: Optional[Sequence[Part]] = None,
@@ -64,8 +66,8 @@ class Pipeline:
         more: Dict[str, Any] = given(features=features, segmenter=segmenter, filters=filters, observers=observers)
         if camera is not None:
             more["camera"] = camera if isinstance(camera, str) else _camera_section(camera)
-        if class_names:
-            more["source"] = {"fed_frames": {"class_names": list(class_names)}}
+        if class_names or stereo:
+            more["source"] = {"fed_frames": {"class_names": list(class_names), "stereo": stereo}}
         parts = Parts()
         configuration = _load(config, overrides, fed=True, parts=parts, more=more)
         self._finished: Optional[_Finished] = None
@@ -76,7 +78,11 @@ class Pipeline:
 
     @overload
     def feed(
-        self, timestamp: float, colour: npt.NDArray[np.uint8], depth: Optional[npt.NDArray[np.float32]]
+        self,
+        timestamp: float,
+        colour: npt.NDArray[np.uint8],
+        depth: Optional[npt.NDArray[np.float32]] = ...,
+        right: Optional[npt.NDArray[np.uint8]] = ...,
     ) -> FrameResult:
         ...
 
@@ -84,22 +90,26 @@ class Pipeline:
     def feed(self, timestamp: Frame) -> FrameResult:
         ...
 
-    def feed(self, timestamp: Any, colour: Any = None, depth: Any = None) -> FrameResult:
+    def feed(self, timestamp: Any, colour: Any = None, depth: Any = None, right: Any = None) -> FrameResult:
         """Processes one frame and returns what tracking found.
 
         `timestamp` [s] rises strictly. `colour` is uint8 (rows, columns, 3), blue green red as cv2 reads it; `depth` is
-        float32 (rows, columns) along the optical axis [m], 0 where there is none. A Frame is accepted in their place.
-        The images are shared, not copied: do not write to them afterwards; a camera that reuses its buffer hands over
-        copies. Only arrays whose rows are not contiguous, such as image[:, :, ::-1], are copied.
+        float32 (rows, columns) along the optical axis [m], 0 where there is none. `right` is the right image of a
+        stereo pair, whose left image is `colour`: uint8 (rows, columns, 3) or (rows, columns); a pipeline with `stereo`
+        expects one in every frame, others refuse it. A Frame is accepted in their place. The images are shared, not
+        copied: do not write to them afterwards; a camera that reuses its buffer hands over copies. Only arrays whose
+        rows are not contiguous, such as image[:, :, ::-1], are copied.
 
         Trouble with a frame is a result, not an exception. Raises InputError for arrays of another kind and for time
-        stamps that do not rise, and what a thread of the pipeline raised. Stereo (`right`) is not supported.
+        stamps that do not rise, and what a thread of the pipeline raised.
         """
         if isinstance(timestamp, Frame):
-            if colour is not None or depth is not None:
-                raise TypeError("feed: a Frame holds its images; expected a Frame alone, or timestamp, colour, depth")
+            if colour is not None or depth is not None or right is not None:
+                raise TypeError("feed: a Frame holds its images; expected a Frame alone, or a time stamp and images")
             return self._core.feed(timestamp)
-        return self._core.feed_arrays(timestamp, colour, depth)
+        if not hasattr(timestamp, "__float__"):  # here, because the message of pybind11 prints all images
+            raise TypeError(f"feed: the time stamp is of type {type(timestamp).__name__}; expected seconds, or a Frame")
+        return self._core.feed_arrays(timestamp, colour, depth, right)
 
     def finish(self) -> None:
         """Ends the run: waits for background work, adjusts the map once more where that helps, tells the observers."""

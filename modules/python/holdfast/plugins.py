@@ -176,17 +176,19 @@ class FrameSource(Module):
     """Provides frames: iterate over it to get holdfast.Frame or (timestamp, colour, depth) with rising time stamps.
 
     Set `camera` to its calibration, or leave it to the configuration. `frame_count` is the number of frames if it is
-    known.
+    known. A source of rectified stereo pairs has `has_depth = False` and `has_right = True`, a `camera` with the
+    baseline of the pair, and yields (timestamp, left, None, right).
     """
 
     _kind = "source"
     name: Optional[str] = None
     camera: Optional[Camera] = None
     has_depth: bool = True
+    has_right: bool = False
     frame_count: Optional[int] = None
     class_names: Sequence[str] = ()
 
-    def __iter__(self) -> Iterator[Union[Frame, Tuple[float, Any, Any]]]:
+    def __iter__(self) -> Iterator[Union[Frame, Tuple[float, Any, Any], Tuple[float, Any, Any, Any]]]:
         """The frames, in order; called once per run, in threaded mode by a thread of its own."""
         raise NotImplementedError("__iter__")
 

@@ -54,12 +54,17 @@ class Simulation:
 
 
 def simulate(
-    scene: Union[str, "os.PathLike[str]"] = "", overrides: Overrides = {}, *, camera: Union[str, Camera] = "tum_fr1"
+    scene: Union[str, "os.PathLike[str]"] = "",
+    overrides: Overrides = {},
+    *,
+    camera: Union[str, Camera] = "tum_fr1",
+    stereo_baseline: float = 0.0,
 ) -> Simulation:
     """A simulated scene as a sequence of frames with truth.
 
     `scene` is a scene file (docs/scenes.md of the project), "" the empty office; `overrides` are values by key path,
-    such as {"duration": 2, "camera.path": "halfsphere"}. Raises ConfigurationError with every problem found.
+    such as {"duration": 2, "camera.path": "halfsphere"}. With a `stereo_baseline` [m] frames are stereo pairs: `right`
+    in place of `depth`. Raises ConfigurationError with every problem found, InputError for a negative baseline.
     """
     known = _core.camera(camera) if isinstance(camera, str) else camera
-    return Simulation(_core.Simulator(os.fspath(scene), _override_texts(overrides), known))
+    return Simulation(_core.Simulator(os.fspath(scene), _override_texts(overrides), known, stereo_baseline))
