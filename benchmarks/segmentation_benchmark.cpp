@@ -81,10 +81,10 @@ void unet(benchmark::State& state, const std::string& size, bool mirror) {
   state.counters["cv_orb_ms"] = 1e3 * median(reference_times);
   state.counters["to_cv_orb"] = median(times) / median(reference_times);
 }
-BENCHMARK_CAPTURE(unet, small_once, "small", false)->UseManualTime()->Iterations(40)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(unet, small, "small", true)->UseManualTime()->Iterations(40)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(unet, base_once, "base", false)->UseManualTime()->Iterations(40)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(unet, base, "base", true)->UseManualTime()->Iterations(40)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(unet, small, "small", false)->UseManualTime()->Iterations(40)->Unit(benchmark::kMillisecond);
+
+BENCHMARK_CAPTURE(unet, base, "base", false)->UseManualTime()->Iterations(40)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(unet, base_mirror, "base", true)->UseManualTime()->Iterations(40)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 

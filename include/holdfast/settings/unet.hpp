@@ -11,7 +11,7 @@ class Segmenter;
 template <class Settings>
 class ParameterTable;
 
-/// Size of the input of the U-Net: small is 224x192 pixels, base is 320x256.
+/// Size of the input of the U-Net: small is 224x192 pixels, base is 384x288.
 enum class UnetSize { small, base };
 template <>
 inline constexpr Choice<UnetSize> choice_table<UnetSize>[] = {{"small", UnetSize::small}, {"base", UnetSize::base}};
@@ -21,12 +21,11 @@ struct UnetSettings {
   using Interface = Segmenter;
   static constexpr const char* module = "unet";
 
-  UnetSize size = UnetSize::base;  ///< small takes a third of the time of base
+  UnetSize size = UnetSize::base;  ///< small takes half the time of base
   int width = 0;                   ///< of the network input, a multiple of 32 [px]; 0 = given by `size`
   int height = 0;                  ///< likewise
-  /// With `base`, average the scores of the image and its mirror image; doubles the time and improves the masks
-  /// slightly.
-  bool mirror = true;
+  /// Average the scores of the image and its mirror image; doubles the time and improves the masks slightly.
+  bool mirror = false;
   std::filesystem::path model;  ///< ONNX file with other weights; empty = the weights of the library
   int threads = 0;              ///< number of threads of OpenCV for the whole process; 0 = unchanged
 
