@@ -4,8 +4,10 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <memory>
+#include <sstream>
 #include <string>
 
 #include "holdfast/core/error.hpp"
@@ -23,6 +25,10 @@ struct EvaluateArguments {
   std::string truth;
   std::string estimate;
   std::string alignment = "se3";
+  std::string format = "auto";
+  std::string times;
+  std::string write;
+  std::string write_format = "tum";
   std::string frames;
   std::string json;
   std::string csv;
@@ -32,8 +38,10 @@ struct EvaluateArguments {
 };
 
 constexpr const char* explanation = R"(
-Trajectories are in TUM format: one line 'timestamp tx ty tz qx qy qz qw' per pose, seconds and
-metres, '#' begins a comment.
+Trajectories are in one of these formats, which --format auto recognises; '#' begins a comment:
+  tum        timestamp tx ty tz qx qy qz qw; seconds and metres
+  kitti      12 numbers, the rows of T_world_camera; stamps from --times, else ten poses a second
+  euroc      timestamp, tx, ty, tz, qw, qx, qy, qz, ...; nanoseconds and metres
 
 Definitions
   pairing    stamps one-to-one, the nearest first, closer than --max-dt
@@ -49,6 +57,8 @@ Examples
   holdfast evaluate groundtruth.txt trajectory.txt
   holdfast evaluate fr1_xyz/groundtruth.txt trajectory.txt --frames fr1_xyz --plots figures
   holdfast evaluate groundtruth.txt monocular.txt --alignment sim3 --json -
+  holdfast evaluate poses/00.txt trajectory.txt --times sequences/00/times.txt
+  holdfast evaluate data.csv trajectory.txt --write trajectory.csv --write-format euroc
 )";
 
 /// The names that `run` gives them, too.
@@ -63,9 +73,30 @@ void write_plots(const std::filesystem::path& folder, const Evaluation& evaluati
   write_file_atomically(folder / error_over_time_file, error_over_time_svg(evaluation));
 }
 
+/// One stamp per line [s].
+std::vector<double> read_times(const std::string& file) {
+  std::ifstream stream(file);
+  if (!stream) throw InputError({file}, "cannot be opened for reading; expected one time stamp [s] a line");
+  std::vector<double> times;
+  int line_number = 0;
+  for (std::string line; std::getline(stream, line);) {
+    ++line_number;
+    std::istringstream words(line);
+    double stamp = 0.0;
+    std::string rest;
+    if (!(words >> stamp) || words >> rest)
+      throw InputError({file, line_number}, "found '" + line.substr(0, 60) + "'; expected one time stamp [s] a line");
+    times.push_back(stamp);
+  }
+  if (times.empty()) throw InputError({file}, "is empty; expected one time stamp [s] a line");
+  return times;
+}
+
 /// Reads a trajectory, and says what of it does not count.
-Trajectory read_with_notes(const std::string& file) {
-  TrajectoryFile read = read_trajectory_file(file);
+Trajectory read_with_notes(const std::string& file, const TrajectoryReading& reading) {
+  TrajectoryFile read = read_trajectory_file(file, reading);
+  if (read.format == TrajectoryFormat::kitti && reading.stamps.empty())
+    print_warning(file + ": KITTI's format has no time stamps, and --times names none: ten poses a second are assumed");
   if (const std::string omissions = read.omissions(); !omissions.empty())
     print_warning(file + ": leaves out " + omissions);
   return std::move(read.poses);
@@ -79,14 +110,17 @@ void run(EvaluateArguments arguments) {
   if (arguments.json == "-" && arguments.csv == "-")
     throw UsageError("--json and --csv cannot both go to standard output; give one of them a file");
   const std::filesystem::path plots = arguments.plots;
-  require_new_files({arguments.json, arguments.csv, plots.empty() ? plots : plots / top_view_file,
+  require_new_files({arguments.json, arguments.csv, arguments.write, plots.empty() ? plots : plots / top_view_file,
                      plots.empty() ? plots : plots / error_over_time_file},
                     arguments.overwrite);
   arguments.options.alignment = parse_alignment(arguments.alignment).value();
   arguments.options.truth_name = arguments.truth;
   arguments.options.estimate_name = arguments.estimate;
-  const Trajectory truth = read_with_notes(arguments.truth);
-  const Trajectory estimate = read_with_notes(arguments.estimate);
+  TrajectoryReading reading;
+  reading.format = find_trajectory_format(arguments.format);
+  if (!arguments.times.empty()) reading.stamps = read_times(arguments.times);
+  const Trajectory truth = read_with_notes(arguments.truth, reading);
+  const Trajectory estimate = read_with_notes(arguments.estimate, reading);
   std::optional<std::vector<double>> frames;
   if (!arguments.frames.empty()) frames = read_frame_stamps(arguments.frames);
   const Evaluation evaluation = evaluate(truth, estimate, arguments.options, frames);
@@ -95,6 +129,8 @@ void run(EvaluateArguments arguments) {
     if (!frames) std::cout << "Coverage needs --frames LIST.\n";
   }
   if (!arguments.json.empty()) write_output(arguments.json, to_json(evaluation));
+  if (!arguments.write.empty())
+    write_trajectory(arguments.write, estimate, find_trajectory_format(arguments.write_format).value());
   if (!arguments.csv.empty()) write_output(arguments.csv, to_csv(evaluation));
   if (!arguments.plots.empty()) write_plots(arguments.plots, evaluation);
 }
@@ -106,13 +142,25 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
   CLI::App* command =
       app.add_subcommand("evaluate", "Compare an estimated trajectory with the truth: ATE, RPE, coverage");
   command->footer(explanation);
-  command->add_option("TRUTH", arguments->truth, "True trajectory, TUM format; '-': standard input")->required();
-  command->add_option("ESTIMATE", arguments->estimate, "Estimated trajectory, TUM format; '-': standard input")->required();
+  command->add_option("TRUTH", arguments->truth, "True trajectory; '-': standard input")->required();
+  command->add_option("ESTIMATE", arguments->estimate, "Estimated trajectory; '-': standard input")->required();
   command
       ->add_option("--alignment", arguments->alignment,
                    "se3: rotation and translation; sim3: also scale, for monocular runs; none: as they are")
       ->type_name("KIND")
       ->check(CLI::IsMember({"se3", "sim3", "none"}))
+      ->capture_default_str();
+  command->add_option("--format", arguments->format, "Format of both trajectories; auto recognises that of each")
+      ->type_name("FORMAT")
+      ->check(CLI::IsMember({"auto", "tum", "kitti", "euroc"}))
+      ->capture_default_str();
+  command->add_option("--times", arguments->times, "Time stamps of trajectories in KITTI's format, one a line [s]")
+      ->type_name("FILE");
+  command->add_option("--write", arguments->write, "Also write the estimate, in the format --write-format")
+      ->type_name("FILE");
+  command->add_option("--write-format", arguments->write_format, "Format of the file that --write names")
+      ->type_name("FORMAT")
+      ->check(CLI::IsMember({"tum", "kitti", "euroc"}))
       ->capture_default_str();
   command->add_option("--max-dt", arguments->options.max_time_difference, "Stamps of a pair are closer than this [s]")
       ->type_name("S")

@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/core/frame.hpp"
 
-#include <algorithm>
-
 namespace holdfast {
 
 Eigen::Isometry3d Frame::T_world_camera() const { return T_camera_world.inverse(); }
 
 Eigen::Isometry3d Frame::T_view_world() const { return coarse.T_view_world(T_camera_world); }
-
-bool Frame::has_any_depth() const {
-  return std::any_of(depth.begin(), depth.end(), [](float value) { return value > 0.0F; });
-}
 
 }  // namespace holdfast

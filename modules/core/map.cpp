@@ -141,6 +141,7 @@ void Map::clear() {
   points_.clear();
   removed_keyframes_.clear();
   next_sequence_ = 0;
+  sensor_ = Sensor::rgbd;
   ++version_;
 }
 

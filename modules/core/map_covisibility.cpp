@@ -128,12 +128,14 @@ std::vector<KeyFrameId> Map::best_covisible(KeyFrameId id, int max_count) const 
 
 Eigen::Isometry3d Map::pose_of(KeyFrameId id) const {
   Eigen::Isometry3d T_camera_ancestor = Eigen::Isometry3d::Identity();
+  double scale = scale_of(id);
   while (true) {
     if (const KeyFrame* keyframe = keyframes_.find(id)) return T_camera_ancestor * keyframe->frame.T_camera_world;
     const auto removed = removed_keyframes_.find(id);
     HOLDFAST_CHECK(removed != removed_keyframes_.end(), "keyframe " << id.slot << " was never in the map");
     Eigen::Isometry3d T_camera_parent = removed->second.T_camera_parent;
-    T_camera_parent.translation() *= scale_of(removed->second.parent) / removed->second.parent_scale;
+    scale *= removed->second.parent_scale / removed->second.scale;  // of the parent, as it is now
+    T_camera_parent.translation() *= scale / removed->second.parent_scale;
     T_camera_ancestor = T_camera_ancestor * T_camera_parent;
     id = removed->second.parent;
   }

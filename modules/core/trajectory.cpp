@@ -44,12 +44,33 @@ bool parse_numbers(const std::vector<std::string_view>& words, std::vector<doubl
 /// No clock has counted so many seconds.
 bool is_in_nanoseconds(double stamp) { return std::isfinite(stamp) && stamp >= 1e14; }
 
-/// The format that a line without a TUM pose looks like; empty for none that is known.
-std::string known_format(const std::vector<double>& numbers) {
-  if (numbers.size() == 12) return "; it looks like KITTI's format (12 numbers of a matrix, without a stamp)";
-  if (numbers.size() >= 8 && is_in_nanoseconds(numbers.front()))
-    return "; it looks like EuRoC's format (stamps in nanoseconds, then tx ty tz qw qx qy qz)";
-  return "";
+/// The format that a line looks like; nothing for none that is known.
+std::optional<TrajectoryFormat> looks_like(const std::vector<double>& numbers) {
+  if (numbers.size() == 12) return TrajectoryFormat::kitti;
+  if (numbers.size() >= 8 && is_in_nanoseconds(numbers.front())) return TrajectoryFormat::euroc;
+  if (numbers.size() == 8) return TrajectoryFormat::tum;
+  return std::nullopt;
+}
+
+const char* description(TrajectoryFormat format) {
+  switch (format) {
+    case TrajectoryFormat::kitti:
+      return "KITTI's format (12 numbers of a matrix, without a stamp)";
+    case TrajectoryFormat::euroc:
+      return "EuRoC's format (stamps in nanoseconds, then tx ty tz qw qx qy qz)";
+    case TrajectoryFormat::tum:
+      break;
+  }
+  return "TUM format (t tx ty tz qx qy qz qw, t in seconds)";
+}
+
+/// The pose that the numbers of a line say; the stamp of KITTI's is the caller's. Its rotation may be zero.
+std::pair<Eigen::Vector3d, Eigen::Quaterniond> pose_of(const std::vector<double>& n, TrajectoryFormat format) {
+  if (format == TrajectoryFormat::tum) return {{n[1], n[2], n[3]}, {n[7], n[4], n[5], n[6]}};
+  if (format == TrajectoryFormat::euroc) return {{n[1], n[2], n[3]}, {n[4], n[5], n[6], n[7]}};
+  Eigen::Matrix3d rotation;
+  rotation << n[0], n[1], n[2], n[4], n[5], n[6], n[8], n[9], n[10];
+  return {{n[3], n[7], n[11]}, Eigen::Quaterniond(rotation)};
 }
 
 /// Appends a number with a fixed number of decimals and a decimal point, independent of the locale. A number that is
@@ -97,7 +118,17 @@ std::string TrajectoryFile::omissions() const {
   return text;
 }
 
-TrajectoryFile read_trajectory_file(const std::filesystem::path& file) {
+const char* trajectory_format_name(TrajectoryFormat format) {
+  return format == TrajectoryFormat::tum ? "tum" : format == TrajectoryFormat::kitti ? "kitti" : "euroc";
+}
+
+std::optional<TrajectoryFormat> find_trajectory_format(const std::string& name) {
+  for (const TrajectoryFormat format : {TrajectoryFormat::tum, TrajectoryFormat::kitti, TrajectoryFormat::euroc})
+    if (name == trajectory_format_name(format)) return format;
+  return std::nullopt;
+}
+
+TrajectoryFile read_trajectory_file(const std::filesystem::path& file, const TrajectoryReading& reading) {
   std::error_code status;
   if (!std::filesystem::exists(file, status))
     throw InputError({file.string()}, std::string("no such file; ") + expected_format);
@@ -113,23 +144,38 @@ TrajectoryFile read_trajectory_file(const std::filesystem::path& file) {
   std::string line;
   std::vector<std::string_view> words;
   std::vector<double> numbers;
+  std::optional<TrajectoryFormat> format = reading.format;
+  constexpr double kitti_interval = 0.1;  // s
+  std::size_t pose_number = 0;
   for (int line_number = 1; std::getline(stream, line); ++line_number) {
     split(line, words);
     if (words.empty()) continue;
     const bool parsed = parse_numbers(words, numbers);
-    if (!parsed || numbers.size() != 8 || is_in_nanoseconds(numbers.front()))
+    const std::optional<TrajectoryFormat> found = parsed ? looks_like(numbers) : std::nullopt;
+    if (!format) format = found;
+    if (!found || found != format)
       throw InputError({file.string(), line_number},
                        "found " + std::to_string(words.size()) + " columns, '" + line.substr(0, 60) + "'" +
-                           (parsed ? known_format(numbers) : "") +
-                           "; expected 8 numbers: t tx ty tz qx qy qz qw, t in seconds; convert the file");
-    const Eigen::Quaterniond rotation(numbers[7], numbers[4], numbers[5], numbers[6]);
+                           (found ? std::string("; it looks like ") + description(*found) : "") + "; expected " +
+                           description(format.value_or(TrajectoryFormat::tum)) + "; convert the file");
+    result.format = *format;
+    const auto [position, rotation] = pose_of(numbers, *format);
+    const std::size_t number = pose_number++;
     if (rotation.norm() == 0.0) {
       ++result.zero_quaternions;
       continue;
     }
     TimedPose pose;
     pose.timestamp = numbers[0];
-    pose.T_world_camera = Eigen::Translation3d(numbers[1], numbers[2], numbers[3]) * rotation.normalized();
+    if (format == TrajectoryFormat::euroc) pose.timestamp = numbers[0] * 1e-9;
+    if (format == TrajectoryFormat::kitti) {
+      if (!reading.stamps.empty() && number >= reading.stamps.size())
+        throw InputError({file.string(), line_number}, "found more poses than the " +
+                                                           std::to_string(reading.stamps.size()) +
+                                                           " time stamps; expected one stamp for each pose");
+      pose.timestamp = reading.stamps.empty() ? kitti_interval * static_cast<double>(number) : reading.stamps[number];
+    }
+    pose.T_world_camera = Eigen::Translation3d(position) * rotation.normalized();
     if (!std::isfinite(pose.timestamp) || !pose.T_world_camera.matrix().allFinite()) {
       ++result.not_finite;
       continue;
@@ -137,6 +183,10 @@ TrajectoryFile read_trajectory_file(const std::filesystem::path& file) {
     trajectory.push_back(pose);
   }
   if (stream.bad()) throw InputError({file.string()}, "reading stopped before the end; is the disk in order?");
+  if (result.format == TrajectoryFormat::kitti && !reading.stamps.empty() && pose_number != reading.stamps.size())
+    throw InputError({file.string()}, "found " + std::to_string(pose_number) + " poses for " +
+                                          std::to_string(reading.stamps.size()) +
+                                          " time stamps; expected one stamp for each pose");
   const std::size_t count = trajectory.size();
   result.poses = sort_and_clean(std::move(trajectory));
   result.repeated_stamps = count - result.poses.size();
@@ -163,8 +213,34 @@ std::string trajectory_text(const Trajectory& trajectory) {
   return text;
 }
 
-void write_trajectory(const std::filesystem::path& file, const Trajectory& trajectory) {
-  write_file_atomically(file, trajectory_text(trajectory));
+std::string trajectory_text(const Trajectory& trajectory, TrajectoryFormat format) {
+  if (format == TrajectoryFormat::tum) return trajectory_text(trajectory);
+  std::string text;
+  if (format == TrajectoryFormat::euroc) text = "#timestamp [ns],p_x [m],p_y [m],p_z [m],q_w [],q_x [],q_y [],q_z []\n";
+  for (const TimedPose& pose : trajectory) {
+    const auto matrix = pose.T_world_camera.matrix();
+    if (format == TrajectoryFormat::kitti) {
+      for (int i = 0; i < 12; ++i) {
+        if (i > 0) text += ' ';
+        append_fixed(text, matrix(i / 4, i % 4), 9);
+      }
+    } else {
+      Eigen::Quaterniond q(pose.T_world_camera.linear());
+      q.normalize();
+      if (q.w() < 0.0) q.coeffs() = -q.coeffs();
+      append_fixed(text, std::round(pose.timestamp * 1e9), 0);
+      for (const double value : {matrix(0, 3), matrix(1, 3), matrix(2, 3), q.w(), q.x(), q.y(), q.z()}) {
+        text += ',';
+        append_fixed(text, value, 9);
+      }
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+void write_trajectory(const std::filesystem::path& file, const Trajectory& trajectory, TrajectoryFormat format) {
+  write_file_atomically(file, trajectory_text(trajectory, format));
 }
 
 void write_file_atomically(const std::filesystem::path& file, const std::string& content) {

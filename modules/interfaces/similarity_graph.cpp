@@ -13,6 +13,9 @@ namespace {
 /// The logarithms of the nodes' scales that agree best with those of the edges, by least squares; fixed nodes have 0.
 /// Empty when they are not determined.
 std::vector<double> log_scales(const PoseGraphProblem& problem) {
+  for (const PoseGraphProblem::Edge& edge : problem.edges)
+    HOLDFAST_CHECK(edge.from < problem.nodes.size() && edge.to < problem.nodes.size(),
+                   "edge from " << edge.from << " to " << edge.to << " of " << problem.nodes.size() << " nodes");
   std::vector<int> unknown(problem.nodes.size(), -1);
   int count = 0;
   for (std::size_t i = 0; i < problem.nodes.size(); ++i)
@@ -22,8 +25,6 @@ std::vector<double> log_scales(const PoseGraphProblem& problem) {
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::VectorXd right = Eigen::VectorXd::Zero(count);
   for (const PoseGraphProblem::Edge& edge : problem.edges) {
-    HOLDFAST_CHECK(edge.from < problem.nodes.size() && edge.to < problem.nodes.size(),
-                   "edge from " << edge.from << " to " << edge.to << " of " << problem.nodes.size() << " nodes");
     const double measured = std::log(edge.scale);
     if (!std::isfinite(measured) || !std::isfinite(edge.weight)) return {};
     const int from = unknown[edge.from], to = unknown[edge.to];

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/loop_closing/loop_closer.hpp"
 
+#include <cmath>
+
 #include "holdfast/core/random.hpp"
 #include "holdfast/matching/frame_features.hpp"
 #include "loop_correction.hpp"
@@ -116,7 +118,8 @@ std::optional<LoopMeasurement> LoopCloser::check(LoopTrial& trial) {
       side.push_back(neighbour);
     place = copy_points_seen_by(map_, side);
   }
-  const CheckedPlace checked = check_place(settings_, optimizer_, *frame, solid, place, Random(seed_).fork(sequence).next());
+  const CheckedPlace checked =
+      check_place(settings_, optimizer_, *frame, solid, place, Random(seed_).fork(sequence).next());
   trial.verdict = checked.verdict;
   trial.matches = checked.matches;
   trial.aligned = checked.aligned;
@@ -134,14 +137,15 @@ std::optional<LoopMeasurement> LoopCloser::check(LoopTrial& trial) {
   trial.correction = pose_change(frame->T_camera_world, checked.T_camera_world);
   trial.scale = checked.scale;
   const PoseChange believed = believed_drift(settings_, trial.way, solid.with_scale);
-  if (trial.correction.metres > believed.metres || trial.correction.degrees > believed.degrees)
+  const bool scale_is_plausible = std::abs(std::log(checked.scale)) <= std::log(settings_.largest_scale_drift);
+  if (trial.correction.metres > believed.metres || trial.correction.degrees > believed.degrees || !scale_is_plausible)
     trial.verdict = LoopVerdict::implausible_correction;
   else if (present_pose_is_confirmed(settings_, optimizer_, *frame, old_points, checked.T_camera_world))
     trial.verdict = LoopVerdict::pose_confirmed;
   if (trial.verdict != LoopVerdict::closed) return std::nullopt;
 
-  LoopMeasurement measurement{trial.keyframe, trial.candidate, checked.T_camera_world, {}, solid.with_scale,
-                              checked.scale};
+  LoopMeasurement measurement{trial.keyframe,   trial.candidate, checked.T_camera_world, {},
+                              solid.with_scale, checked.scale};
   for (const matching::BinaryMatch& match : checked.inliers)
     measurement.points.emplace_back(place.block.ids[match.source], match.feature);
   return measurement;

@@ -72,10 +72,14 @@ void LoopClosingSettings::describe(ParameterTable<LoopClosingSettings>& table) {
       .unit("m")
       .range(0, 1);
   table
-      .add("scale_drift_per_metre", &S::scale_drift_per_metre,
+      .add("drift_per_metre_mono", &S::drift_per_metre_mono,
            "the same with one camera, whose scale drifts and with it the length of the path")
       .unit("m")
       .range(0, 10);
+  table
+      .add("largest_scale_drift", &S::largest_scale_drift,
+           "with one camera, factor by which the scale may have drifted around a loop, at most")
+      .range(1, 100);
   table.add("turn_constant", &S::turn_constant, "plausible rotation for a path of zero length between the places")
       .unit("deg")
       .range(0, 180);

@@ -11,8 +11,8 @@ namespace holdfast {
 
 /// New poses for some keyframes of a map, and what they mean for the rest: a keyframe without one of its own moves with
 /// its parent (or with the keyframe before it, should it have none), as rigidly as if bolted to it, and a point moves
-/// with its reference keyframe. With one camera, the world around a keyframe changes its scale as well. The caller holds
-/// the map's lock.
+/// with its reference keyframe. With one camera, the world around a keyframe changes its scale as well. The caller
+/// holds the map's lock.
 class MapMotion {
  public:
   /// `poses[i]` is the new T_camera_world of `keyframes[i]`; those that left the map are passed over.
@@ -32,7 +32,7 @@ class MapMotion {
     bool carried = false;
     double scale = 1.0;
   };
-  std::vector<Pose> poses_;                // of all keyframes
+  std::vector<Pose> poses_;  // of all keyframes
   // By slot, the motion of the world around a keyframe, new from old: a point is scaled, turned and moved.
   std::vector<Eigen::Isometry3d> motion_;
   std::vector<double> scale_;

@@ -24,17 +24,17 @@ struct CheckedPlace {
 struct SolidFeatures {
   std::vector<std::uint32_t> features;
   std::vector<Eigen::Vector3d> in_camera;  ///< by index of the frame's features; of others, 0
-  bool with_scale = false;  ///< positions are those of map points, whose scale may have drifted since the place was seen
+  bool with_scale = false;                 ///< positions are those of map points, whose scale may have drifted since
 };
 
-/// Features with depth; in a frame without any depth, features that show a point of the map. The caller holds the lock
-/// of the map.
+/// Features with depth; with one camera, features that show a point of the map. The caller holds the map's lock.
 SolidFeatures solid_features(const Frame& frame, const Map& map);
 
 /// Whether a keyframe sees the points of a place, and from where (Mur-Artal et al. 2015, section VII-B, with the rigid
-/// motion that depth allows, Mur-Artal and Tardos 2017, section III-D, or the similarity of one camera): descriptors matched without a guess, rigid
-/// 3D-3D alignment by RANSAC with the given seed, guided matching of all points of the place, the pose adjusted to them
-/// with outliers set aside. Enough inliers, a share of what should be seen, and spread over the image: accepted.
+/// motion that depth allows, Mur-Artal and Tardos 2017, section III-D, or the similarity of one camera): descriptors
+/// matched without a guess, rigid 3D-3D alignment by RANSAC with the given seed, guided matching of all points of the
+/// place, the pose adjusted to them with outliers set aside. Enough inliers, a share of what should be seen, and spread
+/// over the image: accepted.
 ///
 /// Needs no lock while nobody changes the keyframe: it reads the frame's features and the copied points.
 CheckedPlace check_place(const LoopClosingSettings& settings, Optimizer& optimizer, const Frame& frame,

@@ -58,9 +58,8 @@ PoseChange pose_change(const Eigen::Isometry3d& before, const Eigen::Isometry3d&
 
 PoseChange believed_drift(const LoopClosingSettings& settings, double way, bool with_scale) {
   // The scale of one camera drifts, and with it the length of the way.
-  const double per_metre = with_scale ? settings.scale_drift_per_metre : settings.drift_per_metre;
-  return {settings.drift_constant + per_metre * way,
-          settings.turn_constant + settings.turn_per_metre * way};
+  const double per_metre = with_scale ? settings.drift_per_metre_mono : settings.drift_per_metre;
+  return {settings.drift_constant + per_metre * way, settings.turn_constant + settings.turn_per_metre * way};
 }
 
 PlacePoints old_points_in_view(const LoopClosingSettings& settings, const Map& map, KeyFrameId id) {

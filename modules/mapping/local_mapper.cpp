@@ -120,13 +120,16 @@ void LocalMapper::remove_weak_points(KeyFrameId id) {
   const std::uint64_t now = map_.keyframe(id).sequence;
   // A triangulated point begins with two observations; one that no third keyframe confirms was a wrong match, or moved
   // (Mur-Artal et al. 2015, section VI-B). Depth confirms a point as well as another view does.
-  const std::size_t required = map_.keyframe(id).frame.has_any_depth() ? 2 : 3;
+  const bool is_mono = map_.sensor() == Sensor::mono;
+  const std::size_t required = is_mono ? 3 : 2;
   std::erase_if(recent_points_, [&](MapPointId point_id) {
     const MapPoint* point = map_.find_point(point_id);
     if (point == nullptr) return true;
+    // With one camera, a keyframe comes again with its mask, when later ones have made points.
+    if (is_mono && point->created_at > now) return false;
     const std::uint64_t age = now - point->created_at;
     const bool rarely_found = point->found_ratio() < static_cast<float>(settings_.weak_found_ratio);
-    const bool unconfirmed = age >= 2 && point->observations.size() < required;
+    const bool unconfirmed = age >= (is_mono ? 1U : 2U) && point->observations.size() < required;
     if (rarely_found || unconfirmed) {
       map_.remove_point(point_id);
       ++counts_.points_removed;
@@ -146,7 +149,7 @@ std::vector<KeyFrameId> LocalMapper::remove_redundant_keyframes(KeyFrameId id) {
     if (!keyframe.parent.valid() || !keyframe.loop_edges.empty()) continue;
     if (keyframe.sequence > sequence) continue;  // waits to be refined itself
     const Frame& frame = keyframe.frame;
-    const bool has_depth = frame.has_any_depth();
+    const bool has_depth = map_.sensor() != Sensor::mono;
     const float close = static_cast<float>(close_depth_factor_ * frame.camera->baseline);
     int points = 0, redundant = 0;
     for (std::uint32_t feature = 0; feature < frame.size(); ++feature) {

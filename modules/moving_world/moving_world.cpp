@@ -55,7 +55,7 @@ void MovingWorld::check_pose(const PosePrediction& prediction, KeyFrameId refere
 
 bool MovingWorld::contradicts_depth(const Frame& frame, int inliers, bool was_lost, KeyFrameId reference) {
   const EvidenceSettings& limits = filters_.settings();
-  if (!has_depth_) return filters_.discounts_priors();  // what needs the support of depth has none
+  if (!has_depth_) return false;
   if (filters_.discounts_priors())
     return !depth_agreement_.choose(map_, reference, frame.timestamp) ||
            depth_agreement_.support(frame, frame.T_view_world()) < limits.fallback_share;

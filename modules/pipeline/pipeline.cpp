@@ -244,7 +244,8 @@ bool Pipeline::State::close_loops(const LoopJob& job, StageTimes& times) {
   if (!loop) {
     const std::lock_guard lock(record_mutex);
     loop_record.counts = closer.counts();
-    if (job.keyframe.valid() && !loop_record.loops.empty() && parts.loop_closing.full_adjustment) ++keyframes_since_adjustment;
+    if (job.keyframe.valid() && !loop_record.loops.empty() && parts.loop_closing.full_adjustment)
+      ++keyframes_since_adjustment;
     return false;
   }
   LoopEvent event{.loop = *loop};
@@ -288,6 +289,7 @@ void Pipeline::State::hand_to_mapping(const MappingJob& job, StageTimes& times) 
     mapping->queue().push(job);  // no other thread adds to the queue, so that this does not wait
     return;
   }
+  if (!job.is_final) return;  // its mask brings it again
   keyframes_kept.push_back(job);
   ++keyframes_deferred;
 }

@@ -25,7 +25,8 @@ const char* advice(TrackingTrouble trouble) {
       return "Check that `camera` is the camera of this recording and the depth factor of the source fits; then how "
              "fast the camera moves, and whether filters or masks leave enough of the static world.";
     case TrackingTrouble::little_parallax:
-      return "One camera begins its map when it has moved sideways or forward by some hundredths of the distance of what "
+      return "One camera begins its map when it has moved sideways or forward by some hundredths of the distance of "
+             "what "
              "it sees; turning on the spot is not enough.";
     case TrackingTrouble::no_mask:
       return "Check that the segmenter gives results.";
@@ -63,9 +64,9 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& r
     rows.emplace_back("loops", std::to_string(record.loops.loops.size()) + " closed");
   if (record.evaluation) {
     const Evaluation& e = *record.evaluation;
-    rows.emplace_back("ATE RMSE", fixed_text(e.absolute_error.rmse, 6) + " m (" +
-                                      std::string(to_string(e.options.alignment)) + ", " + counted(e.poses.size(), "pair") +
-                                      ", path " + fixed_text(e.path_length, 2) + " m)");
+    rows.emplace_back(
+        "ATE RMSE", fixed_text(e.absolute_error.rmse, 6) + " m (" + std::string(to_string(e.options.alignment)) + ", " +
+                        counted(e.poses.size(), "pair") + ", path " + fixed_text(e.path_length, 2) + " m)");
     if (e.error_per_time.pairs > 0)
       rows.emplace_back("RPE per second", fixed_text(e.error_per_time.translation.rmse, 6) + " m, " +
                                               fixed_text(e.error_per_time.rotation.rmse, 4) + " deg");

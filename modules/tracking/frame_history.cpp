@@ -28,9 +28,7 @@ void FrameHistory::became_keyframe(KeyFrameId keyframe, double timestamp) {
   records_.back() = {timestamp, keyframe, Eigen::Isometry3d::Identity()};
 }
 
-Eigen::Isometry3d FrameHistory::last_pose(const Map& map) const {
-  return pose(records_.back(), map);
-}
+Eigen::Isometry3d FrameHistory::last_pose(const Map& map) const { return pose(records_.back(), map); }
 
 Eigen::Isometry3d FrameHistory::pose(const Record& record, const Map& map) {
   Eigen::Isometry3d T_camera_reference = record.T_camera_reference;
@@ -56,8 +54,7 @@ Eigen::Isometry3d FrameHistory::extrapolate(double timestamp, double share) cons
 Trajectory FrameHistory::trajectory(const Map& map) const {
   Trajectory trajectory;
   trajectory.reserve(records_.size());
-  for (const Record& record : records_)
-    trajectory.push_back({record.timestamp, pose(record, map).inverse()});
+  for (const Record& record : records_) trajectory.push_back({record.timestamp, pose(record, map).inverse()});
   return trajectory;
 }
 

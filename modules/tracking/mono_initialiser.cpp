@@ -86,10 +86,9 @@ TrackingTrouble MonoInitialiser::add(Frame& frame) {
   if (median(displacements) < min_displacement * frame.camera->width) return TrackingTrouble::little_parallax;
   // Where more of the matches do not fit, people have been taken for the static world: another moment is better.
   constexpr double min_inliers = 0.8;
-  const auto motion = geometry::find_two_view_motion(*frame.camera, pairs,
-                                                     {.minimum_points = settings_.minimum_start_points / 2,
-                                                      .minimum_inliers = min_inliers,
-                                                      .seed = random_.next()});
+  const auto motion = geometry::find_two_view_motion(
+      *frame.camera, pairs,
+      {.minimum_points = settings_.minimum_start_points / 2, .minimum_inliers = min_inliers, .seed = random_.next()});
   if (!motion || !adjust(*motion, frame)) return TrackingTrouble::little_parallax;
   has_reference_ = false;
   return TrackingTrouble::none;

@@ -75,7 +75,7 @@ bool Relocaliser::align_with_keyframe(KeyFrameId keyframe, const std::optional<E
       in_camera.push_back(frame.camera_point(i));
     }
   frame.T_camera_world = start.value_or(found->frame.T_camera_world);
-  if (in_camera.empty()) {
+  if (parts_.map.sensor() == Sensor::mono) {
     // One camera has no depth: three points and their directions give a pose as well.
     parts_.estimator.build_problem(frame);
     if (geometry::find_pose(parts_.estimator.problem(), geometry::PnpOptions{.seed = random_.next()}).usable)

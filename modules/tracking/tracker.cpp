@@ -60,7 +60,7 @@ void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
   moving_world_.evaluate(FilterStage::before_matching, view, result.times);
   odometry_extends_map_ = false;
   const bool found = find_pose(view, result);
-  if (!found && was_lost_at_start() && start_map(coasting_pose(), result)) {
+  if (!found && !mono_ && was_lost_at_start() && start_map(coasting_pose(), result)) {
     end_frame(result);
     return;
   }

@@ -18,7 +18,7 @@ void describe_poses(ParameterTable<S>& table) {
       .add("start_depth", &S::start_depth,
            "with one camera, the median depth that the first points get, which sets the unit of the map: parameters in "
            "metres are in this unit then")
-      .range(0.01, 1000);
+      .range(0.5, 100);
   table
       .add("close_depth_factor", &S::close_depth_factor,
            "depth up to this many baselines is trusted alone; farther points are triangulated")
@@ -119,7 +119,8 @@ void describe_keyframes(ParameterTable<S>& table) {
 void describe_relocalisation(ParameterTable<S>& table) {
   table
       .add("young_map_time", &S::young_map_time,
-           "a camera that is lost so soon after its map began, for longer than half of the time tracked until then, begins "
+           "a camera that is lost so soon after its map began, for longer than half of the time tracked until then, "
+           "begins "
            "the map anew where the motion model puts it; 0 = never")
       .range(0, 100)
       .unit("s");

@@ -83,6 +83,34 @@ TEST_F(EvaluateCommand, SaysWhatDoesNotCount) {
   EXPECT_EQ(nlohmann::json::parse(outcome.output)["estimate"]["poses"], 90);
 }
 
+TEST_F(EvaluateCommand, TakesAndWritesOtherFormats) {
+  const Outcome tum = run({path("truth.txt"), path("estimate.txt"), "--json", "-"});
+  const Outcome written = run({path("truth.txt"), path("truth.txt"), "--write", path("poses.csv"), "--write-format",
+                               "euroc", "--json", path("ignored.json")});
+  EXPECT_EQ(written.exit_code, 0) << written.errors;
+  EXPECT_THAT(content("poses.csv"), StartsWith("#timestamp [ns],"));
+  const Outcome euroc = run({path("poses.csv"), path("estimate.txt"), "--json", "-"});
+  EXPECT_EQ(euroc.exit_code, 0) << euroc.errors;
+  const auto rmse = [](const Outcome& outcome) {
+    return nlohmann::json::parse(outcome.output).at("ate_m").at("rmse").get<double>();
+  };
+  EXPECT_NEAR(rmse(tum), rmse(euroc), 1e-6);
+  const Outcome refused = run({path("poses.csv"), path("estimate.txt"), "--format", "tum"});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.errors, HasSubstr("it looks like EuRoC's format"));
+
+  std::ofstream(path("matrices.txt")) << trajectory_text(read_trajectory(path("truth.txt")), TrajectoryFormat::kitti);
+  std::ofstream times(path("times.txt"));
+  times.precision(17);
+  for (const TimedPose& pose : read_trajectory(path("truth.txt"))) times << pose.timestamp << "\n";
+  times.close();
+  const Outcome kitti = run({path("matrices.txt"), path("estimate.txt"), "--times", path("times.txt"), "--json", "-"});
+  EXPECT_EQ(kitti.exit_code, 0) << kitti.errors;
+  EXPECT_NEAR(rmse(tum), rmse(kitti), 1e-6);
+  const Outcome without = run({path("matrices.txt"), path("matrices.txt"), "--json", "-"});
+  EXPECT_THAT(without.errors, HasSubstr("ten poses a second are assumed"));
+}
+
 TEST_F(EvaluateCommand, ExplainsFailureAndReturnsNonZero) {
   const Outcome missing = run({path("absent.txt"), path("estimate.txt")});
   EXPECT_EQ(missing.exit_code, 1);

@@ -111,7 +111,7 @@ TEST_F(TrajectoryTest, NormalisesQuaternions) {
 TEST_F(TrajectoryTest, NamesTheLineOfAnError) {
   const std::string message = error_of(write("# head\n1 0 0 0 0 0 0 1\n2 0 0 zero 0 0 0 1\n"));
   EXPECT_THAT(message, HasSubstr("trajectory.txt:3: found 8 columns, '2 0 0 zero"));
-  EXPECT_THAT(message, HasSubstr("expected 8 numbers"));
+  EXPECT_THAT(message, HasSubstr("expected TUM format (t tx ty tz qx qy qz qw, t in seconds)"));
   EXPECT_THAT(error_of(write("1 0 0 0 0 0 0\n")), HasSubstr("trajectory.txt:1:"));
 }
 
@@ -124,9 +124,51 @@ TEST_F(TrajectoryTest, RefusesOtherFormatsByName) {
   EXPECT_THAT(error_of(write("1403636580838555648,4.6,-1.7,0.7,0.5,-0.1,-0.8,-0.1,0,0,0,0,0,0,0,0,0\n")),
               AllOf(HasSubstr("found 17 columns"), HasSubstr(euroc)));
   EXPECT_THAT(error_of(write("timestamp,tx,ty,tz,qx,qy,qz,qw\n1,0,0,0,0,0,0,1\n")),
-              AllOf(HasSubstr("trajectory.txt:1: found 8 columns, 'timestamp,tx"), HasSubstr("expected 8 numbers")));
+              AllOf(HasSubstr("trajectory.txt:1: found 8 columns, 'timestamp,tx"), HasSubstr("expected TUM format")));
   EXPECT_THAT(error_of(write("1 0 0 0 0 0 0 1 0.5\n")), HasSubstr("found 9 columns"));
   EXPECT_THAT(error_of(write("1 0 0 0 0 0 0 1 further words\n")), HasSubstr("found 10 columns"));
+}
+
+TEST_F(TrajectoryTest, EveryFormatIsRecognisedAndGivesThePosesBack) {
+  Trajectory trajectory;
+  for (int i = 0; i < 5; ++i) {
+    TimedPose pose;
+    pose.timestamp = 1403636580.25 + 0.1 * i;
+    pose.T_world_camera = Eigen::Translation3d(0.1 * i, -1.5, 2.0) *
+                          Eigen::AngleAxisd(0.3 * i + 0.1, Eigen::Vector3d(1, 2, -1).normalized());
+    trajectory.push_back(pose);
+  }
+  std::vector<double> stamps;
+  for (const TimedPose& pose : trajectory) stamps.push_back(pose.timestamp);
+  for (const TrajectoryFormat format : {TrajectoryFormat::tum, TrajectoryFormat::kitti, TrajectoryFormat::euroc}) {
+    const std::filesystem::path file = write(trajectory_text(trajectory, format));
+    const TrajectoryFile read = read_trajectory_file(file, {.format = std::nullopt, .stamps = stamps});
+    EXPECT_EQ(read.format, format);
+    EXPECT_EQ(find_trajectory_format(trajectory_format_name(format)), format);
+    ASSERT_EQ(read.poses.size(), trajectory.size()) << trajectory_format_name(format);
+    for (std::size_t i = 0; i < trajectory.size(); ++i) {
+      EXPECT_NEAR(read.poses[i].timestamp, trajectory[i].timestamp, 1e-6);
+      EXPECT_LT((read.poses[i].T_world_camera.matrix() - trajectory[i].T_world_camera.matrix()).norm(), 1e-7);
+    }
+  }
+}
+
+TEST_F(TrajectoryTest, PosesWithoutStampsGetThem) {
+  const std::filesystem::path file = write("1 0 0 5 0 1 0 6 0 0 1 7\n1 0 0 8 0 1 0 6 0 0 1 7\n");
+  const TrajectoryReading kitti{.format = TrajectoryFormat::kitti, .stamps = {}};
+  const Trajectory poses = read_trajectory_file(file, kitti).poses;
+  ASSERT_EQ(poses.size(), 2u);
+  EXPECT_EQ(poses[1].timestamp, 0.1);
+  EXPECT_EQ(poses[1].T_world_camera.translation(), Eigen::Vector3d(8, 6, 7));
+  for (const std::vector<double>& stamps : {std::vector<double>{1.0}, std::vector<double>{1.0, 2.0, 3.0}}) {
+    try {
+      read_trajectory_file(file, {.format = TrajectoryFormat::kitti, .stamps = stamps});
+      ADD_FAILURE();
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("expected one stamp for each pose"));
+    }
+  }
+  EXPECT_THAT(error_of(file), HasSubstr("it looks like KITTI's format"));
 }
 
 TEST_F(TrajectoryTest, NamesAFileThatIsMissingOrAFolder) {

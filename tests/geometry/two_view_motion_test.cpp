@@ -17,7 +17,8 @@ struct Scene {
   std::vector<PixelPair> pairs;
 
   /// `plane`: all points on a slanting wall. A share of `outliers` is matched with a pixel anywhere.
-  Scene(const Vector6d& motion, bool plane, double noise, double outliers, std::uint64_t seed) : T_b_a(exp_se3(motion)) {
+  Scene(const Vector6d& motion, bool plane, double noise, double outliers, std::uint64_t seed)
+      : T_b_a(exp_se3(motion)) {
     Random random(seed);
     while (pairs.size() < 300) {
       const double x = random.uniform(20, 620), y = random.uniform(20, 460);
@@ -74,6 +75,17 @@ TEST(TwoViewMotion, FindsTheMotionBeforeAWall) {
     scene.expect_found(found, 1e-5);
     EXPECT_TRUE(found->is_planar);
   }
+}
+
+TEST(TwoViewMotion, FindsTheMotionStraightTowardsAWall) {
+  Scene scene(motion(0, 0, -0.4, 0), false, 0.0, 0.0, 1);
+  for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
+    const Eigen::Vector2d pixel = scene.pairs[i].a;
+    scene.points[i] = scene.camera.back_project(pixel.x(), pixel.y(), 2.0);
+    scene.pairs[i].b = scene.camera.project(scene.T_b_a * scene.points[i]);
+  }
+  const auto found = find_two_view_motion(scene.camera, scene.pairs);
+  scene.expect_found(found, 1e-5);
 }
 
 TEST(TwoViewMotion, ToleratesNoiseAndWrongMatches) {

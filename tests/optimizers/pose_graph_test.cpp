@@ -107,7 +107,8 @@ TEST_P(PoseGraph, WithoutScalesBothGraphsAreTheSame) {
   ASSERT_TRUE(make()->optimize_pose_graph(rigid.problem).usable);
   ASSERT_TRUE(make()->optimize_similarity_graph(similar.problem).usable);
   for (std::size_t i = 0; i < rigid.truth.size(); ++i) {
-    EXPECT_LT(synthetic::distance(rigid.problem.nodes[i].T_camera_world, similar.problem.nodes[i].T_camera_world), 1e-9);
+    EXPECT_LT(synthetic::distance(rigid.problem.nodes[i].T_camera_world, similar.problem.nodes[i].T_camera_world),
+              1e-9);
     EXPECT_NEAR(similar.problem.nodes[i].scale, 1.0, 1e-12);
   }
 }

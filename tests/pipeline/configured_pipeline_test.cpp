@@ -166,7 +166,8 @@ TEST_F(ConfiguredPipeline, TheSensorNeedsItsImages) {
   EXPECT_THAT(complaints(camera + "sensor: rgbd\n"),
               HasSubstr("c.yaml:1:9: the sensor is 'rgbd', and the source 'fake' has no depth images"));
   EXPECT_THAT(complaints(camera + "sensor: stereo\n"), HasSubstr("the source 'fake' has no right images"));
-  EXPECT_THAT(complaints(camera + "sensor: rgb\n"), HasSubstr("c.yaml:5:9: found 'rgb' for 'sensor'; did you mean 'rgbd'?"));
+  EXPECT_THAT(complaints(camera + "sensor: rgb\n"),
+              HasSubstr("c.yaml:5:9: found 'rgb' for 'sensor'; did you mean 'rgbd'?"));
   world_.needs.depth = true;
   EXPECT_THAT(complaints(camera + "filters: [ filter ]\n"),
               HasSubstr("c.yaml:5:12: the filter 'filter' needs depth, and one camera has none"));

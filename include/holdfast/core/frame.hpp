@@ -51,8 +51,6 @@ struct Frame {
   /// between frames and keyframes use this pose.
   Eigen::Isometry3d T_view_world() const;
   bool has_depth(std::size_t feature) const { return depth[feature] > 0.0F; }
-  /// Whether any feature has depth; with one camera, none has.
-  bool has_any_depth() const;
   /// Position of the feature in the camera frame [m]; it must have depth.
   Eigen::Vector3d camera_point(std::size_t feature) const {
     return camera->back_project(x[feature], y[feature], depth[feature]);

@@ -25,7 +25,7 @@ struct KeyFrame {
   /// What lengths around this keyframe have been multiplied by since it was made: 1 but for one camera whose loops were
   /// closed. A pose that was stored relative to this keyframe follows by it; files do not keep it.
   double scale = 1.0;
-  std::vector<KeyFrameId> loop_edges;       ///< other ends of closed loops; a keyframe with one is never culled
+  std::vector<KeyFrameId> loop_edges;  ///< other ends of closed loops; a keyframe with one is never culled
 };
 
 }  // namespace holdfast

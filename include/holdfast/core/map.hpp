@@ -104,7 +104,6 @@ class Map {
   Sensor sensor() const { return sensor_; }
   void set_sensor(Sensor sensor) { sensor_ = sensor; }
 
-
   /// Incremented by touch(); a holder of copied map data compares versions to detect that the copy is outdated.
   std::uint64_t version() const { return version_; }
   /// Must be called after a change that invalidates copies: new keyframes, moved poses or points.

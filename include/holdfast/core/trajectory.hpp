@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,9 +28,28 @@ Trajectory sort_and_clean(Trajectory trajectory);
 /// the message names the format of another data set that it looks like.
 Trajectory read_trajectory(const std::filesystem::path& file);
 
+/// How the lines of a trajectory file say a pose.
+enum class TrajectoryFormat {
+  tum,    ///< "t tx ty tz qx qy qz qw", t in seconds
+  kitti,  ///< 12 numbers: the upper three rows of T_world_camera, row by row; no stamp
+  euroc,  ///< "t, tx, ty, tz, qw, qx, qy, qz", t in nanoseconds; further columns (velocity, biases) are not read
+};
+
+/// tum, kitti or euroc.
+const char* trajectory_format_name(TrajectoryFormat format);
+/// The format of that name, or nothing.
+std::optional<TrajectoryFormat> find_trajectory_format(const std::string& name);
+
+/// How read_trajectory_file() reads.
+struct TrajectoryReading {
+  std::optional<TrajectoryFormat> format = TrajectoryFormat::tum;  ///< empty: recognised by the first pose of the file
+  std::vector<double> stamps;  ///< of the poses of a file in KITTI's format [s]; empty: ten poses a second, from 0
+};
+
 /// The content of a trajectory file, and how many of its lines are left out.
 struct TrajectoryFile {
   Trajectory poses;  ///< as of read_trajectory()
+  TrajectoryFormat format = TrajectoryFormat::tum;
   std::size_t not_finite = 0;
   std::size_t zero_quaternions = 0;
   std::size_t repeated_stamps = 0;  ///< poses whose stamp another pose has, which stands later in the file
@@ -38,8 +58,9 @@ struct TrajectoryFile {
   std::string omissions() const;
 };
 
-/// Reads a trajectory as read_trajectory() does, which says nothing about what it leaves out.
-TrajectoryFile read_trajectory_file(const std::filesystem::path& file);
+/// Reads a trajectory as read_trajectory() does, which says nothing about what it leaves out, in any of the formats.
+/// Throws InputError as well for a file in KITTI's format that does not have one pose for each stamp.
+TrajectoryFile read_trajectory_file(const std::filesystem::path& file, const TrajectoryReading& reading = {});
 
 /// The comment line that begins every trajectory that is written: the columns and their units.
 inline constexpr const char* trajectory_header =
@@ -52,8 +73,12 @@ std::string pose_text(const TimedPose& pose);
 /// Returns the trajectory in TUM format: trajectory_header, then pose_text() of every pose.
 std::string trajectory_text(const Trajectory& trajectory);
 
+/// The same in any of the formats; that of KITTI has no stamps.
+std::string trajectory_text(const Trajectory& trajectory, TrajectoryFormat format);
+
 /// Writes trajectory_text() atomically. Throws InputError if the file cannot be written.
-void write_trajectory(const std::filesystem::path& file, const Trajectory& trajectory);
+void write_trajectory(const std::filesystem::path& file, const Trajectory& trajectory,
+                      TrajectoryFormat format = TrajectoryFormat::tum);
 
 /// Replaces the content of a file atomically: writes a temporary file in the same folder and renames it.
 void write_file_atomically(const std::filesystem::path& file, const std::string& content);

@@ -20,19 +20,19 @@ namespace holdfast::geometry {
 
 /// A feature that two views show, without lens distortion.
 struct PixelPair {
-  Eigen::Vector2d a, b;    ///< [px]
-  double sigma2_a = 1.0;   ///< variance of a pixel coordinate in a [px^2]
-  double sigma2_b = 1.0;   ///< in b [px^2]
+  Eigen::Vector2d a, b;   ///< [px]
+  double sigma2_a = 1.0;  ///< variance of a pixel coordinate in a [px^2]
+  double sigma2_b = 1.0;  ///< in b [px^2]
 };
 
 /// Conditions that find_two_view_motion() sets.
 struct TwoViewOptions {
-  int iterations = 200;             ///< samples of eight pairs, for both models
-  double homography_share = 0.45;   ///< of both scores; above it the scene is taken for planar (equation 5)
-  int minimum_points = 50;          ///< triangulated with enough parallax, in front of both cameras
-  double minimum_inliers = 0.5;     ///< share of the pairs that the model must explain; others move, or are wrong matches
-  double minimum_share = 0.75;      ///< of the model's inliers that must be in front of both cameras and reproject well
-  double rival_share = 0.75;        ///< a second motion that explains more than this share makes the result ambiguous
+  int iterations = 200;            ///< samples of eight pairs, for both models
+  double homography_share = 0.45;  ///< of both scores; above it the scene is taken for planar (equation 5)
+  int minimum_points = 50;         ///< triangulated with enough parallax, in front of both cameras
+  double minimum_inliers = 0.5;    ///< share of the pairs that the model must explain; the others move, or are wrong
+  double minimum_share = 0.75;     ///< of the model's inliers that must be in front of both cameras and reproject well
+  double rival_share = 0.75;       ///< a second motion that explains more than this share makes the result ambiguous
   double max_parallax_cosine = 0.99985;  ///< 1 degree
   std::uint64_t seed = 1;
 };
@@ -128,9 +128,9 @@ inline TwoViewHypothesis explain(const Pinhole& camera, std::span<const PixelPai
 
 /// The motion of one camera between two views of a scene whose depth is unknown (Mur-Artal et al. 2015, section IV): a
 /// homography and a fundamental matrix are estimated from the same samples, the better scored one is chosen, and of the
-/// motions that it allows the one that puts clearly more points in front of both cameras. Empty when pairs are few, when
-/// parallax is small, or when a second motion explains nearly as much. The same input and seed give the same result. The
-/// camera is any that CameraTraits knows.
+/// motions that it allows the one that puts clearly more points in front of both cameras. Empty when pairs are few,
+/// when parallax is small, or when a second motion explains nearly as much, as it often does before one plane. The same
+/// input and seed give the same result. The camera is any that CameraTraits knows.
 template <class Camera>
 std::optional<TwoViewMotion> find_two_view_motion(const Camera& camera_model, std::span<const PixelPair> pairs,
                                                   const TwoViewOptions& options = {}) {
@@ -150,8 +150,7 @@ std::optional<TwoViewMotion> find_two_view_motion(const Camera& camera_model, st
   if (!(fundamental.score + homography.score > 0.0)) return std::nullopt;
 
   // The chosen model once more, from all its inliers.
-  const bool is_planar =
-      homography.score > options.homography_share * (fundamental.score + homography.score);
+  const bool is_planar = homography.score > options.homography_share * (fundamental.score + homography.score);
   detail::TwoViewModel& model = is_planar ? homography : fundamental;
   std::vector<Eigen::Vector2d> a, b;
   for (std::size_t i = 0; i < pairs.size(); ++i)
@@ -175,13 +174,19 @@ std::optional<TwoViewMotion> find_two_view_motion(const Camera& camera_model, st
   } else {
     motions = decompose_essential(to_pixel.transpose() * model.matrix * to_pixel);
   }
-  detail::TwoViewHypothesis best;
+  std::vector<detail::TwoViewHypothesis> hypotheses;
+  for (const Eigen::Isometry3d& motion : motions)
+    hypotheses.push_back(detail::explain(camera, pairs, model.inlier, motion, options.max_parallax_cosine));
+  detail::TwoViewHypothesis& best =
+      *std::max_element(hypotheses.begin(), hypotheses.end(),
+                        [](const auto& one, const auto& other) { return one.explained < other.explained; });
   int rival = 0;
-  for (const Eigen::Isometry3d& motion : motions) {
-    detail::TwoViewHypothesis hypothesis =
-        detail::explain(camera, pairs, model.inlier, motion, options.max_parallax_cosine);
-    if (hypothesis.explained > best.explained) std::swap(best, hypothesis);
-    rival = std::max(rival, hypothesis.explained);
+  for (const detail::TwoViewHypothesis& other : hypotheses) {
+    // Straight towards a plane, two of the motions of a homography are the same.
+    const Eigen::Isometry3d change = other.motion.T_b_a * best.motion.T_b_a.inverse();
+    const bool is_same = change.linear().trace() > 2.999 &&
+                         other.motion.T_b_a.translation().dot(best.motion.T_b_a.translation()) > 0.999;
+    if (!is_same) rival = std::max(rival, other.explained);
   }
   if (best.explained < options.minimum_share * inliers || rival > options.rival_share * best.explained ||
       best.motion.good_points < options.minimum_points)

@@ -33,8 +33,9 @@ struct LoopClosingSettings {
   double drift_constant = 0.15;  ///< plausible correction for a loop of zero length [m]
   /// Additional plausible correction for each metre (and each radian) of the path around the loop [m].
   double drift_per_metre = 0.02;
-  double scale_drift_per_metre = 0.15;  ///< the same for one camera, whose scale drifts
-  double turn_constant = 5.0;  ///< plausible rotation of the correction for a loop of zero length [deg]
+  double drift_per_metre_mono = 0.15;  ///< the same for one camera, whose scale drifts and with it the path
+  double largest_scale_drift = 2.0;    ///< factor by which the scale of one camera may have drifted around a loop
+  double turn_constant = 5.0;          ///< plausible rotation of the correction for a loop of zero length [deg]
   /// Additional plausible rotation for each metre (and each radian) of the path around the loop [deg].
   double turn_per_metre = 0.5;
   /// Minimum covisibility weight of an edge of the essential graph; 100 as in ORB-SLAM (section III-D).

@@ -37,9 +37,9 @@ class LocalMapper {
   KeyFrameId insert(const Frame& frame, bool points_wait, StageTimes& times);
 
   /// Begins a map without depth: inserts the first keyframe with points that the next one shows as well. `points` lists
-  /// each position [world] and the feature of the keyframe that shows it; the ids of the points are written to `ids`, in
-  /// the same order, and insert() of the next keyframe, whose frame names them, must follow. The caller holds the lock
-  /// of the map. Adds the stage "mapping: insertion".
+  /// each position [world] and the feature of the keyframe that shows it; the ids of the points are written to `ids`,
+  /// in the same order, and insert() of the next keyframe, whose frame names them, must follow. The caller holds the
+  /// lock of the map. Adds the stage "mapping: insertion".
   KeyFrameId begin(const Frame& frame, std::span<const std::pair<Eigen::Vector3d, std::uint32_t>> points,
                    std::vector<MapPointId>& ids, StageTimes& times);
 

@@ -89,7 +89,7 @@ class MovingWorld {
   bool contradicts_depth(const Frame& frame, int inliers, bool was_lost, KeyFrameId reference);
   /// Lets features on masks count as well, for another attempt at this frame, if that changes anything. From then on
   /// contradicts_depth() requires the support of dense depth whatever the number of inliers.
-  bool discount_priors() { return filters_.discount_priors(); }
+  bool discount_priors() { return has_depth_ && filters_.discount_priors(); }
   /// * The pose of the frame by dense depth alone, T_camera_world, beginning at a predicted one; nothing if its depth
   /// contradicts keyframes around `reference`. Adds the stage "depth alignment".
   std::optional<Eigen::Isometry3d> align_depth(const Frame& frame, const Eigen::Isometry3d& predicted,
@@ -121,8 +121,7 @@ class MovingWorld {
   /// Requests the mask of the frame last tracked, which became `keyframe` or, when that is invalid, none. False when
   /// the frame is not to be segmented or the queue has no room; `is_needed`: a frame that is no keyframe is segmented
   /// nevertheless. In sequential mode this adds the stage "segmentation".
-  bool request_mask(const SensorFrame& sensor_frame, KeyFrameId keyframe, StageTimes& times,
-                    bool is_needed = false);
+  bool request_mask(const SensorFrame& sensor_frame, KeyFrameId keyframe, StageTimes& times, bool is_needed = false);
   /// Waits until every requested mask can be taken. Throws what the segmenter threw.
   void finish();
   /// Throws what the segmenter threw in its thread.

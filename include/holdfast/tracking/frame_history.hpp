@@ -26,7 +26,8 @@ class FrameHistory {
 
   /// Adds a keyframe that was taken before the last tracked frame, but after all others.
   void add_before_last(KeyFrameId keyframe, double timestamp) {
-    records_.insert(records_.end() - (records_.empty() ? 0 : 1), {timestamp, keyframe, Eigen::Isometry3d::Identity(), 1.0});
+    records_.insert(records_.end() - (records_.empty() ? 0 : 1),
+                    {timestamp, keyframe, Eigen::Isometry3d::Identity(), 1.0});
   }
 
   bool empty() const { return records_.empty(); }

@@ -23,13 +23,13 @@ struct TwoViewStart {
     Eigen::Vector3d position;  ///< world
     std::uint32_t in_reference = 0, in_frame = 0;
   };
-  Frame reference;             ///< the earlier view; its pose is the identity
-  std::vector<Point> points;   ///< by increasing in_frame
+  Frame reference;  ///< the earlier view; its pose is the identity
+  std::vector<Point> points;
 };
 
 /// Begins the map of one camera, which knows no depth (Mur-Artal et al. 2015, section IV): static features of a frame
-/// are matched with those of a reference, the motion between both is found by find_two_view_motion(), and both poses and
-/// the points are adjusted. A frame with too few matches becomes the new reference. One thread.
+/// are matched with those of a reference, the motion between both is found by find_two_view_motion(), and both poses
+/// and the points are adjusted. A frame with too few matches becomes the new reference. One thread.
 class MonoInitialiser {
  public:
   /// The optimizer must outlive the initialiser. Random samples come from the seed.

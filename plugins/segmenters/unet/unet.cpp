@@ -23,9 +23,8 @@ void UnetSettings::describe(ParameterTable<UnetSettings>& table) {
   table.add("height", &S::height, "height of the network input, a multiple of 32; 0 = given by size")
       .range(0, 4096)
       .unit("px");
-  table.add(
-      "mirror", &S::mirror,
-      "average the scores of the image and its mirror image: slightly more accurate, twice the time");
+  table.add("mirror", &S::mirror,
+            "average the scores of the image and its mirror image: slightly more accurate, twice the time");
   table.add("model", &S::model,
             "other weights in ONNX format, as written by training/export.py; empty = the built-in weights");
   table
