@@ -45,7 +45,9 @@ bool parse_numbers(const std::vector<std::string_view>& words, std::vector<doubl
 bool is_in_nanoseconds(double stamp) { return std::isfinite(stamp) && stamp >= 1e14; }
 
 /// The format that a line looks like; nothing for none that is known.
-std::optional<TrajectoryFormat> looks_like(const std::vector<double>& numbers) {
+/// `in_nanoseconds`: a comment of the file says so.
+std::optional<TrajectoryFormat> looks_like(const std::vector<double>& numbers, bool in_nanoseconds) {
+  if (in_nanoseconds && numbers.size() >= 8) return TrajectoryFormat::euroc;
   if (numbers.size() == 12) return TrajectoryFormat::kitti;
   if (numbers.size() >= 8 && is_in_nanoseconds(numbers.front())) return TrajectoryFormat::euroc;
   if (numbers.size() == 8) return TrajectoryFormat::tum;
@@ -147,11 +149,14 @@ TrajectoryFile read_trajectory_file(const std::filesystem::path& file, const Tra
   std::optional<TrajectoryFormat> format = reading.format;
   constexpr double kitti_interval = 0.1;  // s
   std::size_t pose_number = 0;
+  bool in_nanoseconds = reading.format == TrajectoryFormat::euroc;
   for (int line_number = 1; std::getline(stream, line); ++line_number) {
+    // The header of EuRoC's files; stamps that begin at 0 look like seconds.
+    if (line.starts_with('#') && line.find("[ns]") != std::string::npos) in_nanoseconds = true;
     split(line, words);
     if (words.empty()) continue;
     const bool parsed = parse_numbers(words, numbers);
-    const std::optional<TrajectoryFormat> found = parsed ? looks_like(numbers) : std::nullopt;
+    const std::optional<TrajectoryFormat> found = parsed ? looks_like(numbers, in_nanoseconds) : std::nullopt;
     if (!format) format = found;
     if (!found || found != format)
       throw InputError({file.string(), line_number},

@@ -267,11 +267,11 @@ def test_configuration_holds_no_objects(config):
 
 
 def test_right_images_are_refused(frames):
-    """There is no stereo: a second image must not be lost without a word."""
+    """A pipeline that is not made for stereo pairs does not lose a second image without a word."""
     with holdfast.Pipeline(PIPELINE) as pipeline:
-        with pytest.raises(TypeError, match="right"):
+        with pytest.raises(holdfast.InputError, match="right: the pipeline expects depth images"):
             pipeline.feed(0.0, frames[0].colour, frames[0].depth, right=frames[0].colour)
-        with pytest.raises(TypeError):
+        with pytest.raises(holdfast.InputError):
             pipeline.feed(0.0, frames[0].colour, frames[0].depth, frames[0].colour)
 
 

@@ -8,7 +8,7 @@ SIZES = {
     "tiny": (lambda dropout: PlainUNet((8, 16, 24), dropout), (64, 48)),  # for tests
     "plain": (lambda dropout: PlainUNet((16, 32, 96, 160, 256), dropout), (256, 192)),
     "paper": (lambda dropout: PlainUNet((64, 128, 256, 512, 1024), dropout, halves=False), (320, 256)),
-    "mobile": (lambda dropout: MobileUNet((24, 40, 64, 96), dropout), (320, 256)),
+    "mobile": (lambda dropout: MobileUNet((24, 40, 64, 96), dropout), (384, 288)),
 }
 
 
