@@ -122,6 +122,7 @@ void LocalMapper::remove_weak_points(KeyFrameId id) {
   // (Mur-Artal et al. 2015, section VI-B). Depth confirms a point as well as another view does.
   const bool is_mono = map_.sensor() == Sensor::mono;
   const std::size_t required = is_mono ? 3 : 2;
+  const bool can_be_confirmed = map_.keyframes().size() >= required;
   std::erase_if(recent_points_, [&](MapPointId point_id) {
     const MapPoint* point = map_.find_point(point_id);
     if (point == nullptr) return true;
@@ -129,7 +130,7 @@ void LocalMapper::remove_weak_points(KeyFrameId id) {
     if (is_mono && point->created_at > now) return false;
     const std::uint64_t age = now - point->created_at;
     const bool rarely_found = point->found_ratio() < static_cast<float>(settings_.weak_found_ratio);
-    const bool unconfirmed = age >= (is_mono ? 1U : 2U) && point->observations.size() < required;
+    const bool unconfirmed = can_be_confirmed && age >= (is_mono ? 1U : 2U) && point->observations.size() < required;
     if (rarely_found || unconfirmed) {
       map_.remove_point(point_id);
       ++counts_.points_removed;
