@@ -4,10 +4,8 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <memory>
-#include <sstream>
 #include <string>
 
 #include "holdfast/core/error.hpp"
@@ -73,25 +71,6 @@ void write_plots(const std::filesystem::path& folder, const Evaluation& evaluati
   write_file_atomically(folder / error_over_time_file, error_over_time_svg(evaluation));
 }
 
-/// One stamp per line [s].
-std::vector<double> read_times(const std::string& file) {
-  std::ifstream stream(file);
-  if (!stream) throw InputError({file}, "cannot be opened for reading; expected one time stamp [s] a line");
-  std::vector<double> times;
-  int line_number = 0;
-  for (std::string line; std::getline(stream, line);) {
-    ++line_number;
-    std::istringstream words(line);
-    double stamp = 0.0;
-    std::string rest;
-    if (!(words >> stamp) || words >> rest)
-      throw InputError({file, line_number}, "found '" + line.substr(0, 60) + "'; expected one time stamp [s] a line");
-    times.push_back(stamp);
-  }
-  if (times.empty()) throw InputError({file}, "is empty; expected one time stamp [s] a line");
-  return times;
-}
-
 /// Reads a trajectory, and says what of it does not count.
 Trajectory read_with_notes(const std::string& file, const TrajectoryReading& reading) {
   TrajectoryFile read = read_trajectory_file(file, reading);
@@ -118,7 +97,7 @@ void run(EvaluateArguments arguments) {
   arguments.options.estimate_name = arguments.estimate;
   TrajectoryReading reading;
   reading.format = find_trajectory_format(arguments.format);
-  if (!arguments.times.empty()) reading.stamps = read_times(arguments.times);
+  if (!arguments.times.empty()) reading.stamps = read_frame_stamps(arguments.times);
   const Trajectory truth = read_with_notes(arguments.truth, reading);
   const Trajectory estimate = read_with_notes(arguments.estimate, reading);
   std::optional<std::vector<double>> frames;

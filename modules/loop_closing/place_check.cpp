@@ -5,6 +5,7 @@
 #include <array>
 #include <numeric>
 
+#include "holdfast/core/median.hpp"
 #include "holdfast/geometry/alignment.hpp"
 #include "holdfast/matching/descriptor_matching.hpp"
 #include "holdfast/matching/frame_features.hpp"
@@ -52,9 +53,7 @@ double scale_of_place(const SolidFeatures& solid, const PlacePoints& place, cons
     if (own > 0.0 && there > 0.0) ratios.push_back(there / own);
   }
   if (ratios.empty()) return checked.scale;
-  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-  std::nth_element(ratios.begin(), middle, ratios.end());
-  return *middle;
+  return upper_median(ratios);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "holdfast/core/median.hpp"
 #include "holdfast/geometry/epipolar.hpp"
 #include "holdfast/mapping/local_mapper.hpp"
 #include "holdfast/matching/epipolar_search.hpp"
@@ -97,9 +98,7 @@ double shortest_baseline(const Map& map, const Frame& neighbour) {
   for (const MapPointId id : neighbour.map_points)
     if (const MapPoint* point = map.find_point(id)) depths.push_back((neighbour.T_camera_world * point->position).z());
   if (depths.empty()) return neighbour.camera->baseline;
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  return share * *middle;
+  return share * upper_median(depths);
 }
 
 /// Static features that show no map point yet.

@@ -26,8 +26,7 @@ const char* advice(TrackingTrouble trouble) {
              "fast the camera moves, and whether filters or masks leave enough of the static world.";
     case TrackingTrouble::little_parallax:
       return "One camera begins its map when it has moved sideways or forward by some hundredths of the distance of "
-             "what "
-             "it sees; turning on the spot is not enough.";
+             "what it sees; turning on the spot is not enough.";
     case TrackingTrouble::no_mask:
       return "Check that the segmenter gives results.";
     case TrackingTrouble::none:

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "holdfast/core/median.hpp"
 #include "holdfast/interfaces/frame_observations.hpp"
 #include "holdfast/matching/rotation_consistency.hpp"
 
@@ -17,13 +18,6 @@ std::vector<std::uint32_t> static_features(const Frame& frame) {
   for (std::uint32_t i = 0; i < frame.size(); ++i)
     if (is_static(frame, i)) features.push_back(i);
   return features;
-}
-
-template <class Value>
-Value median(std::vector<Value> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 geometry::PixelPair pixel_pair(const Frame& a, std::uint32_t in_a, const Frame& b, std::uint32_t in_b) {
@@ -42,13 +36,13 @@ void MonoInitialiser::take_reference(const Frame& frame) {
   has_reference_ = true;
 }
 
-void MonoInitialiser::match(const Frame& frame) {
+void MonoInitialiser::match(const Frame& frame, const std::vector<std::uint32_t>& features) {
   const Frame& reference = start_.reference;
-  const std::vector<std::uint32_t> here = static_features(frame), there = static_features(reference);
+  const std::vector<std::uint32_t> there = static_features(reference);
   const matching::DescriptorMatchingSettings settings{.max_distance = static_cast<float>(settings_.strict_distance),
                                                       .ratio = static_cast<float>(settings_.descriptor_ratio),
                                                       .mutual = true};
-  matches_ = matcher_.match({reference.features.descriptors, there}, {frame.features.descriptors, here}, settings);
+  matches_ = matcher_.match({reference.features.descriptors, there}, {frame.features.descriptors, features}, settings);
   // While the map has not begun, the view changes by a part of the image only.
   constexpr float max_displacement = 0.3F;  // of the width
   const float reach = max_displacement * static_cast<float>(frame.camera->width);
@@ -62,8 +56,8 @@ void MonoInitialiser::match(const Frame& frame) {
 }
 
 TrackingTrouble MonoInitialiser::add(Frame& frame) {
-  const int features = static_cast<int>(static_features(frame).size());
-  if (features < settings_.minimum_start_points) {
+  const std::vector<std::uint32_t> features = static_features(frame);
+  if (static_cast<int>(features.size()) < settings_.minimum_start_points) {
     has_reference_ = false;
     return TrackingTrouble::few_features;
   }
@@ -71,7 +65,7 @@ TrackingTrouble MonoInitialiser::add(Frame& frame) {
     take_reference(frame);
     return TrackingTrouble::little_parallax;
   }
-  match(frame);
+  match(frame, features);
   if (static_cast<int>(matches_.size()) < settings_.minimum_start_points) {
     take_reference(frame);
     return TrackingTrouble::few_matches;
@@ -83,7 +77,7 @@ TrackingTrouble MonoInitialiser::add(Frame& frame) {
     displacements.push_back((pairs.back().a - pairs.back().b).norm());
   }
   constexpr double min_displacement = 0.01;  // of the width; a smaller one cannot be the parallax of many points
-  if (median(displacements) < min_displacement * frame.camera->width) return TrackingTrouble::little_parallax;
+  if (upper_median(displacements) < min_displacement * frame.camera->width) return TrackingTrouble::little_parallax;
   // Where more of the matches do not fit, people have been taken for the static world: another moment is better.
   constexpr double min_inliers = 0.8;
   const auto motion = geometry::find_two_view_motion(
@@ -123,7 +117,7 @@ bool MonoInitialiser::adjust(const geometry::TwoViewMotion& motion, Frame& frame
     depths.push_back(position.z());
   }
   if (static_cast<int>(kept.size()) < settings_.minimum_start_points / 2) return false;
-  const double unit = settings_.start_depth / median(depths);
+  const double unit = settings_.start_depth / upper_median(depths);
   for (TwoViewStart::Point& point : kept) point.position *= unit;
   frame.T_camera_world = problem.poses[1].T_camera_world;
   frame.T_camera_world.translation() *= unit;

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "holdfast/core/hamming.hpp"
+#include "holdfast/core/median.hpp"
 
 namespace holdfast {
 
@@ -163,9 +164,7 @@ void StereoMatcher::match(const cv::Mat& left, const cv::Mat& right, const Featu
   }
   if (sorted_.empty()) return;
   // Patches that differ much more than those of the others do not show the same surface.
-  const auto middle = sorted_.begin() + static_cast<std::ptrdiff_t>(sorted_.size() / 2);
-  std::nth_element(sorted_.begin(), middle, sorted_.end());
-  const float limit = 2.1F * *middle;  // 1.5 standard deviations of 1.4 medians, as Mur-Artal and Tardos
+  const float limit = 2.1F * upper_median(sorted_);  // 1.5 standard deviations of 1.4 medians, as Mur-Artal and Tardos
   for (std::size_t k = 0; k < matches_.size(); ++k) {
     const float disparity = disparity_[k];
     if (disparity < static_cast<float>(settings_.minimum_disparity) || disparity > max_disparity ||

@@ -41,49 +41,60 @@ inline Eigen::Matrix3d least_squares_matrix(const Eigen::Matrix<double, 9, 9>& n
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(solution.data());
 }
 
+/// A 3x3 matrix by a normalised linear algorithm: `add_equations(p, q, normal)` adds the squared equations of the
+/// normalised, homogeneous pixels p of a and q of b, and `denormalise(matrix, from_a, from_b)` leads back to pixels.
+template <class AddEquations, class Denormalise>
+std::optional<Eigen::Matrix3d> estimate_normalised(std::span<const Eigen::Vector2d> a,
+                                                   std::span<const Eigen::Vector2d> b, std::size_t minimum,
+                                                   AddEquations&& add_equations, Denormalise&& denormalise) {
+  HOLDFAST_CHECK(a.size() == b.size(), "a " << a.size() << " b " << b.size());
+  if (a.size() < minimum) return std::nullopt;
+  const auto from_a = normalising_transform(a), from_b = normalising_transform(b);
+  if (!from_a || !from_b) return std::nullopt;
+  Eigen::Matrix<double, 9, 9> normal = Eigen::Matrix<double, 9, 9>::Zero();
+  for (std::size_t i = 0; i < a.size(); ++i)
+    add_equations(Eigen::Vector3d(*from_a * a[i].homogeneous()), Eigen::Vector3d(*from_b * b[i].homogeneous()), normal);
+  return denormalise(least_squares_matrix(normal), *from_a, *from_b);
+}
+
 }  // namespace detail
 
 /// The fundamental matrix, pixel_b^T * F * pixel_a = 0, of at least eight matched pixels by the normalised eight-point
 /// algorithm (algorithm 11.1). Empty for fewer or coinciding pixels; different sizes throw CheckError.
 inline std::optional<Eigen::Matrix3d> estimate_fundamental(std::span<const Eigen::Vector2d> a,
                                                            std::span<const Eigen::Vector2d> b) {
-  HOLDFAST_CHECK(a.size() == b.size(), "a " << a.size() << " b " << b.size());
-  if (a.size() < 8) return std::nullopt;
-  const auto from_a = detail::normalising_transform(a), from_b = detail::normalising_transform(b);
-  if (!from_a || !from_b) return std::nullopt;
-  Eigen::Matrix<double, 9, 9> normal = Eigen::Matrix<double, 9, 9>::Zero();
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const Eigen::Vector3d p = *from_a * a[i].homogeneous(), q = *from_b * b[i].homogeneous();
-    Eigen::Matrix<double, 9, 1> row;
-    row << q.x() * p, q.y() * p, p;
-    normal += row * row.transpose();
-  }
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(detail::least_squares_matrix(normal),
-                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Vector3d singular = svd.singularValues();
-  singular[2] = 0.0;
-  const Eigen::Matrix3d rank_two = svd.matrixU() * singular.asDiagonal() * svd.matrixV().transpose();
-  return Eigen::Matrix3d(from_b->transpose() * rank_two * *from_a);
+  return detail::estimate_normalised(
+      a, b, 8,
+      [](const Eigen::Vector3d& p, const Eigen::Vector3d& q, Eigen::Matrix<double, 9, 9>& normal) {
+        Eigen::Matrix<double, 9, 1> row;
+        row << q.x() * p, q.y() * p, p;
+        normal += row * row.transpose();
+      },
+      [](const Eigen::Matrix3d& matrix, const Eigen::Matrix3d& from_a, const Eigen::Matrix3d& from_b) {
+        const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+        Eigen::Vector3d singular = svd.singularValues();
+        singular[2] = 0.0;
+        const Eigen::Matrix3d rank_two = svd.matrixU() * singular.asDiagonal() * svd.matrixV().transpose();
+        return Eigen::Matrix3d(from_b.transpose() * rank_two * from_a);
+      });
 }
 
 /// The homography, pixel_b ~ H * pixel_a, of at least four matched pixels by the normalised direct linear transform
 /// (algorithm 4.2). Empty for fewer or coinciding pixels; different sizes throw CheckError.
 inline std::optional<Eigen::Matrix3d> estimate_homography(std::span<const Eigen::Vector2d> a,
                                                           std::span<const Eigen::Vector2d> b) {
-  HOLDFAST_CHECK(a.size() == b.size(), "a " << a.size() << " b " << b.size());
-  if (a.size() < 4) return std::nullopt;
-  const auto from_a = detail::normalising_transform(a), from_b = detail::normalising_transform(b);
-  if (!from_a || !from_b) return std::nullopt;
-  Eigen::Matrix<double, 9, 9> normal = Eigen::Matrix<double, 9, 9>::Zero();
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const Eigen::Vector3d p = *from_a * a[i].homogeneous(), q = *from_b * b[i].homogeneous();
-    Eigen::Matrix<double, 9, 1> row;
-    row << Eigen::Vector3d::Zero(), -p, q.y() * p;
-    normal += row * row.transpose();
-    row << p, Eigen::Vector3d::Zero(), -q.x() * p;
-    normal += row * row.transpose();
-  }
-  return Eigen::Matrix3d(from_b->inverse() * detail::least_squares_matrix(normal) * *from_a);
+  return detail::estimate_normalised(
+      a, b, 4,
+      [](const Eigen::Vector3d& p, const Eigen::Vector3d& q, Eigen::Matrix<double, 9, 9>& normal) {
+        Eigen::Matrix<double, 9, 1> row;
+        row << Eigen::Vector3d::Zero(), -p, q.y() * p;
+        normal += row * row.transpose();
+        row << p, Eigen::Vector3d::Zero(), -q.x() * p;
+        normal += row * row.transpose();
+      },
+      [](const Eigen::Matrix3d& matrix, const Eigen::Matrix3d& from_a, const Eigen::Matrix3d& from_b) {
+        return Eigen::Matrix3d(from_b.inverse() * matrix * from_a);
+      });
 }
 
 /// The four motions T_b_a, with a translation of unit length, that an essential matrix allows (result 9.19).

@@ -45,7 +45,8 @@ class MonoInitialiser {
 
  private:
   void take_reference(const Frame& frame);
-  void match(const Frame& frame);
+  /// Matches features of the frame with the static ones of the reference.
+  void match(const Frame& frame, const std::vector<std::uint32_t>& features);
   /// Adjusts both poses and the points, and gives the map its unit. False if too few points are left.
   bool adjust(const geometry::TwoViewMotion& motion, Frame& frame);
 

@@ -4,10 +4,10 @@ depthwise-separable convolutions: a twentieth of the multiplications of plain 3x
 
 The contracting path begins with weights that others trained on ImageNet (see pretrained.py).
 """
-import torch
 from torch import nn
 
 from classes import CLASSES, TOLD_APART
+from expanding_path import ExpandingPath
 
 #: MobileNetV2's blocks: expansion, channels, number of blocks, stride of the first of them (table 2 of the paper).
 BLOCKS = ((1, 16, 1, 1), (6, 24, 2, 2), (6, 32, 3, 2), (6, 64, 4, 2), (6, 96, 3, 1), (6, 160, 3, 2), (6, 320, 1, 1))
@@ -46,7 +46,7 @@ class SeparableStage(nn.Sequential):
                          convolution(channels, channels, 3, groups=channels), convolution(channels, channels))
 
 
-class MobileUNet(nn.Module):
+class MobileUNet(ExpandingPath):
     """`widths`: channels of the expanding path from the finest resolution (half the input's) on."""
 
     def __init__(self, widths, dropout=0.1):
@@ -73,11 +73,4 @@ class MobileUNet(nn.Module):
             x = block(x)
             if i in ENDS:
                 skips.append(x)
-        x = self.dropout(x)
-        coarse = []
-        for i in reversed(range(len(self.up))):
-            x = self.up[i](torch.cat([skips[i], self.grow[i](x)], 1))
-            if self.training and 0 < i <= len(self.coarse_heads):
-                coarse.append(self.coarse_heads[i - 1](x))
-        scores = self.head(x)
-        return [scores] + coarse[::-1] if self.training else scores
+        return self.expand(skips)

@@ -5,11 +5,11 @@ maxima lead down, 2x2 transposed convolutions up, skip connections across, a 1x1
 With `halves`, a 2x2 convolution with stride 2 precedes the first stage, so that the widest planes, which cost most and
 say least, are gone; scores come out at half the input's size.
 """
-import torch
 from torch import nn
 from torch.nn import functional
 
 from classes import CLASSES, TOLD_APART
+from expanding_path import ExpandingPath
 
 
 class Stage(nn.Sequential):
@@ -22,7 +22,7 @@ class Stage(nn.Sequential):
         super().__init__(*layers)
 
 
-class PlainUNet(nn.Module):
+class PlainUNet(ExpandingPath):
     """`widths`: channels of the stages, from the finest to the coarsest."""
 
     def __init__(self, widths, dropout=0.1, halves=True):
@@ -43,11 +43,4 @@ class PlainUNet(nn.Module):
         for i, stage in enumerate(self.down):
             x = stage(functional.max_pool2d(x, 2) if i else x)
             skips.append(x)
-        x = self.dropout(x)
-        coarse = []
-        for i in reversed(range(len(self.up))):
-            x = self.up[i](torch.cat([skips[i], self.grow[i](x)], 1))
-            if self.training and 0 < i <= len(self.coarse_heads):
-                coarse.append(self.coarse_heads[i - 1](x))
-        scores = self.head(x)
-        return [scores] + coarse[::-1] if self.training else scores
+        return self.expand(skips)

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "holdfast/core/check.hpp"
+
+namespace holdfast {
+
+/// The value in the middle of the sorted values, of an even number the upper one of the two: a robust mean that needs
+/// no sorting. Reorders the values, of which there must be at least one.
+template <class Value>
+Value upper_median(std::vector<Value>& values) {
+  HOLDFAST_CHECK(!values.empty(), "a median of no values");
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace holdfast
