@@ -46,6 +46,7 @@ std::vector<Check> feature_extractor_checks();
 std::vector<Check> segmenter_checks();
 std::vector<Check> dynamic_filter_checks();
 std::vector<Check> optimizer_checks();
+std::vector<Check> feature_matcher_checks();
 std::vector<Check> loop_detector_checks();
 
 /// Runs both concurrently in separate threads and propagates their exceptions.

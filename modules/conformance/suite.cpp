@@ -23,6 +23,7 @@ struct KindOfModule {
   std::vector<Check> (*checks)();
 };
 constexpr KindOfModule kinds[] = {{"features", feature_extractor_checks},
+                                  {"matcher", feature_matcher_checks},
                                   {"segmenter", segmenter_checks},
                                   {"filters", dynamic_filter_checks},
                                   {"optimizer", optimizer_checks},

@@ -33,9 +33,9 @@ void LoopClosingSettings::describe(ParameterTable<LoopClosingSettings>& table) {
       .range(0, 100);
   table
       .add("match_distance", &S::match_distance,
-           "maximum Hamming distance between the descriptors of feature and point")
-      .unit("bits")
-      .range(1, 256);
+           "maximum distance between the descriptors of feature and point, in the unit of the extractor; 0 = a fifth of "
+           "the way from its strict to its loose distance (orb: 60 bits)")
+      .range(0, 1e6);
   table
       .add("match_ratio", &S::match_ratio,
            "maximum ratio of nearest to second-nearest distance of the first matches; adjacent points count as one")

@@ -2,6 +2,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <cstring>
 #include <limits>
 
 #include "arrays.hpp"
@@ -24,9 +25,12 @@ py::array_t<std::uint64_t> point_ids(const FeaturesView& view) {
 }
 
 py::array_t<std::uint8_t> descriptors(const FeaturesView& view) {
-  const std::vector<Descriptor>& all = view.get().features.descriptors;
-  return py::array_t<std::uint8_t>({static_cast<py::ssize_t>(all.size()), py::ssize_t{32}},
-                                   reinterpret_cast<const std::uint8_t*>(all.data()));
+  const DescriptorView all = view.get().features.descriptors;
+  const auto bytes_each = static_cast<py::ssize_t>(all.type().bytes());
+  py::array_t<std::uint8_t> array({static_cast<py::ssize_t>(all.size()), bytes_each});
+  for (std::size_t i = 0; i < all.size(); ++i)
+    std::memcpy(array.mutable_data(static_cast<py::ssize_t>(i)), all.row(i), all.type().bytes());
+  return array;
 }
 
 /// An array of the coarse view's cells as (rows, columns); None where there are none.

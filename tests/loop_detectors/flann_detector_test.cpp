@@ -18,7 +18,7 @@ namespace {
 using test::disturbed;
 using test::random_descriptors;
 using test::seen_again;
-using Descriptors = std::vector<Descriptor>;
+using Descriptors = std::vector<Descriptor256>;
 
 constexpr int size_of_keyframe = 100;
 

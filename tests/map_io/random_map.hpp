@@ -35,7 +35,7 @@ inline Map random_map(int keyframes, std::size_t features, std::uint64_t seed) {
       all.x[f] = static_cast<float>(real(0, 639)), all.y[f] = static_cast<float>(real(0, 479));
       all.angle[f] = static_cast<float>(real(0, 6.28)), all.response[f] = static_cast<float>(real(0, 200));
       all.octave[f] = static_cast<std::uint8_t>(random.below(static_cast<std::uint32_t>(frame.pyramid->levels())));
-      for (std::uint64_t& word : all.descriptors[f].words) word = random.next();
+      for (std::uint64_t& word : all.descriptors.of_256_bits()[f].words) word = random.next();
       frame.x.push_back(all.x[f] + 0.3F), frame.y.push_back(all.y[f] - 0.2F);
       const bool has_depth = f % 3 != 0;
       frame.depth.push_back(has_depth ? static_cast<float>(real(0.5, 5)) : 0.0F);

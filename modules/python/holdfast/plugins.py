@@ -154,15 +154,25 @@ class Features:
 
 
 class FeatureExtractor(Module):
-    """Detects and describes features with binary descriptors of 256 bits.
+    """Detects and describes features.
 
     `levels` and `factor` are those of the scale pyramid to which Features.octave refers: level i is smaller by factor
     ** i.
+
+    `descriptors` is their kind: "binary" (arrays of uint8 with length / 8 columns), "float32" or "int8" (length
+    columns). `metric` is "hamming" for binary ones, "euclidean" or "cosine" (float32 of unit length) for others.
+    `strict_distance` is the largest distance of a match without any prediction, `loose_distance` that of a match near
+    its prediction.
     """
 
     _kind = "features"
     levels: int = 1
     factor: float = 1.2
+    descriptors: str = "binary"
+    metric: Optional[str] = None
+    length: int = 256
+    strict_distance: float = 50.0
+    loose_distance: float = 100.0
 
     def extract(self, grey: npt.NDArray[np.uint8], ignore: Optional[npt.NDArray[np.uint8]]) -> Optional[Features]:
         """Features of an image (rows, columns); none where `ignore`, of the same shape or None, is not 0.
