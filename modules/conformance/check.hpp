@@ -48,6 +48,8 @@ std::vector<Check> dynamic_filter_checks();
 std::vector<Check> optimizer_checks();
 std::vector<Check> feature_matcher_checks();
 std::vector<Check> loop_detector_checks();
+std::vector<Check> frame_source_checks();
+std::vector<Check> observer_checks();
 
 /// Runs both concurrently in separate threads and propagates their exceptions.
 void run_side_by_side(const std::function<void()>& first, const std::function<void()>& second);

@@ -114,8 +114,8 @@ void descriptors_are_of_the_type(const Maker& maker) {
   ASSERT_EQ(trouble_of(type), "") << "descriptor_type() is impossible";
   const Features features = extract(*extractor, picture());
   const DescriptorView descriptors = features.descriptors;
-  ASSERT_TRUE(descriptors.type() == type) << "the descriptors are of " << to_string(descriptors.type())
-                                          << ", descriptor_type() says " << to_string(type);
+  ASSERT_TRUE(descriptors.type() == type)
+      << "the descriptors are of " << to_string(descriptors.type()) << ", descriptor_type() says " << to_string(type);
   EXPECT_TRUE(extractor->descriptor_type() == type) << "descriptor_type() changed by extracting";
   const std::size_t bytes = type.bytes(), padded = descriptors.units() * sizeof(Descriptor256);
   for (std::size_t i = 0; i < descriptors.size(); ++i) {

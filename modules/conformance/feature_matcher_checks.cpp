@@ -185,14 +185,14 @@ void serves_several_threads(const Maker& maker) {
 }  // namespace
 
 std::vector<Check> feature_matcher_checks() {
-  const Promise matches{
-      header,
-      "Matches queries with references without any prediction: FeatureMatch::source is a query, FeatureMatch::feature a "
-      "reference, each of the selections and at most once; ordered by reference."};
-  const Promise guided{header, "Matches points that are predicted in a frame with features within their windows; see "
-                               "matching::GuidedSearch, which this is unless a matcher overrides it."};
-  const Promise threads{header,
-                        "Tracking, local mapping and loop closing call it from several threads at once."};
+  const Promise matches{header,
+                        "Matches queries with references without any prediction: FeatureMatch::source is a query, "
+                        "FeatureMatch::feature a "
+                        "reference, each of the selections and at most once; ordered by reference."};
+  const Promise guided{header,
+                       "Matches points that are predicted in a frame with features within their windows; see "
+                       "matching::GuidedSearch, which this is unless a matcher overrides it."};
+  const Promise threads{header, "Tracking, local mapping and loop closing call it from several threads at once."};
   return {
       {"FindsWhatBothShow", {header, "Decides which features show the same point."}, finds_what_both_show},
       {"HonoursSelections", matches, honours_selections},
@@ -202,9 +202,7 @@ std::vector<Check> feature_matcher_checks() {
       {"LivesWithEmptySides", matches, lives_with_empty_sides},
       {"FindsWhatIsPredicted", guided, finds_what_is_predicted},
       {"HonoursUsable", guided, honours_usable},
-      {"SameArgumentsSameMatches",
-       {header, "The same arguments give the same matches."},
-       same_arguments_same_matches},
+      {"SameArgumentsSameMatches", {header, "The same arguments give the same matches."}, same_arguments_same_matches},
       {"ServesSeveralThreads", threads, serves_several_threads},
   };
 }

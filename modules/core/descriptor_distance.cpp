@@ -35,8 +35,7 @@ struct Bits {
   HOLDFAST_INLINE float of(const Descriptor256* a, const Descriptor256* b, std::size_t units) {
     int distance = 0;
     for (std::size_t unit = 0; unit < units; ++unit)
-      for (std::size_t word = 0; word < 4; ++word)
-        distance += std::popcount(a[unit].words[word] ^ b[unit].words[word]);
+      for (std::size_t word = 0; word < 4; ++word) distance += std::popcount(a[unit].words[word] ^ b[unit].words[word]);
     return static_cast<float>(distance);
   }
 };
@@ -94,21 +93,21 @@ struct Int8Cosine {
 };
 
 // The same three loops for every kernel, once per set of instructions.
-#define HOLDFAST_LOOPS(name, target)                                                                                 \
-  template <class Kernel>                                                                                            \
-  struct name {                                                                                                      \
-    target static float two(const Descriptor256* a, const Descriptor256* b, std::size_t units) {                     \
-      return Kernel::of(a, b, units);                                                                                \
-    }                                                                                                                \
-    target static void rows(const Descriptor256* query, const Descriptor256* rows, std::size_t units,                \
-                            std::size_t count, float* distances) {                                                   \
-      for (std::size_t i = 0; i < count; ++i) distances[i] = Kernel::of(query, rows + i * units, units);             \
-    }                                                                                                                \
-    target static void candidates(const Descriptor256* query, const Descriptor256* rows, std::size_t units,          \
-                                  std::span<const std::uint32_t> candidates, float* distances) {                     \
-      for (std::size_t i = 0; i < candidates.size(); ++i)                                                            \
-        distances[i] = Kernel::of(query, rows + candidates[i] * units, units);                                       \
-    }                                                                                                                \
+#define HOLDFAST_LOOPS(name, target)                                                                        \
+  template <class Kernel>                                                                                   \
+  struct name {                                                                                             \
+    target static float two(const Descriptor256* a, const Descriptor256* b, std::size_t units) {            \
+      return Kernel::of(a, b, units);                                                                       \
+    }                                                                                                       \
+    target static void rows(const Descriptor256* query, const Descriptor256* rows, std::size_t units,       \
+                            std::size_t count, float* distances) {                                          \
+      for (std::size_t i = 0; i < count; ++i) distances[i] = Kernel::of(query, rows + i * units, units);    \
+    }                                                                                                       \
+    target static void candidates(const Descriptor256* query, const Descriptor256* rows, std::size_t units, \
+                                  std::span<const std::uint32_t> candidates, float* distances) {            \
+      for (std::size_t i = 0; i < candidates.size(); ++i)                                                   \
+        distances[i] = Kernel::of(query, rows + candidates[i] * units, units);                              \
+    }                                                                                                       \
   };
 
 HOLDFAST_LOOPS(ScalarLoops, )

@@ -77,8 +77,7 @@ void require_three(const NetworkOptions& options) {
 }  // namespace
 
 struct Network::Parts {
-  explicit Parts(const NetworkOptions& given)
-      : options(given), net({given.model, given.bytes, given.in_background}) {}
+  explicit Parts(const NetworkOptions& given) : options(given), net({given.model, given.bytes, given.in_background}) {}
 
   NetworkOptions options;
   cv::Size size;

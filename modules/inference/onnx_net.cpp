@@ -135,8 +135,8 @@ void OnnxNet::run(const std::vector<std::string>& outputs, std::vector<cv::Mat>&
   if (!loaded.has_run) quiet.emplace();  // what does not fit shows in the first run
   std::string shapes;
   for (const auto& [name, input] : loaded.inputs)
-    shapes += (shapes.empty() ? "" : ", ") +
-              shape_text(std::vector<std::int64_t>(input.size.p, input.size.p + input.dims));
+    shapes +=
+        (shapes.empty() ? "" : ", ") + shape_text(std::vector<std::int64_t>(input.size.p, input.size.p + input.dims));
   try {
     for (const auto& [name, input] : loaded.inputs) loaded.net.setInput(input, name);
     std::vector<cv::String> wanted(outputs.begin(), outputs.end());

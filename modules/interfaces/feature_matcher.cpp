@@ -7,9 +7,9 @@ namespace holdfast {
 
 MatchSide side_of(const Frame& frame, std::span<const std::uint32_t> selection) {
   const Features& features = frame.features;
-  return {features.descriptors, selection,         frame.x,
-          frame.y,              features.angle,    features.octave,
-          features.response,    frame.camera->width, frame.camera->height};
+  return {features.descriptors, selection,       frame.x,           frame.y,
+          features.angle,       features.octave, features.response, frame.camera->width,
+          frame.camera->height};
 }
 
 void FeatureMatcher::match_guided(const Frame& frame, const FrameSearch::Query& points,

@@ -29,9 +29,8 @@ std::vector<std::uint32_t> strongest_keypoints(const std::vector<cv::KeyPoint>& 
   std::vector<std::uint32_t> order(keypoints.size());
   std::iota(order.begin(), order.end(), 0U);
   if (order.size() <= count) return order;
-  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return keypoints[a].response > keypoints[b].response;
-  });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return keypoints[a].response > keypoints[b].response; });
   order.resize(count);
   std::sort(order.begin(), order.end());
   return order;

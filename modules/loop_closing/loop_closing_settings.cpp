@@ -32,9 +32,10 @@ void LoopClosingSettings::describe(ParameterTable<LoopClosingSettings>& table) {
            "number of covisible keyframes of a candidate whose points take part in the geometric check")
       .range(0, 100);
   table
-      .add("match_distance", &S::match_distance,
-           "maximum distance between the descriptors of feature and point, in the unit of the extractor; 0 = a fifth of "
-           "the way from its strict to its loose distance (orb: 60 bits)")
+      .add(
+          "match_distance", &S::match_distance,
+          "maximum distance between the descriptors of feature and point, in the unit of the extractor; 0 = a fifth of "
+          "the way from its strict to its loose distance (orb: 60 bits)")
       .range(0, 1e6);
   table
       .add("match_ratio", &S::match_ratio,

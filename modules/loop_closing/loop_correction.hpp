@@ -27,8 +27,7 @@ struct LoopMeasurement {
 class LoopCorrection {
  public:
   LoopCorrection(const LoopClosingSettings& settings, Map& map, MapMutex& map_mutex, Optimizer& optimizer,
-                 const FeatureMatcher& matcher,
-                 const LoopMeasurement& loop)
+                 const FeatureMatcher& matcher, const LoopMeasurement& loop)
       : settings_(settings), map_(map), map_mutex_(map_mutex), optimizer_(optimizer), matcher_(matcher), loop_(loop) {}
 
   /// False when the pose graph could not be solved; the map is as before then.

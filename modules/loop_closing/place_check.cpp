@@ -16,8 +16,7 @@ namespace {
 /// in the ratio test: a place that was mapped twice is no reason to doubt a match. Match::source is the feature of the
 /// frame, Match::feature the point.
 std::vector<FeatureMatch> match_descriptors(const LoopClosingSettings& settings, const FeatureMatcher& matcher,
-                                            const Frame& frame, const SolidFeatures& solid,
-                                            const PlacePoints& place) {
+                                            const Frame& frame, const SolidFeatures& solid, const PlacePoints& place) {
   constexpr double same_spot = 0.1;  // m
   std::vector<std::uint32_t> all(place.size());
   std::iota(all.begin(), all.end(), 0U);
@@ -79,8 +78,7 @@ SolidFeatures solid_features(const Frame& frame, const Map& map) {
 }
 
 CheckedPlace check_place(const LoopClosingSettings& settings, const FeatureMatcher& matcher, Optimizer& optimizer,
-                         const Frame& frame,
-                         const SolidFeatures& solid, const PlacePoints& place, std::uint64_t seed) {
+                         const Frame& frame, const SolidFeatures& solid, const PlacePoints& place, std::uint64_t seed) {
   CheckedPlace result;
   if (place.size() == 0) return result;
   const std::vector<FeatureMatch> matches = match_descriptors(settings, matcher, frame, solid, place);

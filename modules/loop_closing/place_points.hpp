@@ -31,12 +31,12 @@ PlacePoints copy_points_seen_by(const Map& map, std::span<const KeyFrameId> keyf
 /// Points of a place found in a frame.
 struct PointSearch {
   std::vector<matching::FeatureMatch> matches;  ///< by feature; each feature and each point at most once
-  int expected = 0;                            ///< points that the frame should show
+  int expected = 0;                             ///< points that the frame should show
 };
 
 /// Guided search: projects the points with T_camera_world and looks for the nearest descriptor within `radius` pixels
-/// (times the scale of the expected octave), at most `max_distance` away; 0 = as LoopClosingSettings::match_distance. Reads of the frame only what does not
-/// change once it is a keyframe.
+/// (times the scale of the expected octave), at most `max_distance` away; 0 = as LoopClosingSettings::match_distance.
+/// Reads of the frame only what does not change once it is a keyframe.
 PointSearch find_points(const FeatureMatcher& matcher, const PointBlock& points, const Frame& frame,
                         const Eigen::Isometry3d& T_camera_world, double radius, double max_distance);
 

@@ -65,9 +65,9 @@ class ContentReader {
 
   void expect(bool right_place) const {
     if (!right_place)
-      fail("found section '" + container_.type() + "' where it does not belong; expected '" + camera_section + "', perhaps '" +
-           descriptor_section + "', '" + keyframe_section + "', one '" + feature_section + "' for each keyframe, '" + point_section +
-           "', in this order");
+      fail("found section '" + container_.type() + "' where it does not belong; expected '" + camera_section +
+           "', perhaps '" + descriptor_section + "', '" + keyframe_section + "', one '" + feature_section +
+           "' for each keyframe, '" + point_section + "', in this order");
   }
 
   void check_header() {

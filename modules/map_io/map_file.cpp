@@ -48,10 +48,10 @@ void write_content(std::ostream& stream, const Map& map) {
   header.observations = observation_count(map);
   header.next_sequence = map.next_sequence();
   header.sensor = static_cast<std::uint32_t>(map.sensor());
-  header.file_size =
-      header_size + header.sections * section_header_size + tables.size() + descriptors.size() + keyframes.size() +
-      points.size();
-  for (const KeyFrameId id : index.keyframes()) header.file_size += features_size(map.keyframe(id).frame.size(), map_features.descriptors);
+  header.file_size = header_size + header.sections * section_header_size + tables.size() + descriptors.size() +
+                     keyframes.size() + points.size();
+  for (const KeyFrameId id : index.keyframes())
+    header.file_size += features_size(map.keyframe(id).frame.size(), map_features.descriptors);
 
   const std::string start = encode(header);
   stream.write(start.data(), static_cast<std::streamsize>(start.size()));

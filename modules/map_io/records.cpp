@@ -73,8 +73,7 @@ void get_descriptors(ByteReader& reader, const DescriptorType& type, std::size_t
     } else if (type.kind == DescriptorKind::float32) {
       for (float& number : block.numbers(i)) {
         number = reader.get<float>();
-        if (!std::isfinite(number))
-          reader.fail("descriptor " + std::to_string(i) + " has a number that is not finite");
+        if (!std::isfinite(number)) reader.fail("descriptor " + std::to_string(i) + " has a number that is not finite");
       }
     } else {
       const std::string_view numbers = reader.get_bytes(bytes.size());

@@ -81,8 +81,7 @@ struct Pipeline::State {
         detector(*parts.loop_detector),
         tracker(parts.tracking, {parts.camera, *parts.features, *parts.optimizer, detector, moving_world, map,
                                  parts.run.seed, stereo_parts(parts), parts.sensor != Sensor::mono, *parts.matcher}),
-        mapper(parts.mapping, parts.tracking.close_depth_factor, map, map_mutex, *parts.optimizer,
-               *parts.matcher),
+        mapper(parts.mapping, parts.tracking.close_depth_factor, map, map_mutex, *parts.optimizer, *parts.matcher),
         closer(parts.loop_closing, {map, map_mutex, surgery}, detector, *parts.optimizer, parts.run.seed,
                *parts.matcher),
         adjustment(parts.loop_closing, {map, map_mutex, surgery}, *parts.optimizer) {

@@ -230,9 +230,10 @@ void PipelineBuilder::check_map() const {
       return "'" + (name.empty() ? std::string("an extractor without a name") : name) + "' with descriptors of " +
              to_string(type);
     };
-    throw InputError({map_name_}, "was made with the features " + named(there.extractor, there.descriptors) +
-                                      ", and the run has " + named(parts_.features_name, here) +
-                                      "; expected the same extractor, because features of another one cannot be matched");
+    throw InputError({map_name_},
+                     "was made with the features " + named(there.extractor, there.descriptors) + ", and the run has " +
+                         named(parts_.features_name, here) +
+                         "; expected the same extractor, because features of another one cannot be matched");
   }
   parts_.map.keyframes().for_each([&](KeyFrameId, const KeyFrame& keyframe) {
     if (have_other_numbers(*keyframe.frame.camera, parts_.camera))

@@ -24,13 +24,27 @@ py::array_t<std::uint64_t> point_ids(const FeaturesView& view) {
   return array;
 }
 
-py::array_t<std::uint8_t> descriptors(const FeaturesView& view) {
-  const DescriptorView all = view.get().features.descriptors;
-  const auto bytes_each = static_cast<py::ssize_t>(all.type().bytes());
-  py::array_t<std::uint8_t> array({static_cast<py::ssize_t>(all.size()), bytes_each});
+template <class Number>
+py::array descriptor_rows(const DescriptorView& all) {
+  const std::size_t columns = all.type().bytes() / sizeof(Number);
+  py::array_t<Number> array({static_cast<py::ssize_t>(all.size()), static_cast<py::ssize_t>(columns)});
   for (std::size_t i = 0; i < all.size(); ++i)
     std::memcpy(array.mutable_data(static_cast<py::ssize_t>(i)), all.row(i), all.type().bytes());
-  return array;
+  return std::move(array);
+}
+
+/// Bytes of binary descriptors, numbers of the others.
+py::array descriptors(const FeaturesView& view) {
+  const DescriptorView all = view.get().features.descriptors;
+  switch (all.type().kind) {
+    case DescriptorKind::float32:
+      return descriptor_rows<float>(all);
+    case DescriptorKind::int8:
+      return descriptor_rows<std::int8_t>(all);
+    case DescriptorKind::binary:
+      break;
+  }
+  return descriptor_rows<std::uint8_t>(all);
 }
 
 /// An array of the coarse view's cells as (rows, columns); None where there are none.

@@ -136,7 +136,8 @@ class ExtractorOfPython final : public FeatureExtractor {
     for (std::size_t i = 0; i < count; ++i)
       for (const float number : found.descriptors.numbers(i))
         if (!std::isfinite(number))
-          instance_.refuse("extract", "returned a descriptor with a number that is not finite for feature " + std::to_string(i),
+          instance_.refuse("extract",
+                           "returned a descriptor with a number that is not finite for feature " + std::to_string(i),
                            "finite numbers");
   }
 

@@ -67,8 +67,7 @@ int FrameMatcher::match_keyframe(const Frame& keyframe_frame, Frame& frame) {
   const float strict = distance_limit(settings_.strict_distance, frame.features.descriptors.type().strict_distance);
   matcher_.match(side_of(keyframe_frame, known), side_of(frame, all),
                  {.max_distance = strict, .ratio = 0.8F, .mutual = true}, matches_);
-  for (const FeatureMatch& match : matches_)
-    frame.map_points[match.feature] = keyframe_frame.map_points[match.source];
+  for (const FeatureMatch& match : matches_) frame.map_points[match.feature] = keyframe_frame.map_points[match.source];
   return static_cast<int>(matches_.size());
 }
 

@@ -40,9 +40,9 @@ void MonoInitialiser::match(const Frame& frame, const std::vector<std::uint32_t>
   const Frame& reference = start_.reference;
   const std::vector<std::uint32_t> there = static_features(reference);
   const float strict = distance_limit(settings_.strict_distance, frame.features.descriptors.type().strict_distance);
-  matcher_.match(
-      side_of(reference, there), side_of(frame, features),
-      {.max_distance = strict, .ratio = static_cast<float>(settings_.descriptor_ratio), .mutual = true}, matches_);
+  matcher_.match(side_of(reference, there), side_of(frame, features),
+                 {.max_distance = strict, .ratio = static_cast<float>(settings_.descriptor_ratio), .mutual = true},
+                 matches_);
   // While the map has not begun, the view changes by a part of the image only.
   constexpr float max_displacement = 0.3F;  // of the width
   const float reach = max_displacement * static_cast<float>(frame.camera->width);

@@ -32,8 +32,7 @@ void StereoMatcher::find_matches(const Frame& frame, const Features& right, floa
   const int rows = static_cast<int>(row_begin_.size()) - 1;
   const DescriptorView left_descriptors = left.descriptors, right_descriptors = right.descriptors;
   const DescriptorDistances distances(left_descriptors.type());
-  const float max_distance =
-      distance_limit(settings_.maximum_distance, left_descriptors.type().distance_between(0.5F));
+  const float max_distance = distance_limit(settings_.maximum_distance, left_descriptors.type().distance_between(0.5F));
   matches_.clear();
   for (std::size_t i = 0; i < left.size(); ++i) {
     const float tolerance = static_cast<float>(settings_.row_tolerance) * frame.pyramid->scale[left.octave[i]];

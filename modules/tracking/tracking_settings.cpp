@@ -34,9 +34,10 @@ void describe_poses(ParameterTable<S>& table) {
       .range(0.5, 20);
   table.add("descriptor_ratio", &S::descriptor_ratio, "best to second best descriptor distance, at most").range(0.1, 1);
   table
-      .add("strict_distance", &S::strict_distance,
-           "descriptor distance of a match without a prediction, at most, in the unit of the extractor (orb: bits); 0 = "
-           "as the extractor recommends (orb: 50)")
+      .add(
+          "strict_distance", &S::strict_distance,
+          "descriptor distance of a match without a prediction, at most, in the unit of the extractor (orb: bits); 0 = "
+          "as the extractor recommends (orb: 50)")
       .range(0, 1e6);
   table
       .add("loose_distance", &S::loose_distance,

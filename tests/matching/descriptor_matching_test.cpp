@@ -11,8 +11,8 @@
 namespace holdfast {
 namespace {
 
-using matching::FeatureMatch;
 using matching::DescriptorMatchingSettings;
+using matching::FeatureMatch;
 using test::flipped;
 using Matcher = matching::DescriptorMatcher<DescriptorView>;
 
@@ -31,7 +31,7 @@ std::vector<std::uint32_t> indices_of(const std::vector<Descriptor256>& descript
 }
 
 std::vector<FeatureMatch> match(const std::vector<Descriptor256>& queries, const std::vector<Descriptor256>& references,
-                               const DescriptorMatchingSettings& settings) {
+                                const DescriptorMatchingSettings& settings) {
   return Matcher().match({queries, indices_of(queries)}, {references, indices_of(references)}, settings);
 }
 
@@ -87,7 +87,7 @@ TEST(DescriptorMatching, RefusesMatchesWithARivalUnlessItShowsTheSame) {
   std::vector<Descriptor256> references = random_descriptors(20);
   references[8] = flipped(references[3], 4);
   const std::vector<Descriptor256> queries = {flipped(references[3], 20)};  // 16 away from reference 8, 20 from 3
-  EXPECT_EQ(match(queries, references, {.ratio = 0.8F}).size(), 1U);     // 16 = 0.8 * 20 is just clear enough
+  EXPECT_EQ(match(queries, references, {.ratio = 0.8F}).size(), 1U);        // 16 = 0.8 * 20 is just clear enough
   EXPECT_EQ(match(queries, references, {.ratio = 0.79F}).size(), 0U);
   const std::vector<std::uint32_t> one = {0}, all = indices_of(references);
   const auto is_elsewhere = [](std::uint32_t nearest, std::uint32_t other) {
@@ -101,7 +101,7 @@ TEST(DescriptorMatching, RefusesMatchesWithARivalUnlessItShowsTheSame) {
 TEST(DescriptorMatching, AReferenceKeepsTheNearestQueryAndOfEqualOnesTheFirst) {
   const std::vector<Descriptor256> references = random_descriptors(20);
   const std::vector<Descriptor256> queries = {flipped(references[3], 20), flipped(references[3], 8),
-                                           flipped(references[3], 8)};
+                                              flipped(references[3], 8)};
   const std::vector<FeatureMatch> matches = match(queries, references, {});
   ASSERT_EQ(matches.size(), 1U);
   EXPECT_EQ(matches[0].source, 1U);

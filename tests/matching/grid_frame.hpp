@@ -22,7 +22,8 @@ inline Frame grid_frame(int count) {
     frame.x.push_back(20.0F + 30.0F * static_cast<float>(i % 20));
     frame.y.push_back(20.0F + 30.0F * static_cast<float>(i / 20));
     frame.features.angle[static_cast<std::size_t>(i)] = 1.0F;
-    for (std::uint64_t& word : frame.features.descriptors.of_256_bits()[static_cast<std::size_t>(i)].words) word = random.next();
+    for (std::uint64_t& word : frame.features.descriptors.of_256_bits()[static_cast<std::size_t>(i)].words)
+      word = random.next();
   }
   frame.depth.assign(frame.size(), 0.0F);
   frame.right_x.assign(frame.size(), no_column);

@@ -9,8 +9,8 @@
 namespace holdfast {
 namespace {
 
-using matching::FeatureMatch;
 using matching::FeatureAssignment;
+using matching::FeatureMatch;
 using matching::GuidedSearchSettings;
 using matching::PositionGate;
 using matching::SearchWindows;
@@ -19,8 +19,9 @@ using test::grid_frame;
 using test::no_column;
 
 /// One search with buffers of its own.
-std::vector<FeatureMatch> search(const Frame& frame, const SearchWindows& windows, const std::vector<Descriptor256>& points,
-                                const GuidedSearchSettings& settings = {}, std::vector<std::uint8_t> usable = {}) {
+std::vector<FeatureMatch> search(const Frame& frame, const SearchWindows& windows,
+                                 const std::vector<Descriptor256>& points, const GuidedSearchSettings& settings = {},
+                                 std::vector<std::uint8_t> usable = {}) {
   return FrameSearch().match(frame, {windows, points}, settings, usable);
 }
 
@@ -33,7 +34,8 @@ SearchWindows window_at(const Frame& frame, float dx, float dy, float right_x, f
 
 TEST(GuidedSearch, FindsTheFeatureInTheWindowAndNowhereElse) {
   const Frame frame = grid_frame(200);
-  const std::vector<Descriptor256> points = {flipped(frame.features.descriptors.of_256_bits()[45], 20), frame.features.descriptors.of_256_bits()[7]};
+  const std::vector<Descriptor256> points = {flipped(frame.features.descriptors.of_256_bits()[45], 20),
+                                             frame.features.descriptors.of_256_bits()[7]};
   SearchWindows windows;
   windows.add(0, {{frame.x[45] + 3, frame.y[45] - 4, no_column}, 10, 0, 1});
   windows.add(1, {{frame.x[7] + 60, frame.y[7], no_column}, 20, 0, 1});  // looked for in the wrong place
@@ -106,8 +108,8 @@ TEST(GuidedSearch, TheChiSquareGateIsTheEllipseOfTheFeaturesNoise) {
 TEST(GuidedSearch, AFeatureGoesToTheNearestPointAndOfEqualOnesToTheFirst) {
   const Frame frame = grid_frame(100);
   const std::vector<Descriptor256> points = {flipped(frame.features.descriptors.of_256_bits()[10], 30),
-                                          flipped(frame.features.descriptors.of_256_bits()[10], 10),
-                                          flipped(frame.features.descriptors.of_256_bits()[10], 10)};
+                                             flipped(frame.features.descriptors.of_256_bits()[10], 10),
+                                             flipped(frame.features.descriptors.of_256_bits()[10], 10)};
   SearchWindows windows;
   for (std::uint32_t i = 0; i < 3; ++i) windows.add(i, {{frame.x[10], frame.y[10], no_column}, 5, 0, 0});
   const std::vector<FeatureMatch> matches = search(frame, windows, points);
@@ -117,8 +119,9 @@ TEST(GuidedSearch, AFeatureGoesToTheNearestPointAndOfEqualOnesToTheFirst) {
 
 TEST(GuidedSearch, EveryPointKeepsItsFeatureWhenDuplicatesAreLookedFor) {
   const Frame frame = grid_frame(100);
-  const std::vector<Descriptor256> points = {frame.features.descriptors.of_256_bits()[11], flipped(frame.features.descriptors.of_256_bits()[10], 30),
-                                          flipped(frame.features.descriptors.of_256_bits()[10], 10)};
+  const std::vector<Descriptor256> points = {frame.features.descriptors.of_256_bits()[11],
+                                             flipped(frame.features.descriptors.of_256_bits()[10], 30),
+                                             flipped(frame.features.descriptors.of_256_bits()[10], 10)};
   SearchWindows windows;
   windows.add(0, {{frame.x[11], frame.y[11], no_column}, 5, 0, 0});
   for (std::uint32_t i = 1; i < 3; ++i) windows.add(i, {{frame.x[10], frame.y[10], no_column}, 5, 0, 0});

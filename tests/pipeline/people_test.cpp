@@ -218,9 +218,10 @@ class PeopleTest : public testing::Test {
       for (std::size_t i = 0; i < frame.size(); ++i) {
         if (!people().shows_person(people().at(frame.index), frame.features.x[i], frame.features.y[i])) continue;
         ++judged;
-        on_people +=
-            std::find(descriptors.begin(), descriptors.end(), frame.features.descriptors.of_256_bits()[i]) != descriptors.end() ? 1
-                                                                                                                  : 0;
+        on_people += std::find(descriptors.begin(), descriptors.end(), frame.features.descriptors.of_256_bits()[i]) !=
+                             descriptors.end()
+                         ? 1
+                         : 0;
       }
     }
     EXPECT_GE(judged, 100);

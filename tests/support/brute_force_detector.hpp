@@ -15,8 +15,8 @@ namespace holdfast::test {
 class BruteForceDetector final : public LoopDetector {
  public:
   void add(KeyFrameId keyframe, const DescriptorView& descriptors) override {
-    places_.emplace_back(
-        keyframe, std::vector<Descriptor256>(descriptors.row(0), descriptors.row(0) + descriptors.size()));
+    places_.emplace_back(keyframe,
+                         std::vector<Descriptor256>(descriptors.row(0), descriptors.row(0) + descriptors.size()));
   }
   void remove(KeyFrameId keyframe) override {
     std::erase_if(places_, [&](const auto& place) { return place.first == keyframe; });
@@ -26,8 +26,9 @@ class BruteForceDetector final : public LoopDetector {
     for (const auto& [keyframe, known] : places_) {
       int alike = 0;
       for (std::size_t i = 0; i < descriptors.size(); i += 3)
-        alike += std::any_of(known.begin(), known.end(),
-                             [&](const Descriptor256& other) { return hamming_distance(*descriptors.row(i), other) < 40; });
+        alike += std::any_of(known.begin(), known.end(), [&](const Descriptor256& other) {
+          return hamming_distance(*descriptors.row(i), other) < 40;
+        });
       matches.push_back({keyframe, static_cast<double>(alike) / static_cast<double>(descriptors.size())});
     }
     std::stable_sort(matches.begin(), matches.end(), [](const auto& a, const auto& b) { return a.score > b.score; });

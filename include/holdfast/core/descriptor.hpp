@@ -30,9 +30,9 @@ enum class DescriptorMetric : std::uint8_t {
 struct DescriptorType {
   DescriptorKind kind = DescriptorKind::binary;
   DescriptorMetric metric = DescriptorMetric::hamming;
-  std::uint32_t length = 256;      ///< number of bits or of numbers
-  float strict_distance = 50.0F;   ///< largest distance of a match without any prediction
-  float loose_distance = 100.0F;   ///< largest distance of a match near its prediction
+  std::uint32_t length = 256;     ///< number of bits or of numbers
+  float strict_distance = 50.0F;  ///< largest distance of a match without any prediction
+  float loose_distance = 100.0F;  ///< largest distance of a match near its prediction
   bool operator==(const DescriptorType&) const = default;
 
   /// Whether distances between descriptors of both types are defined; the recommended distances may differ.
@@ -57,8 +57,8 @@ inline float distance_limit(double configured, float recommended) {
   return configured > 0.0 ? static_cast<float>(configured) : recommended;
 }
 
-/// A binary descriptor of 256 bits (Rublee et al. 2011); bit i is bit i % 64 of word i / 64. It is the unit of memory of
-/// all descriptors: longer ones, and those of other kinds, occupy several units, padded with zeros.
+/// A binary descriptor of 256 bits (Rublee et al. 2011); bit i is bit i % 64 of word i / 64. It is the unit of memory
+/// of all descriptors: longer ones, and those of other kinds, occupy several units, padded with zeros.
 struct alignas(32) Descriptor256 {
   std::array<std::uint64_t, 4> words{};
   friend bool operator==(const Descriptor256&, const Descriptor256&) = default;

@@ -17,7 +17,7 @@ class DescriptorDistances {
   explicit DescriptorDistances(const DescriptorType& type);
 
   /// The distance of two descriptors, given by their first units of memory.
-  float of_two(const Descriptor256* a, const Descriptor256* b) const { return two_(a, b, units_) ; }
+  float of_two(const Descriptor256* a, const Descriptor256* b) const { return two_(a, b, units_); }
   /// distances[i] = distance between the query and row i of contiguous descriptors.
   void of_rows(const Descriptor256* query, const Descriptor256* rows, std::size_t count, float* distances) const {
     rows_(query, rows, units_, count, distances);

@@ -46,8 +46,8 @@ class OnnxNet {
 
   /// Sets an input, 32F of any dimensions, for the next run. Its data must stay as they are until then.
   void set_input(const cv::Mat& values, const std::string& name = "");
-  /// Computes outputs: 32F with the dimensions of the network, valid until the next run. Throws InputError if the network
-  /// cannot be run; `advice` says what the user should check.
+  /// Computes outputs: 32F with the dimensions of the network, valid until the next run. Throws InputError if the
+  /// network cannot be run; `advice` says what the user should check.
   void run(const std::vector<std::string>& outputs, std::vector<cv::Mat>& results, const std::string& advice);
 
  private:

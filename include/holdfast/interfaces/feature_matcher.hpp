@@ -20,11 +20,11 @@ struct MatchSide {
   std::span<const std::uint32_t> selection;  ///< indices of those that take part, ascending
 
   // Entry i of each belongs to descriptor i. All are empty for points of a map, which no single image shows.
-  std::span<const float> x, y;            ///< undistorted [px of the full image]
-  std::span<const float> angle;           ///< orientation [rad]
-  std::span<const std::uint8_t> octave;   ///< pyramid level
-  std::span<const float> response;        ///< strength; comparable within one image only
-  int width = 0, height = 0;              ///< of the image [px]
+  std::span<const float> x, y;           ///< undistorted [px of the full image]
+  std::span<const float> angle;          ///< orientation [rad]
+  std::span<const std::uint8_t> octave;  ///< pyramid level
+  std::span<const float> response;       ///< strength; comparable within one image only
+  int width = 0, height = 0;             ///< of the image [px]
 };
 
 /// Features of a frame as one side. The frame and the selection must outlive it.

@@ -13,7 +13,7 @@ struct StereoSettings {
   /// Between the descriptors of both images; 0 = halfway between the extractor's strict and loose distance, 75 bits for
   /// ORB (Mur-Artal and Tardos 2017).
   double maximum_distance = 0.0;
-  int patch_radius = 5;        ///< px; half the width of the patch by which the disparity is refined
+  int patch_radius = 5;            ///< px; half the width of the patch by which the disparity is refined
   double minimum_disparity = 0.5;  ///< px; farther features have no depth
 
   static void describe(ParameterTable<StereoSettings>& table);

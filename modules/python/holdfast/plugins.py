@@ -133,7 +133,8 @@ class DynamicFilter(Module):
 class Features:
     """Features of one image; entry i of every array belongs to feature i.
 
-    `x`, `y` are pixels of the full image, `descriptors` uint8 (n, 32). `octave` is the pyramid level, `angle` the
+    `x`, `y` are pixels of the full image, `descriptors` the arrays that the extractor
+    names: uint8 (n, length / 8), float32 or int8 (n, length). `octave` is the pyramid level, `angle` the
     orientation [rad, 0 to 2 pi), `response` the strength; each may be left out for zeros.
     """
 
@@ -141,7 +142,7 @@ class Features:
         self,
         x: npt.ArrayLike,
         y: npt.ArrayLike,
-        descriptors: npt.NDArray[np.uint8],
+        descriptors: npt.NDArray[Any],
         octave: Optional[npt.ArrayLike] = None,
         angle: Optional[npt.ArrayLike] = None,
         response: Optional[npt.ArrayLike] = None,

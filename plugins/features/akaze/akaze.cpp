@@ -7,8 +7,8 @@
 #include <opencv2/core.hpp>
 
 #include "holdfast/core/error.hpp"
-#include "holdfast/plugin/parameter_table.hpp"
 #include "holdfast/keypoints/keypoints.hpp"
+#include "holdfast/plugin/parameter_table.hpp"
 
 namespace holdfast {
 

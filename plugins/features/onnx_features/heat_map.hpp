@@ -21,9 +21,9 @@ struct HeatMapSettings {
   std::size_t count = 1000;    ///< the best are kept
 };
 
-/// Turns the output of a network into one score per pixel, 32FC1: 1 x 1 x height x width as it is, and 1 x (n * n + 1) x
-/// rows x columns, the cells of n x n pixels of SuperPoint, by a softmax over the channels, the last of which stands for
-/// "no keypoint" (DeTone, Malisiewicz, Rabinovich, "SuperPoint: self-supervised interest point detection and
+/// Turns the output of a network into one score per pixel, 32FC1: 1 x 1 x height x width as it is, and 1 x (n * n + 1)
+/// x rows x columns, the cells of n x n pixels of SuperPoint, by a softmax over the channels, the last of which stands
+/// for "no keypoint" (DeTone, Malisiewicz, Rabinovich, "SuperPoint: self-supervised interest point detection and
 /// description", CVPR workshops 2018, section 3.2). Returns an empty image for other shapes.
 cv::Mat heat_map_of(const cv::Mat& output);
 

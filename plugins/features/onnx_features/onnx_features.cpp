@@ -165,8 +165,8 @@ void OnnxFeatures::extract(const cv::Mat& grey, const cv::Mat& ignore, Features&
   for (std::size_t i = 0; i < points.size() && kept < count; ++i) {
     const float x = (points[i].x + 0.5F) * scale_x - 0.5F, y = (points[i].y + 0.5F) * scale_y - 0.5F;
     const auto column = static_cast<int>(std::lround(x)), row = static_cast<int>(std::lround(y));
-    if (!(points[i].score >= static_cast<float>(settings_.threshold)) || !std::isfinite(points[i].score) || column < 0 ||
-        row < 0 || column >= grey.cols || row >= grey.rows)
+    if (!(points[i].score >= static_cast<float>(settings_.threshold)) || !std::isfinite(points[i].score) ||
+        column < 0 || row < 0 || column >= grey.cols || row >= grey.rows)
       continue;
     if (!ignore.empty() && ignore.at<std::uint8_t>(row, column) != 0) continue;
     out.resize(kept + 1);

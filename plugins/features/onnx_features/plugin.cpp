@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "holdfast/plugin/parameter_table.hpp"
 #include "holdfast/plugin/plugin.hpp"
+#include "holdfast/plugin/parameter_table.hpp"
 #include "onnx_features.hpp"
 
 namespace holdfast {
@@ -9,7 +9,9 @@ void OnnxFeaturesSettings::describe(ParameterTable<OnnxFeaturesSettings>& table)
   using S = OnnxFeaturesSettings;
   table.add("model", &S::model, "ONNX file with float32 weights").required();
   table.add("width", &S::width, "width of the network input; 0 = as declared by the model").range(0, 8192).unit("px");
-  table.add("height", &S::height, "height of the network input; 0 = as declared by the model").range(0, 8192).unit("px");
+  table.add("height", &S::height, "height of the network input; 0 = as declared by the model")
+      .range(0, 8192)
+      .unit("px");
   table.add("scale", &S::scale, "factor on grey values from 0 to 255 of the input").range(-1000, 1000);
   table.add("offset", &S::offset, "added to the scaled grey values").range(-1e6, 1e6);
   table.add("scores", &S::scores,

@@ -51,8 +51,9 @@ class flann::RandomCenterChooser<holdfast::flann_plugin::DescriptorDistance>
       const int candidate = rest[drawn];
       rest[drawn] = rest.back();
       rest.pop_back();
-      const bool is_new =
-          std::none_of(centres, centres + found, [&](int centre) { return distance_(points_[centre], points_[candidate], 1) <= 0.0F; });
+      const bool is_new = std::none_of(centres, centres + found, [&](int centre) {
+        return distance_(points_[centre], points_[candidate], 1) <= 0.0F;
+      });
       if (is_new) centres[found++] = candidate;
     }
   }
@@ -102,9 +103,7 @@ std::uint32_t CentreIndex::add(const Descriptor256* centre) {
   return number;
 }
 
-void CentreIndex::move(std::uint32_t number, const Descriptor256* centre) {
-  std::copy_n(centre, units_, row(number));
-}
+void CentreIndex::move(std::uint32_t number, const Descriptor256* centre) { std::copy_n(centre, units_, row(number)); }
 
 std::size_t CentreIndex::find(const Descriptor256* descriptor, std::span<std::uint32_t> nearest) const {
   if (!tree_ || nearest.empty()) return 0;

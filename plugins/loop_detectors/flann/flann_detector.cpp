@@ -37,7 +37,8 @@ void FlannDetector::add(KeyFrameId keyframe, const DescriptorView& descriptors) 
   words.reserve(lookups_.size());
   for (std::size_t i = 0; i < lookups_.size(); ++i) {
     const Lookup& lookup = lookups_[i];
-    words.push_back(lookup.count > 0 ? lookup.words[0] : vocabulary_->insert(looked_up_descriptors_.row(i), lookup.bucket));
+    words.push_back(lookup.count > 0 ? lookup.words[0]
+                                     : vocabulary_->insert(looked_up_descriptors_.row(i), lookup.bucket));
   }
   if (vocabulary_) vocabulary_->split_full_buckets();
   std::sort(words.begin(), words.end());
@@ -104,9 +105,9 @@ void FlannDetector::look_up(const DescriptorView& descriptors) const {
     looked_up_ = false;
     return;
   }
-  HOLDFAST_CHECK(
-      descriptors.type().is_comparable(type_),
-      "descriptors of " << to_string(descriptors.type()) << ", the database has those of " << to_string(type_));
+  HOLDFAST_CHECK(descriptors.type().is_comparable(type_), "descriptors of " << to_string(descriptors.type())
+                                                                            << ", the database has those of "
+                                                                            << to_string(type_));
   DescriptorBlock used(descriptors.type());
   const std::size_t limit = static_cast<std::size_t>(settings_.descriptors);
   const std::size_t count = std::min(descriptors.size(), limit);

@@ -13,9 +13,9 @@
 
 namespace holdfast::flann_plugin {
 
-/// Place recognition with an incremental bag of words: words are descriptors seen before, found by FLANN, whatever their
-/// type; no vocabulary file, no training (after Garcia-Fidalgo and Ortiz, "iBoW-LCD: An appearance-based loop-closure detection
-/// approach using incremental bags of binary words", RA-L 3(4), 2018).
+/// Place recognition with an incremental bag of words: words are descriptors seen before, found by FLANN, whatever
+/// their type; no vocabulary file, no training (after Garcia-Fidalgo and Ortiz, "iBoW-LCD: An appearance-based
+/// loop-closure detection approach using incremental bags of binary words", RA-L 3(4), 2018).
 ///
 /// Every descriptor i of a query votes for the n_i of N keyframes with a word within the radius, with a weight that
 /// decreases with n_i (the inverse document frequency of Nister and Stewenius, "Scalable recognition with a vocabulary
@@ -61,7 +61,7 @@ class FlannDetector final : public LoopDetector {
   FlannSettings settings_;
   std::uint64_t seed_;
   std::optional<Vocabulary> vocabulary_;  // begins with the first descriptors, which tell the type
-  DescriptorType type_;  // of the vocabulary
+  DescriptorType type_;                   // of the vocabulary
   InvertedFile inverted_;
   std::vector<Entry> entries_;  // by slot; free ones have an invalid id
   std::vector<std::uint32_t> free_slots_;

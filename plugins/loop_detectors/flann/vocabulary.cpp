@@ -87,7 +87,8 @@ void Vocabulary::prefetch(std::uint32_t bucket) const {
 }
 
 /// Puts the words of a bucket that are within the radius where they belong among those found so far.
-void Vocabulary::compare(const Descriptor256* descriptor, const Bucket& bucket, Lookup& lookup, Nearest& nearest) const {
+void Vocabulary::compare(const Descriptor256* descriptor, const Bucket& bucket, Lookup& lookup,
+                         Nearest& nearest) const {
   const std::size_t size = bucket.words.size();
   kernels_.of_rows(descriptor, bucket.descriptors.data(), size, distances_.data());
   for (std::size_t k = 0; k < size; ++k) {
@@ -192,7 +193,8 @@ void Vocabulary::split(std::uint32_t number) {
   const std::uint32_t other = centres_.add(centres.row(1));
   centres_.move(number, centres.row(0));
   buckets_.emplace_back();
-  for (std::size_t i = 0; i < old.words.size(); ++i) append(descriptors.row(i), old.words[i], second[i] ? other : number);
+  for (std::size_t i = 0; i < old.words.size(); ++i)
+    append(descriptors.row(i), old.words[i], second[i] ? other : number);
   for (const std::uint32_t half : {number, other}) empty_buckets_ += buckets_[half].words.empty() ? 1 : 0;
   for (const std::uint32_t half : {number, other})
     if (buckets_[half].words.size() > most_words_of_bucket && buckets_[half].words.size() < old.words.size())

@@ -83,8 +83,8 @@ class Vocabulary {
   std::vector<WordId> free_words_;
   std::vector<std::uint32_t> full_;
   std::size_t empty_buckets_ = 0;
-  mutable std::vector<std::uint32_t> nearest_;    // buckets of many descriptors, probes_ each
-  mutable std::vector<float> distances_;          // of such a comparison
+  mutable std::vector<std::uint32_t> nearest_;  // buckets of many descriptors, probes_ each
+  mutable std::vector<float> distances_;        // of such a comparison
   Random random_;
   float radius_;
   std::size_t probes_;
