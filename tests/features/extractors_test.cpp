@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the interface promises, of the extractors of the program, made through the registry as a configuration makes them.
+// What the interface promises, of the extractors of the program, made through the registry as a configuration makes
+// them.
 #include <gtest/gtest.h>
 
 #include <numbers>

@@ -37,9 +37,8 @@ std::vector<FeatureMatch> match(const FeatureMatcher& matcher, const Frame& a, c
 }
 
 bool has(const std::vector<FeatureMatch>& matches, std::uint32_t source, std::uint32_t feature) {
-  return std::any_of(matches.begin(), matches.end(), [&](const FeatureMatch& match) {
-    return match.source == source && match.feature == feature;
-  });
+  return std::any_of(matches.begin(), matches.end(),
+                     [&](const FeatureMatch& match) { return match.source == source && match.feature == feature; });
 }
 
 TEST(NearestMatcher, FollowsTheLimitsOfItsCaller) {

@@ -29,8 +29,7 @@ std::vector<Assigned> mutual_best(const cv::Mat& probabilities, float threshold)
   std::vector<int> best_column(static_cast<std::size_t>(probabilities.rows));
   for (int y = 0; y < probabilities.rows; ++y) {
     const float* row = probabilities.ptr<float>(y);
-    best_column[static_cast<std::size_t>(y)] =
-        static_cast<int>(std::max_element(row, row + probabilities.cols) - row);
+    best_column[static_cast<std::size_t>(y)] = static_cast<int>(std::max_element(row, row + probabilities.cols) - row);
   }
   std::vector<Assigned> assigned;
   for (int x = 0; x < probabilities.cols; ++x) {

@@ -38,7 +38,8 @@ void OnnxMatcher::choose_inputs() {
     if (declared > 0 && chosen != declared)
       fail("takes " + std::to_string(declared) + " features in '" + name + "', but `count` is " +
            std::to_string(chosen) + "; leave `count` out");
-    if (count_ != 0 && chosen != count_) fail("takes different numbers of features of both images; expected one number");
+    if (count_ != 0 && chosen != count_)
+      fail("takes different numbers of features of both images; expected one number");
     count_ = chosen;
     if (!is_descriptor) return;
     if (length_ != 0 && length_ != input.shape[2]) fail("takes descriptors of different lengths; expected one length");
@@ -61,7 +62,8 @@ void OnnxMatcher::fill(const MatchSide& side, Half& half) const {
   half.keypoints.setTo(0.0F);
   half.descriptors.setTo(0.0F);
   const float scale = 2.0F / static_cast<float>(std::max(side.width, side.height));
-  const float middle_x = 0.5F * static_cast<float>(side.width - 1), middle_y = 0.5F * static_cast<float>(side.height - 1);
+  const float middle_x = 0.5F * static_cast<float>(side.width - 1),
+              middle_y = 0.5F * static_cast<float>(side.height - 1);
   for (std::size_t i = 0; i < half.taken.size(); ++i) {
     const std::uint32_t feature = half.taken[i];
     float* keypoint = half.keypoints.ptr<float>(0, static_cast<int>(i));
@@ -74,8 +76,7 @@ void OnnxMatcher::fill(const MatchSide& side, Half& half) const {
 void OnnxMatcher::match(const MatchSide& queries, const MatchSide& references, const MatchLimits& limits,
                         std::vector<FeatureMatch>& matches) const {
   const DescriptorType& type = queries.descriptors.type();
-  if (queries.x.empty() || references.x.empty())
-    return NearestMatcher::match(queries, references, limits, matches);
+  if (queries.x.empty() || references.x.empty()) return NearestMatcher::match(queries, references, limits, matches);
   if (type.kind != DescriptorKind::float32 || static_cast<int>(type.length) != length_)
     fail("takes descriptors of " + std::to_string(length_) + " float32, and the features have " + to_string(type) +
          "; expected the features that the network was made for");

@@ -13,10 +13,11 @@
 
 namespace holdfast::onnx_matcher_plugin {
 
-/// Matches the features of two images by a network in ONNX format, such as LightGlue or SuperGlue with inputs of a fixed
-/// number of features: keypoints, brought to -1 to 1 by the longer side of the image, and descriptors of float32. The
-/// strongest features are taken where an image has more, and zeros fill up where it has fewer. Matches with predictions,
-/// and with points of a map, which no single image shows, are those of NearestMatcher. Calls wait for each other.
+/// Matches the features of two images by a network in ONNX format, such as LightGlue or SuperGlue with inputs of a
+/// fixed number of features: keypoints, brought to -1 to 1 by the longer side of the image, and descriptors of float32.
+/// The strongest features are taken where an image has more, and zeros fill up where it has fewer. Matches with
+/// predictions, and with points of a map, which no single image shows, are those of NearestMatcher. Calls wait for each
+/// other.
 class OnnxMatcher final : public NearestMatcher {
  public:
   /// Throws InputError as OnnxNet, and for a network whose inputs have other shapes.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "holdfast/plugin/parameter_table.hpp"
 #include "holdfast/plugin/plugin.hpp"
+#include "holdfast/plugin/parameter_table.hpp"
 #include "onnx_matcher.hpp"
 
 namespace holdfast {
@@ -29,6 +29,7 @@ HOLDFAST_PLUGIN(onnx_matcher, registry) {
   registry.add<holdfast::FeatureMatcher, holdfast::onnx_matcher_plugin::OnnxMatcher, holdfast::OnnxMatcherSettings>(
       {.name = holdfast::OnnxMatcherSettings::module,
        .summary = "A network in ONNX format that matches the features of two images, such as LightGlue.",
-       .paper = "Lindenberger, Sarlin, Pollefeys: LightGlue: local feature matching at light speed. ICCV 2023; Sarlin et "
-                "al.: SuperGlue. CVPR 2020"});
+       .paper =
+           "Lindenberger, Sarlin, Pollefeys: LightGlue: local feature matching at light speed. ICCV 2023; Sarlin et "
+           "al.: SuperGlue. CVPR 2020"});
 }
