@@ -21,10 +21,9 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "holdfast/core/hamming.hpp"
 #include "holdfast/core/random.hpp"
 #include "holdfast/core/simd.hpp"
-#include "holdfast/matching/binary_descriptors.hpp"
+#include "holdfast/matching/descriptors.hpp"
 #include "opencv_orb/opencv_orb.hpp"
 #include "orb/orb.hpp"
 
@@ -115,21 +114,21 @@ void orb(benchmark::State& state) {
 }
 BENCHMARK(orb)->DenseRange(0, 2)->UseManualTime()->Iterations(120)->Unit(benchmark::kMillisecond);
 
-std::vector<Descriptor> random_descriptors(std::size_t count) {
+std::vector<Descriptor256> random_descriptors(std::size_t count) {
   Random random(7);
-  std::vector<Descriptor> descriptors(count);
-  for (Descriptor& descriptor : descriptors)
+  std::vector<Descriptor256> descriptors(count);
+  for (Descriptor256& descriptor : descriptors)
     for (std::uint64_t& word : descriptor.words) word = random.next();
   return descriptors;
 }
 
 /// One query against many candidates, as the matchers ask.
 void nearest(benchmark::State& state) {
-  const std::vector<Descriptor> descriptors = random_descriptors(1000);
+  const std::vector<Descriptor256> descriptors = random_descriptors(1000);
   std::vector<std::uint32_t> candidates(descriptors.size());
   std::iota(candidates.begin(), candidates.end(), 0U);
-  const matching::BinaryDescriptors block = descriptors;
-  std::vector<std::uint16_t> distances;
+  const DescriptorView block = descriptors;
+  std::vector<float> distances;
   for (auto _ : state)
     benchmark::DoNotOptimize(
         matching::nearest_two(block, 500, block, std::span<const std::uint32_t>(candidates), distances));
@@ -139,7 +138,7 @@ BENCHMARK(nearest);
 
 /// The same without the kernels, for comparison.
 void nearest_plain(benchmark::State& state) {
-  const std::vector<Descriptor> descriptors = random_descriptors(1000);
+  const std::vector<Descriptor256> descriptors = random_descriptors(1000);
   for (auto _ : state) {
     int best = 257;
     for (std::size_t i = 0; i < descriptors.size(); ++i)

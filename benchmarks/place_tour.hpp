@@ -36,10 +36,10 @@ class PlaceTour {
     return random.below(static_cast<std::uint32_t>(stretch / 2 + 1)) * 50 + within;
   }
 
-  std::vector<Descriptor> keyframe(std::int64_t number) const {
+  std::vector<Descriptor256> keyframe(std::int64_t number) const {
     const std::int64_t first = place(number) * (descriptors_per_keyframe / 5);
     Random random = Random(seed_).fork(0x10000000ULL + static_cast<std::uint64_t>(number));
-    std::vector<Descriptor> descriptors;
+    std::vector<Descriptor256> descriptors;
     descriptors.reserve(descriptors_per_keyframe);
     for (std::int64_t landmark = first; landmark < first + descriptors_per_keyframe; ++landmark) {
       if (random.uniform() < 0.6)
@@ -51,21 +51,21 @@ class PlaceTour {
   }
 
  private:
-  Descriptor drawn(std::uint64_t number) const {
+  Descriptor256 drawn(std::uint64_t number) const {
     Random random = Random(seed_ + 1).fork(number);
-    Descriptor descriptor = prototypes_[random.below(2048)];
+    Descriptor256 descriptor = prototypes_[random.below(2048)];
     redraw(descriptor, random.below(129), random);
     return descriptor;
   }
-  static Descriptor disturbed(const Descriptor& descriptor, Random& random) {
-    Descriptor result = descriptor;
+  static Descriptor256 disturbed(const Descriptor256& descriptor, Random& random) {
+    Descriptor256 result = descriptor;
     for (std::uint32_t flips = random.below(41); flips > 0; --flips) {
       const std::uint32_t bit = random.below(256);
       result.words[bit / 64] ^= std::uint64_t{1} << (bit % 64);
     }
     return result;
   }
-  static void redraw(Descriptor& descriptor, std::uint32_t bits, Random& random) {
+  static void redraw(Descriptor256& descriptor, std::uint32_t bits, Random& random) {
     for (; bits > 0; --bits) {
       const std::uint64_t draw = random.next();
       const std::uint64_t bit = draw & 255;
@@ -74,7 +74,7 @@ class PlaceTour {
   }
 
   std::uint64_t seed_;
-  std::vector<Descriptor> prototypes_;
+  std::vector<Descriptor256> prototypes_;
 };
 
 }  // namespace holdfast

@@ -9,8 +9,13 @@ set(HOLDFAST_PLUGIN_TABLE
   "source          kitti                 sources/kitti"
   "source          simulated             sources/simulated"
   "source          tum                   sources/tum"
+  "features        akaze                 features/akaze"
+  "features        onnx_features         features/onnx_features"
   "features        opencv_orb            features/opencv_orb"
   "features        orb                   features/orb"
+  "features        sift                  features/sift"
+  "matcher         mutual_ratio          matchers/mutual_ratio"
+  "matcher         onnx_matcher          matchers/onnx_matcher"
   "filters         depth_clusters        filters/depth_clusters"
   "filters         motion_objects        filters/motion_objects"
   "filters         multi_view_depth      filters/multi_view_depth"
@@ -59,8 +64,9 @@ endif()
 configure_file(${CMAKE_CURRENT_LIST_DIR}/settings_all.hpp.in ${holdfast_BINARY_DIR}/include/holdfast/settings/all.hpp
                @ONLY)
 
-# Networks: the one module that only plugins use.
+# Networks: a module that only plugins use.
 set(HOLDFAST_INFERENCE OFF)
-if(HOLDFAST_PLUGIN_ONNX OR HOLDFAST_PLUGIN_UNET)
+if(HOLDFAST_PLUGIN_ONNX OR HOLDFAST_PLUGIN_ONNX_FEATURES OR HOLDFAST_PLUGIN_ONNX_MATCHER OR
+   HOLDFAST_PLUGIN_UNET)
   set(HOLDFAST_INFERENCE ON)
 endif()

@@ -62,7 +62,7 @@ std::optional<Diagnostic> missing_data(const MatrixSequence& sequence, const Con
     if (const auto list = missing_list(text_of(source, "path"), text_of(source, "associations")))
       return missing(sequence, *list);
   for (const ModuleChoice* choice :
-       {&configuration.source, &configuration.segmenter, &configuration.features, &configuration.loop_detector}) {
+       {&configuration.source, &configuration.segmenter, &configuration.features, &configuration.matcher, &configuration.loop_detector}) {
     const ModuleEntry* entry = registry.find(choice->kind, choice->name);
     if (entry == nullptr) continue;
     for (const Parameter& parameter : entry->parameters) {

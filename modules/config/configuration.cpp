@@ -76,7 +76,8 @@ std::optional<Camera> read_camera(const ConfigurationNode& node, std::vector<Dia
 }
 
 const std::vector<std::string>& choice_sections() {
-  static const std::vector<std::string> names = {"source", "features", "segmenter", "optimizer", "loop_detector"};
+  static const std::vector<std::string> names = {"source",    "features",  "matcher",
+                                                 "segmenter", "optimizer", "loop_detector"};
   return names;
 }
 
@@ -116,6 +117,7 @@ class Resolver {
     result_.source = choose("source", nullptr);
     result_.features = choose("features", nullptr);
     result_.optimizer = choose("optimizer", nullptr);
+    result_.matcher = choose("matcher", "nearest");
     result_.segmenter = choose("segmenter", "none");
     result_.loop_detector = choose("loop_detector", "none");
     result_.filters = chain("filters");

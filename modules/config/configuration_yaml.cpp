@@ -39,6 +39,7 @@ std::string to_yaml(const Configuration& configuration) {
   }
   yaml += std::string("sensor: ") + (configuration.sensor ? sensor_name(*configuration.sensor) : "auto") + "\n";
   add_choice(configuration.features, yaml);
+  add_choice(configuration.matcher, yaml);
   add_choice(configuration.segmenter, yaml);
   add_chain("filters", configuration.filters, yaml);
   add_choice(configuration.optimizer, yaml);

@@ -114,6 +114,7 @@ std::string use_of(const std::string& kind) {
   static const std::map<std::string, std::string> uses{
       {"source", "Where frames come from. One module, required."},
       {"features", "What is found in an image and matched. One module, required."},
+      {"matcher", "Which features show the same point. One module; without the section `nearest`."},
       {"optimizer", "What solves for poses and points. One module, required."},
       {"segmenter", "What is where in an image. One module; without the section `none`."},
       {"loop_detector", "Which places look alike. One module; without the section `none`."},

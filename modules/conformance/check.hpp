@@ -46,7 +46,10 @@ std::vector<Check> feature_extractor_checks();
 std::vector<Check> segmenter_checks();
 std::vector<Check> dynamic_filter_checks();
 std::vector<Check> optimizer_checks();
+std::vector<Check> feature_matcher_checks();
 std::vector<Check> loop_detector_checks();
+std::vector<Check> frame_source_checks();
+std::vector<Check> observer_checks();
 
 /// Runs both concurrently in separate threads and propagates their exceptions.
 void run_side_by_side(const std::function<void()>& first, const std::function<void()>& second);

@@ -108,6 +108,41 @@ void pyramid_is_whole_and_stays(const Maker& maker) {
   EXPECT_EQ(extractor->pyramid().factor, before.factor) << "pyramid() changed by extracting";
 }
 
+void descriptors_are_of_the_type(const Maker& maker) {
+  const auto extractor = maker.make<FeatureExtractor>();
+  const DescriptorType type = extractor->descriptor_type();
+  ASSERT_EQ(trouble_of(type), "") << "descriptor_type() is impossible";
+  const Features features = extract(*extractor, picture());
+  const DescriptorView descriptors = features.descriptors;
+  ASSERT_TRUE(descriptors.type() == type)
+      << "the descriptors are of " << to_string(descriptors.type()) << ", descriptor_type() says " << to_string(type);
+  EXPECT_TRUE(extractor->descriptor_type() == type) << "descriptor_type() changed by extracting";
+  const std::size_t bytes = type.bytes(), padded = descriptors.units() * sizeof(Descriptor256);
+  for (std::size_t i = 0; i < descriptors.size(); ++i) {
+    const auto* row = reinterpret_cast<const std::uint8_t*>(descriptors.row(i));
+    for (std::size_t k = bytes; k < padded; ++k)
+      ASSERT_EQ(static_cast<int>(row[k]), 0) << "descriptor " << i << " is padded with something else than zeros";
+    if (type.kind == DescriptorKind::binary && type.length % 8 != 0) {
+      ASSERT_EQ(row[bytes - 1] >> (type.length % 8), 0) << "descriptor " << i << " has bits beyond its length";
+    }
+    if (type.kind != DescriptorKind::float32) continue;
+    const auto* numbers = reinterpret_cast<const float*>(row);
+    double squares = 0.0;
+    for (std::uint32_t k = 0; k < type.length; ++k) {
+      ASSERT_TRUE(std::isfinite(numbers[k])) << "descriptor " << i << " has the number " << numbers[k];
+      squares += static_cast<double>(numbers[k]) * numbers[k];
+    }
+    if (type.metric == DescriptorMetric::cosine) {
+      ASSERT_NEAR(squares, 1.0, 1e-3) << "descriptor " << i << " has no unit length";
+    }
+  }
+}
+
+void angles_are_as_promised(const Maker& maker) {
+  if (maker.make<FeatureExtractor>()->has_angles()) GTEST_SKIP() << "features have angles";
+  for (const float angle : some_features(maker).angle) ASSERT_EQ(angle, 0.0F) << "has_angles() is false";
+}
+
 void honours_ignore(const Maker& maker) {
   const cv::Mat grey = picture();
   cv::Mat ignore(grey.size(), CV_8UC1, cv::Scalar(0));
@@ -275,6 +310,16 @@ std::vector<Check> feature_extractor_checks() {
       {"PyramidIsWholeAndStays",
        {extractor_header, "The scale pyramid to which Features::octave refers; constant after construction."},
        pyramid_is_whole_and_stays},
+      {"DescriptorsAreOfTheType",
+       {extractor_header,
+        "The type of all descriptors that extract() returns, with the distances that this extractor recommends; "
+        "constant after construction."},
+       descriptors_are_of_the_type},
+      {"AnglesAreAsPromised",
+       {extractor_header,
+        "Whether Features::angle is the orientation of a feature, which turns with the image. Otherwise all angles are "
+        "0."},
+       angles_are_as_promised},
       {"HonoursIgnore", ignore, honours_ignore},
       {"TakesNothingWhereAllIsIgnored", ignore, takes_nothing_where_all_is_ignored},
       {"FindsNothingInTinyImages", any_size, finds_nothing_in_tiny_images},

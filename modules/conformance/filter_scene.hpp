@@ -41,7 +41,7 @@ class FilterScene {
     Eigen::Vector3d position;  // at frame 0
     bool moves;
     std::uint8_t octave;
-    Descriptor descriptor;
+    Descriptor256 descriptor;
     MapPointId id;
   };
   Moment moment_at(std::uint64_t index);

@@ -14,13 +14,13 @@ namespace holdfast::conformance {
 namespace {
 
 const char* const header = "holdfast/interfaces/loop_detector.hpp";
-using Descriptors = std::vector<Descriptor>;
+using Descriptors = std::vector<Descriptor256>;
 
 /// What a place looks like on a visit: its own descriptors, each with a few bits of noise.
 Descriptors view(std::uint64_t place, std::uint64_t visit, int count = 300) {
   Random of_place(1000 + place), of_visit = Random(7).fork(place).fork(visit);
   Descriptors descriptors(static_cast<std::size_t>(count));
-  for (Descriptor& descriptor : descriptors) {
+  for (Descriptor256& descriptor : descriptors) {
     for (std::uint64_t& word : descriptor.words) word = of_place.next();
     for (int flip = 0; flip < 6; ++flip) {
       const std::uint32_t bit = of_visit.below(256);

@@ -22,11 +22,10 @@ struct KindOfModule {
   const char* kind;
   std::vector<Check> (*checks)();
 };
-constexpr KindOfModule kinds[] = {{"features", feature_extractor_checks},
-                                  {"segmenter", segmenter_checks},
-                                  {"filters", dynamic_filter_checks},
-                                  {"optimizer", optimizer_checks},
-                                  {"loop_detector", loop_detector_checks}};
+constexpr KindOfModule kinds[] = {{"features", feature_extractor_checks}, {"matcher", feature_matcher_checks},
+                                  {"segmenter", segmenter_checks},        {"filters", dynamic_filter_checks},
+                                  {"optimizer", optimizer_checks},        {"loop_detector", loop_detector_checks},
+                                  {"source", frame_source_checks},        {"observers", observer_checks}};
 
 std::vector<std::string> kind_names() {
   std::vector<std::string> names;

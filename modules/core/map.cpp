@@ -2,9 +2,10 @@
 #include "holdfast/core/map.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
-#include "holdfast/core/hamming.hpp"
+#include "holdfast/core/descriptor_distance.hpp"
 
 namespace holdfast {
 
@@ -71,26 +72,28 @@ void Map::update_point(MapPointId point_id) {
 
   // The descriptor with the smallest median distance to all others represents the point.
   const std::size_t count = point.observations.size();
-  std::vector<Descriptor> descriptors(count);
+  DescriptorBlock descriptors(keyframes_.at(point.observations[0].keyframe).frame.features.descriptors.type());
+  descriptors.reserve(count);
   std::vector<std::uint32_t> candidates(count);
   for (std::size_t i = 0; i < count; ++i) {
     const Observation& observation = point.observations[i];
-    descriptors[i] = keyframes_.at(observation.keyframe).frame.features.descriptors[observation.feature];
+    descriptors.append(keyframes_.at(observation.keyframe).frame.features.descriptors, observation.feature);
     candidates[i] = static_cast<std::uint32_t>(i);
   }
   std::size_t best = 0;
-  int best_median = 257;
-  std::vector<std::uint16_t> distances(count * count, 0), row(count);
+  float best_median = std::numeric_limits<float>::infinity();
+  std::vector<float> distances(count * count, 0.0F), row(count);
   for (std::size_t i = 0; i < count; ++i) {
-    std::uint16_t* of_this = &distances[i * count];
-    hamming_distances(descriptors[i], descriptors.data(), std::span(candidates).subspan(i + 1), of_this + i + 1);
+    float* of_this = &distances[i * count];
+    descriptor_distances(descriptors, i, descriptors, std::span(candidates).subspan(i + 1), of_this + i + 1);
     for (std::size_t j = 0; j < i; ++j) of_this[j] = distances[j * count + i];
     row.assign(of_this, of_this + count);
     const auto middle = row.begin() + static_cast<std::ptrdiff_t>((count - 1) / 2);
     std::nth_element(row.begin(), middle, row.end());
     if (*middle < best_median) best_median = *middle, best = i;
   }
-  point.descriptor = descriptors[best];
+  point.descriptor.clear();
+  point.descriptor.append(descriptors, best);
 }
 
 void Map::update_point_geometry(MapPointId point_id) {
@@ -108,6 +111,13 @@ void Map::update_point_geometry(MapPointId point_id) {
   const std::size_t feature = static_cast<std::size_t>(feature_of(point_id, point.reference_keyframe));
   const double distance = (reference.T_camera_world * point.position).norm();
   const ScalePyramid& pyramid = *reference.pyramid;
+  if (pyramid.levels() == 1) {
+    // Without octaves, a descriptor is expected to be recognised until its patch has half or twice the size.
+    constexpr float factor = 2.0F;
+    point.maximum_distance = static_cast<float>(distance) * factor;
+    point.minimum_distance = static_cast<float>(distance) / factor;
+    return;
+  }
   point.maximum_distance = static_cast<float>(distance) * pyramid.scale[reference.features.octave[feature]];
   point.minimum_distance = point.maximum_distance * pyramid.inverse_scale.back();
 }

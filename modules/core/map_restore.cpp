@@ -208,6 +208,7 @@ void Map::restore(MapContent content) {
   for (MapPoint& point : content.points) points_.emplace(std::move(point));
   next_sequence_ = content.next_sequence;
   sensor_ = content.sensor;
+  features_ = std::move(content.features);
   version_ = version + 1;
 }
 

@@ -3,69 +3,17 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <future>
-#include <iterator>
-#include <mutex>
 #include <opencv2/core/utility.hpp>
-#include <opencv2/core/utils/logger.hpp>
-#include <opencv2/dnn.hpp>
 #include <opencv2/imgproc.hpp>
-#include <optional>
-#include <span>
 #include <utility>
 
 #include "holdfast/core/error.hpp"
-#include "holdfast/inference/onnx_signature.hpp"
+#include "holdfast/inference/onnx_net.hpp"
 #include "holdfast/plugin/did_you_mean.hpp"
 
 namespace holdfast {
 
 namespace {
-
-/// OpenCV prints what it then throws; the message of the exception is enough. Several threads may want silence at the
-/// same time: the last one ends it.
-class QuietLibrary {
- public:
-  QuietLibrary() {
-    const std::lock_guard lock(mutex);
-    if (count++ == 0) before = cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-  }
-  ~QuietLibrary() {
-    const std::lock_guard lock(mutex);
-    if (--count == 0) cv::utils::logging::setLogLevel(before);
-  }
-  QuietLibrary(const QuietLibrary&) = delete;
-  QuietLibrary& operator=(const QuietLibrary&) = delete;
-
- private:
-  static inline std::mutex mutex;
-  static inline int count = 0;
-  static inline cv::utils::logging::LogLevel before = cv::utils::logging::LOG_LEVEL_WARNING;
-};
-
-std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error))
-    throw InputError({file.string()},
-                     std::string(std::filesystem::exists(file, error) ? "is not a file" : "is missing") +
-                         "; expected a network in ONNX format; correct `model`");
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError({file.string()}, "cannot be read; check its permissions");
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
-
-std::string one_line(std::string text) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text;
-}
-
-std::string names(const std::vector<OnnxTensor>& tensors) {
-  std::string text;
-  for (const OnnxTensor& tensor : tensors)
-    text += (text.empty() ? "'" : ", '") + tensor.name + "' (" + tensor.shape_text() + ")";
-  return text;
-}
 
 /// The size of the input, from the options and from what the model declares, which must agree.
 cv::Size input_size(const NetworkOptions& options, const OnnxSignature& signature) {
@@ -126,30 +74,17 @@ void require_three(const NetworkOptions& options) {
     if (!(value > 0.0)) fail("standard_deviation", "found " + std::to_string(value) + "; expected numbers above 0");
 }
 
-cv::dnn::Net load(const std::filesystem::path& model, std::span<const std::uint8_t> bytes) {
-  const QuietLibrary quiet;
-  try {
-    cv::dnn::Net net = cv::dnn::readNetFromONNX(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
-    net.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
-    return net;
-  } catch (const cv::Exception& error) {
-    throw InputError({model.string()}, "cannot be loaded by OpenCV " CV_VERSION " (" + one_line(error.err) +
-                                           "); expected layers that it knows; export with a lower opset, or simplify "
-                                           "the network");
-  }
-}
-
 }  // namespace
 
 struct Network::Parts {
+  explicit Parts(const NetworkOptions& given) : options(given), net({given.model, given.bytes, given.in_background}) {}
+
   NetworkOptions options;
   cv::Size size;
   std::string output;
-  cv::dnn::Net net;
-  std::future<cv::dnn::Net> loading;  ///< valid while the network is loaded in the background
+  OnnxNet net;
   cv::Mat resized, input;
-  bool has_run = false;
+  std::vector<cv::Mat> scores;
   std::array<std::array<float, 256>, 3> value;  ///< of a pixel's value, by channel of the network
 
   void fill_input(const cv::Mat& colour) {
@@ -183,35 +118,16 @@ struct Network::Parts {
   }
 
   cv::Mat forward() {
-    if (loading.valid()) net = loading.get();
-    std::optional<QuietLibrary> quiet;
-    if (!has_run) quiet.emplace();  // what does not fit shows in the first run
-    try {
-      net.setInput(input);
-      cv::Mat scores = net.forward(output);
-      if (scores.depth() != CV_32F) scores.convertTo(scores, CV_32F);
-      has_run = true;
-      return scores;
-    } catch (const cv::Exception& error) {
-      throw InputError({options.model.string()},
-                       "cannot be run on an input of " + input_text() + " (" + one_line(error.err) +
-                           "); expected a network for such an image; check width, height and layout");
-    }
+    net.set_input(input);
+    net.run({output}, scores, "expected a network for such an image; check width, height and layout");
+    return scores.front();
   }
 };
 
-Network::Network(const NetworkOptions& options) : parts_(std::make_unique<Parts>()) {
-  HOLDFAST_CHECK(!options.in_background || !options.bytes.empty(), "a file is not loaded in the background");
+Network::Network(const NetworkOptions& options) {
   require_three(options);
-  parts_->options = options;
-  const std::vector<std::uint8_t> file =
-      options.bytes.empty() ? read_bytes(options.model) : std::vector<std::uint8_t>();
-  const std::span<const std::uint8_t> bytes = options.bytes.empty() ? std::span(file) : options.bytes;
-  const OnnxSignature signature = read_onnx_signature(bytes, options.model);
-  if (signature.has_half_precision)
-    throw InputError({options.model.string()},
-                     "has float16 numbers, which OpenCV cannot read; expected float32; export the network without "
-                     "half precision");
+  parts_ = std::make_unique<Parts>(options);
+  const OnnxSignature& signature = parts_->net.signature();
   parts_->size = input_size(options, signature);
   parts_->output = chosen_output(options, signature);
   for (std::size_t channel = 0; channel < 3; ++channel)
@@ -219,10 +135,6 @@ Network::Network(const NetworkOptions& options) : parts_(std::make_unique<Parts>
       parts_->value[channel][value] = static_cast<float>(
           (static_cast<double>(value) * options.scale - options.mean[channel]) / options.standard_deviation[channel]);
   if (options.threads > 0) cv::setNumThreads(options.threads);
-  if (options.in_background)
-    parts_->loading = std::async(std::launch::async, [model = options.model, bytes] { return load(model, bytes); });
-  else
-    parts_->net = load(options.model, bytes);
   const int h = parts_->size.height, w = parts_->size.width;
   const int channels_first[] = {1, 3, h, w}, channels_last[] = {1, h, w, 3};
   parts_->input.create(4, options.channels_last ? channels_last : channels_first, CV_32F);

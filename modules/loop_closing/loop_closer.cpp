@@ -36,13 +36,14 @@ const char* loop_verdict_name(LoopVerdict verdict) {
 }
 
 LoopCloser::LoopCloser(const LoopClosingSettings& settings, const SharedMap& shared, LoopDetector& detector,
-                       Optimizer& optimizer, std::uint64_t seed)
+                       Optimizer& optimizer, std::uint64_t seed, const FeatureMatcher& matcher)
     : settings_(settings),
       map_(shared.map),
       map_mutex_(shared.mutex),
       surgery_(shared.surgery),
       detector_(detector),
       optimizer_(optimizer),
+      matcher_(matcher),
       seed_(seed),
       candidates_(settings) {}
 
@@ -76,7 +77,7 @@ std::optional<ClosedLoop> LoopCloser::process(KeyFrameId keyframe, StageTimes& t
 }
 
 std::vector<KeyFrameId> LoopCloser::find_candidates(KeyFrameId id) {
-  std::vector<Descriptor> descriptors;
+  DescriptorBlock descriptors;
   int ask_for = 0;
   std::uint64_t sequence = 0;
   {
@@ -119,7 +120,7 @@ std::optional<LoopMeasurement> LoopCloser::check(LoopTrial& trial) {
     place = copy_points_seen_by(map_, side);
   }
   const CheckedPlace checked =
-      check_place(settings_, optimizer_, *frame, solid, place, Random(seed_).fork(sequence).next());
+      check_place(settings_, matcher_, optimizer_, *frame, solid, place, Random(seed_).fork(sequence).next());
   trial.verdict = checked.verdict;
   trial.matches = checked.matches;
   trial.aligned = checked.aligned;
@@ -140,13 +141,13 @@ std::optional<LoopMeasurement> LoopCloser::check(LoopTrial& trial) {
   const bool scale_is_plausible = std::abs(std::log(checked.scale)) <= std::log(settings_.largest_scale_drift);
   if (trial.correction.metres > believed.metres || trial.correction.degrees > believed.degrees || !scale_is_plausible)
     trial.verdict = LoopVerdict::implausible_correction;
-  else if (present_pose_is_confirmed(settings_, optimizer_, *frame, old_points, checked.T_camera_world))
+  else if (present_pose_is_confirmed(settings_, matcher_, optimizer_, *frame, old_points, checked.T_camera_world))
     trial.verdict = LoopVerdict::pose_confirmed;
   if (trial.verdict != LoopVerdict::closed) return std::nullopt;
 
   LoopMeasurement measurement{trial.keyframe,   trial.candidate, checked.T_camera_world, {},
                               solid.with_scale, checked.scale};
-  for (const matching::BinaryMatch& match : checked.inliers)
+  for (const matching::FeatureMatch& match : checked.inliers)
     measurement.points.emplace_back(place.block.ids[match.source], match.feature);
   return measurement;
 }
@@ -166,7 +167,7 @@ std::optional<ClosedLoop> LoopCloser::correct(LoopTrial& trial, const LoopMeasur
     loop.T_keyframe_candidate = measurement.T_camera_world * T_world_candidate;
     last_loop_ = map_.keyframe(trial.keyframe).sequence;
   }
-  LoopCorrection correction(settings_, map_, map_mutex_, optimizer_, measurement);
+  LoopCorrection correction(settings_, map_, map_mutex_, optimizer_, matcher_, measurement);
   if (!correction.run()) {
     trial.verdict = LoopVerdict::not_solved;
     return std::nullopt;

@@ -32,10 +32,11 @@ void LoopClosingSettings::describe(ParameterTable<LoopClosingSettings>& table) {
            "number of covisible keyframes of a candidate whose points take part in the geometric check")
       .range(0, 100);
   table
-      .add("match_distance", &S::match_distance,
-           "maximum Hamming distance between the descriptors of feature and point")
-      .unit("bits")
-      .range(1, 256);
+      .add(
+          "match_distance", &S::match_distance,
+          "maximum distance between the descriptors of feature and point, in the unit of the extractor; 0 = a fifth of "
+          "the way from its strict to its loose distance (orb: 60 bits)")
+      .range(0, 1e6);
   table
       .add("match_ratio", &S::match_ratio,
            "maximum ratio of nearest to second-nearest distance of the first matches; adjacent points count as one")

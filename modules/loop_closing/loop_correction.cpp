@@ -123,8 +123,8 @@ void LoopCorrection::fuse_into(KeyFrameId target) {
   PointBlock points;
   for (const MapPointId id : points_seen_by(map_, place_side_)) points.add(id, map_.point(id));
   const double radius = 0.5 * settings_.search_radius;
-  for (const matching::BinaryMatch& match :
-       find_points(points, frame, frame.T_camera_world, radius, settings_.match_distance).matches)
+  for (const matching::FeatureMatch& match :
+       find_points(matcher_, points, frame, frame.T_camera_world, radius, settings_.match_distance).matches)
     fuse(points.ids[match.source], target, match.feature);
 }
 

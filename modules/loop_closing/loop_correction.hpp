@@ -27,8 +27,8 @@ struct LoopMeasurement {
 class LoopCorrection {
  public:
   LoopCorrection(const LoopClosingSettings& settings, Map& map, MapMutex& map_mutex, Optimizer& optimizer,
-                 const LoopMeasurement& loop)
-      : settings_(settings), map_(map), map_mutex_(map_mutex), optimizer_(optimizer), loop_(loop) {}
+                 const FeatureMatcher& matcher, const LoopMeasurement& loop)
+      : settings_(settings), map_(map), map_mutex_(map_mutex), optimizer_(optimizer), matcher_(matcher), loop_(loop) {}
 
   /// False when the pose graph could not be solved; the map is as before then.
   bool run();
@@ -46,6 +46,7 @@ class LoopCorrection {
   Map& map_;
   MapMutex& map_mutex_;
   Optimizer& optimizer_;
+  const FeatureMatcher& matcher_;
   const LoopMeasurement& loop_;
   std::vector<KeyFrameId> current_side_, place_side_;  // the keyframe and the candidate first
   std::vector<KeyFrameId> nodes_;

@@ -7,7 +7,6 @@
 
 #include "holdfast/core/median.hpp"
 #include "holdfast/geometry/alignment.hpp"
-#include "holdfast/matching/descriptor_matching.hpp"
 #include "holdfast/matching/frame_features.hpp"
 
 namespace holdfast {
@@ -16,26 +15,28 @@ namespace {
 /// Nearest point of the place for each feature; each point keeps its nearest feature. Only a point elsewhere is a rival
 /// in the ratio test: a place that was mapped twice is no reason to doubt a match. Match::source is the feature of the
 /// frame, Match::feature the point.
-std::vector<matching::BinaryMatch> match_descriptors(const LoopClosingSettings& settings, const Frame& frame,
-                                                     const SolidFeatures& solid, const PlacePoints& place) {
+std::vector<FeatureMatch> match_descriptors(const LoopClosingSettings& settings, const FeatureMatcher& matcher,
+                                            const Frame& frame, const SolidFeatures& solid, const PlacePoints& place) {
   constexpr double same_spot = 0.1;  // m
   std::vector<std::uint32_t> all(place.size());
   std::iota(all.begin(), all.end(), 0U);
   const auto is_elsewhere = [&](std::uint32_t nearest, std::uint32_t other) {
     return (place.positions[other] - place.positions[nearest]).squaredNorm() > same_spot * same_spot;
   };
-  matching::DescriptorMatcher<matching::BinaryDescriptors> matcher;
-  return matcher.match(
-      {frame.features.descriptors, solid.features}, {place.block.descriptors, all},
-      {.max_distance = static_cast<float>(settings.match_distance), .ratio = static_cast<float>(settings.match_ratio)},
-      is_elsewhere);
+  std::vector<FeatureMatch> matches;
+  matcher.match(side_of(frame, solid.features), {.descriptors = place.block.descriptors, .selection = all},
+                {.max_distance = match_distance(settings.match_distance, place.block.descriptors.type()),
+                 .ratio = static_cast<float>(settings.match_ratio),
+                 .is_rival = is_elsewhere},
+                matches);
+  return matches;
 }
 
 /// How many cells of a 4 by 4 grid over the image hold at least two of the features.
-int filled_cells(const Frame& frame, std::span<const matching::BinaryMatch> matches) {
+int filled_cells(const Frame& frame, std::span<const FeatureMatch> matches) {
   constexpr int side = 4;
   std::array<int, side * side> cells{};
-  for (const matching::BinaryMatch& match : matches) {
+  for (const FeatureMatch& match : matches) {
     const float x = frame.x[match.feature] / static_cast<float>(frame.camera->width);
     const float y = frame.y[match.feature] / static_cast<float>(frame.camera->height);
     ++cells[static_cast<std::size_t>(std::clamp(static_cast<int>(y * side), 0, side - 1) * side +
@@ -47,7 +48,7 @@ int filled_cells(const Frame& frame, std::span<const matching::BinaryMatch> matc
 /// Length at the place that is 1 around the keyframe: the median over the matches of the ratio of depths.
 double scale_of_place(const SolidFeatures& solid, const PlacePoints& place, const CheckedPlace& checked) {
   std::vector<double> ratios;
-  for (const matching::BinaryMatch& match : checked.inliers) {
+  for (const FeatureMatch& match : checked.inliers) {
     const double own = solid.in_camera[match.feature].z();
     const double there = (checked.T_camera_world * place.positions[match.source]).z();
     if (own > 0.0 && there > 0.0) ratios.push_back(there / own);
@@ -76,17 +77,17 @@ SolidFeatures solid_features(const Frame& frame, const Map& map) {
   return solid;
 }
 
-CheckedPlace check_place(const LoopClosingSettings& settings, Optimizer& optimizer, const Frame& frame,
-                         const SolidFeatures& solid, const PlacePoints& place, std::uint64_t seed) {
+CheckedPlace check_place(const LoopClosingSettings& settings, const FeatureMatcher& matcher, Optimizer& optimizer,
+                         const Frame& frame, const SolidFeatures& solid, const PlacePoints& place, std::uint64_t seed) {
   CheckedPlace result;
   if (place.size() == 0) return result;
-  const std::vector<matching::BinaryMatch> matches = match_descriptors(settings, frame, solid, place);
+  const std::vector<FeatureMatch> matches = match_descriptors(settings, matcher, frame, solid, place);
   result.matches = static_cast<int>(matches.size());
   if (result.matches < settings.minimum_aligned) return result;
 
   result.verdict = LoopVerdict::no_alignment;
   std::vector<Eigen::Vector3d> in_camera, in_world;
-  for (const matching::BinaryMatch& match : matches) {
+  for (const FeatureMatch& match : matches) {
     in_camera.push_back(solid.in_camera[match.source]);
     in_world.push_back(place.positions[match.feature]);
   }
@@ -105,7 +106,7 @@ CheckedPlace check_place(const LoopClosingSettings& settings, Optimizer& optimiz
   result.verdict = LoopVerdict::few_inliers;
   PointSearch search;
   for (const double radius : {2.0 * settings.search_radius, settings.search_radius}) {
-    search = find_points(place.block, frame, result.T_camera_world, radius, settings.match_distance);
+    search = find_points(matcher, place.block, frame, result.T_camera_world, radius, settings.match_distance);
     PoseProblem problem = pose_problem_of(place, frame, search.matches, result.T_camera_world);
     if (!optimizer.optimize_pose(problem).usable) return result;
     result.T_camera_world = problem.T_camera_world;

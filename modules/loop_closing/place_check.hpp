@@ -15,7 +15,7 @@ namespace holdfast {
 struct CheckedPlace {
   LoopVerdict verdict = LoopVerdict::few_matches;
   Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();  ///< of the keyframe, seen from the place's points
-  std::vector<matching::BinaryMatch> inliers;                        ///< points of the place, features of the keyframe
+  std::vector<matching::FeatureMatch> inliers;                       ///< points of the place, features of the keyframe
   int matches = 0, aligned = 0, expected = 0, cells = 0;             ///< as in LoopTrial
   double scale = 1.0;  ///< length at the place that is 1 around the keyframe; 1 where depth is measured
 };
@@ -37,7 +37,7 @@ SolidFeatures solid_features(const Frame& frame, const Map& map);
 /// over the image: accepted.
 ///
 /// Needs no lock while nobody changes the keyframe: it reads the frame's features and the copied points.
-CheckedPlace check_place(const LoopClosingSettings& settings, Optimizer& optimizer, const Frame& frame,
-                         const SolidFeatures& solid, const PlacePoints& place, std::uint64_t seed);
+CheckedPlace check_place(const LoopClosingSettings& settings, const FeatureMatcher& matcher, Optimizer& optimizer,
+                         const Frame& frame, const SolidFeatures& solid, const PlacePoints& place, std::uint64_t seed);
 
 }  // namespace holdfast

@@ -12,8 +12,12 @@ PlacePoints copy_points_seen_by(const Map& map, std::span<const KeyFrameId> keyf
   return points;
 }
 
-PointSearch find_points(const PointBlock& points, const Frame& frame, const Eigen::Isometry3d& T_camera_world,
-                        double radius, int max_distance) {
+float match_distance(double configured, const DescriptorType& type) {
+  return distance_limit(configured, type.distance_between(0.2F));
+}
+
+PointSearch find_points(const FeatureMatcher& matcher, const PointBlock& points, const Frame& frame,
+                        const Eigen::Isometry3d& T_camera_world, double radius, double max_distance) {
   // The scale of a place that was mapped from elsewhere is less certain than that of the local map.
   const matching::WindowSettings settings{
       .radius = static_cast<float>(radius), .frontal_radius = static_cast<float>(radius), .coarser_octaves = 1};
@@ -21,18 +25,17 @@ PointSearch find_points(const PointBlock& points, const Frame& frame, const Eige
   matching::SearchWindows windows;
   result.expected = matching::add_windows(
       frame, projection_into(frame, T_camera_world), points, settings, [](std::uint32_t) { return true; }, windows);
-  FrameSearch search;
-  result.matches =
-      search.match(frame, {windows, points.descriptors}, {.max_distance = static_cast<float>(max_distance)});
+  matcher.match_guided(frame, {windows, points.descriptors},
+                       {.max_distance = match_distance(max_distance, points.descriptors.type())}, {}, result.matches);
   return result;
 }
 
 PoseProblem pose_problem_of(const PlacePoints& points, const Frame& frame,
-                            std::span<const matching::BinaryMatch> matches, const Eigen::Isometry3d& T_camera_world) {
+                            std::span<const matching::FeatureMatch> matches, const Eigen::Isometry3d& T_camera_world) {
   PoseProblem problem;
   problem.camera = frame.camera.get();
   problem.T_camera_world = T_camera_world;
-  for (const matching::BinaryMatch& match : matches)
+  for (const matching::FeatureMatch& match : matches)
     add_observation(problem, frame, match.feature, points.positions[match.source]);
   return problem;
 }

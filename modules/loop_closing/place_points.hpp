@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "holdfast/core/map.hpp"
+#include "holdfast/interfaces/feature_matcher.hpp"
 #include "holdfast/interfaces/optimizer.hpp"
 #include "holdfast/matching/point_block.hpp"
 
@@ -29,18 +30,21 @@ PlacePoints copy_points_seen_by(const Map& map, std::span<const KeyFrameId> keyf
 
 /// Points of a place found in a frame.
 struct PointSearch {
-  std::vector<matching::BinaryMatch> matches;  ///< by feature; each feature and each point at most once
-  int expected = 0;                            ///< points that the frame should show
+  std::vector<matching::FeatureMatch> matches;  ///< by feature; each feature and each point at most once
+  int expected = 0;                             ///< points that the frame should show
 };
 
 /// Guided search: projects the points with T_camera_world and looks for the nearest descriptor within `radius` pixels
-/// (times the scale of the expected octave), at most `max_distance` bits away. Reads of the frame only what does not
-/// change once it is a keyframe.
-PointSearch find_points(const PointBlock& points, const Frame& frame, const Eigen::Isometry3d& T_camera_world,
-                        double radius, int max_distance);
+/// (times the scale of the expected octave), at most `max_distance` away; 0 = as LoopClosingSettings::match_distance.
+/// Reads of the frame only what does not change once it is a keyframe.
+PointSearch find_points(const FeatureMatcher& matcher, const PointBlock& points, const Frame& frame,
+                        const Eigen::Isometry3d& T_camera_world, double radius, double max_distance);
+
+/// LoopClosingSettings::match_distance, or what it means for these descriptors where it is 0.
+float match_distance(double configured, const DescriptorType& type);
 
 /// The pose problem of matched points and features.
 PoseProblem pose_problem_of(const PlacePoints& points, const Frame& frame,
-                            std::span<const matching::BinaryMatch> matches, const Eigen::Isometry3d& T_camera_world);
+                            std::span<const matching::FeatureMatch> matches, const Eigen::Isometry3d& T_camera_world);
 
 }  // namespace holdfast

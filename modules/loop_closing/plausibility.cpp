@@ -86,14 +86,16 @@ PlacePoints old_points_in_view(const LoopClosingSettings& settings, const Map& m
   return points;
 }
 
-bool present_pose_is_confirmed(const LoopClosingSettings& settings, Optimizer& optimizer, const Frame& frame,
-                               const PlacePoints& old_points, const Eigen::Isometry3d& T_camera_world_loop) {
+bool present_pose_is_confirmed(const LoopClosingSettings& settings, const FeatureMatcher& matcher, Optimizer& optimizer,
+                               const Frame& frame, const PlacePoints& old_points,
+                               const Eigen::Isometry3d& T_camera_world_loop) {
   // Where the loop moves the keyframe by little, its points and the old points in view are the same.
   constexpr double agreeing_metres = 0.05, agreeing_degrees = 2.0;
   Eigen::Isometry3d T_camera_world = frame.T_camera_world;
   int inliers = 0;
   for (const double radius : {3.0 * settings.search_radius, settings.search_radius}) {
-    const PointSearch search = find_points(old_points.block, frame, T_camera_world, radius, settings.match_distance);
+    const PointSearch search =
+        find_points(matcher, old_points.block, frame, T_camera_world, radius, settings.match_distance);
     PoseProblem problem = pose_problem_of(old_points, frame, search.matches, T_camera_world);
     const PoseSummary summary = optimizer.optimize_pose(problem);
     if (!summary.usable) return false;

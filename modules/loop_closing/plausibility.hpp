@@ -25,7 +25,8 @@ PlacePoints old_points_in_view(const LoopClosingSettings& settings, const Map& m
 
 /// Whether such points are found where the present pose expects them, and say something else than the loop does.
 /// Found: as many as make a place, after adjusting the pose to them.
-bool present_pose_is_confirmed(const LoopClosingSettings& settings, Optimizer& optimizer, const Frame& frame,
-                               const PlacePoints& old_points, const Eigen::Isometry3d& T_camera_world_loop);
+bool present_pose_is_confirmed(const LoopClosingSettings& settings, const FeatureMatcher& matcher, Optimizer& optimizer,
+                               const Frame& frame, const PlacePoints& old_points,
+                               const Eigen::Isometry3d& T_camera_world_loop);
 
 }  // namespace holdfast

@@ -39,6 +39,10 @@ class ContentReader {
       expect(!has_tables_);
       has_tables_ = true;
       content_.tables = read_tables(container_.payload());
+    } else if (type == descriptor_section) {
+      expect(has_tables_ && !has_descriptors_ && !has_keyframes_);
+      has_descriptors_ = true;
+      content_.map.features = read_map_features(container_.payload());
     } else if (type == keyframe_section) {
       expect(has_tables_ && !has_keyframes_);
       content_.map.keyframes = read_keyframes(container_.payload(), content_.tables, feature_counts_);
@@ -47,11 +51,11 @@ class ContentReader {
       expect(has_keyframes_ && features_read_ < feature_counts_.size());
       if (features_ == FeatureReading::all)
         read_features(container_.payload(), features_read_, feature_counts_[features_read_],
-                      content_.map.keyframes[features_read_].frame);
+                      content_.map.features.descriptors, content_.map.keyframes[features_read_].frame);
       ++features_read_;
     } else if (type == point_section) {
       expect(has_keyframes_ && !has_points_);
-      content_.map.points = read_points(container_.payload());
+      content_.map.points = read_points(container_.payload(), content_.map.features.descriptors);
       has_points_ = true;
     } else if (container_.required()) {
       container_.fail("found a section '" + type +
@@ -61,9 +65,9 @@ class ContentReader {
 
   void expect(bool right_place) const {
     if (!right_place)
-      fail("found section '" + container_.type() + "' where it does not belong; expected '" + camera_section + "', '" +
-           keyframe_section + "', one '" + feature_section + "' for each keyframe, '" + point_section +
-           "', in this order");
+      fail("found section '" + container_.type() + "' where it does not belong; expected '" + camera_section +
+           "', perhaps '" + descriptor_section + "', '" + keyframe_section + "', one '" + feature_section +
+           "' for each keyframe, '" + point_section + "', in this order");
   }
 
   void check_header() {
@@ -85,7 +89,7 @@ class ContentReader {
   FileContent content_;
   std::vector<std::uint32_t> feature_counts_;
   std::uint32_t features_read_ = 0;
-  bool has_tables_ = false, has_keyframes_ = false, has_points_ = false;
+  bool has_tables_ = false, has_descriptors_ = false, has_keyframes_ = false, has_points_ = false;
 };
 
 }  // namespace

@@ -73,6 +73,7 @@ MapInfo read_map_info(const std::filesystem::path& file) {
   info.made_by = container.header().library_version;
   info.next_sequence = container.header().next_sequence;
   info.sensor = content.map.sensor;
+  info.map_features = content.map.features;
   info.features = content.features;
   for (const auto& camera : content.tables.cameras) info.cameras.push_back(*camera);
   add_keyframes(content.map.keyframes, info);
@@ -85,6 +86,8 @@ std::string to_text(const MapInfo& info) {
   rows.emplace_back("file", info.file + ", " + size_text(info.file_size));
   rows.emplace_back("format", "version " + std::to_string(info.format_version) + ", made by Holdfast " + info.made_by);
   rows.emplace_back("sensor", sensor_name(info.sensor));
+  rows.emplace_back("features", (info.map_features.extractor.empty() ? "" : info.map_features.extractor + ", ") +
+                                    to_string(info.map_features.descriptors));
   for (const Camera& camera : info.cameras) rows.emplace_back("camera", camera_text(camera));
   rows.emplace_back("keyframes", std::to_string(info.keyframes) + ", " + std::to_string(info.features) + " features, " +
                                      std::to_string(info.covisibility_edges) + " covisibility edges");
@@ -112,7 +115,9 @@ std::string to_json(const MapInfo& info) {
   json.quote(info.file) << ",\n  \"file_size\": " << info.file_size
                         << ",\n  \"format_version\": " << info.format_version << ",\n  \"made_by\": ";
   json.quote(info.made_by) << ",\n  \"sensor\": ";
-  json.quote(sensor_name(info.sensor)) << ",\n  \"cameras\": [";
+  json.quote(sensor_name(info.sensor)) << ",\n  \"extractor\": ";
+  json.quote(info.map_features.extractor) << ",\n  \"descriptors\": ";
+  json.quote(to_string(info.map_features.descriptors)) << ",\n  \"cameras\": [";
   json.list(info.cameras, ",\n    ") << "],\n  \"keyframes\": " << info.keyframes
                                      << ",\n  \"features\": " << info.features << ",\n  \"points\": " << info.points
                                      << ",\n  \"observations\": " << info.observations

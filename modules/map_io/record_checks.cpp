@@ -105,6 +105,14 @@ std::string trouble_of_features(const Frame& frame) {
     if (f.octave[i] >= frame.pyramid->levels())
       text = "feature " + std::to_string(i) + ": " +
              wrong("octave", f.octave[i], "less than " + std::to_string(frame.pyramid->levels()));
+  if (f.descriptors.type().kind != DescriptorKind::float32) return text;
+  const DescriptorView descriptors = f.descriptors;
+  for (std::size_t i = 0; i < count && text.empty(); ++i) {
+    const auto* numbers = reinterpret_cast<const float*>(descriptors.row(i));
+    for (std::uint32_t k = 0; k < descriptors.type().length && text.empty(); ++k)
+      if (!std::isfinite(numbers[k]))
+        text = "feature " + std::to_string(i) + ": " + wrong("number of the descriptor", numbers[k], "a finite number");
+  }
   return text;
 }
 

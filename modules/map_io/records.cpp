@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstring>
+#include <span>
 
 namespace holdfast::map_io {
 
@@ -11,8 +14,9 @@ namespace {
 constexpr std::size_t bytes_per_camera = 2 + 4 + 4 + 11 * 8;
 constexpr std::size_t bytes_per_pyramid = 4 + 8;
 constexpr std::size_t bytes_per_keyframe = 8 + 8 + 8 + 12 * 8 + 7 * 4;
-constexpr std::size_t bytes_per_feature = 10 * 4 + 32 + 1;
-constexpr std::size_t bytes_per_point = 3 * 8 + 3 * 8 + 2 * 4 + 32 + 4 + 8 + 3 * 4 + 4;
+// Without descriptors.
+constexpr std::size_t bytes_per_feature = 10 * 4 + 1;
+constexpr std::size_t bytes_per_point = 3 * 8 + 3 * 8 + 2 * 4 + 4 + 8 + 3 * 4 + 4;
 constexpr std::size_t bytes_per_observation = 8;
 
 template <class Shared>
@@ -30,13 +34,52 @@ std::uint32_t position_of(const SharedTables& tables, const std::shared_ptr<cons
   });
 }
 
-void put(const Descriptor& descriptor, ByteWriter& writer) {
-  for (const std::uint64_t word : descriptor.words) writer.put(word);
+/// Binary descriptors are stored in whole units of memory, others number by number.
+std::size_t bytes_per_descriptor(const DescriptorType& type) {
+  return type.kind == DescriptorKind::binary ? DescriptorView::units_of(type) * sizeof(Descriptor256) : type.bytes();
 }
-Descriptor get_descriptor(ByteReader& reader) {
-  Descriptor descriptor;
-  for (std::uint64_t& word : descriptor.words) word = reader.get<std::uint64_t>();
-  return descriptor;
+
+void put(const DescriptorView& descriptors, ByteWriter& writer) {
+  for (std::size_t i = 0; i < descriptors.size(); ++i) {
+    const std::span<const std::byte> bytes = descriptors.bytes(i);
+    switch (descriptors.type().kind) {
+      case DescriptorKind::binary:
+        for (std::size_t unit = 0; unit < descriptors.units(); ++unit)
+          for (const std::uint64_t word : descriptors.row(i)[unit].words) writer.put(word);
+        break;
+      case DescriptorKind::float32:
+        for (std::uint32_t k = 0; k < descriptors.type().length; ++k)
+          writer.put(reinterpret_cast<const float*>(bytes.data())[k]);
+        break;
+      case DescriptorKind::int8:
+        writer.put_bytes({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+        break;
+    }
+  }
+}
+
+/// Replaces `block` by `count` descriptors. The padding of binary ones must be zero, and numbers finite.
+void get_descriptors(ByteReader& reader, const DescriptorType& type, std::size_t count, DescriptorBlock& block) {
+  block.reset(type, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::span<std::byte> bytes = block.bytes(i);
+    if (type.kind == DescriptorKind::binary) {
+      const std::size_t words = 4 * block.view().units();
+      auto* to = reinterpret_cast<std::uint64_t*>(bytes.data());
+      for (std::size_t k = 0; k < words; ++k) to[k] = reader.get<std::uint64_t>();
+      for (std::size_t bit = type.length; bit < 64 * words; ++bit)
+        if (((to[bit / 64] >> (bit % 64)) & 1U) != 0)
+          reader.fail("descriptor " + std::to_string(i) + " has more than " + std::to_string(type.length) + " bits");
+    } else if (type.kind == DescriptorKind::float32) {
+      for (float& number : block.numbers(i)) {
+        number = reader.get<float>();
+        if (!std::isfinite(number)) reader.fail("descriptor " + std::to_string(i) + " has a number that is not finite");
+      }
+    } else {
+      const std::string_view numbers = reader.get_bytes(bytes.size());
+      std::memcpy(bytes.data(), numbers.data(), bytes.size());
+    }
+  }
 }
 
 void put(const Eigen::Vector3d& vector, ByteWriter& writer) {
@@ -230,8 +273,38 @@ std::vector<KeyFrame> read_keyframes(ByteReader reader, const SharedTables& tabl
   return keyframes;
 }
 
-std::uint64_t features_size(std::size_t features) {
-  return 8 + static_cast<std::uint64_t>(features) * bytes_per_feature;
+std::uint64_t features_size(std::size_t features, const DescriptorType& type) {
+  return 8 + static_cast<std::uint64_t>(features) * (bytes_per_feature + bytes_per_descriptor(type));
+}
+
+void write_map_features(const MapFeatures& features, ByteWriter& writer) {
+  writer.put(static_cast<std::uint16_t>(features.extractor.size()));
+  writer.put_bytes(features.extractor);
+  writer.put(static_cast<std::uint8_t>(features.descriptors.kind));
+  writer.put(static_cast<std::uint8_t>(features.descriptors.metric));
+  writer.put(features.descriptors.length);
+  writer.put(features.descriptors.strict_distance);
+  writer.put(features.descriptors.loose_distance);
+}
+
+MapFeatures read_map_features(ByteReader reader) {
+  MapFeatures features;
+  constexpr std::size_t longest_name = 255;
+  const std::size_t length = reader.get<std::uint16_t>();
+  if (length > longest_name) reader.fail("the name of the extractor has more than 255 bytes");
+  features.extractor = reader.get_bytes(length);
+  for (const char letter : features.extractor)
+    if (static_cast<unsigned char>(letter) < 0x20 || letter == 0x7F)
+      reader.fail("the name of the extractor holds a control character");
+  features.descriptors.kind = static_cast<DescriptorKind>(reader.get<std::uint8_t>());
+  features.descriptors.metric = static_cast<DescriptorMetric>(reader.get<std::uint8_t>());
+  features.descriptors.length = reader.get<std::uint32_t>();
+  features.descriptors.strict_distance = reader.get<float>();
+  features.descriptors.loose_distance = reader.get<float>();
+  if (const std::string trouble = trouble_of(features.descriptors); !trouble.empty())
+    reader.fail("descriptors: " + trouble);
+  reader.expect_end();
+  return features;
 }
 
 void write_features(const Frame& frame, std::uint32_t position, const DenseIndex& index, ByteWriter& writer) {
@@ -244,13 +317,14 @@ void write_features(const Frame& frame, std::uint32_t position, const DenseIndex
        {&f.x, &f.y, &frame.x, &frame.y, &frame.depth, &frame.right_x, &f.angle, &f.response, &frame.static_probability})
     writer.put_array(*values);
   for (const MapPointId point : frame.map_points) writer.put(index.of(point));
-  for (const Descriptor& descriptor : f.descriptors) put(descriptor, writer);
+  put(f.descriptors, writer);
   writer.put_array(f.octave);
 }
 
-void read_features(ByteReader reader, std::uint32_t position, std::uint32_t count, Frame& frame) {
+void read_features(ByteReader reader, std::uint32_t position, std::uint32_t count, const DescriptorType& type,
+                   Frame& frame) {
   const auto found_position = reader.get<std::uint32_t>();
-  const std::uint32_t found_count = reader.get_count(bytes_per_feature, "features");
+  const std::uint32_t found_count = reader.get_count(bytes_per_feature + bytes_per_descriptor(type), "features");
   if (found_position != position || found_count != count)
     reader.fail("found " + std::to_string(found_count) + " features of keyframe " + std::to_string(found_position) +
                 "; expected " + std::to_string(count) + " of keyframe " + std::to_string(position));
@@ -260,8 +334,7 @@ void read_features(ByteReader reader, std::uint32_t position, std::uint32_t coun
     reader.get_array(*values, count);
   frame.map_points.resize(count);
   for (MapPointId& point : frame.map_points) point = get_id<MapPointId>(reader);
-  f.descriptors.resize(count);
-  for (Descriptor& descriptor : f.descriptors) descriptor = get_descriptor(reader);
+  get_descriptors(reader, type, count, f.descriptors);
   reader.get_array(f.octave, count);
   reader.expect_end();
   refuse(reader, "keyframe", position, trouble_of_features(frame));
@@ -291,8 +364,8 @@ void write_points(const Map& map, const DenseIndex& index, ByteWriter& writer) {
   }
 }
 
-std::vector<MapPoint> read_points(ByteReader reader) {
-  const std::uint32_t count = reader.get_count(bytes_per_point, "points");
+std::vector<MapPoint> read_points(ByteReader reader, const DescriptorType& type) {
+  const std::uint32_t count = reader.get_count(bytes_per_point + bytes_per_descriptor(type), "points");
   std::vector<MapPoint> points;
   points.reserve(count);
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -301,7 +374,7 @@ std::vector<MapPoint> read_points(ByteReader reader) {
     point.viewing_direction = get_vector(reader);
     point.minimum_distance = reader.get<float>();
     point.maximum_distance = reader.get<float>();
-    point.descriptor = get_descriptor(reader);
+    get_descriptors(reader, type, 1, point.descriptor);
     point.reference_keyframe = get_id<KeyFrameId>(reader);
     point.created_at = reader.get<std::uint64_t>();
     point.visible_count = reader.get<std::uint32_t>();

@@ -15,6 +15,7 @@ namespace holdfast::map_io {
 
 /// Section types.
 inline constexpr const char* camera_section = "CAMS";
+inline constexpr const char* descriptor_section = "DESC";  ///< absent for ORB's 256 bits
 inline constexpr const char* keyframe_section = "KEYF";
 inline constexpr const char* feature_section = "FEAT";
 inline constexpr const char* point_section = "POIN";
@@ -57,7 +58,8 @@ void write_keyframes(const Map& map, const DenseIndex& index, const SharedTables
 void write_features(const Frame& frame, std::uint32_t position, const DenseIndex& index, ByteWriter& writer);
 void write_points(const Map& map, const DenseIndex& index, ByteWriter& writer);
 /// Length of the payload of write_features.
-std::uint64_t features_size(std::size_t features);
+std::uint64_t features_size(std::size_t features, const DescriptorType& type);
+void write_map_features(const MapFeatures& features, ByteWriter& writer);
 
 /// Reading throws InputError.
 SharedTables read_tables(ByteReader reader);
@@ -65,7 +67,9 @@ SharedTables read_tables(ByteReader reader);
 std::vector<KeyFrame> read_keyframes(ByteReader reader, const SharedTables& tables,
                                      std::vector<std::uint32_t>& feature_counts);
 /// Fills the features of keyframe `position`; `count` is that of the keyframe.
-void read_features(ByteReader reader, std::uint32_t position, std::uint32_t count, Frame& frame);
-std::vector<MapPoint> read_points(ByteReader reader);
+void read_features(ByteReader reader, std::uint32_t position, std::uint32_t count, const DescriptorType& type,
+                   Frame& frame);
+std::vector<MapPoint> read_points(ByteReader reader, const DescriptorType& type);
+MapFeatures read_map_features(ByteReader reader);
 
 }  // namespace holdfast::map_io

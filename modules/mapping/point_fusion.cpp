@@ -9,9 +9,6 @@ namespace holdfast {
 namespace {
 // The poses of keyframes are adjusted, so that a point must lie where it is predicted.
 constexpr matching::WindowSettings fusion_windows{.radius = 3.0F, .frontal_radius = 3.0F};
-constexpr matching::GuidedSearchSettings fusion_search{.max_distance = 50.0F,  // bits
-                                                       .position = matching::PositionGate::chi_square,
-                                                       .assignment = matching::FeatureAssignment::every_point};
 }  // namespace
 
 std::vector<KeyFrameId> LocalMapper::fusion_targets(KeyFrameId id) const {
@@ -36,7 +33,7 @@ struct LocalMapper::FusionBuffers {
   PointBlock points;
   matching::SearchWindows windows;
   std::vector<std::uint8_t> usable;
-  FrameSearch search;
+  std::vector<FeatureMatch> matches;
 };
 
 void LocalMapper::fuse_with_neighbours(KeyFrameId id) {
@@ -70,9 +67,12 @@ void LocalMapper::fuse_into(KeyFrameId target, const std::vector<MapPointId>& po
       frame, projection_into(frame, frame.T_camera_world), buffers.points, fusion_windows,
       [](std::uint32_t) { return true; }, buffers.windows);
   mark_static(frame, buffers.usable);
-  const auto& matches =
-      buffers.search.match(frame, {buffers.windows, buffers.points.descriptors}, fusion_search, buffers.usable);
-  for (const matching::BinaryMatch& match : matches)
+  matcher_.match_guided(frame, {buffers.windows, buffers.points.descriptors},
+                        {.max_distance = frame.features.descriptors.type().strict_distance,
+                         .position = matching::PositionGate::chi_square,
+                         .assignment = matching::FeatureAssignment::every_point},
+                        buffers.usable, buffers.matches);
+  for (const FeatureMatch& match : buffers.matches)
     if (add_or_fuse(map_, buffers.points.ids[match.source], target, match.feature, FusionSurvivor::more_observed) ==
         FusionOutcome::points_fused)
       ++counts_.points_fused;

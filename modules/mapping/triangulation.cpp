@@ -135,7 +135,8 @@ void LocalMapper::triangulate_with(KeyFrameId id, KeyFrameId neighbour_id) {
   if (candidates.empty()) return;
   const Eigen::Matrix3d fundamental =
       geometry::fundamental_matrix(*frame.camera, frame.T_camera_world, neighbour.T_camera_world);
-  matching::EpipolarSearch<Frame> search(frame, neighbour, fundamental);
+  matching::EpipolarSearch<Frame> search(frame, neighbour, fundamental,
+                                         {.max_distance = frame.features.descriptors.type().strict_distance});
   const Eigen::Isometry3d T_world_frame = frame.T_world_camera();
   for (const std::uint32_t feature : free_features(frame)) {
     const std::optional<std::uint32_t> other = search.find(feature, candidates);

@@ -15,11 +15,11 @@ void mark_static(const Frame& frame, std::vector<std::uint8_t>& usable) {
   for (std::size_t i = 0; i < usable.size(); ++i) usable[i] = is_static(frame, i) ? 1 : 0;
 }
 
-std::vector<Descriptor> static_descriptors(const Frame& frame) {
-  std::vector<Descriptor> descriptors;
+DescriptorBlock static_descriptors(const Frame& frame) {
+  DescriptorBlock descriptors(frame.features.descriptors.type());
   descriptors.reserve(frame.size());
   for (std::size_t i = 0; i < frame.size(); ++i)
-    if (is_static(frame, i)) descriptors.push_back(frame.features.descriptors[i]);
+    if (is_static(frame, i)) descriptors.append(frame.features.descriptors, i);
   return descriptors;
 }
 

@@ -20,7 +20,7 @@ void PointBlock::add(MapPointId id, const MapPoint& point) {
   direction_z.push_back(static_cast<float>(point.viewing_direction.z()));
   min_distance.push_back(point.minimum_distance);
   max_distance.push_back(point.maximum_distance);
-  descriptors.push_back(point.descriptor);
+  descriptors.append(point.descriptor, 0);
 }
 
 std::vector<MapPointId> points_seen_by(const Map& map, std::span<const KeyFrameId> keyframes) {

@@ -91,6 +91,7 @@ class ConfigurationReader {
 
   void choose_modules() {
     builder_.features(module<FeatureExtractor>(configuration_.features))
+        .matcher(module<FeatureMatcher>(configuration_.matcher))
         .segmenter(module<Segmenter>(configuration_.segmenter))
         .optimizer(module<Optimizer>(configuration_.optimizer))
         .loop_detector(module<LoopDetector>(configuration_.loop_detector));

@@ -28,6 +28,7 @@ PipelineParts checked(PipelineParts parts) {
   HOLDFAST_CHECK(parts.features != nullptr && parts.optimizer != nullptr,
                  "features " << (parts.features != nullptr) << " optimizer " << (parts.optimizer != nullptr));
   if (parts.segmenter == nullptr) parts.segmenter = std::make_unique<NullSegmenter>();
+  if (parts.matcher == nullptr) parts.matcher = std::make_unique<NearestMatcher>();
   if (parts.loop_detector == nullptr) parts.loop_detector = std::make_unique<NullLoopDetector>();
   return parts;
 }
@@ -79,11 +80,13 @@ struct Pipeline::State {
         moving_world(moving_world_parts(parts), map),
         detector(*parts.loop_detector),
         tracker(parts.tracking, {parts.camera, *parts.features, *parts.optimizer, detector, moving_world, map,
-                                 parts.run.seed, stereo_parts(parts), parts.sensor != Sensor::mono}),
-        mapper(parts.mapping, parts.tracking.close_depth_factor, map, map_mutex, *parts.optimizer),
-        closer(parts.loop_closing, {map, map_mutex, surgery}, detector, *parts.optimizer, parts.run.seed),
+                                 parts.run.seed, stereo_parts(parts), parts.sensor != Sensor::mono, *parts.matcher}),
+        mapper(parts.mapping, parts.tracking.close_depth_factor, map, map_mutex, *parts.optimizer, *parts.matcher),
+        closer(parts.loop_closing, {map, map_mutex, surgery}, detector, *parts.optimizer, parts.run.seed,
+               *parts.matcher),
         adjustment(parts.loop_closing, {map, map_mutex, surgery}, *parts.optimizer) {
     map.set_sensor(parts.sensor);
+    map.set_features({parts.features_name, parts.features->descriptor_type()});
     map.set_evidence_limit(static_cast<float>(parts.evidence.limit));
     closer.set_full_adjustment(&adjustment);
     for (const KeyFrameId keyframe : map.keyframes_by_age())

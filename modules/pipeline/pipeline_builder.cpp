@@ -70,6 +70,10 @@ PipelineBuilder& PipelineBuilder::segmenter(ModuleOf<Segmenter> module) {
   segmenter_ = std::move(module);
   return *this;
 }
+PipelineBuilder& PipelineBuilder::matcher(ModuleOf<FeatureMatcher> module) {
+  matcher_ = std::move(module);
+  return *this;
+}
 PipelineBuilder& PipelineBuilder::loop_detector(ModuleOf<LoopDetector> module) {
   loop_detector_ = std::move(module);
   return *this;
@@ -207,7 +211,8 @@ void PipelineBuilder::check_filter(const ModuleOf<DynamicFilter>& module, const 
              "the filter '" + module.name + "' needs a segmentation, but the segmenter is 'none'; choose a segmenter");
 }
 
-/// A map can only be continued by the camera that made it: bundle adjustment knows one camera.
+/// A map can only be continued by the camera that made it, because bundle adjustment knows one camera, and by the
+/// extractor that made it, because others find other corners.
 void PipelineBuilder::check_map() const {
   if (parts_.map.keyframes().empty())
     throw InputError({map_name_}, "is a map without keyframes; expected one that a run has saved");
@@ -216,6 +221,20 @@ void PipelineBuilder::check_map() const {
                                       "', and the run has '" + sensor_name(parts_.sensor) +
                                       "'; expected the same sensor, because keyframes of another one fit neither its "
                                       "scale nor its adjustment");
+  const MapFeatures& there = parts_.map.features();
+  const DescriptorType here = parts_.features->descriptor_type();
+  const bool has_other_name =
+      !there.extractor.empty() && !parts_.features_name.empty() && there.extractor != parts_.features_name;
+  if (has_other_name || !there.descriptors.is_comparable(here)) {
+    const auto named = [](const std::string& name, const DescriptorType& type) {
+      return "'" + (name.empty() ? std::string("an extractor without a name") : name) + "' with descriptors of " +
+             to_string(type);
+    };
+    throw InputError({map_name_},
+                     "was made with the features " + named(there.extractor, there.descriptors) + ", and the run has " +
+                         named(parts_.features_name, here) +
+                         "; expected the same extractor, because features of another one cannot be matched");
+  }
   parts_.map.keyframes().for_each([&](KeyFrameId, const KeyFrame& keyframe) {
     if (have_other_numbers(*keyframe.frame.camera, parts_.camera))
       throw InputError({map_name_}, "was made with the camera '" + keyframe.frame.camera->name +
@@ -245,7 +264,9 @@ void PipelineBuilder::choose_sensor() {
 }
 
 void PipelineBuilder::make_modules() {
+  if (features_) parts_.features_name = features_->name;
   parts_.features = make_if_any(features_);
+  parts_.matcher = make_if_any(matcher_);
   parts_.segmenter = make_if_any(segmenter_);
   parts_.optimizer = make_if_any(optimizer_);
   parts_.loop_detector = make_if_any(loop_detector_);

@@ -63,6 +63,7 @@ py::dict to_dictionary(const Configuration& configuration) {
   all["segmenter"] = dictionary_of(configuration.segmenter);
   all["filters"] = dictionaries_of(configuration.filters);
   all["optimizer"] = dictionary_of(configuration.optimizer);
+  all["matcher"] = dictionary_of(configuration.matcher);
   all["loop_detector"] = dictionary_of(configuration.loop_detector);
   all["observers"] = dictionaries_of(configuration.observers);
   for (const auto& [section, values] : configuration.sections) all[py::str(section)] = py::cast(values);

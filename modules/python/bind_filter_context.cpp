@@ -2,6 +2,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <cstring>
 #include <limits>
 
 #include "arrays.hpp"
@@ -23,10 +24,27 @@ py::array_t<std::uint64_t> point_ids(const FeaturesView& view) {
   return array;
 }
 
-py::array_t<std::uint8_t> descriptors(const FeaturesView& view) {
-  const std::vector<Descriptor>& all = view.get().features.descriptors;
-  return py::array_t<std::uint8_t>({static_cast<py::ssize_t>(all.size()), py::ssize_t{32}},
-                                   reinterpret_cast<const std::uint8_t*>(all.data()));
+template <class Number>
+py::array descriptor_rows(const DescriptorView& all) {
+  const std::size_t columns = all.type().bytes() / sizeof(Number);
+  py::array_t<Number> array({static_cast<py::ssize_t>(all.size()), static_cast<py::ssize_t>(columns)});
+  for (std::size_t i = 0; i < all.size(); ++i)
+    std::memcpy(array.mutable_data(static_cast<py::ssize_t>(i)), all.row(i), all.type().bytes());
+  return std::move(array);
+}
+
+/// Bytes of binary descriptors, numbers of the others.
+py::array descriptors(const FeaturesView& view) {
+  const DescriptorView all = view.get().features.descriptors;
+  switch (all.type().kind) {
+    case DescriptorKind::float32:
+      return descriptor_rows<float>(all);
+    case DescriptorKind::int8:
+      return descriptor_rows<std::int8_t>(all);
+    case DescriptorKind::binary:
+      break;
+  }
+  return descriptor_rows<std::uint8_t>(all);
 }
 
 /// An array of the coarse view's cells as (rows, columns); None where there are none.

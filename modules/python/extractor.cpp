@@ -16,7 +16,46 @@ namespace py = pybind11;
 
 namespace {
 
-constexpr const char* descriptors_expected = "a numpy array of uint8 with shape (n, 32), 256 bits per feature";
+/// What an attribute of the class says, or `otherwise` where it is missing or None.
+template <class Value>
+Value attribute(const Instance& instance, const char* name, Value otherwise) {
+  if (!instance.has(name)) return otherwise;
+  const py::object value = instance.object().attr(name);
+  return value.is_none() ? otherwise : value.template cast<Value>();
+}
+
+DescriptorType read_descriptor_type(const Instance& instance) {
+  DescriptorType type;
+  const auto name = attribute<std::string>(instance, "descriptors", "binary");
+  const auto metric = attribute<std::string>(instance, "metric", name == "binary" ? "hamming" : "euclidean");
+  const auto choose = [&](const char* of, const std::string& found, auto& value, auto... choices) {
+    bool known = false;
+    for (const auto choice : {choices...})
+      if (found == to_string(choice)) value = choice, known = true;
+    std::string expected;
+    for (const auto choice : {choices...}) expected += (expected.empty() ? "" : ", ") + std::string(to_string(choice));
+    if (!known) instance.refuse(of, "is '" + found + "'", "one of " + expected);
+  };
+  using Kind = DescriptorKind;
+  using Metric = DescriptorMetric;
+  choose("descriptors", name, type.kind, Kind::binary, Kind::float32, Kind::int8);
+  choose("metric", metric, type.metric, Metric::hamming, Metric::euclidean, Metric::cosine);
+  type.length = static_cast<std::uint32_t>(attribute<int>(instance, "length", 256));
+  type.strict_distance = attribute<float>(instance, "strict_distance", type.strict_distance);
+  type.loose_distance = attribute<float>(instance, "loose_distance", type.loose_distance);
+  if (type.kind == Kind::binary && type.length % 8 != 0)
+    instance.refuse("length", "is " + std::to_string(type.length), "a multiple of 8 bits");
+  if (const std::string trouble = trouble_of(type); !trouble.empty())
+    instance.refuse("descriptors", "are impossible: " + trouble, "what holdfast.FeatureExtractor describes");
+  return type;
+}
+
+/// The arrays that fit a type: dtype, numbers per feature.
+std::string expected_arrays(const DescriptorType& type) {
+  const bool is_binary = type.kind == DescriptorKind::binary;
+  return "a numpy array of " + std::string(is_binary ? "uint8" : to_string(type.kind)) + " with shape (n, " +
+         std::to_string(is_binary ? type.bytes() : type.length) + "), " + to_string(type) + " per feature";
+}
 
 ScalePyramid read_pyramid(const Instance& instance) {
   const int levels = instance.has("levels") ? instance.object().attr("levels").cast<int>() : 1;
@@ -28,7 +67,10 @@ ScalePyramid read_pyramid(const Instance& instance) {
 
 class ExtractorOfPython final : public FeatureExtractor {
  public:
-  explicit ExtractorOfPython(Instance instance) : instance_(std::move(instance)), pyramid_(read_pyramid(instance_)) {}
+  explicit ExtractorOfPython(Instance instance)
+      : instance_(std::move(instance)), pyramid_(read_pyramid(instance_)), type_(read_descriptor_type(instance_)) {}
+
+  DescriptorType descriptor_type() const override { return type_; }
 
   const ScalePyramid& pyramid() const override { return pyramid_; }
   void extract(const cv::Mat& grey, const cv::Mat& ignore, Features& out) override {
@@ -70,23 +112,38 @@ class ExtractorOfPython final : public FeatureExtractor {
     out = std::move(found);
   }
   void read_descriptors(const py::object& object, std::size_t count, Features& found) const {
+    const std::string expected = expected_arrays(type_);
     if (!py::isinstance<py::array>(object))
-      instance_.refuse("extract", "returned descriptors of type " + type_name(object), descriptors_expected);
+      instance_.refuse("extract", "returned descriptors of type " + type_name(object), expected);
     const auto array = py::reinterpret_borrow<py::array>(object);
-    if (array.dtype().kind() != 'u' || array.itemsize() != 1 || array.ndim() != 2 ||
-        static_cast<std::size_t>(array.shape(0)) != count || array.shape(1) != 32)
+    const char kind = type_.kind == DescriptorKind::binary ? 'u' : type_.kind == DescriptorKind::int8 ? 'i' : 'f';
+    const std::size_t bytes_each = type_.bytes();
+    const std::size_t item = type_.kind == DescriptorKind::float32 ? sizeof(float) : 1;
+    if (array.dtype().kind() != kind || static_cast<std::size_t>(array.itemsize()) != item || array.ndim() != 2 ||
+        static_cast<std::size_t>(array.shape(0)) != count ||
+        static_cast<std::size_t>(array.shape(1)) * item != bytes_each)
       instance_.refuse("extract",
                        "returned descriptors of " + std::string(py::str(py::handle(array.dtype()))) + " with shape " +
                            std::string(py::str(array.attr("shape"))) + " for " + std::to_string(count) + " features",
-                       descriptors_expected);
-    const auto bytes = py::array_t<std::uint8_t, py::array::c_style | py::array::forcecast>::ensure(array);
-    if (!bytes) throw py::error_already_set();
-    found.descriptors.resize(count);
-    if (count > 0) std::memcpy(found.descriptors.data(), bytes.data(), count * sizeof(Descriptor));
+                       expected);
+    const auto rows = py::array::ensure(array, py::array::c_style);
+    if (!rows) throw py::error_already_set();
+    found.descriptors.reset(type_, count);
+    const auto* from = static_cast<const std::byte*>(rows.data());
+    for (std::size_t i = 0; i < count; ++i)
+      std::memcpy(found.descriptors.bytes(i).data(), from + i * bytes_each, bytes_each);
+    if (type_.kind != DescriptorKind::float32) return;
+    for (std::size_t i = 0; i < count; ++i)
+      for (const float number : found.descriptors.numbers(i))
+        if (!std::isfinite(number))
+          instance_.refuse("extract",
+                           "returned a descriptor with a number that is not finite for feature " + std::to_string(i),
+                           "finite numbers");
   }
 
   Instance instance_;
   ScalePyramid pyramid_;
+  DescriptorType type_;
 };
 
 }  // namespace

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <optional>
 
-#include "holdfast/matching/descriptor_matching.hpp"
-
 namespace holdfast {
 
 int FrameMatcher::match_previous(Frame& previous, float radius, Frame& frame) {
@@ -45,14 +43,16 @@ int FrameMatcher::search_previous(Frame& previous, float radius, Frame& frame, s
     windows_.add(static_cast<std::uint32_t>(i), {*pixel, window, lowest, highest});
   }
   mark_unmatched(frame, usable_);
-  const auto& matches = search_.match(frame, {windows_, previous.features.descriptors, previous.features.angle},
-                                      {.max_distance = static_cast<float>(settings_.loose_distance)}, usable_);
-  for (const matching::BinaryMatch& match : matches) {
+  const DescriptorType& type = frame.features.descriptors.type();
+  matcher_.match_guided(frame, {windows_, previous.features.descriptors, previous.features.angle},
+                        {.max_distance = distance_limit(settings_.loose_distance, type.loose_distance)}, usable_,
+                        matches_);
+  for (const FeatureMatch& match : matches_) {
     frame.map_points[match.feature] = previous.map_points[match.source];
     if (!previous.map_points[match.source].valid())
       odometry->push_back({match.feature, T_world_previous * previous.camera_point(match.source)});
   }
-  return static_cast<int>(matches.size());
+  return static_cast<int>(matches_.size());
 }
 
 int FrameMatcher::match_keyframe(const Frame& keyframe_frame, Frame& frame) {
@@ -64,14 +64,11 @@ int FrameMatcher::match_keyframe(const Frame& keyframe_frame, Frame& frame) {
   for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<std::uint32_t>(i);
 
   // Mutual nearest neighbours with a clear lead over the second: no prediction narrows the search here.
-  const matching::DescriptorMatchingSettings settings{
-      .max_distance = static_cast<float>(settings_.strict_distance), .ratio = 0.8F, .mutual = true};
-  matching::DescriptorMatcher<matching::BinaryDescriptors> matcher;
-  const auto& matches =
-      matcher.match({keyframe_frame.features.descriptors, known}, {frame.features.descriptors, all}, settings);
-  for (const matching::BinaryMatch& match : matches)
-    frame.map_points[match.feature] = keyframe_frame.map_points[match.source];
-  return static_cast<int>(matches.size());
+  const float strict = distance_limit(settings_.strict_distance, frame.features.descriptors.type().strict_distance);
+  matcher_.match(side_of(keyframe_frame, known), side_of(frame, all),
+                 {.max_distance = strict, .ratio = 0.8F, .mutual = true}, matches_);
+  for (const FeatureMatch& match : matches_) frame.map_points[match.feature] = keyframe_frame.map_points[match.source];
+  return static_cast<int>(matches_.size());
 }
 
 void FrameMatcher::match_local_map(float window, Frame& frame) {
@@ -79,11 +76,12 @@ void FrameMatcher::match_local_map(float window, Frame& frame) {
   windows_.clear();
   local_map_.project(frame, window, windows_);
   mark_unmatched(frame, usable_);
-  const matching::GuidedSearchSettings settings{.max_distance = static_cast<float>(settings_.loose_distance),
+  const float loose = distance_limit(settings_.loose_distance, frame.features.descriptors.type().loose_distance);
+  const matching::GuidedSearchSettings settings{.max_distance = loose,
                                                 .ratio = static_cast<float>(settings_.descriptor_ratio)};
   const PointBlock& points = local_map_.points();
-  for (const matching::BinaryMatch& match : search_.match(frame, {windows_, points.descriptors}, settings, usable_))
-    frame.map_points[match.feature] = points.ids[match.source];
+  matcher_.match_guided(frame, {windows_, points.descriptors}, settings, usable_, matches_);
+  for (const FeatureMatch& match : matches_) frame.map_points[match.feature] = points.ids[match.source];
 }
 
 }  // namespace holdfast

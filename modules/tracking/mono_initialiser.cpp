@@ -39,18 +39,18 @@ void MonoInitialiser::take_reference(const Frame& frame) {
 void MonoInitialiser::match(const Frame& frame, const std::vector<std::uint32_t>& features) {
   const Frame& reference = start_.reference;
   const std::vector<std::uint32_t> there = static_features(reference);
-  const matching::DescriptorMatchingSettings settings{.max_distance = static_cast<float>(settings_.strict_distance),
-                                                      .ratio = static_cast<float>(settings_.descriptor_ratio),
-                                                      .mutual = true};
-  matches_ = matcher_.match({reference.features.descriptors, there}, {frame.features.descriptors, features}, settings);
+  const float strict = distance_limit(settings_.strict_distance, frame.features.descriptors.type().strict_distance);
+  matcher_.match(side_of(reference, there), side_of(frame, features),
+                 {.max_distance = strict, .ratio = static_cast<float>(settings_.descriptor_ratio), .mutual = true},
+                 matches_);
   // While the map has not begun, the view changes by a part of the image only.
   constexpr float max_displacement = 0.3F;  // of the width
   const float reach = max_displacement * static_cast<float>(frame.camera->width);
-  std::erase_if(matches_, [&](const matching::BinaryMatch& match) {
+  std::erase_if(matches_, [&](const FeatureMatch& match) {
     return std::hypot(reference.x[match.source] - frame.x[match.feature],
                       reference.y[match.source] - frame.y[match.feature]) > reach;
   });
-  matching::keep_consistent_rotations(matches_, [&](const matching::BinaryMatch& match) {
+  matching::keep_consistent_rotations(matches_, [&](const FeatureMatch& match) {
     return reference.features.angle[match.source] - frame.features.angle[match.feature];
   });
 }
@@ -72,7 +72,7 @@ TrackingTrouble MonoInitialiser::add(Frame& frame) {
   }
   std::vector<geometry::PixelPair> pairs;
   std::vector<double> displacements;
-  for (const matching::BinaryMatch& match : matches_) {
+  for (const FeatureMatch& match : matches_) {
     pairs.push_back(pixel_pair(start_.reference, match.source, frame, match.feature));
     displacements.push_back((pairs.back().a - pairs.back().b).norm());
   }

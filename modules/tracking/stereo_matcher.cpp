@@ -8,7 +8,7 @@
 #include <limits>
 #include <numeric>
 
-#include "holdfast/core/hamming.hpp"
+#include "holdfast/core/descriptor_distance.hpp"
 #include "holdfast/core/median.hpp"
 
 namespace holdfast {
@@ -30,6 +30,9 @@ void StereoMatcher::sort_by_row(const Features& features, int rows) {
 void StereoMatcher::find_matches(const Frame& frame, const Features& right, float max_disparity) {
   const Features& left = frame.features;
   const int rows = static_cast<int>(row_begin_.size()) - 1;
+  const DescriptorView left_descriptors = left.descriptors, right_descriptors = right.descriptors;
+  const DescriptorDistances distances(left_descriptors.type());
+  const float max_distance = distance_limit(settings_.maximum_distance, left_descriptors.type().distance_between(0.5F));
   matches_.clear();
   for (std::size_t i = 0; i < left.size(); ++i) {
     const float tolerance = static_cast<float>(settings_.row_tolerance) * frame.pyramid->scale[left.octave[i]];
@@ -49,11 +52,11 @@ void StereoMatcher::find_matches(const Frame& frame, const Features& right, floa
     }
     if (candidates_.empty()) continue;
     distances_.resize(candidates_.size());
-    hamming_distances(left.descriptors[i], right.descriptors.data(), candidates_, distances_.data());
+    distances.of_candidates(left_descriptors.row(i), right_descriptors.row(0), candidates_, distances_.data());
     const auto nearest = std::min_element(distances_.begin(), distances_.end());
     const Match best{static_cast<std::uint32_t>(i), candidates_[static_cast<std::size_t>(nearest - distances_.begin())],
                      *nearest};
-    if (best.distance <= settings_.maximum_distance) matches_.push_back(best);
+    if (best.distance <= max_distance) matches_.push_back(best);
   }
 }
 

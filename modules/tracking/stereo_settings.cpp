@@ -14,9 +14,11 @@ void StereoSettings::describe(ParameterTable<StereoSettings>& table) {
       .range(0, 20)
       .unit("px");
   table
-      .add("maximum_distance", &S::maximum_distance,
-           "bits of 256 in which the descriptors of a feature in both images may differ")
-      .range(0, 256);
+      .add(
+          "maximum_distance", &S::maximum_distance,
+          "distance of the descriptors of a feature in both images, at most, in the unit of the extractor; 0 = halfway "
+          "between its strict and its loose distance (orb: 75 bits)")
+      .range(0, 1e6);
   table
       .add("patch_radius", &S::patch_radius,
            "half the width of the image patch by which the column in the right image is refined")

@@ -24,13 +24,13 @@ Tracker::Tracker(const TrackingSettings& settings, const TrackerParts& parts)
       moving_world_(parts.moving_world),
       map_(parts.map),
       builder_(parts.camera, parts.features, settings.depth_edge_ratio),
-      matcher_(settings, parts.map),
+      matcher_(settings, parts.map, parts.matcher),
       estimator_(parts.optimizer, parts.moving_world, parts.map),
       relocaliser_(settings, {parts.detector, parts.map, matcher_, estimator_, history_}, parts.seed),
       keyframe_policy_(settings),
       state_(parts.map.keyframes().empty() ? State::waiting : State::lost) {
   if (parts.stereo) builder_.use_stereo(*parts.stereo);
-  if (!parts.has_depth) mono_.emplace(settings, parts.optimizer, parts.seed);
+  if (!parts.has_depth) mono_.emplace(settings, parts.optimizer, parts.seed, parts.matcher);
 }
 
 void Tracker::begin(const SensorFrame& sensor_frame, FrameResult& result) {

@@ -33,12 +33,16 @@ void describe_poses(ParameterTable<S>& table) {
   table.add("local_map_window", &S::local_map_window, "factor of the search radius around projected map points")
       .range(0.5, 20);
   table.add("descriptor_ratio", &S::descriptor_ratio, "best to second best descriptor distance, at most").range(0.1, 1);
-  table.add("strict_distance", &S::strict_distance, "descriptor distance of a match without a prediction, at most")
-      .range(1, 256)
-      .unit("bits");
-  table.add("loose_distance", &S::loose_distance, "descriptor distance of a match near its prediction, at most")
-      .range(1, 256)
-      .unit("bits");
+  table
+      .add(
+          "strict_distance", &S::strict_distance,
+          "descriptor distance of a match without a prediction, at most, in the unit of the extractor (orb: bits); 0 = "
+          "as the extractor recommends (orb: 50)")
+      .range(0, 1e6);
+  table
+      .add("loose_distance", &S::loose_distance,
+           "descriptor distance of a match near its prediction, at most; 0 = as the extractor recommends (orb: 100)")
+      .range(0, 1e6);
   table.add("minimum_matches", &S::minimum_matches, "matches with the previous frame for a pose to be tried")
       .range(4, 10000);
   table

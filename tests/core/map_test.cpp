@@ -25,7 +25,7 @@ Frame frame_with(std::size_t features, double timestamp, const Eigen::Vector3d& 
   frame.map_points.assign(features, MapPointId());
   frame.static_probability.assign(features, 1.0F);
   Random random(static_cast<std::uint64_t>(timestamp * 1000) + 7);
-  for (Descriptor& descriptor : frame.features.descriptors)
+  for (Descriptor256& descriptor : frame.features.descriptors.of_256_bits())
     for (std::uint64_t& word : descriptor.words) word = random.next();
   frame.T_camera_world = Eigen::Isometry3d(Eigen::Translation3d(position)).inverse();
   return frame;

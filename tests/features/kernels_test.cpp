@@ -163,7 +163,7 @@ TEST(Kernels, MomentsAndDescriptorsAreTheSameAtEveryLevel) {
     const std::uint8_t* centre = image.ptr(24) + x;
     int expected_x = 0, expected_y = 0, found_x = 0, found_y = 0;
     scalar_kernels().moments(centre, static_cast<std::ptrdiff_t>(image.step), expected_x, expected_y);
-    Descriptor expected, found;
+    Descriptor256 expected, found;
     const std::int32_t* offsets = pattern.offsets(static_cast<float>(x) * 0.06F);
     scalar_kernels().describe(centre, offsets, expected);
     for (const SimdLevel level : test::simd_levels()) {

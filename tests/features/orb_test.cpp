@@ -9,7 +9,6 @@
 #include <numbers>
 
 #include "features/test_images.hpp"
-#include "holdfast/core/hamming.hpp"
 
 namespace holdfast {
 namespace {
@@ -51,7 +50,7 @@ Repeat repeat(const Features& a, const Features& b, const cv::Matx23d& transform
         nearest = distance, partner = j;
     if (partner == b.size()) continue;
     ++result.near;
-    result.described += hamming_distance(a.descriptors[i], b.descriptors[partner]) <= 50;
+    result.described += hamming_distance(a.descriptors.of_256_bits()[i], b.descriptors.of_256_bits()[partner]) <= 50;
     const double turn = std::remainder(b.angle[partner] - a.angle[i] - turned_by, 2 * std::numbers::pi);
     result.oriented += std::abs(turn) < 15 * std::numbers::pi / 180;
     if (a.octave[i] == 0) result.mean_distance += nearest, ++fine;
@@ -109,7 +108,7 @@ TEST(Orb, DescriptorsOfDifferentFeaturesDiffer) {
   for (std::size_t i = 0; i < features.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (std::hypot(features.x[i] - features.x[j], features.y[i] - features.y[j]) > 60)
-        sum += hamming_distance(features.descriptors[i], features.descriptors[j]), ++count;
+        sum += hamming_distance(features.descriptors.of_256_bits()[i], features.descriptors.of_256_bits()[j]), ++count;
   EXPECT_GT(sum / count, 100);
 }
 

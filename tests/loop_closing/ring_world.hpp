@@ -115,8 +115,8 @@ class RingWorld {
     std::uint64_t sequence = 0;
   };
 
-  Descriptor random_descriptor() {
-    Descriptor descriptor;
+  Descriptor256 random_descriptor() {
+    Descriptor256 descriptor;
     for (std::uint64_t& word : descriptor.words) word = random_.next();
     return descriptor;
   }
@@ -141,7 +141,7 @@ class RingWorld {
       frame.depth.push_back(static_cast<float>(camera_->fx * camera_->baseline / (frame.x.back() - right)));
       frame.right_x.push_back(static_cast<float>(right));
       frame.features.octave.push_back(static_cast<std::uint8_t>(octave));
-      Descriptor descriptor = descriptors_[i];
+      Descriptor256 descriptor = descriptors_[i];
       for (int flips = 0; flips < 8; ++flips) {
         const std::uint32_t bit = random_.below(256);
         descriptor.words[bit / 64] ^= std::uint64_t{1} << (bit % 64);
@@ -163,7 +163,7 @@ class RingWorld {
   std::shared_ptr<const ScalePyramid> pyramid_;
   Eigen::Isometry3d drift_;
   std::vector<Eigen::Vector3d> points_;
-  std::vector<Descriptor> descriptors_;
+  std::vector<Descriptor256> descriptors_;
   std::vector<std::size_t> shown_;  // of the last frame
   std::map<std::size_t, Known> latest_;
   std::map<KeyFrameId, Eigen::Isometry3d> truth_;

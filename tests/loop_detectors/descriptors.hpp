@@ -8,19 +8,19 @@
 
 namespace holdfast::test {
 
-inline Descriptor random_descriptor(Random& random) {
+inline Descriptor256 random_descriptor(Random& random) {
   return {{random.next(), random.next(), random.next(), random.next()}};
 }
 
-inline std::vector<Descriptor> random_descriptors(Random& random, int count) {
-  std::vector<Descriptor> descriptors;
+inline std::vector<Descriptor256> random_descriptors(Random& random, int count) {
+  std::vector<Descriptor256> descriptors;
   for (int i = 0; i < count; ++i) descriptors.push_back(random_descriptor(random));
   return descriptors;
 }
 
 /// With `flips` draws of a bit to flip; a bit drawn twice flips back.
-inline Descriptor disturbed(const Descriptor& original, int flips, Random& random) {
-  Descriptor descriptor = original;
+inline Descriptor256 disturbed(const Descriptor256& original, int flips, Random& random) {
+  Descriptor256 descriptor = original;
   for (int i = 0; i < flips; ++i) {
     const std::uint32_t bit = random.below(256);
     descriptor.words[bit / 64] ^= std::uint64_t{1} << (bit % 64);
@@ -29,10 +29,10 @@ inline Descriptor disturbed(const Descriptor& original, int flips, Random& rando
 }
 
 /// A place seen again: a share of its descriptors with flipped bits, the rest of something new.
-inline std::vector<Descriptor> seen_again(const std::vector<Descriptor>& place, double share, int flips,
+inline std::vector<Descriptor256> seen_again(const std::vector<Descriptor256>& place, double share, int flips,
                                           Random& random) {
-  std::vector<Descriptor> view;
-  for (const Descriptor& descriptor : place)
+  std::vector<Descriptor256> view;
+  for (const Descriptor256& descriptor : place)
     view.push_back(random.uniform() < share ? disturbed(descriptor, flips, random) : random_descriptor(random));
   return view;
 }

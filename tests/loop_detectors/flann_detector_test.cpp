@@ -18,7 +18,7 @@ namespace {
 using test::disturbed;
 using test::random_descriptors;
 using test::seen_again;
-using Descriptors = std::vector<Descriptor>;
+using Descriptors = std::vector<Descriptor256>;
 
 constexpr int size_of_keyframe = 100;
 
@@ -251,6 +251,58 @@ TEST(FlannDetector, IsFoundByItsNameInConfigurations) {
   const auto place = make_places(1)[0];
   detector->add(id(0), place);
   EXPECT_EQ(detector->query(place, 1).size(), 1U);
+}
+
+/// What a place of numbers looks like on a visit: its own descriptors, each with a little noise.
+DescriptorBlock numbers_of(const DescriptorType& type, std::uint64_t place, std::uint64_t visit) {
+  Random of_place(100 + place), of_visit = Random(9).fork(place).fork(visit);
+  DescriptorBlock block(type, 200);
+  for (std::size_t i = 0; i < block.size(); ++i) {
+    std::vector<double> numbers(type.length);
+    double squares = 0.0;
+    for (double& number : numbers) {
+      number = of_place.normal() + 0.1 * of_visit.normal();
+      squares += number * number;
+    }
+    for (std::size_t k = 0; k < numbers.size(); ++k)
+      if (type.kind == DescriptorKind::float32)
+        block.numbers(i)[k] = static_cast<float>(numbers[k] / std::sqrt(squares));
+      else
+        block.bytes(i)[k] = static_cast<std::byte>(std::lround(20.0 * numbers[k]));
+  }
+  return block;
+}
+
+TEST(FlannDetector, RecognisesPlacesByNumbersAsByBits) {
+  const std::vector<DescriptorType> types = {{DescriptorKind::float32, DescriptorMetric::cosine, 64, 0.1F, 0.3F},
+                                             {DescriptorKind::float32, DescriptorMetric::euclidean, 100, 0.5F, 0.8F},
+                                             {DescriptorKind::int8, DescriptorMetric::euclidean, 32, 50.0F, 80.0F}};
+  for (const DescriptorType& type : types) {
+    SCOPED_TRACE(to_string(type));
+    FlannDetector detector(FlannSettings{});
+    constexpr std::uint32_t places = 40;
+    for (std::uint32_t place = 0; place < places; ++place) detector.add(id(place), numbers_of(type, place, 0));
+    EXPECT_GT(detector.words(), 7000U) << "buckets were split";
+    for (std::uint32_t place = 0; place < places; ++place) {
+      const auto matches = detector.query(numbers_of(type, place, 1), 2);
+      ASSERT_FALSE(matches.empty());
+      EXPECT_EQ(matches[0].keyframe, id(place));
+      EXPECT_GT(matches[0].score, 0.8);
+    }
+    detector.remove(id(3));
+    for (const PlaceMatch& match : detector.query(numbers_of(type, 3, 1), 10)) EXPECT_NE(match.keyframe, id(3));
+  }
+}
+
+TEST(FlannDetector, KeepsTypesApart) {
+  FlannDetector detector(FlannSettings{});
+  detector.add(id(0), DescriptorView());
+  EXPECT_TRUE(detector.query(numbers_of({DescriptorKind::int8, DescriptorMetric::euclidean, 8, 1, 2}, 1, 1), 1).empty())
+      << "nothing says the type yet";
+  detector.add(id(1), numbers_of({DescriptorKind::float32, DescriptorMetric::euclidean, 8, 1, 2}, 1, 1));
+  Random random(1);
+  EXPECT_THROW(detector.add(id(2), test::random_descriptors(random, 5)), CheckError);
+  EXPECT_THROW(detector.query(test::random_descriptors(random, 5), 3), CheckError);
 }
 
 }  // namespace

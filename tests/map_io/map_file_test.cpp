@@ -5,8 +5,11 @@
 #include <malloc.h>
 
 #include <cstring>
+#include <limits>
 #include <map>
 
+#include "holdfast/core/error.hpp"
+#include "holdfast/map_io/map_info.hpp"
 #include "map_io/map_files.hpp"
 
 namespace holdfast {
@@ -62,7 +65,7 @@ void expect_same_frame(const Frame& a, const Frame& b) {
   expect_same_bits(a.features.angle, b.features.angle);
   expect_same_bits(a.features.response, b.features.response);
   expect_same_bits(a.features.octave, b.features.octave);
-  expect_same_bits(a.features.descriptors, b.features.descriptors);
+  EXPECT_TRUE(a.features.descriptors == b.features.descriptors);
   expect_same_bits(a.x, b.x);
   expect_same_bits(a.y, b.y);
   expect_same_bits(a.depth, b.depth);
@@ -120,6 +123,35 @@ TEST_F(MapFile, HoldsEverything) {
   const Map again = read_map(path("map.hfm"));
   expect_same(map, again);
   EXPECT_FALSE(std::filesystem::exists(path("map.hfm.tmp")));
+}
+
+TEST_F(MapFile, HoldsDescriptorsOfEveryType) {
+  using Kind = DescriptorKind;
+  using Metric = DescriptorMetric;
+  const std::vector<MapFeatures> all = {{"opencv_orb", {}},
+                                        {"akaze", {Kind::binary, Metric::hamming, 488, 80, 140}},
+                                        {"sift", {Kind::float32, Metric::euclidean, 128, 200, 300}},
+                                        {"mine", {Kind::float32, Metric::cosine, 3, 0.1F, 0.2F}},
+                                        {"", {Kind::int8, Metric::euclidean, 61, 10, 20}}};
+  for (const MapFeatures& features : all) {
+    SCOPED_TRACE(to_string(features.descriptors));
+    const Map map = random_map(10, 30, 3, features);
+    write_map(path("map.hfm"), map);
+    const Map again = read_map(path("map.hfm"));
+    EXPECT_EQ(again.features(), features);
+    expect_same(map, again);
+    const MapInfo info = read_map_info(path("map.hfm"));
+    EXPECT_EQ(info.map_features, features);
+    EXPECT_NE(to_text(info).find(to_string(features.descriptors)), std::string::npos);
+  }
+}
+
+TEST_F(MapFile, DescriptorsThatAreNoNumbersAreNotWritten) {
+  Map map = random_map(5, 20, 4, {"sift", {DescriptorKind::float32, DescriptorMetric::euclidean, 8, 1, 2}});
+  const KeyFrameId keyframe = map.keyframes_by_age().front();
+  map.keyframe(keyframe).frame.features.descriptors.numbers(3)[2] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_THROW(write_map(path("map.hfm"), map), CheckError);
+  EXPECT_FALSE(std::filesystem::exists(path("map.hfm")));
 }
 
 TEST_F(MapFile, IdsAreGivenAnewInOrder) {

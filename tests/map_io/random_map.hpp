@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <memory>
 #include <vector>
@@ -14,7 +15,7 @@ namespace holdfast::test {
 
 /// A map made through its own functions, with keyframes and points removed again, so that slots have holes and are used
 /// twice; two cameras, two pyramids, a loop, evidence of all signs.
-inline Map random_map(int keyframes, std::size_t features, std::uint64_t seed) {
+inline Map random_map(int keyframes, std::size_t features, std::uint64_t seed, const MapFeatures& map_features = {}) {
   Random random(seed);
   const auto real = [&](double low, double high) { return random.uniform(low, high); };
   std::vector<std::shared_ptr<const Camera>> cameras = {std::make_shared<const Camera>(*find_camera("tum_fr1")),
@@ -22,6 +23,7 @@ inline Map random_map(int keyframes, std::size_t features, std::uint64_t seed) {
   const std::vector<std::shared_ptr<const ScalePyramid>> pyramids = {std::make_shared<const ScalePyramid>(8, 1.2),
                                                                      std::make_shared<const ScalePyramid>(4, 1.5)};
   Map map;
+  map.set_features(map_features);
   std::vector<KeyFrameId> ids;
   for (int k = 0; k < keyframes; ++k) {
     Frame frame;
@@ -29,13 +31,20 @@ inline Map random_map(int keyframes, std::size_t features, std::uint64_t seed) {
     frame.timestamp = 1305031102.175304 + 0.23 * k;
     frame.camera = cameras[k % 5 == 4 ? 1 : 0];
     frame.pyramid = pyramids[k % 7 == 6 ? 1 : 0];
-    frame.features.resize(features);
+    frame.features.resize(features, map_features.descriptors);
     for (std::size_t f = 0; f < features; ++f) {
       Features& all = frame.features;
       all.x[f] = static_cast<float>(real(0, 639)), all.y[f] = static_cast<float>(real(0, 479));
       all.angle[f] = static_cast<float>(real(0, 6.28)), all.response[f] = static_cast<float>(real(0, 200));
       all.octave[f] = static_cast<std::uint8_t>(random.below(static_cast<std::uint32_t>(frame.pyramid->levels())));
-      for (std::uint64_t& word : all.descriptors[f].words) word = random.next();
+      if (map_features.descriptors.kind == DescriptorKind::float32)
+        for (float& number : all.descriptors.numbers(f)) number = static_cast<float>(real(-1, 1));
+      else
+        for (std::size_t byte = 0; byte < all.descriptors.bytes(f).size(); byte += 8) {
+          const std::uint64_t word = random.next();
+          const std::span<std::byte> rest = all.descriptors.bytes(f).subspan(byte);
+          std::memcpy(rest.data(), &word, std::min<std::size_t>(8, rest.size()));
+        }
       frame.x.push_back(all.x[f] + 0.3F), frame.y.push_back(all.y[f] - 0.2F);
       const bool has_depth = f % 3 != 0;
       frame.depth.push_back(has_depth ? static_cast<float>(real(0.5, 5)) : 0.0F);

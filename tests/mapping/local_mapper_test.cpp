@@ -37,7 +37,8 @@ class LocalMapperTest : public testing::Test {
     std::size_t found = 0;
     for (std::size_t i = 0; i < frame.size(); ++i)
       map.points().for_each([&](MapPointId id, const MapPoint& point) {
-        if (hamming_distance(point.descriptor, frame.features.descriptors[i]) < 40 && found++ % n == 0)
+        if (hamming_distance(point.descriptor.of_256_bits()[0], frame.features.descriptors.of_256_bits()[i]) < 40 &&
+            found++ % n == 0)
           frame.map_points[i] = id;
       });
   }

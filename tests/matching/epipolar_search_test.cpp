@@ -52,22 +52,22 @@ TEST_F(EpipolarSearch, RefusesFeaturesOffTheLineByMoreThanTheirNoise) {
 }
 
 TEST_F(EpipolarSearch, RefusesDescriptorsBeyondTheLargestDistance) {
-  b.features.descriptors[45] = flipped(a.features.descriptors[45], 30);
+  b.features.descriptors.of_256_bits()[45] = flipped(a.features.descriptors.of_256_bits()[45], 30);
   EXPECT_EQ(find({.max_distance = 30}), 45U);
   EXPECT_EQ(find({.max_distance = 29}), std::nullopt);
 }
 
 TEST_F(EpipolarSearch, RefusesPatchesThatRepeatAlongTheLineButNotElsewhere) {
-  b.features.descriptors[45] = flipped(a.features.descriptors[45], 20);
-  b.features.descriptors[65] = flipped(a.features.descriptors[45], 21);  // the row below
+  b.features.descriptors.of_256_bits()[45] = flipped(a.features.descriptors.of_256_bits()[45], 20);
+  b.features.descriptors.of_256_bits()[65] = flipped(a.features.descriptors.of_256_bits()[45], 21);  // the row below
   EXPECT_EQ(find(), 45U);
-  b.features.descriptors[48] = flipped(a.features.descriptors[45], 24);  // the same row
+  b.features.descriptors.of_256_bits()[48] = flipped(a.features.descriptors.of_256_bits()[45], 24);  // the same row
   EXPECT_EQ(find(), std::nullopt);
   EXPECT_EQ(find({.ratio = 1.0F}), 45U);
 }
 
 TEST_F(EpipolarSearch, OfEquallyNearFeaturesTheFirstCandidateIsTaken) {
-  b.features.descriptors[48] = b.features.descriptors[45];
+  b.features.descriptors.of_256_bits()[48] = b.features.descriptors.of_256_bits()[45];
   EXPECT_EQ(find({.ratio = 1.0F}), 45U);
   std::swap(all[45], all[48]);
   EXPECT_EQ(find({.ratio = 1.0F}), 48U);

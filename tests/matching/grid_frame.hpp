@@ -22,7 +22,8 @@ inline Frame grid_frame(int count) {
     frame.x.push_back(20.0F + 30.0F * static_cast<float>(i % 20));
     frame.y.push_back(20.0F + 30.0F * static_cast<float>(i / 20));
     frame.features.angle[static_cast<std::size_t>(i)] = 1.0F;
-    for (std::uint64_t& word : frame.features.descriptors[static_cast<std::size_t>(i)].words) word = random.next();
+    for (std::uint64_t& word : frame.features.descriptors.of_256_bits()[static_cast<std::size_t>(i)].words)
+      word = random.next();
   }
   frame.depth.assign(frame.size(), 0.0F);
   frame.right_x.assign(frame.size(), no_column);
@@ -33,8 +34,8 @@ inline Frame grid_frame(int count) {
 }
 
 /// The descriptor with its first bits inverted, so that it is `bits` away.
-inline Descriptor flipped(const Descriptor& descriptor, int bits) {
-  Descriptor result = descriptor;
+inline Descriptor256 flipped(const Descriptor256& descriptor, int bits) {
+  Descriptor256 result = descriptor;
   for (int i = 0; i < bits; ++i) result.words[static_cast<std::size_t>(i) / 64] ^= std::uint64_t{1} << (i % 64);
   return result;
 }

@@ -9,8 +9,8 @@
 namespace holdfast {
 namespace {
 
-using matching::BinaryMatch;
 using matching::FeatureAssignment;
+using matching::FeatureMatch;
 using matching::GuidedSearchSettings;
 using matching::PositionGate;
 using matching::SearchWindows;
@@ -19,8 +19,9 @@ using test::grid_frame;
 using test::no_column;
 
 /// One search with buffers of its own.
-std::vector<BinaryMatch> search(const Frame& frame, const SearchWindows& windows, const std::vector<Descriptor>& points,
-                                const GuidedSearchSettings& settings = {}, std::vector<std::uint8_t> usable = {}) {
+std::vector<FeatureMatch> search(const Frame& frame, const SearchWindows& windows,
+                                 const std::vector<Descriptor256>& points, const GuidedSearchSettings& settings = {},
+                                 std::vector<std::uint8_t> usable = {}) {
   return FrameSearch().match(frame, {windows, points}, settings, usable);
 }
 
@@ -33,11 +34,12 @@ SearchWindows window_at(const Frame& frame, float dx, float dy, float right_x, f
 
 TEST(GuidedSearch, FindsTheFeatureInTheWindowAndNowhereElse) {
   const Frame frame = grid_frame(200);
-  const std::vector<Descriptor> points = {flipped(frame.features.descriptors[45], 20), frame.features.descriptors[7]};
+  const std::vector<Descriptor256> points = {flipped(frame.features.descriptors.of_256_bits()[45], 20),
+                                             frame.features.descriptors.of_256_bits()[7]};
   SearchWindows windows;
   windows.add(0, {{frame.x[45] + 3, frame.y[45] - 4, no_column}, 10, 0, 1});
   windows.add(1, {{frame.x[7] + 60, frame.y[7], no_column}, 20, 0, 1});  // looked for in the wrong place
-  const std::vector<BinaryMatch> matches = search(frame, windows, points);
+  const std::vector<FeatureMatch> matches = search(frame, windows, points);
   ASSERT_EQ(matches.size(), 1U);
   EXPECT_EQ(matches[0].feature, 45U);
   EXPECT_EQ(matches[0].source, 0U);
@@ -46,7 +48,7 @@ TEST(GuidedSearch, FindsTheFeatureInTheWindowAndNowhereElse) {
 
 TEST(GuidedSearch, RefusesDescriptorsBeyondTheLargestDistance) {
   const Frame frame = grid_frame(200);
-  const std::vector<Descriptor> points = {flipped(frame.features.descriptors[45], 60)};
+  const std::vector<Descriptor256> points = {flipped(frame.features.descriptors.of_256_bits()[45], 60)};
   const SearchWindows windows = window_at(frame, 0, 0, no_column, 10, 0, 1);
   EXPECT_EQ(search(frame, windows, points, {.max_distance = 60}).size(), 1U);
   EXPECT_EQ(search(frame, windows, points, {.max_distance = 59}).size(), 0U);
@@ -55,7 +57,7 @@ TEST(GuidedSearch, RefusesDescriptorsBeyondTheLargestDistance) {
 TEST(GuidedSearch, RefusesOctavesBelowAndAboveThoseOfTheWindow) {
   Frame frame = grid_frame(200);
   frame.features.octave[45] = 3;
-  const std::vector<Descriptor> points = {frame.features.descriptors[45]};
+  const std::vector<Descriptor256> points = {frame.features.descriptors.of_256_bits()[45]};
   EXPECT_EQ(search(frame, window_at(frame, 0, 0, no_column, 10, 2, 3), points).size(), 1U);
   EXPECT_EQ(search(frame, window_at(frame, 0, 0, no_column, 10, 3, 4), points).size(), 1U);
   EXPECT_EQ(search(frame, window_at(frame, 0, 0, no_column, 10, 4, 5), points).size(), 0U);
@@ -65,7 +67,7 @@ TEST(GuidedSearch, RefusesOctavesBelowAndAboveThoseOfTheWindow) {
 TEST(GuidedSearch, RefusesAColumnInTheRightImageOutsideTheWindow) {
   Frame frame = grid_frame(200);
   frame.right_x[45] = 100.0F;
-  const std::vector<Descriptor> points = {frame.features.descriptors[45]};
+  const std::vector<Descriptor256> points = {frame.features.descriptors.of_256_bits()[45]};
   EXPECT_EQ(search(frame, window_at(frame, 0, 0, 105.0F, 10, 0, 1), points).size(), 1U);
   EXPECT_EQ(search(frame, window_at(frame, 0, 0, 120.0F, 10, 0, 1), points).size(), 0U);
   EXPECT_EQ(search(frame, window_at(frame, 0, 0, no_column, 10, 0, 1), points).size(), 1U);
@@ -73,7 +75,7 @@ TEST(GuidedSearch, RefusesAColumnInTheRightImageOutsideTheWindow) {
 
 TEST(GuidedSearch, RefusesFeaturesThatAreNotUsable) {
   const Frame frame = grid_frame(200);
-  const std::vector<Descriptor> points = {frame.features.descriptors[45]};
+  const std::vector<Descriptor256> points = {frame.features.descriptors.of_256_bits()[45]};
   const SearchWindows windows = window_at(frame, 0, 0, no_column, 10, 0, 1);
   std::vector<std::uint8_t> usable(frame.size(), 1);
   EXPECT_EQ(search(frame, windows, points, {}, usable).size(), 1U);
@@ -83,7 +85,7 @@ TEST(GuidedSearch, RefusesFeaturesThatAreNotUsable) {
 
 TEST(GuidedSearch, TheChiSquareGateIsTheEllipseOfTheFeaturesNoise) {
   Frame frame = grid_frame(200);
-  const std::vector<Descriptor> points = {frame.features.descriptors[45]};
+  const std::vector<Descriptor256> points = {frame.features.descriptors.of_256_bits()[45]};
   const GuidedSearchSettings settings{.position = PositionGate::chi_square};
   const auto found = [&](float dx, float dy, float right_x) {
     return search(frame, window_at(frame, dx, dy, right_x, 10, 0, 7), points, settings).size();
@@ -105,24 +107,25 @@ TEST(GuidedSearch, TheChiSquareGateIsTheEllipseOfTheFeaturesNoise) {
 
 TEST(GuidedSearch, AFeatureGoesToTheNearestPointAndOfEqualOnesToTheFirst) {
   const Frame frame = grid_frame(100);
-  const std::vector<Descriptor> points = {flipped(frame.features.descriptors[10], 30),
-                                          flipped(frame.features.descriptors[10], 10),
-                                          flipped(frame.features.descriptors[10], 10)};
+  const std::vector<Descriptor256> points = {flipped(frame.features.descriptors.of_256_bits()[10], 30),
+                                             flipped(frame.features.descriptors.of_256_bits()[10], 10),
+                                             flipped(frame.features.descriptors.of_256_bits()[10], 10)};
   SearchWindows windows;
   for (std::uint32_t i = 0; i < 3; ++i) windows.add(i, {{frame.x[10], frame.y[10], no_column}, 5, 0, 0});
-  const std::vector<BinaryMatch> matches = search(frame, windows, points);
+  const std::vector<FeatureMatch> matches = search(frame, windows, points);
   ASSERT_EQ(matches.size(), 1U);
   EXPECT_EQ(matches[0].source, 1U);
 }
 
 TEST(GuidedSearch, EveryPointKeepsItsFeatureWhenDuplicatesAreLookedFor) {
   const Frame frame = grid_frame(100);
-  const std::vector<Descriptor> points = {frame.features.descriptors[11], flipped(frame.features.descriptors[10], 30),
-                                          flipped(frame.features.descriptors[10], 10)};
+  const std::vector<Descriptor256> points = {frame.features.descriptors.of_256_bits()[11],
+                                             flipped(frame.features.descriptors.of_256_bits()[10], 30),
+                                             flipped(frame.features.descriptors.of_256_bits()[10], 10)};
   SearchWindows windows;
   windows.add(0, {{frame.x[11], frame.y[11], no_column}, 5, 0, 0});
   for (std::uint32_t i = 1; i < 3; ++i) windows.add(i, {{frame.x[10], frame.y[10], no_column}, 5, 0, 0});
-  const std::vector<BinaryMatch> matches =
+  const std::vector<FeatureMatch> matches =
       search(frame, windows, points, {.assignment = FeatureAssignment::every_point});
   ASSERT_EQ(matches.size(), 3U);
   for (std::uint32_t i = 0; i < 3; ++i) EXPECT_EQ(matches[i].source, i);  // in the order of the windows
@@ -132,18 +135,18 @@ TEST(GuidedSearch, EveryPointKeepsItsFeatureWhenDuplicatesAreLookedFor) {
 
 TEST(GuidedSearch, OfEquallyNearFeaturesTheFirstOfTheGridIsTaken) {
   Frame frame = grid_frame(100);
-  frame.features.descriptors[11] = frame.features.descriptors[10];
+  frame.features.descriptors.of_256_bits()[11] = frame.features.descriptors.of_256_bits()[10];
   SearchWindows windows;
   windows.add(0, {{frame.x[10], frame.y[10], no_column}, 40, 0, 0});
-  const std::vector<BinaryMatch> matches = search(frame, windows, {frame.features.descriptors[10]});
+  const std::vector<FeatureMatch> matches = search(frame, windows, {frame.features.descriptors.of_256_bits()[10]});
   ASSERT_EQ(matches.size(), 1U);
   EXPECT_EQ(matches[0].feature, 10U);
 }
 
 TEST(GuidedSearch, AmbiguousMatchesAreRefusedByTheRatioOnOneOctaveOnly) {
   Frame frame = grid_frame(100);
-  frame.features.descriptors[11] = flipped(frame.features.descriptors[10], 4);
-  const std::vector<Descriptor> points = {flipped(frame.features.descriptors[10], 40)};
+  frame.features.descriptors.of_256_bits()[11] = flipped(frame.features.descriptors.of_256_bits()[10], 4);
+  const std::vector<Descriptor256> points = {flipped(frame.features.descriptors.of_256_bits()[10], 40)};
   SearchWindows windows;
   windows.add(0, {{frame.x[10], frame.y[10], no_column}, 40, 0, 1});
   EXPECT_EQ(search(frame, windows, points, {.ratio = 0.8F}).size(), 0U);
@@ -161,7 +164,7 @@ TEST(GuidedSearch, RotationsThatFewMatchesShareAreDropped) {
   FrameSearch search;
   const auto& matches = search.match(frame, {windows, frame.features.descriptors, angles}, {});
   EXPECT_EQ(matches.size(), 99U);
-  for (const BinaryMatch& match : matches) EXPECT_NE(match.feature, 17U);
+  for (const FeatureMatch& match : matches) EXPECT_NE(match.feature, 17U);
   EXPECT_EQ(search.match(frame, {windows, frame.features.descriptors}, {}).size(), 100U);
 }
 

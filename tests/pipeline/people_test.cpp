@@ -95,14 +95,14 @@ class Noting final : public Segmenter {
 /// Keeps what it is given and recognises nothing.
 class NotingDetector final : public LoopDetector {
  public:
-  using Database = std::map<KeyFrameId, std::vector<Descriptor>>;
+  using Database = std::map<KeyFrameId, std::vector<Descriptor256>>;
 
   explicit NotingDetector(Database& database) : database_(database) {}
-  void add(KeyFrameId keyframe, std::span<const Descriptor> descriptors) override {
-    database_[keyframe].assign(descriptors.begin(), descriptors.end());
+  void add(KeyFrameId keyframe, const DescriptorView& descriptors) override {
+    database_[keyframe].assign(descriptors.row(0), descriptors.row(0) + descriptors.size());
   }
   void remove(KeyFrameId keyframe) override { database_.erase(keyframe); }
-  std::vector<PlaceMatch> query(std::span<const Descriptor>, int) const override { return {}; }
+  std::vector<PlaceMatch> query(const DescriptorView&, int) const override { return {}; }
 
  private:
   Database& database_;
@@ -213,14 +213,15 @@ class PeopleTest : public testing::Test {
     for (const auto& [id, descriptors] : database) {
       ASSERT_NE(map.find_keyframe(id), nullptr);
       const Frame& frame = map.keyframe(id).frame;
-      EXPECT_TRUE(descriptors == static_descriptors(frame));
+      EXPECT_TRUE(DescriptorView(descriptors) == static_descriptors(frame).view());
       if (!segmented.contains(frame.index)) continue;
       for (std::size_t i = 0; i < frame.size(); ++i) {
         if (!people().shows_person(people().at(frame.index), frame.features.x[i], frame.features.y[i])) continue;
         ++judged;
-        on_people +=
-            std::find(descriptors.begin(), descriptors.end(), frame.features.descriptors[i]) != descriptors.end() ? 1
-                                                                                                                  : 0;
+        on_people += std::find(descriptors.begin(), descriptors.end(), frame.features.descriptors.of_256_bits()[i]) !=
+                             descriptors.end()
+                         ? 1
+                         : 0;
       }
     }
     EXPECT_GE(judged, 100);

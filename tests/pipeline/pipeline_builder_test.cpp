@@ -136,6 +136,34 @@ TEST(PipelineBuilder, CameraAndMapMustFit) {
   EXPECT_THROW(other.build(), InputError);
 }
 
+TEST(PipelineBuilder, AMapIsContinuedByItsOwnExtractorOnly) {
+  test::PointWorld world(find_camera("tum_fr1").value());
+  PipelineBuilder builder = builder_for(world);
+  Pipeline pipeline = builder.build();
+  run(pipeline, world, 10);
+  const Map map = pipeline.take_map();
+  const auto refusal = [&](const MapFeatures& features) -> std::string {
+    Map other = map;
+    other.set_features(features);
+    PipelineBuilder continued = builder_for(world);
+    continued.map(std::move(other)).loop_detector(std::make_unique<test::BruteForceDetector>());
+    try {
+      continued.build();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(refusal(map.features()), "");
+  EXPECT_THAT(refusal({"orb", {}}), testing::AllOf(HasSubstr("'orb' with descriptors of 256 bits (hamming)"),
+                                                   HasSubstr("'" + map.features().extractor + "'")));
+  DescriptorType numbers{DescriptorKind::float32, DescriptorMetric::cosine, 64, 0.1F, 0.2F};
+  EXPECT_THAT(refusal({map.features().extractor, numbers}), HasSubstr("64 float32 (cosine)"));
+  numbers = DescriptorType();
+  numbers.loose_distance = 120.0F;
+  EXPECT_EQ(refusal({map.features().extractor, numbers}), "") << "recommended distances may differ";
+}
+
 TEST(PipelineBuilder, TwoPipelinesInOneProcessShareNothing) {
   const auto alone = [](int frames) {
     test::PointWorld world(find_camera("tum_fr1").value());

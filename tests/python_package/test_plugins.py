@@ -333,6 +333,50 @@ def test_extractor_gives_features(config):
     assert result.coverage > 0.9 and result.evaluation.ate_rmse < 0.05
 
 
+def test_extractor_of_numbers(config):
+    cv2 = pytest.importorskip("cv2")
+
+    @holdfast.register("cv_sift")
+    class CvSift(holdfast.FeatureExtractor):
+        descriptors = "float32"
+        length = 128
+        strict_distance = 200.0
+        loose_distance = 300.0
+
+        def __init__(self):
+            self.sift = cv2.SIFT_create(600)
+
+        def extract(self, grey, ignore):
+            keypoints, descriptors = self.sift.detectAndCompute(grey, None)
+            return holdfast.Features([k.pt[0] for k in keypoints], [k.pt[1] for k in keypoints], descriptors)
+
+    @holdfast.register("look_at_descriptors")
+    class Look(holdfast.DynamicFilter):
+        seen = None
+
+        def apply(self, context, evidence):
+            Look.seen = context.features.descriptors
+
+    config["features"] = "cv_sift"
+    config["filters"] = ["look_at_descriptors"]
+    result = run(config)
+    assert result.coverage > 0.9 and result.evaluation.ate_rmse < 0.05
+    assert Look.seen.dtype == numpy.float32 and Look.seen.shape[1] == 128 and Look.seen.max() > 1
+
+
+@pytest.mark.parametrize("name, value", [("descriptors", "text"), ("metric", "manhattan"), ("length", 0)])
+def test_impossible_descriptors_are_named(config, name, value):
+    @holdfast.register("impossible")
+    class Impossible(holdfast.FeatureExtractor):
+        def extract(self, grey, ignore):
+            return None
+
+    setattr(Impossible, name, value)
+    config["features"] = "impossible"
+    with pytest.raises(holdfast.Error, match=name if name != "length" else "length is 0"):
+        run(config)
+
+
 @pytest.mark.parametrize(
     "features, message",
     [

@@ -14,19 +14,21 @@ namespace holdfast::test {
 /// Compares the query with all it knows: slow, and right by definition.
 class BruteForceDetector final : public LoopDetector {
  public:
-  void add(KeyFrameId keyframe, std::span<const Descriptor> descriptors) override {
-    places_.emplace_back(keyframe, std::vector<Descriptor>(descriptors.begin(), descriptors.end()));
+  void add(KeyFrameId keyframe, const DescriptorView& descriptors) override {
+    places_.emplace_back(keyframe,
+                         std::vector<Descriptor256>(descriptors.row(0), descriptors.row(0) + descriptors.size()));
   }
   void remove(KeyFrameId keyframe) override {
     std::erase_if(places_, [&](const auto& place) { return place.first == keyframe; });
   }
-  std::vector<PlaceMatch> query(std::span<const Descriptor> descriptors, int max_count) const override {
+  std::vector<PlaceMatch> query(const DescriptorView& descriptors, int max_count) const override {
     std::vector<PlaceMatch> matches;
     for (const auto& [keyframe, known] : places_) {
       int alike = 0;
       for (std::size_t i = 0; i < descriptors.size(); i += 3)
-        alike += std::any_of(known.begin(), known.end(),
-                             [&](const Descriptor& other) { return hamming_distance(descriptors[i], other) < 40; });
+        alike += std::any_of(known.begin(), known.end(), [&](const Descriptor256& other) {
+          return hamming_distance(*descriptors.row(i), other) < 40;
+        });
       matches.push_back({keyframe, static_cast<double>(alike) / static_cast<double>(descriptors.size())});
     }
     std::stable_sort(matches.begin(), matches.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
@@ -37,7 +39,7 @@ class BruteForceDetector final : public LoopDetector {
   void clear() { places_.clear(); }
 
  private:
-  std::vector<std::pair<KeyFrameId, std::vector<Descriptor>>> places_;
+  std::vector<std::pair<KeyFrameId, std::vector<Descriptor256>>> places_;
 };
 
 }  // namespace holdfast::test

@@ -23,7 +23,7 @@ class PointWorld {
       : camera_(std::move(camera)), random_(seed) {
     for (int i = 0; i < points; ++i) {
       points_.emplace_back(random_.uniform(-2.5, 2.5), random_.uniform(-1.8, 1.8), random_.uniform(1.2, 4.0));
-      Descriptor descriptor;
+      Descriptor256 descriptor;
       for (std::uint64_t& word : descriptor.words) word = random_.next();
       descriptors_.push_back(descriptor);
     }
@@ -70,14 +70,14 @@ class PointWorld {
     int octave;
   };
   const std::vector<Seen>& seen() const { return seen_; }
-  const Descriptor& descriptor(std::size_t point) const { return descriptors_[point]; }
+  const Descriptor256& descriptor(std::size_t point) const { return descriptors_[point]; }
   Random& random() { return random_; }
 
  private:
   Camera camera_;
   Random random_;
   std::vector<Eigen::Vector3d> points_;
-  std::vector<Descriptor> descriptors_;
+  std::vector<Descriptor256> descriptors_;
   std::vector<Seen> seen_;
 };
 
@@ -96,10 +96,10 @@ class PointExtractor final : public FeatureExtractor {
       out.angle[i] = 1.0F;
       out.response[i] = 1.0F;
       out.octave[i] = static_cast<std::uint8_t>(seen.octave);
-      out.descriptors[i] = world_.descriptor(seen.point);
+      out.descriptors.of_256_bits()[i] = world_.descriptor(seen.point);
       for (int flips = 0; flips < 8; ++flips) {
         const std::uint32_t bit = world_.random().below(256);
-        out.descriptors[i].words[bit / 64] ^= std::uint64_t{1} << (bit % 64);
+        out.descriptors.of_256_bits()[i].words[bit / 64] ^= std::uint64_t{1} << (bit % 64);
       }
     }
   }

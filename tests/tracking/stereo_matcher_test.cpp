@@ -46,7 +46,7 @@ class StereoMatcherTest : public ::testing::Test {
   static float disparity_at(float row) { return 8.0F + 0.043F * row; }
 
   void add(float x, float y) {
-    Descriptor descriptor;
+    Descriptor256 descriptor;
     for (std::uint64_t& word : descriptor.words) word = random_.next();
     // The keypoint in the right image is off by up to a pixel.
     const auto noise = [&] { return static_cast<float>(random_.uniform(-1.0, 1.0)); };
@@ -54,7 +54,7 @@ class StereoMatcherTest : public ::testing::Test {
     push(right_features_, x - disparity_at(y) + noise(), y + noise(), descriptor);
     frame_.x.push_back(x), frame_.y.push_back(y);
   }
-  static void push(Features& features, float x, float y, const Descriptor& descriptor) {
+  static void push(Features& features, float x, float y, const Descriptor256& descriptor) {
     features.x.push_back(x), features.y.push_back(y), features.angle.push_back(0), features.response.push_back(1);
     features.octave.push_back(0), features.descriptors.push_back(descriptor);
   }
@@ -85,7 +85,7 @@ TEST_F(StereoMatcherTest, TheDisparityIsThatOfTheImagesNotThatOfTheKeypoints) {
 }
 
 TEST_F(StereoMatcherTest, AFeatureWithoutItsLikeInTheRowHasNoDepth) {
-  right_features_.descriptors[5].words = {1, 2, 3, 4};
+  right_features_.descriptors.of_256_bits()[5].words = {1, 2, 3, 4};
   right_features_.y[6] += 5.0F;
   right_features_.octave[7] = 3;
   right_features_.x[8] += 40.0F;
@@ -99,9 +99,9 @@ TEST_F(StereoMatcherTest, AFeatureWithoutItsLikeInTheRowHasNoDepth) {
 TEST_F(StereoMatcherTest, ARightFeatureBelongsToTheLeftOneThatIsMoreAlike) {
   // Feature 1 has the descriptor of feature 0 but for one bit, and stands beside it.
   frame_.features.x[1] = frame_.x[1] = frame_.x[0] + 1.0F;
-  frame_.features.descriptors[1] = frame_.features.descriptors[0];
-  frame_.features.descriptors[1].words[0] ^= 1U;
-  right_features_.descriptors[1].words = {1, 2, 3, 4};
+  frame_.features.descriptors.of_256_bits()[1] = frame_.features.descriptors.of_256_bits()[0];
+  frame_.features.descriptors.of_256_bits()[1].words[0] ^= 1U;
+  right_features_.descriptors.of_256_bits()[1].words = {1, 2, 3, 4};
   match();
   EXPECT_TRUE(frame_.has_depth(0));
   EXPECT_FALSE(frame_.has_depth(1));

@@ -34,7 +34,7 @@ class SparseExtractor final : public FeatureExtractor {
     for (std::size_t i = 0; i < out.size(); ++i) {
       const std::size_t k = i * every;
       out.x[i] = all.x[k], out.y[i] = all.y[k], out.angle[i] = all.angle[k], out.response[i] = all.response[k];
-      out.octave[i] = all.octave[k], out.descriptors[i] = all.descriptors[k];
+      out.octave[i] = all.octave[k], out.descriptors.of_256_bits()[i] = all.descriptors.of_256_bits()[k];
     }
   }
   const ScalePyramid& pyramid() const override { return all_.pyramid(); }

@@ -54,7 +54,7 @@ struct ModuleChoice {
 /// depth, segmentation) is checked by PipelineBuilder, which knows the source.
 struct Configuration {
   std::string file;
-  ModuleChoice source, features, segmenter, optimizer, loop_detector;
+  ModuleChoice source, features, matcher, segmenter, optimizer, loop_detector;
   std::vector<ModuleChoice> filters;  ///< a chain
   std::vector<ModuleChoice> observers;
   std::optional<Camera> camera;  ///< empty: the source must know it

@@ -17,12 +17,18 @@ struct Features {
   std::vector<float> angle;          ///< orientation [rad, 0 to 2 pi), from the x axis towards the y axis
   std::vector<float> response;       ///< corner strength, larger is stronger; comparable within one image only
   std::vector<std::uint8_t> octave;  ///< pyramid level
-  std::vector<Descriptor> descriptors;
+  DescriptorBlock descriptors;       ///< of the type that the extractor names
 
   std::size_t size() const { return x.size(); }
   bool empty() const { return x.empty(); }
 
   void clear() { x.clear(), y.clear(), angle.clear(), response.clear(), octave.clear(), descriptors.clear(); }
+  /// Changes the number of features and the type of their descriptors.
+  void resize(std::size_t count, const DescriptorType& type) {
+    descriptors.reset(type, 0);
+    resize(count);
+  }
+  /// Changes the number of features; the type of the descriptors stays.
   void resize(std::size_t count) {
     x.resize(count), y.resize(count), angle.resize(count), response.resize(count), octave.resize(count),
         descriptors.resize(count);

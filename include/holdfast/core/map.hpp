@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "holdfast/core/keyframe.hpp"
+#include "holdfast/core/map_features.hpp"
 #include "holdfast/core/map_point.hpp"
 #include "holdfast/core/sensor.hpp"
 #include "holdfast/core/slot_map.hpp"
@@ -20,6 +21,7 @@ struct MapContent {
   std::vector<MapPoint> points;
   std::uint64_t next_sequence = 0;  ///< greater than every keyframe's sequence
   Sensor sensor = Sensor::rgbd;
+  MapFeatures features;
 };
 
 /// Keyframes and map points, referred to by ids. The map keeps all links between them consistent: a feature of a
@@ -103,6 +105,9 @@ class Map {
   /// The sensor that made the map.
   Sensor sensor() const { return sensor_; }
   void set_sensor(Sensor sensor) { sensor_ = sensor; }
+  /// Which features the keyframes have.
+  const MapFeatures& features() const { return features_; }
+  void set_features(MapFeatures features) { features_ = std::move(features); }
 
   /// Incremented by touch(); a holder of copied map data compares versions to detect that the copy is outdated.
   std::uint64_t version() const { return version_; }
@@ -133,6 +138,7 @@ class Map {
   std::map<KeyFrameId, Removed> removed_keyframes_;
   std::uint64_t next_sequence_ = 0;
   Sensor sensor_ = Sensor::rgbd;
+  MapFeatures features_;
   std::uint64_t version_ = 0;
   float evidence_limit_ = 4.0F;  // the default of EvidenceSettings::limit
 };

@@ -22,7 +22,8 @@ struct MapPoint {
   Eigen::Vector3d viewing_direction = Eigen::Vector3d::Zero();  ///< mean camera-to-point direction, unit, world
   float minimum_distance = 0.0F;  ///< distance range in which the descriptor can be matched [m]
   float maximum_distance = 0.0F;
-  Descriptor descriptor;                  ///< of the observation with the least median Hamming distance to all others
+  DescriptorBlock descriptor{DescriptorType(),
+                             1};          ///< one: that of the observation with the least median distance to all others
   std::vector<Observation> observations;  ///< in order of insertion
   KeyFrameId reference_keyframe;          ///< first keyframe that still observes it
   std::uint64_t created_at = 0;           ///< sequence number of the keyframe that created it

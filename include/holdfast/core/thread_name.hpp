@@ -9,8 +9,8 @@
 
 namespace holdfast {
 
-/// Names the calling thread for debuggers, profilers and `top -H`. Linux keeps the first 15 bytes; other systems keep no
-/// name.
+/// Names the calling thread for debuggers, profilers and `top -H`. Linux keeps the first 15 bytes; other systems keep
+/// no name.
 inline void name_this_thread([[maybe_unused]] const std::string& name) {
 #ifdef __linux__
   pthread_setname_np(pthread_self(), name.substr(0, 15).c_str());

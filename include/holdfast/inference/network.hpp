@@ -32,9 +32,7 @@ struct NetworkOptions {
   int threads = 0;  ///< number of threads of OpenCV for the whole process, set on construction; 0 = unchanged
 };
 
-/// A network with one colour image as input and one output, run on the CPU by OpenCV's DNN module. It is the only class
-/// that uses this module. The same image gives the same output on the same machine; OpenCV selects its kernels by
-/// processor, so that the last bits may differ on another processor. Used by one thread at a time.
+/// An OnnxNet with one colour image as input and one output. Used by one thread at a time.
 class Network {
  public:
   /// Loads the model, or begins to with in_background. Throws InputError, which states what was found and what was

@@ -30,8 +30,8 @@ std::string shape_text(std::span<const std::int64_t> shape);
 
 /// Parses the declarations of inputs and outputs of an ONNX file (a ModelProto in Protocol Buffers encoding), which the
 /// inference library does not provide. `file` names it in messages. Throws InputError for bytes that are not an ONNX
-/// model, and for models that OpenCV would read beyond its data or run without an input: a tensor with dimensions larger
-/// than its data, a layer that reads what nothing before it provides.
+/// model, and for models that OpenCV would read beyond its data or run without an input: a tensor with dimensions
+/// larger than its data, a layer that reads what nothing before it provides.
 OnnxSignature read_onnx_signature(std::span<const std::uint8_t> bytes, const std::filesystem::path& file);
 
 }  // namespace holdfast

@@ -3,6 +3,7 @@
 
 #include "holdfast/interfaces/dynamic_filter.hpp"
 #include "holdfast/interfaces/feature_extractor.hpp"
+#include "holdfast/interfaces/feature_matcher.hpp"
 #include "holdfast/interfaces/frame_source.hpp"
 #include "holdfast/interfaces/loop_detector.hpp"
 #include "holdfast/interfaces/observer.hpp"

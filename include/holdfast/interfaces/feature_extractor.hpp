@@ -19,8 +19,14 @@ class FeatureExtractor : public Module {
   /// pixels of the feature's octave. Neither image is written to. `out` is replaced. The same image gives the same
   /// features in the same order, on every call and at every SIMD level.
   virtual void extract(const cv::Mat& grey, const cv::Mat& ignore, Features& out) = 0;
-  /// The scale pyramid to which Features::octave refers; constant after construction.
+  /// The scale pyramid to which Features::octave refers; constant after construction. An extractor without octaves has
+  /// a pyramid of one level.
   virtual const ScalePyramid& pyramid() const = 0;
+  /// The type of all descriptors that extract() returns, with the distances that this extractor recommends; constant
+  /// after construction. Unless overridden: 256 bits, with the distances of ORB-SLAM2.
+  virtual DescriptorType descriptor_type() const { return {}; }
+  /// Whether Features::angle is the orientation of a feature, which turns with the image. Otherwise all angles are 0.
+  virtual bool has_angles() const { return true; }
 };
 
 }  // namespace holdfast

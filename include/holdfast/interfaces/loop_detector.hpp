@@ -2,7 +2,6 @@
 #pragma once
 
 #include <mutex>
-#include <span>
 #include <vector>
 
 #include "holdfast/core/descriptor.hpp"
@@ -24,21 +23,21 @@ class LoopDetector : public Module {
   static constexpr const char* kind = "loop_detector";
 
   /// Adds a keyframe with any number of descriptors. The keyframe must not be in the database yet.
-  virtual void add(KeyFrameId keyframe, std::span<const Descriptor> descriptors) = 0;
+  virtual void add(KeyFrameId keyframe, const DescriptorView& descriptors) = 0;
   /// Removes a keyframe from the database; an unknown id is ignored.
   virtual void remove(KeyFrameId keyframe) = 0;
   /// Returns up to `max_count` keyframes of the database by decreasing score, equal scores by increasing id, without
   /// duplicates. Scores are finite. The same calls in the same order give the same matches, and a query does not affect
   /// later results.
-  virtual std::vector<PlaceMatch> query(std::span<const Descriptor> descriptors, int max_count) const = 0;
+  virtual std::vector<PlaceMatch> query(const DescriptorView& descriptors, int max_count) const = 0;
 };
 
 /// Null object without matches: `loop_detector: none`, the default.
 class NullLoopDetector final : public LoopDetector {
  public:
-  void add(KeyFrameId, std::span<const Descriptor>) override {}
+  void add(KeyFrameId, const DescriptorView&) override {}
   void remove(KeyFrameId) override {}
-  std::vector<PlaceMatch> query(std::span<const Descriptor>, int) const override { return {}; }
+  std::vector<PlaceMatch> query(const DescriptorView&, int) const override { return {}; }
 };
 
 /// Serialises access to another detector with a mutex, so that tracking can query while loop closing adds.
@@ -47,7 +46,7 @@ class SharedLoopDetector final : public LoopDetector {
   /// The detector must outlive this object.
   explicit SharedLoopDetector(LoopDetector& detector) : detector_(detector) {}
 
-  void add(KeyFrameId keyframe, std::span<const Descriptor> descriptors) override {
+  void add(KeyFrameId keyframe, const DescriptorView& descriptors) override {
     const std::lock_guard lock(mutex_);
     detector_.add(keyframe, descriptors);
   }
@@ -55,7 +54,7 @@ class SharedLoopDetector final : public LoopDetector {
     const std::lock_guard lock(mutex_);
     detector_.remove(keyframe);
   }
-  std::vector<PlaceMatch> query(std::span<const Descriptor> descriptors, int max_count) const override {
+  std::vector<PlaceMatch> query(const DescriptorView& descriptors, int max_count) const override {
     const std::lock_guard lock(mutex_);
     return detector_.query(descriptors, max_count);
   }

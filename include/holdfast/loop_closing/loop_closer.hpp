@@ -9,6 +9,7 @@
 #include "holdfast/core/map.hpp"
 #include "holdfast/core/map_mutex.hpp"
 #include "holdfast/core/stage_times.hpp"
+#include "holdfast/interfaces/feature_matcher.hpp"
 #include "holdfast/interfaces/loop_detector.hpp"
 #include "holdfast/interfaces/optimizer.hpp"
 #include "holdfast/loop_closing/closed_loop.hpp"
@@ -42,10 +43,10 @@ struct LoopMeasurement;
 /// with their parents. No other thread may move or remove keyframes or points without holding the surgery mutex.
 class LoopCloser {
  public:
-  /// All references must outlive this object; detector and optimizer are used by process() and forget() only. Random
-  /// samples depend on the seed and the keyframe only.
+  /// All references must outlive this object; detector, optimizer and matcher are used by process() and forget() only.
+  /// Random samples depend on the seed and the keyframe only.
   LoopCloser(const LoopClosingSettings& settings, const SharedMap& shared, LoopDetector& detector, Optimizer& optimizer,
-             std::uint64_t seed);
+             std::uint64_t seed, const FeatureMatcher& matcher = nearest_matcher());
 
   /// Sets the full adjustment that a new loop invalidates; it is requested to stop before the map is corrected.
   void set_full_adjustment(FullAdjustment* adjustment) { adjustment_ = adjustment; }
@@ -72,6 +73,7 @@ class LoopCloser {
   std::mutex& surgery_;
   LoopDetector& detector_;
   Optimizer& optimizer_;
+  const FeatureMatcher& matcher_;
   std::uint64_t seed_;
   FullAdjustment* adjustment_ = nullptr;
   LoopCandidates candidates_;

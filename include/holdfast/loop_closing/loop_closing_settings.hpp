@@ -19,7 +19,9 @@ struct LoopClosingSettings {
   int consistent_keyframes = 3;
   /// Number of covisible keyframes of a candidate whose points take part in the geometric check.
   int neighbours = 10;
-  int match_distance = 60;  ///< maximum Hamming distance between the descriptors of feature and point [bits]
+  /// Maximum distance between the descriptors of feature and point; 0 = a fifth of the way from the extractor's strict
+  /// to its loose distance, 60 bits for ORB.
+  double match_distance = 0.0;
   /// Maximum ratio of nearest to second-nearest distance of the first matches; adjacent points count as one.
   double match_ratio = 0.8;
   double alignment_threshold = 0.08;  ///< inlier threshold of the rigid alignment [m]

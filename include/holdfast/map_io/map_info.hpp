@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "holdfast/core/camera.hpp"
+#include "holdfast/core/map_features.hpp"
 #include "holdfast/core/sensor.hpp"
 
 namespace holdfast {
@@ -19,6 +20,7 @@ struct MapInfo {
   std::uint32_t format_version = 0;
   std::string made_by;  ///< version of Holdfast that wrote the file
   Sensor sensor = Sensor::rgbd;
+  MapFeatures map_features;
   std::vector<Camera> cameras;
   std::uint64_t keyframes = 0;
   std::uint64_t features = 0;

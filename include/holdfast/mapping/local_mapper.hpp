@@ -11,6 +11,7 @@
 #include "holdfast/core/map.hpp"
 #include "holdfast/core/map_mutex.hpp"
 #include "holdfast/core/stage_times.hpp"
+#include "holdfast/interfaces/feature_matcher.hpp"
 #include "holdfast/interfaces/optimizer.hpp"
 #include "holdfast/mapping/mapping_counts.hpp"
 #include "holdfast/mapping/mapping_settings.hpp"
@@ -26,10 +27,15 @@ namespace holdfast {
 class LocalMapper {
  public:
   /// Depth up to `close_depth_factor` baselines makes a map point at once; farther points are triangulated
-  /// (TrackingSettings::close_depth_factor). Map, mutex and optimizer must outlive the mapper.
+  /// (TrackingSettings::close_depth_factor). Map, mutex, optimizer and matcher must outlive the mapper.
   LocalMapper(const MappingSettings& settings, double close_depth_factor, Map& map, MapMutex& mutex,
-              Optimizer& optimizer)
-      : settings_(settings), close_depth_factor_(close_depth_factor), map_(map), mutex_(mutex), optimizer_(optimizer) {}
+              Optimizer& optimizer, const FeatureMatcher& matcher = nearest_matcher())
+      : settings_(settings),
+        close_depth_factor_(close_depth_factor),
+        map_(map),
+        mutex_(mutex),
+        optimizer_(optimizer),
+        matcher_(matcher) {}
 
   /// Inserts a tracked frame into the map as a keyframe and creates points from its depth; with `points_wait`, refine()
   /// creates them later. Only features that are more likely static than moving create points. Takes little time; the
@@ -75,6 +81,7 @@ class LocalMapper {
   Map& map_;
   MapMutex& mutex_;
   Optimizer& optimizer_;
+  const FeatureMatcher& matcher_;
   std::atomic<bool> stop_{false};
   std::vector<MapPointId> recent_points_;
   MappingCounts counts_;

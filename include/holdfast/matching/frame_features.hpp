@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "holdfast/core/frame.hpp"
-#include "holdfast/matching/binary_descriptors.hpp"
+#include "holdfast/matching/descriptors.hpp"
 #include "holdfast/matching/guided_search.hpp"
 
 namespace holdfast {
@@ -15,7 +15,7 @@ namespace matching {
 /// Reads the features of a Frame. Positions are undistorted.
 template <>
 struct ViewTraits<Frame> {
-  using Descriptors = BinaryDescriptors;
+  using Descriptors = DescriptorView;
   static std::size_t size(const Frame& frame) { return frame.size(); }
   static float x(const Frame& frame, std::uint32_t feature) { return frame.x[feature]; }
   static float y(const Frame& frame, std::uint32_t feature) { return frame.y[feature]; }
@@ -60,7 +60,7 @@ inline bool is_static(const Frame& frame, std::size_t feature) { return is_stati
 void mark_static(const Frame& frame, std::vector<std::uint8_t>& usable);
 /// Copies the descriptors of the static features, in the order of the features. Place recognition uses no others (Zeng
 /// et al. 2023, section 3.3); entry i is not that of feature i when a feature before it moves.
-std::vector<Descriptor> static_descriptors(const Frame& frame);
+DescriptorBlock static_descriptors(const Frame& frame);
 /// Sets `usable` to 1 for each feature without a map point and to 0 for the others.
 void mark_unmatched(const Frame& frame, std::vector<std::uint8_t>& usable);
 

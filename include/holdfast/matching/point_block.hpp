@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "holdfast/core/map.hpp"
-#include "holdfast/matching/binary_descriptors.hpp"
+#include "holdfast/matching/descriptors.hpp"
 #include "holdfast/matching/traits.hpp"
 
 namespace holdfast {
@@ -19,7 +19,7 @@ struct PointBlock {
   std::vector<float> x, y, z;                                ///< world [m]
   std::vector<float> direction_x, direction_y, direction_z;  ///< unit mean viewing direction, world
   std::vector<float> min_distance, max_distance;             ///< from which the descriptor can be found again [m]
-  std::vector<Descriptor> descriptors;
+  DescriptorBlock descriptors;
 
   std::size_t size() const { return ids.size(); }
   void clear();

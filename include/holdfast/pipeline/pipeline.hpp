@@ -35,6 +35,8 @@ class StaticScene;
 struct PipelineParts {
   Camera camera;
   std::unique_ptr<FeatureExtractor> features;
+  std::string features_name;                ///< of the module; empty for an object without a name
+  std::unique_ptr<FeatureMatcher> matcher;  ///< nullptr = NearestMatcher
   Sensor sensor = Sensor::rgbd;
   std::unique_ptr<FeatureExtractor> right_features;  ///< of a stereo pair; may be nullptr, see StereoParts
   std::unique_ptr<Segmenter> segmenter;

@@ -90,6 +90,8 @@ class PipelineBuilder {
   PipelineBuilder& features(ModuleOf<FeatureExtractor> module);
   PipelineBuilder& optimizer(ModuleOf<Optimizer> module);
   PipelineBuilder& segmenter(ModuleOf<Segmenter> module);
+  /// Optional; without it `nearest`.
+  PipelineBuilder& matcher(ModuleOf<FeatureMatcher> module);
   PipelineBuilder& loop_detector(ModuleOf<LoopDetector> module);
   /// Adds to the chain, in the order of the calls.
   PipelineBuilder& filter(ModuleOf<DynamicFilter> module);
@@ -154,6 +156,7 @@ class PipelineBuilder {
   std::optional<ModuleOf<FeatureExtractor>> features_;
   std::optional<ModuleOf<Optimizer>> optimizer_;
   std::optional<ModuleOf<Segmenter>> segmenter_;
+  std::optional<ModuleOf<FeatureMatcher>> matcher_;
   std::optional<ModuleOf<LoopDetector>> loop_detector_;
   std::vector<ModuleOf<DynamicFilter>> filters_;
   std::vector<ModuleOf<Observer>> observers_;

@@ -13,7 +13,9 @@ struct FlannSettings {
   using Interface = LoopDetector;
   static constexpr const char* module = "flann";
 
-  int radius = 32;        ///< maximum Hamming distance between a descriptor and its visual word [bits]
+  /// Maximum distance between a descriptor and its visual word; 0 = 0.64 times the extractor's strict distance, 32 bits
+  /// for ORB.
+  double radius = 0.0;
   int descriptors = 700;  ///< maximum number of descriptors used per keyframe; time and memory are proportional to it
   /// Number of buckets of words that are searched per descriptor; more find more words at a higher cost.
   int probes = 3;

@@ -6,7 +6,7 @@
 
 #include "holdfast/core/frame.hpp"
 #include "holdfast/core/map.hpp"
-#include "holdfast/matching/frame_features.hpp"
+#include "holdfast/interfaces/feature_matcher.hpp"
 #include "holdfast/tracking/local_map.hpp"
 #include "holdfast/tracking/tracking_settings.hpp"
 
@@ -23,9 +23,9 @@ struct OdometryMatch {
 /// thread. The caller holds the map's lock.
 class FrameMatcher {
  public:
-  /// The map must outlive the matcher.
-  FrameMatcher(const TrackingSettings& settings, Map& map)
-      : settings_(settings), map_(map), local_map_(settings.local_keyframes) {}
+  /// The map and the matcher of features must outlive the object.
+  FrameMatcher(const TrackingSettings& settings, Map& map, const FeatureMatcher& matcher = nearest_matcher())
+      : settings_(settings), map_(map), matcher_(matcher), local_map_(settings.local_keyframes) {}
 
   /// Projects the map points of the previous frame by frame.T_camera_world and replaces the frame's matches by the
   /// features found within `radius` pixels, times the scale of the octave. Names of points that are gone are cleared in
@@ -48,8 +48,9 @@ class FrameMatcher {
 
   const TrackingSettings settings_;
   Map& map_;
+  const FeatureMatcher& matcher_;
   LocalMap local_map_;
-  FrameSearch search_;
+  std::vector<FeatureMatch> matches_;
   matching::SearchWindows windows_;
   std::vector<std::uint8_t> usable_;  // features that a search may match
 };

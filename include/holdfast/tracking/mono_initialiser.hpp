@@ -8,9 +8,8 @@
 #include "holdfast/core/frame_result.hpp"
 #include "holdfast/core/random.hpp"
 #include "holdfast/geometry/two_view_motion.hpp"
+#include "holdfast/interfaces/feature_matcher.hpp"
 #include "holdfast/interfaces/optimizer.hpp"
-#include "holdfast/matching/descriptor_matching.hpp"
-#include "holdfast/matching/frame_features.hpp"
 #include "holdfast/tracking/tracking_settings.hpp"
 
 namespace holdfast {
@@ -32,9 +31,10 @@ struct TwoViewStart {
 /// and the points are adjusted. A frame with too few matches becomes the new reference. One thread.
 class MonoInitialiser {
  public:
-  /// The optimizer must outlive the initialiser. Random samples come from the seed.
-  MonoInitialiser(const TrackingSettings& settings, Optimizer& optimizer, std::uint64_t seed)
-      : settings_(settings), optimizer_(optimizer), random_(Random(seed).fork(2)) {}
+  /// The optimizer and the matcher must outlive the initialiser. Random samples come from the seed.
+  MonoInitialiser(const TrackingSettings& settings, Optimizer& optimizer, std::uint64_t seed,
+                  const FeatureMatcher& matcher = nearest_matcher())
+      : settings_(settings), optimizer_(optimizer), matcher_(matcher), random_(Random(seed).fork(2)) {}
 
   /// Tries to begin the map with a frame whose features are weighted (Frame::static_probability). On success, the
   /// frame's pose is set, and start() holds the other view and the points; otherwise the trouble is returned.
@@ -52,11 +52,11 @@ class MonoInitialiser {
 
   TrackingSettings settings_;
   Optimizer& optimizer_;
+  const FeatureMatcher& matcher_;
   Random random_;
   bool has_reference_ = false;
   TwoViewStart start_;
-  matching::DescriptorMatcher<matching::BinaryDescriptors> matcher_;
-  std::vector<matching::BinaryMatch> matches_;  // source: of the reference, feature: of the frame
+  std::vector<FeatureMatch> matches_;  // source: of the reference, feature: of the frame
 };
 
 }  // namespace holdfast

@@ -27,7 +27,7 @@ class StereoMatcher {
  private:
   struct Match {
     std::uint32_t left, right;
-    int distance;  // of the descriptors [bits]
+    float distance;  // of the descriptors
   };
   void sort_by_row(const Features& features, int rows);
   void find_matches(const Frame& frame, const Features& right, float max_disparity);
@@ -39,7 +39,7 @@ class StereoMatcher {
   StereoSettings settings_;
   std::vector<std::uint32_t> row_begin_, by_row_;  // right features of each row, by counting sort
   std::vector<std::uint32_t> candidates_;
-  std::vector<std::uint16_t> distances_;
+  std::vector<float> distances_;
   std::vector<Match> matches_;
   std::vector<std::int32_t> match_of_right_;
   std::vector<float> disparity_, difference_, sorted_;

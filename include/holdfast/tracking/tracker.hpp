@@ -35,6 +35,7 @@ struct TrackerParts {
   std::uint64_t seed = 1;                  ///< of the random samples of relocalisation
   std::optional<StereoParts> stereo = {};  ///< depth comes from a right image
   bool has_depth = true;                   ///< false for one camera; stereo pairs have depth
+  const FeatureMatcher& matcher = nearest_matcher();
 };
 
 /// Where am I: estimates the pose of every frame against the map (Mur-Artal and Tardos 2017, section III). The motion

@@ -25,8 +25,8 @@ struct TrackingSettings {
   // Local map.
   double local_map_window = 3.0;    ///< factor on the search radius of LocalMap::project
   double descriptor_ratio = 0.8;    ///< best to second best distance, after Lowe 2004
-  int strict_distance = 50;         ///< [bits] of 256; a match without any prediction
-  int loose_distance = 100;         ///< [bits] of 256; a match near its prediction
+  double strict_distance = 0.0;     ///< of descriptors, of a match without any prediction; 0 = the extractor's
+  double loose_distance = 0.0;      ///< of descriptors, of a match near its prediction; 0 = the extractor's
   int minimum_inliers = 30;         ///< map points that must agree with a pose
   double maximum_deviation = 0.02;  ///< standard deviation of the position [m]
   double jump_distance = 0.06;      ///< [m] from constant velocity in 1/30 s: 54 m/s^2

@@ -133,7 +133,8 @@ class DynamicFilter(Module):
 class Features:
     """Features of one image; entry i of every array belongs to feature i.
 
-    `x`, `y` are pixels of the full image, `descriptors` uint8 (n, 32). `octave` is the pyramid level, `angle` the
+    `x`, `y` are pixels of the full image, `descriptors` the arrays that the extractor
+    names: uint8 (n, length / 8), float32 or int8 (n, length). `octave` is the pyramid level, `angle` the
     orientation [rad, 0 to 2 pi), `response` the strength; each may be left out for zeros.
     """
 
@@ -141,7 +142,7 @@ class Features:
         self,
         x: npt.ArrayLike,
         y: npt.ArrayLike,
-        descriptors: npt.NDArray[np.uint8],
+        descriptors: npt.NDArray[Any],
         octave: Optional[npt.ArrayLike] = None,
         angle: Optional[npt.ArrayLike] = None,
         response: Optional[npt.ArrayLike] = None,
@@ -154,15 +155,25 @@ class Features:
 
 
 class FeatureExtractor(Module):
-    """Detects and describes features with binary descriptors of 256 bits.
+    """Detects and describes features.
 
     `levels` and `factor` are those of the scale pyramid to which Features.octave refers: level i is smaller by factor
     ** i.
+
+    `descriptors` is their kind: "binary" (arrays of uint8 with length / 8 columns), "float32" or "int8" (length
+    columns). `metric` is "hamming" for binary ones, "euclidean" or "cosine" (float32 of unit length) for others.
+    `strict_distance` is the largest distance of a match without any prediction, `loose_distance` that of a match near
+    its prediction.
     """
 
     _kind = "features"
     levels: int = 1
     factor: float = 1.2
+    descriptors: str = "binary"
+    metric: Optional[str] = None
+    length: int = 256
+    strict_distance: float = 50.0
+    loose_distance: float = 100.0
 
     def extract(self, grey: npt.NDArray[np.uint8], ignore: Optional[npt.NDArray[np.uint8]]) -> Optional[Features]:
         """Features of an image (rows, columns); none where `ignore`, of the same shape or None, is not 0.

@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <numbers>
 
 #include <opencv2/features2d.hpp>
 
-#include "holdfast/core/error.hpp"
 #include "holdfast/plugin/parameter_table.hpp"
+#include "holdfast/keypoints/keypoints.hpp"
 
 namespace holdfast {
 
@@ -47,29 +46,16 @@ int OpencvOrb::usable_levels(const cv::Mat& grey) const {
 }
 
 void OpencvOrb::extract(const cv::Mat& grey, const cv::Mat& ignore, Features& out) {
-  HOLDFAST_CHECK(grey.empty() || grey.type() == CV_8UC1, "image type " << grey.type() << ", expected 8UC1");
-  HOLDFAST_CHECK(ignore.empty() || (ignore.type() == CV_8UC1 && ignore.size() == grey.size()),
-                 "mask " << ignore.cols << " x " << ignore.rows << " type " << ignore.type() << ", image " << grey.cols
-                         << " x " << grey.rows);
-  out.clear();
+  out.resize(0, DescriptorType());
   const int levels = usable_levels(grey);
   if (levels == 0) return;
   cv::ORB& orb = **orb_;
   if (orb.getNLevels() != levels) orb.setNLevels(levels);
-
-  mask_.release();
-  if (!ignore.empty()) cv::compare(ignore, 0, mask_, cv::CMP_EQ);
-  orb.detectAndCompute(grey, mask_, keypoints_, descriptors_);
-
-  out.resize(keypoints_.size());
+  if (!keypoints::find_keypoints(orb, grey, ignore, mask_, keypoints_, descriptors_)) return;
+  keypoints::copy_keypoints(keypoints_, out);
   for (std::size_t i = 0; i < keypoints_.size(); ++i) {
-    const cv::KeyPoint& keypoint = keypoints_[i];
-    out.x[i] = keypoint.pt.x;
-    out.y[i] = keypoint.pt.y;
-    out.angle[i] = keypoint.angle >= 360.0F ? 0.0F : keypoint.angle * (std::numbers::pi_v<float> / 180.0F);
-    out.response[i] = keypoint.response;
-    out.octave[i] = static_cast<std::uint8_t>(keypoint.octave);
-    std::memcpy(out.descriptors[i].words.data(), descriptors_.ptr(static_cast<int>(i)), sizeof(Descriptor));
+    out.octave[i] = static_cast<std::uint8_t>(keypoints_[i].octave);
+    std::memcpy(out.descriptors.bytes(i).data(), descriptors_.ptr(static_cast<int>(i)), sizeof(Descriptor256));
   }
 }
 

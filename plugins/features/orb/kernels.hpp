@@ -93,7 +93,7 @@ struct Kernels {
   /// to the right.
   void (*moments)(const std::uint8_t* centre, std::ptrdiff_t stride, int& moment_x, int& moment_y);
   /// Bit i is set where centre[offsets[i]] < centre[offsets[256 + i]]. Reads up to 3 bytes beyond an offset.
-  void (*describe)(const std::uint8_t* centre, const std::int32_t* offsets, Descriptor& descriptor);
+  void (*describe)(const std::uint8_t* centre, const std::int32_t* offsets, Descriptor256& descriptor);
 };
 
 /// The kernels of a level; a level that this build or processor lacks is a broken promise of the caller.

@@ -49,7 +49,7 @@ struct Simd {
 
 #include "kernels_vector.inl"
 
-HOLDFAST_TARGET void describe(const std::uint8_t* centre, const std::int32_t* offsets, Descriptor& descriptor) {
+HOLDFAST_TARGET void describe(const std::uint8_t* centre, const std::int32_t* offsets, Descriptor256& descriptor) {
   const int* base = reinterpret_cast<const int*>(centre);
   const __m256i low_byte = _mm256_set1_epi32(0xff);
   for (int word = 0; word < 4; ++word) {

@@ -92,7 +92,7 @@ void moments(const std::uint8_t* centre, std::ptrdiff_t stride, int& moment_x, i
   }
 }
 
-void describe(const std::uint8_t* centre, const std::int32_t* offsets, Descriptor& descriptor) {
+void describe(const std::uint8_t* centre, const std::int32_t* offsets, Descriptor256& descriptor) {
   for (int word = 0; word < 4; ++word) {
     std::uint64_t bits = 0;
     for (int i = 0; i < 64; ++i) {

@@ -119,7 +119,8 @@ void OrbExtractor::describe(Features& out) {
   const orb_plugin::Kernels& kernels = work_->kernels;
   std::size_t count = 0;
   for (int level = 0; level < pyramid.levels(); ++level) count += work_->corners[level].size();
-  out.resize(count);
+  out.resize(count, DescriptorType());
+  const std::span<Descriptor256> descriptors = out.descriptors.of_256_bits();
   if (count == 0) return;
 
   // All levels are blurred into one buffer of one stride, so that one table of offsets serves them all.
@@ -140,7 +141,7 @@ void OrbExtractor::describe(Features& out) {
       kernels.moments(image.at(corner.x, corner.y), image.stride, moment_x, moment_y);
       out.angle[i] = orb_plugin::direction(moment_x, moment_y);
       kernels.describe(work_->blurred.data() + corner.y * stride + corner.x, work_->pattern.offsets(out.angle[i]),
-                       out.descriptors[i]);
+                       descriptors[i]);
       orb_plugin::SubpixelOffset offset;
       if (settings_.subpixel) {
         std::array<std::uint8_t, 9> scores;

@@ -13,20 +13,21 @@
 #include <flann/algorithms/hierarchical_clustering_index.h>
 // clang-format on
 
-#include "distances.hpp"
 #include "holdfast/core/random.hpp"
 
 namespace holdfast::flann_plugin {
 
-/// FLANN's distance type: an element is a whole descriptor, a vector has one of them.
+/// FLANN's distance type. A vector is a whole descriptor, which FLANN knows by the address of its first unit only.
 struct DescriptorDistance {
-  using ElementType = Descriptor;
-  using ResultType = int;
+  using ElementType = Descriptor256;
+  using ResultType = float;
 
-  std::uint64_t seed = 1;
-  int (*kernel)(const Descriptor&, const Descriptor&) = distance_kernels().of_two;
+  std::uint64_t seed;
+  DescriptorDistances distances;
 
-  int operator()(const Descriptor* a, const Descriptor* b, std::size_t, int = -1) const { return kernel(*a, *b); }
+  float operator()(const Descriptor256* a, const Descriptor256* b, std::size_t, float = -1.0F) const {
+    return distances.of_two(a, b);
+  }
 };
 
 }  // namespace holdfast::flann_plugin
@@ -37,7 +38,7 @@ class flann::RandomCenterChooser<holdfast::flann_plugin::DescriptorDistance>
     : public flann::CenterChooser<holdfast::flann_plugin::DescriptorDistance> {
  public:
   using Distance = holdfast::flann_plugin::DescriptorDistance;
-  using Points = std::vector<holdfast::Descriptor*>;
+  using Points = std::vector<holdfast::Descriptor256*>;
 
   RandomCenterChooser(const Distance& distance, const Points& points)
       : CenterChooser<Distance>(distance, points), random_(distance.seed) {}
@@ -50,8 +51,9 @@ class flann::RandomCenterChooser<holdfast::flann_plugin::DescriptorDistance>
       const int candidate = rest[drawn];
       rest[drawn] = rest.back();
       rest.pop_back();
-      const bool is_new =
-          std::none_of(centres, centres + found, [&](int centre) { return *points_[centre] == *points_[candidate]; });
+      const bool is_new = std::none_of(centres, centres + found, [&](int centre) {
+        return distance_(points_[centre], points_[candidate], 1) <= 0.0F;
+      });
       if (is_new) centres[found++] = candidate;
     }
   }
@@ -72,38 +74,44 @@ constexpr float rebuild_growth = 2.0F;
 }  // namespace
 
 struct CentreIndex::Tree {
-  Tree(Descriptor& first, std::uint64_t seed)
-      : index(flann::Matrix<Descriptor>(&first, 1, 1),
+  Tree(Descriptor256* first, const DescriptorDistances& distances, std::uint64_t seed)
+      : index(flann::Matrix<Descriptor256>(first, 1, 1),
               flann::HierarchicalClusteringIndexParams(branching, flann::FLANN_CENTERS_RANDOM, trees, leaf_size),
-              DescriptorDistance{.seed = seed}) {
+              DescriptorDistance{seed, distances}) {
     index.buildIndex();
   }
 
   flann::HierarchicalClusteringIndex<DescriptorDistance> index;
 };
 
-CentreIndex::CentreIndex(std::uint64_t seed, int checks) : seed_(seed), checks_(checks) {}
+CentreIndex::CentreIndex(const DescriptorType& type, std::uint64_t seed, int checks)
+    : distances_(type), units_(DescriptorView::units_of(type)), seed_(seed), checks_(checks) {}
 
 CentreIndex::~CentreIndex() = default;
 CentreIndex::CentreIndex(CentreIndex&& other) noexcept = default;
 CentreIndex& CentreIndex::operator=(CentreIndex&& other) noexcept = default;
 
-std::uint32_t CentreIndex::add(const Descriptor& centre) {
-  centres_.push_back(centre);
+std::uint32_t CentreIndex::add(const Descriptor256* centre) {
+  const std::uint32_t number = size_++;
+  if (number / rows_of_chunk == chunks_.size())
+    chunks_.push_back(std::make_unique<Descriptor256[]>(rows_of_chunk * units_));
+  move(number, centre);
   if (tree_)
-    tree_->index.addPoints(flann::Matrix<Descriptor>(&centres_.back(), 1, 1), rebuild_growth);
+    tree_->index.addPoints(flann::Matrix<Descriptor256>(row(number), 1, 1), rebuild_growth);
   else
-    tree_ = std::make_unique<Tree>(centres_.back(), seed_);
-  return size() - 1;
+    tree_ = std::make_unique<Tree>(row(number), distances_, seed_);
+  return number;
 }
 
-std::size_t CentreIndex::find(const Descriptor& descriptor, std::span<std::uint32_t> nearest) const {
+void CentreIndex::move(std::uint32_t number, const Descriptor256* centre) { std::copy_n(centre, units_, row(number)); }
+
+std::size_t CentreIndex::find(const Descriptor256* descriptor, std::span<std::uint32_t> nearest) const {
   if (!tree_ || nearest.empty()) return 0;
-  flann::KNNSimpleResultSet<int> results(nearest.size());
-  tree_->index.findNeighbors(results, &descriptor, flann::SearchParams(checks_));
+  flann::KNNSimpleResultSet<float> results(nearest.size());
+  tree_->index.findNeighbors(results, descriptor, flann::SearchParams(checks_));
   constexpr std::size_t most = 64;
   std::size_t numbers[most];
-  int distances[most];
+  float distances[most];
   const std::size_t count = std::min({results.size(), nearest.size(), most});
   results.copy(numbers, distances, count);
   for (std::size_t i = 0; i < count; ++i) nearest[i] = static_cast<std::uint32_t>(numbers[i]);

@@ -16,12 +16,19 @@ constexpr std::uint64_t seed_stream = 0x706c616365;  // of this plugin among tho
 }  // namespace
 
 FlannDetector::FlannDetector(const FlannSettings& settings, const CreationContext& context)
-    : settings_(settings),
-      vocabulary_(Random(context.seed).fork(seed_stream).next(), settings.radius, settings.probes, settings.checks) {}
+    : settings_(settings), seed_(Random(context.seed).fork(seed_stream).next()) {}
 
-void FlannDetector::add(KeyFrameId keyframe, std::span<const Descriptor> descriptors) {
+void FlannDetector::begin_vocabulary(const DescriptorType& type) {
+  constexpr double radius_share = 0.64;  // of the strict distance: 32 of 50 bits
+  const double radius = settings_.radius > 0.0 ? settings_.radius : radius_share * type.strict_distance;
+  type_ = type;
+  vocabulary_.emplace(type, seed_, static_cast<float>(radius), settings_.probes, settings_.checks);
+}
+
+void FlannDetector::add(KeyFrameId keyframe, const DescriptorView& descriptors) {
   HOLDFAST_CHECK(!slots_.contains(keyframe),
                  "keyframe " << keyframe.slot << "." << keyframe.generation << " was added before");
+  if (!vocabulary_ && !descriptors.empty()) begin_vocabulary(descriptors.type());
   look_up(descriptors);
   looked_up_ = false;
 
@@ -30,9 +37,10 @@ void FlannDetector::add(KeyFrameId keyframe, std::span<const Descriptor> descrip
   words.reserve(lookups_.size());
   for (std::size_t i = 0; i < lookups_.size(); ++i) {
     const Lookup& lookup = lookups_[i];
-    words.push_back(lookup.count > 0 ? lookup.words[0] : vocabulary_.insert(looked_up_descriptors_[i], lookup.bucket));
+    words.push_back(lookup.count > 0 ? lookup.words[0]
+                                     : vocabulary_->insert(looked_up_descriptors_.row(i), lookup.bucket));
   }
-  vocabulary_.split_full_buckets();
+  if (vocabulary_) vocabulary_->split_full_buckets();
   std::sort(words.begin(), words.end());
   words.erase(std::unique(words.begin(), words.end()), words.end());
 
@@ -56,14 +64,14 @@ void FlannDetector::remove(KeyFrameId keyframe) {
   looked_up_ = false;
   const std::uint32_t slot = found->second;
   for (const WordId word : entries_[slot].words)
-    if (inverted_.remove(word, slot)) vocabulary_.erase(word);
-  vocabulary_.drop_empty_buckets();
+    if (inverted_.remove(word, slot)) vocabulary_->erase(word);
+  if (vocabulary_) vocabulary_->drop_empty_buckets();
   entries_[slot] = {};
   free_slots_.push_back(slot);
   slots_.erase(found);
 }
 
-std::vector<PlaceMatch> FlannDetector::query(std::span<const Descriptor> descriptors, int max_count) const {
+std::vector<PlaceMatch> FlannDetector::query(const DescriptorView& descriptors, int max_count) const {
   if (max_count <= 0 || slots_.empty()) return {};
   look_up(descriptors);
   tallies_.assign(entries_.size(), {});
@@ -91,16 +99,24 @@ std::vector<PlaceMatch> FlannDetector::query(std::span<const Descriptor> descrip
 }
 
 /// Fills looked_up_descriptors_, which are those used of the given ones, and their lookups_.
-void FlannDetector::look_up(std::span<const Descriptor> descriptors) const {
-  std::vector<Descriptor> used;
+void FlannDetector::look_up(const DescriptorView& descriptors) const {
+  if (descriptors.empty() || !vocabulary_) {
+    lookups_.clear();
+    looked_up_ = false;
+    return;
+  }
+  HOLDFAST_CHECK(descriptors.type().is_comparable(type_), "descriptors of " << to_string(descriptors.type())
+                                                                            << ", the database has those of "
+                                                                            << to_string(type_));
+  DescriptorBlock used(descriptors.type());
   const std::size_t limit = static_cast<std::size_t>(settings_.descriptors);
   const std::size_t count = std::min(descriptors.size(), limit);
   used.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) used.push_back(descriptors[i * descriptors.size() / count]);
+  for (std::size_t i = 0; i < count; ++i) used.append(descriptors, i * descriptors.size() / count);
   if (looked_up_ && used == looked_up_descriptors_) return;
 
   looked_up_descriptors_ = std::move(used);
-  vocabulary_.find(looked_up_descriptors_, lookups_);
+  vocabulary_->find(looked_up_descriptors_, lookups_);
   looked_up_ = true;
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -13,9 +13,9 @@
 
 namespace holdfast::flann_plugin {
 
-/// Place recognition with an incremental bag of binary words: words are descriptors seen before, found by FLANN; no
-/// vocabulary file, no training (after Garcia-Fidalgo and Ortiz, "iBoW-LCD: An appearance-based loop-closure detection
-/// approach using incremental bags of binary words", RA-L 3(4), 2018).
+/// Place recognition with an incremental bag of words: words are descriptors seen before, found by FLANN, whatever
+/// their type; no vocabulary file, no training (after Garcia-Fidalgo and Ortiz, "iBoW-LCD: An appearance-based
+/// loop-closure detection approach using incremental bags of binary words", RA-L 3(4), 2018).
 ///
 /// Every descriptor i of a query votes for the n_i of N keyframes with a word within the radius, with a weight that
 /// decreases with n_i (the inverse document frequency of Nister and Stewenius, "Scalable recognition with a vocabulary
@@ -33,15 +33,16 @@ class FlannDetector final : public LoopDetector {
  public:
   explicit FlannDetector(const FlannSettings& settings, const CreationContext& context = {});
 
-  /// Throws CheckError if the keyframe is already in the database.
-  void add(KeyFrameId keyframe, std::span<const Descriptor> descriptors) override;
+  /// Throws CheckError if the keyframe is already in the database, or if its descriptors cannot be compared with those
+  /// of the others.
+  void add(KeyFrameId keyframe, const DescriptorView& descriptors) override;
   /// Removes a keyframe, and the words that no other keyframe has. An unknown keyframe is ignored, because a keyframe
   /// may be culled before it is added.
   void remove(KeyFrameId keyframe) override;
-  std::vector<PlaceMatch> query(std::span<const Descriptor> descriptors, int max_count) const override;
+  std::vector<PlaceMatch> query(const DescriptorView& descriptors, int max_count) const override;
 
   std::size_t keyframes() const { return slots_.size(); }
-  std::size_t words() const { return vocabulary_.size(); }
+  std::size_t words() const { return vocabulary_ ? vocabulary_->size() : 0; }
 
  private:
   struct Entry {
@@ -53,11 +54,14 @@ class FlannDetector final : public LoopDetector {
     std::uint32_t last_voter = 0;  // number of the descriptor that voted last, from 1
   };
 
-  void look_up(std::span<const Descriptor> descriptors) const;
+  void look_up(const DescriptorView& descriptors) const;
+  void begin_vocabulary(const DescriptorType& type);
   std::uint64_t weight(std::size_t voted_for) const;
 
   FlannSettings settings_;
-  Vocabulary vocabulary_;
+  std::uint64_t seed_;
+  std::optional<Vocabulary> vocabulary_;  // begins with the first descriptors, which tell the type
+  DescriptorType type_;                   // of the vocabulary
   InvertedFile inverted_;
   std::vector<Entry> entries_;  // by slot; free ones have an invalid id
   std::vector<std::uint32_t> free_slots_;
@@ -65,7 +69,7 @@ class FlannDetector final : public LoopDetector {
 
   // Words of the last query, because the queried keyframe is usually added next; invalid after any change.
   mutable bool looked_up_ = false;
-  mutable std::vector<Descriptor> looked_up_descriptors_;
+  mutable DescriptorBlock looked_up_descriptors_;
   mutable std::vector<Lookup> lookups_;
   mutable std::vector<Tally> tallies_;        // by slot
   mutable std::vector<std::uint32_t> voted_;  // slots that one descriptor votes for

@@ -8,9 +8,9 @@ namespace holdfast {
 void FlannSettings::describe(ParameterTable<FlannSettings>& table) {
   table
       .add("radius", &FlannSettings::radius,
-           "maximum Hamming distance between a descriptor and its word; without such a word, it becomes a new one")
-      .range(0, 128)
-      .unit("bit");
+           "maximum distance between a descriptor and its word, in the unit of the extractor; without such a word, it "
+           "becomes a new one; 0 = 0.64 times the extractor's strict distance (orb: 32 bits)")
+      .range(0, 1e6);
   table
       .add("descriptors", &FlannSettings::descriptors,
            "maximum number of descriptors used per keyframe, evenly sampled from its list; time and memory are "

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <span>
 #include <utility>
 
+#include "descriptor_mean.hpp"
 #include "holdfast/core/error.hpp"
 
 namespace holdfast::flann_plugin {
@@ -22,61 +22,42 @@ constexpr std::size_t cache_line = 64;
 constexpr std::size_t rows_ahead = 2;     // buckets
 constexpr std::size_t headers_ahead = 8;  // buckets
 
-/// How often each bit is set in some descriptors.
-class BitCounts {
- public:
-  void add(const Descriptor& descriptor) {
-    ++descriptors_;
-    for (std::size_t i = 0; i < 4; ++i)
-      for (std::uint64_t rest = descriptor.words[i]; rest != 0; rest &= rest - 1)
-        ++counts_[64 * i + static_cast<std::size_t>(std::countr_zero(rest))];
-  }
-  /// The descriptor with the least sum of distances to them; `otherwise` where there are as many zeros as ones.
-  Descriptor majority(const Descriptor& otherwise) const {
-    Descriptor result = otherwise;
-    for (std::size_t bit = 0; bit < 256; ++bit) {
-      const std::uint64_t mask = std::uint64_t{1} << (bit % 64);
-      if (2 * counts_[bit] > descriptors_) result.words[bit / 64] |= mask;
-      if (2 * counts_[bit] < descriptors_) result.words[bit / 64] &= ~mask;
-    }
-    return result;
-  }
-
- private:
-  std::array<std::uint32_t, 256> counts_{};
-  std::uint32_t descriptors_ = 0;
-};
-
-/// A quarter more, so that not half of the memory of ten thousands of buckets lies idle.
+/// Appends an entry of `length` values. Reserves a quarter more, so that not half of the memory of ten thousands of
+/// buckets lies idle.
 template <class T>
-void push_tightly(std::vector<T>& values, const T& value) {
-  if (values.size() == values.capacity()) values.reserve(values.size() + values.size() / 4 + 4);
-  values.push_back(value);
+void push_tightly(std::vector<T>& values, const T* entry, std::size_t length) {
+  if (values.size() + length > values.capacity()) values.reserve(values.size() + values.size() / 4 + 4 * length);
+  values.insert(values.end(), entry, entry + length);
 }
 
+/// Moves the last entry of `length` values to a position.
 template <class T>
-void swap_out(std::vector<T>& values, std::size_t position) {
-  values[position] = values.back();
-  values.pop_back();
-  if (values.capacity() > 2 * values.size() + 8) values.shrink_to_fit();
+void swap_out(std::vector<T>& values, std::size_t position, std::size_t length) {
+  std::copy(values.end() - static_cast<std::ptrdiff_t>(length), values.end(),
+            values.begin() + static_cast<std::ptrdiff_t>(position * length));
+  values.resize(values.size() - length);
+  if (values.capacity() > 2 * values.size() + 8 * length) values.shrink_to_fit();
 }
 
 }  // namespace
 
-Vocabulary::Vocabulary(std::uint64_t seed, int radius, int probes, int checks)
-    : seed_(seed),
+Vocabulary::Vocabulary(const DescriptorType& type, std::uint64_t seed, float radius, int probes, int checks)
+    : type_(type),
+      kernels_(type),
+      units_(DescriptorView::units_of(type)),
+      seed_(seed),
       checks_(checks),
       centres_(empty_index()),
       random_(Random(seed).fork(2)),
       radius_(radius),
       probes_(std::min(static_cast<std::size_t>(std::max(probes, 1)), most_probes)) {}
 
-void Vocabulary::find(std::span<const Descriptor> descriptors, std::vector<Lookup>& lookups) const {
+void Vocabulary::find(const DescriptorView& descriptors, std::vector<Lookup>& lookups) const {
   // First all centres, then all buckets: so the centres stay in the cache, and buckets are fetched ahead of their use.
   // In a large map each is a miss of the cache, and waiting for one after the other would be most of the time.
   nearest_.assign(descriptors.size() * probes_, no_bucket);
   for (std::size_t i = 0; i < descriptors.size(); ++i)
-    centres_.find(descriptors[i], std::span(nearest_).subspan(i * probes_, probes_));
+    centres_.find(descriptors.row(i), std::span(nearest_).subspan(i * probes_, probes_));
 
   lookups.assign(descriptors.size(), {});
   Nearest nearest;
@@ -89,28 +70,29 @@ void Vocabulary::find(std::span<const Descriptor> descriptors, std::vector<Looku
       nearest.distances.fill(0);
       lookup.bucket = nearest_[i] != no_bucket ? nearest_[i] : 0;
     }
-    if (nearest_[i] != no_bucket) compare(descriptors[i / probes_], buckets_[nearest_[i]], lookup, nearest);
+    if (nearest_[i] != no_bucket) compare(descriptors.row(i / probes_), buckets_[nearest_[i]], lookup, nearest);
   }
 }
 
-Lookup Vocabulary::find(const Descriptor& descriptor) const {
+Lookup Vocabulary::find(const Descriptor256* descriptor) const {
   std::vector<Lookup> lookups;
-  find(std::span(&descriptor, 1), lookups);
+  find(DescriptorView(type_, descriptor, 1), lookups);
   return lookups[0];
 }
 
 void Vocabulary::prefetch(std::uint32_t bucket) const {
   const auto* bytes = reinterpret_cast<const char*>(buckets_[bucket].descriptors.data());
-  const std::size_t size = buckets_[bucket].descriptors.size() * sizeof(Descriptor);
+  const std::size_t size = buckets_[bucket].descriptors.size() * sizeof(Descriptor256);
   for (std::size_t offset = 0; offset < size; offset += cache_line) __builtin_prefetch(bytes + offset);
 }
 
 /// Puts the words of a bucket that are within the radius where they belong among those found so far.
-void Vocabulary::compare(const Descriptor& descriptor, const Bucket& bucket, Lookup& lookup, Nearest& nearest) const {
+void Vocabulary::compare(const Descriptor256* descriptor, const Bucket& bucket, Lookup& lookup,
+                         Nearest& nearest) const {
   const std::size_t size = bucket.words.size();
-  kernels_.of_row(descriptor, bucket.descriptors.data(), size, distances_.data());
+  kernels_.of_rows(descriptor, bucket.descriptors.data(), size, distances_.data());
   for (std::size_t k = 0; k < size; ++k) {
-    const int distance = distances_[k];
+    const float distance = distances_[k];
     if (distance > radius_) continue;
     std::size_t place = lookup.count;
     while (place > 0 && distance < nearest.distances[place - 1]) --place;
@@ -125,7 +107,7 @@ void Vocabulary::compare(const Descriptor& descriptor, const Bucket& bucket, Loo
   }
 }
 
-WordId Vocabulary::insert(const Descriptor& descriptor, std::uint32_t bucket) {
+WordId Vocabulary::insert(const Descriptor256* descriptor, std::uint32_t bucket) {
   if (buckets_.empty()) {
     centres_.add(descriptor);
     buckets_.emplace_back();
@@ -151,8 +133,8 @@ void Vocabulary::erase(WordId word) {
   const auto found = std::find(bucket.words.begin(), bucket.words.end(), word);
   HOLDFAST_CHECK(found != bucket.words.end(), "word " << word << " was erased before");
   const auto position = static_cast<std::size_t>(found - bucket.words.begin());
-  swap_out(bucket.descriptors, position);
-  swap_out(bucket.words, position);
+  swap_out(bucket.descriptors, position, units_);
+  swap_out(bucket.words, position, 1);
   if (bucket.words.empty()) ++empty_buckets_;
   free_words_.push_back(word);
 }
@@ -162,9 +144,9 @@ void Vocabulary::split_full_buckets() {
   full_.clear();
 }
 
-void Vocabulary::append(const Descriptor& descriptor, WordId word, std::uint32_t bucket) {
-  push_tightly(buckets_[bucket].descriptors, descriptor);
-  push_tightly(buckets_[bucket].words, word);
+void Vocabulary::append(const Descriptor256* descriptor, WordId word, std::uint32_t bucket) {
+  push_tightly(buckets_[bucket].descriptors, descriptor, units_);
+  push_tightly(buckets_[bucket].words, &word, 1);
   bucket_of_word_[word] = bucket;
   distances_.resize(std::max(distances_.size(), buckets_[bucket].words.size()));
 }
@@ -184,30 +166,35 @@ void Vocabulary::drop_empty_buckets() {
   empty_buckets_ = 0;
 }
 
-CentreIndex Vocabulary::empty_index() const { return {Random(seed_).fork(1).next(), checks_}; }
+CentreIndex Vocabulary::empty_index() const { return {type_, Random(seed_).fork(1).next(), checks_}; }
 
 void Vocabulary::split(std::uint32_t number) {
   const Bucket old = std::exchange(buckets_[number], {});
-  const std::vector<Descriptor>& descriptors = old.descriptors;
-  const Descriptor& any = descriptors[random_.below(static_cast<std::uint32_t>(descriptors.size()))];
-  const auto farther = [&](const Descriptor& a, const Descriptor& b) {
-    return kernels_.of_two(a, any) < kernels_.of_two(b, any);
-  };
-  std::array<Descriptor, 2> centres{any, *std::max_element(descriptors.begin(), descriptors.end(), farther)};
+  const DescriptorView descriptors(type_, old.descriptors.data(), old.words.size());
+  const Descriptor256* any = descriptors.row(random_.below(static_cast<std::uint32_t>(descriptors.size())));
+  std::vector<float>& from_any = distances_;
+  kernels_.of_rows(any, descriptors.row(0), descriptors.size(), from_any.data());
+  const auto farthest =
+      std::max_element(from_any.begin(), from_any.begin() + static_cast<std::ptrdiff_t>(descriptors.size()));
+  DescriptorBlock centres(type_);
+  centres.append(DescriptorView(type_, any, 1), 0);
+  centres.append(descriptors, static_cast<std::size_t>(farthest - from_any.begin()));
   std::vector<bool> second(descriptors.size());
   for (int round = 0; round < rounds_of_split; ++round) {
-    std::array<BitCounts, 2> counts;
+    std::array<DescriptorMean, 2> means{DescriptorMean(type_), DescriptorMean(type_)};
     for (std::size_t i = 0; i < descriptors.size(); ++i) {
-      second[i] = kernels_.of_two(descriptors[i], centres[1]) < kernels_.of_two(descriptors[i], centres[0]);
-      counts[second[i]].add(descriptors[i]);
+      const Descriptor256* row = descriptors.row(i);
+      second[i] = kernels_.of_two(row, centres.row(1)) < kernels_.of_two(row, centres.row(0));
+      means[second[i]].add(row);
     }
-    for (std::size_t k = 0; k < 2; ++k) centres[k] = counts[k].majority(centres[k]);
+    for (std::size_t k = 0; k < 2; ++k) means[k].write(centres.row(k));
   }
 
-  const std::uint32_t other = centres_.add(centres[1]);
-  centres_.move(number, centres[0]);
+  const std::uint32_t other = centres_.add(centres.row(1));
+  centres_.move(number, centres.row(0));
   buckets_.emplace_back();
-  for (std::size_t i = 0; i < old.words.size(); ++i) append(descriptors[i], old.words[i], second[i] ? other : number);
+  for (std::size_t i = 0; i < old.words.size(); ++i)
+    append(descriptors.row(i), old.words[i], second[i] ? other : number);
   for (const std::uint32_t half : {number, other}) empty_buckets_ += buckets_[half].words.empty() ? 1 : 0;
   for (const std::uint32_t half : {number, other})
     if (buckets_[half].words.size() > most_words_of_bucket && buckets_[half].words.size() < old.words.size())

@@ -8,8 +8,7 @@
 #include <vector>
 
 #include "centre_index.hpp"
-#include "distances.hpp"
-#include "holdfast/core/descriptor.hpp"
+#include "holdfast/core/descriptor_distance.hpp"
 #include "holdfast/core/random.hpp"
 
 namespace holdfast::flann_plugin {
@@ -31,18 +30,20 @@ struct Lookup {
 /// bitwise majorities of its halves (k-means with Hamming distance: Grana et al., "A fast approach for integrating ORB
 /// descriptors in the bag of words model", SPIE 8667, 2013). A majority minimises the sum of distances to its words, so
 /// that observations of the same feature usually belong to the same half. Erased words leave no trace, and only the
-/// small index of centres is ever rebuilt.
+/// small index of centres is ever rebuilt. Descriptors of any type are words; those of numbers are split around their
+/// means (k-means).
 class Vocabulary {
  public:
-  /// `radius`: maximum distance between a descriptor and its word [bits]; `probes`: number of searched buckets, at most
-  /// 64; `checks`: see CentreIndex.
-  Vocabulary(std::uint64_t seed, int radius, int probes, int checks);
+  /// `radius`: maximum distance between a descriptor and its word; `probes`: number of searched buckets, at most 64;
+  /// `checks`: see CentreIndex.
+  Vocabulary(const DescriptorType& type, std::uint64_t seed, float radius, int probes, int checks);
 
-  Lookup find(const Descriptor& descriptor) const;
+  /// A descriptor is given by its first unit of memory, here and below.
+  Lookup find(const Descriptor256* descriptor) const;
   /// Searches many descriptors, which is faster than one by one.
-  void find(std::span<const Descriptor> descriptors, std::vector<Lookup>& lookups) const;
+  void find(const DescriptorView& descriptors, std::vector<Lookup>& lookups) const;
   /// Inserts a new word into the bucket that find() returned. Ids of erased words are reused.
-  WordId insert(const Descriptor& descriptor, std::uint32_t bucket);
+  WordId insert(const Descriptor256* descriptor, std::uint32_t bucket);
   void erase(WordId word);
   /// Splits the buckets that have become too large. Earlier lookups may then refer to a bucket that is no longer the
   /// nearest one, which only reduces the recall slightly.
@@ -56,21 +57,24 @@ class Vocabulary {
 
  private:
   struct Bucket {
-    std::vector<Descriptor> descriptors;
+    std::vector<Descriptor256> descriptors;  // units_ for each word
     std::vector<WordId> words;
   };
 
   struct Nearest {
-    std::array<int, Lookup::most_words> distances{};  // of Lookup::words
+    std::array<float, Lookup::most_words> distances{};  // of Lookup::words
   };
 
   void prefetch(std::uint32_t bucket) const;
-  void compare(const Descriptor& descriptor, const Bucket& bucket, Lookup& lookup, Nearest& nearest) const;
-  void append(const Descriptor& descriptor, WordId word, std::uint32_t bucket);
+  void compare(const Descriptor256* descriptor, const Bucket& bucket, Lookup& lookup, Nearest& nearest) const;
+  void append(const Descriptor256* descriptor, WordId word, std::uint32_t bucket);
   void split(std::uint32_t bucket);
 
   CentreIndex empty_index() const;
 
+  DescriptorType type_;
+  DescriptorDistances kernels_;
+  std::size_t units_;  // of memory, per descriptor
   std::uint64_t seed_;
   int checks_;
   CentreIndex centres_;
@@ -79,11 +83,10 @@ class Vocabulary {
   std::vector<WordId> free_words_;
   std::vector<std::uint32_t> full_;
   std::size_t empty_buckets_ = 0;
-  mutable std::vector<std::uint32_t> nearest_;    // buckets of many descriptors, probes_ each
-  mutable std::vector<std::uint16_t> distances_;  // of such a comparison
-  DistanceKernels kernels_ = distance_kernels();
+  mutable std::vector<std::uint32_t> nearest_;  // buckets of many descriptors, probes_ each
+  mutable std::vector<float> distances_;        // of such a comparison
   Random random_;
-  int radius_;
+  float radius_;
   std::size_t probes_;
 };
 

@@ -21,7 +21,7 @@ class FaultyLoopDetector final : public LoopDetector {
       : fault_(std::move(fault)),
         flann_(sound_module<LoopDetector>(holdfast_register_plugin_flann, "flann", context)) {}
 
-  void add(KeyFrameId keyframe, std::span<const Descriptor> descriptors) override {
+  void add(KeyFrameId keyframe, const DescriptorView& descriptors) override {
     if (fault_ == "needs_descriptors" && descriptors.empty()) __builtin_trap();
     known_.push_back(keyframe);
     flann_->add(keyframe, descriptors);
@@ -33,7 +33,7 @@ class FaultyLoopDetector final : public LoopDetector {
     std::erase(known_, keyframe);
     flann_->remove(keyframe);
   }
-  std::vector<PlaceMatch> query(std::span<const Descriptor> descriptors, int max_count) const override {
+  std::vector<PlaceMatch> query(const DescriptorView& descriptors, int max_count) const override {
     if (fault_ == "blind") return {};
     auto matches = flann_->query(descriptors, fault_ == "generous" ? 1000 : max_count);
     ++queries_;

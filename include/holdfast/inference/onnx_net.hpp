@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <opencv2/core/mat.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "holdfast/inference/onnx_signature.hpp"
+
+namespace holdfast {
+
+/// A network in ONNX format with any inputs and outputs of float32, run on the CPU by OpenCV's DNN module. It is the
+/// only class that uses this module. The same inputs give the same outputs on the same machine; OpenCV selects its
+/// kernels by processor, so that the last bits may differ on another processor. Used by one thread at a time.
+class OnnxNet {
+ public:
+  /// Where the network comes from.
+  struct File {
+    std::filesystem::path model;
+    /// The model in memory; if it is not empty, `model` only names it in messages. It is read during construction only,
+    /// or, with in_background, until the first run.
+    std::span<const std::uint8_t> bytes = {};
+    /// Load `bytes` in another thread, for which the first run waits. For models that are known to be good: layers that
+    /// OpenCV cannot load are then an error of the first run.
+    bool in_background = false;
+  };
+
+  /// Reads the signature and loads the model, or begins to. Throws InputError, which states what was found and what was
+  /// expected, for a missing file, a file that is not an ONNX model, float16 weights (not supported by OpenCV), and
+  /// layers that OpenCV cannot load.
+  explicit OnnxNet(const File& file);
+  ~OnnxNet();
+  OnnxNet(const OnnxNet&) = delete;
+  OnnxNet& operator=(const OnnxNet&) = delete;
+
+  const std::filesystem::path& model() const { return model_; }
+  const OnnxSignature& signature() const { return signature_; }
+  /// The declared output of this name. Throws InputError, which names the nearest, when there is none; `setting` is the
+  /// parameter that says the name.
+  const OnnxTensor& output(const std::string& name, const std::string& setting) const;
+  const OnnxTensor& input(const std::string& name, const std::string& setting) const;
+
+  /// Sets an input, 32F of any dimensions, for the next run. Its data must stay as they are until then.
+  void set_input(const cv::Mat& values, const std::string& name = "");
+  /// Computes outputs: 32F with the dimensions of the network, valid until the next run. Throws InputError if the
+  /// network cannot be run; `advice` says what the user should check.
+  void run(const std::vector<std::string>& outputs, std::vector<cv::Mat>& results, const std::string& advice);
+
+ private:
+  struct Loaded;
+
+  std::filesystem::path model_;
+  OnnxSignature signature_;
+  std::unique_ptr<Loaded> loaded_;
+};
+
+/// The tensors with their shapes, for messages: "'image' (1x3x480x640), 'mask' (?)".
+std::string names(const std::vector<OnnxTensor>& tensors);
+
+}  // namespace holdfast
