@@ -32,26 +32,29 @@ void write_section(std::ostream& stream, const char* type, const std::string& pa
 void write_content(std::ostream& stream, const Map& map) {
   const DenseIndex index(map);
   const SharedTables shared = tables_of(map, index);
-  ByteWriter tables, keyframes, points;
+  ByteWriter tables, lenses, keyframes, points;
   write_tables(shared, tables);
+  write_lenses(shared, lenses);
   write_keyframes(map, index, shared, keyframes);
   write_points(map, index, points);
 
   FileHeader header;
   header.library_version = HOLDFAST_VERSION;
-  header.sections = static_cast<std::uint32_t>(3 + index.keyframes().size());
+  const bool has_lenses = lenses.size() > 0;
+  header.sections = static_cast<std::uint32_t>((has_lenses ? 4 : 3) + index.keyframes().size());
   header.keyframes = static_cast<std::uint32_t>(index.keyframes().size());
   header.points = static_cast<std::uint32_t>(index.points().size());
   header.observations = observation_count(map);
   header.next_sequence = map.next_sequence();
   header.sensor = static_cast<std::uint32_t>(map.sensor());
-  header.file_size =
-      header_size + header.sections * section_header_size + tables.size() + keyframes.size() + points.size();
+  header.file_size = header_size + header.sections * section_header_size + tables.size() + lenses.size() +
+                     keyframes.size() + points.size();
   for (const KeyFrameId id : index.keyframes()) header.file_size += features_size(map.keyframe(id).frame.size());
 
   const std::string start = encode(header);
   stream.write(start.data(), static_cast<std::streamsize>(start.size()));
   write_section(stream, camera_section, tables.bytes());
+  if (has_lenses) write_section(stream, lens_section, lenses.bytes());
   write_section(stream, keyframe_section, keyframes.bytes());
   ByteWriter features;
   for (std::uint32_t i = 0; i < index.keyframes().size(); ++i) {

@@ -61,6 +61,8 @@ class LocalMapper {
   void remove_weak_points(KeyFrameId keyframe);
   void triangulate_points(KeyFrameId keyframe);
   void triangulate_with(KeyFrameId keyframe, KeyFrameId neighbour);
+  /// Updates the covisibility of a new keyframe, which gets a parent in any case.
+  void link(KeyFrameId keyframe);
   std::vector<KeyFrameId> fusion_targets(KeyFrameId keyframe) const;
   void fuse_with_neighbours(KeyFrameId keyframe);
   struct FusionBuffers;
@@ -77,6 +79,7 @@ class LocalMapper {
   Optimizer& optimizer_;
   std::atomic<bool> stop_{false};
   std::vector<MapPointId> recent_points_;
+  std::uint64_t begun_again_at_ = 0;  // sequence number of the first keyframe of the last begin() beside other map
   MappingCounts counts_;
 
   // Keyframes, points and observations of the bundle problem.
