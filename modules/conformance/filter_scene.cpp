@@ -143,7 +143,7 @@ void remove_features(Frame& frame) {
 }
 
 namespace {
-void remove_depth(Frame& frame) {
+void strip_depth(Frame& frame) {
   frame.depth.assign(frame.size(), 0.0F);
   frame.right_x.assign(frame.size(), std::numeric_limits<float>::quiet_NaN());
   frame.coarse.depth.assign(frame.coarse.depth.size(), 0.0F);
@@ -152,12 +152,12 @@ void remove_depth(Frame& frame) {
 
 void remove_depth(Moment& moment) {
   moment.sensor.depth = cv::Mat();
-  remove_depth(moment.frame);
+  strip_depth(moment.frame);
 }
 
 void FilterScene::remove_depth() {
   map_.set_sensor(Sensor::mono);
-  for (const KeyFrameId id : map_.keyframes().ids()) conformance::remove_depth(map_.keyframe(id).frame);
+  for (const KeyFrameId id : map_.keyframes().ids()) strip_depth(map_.keyframe(id).frame);
   for (Moment& moment : moments_) conformance::remove_depth(moment);
 }
 

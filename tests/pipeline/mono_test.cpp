@@ -62,6 +62,7 @@ TEST_F(MonoTest, AMapThatIsLostSoonAfterItsStartBeginsAnew) {
       truth_.clear();
       TrackingSettings tracking;
       tracking.young_map_time = young_map_time;
+      tracking.recovery_keyframes = 0;  // nothing else finds the camera
       Pipeline pipeline = make(simulator_.camera(), tracking, threaded);
       std::uint64_t index = 0;
       while (index < 120 && feed(pipeline, index++).status != TrackingStatus::initialised) {
