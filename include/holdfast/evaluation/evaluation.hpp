@@ -84,6 +84,7 @@ struct SegmentError {
 /// pairs, or without motion, is left out. An estimate whose error is not small compared with the motion in a window has
 /// scales below their true values there.
 struct ScaleDrift {
+  /// A tenth of the true path.
   struct Window {
     double begin = 0.0, end = 0.0;  ///< stamps of its first and its last pair [s]
     std::size_t pairs = 0;
