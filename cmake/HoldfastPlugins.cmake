@@ -5,6 +5,7 @@ include_guard()
 
 # Kind of the modules, name, folder below plugins/.
 set(HOLDFAST_PLUGIN_TABLE
+  "source          euroc                 sources/euroc"
   "source          folder                sources/folder"
   "source          kitti                 sources/kitti"
   "source          simulated             sources/simulated"

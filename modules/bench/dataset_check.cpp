@@ -7,6 +7,7 @@
 #include "holdfast/core/folder_name.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/evaluation/number_text.hpp"
+#include "holdfast/image_files/calibrated_recording.hpp"
 #include "holdfast/image_files/image_decoder.hpp"
 #include "holdfast/image_files/image_structure.hpp"
 #include "holdfast/image_files/recording_pairs.hpp"
@@ -38,7 +39,11 @@ struct Examples {
 
 class Checker {
  public:
-  Checker(const fs::path& folder, const DatasetRecipe* recipe) : folder_(folder), recipe_(recipe) {}
+  Checker(const fs::path& folder, const DatasetRecipe* recipe) : folder_(folder), recipe_(recipe) {
+    if (recipe_ == nullptr || is_stereo(recipe_->layout)) return;
+    size_ = {recipe_->camera.width, recipe_->camera.height};
+    camera_ = "of the camera " + recipe_->camera.name;
+  }
 
   DatasetCheck result() {
     std::error_code ignored;
@@ -46,8 +51,15 @@ class Checker {
       problem("'" + folder_.string() + "' is no folder" + (recipe_ ? "; " + recipe_->how_to_get() : ""));
       return check_;
     }
-    if (recipe_) fact(recipe_->name + ": " + recipe_->dataset + ", camera " + recipe_->camera.name);
-    if (recipe_ && recipe_->layout == DatasetLayout::icl_nuim)
+    if (recipe_)
+      fact(recipe_->name + ": " + recipe_->dataset +
+           (recipe_->camera.name.empty() || is_stereo(recipe_->layout) ? "" : ", camera " + recipe_->camera.name));
+    const DatasetLayout layout = recipe_ ? recipe_->layout : layout_of(folder_);
+    if (is_stereo(layout)) {
+      attempt([&] { check_stereo(layout); });
+      return check_;
+    }
+    if (layout == DatasetLayout::icl_nuim)
       check_icl();
     else
       check_tum();
@@ -103,6 +115,52 @@ class Checker {
     });
   }
 
+  /// What the sources read, with every file.
+  void check_stereo(DatasetLayout layout) {
+    CalibratedRecording recording;
+    if (layout == DatasetLayout::kitti) {
+      KittiOptions options;
+      options.path = folder_;
+      recording = read_kitti_recording(options);
+    } else {
+      EurocOptions options;
+      options.path = folder_;
+      recording = read_euroc_recording(options);
+    }
+    const auto expected = recipe_ ? recipe_->pairs : std::nullopt;
+    const std::size_t frames = recording.files.size();
+    const char* what = recording.has_right ? "stereo pair" : "image";
+    fact(counted(frames, what) + (expected ? ", expected " + std::to_string(*expected) : ""));
+    if (expected && frames + 2 + *expected / 100 < *expected)
+      problem(counted(frames, what) + "; expected " + std::to_string(*expected) + ": the recording was cut");
+    const Camera& camera = recording.camera;
+    fact("camera of its own files: " + std::to_string(camera.width) + "x" + std::to_string(camera.height) +
+         (recording.has_right ? ", baseline " + fixed_text(camera.baseline, 3) + " m" : "") +
+         (recording.rectification ? ", to be rectified" : ""));
+    const auto check_side = [&](const cv::Size& size, const char* side, fs::path ImageFiles::*member,
+                                SourceLocation ImageFiles::*listed_at) {
+      std::vector<ListedImage> images;
+      for (const ImageFiles& files : recording.files)
+        images.push_back(
+            {files.timestamp, (files.*member).lexically_relative(folder_).string(), (files.*listed_at).line});
+      size_ = size;
+      camera_ = std::string("of the ") + side + " camera";
+      const std::string list = std::string("the ") + side + " camera";
+      check_presence(list, images);
+      check_ends(list, images);
+      check_images(images, [&](const fs::path& file) { return decoder_.read_grey(file); });
+    };
+    check_side(recording.left_size, "left", &ImageFiles::colour, &ImageFiles::colour_listed_at);
+    if (recording.has_right)
+      check_side(recording.right_size, "right", &ImageFiles::right, &ImageFiles::right_listed_at);
+    if (recording.truth.empty()) {
+      fact("no true poses: there is nothing to measure an error by");
+      return;
+    }
+    for (const ImageFiles& files : recording.files) stamps_.push_back(files.timestamp);
+    check_coverage("the truth", recording.truth);
+  }
+
   std::vector<ListedImage> check_list(const std::string& list, const std::string& what,
                                       std::optional<std::size_t> expected) {
     std::vector<ListedImage> images;
@@ -125,7 +183,7 @@ class Checker {
   void check_presence(const std::string& list, const std::vector<ListedImage>& images) {
     Examples absent;
     for (const ListedImage& image : images)
-      if (!is_file(folder_ / image.name)) absent.add(image.name + " (line " + std::to_string(image.line) + ")");
+      if (!is_file(folder_ / image.name)) absent.add(place_of(image));
     const std::size_t missing = absent.count;
     if (missing == 0) return;
     if (recipe_ && recipe_->lists_absent_depth && list == "depth.txt" && missing < images.size()) {
@@ -137,6 +195,10 @@ class Checker {
     }
     problem(list + " lists " + counted(missing, "image") + " that " + (missing == 1 ? "is" : "are") +
             " missing: " + absent.text() + "; unpack the archive again");
+  }
+
+  static std::string place_of(const ListedImage& image) {
+    return image.name + (image.line > 0 ? " (line " + std::to_string(image.line) + ")" : "");
   }
 
   /// Looks at the begin and the end of every file: a broken download shows there.
@@ -153,11 +215,11 @@ class Checker {
       } catch (const InputError& error) {
         problem_of_file = error.what();
       }
-      const std::string place = image.name + " (line " + std::to_string(image.line) + ")";
+      const std::string place = place_of(image);
       if (!problem_of_file.empty()) {
         damaged.add(place + " " + problem_of_file);
         damaged_.insert(image.name);
-      } else if (recipe_ && (structure.width != recipe_->camera.width || structure.height != recipe_->camera.height)) {
+      } else if (size_.width > 0 && (structure.width != size_.width || structure.height != size_.height)) {
         of_other_size.add(place + " has " + std::to_string(structure.width) + "x" + std::to_string(structure.height) +
                           " pixels");
       }
@@ -167,8 +229,8 @@ class Checker {
               " damaged: " + damaged.text() + "; copy or download " + (damaged.count == 1 ? "it" : "them") + " again");
     if (of_other_size.count > 0)
       problem(list + " lists " + counted(of_other_size.count, "image") + " of another size: " + of_other_size.text() +
-              "; expected " + std::to_string(recipe_->camera.width) + "x" + std::to_string(recipe_->camera.height) +
-              " of the camera " + recipe_->camera.name + ": is this another recording?");
+              "; expected " + std::to_string(size_.width) + "x" + std::to_string(size_.height) + " " + camera_ +
+              ": is this another recording?");
   }
 
   /// Decodes images spread over the whole recording, the first and the last among them.
@@ -222,19 +284,25 @@ class Checker {
         problem(name + " holds no pose; expected lines 'timestamp tx ty tz qx qy qz qw'");
         return;
       }
-      fact(counted(truth.size(), "true pose"));
-      const auto covered = static_cast<std::size_t>(std::count_if(stamps_.begin(), stamps_.end(), [&](double stamp) {
-        return stamp >= truth.front().timestamp - max_time_difference &&
-               stamp <= truth.back().timestamp + max_time_difference;
-      }));
-      if (2 * covered < stamps_.size())
-        problem(name + " covers the time of " + std::to_string(covered) + " of " +
-                counted(stamps_.size(), "colour image") + "; it belongs to another recording");
+      check_coverage(name, truth);
     });
+  }
+
+  void check_coverage(const std::string& name, const Trajectory& truth) {
+    fact(counted(truth.size(), "true pose"));
+    const auto covered = static_cast<std::size_t>(std::count_if(stamps_.begin(), stamps_.end(), [&](double stamp) {
+      return stamp >= truth.front().timestamp - max_time_difference &&
+             stamp <= truth.back().timestamp + max_time_difference;
+    }));
+    if (2 * covered < stamps_.size())
+      problem(name + " covers the time of " + std::to_string(covered) + " of " +
+              counted(stamps_.size(), "colour image") + "; it belongs to another recording");
   }
 
   fs::path folder_;
   const DatasetRecipe* recipe_;
+  cv::Size size_;       ///< that the images should have; empty: any
+  std::string camera_;  ///< whose size that is
   DatasetCheck check_;
   ImageDecoder decoder_;
   std::set<std::string> damaged_;  ///< names of images that are known to be
@@ -250,11 +318,23 @@ const DatasetRecipe* recipe_of_folder(const fs::path& folder) {
   return nullptr;
 }
 
+DatasetLayout layout_of(const fs::path& folder) {
+  std::error_code ignored;
+  if (fs::is_directory(folder / "mav0", ignored) || fs::is_directory(folder / "cam0", ignored))
+    return DatasetLayout::euroc;
+  if (is_file(folder / "calib.txt") && !is_file(folder / "rgb.txt")) return DatasetLayout::kitti;
+  return DatasetLayout::tum;
+}
+
 DatasetCheck check_dataset(const fs::path& folder, const DatasetRecipe* recipe) {
   return Checker(folder, recipe).result();
 }
 
 std::vector<ListedPair> dataset_pairs(const fs::path& folder, DatasetLayout layout, double max_difference) {
+  if (is_stereo(layout))
+    throw InputError({folder.string()}, std::string("holds stereo pairs in the layout '") + layout_name(layout) +
+                                            "'; expected a recording with depth images, which can be associated with "
+                                            "the colour images");
   if (layout == DatasetLayout::tum) return recording_pairs(folder, {}, max_difference);
   std::vector<ListedPair> pairs = read_association_list(folder / icl_list);
   for (ListedPair& pair : pairs)

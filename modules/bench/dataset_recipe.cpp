@@ -18,8 +18,11 @@ namespace {
 
 using Kind = ConfigurationNode::Kind;
 
-const std::map<std::string, DatasetLayout> layouts = {{"icl_nuim", DatasetLayout::icl_nuim},
+const std::map<std::string, DatasetLayout> layouts = {{"euroc", DatasetLayout::euroc},
+                                                      {"icl_nuim", DatasetLayout::icl_nuim},
+                                                      {"kitti", DatasetLayout::kitti},
                                                       {"tum", DatasetLayout::tum}};
+constexpr const char* expected_layout = "tum, icl_nuim, kitti or euroc";
 
 /// A text that must be there.
 std::string required_text(StrictMap& map, const std::string& key, const std::string& expected) {
@@ -43,9 +46,10 @@ DatasetRecipe read_sequence(const ConfigurationNode::Entry& entry, DatasetRecipe
   recipe.folder = required_text(map, "folder", "the folder that the archive unpacks to");
   recipe.truth = map.text("truth", recipe.truth);
   recipe.make = map.text("make", "");
+  recipe.pairs = read_count(map, "pairs");
+  if (is_stereo(recipe.layout)) return recipe;
   recipe.colour = read_count(map, "colour");
   recipe.depth = read_count(map, "depth");
-  recipe.pairs = read_count(map, "pairs");
   if (const ConfigurationNode* camera = map.require("camera", "the name of a known camera")) {
     if (const auto known = find_camera(camera->text))
       recipe.camera = *known;
@@ -68,6 +72,12 @@ std::vector<DatasetRecipe> read_embedded() {
 }
 
 }  // namespace
+
+const char* layout_name(DatasetLayout layout) {
+  for (const auto& [name, each] : layouts)
+    if (each == layout) return name.c_str();
+  return "unknown";
+}
 
 std::string DatasetRecipe::how_to_get() const {
   if (!make.empty()) return "make it: " + make + " (recordings and people: " + address + ")";
@@ -110,11 +120,11 @@ std::vector<DatasetRecipe> read_recipes(const std::string& yaml, const std::stri
   if (const auto* left = map.find("truth_left")) common.truth_left = *left;
   if (const auto* right = map.find("truth_right")) common.truth_right = *right;
   common.lists_absent_depth = map.boolean("lists_absent_depth", false);
-  if (const ConfigurationNode* layout = map.require("layout", "tum or icl_nuim")) {
+  if (const ConfigurationNode* layout = map.require("layout", expected_layout)) {
     if (const auto known = layouts.find(layout->text); known != layouts.end())
       common.layout = known->second;
     else
-      map.mismatch(*layout, "layout", "tum or icl_nuim");
+      map.mismatch(*layout, "layout", expected_layout);
   }
   std::vector<DatasetRecipe> recipes;
   if (const ConfigurationNode* sequences = map.require("sequences", "a map of recipes"))

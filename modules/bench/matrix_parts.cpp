@@ -114,7 +114,13 @@ void follow_recipe(const ConfigurationNode& node, StrictMap& map, MatrixSequence
     map.complain(node.location, no_such_recipe(node.text));
     return;
   }
-  if (recipe->layout != DatasetLayout::tum)
+  if (path != nullptr && is_stereo(recipe->layout)) {  // they bring their cameras
+    sequence.source = map_of(layout_name(recipe->layout), map_of("path", *path));
+    sequence.about = recipe->how_to_get();
+    sequence.published = recipe->name;
+    return;
+  }
+  if (recipe->layout == DatasetLayout::icl_nuim)
     map.complain(node.location,
                  "the recording '" + recipe->name +
                      "' is not in TUM layout; write its pairs by `holdfast dataset associate`, its truth to "

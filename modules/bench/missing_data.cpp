@@ -111,6 +111,11 @@ std::optional<RecordedSequence> recorded_sequence(const MatrixSequence& sequence
                                                   "it; expected a known name or numbers"});
   else if (const auto camera = read_camera(*sequence.camera, diagnostics))
     recorded.camera = *camera;
+  if (const Distortion& d = recorded.camera.distortion; d.lens != Lens::radial_tangential || d.is_rational())
+    diagnostics.push_back({sequence.camera->location,
+                           "the camera of sequence '" + sequence.name +
+                               "' has a lens that external systems get no settings for; expected k1, k2, p1, p2 and k3 "
+                               "alone"});
   const ParameterValues values = read_parameters(*tum, entry->parameters, "source 'tum'", diagnostics);
   if (diagnostics.size() != before) return std::nullopt;
   if (const auto variable = unset_variable(sequence)) {

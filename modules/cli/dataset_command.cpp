@@ -49,13 +49,22 @@ std::string camera_text(const Camera& camera) {
   std::string text = camera.name + ", " + std::to_string(camera.width) + "x" + std::to_string(camera.height) + ", fx " +
                      shortest_text(camera.fx) + " fy " + shortest_text(camera.fy) + " cx " + shortest_text(camera.cx) +
                      " cy " + shortest_text(camera.cy);
-  if (!d.is_zero())
-    text += ", k1 " + shortest_text(d.k1) + " k2 " + shortest_text(d.k2) + " p1 " + shortest_text(d.p1) + " p2 " +
-            shortest_text(d.p2) + " k3 " + shortest_text(d.k3);
+  if (d.is_zero()) return text;
+  const bool is_fisheye = d.lens == Lens::fisheye;
+  std::vector<const char*> names = {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};
+  if (is_fisheye) names = {"k1", "k2", "k3", "k4"};
+  text += is_fisheye ? ", fisheye" : ",";
+  const std::vector<double> coefficients = d.coefficients();
+  for (std::size_t i = 0; i < coefficients.size(); ++i)
+    text += std::string(" ") + names[i] + " " + shortest_text(coefficients[i]);
   return text;
 }
 
 std::string files_text(const DatasetRecipe& recipe) {
+  if (recipe.layout == DatasetLayout::kitti)
+    return "calib.txt, times.txt, image_0/ and image_1/ (grey) or image_2/ and image_3/ (colour), ../../poses/" +
+           recipe.folder + ".txt";
+  if (recipe.layout == DatasetLayout::euroc) return "mav0/cam0/, mav0/cam1/, mav0/state_groundtruth_estimate0/";
   std::string text = recipe.layout == DatasetLayout::tum ? "rgb.txt, depth.txt" : "associations.txt";
   text += ", " + recipe.truth + ", rgb/, depth/";
   return recipe.has_masks ? text + ", mask.txt, mask/" : text;
@@ -71,7 +80,8 @@ void show_all() {
         std::printf("  to be made on your machine; `holdfast dataset list NAME` says by which command\n");
       dataset = &recipe.dataset;
     }
-    std::printf("    %-42s %-9s %s\n", recipe.name.c_str(), recipe.camera.name.c_str(),
+    std::printf("    %-42s %-9s %s\n", recipe.name.c_str(),
+                is_stereo(recipe.layout) ? "stereo" : recipe.camera.name.c_str(),
                 recipe.pairs ? (std::to_string(*recipe.pairs) + " pairs").c_str() : "unknown number of pairs");
   }
 }
@@ -83,9 +93,15 @@ void show(const DatasetRecipe& recipe) {
   };
   line("folder", recipe.folder);
   line("files", files_text(recipe));
-  line("camera", camera_text(recipe.camera));
-  line("images", count_text(recipe.colour) + " colour, " + count_text(recipe.depth) + " depth, " +
-                     count_text(recipe.pairs) + " pairs within 0.02 s");
+  if (is_stereo(recipe.layout)) {
+    line("camera", "of its own files");
+    line("images", count_text(recipe.pairs) + " stereo pairs");
+    line("source", layout_name(recipe.layout));
+  } else {
+    line("camera", camera_text(recipe.camera));
+    line("images", count_text(recipe.colour) + " colour, " + count_text(recipe.depth) + " depth, " +
+                       count_text(recipe.pairs) + " pairs within 0.02 s");
+  }
   if (recipe.truth_left || recipe.truth_right)
     line("truth", "of markers; a matrix with this recipe transforms it to the camera");
   line("licence", recipe.licence);
@@ -100,7 +116,9 @@ void check(const Arguments& arguments, int& exit_code) {
   const DatasetCheck result = check_dataset(arguments.folder, recipe);
   for (const std::string& fact : result.facts) std::printf("  %s\n", printable(fact).c_str());
   if (recipe == nullptr)
-    std::printf("  no recipe has a folder of this name: checked as a recording in TUM layout; --recipe names one\n");
+    std::printf(
+        "  no recipe has a folder of this name: checked as a recording in the layout '%s'; --recipe names one\n",
+        layout_name(layout_of(arguments.folder)));
   for (const std::string& problem : result.problems)
     std::printf("  %s %s\n", red("wrong:", STDOUT_FILENO).c_str(), printable(problem).c_str());
   const bool is_good = result.problems.empty();
@@ -114,8 +132,8 @@ void associate(const Arguments& arguments, int& exit_code) {
   const fs::path output = arguments.output.empty() ? arguments.folder / "associations.txt" : arguments.output;
   require_new_files({output}, arguments.overwrite);
   RecordedSequence sequence;
-  sequence.frames =
-      dataset_pairs(arguments.folder, recipe ? recipe->layout : DatasetLayout::tum, arguments.max_time_difference);
+  sequence.frames = dataset_pairs(arguments.folder, recipe ? recipe->layout : layout_of(arguments.folder),
+                                  arguments.max_time_difference);
   write_file_atomically(output, associations_text(sequence));
   std::printf("%s: %s\n", counted(sequence.frames.size(), "pair").c_str(), printable(output.string()).c_str());
   exit_code = 0;

@@ -41,10 +41,14 @@ Json to_json(const Eigen::Isometry3d& pose) {
 
 Json to_json(const Camera& camera) {
   const Distortion& d = camera.distortion;
-  return {{"name", camera.name},     {"width", camera.width},
-          {"height", camera.height}, {"fx", camera.fx},
-          {"fy", camera.fy},         {"cx", camera.cx},
-          {"cy", camera.cy},         {"distortion_k1_k2_p1_p2_k3", {d.k1, d.k2, d.p1, d.p2, d.k3}}};
+  Json json = {{"name", camera.name},     {"width", camera.width},
+               {"height", camera.height}, {"fx", camera.fx},
+               {"fy", camera.fy},         {"cx", camera.cx},
+               {"cy", camera.cy},         {"distortion_k1_k2_p1_p2_k3", {d.k1, d.k2, d.p1, d.p2, d.k3}}};
+  if (d.lens == Lens::radial_tangential && !d.is_rational()) return json;
+  json["distortion_k4_k5_k6"] = {d.k4, d.k5, d.k6};
+  json["lens"] = lens_name(d.lens);
+  return json;
 }
 
 /// Values of a parameter table, as a scene file would name them.

@@ -28,18 +28,45 @@ void CameraSettings::describe(ParameterTable<CameraSettings>& table) {
   table.add("p1", &S::p1, "tangential distortion");
   table.add("p2", &S::p2, "tangential distortion");
   table.add("k3", &S::k3, "radial distortion, 6th order");
+  table.add("k4", &S::k4,
+            "radial distortion: of the denominator, 2nd order; of a fisheye lens, 9th power of the angle");
+  table.add("k5", &S::k5, "radial distortion: of the denominator, 4th order");
+  table.add("k6", &S::k6, "radial distortion: of the denominator, 6th order");
+  table
+      .add("lens", &S::lens,
+           "meaning of the coefficients, as in OpenCV: radial_tangential with k1, k2, p1, p2, k3 and, of the rational "
+           "model, k4, k5, k6; fisheye (Kannala-Brandt) with k1, k2, k3, k4")
+      .one_of(lens_names());
   table.add("baseline", &S::baseline, "of the stereo pair that depth stands for").range(1e-4, 100).unit("m");
   table.add("frame_rate", &S::frame_rate, "images per second").range(0.01, 10000).unit("1/s");
 }
 
 CameraSettings camera_settings(const Camera& camera) {
   const Distortion& d = camera.distortion;
-  return {camera.name, camera.width, camera.height, camera.fx, camera.fy, camera.cx,       camera.cy,
-          d.k1,        d.k2,         d.p1,          d.p2,      d.k3,      camera.baseline, camera.frame_rate};
+  return {camera.name,
+          camera.width,
+          camera.height,
+          camera.fx,
+          camera.fy,
+          camera.cx,
+          camera.cy,
+          d.k1,
+          d.k2,
+          d.p1,
+          d.p2,
+          d.k3,
+          d.k4,
+          d.k5,
+          d.k6,
+          lens_name(d.lens),
+          camera.baseline,
+          camera.frame_rate};
 }
 
 Camera make_camera(const CameraSettings& s) {
-  return {s.name, s.width, s.height, s.fx, s.fy, s.cx, s.cy, {s.k1, s.k2, s.p1, s.p2, s.k3}, s.baseline, s.frame_rate};
+  const Distortion distortion{
+      s.k1, s.k2, s.p1, s.p2, s.k3, s.k4, s.k5, s.k6, find_lens(s.lens).value_or(Lens::radial_tangential)};
+  return {s.name, s.width, s.height, s.fx, s.fy, s.cx, s.cy, distortion, s.baseline, s.frame_rate};
 }
 
 std::optional<Camera> read_camera(const ConfigurationNode& node, std::vector<Diagnostic>& diagnostics) {
@@ -72,7 +99,13 @@ std::optional<Camera> read_camera(const ConfigurationNode& node, std::vector<Dia
   const std::size_t before = diagnostics.size();
   const ParameterValues values = read_parameters(node, parameters, "section 'camera'", diagnostics);
   if (diagnostics.size() != before) return std::nullopt;
-  return make_camera(table.settings(values));
+  Camera camera = make_camera(table.settings(values));
+  if (const std::string trouble = camera.distortion.trouble(); !trouble.empty()) {
+    const ConfigurationNode* lens = node.find("lens");
+    diagnostics.push_back({lens != nullptr ? lens->location : node.location, trouble});
+    return std::nullopt;
+  }
+  return camera;
 }
 
 const std::vector<std::string>& choice_sections() {

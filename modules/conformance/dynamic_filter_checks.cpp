@@ -138,6 +138,30 @@ void lives_without_depth(const Maker& maker) {
   expect_sound(given, *filter);
 }
 
+/// How many statements the filter made itself.
+std::size_t statements(const std::vector<StaticEvidence>& all) {
+  std::size_t count = 0;
+  for (const StaticEvidence& evidence : all) {
+    const auto is_own = [&](std::uint16_t stage) { return evidence.stages()[stage] == "filter"; };
+    for (const auto& each : evidence.contributions()) count += is_own(each.stage) ? 1 : 0;
+    for (const auto& each : evidence.point_contributions()) count += is_own(each.stage) ? 1 : 0;
+  }
+  return count;
+}
+
+void works_without_depth_unless_it_needs_it(const Maker& maker) {
+  const auto filter = maker.make<DynamicFilter>();
+  if (filter->needs().depth) return;  // one camera is refused before the first frame
+  FilterScene one_camera(standard_camera());
+  one_camera.remove_depth();
+  expect_sound(one_camera, *filter);
+  const std::size_t with_depth = statements(scene().judge(*maker.make<DynamicFilter>()));
+  const std::size_t without = statements(one_camera.judge(*maker.make<DynamicFilter>()));
+  EXPECT_TRUE(without > 0 || with_depth == 0)
+      << "needs() does not ask for depth, but the filter says nothing about the frames of one camera, and makes "
+      << with_depth << " statements about the same frames with depth";
+}
+
 void survives_depth_that_is_no_number(const Maker& maker) {
   FilterScene given(standard_camera(), 4);
   const auto filter = maker.make<DynamicFilter>();
@@ -248,6 +272,9 @@ std::vector<Check> dynamic_filter_checks() {
       {"NeverTakesAway", {header, "Evidence is never removed: filters do not delete."}, never_takes_away},
       {"LivesWithoutWhatMayBeMissing", missing, lives_without_what_may_be_missing},
       {"LivesWithoutDepth", missing, lives_without_depth},
+      {"WorksWithoutDepthUnlessItNeedsIt",
+       {header, "without it, a filter works on the frames of one camera, which have none"},
+       works_without_depth_unless_it_needs_it},
       {"SurvivesDepthThatIsNoNumber", adds, survives_depth_that_is_no_number},
       {"LivesWithoutFeatures", adds, lives_without_features},
       {"LivesWithoutMatches", adds, lives_without_matches},

@@ -142,11 +142,23 @@ void remove_features(Frame& frame) {
                    {0.0F, 0.0F, static_cast<float>(frame.camera->width), static_cast<float>(frame.camera->height)});
 }
 
+namespace {
+void strip_depth(Frame& frame) {
+  frame.depth.assign(frame.size(), 0.0F);
+  frame.right_x.assign(frame.size(), std::numeric_limits<float>::quiet_NaN());
+  frame.coarse.depth.assign(frame.coarse.depth.size(), 0.0F);
+}
+}  // namespace
+
 void remove_depth(Moment& moment) {
   moment.sensor.depth = cv::Mat();
-  moment.frame.depth.assign(moment.frame.size(), 0.0F);
-  moment.frame.right_x.assign(moment.frame.size(), std::numeric_limits<float>::quiet_NaN());
-  moment.frame.coarse.depth.assign(moment.frame.coarse.depth.size(), 0.0F);
+  strip_depth(moment.frame);
+}
+
+void FilterScene::remove_depth() {
+  map_.set_sensor(Sensor::mono);
+  for (const KeyFrameId id : map_.keyframes().ids()) strip_depth(map_.keyframe(id).frame);
+  for (Moment& moment : moments_) conformance::remove_depth(moment);
 }
 
 }  // namespace holdfast::conformance

@@ -28,6 +28,8 @@ class FilterScene {
 
   const Map& map() const { return map_; }
   std::vector<Moment>& moments() { return moments_; }
+  /// Makes it what one camera sees: no frame and no keyframe has depth.
+  void remove_depth();
 
   /// Applies a filter to every frame in turn, after a stage "earlier" that adds evidence against the moving block.
   std::vector<StaticEvidence> judge(DynamicFilter& filter, const Shown& shown = {}) const;

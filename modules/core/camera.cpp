@@ -3,14 +3,83 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace holdfast {
+
+namespace {
+
+/// Where the undistorted image of a fisheye lens ends: beyond Camera::usable_angle, so that tables that are
+/// interpolated are exact up to there.
+constexpr double largest_angle = 65.0 / 180.0 * 3.14159265358979323846;
+
+/// Distance from the principal point, in focal lengths, of a ray at an angle to the optical axis.
+double fisheye_radius(const Distortion& d, double angle) {
+  const double a2 = angle * angle;
+  return angle * (1.0 + a2 * (d.k1 + a2 * (d.k2 + a2 * (d.k3 + a2 * d.k4))));
+}
+
+/// The angle of a distance, at most `limit`: the first at which the polynomial reaches the distance. Newton steps that
+/// leave the interval of the solution are replaced by bisection, so that polynomials that turn back end at the limit.
+double fisheye_angle(const Distortion& d, double radius, double limit) {
+  if (!(radius < fisheye_radius(d, limit))) return limit;
+  double low = 0.0, high = limit, angle = std::min(radius, limit);
+  constexpr int most_iterations = 60;
+  for (int i = 0; i < most_iterations; ++i) {
+    const double error = fisheye_radius(d, angle) - radius;
+    (error > 0.0 ? high : low) = angle;
+    const double a2 = angle * angle;
+    const double slope = 1.0 + a2 * (3.0 * d.k1 + a2 * (5.0 * d.k2 + a2 * (7.0 * d.k3 + a2 * 9.0 * d.k4)));
+    double next = angle - error / slope;
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    const double change = std::abs(next - angle);
+    angle = next;
+    if (change < 1e-14) break;
+  }
+  return angle;
+}
+
+}  // namespace
+
+const std::vector<std::string>& lens_names() {
+  static const std::vector<std::string> names = {"radial_tangential", "fisheye"};
+  return names;
+}
+
+const char* lens_name(Lens lens) { return lens_names()[static_cast<std::size_t>(lens)].c_str(); }
+
+std::optional<Lens> find_lens(const std::string& name) {
+  for (const Lens lens : {Lens::radial_tangential, Lens::fisheye})
+    if (name == lens_name(lens)) return lens;
+  return std::nullopt;
+}
+
+std::vector<double> Distortion::coefficients() const {
+  if (lens == Lens::fisheye) return {k1, k2, k3, k4};
+  if (is_rational()) return {k1, k2, p1, p2, k3, k4, k5, k6};
+  return {k1, k2, p1, p2, k3};
+}
+
+std::string Distortion::trouble() const {
+  if (lens != Lens::fisheye) return "";
+  if (p1 != 0 || p2 != 0 || k5 != 0 || k6 != 0)
+    return "a fisheye lens has the coefficients k1, k2, k3 and k4 alone; expected p1, p2, k5 and k6 to be 0";
+  if (!(fisheye_radius(*this, largest_angle) > 0.0))
+    return "the image of a ray at 65 degrees lies behind the principal point; expected coefficients of a fisheye lens";
+  return "";
+}
 
 Eigen::Vector2d Camera::distort(const Eigen::Vector2d& pixel) const {
   const Distortion& d = distortion;
   const double x = (pixel.x() - cx) / fx, y = (pixel.y() - cy) / fy;
   const double r2 = x * x + y * y;
-  const double radial = 1.0 + r2 * (d.k1 + r2 * (d.k2 + r2 * d.k3));
+  if (d.lens == Lens::fisheye) {
+    const double r = std::sqrt(r2);
+    const double scale = r > 1e-12 ? fisheye_radius(d, std::atan(r)) / r : 1.0;
+    return {fx * x * scale + cx, fy * y * scale + cy};
+  }
+  // Without k4, k5 and k6 the denominator is exactly 1.
+  const double radial = (1.0 + r2 * (d.k1 + r2 * (d.k2 + r2 * d.k3))) / (1.0 + r2 * (d.k4 + r2 * (d.k5 + r2 * d.k6)));
   const double distorted_x = x * radial + 2.0 * d.p1 * x * y + d.p2 * (r2 + 2.0 * x * x);
   const double distorted_y = y * radial + d.p1 * (r2 + 2.0 * y * y) + 2.0 * d.p2 * x * y;
   return {fx * distorted_x + cx, fy * distorted_y + cy};
@@ -20,11 +89,17 @@ Eigen::Vector2d Camera::undistort(const Eigen::Vector2d& raw) const {
   if (distortion.is_zero()) return raw;
   const Distortion& d = distortion;
   const double raw_x = (raw.x() - cx) / fx, raw_y = (raw.y() - cy) / fy;
+  if (d.lens == Lens::fisheye) {
+    const double radius = std::hypot(raw_x, raw_y);
+    const double scale = radius > 1e-12 ? std::tan(fisheye_angle(d, radius, largest_angle)) / radius : 1.0;
+    return {fx * raw_x * scale + cx, fy * raw_y * scale + cy};
+  }
   double x = raw_x, y = raw_y;
   constexpr int most_iterations = 40;
   for (int i = 0; i < most_iterations; ++i) {
     const double r2 = x * x + y * y;
-    const double inverse_radial = 1.0 / (1.0 + r2 * (d.k1 + r2 * (d.k2 + r2 * d.k3)));
+    const double inverse_radial =
+        (1.0 + r2 * (d.k4 + r2 * (d.k5 + r2 * d.k6))) / (1.0 + r2 * (d.k1 + r2 * (d.k2 + r2 * d.k3)));
     const double next_x = (raw_x - 2.0 * d.p1 * x * y - d.p2 * (r2 + 2.0 * x * x)) * inverse_radial;
     const double next_y = (raw_y - d.p1 * (r2 + 2.0 * y * y) - 2.0 * d.p2 * x * y) * inverse_radial;
     const double change = std::max(std::abs(next_x - x), std::abs(next_y - y));
@@ -32,6 +107,12 @@ Eigen::Vector2d Camera::undistort(const Eigen::Vector2d& raw) const {
     if (change < 1e-9) break;
   }
   return {fx * x + cx, fy * y + cy};
+}
+
+bool Camera::is_usable(const Eigen::Vector2d& raw) const {
+  if (distortion.lens != Lens::fisheye) return true;
+  const double radius = std::hypot((raw.x() - cx) / fx, (raw.y() - cy) / fy);
+  return fisheye_angle(distortion, radius, largest_angle) <= usable_angle;
 }
 
 void Camera::undistorted_bounds(Eigen::Vector2d& minimum, Eigen::Vector2d& maximum) const {
@@ -53,11 +134,12 @@ void Camera::undistorted_bounds(Eigen::Vector2d& minimum, Eigen::Vector2d& maxim
 }
 
 namespace {
-const std::array<Camera, 6>& known_cameras() {
+const std::array<Camera, 7>& known_cameras() {
   // TUM: https://cvg.cit.tum.de/data/datasets/rgbd-dataset/file_formats (colour camera of each freiburg setup).
   // Bonn: https://www.ipb.uni-bonn.de/data/rgbd-dynamic-dataset (colour camera). ICL-NUIM: Handa et al., ICRA 2014, who
-  // give fy as -480 because the y axis of their renderer points up; here y points down.
-  static const std::array<Camera, 6> cameras = {{
+  // give fy as -480 because the y axis of their renderer points up; here y points down. EuRoC: Burri et al., IJRR 2016,
+  // mav0/cam0/sensor.yaml of every sequence, and the distance of the two cameras.
+  static const std::array<Camera, 7> cameras = {{
       {"bonn",
        640,
        480,
@@ -68,6 +150,16 @@ const std::array<Camera, 6>& known_cameras() {
        {0.039903, -0.099343, -0.000730, -0.000144, 0.0},
        0.08,
        30.0},
+      {"euroc",
+       752,
+       480,
+       458.654,
+       457.296,
+       367.215,
+       248.375,
+       {-0.28340811, 0.07395907, 0.00019359, 1.76187114e-05, 0.0},
+       0.110077842,
+       20.0},
       {"icl_nuim", 640, 480, 481.20, 480.00, 319.50, 239.50, {}, 0.08, 30.0},
       {"kinect2", 960, 540, 540.686, 540.686, 479.75, 269.75, {}, 0.08, 30.0},
       {"tum_fr1",

@@ -8,6 +8,7 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/evaluation/number_text.hpp"
 #include "relative_error.hpp"
+#include "scale_drift.hpp"
 
 namespace holdfast {
 
@@ -118,6 +119,7 @@ Evaluation evaluate(const Trajectory& truth_as_given, const Trajectory& estimate
   result.error_per_time = relative_error_per_time(truth, estimate, options.time_step, scale);
   result.error_per_way = relative_error_per_way(truth, estimate, options.path_step, scale);
   result.segment_error = segment_error(truth, estimate, scale);
+  if (options.alignment == AlignmentKind::sim3) result.scale_drift = scale_drift(result.poses);
 
   if (frame_stamps) {
     std::vector<double> frames = *frame_stamps;

@@ -117,6 +117,12 @@ std::string to_text(const Evaluation& evaluation) {
       row(shortest_text(of_length.length) + " m", of_length.segments, of_length.translation, of_length.rotation);
     row("all", error.segments, error.translation, error.rotation);
   }
+  if (const auto& drift = evaluation.scale_drift) {
+    text += "\nscale      by windows of a tenth of the true path, relative to the whole:";
+    for (const ScaleDrift::Window& window : drift->windows) text += ' ' + fixed_text(window.scale, 4);
+    text += "\n           drift from the first window to the last " + fixed_text(100.0 * drift->drift, 2) +
+            " %, largest to smallest " + fixed_text(100.0 * drift->spread, 2) + " %\n";
+  }
   if (evaluation.error_per_time.pairs == 0)
     text += "No pair of poses is " + shortest_text(options.time_step) + " s apart.\n";
   if (evaluation.error_per_way.pairs == 0)
@@ -174,6 +180,17 @@ std::string to_json(const Evaluation& evaluation) {
                               {"rotation_deg_per_m", error.rotation},
                               {"lengths", lengths}};
   }
+  json["scale_drift"] = nullptr;
+  if (const auto& drift = evaluation.scale_drift) {
+    Json windows = Json::array();
+    for (const ScaleDrift::Window& window : drift->windows)
+      windows.push_back({{"begin_s", window.begin},
+                         {"end_s", window.end},
+                         {"pairs", window.pairs},
+                         {"relative_scale", window.scale}});
+    json["scale_drift"] = {
+        {"drift_percent", 100.0 * drift->drift}, {"spread_percent", 100.0 * drift->spread}, {"windows", windows}};
+  }
   json["coverage"] = nullptr;
   if (const auto& coverage = evaluation.coverage)
     json["coverage"] = {{"ratio", coverage->ratio()},    {"frames", coverage->frames},
@@ -230,6 +247,10 @@ std::string to_csv(const Evaluation& evaluation) {
     rows.add("kitti_segments", "segments", error.segments);
     rows.add("kitti_segments", "translation", shortest_text(error.translation), "%");
     rows.add("kitti_segments", "rotation", shortest_text(error.rotation), "deg/m");
+  }
+  if (const auto& drift = evaluation.scale_drift) {
+    rows.add("scale_drift", "first_to_last", shortest_text(100.0 * drift->drift), "%");
+    rows.add("scale_drift", "spread", shortest_text(100.0 * drift->spread), "%");
   }
   if (const auto& coverage = evaluation.coverage) {
     rows.add("coverage", "ratio", shortest_text(coverage->ratio()), "");

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "holdfast/image_files/image_list.hpp"
+
 namespace holdfast {
 
 namespace {
@@ -34,21 +36,34 @@ SensorFrame ImageSequence::decode(const ImageFiles& files) {
   SensorFrame frame;
   frame.timestamp = files.timestamp;
   frame.depth_delay = files.depth_delay;
-  const auto of_camera_size = [&](const std::filesystem::path& file) {
-    return [&](const cv::Size& size) {
-      is_of_other_size_ = size.width != options_.width || size.height != options_.height;
+  const StereoRectification* rectification = options_.rectification.get();
+  const auto of_camera_size = [&](const std::filesystem::path& file, const cv::Size& camera) {
+    return [&, camera](const cv::Size& size) {
+      is_of_other_size_ = size != camera;
       if (is_of_other_size_)
         throw InputError({file.string()},
                          "is " + size_text(size.width, size.height) + " pixels, but the camera is " +
-                             size_text(options_.width, options_.height) +
+                             size_text(camera.width, camera.height) +
                              "; give the camera of this recording under `camera:`, or scale the images");
     };
   };
+  cv::Size left_size(options_.width, options_.height), right_size = left_size;
+  if (rectification != nullptr) {
+    const StereoCalibration& pair = rectification->calibration();
+    left_size = {pair.left.width, pair.left.height};
+    right_size = {pair.right.width, pair.right.height};
+  }
   frame.colour = read_at(files.colour_listed_at, [&] {
-    return options_.colour_may_be_grey ? decoder_.read_widened(files.colour, of_camera_size(files.colour))
-                                       : decoder_.read_colour(files.colour, of_camera_size(files.colour));
+    return options_.colour_may_be_grey ? decoder_.read_widened(files.colour, of_camera_size(files.colour, left_size))
+                                       : decoder_.read_colour(files.colour, of_camera_size(files.colour, left_size));
   });
-  if (!files.right.empty()) frame.right = decoder_.read_grey(files.right, of_camera_size(files.right));
+  if (!files.right.empty())
+    frame.right = read_at(files.right_listed_at,
+                          [&] { return decoder_.read_grey(files.right, of_camera_size(files.right, right_size)); });
+  if (rectification != nullptr) {
+    frame.colour = rectification->rectify_left(frame.colour);
+    frame.right = rectification->rectify_right(frame.right);
+  }
   if (files.depth.empty()) return frame;
   frame.depth = read_at(files.depth_listed_at, [&] {
     return decoder_.read_depth(files.depth, options_.depth_factor, [&](const cv::Size& size) {
@@ -83,6 +98,29 @@ std::optional<SensorFrame> ImageSequence::next() {
     throw InputError({}, "none of the " + std::to_string(files_.size()) +
                              " frames can be used; the first: " + skipped_.front().reason);
   return std::nullopt;
+}
+
+void require_recording_folder(const std::filesystem::path& folder, const std::string& expected,
+                              const std::string& setting) {
+  std::error_code error;
+  if (std::filesystem::is_directory(folder, error)) return;
+  throw InputError({folder.string()},
+                   std::string(std::filesystem::exists(folder, error) ? "is not a folder" : "is missing") +
+                       "; expected " + expected + "; set `" + setting + "`");
+}
+
+void set_stamps(std::vector<ImageFiles>& files, const std::filesystem::path& stamps, double frame_rate) {
+  if (stamps.empty()) {
+    for (std::size_t i = 0; i < files.size(); ++i) files[i].timestamp = static_cast<double>(i) / frame_rate;
+    return;
+  }
+  const std::vector<ListedImage> listed = read_stamp_list(stamps);
+  if (listed.size() != files.size())
+    throw InputError({stamps.string(), listed.back().line},
+                     "the file ends with " + std::to_string(listed.size()) + " stamps, but there are " +
+                         std::to_string(files.size()) + " images from '" + files.front().colour.string() + "' to '" +
+                         files.back().colour.string() + "'; expected one stamp for each");
+  for (std::size_t i = 0; i < files.size(); ++i) files[i].timestamp = listed[i].timestamp;
 }
 
 }  // namespace holdfast

@@ -130,6 +130,23 @@ std::vector<NumberedFile> find_numbered_files(const std::filesystem::path& folde
   return files;
 }
 
+std::vector<std::filesystem::path> find_partners(const std::vector<NumberedFile>& files,
+                                                 const std::filesystem::path& folder, const std::string& extension) {
+  const std::vector<NumberedFile> others = find_numbered_files(folder);
+  std::vector<std::filesystem::path> partners;
+  partners.reserve(files.size());
+  std::size_t next = 0;
+  for (const NumberedFile& file : files) {
+    while (next < others.size() && comes_before(others[next].numbers, file.numbers)) ++next;
+    const bool found = next < others.size() && others[next].numbers == file.numbers;
+    const std::filesystem::path own_ending = file.path.filename();
+    const std::filesystem::path wanted =
+        extension.empty() ? own_ending : std::filesystem::path(file.path.stem().string() + extension);
+    partners.push_back(found ? others[next].path : folder / wanted);
+  }
+  return partners;
+}
+
 bool comes_before(const FileNumbers& left, const FileNumbers& right) {
   return std::lexicographical_compare(left.begin(), left.end(), right.begin(), right.end(),
                                       [](const std::string& a, const std::string& b) {

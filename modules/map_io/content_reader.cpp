@@ -39,6 +39,10 @@ class ContentReader {
       expect(!has_tables_);
       has_tables_ = true;
       content_.tables = read_tables(container_.payload());
+    } else if (type == lens_section) {
+      expect(has_tables_ && !has_lenses_ && !has_keyframes_);
+      read_lenses(container_.payload(), content_.tables);
+      has_lenses_ = true;
     } else if (type == descriptor_section) {
       expect(has_tables_ && !has_descriptors_ && !has_keyframes_);
       has_descriptors_ = true;
@@ -65,8 +69,9 @@ class ContentReader {
 
   void expect(bool right_place) const {
     if (!right_place)
-      fail("found section '" + container_.type() + "' where it does not belong; expected '" + camera_section +
-           "', perhaps '" + descriptor_section + "', '" + keyframe_section + "', one '" + feature_section +
+      fail("found section '" + container_.type() + "' where it does not belong; expected '" + camera_section + "', '" +
+           lens_section + "' if there are such lenses, '" + descriptor_section + "' if there are such descriptors, '" +
+           keyframe_section + "', one '" + feature_section +
            "' for each keyframe, '" + point_section + "', in this order");
   }
 
@@ -89,7 +94,7 @@ class ContentReader {
   FileContent content_;
   std::vector<std::uint32_t> feature_counts_;
   std::uint32_t features_read_ = 0;
-  bool has_tables_ = false, has_descriptors_ = false, has_keyframes_ = false, has_points_ = false;
+  bool has_tables_ = false, has_lenses_ = false, has_descriptors_ = false, has_keyframes_ = false, has_points_ = false;
 };
 
 }  // namespace

@@ -82,7 +82,8 @@ class JsonText {
                        << R"(,"fy":)" << camera.fy << R"(,"cx":)" << camera.cx << R"(,"cy":)" << camera.cy;
     const Distortion& d = camera.distortion;
     return *this << R"(,"k1":)" << d.k1 << R"(,"k2":)" << d.k2 << R"(,"p1":)" << d.p1 << R"(,"p2":)" << d.p2
-                 << R"(,"k3":)" << d.k3 << R"(,"baseline":)" << camera.baseline << R"(,"frame_rate":)"
+                 << R"(,"k3":)" << d.k3 << R"(,"k4":)" << d.k4 << R"(,"k5":)" << d.k5 << R"(,"k6":)" << d.k6
+                 << R"(,"lens":")" << lens_name(d.lens) << R"(","baseline":)" << camera.baseline << R"(,"frame_rate":)"
                  << camera.frame_rate << "}";
   }
   template <class Values>

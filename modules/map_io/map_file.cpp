@@ -34,21 +34,24 @@ void write_content(std::ostream& stream, const Map& map) {
   const SharedTables shared = tables_of(map, index);
   const MapFeatures& map_features = map.features();
   const bool has_descriptor_section = map_features != MapFeatures();
-  ByteWriter tables, descriptors, keyframes, points;
+  ByteWriter tables, lenses, descriptors, keyframes, points;
   if (has_descriptor_section) write_map_features(map_features, descriptors);
   write_tables(shared, tables);
+  write_lenses(shared, lenses);
   write_keyframes(map, index, shared, keyframes);
   write_points(map, index, points);
 
   FileHeader header;
   header.library_version = HOLDFAST_VERSION;
-  header.sections = static_cast<std::uint32_t>((has_descriptor_section ? 4 : 3) + index.keyframes().size());
+  const bool has_lenses = lenses.size() > 0;
+  const std::uint32_t optional_sections = (has_lenses ? 1U : 0U) + (has_descriptor_section ? 1U : 0U);
+  header.sections = 3 + optional_sections + static_cast<std::uint32_t>(index.keyframes().size());
   header.keyframes = static_cast<std::uint32_t>(index.keyframes().size());
   header.points = static_cast<std::uint32_t>(index.points().size());
   header.observations = observation_count(map);
   header.next_sequence = map.next_sequence();
   header.sensor = static_cast<std::uint32_t>(map.sensor());
-  header.file_size = header_size + header.sections * section_header_size + tables.size() + descriptors.size() +
+  header.file_size = header_size + header.sections * section_header_size + tables.size() + lenses.size() + descriptors.size() +
                      keyframes.size() + points.size();
   for (const KeyFrameId id : index.keyframes())
     header.file_size += features_size(map.keyframe(id).frame.size(), map_features.descriptors);
@@ -56,6 +59,7 @@ void write_content(std::ostream& stream, const Map& map) {
   const std::string start = encode(header);
   stream.write(start.data(), static_cast<std::streamsize>(start.size()));
   write_section(stream, camera_section, tables.bytes());
+  if (has_lenses) write_section(stream, lens_section, lenses.bytes());
   if (has_descriptor_section) write_section(stream, descriptor_section, descriptors.bytes());
   write_section(stream, keyframe_section, keyframes.bytes());
   ByteWriter features;

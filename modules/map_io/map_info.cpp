@@ -34,7 +34,9 @@ std::string camera_text(const Camera& camera) {
   return (camera.name.empty() ? "unnamed" : camera.name) + ", " + std::to_string(camera.width) + "x" +
          std::to_string(camera.height) + ", fx " + fixed(camera.fx, 2) + " fy " + fixed(camera.fy, 2) + " cx " +
          fixed(camera.cx, 2) + " cy " + fixed(camera.cy, 2) +
-         (camera.distortion.is_zero() ? ", no distortion" : ", distorted");
+         (camera.distortion.lens == Lens::fisheye ? ", fisheye"
+          : camera.distortion.is_zero()           ? ", no distortion"
+                                                  : ", distorted");
 }
 
 void add_keyframes(const std::vector<KeyFrame>& keyframes, MapInfo& info) {

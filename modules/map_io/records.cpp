@@ -12,6 +12,7 @@ namespace holdfast::map_io {
 namespace {
 
 constexpr std::size_t bytes_per_camera = 2 + 4 + 4 + 11 * 8;
+constexpr std::size_t bytes_per_lens = 4 + 4 + 3 * 8;
 constexpr std::size_t bytes_per_pyramid = 4 + 8;
 constexpr std::size_t bytes_per_keyframe = 8 + 8 + 8 + 12 * 8 + 7 * 4;
 // Without descriptors.
@@ -170,6 +171,43 @@ void write_tables(const SharedTables& tables, ByteWriter& writer) {
     writer.put(static_cast<std::uint32_t>(pyramid->levels()));
     writer.put(pyramid->factor);
   }
+}
+
+void write_lenses(const SharedTables& tables, ByteWriter& writer) {
+  std::vector<std::uint32_t> positions;
+  for (std::uint32_t i = 0; i < tables.cameras.size(); ++i) {
+    const Distortion& d = tables.cameras[i]->distortion;
+    if (d.lens != Lens::radial_tangential || d.is_rational()) positions.push_back(i);
+  }
+  if (positions.empty()) return;
+  writer.put(static_cast<std::uint32_t>(positions.size()));
+  for (const std::uint32_t i : positions) {
+    const Distortion& d = tables.cameras[i]->distortion;
+    writer.put(i);
+    writer.put(static_cast<std::uint32_t>(d.lens));
+    for (const double value : {d.k4, d.k5, d.k6}) writer.put(value);
+  }
+}
+
+void read_lenses(ByteReader reader, SharedTables& tables) {
+  const std::uint32_t lenses = reader.get_count(bytes_per_lens, "lenses");
+  for (std::uint32_t i = 0; i < lenses; ++i) {
+    const auto position = reader.get<std::uint32_t>();
+    if (position >= tables.cameras.size())
+      reader.fail("lens " + std::to_string(i) + ": found camera " + std::to_string(position) + "; expected less than " +
+                  std::to_string(tables.cameras.size()));
+    const auto lens = reader.get<std::uint32_t>();
+    if (lens >= lens_names().size())
+      reader.fail("lens " + std::to_string(i) + ": found number " + std::to_string(lens) + "; expected less than " +
+                  std::to_string(lens_names().size()));
+    Camera camera = *tables.cameras[position];
+    Distortion& d = camera.distortion;
+    d.lens = static_cast<Lens>(lens);
+    for (double* value : {&d.k4, &d.k5, &d.k6}) *value = reader.get<double>();
+    refuse(reader, "camera", position, trouble_of(camera));
+    tables.cameras[position] = std::make_shared<const Camera>(std::move(camera));
+  }
+  reader.expect_end();
 }
 
 SharedTables read_tables(ByteReader reader) {

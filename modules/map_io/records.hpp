@@ -15,6 +15,7 @@ namespace holdfast::map_io {
 
 /// Section types.
 inline constexpr const char* camera_section = "CAMS";
+inline constexpr const char* lens_section = "LENS";
 inline constexpr const char* descriptor_section = "DESC";  ///< absent for ORB's 256 bits
 inline constexpr const char* keyframe_section = "KEYF";
 inline constexpr const char* feature_section = "FEAT";
@@ -54,6 +55,8 @@ std::string trouble_of(const MapPoint& point);
 /// Writing throws CheckError, with the entry's trouble, for a map that no reader would take.
 SharedTables tables_of(const Map& map, const DenseIndex& index);
 void write_tables(const SharedTables& tables, ByteWriter& writer);
+/// Of the cameras whose lens write_tables() cannot say; writes nothing if there is none.
+void write_lenses(const SharedTables& tables, ByteWriter& writer);
 void write_keyframes(const Map& map, const DenseIndex& index, const SharedTables& tables, ByteWriter& writer);
 void write_features(const Frame& frame, std::uint32_t position, const DenseIndex& index, ByteWriter& writer);
 void write_points(const Map& map, const DenseIndex& index, ByteWriter& writer);
@@ -63,6 +66,8 @@ void write_map_features(const MapFeatures& features, ByteWriter& writer);
 
 /// Reading throws InputError.
 SharedTables read_tables(ByteReader reader);
+/// Completes the cameras of read_tables().
+void read_lenses(ByteReader reader, SharedTables& tables);
 /// All of the keyframes but their features. `feature_counts`: of each keyframe.
 std::vector<KeyFrame> read_keyframes(ByteReader reader, const SharedTables& tables,
                                      std::vector<std::uint32_t>& feature_counts);

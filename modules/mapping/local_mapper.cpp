@@ -16,12 +16,7 @@ KeyFrameId LocalMapper::insert(const Frame& frame, bool points_wait, StageTimes&
   if (!points_wait) make_points_from_depth(keyframe);
   for (const MapPointId point : map_.keyframe(keyframe).frame.map_points)
     if (point.valid()) map_.update_point(point);
-  map_.update_covisibility(keyframe, settings_.covisibility_minimum);
-  if (map_.keyframes().size() > 1 && !map_.keyframe(keyframe).parent.valid()) {
-    // Where the map ended, odometry goes on from the last keyframe.
-    const std::vector<KeyFrameId> by_age = map_.keyframes_by_age();
-    map_.hang_on(keyframe, by_age[by_age.size() - 2]);
-  }
+  link(keyframe);
   map_.touch();
   return keyframe;
 }
@@ -29,7 +24,9 @@ KeyFrameId LocalMapper::insert(const Frame& frame, bool points_wait, StageTimes&
 KeyFrameId LocalMapper::begin(const Frame& frame, std::span<const std::pair<Eigen::Vector3d, std::uint32_t>> points,
                               std::vector<MapPointId>& ids, StageTimes& times) {
   const StageTimer timer(times, "mapping: insertion");
+  const bool begins_again = !map_.keyframes().empty();
   const KeyFrameId keyframe = map_.add_keyframe(frame);
+  if (begins_again) begun_again_at_ = map_.keyframe(keyframe).sequence;
   ++counts_.keyframes_made;
   ids.clear();
   for (const auto& [position, feature] : points) {
@@ -40,8 +37,16 @@ KeyFrameId LocalMapper::begin(const Frame& frame, std::span<const std::pair<Eige
     ids.push_back(point);
     ++counts_.points_triangulated;
   }
-  map_.update_covisibility(keyframe, settings_.covisibility_minimum);
+  link(keyframe);
   return keyframe;
+}
+
+void LocalMapper::link(KeyFrameId keyframe) {
+  map_.update_covisibility(keyframe, settings_.covisibility_minimum);
+  if (map_.keyframes().size() < 2 || map_.keyframe(keyframe).parent.valid()) return;
+  // Where the map ended, the motion model or odometry goes on from the last keyframe.
+  const std::vector<KeyFrameId> by_age = map_.keyframes_by_age();
+  map_.hang_on(keyframe, by_age[by_age.size() - 2]);
 }
 
 std::vector<KeyFrameId> LocalMapper::refine(KeyFrameId keyframe, StageTimes& times) {
@@ -122,7 +127,8 @@ void LocalMapper::remove_weak_points(KeyFrameId id) {
   // (Mur-Artal et al. 2015, section VI-B). Depth confirms a point as well as another view does.
   const bool is_mono = map_.sensor() == Sensor::mono;
   const std::size_t required = is_mono ? 3 : 2;
-  const bool can_be_confirmed = map_.keyframes().size() >= required;
+  const bool can_be_confirmed =
+      map_.keyframes().size() >= required && (begun_again_at_ == 0 || now + 1 >= begun_again_at_ + required);
   std::erase_if(recent_points_, [&](MapPointId point_id) {
     const MapPoint* point = map_.find_point(point_id);
     if (point == nullptr) return true;

@@ -373,7 +373,9 @@ FrameResult Pipeline::feed(const SensorFrame& given) {
     const TrackingLock lock(s.map_mutex);
     s.tracker.locate(frame, result);
     result.tracking_seconds = mask_seconds + watch.seconds();
-    if (result.is_keyframe && s.mapping && (!s.keyframes_kept.empty() || !s.mapping->queue().has_room())) {
+    // The two views that begin a map are needed: without them there is nothing to track by.
+    if (result.is_keyframe && s.tracker.two_view_start() == nullptr && s.mapping &&
+        (!s.keyframes_kept.empty() || !s.mapping->queue().has_room())) {
       result.is_keyframe = false;
       ++s.keyframes_deferred;
     }

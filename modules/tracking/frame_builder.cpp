@@ -8,13 +8,32 @@
 
 namespace holdfast {
 
+namespace {
+
+/// Where the camera cannot use its image; empty if there is no such place.
+cv::Mat unusable_pixels(const Camera& camera) {
+  if (camera.distortion.lens != Lens::fisheye) return {};
+  cv::Mat mask(camera.height, camera.width, CV_8UC1, cv::Scalar(0));
+  bool any = false;
+  for (int row = 0; row < camera.height; ++row)
+    for (int column = 0; column < camera.width; ++column) {
+      const bool usable = camera.is_usable({static_cast<double>(column), static_cast<double>(row)});
+      mask.ptr<std::uint8_t>(row)[column] = usable ? 0 : 255;
+      any = any || !usable;
+    }
+  return any ? mask : cv::Mat();
+}
+
+}  // namespace
+
 FrameBuilder::FrameBuilder(const Camera& camera, FeatureExtractor& extractor, double depth_edge_ratio)
     : camera_(std::make_shared<const Camera>(camera)),
       pyramid_(std::make_shared<const ScalePyramid>(extractor.pyramid())),
       extractor_(extractor),
       depth_reader_(camera_, depth_edge_ratio),
       undistortion_(camera),
-      coarse_sampler_(camera) {
+      coarse_sampler_(camera),
+      unusable_(unusable_pixels(camera)) {
   camera.undistorted_bounds(minimum_, maximum_);
 }
 
@@ -58,10 +77,12 @@ void FrameBuilder::find_features(const SensorFrame& sensor_frame, const cv::Mat&
                                  StageTimes& times) {
   {
     const StageTimer timer(times, "features");
+    if (!ignore.empty() && !unusable_.empty()) cv::bitwise_or(ignore, unusable_, ignored_);
+    const cv::Mat& without = unusable_.empty() ? ignore : ignore.empty() ? unusable_ : ignored_;
     if (stereo_)
-      stereo_->extract(grey_, grey_right_, ignore, extractor_, frame);
+      stereo_->extract(grey_, grey_right_, without, extractor_, frame);
     else
-      extractor_.extract(grey_, ignore, frame.features);
+      extractor_.extract(grey_, without, frame.features);
   }
   const StageTimer timer(times, "frame");
   undistortion_.undistort(frame.features.x, frame.features.y, frame.x, frame.y);

@@ -88,6 +88,13 @@ TrackingTrouble MonoInitialiser::add(Frame& frame) {
   return TrackingTrouble::none;
 }
 
+void MonoInitialiser::place(const Eigen::Isometry3d& T_reference_world, Frame& frame) {
+  start_.reference.T_camera_world = T_reference_world;
+  frame.T_camera_world = frame.T_camera_world * T_reference_world;
+  const Eigen::Isometry3d T_world_reference = T_reference_world.inverse();
+  for (TwoViewStart::Point& point : start_.points) point.position = T_world_reference * point.position;
+}
+
 bool MonoInitialiser::adjust(const geometry::TwoViewMotion& motion, Frame& frame) {
   BundleProblem problem;
   problem.camera = frame.camera.get();

@@ -60,10 +60,12 @@ void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
   moving_world_.evaluate(FilterStage::before_matching, view, result.times);
   odometry_extends_map_ = false;
   const bool found = find_pose(view, result);
-  if (!found && !mono_ && was_lost_at_start() && start_map(coasting_pose(), result)) {
+  if (!found && was_lost_at_start() &&
+      (mono_ ? start_again_with_two_views(result) : start_map(coasting_pose(current_.timestamp), result))) {
     end_frame(result);
     return;
   }
+  if (found && mono_) mono_->forget();  // what was a reference for a new start
   state_ = found ? State::tracking : State::lost;
   result.status = found ? TrackingStatus::tracked : TrackingStatus::lost;
   if (found) {
@@ -100,9 +102,9 @@ Eigen::Isometry3d Tracker::predicted_pose() const {
   return history_.predicted_step(current_.timestamp) * previous_.T_camera_world;
 }
 
-Eigen::Isometry3d Tracker::coasting_pose() const {
-  const bool coasts = current_.timestamp <= history_.last_timestamp() + settings_.coasting_time;
-  return history_.extrapolate(current_.timestamp, coasts ? 1.0 : 0.0) * history_.last_pose(map_);
+Eigen::Isometry3d Tracker::coasting_pose(double timestamp) const {
+  const bool coasts = timestamp <= history_.last_timestamp() + settings_.coasting_time;
+  return history_.extrapolate(timestamp, coasts ? 1.0 : 0.0) * history_.last_pose(map_);
 }
 
 bool Tracker::start_map(const Eigen::Isometry3d& T_camera_world, FrameResult& result) {
@@ -133,6 +135,18 @@ void Tracker::start_with_two_views(const SensorFrame& sensor_frame, FrameResult&
   begins_with_two_views_ = true;
   begin_map(result);
   result.inliers = static_cast<int>(mono_->start().points.size());
+}
+
+bool Tracker::start_again_with_two_views(FrameResult& result) {
+  moving_world_.weight_features(current_);
+  const StageTimer timer(result.times, "initialisation");
+  if (mono_->add(current_) != TrackingTrouble::none) return false;
+  mono_->place(coasting_pose(mono_->start().reference.timestamp), current_);
+  std::fill(current_.map_points.begin(), current_.map_points.end(), MapPointId());
+  begins_with_two_views_ = true;
+  begin_map(result);
+  result.inliers = static_cast<int>(mono_->start().points.size());
+  return true;
 }
 
 void Tracker::map_begun(KeyFrameId reference, const std::vector<MapPointId>& points) {

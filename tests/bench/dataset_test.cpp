@@ -33,12 +33,17 @@ TEST(DatasetRecipeTest, EveryRecipeSaysWhatPeopleMustKnow) {
     EXPECT_TRUE(is_plain_name(recipe.name)) << recipe.name;
     EXPECT_FALSE(recipe.folder.empty() || recipe.licence.empty() || recipe.citation.empty()) << recipe.name;
     EXPECT_THAT(recipe.address, StartsWith("https://")) << recipe.name;
-    EXPECT_FALSE(recipe.camera.name.empty()) << recipe.name;
+    EXPECT_EQ(recipe.camera.name.empty(), is_stereo(recipe.layout)) << recipe.name;
     EXPECT_EQ(recipe.has_masks, !recipe.make.empty()) << recipe.name;
     ++sequences[recipe.dataset];
   }
   EXPECT_EQ(sequences["Bonn RGB-D Dynamic"], 26);
   EXPECT_EQ(sequences["ICL-NUIM"], 8);
+  EXPECT_EQ(sequences["KITTI odometry"], 11);
+  EXPECT_EQ(sequences["EuRoC MAV"], 11);
+  EXPECT_EQ(find_recipe("euroc_v2_03")->folder, "V2_03_difficult");
+  EXPECT_EQ(find_recipe("euroc_v2_03")->layout, DatasetLayout::euroc);
+  EXPECT_EQ(find_recipe("kitti_04")->pairs, 271U);
   for (const char* name : {"sitting_static", "sitting_xyz", "sitting_halfsphere", "sitting_rpy", "walking_static",
                            "walking_xyz", "walking_halfsphere", "walking_rpy"}) {
     const DatasetRecipe* recipe = find_recipe(std::string("fr3_") + name);
@@ -195,7 +200,39 @@ TEST_F(DatasetCheckTest, TurnsTheListsOfIclNuimRound) {
   EXPECT_EQ(pairs[1].depth.name, "depth/1.png");
 }
 
+/// A sequence of three pairs in KITTI's layout; the source's own tests look at its content.
+TEST_F(DatasetCheckTest, LooksAtStereoPairs) {
+  for (const char* side : {"image_0", "image_1"}) {
+    fs::create_directories(program_.path(std::string("04/") + side));
+    for (int i = 0; i < 3; ++i)
+      cv::imwrite(program_.path(std::string("04/") + side + "/00000" + std::to_string(i) + ".png").string(),
+                  cv::Mat(48, 64, CV_8UC1, cv::Scalar(20 * i)));
+  }
+  program_.write("04/calib.txt", "P0: 50 0 32 0 0 50 24 0 0 0 1 0\nP1: 50 0 32 -25 0 50 24 0 0 0 1 0\n");
+  EXPECT_EQ(layout_of(program_.path("04")), DatasetLayout::kitti);
+  EXPECT_EQ(layout_of(program_.path("rec")), DatasetLayout::tum);
+  const auto check = [&] { return check_dataset(program_.path("04"), nullptr); };
+  EXPECT_THAT(check().problems, IsEmpty());
+  EXPECT_THAT(check().facts, ElementsAre("3 stereo pairs", "camera of its own files: 64x48, baseline 0.500 m",
+                                         "no true poses: there is nothing to measure an error by"));
+  EXPECT_THAT(check_dataset(program_.path("04"), find_recipe("kitti_04")).problems,
+              ElementsAre(HasSubstr("3 stereo pairs; expected 271")));
+  program_.write("04/poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 0 0 1 0 0 0 0 1 1\n1 0 0 0 0 1 0 0 0 0 1 2\n");
+  EXPECT_THAT(check().facts, Contains("3 true poses"));
+  fs::remove(program_.path("04/image_1/000001.png"));
+  cv::imwrite(program_.path("04/image_1/000002.png").string(), cv::Mat(24, 32, CV_8UC1, cv::Scalar(1)));
+  EXPECT_THAT(check().problems,
+              ElementsAre(HasSubstr("the right camera lists 1 image that is missing: image_1/000001.png; unpack"),
+                          AllOf(HasSubstr("image_1/000002.png has 32x24 pixels"),
+                                HasSubstr("expected 64x48 of the right camera"))));
+  fs::remove(program_.path("04/calib.txt"));
+  EXPECT_THAT(check_dataset(program_.path("04"), find_recipe("kitti_04")).problems,
+              ElementsAre(HasSubstr("calib.txt: is missing")));
+}
+
 TEST_F(DatasetCheckTest, IsACommand) {
+  EXPECT_THAT(program_.run({"dataset", "list", "euroc_mh_01"}).output,
+              AllOf(HasSubstr("3682 stereo pairs"), HasSubstr("mav0/cam0/"), HasSubstr("source    euroc")));
   EXPECT_THAT(program_.run({"dataset", "list"}).output,
               AllOf(HasSubstr("fr3_walking_xyz"), HasSubstr("bonn_crowd3"), HasSubstr("licence: CC BY 4.0")));
   EXPECT_THAT(program_.run({"dataset", "list", "fr1_xyz"}).output,
@@ -275,6 +312,16 @@ TEST_F(RecipeMatrixTest, FillsInWhatARecipeKnows) {
   const RunPlan masked = plan("base: masked.yaml\nsequences:\n  w21: { recipe: w21, path: one }\n");
   EXPECT_THAT(problems(), IsEmpty());
   EXPECT_THAT(masked.runs.at(0).request, HasSubstr("/one/mask"));
+}
+
+TEST_F(RecipeMatrixTest, StereoPairsBringTheirCamera) {
+  write("matrix.yaml", "base: plain.yaml\nsequences:\n  street: { recipe: kitti_04, path: one }\n");
+  const Matrix matrix = read_matrix(folder_ / "matrix.yaml", {}, diagnostics_);
+  EXPECT_THAT(problems(), IsEmpty());
+  const MatrixSequence& sequence = matrix.sequences.at(0);
+  ASSERT_NE(sequence.source.find("kitti"), nullptr);
+  EXPECT_FALSE(sequence.camera.has_value());
+  EXPECT_EQ(sequence.published, "kitti_04");
 }
 
 TEST_F(RecipeMatrixTest, TurnsTheTruthOfBonnToTheCamera) {

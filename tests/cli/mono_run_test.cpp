@@ -47,6 +47,41 @@ TEST(MonoRun, IsTheSameTwice) {
   EXPECT_EQ(program.text("a/trajectory.txt"), program.text("b/trajectory.txt"));
 }
 
+/// Two people walk through the view; exact masks.
+std::vector<std::string> walkers(const std::string& mode) {
+  return {"source={simulated: {scene: " + std::string(HOLDFAST_EXAMPLE_CONFIGURATIONS) +
+              "/../scenes/walking_xyz.yaml, duration: 8, seed: 1}}",
+          "camera=tum_fr3",
+          "features.orb.count=1500",
+          "run.mode=" + mode,
+          "segmenter=truth",
+          "filters=[semantic_mask, epipolar_consistency]",
+          "tracking.minimum_inliers=15",
+          "tracking.keyframe_tracked_ratio=0.9"};
+}
+
+TEST(MonoRun, MasksKeepPeopleOutAndTwiceTheSame) {
+  const test::Program program;
+  std::vector<std::string> without = walkers("sequential");
+  without.insert(without.end(), {"segmenter=none", "filters=[]"});
+  const nlohmann::json with_masks = run_mono(program, "a", walkers("sequential"));
+  EXPECT_GE(with_masks.at("frames").at("poses"), 140);  // of 240; the map begins late, and the people fill the view
+  EXPECT_LE(error(with_masks), 0.03);
+  EXPECT_GE(error(run_mono(program, "none", without)), 4.0 * error(with_masks));
+  EXPECT_TRUE(with_masks.at("evaluation").contains("scale_drift"));
+  run_mono(program, "b", walkers("sequential"));
+  EXPECT_EQ(program.text("a/trajectory.txt"), program.text("b/trajectory.txt"));
+  EXPECT_EQ(program.text("a/map.hfm"), program.text("b/map.hfm"));
+}
+
+TEST(MonoRun, MasksWorkInThreads) {
+  const test::Program program;
+  const nlohmann::json summary = run_mono(program, "out", walkers("threaded"));
+  EXPECT_GE(summary.at("frames").at("poses"), 100);
+  EXPECT_LE(error(summary), 0.05);
+  EXPECT_EQ(summary.at("sensor"), "mono");
+}
+
 TEST(MonoRun, TheUnitOfTheMapIsASetting) {
   const test::Program program;
   std::vector<std::string> twice = sideways;

@@ -80,6 +80,29 @@ TEST(Configuration, CameraByNumbers) {
   EXPECT_EQ(c.camera->frame_rate, 30);
 }
 
+TEST(Configuration, LensesOfCameras) {
+  const std::string numbers = "width: 320, height: 240, fx: 260, fy: 261, cx: 160, cy: 120, ";
+  const auto camera_of = [&](const std::string& lens) {
+    return resolve("source: { tum: { path: x } }\nfeatures: orb\noptimizer: ceres\ncamera: { " + numbers + lens +
+                   " }\n")
+        .camera->distortion;
+  };
+  EXPECT_TRUE(camera_of("k1: 0.5, k4: 0.4, k5: 0.1, k6: 0.2").is_rational());
+  const Distortion fisheye = camera_of("lens: fisheye, k1: -0.1, k4: 0.01");
+  EXPECT_EQ(fisheye.lens, Lens::fisheye);
+  EXPECT_EQ(fisheye.coefficients(), (std::vector<double>{-0.1, 0.0, 0.0, 0.01}));
+  const auto error = [&](const std::string& lens) {
+    try {
+      camera_of(lens);
+    } catch (const ConfigurationError& problem) {
+      return std::string(problem.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(error("lens: fisheye, p1: 0.1"), ::testing::HasSubstr("k1, k2, k3 and k4 alone"));
+  EXPECT_THAT(error("lens: fishey"), ::testing::HasSubstr("expected one of radial_tangential, fisheye"));
+}
+
 TEST(Configuration, WrittenAndReadAgainIsTheSame) {
   const Configuration first = resolve(test::good + R"(run: { seed: 7 }
 filters:

@@ -118,6 +118,7 @@ TEST(BadModules, FiltersAreFound) {
                {{"cells_without_end", unsound},
                 {"changes_its_needs", {"NeedsStay"}},
                 {"counts_calls", {"InstancesDoNotMeet", "MayChangeThreads", "SameContextsSameEvidence"}},
+                {"hides_its_needs", {"WorksWithoutDepthUnlessItNeedsIt"}},
                 {"invents_points", unsound},
                 {"names_itself", {"NeverTakesAway"}},
                 {"needs_depth", {"LivesWithoutDepth"}},

@@ -124,6 +124,36 @@ TEST(Map, RemovedKeyframeKeepsItsPoseThroughItsParent) {
   EXPECT_TRUE(map.pose_of(ids[3]).isApprox(before * shift, 1e-12));
 }
 
+TEST(Map, ARemovedKeyframeFollowsTheScaleOfItsParent) {
+  Map map;
+  const std::vector<KeyFrameId> ids = build_row(map, 6);
+  // One keyframe was scaled before it left the map, its parent only later.
+  map.keyframe(ids[4]).scale = 1.5;
+  const KeyFrameId parent = map.keyframe(ids[4]).parent;
+  ASSERT_TRUE(parent.valid());
+  const Eigen::Isometry3d before = map.pose_of(ids[4]) * map.pose_of(parent).inverse();
+  map.remove_keyframe(ids[4]);
+  EXPECT_EQ(map.scale_of(ids[4]), 1.5);
+  map.keyframe(parent).scale *= 2.0;
+  EXPECT_DOUBLE_EQ(map.scale_of(ids[4]), 3.0);
+  EXPECT_EQ(map.scale_of(ids[0]), parent == ids[0] ? 2.0 : 1.0);
+  // Its way from the parent has grown with the parent's surroundings, and its direction has not changed.
+  const Eigen::Isometry3d now = map.pose_of(ids[4]) * map.pose_of(parent).inverse();
+  EXPECT_GT(before.translation().norm(), 0.05);
+  EXPECT_TRUE(now.translation().isApprox(2.0 * before.translation(), 1e-12));
+  EXPECT_TRUE(now.linear().isApprox(before.linear(), 1e-12));
+  // A chain: the parent leaves as well, and its own parent is scaled.
+  if (!map.keyframe(parent).parent.valid()) return;
+  const KeyFrameId grandparent = map.keyframe(parent).parent;
+  map.remove_keyframe(parent);
+  EXPECT_DOUBLE_EQ(map.scale_of(ids[4]), 3.0);
+  map.keyframe(grandparent).scale *= 0.5;
+  EXPECT_DOUBLE_EQ(map.scale_of(parent), 1.0);
+  EXPECT_DOUBLE_EQ(map.scale_of(ids[4]), 1.5);
+  const Eigen::Isometry3d end = map.pose_of(ids[4]) * map.pose_of(parent).inverse();
+  EXPECT_TRUE(end.translation().isApprox(before.translation(), 1e-12));
+}
+
 TEST(Map, FirstKeyframeCannotBeRemoved) {
   Map map;
   const std::vector<KeyFrameId> ids = build_row(map, 3);

@@ -57,8 +57,7 @@ TEST(SegmentError, RotationIsPerMetre) {
   const Trajectory truth = straight_trajectory(121, 10.0, 10.0);
   Trajectory estimate = truth;
   for (std::size_t i = 51; i < estimate.size(); ++i)
-    estimate[i].T_world_camera.linear() =
-        Eigen::AngleAxisd(M_PI / 180.0, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+    estimate[i].T_world_camera.linear() = Eigen::AngleAxisd(M_PI / 180.0, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   const SegmentError error = evaluate(truth, estimate).segment_error;
   ASSERT_EQ(error.lengths.size(), 1u);
   EXPECT_EQ(error.segments, 2u);
@@ -70,6 +69,50 @@ TEST(SegmentError, AShortPathHasNone) {
   const Evaluation evaluation = evaluate(world.truth, world.estimate);
   EXPECT_EQ(evaluation.segment_error.segments, 0u);
   EXPECT_EQ(to_text(evaluation).find("KITTI"), std::string::npos);
+}
+
+TEST(ScaleDrift, IsTheScaleOfWindowsRelativeToTheWhole) {
+  // The estimate shrinks steadily to 80 % along a curve, in a unit of its own.
+  const Trajectory truth = test::wavy_trajectory(601, 20.0);
+  Trajectory estimate = truth;
+  for (std::size_t i = 1; i < truth.size(); ++i) {
+    const double scale = 3.0 * (1.0 - 0.2 * static_cast<double>(i) / static_cast<double>(truth.size()));
+    estimate[i].T_world_camera.translation() =
+        estimate[i - 1].T_world_camera.translation() +
+        scale * (truth[i].T_world_camera.translation() - truth[i - 1].T_world_camera.translation());
+  }
+  EvaluationOptions options;
+  options.alignment = AlignmentKind::sim3;
+  const Evaluation evaluation = evaluate(truth, estimate, options);
+  ASSERT_TRUE(evaluation.scale_drift.has_value());
+  const ScaleDrift& drift = *evaluation.scale_drift;
+  ASSERT_EQ(drift.windows.size(), 10u);
+  std::size_t pairs = 0;
+  for (std::size_t w = 0; w < 10; ++w) {
+    pairs += drift.windows[w].pairs;
+    if (w == 0) continue;
+    EXPECT_GT(drift.windows[w].scale, drift.windows[w - 1].scale);
+    EXPECT_NEAR(drift.windows[w].begin, drift.windows[w - 1].end + 0.05, 1e-9);
+  }
+  EXPECT_EQ(pairs, 601u);
+  // The middles of the first and the last window are at 5 % and 95 % of the path, where the scale is 0.99 and 0.81.
+  EXPECT_NEAR(drift.drift, 0.99 / 0.81 - 1.0, 0.02);
+  EXPECT_NEAR(drift.spread, drift.drift, 1e-12);
+  EXPECT_NE(to_text(evaluation).find("by windows of a tenth of the true path"), std::string::npos);
+  EXPECT_NE(to_json(evaluation).find("\"spread_percent\""), std::string::npos);
+  EXPECT_NE(to_csv(evaluation).find("scale_drift,first_to_last"), std::string::npos);
+}
+
+TEST(ScaleDrift, IsNothingWithoutADrift) {
+  const Trajectory truth = test::wavy_trajectory(301, 20.0);
+  EvaluationOptions options;
+  EXPECT_FALSE(evaluate(truth, truth, options).scale_drift.has_value()) << "the scale is not estimated";
+  options.alignment = AlignmentKind::sim3;
+  const Evaluation same = evaluate(truth, test::moved(truth, test::some_transform(), 0.3), options);
+  EXPECT_NEAR(same.scale_drift->spread, 0.0, 1e-9);
+  EXPECT_NEAR(same.alignment.scale, 1.0 / 0.3, 1e-9);
+  const Trajectory few = test::wavy_trajectory(50, 20.0);
+  EXPECT_FALSE(evaluate(few, few, options).scale_drift.has_value()) << "five pairs in a window";
 }
 
 TEST(RelativeError, TakesTheOrderOfTheBenchmarksTool) {

@@ -199,6 +199,36 @@ TEST_F(MapFile, AMapThatWasReadGoesOn) {
   expect_same(map, read_map(path("more.hfm")));
 }
 
+TEST_F(MapFile, HoldsEveryLens) {
+  Map map = random_map(6, 20, 9);
+  const std::string plain = bytes_of(map);
+  EXPECT_EQ(plain.find("LENS"), std::string::npos) << "readers of old read maps of plain lenses";
+  Camera fisheye = *find_camera("tum_fr3"), rational = fisheye;
+  fisheye.distortion = {.k1 = -0.1, .k2 = 0.02, .k3 = 0.03, .k4 = -0.004};
+  fisheye.distortion.lens = Lens::fisheye;
+  rational.distortion = {0.5, -2.6, 0.0007, -0.0002, 1.5, 0.39, -2.43, 1.43};
+  const auto cameras = {std::make_shared<const Camera>(fisheye), std::make_shared<const Camera>(rational),
+                        std::make_shared<const Camera>()};
+  std::size_t next = 0;
+  for (const KeyFrameId id : map.keyframes().ids())
+    map.keyframe(id).frame.camera = cameras.begin()[next++ % cameras.size()];
+  const std::string bytes = bytes_of(map);
+  write("map.hfm", bytes);
+  const Map again = read_map(path("map.hfm"));
+  expect_same(map, again);
+  EXPECT_TRUE(bytes_of(again) == bytes);
+  // Damage that the checksums would hide if they were right is found as well.
+  const std::size_t content = bytes.find("LENS") + 24;
+  const auto refusal = [&](std::size_t offset, std::uint32_t value) {
+    std::string wrong = bytes;
+    std::memcpy(&wrong[content + offset], &value, sizeof(value));
+    test::repair_checksums(wrong);
+    return refusal_of(wrong);
+  };
+  EXPECT_THAT(refusal(4, 77), ::testing::HasSubstr("found camera 77"));
+  EXPECT_THAT(refusal(8, 9), ::testing::HasSubstr("found number 9; expected less than 2"));
+}
+
 TEST_F(MapFile, SharedCamerasStayShared) {
   write_map(path("map.hfm"), random_map(15, 30, 5));
   const Map map = read_map(path("map.hfm"));

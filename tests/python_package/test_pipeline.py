@@ -199,6 +199,25 @@ def test_exception_in_the_block_passes(frames):
     assert "closed" in repr(pipeline)
 
 
+def test_cameras_have_lenses():
+    numbers = {"width": 640, "height": 480, "fx": 300, "fy": 300, "cx": 320, "cy": 240}
+    without = {key: value for key, value in PIPELINE.items() if key != "camera"}
+    for coefficients, length in (
+        ({"k1": -0.1}, 5),
+        ({"k1": 0.5, "k2": -2.6, "p1": 0.001, "k3": 1.5, "k4": 0.4, "k5": -2.4, "k6": 1.4}, 8),
+        ({"lens": "fisheye", "k1": 0.01, "k4": -0.002}, 4),
+    ):
+        camera = holdfast.Camera(**numbers, **coefficients)
+        assert camera.lens == coefficients.get("lens", "radial_tangential")
+        assert len(camera.distortion) == length and camera.distortion[0] == coefficients["k1"]
+        with holdfast.Pipeline(without, camera=camera) as pipeline:
+            assert pipeline.camera == camera
+    with pytest.raises(holdfast.InputError, match="did you mean 'fisheye'"):
+        holdfast.Camera(**numbers, lens="fishy")
+    with pytest.raises(holdfast.InputError, match="k1, k2, k3 and k4 alone"):
+        holdfast.Camera(**numbers, lens="fisheye", p1=0.1)
+
+
 def test_camera_can_be_given(frames):
     without = {key: value for key, value in PIPELINE.items() if key != "camera"}
     with pytest.raises(holdfast.ConfigurationError, match="camera is missing"):

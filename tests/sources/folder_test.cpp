@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
+#include <opencv2/core.hpp>
+
 #include "sources/recording.hpp"
 
 namespace holdfast {
@@ -128,7 +130,7 @@ TEST_F(FolderSourceTest, StampsTruthAndRange) {
 
   folder_.write("stamps.txt", "10.5\n11\n");
   EXPECT_THAT(error({{"stamps", stamps}}),
-              AllOf(StartsWith(stamps + ":2: "), HasSubstr("2 stamps, but there are 3 colour images")));
+              AllOf(StartsWith(stamps + ":2: "), HasSubstr("2 stamps, but there are 3 images")));
   folder_.write("stamps.txt", "10.5\n11\n11\n");
   EXPECT_THAT(error({{"stamps", stamps}}), AllOf(StartsWith(stamps + ":3: "), HasSubstr("the same as in line 2")));
   EXPECT_THAT(error({{"truth", full("none.txt")}}), StartsWith(full("none.txt")));
@@ -163,6 +165,61 @@ TEST_F(FolderSourceTest, IntrinsicsComeThroughTheDescription) {
   const std::string json =
       folder_.write("camera.json", R"({"fx": 1, "fy": 2, "cx": 3, "cy": 4, "width": 32, "height": 24, "p2": -0.5})");
   EXPECT_EQ(open({{"intrinsics", json}})->describe().camera->distortion.p2, -0.5);
+}
+
+TEST_F(FolderSourceTest, StereoPairsPairByNumberAndMayBeGrey) {
+  for (const int number : {1, 2, 3}) {
+    cv::Mat grey;
+    cv::extractChannel(test::colour_image(number), grey, 0);
+    folder_.write_image("left/" + std::to_string(number) + ".png", grey);
+    if (number != 2) folder_.write_image("right/r0" + std::to_string(number) + ".png", grey);
+  }
+  const std::string camera =
+      folder_.write("camera.yaml", "fx: 60\nfy: 60\ncx: 32\ncy: 24\nwidth: 64\nheight: 48\nbaseline: 0.12\n");
+  const auto source = open({{"colour", std::string("left")},
+                            {"right", std::string("right")},
+                            {"intrinsics", camera},
+                            {"on_bad_frame", text_skip}});
+  EXPECT_TRUE(source->describe().has_right);
+  EXPECT_EQ(source->describe().camera->baseline, 0.12);
+  const std::vector<SensorFrame> frames = read_all(*source);
+  ASSERT_EQ(frames.size(), 2u);
+  EXPECT_EQ(number_of(frames[1]), 3);
+  EXPECT_EQ(frames[1].right.at<std::uint8_t>(0, 0), 43);
+  EXPECT_EQ(source->skipped().at(0).index, 1u);
+  EXPECT_THAT(source->skipped().at(0).reason, HasSubstr("right/2.png"));
+  EXPECT_THAT(error({{"colour", std::string("left")}, {"right", std::string("right/%d.png")}}),
+              HasSubstr("expected two patterns or two folders"));
+}
+
+TEST_F(FolderSourceTest, APairThatIsNotRectifiedIsRectified) {
+  for (const char* side : {"left", "right"}) folder_.write_image(std::string(side) + "/1.png", test::colour_image(1));
+  const std::string numbers = "fx: 60, fy: 60, cx: 32, cy: 24, width: 64, height: 48, ";
+  const auto open_with = [&](const std::string& pose, const std::string& more = "") {
+    return open(
+        {{"colour", std::string("left")},
+         {"right", std::string("right")},
+         {"intrinsics", folder_.write("camera.yaml", "{" + numbers + "k1: -0.1, right: {" + numbers +
+                                                         "lens: fisheye, k4: 0.01, " + pose + "}" + more + "}\n")}});
+  };
+  const auto source = open_with("T_left_right: [[1, 0, 0, 0.2], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]");
+  const std::optional<Camera> camera = source->describe().camera;
+  EXPECT_TRUE(camera->distortion.is_zero());
+  EXPECT_NEAR(camera->baseline, 0.2, 1e-12);
+  EXPECT_EQ(read_all(*source).at(0).right.cols, 64);
+  const auto wrong = [&](const std::string& pose, const std::string& more = "") {
+    return input_error([&] { open_with(pose, more); });
+  };
+  EXPECT_THAT(wrong("k1: 0"), AllOf(StartsWith(full("camera.yaml") + ":1:"), HasSubstr("lacks T_left_right")));
+  EXPECT_THAT(wrong("T_left_right: [1, 0, 0]"), HasSubstr("expected a list of 16 numbers"));
+  EXPECT_THAT(wrong("T_left_right: [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 1, 1]]"),
+              HasSubstr("not a rigid motion"));
+  EXPECT_THAT(wrong("T_left_right: [[1, 0, 0, -1], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]"),
+              HasSubstr("exchange the cameras"));
+  EXPECT_THAT(wrong("baseline: 1"), HasSubstr("unknown key 'baseline'"));
+  EXPECT_THAT(wrong("p1: 0.1, T_left_right: [1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]"),
+              HasSubstr("k1, k2, k3 and k4 alone"));
+  EXPECT_THAT(wrong("k1: 0", ", lens: fishey"), HasSubstr("did you mean 'fisheye'?"));
 }
 
 TEST_F(FolderSourceTest, BadIntrinsicsNameThePlace) {

@@ -14,6 +14,7 @@
 
 extern "C" void holdfast_register_plugin_tum(holdfast::Registry& registry);
 extern "C" void holdfast_register_plugin_folder(holdfast::Registry& registry);
+extern "C" void holdfast_register_plugin_euroc(holdfast::Registry& registry);
 extern "C" void holdfast_register_plugin_kitti(holdfast::Registry& registry);
 
 namespace holdfast::test {
@@ -93,6 +94,7 @@ std::unique_ptr<FrameSource> make_source(const std::string& name, const Paramete
   Registry registry;
   holdfast_register_plugin_tum(registry);
   holdfast_register_plugin_folder(registry);
+  holdfast_register_plugin_euroc(registry);
   holdfast_register_plugin_kitti(registry);
   CreationContext context;
   context.camera.width = width;

@@ -23,10 +23,51 @@ TEST_P(KnownCamera, TableUndistortsLikeTheCamera) {
   table.undistort(x, y, out_x, out_y);
   for (std::size_t i = 0; i < x.size(); ++i) {
     const Eigen::Vector2d exact = camera.undistort({x[i], y[i]});
-    ASSERT_LT((exact - Eigen::Vector2d(out_x[i], out_y[i])).norm(), 2e-3) << x[i] << " " << y[i];
+    ASSERT_LT((exact - Eigen::Vector2d(out_x[i], out_y[i])).norm(), 5e-3) << x[i] << " " << y[i];
   }
 }
 INSTANTIATE_TEST_SUITE_P(All, KnownCamera, testing::ValuesIn(camera_names()));
+
+TEST(FrameBuilder, NothingIsExtractedWhereAFisheyeImageIsNotUsable) {
+  /// A feature in the middle of the image and one in its corner, where they are not ignored.
+  class TwoFeatures final : public FeatureExtractor {
+   public:
+    void extract(const cv::Mat& grey, const cv::Mat& ignore, Features& out) override {
+      const cv::Point places[] = {{grey.cols / 2, grey.rows / 2}, {3, 3}};
+      out.resize(0);
+      for (const cv::Point& place : places) {
+        if (!ignore.empty() && ignore.at<std::uint8_t>(place) != 0) continue;
+        out.resize(out.size() + 1);
+        out.x.back() = static_cast<float>(place.x), out.y.back() = static_cast<float>(place.y);
+      }
+    }
+    const ScalePyramid& pyramid() const override { return pyramid_; }
+
+   private:
+    ScalePyramid pyramid_{8, 1.2};
+  };
+  Camera camera;
+  camera.fx = camera.fy = 220.0;  // the corner is 104 degrees from the axis
+  TwoFeatures extractor;
+  SensorFrame sensor_frame;
+  sensor_frame.colour = cv::Mat(camera.height, camera.width, CV_8UC3, cv::Scalar::all(90));
+  Frame frame;
+  StageTimes times;
+  const auto found = [&](const cv::Mat& ignore) {
+    FrameBuilder builder(camera, extractor, 0.0);
+    builder.begin(sensor_frame, frame, times);
+    builder.find_features(sensor_frame, ignore, frame, times);
+    return frame.size();
+  };
+  cv::Mat middle(camera.height, camera.width, CV_8UC1, cv::Scalar(0));
+  middle(cv::Rect(300, 220, 40, 40)) = 255;
+  EXPECT_EQ(found({}), 2U);
+  EXPECT_EQ(found(middle), 1U);
+  camera.distortion.lens = Lens::fisheye;
+  ASSERT_EQ(found({}), 1U);
+  EXPECT_NEAR(frame.x[0], 320.0F, 0.5F);
+  EXPECT_EQ(found(middle), 0U);
+}
 
 TEST(FrameBuilder, FeaturesLieWhereTheWorldIs) {
   test::PointWorld world(find_camera("tum_fr1").value());

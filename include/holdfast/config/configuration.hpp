@@ -29,6 +29,8 @@ struct CameraSettings {
   int width = 640, height = 480;
   double fx = 0, fy = 0, cx = 0, cy = 0;
   double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;
+  double k4 = 0, k5 = 0, k6 = 0;
+  std::string lens = "radial_tangential";
   double baseline = 0.08;
   double frame_rate = 30.0;
 

@@ -8,17 +8,52 @@
 
 namespace holdfast {
 
-/// Radial-tangential lens distortion (Brown 1971, in OpenCV's order k1 k2 p1 p2 k3).
+/// How the coefficients of a Distortion are meant.
+enum class Lens {
+  /// Radial and tangential distortion in the image plane (Brown 1971), with a rational radial factor where k4, k5 or k6
+  /// is not zero (Claus and Fitzgibbon 2005): cv::undistortPoints with 5 or 8 coefficients.
+  radial_tangential,
+  /// The distance from the principal point is a polynomial of the angle to the optical axis (Kannala and Brandt 2006,
+  /// equation 6 up to the 9th power): cv::fisheye with the coefficients k1, k2, k3, k4.
+  fisheye,
+};
+
+/// radial_tangential or fisheye.
+const char* lens_name(Lens lens);
+/// The lens of that name, or nothing.
+std::optional<Lens> find_lens(const std::string& name);
+/// All names, in the order of Lens.
+const std::vector<std::string>& lens_names();
+
+/// Distortion by a lens. With x, y = the undistorted position in the plane z = 1, r^2 = x^2 + y^2:
+///
+/// radial_tangential: f = (1 + k1 r^2 + k2 r^4 + k3 r^6) / (1 + k4 r^2 + k5 r^4 + k6 r^6);
+/// x' = x f + 2 p1 x y + p2 (r^2 + 2 x^2), y' = y f + p1 (r^2 + 2 y^2) + 2 p2 x y.
+///
+/// fisheye: t = atan(r); x', y' = (x, y) / r * (t + k1 t^3 + k2 t^5 + k3 t^7 + k4 t^9); p1, p2, k5 and k6 must be zero.
 struct Distortion {
   double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;
+  double k4 = 0, k5 = 0, k6 = 0;
+  Lens lens = Lens::radial_tangential;
 
-  bool is_zero() const { return k1 == 0 && k2 == 0 && p1 == 0 && p2 == 0 && k3 == 0; }
+  /// Whether the image is that of a pinhole; a fisheye lens never gives one.
+  bool is_zero() const {
+    return lens == Lens::radial_tangential && k1 == 0 && k2 == 0 && p1 == 0 && p2 == 0 && k3 == 0 && !is_rational();
+  }
+  bool is_rational() const { return lens == Lens::radial_tangential && (k4 != 0 || k5 != 0 || k6 != 0); }
+  /// As OpenCV takes them: k1 k2 p1 p2 k3, followed by k4 k5 k6 where these are used; k1 k2 k3 k4 of a fisheye lens.
+  std::vector<double> coefficients() const;
+  /// What is wrong with the numbers, such as a coefficient that its lens does not have; empty if nothing is.
+  std::string trouble() const;
   friend bool operator==(const Distortion&, const Distortion&) = default;
 };
 
 /// A pinhole camera with lens distortion. Camera frame: x right, y down, z forward [m]. Pixel centres lie at integer
 /// coordinates. "Pixel" without a qualifier means an undistorted pixel, that is, the projection by a camera with the
 /// same intrinsics and no distortion.
+///
+/// The image plane of a pinhole ends at 90 degrees from the optical axis, and stretches more and more towards it. Of a
+/// fisheye lens, what is more than Camera::usable_angle from the axis has no place in it and is not used.
 struct Camera {
   std::string name;   ///< empty for a camera that is given by its intrinsics
   int width = 640;    ///< [px]
@@ -44,11 +79,17 @@ struct Camera {
   /// III-A).
   double right_x(double x, double depth) const { return x - fx * baseline / depth; }
 
+  /// Angle to the optical axis up to which the image of a fisheye lens is used [rad]: 60 degrees, where a pixel of the
+  /// image is stretched fourfold.
+  static constexpr double usable_angle = 1.0471975511965976;
+
   /// Raw image position of an undistorted pixel.
   Eigen::Vector2d distort(const Eigen::Vector2d& pixel) const;
   /// Undistorted pixel of a raw image position, by fixed-point iteration; the error is below 1e-4 px for the cameras of
-  /// find_camera().
+  /// find_camera(). Beyond 65 degrees from the axis of a fisheye lens, the pixel at 65 degrees in the same direction.
   Eigen::Vector2d undistort(const Eigen::Vector2d& raw) const;
+  /// False for a raw image position of a fisheye lens that lies beyond usable_angle; true otherwise.
+  bool is_usable(const Eigen::Vector2d& raw) const;
 
   friend bool operator==(const Camera&, const Camera&) = default;
 
@@ -57,7 +98,7 @@ struct Camera {
 };
 
 /// Returns the calibration of a camera known by name, or nothing. Names: tum_fr1, tum_fr2, tum_fr3 (TUM RGB-D
-/// calibration page), bonn (Bonn RGB-D Dynamic), icl_nuim, kinect2 (960x540).
+/// calibration page), bonn (Bonn RGB-D Dynamic), euroc (left camera of EuRoC MAV), icl_nuim, kinect2 (960x540).
 std::optional<Camera> find_camera(const std::string& name);
 /// All names that find_camera() accepts, sorted.
 std::vector<std::string> camera_names();

@@ -60,9 +60,10 @@ struct RelativeError {
   std::size_t omitted_pairs = 0;  ///< per distance: excluded pairs that exceed path_step by more than a tenth
 };
 
-/// The errors of the KITTI odometry benchmark (Geiger et al. 2012, section 3.1, as its tool computes them): over segments
-/// of 100, 200, ... 800 m of true path that begin at every tenth pose, the error inv(E) G of the relative pose (E of the
-/// estimate, G of the truth, from the first to the last pose of the segment), divided by the length of the segment.
+/// The errors of the KITTI odometry benchmark (Geiger et al. 2012, section 3.1, as its tool computes them): over
+/// segments of 100, 200, ... 800 m of true path that begin at every tenth pose, the error inv(E) G of the relative pose
+/// (E of the estimate, G of the truth, from the first to the last pose of the segment), divided by the length of the
+/// segment.
 struct SegmentError {
   /// The error over all segments of one length.
   struct OfLength {
@@ -75,6 +76,23 @@ struct SegmentError {
   std::size_t segments = 0;       ///< of all lengths; 0 if the path is shorter than 100 m
   double translation = 0.0;       ///< mean over all segments [% of the length]
   double rotation = 0.0;          ///< the same [deg/m]
+};
+
+/// How the scale of an estimate of unknown scale changes along the path, for the alignment sim3. The pairs are divided
+/// into ten windows of equal length of true path; each is aligned by itself with a scale, whose ratio to the scale of
+/// the alignment of the whole is the window's: above 1 where the estimate is too small. A window with fewer than ten
+/// pairs, or without motion, is left out. An estimate whose error is not small compared with the motion in a window has
+/// scales below their true values there.
+struct ScaleDrift {
+  /// A tenth of the true path.
+  struct Window {
+    double begin = 0.0, end = 0.0;  ///< stamps of its first and its last pair [s]
+    std::size_t pairs = 0;
+    double scale = 1.0;  ///< relative to the whole
+  };
+  std::vector<Window> windows;  ///< in temporal order; fewer than two: nothing can be said
+  double drift = 0.0;           ///< scale of the last window / scale of the first - 1
+  double spread = 0.0;          ///< largest scale / smallest - 1
 };
 
 /// Result of evaluate(). The statistics of the absolute error are over `poses`.
@@ -90,6 +108,7 @@ struct Evaluation {
   RelativeError error_per_time;
   RelativeError error_per_way;
   SegmentError segment_error;
+  std::optional<ScaleDrift> scale_drift;      ///< empty unless the alignment is sim3, and where nothing can be said
   std::optional<Coverage> coverage;           ///< empty if the frames were not given
   std::vector<TimedPosition> truth_track;     ///< ground truth between the first and the last pose of the estimate
   std::vector<TimedPosition> estimate_track;  ///< all poses of the estimate, aligned

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/sensor_frame.hpp"
 #include "holdfast/image_files/image_decoder.hpp"
+#include "holdfast/image_files/stereo_rectification.hpp"
 #include "holdfast/interfaces/frame_source.hpp"
 
 namespace holdfast {
@@ -23,7 +25,8 @@ struct ImageFiles {
   std::filesystem::path depth;      ///< empty for a recording without depth
   SourceLocation colour_listed_at;  ///< the line of the list with the image; no file without a list
   SourceLocation depth_listed_at;
-  std::filesystem::path right = {};  ///< of a rectified stereo pair; empty for a recording without
+  std::filesystem::path right = {};  ///< of a stereo pair; empty for a recording without
+  SourceLocation right_listed_at = {};
 };
 
 /// How the images of a sequence are read.
@@ -33,6 +36,8 @@ struct ImageSequenceOptions {
   int height = 0;
   bool skip_bad_frames = false;     ///< skip and count bad frames instead of throwing InputError
   bool colour_may_be_grey = false;  ///< grey images are widened to three equal channels
+  /// Rectifies both images of pairs that are not; their sizes are those of its cameras. nullptr: they are rectified.
+  std::shared_ptr<const StereoRectification> rectification = nullptr;
 };
 
 /// Decodes the frames of a recording one by one; the common part of all sources that read image files. Used by one
@@ -59,6 +64,14 @@ class ImageSequence {
   std::vector<SkippedFrame> skipped_;
   bool is_of_other_size_ = false;  ///< the image read last
 };
+
+/// Throws InputError unless `folder` is a folder: "is missing; expected EXPECTED; set `SETTING`".
+void require_recording_folder(const std::filesystem::path& folder, const std::string& expected,
+                              const std::string& setting);
+
+/// Sets the time stamps of all frames: those of a file with one stamp per line, or, without a file, i / frame_rate
+/// [1/s]. Throws InputError for a file that does not have one stamp for each frame.
+void set_stamps(std::vector<ImageFiles>& files, const std::filesystem::path& stamps, double frame_rate);
 
 /// Keeps `count` elements (0 = all remaining) from index `start`. Throws InputError at `place` if `start` is beyond the
 /// last element; `what` names the elements in the message.

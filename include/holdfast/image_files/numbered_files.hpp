@@ -42,6 +42,13 @@ class NumberPattern {
 /// with the same numbers.
 std::vector<NumberedFile> find_numbered_files(const std::filesystem::path& folder);
 
+/// For each of `files`, the image of the same numbers in another folder, as of a second camera. One that is not there
+/// gets the name that it should have, that of the file with the ending `extension` (empty: the file's own), so that its
+/// frame is bad and says so. Throws as find_numbered_files() for the folder.
+std::vector<std::filesystem::path> find_partners(const std::vector<NumberedFile>& files,
+                                                 const std::filesystem::path& folder,
+                                                 const std::string& extension = "");
+
 /// Natural order: numbers by their value.
 bool comes_before(const FileNumbers& left, const FileNumbers& right);
 

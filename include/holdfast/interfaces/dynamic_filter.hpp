@@ -24,7 +24,7 @@ namespace holdfast {
 /// the pose. Filters that need pose_prior run after the first pose estimate; filters that need matches run after the
 /// local map was matched.
 struct Needs {
-  bool depth = false;
+  bool depth = false;         ///< without it, a filter works on the frames of one camera, which have none
   bool segmentation = false;  ///< a segmenter other than `none`
   bool pose_prior = false;    ///< FilterContext::T_camera_world
   bool matches = false;       ///< features matched with the local map, and the pose estimated from them

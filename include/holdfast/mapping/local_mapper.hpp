@@ -67,6 +67,8 @@ class LocalMapper {
   void remove_weak_points(KeyFrameId keyframe);
   void triangulate_points(KeyFrameId keyframe);
   void triangulate_with(KeyFrameId keyframe, KeyFrameId neighbour);
+  /// Updates the covisibility of a new keyframe, which gets a parent in any case.
+  void link(KeyFrameId keyframe);
   std::vector<KeyFrameId> fusion_targets(KeyFrameId keyframe) const;
   void fuse_with_neighbours(KeyFrameId keyframe);
   struct FusionBuffers;
@@ -84,6 +86,7 @@ class LocalMapper {
   const FeatureMatcher& matcher_;
   std::atomic<bool> stop_{false};
   std::vector<MapPointId> recent_points_;
+  std::uint64_t begun_again_at_ = 0;  // sequence number of the first keyframe of the last begin() beside other map
   MappingCounts counts_;
 
   // Keyframes, points and observations of the bundle problem.

@@ -35,7 +35,8 @@ class FrameBuilder {
   }
   /// The first half: all but features.
   void begin(const SensorFrame& sensor_frame, Frame& frame, StageTimes& times);
-  /// The second half; no features where `ignore` (8UC1 of the image's size, or empty) is not 0.
+  /// The second half; no features where `ignore` (8UC1 of the image's size, or empty) is not 0, nor where the camera
+  /// cannot use the image (Camera::is_usable).
   void find_features(const SensorFrame& sensor_frame, const cv::Mat& ignore, Frame& frame, StageTimes& times);
 
   /// Reads the depth of the features in the depth image again, for a camera that moved by T_depth_colour between the
@@ -60,6 +61,8 @@ class FrameBuilder {
   UndistortionTable undistortion_;
   CoarseSampler coarse_sampler_;
   Eigen::Vector2d minimum_, maximum_;
+  cv::Mat unusable_;  // 8UC1, not 0 where the camera cannot use the image; empty if it can everywhere
+  cv::Mat ignored_;
   std::optional<StereoDepth> stereo_;
   cv::Mat grey_;
   cv::Mat grey_right_;       // of the sensor frame, or of the buffer

@@ -14,15 +14,15 @@
 
 namespace holdfast {
 
-/// Two views from which the map of one camera begins. The world frame is the reference's camera; its unit is such that
-/// the median depth of the points is TrackingSettings::start_depth.
+/// Two views from which the map of one camera begins. The world frame is the reference's camera, unless the start was
+/// placed in another one; its unit is such that the median depth of the points is TrackingSettings::start_depth.
 struct TwoViewStart {
   /// A point that both views show.
   struct Point {
     Eigen::Vector3d position;  ///< world
     std::uint32_t in_reference = 0, in_frame = 0;
   };
-  Frame reference;  ///< the earlier view; its pose is the identity
+  Frame reference;  ///< the earlier view
   std::vector<Point> points;
 };
 
@@ -42,6 +42,11 @@ class MonoInitialiser {
 
   /// Valid after add() returned no trouble, until the next call.
   const TwoViewStart& start() const { return start_; }
+  /// Moves start(), and the frame that add() was given, to where the reference has this pose (T_camera_world): for a
+  /// map that goes on from another one.
+  void place(const Eigen::Isometry3d& T_reference_world, Frame& frame);
+  /// Gives the reference up: the next frame becomes one.
+  void forget() { has_reference_ = false; }
 
  private:
   void take_reference(const Frame& frame);

@@ -42,7 +42,8 @@ struct TrackerParts {
 /// model, or the reference keyframe when that fails, gives a first pose; the local map refines it; KeyframePolicy
 /// decides on a keyframe. MovingWorld decides what to trust in each step. A frame that static features do not determine
 /// is tracked relative to the previous one, by masked features as well, or by dense depth (TrackingFallback). A lost
-/// camera is relocalised (Relocaliser); one that is lost right after the start begins the map anew.
+/// camera is relocalised (Relocaliser); one that is lost right after the start begins the map anew, beside what there
+/// is of it.
 ///
 /// The tracker writes to the map only what it observes of points: how often they are visible and found, and their
 /// static log-odds (through MovingWorld). One thread.
@@ -90,12 +91,16 @@ class Tracker {
   bool was_lost_at_start() const;
   /// T_camera_world of a camera that goes on from the previous frame with its last velocity.
   Eigen::Isometry3d predicted_pose() const;
-  /// T_camera_world where the motion model puts a lost camera; after the coasting time, where it was last seen.
-  Eigen::Isometry3d coasting_pose() const;
+  /// T_camera_world where the motion model puts a lost camera at a time [s]; after the coasting time, where it was last
+  /// seen.
+  Eigen::Isometry3d coasting_pose(double timestamp) const;
   /// Makes the current frame the first keyframe of what comes, at the given pose, if enough of its features have depth.
   bool start_map(const Eigen::Isometry3d& T_camera_world, FrameResult& result);
   /// The same for one camera, whose map begins with two views.
   void start_with_two_views(const SensorFrame& sensor_frame, FrameResult& result);
+  /// The same for a camera that was lost: the reference is put where the motion model puts the camera. Two lost frames
+  /// are needed at least; what a frame was lost for stays in the result until then.
+  bool start_again_with_two_views(FrameResult& result);
   void begin_map(FrameResult& result);
   bool find_pose(TrackedView& view, FrameResult& result);
   /// The pose, on which few inliers agree, is far from where constant velocity takes the camera.

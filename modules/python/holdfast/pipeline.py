@@ -184,10 +184,10 @@ class _Finished:
 
 
 def _camera_section(camera: Camera) -> Any:
-    k1, k2, p1, p2, k3 = camera.distortion
+    coefficients = ("k1", "k2", "k3", "k4") if camera.lens == "fisheye" else ("k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6")
     names = ("name", "width", "height", "fx", "fy", "cx", "cy", "baseline", "frame_rate")
     section = {name: getattr(camera, name) for name in names if name != "name" or camera.name in _core.camera_names()}
-    return {**section, "k1": k1, "k2": k2, "p1": p1, "p2": p2, "k3": k3}
+    return {**section, "lens": camera.lens, **dict(zip(coefficients, camera.distortion))}
 
 
 @atexit.register

@@ -21,6 +21,8 @@ TwoViewOptions two_view_options(const EpipolarConsistencySettings& settings, con
 /// below 0.01 px for the few pixels that a feature moves.
 Eigen::Vector2d undistorted_near(const Camera& camera, const Eigen::Vector2d& raw, const Eigen::Vector2d& guess) {
   if (camera.distortion.is_zero()) return raw;
+  // A fisheye lens moves a pixel by much more than the difference, and its inverse is quick.
+  if (camera.distortion.lens == Lens::fisheye) return camera.undistort(raw);
   Eigen::Vector2d pixel = guess;
   for (int i = 0; i < 4; ++i) pixel += raw - camera.distort(pixel);
   return pixel;

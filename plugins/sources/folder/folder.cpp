@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <memory>
 #include <utility>
 
+#include "holdfast/core/error.hpp"
 #include "holdfast/core/folder_name.hpp"
-#include "holdfast/image_files/image_list.hpp"
+#include "holdfast/image_files/camera_file.hpp"
 #include "holdfast/image_files/image_sequence.hpp"
 #include "holdfast/image_files/numbered_files.hpp"
 #include "holdfast/interfaces/frame_source.hpp"
 #include "holdfast/plugin/plugin.hpp"
-#include "intrinsics.hpp"
 
 namespace holdfast {
 
 namespace {
 
-using namespace folder_plugin;
-
 struct FolderSettings {
   std::filesystem::path path;
   std::string colour = "colour";
   std::string depth;
+  std::string right;
   double depth_factor = 5000.0;
   double frame_rate = 30.0;
   std::filesystem::path stamps;
@@ -35,6 +35,11 @@ struct FolderSettings {
     table.add("depth", &FolderSettings::depth,
               "depth images under path, 16-bit PNG with the numbers of the colour images: a folder, or a pattern where "
               "colour is one; empty = no depth");
+    table.add(
+        "right", &FolderSettings::right,
+        "images of the right camera of a stereo pair under path, with the numbers of the colour images, which are "
+        "the left ones: a folder, or a pattern where colour is one; empty = one camera. Rectified, or with the key "
+        "'right' of the intrinsics");
     table.add("depth_factor", &FolderSettings::depth_factor, "value of one metre in a depth image").range(1.0, 65535.0);
     table.add("frame_rate", &FolderSettings::frame_rate, "frame rate, if no time stamps are given")
         .range(0.001, 100000.0)
@@ -44,8 +49,9 @@ struct FolderSettings {
     table.add("truth", &FolderSettings::truth, "ground-truth trajectory in TUM format");
     table.add(
         "intrinsics", &FolderSettings::intrinsics,
-        "YAML or JSON file with fx, fy, cx, cy, width, height and, for a lens with distortion, k1, k2, p1, p2, k3; "
-        "if the configuration has a camera too, both must agree");
+        "YAML or JSON file with fx, fy, cx, cy, width, height and, for a lens with distortion, k1 to k6, p1, p2, lens; "
+        "'right' is the right camera of a pair that is not rectified. If the configuration has a camera too, both must "
+        "agree");
     table
         .add("on_bad_frame", &FolderSettings::on_bad_frame,
              "reaction to a missing, damaged or unsuitable image: stop with an error, or skip and count the frame")
@@ -55,63 +61,38 @@ struct FolderSettings {
   }
 };
 
-/// The files of every frame, without stamps.
-std::vector<ImageFiles> find_images(const FolderSettings& settings) {
+/// The images under `name`, a folder or a pattern as the colour images are, that belong to them.
+std::vector<std::filesystem::path> find_others(const FolderSettings& settings, const std::vector<NumberedFile>& colour,
+                                               const std::string& name, const char* extension) {
   const bool is_pattern = NumberPattern::is_pattern(settings.colour);
-  std::vector<NumberedFile> colour;
-  if (is_pattern)
-    colour = NumberPattern(settings.path, settings.colour).find();
-  else
-    colour = find_numbered_files(settings.path / settings.colour);
-  std::vector<ImageFiles> files(colour.size());
-  for (std::size_t i = 0; i < colour.size(); ++i) files[i].colour = colour[i].path;
-  if (settings.depth.empty()) return files;
-
-  if (NumberPattern::is_pattern(settings.depth) != is_pattern)
-    throw InputError({(settings.path / settings.depth).string()},
-                     std::string("is a ") + (is_pattern ? "folder" : "pattern") + ", but the colour images '" +
-                         settings.colour + "' are a " + (is_pattern ? "pattern" : "folder") +
-                         "; expected two patterns or two folders");
-  if (is_pattern) {
-    const NumberPattern pattern(settings.path, settings.depth);
-    pattern.find();  // says so when the pattern fits no file at all
-    for (std::size_t i = 0; i < files.size(); ++i) files[i].depth = pattern.path_of(colour[i].numbers.front());
-    return files;
-  }
-  const std::vector<NumberedFile> depth = find_numbered_files(settings.path / settings.depth);
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    while (next < depth.size() && comes_before(depth[next].numbers, colour[i].numbers)) ++next;
-    const bool found = next < depth.size() && depth[next].numbers == colour[i].numbers;
-    // A depth image that is not there gets the name that it should have, so that the frame is bad and says so.
-    files[i].depth =
-        found ? depth[next].path : settings.path / settings.depth / (colour[i].path.stem().string() + ".png");
-  }
+  if (NumberPattern::is_pattern(name) != is_pattern)
+    throw InputError({(settings.path / name).string()}, std::string("is a ") + (is_pattern ? "folder" : "pattern") +
+                                                            ", but the colour images '" + settings.colour + "' are a " +
+                                                            (is_pattern ? "pattern" : "folder") +
+                                                            "; expected two patterns or two folders");
+  if (!is_pattern) return find_partners(colour, settings.path / name, extension);
+  const NumberPattern pattern(settings.path, name);
+  pattern.find();  // says so when the pattern fits no file at all
+  std::vector<std::filesystem::path> files;
+  for (const NumberedFile& file : colour) files.push_back(pattern.path_of(file.numbers.front()));
   return files;
 }
 
-void set_stamps(std::vector<ImageFiles>& files, const FolderSettings& settings) {
-  if (settings.stamps.empty()) {
-    for (std::size_t i = 0; i < files.size(); ++i) files[i].timestamp = static_cast<double>(i) / settings.frame_rate;
-    return;
-  }
-  const std::vector<ListedImage> stamps = read_stamp_list(settings.stamps);
-  if (stamps.size() != files.size())
-    throw InputError({settings.stamps.string(), stamps.back().line},
-                     "the file ends with " + std::to_string(stamps.size()) + " stamps, but there are " +
-                         std::to_string(files.size()) + " colour images from '" + files.front().colour.string() +
-                         "' to '" + files.back().colour.string() + "'; expected one stamp for each");
-  for (std::size_t i = 0; i < files.size(); ++i) files[i].timestamp = stamps[i].timestamp;
-}
-
 std::vector<ImageFiles> find_frames(const FolderSettings& settings) {
-  std::error_code error;
-  if (!std::filesystem::is_directory(settings.path, error))
-    throw InputError({settings.path.string()},
-                     std::string(std::filesystem::exists(settings.path, error) ? "is not a folder" : "is missing") +
-                         "; expected the folder of a recording; set `source.folder.path`");
-  std::vector<ImageFiles> files = find_images(settings);
-  set_stamps(files, settings);
+  require_recording_folder(settings.path, "the folder of a recording", "source.folder.path");
+  const bool is_pattern = NumberPattern::is_pattern(settings.colour);
+  const std::vector<NumberedFile> colour = is_pattern ? NumberPattern(settings.path, settings.colour).find()
+                                                      : find_numbered_files(settings.path / settings.colour);
+  std::vector<ImageFiles> files(colour.size());
+  for (std::size_t i = 0; i < files.size(); ++i) files[i].colour = colour[i].path;
+  const auto add = [&](const std::string& name, const char* extension, std::filesystem::path ImageFiles::*member) {
+    if (name.empty()) return;
+    const std::vector<std::filesystem::path> others = find_others(settings, colour, name, extension);
+    for (std::size_t i = 0; i < files.size(); ++i) files[i].*member = others[i];
+  };
+  add(settings.depth, ".png", &ImageFiles::depth);
+  add(settings.right, "", &ImageFiles::right);
+  set_stamps(files, settings.stamps, settings.frame_rate);
   select_range(files, settings.start, settings.frames, settings.path, "frames");
   return files;
 }
@@ -123,6 +104,9 @@ class FolderSource final : public FrameSource {
       : description_(describe(settings, context.camera)), sequence_(open(settings, context.camera)) {
     description_.frame_count = sequence_.size();
     if (!settings.truth.empty()) truth_ = read_trajectory(settings.truth);
+    if (rectification_ == nullptr) return;
+    for (TimedPose& pose : truth_) pose.T_world_camera = pose.T_world_camera * rectification_->T_left_rectified();
+    if (!truth_.empty()) description_.truth_frame = "transformed";
   }
 
   SourceDescription describe() const override { return description_; }
@@ -131,24 +115,42 @@ class FolderSource final : public FrameSource {
   std::vector<SkippedFrame> skipped() const override { return sequence_.skipped(); }
 
  private:
-  static SourceDescription describe(const FolderSettings& settings, const Camera& camera) {
+  SourceDescription describe(const FolderSettings& settings, const Camera& camera) {
     SourceDescription description;
     description.name = folder_name(settings.path);
     description.has_depth = !settings.depth.empty();
+    description.has_right = !settings.right.empty();
     description.can_read_ahead = true;
     if (settings.intrinsics.empty()) return description;
-    description.camera = read_intrinsics(settings.intrinsics, camera);
-    if (settings.stamps.empty()) description.camera->frame_rate = settings.frame_rate;
+    CameraFile file = read_camera_file(settings.intrinsics, camera, "source.folder.intrinsics");
+    if (settings.stamps.empty()) file.camera.frame_rate = settings.frame_rate;
+    description.camera = file.camera;
+    if (settings.right.empty() || !file.pair) return description;
+    if (!settings.depth.empty())
+      throw InputError(
+          {settings.intrinsics.string()},
+          "has a camera 'right', to which both images are rectified, and `depth` gives depth images, which "
+          "are not; expected one of the two; leave out `depth`, or the key 'right'");
+    file.pair->left.frame_rate = file.camera.frame_rate;
+    try {
+      rectification_ = std::make_shared<const StereoRectification>(*file.pair);
+    } catch (const Error& error) {
+      throw InputError({settings.intrinsics.string()}, error.what());
+    }
+    description.camera = rectification_->camera();
     return description;
   }
 
   ImageSequence open(const FolderSettings& settings, const Camera& configured) const {
     const Camera& camera = description_.camera ? *description_.camera : configured;
-    return {find_frames(settings),
-            {settings.depth_factor, camera.width, camera.height, settings.on_bad_frame == "skip"}};
+    ImageSequenceOptions options{settings.depth_factor, camera.width, camera.height, settings.on_bad_frame == "skip"};
+    options.colour_may_be_grey = settings.depth.empty();
+    options.rectification = rectification_;
+    return {find_frames(settings), options};
   }
 
-  SourceDescription description_;  // first: the sequence needs its camera
+  std::shared_ptr<const StereoRectification> rectification_;  // first: the description needs it
+  SourceDescription description_;                             // then: the sequence needs its camera
   ImageSequence sequence_;
   Trajectory truth_;
 };
@@ -157,7 +159,9 @@ class FolderSource final : public FrameSource {
 
 HOLDFAST_PLUGIN(folder, registry) {
   registry.add<FrameSource, FolderSource, FolderSettings>(
-      {.name = "folder", .summary = "Numbered colour images in a folder, with or without depth.", .paper = ""});
+      {.name = "folder",
+       .summary = "Numbered images in folders: one camera, colour with depth, or stereo pairs.",
+       .paper = ""});
 }
 
 }  // namespace holdfast

@@ -50,11 +50,8 @@ struct TumSettings {
 };
 
 std::vector<ImageFiles> find_pairs(const TumSettings& settings) {
-  std::error_code error;
-  if (!std::filesystem::is_directory(settings.path, error))
-    throw InputError({settings.path.string()},
-                     std::string(std::filesystem::exists(settings.path, error) ? "is not a folder" : "is missing") +
-                         "; expected the folder of a TUM recording, with rgb.txt and depth.txt; set `source.tum.path`");
+  require_recording_folder(settings.path, "the folder of a TUM recording, with rgb.txt and depth.txt",
+                           "source.tum.path");
   const auto listed_in = [&](const char* list) {
     return (settings.associations.empty() ? settings.path / list : settings.associations).string();
   };

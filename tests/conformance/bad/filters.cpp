@@ -17,7 +17,9 @@ class FaultyFilter final : public DynamicFilter {
  public:
   FaultyFilter(std::string fault, const CreationContext&) : fault_(std::move(fault)) {}
 
-  Needs needs() const override { return {.depth = fault_ != "changes_its_needs" || applied_ == 0}; }
+  Needs needs() const override {
+    return {.depth = fault_ != "hides_its_needs" && (fault_ != "changes_its_needs" || applied_ == 0)};
+  }
 
   void apply(const FilterContext& context, StaticEvidence& evidence) override {
     ++applied_;
@@ -47,8 +49,9 @@ class FaultyFilter final : public DynamicFilter {
 
 void add_filters(Registry& registry) {
   add_faults<DynamicFilter, FaultyFilter>(
-      registry, {"sound", "changes_its_needs", "starts_anew", "names_itself", "needs_previous", "needs_depth",
-                 "no_number", "counts_calls", "invents_points", "numbers_from_zero", "writes", "cells_without_end"});
+      registry,
+      {"sound", "changes_its_needs", "hides_its_needs", "starts_anew", "names_itself", "needs_previous", "needs_depth",
+       "no_number", "counts_calls", "invents_points", "numbers_from_zero", "writes", "cells_without_end"});
 }
 
 }  // namespace holdfast::bad

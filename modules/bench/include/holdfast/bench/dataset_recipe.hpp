@@ -16,7 +16,14 @@ namespace holdfast {
 enum class DatasetLayout {
   tum,       ///< rgb.txt and depth.txt list the images with their stamps (Sturm et al., IROS 2012)
   icl_nuim,  ///< associations.txt lists numbered pairs, the depth image first (Handa et al., ICRA 2014)
+  kitti,     ///< stereo pairs of the KITTI odometry data (Geiger et al., CVPR 2012); what the source `kitti` reads
+  euroc,     ///< stereo pairs in the ASL layout (Burri et al., IJRR 2016); what the source `euroc` reads
 };
+
+/// tum, icl_nuim, kitti or euroc.
+const char* layout_name(DatasetLayout layout);
+/// Stereo pairs with their own calibration; the others have colour and depth.
+inline bool is_stereo(DatasetLayout layout) { return layout == DatasetLayout::kitti || layout == DatasetLayout::euroc; }
 
 /// What is known of a recording: enough to say where to get it and whether a folder holds it. Nothing is ever fetched.
 struct DatasetRecipe {
@@ -29,7 +36,7 @@ struct DatasetRecipe {
   std::string about;     ///< what to know before using it; may be empty
   std::string make;      ///< the command that makes it, of a composed sequence; otherwise empty
   DatasetLayout layout = DatasetLayout::tum;
-  Camera camera;
+  Camera camera;  ///< a known one; of stereo pairs it is in their own files, and this one has no name
   std::string truth = "groundtruth.txt";
   /// Values of source.tum.truth_left and truth_right; nothing = the truth is that of the camera.
   std::optional<ConfigurationNode> truth_left, truth_right;
@@ -37,7 +44,7 @@ struct DatasetRecipe {
   bool lists_absent_depth = false;
   bool has_masks = false;                    ///< mask.txt and mask/: of every colour image, 0 = static, k = person k
   std::optional<std::size_t> colour, depth;  ///< images; nothing: no document says
-  std::optional<std::size_t> pairs;          ///< colour-depth pairs within 0.02 s
+  std::optional<std::size_t> pairs;          ///< colour-depth pairs within 0.02 s, or stereo pairs
 
   /// How to get it, in a sentence.
   std::string how_to_get() const;

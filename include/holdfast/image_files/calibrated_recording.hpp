@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "holdfast/core/camera.hpp"
+#include "holdfast/core/trajectory.hpp"
+#include "holdfast/image_files/image_sequence.hpp"
+#include "holdfast/image_files/stereo_rectification.hpp"
+#include "holdfast/interfaces/frame_source.hpp"
+
+namespace holdfast {
+
+/// A recording whose own files give its camera.
+struct CalibratedRecording {
+  std::vector<ImageFiles> files;   ///< of every frame, in temporal order
+  Camera camera;                   ///< of the frames as a source gives them: rectified where that is needed
+  cv::Size left_size, right_size;  ///< of the images in the files; the latter is that of the former without a pair
+  bool has_right = false;
+  std::shared_ptr<const StereoRectification> rectification;  ///< nullptr: the images need none
+  Trajectory truth;                                          ///< of `camera`; empty if there is none
+  std::string truth_frame = "raw";                           ///< see SourceDescription
+};
+
+/// Which frames of a recording are read.
+struct FrameRange {
+  std::int64_t start = 0;   ///< index of the first frame
+  std::int64_t frames = 0;  ///< their number; 0 = all
+};
+
+/// What read_kitti_recording() is told.
+struct KittiOptions {
+  std::filesystem::path path;  ///< folder of the sequence
+  /// colour: image_2 and image_3; grey: image_0 and image_1; pair: left and right; auto: the first of these that
+  /// exists.
+  std::string cameras = "auto";
+  std::filesystem::path poses;  ///< truth; empty: where the data set has it, if anywhere
+  double frame_rate = 10.0;     ///< without times.txt [1/s]
+  FrameRange range;
+};
+
+/// Finds the frames of a sequence in the layout of the KITTI odometry data (Geiger et al. 2012), with camera and truth.
+/// Reads no image but the size of the first. Throws InputError.
+CalibratedRecording read_kitti_recording(const KittiOptions& options);
+
+/// What read_euroc_recording() is told.
+struct EurocOptions {
+  std::filesystem::path path;          ///< folder of the sequence, which contains mav0, or mav0 itself
+  std::string cameras = "auto";        ///< pair: cam0 and cam1; left: cam0; auto: pair if cam1 exists
+  double max_time_difference = 0.002;  ///< upper bound of the time between the images of a pair [s]
+  FrameRange range;
+};
+
+/// Finds the frames of a sequence in the ASL layout of the EuRoC MAV data (Burri et al. 2016), with camera and truth.
+/// An image without one of the other camera near enough in time makes no frame. Reads no image. Throws InputError.
+CalibratedRecording read_euroc_recording(const EurocOptions& options);
+
+/// The frames of a CalibratedRecording; grey images are widened to three equal channels.
+class CalibratedSource : public FrameSource {
+ public:
+  CalibratedSource(CalibratedRecording recording, const std::filesystem::path& folder, bool skip_bad_frames);
+
+  SourceDescription describe() const override { return description_; }
+  std::optional<SensorFrame> next() override { return sequence_.next(); }
+  Trajectory truth() const override { return truth_; }
+  std::vector<SkippedFrame> skipped() const override { return sequence_.skipped(); }
+
+ private:
+  SourceDescription description_;
+  Trajectory truth_;
+  ImageSequence sequence_;
+};
+
+}  // namespace holdfast

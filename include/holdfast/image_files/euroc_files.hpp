@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <vector>
+
+#include "holdfast/core/camera.hpp"
+#include "holdfast/image_files/image_list.hpp"
+
+namespace holdfast {
+
+/// A camera of a recording in the ASL layout, and where it stands on the body that carries it.
+struct EurocCamera {
+  Camera camera;
+  Eigen::Isometry3d T_body_camera = Eigen::Isometry3d::Identity();
+};
+
+/// Reads a sensor.yaml of a camera: T_BS, rate_hz, resolution, camera_model (pinhole), intrinsics, distortion_model
+/// (radial-tangential, equidistant, which is that of a fisheye lens, or none) and distortion_coefficients; other keys
+/// are left alone. Throws InputError (file, line and column) for what is missing or cannot be.
+EurocCamera read_euroc_camera(const std::filesystem::path& file);
+
+/// Reads T_BS of a sensor.yaml: the pose of a sensor on the body. Throws as read_euroc_camera().
+Eigen::Isometry3d read_euroc_pose(const std::filesystem::path& file);
+
+/// Reads a data.csv of a camera: lines "time stamp [ns],file name", '#' begins a comment. The stamps [s] increase
+/// strictly. Throws InputError (file and line) for anything else.
+std::vector<ListedImage> read_euroc_image_list(const std::filesystem::path& file);
+
+}  // namespace holdfast

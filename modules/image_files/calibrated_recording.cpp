@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/image_files/calibrated_recording.hpp"
+
+#include <utility>
+
+#include "holdfast/core/folder_name.hpp"
+
+namespace holdfast {
+
+namespace {
+
+ImageSequenceOptions options_of(const CalibratedRecording& recording, bool skip_bad_frames) {
+  ImageSequenceOptions options;
+  options.width = recording.left_size.width;
+  options.height = recording.left_size.height;
+  options.skip_bad_frames = skip_bad_frames;
+  options.colour_may_be_grey = true;
+  options.rectification = recording.rectification;
+  return options;
+}
+
+}  // namespace
+
+CalibratedSource::CalibratedSource(CalibratedRecording recording, const std::filesystem::path& folder,
+                                   bool skip_bad_frames)
+    : truth_(std::move(recording.truth)),
+      sequence_(std::move(recording.files), options_of(recording, skip_bad_frames)) {
+  description_.name = folder_name(folder);
+  description_.has_right = recording.has_right;
+  description_.can_read_ahead = true;
+  description_.camera = recording.camera;
+  description_.frame_count = sequence_.size();
+  description_.truth_frame = recording.truth_frame;
+}
+
+}  // namespace holdfast

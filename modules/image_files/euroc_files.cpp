@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/image_files/euroc_files.hpp"
+
+#include <charconv>
+#include <fstream>
+#include <string>
+
+#include "holdfast/core/text_file.hpp"
+#include "yaml_numbers.hpp"
+
+namespace holdfast {
+
+namespace {
+
+using yaml_numbers::location;
+
+constexpr const char* expected_file =
+    "the calibration of a sensor in the ASL layout, with T_BS, rate_hz, resolution, intrinsics, distortion_model and "
+    "distortion_coefficients";
+
+/// The value of a key that must be there.
+YAML::Node required(const std::filesystem::path& file, const YAML::Node& root, const char* key) {
+  if (!root.IsMap())
+    throw InputError(location(file, root.Mark()), std::string("holds no keys; expected ") + expected_file);
+  const YAML::Node node = root[key];
+  if (!node.IsDefined()) throw InputError({file.string()}, std::string("lacks ") + key + "; expected " + expected_file);
+  return node;
+}
+
+Eigen::Isometry3d read_pose(const std::filesystem::path& file, const YAML::Node& root) {
+  const YAML::Node matrix = required(file, root, "T_BS");
+  if (!matrix.IsMap() || !matrix["data"].IsDefined())
+    throw InputError(location(file, matrix.Mark()), "found T_BS without 'data'; expected the 16 numbers of a matrix");
+  const YAML::Node data = matrix["data"];
+  const auto motion = yaml_numbers::rigid_motion(yaml_numbers::numbers(file, data, "T_BS", {16}));
+  if (!motion)
+    throw InputError(location(file, data.Mark()),
+                     "found a matrix for T_BS that is not a rigid motion; expected a rotation with a translation [m], "
+                     "row by row, the last row 0 0 0 1");
+  return *motion;
+}
+
+Distortion read_distortion(const std::filesystem::path& file, const YAML::Node& root) {
+  const YAML::Node model = required(file, root, "distortion_model");
+  const std::string name = model.IsScalar() ? model.Scalar() : "";
+  Distortion distortion;
+  if (name == "none") return distortion;
+  const bool is_fisheye = name == "equidistant";
+  if (!is_fisheye && name != "radial-tangential" && name != "radtan")
+    yaml_numbers::reject(file, model, "distortion_model", "radial-tangential, equidistant or none");
+  const YAML::Node list = required(file, root, "distortion_coefficients");
+  if (is_fisheye) {
+    const std::vector<double> k = yaml_numbers::numbers(file, list, "distortion_coefficients", {4});
+    distortion.lens = Lens::fisheye;
+    distortion.k1 = k[0], distortion.k2 = k[1], distortion.k3 = k[2], distortion.k4 = k[3];
+  } else {
+    const std::vector<double> k = yaml_numbers::numbers(file, list, "distortion_coefficients", {4, 5});
+    distortion.k1 = k[0], distortion.k2 = k[1], distortion.p1 = k[2], distortion.p2 = k[3];
+    if (k.size() == 5) distortion.k3 = k[4];
+  }
+  if (const std::string trouble = distortion.trouble(); !trouble.empty())
+    throw InputError(location(file, list.Mark()), trouble);
+  return distortion;
+}
+
+}  // namespace
+
+Eigen::Isometry3d read_euroc_pose(const std::filesystem::path& file) {
+  return read_pose(file, yaml_numbers::load(file, expected_file));
+}
+
+EurocCamera read_euroc_camera(const std::filesystem::path& file) {
+  const YAML::Node root = yaml_numbers::load(file, expected_file);
+  EurocCamera result;
+  result.T_body_camera = read_pose(file, root);
+  if (const YAML::Node model = root["camera_model"];
+      model.IsDefined() && (!model.IsScalar() || model.Scalar() != "pinhole"))
+    yaml_numbers::reject(file, model, "camera_model", "pinhole");
+  Camera& camera = result.camera;
+  const YAML::Node resolution = required(file, root, "resolution");
+  yaml_numbers::numbers(file, resolution, "resolution", {2});
+  camera.width = yaml_numbers::size(file, resolution[0], "the width");
+  camera.height = yaml_numbers::size(file, resolution[1], "the height");
+  const YAML::Node intrinsics = required(file, root, "intrinsics");
+  yaml_numbers::numbers(file, intrinsics, "intrinsics", {4});
+  camera.fx = yaml_numbers::number(file, intrinsics[0], "the focal length fu", true);
+  camera.fy = yaml_numbers::number(file, intrinsics[1], "the focal length fv", true);
+  camera.cx = yaml_numbers::number(file, intrinsics[2], "cu");
+  camera.cy = yaml_numbers::number(file, intrinsics[3], "cv");
+  camera.distortion = read_distortion(file, root);
+  camera.frame_rate = yaml_numbers::number(file, required(file, root, "rate_hz"), "rate_hz", true);
+  return result;
+}
+
+std::vector<ListedImage> read_euroc_image_list(const std::filesystem::path& file) {
+  constexpr const char* form = "expected lines 'time stamp [ns],file name'";
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error))
+    throw InputError({file.string()}, std::string("is missing or not a file; ") + form);
+  std::ifstream stream(file);
+  if (!stream) throw InputError({file.string()}, "cannot be read; check its permissions");
+  skip_byte_order_mark(stream);
+  std::vector<ListedImage> images;
+  std::string line;
+  constexpr const char* blanks = " \t\r";
+  for (int number = 1; std::getline(stream, line); ++number) {
+    const std::size_t begin = line.find_first_not_of(blanks);
+    if (begin == std::string::npos || line[begin] == '#') continue;
+    const SourceLocation place{file.string(), number};
+    const std::size_t comma = line.find(',');
+    std::int64_t nanoseconds = 0;
+    const char* first = line.data() + begin;
+    const char* last = line.data() + std::min(comma, line.size());
+    const auto [stop, failure] = std::from_chars(first, last, nanoseconds);
+    if (comma == std::string::npos || failure != std::errc() || stop != last || nanoseconds < 0)
+      throw InputError(place, "found '" + line.substr(0, 80) + "'; " + form + "; correct the line or take it out");
+    const std::size_t name = line.find_first_not_of(blanks, comma + 1);
+    const std::size_t end = line.find_last_not_of(blanks) + 1;
+    if (name == std::string::npos || name >= end)
+      throw InputError(place, std::string("names no file; ") + form + "; correct the line or take it out");
+    // As of read_trajectory_file(), so that images and truth of one stamp have the same time.
+    const ListedImage image{static_cast<double>(nanoseconds) * 1e-9, line.substr(name, end - name), number};
+    if (!images.empty() && !(images.back().timestamp < image.timestamp))
+      throw InputError(place, "has a time stamp that is not later than that of line " +
+                                  std::to_string(images.back().line) + "; expected stamps that rise from line to line");
+    images.push_back(image);
+  }
+  if (images.empty()) throw InputError({file.string()}, std::string("is an empty list; ") + form);
+  return images;
+}
+
+}  // namespace holdfast

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
+#include "holdfast/core/association.hpp"
+#include "holdfast/core/error.hpp"
+#include "holdfast/image_files/calibrated_recording.hpp"
+#include "holdfast/image_files/euroc_files.hpp"
+
+namespace holdfast {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<double> stamps_of(const std::vector<ListedImage>& images) {
+  std::vector<double> stamps;
+  for (const ListedImage& image : images) stamps.push_back(image.timestamp);
+  return stamps;
+}
+
+/// The folder mav0 of the recording.
+fs::path find_body(const EurocOptions& options) {
+  require_recording_folder(options.path, "the folder of a sequence in the ASL layout", "source.euroc.path");
+  std::error_code error;
+  for (const fs::path& folder : {options.path / "mav0", options.path})
+    if (fs::is_directory(folder / "cam0", error)) return folder;
+  throw InputError({options.path.string()},
+                   "contains neither mav0/cam0 nor cam0; expected a sequence in the ASL layout; unpack it again, or "
+                   "correct `source.euroc.path`");
+}
+
+ImageFiles left_frame(const fs::path& camera, const ListedImage& image) {
+  ImageFiles files;
+  files.timestamp = image.timestamp;
+  files.colour = camera / "data" / image.name;
+  files.colour_listed_at = {(camera / "data.csv").string(), image.line};
+  return files;
+}
+
+std::vector<ImageFiles> find_frames(const fs::path& body, bool is_pair, double max_time_difference) {
+  std::vector<ImageFiles> frames;
+  const fs::path left_camera = body / "cam0", right_camera = body / "cam1";
+  const std::vector<ListedImage> left = read_euroc_image_list(left_camera / "data.csv");
+  if (!is_pair) {
+    for (const ListedImage& image : left) frames.push_back(left_frame(left_camera, image));
+    return frames;
+  }
+  const std::vector<ListedImage> right = read_euroc_image_list(right_camera / "data.csv");
+  for (const auto& [l, r] : associate_stamps(stamps_of(left), stamps_of(right), max_time_difference)) {
+    ImageFiles& files = frames.emplace_back(left_frame(left_camera, left[l]));
+    files.right = right_camera / "data" / right[r].name;
+    files.right_listed_at = {(right_camera / "data.csv").string(), right[r].line};
+  }
+  if (frames.empty())
+    throw InputError({(right_camera / "data.csv").string()},
+                     "has no image within " + stamp_text(max_time_difference) +
+                         " s of one of cam0; expected the images of a pair; set `cameras: left`, or raise "
+                         "`max_time_difference`");
+  return frames;
+}
+
+/// The poses of the body moved to a camera on it. The truth of TUM VI lies in mocap0.
+Trajectory read_truth(const fs::path& body, const Eigen::Isometry3d& T_body_camera) {
+  std::error_code error;
+  for (const char* name : {"state_groundtruth_estimate0", "mocap0"}) {
+    const fs::path folder = body / name;
+    if (!fs::exists(folder / "data.csv", error)) continue;
+    Eigen::Isometry3d T_body_tracked = Eigen::Isometry3d::Identity();
+    if (fs::exists(folder / "sensor.yaml", error)) T_body_tracked = read_euroc_pose(folder / "sensor.yaml");
+    const Eigen::Isometry3d T_tracked_camera = T_body_tracked.inverse() * T_body_camera;
+    TrajectoryReading reading;
+    reading.format = TrajectoryFormat::euroc;
+    Trajectory truth = read_trajectory_file(folder / "data.csv", reading).poses;
+    for (TimedPose& pose : truth) pose.T_world_camera = pose.T_world_camera * T_tracked_camera;
+    return truth;
+  }
+  return {};
+}
+
+}  // namespace
+
+CalibratedRecording read_euroc_recording(const EurocOptions& options) {
+  const fs::path body = find_body(options);
+  std::error_code error;
+  const bool is_pair =
+      options.cameras == "pair" || (options.cameras == "auto" && fs::is_directory(body / "cam1", error));
+  CalibratedRecording recording;
+  const EurocCamera left = read_euroc_camera(body / "cam0" / "sensor.yaml");
+  recording.camera = left.camera;
+  recording.left_size = recording.right_size = {left.camera.width, left.camera.height};
+  Eigen::Isometry3d T_body_camera = left.T_body_camera;
+  if (is_pair) {
+    const fs::path file = body / "cam1" / "sensor.yaml";
+    const EurocCamera right = read_euroc_camera(file);
+    try {
+      recording.rectification = std::make_shared<const StereoRectification>(
+          StereoCalibration{left.camera, right.camera, left.T_body_camera.inverse() * right.T_body_camera});
+    } catch (const Error& problem) {
+      throw InputError({file.string()}, problem.what());
+    }
+    recording.has_right = true;
+    recording.right_size = {right.camera.width, right.camera.height};
+    recording.camera = recording.rectification->camera();
+    T_body_camera = T_body_camera * recording.rectification->T_left_rectified();
+  }
+  recording.files = find_frames(body, is_pair, options.max_time_difference);
+  recording.truth = read_truth(body, T_body_camera);
+  recording.truth_frame = "transformed";
+  select_range(recording.files, options.range.start, options.range.frames, options.path,
+               is_pair ? "stereo pairs" : "frames");
+  return recording;
+}
+
+}  // namespace holdfast

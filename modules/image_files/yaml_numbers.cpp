@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "yaml_numbers.hpp"
+
+#include <Eigen/SVD>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+namespace holdfast::yaml_numbers {
+
+SourceLocation location(const std::filesystem::path& file, const YAML::Mark& mark) {
+  return mark.is_null() ? SourceLocation{file.string()} : SourceLocation{file.string(), mark.line + 1, mark.column + 1};
+}
+
+YAML::Node load(const std::filesystem::path& file, const std::string& expected) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error))
+    throw InputError({file.string()}, "is missing or not a file; expected " + expected);
+  std::ifstream stream(file);
+  std::string content((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  if (!stream) throw InputError({file.string()}, "cannot be read; check its permissions");
+  if (content.starts_with("%YAML:")) content[0] = '#';
+  try {
+    return YAML::Load(content);
+  } catch (const YAML::Exception& problem) {
+    throw InputError(location(file, problem.mark), problem.msg + "; expected YAML or JSON");
+  }
+}
+
+void reject(const std::filesystem::path& file, const YAML::Node& node, const std::string& key,
+            const std::string& expected) {
+  throw InputError(location(file, node.Mark()), "found '" +
+                                                    (node.IsScalar() ? node.Scalar() : std::string("no value")) +
+                                                    "' for " + key + "; expected " + expected + "; correct the value");
+}
+
+double number(const std::filesystem::path& file, const YAML::Node& node, const std::string& key, bool positive) {
+  const char* expected = positive ? "a number greater than 0" : "a number";
+  if (!node.IsScalar()) reject(file, node, key, expected);
+  const std::string& text = node.Scalar();
+  double value = 0.0;
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || stop != text.data() + text.size() || !std::isfinite(value) || (positive && value <= 0.0))
+    reject(file, node, key, expected);
+  return value;
+}
+
+int size(const std::filesystem::path& file, const YAML::Node& node, const std::string& key) {
+  constexpr const char* expected = "a whole number of pixels from 1 to 32768";
+  if (!node.IsScalar()) reject(file, node, key, expected);
+  const std::string& text = node.Scalar();
+  int value = 0;
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || stop != text.data() + text.size() || value < 1 || value > 32768)
+    reject(file, node, key, expected);
+  return value;
+}
+
+std::vector<double> numbers(const std::filesystem::path& file, const YAML::Node& node, const std::string& key,
+                            const std::vector<std::size_t>& counts) {
+  std::string expected = "a list of ";
+  for (std::size_t i = 0; i < counts.size(); ++i) expected += (i == 0 ? "" : " or ") + std::to_string(counts[i]);
+  expected += " numbers";
+  if (!node.IsSequence()) reject(file, node, key, expected);
+  std::vector<double> values;
+  for (const YAML::Node& item : node) values.push_back(number(file, item, key));
+  for (const std::size_t count : counts)
+    if (values.size() == count) return values;
+  throw InputError(location(file, node.Mark()),
+                   "found " + std::to_string(values.size()) + " numbers for " + key + "; expected " + expected);
+}
+
+std::optional<Eigen::Isometry3d> rigid_motion(const std::vector<double>& row_by_row) {
+  HOLDFAST_CHECK(row_by_row.size() == 16, row_by_row.size());
+  const Eigen::Matrix4d matrix = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(row_by_row.data());
+  const Eigen::Matrix3d stored = matrix.topLeftCorner<3, 3>();
+  constexpr double tolerance = 1e-3;
+  if ((stored * stored.transpose() - Eigen::Matrix3d::Identity()).norm() > tolerance || stored.determinant() < 0.0 ||
+      matrix.row(3) != Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0))
+    return std::nullopt;
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(stored, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
+  motion.linear() = svd.matrixU() * svd.matrixV().transpose();
+  motion.translation() = matrix.topRightCorner<3, 1>();
+  return motion;
+}
+
+}  // namespace holdfast::yaml_numbers

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/image_files/calibrated_recording.hpp"
+#include "holdfast/plugin/plugin.hpp"
+
+namespace holdfast {
+
+namespace {
+
+struct EurocSettings {
+  std::filesystem::path path;
+  std::string cameras = "auto";
+  double max_time_difference = 0.002;
+  std::string on_bad_frame = "fail";
+  std::int64_t start = 0;
+  std::int64_t frames = 0;
+
+  static void describe(ParameterTable<EurocSettings>& table) {
+    table.add("path", &EurocSettings::path, "folder of a sequence, which contains mav0, or mav0 itself").required();
+    table
+        .add("cameras", &EurocSettings::cameras,
+             "pair: cam0 and cam1, rectified; left: cam0 alone, as it is; auto: pair if there is a cam1")
+        .one_of({"auto", "pair", "left"});
+    table
+        .add("max_time_difference", &EurocSettings::max_time_difference,
+             "upper bound of the time difference between the two images of a pair")
+        .range(1e-6, 1.0)
+        .unit("s");
+    table
+        .add("on_bad_frame", &EurocSettings::on_bad_frame,
+             "reaction to a missing, damaged or unsuitable image: stop with an error, or skip and count the frame")
+        .one_of({"fail", "skip"});
+    table.add("start", &EurocSettings::start, "index of the first frame, from 0").at_least(0);
+    table.add("frames", &EurocSettings::frames, "number of frames, 0 = all").at_least(0);
+  }
+};
+
+/// A sequence in the ASL layout of the EuRoC MAV data (Burri et al. 2016): stereo pairs, or one camera.
+class EurocSource final : public CalibratedSource {
+ public:
+  EurocSource(const EurocSettings& s, const CreationContext&)
+      : CalibratedSource(read_euroc_recording({s.path, s.cameras, s.max_time_difference, {s.start, s.frames}}), s.path,
+                         s.on_bad_frame == "skip") {}
+};
+
+}  // namespace
+
+HOLDFAST_PLUGIN(euroc, registry) {
+  registry.add<FrameSource, EurocSource, EurocSettings>(
+      {.name = "euroc",
+       .summary =
+           "A sequence in the ASL layout of the EuRoC MAV data: stereo pairs, which are rectified, or one camera.",
+       .paper = "Burri, Nikolic, Gohl, Schneider, Rehder, Omari, Achtelik, Siegwart: The EuRoC micro aerial vehicle "
+                "datasets. IJRR 2016"});
+}
+
+}  // namespace holdfast

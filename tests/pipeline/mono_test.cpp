@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// One camera: threads, and a map that is lost soon after its start.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "holdfast/evaluation/evaluation.hpp"
+#include "holdfast/pipeline/pipeline_builder.hpp"
+#include "holdfast/settings/orb.hpp"
+#include "holdfast/settings/schur.hpp"
+#include "holdfast/simulation/scene_file.hpp"
+#include "holdfast/simulation/simulator.hpp"
+
+namespace holdfast {
+namespace {
+
+constexpr double frame_rate = 30.0;
+
+class MonoTest : public ::testing::Test {
+ protected:
+  static Pipeline make(const Camera& camera, const TrackingSettings& tracking, bool threaded) {
+    RunSettings run;
+    run.mode = threaded ? RunMode::threaded : RunMode::sequential;
+    return PipelineBuilder()
+        .camera(camera)
+        .sensor(Sensor::mono)
+        .features(OrbSettings{.count = 1000})
+        .optimizer(SchurSettings{})
+        .tracking(tracking)
+        .run(run)
+        .build();
+  }
+  /// Feeds the frame `index` of the scene as the next of the sequence.
+  FrameResult feed(Pipeline& pipeline, std::uint64_t index) {
+    SensorFrame frame = simulator_.frame(index);
+    frame.index = next_;
+    frame.timestamp = static_cast<double>(next_++) / frame_rate;
+    truth_.push_back({frame.timestamp, *frame.truth->T_world_camera});
+    return pipeline.feed(frame);
+  }
+  /// RMSE of the poses after `begin` [s], aligned with scale.
+  double error(const Trajectory& trajectory, double begin, std::size_t& poses) const {
+    Trajectory part;
+    for (const TimedPose& pose : trajectory)
+      if (pose.timestamp >= begin) part.push_back(pose);
+    poses = part.size();
+    EvaluationOptions options;
+    options.alignment = AlignmentKind::sim3;
+    return evaluate(truth_, part, options).absolute_error.rmse;
+  }
+
+  simulation::Simulator simulator_{simulation::read_scene({}, {"camera.path=loop", "seed=3"}), *find_camera("tum_fr3")};
+  std::uint64_t next_ = 0;
+  Trajectory truth_;
+};
+
+TEST_F(MonoTest, AMapThatIsLostSoonAfterItsStartBeginsAnew) {
+  for (const bool threaded : {false, true})
+    for (const double young_map_time : {1.0, 0.0}) {
+      SCOPED_TRACE((threaded ? "threaded, " : "sequential, ") + std::to_string(young_map_time));
+      next_ = 0;
+      truth_.clear();
+      TrackingSettings tracking;
+      tracking.young_map_time = young_map_time;
+      tracking.recovery_keyframes = 0;  // nothing else finds the camera
+      Pipeline pipeline = make(simulator_.camera(), tracking, threaded);
+      std::uint64_t index = 0;
+      while (index < 120 && feed(pipeline, index++).status != TrackingStatus::initialised) {
+      }
+      ASSERT_LT(index, 120U) << "the map has begun";
+      for (int i = 0; i < 12; ++i) ASSERT_EQ(feed(pipeline, index++).status, TrackingStatus::tracked);
+      // Somebody carries the camera elsewhere, with a hand on the lens.
+      index += 400;
+      ASSERT_LT(index + 120, simulator_.frame_count());
+      int begun_again = 0, tracked_afterwards = 0;
+      double begun_at = 0.0;
+      for (int i = 0; i < 100; ++i) {
+        const FrameResult result = feed(pipeline, index++);
+        if (result.status == TrackingStatus::initialised) ++begun_again, begun_at = truth_.back().timestamp;
+        if (begun_again > 0 && result.status == TrackingStatus::tracked) ++tracked_afterwards;
+        if (begun_again == 0) {
+          EXPECT_EQ(result.status, TrackingStatus::lost);
+        }
+      }
+      pipeline.finish();
+      EXPECT_EQ(begun_again, young_map_time > 0.0 ? 1 : 0);
+      if (begun_again == 0) continue;
+      EXPECT_GT(tracked_afterwards, 40);
+      std::size_t poses = 0;
+      EXPECT_LT(error(pipeline.trajectory(), begun_at - 1e-9, poses), 0.01);
+      EXPECT_GT(poses, 40U);
+      // Nothing of the map is without a parent but its first keyframe.
+      pipeline.map().keyframes().for_each([&](KeyFrameId, const KeyFrame& keyframe) {
+        EXPECT_EQ(keyframe.parent.valid(), keyframe.sequence != 0) << keyframe.sequence;
+      });
+    }
+}
+
+TEST_F(MonoTest, ThreadsTrackAsOneThreadDoes) {
+  Pipeline pipeline = make(simulator_.camera(), {}, true);
+  bool begun = false;
+  for (std::uint64_t index = 0; index < 180; ++index) {
+    const FrameResult result = feed(pipeline, index);
+    begun = begun || result.status == TrackingStatus::initialised;
+    if (begun) EXPECT_NE(result.status, TrackingStatus::lost) << index;
+  }
+  pipeline.finish();
+  std::size_t poses = 0;
+  EXPECT_LT(error(pipeline.trajectory(), 0.0, poses), 0.01);
+  EXPECT_GT(poses, 100U);
+}
+
+}  // namespace
+}  // namespace holdfast
