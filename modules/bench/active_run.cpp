@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "holdfast/core/error.hpp"
 
@@ -90,6 +91,7 @@ Process ActiveRun::start(const RunPlan& plan, const PlannedRun& run, const Bench
 bool ActiveRun::poll() {
   if (const auto end = process_.poll()) {
     cost_.process = *end;
+    take_load();
     return true;
   }
   const double over_time = process_.seconds() - run_.time_limit;
@@ -100,6 +102,16 @@ bool ActiveRun::poll() {
     process_.kill();
   }
   return false;
+}
+
+void ActiveRun::take_load() {
+  cost_.load_average = load_at_start_.load_average;
+  const ProcessEnd& end = cost_.process;
+  const double busy = machine_load().busy_seconds - load_at_start_.busy_seconds;
+  // Both clocks tick in hundredths of a second, so that the difference of short runs can be negative.
+  if (end.wall_seconds > 0.0)
+    cost_.other_processors = std::max(0.0, busy - end.user_seconds - end.system_seconds) / end.wall_seconds;
+  if (std::isnan(busy)) cost_.other_processors = busy;
 }
 
 void ActiveRun::judge_end() {
@@ -158,6 +170,7 @@ void ActiveRun::complete() {
     evaluate_external();
   else
     read_own_run(folder_, result_, cost_);
+  if (cost_.machine.empty()) cost_.machine = machine_name();
   // Here too, should the run have ended before it wrote its own.
   if (!plan_.variants[run_.variant].is_external()) write_file_atomically(folder_ / configuration_file, run_.request);
   write_file_atomically(folder_ / cost_file, to_json(cost_));

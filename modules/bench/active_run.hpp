@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "holdfast/bench/machine_load.hpp"
 #include "holdfast/bench/process.hpp"
 #include "holdfast/bench/run_scheduler.hpp"
 
@@ -33,6 +34,7 @@ class ActiveRun {
   static Process start(const RunPlan& plan, const PlannedRun& run, const BenchOptions& options,
                        const std::filesystem::path& folder);
   void judge_end();
+  void take_load();
   void evaluate_external();
 
   const RunPlan& plan_;
@@ -42,6 +44,7 @@ class ActiveRun {
   RunResult result_;
   RunCost cost_;
   bool out_of_time_ = false;
+  MachineLoad load_at_start_ = machine_load();
   Process process_;
 };
 

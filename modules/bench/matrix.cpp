@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "holdfast/bench/paper_tables.hpp"
+#include "holdfast/plugin/did_you_mean.hpp"
 #include "matrix_parts.hpp"
 #include "strict_map.hpp"
 #include "variables.hpp"
@@ -14,8 +16,8 @@ using Kind = ConfigurationNode::Kind;
 namespace {
 
 const std::vector<std::string> matrix_keys = {
-    "title", "about",    "base",    "axes",   "sequences", "systems",     "repeats",    "seeds",
-    "mode",  "baseline", "exclude", "timing", "published", "comparisons", "time_limit", "minimum_coverage"};
+    "title",    "about",   "base",   "axes",      "sequences",   "systems",    "repeats",          "seeds",   "mode",
+    "baseline", "exclude", "timing", "published", "comparisons", "time_limit", "minimum_coverage", "analysis"};
 
 class MatrixReader {
  public:
@@ -50,6 +52,7 @@ class MatrixReader {
         matrix_.exclusions.push_back(read_exclusion(item, diagnostics_));
     read_baseline();
     read_comparisons();
+    read_analysis();
     const bool has_configuration =
         matrix_.base || std::any_of(matrix_.axes.begin(), matrix_.axes.end(), [](const Axis& axis) {
           return std::all_of(axis.values.begin(), axis.values.end(),
@@ -132,6 +135,24 @@ class MatrixReader {
       }
       matrix_.comparisons.push_back(
           {{item.items[0].text, item.items[0].location}, {item.items[1].text, item.items[1].location}});
+    }
+  }
+
+  void read_analysis() {
+    const ConfigurationNode* node = map_.find("analysis");
+    if (node == nullptr) return;
+    StrictMap analysis(*node, "'analysis'", {"tables", "decimals"}, diagnostics_);
+    matrix_.analysis.decimals =
+        static_cast<int>(analysis.integer("decimals", 1, 12).value_or(matrix_.analysis.decimals));
+    const ConfigurationNode* tables = analysis.find("tables");
+    if (tables == nullptr) return;
+    if (tables->kind != Kind::list) analysis.mismatch(*tables, "tables", "a list, such as [paper2, paper3]");
+    const auto& known = paper_table_names();
+    for (const ConfigurationNode& item : tables->items) {
+      if (std::find(known.begin(), known.end(), item.text) == known.end())
+        analysis.complain(item.location, "there is no table '" + item.text + "'; " + did_you_mean(item.text, known));
+      else
+        add_paper_table(item.text, matrix_.analysis);
     }
   }
 

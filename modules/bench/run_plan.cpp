@@ -18,6 +18,10 @@ class Planner {
           std::vector<Diagnostic>& diagnostics)
       : registry_(registry), diagnostics_(diagnostics) {
     plan_.matrix = std::move(matrix);
+    for (const SectionDescription& section : sections)
+      if (section.name == perturbation_axis)
+        for (const Parameter& parameter : section.parameters)
+          plan_.perturbation_units[parameter.name] = parameter.unit_name;
     configurations_.emplace(plan_.matrix, registry, sections, found_);
   }
 

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "holdfast/bench/bench_report.hpp"
+#include "holdfast/bench/paper_tables.hpp"
 #include "holdfast/bench/published.hpp"
 #include "holdfast/bench/run_plan.hpp"
 #include "holdfast/bench/run_scheduler.hpp"
@@ -37,7 +38,7 @@ struct Arguments {
   fs::path output;
   int jobs = 1;
   bool resume = false, dry_run = false, timing = false, quiet = false;
-  std::vector<std::string> data;
+  std::vector<std::string> data, tables;
 };
 
 Variables variables_of(const std::vector<std::string>& data) {
@@ -99,6 +100,7 @@ std::string command_to_resume(const Arguments& arguments, const ProgramHost& hos
   text += "bench " + arguments.matrix + " --output " + arguments.output.string() + " --resume";
   if (arguments.jobs != 1) text += " --jobs " + std::to_string(arguments.jobs);
   if (arguments.timing) text += " --timing";
+  for (const std::string& each : arguments.tables) text += " --table " + each;
   for (const std::string& each : arguments.data) text += " --data " + each;
   return text;
 }
@@ -107,6 +109,7 @@ void bench(const Arguments& arguments, const ProgramHost& host, int& exit_code) 
   std::vector<Diagnostic> diagnostics;
   Matrix matrix = read_matrix(arguments.matrix, variables_of(arguments.data), diagnostics);
   matrix.timing = matrix.timing || arguments.timing;
+  for (const std::string& name : arguments.tables) add_paper_table(name, matrix.analysis);
   PublishedResults published;
   if (matrix.published) published = read_published(matrix.published->text, diagnostics);
   Registry registry = host.modules();
@@ -145,6 +148,9 @@ void bench(const Arguments& arguments, const ProgramHost& host, int& exit_code) 
     exit_code = interrupted_exit_code();
     return;
   }
+  for (const std::string& name : arguments.tables)
+    for (const PaperTable& table : paper_tables(name, plan, analyse(plan, results), published))
+      std::printf("%s\n", to_markdown(table).c_str());
   if (arguments.quiet) return;
   if (results.kept > 0) std::printf("%zu of %zu runs were finished before\n", results.kept, plan.runs.size());
   for (const Comparison& comparison : analyse(plan, results).comparisons)
@@ -180,6 +186,12 @@ void add_bench_command(CLI::App& app, int& exit_code, const ProgramHost& host) {
   command->add_flag("--resume", arguments->resume, "Go on with an interrupted bench: finished runs are not repeated");
   command->add_flag("--dry-run", arguments->dry_run, "List the runs, and what is missing for them; run nothing");
   command->add_flag("--timing", arguments->timing, "Every run alone, whatever --jobs says");
+  command
+      ->add_option("--table", arguments->tables,
+                   "Print a table as papers do, and write tables/NAME.tex, .md and .csv: paper2 (ATE), paper3 (RPE)")
+      ->type_name("NAME")
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember(paper_table_names()));
   command->add_option("--data", arguments->data, "NAME=VALUE: of ${NAME} in the matrix; else the environment's")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);

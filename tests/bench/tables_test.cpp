@@ -156,8 +156,8 @@ TEST_F(TablesTest, NeverGivesAPublishedFigureWithoutItsSource) {
   plan_.matrix.sequences[0].published = "known";
   published_.results = {{"Other, \"one\"", "Somebody, table 2", "median of 10", {{"known", 0.25}, {"else", 1.0}}}};
   EXPECT_EQ(to_csv(published_table(plan_, published_)),
-            "system,sequence,ate_rmse_m,source,protocol\n"
-            "\"Other, \"\"one\"\"\",s0,0.25,\"Somebody, table 2\",median of 10\n");
+            "system,sequence,ate_rmse_m,alignment,input,source,protocol\n"
+            "\"Other, \"\"one\"\"\",s0,0.25,SE(3),RGB-D,\"Somebody, table 2\",median of 10\n");
   EXPECT_THAT(report(), HasSubstr("| Other, \"one\" | 0.2500 | Somebody, table 2 | median of 10 |"));
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -46,6 +47,7 @@ struct RunPlan {
   std::vector<PlannedRun> runs;
   std::vector<std::pair<std::size_t, std::size_t>> comparisons;  ///< (before, after): every variant with its baseline
   std::vector<std::optional<RecordedSequence>> recordings;       ///< by sequence: those that external systems run on
+  std::map<std::string, std::string> perturbation_units;         ///< unit of a strength by name of the perturbation
   std::vector<Diagnostic> missing;  ///< folders, files and programs that are not there, with where to get them
 };
 
