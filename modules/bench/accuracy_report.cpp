@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
-#include "error_text.hpp"
 #include "holdfast/bench/bench_report.hpp"
+#include "holdfast/bench/error_text.hpp"
 #include "holdfast/bench/robustness.hpp"
 #include "holdfast/bench/tables.hpp"
 
@@ -75,7 +75,7 @@ class AccuracyReport {
                             std::to_string(c.better) + " of " + std::to_string(c.sequences.size()),
                             has_pairs ? error_text(c.gain) + unit : "-", percent_text(c.gain_percent, 1),
                             c.enough ? error_text(c.interval.low) + " to " + error_text(c.interval.high) + unit : "-",
-                            c.enough ? fixed_text(c.test.p, 4) : "-", c.enough ? fixed_text(c.adjusted, 4) : "-",
+                            c.enough ? probability_text(c.test.p) : "-", c.enough ? probability_text(c.adjusted) : "-",
                             !c.enough            ? "too few to tell"
                             : c.is_significant() ? "significant"
                                                  : "not significant"});

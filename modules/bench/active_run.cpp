@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "holdfast/bench/executor.hpp"
 #include "holdfast/core/error.hpp"
 
 namespace holdfast {
@@ -17,7 +18,10 @@ namespace {
 constexpr const char* incomplete_mark = ".incomplete-";
 
 fs::path incomplete_folder(const fs::path& folder) {
-  return folder.parent_path() / ("." + folder.filename().string() + incomplete_mark + std::to_string(getpid()));
+  char host[256] = {};
+  gethostname(host, sizeof(host) - 1);  // processes of several nodes may have the same number
+  return folder.parent_path() /
+         ("." + folder.filename().string() + incomplete_mark + host + "-" + std::to_string(getpid()));
 }
 
 Placeholders placeholders(const RecordedSequence& sequence, const fs::path& folder) {
@@ -50,6 +54,7 @@ void remove_incomplete_runs(const fs::path& runs) {
 ActiveRun::ActiveRun(const RunPlan& plan, const PlannedRun& run, const BenchOptions& options)
     : plan_(plan),
       run_(run),
+      output_(options.output),
       grace_(options.grace),
       final_folder_(fs::absolute(folder_of(run, options.output))),
       folder_(incomplete_folder(final_folder_)),
@@ -178,6 +183,12 @@ void ActiveRun::complete() {
   std::error_code error;
   fs::remove_all(final_folder_, error);
   fs::rename(folder_, final_folder_, error);
+  // The same run on another node, taken for lost, may have ended at the same time: one result is as good as the other.
+  if (error && has_result(plan_, run_, output_)) {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+    return;
+  }
   if (error) throw InputError({final_folder_.string()}, "the folder of a run cannot be named: " + error.message());
 }
 

@@ -39,6 +39,7 @@ class ActiveRun {
 
   const RunPlan& plan_;
   const PlannedRun& run_;
+  std::filesystem::path output_;
   double grace_;
   std::filesystem::path final_folder_, folder_;
   RunResult result_;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "error_text.hpp"
+#include "holdfast/bench/error_text.hpp"
 
 namespace holdfast {
 
@@ -163,17 +163,18 @@ std::string sentence(const RunPlan& plan, const Comparison& c) {
     text += "Too few to tell: " + counted(c.test.pairs, "pair") + " that differ" + (c.test.pairs == 1 ? "s" : "") +
             ", " + std::to_string(fewest_pairs_to_test) + " are needed.";
   } else {
-    const std::string numbers = "p = " + fixed_text(c.test.p, 4) + ", " + counted(c.test.pairs, "pair") +
+    const std::string numbers = "p = " + probability_text(c.test.p) + ", " + counted(c.test.pairs, "pair") +
                                 "; 95 % interval of the gain " + error_text(c.interval.low) + " to " +
                                 error_text(c.interval.high) + unit;
     if (!c.is_significant())
       text += "The difference is not significant (" + numbers + "): these sequences do not tell which is better.";
     else
-      text += "The difference is significant (" + numbers + ")" +
-              (c.adjusted < 0.05
-                   ? ""
-                   : "; with Holm's correction for all comparisons it is not (p = " + fixed_text(c.adjusted, 4) + ")") +
-              ".";
+      text +=
+          "The difference is significant (" + numbers + ")" +
+          (c.adjusted < 0.05
+               ? ""
+               : "; with Holm's correction for all comparisons it is not (p = " + probability_text(c.adjusted) + ")") +
+          ".";
   }
   if (c.left_out > 0) text += " " + counted(c.left_out, "sequence") + " left out, where one of them has no figure.";
   const double least = std::min(c.least_coverage_before, c.least_coverage_after);

@@ -16,8 +16,9 @@ using Kind = ConfigurationNode::Kind;
 namespace {
 
 const std::vector<std::string> matrix_keys = {
-    "title",    "about",   "base",   "axes",      "sequences",   "systems",    "repeats",          "seeds",   "mode",
-    "baseline", "exclude", "timing", "published", "comparisons", "time_limit", "minimum_coverage", "analysis"};
+    "title",    "about",    "base",    "axes",   "sequences", "systems",     "repeats",    "seeds",
+    "mode",     "baseline", "exclude", "timing", "published", "comparisons", "time_limit", "minimum_coverage",
+    "analysis", "executor"};
 
 class MatrixReader {
  public:
@@ -53,6 +54,7 @@ class MatrixReader {
     read_baseline();
     read_comparisons();
     read_analysis();
+    read_executor();
     const bool has_configuration =
         matrix_.base || std::any_of(matrix_.axes.begin(), matrix_.axes.end(), [](const Axis& axis) {
           return std::all_of(axis.values.begin(), axis.values.end(),
@@ -135,6 +137,27 @@ class MatrixReader {
       }
       matrix_.comparisons.push_back(
           {{item.items[0].text, item.items[0].location}, {item.items[1].text, item.items[1].location}});
+    }
+  }
+
+  void read_executor() {
+    const ConfigurationNode* node = map_.find("executor");
+    if (node == nullptr) return;
+    if (node->kind == Kind::scalar && (node->text == "local" || node->text == "slurm")) {
+      matrix_.executor.name = node->text;
+      return;
+    }
+    if (node->kind != Kind::map || node->entries.size() != 1 || node->entries.front().key != "slurm" ||
+        node->entries.front().value.kind != Kind::map) {
+      map_.mismatch(*node, "executor", "local, slurm, or { slurm: { partition: ... } }");
+      return;
+    }
+    matrix_.executor.name = "slurm";
+    for (const ConfigurationNode::Entry& entry : node->entries.front().value.entries) {
+      if (entry.value.kind == Kind::scalar)
+        matrix_.executor.settings.emplace_back(entry.key, PlacedText{entry.value.text, entry.value.location});
+      else
+        map_.mismatch(entry.value, entry.key, "a text or a number");
     }
   }
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "error_text.hpp"
+#include "holdfast/bench/error_text.hpp"
 #include "holdfast/bench/tables.hpp"
 
 namespace holdfast {
@@ -149,10 +149,9 @@ class PaperTableMaker {
   }
   PaperTable::Cell printed_cell(const PublishedResult& result, std::size_t sequence, std::size_t statistic) const {
     const std::string& name = published_name(plan_.matrix.sequences[sequence]);
-    double value = Statistics::none;
-    if (const auto six = result.statistics.find(name); six != result.statistics.end()) value = six->second[statistic];
-    if (const auto rmse = result.values.find(name); statistic == 0 && rmse != result.values.end()) value = rmse->second;
-    return {std::isfinite(value) ? shortest_text(value) : no_figure};
+    const auto texts = result.printed.find(name);
+    if (texts == result.printed.end() || texts->second[statistic].empty()) return {no_figure};
+    return {texts->second[statistic]};
   }
 
   PaperTable::Row error_row(Quantity quantity, std::size_t sequence, std::size_t statistic) const {

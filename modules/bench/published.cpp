@@ -92,9 +92,13 @@ class PublishedReader {
       six.fill(Statistics::none);
       if (entry.value.kind == Kind::map) {
         StrictMap printed(entry.value, "the statistics of '" + entry.key + "'", statistics, diagnostics_);
-        for (std::size_t i = 0; i < six.size(); ++i) six[i] = printed.number(statistics[i], 0.0, 1e6).value_or(six[i]);
+        for (std::size_t i = 0; i < six.size(); ++i) {
+          six[i] = printed.number(statistics[i], 0.0, 1e6).value_or(six[i]);
+          if (std::isfinite(six[i])) result.printed[entry.key][i] = printed.text(statistics[i], "");
+        }
       } else {
         six[0] = map.number(entry.key, 0.0, 1e6).value_or(six[0]);
+        if (std::isfinite(six[0])) result.printed[entry.key][0] = entry.value.text;
       }
       if (std::isfinite(six[0])) result.values[entry.key] = six[0];
       result.statistics[entry.key] = six;

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <optional>
 
-#include "error_text.hpp"
+#include "holdfast/bench/error_text.hpp"
 #include "holdfast/bench/tables.hpp"
 
 namespace holdfast {

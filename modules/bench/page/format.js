@@ -14,7 +14,15 @@ const isNumber = (value) => typeof value === 'number' && Number.isFinite(value);
 const fixed = (value, decimals) => (isNumber(value) ? value.toFixed(decimals).replace('-', '−') : '–');
 const percent = (share, decimals = 1) => (isNumber(share) ? `${fixed(100 * share, decimals)} %` : '–');
 /// An error with as many decimals as in report.md.
-const errorText = (value) => fixed(value, Math.abs(value) >= 0.01 || Math.abs(value) < 5e-7 ? 4 : Math.abs(value) >= 0.001 ? 5 : 6);
+const errorText = (value) => {
+  const magnitude = Math.abs(value);
+  if (isNumber(value) && magnitude >= 1e-9 && magnitude < 1e-4) return value.toExponential(2).replace('-', '−').replace('e-', 'e−');
+  return fixed(value, magnitude >= 0.01 || magnitude < 1e-9 ? 4 : magnitude >= 0.001 ? 5 : 6);
+};
+/// A probability; what would be shown as 0 is bounded.
+const probabilityText = (value) => (isNumber(value) && value < 5e-5 ? '< 0.0001' : fixed(value, 4));
+/// A name that may be broken behind its joints.
+const breakable = (name) => name.split(/(?<=[+_\-])/).flatMap((part, i) => (i === 0 ? [part] : [document.createElement('wbr'), part]));
 const counted = (count, noun) => `${count} ${noun}${count === 1 ? '' : 's'}`;
 
 function median(values) {

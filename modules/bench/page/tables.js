@@ -12,7 +12,7 @@ function sortableTable(caption, columns, rows, {isTall = false, attributesOf = (
   const heads = columns.map((column) => element('th', {scope: 'col', class: column.numeric ? 'number' : null,
                                                        'aria-sort': column.value ? 'none' : null}));
   const lines = rows.map((row) => ({row, line: element('tr', attributesOf(row), columns.map((column, i) => {
-    const content = column.cell ? column.cell(row) : String(column.value(row) ?? '');
+    const content = column.cell ? column.cell(row) : breakable(String(column.value(row) ?? ''));
     return element(i === 0 ? 'th' : 'td', {scope: i === 0 ? 'row' : null, class: column.numeric ? 'number' : null}, content);
   }))}));
 
@@ -30,12 +30,13 @@ function sortableTable(caption, columns, rows, {isTall = false, attributesOf = (
   }
 
   columns.forEach((column, i) => {
-    const title = [column.title, column.note ? element('small', {}, column.note) : null];
+    const title = [...breakable(column.title), column.note ? element('small', {}, column.note) : null];
     heads[i].append(column.value ? element('button', {type: 'button', onclick: () => sortBy(i)},
                                            element('span', {}, title.filter((part) => part))) :
                                    element('span', {class: 'title'}, title.filter((part) => part)));
   });
   body.append(...lines.map((each) => each.line));
-  return element('div', {class: isTall ? 'table tall' : 'table', tabindex: '0', role: 'region', 'aria-label': caption},
-                 element('table', {}, element('caption', {}, caption), element('thead', {}, element('tr', {}, heads)), body));
+  const table = element('table', {}, element('thead', {}, element('tr', {}, heads)), body);
+  table.prepend(element('caption', {}, copyButton('Copy', () => tableText(table)), caption));
+  return element('div', {class: isTall ? 'table tall' : 'table', tabindex: '0', role: 'region', 'aria-label': caption}, table);
 }

@@ -96,6 +96,12 @@ struct MatrixAnalysis {
   int decimals = 4;                 ///< of errors in these tables
 };
 
+/// Where runs are executed, as the key `executor` says.
+struct MatrixExecutor {
+  std::string name = "local";                                ///< or slurm
+  std::vector<std::pair<std::string, PlacedText>> settings;  ///< of slurm, by name
+};
+
 /// A file that says which systems run on which sequences, how often, and what is compared with what.
 struct Matrix {
   std::filesystem::path file;
@@ -118,6 +124,7 @@ struct Matrix {
   std::vector<std::pair<PlacedText, PlacedText>> comparisons;  ///< variants, the second measured against the first
   std::optional<PlacedText> published;                         ///< file of published figures, absolute
   MatrixAnalysis analysis;
+  MatrixExecutor executor;
 };
 
 /// Values of ${NAME} in a matrix: those given here, then the environment's.

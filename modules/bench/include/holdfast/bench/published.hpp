@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -21,7 +22,9 @@ struct PublishedResult {
   std::string alignment = "SE(3)";       ///< or "Sim(3)", whose errors are smaller by the free scale
   std::string input = "RGB-D";           ///< or "monocular"
   /// All that is printed [m], by name of the sequence; NaN for a statistic that is not.
-  std::map<std::string, SixStatistics> statistics;
+  std::map<std::string, SixStatistics> statistics = {};
+  /// The same in the digits that are printed, "" for a statistic that is not.
+  std::map<std::string, std::array<std::string, 6>> printed = {};
 
   /// Whether a figure other than the RMSE is printed.
   bool has_more_than_rmse() const;

@@ -58,9 +58,10 @@ inline constexpr const char* external_request_file = "request.json";
 /// Expands a matrix: variants are the product of the axes (the first one varies slowest), then the systems; every
 /// configuration is built and checked as `holdfast check` does. Everything that is wrong is appended to `diagnostics`,
 /// each once; what is only missing on this machine goes to RunPlan::missing. Plugins that configurations name are
-/// loaded into `registry`.
+/// loaded into `registry`. With the id of a run in `only`, the other cells are left out of RunPlan::runs, and are not
+/// checked.
 RunPlan make_run_plan(Matrix matrix, Registry& registry, const std::vector<SectionDescription>& sections,
-                      std::vector<Diagnostic>& diagnostics);
+                      std::vector<Diagnostic>& diagnostics, const std::string& only = "");
 
 /// What `--dry-run` prints: every run, their count, remarks, and what is missing.
 std::string plan_text(const RunPlan& plan);
