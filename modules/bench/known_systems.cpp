@@ -33,8 +33,7 @@ std::vector<std::string> texts_of(const ConfigurationNode& node, const std::stri
 std::vector<KnownSystem> read_systems() {
   std::vector<KnownSystem> systems;
   for (const EmbeddedFile& file : embedded_systems())
-    for (ConfigurationNode::Entry& entry :
-         parse_yaml(std::string(file.content), std::string(file.name), {}).entries) {
+    for (ConfigurationNode::Entry& entry : parse_yaml(std::string(file.content), std::string(file.name), {}).entries) {
       const ConfigurationNode& node = entry.value;
       KnownSystem system{entry.key,
                          text_of(node, "about"),

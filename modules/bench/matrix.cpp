@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "holdfast/bench/known_systems.hpp"
 #include "holdfast/bench/paper_tables.hpp"
 #include "holdfast/plugin/did_you_mean.hpp"
 #include "matrix_parts.hpp"
@@ -196,6 +197,7 @@ bool is_plain_name(const std::string& name) {
 Matrix read_matrix(const std::filesystem::path& file, const Variables& variables,
                    std::vector<Diagnostic>& diagnostics) {
   ConfigurationNode root = read_yaml(file);
+  follow_wrappers(root, diagnostics);
   expand_variables(root, variables);
   return MatrixReader(root, file, diagnostics).read();
 }

@@ -17,6 +17,7 @@
 #include "holdfast/bench/bench_report.hpp"
 #include "holdfast/bench/error_text.hpp"
 #include "holdfast/bench/executor.hpp"
+#include "holdfast/bench/known_systems.hpp"
 #include "holdfast/bench/paper_tables.hpp"
 #include "holdfast/bench/published.hpp"
 #include "holdfast/bench/run_plan.hpp"
@@ -226,8 +227,12 @@ void add_bench_command(CLI::App& app, int& exit_code, const ProgramHost& host) {
       "Examples\n"
       "  holdfast bench benchmarks/simulated.yaml --dry-run\n"
       "  holdfast bench benchmarks/composed.yaml --data HOLDFAST_COMPOSED=/data/composed --output out/composed\n"
-      "  holdfast bench benchmarks/composed.yaml --output out/composed --resume");
-  command->add_option("MATRIX", arguments->matrix, "Matrix in YAML")->required();
+      "  holdfast bench benchmarks/composed.yaml --output out/composed --resume\n"
+      "  holdfast bench doctor");
+  command
+      ->add_option("MATRIX", arguments->matrix,
+                   "Matrix in YAML; `doctor` says what of other systems is found on this machine")
+      ->required();
   command->add_option("-o,--output", arguments->output, "Folder for the results")->type_name("DIR");
   command->add_option("--jobs", arguments->jobs, "Runs at once; more than one disturbs times, not errors")
       ->type_name("N")
@@ -262,7 +267,14 @@ void add_bench_command(CLI::App& app, int& exit_code, const ProgramHost& host) {
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   command->add_flag("-q,--quiet", arguments->quiet, "No progress, no summary");
-  command->callback([arguments, host, &exit_code] { bench(*arguments, host, exit_code); });
+  command->callback([arguments, host, &exit_code] {
+    if (arguments->matrix == "doctor") {
+      std::fputs(doctor_text(check_known_systems(variables_of(arguments->data))).c_str(), stdout);
+      exit_code = 0;
+    } else {
+      bench(*arguments, host, exit_code);
+    }
+  });
 }
 
 }  // namespace holdfast

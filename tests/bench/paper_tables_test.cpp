@@ -126,9 +126,8 @@ TEST_F(PublishedFileTest, RefusesWhatItDoesNotKnow) {
       "results:\n  - { system: A, source: one, values: { s0: { rmse: 0.1, sigma: 0.2 }, s1: -1 } }\n");
   std::string text;
   for (const Diagnostic& each : diagnostics_) text += each.to_string() + "\n";
-  EXPECT_THAT(text,
-              AllOf(HasSubstr(":2:47: found 'sim2' for 'alignment' of source 'one'; expected se3 or sim3"),
-                    HasSubstr("'sigma'"), HasSubstr("for 's1'")));
+  EXPECT_THAT(text, AllOf(HasSubstr(":2:47: found 'sim2' for 'alignment' of source 'one'; expected se3 or sim3"),
+                          HasSubstr("'sigma'"), HasSubstr("for 's1'")));
 }
 
 }  // namespace
