@@ -163,7 +163,7 @@ std::string sentence(const RunPlan& plan, const Comparison& c) {
     text += "Too few to tell: " + counted(c.test.pairs, "pair") + " that differ" + (c.test.pairs == 1 ? "s" : "") +
             ", " + std::to_string(fewest_pairs_to_test) + " are needed.";
   } else {
-    const std::string numbers = "p = " + probability_text(c.test.p) + ", " + counted(c.test.pairs, "pair") +
+    const std::string numbers = p_text(c.test.p) + ", " + counted(c.test.pairs, "pair") +
                                 "; 95 % interval of the gain " + error_text(c.interval.low) + " to " +
                                 error_text(c.interval.high) + unit;
     if (!c.is_significant())
@@ -171,9 +171,8 @@ std::string sentence(const RunPlan& plan, const Comparison& c) {
     else
       text +=
           "The difference is significant (" + numbers + ")" +
-          (c.adjusted < 0.05
-               ? ""
-               : "; with Holm's correction for all comparisons it is not (p = " + probability_text(c.adjusted) + ")") +
+          (c.adjusted < 0.05 ? ""
+                             : "; with Holm's correction for all comparisons it is not (" + p_text(c.adjusted) + ")") +
           ".";
   }
   if (c.left_out > 0) text += " " + counted(c.left_out, "sequence") + " left out, where one of them has no figure.";

@@ -120,6 +120,8 @@ TEST_F(BenchExternalTest, HasTimedRunsStandAlone) {
 }
 
 TEST_F(BenchExternalTest, TheDoctorSaysWhatIsFoundAndWhatIsMissing) {
+  for (const char* folder : {"orb/Examples/RGB-D", "orb/lib"})
+    std::filesystem::create_directories(program_.path(folder));
   program_.write("orb/Examples/RGB-D/rgbd_tum", "");
   program_.write("orb/lib/libORB_SLAM2.so", "");
   const Outcome outcome = program_.run({"bench", "doctor", "--data", "ORB_SLAM2=" + program_.path("orb").string()});
@@ -134,12 +136,14 @@ TEST_F(BenchExternalTest, TheDoctorSaysWhatIsFoundAndWhatIsMissing) {
 
 /// A stand-in in place of a program of others, called through its wrapper.
 TEST_F(BenchExternalTest, AWrapperCallsASystemByItsName) {
+  std::filesystem::create_directories(program_.path("stella"));
   program_.write("stella/orb_vocab.fbow", "");
-  program_.write("stella/run_tum_rgbd_slam",
-                 "#!/bin/sh\n[ \"$1 $3\" = '-v -d' ] || exit 9\n"
-                 "exec sh " HOLDFAST_SOURCE_DIR
-                 "/examples/external/stand_in.sh \"${6%stella.yaml}associations.txt\" \"${6%stella.yaml}settings.yaml\" \"$4\" "
-                 "\"${6%stella.yaml}frame_trajectory.txt\"\n");
+  program_.write(
+      "stella/run_tum_rgbd_slam",
+      "#!/bin/sh\n[ \"$1 $3\" = '-v -d' ] || exit 9\n"
+      "exec sh " HOLDFAST_SOURCE_DIR
+      "/examples/external/stand_in.sh \"${6%stella.yaml}associations.txt\" \"${6%stella.yaml}settings.yaml\" \"$4\" "
+      "\"${6%stella.yaml}frame_trajectory.txt\"\n");
   std::filesystem::permissions(program_.path("stella/run_tum_rgbd_slam"), std::filesystem::perms::owner_all);
   program_.write("matrix.yaml",
                  "systems: { theirs: { wrapper: stella_vslam, repeats: 1, environment: { STAND_IN: good } } }\n"
@@ -151,10 +155,10 @@ TEST_F(BenchExternalTest, AWrapperCallsASystemByItsName) {
       << program_.text("out/runs/theirs/little/repeat1/log.txt");
   EXPECT_THAT(program_.text("out/runs/theirs/little/repeat1/stella.yaml"),
               AllOf(HasSubstr("  setup: RGBD\n"), HasSubstr("  fx: 535.4\n"), HasSubstr("  cols: 640\n"),
-                    HasSubstr("  depthmap_factor: 5000\n")));
+                    HasSubstr("  depthmap_factor: 5000.0\n")));
   program_.write("matrix.yaml", "systems: { theirs: { wrapper: stella_slam } }\nsequences: {}\n");
   EXPECT_THAT(program_.run({"bench", "matrix.yaml", "--dry-run"}).errors,
-              HasSubstr("matrix.yaml:1:32: there is no wrapper 'stella_slam'; did you mean 'stella_vslam'"));
+              HasSubstr("matrix.yaml:1:31: there is no wrapper 'stella_slam'; did you mean 'stella_vslam'"));
 }
 
 TEST_F(BenchExternalTest, FindsTheMatricesOfTheProjectSound) {

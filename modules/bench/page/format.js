@@ -69,11 +69,12 @@ const coloursInScale = 7;
 const dashes = [[], [7, 4], [2, 3], [9, 3, 2, 3], [4, 6]];
 const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const colourOf = (run) => style(`--series-${run.variant % coloursInScale}`);
-const cellOf = (variant, sequence) =>
-    results.cells.find((cell) => cell.variant === variant && cell.sequence === sequence);
+const cells = new Map(results.cells.map((cell) => [cell.variant * results.sequences.length + cell.sequence, cell]));
+const cellOf = (variant, sequence) => cells.get(variant * results.sequences.length + sequence);
+const placeOfRun = new Map(results.runs.map((run, i) => [run, i]));
 function dashOf(run) {
   const cell = cellOf(run.variant, run.sequence);
-  const place = cell ? cell.runs.indexOf(results.runs.indexOf(run)) : 0;
+  const place = cell ? cell.runs.indexOf(placeOfRun.get(run)) : 0;
   return dashes[(Math.floor(run.variant / coloursInScale) + Math.max(place, 0)) % dashes.length];
 }
 

@@ -259,7 +259,7 @@ class ErrorPlot {
     this.plot?.destroy();
     this.plot = null;
     if (runs.length === 0) return;
-    const curves = runs.map((run) => tracks.runs[results.runs.indexOf(run)].error);
+    const curves = runs.map((run) => tracks.runs[placeOfRun.get(run)].error);
     // 2: a break reaches over the times of other runs to its neighbours.
     const data = uPlot.join(curves.map((curve) => [curve.t, isLogarithmic ? curve.e.map((e) => e || null) : curve.e]),
                             curves.map(() => [0, 2]));

@@ -19,6 +19,8 @@ inline std::string error_text(double value) {
 
 /// A probability for people to read; what would be shown as 0 is bounded.
 inline std::string probability_text(double value) { return value < 5e-5 ? "< 0.0001" : fixed_text(value, 4); }
+/// "p = 0.0312", "p < 0.0001".
+inline std::string p_text(double value) { return value < 5e-5 ? "p < 0.0001" : "p = " + fixed_text(value, 4); }
 
 /// "12.3 %"; "-" for none.
 inline std::string percent_text(double percent, int decimals) {
