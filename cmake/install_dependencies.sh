@@ -10,6 +10,8 @@
 #   sh cmake/install_dependencies.sh --python         also what the segmenter `python` and the Python package are built
 #                                                     of, and numpy
 #   sh cmake/install_dependencies.sh --python-tests   the same, and what the tests of the Python package need
+#   sh cmake/install_dependencies.sh --bench-tests    also a browser, Slurm's daemons and GNU parallel for tests of the
+#                                                     bench
 #   sh cmake/install_dependencies.sh --clang          also clang, for the fuzz targets and the quick sanitizer build
 #   sh cmake/install_dependencies.sh --clean-root     also mmdebstrap, for tests/clean_root.sh
 #   sh cmake/install_dependencies.sh --dry-run        say what would be installed, change nothing
@@ -35,11 +37,12 @@ for argument in "$@"; do
       [ "$argument" = --python ] ||
         packages="$packages mypy python3-matplotlib python3-nbformat python3-pandas python3-psutil python3-pytest"
       ;;
+    --bench-tests) packages="$packages chromium munge parallel slurm-client slurmctld slurmd" ;;
     --clang) packages="$packages clang libclang-rt-14-dev llvm" ;;
     --clean-root) packages="$packages mmdebstrap" ;;
     --dry-run) dry_run=yes ;;
-    -h | --help) sed -n '3,15s/^# \{0,1\}//p' "$0"; exit 0 ;;
-    *) fail "unknown argument '$argument'; known are --training, --documentation, --benchmarks, --python, --python-tests, --clang, --clean-root, --dry-run and --help" ;;
+    -h | --help) sed -n '3,17s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) fail "unknown argument '$argument'; known are --training, --documentation, --benchmarks, --python, --python-tests, --bench-tests, --clang, --clean-root, --dry-run and --help" ;;
   esac
 done
 

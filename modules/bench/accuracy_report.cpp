@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
-#include "error_text.hpp"
 #include "holdfast/bench/bench_report.hpp"
+#include "holdfast/bench/error_text.hpp"
+#include "holdfast/bench/robustness.hpp"
 #include "holdfast/bench/tables.hpp"
 
 namespace holdfast {
@@ -29,6 +30,7 @@ class AccuracyReport {
     add_variants();
     add_cells();
     add_improvements();
+    add_robustness();
     add_published();
     add_trouble();
     add_method();
@@ -49,7 +51,9 @@ class AccuracyReport {
     }
     text_ += std::to_string(done) + " of " + plural(plan_.runs.size(), "run") + " done, " + std::to_string(counted) +
              " with a result that counts: " + plural(plan_.variants.size(), "variant") + ", " +
-             plural(plan_.matrix.sequences.size(), "sequence") + ". Time and memory: [cost.md](cost.md).\n\n";
+             plural(plan_.matrix.sequences.size(), "sequence") + ". Time and memory: [cost.md](cost.md).";
+    for (const std::string& name : plan_.matrix.analysis.tables) text_ += " [" + name + "](tables/" + name + ".md).";
+    text_ += "\n\n";
     if (done < plan_.runs.size()) text_ += "**Unfinished**: what follows is about the runs that are done.\n\n";
   }
 
@@ -71,7 +75,7 @@ class AccuracyReport {
                             std::to_string(c.better) + " of " + std::to_string(c.sequences.size()),
                             has_pairs ? error_text(c.gain) + unit : "-", percent_text(c.gain_percent, 1),
                             c.enough ? error_text(c.interval.low) + " to " + error_text(c.interval.high) + unit : "-",
-                            c.enough ? fixed_text(c.test.p, 4) : "-", c.enough ? fixed_text(c.adjusted, 4) : "-",
+                            c.enough ? probability_text(c.test.p) : "-", c.enough ? probability_text(c.adjusted) : "-",
                             !c.enough            ? "too few to tell"
                             : c.is_significant() ? "significant"
                                                  : "not significant"});
@@ -189,12 +193,22 @@ class AccuracyReport {
     return row;
   }
 
+  void add_robustness() {
+    const std::vector<RobustnessCurve> curves = robustness_curves(plan_, analysis_);
+    if (curves.empty()) return;
+    text_ +=
+        "## Robustness\n\nATE RMSE [m], the median over sequences, and coverage, the mean over sequences, by strength "
+        "of "
+        "what was made worse about the frames. Plots: `robustness/`.\n\n" +
+        robustness_text(curves);
+  }
+
   void add_published() {
     ReportTable table{"", {"system"}, {}, {}};
     for (const MatrixSequence& each : plan_.matrix.sequences) table.header.push_back(each.name);
     table.header.insert(table.header.end(), {"source", "protocol"});
     for (const PublishedResult& result : published_.results) {
-      std::vector<std::string> row = {result.system};
+      std::vector<std::string> row = {result.marked_system()};
       bool has_value = false;
       for (const MatrixSequence& each : plan_.matrix.sequences) {
         const auto value = result.values.find(published_name(each));

@@ -4,7 +4,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "holdfast/bench/executor.hpp"
 #include "holdfast/core/error.hpp"
 
 namespace holdfast {
@@ -16,7 +18,10 @@ namespace {
 constexpr const char* incomplete_mark = ".incomplete-";
 
 fs::path incomplete_folder(const fs::path& folder) {
-  return folder.parent_path() / ("." + folder.filename().string() + incomplete_mark + std::to_string(getpid()));
+  char host[256] = {};
+  gethostname(host, sizeof(host) - 1);  // processes of several nodes may have the same number
+  return folder.parent_path() /
+         ("." + folder.filename().string() + incomplete_mark + host + "-" + std::to_string(getpid()));
 }
 
 Placeholders placeholders(const RecordedSequence& sequence, const fs::path& folder) {
@@ -49,6 +54,7 @@ void remove_incomplete_runs(const fs::path& runs) {
 ActiveRun::ActiveRun(const RunPlan& plan, const PlannedRun& run, const BenchOptions& options)
     : plan_(plan),
       run_(run),
+      output_(options.output),
       grace_(options.grace),
       final_folder_(fs::absolute(folder_of(run, options.output))),
       folder_(incomplete_folder(final_folder_)),
@@ -90,6 +96,7 @@ Process ActiveRun::start(const RunPlan& plan, const PlannedRun& run, const Bench
 bool ActiveRun::poll() {
   if (const auto end = process_.poll()) {
     cost_.process = *end;
+    take_load();
     return true;
   }
   const double over_time = process_.seconds() - run_.time_limit;
@@ -100,6 +107,16 @@ bool ActiveRun::poll() {
     process_.kill();
   }
   return false;
+}
+
+void ActiveRun::take_load() {
+  cost_.load_average = load_at_start_.load_average;
+  const ProcessEnd& end = cost_.process;
+  const double busy = machine_load().busy_seconds - load_at_start_.busy_seconds;
+  // Both clocks tick in hundredths of a second, so that the difference of short runs can be negative.
+  if (end.wall_seconds > 0.0)
+    cost_.other_processors = std::max(0.0, busy - end.user_seconds - end.system_seconds) / end.wall_seconds;
+  if (std::isnan(busy)) cost_.other_processors = busy;
 }
 
 void ActiveRun::judge_end() {
@@ -158,6 +175,7 @@ void ActiveRun::complete() {
     evaluate_external();
   else
     read_own_run(folder_, result_, cost_);
+  if (cost_.machine.empty()) cost_.machine = machine_name();
   // Here too, should the run have ended before it wrote its own.
   if (!plan_.variants[run_.variant].is_external()) write_file_atomically(folder_ / configuration_file, run_.request);
   write_file_atomically(folder_ / cost_file, to_json(cost_));
@@ -165,6 +183,12 @@ void ActiveRun::complete() {
   std::error_code error;
   fs::remove_all(final_folder_, error);
   fs::rename(folder_, final_folder_, error);
+  // The same run on another node, taken for lost, may have ended at the same time: one result is as good as the other.
+  if (error && has_result(plan_, run_, output_)) {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+    return;
+  }
   if (error) throw InputError({final_folder_.string()}, "the folder of a run cannot be named: " + error.message());
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "holdfast/bench/machine_load.hpp"
 #include "holdfast/bench/process.hpp"
 #include "holdfast/bench/run_scheduler.hpp"
 
@@ -33,15 +34,18 @@ class ActiveRun {
   static Process start(const RunPlan& plan, const PlannedRun& run, const BenchOptions& options,
                        const std::filesystem::path& folder);
   void judge_end();
+  void take_load();
   void evaluate_external();
 
   const RunPlan& plan_;
   const PlannedRun& run_;
+  std::filesystem::path output_;
   double grace_;
   std::filesystem::path final_folder_, folder_;
   RunResult result_;
   RunCost cost_;
   bool out_of_time_ = false;
+  MachineLoad load_at_start_ = machine_load();
   Process process_;
 };
 

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
-#include "error_text.hpp"
+#include "holdfast/bench/error_text.hpp"
 
 namespace holdfast {
 
@@ -14,7 +15,7 @@ Cell make_cell(const RunPlan& plan, const BenchResults& results, std::size_t var
   Cell cell;
   cell.variant = variant;
   cell.sequence = sequence;
-  std::vector<double> coverage, wall, processor, tracking, per_frame, memory;
+  std::vector<double> coverage, wall, processor, tracking, per_frame, memory, ratios, others, loads;
   std::array<std::array<std::vector<double>, 6>, 3> errors;
   for (std::size_t i = 0; i < plan.runs.size(); ++i) {
     if (plan.runs[i].variant != variant || plan.runs[i].sequence != sequence || !results.results[i]) continue;
@@ -22,7 +23,9 @@ Cell make_cell(const RunPlan& plan, const BenchResults& results, std::size_t var
     const RunCost& cost = *results.costs[i];
     cell.runs.push_back(i);
     coverage.push_back(result.coverage());
-    cell.alone = cell.alone && cost.alone;
+    cell.alone = cell.alone && cost.is_undisturbed();
+    others.push_back(cost.other_processors);
+    loads.push_back(cost.load_average);
     if (!result.counts()) continue;
     ++cell.counted;
     for (std::size_t q = 0; q < errors.size(); ++q)
@@ -30,6 +33,7 @@ Cell make_cell(const RunPlan& plan, const BenchResults& results, std::size_t var
     wall.push_back(cost.process.wall_seconds);
     processor.push_back(cost.process.user_seconds + cost.process.system_seconds);
     tracking.push_back(cost.tracking);
+    ratios.push_back(cost.processor_ratio());
     per_frame.push_back(cost.process.wall_seconds / static_cast<double>(result.frames));
     memory.push_back(static_cast<double>(cost.process.peak_memory));
   }
@@ -41,6 +45,9 @@ Cell make_cell(const RunPlan& plan, const BenchResults& results, std::size_t var
   cell.tracking = spread_of(tracking);
   cell.wall_per_frame = spread_of(per_frame);
   cell.memory = spread_of(memory);
+  cell.processor_ratio = spread_of(ratios);
+  cell.other_processors = spread_of(others);
+  cell.load_average = spread_of(loads);
   return cell;
 }
 
@@ -111,7 +118,8 @@ Spread spread_of(const std::vector<double>& values) {
     if (!std::isnan(value)) numbers.push_back(value);
   if (numbers.empty()) return {};
   const auto [least, most] = std::minmax_element(numbers.begin(), numbers.end());
-  return {median(numbers), *least, *most, numbers.size()};
+  const double mean = std::accumulate(numbers.begin(), numbers.end(), 0.0) / static_cast<double>(numbers.size());
+  return {median(numbers), *least, *most, numbers.size(), mean};
 }
 
 const Cell* Analysis::find(std::size_t variant, std::size_t sequence) const {
@@ -155,17 +163,17 @@ std::string sentence(const RunPlan& plan, const Comparison& c) {
     text += "Too few to tell: " + counted(c.test.pairs, "pair") + " that differ" + (c.test.pairs == 1 ? "s" : "") +
             ", " + std::to_string(fewest_pairs_to_test) + " are needed.";
   } else {
-    const std::string numbers = "p = " + fixed_text(c.test.p, 4) + ", " + counted(c.test.pairs, "pair") +
+    const std::string numbers = p_text(c.test.p) + ", " + counted(c.test.pairs, "pair") +
                                 "; 95 % interval of the gain " + error_text(c.interval.low) + " to " +
                                 error_text(c.interval.high) + unit;
     if (!c.is_significant())
       text += "The difference is not significant (" + numbers + "): these sequences do not tell which is better.";
     else
-      text += "The difference is significant (" + numbers + ")" +
-              (c.adjusted < 0.05
-                   ? ""
-                   : "; with Holm's correction for all comparisons it is not (p = " + fixed_text(c.adjusted, 4) + ")") +
-              ".";
+      text +=
+          "The difference is significant (" + numbers + ")" +
+          (c.adjusted < 0.05 ? ""
+                             : "; with Holm's correction for all comparisons it is not (" + p_text(c.adjusted) + ")") +
+          ".";
   }
   if (c.left_out > 0) text += " " + counted(c.left_out, "sequence") + " left out, where one of them has no figure.";
   const double least = std::min(c.least_coverage_before, c.least_coverage_after);

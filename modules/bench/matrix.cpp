@@ -3,6 +3,9 @@
 
 #include <algorithm>
 
+#include "holdfast/bench/known_systems.hpp"
+#include "holdfast/bench/paper_tables.hpp"
+#include "holdfast/plugin/did_you_mean.hpp"
 #include "matrix_parts.hpp"
 #include "strict_map.hpp"
 #include "variables.hpp"
@@ -14,8 +17,9 @@ using Kind = ConfigurationNode::Kind;
 namespace {
 
 const std::vector<std::string> matrix_keys = {
-    "title", "about",    "base",    "axes",   "sequences", "systems",     "repeats",    "seeds",
-    "mode",  "baseline", "exclude", "timing", "published", "comparisons", "time_limit", "minimum_coverage"};
+    "title",    "about",    "base",    "axes",   "sequences", "systems",     "repeats",    "seeds",
+    "mode",     "baseline", "exclude", "timing", "published", "comparisons", "time_limit", "minimum_coverage",
+    "analysis", "executor"};
 
 class MatrixReader {
  public:
@@ -50,6 +54,8 @@ class MatrixReader {
         matrix_.exclusions.push_back(read_exclusion(item, diagnostics_));
     read_baseline();
     read_comparisons();
+    read_analysis();
+    read_executor();
     const bool has_configuration =
         matrix_.base || std::any_of(matrix_.axes.begin(), matrix_.axes.end(), [](const Axis& axis) {
           return std::all_of(axis.values.begin(), axis.values.end(),
@@ -135,6 +141,45 @@ class MatrixReader {
     }
   }
 
+  void read_executor() {
+    const ConfigurationNode* node = map_.find("executor");
+    if (node == nullptr) return;
+    if (node->kind == Kind::scalar && (node->text == "local" || node->text == "slurm")) {
+      matrix_.executor.name = node->text;
+      return;
+    }
+    if (node->kind != Kind::map || node->entries.size() != 1 || node->entries.front().key != "slurm" ||
+        node->entries.front().value.kind != Kind::map) {
+      map_.mismatch(*node, "executor", "local, slurm, or { slurm: { partition: ... } }");
+      return;
+    }
+    matrix_.executor.name = "slurm";
+    for (const ConfigurationNode::Entry& entry : node->entries.front().value.entries) {
+      if (entry.value.kind == Kind::scalar)
+        matrix_.executor.settings.emplace_back(entry.key, PlacedText{entry.value.text, entry.value.location});
+      else
+        map_.mismatch(entry.value, entry.key, "a text or a number");
+    }
+  }
+
+  void read_analysis() {
+    const ConfigurationNode* node = map_.find("analysis");
+    if (node == nullptr) return;
+    StrictMap analysis(*node, "'analysis'", {"tables", "decimals"}, diagnostics_);
+    matrix_.analysis.decimals =
+        static_cast<int>(analysis.integer("decimals", 1, 12).value_or(matrix_.analysis.decimals));
+    const ConfigurationNode* tables = analysis.find("tables");
+    if (tables == nullptr) return;
+    if (tables->kind != Kind::list) analysis.mismatch(*tables, "tables", "a list, such as [paper2, paper3]");
+    const auto& known = paper_table_names();
+    for (const ConfigurationNode& item : tables->items) {
+      if (std::find(known.begin(), known.end(), item.text) == known.end())
+        analysis.complain(item.location, "there is no table '" + item.text + "'; " + did_you_mean(item.text, known));
+      else
+        add_paper_table(item.text, matrix_.analysis);
+    }
+  }
+
   std::vector<Diagnostic>& diagnostics_;
   StrictMap map_;
   Matrix matrix_;
@@ -152,6 +197,7 @@ bool is_plain_name(const std::string& name) {
 Matrix read_matrix(const std::filesystem::path& file, const Variables& variables,
                    std::vector<Diagnostic>& diagnostics) {
   ConfigurationNode root = read_yaml(file);
+  follow_wrappers(root, diagnostics);
   expand_variables(root, variables);
   return MatrixReader(root, file, diagnostics).read();
 }

@@ -147,6 +147,29 @@ PlacedText placed_path(const ConfigurationNode& node) {
   return {(path.is_absolute() ? path : node.folder / path).lexically_normal().string(), node.location};
 }
 
+namespace {
+
+/// `motion_blur: [4, 8]` of the axis `perturbation`.
+void add_strengths(Axis& axis, const ConfigurationNode::Entry& kind, std::vector<Diagnostic>& diagnostics) {
+  for (const ConfigurationNode& item : kind.value.items) {
+    AxisValue value;
+    value.location = item.location;
+    value.name = kind.key + "-" + item.text;
+    const std::optional<double> strength = item.kind == Kind::scalar ? real_number(item) : std::nullopt;
+    if (!strength || *strength == 0.0 || !is_plain_name(value.name)) {
+      diagnostics.push_back({item.location, "found " + item.found() + " for the strength of '" + kind.key +
+                                                "'; expected a number other than 0, because `" + unperturbed +
+                                                "` is always a value of this axis"});
+      continue;
+    }
+    value.overrides.push_back({std::string(perturbation_axis) + "." + kind.key, kind.location, item});
+    value.perturbation = {kind.key, *strength};
+    axis.values.push_back(std::move(value));
+  }
+}
+
+}  // namespace
+
 Axis read_axis(const ConfigurationNode::Entry& entry, std::vector<Diagnostic>& diagnostics) {
   Axis axis{entry.key, entry.location, {}};
   if (!is_plain_name(entry.key) || entry.key == "sequence" || entry.key == "system")
@@ -157,8 +180,18 @@ Axis read_axis(const ConfigurationNode::Entry& entry, std::vector<Diagnostic>& d
     for (const ConfigurationNode& item : entry.value.items)
       axis.values.push_back(plain_axis_value(entry, item, diagnostics));
   } else if (entry.value.kind == Kind::map) {
-    for (const ConfigurationNode::Entry& item : entry.value.entries)
-      axis.values.push_back(read_axis_value(axis.name, item, diagnostics));
+    if (entry.key == perturbation_axis && entry.value.find(unperturbed) == nullptr) {
+      AxisValue none;
+      none.name = unperturbed;
+      none.location = entry.location;
+      axis.values.push_back(std::move(none));
+    }
+    for (const ConfigurationNode::Entry& item : entry.value.entries) {
+      if (entry.key == perturbation_axis && item.value.kind == Kind::list)
+        add_strengths(axis, item, diagnostics);
+      else
+        axis.values.push_back(read_axis_value(axis.name, item, diagnostics));
+    }
   }
   if (axis.values.empty())
     diagnostics.push_back({entry.location, "found " + entry.value.found() + " for the axis '" + axis.name +

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "missing_data.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
+#include <cstdlib>
+#include <sstream>
 
 #include "holdfast/config/parameter_reader.hpp"
 #include "holdfast/image_files/image_sequence.hpp"
@@ -76,6 +80,14 @@ std::optional<Diagnostic> missing_data(const MatrixSequence& sequence, const Con
   return std::nullopt;
 }
 
+bool is_program_in_path(const std::string& name) {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (access((fs::path(folder) / name).c_str(), X_OK) == 0) return true;
+  return false;
+}
+
 std::optional<Diagnostic> missing_program(const ExternalSystem& system) {
   std::vector<std::string> texts = system.command;
   texts.insert(texts.end(), {system.folder, system.trajectory});
@@ -86,6 +98,8 @@ std::optional<Diagnostic> missing_program(const ExternalSystem& system) {
   const std::string& program = system.command.front();
   if (program.find('/') != std::string::npos && program.find('{') == std::string::npos && !is_there(program))
     return Diagnostic{system.location, "system '" + system.name + "': the program '" + program + "' is missing"};
+  if (program.find_first_of("/{") == std::string::npos && !is_program_in_path(program))
+    return Diagnostic{system.location, "system '" + system.name + "': the program '" + program + "' is not in PATH"};
   return std::nullopt;
 }
 

@@ -14,6 +14,8 @@ namespace holdfast {
 /// that is not there, a recording without truth. Nothing when all is there.
 std::optional<Diagnostic> missing_data(const MatrixSequence& sequence, const Configuration& configuration,
                                        const Registry& registry);
+/// Whether a folder of PATH has an executable of this name.
+bool is_program_in_path(const std::string& name);
 /// Why a system cannot be started.
 std::optional<Diagnostic> missing_program(const ExternalSystem& system);
 

@@ -3,7 +3,9 @@
 
 #include "error_keys.hpp"
 #include "holdfast/bench/bench_report.hpp"
+#include "holdfast/bench/paper_tables.hpp"
 #include "holdfast/bench/report_page.hpp"
+#include "holdfast/bench/robustness.hpp"
 #include "holdfast/bench/tables.hpp"
 #include "holdfast/core/trajectory.hpp"
 
@@ -57,6 +59,9 @@ Json cell_json(const Cell& cell) {
                   {"tracking_s", spread_json(cell.tracking)},
                   {"wall_per_frame_s", spread_json(cell.wall_per_frame)},
                   {"peak_memory_bytes", spread_json(cell.memory)},
+                  {"processor_ratio", spread_json(cell.processor_ratio)},
+                  {"other_processors", spread_json(cell.other_processors)},
+                  {"load_average", spread_json(cell.load_average)},
                   {"alone", cell.alone}};
   return json;
 }
@@ -92,6 +97,24 @@ Json comparison_json(const RunPlan& plan, const Comparison& c) {
   return json;
 }
 
+Json robustness_json(const std::vector<RobustnessCurve>& curves) {
+  Json json = {{"curves", Json::array()}, {"plots", Json::array()}};
+  for (const RobustnessCurve& curve : curves) {
+    Json points = Json::array();
+    for (const RobustnessPoint& point : curve.points)
+      points.push_back({{"strength", point.strength},
+                        {"ate_rmse_m", point.error},
+                        {"coverage", point.coverage},
+                        {"runs", point.runs},
+                        {"counted", point.counted}});
+    json["curves"].push_back(
+        {{"perturbation", curve.kind}, {"unit", curve.unit}, {"method", curve.method}, {"points", points}});
+  }
+  for (const RobustnessPlot& plot : robustness_plots(curves))
+    json["plots"].push_back({{"name", plot.name}, {"svg", to_svg(plot.plot)}});
+  return json;
+}
+
 Json published_json(const RunPlan& plan, const PublishedResults& published) {
   Json rows = Json::array();
   for (const PublishedResult& result : published.results) {
@@ -101,6 +124,8 @@ Json published_json(const RunPlan& plan, const PublishedResults& published) {
         values[plan.matrix.sequences[s].name] = value->second;
     if (!values.empty())
       rows.push_back({{"system", result.system},
+                      {"alignment", result.alignment},
+                      {"input", result.input},
                       {"citation", result.citation},
                       {"protocol", result.protocol},
                       {"ate_rmse_m", values}});
@@ -132,8 +157,35 @@ std::string results_json(const RunPlan& plan, const BenchResults& results, const
   for (const Improvement& each : analysis.improvements) json["improvements"].push_back(improvement_json(each));
   for (const Comparison& each : analysis.comparisons) json["comparisons"].push_back(comparison_json(plan, each));
   json["published"] = published_json(plan, published);
+  json["robustness"] = robustness_json(robustness_curves(plan, analysis));
+  json["paper_tables"] = Json::array();
+  for (const std::string& name : plan.matrix.analysis.tables)
+    for (const PaperTable& table : paper_tables(name, plan, analysis, published))
+      json["paper_tables"].push_back({{"name", table.name},
+                                      {"caption", table.caption},
+                                      {"latex", to_latex(table)},
+                                      {"markdown", to_markdown(table)}});
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
+
+namespace {
+
+/// tables/NAME.tex, .md and .csv of every table that the matrix asks for.
+void write_paper_tables(const std::filesystem::path& folder, const RunPlan& plan, const Analysis& analysis,
+                        const PublishedResults& published) {
+  for (const std::string& name : plan.matrix.analysis.tables) {
+    std::string latex, markdown;
+    for (const PaperTable& table : paper_tables(name, plan, analysis, published)) {
+      latex += (latex.empty() ? "" : "\n") + to_latex(table);
+      markdown += (markdown.empty() ? "" : "\n") + to_markdown(table);
+    }
+    write_file_atomically(folder / (name + ".tex"), latex);
+    write_file_atomically(folder / (name + ".md"), markdown);
+    write_file_atomically(folder / (name + ".csv"), to_csv(paper_figures(name, plan, analysis)));
+  }
+}
+
+}  // namespace
 
 void write_bench_reports(const std::filesystem::path& output, const RunPlan& plan, const BenchResults& results,
                          const PublishedResults& published) {
@@ -146,6 +198,13 @@ void write_bench_reports(const std::filesystem::path& output, const RunPlan& pla
   write_file_atomically(tables / "comparisons.csv", to_csv(comparisons_table(plan, analysis)));
   write_file_atomically(tables / "published.csv", to_csv(published_table(plan, published)));
   write_file_atomically(tables / "cost.csv", to_csv(cost_table(plan, analysis)));
+  write_paper_tables(tables, plan, analysis, published);
+  if (const auto curves = robustness_curves(plan, analysis); !curves.empty()) {
+    write_file_atomically(tables / "robustness.csv", to_csv(robustness_table(curves)));
+    std::filesystem::create_directories(output / "robustness");
+    for (const RobustnessPlot& plot : robustness_plots(curves))
+      write_file_atomically(output / "robustness" / (plot.name + ".svg"), to_svg(plot.plot));
+  }
   write_file_atomically(output / "report.md", accuracy_report(plan, results, analysis, published));
   write_file_atomically(output / "cost.md", cost_report(plan, results, analysis, published));
   const std::string json = results_json(plan, results, analysis, published);

@@ -15,9 +15,13 @@ namespace {
 class Planner {
  public:
   Planner(Matrix matrix, Registry& registry, const std::vector<SectionDescription>& sections,
-          std::vector<Diagnostic>& diagnostics)
-      : registry_(registry), diagnostics_(diagnostics) {
+          std::vector<Diagnostic>& diagnostics, const std::string& only)
+      : registry_(registry), diagnostics_(diagnostics), only_(only) {
     plan_.matrix = std::move(matrix);
+    for (const SectionDescription& section : sections)
+      if (section.name == perturbation_axis)
+        for (const Parameter& parameter : section.parameters)
+          plan_.perturbation_units[parameter.name] = parameter.unit_name;
     configurations_.emplace(plan_.matrix, registry, sections, found_);
   }
 
@@ -30,8 +34,8 @@ class Planner {
     plan_.recordings.resize(matrix().sequences.size());
     for (std::size_t sequence = 0; sequence < matrix().sequences.size(); ++sequence)
       for (std::size_t variant = 0; variant < plan_.variants.size(); ++variant)
-        if (!is_excluded(variant, sequence)) add_cell(variant, sequence);
-    if (plan_.runs.empty() && found_.empty() && diagnostics_.empty())
+        if (!is_excluded(variant, sequence) && is_asked_for(variant, sequence)) add_cell(variant, sequence);
+    if (only_.empty() && plan_.runs.empty() && found_.empty() && diagnostics_.empty())
       found_.push_back({{matrix().file.string()}, "every run is excluded; expected at least one"});
     move_each_once(found_, diagnostics_);
     std::vector<Diagnostic> missing;
@@ -238,6 +242,11 @@ class Planner {
     }
   }
 
+  bool is_asked_for(std::size_t variant, std::size_t sequence) const {
+    return only_.empty() ||
+           only_.starts_with(plan_.variants[variant].name + "/" + matrix().sequences[sequence].name + "/");
+  }
+
   void add_cell(std::size_t variant, std::size_t sequence) {
     if (plan_.variants[variant].is_external())
       add_external_cell(variant, sequence);
@@ -317,6 +326,7 @@ class Planner {
 
   Registry& registry_;
   std::vector<Diagnostic>& diagnostics_;
+  const std::string& only_;
   std::vector<Diagnostic> found_;
   RunPlan plan_;
   std::optional<CellConfigurations> configurations_;
@@ -326,8 +336,8 @@ class Planner {
 }  // namespace
 
 RunPlan make_run_plan(Matrix matrix, Registry& registry, const std::vector<SectionDescription>& sections,
-                      std::vector<Diagnostic>& diagnostics) {
-  return Planner(std::move(matrix), registry, sections, diagnostics).plan();
+                      std::vector<Diagnostic>& diagnostics, const std::string& only) {
+  return Planner(std::move(matrix), registry, sections, diagnostics, only).plan();
 }
 
 std::string plan_text(const RunPlan& plan) {

@@ -73,6 +73,11 @@ SixStatistics statistics_of_json(const Json& json) {
   return values;
 }
 
+void take_perturbation(const Json& json, RunResult& result) {
+  if (const auto found = json.find("perturbation"); found != json.end())
+    for (const auto& [name, strength] : found->items()) result.perturbation[name] = strength.get<double>();
+}
+
 }  // namespace
 
 const char* to_string(RunStatus status) {
@@ -140,6 +145,8 @@ std::string to_json(const RunResult& result) {
                {"coverage", result.coverage()},
                {"not_finite", result.not_finite},
                {"malformed", result.malformed}};
+  json["perturbation"] = Json::object();
+  for (const auto& [name, strength] : result.perturbation) json["perturbation"][name] = strength;
   json["truth_frame"] = result.truth_frame;
   json["no_errors"] = result.has_errors ? Json(nullptr) : Json(result.no_errors);
   Json& errors = json["errors"] = nullptr;
@@ -148,13 +155,20 @@ std::string to_json(const RunResult& result) {
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+double RunCost::processor_ratio() const {
+  return (process.user_seconds + process.system_seconds) / process.wall_seconds;
+}
+
 std::string to_json(const RunCost& cost) {
   const ProcessEnd& process = cost.process;
   Json json = {{"wall_s", process.wall_seconds},
                {"user_s", process.user_seconds},
                {"system_s", process.system_seconds},
                {"peak_memory_bytes", process.peak_memory},
+               {"processor_ratio", cost.processor_ratio()},
                {"alone", cost.alone},
+               {"load_average", cost.load_average},
+               {"other_processors", cost.other_processors},
                {"tracking_median_s", cost.tracking},
                {"version", cost.version},
                {"machine", cost.machine}};
@@ -173,6 +187,7 @@ RunResult read_run_result(const std::filesystem::path& file) {
     result.poses = count(json, "poses");
     result.not_finite = count(json, "not_finite");
     result.malformed = count(json, "malformed");
+    take_perturbation(json, result);
     result.truth_frame = json.value("truth_frame", "raw");
     const Json& errors = json.at("errors");
     result.has_errors = errors.is_object();
@@ -191,6 +206,8 @@ RunCost read_run_cost(const std::filesystem::path& file) {
     cost.process.system_seconds = json.at("system_s");
     cost.process.peak_memory = count(json, "peak_memory_bytes");
     cost.alone = json.at("alone");
+    cost.load_average = number(json.value("load_average", Json()));
+    cost.other_processors = number(json.value("other_processors", Json()));
     cost.tracking = number(json.at("tracking_median_s"));
     cost.version = json.at("version");
     cost.machine = json.at("machine");
@@ -214,6 +231,7 @@ void read_own_run(const std::filesystem::path& folder, RunResult& result, RunCos
   std::error_code ignored;
   if (!std::filesystem::exists(folder / "run.json", ignored)) return;
   read_values(folder / "run.json", [&](const Json& json) {
+    take_perturbation(json, result);
     result.frames = count(json.at("frames"), "expected");
     result.poses = count(json.at("frames"), "poses");
     cost.tracking = number(json.at("tracking").at("median_s"));

@@ -11,6 +11,7 @@
 #include <memory>
 
 #include "active_run.hpp"
+#include "holdfast/bench/executor.hpp"
 #include "holdfast/core/error.hpp"
 
 namespace holdfast {
@@ -49,133 +50,85 @@ bool is_finished(const RunPlan& plan, const PlannedRun& run, const fs::path& fol
   return fs::exists(folder / result_file, ignored) && content(folder / request) == run.request;
 }
 
-/// Starts runs in their order, with a limited number of concurrent runs.
-class RunScheduler {
- public:
-  using Ended = std::function<void(const PlannedRun&, const RunResult&, const RunCost&, const BenchProgress&)>;
-
-  RunScheduler(const RunPlan& plan, const BenchOptions& options, const Ended& ended)
-      : plan_(plan), options_(options), ended_(ended), results_(find_results(plan, options.output)) {
-    for (std::size_t i = 0; i < plan.runs.size(); ++i)
-      if (!results_.results[i]) waiting_.push_back(i);
-    std::reverse(waiting_.begin(), waiting_.end());  // the next one is at the back
-  }
-
-  BenchResults run() {
-    while (!waiting_.empty() || !active_.empty()) {
-      if (options_.stop()) {
-        stop();
-        break;
-      }
-      while (may_start()) start();
-      wait_for_processes(0.1);
-      take_ended();
-    }
-    return std::move(results_);
-  }
-
- private:
-  struct Active {
-    std::size_t index;
-    std::unique_ptr<ActiveRun> run;
-  };
-
-  bool may_start() const {
-    if (waiting_.empty()) return false;
-    if (active_.empty()) return true;
-    return !plan_.runs[waiting_.back()].alone && !active_.front().run->run().alone &&
-           active_.size() < static_cast<std::size_t>(options_.jobs);
-  }
-
-  void start() {
-    const std::size_t index = waiting_.back();
-    active_.push_back({index, std::make_unique<ActiveRun>(plan_, plan_.runs[index], options_)});
-    waiting_.pop_back();
-    if (active_.size() > 1)
-      for (Active& active : active_) active.run->set_beside();
-  }
-
-  void take_ended() {
-    for (std::size_t i = 0; i < active_.size();) {
-      if (!active_[i].run->poll()) {
-        ++i;
-        continue;
-      }
-      const Active active = std::move(active_[i]);
-      active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(i));
-      if (options_.stop()) {  // a signal from the terminal may have ended it
-        active.run->discard();
-        continue;
-      }
-      active.run->complete();
-      results_.results[active.index] = active.run->result();
-      results_.costs[active.index] = active.run->cost();
-      ++ended_here_;
-      ended_(active.run->run(), active.run->result(), active.run->cost(), progress());
-    }
-  }
-
-  BenchProgress progress() const {
-    const std::size_t left = waiting_.size() + active_.size();
-    return {plan_.runs.size() - left, plan_.runs.size(),
-            watch_.seconds() / static_cast<double>(ended_here_) * static_cast<double>(left)};
-  }
-
-  void stop() {
-    results_.was_stopped = true;
-    for (Active& active : active_) active.run->terminate();
-    const Stopwatch since;
-    while (!active_.empty() && since.seconds() < options_.grace) {
-      std::erase_if(active_, [](Active& active) {
-        if (!active.run->poll()) return false;
-        active.run->discard();
-        return true;
-      });
-      if (!active_.empty()) wait_for_processes(0.1);
-    }
-    for (Active& active : active_) active.run->discard();
-    active_.clear();  // ends what is left
-  }
-
-  const RunPlan& plan_;
-  const BenchOptions& options_;
-  const Ended& ended_;
-  BenchResults results_;
-  std::vector<std::size_t> waiting_;
-  std::vector<Active> active_;
-  std::size_t ended_here_ = 0;
-  Stopwatch watch_;
-};
-
 }  // namespace
 
 bool BenchResults::is_complete() const {
   return std::all_of(results.begin(), results.end(), [](const auto& result) { return result.has_value(); });
 }
 
+bool has_result(const RunPlan& plan, const PlannedRun& run, const fs::path& output) {
+  return is_finished(plan, run, folder_of(run, output));
+}
+
+namespace {
+
+void read_results(const RunPlan& plan, const fs::path& output, std::size_t index, BenchResults& results) {
+  const fs::path folder = folder_of(plan.runs[index], output);
+  results.results[index] = read_run_result(folder / result_file);
+  results.costs[index] = read_run_cost(folder / cost_file);
+}
+
+}  // namespace
+
 BenchResults find_results(const RunPlan& plan, const fs::path& output) {
   BenchResults found;
   found.results.resize(plan.runs.size());
   found.costs.resize(plan.runs.size());
   for (std::size_t i = 0; i < plan.runs.size(); ++i) {
-    const fs::path folder = folder_of(plan.runs[i], output);
-    if (!is_finished(plan, plan.runs[i], folder)) continue;
-    found.results[i] = read_run_result(folder / result_file);
-    found.costs[i] = read_run_cost(folder / cost_file);
+    if (!has_result(plan, plan.runs[i], output)) continue;
+    read_results(plan, output, i, found);
     ++found.kept;
   }
   return found;
 }
 
-BenchResults run_bench(const RunPlan& plan, const BenchOptions& options, const RunScheduler::Ended& ended) {
+namespace {
+
+std::unique_ptr<Executor> make_executor(const RunPlan& plan, const BenchOptions& options) {
+  return options.executor == ExecutorKind::slurm ? make_slurm_executor(plan, options)
+                                                 : make_local_executor(plan, options);
+}
+
+}  // namespace
+
+BenchResults run_bench(
+    const RunPlan& plan, const BenchOptions& options,
+    const std::function<void(const PlannedRun&, const RunResult&, const RunCost&, const BenchProgress&)>& ended) {
   HOLDFAST_CHECK(plan.missing.empty(), plan.missing.size() << " things are missing");
   std::error_code error;
   fs::create_directories(options.output / "runs", error);
   if (!fs::is_directory(options.output / "runs", error))
     throw InputError({options.output.string()}, "the output folder cannot be made");
   const FolderLock lock(options.output);
-  remove_incomplete_runs(options.output / "runs");
-  return RunScheduler(plan, options, ended).run();
+  // Those of a cluster may be at work.
+  if (options.executor == ExecutorKind::local) remove_incomplete_runs(options.output / "runs");
+  BenchResults results = find_results(plan, options.output);
+  std::vector<std::size_t> waiting;
+  for (std::size_t i = 0; i < plan.runs.size(); ++i)
+    if (!results.results[i]) waiting.push_back(i);
+  if (waiting.empty()) return results;
+
+  const Stopwatch watch;
+  const auto executor = make_executor(plan, options);
+  executor->submit(waiting);
+  std::size_t ended_here = 0;
+  while (ended_here < waiting.size()) {
+    if (options.stop()) {
+      results.was_stopped = true;
+      executor->cancel();
+      break;
+    }
+    for (const std::size_t index : executor->wait(0.1)) {
+      read_results(plan, options.output, index, results);
+      ++ended_here;
+      const std::size_t left = waiting.size() - ended_here;
+      ended(plan.runs[index], *results.results[index], *results.costs[index],
+            {plan.runs.size() - left, plan.runs.size(),
+             watch.seconds() / static_cast<double>(ended_here) * static_cast<double>(left)});
+    }
+  }
+  if (options.executor != ExecutorKind::local && !results.was_stopped) remove_incomplete_runs(options.output / "runs");
+  return results;
 }
 
 }  // namespace holdfast

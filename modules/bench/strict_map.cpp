@@ -28,6 +28,8 @@ std::optional<Number> whole_text(const ConfigurationNode& node) {
 
 std::optional<std::int64_t> whole_number(const ConfigurationNode& node) { return whole_text<std::int64_t>(node); }
 
+std::optional<double> real_number(const ConfigurationNode& node) { return whole_text<double>(node); }
+
 StrictMap::StrictMap(const ConfigurationNode& node, std::string owner, const std::vector<std::string>& known,
                      std::vector<Diagnostic>& diagnostics)
     : node_(node), owner_(std::move(owner)), diagnostics_(diagnostics) {

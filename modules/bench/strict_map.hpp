@@ -42,4 +42,7 @@ class StrictMap {
 /// The whole number that is all of an unquoted scalar.
 std::optional<std::int64_t> whole_number(const ConfigurationNode& node);
 
+/// The number that is all of an unquoted scalar.
+std::optional<double> real_number(const ConfigurationNode& node);
+
 }  // namespace holdfast

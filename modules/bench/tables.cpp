@@ -169,22 +169,25 @@ ReportTable comparisons_table(const RunPlan& plan, const Analysis& analysis) {
 }
 
 ReportTable published_table(const RunPlan& plan, const PublishedResults& published) {
-  ReportTable t = table("Published", {"system", "sequence", "ate_rmse_m", "source", "protocol"});
+  ReportTable t = table("Published", {"system", "sequence", "ate_rmse_m", "alignment", "input", "source", "protocol"});
   for (const PublishedResult& result : published.results)
     for (const MatrixSequence& sequence : plan.matrix.sequences)
       if (const auto value = result.values.find(published_name(sequence)); value != result.values.end())
-        t.rows.push_back({result.system, sequence.name, text_of(value->second), result.citation, result.protocol});
+        t.rows.push_back({result.system, sequence.name, text_of(value->second), result.alignment, result.input,
+                          result.citation, result.protocol});
   return t;
 }
 
 ReportTable cost_table(const RunPlan& plan, const Analysis& analysis) {
   ReportTable t = table("Cost", {"variant", "sequence", "runs", "alone"});
-  for (const char* name : {"wall_s", "processor_s", "tracking_s_per_frame", "wall_s_per_frame", "memory_bytes"})
+  for (const char* name : {"wall_s", "processor_s", "tracking_s_per_frame", "wall_s_per_frame", "memory_bytes",
+                           "processor_ratio", "other_processors", "load_average"})
     for (const char* part : {"_median", "_least", "_most"}) t.header.push_back(std::string(name) + part);
   for (const Cell& cell : analysis.cells) {
     Row row = {plan.variants[cell.variant].name, plan.matrix.sequences[cell.sequence].name, text_of(cell.counted),
                cell.alone ? "yes" : "no"};
-    for (const Spread* spread : {&cell.wall, &cell.processor, &cell.tracking, &cell.wall_per_frame, &cell.memory})
+    for (const Spread* spread : {&cell.wall, &cell.processor, &cell.tracking, &cell.wall_per_frame, &cell.memory,
+                                 &cell.processor_ratio, &cell.other_processors, &cell.load_average})
       add(row, *spread);
     t.rows.push_back(std::move(row));
   }

@@ -5,6 +5,7 @@
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/map_io/map_file.hpp"
+#include "holdfast/perturbation/perturbed_source.hpp"
 #include "holdfast/pipeline/pipeline_builder.hpp"
 #include "holdfast/plugin/loader.hpp"
 
@@ -24,7 +25,9 @@ std::vector<SectionDescription> pipeline_sections() {
       {"loop_closing", "When a place counts as seen again, and how the map is corrected then.",
        ParameterTable<LoopClosingSettings>().parameters()},
       {"dense_map", "A dense cloud of the static scene, of what keyframes saw.",
-       ParameterTable<DenseMapSettings>().parameters()}};
+       ParameterTable<DenseMapSettings>().parameters()},
+      {"perturbation", "What is made worse about the frames of the source, to see what a configuration withstands.",
+       ParameterTable<PerturbationSettings>().parameters()}};
 }
 
 Configuration load_configuration(const std::filesystem::path& file, const std::vector<std::string>& overrides,
@@ -47,6 +50,21 @@ CreationContext context_of_source(const Configuration& configuration) {
   return context;
 }
 
+PerturbationSettings perturbation_of(const Configuration& configuration) {
+  const auto section = configuration.sections.find("perturbation");
+  if (section == configuration.sections.end()) return {};
+  return ParameterTable<PerturbationSettings>().settings(section->second);
+}
+
+std::unique_ptr<FrameSource> make_source(const Configuration& configuration, const Registry& registry,
+                                         const CreationContext& context) {
+  auto source = registry.create<FrameSource>(configuration.source.name, configuration.source.values, context);
+  const PerturbationSettings perturbation = perturbation_of(configuration);
+  if (perturbation.is_nothing()) return source;
+  const Camera camera = source->describe().camera.value_or(context.camera);
+  return std::make_unique<PerturbedSource>(std::move(source), perturbation, camera, configuration.run.seed);
+}
+
 }  // namespace
 
 /// Passes the choices of a configuration to a builder, each with its place in the file.
@@ -59,7 +77,9 @@ class ConfigurationReader {
 
   PipelineBuilder read(const SourceDescription& source) {
     builder_.source(source);
-    if (configuration_.camera) builder_.camera(*configuration_.camera);
+    if (configuration_.camera)
+      builder_.camera(
+          perturbed_camera(*configuration_.camera, perturbation_of(configuration_), configuration_.run.seed));
     if (configuration_.sensor) builder_.sensor(*configuration_.sensor);
     builder_.source_name_ = configuration_.source.name;
     builder_.source_place_ = configuration_.source.location;
@@ -118,7 +138,7 @@ BuiltPipeline build_pipeline(const Configuration& configuration, const Registry&
   HOLDFAST_CHECK(!options.localise_only || !options.map_file.empty(), "localising needs a map");
   CreationContext context = context_of_source(configuration);
   context.output_directory = options.output_directory;
-  auto source = registry.create<FrameSource>(configuration.source.name, configuration.source.values, context);
+  auto source = make_source(configuration, registry, context);
   PipelineBuilder builder = ConfigurationReader(configuration, registry).read(source->describe());
   builder.output_directory(options.output_directory);
   if (!options.map_file.empty()) ConfigurationReader::read_map_file(options.map_file, options.localise_only, builder);
@@ -126,8 +146,7 @@ BuiltPipeline build_pipeline(const Configuration& configuration, const Registry&
 }
 
 BuiltSegmenter build_segmenter(const Configuration& configuration, const Registry& registry) {
-  auto source = registry.create<FrameSource>(configuration.source.name, configuration.source.values,
-                                             context_of_source(configuration));
+  auto source = make_source(configuration, registry, context_of_source(configuration));
   PipelineBuilder builder = ConfigurationReader(configuration, registry).read(source->describe());
   return {std::move(source), ConfigurationReader::build_segmenter(std::move(builder))};
 }

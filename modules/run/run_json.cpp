@@ -122,6 +122,17 @@ Json map_json(const RunRecord& record) {
           {"observations_removed", record.mapping.observations_removed}};
 }
 
+/// What was made worse about the frames, and how much; the seed is part of the configuration.
+Json perturbation_json(const Configuration& configuration) {
+  Json json = Json::object();
+  const auto section = configuration.sections.find("perturbation");
+  if (section == configuration.sections.end()) return json;
+  for (const auto& [name, value] : section->second)
+    if (const auto* strength = std::get_if<double>(&value); strength != nullptr && *strength != 0.0)
+      json[name] = *strength;
+  return json;
+}
+
 Json masks_json(const std::vector<double>& ages) {
   Json json = {{"count", ages.size()}};
   if (ages.empty()) return json;
@@ -149,6 +160,7 @@ std::string run_json(const RunRecord& record) {
   Json& warnings = json["warnings"] = Json::array();
   for (const Diagnostic& warning : record.configuration.warnings) warnings.push_back(warning.to_string());
   if (const std::string warning = coverage_warning(record); !warning.empty()) warnings.push_back(warning);
+  json["perturbation"] = perturbation_json(record.configuration);
   json["frames"] = frames_json(record);
   Json& troubles = json["troubles"] = Json::object();
   for (const auto& [trouble, count] : s.troubles()) troubles[to_string(trouble)] = count;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -23,6 +24,36 @@ const std::map<std::string, std::array<const char*, 6>> expected = {
     {"sitting_xyz_dyna", {"0.011730", "0.010308", "0.009486", "0.076597", "0.013358", "0.509499"}},
     {"walking_halfsphere_dyna", {"0.027084", "0.024131", "0.022680", "0.073258", "0.025507", "0.737192"}},
 };
+
+/// The figure of a system in the LaTeX table of a label.
+std::string printed_figure(const test::Program& program, const std::string& label, const std::string& system,
+                           const std::string& statistic) {
+  std::string escaped = system;
+  for (std::size_t at = 0; (at = escaped.find('_', at)) != std::string::npos; at += 2) escaped.insert(at, "\\");
+  std::string sequence = escaped.substr(0, escaped.rfind("\\_"));
+  std::istringstream lines(program.text("out/tables/" + label.substr(0, 6) + ".tex"));
+  bool is_table = false, is_sequence = false;
+  std::size_t column = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("\\label{")) is_table = line == "\\label{tab:" + label + "}";
+    if (!is_table || line.find(" & ") == std::string::npos) continue;
+    std::vector<std::string> cells;
+    for (std::size_t begin = 0, end; begin < line.size(); begin = end + 3) {
+      end = std::min(line.find(" & ", begin), line.find(" \\\\", begin));
+      cells.push_back(line.substr(begin, end - begin));
+      if (end == std::string::npos || line.substr(end, 3) != " & ") break;
+    }
+    if (cells[0] == "Sequence")
+      column = static_cast<std::size_t>(std::find(cells.begin(), cells.end(), escaped) - cells.begin());
+    if (!cells[0].empty()) is_sequence = cells[0] == sequence;
+    if (!is_sequence || cells[1] != statistic || column >= cells.size()) continue;
+    std::string figure = cells[column];
+    if (figure.starts_with("\\textbf{")) figure = figure.substr(8, figure.size() - 9);
+    if (figure.ends_with('*')) figure.pop_back();
+    return figure;
+  }
+  return "";
+}
 
 /// Programs that "track" by copying a published trajectory.
 TEST(BenchDataTest, AgreesWithTheBenchmarksOwnScripts) {
@@ -49,7 +80,7 @@ TEST(BenchDataTest, AgreesWithTheBenchmarksOwnScripts) {
     for (const auto& [sequence, is_there] : seen)
       if (name.substr(0, name.rfind('_')) != sequence)
         exclude += "  - { system: " + name + ", sequence: " + sequence + " }\n";
-  program.write("matrix.yaml", systems + sequences + exclude);
+  program.write("matrix.yaml", systems + sequences + exclude + "analysis: { tables: [paper2, paper3], decimals: 6 }\n");
   const test::Outcome outcome = program.run({"bench", "matrix.yaml", "--output", "out"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
 
@@ -72,6 +103,19 @@ TEST(BenchDataTest, AgreesWithTheBenchmarksOwnScripts) {
     }
   }
   EXPECT_EQ(checked, expected.size());
+
+  // The tables for papers print the same figures.
+  struct Printed {
+    const char* table;
+    const char* statistic;
+    std::size_t figure;
+  };
+  for (const Printed& printed :
+       {Printed{"paper2", "RMSE", 0}, Printed{"paper2", "Mean", 1}, Printed{"paper2", "Median", 2},
+        Printed{"paper2", "Max", 3}, Printed{"paper3_translation", "RMSE", 4}, Printed{"paper3_rotation", "RMSE", 5}})
+    for (const auto& [name, figures] : expected)
+      EXPECT_EQ(printed_figure(program, printed.table, name, printed.statistic), figures[printed.figure])
+          << printed.table << ", " << name << ", " << printed.statistic;
 }
 
 }  // namespace

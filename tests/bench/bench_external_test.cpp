@@ -108,11 +108,57 @@ TEST_F(BenchExternalTest, HasTimedRunsStandAlone) {
   ASSERT_EQ(program_.run({"bench", "matrix.yaml", "--output", "beside", "--jobs", "2"}).exit_code, 0);
   EXPECT_THAT(program_.text("beside/tables/cost.csv"),
               AllOf(HasSubstr("\ngood,little,1,no,"), HasSubstr("\nhalf,little,1,no,")));
-  EXPECT_THAT(program_.text("beside/cost.md"), HasSubstr("**Some runs had others beside them**"));
+  EXPECT_THAT(program_.text("beside/cost.md"), HasSubstr("**2 runs of 2 had other runs of this bench beside them**"));
   ASSERT_EQ(program_.run({"bench", "matrix.yaml", "--output", "alone", "--jobs", "2", "--timing"}).exit_code, 0);
-  EXPECT_THAT(program_.text("alone/tables/cost.csv"),
-              AllOf(HasSubstr("\ngood,little,1,yes,"), HasSubstr("\nhalf,little,1,yes,")));
+  // Whether other programs were busy, too, is not for this test to say.
+  for (const char* run : {"good", "half"})
+    EXPECT_THAT(
+        program_.text(std::string("alone/runs/") + run + "/little/repeat1/cost.json"),
+        AllOf(HasSubstr("\"alone\": true"), HasSubstr("\"other_processors\": "), HasSubstr("\"load_average\": ")));
+  EXPECT_THAT(program_.text("alone/cost.md"), Not(HasSubstr("other runs of this bench beside them")));
   EXPECT_EQ(program_.text("alone/report.md"), program_.text("beside/report.md"));
+}
+
+TEST_F(BenchExternalTest, TheDoctorSaysWhatIsFoundAndWhatIsMissing) {
+  for (const char* folder : {"orb/Examples/RGB-D", "orb/lib"})
+    std::filesystem::create_directories(program_.path(folder));
+  program_.write("orb/Examples/RGB-D/rgbd_tum", "");
+  program_.write("orb/lib/libORB_SLAM2.so", "");
+  const Outcome outcome = program_.run({"bench", "doctor", "--data", "ORB_SLAM2=" + program_.path("orb").string()});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(
+      outcome.output,
+      AllOf(HasSubstr("orb_slam2: not ready"), HasSubstr("found    Examples/RGB-D/rgbd_tum"),
+            HasSubstr("missing  Vocabulary/ORBvoc.txt"),
+            HasSubstr("missing  the variable ORB_SLAM3, the folder of its build: set it in the environment"),
+            HasSubstr("stella_vslam: not ready"), HasSubstr("get it from https://github.com/raulmur/ORB_SLAM2")));
+}
+
+/// A stand-in in place of a program of others, called through its wrapper.
+TEST_F(BenchExternalTest, AWrapperCallsASystemByItsName) {
+  std::filesystem::create_directories(program_.path("stella"));
+  program_.write("stella/orb_vocab.fbow", "");
+  program_.write(
+      "stella/run_tum_rgbd_slam",
+      "#!/bin/sh\n[ \"$1 $3\" = '-v -d' ] || exit 9\n"
+      "exec sh " HOLDFAST_SOURCE_DIR
+      "/examples/external/stand_in.sh \"${6%stella.yaml}associations.txt\" \"${6%stella.yaml}settings.yaml\" \"$4\" "
+      "\"${6%stella.yaml}frame_trajectory.txt\"\n");
+  std::filesystem::permissions(program_.path("stella/run_tum_rgbd_slam"), std::filesystem::perms::owner_all);
+  program_.write("matrix.yaml",
+                 "systems: { theirs: { wrapper: stella_vslam, repeats: 1, environment: { STAND_IN: good } } }\n"
+                 "sequences: { little: { source: { tum: { path: recording, frames: 50 } }, camera: tum_fr3 } }\n");
+  const Outcome outcome = program_.run(
+      {"bench", "matrix.yaml", "--output", "out", "--data", "STELLA_VSLAM=" + program_.path("stella").string()});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(program_.text("out/tables/runs.csv"), HasSubstr("\ntheirs,little,,1,finished,0,50,50,1,"))
+      << program_.text("out/runs/theirs/little/repeat1/log.txt");
+  EXPECT_THAT(program_.text("out/runs/theirs/little/repeat1/stella.yaml"),
+              AllOf(HasSubstr("  setup: RGBD\n"), HasSubstr("  fx: 535.4\n"), HasSubstr("  cols: 640\n"),
+                    HasSubstr("  depthmap_factor: 5000.0\n")));
+  program_.write("matrix.yaml", "systems: { theirs: { wrapper: stella_slam } }\nsequences: {}\n");
+  EXPECT_THAT(program_.run({"bench", "matrix.yaml", "--dry-run"}).errors,
+              HasSubstr("matrix.yaml:1:31: there is no wrapper 'stella_slam'; did you mean 'stella_vslam'"));
 }
 
 TEST_F(BenchExternalTest, FindsTheMatricesOfTheProjectSound) {

@@ -93,6 +93,40 @@ TEST_F(ReportPageBrowserTest, SortsChoosesAndShowsFailures) {
   EXPECT_THAT(browser_->complaints(), IsEmpty());
 }
 
+TEST_F(ReportPageBrowserTest, LinksToNoHiddenSectionAndCutsNothing) {
+  browser_->open_page(address());
+  EXPECT_EQ(text("[...document.querySelectorAll('nav a')].filter((a) => a.checkVisibility()).map((a) => "
+                 "a.getAttribute('href')).join(' ')"),
+            "#comparisons #errors #improvements #trajectories #cost #runs");
+  // A badge shows all its text, and the page is as wide as the window.
+  EXPECT_EQ(
+      browser_->evaluate("[...document.querySelectorAll('.mark')].filter((e) => e.scrollWidth > e.clientWidth + 1 "
+                         "|| getComputedStyle(e).textOverflow === 'ellipsis').length"),
+      0);
+  EXPECT_TRUE(browser_->evaluate("document.documentElement.scrollWidth <= innerWidth").get<bool>());
+  EXPECT_THAT(browser_->complaints(), IsEmpty());
+}
+
+TEST_F(ReportPageBrowserTest, WhatIsCopiedEndsWithItsCitation) {
+  browser_->open_page(address());
+  const std::string citation = text("document.getElementById('citation').textContent");
+  EXPECT_THAT(citation, AllOf(HasSubstr("(matrix.yaml); "), HasSubstr("1 sequence"), HasSubstr("SE(3) alignment")));
+  const std::string copied = text(
+      "(() => { const range = document.createRange();"
+      " range.selectNodeContents(document.querySelector('#run-table tbody tr'));"
+      " getSelection().removeAllRanges(); getSelection().addRange(range); const data = new DataTransfer();"
+      " document.dispatchEvent(new ClipboardEvent('copy', {clipboardData: data, cancelable: true}));"
+      " return data.getData('text/plain'); })()");
+  EXPECT_THAT(copied, AllOf(HasSubstr("good"), ::testing::EndsWith("\n" + citation + "\n")));
+
+  browser_->evaluate("void addEventListener('copy', () => { window.taken = document.activeElement.value; }, true)");
+  browser_->evaluate("void getSelection().removeAllRanges()");
+  browser_->click("document.querySelector('#run-table caption button')");
+  const std::string table = text("window.taken");
+  EXPECT_THAT(table, AllOf(HasSubstr("variant\tsequence\t"), HasSubstr("\ngood\tlittle\t"),
+                           ::testing::EndsWith("\n" + citation + "\n")));
+}
+
 TEST_F(ReportPageBrowserTest, DrawsTheChosenRuns) {
   browser_->open_page(address());
   const std::string canvas = "document.getElementById('trajectory-canvas')";

@@ -12,6 +12,7 @@
 
 #include "holdfast/core/random.hpp"
 #include "holdfast/interfaces/frame_source.hpp"
+#include "holdfast/perturbation/image_faults.hpp"
 
 namespace holdfast::test {
 
@@ -79,7 +80,7 @@ class FaultySource final : public FrameSource {
   std::uint64_t end() const { return stretches_.back().second; }
 
  private:
-  /// Always with new images: an expression that is assigned to a cv::Mat would be written into the shared one.
+  /// Always with new images, because those of the source are shared.
   void spoil(SensorFrame& frame) {
     switch (fault_) {
       case Fault::freeze:
@@ -88,7 +89,7 @@ class FaultySource final : public FrameSource {
         frame.truth = last_good_.truth;  // the pose that the images show
         break;
       case Fault::black:
-        frame.colour = cv::Mat(frame.colour.size(), frame.colour.type(), cv::Scalar::all(0));
+        frame.colour = scaled_brightness(frame.colour, 0.0);
         break;
       case Fault::white:
         frame.colour = cv::Mat(frame.colour.size(), frame.colour.type(), cv::Scalar::all(255));
@@ -100,16 +101,16 @@ class FaultySource final : public FrameSource {
             frame.colour.ptr<std::uint8_t>(y)[x] = static_cast<std::uint8_t>(random_.below(256));
         break;
       case Fault::depth_zero:
-        frame.depth = cv::Mat(frame.depth.size(), frame.depth.type(), cv::Scalar::all(0));
+        frame.depth = scaled_depth(frame.depth, 0.0);
         break;
       case Fault::depth_biased:
-        frame.depth = cv::Mat(frame.depth * 1.08);
+        frame.depth = scaled_depth(frame.depth, 1.08);
         break;
       case Fault::late_stamp:
         frame.timestamp += random_.uniform(0.0, 0.010);
         break;
       case Fault::exposure_jump:
-        frame.colour = cv::Mat(frame.colour * 0.5);
+        frame.colour = scaled_brightness(frame.colour, 0.5);
         break;
       case Fault::drop:
       case Fault::gap:

@@ -18,6 +18,13 @@ inline std::string fixed_text(double value, int decimals) {
   return text;
 }
 
+/// Formats with an exponent and a fixed number of decimals: 3.89e-05.
+inline std::string scientific_text(double value, int decimals) {
+  char buffer[64];
+  const auto result = std::to_chars(buffer, buffer + sizeof(buffer), value, std::chars_format::scientific, decimals);
+  return std::string(buffer, result.ptr);
+}
+
 /// Formats with the shortest text that is parsed as the same value.
 inline std::string shortest_text(double value) {
   char buffer[64];

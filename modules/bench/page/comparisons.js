@@ -37,7 +37,7 @@ function gainPicture(comparison, quantity, range) {
   for (const [gain, anchor] of [[-range, 'start'], [0, 'middle'], [range, 'end']])
     picture.append(element('text', {x: anchor === 'middle' ? at(0) : at(gain) + (anchor === 'start' ? -margin + 1 : margin - 1),
                                     y: height - 2, 'text-anchor': anchor},
-                           gain === 0 ? '0' : `${gain < 0 ? '← worse, ' : 'better, '}${fixed(Math.abs(gain), 3)} ${unit}${gain > 0 ? ' →' : ''}`));
+                           gain === 0 ? '0' : `${gain < 0 ? '← worse, ' : 'better, '}${errorText(Math.abs(gain))} ${unit}${gain > 0 ? ' →' : ''}`));
   return picture;
 }
 
@@ -70,8 +70,8 @@ function showComparisons(quantity) {
     {title: '95 % interval', note: unit, numeric: true, value: (c) => c.interval?.[0],
      cell: (c) => (c.interval ? c.interval.map((end) => errorText(end)).join(' to ') : '–')},
     {title: 'pairs', numeric: true, value: (c) => c.pairs},
-    {title: 'p', numeric: true, value: (c) => c.p, cell: (c) => fixed(c.p, 4)},
-    {title: 'p (Holm)', numeric: true, value: (c) => c.p_holm, cell: (c) => fixed(c.p_holm, 4)},
+    {title: 'p', numeric: true, value: (c) => c.p, cell: (c) => probabilityText(c.p)},
+    {title: 'p (Holm)', numeric: true, value: (c) => c.p_holm, cell: (c) => probabilityText(c.p_holm)},
     {title: 'verdict', value: (c) => verdictOf(c).text},
   ], chosen));
 }

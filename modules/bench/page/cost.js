@@ -10,6 +10,8 @@ function variantCosts() {
     return {
       name: variant.name, tracking: 1e3 * middle('tracking_s'), perFrame: 1e3 * middle('wall_per_frame_s'), processor: middle('processor_s'),
       memory: Math.max(...cells.map((cell) => cell.cost.peak_memory_bytes.most).filter(isNumber), -Infinity) / 1e6,
+      ratio: middle('processor_ratio'),
+      others: Math.max(...cells.map((cell) => cell.cost.other_processors.most).filter(isNumber), -Infinity),
       alone: cells.every((cell) => cell.cost.alone), isThere: cells.some((cell) => cell.counted > 0),
     };
   }).filter((row) => row.isThere);
@@ -68,15 +70,26 @@ function showCost() {
   const remarks = [];
   if (all('machine')) remarks.push(`Machine: ${all('machine')}. `);
   if (all('version')) remarks.push(`Holdfast ${all('version')}. `);
-  remarks.push(runs.every((run) => run.cost.alone) ?
-      'Every run stood alone: no other one of this bench ran beside it.' :
-      element('b', {}, 'Some runs had others beside them, which disturbs times.'));
+  const beside = runs.filter((run) => !run.cost.alone), withOthers = runs.filter((run) => run.cost.alone && run.cost.other_processors > 0.1);
+  const machines = new Set(runs.map((run) => run.cost.machine));
+  const warn = (text) => remarks.push(element('b', {}, text), ' ');
+  if (machines.size > 1) warn(`Runs were executed on ${machines.size} kinds of machine: times are compared within one only (cost.md).`);
+  if (beside.length > 0) warn(`${counted(beside.length, 'run')} of ${runs.length} had other runs of this bench beside them, which disturbs times.`);
+  if (withOthers.length > 0)
+    warn(`${counted(withOthers.length, 'run')} of ${runs.length} had other programs beside them, which kept up to ${
+        fixed(Math.max(...withOthers.map((run) => run.cost.other_processors)), 2)} processors busy: times are disturbed.`);
+  if (beside.length + withOthers.length === 0 && runs.length > 0)
+    remarks.push(runs.some((run) => isNumber(run.cost.other_processors)) ?
+        'Every run was alone: no other run of this bench, and hardly any other program.' :
+        'No other run of this bench was beside a run; what other programs did is not known.');
   fill('cost-remark', remarks);
   fill('cost-table', sortableTable('Time and memory by variant; medians over runs and sequences', [
     {title: 'variant', value: (row) => row.name},
     {title: 'tracking', note: 'ms a frame', numeric: true, value: (row) => row.tracking, cell: (row) => fixed(row.tracking, 2)},
     {title: 'whole process', note: 'ms a frame', numeric: true, value: (row) => row.perFrame, cell: (row) => fixed(row.perFrame, 1)},
     {title: 'processor', note: 's a run', numeric: true, value: (row) => row.processor, cell: (row) => fixed(row.processor, 1)},
+    {title: 'processor / wall', numeric: true, value: (row) => row.ratio, cell: (row) => fixed(row.ratio, 2)},
+    {title: 'used by others, most', note: 'processors', numeric: true, value: (row) => row.others, cell: (row) => fixed(row.others, 2)},
     {title: 'memory, most', note: 'MB', numeric: true, value: (row) => row.memory, cell: (row) => fixed(row.memory, 0)},
     {title: 'alone', value: (row) => (row.alone ? 'yes' : 'no')},
   ], variantCosts()));

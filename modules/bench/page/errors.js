@@ -60,6 +60,12 @@ function showImprovements(quantity) {
                                           columns, results.improvements, {isTall: true}));
 }
 
+/// What makes published figures incomparable with ours.
+const markOf = ({input, alignment}) => {
+  const parts = [input === 'monocular' ? input : null, alignment === 'SE(3)' ? null : alignment].filter((part) => part);
+  return parts.length ? ` (${parts.join(', ')})` : '';
+};
+
 function showPublished() {
   const rows = [
     ...results.variants.map((variant, v) => ({
@@ -67,7 +73,7 @@ function showPublished() {
       valueOf: (s) => cellOf(v, s)?.errors.ate_m.rmse.median,
     })),
     ...results.published.map((published) => ({
-      system: published.system, here: false, source: published.citation, protocol: published.protocol,
+      system: published.system, here: false, mark: markOf(published), source: published.citation, protocol: published.protocol,
       valueOf: (s) => published.ate_rmse_m[sequenceName(s)],
     })),
   ];
@@ -75,7 +81,7 @@ function showPublished() {
   const withFigures = results.sequences.map((_, s) => s)
       .filter((s) => results.published.some((published) => isNumber(published.ate_rmse_m[sequenceName(s)])));
   fill('published-table', sortableTable('Published ATE RMSE [m], and ours', [
-    {title: 'system', value: (row) => row.system, cell: (row) => (row.here ? element('b', {}, `${row.system} (here)`) : row.system)},
+    {title: 'system', value: (row) => row.system, cell: (row) => (row.here ? element('b', {}, breakable(`${row.system} (here)`)) : row.system + row.mark)},
     ...withFigures.map((s) => ({
       title: sequenceName(s), numeric: true, value: (row) => row.valueOf(s),
       // What others printed is shown with the digits that they printed.
@@ -83,7 +89,8 @@ function showPublished() {
     })),
     {title: 'source', value: (row) => row.source},
     {title: 'protocol', value: (row) => row.protocol},
-  ], rows, {attributesOf: (row) => ({class: row.here ? 'here' : null})}));
+  ], rows, {attributesOf: (row) => ({class: row.here ? 'here' : null,
+                               'data-citation': row.here ? null : `${row.system}${row.mark}: ${row.source}; ${row.protocol}`})}));
 }
 
 function showRuns(onlyTrouble, showTrajectory) {

@@ -14,7 +14,15 @@ const isNumber = (value) => typeof value === 'number' && Number.isFinite(value);
 const fixed = (value, decimals) => (isNumber(value) ? value.toFixed(decimals).replace('-', '−') : '–');
 const percent = (share, decimals = 1) => (isNumber(share) ? `${fixed(100 * share, decimals)} %` : '–');
 /// An error with as many decimals as in report.md.
-const errorText = (value) => fixed(value, Math.abs(value) >= 0.01 || Math.abs(value) < 5e-7 ? 4 : Math.abs(value) >= 0.001 ? 5 : 6);
+const errorText = (value) => {
+  const magnitude = Math.abs(value);
+  if (isNumber(value) && magnitude >= 1e-9 && magnitude < 1e-4) return value.toExponential(2).replace('-', '−').replace('e-', 'e−');
+  return fixed(value, magnitude >= 0.01 || magnitude < 1e-9 ? 4 : magnitude >= 0.001 ? 5 : 6);
+};
+/// A probability; what would be shown as 0 is bounded.
+const probabilityText = (value) => (isNumber(value) && value < 5e-5 ? '< 0.0001' : fixed(value, 4));
+/// A name that may be broken behind its joints.
+const breakable = (name) => name.split(/(?<=[+_\-])/).flatMap((part, i) => (i === 0 ? [part] : [document.createElement('wbr'), part]));
 const counted = (count, noun) => `${count} ${noun}${count === 1 ? '' : 's'}`;
 
 function median(values) {
@@ -61,11 +69,12 @@ const coloursInScale = 7;
 const dashes = [[], [7, 4], [2, 3], [9, 3, 2, 3], [4, 6]];
 const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const colourOf = (run) => style(`--series-${run.variant % coloursInScale}`);
-const cellOf = (variant, sequence) =>
-    results.cells.find((cell) => cell.variant === variant && cell.sequence === sequence);
+const cells = new Map(results.cells.map((cell) => [cell.variant * results.sequences.length + cell.sequence, cell]));
+const cellOf = (variant, sequence) => cells.get(variant * results.sequences.length + sequence);
+const placeOfRun = new Map(results.runs.map((run, i) => [run, i]));
 function dashOf(run) {
   const cell = cellOf(run.variant, run.sequence);
-  const place = cell ? cell.runs.indexOf(results.runs.indexOf(run)) : 0;
+  const place = cell ? cell.runs.indexOf(placeOfRun.get(run)) : 0;
   return dashes[(Math.floor(run.variant / coloursInScale) + Math.max(place, 0)) % dashes.length];
 }
 

@@ -50,7 +50,10 @@ makeChoice('statistic', statistics, chosen.statistic, (statistic) => {
 });
 showHead();
 showQuantity();
+showRobustness();
 showPublished();
+showPaperTables();
+byId('citation').textContent = citationLine;
 showCost();
 showStages(false);
 byId('with-decoding').addEventListener('change', (event) => showStages(event.target.checked));
@@ -72,4 +75,7 @@ for (const link of document.querySelectorAll('a[href^="#"]'))
     event.preventDefault();
     document.querySelector(link.getAttribute('href')).scrollIntoView();
   });
+// No link leads to a section that has nothing to show.
+for (const link of document.querySelectorAll('nav a'))
+  link.hidden = document.querySelector(link.getAttribute('href')).hidden;
 matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => section.show());

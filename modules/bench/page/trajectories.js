@@ -215,12 +215,12 @@ class TrajectoryCanvas {
     for (let i = Math.ceil((x - width / 2 / scale) / step); i * step <= x + width / 2 / scale; ++i) {
       const at = width / 2 + (i * step - x) * scale;
       context.moveTo(at, 0), context.lineTo(at, height);
-      if (at > 40 && at < width - 40) context.fillText((i * step).toFixed(decimals), at + 3, height - 5);
+      if (at > 40 && at < width - 80) context.fillText((i * step).toFixed(decimals), at + 3, height - 5);
     }
     for (let i = Math.ceil((y - height / 2 / scale) / step); i * step <= y + height / 2 / scale; ++i) {
       const at = height / 2 - (i * step - y) * scale;
       context.moveTo(0, at), context.lineTo(width, at);
-      if (at > 32 && at < height - 20) context.fillText((i * step).toFixed(decimals), 4, at - 3);
+      if (at > 32 && at < height - 24) context.fillText((i * step).toFixed(decimals), 4, at - 3);
     }
     context.stroke();
     context.fillText(`${this.axes[0]} [m]`, width - 32, height - 5);
@@ -259,7 +259,7 @@ class ErrorPlot {
     this.plot?.destroy();
     this.plot = null;
     if (runs.length === 0) return;
-    const curves = runs.map((run) => tracks.runs[results.runs.indexOf(run)].error);
+    const curves = runs.map((run) => tracks.runs[placeOfRun.get(run)].error);
     // 2: a break reaches over the times of other runs to its neighbours.
     const data = uPlot.join(curves.map((curve) => [curve.t, isLogarithmic ? curve.e.map((e) => e || null) : curve.e]),
                             curves.map(() => [0, 2]));

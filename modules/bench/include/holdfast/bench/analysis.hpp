@@ -11,12 +11,13 @@
 
 namespace holdfast {
 
-/// Median, minimum and maximum of several runs; NaN without values.
+/// Median, minimum, maximum and mean of several runs; NaN without values.
 struct Spread {
   double median = Statistics::none;
   double least = Statistics::none;
   double most = Statistics::none;
   std::size_t count = 0;
+  double mean = Statistics::none;
 };
 /// Ignores values that are NaN.
 Spread spread_of(const std::vector<double>& values);
@@ -34,7 +35,10 @@ struct Cell {
   Spread tracking;                              ///< median per frame of a run of ours [s]
   Spread wall_per_frame;                        ///< whole process / frames [s]
   Spread memory;                                ///< peak, resident [bytes]
-  bool alone = true;                            ///< whether all its runs were executed alone
+  Spread processor_ratio;                       ///< processor time / wall time
+  Spread other_processors;                      ///< kept busy by other programs during its runs, of all runs
+  Spread load_average;                          ///< when its runs began, of all runs
+  bool alone = true;                            ///< RunCost::is_undisturbed() of all its runs
 
   double error(Quantity quantity) const { return errors[static_cast<std::size_t>(quantity)][0].median; }  ///< RMSE
 };

@@ -34,7 +34,14 @@ struct AxisValue {
   std::optional<PlacedText> configuration;  ///< a file in place of the matrix's base, absolute
   std::vector<KeyValue> overrides;
   bool timing = false;  ///< its runs stand alone on the machine
+  /// Of a value of the axis `perturbation` that was listed by strength: what is made worse, and how much.
+  std::optional<std::pair<std::string, double>> perturbation;
 };
+
+/// The axis that is written as { motion_blur: [4, 8], noise: [10, 20] }. Its first value is `none`, and one value for
+/// every strength follows, named such as motion_blur-8.
+inline constexpr const char* perturbation_axis = "perturbation";
+inline constexpr const char* unperturbed = "none";
 
 /// What is varied, and its values: one variant for every combination of the values of all axes.
 struct Axis {
@@ -83,6 +90,18 @@ struct Exclusion {
   std::vector<Condition> conditions;
 };
 
+/// What is computed of the results beyond the report.
+struct MatrixAnalysis {
+  std::vector<std::string> tables;  ///< of paper_table_names(), each once
+  int decimals = 4;                 ///< of errors in these tables
+};
+
+/// Where runs are executed, as the key `executor` says.
+struct MatrixExecutor {
+  std::string name = "local";                                ///< or slurm
+  std::vector<std::pair<std::string, PlacedText>> settings;  ///< of slurm, by name
+};
+
 /// A file that says which systems run on which sequences, how often, and what is compared with what.
 struct Matrix {
   std::filesystem::path file;
@@ -104,6 +123,8 @@ struct Matrix {
   std::vector<std::string> baseline_axes;                      ///< otherwise: the axes of those values
   std::vector<std::pair<PlacedText, PlacedText>> comparisons;  ///< variants, the second measured against the first
   std::optional<PlacedText> published;                         ///< file of published figures, absolute
+  MatrixAnalysis analysis;
+  MatrixExecutor executor;
 };
 
 /// Values of ${NAME} in a matrix: those given here, then the environment's.

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "holdfast/bench/run_result.hpp"
 #include "holdfast/core/error.hpp"
 
 namespace holdfast {
@@ -16,7 +18,18 @@ struct PublishedResult {
   std::string system;
   std::string citation;
   std::string protocol;
-  std::map<std::string, double> values;  ///< [m] by name of the sequence
+  std::map<std::string, double> values;  ///< RMSE [m] by name of the sequence
+  std::string alignment = "SE(3)";       ///< or "Sim(3)", whose errors are smaller by the free scale
+  std::string input = "RGB-D";           ///< or "monocular"
+  /// All that is printed [m], by name of the sequence; NaN for a statistic that is not.
+  std::map<std::string, SixStatistics> statistics = {};
+  /// The same in the digits that are printed, "" for a statistic that is not.
+  std::map<std::string, std::array<std::string, 6>> printed = {};
+
+  /// Whether a figure other than the RMSE is printed.
+  bool has_more_than_rmse() const;
+  /// The system with what makes its figures incomparable: "DROID-W (monocular, Sim(3))".
+  std::string marked_system() const;
 };
 
 /// Time per frame as a ratio to ORB-SLAM2 on the same machine.
@@ -33,7 +46,8 @@ struct PublishedResults {
 };
 
 /// Reads a file of published figures. Appends everything that is wrong to `diagnostics`: a figure without a source, a
-/// source without a protocol, what is no number.
+/// source without a protocol, what is no number. A value is the RMSE, or a map of statistics { rmse, mean, median,
+/// standard_deviation, min, max } as far as they are printed.
 PublishedResults read_published(const std::filesystem::path& file, std::vector<Diagnostic>& diagnostics);
 
 }  // namespace holdfast

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -46,6 +47,7 @@ struct RunPlan {
   std::vector<PlannedRun> runs;
   std::vector<std::pair<std::size_t, std::size_t>> comparisons;  ///< (before, after): every variant with its baseline
   std::vector<std::optional<RecordedSequence>> recordings;       ///< by sequence: those that external systems run on
+  std::map<std::string, std::string> perturbation_units;         ///< unit of a strength by name of the perturbation
   std::vector<Diagnostic> missing;  ///< folders, files and programs that are not there, with where to get them
 };
 
@@ -56,9 +58,10 @@ inline constexpr const char* external_request_file = "request.json";
 /// Expands a matrix: variants are the product of the axes (the first one varies slowest), then the systems; every
 /// configuration is built and checked as `holdfast check` does. Everything that is wrong is appended to `diagnostics`,
 /// each once; what is only missing on this machine goes to RunPlan::missing. Plugins that configurations name are
-/// loaded into `registry`.
+/// loaded into `registry`. With the id of a run in `only`, the other cells are left out of RunPlan::runs, and are not
+/// checked.
 RunPlan make_run_plan(Matrix matrix, Registry& registry, const std::vector<SectionDescription>& sections,
-                      std::vector<Diagnostic>& diagnostics);
+                      std::vector<Diagnostic>& diagnostics, const std::string& only = "");
 
 /// What `--dry-run` prints: every run, their count, remarks, and what is missing.
 std::string plan_text(const RunPlan& plan);

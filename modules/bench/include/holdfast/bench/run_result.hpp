@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,8 +48,10 @@ struct RunResult {
   std::size_t malformed = 0;                 ///< lines of an external system's trajectory that are no pose
   bool has_errors = false;                   ///< the statistics below
   std::array<SixStatistics, 3> errors = {};  ///< by Quantity
-  std::string truth_frame = "raw";           ///< EvaluationOptions::truth_frame of the errors
-  std::string no_errors;                     ///< why there are none
+  /// What was made worse about the frames, and its strength, by name; empty for an external system.
+  std::map<std::string, double> perturbation;
+  std::string truth_frame = "raw";  ///< EvaluationOptions::truth_frame of the errors
+  std::string no_errors;            ///< why there are none
 
   double coverage() const { return frames == 0 ? 0.0 : static_cast<double>(poses) / static_cast<double>(frames); }
   /// Whether its errors enter tables and tests. What a run left that did not finish is shown, but stands for nothing.
@@ -68,11 +71,22 @@ struct StageCost {
 /// What a run cost, and on which machine; differs from repetition to repetition.
 struct RunCost {
   ProcessEnd process;
-  bool alone = false;                                          ///< nothing else of the bench ran beside it
+  bool alone = false;  ///< nothing else of the bench ran beside it
+  /// Load average over a minute when it began, and mean number of processors that other programs kept busy while it
+  /// ran; NaN where the system does not say.
+  double load_average = std::numeric_limits<double>::quiet_NaN();
+  double other_processors = std::numeric_limits<double>::quiet_NaN();
   double tracking = std::numeric_limits<double>::quiet_NaN();  ///< median per frame [s]; NaN: not said
   std::string version;                                         ///< of Holdfast, with its commit; "" of others
   std::string machine;                                         ///< processor and cores
   std::vector<StageCost> stages;
+
+  /// User and system time / wall time: mean number of processors that the run kept busy.
+  double processor_ratio() const;
+  /// Whether neither another run nor other programs disturbed its times, as far as is known.
+  bool is_undisturbed() const { return alone && !(other_processors > most_other_processors); }
+
+  static constexpr double most_other_processors = 0.1;  ///< what an idle system uses
 };
 
 std::string to_json(const RunResult& result);

@@ -13,11 +13,30 @@
 
 namespace holdfast {
 
+/// Where runs are executed; see executor.hpp.
+enum class ExecutorKind { local, slurm };
+
+/// Options of sbatch; an empty text leaves one out.
+struct SlurmOptions {
+  std::string partition;
+  std::string account;
+  std::string time;               ///< limit of a run, as sbatch takes it: 30 or 1:30:00
+  std::string memory;             ///< of a run: 4G
+  std::string constraint;         ///< of nodes: one node type, so that times can be compared
+  int processors = 0;             ///< of a run; 0 = Slurm's default
+  std::size_t array_size = 1000;  ///< most runs of an array; at most MaxArraySize of slurm.conf
+  double poll_seconds = 5.0;      ///< between two looks at the queue
+};
+
 /// Options for the execution of the runs of a benchmark.
 struct BenchOptions {
   std::filesystem::path output;      ///< results of run ID go to output/runs/ID
   std::vector<std::string> program;  ///< command line that starts the program `holdfast`, without its arguments
-  int jobs = 1;         ///< maximum number of concurrent runs; does not apply to runs that must be executed alone
+  int jobs = 1;  ///< maximum number of concurrent runs; does not apply to runs that must be executed alone
+  ExecutorKind executor = ExecutorKind::local;
+  SlurmOptions slurm;
+  /// Command that executes one run of this benchmark when `--run ID` is added; for executors on other machines.
+  std::vector<std::string> run_command;
   double grace = 10.0;  ///< time between asking a process to end and killing it [s]
   /// Polled several times per second; if it returns true, unfinished runs are aborted.
   std::function<bool()> stop = [] { return false; };

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "holdfast/interfaces/frame_source.hpp"
+#include "holdfast/perturbation/perturbation_settings.hpp"
+
+namespace holdfast {
+
+/// Wraps a source and makes its frames worse. What is drawn for a frame depends on the seed and the index of the frame
+/// alone, so that the same frame is spoiled in the same way wherever a sequence begins; only repeated and late frames
+/// depend on the frame before. Images of the wrapped source are never written to. The truth stays that of the source:
+/// pose and masks of a frame are those of the images that it shows, and the occluder is a moving object (255) without a
+/// class. Used by one thread.
+class PerturbedSource final : public FrameSource {
+ public:
+  /// `camera`: the true camera of the source, for the place of the occluder in a right image.
+  PerturbedSource(std::unique_ptr<FrameSource> source, const PerturbationSettings& settings, const Camera& camera,
+                  std::uint64_t seed_of_run);
+
+  /// That of the wrapped source, with the camera of perturbed_camera() and the number of frames that are not dropped.
+  SourceDescription describe() const override;
+  std::optional<SensorFrame> next() override;
+  Trajectory truth() const override { return source_->truth(); }
+  std::vector<SkippedFrame> skipped() const override { return source_->skipped(); }
+
+ private:
+  struct Rectangle {
+    int x = 0, y = 0;  ///< of the left upper pixel
+  };
+
+  double draw(std::uint64_t stream, std::uint64_t index) const;
+  bool is_dropped(std::uint64_t index) const;
+  double brightness(std::uint64_t index) const;
+  Rectangle occluder_place(const SensorFrame& frame) const;
+  void occlude(SensorFrame& frame);
+  void shear(SensorFrame& frame) const;
+  void spoil_depth(SensorFrame& frame) const;
+  void spoil_images(SensorFrame& frame) const;
+  void delay(SensorFrame& frame);
+
+  std::unique_ptr<FrameSource> source_;
+  PerturbationSettings settings_;
+  Camera camera_;
+  std::uint64_t seed_;
+  cv::Mat occluder_;  ///< texture, made with the first frame
+  std::optional<SensorFrame> last_;
+};
+
+/// The wrong calibration that `calibration` asks for.
+Camera perturbed_camera(Camera camera, const PerturbationSettings& settings, std::uint64_t seed_of_run);
+
+}  // namespace holdfast

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <limits>
+#include <string>
+
+namespace holdfast {
+
+/// How busy the machine is; NaN where the system does not say.
+struct MachineLoad {
+  double load_average = std::numeric_limits<double>::quiet_NaN();  ///< over the last minute
+  /// Time that all processors together spent with work since the machine was started [s].
+  double busy_seconds = std::numeric_limits<double>::quiet_NaN();
+};
+MachineLoad machine_load();
+/// The same from the texts of /proc/loadavg and /proc/stat, with ticks per second.
+MachineLoad parse_machine_load(const std::string& loadavg, const std::string& stat, double ticks_per_second);
+
+/// Processor and number of cores, as in run.json without the SIMD level.
+std::string machine_name();
+
+}  // namespace holdfast
