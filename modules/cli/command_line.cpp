@@ -27,6 +27,7 @@
 #include "unknown_words.hpp"
 #include "usage_error.hpp"
 #include "version_text.hpp"
+#include "view_command.hpp"
 
 namespace holdfast {
 
@@ -74,6 +75,7 @@ void add_commands(CLI::App& app, int& exit_code, const ProgramHost& host) {
   app.set_version_flag("-V,--version", version_text(), "Print version, commit, libraries and SIMD level");
   app.require_subcommand(1);
   add_run_command(app, exit_code, host);
+  add_view_command(app, exit_code);
   add_bench_command(app, exit_code, host);
   add_dataset_command(app, exit_code);
   add_evaluate_command(app, exit_code);

@@ -8,6 +8,7 @@
 #include <opencv2/core/utility.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "configured_command.hpp"
 #include "holdfast/core/error.hpp"
@@ -18,6 +19,7 @@
 #include "output_folder.hpp"
 #include "program_host.hpp"
 #include "terminal.hpp"
+#include "viewing.hpp"
 
 namespace holdfast {
 
@@ -27,7 +29,7 @@ constexpr int low_coverage_exit_code = 3;
 
 struct Arguments : ConfiguredArguments {
   std::filesystem::path map;
-  bool localise = false, strict = false;
+  bool localise = false, strict = false, view = false;
 };
 
 /// Results would take the place of the map that the run begins with.
@@ -44,6 +46,7 @@ struct Running {
   std::optional<FolderLock> lock;
   std::optional<Progress> progress;
   std::optional<TrajectoryJournal> journal;
+  std::vector<std::shared_ptr<Viewer>> viewers;  ///< kept, so that they outlive the pipeline
 };
 
 /// Takes the folder; a run that was killed there is named, so that nobody takes its results for whole ones.
@@ -71,6 +74,8 @@ RunOptions options_of(const Arguments& arguments, const Stopwatch& since_start, 
     running.lock.emplace(prepare_folder(arguments));
     write_file_atomically(arguments.output / "config.yaml", to_yaml(record.configuration));
     running.journal.emplace(arguments.output);
+    running.viewers = running_viewers_of_program();
+    print_addresses(running.viewers);
     running.progress.emplace(record.source.frame_count, arguments.quiet);
   };
   options.on_frame = [&](const RunProgress& run) {
@@ -111,7 +116,8 @@ int run_configuration(const Arguments& arguments, const ProgramHost& host) {
   catch_interrupts();
   keep_map_out_of_results(arguments);
   Registry registry = host.modules();
-  const Configuration configuration = load_configuration(arguments.configuration, arguments.overrides, registry);
+  Configuration configuration = load_configuration(arguments.configuration, arguments.overrides, registry);
+  if (arguments.view) add_viewer(configuration, registry);
   print_warnings(configuration.warnings);
   Running running;
   const RunRecord record = run(configuration, registry, options_of(arguments, since_start, running));
@@ -125,6 +131,7 @@ int run_configuration(const Arguments& arguments, const ProgramHost& host) {
   }
   const int exit_code = print_end(arguments, record);
   print_report(arguments);
+  if (arguments.view) show_until_stopped(running.viewers, record);
   return exit_code;
 }
 
@@ -148,6 +155,7 @@ void add_run_command(CLI::App& app, int& exit_code, const ProgramHost& host) {
       "  holdfast run examples/configs/demo.yaml --output out/demo\n"
       "  holdfast run examples/configs/rgbd.yaml --set source.tum.path=rgbd_dataset_freiburg1_xyz --output out/xyz\n"
       "  holdfast run rgbd.yaml --set features.opencv_orb.count=1500 --set run.seed=2 --output out/swap\n"
+      "  holdfast run examples/configs/demo.yaml --output out/demo --view          watch it in a browser\n"
       "  holdfast run rgbd.yaml --map out/xyz/map.hfm --output out/more              continue that map\n"
       "  holdfast run rgbd.yaml --map out/xyz/map.hfm --localise --output out/where  find the camera in it");
   add_configured_options(*command, *arguments);
@@ -157,6 +165,8 @@ void add_run_command(CLI::App& app, int& exit_code, const ProgramHost& host) {
       ->needs(map);
   command->add_flag("--strict", arguments->strict,
                     "Exit with 3 when the share of frames with a pose is below run.minimum_coverage");
+  command->add_flag("--view", arguments->view,
+                    "Show the run in a browser while it goes, and its result until Ctrl-C (observer 'viewer')");
   command->callback([arguments, host, &exit_code] { exit_code = run_configuration(*arguments, host); });
 }
 
