@@ -27,10 +27,9 @@ std::string json_in_script(const std::string& json) { return replaced(json, "<",
 }  // namespace
 
 std::string report_page(const std::string& title, const std::string& results, const std::string& tracks) {
-  return embedded_page(embedded_report_page(), "page.html",
-                       {{"title", escape_markup(title)},
-                        {"results", json_in_script(results)},
-                        {"tracks", json_in_script(tracks)}});
+  return embedded_page(
+      embedded_report_page(), "page.html",
+      {{"title", escape_markup(title)}, {"results", json_in_script(results)}, {"tracks", json_in_script(tracks)}});
 }
 
 }  // namespace holdfast

@@ -20,6 +20,7 @@
 #include "manual_command.hpp"
 #include "map_command.hpp"
 #include "modules_command.hpp"
+#include "record_command.hpp"
 #include "run_command.hpp"
 #include "segment_command.hpp"
 #include "simulate_command.hpp"
@@ -76,6 +77,7 @@ void add_commands(CLI::App& app, int& exit_code, const ProgramHost& host) {
   app.require_subcommand(1);
   add_run_command(app, exit_code, host);
   add_view_command(app, exit_code);
+  add_record_command(app, exit_code, host);
   add_bench_command(app, exit_code, host);
   add_dataset_command(app, exit_code);
   add_evaluate_command(app, exit_code);

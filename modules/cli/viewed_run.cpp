@@ -46,7 +46,8 @@ Json read_json(const fs::path& file) {
 }
 
 /// Rows [t, x, y, z] or [t, value].
-std::vector<std::vector<double>> rows_of(const Json& json, const char* name, std::size_t columns, const fs::path& file) {
+std::vector<std::vector<double>> rows_of(const Json& json, const char* name, std::size_t columns,
+                                         const fs::path& file) {
   std::vector<std::vector<double>> rows;
   try {
     json.at(name).get_to(rows);
@@ -56,12 +57,14 @@ std::vector<std::vector<double>> rows_of(const Json& json, const char* name, std
   for (const std::vector<double>& row : rows)
     if (row.size() != columns)
       throw InputError({file.string()}, std::string("'") + name + "' is no list of rows with " +
-                                            std::to_string(columns) + " numbers; expected the file as a run has written it");
+                                            std::to_string(columns) +
+                                            " numbers; expected the file as a run has written it");
   return rows;
 }
 
 /// From the aligned estimate, and the same poses in the frame of the map, to the frame of the map.
-std::optional<TrajectoryAlignment> to_map_frame(const std::vector<std::vector<double>>& aligned, const Trajectory& path) {
+std::optional<TrajectoryAlignment> to_map_frame(const std::vector<std::vector<double>>& aligned,
+                                                const Trajectory& path) {
   std::vector<Eigen::Vector3d> from, to;
   std::size_t next = 0;
   for (const TimedPose& pose : path) {
@@ -138,10 +141,12 @@ void read_map_of(const fs::path& file, FoundResults& found) {
 FoundResults find_in_folder(const fs::path& folder) {
   FoundResults found;
   found.run.title = fs::absolute(folder).lexically_normal().filename().string();
-  if (found.run.title.empty()) found.run.title = fs::absolute(folder).lexically_normal().parent_path().filename().string();
+  if (found.run.title.empty())
+    found.run.title = fs::absolute(folder).lexically_normal().parent_path().filename().string();
   const auto has = [&](const char* name) { return fs::exists(folder / name); };
   if (!has("trajectory.txt") && !has("map.hfm"))
-    throw InputError({folder.string()}, "holds neither trajectory.txt nor map.hfm; expected a folder of `holdfast run`");
+    throw InputError({folder.string()},
+                     "holds neither trajectory.txt nor map.hfm; expected a folder of `holdfast run`");
   if (has("map.hfm")) read_map_of(folder / "map.hfm", found);
   if (has("trajectory.txt")) found.run.path = read_trajectory(folder / "trajectory.txt");
   if (found.run.path.empty() && found.map) found.run.path = keyframe_path(*found.map);
@@ -164,8 +169,8 @@ ViewedRun viewed_run(const RunRecord& record) {
     run.errors = errors_of(run.path, errors);
     const TrajectoryAlignment& alignment = evaluation->alignment;
     for (const TimedPosition& place : evaluation->truth_track)
-      run.truth.emplace_back(place.timestamp, alignment.rotation.transpose() *
-                                                  (place.position - alignment.translation) / alignment.scale);
+      run.truth.emplace_back(
+          place.timestamp, alignment.rotation.transpose() * (place.position - alignment.translation) / alignment.scale);
     add("ATE RMSE", millimetres(evaluation->absolute_error.rmse));
   }
   add("coverage", fixed_text(record.coverage() * 100.0, 1) + " %");

@@ -100,7 +100,8 @@ std::optional<double> PlayControl::remaining(double timestamp) {
     return std::nullopt;
   }
   if (speed_ <= 0.0) return std::nullopt;
-  const double wait = first_timestamp_ ? (timestamp - *first_timestamp_) / speed_ - since_first_.seconds() : -2 * latest;
+  const double wait =
+      first_timestamp_ ? (timestamp - *first_timestamp_) / speed_ - since_first_.seconds() : -2 * latest;
   if (wait > 0.0) return wait;
   if (wait < -latest) {
     first_timestamp_ = timestamp;

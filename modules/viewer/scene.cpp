@@ -53,7 +53,8 @@ void Scene::add(const FrameResult& result) {
   ++version_;
   state_version_ = version_;
   last_ = result;
-  ChartEntry entry{result.timestamp, result.status, result.method, static_cast<float>(result.tracking_seconds * 1e3), {}};
+  ChartEntry entry{
+      result.timestamp, result.status, result.method, static_cast<float>(result.tracking_seconds * 1e3), {}};
   for (const StageTimes::Entry& stage : result.times.entries()) {
     const auto [place, is_new] =
         stage_numbers_.try_emplace(std::string(stage.stage), static_cast<std::uint32_t>(stages_.size()));
@@ -149,12 +150,9 @@ void Scene::describe_head(Message& message) const {
 
 void Scene::describe_state(Message& message) const {
   nlohmann::json& state = message.json()["state"];
-  state = {{"paused", play_.is_paused},
-           {"speed", play_.speed},
-           {"browsers", play_.browsers},
-           {"finished", run_.has_value()},
-           {"keyframes", map_.keyframe_count()},
-           {"points", map_.point_count()}};
+  state = {{"paused", play_.is_paused},          {"speed", play_.speed},
+           {"browsers", play_.browsers},         {"finished", run_.has_value()},
+           {"keyframes", map_.keyframe_count()}, {"points", map_.point_count()}};
   if (!last_) return;
   state["frame"] = last_->index;
   state["timestamp"] = last_->timestamp;

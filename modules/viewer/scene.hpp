@@ -65,7 +65,7 @@ class Scene {
     double timestamp = 0.0;
     TrackingStatus status = TrackingStatus::waiting;
     TrackingMethod method = TrackingMethod::none;
-    float tracking = 0.0F;  // [ms]
+    float tracking = 0.0F;                                // [ms]
     std::vector<std::pair<std::uint32_t, float>> stages;  // number and [ms]
   };
 
@@ -93,8 +93,8 @@ class Scene {
   std::vector<float> trail_positions_;  // three for each id
   std::uint64_t trail_begin_ = 0;       // number of the first position that is kept
   std::uint64_t picture_number_ = 0;
-  ViewedPicture picture_;                // without its image, which is
-  std::vector<std::uint8_t> jpeg_;       // here
+  ViewedPicture picture_;           // without its image, which is
+  std::vector<std::uint8_t> jpeg_;  // here
   std::vector<std::pair<KeyFrameId, KeyFrameId>> closed_loops_;
   std::optional<ViewedRun> run_;
   PlayState play_;

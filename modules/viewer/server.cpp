@@ -112,8 +112,7 @@ class SocketSession : public std::enable_shared_from_this<SocketSession> {
       self->incoming_.clear();
       if (self->stream_.got_text() && self->server_.handlers.command(text)) return self->read();
       self->leave();
-      self->stream_.async_close({websocket::close_code::policy_error, "unknown message"},
-                                [self](beast::error_code) {});
+      self->stream_.async_close({websocket::close_code::policy_error, "unknown message"}, [self](beast::error_code) {});
     });
   }
   void leave() {
@@ -218,8 +217,9 @@ std::string host_of(const tcp::endpoint& endpoint) {
 
 void Server::State::listen(const std::string& at, int port) {
   const auto fail = [&](const std::string& reason) {
-    throw InputError({"viewer"}, "cannot listen at " + at + ", port " + std::to_string(port) + ": " + reason +
-                                     "; give `listen` a numeric address of this machine, and `port` 0 for any free one");
+    throw InputError({"viewer"},
+                     "cannot listen at " + at + ", port " + std::to_string(port) + ": " + reason +
+                         "; give `listen` a numeric address of this machine, and `port` 0 for any free one");
   };
   beast::error_code error;
   const asio::ip::address numeric = asio::ip::make_address(at, error);

@@ -79,7 +79,8 @@ void ShownMap::update_keyframes(const MapSnapshot& map, std::uint64_t version) {
     KeyFrame& keyframe = entry_at(keyframes_, given.id.slot);
     by_time_.emplace_back(given.timestamp, given.id.slot);
     const bool is_new = !keyframe.exists || keyframe.generation != given.id.generation;
-    if (is_new) keyframe = {given.T_world_camera, given.T_world_camera, {}, given.timestamp, given.id.generation, true, version};
+    if (is_new)
+      keyframe = {given.T_world_camera, given.T_world_camera, {}, given.timestamp, given.id.generation, true, version};
     if (has_moved(keyframe.T_world_camera, given.T_world_camera)) {
       keyframe.T_world_camera = given.T_world_camera;
       keyframe.version = version;
@@ -117,8 +118,8 @@ void ShownMap::describe(std::uint64_t since, Message& message) const {
     const Point& point = points_[slot];
     if (point.version <= since || (since == 0 && !point.exists)) continue;
     slots.push_back(slot);
-    values.insert(values.end(), {point.position.x(), point.position.y(), point.position.z(),
-                                 point.exists ? point.evidence : none});
+    values.insert(values.end(),
+                  {point.position.x(), point.position.y(), point.position.z(), point.exists ? point.evidence : none});
   }
   message.add("point_slots", slots);
   message.add("point_values", values);

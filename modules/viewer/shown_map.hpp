@@ -28,8 +28,8 @@ class ShownMap {
   std::size_t point_count() const { return point_count_; }
 
   /// What has to be applied from the left to a pose of the path that was estimated relative to a keyframe, so that it
-  /// follows the keyframe. Of a keyframe that is gone, that of the nearest in time. Empty: nothing. Answers for the last
-  /// update.
+  /// follows the keyframe. Of a keyframe that is gone, that of the nearest in time. Empty: nothing. Answers for the
+  /// last update.
   std::optional<Eigen::Isometry3d> correction(KeyFrameId keyframe, double timestamp) const;
   /// Whether any correction is not empty.
   bool has_corrections() const { return has_corrections_; }

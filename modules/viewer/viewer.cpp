@@ -105,13 +105,21 @@ void Viewer::State::take_mail() {
 }
 
 bool Viewer::State::obey(std::string_view text) {
-  if (text == "pause") control.pause();
-  else if (text == "resume") control.resume();
-  else if (text == "step") control.step();
+  if (text == "pause")
+    control.pause();
+  else if (text == "resume")
+    control.resume();
+  else if (text == "step")
+    control.step();
   else {
-    constexpr std::array<std::pair<std::string_view, double>, 6> speeds{
-        {{"speed 0", 0.0}, {"speed 0.25", 0.25}, {"speed 0.5", 0.5}, {"speed 1", 1.0}, {"speed 2", 2.0}, {"speed 4", 4.0}}};
-    const auto* const speed = std::find_if(speeds.begin(), speeds.end(), [&](const auto& s) { return s.first == text; });
+    constexpr std::array<std::pair<std::string_view, double>, 6> speeds{{{"speed 0", 0.0},
+                                                                         {"speed 0.25", 0.25},
+                                                                         {"speed 0.5", 0.5},
+                                                                         {"speed 1", 1.0},
+                                                                         {"speed 2", 2.0},
+                                                                         {"speed 4", 4.0}}};
+    const auto* const speed =
+        std::find_if(speeds.begin(), speeds.end(), [&](const auto& s) { return s.first == text; });
     if (speed == speeds.end()) return false;
     control.set_speed(speed->second);
   }

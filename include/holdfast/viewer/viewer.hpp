@@ -24,8 +24,8 @@ struct ViewerOptions {
   double speed = 0.0;                ///< of a recording: 1 = at its time stamps; 0 = as fast as it goes
   int picture_width = 480;           ///< larger pictures are scaled down before they are sent [px]
   double picture_rate = 12.0;        ///< most pictures per second
-  std::string title;                 ///< shown at the top of the page
-  Camera camera;                     ///< for the frustum, and for the size of the pictures
+  std::string title = {};            ///< shown at the top of the page
+  Camera camera = {};                ///< for the frustum, and for the size of the pictures
 };
 
 /// The colour image of a frame with what is drawn over it. Pixels are raw.

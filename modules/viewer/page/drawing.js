@@ -23,7 +23,8 @@ void main() {
   if (dot(d, d) > 0.25) discard;
   pixel = colour;
 }`;
-// Each segment is a rectangle on the screen, because lines of WebGL are one pixel wide.
+// Each segment is a rectangle on the screen, because lines of WebGL are one pixel wide; both ends come with each of its
+// four corners. Instances would be shorter, but renderers without a graphics card draw them one by one.
 const lineShader = `#version 300 es
 precision highp float;
 layout(location = 0) in vec3 a;
@@ -109,6 +110,8 @@ class Renderer {
     this.seenBuffer = gl.createBuffer();
     this.movingBuffer = this.pointArray();
     this.sets = new Map();
+    this.cornerBuffer = gl.createBuffer();
+    this.corners = 0;
     gl.enable(gl.BLEND);
     gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     gl.enable(gl.DEPTH_TEST);
@@ -151,26 +154,46 @@ class Renderer {
     gl.bindVertexArray(this.pointBuffer.array);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.seenBuffer);
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, slots, gl.DYNAMIC_DRAW);
+    gl.bindVertexArray(null);
     this.seen = slots.length;
   }
   setLines(name, lines, width) {
-    const gl = this.gl;
+    const gl = this.gl, count = lines.values.length / 10;
     if (!this.sets.has(name)) {
       const array = gl.createVertexArray(), buffer = gl.createBuffer();
       gl.bindVertexArray(array);
       gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-      [[0, 3, 0], [1, 3, 12], [2, 4, 24]].forEach(([place, size, offset]) => {
+      gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.cornerBuffer);
+      [[0, 3, gl.FLOAT, 0], [1, 3, gl.FLOAT, 12], [2, 4, gl.UNSIGNED_BYTE, 24]].forEach(([place, size, type, offset]) => {
         gl.enableVertexAttribArray(place);
-        gl.vertexAttribPointer(place, size, gl.FLOAT, false, 40, offset);
-        gl.vertexAttribDivisor(place, 1);
+        gl.vertexAttribPointer(place, size, type, type === gl.UNSIGNED_BYTE, 28, offset);
       });
       this.sets.set(name, {array, buffer});
     }
+    gl.bindVertexArray(null);
+    this.reserveCorners(count);
+    const bytes = new ArrayBuffer(112 * count), floats = new Float32Array(bytes), colours = new Uint8Array(bytes);
+    for (let i = 0; i < count; ++i)
+      for (let corner = 0; corner < 4; ++corner) {
+        const at = 4 * i + corner;
+        for (let k = 0; k < 6; ++k) floats[7 * at + k] = lines.values[10 * i + k];
+        for (let k = 0; k < 4; ++k) colours[28 * at + 24 + k] = Math.round(255 * lines.values[10 * i + 6 + k]);
+      }
     const set = this.sets.get(name);
     gl.bindBuffer(gl.ARRAY_BUFFER, set.buffer);
-    gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(lines.values), gl.DYNAMIC_DRAW);
-    set.count = lines.values.length / 10;
+    gl.bufferData(gl.ARRAY_BUFFER, bytes, gl.DYNAMIC_DRAW);
+    set.count = count;
     set.width = width;
+  }
+  /// Indices of two triangles for each of so many segments.
+  reserveCorners(count) {
+    if (count <= this.corners) return;
+    const gl = this.gl;
+    this.corners = Math.max(2 * this.corners, count, 1024);
+    const indices = new Uint32Array(6 * this.corners);
+    for (let i = 0; i < this.corners; ++i) indices.set([4 * i, 4 * i + 1, 4 * i + 2, 4 * i + 2, 4 * i + 1, 4 * i + 3], 6 * i);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.cornerBuffer);
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, indices, gl.STATIC_DRAW);
   }
 
   draw(view, shown) {
@@ -189,19 +212,19 @@ class Renderer {
       if (shown[name] === false || !set.count) continue;
       gl.bindVertexArray(set.array);
       gl.uniform1f(this.lines.width, set.width * ratio);
-      gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, set.count);
+      gl.drawElements(gl.TRIANGLES, 6 * set.count, gl.UNSIGNED_INT, 0);
     }
     gl.useProgram(this.points.program);
     gl.uniformMatrix4fv(this.points.matrix, false, matrix);
     if (shown.points !== false && this.pointBuffer.count) {
       gl.bindVertexArray(this.pointBuffer.array);
       this.colours([cssColour('--static'), cssColour('--unmeasured'), cssColour('--doubtful'), cssColour('--moving')]);
-      gl.uniform2f(this.points.size, 0.011 * height, 1.7 * ratio);
+      gl.uniform2f(this.points.size, 0.014 * height, 2.2 * ratio);
       gl.drawArrays(gl.POINTS, 0, this.pointBuffer.count);
       if (this.seen && shown.seen !== false) {
         const accent = cssColour('--accent');
         this.colours([accent, accent, accent, accent]);
-        gl.uniform2f(this.points.size, 0.016 * height, 2.4 * ratio);
+        gl.uniform2f(this.points.size, 0.02 * height, 3 * ratio);
         gl.drawElements(gl.POINTS, this.seen, gl.UNSIGNED_INT, 0);
       }
     }

@@ -59,6 +59,7 @@ function showControls() {
   byId('slider').hidden = !finished || model.path.count < 2;
   byId('strip').hidden = model.history.count === 0;
   byId('slider').max = Math.max(0, model.path.count - 1);
+  byId('slider').value = now ?? byId('slider').max;
   if (!finished && document.activeElement !== byId('speed') && model.state.speed !== undefined) byId('speed').value = String(model.state.speed);
   if (finished && byId('speed').value === '0') byId('speed').value = '1';
 }
@@ -172,14 +173,14 @@ function buildPath() {
 function buildKeyframes() {
   const frusta = new Lines(), edges = new Lines(), loops = new Lines();
   const size = Math.min(0.3, Math.max(0.05, (fitted?.radius ?? 2) * 0.02));
-  for (const {pose} of model.keyframes.values()) frusta.addFrustum(pose, model.head.camera, size, cssColour('--series-0', 0.75));
+  for (const {pose} of model.keyframes.values()) frusta.addFrustum(pose, model.head.camera, size, cssColour('--series-0', 0.6));
   const connect = (pairs, lines, colour) => {
     for (let i = 0; i < pairs.length; i += 2) {
       const a = model.keyframes.get(pairs[i]), b = model.keyframes.get(pairs[i + 1]);
       if (a && b) lines.add(a.pose, b.pose, colour);
     }
   };
-  connect(model.covisibility, edges, cssColour('--series-2', 0.35));
+  connect(model.covisibility, edges, cssColour('--series-2', model.state.finished ? 0.14 : 0.28));
   connect(model.loops, loops, cssColour('--loop'));
   renderer.setLines('keyframes', frusta, 1.1);
   renderer.setLines('covisibility', edges, 1);
@@ -249,7 +250,7 @@ function refresh(time) {
       setTimeout(() => model.changed.add('keyframes'), 750);
     }
     if (has('path', 'run', 'head')) buildPath();
-    if (has('keyframes', 'loop', 'head')) buildKeyframes();
+    if (has('keyframes', 'loop', 'head', 'run')) buildKeyframes();
     if (loopFlash && performance.now() > loopFlash) { loopFlash = 0; buildKeyframes(); moved = true; }
     if (has('objects', 'state') && time > nextObjects) { buildObjects(); nextObjects = time + 60; }
     if (has('state', 'path', 'now', 'head')) buildCamera();

@@ -33,6 +33,16 @@ function prepared(canvas) {
   return [context, width, height];
 }
 
+/// Text that stays readable over lines.
+function label(context, text, x, y) {
+  context.font = '11px system-ui, sans-serif';
+  context.lineWidth = 3;
+  context.strokeStyle = cssText('--raised');
+  context.strokeText(text, x, y);
+  context.fillStyle = cssText('--text');
+  context.fillText(text, x, y);
+}
+
 function showState(model, connected) {
   const {state} = model;
   const status = state.status_number;
@@ -154,13 +164,11 @@ class TimesPanel {
         y -= tall;
       });
     });
-    context.font = '11px system-ui, sans-serif';
     for (const line of [5, 10, 20, 33.3, 50, 100, 200, 500, 1000].filter((ms) => ms < most * 0.97 && ms > most * 0.12).slice(-3)) {
       const y = height - line / most * height;
       context.fillStyle = cssText('--muted', 0.45);
       context.fillRect(0, y, width, 1);
-      context.fillStyle = cssText('--text');
-      context.fillText(`${line} ms`, 4, y - 3);
+      label(context, `${line} ms`, 4, y > 14 ? y - 3 : y + 11);
     }
   }
 }
@@ -203,9 +211,6 @@ function drawErrors(model, most, now) {
   for (const share of [0.5, 1]) {
     context.fillStyle = cssText('--muted', 0.35);
     context.fillRect(0, y(share * most), width, 1);
-    context.fillStyle = cssText('--text');
-    context.font = '11px system-ui, sans-serif';
-    context.fillText(`${fixed(share * most * 1e3, 1)} mm`, 4, y(share * most) - 3);
   }
   context.lineWidth = 1.6;
   for (let i = 1; i < model.path.count; ++i) {
@@ -217,6 +222,7 @@ function drawErrors(model, most, now) {
     context.lineTo(x(i), y(b));
     context.stroke();
   }
+  for (const share of [0.5, 1]) label(context, `${fixed(share * most * 1e3, 1)} mm`, 4, y(share * most) - 3);
   if (now !== null) {
     context.fillStyle = cssText('--text');
     context.fillRect(x(now), 0, 1, height);
