@@ -196,7 +196,8 @@ class Renderer {
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, indices, gl.STATIC_DRAW);
   }
 
-  draw(view, shown) {
+  /// `step`: every so many points are drawn.
+  draw(view, shown, step = 1) {
     const gl = this.gl, canvas = this.canvas;
     const ratio = Math.min(2, devicePixelRatio || 1);
     const width = Math.max(1, Math.round(canvas.clientWidth * ratio)), height = Math.max(1, Math.round(canvas.clientHeight * ratio));
@@ -220,7 +221,9 @@ class Renderer {
       gl.bindVertexArray(this.pointBuffer.array);
       this.colours([cssColour('--static'), cssColour('--unmeasured'), cssColour('--doubtful'), cssColour('--moving')]);
       gl.uniform2f(this.points.size, 0.014 * height, 2.2 * ratio);
-      gl.drawArrays(gl.POINTS, 0, this.pointBuffer.count);
+      this.setStep(this.pointBuffer, step);
+      gl.drawArrays(gl.POINTS, 0, Math.floor(this.pointBuffer.count / step));
+      this.setStep(this.pointBuffer, 1);
       if (this.seen && shown.seen !== false) {
         const accent = cssColour('--accent');
         this.colours([accent, accent, accent, accent]);
@@ -236,6 +239,11 @@ class Renderer {
       gl.drawArrays(gl.POINTS, 0, this.movingBuffer.count);
     }
     gl.bindVertexArray(null);
+  }
+  setStep({buffer}, step) {
+    const gl = this.gl;
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+    gl.vertexAttribPointer(0, 4, gl.FLOAT, false, 16 * step, 0);
   }
   colours(list) { this.gl.uniform4fv(this.points.colours, new Float32Array(list.flat())); }
 }

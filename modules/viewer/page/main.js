@@ -277,12 +277,31 @@ function refresh(time) {
   let aims = false;
   if (view.mode === 'follow' && model.pose(now)) aims = view.approach([...model.pose(now).slice(0, 3)], view.isFree ? null : Math.min(1.6, fitted?.radius ?? 1.6), 0.2);
   else if (!view.isFree && fitted) aims = view.approach(fitted.middle, fitted.radius, 0.2);
-  if (renderer.gl && (isBusy || moved || aims)) {
-    renderer.draw(view, shown);
+  if (!renderer.gl) return;
+  if (isBusy || moved || aims) {
+    chooseDetail(time);
+    renderer.draw(view, shown, detail.step);
     moved = false;
     frameTimes.push(time);
-    if (frameTimes.length > 120) frameTimes.shift();
+    if (frameTimes.length > 60) frameTimes.shift();
+  } else if (detail.isReduced && time > detail.last + 250) {
+    renderer.draw(view, shown);
+    detail.isReduced = false;
   }
+}
+
+/// A machine that cannot draw the whole map 25 times a second draws a part of the points while something moves, and all
+/// of them when it rests.
+const detail = {step: 1, last: 0, mean: 20, isReduced: false};
+function chooseDetail(time) {
+  const interval = time - detail.last;
+  if (interval < 1000) detail.mean += 0.2 * (interval - detail.mean);
+  detail.last = time;
+  const before = detail.step;
+  if (detail.mean > 42 && model.points.count / detail.step > 4000) detail.step = Math.min(16, 2 * detail.step);
+  else if (detail.mean < 22) detail.step = Math.max(1, detail.step / 2);
+  if (detail.step !== before) detail.mean = 32;  // see what it is worth first
+  detail.isReduced = detail.step > 1;
 }
 
 const redraw = () => { colourCache.clear(); model.changed.add('all'); picturePanel.draw(); };
