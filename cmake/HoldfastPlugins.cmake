@@ -26,6 +26,7 @@ set(HOLDFAST_PLUGIN_TABLE
   "loop_detector   flann                 loop_detectors/flann"
   "observers       objects               observers/objects"
   "observers       overlay               observers/overlay"
+  "observers       viewer                observers/viewer"
   "optimizer       ceres                 optimizers/ceres"
   "optimizer       schur                 optimizers/schur"
   "segmenter       onnx                  segmenters/onnx"
@@ -34,6 +35,14 @@ set(HOLDFAST_PLUGIN_TABLE
   "segmenter       truth                 segmenters/simulated_truth"
   "segmenter       unet                  segmenters/unet"
 )
+
+# The plugin `viewer` is built where Boost is; ours to look for early, because its option depends on it.
+find_path(HOLDFAST_BOOST_INCLUDE_DIR boost/beast/version.hpp)
+mark_as_advanced(HOLDFAST_BOOST_INCLUDE_DIR)
+set(HOLDFAST_PLUGIN_DEFAULT_viewer ON)
+if(NOT HOLDFAST_BOOST_INCLUDE_DIR)
+  set(HOLDFAST_PLUGIN_DEFAULT_viewer OFF)
+endif()
 
 set(HOLDFAST_PLUGIN_FOLDERS "")       # of the plugins that are built
 set(HOLDFAST_SETTINGS_INCLUDES "")    # of their settings, as C++
@@ -44,7 +53,11 @@ foreach(row IN LISTS HOLDFAST_PLUGIN_TABLE)
   string(REGEX MATCHALL "[^ ]+" row "${row}")
   list(POP_FRONT row kind name folder)
   string(TOUPPER HOLDFAST_PLUGIN_${name} option)
-  option(${option} "Build the plugin `${name}` (${kind})" ON)
+  set(default ON)
+  if(DEFINED HOLDFAST_PLUGIN_DEFAULT_${name})
+    set(default ${HOLDFAST_PLUGIN_DEFAULT_${name}})
+  endif()
+  option(${option} "Build the plugin `${name}` (${kind})" ${default})
   set(settings holdfast/settings/${name}.hpp)
   if(${option})
     list(APPEND HOLDFAST_PLUGIN_FOLDERS ${folder})
@@ -55,8 +68,22 @@ foreach(row IN LISTS HOLDFAST_PLUGIN_TABLE)
     list(APPEND HOLDFAST_LEFT_OUT ${option})
     string(APPEND HOLDFAST_LEFT_OUT_CALLS "  registry.add_left_out(\"${kind}\", \"${name}\", \"${option}\");\n")
     list(APPEND HOLDFAST_LEFT_OUT_SETTINGS ${settings})
+    if(name STREQUAL "viewer")
+      list(APPEND HOLDFAST_LEFT_OUT_SETTINGS holdfast/viewer/viewer.hpp)
+    endif()
   endif()
 endforeach()
+if(HOLDFAST_PLUGIN_VIEWER AND NOT HOLDFAST_BOOST_INCLUDE_DIR)
+  message(FATAL_ERROR "HOLDFAST_PLUGIN_VIEWER is ON, but Boost.Beast was not found: install Boost's headers (Debian: "
+          "libboost-dev), or build without the viewer: -DHOLDFAST_PLUGIN_VIEWER=OFF")
+elseif(HOLDFAST_PLUGIN_VIEWER)
+  message(STATUS "Holdfast: the viewer is built, with Boost in ${HOLDFAST_BOOST_INCLUDE_DIR}")
+elseif(NOT HOLDFAST_BOOST_INCLUDE_DIR)
+  message(STATUS "Holdfast: the viewer is not built: Boost.Beast was not found (Debian: libboost-dev; then configure "
+          "with -DHOLDFAST_PLUGIN_VIEWER=ON)")
+endif()
+# The tests of the viewer are left out with it.
+list(REMOVE_ITEM HOLDFAST_LEFT_OUT HOLDFAST_PLUGIN_VIEWER)
 if(HOLDFAST_LEFT_OUT AND (HOLDFAST_BUILD_TESTS OR HOLDFAST_BUILD_EXAMPLES OR HOLDFAST_BUILD_BENCHMARKS))
   list(JOIN HOLDFAST_LEFT_OUT ", " options)
   message(FATAL_ERROR "Tests, examples and benchmarks use every plugin, but ${options} is OFF: configure with "

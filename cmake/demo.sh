@@ -3,10 +3,17 @@
 # From a fresh clone to a camera tracked through the simulated room: installs what is missing, builds the program,
 # runs the demo and says where its report lies. Call it as often as you like.
 #
-#   sh cmake/demo.sh [BUILD_FOLDER]        BUILD_FOLDER: build by default
+#   sh cmake/demo.sh [--view] [BUILD_FOLDER]        BUILD_FOLDER: build by default
+#
+# --view shows the run in a browser: it prints an address and waits until you have opened it.
 set -eu
 
 cd "$(dirname "$0")/.."
+view=no
+if [ "${1:-}" = --view ]; then
+  view=yes
+  shift
+fi
 build=${1:-build}
 output=out/demo
 
@@ -16,6 +23,11 @@ sh cmake/install_dependencies.sh --python
 cmake --preset release -B "$build" \
   -DHOLDFAST_UNITY=ON -DHOLDFAST_PYTHON=ON -DHOLDFAST_BUILD_TESTS=OFF -DHOLDFAST_BUILD_BENCHMARKS=OFF -DHOLDFAST_BUILD_EXAMPLES=OFF
 cmake --build "$build" --parallel "$(nproc)" --target holdfast_program
+if [ "$view" = yes ]; then
+  # At the speed of a camera, so that there is something to see; Ctrl-C ends it.
+  exec "$build/bin/holdfast" run examples/configs/demo.yaml --output "$output" --overwrite --view \
+    --set 'filters=[semantic_mask, multi_view_depth, motion_objects]' --set 'observers=[{viewer: {wait: true, speed: 1}}]'
+fi
 "$build/bin/holdfast" run examples/configs/demo.yaml --output "$output" --overwrite
 
 [ -s "$output/report.html" ] || { echo "demo: $output/report.html was not written" >&2; exit 1; }

@@ -20,6 +20,7 @@
 #include "manual_command.hpp"
 #include "map_command.hpp"
 #include "modules_command.hpp"
+#include "record_command.hpp"
 #include "run_command.hpp"
 #include "segment_command.hpp"
 #include "simulate_command.hpp"
@@ -27,6 +28,7 @@
 #include "unknown_words.hpp"
 #include "usage_error.hpp"
 #include "version_text.hpp"
+#include "view_command.hpp"
 
 namespace holdfast {
 
@@ -74,6 +76,8 @@ void add_commands(CLI::App& app, int& exit_code, const ProgramHost& host) {
   app.set_version_flag("-V,--version", version_text(), "Print version, commit, libraries and SIMD level");
   app.require_subcommand(1);
   add_run_command(app, exit_code, host);
+  add_view_command(app, exit_code);
+  add_record_command(app, exit_code, host);
   add_bench_command(app, exit_code, host);
   add_dataset_command(app, exit_code);
   add_evaluate_command(app, exit_code);

@@ -11,7 +11,7 @@
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/plugin/parameter.hpp"
 #include "output_folder.hpp"
-#include "sequence_writer.hpp"
+#include "recording_writer.hpp"
 
 namespace holdfast {
 

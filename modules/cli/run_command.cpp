@@ -8,6 +8,7 @@
 #include <opencv2/core/utility.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "configured_command.hpp"
 #include "holdfast/core/error.hpp"
@@ -17,7 +18,10 @@
 #include "holdfast/run/trajectory_journal.hpp"
 #include "output_folder.hpp"
 #include "program_host.hpp"
+#include "recorder.hpp"
 #include "terminal.hpp"
+#include "usage_error.hpp"
+#include "viewing.hpp"
 
 namespace holdfast {
 
@@ -26,8 +30,8 @@ namespace {
 constexpr int low_coverage_exit_code = 3;
 
 struct Arguments : ConfiguredArguments {
-  std::filesystem::path map;
-  bool localise = false, strict = false;
+  std::filesystem::path map, record;
+  bool localise = false, strict = false, view = false;
 };
 
 /// Results would take the place of the map that the run begins with.
@@ -39,11 +43,23 @@ void keep_map_out_of_results(const Arguments& arguments) {
                      "lies in the output folder, where this run's results would replace it; choose another --output");
 }
 
+void keep_recording_out_of_results(const Arguments& arguments) {
+  if (arguments.record.empty()) return;
+  const auto canonical = [](const std::filesystem::path& folder) {  // with a slash at the end, or none, the same
+    return std::filesystem::weakly_canonical(folder / "").parent_path();
+  };
+  if (canonical(arguments.record) == canonical(arguments.output))
+    throw UsageError("--record and --output name the same folder; give the recording one of its own");
+}
+
 /// What lives as long as the frames are read.
 struct Running {
   std::optional<FolderLock> lock;
   std::optional<Progress> progress;
   std::optional<TrajectoryJournal> journal;
+  std::optional<Recorder> recorder;
+  Trajectory truth;                              ///< of what is recorded
+  std::vector<std::shared_ptr<Viewer>> viewers;  ///< kept, so that they outlive the pipeline
 };
 
 /// Takes the folder; a run that was killed there is named, so that nobody takes its results for whole ones.
@@ -61,8 +77,15 @@ FolderLock prepare_folder(const Arguments& arguments) {
 }
 
 /// Shows the progress of a run, prepares its folder, keeps its poses as they come and asks for its end after a signal.
-RunOptions options_of(const Arguments& arguments, const Stopwatch& since_start, Running& running) {
+RunOptions options_of(const Arguments& arguments, const Registry& registry, const Configuration& configuration,
+                      const Stopwatch& since_start, Running& running) {
   RunOptions options;
+  if (!arguments.record.empty())
+    options.wrap_source = [&](std::unique_ptr<FrameSource> source) {
+      running.recorder.emplace(configuration, registry, source->describe(), arguments.record, arguments.overwrite);
+      running.truth = source->truth();
+      return recorded_source(std::move(source), *running.recorder);
+    };
   options.pipeline = {
       .output_directory = arguments.output, .map_file = arguments.map, .localise_only = arguments.localise};
   options.since_start = since_start;
@@ -71,6 +94,8 @@ RunOptions options_of(const Arguments& arguments, const Stopwatch& since_start, 
     running.lock.emplace(prepare_folder(arguments));
     write_file_atomically(arguments.output / "config.yaml", to_yaml(record.configuration));
     running.journal.emplace(arguments.output);
+    running.viewers = running_viewers_of_program();
+    print_addresses(running.viewers);
     running.progress.emplace(record.source.frame_count, arguments.quiet);
   };
   options.on_frame = [&](const RunProgress& run) {
@@ -110,11 +135,14 @@ int run_configuration(const Arguments& arguments, const ProgramHost& host) {
   cv::setNumThreads(1);  // OpenCV's own threads would change neither result nor, at this size, time for the better
   catch_interrupts();
   keep_map_out_of_results(arguments);
+  keep_recording_out_of_results(arguments);
   Registry registry = host.modules();
-  const Configuration configuration = load_configuration(arguments.configuration, arguments.overrides, registry);
+  Configuration configuration = load_configuration(arguments.configuration, arguments.overrides, registry);
+  if (arguments.view) add_viewer(configuration, registry);
   print_warnings(configuration.warnings);
   Running running;
-  const RunRecord record = run(configuration, registry, options_of(arguments, since_start, running));
+  const RunRecord record =
+      run(configuration, registry, options_of(arguments, registry, configuration, since_start, running));
   running.progress.reset();
   running.journal.reset();
   try {
@@ -125,6 +153,8 @@ int run_configuration(const Arguments& arguments, const ProgramHost& host) {
   }
   const int exit_code = print_end(arguments, record);
   print_report(arguments);
+  if (running.recorder) running.recorder->finish(running.truth);
+  if (arguments.view) show_until_stopped(running.viewers, record);
   return exit_code;
 }
 
@@ -148,6 +178,7 @@ void add_run_command(CLI::App& app, int& exit_code, const ProgramHost& host) {
       "  holdfast run examples/configs/demo.yaml --output out/demo\n"
       "  holdfast run examples/configs/rgbd.yaml --set source.tum.path=rgbd_dataset_freiburg1_xyz --output out/xyz\n"
       "  holdfast run rgbd.yaml --set features.opencv_orb.count=1500 --set run.seed=2 --output out/swap\n"
+      "  holdfast run examples/configs/demo.yaml --output out/demo --view          watch it in a browser\n"
       "  holdfast run rgbd.yaml --map out/xyz/map.hfm --output out/more              continue that map\n"
       "  holdfast run rgbd.yaml --map out/xyz/map.hfm --localise --output out/where  find the camera in it");
   add_configured_options(*command, *arguments);
@@ -157,6 +188,10 @@ void add_run_command(CLI::App& app, int& exit_code, const ProgramHost& host) {
       ->needs(map);
   command->add_flag("--strict", arguments->strict,
                     "Exit with 3 when the share of frames with a pose is below run.minimum_coverage");
+  command->add_option("--record", arguments->record,
+                      "Also record the frames in this folder, in TUM layout; the run uses them as they are recorded");
+  command->add_flag("--view", arguments->view,
+                    "Show the run in a browser while it goes, and its result until Ctrl-C (observer 'viewer')");
   command->callback([arguments, host, &exit_code] { exit_code = run_configuration(*arguments, host); });
 }
 

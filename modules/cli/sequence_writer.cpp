@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
@@ -20,18 +19,6 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 namespace {
-
-constexpr double depth_units_per_metre = 5000.0;  // of the TUM benchmark
-
-cv::Mat to_depth_units(const cv::Mat& depth) {
-  cv::Mat units(depth.size(), CV_16UC1);
-  for (int y = 0; y < depth.rows; ++y)
-    for (int x = 0; x < depth.cols; ++x) {
-      const double value = std::round(depth.at<float>(y, x) * depth_units_per_metre);
-      units.at<std::uint16_t>(y, x) = value <= 65535.0 ? static_cast<std::uint16_t>(value) : 0;  // farther than 13 m
-    }
-  return units;
-}
 
 Json to_json(const Eigen::Isometry3d& pose) {
   const Eigen::Vector3d t = pose.translation();
@@ -75,57 +62,33 @@ std::string content_of(const std::string& file) {
 
 }  // namespace
 
-void write_image_atomically(const fs::path& file, const cv::Mat& image, const std::vector<int>& parameters) {
-  std::vector<std::uint8_t> bytes;
-  if (!cv::haveImageWriter(file.string()) || !cv::imencode(file.extension().string(), image, bytes, parameters))
-    throw InputError({file.string()}, "the image cannot be encoded; expected a name that ends with .png or .jpg");
-  write_file_atomically(file, std::string(bytes.begin(), bytes.end()));
-}
-
 const std::vector<std::string>& SequenceWriter::entries() {
-  static const std::vector<std::string> names = {"rgb.txt",
-                                                 "depth.txt",
-                                                 "mask.txt",
-                                                 "labels.txt",
-                                                 "associations.txt",
-                                                 "groundtruth.txt",
-                                                 "scene.json",
-                                                 "objects.json",
-                                                 "rgb",
-                                                 "depth",
-                                                 "mask",
-                                                 "labels"};
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all = RecordingWriter::entries();
+    for (const char* name : {"mask.txt", "labels.txt", "scene.json", "objects.json", "mask", "labels"})
+      all.emplace_back(name);
+    return all;
+  }();
   return names;
 }
 
 SequenceWriter::SequenceWriter(const simulation::Simulator& simulator, fs::path folder, std::string colour_format)
     : simulator_(simulator),
       folder_(std::move(folder)),
-      colour_format_(std::move(colour_format)),
-      colour_list_("# color images\n# timestamp filename\n"),
-      depth_list_("# depth maps\n# timestamp filename\n"),
+      recording_(folder_, {std::move(colour_format), RecordingWriter::Stamps::microseconds}),
       mask_list_("# object masks: 0 = static world, k = object k of objects.json\n# timestamp filename\n"),
       label_list_("# class labels: index into the classes of scene.json\n# timestamp filename\n") {
-  for (const char* name : {"rgb", "depth", "mask", "labels"}) fs::create_directories(folder_ / name);
+  for (const char* name : {"mask", "labels"}) fs::create_directories(folder_ / name);
 }
 
 void SequenceWriter::write(const SensorFrame& frame) {
-  char stamp[32];
-  std::snprintf(stamp, sizeof(stamp), "%.6f", frame.timestamp);
-  const std::string name = stamp, png = name + ".png";
-  const std::string colour_name = "rgb/" + name + "." + colour_format_;
-  write_image_atomically(folder_ / colour_name, frame.colour,
-                         colour_format_ == "png" ? std::vector<int>{cv::IMWRITE_PNG_COMPRESSION, 1}
-                                                 : std::vector<int>{cv::IMWRITE_JPEG_QUALITY, 95});
-  write_image_atomically(folder_ / "depth" / png, to_depth_units(frame.depth), {cv::IMWRITE_PNG_COMPRESSION, 3});
+  recording_.add(frame);
+  const std::string name = recording_.stamp_name(frame.timestamp), png = name + ".png";
   const FrameTruth& truth = *frame.truth;
   write_image_atomically(folder_ / "mask" / png, truth.object_mask, {cv::IMWRITE_PNG_COMPRESSION, 3});
   write_image_atomically(folder_ / "labels" / png, truth.class_labels, {cv::IMWRITE_PNG_COMPRESSION, 3});
-  colour_list_ += name + " " + colour_name + "\n";
-  depth_list_ += name + " depth/" + png + "\n";
   mask_list_ += name + " mask/" + png + "\n";
   label_list_ += name + " labels/" + png + "\n";
-  associations_ += name + " " + colour_name + " " + name + " depth/" + png + "\n";
   truth_.push_back({frame.timestamp, *truth.T_world_camera});
 
   std::array<int, 256> pixels{};
@@ -182,7 +145,7 @@ std::string SequenceWriter::scene_json() const {
                {"duration_s", scene.duration},
                {"frame_rate_hz", scene.frame_rate},
                {"frames", truth_.size()},
-               {"depth_units_per_metre", depth_units_per_metre},
+               {"depth_units_per_metre", RecordingWriter::depth_units_per_metre},
                {"camera", to_json(simulator_.camera())},
                {"colour_sensor", to_json(scene.colour_sensor, {})},
                {"depth_sensor", to_json(scene.depth_sensor, {})},
@@ -215,14 +178,11 @@ std::string SequenceWriter::scene_json() const {
 }
 
 void SequenceWriter::finish() {
-  write_trajectory(folder_ / "groundtruth.txt", truth_);
   write_file_atomically(folder_ / "scene.json", scene_json());
   write_file_atomically(folder_ / "objects.json", objects_json());
-  write_file_atomically(folder_ / "associations.txt", associations_);
   write_file_atomically(folder_ / "labels.txt", label_list_);
   write_file_atomically(folder_ / "mask.txt", mask_list_);
-  write_file_atomically(folder_ / "depth.txt", depth_list_);
-  write_file_atomically(folder_ / "rgb.txt", colour_list_);
+  recording_.finish(truth_);
 }
 
 }  // namespace holdfast

@@ -9,12 +9,9 @@
 #include "holdfast/core/sensor_frame.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/simulation/simulator.hpp"
+#include "recording_writer.hpp"
 
 namespace holdfast {
-
-/// Encodes by the file's extension, writes in one step. Throws InputError.
-void write_image_atomically(const std::filesystem::path& file, const cv::Mat& image,
-                            const std::vector<int>& parameters = {});
 
 /// Writes a simulated sequence in the layout of the TUM RGB-D benchmark with all its truth: rgb/, depth/ (16 bit, 5000
 /// units to the metre, 0 = no value), mask/ (8 bit, number of the object, 0 = static world), labels/ (8 bit, index into
@@ -49,8 +46,8 @@ class SequenceWriter {
 
   const simulation::Simulator& simulator_;
   std::filesystem::path folder_;
-  std::string colour_format_;
-  std::string colour_list_, depth_list_, mask_list_, label_list_, associations_;
+  RecordingWriter recording_;
+  std::string mask_list_, label_list_;
   Trajectory truth_;
   std::vector<std::vector<ObjectState>> states_;  // by frame, then by object
 };

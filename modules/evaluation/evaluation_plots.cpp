@@ -3,9 +3,13 @@
 #include <array>
 #include <limits>
 #include <optional>
+#include <utility>
 
+#include "holdfast/core/check.hpp"
 #include "holdfast/evaluation/evaluation.hpp"
+#include "holdfast/evaluation/evaluation_plots.hpp"
 #include "holdfast/evaluation/number_text.hpp"
+#include "holdfast/evaluation/statistics.hpp"
 #include "holdfast/evaluation/svg_plot.hpp"
 
 namespace holdfast {
@@ -83,6 +87,80 @@ std::string length_text(double metres) {
   return fixed_text(metres * unit.per_metre, unit.per_metre > 1.0 ? 1 : 3) + ' ' + unit.name;
 }
 
+/// Colours of small to large errors.
+constexpr std::array<const char*, 5> error_colours{"#009e73", "#86b336", "#e6b800", "#e67e00", "#c8320a"};
+/// The share of the poses whose errors the colours tell apart; the others have the last one.
+constexpr double told_apart = 0.97;
+
+/// The estimated path in lines of one colour each, by the error of its poses; what has no error is grey.
+std::vector<PlotLine> path_by_error(const Evaluation& evaluation, const std::array<int, 2>& axes) {
+  std::vector<double> errors;
+  for (const EvaluatedPose& pose : evaluation.poses) errors.push_back(pose.error);
+  const double largest = percentile(errors, 100.0 * told_apart);
+  constexpr double width = 4.0;
+  std::vector<PlotLine> lines;
+  for (std::size_t i = 0; i < error_colours.size(); ++i) {
+    const double bound = largest * static_cast<double>(i + 1) / error_colours.size();
+    lines.push_back({i + 1 < error_colours.size() ? "error to " + length_text(bound) : "above",
+                     error_colours[i],
+                     {},
+                     {},
+                     width,
+                     false,
+                     1.0});
+  }
+  lines.push_back({"", plot_colour::grey, {}, {}, width, false, 1.0});
+  const std::vector<TimedPosition>& track = evaluation.estimate_track;
+  std::vector<double> stamps;
+  for (const TimedPosition& point : track) stamps.push_back(point.timestamp);
+  const double threshold = gap_threshold(stamps);
+  std::size_t next = 0;  // of the evaluated poses, which are some of those of the track
+  std::size_t last_line = lines.size();
+  for (std::size_t i = 1; i < track.size(); ++i) {
+    while (next < evaluation.poses.size() && evaluation.poses[next].timestamp < stamps[i]) ++next;
+    const bool has_error = next < evaluation.poses.size() && evaluation.poses[next].timestamp == stamps[i];
+    std::size_t choice = error_colours.size();
+    if (has_error)
+      choice = largest > 0.0 ? std::min(error_colours.size() - 1,
+                                        static_cast<std::size_t>(evaluation.poses[next].error / largest *
+                                                                 static_cast<double>(error_colours.size())))
+                             : 0;
+    if (stamps[i] - stamps[i - 1] > threshold) {
+      last_line = lines.size();
+      continue;
+    }
+    PlotLine& line = lines[choice];
+    const auto add = [&](const Eigen::Vector3d& place) {
+      line.x.push_back(place[axes[0]]);
+      line.y.push_back(place[axes[1]]);
+    };
+    if (choice != last_line) {
+      line.x.push_back(lift_pen);
+      line.y.push_back(lift_pen);
+      add(track[i - 1].position);
+    }
+    add(track[i].position);
+    last_line = choice;
+  }
+  std::erase_if(lines, [](const PlotLine& line) { return line.x.empty(); });
+  return lines;
+}
+
+/// Shades the times without a pose, from `begin` on.
+void shade_gaps(const Evaluation& evaluation, double begin, Plot& plot) {
+  plot.band_label = evaluation.coverage ? "frames without a pose" : "no pair of poses";
+  if (!evaluation.coverage) return;
+  for (const CoverageGap& gap : evaluation.coverage->gaps) plot.bands.push_back({gap.begin - begin, gap.end - begin});
+}
+
+/// The time at which plots over time begin: a gap at the begin of the sequence belongs to the picture too.
+double begin_of(const Evaluation& evaluation) {
+  double begin = evaluation.poses.front().timestamp;
+  if (evaluation.coverage && !evaluation.coverage->gaps.empty())
+    begin = std::min(begin, evaluation.coverage->gaps.front().begin);
+  return begin;
+}
+
 }  // namespace
 
 std::string top_view_svg(const Evaluation& evaluation) {
@@ -100,19 +178,11 @@ std::string top_view_svg(const Evaluation& evaluation) {
   plot.width = 760;
   plot.height = 620;
 
-  PlotLine difference{"difference", plot_colour::orange, {}, {}, 0.8, false, 0.45};
-  constexpr std::size_t most_differences = 1500;  // more only make the file large
-  const std::size_t stride = evaluation.poses.size() / most_differences + 1;
-  for (std::size_t i = 0; i < evaluation.poses.size(); i += stride) {
-    const EvaluatedPose& pose = evaluation.poses[i];
-    difference.x.insert(difference.x.end(), {pose.truth[axes[0]], pose.estimate[axes[0]], lift_pen});
-    difference.y.insert(difference.y.end(), {pose.truth[axes[1]], pose.estimate[axes[1]], lift_pen});
-  }
-  PlotLine truth{"truth", plot_colour::black, {}, {}, 2.4, false, 1.0};
+  // The truth is a thin line over the broad one of the estimate, so that neither hides the other.
+  plot.lines = path_by_error(evaluation, axes);
+  PlotLine truth{"truth", plot_colour::black, {}, {}, 1.1, false, 1.0};
   append_track(truth, evaluation.truth_track, axes);
-  PlotLine estimate{"estimate", plot_colour::blue, {}, {}, 1.2, false, 1.0};
-  append_track(estimate, evaluation.estimate_track, axes);
-  plot.lines = {difference, truth, estimate};
+  plot.lines.push_back(std::move(truth));
   const Eigen::Vector3d& begin = evaluation.poses.front().estimate;
   plot.points = {{"start", plot_colour::green, begin[axes[0]], begin[axes[1]]}};
   return to_svg(plot);
@@ -120,13 +190,9 @@ std::string top_view_svg(const Evaluation& evaluation) {
 
 std::string error_over_time_svg(const Evaluation& evaluation) {
   const LengthUnit unit = unit_for(evaluation.absolute_error.maximum);
-  const std::optional<Coverage>& coverage = evaluation.coverage;
   std::vector<double> stamps;
   for (const EvaluatedPose& pose : evaluation.poses) stamps.push_back(pose.timestamp);
-  const double threshold = gap_threshold(stamps);
-  // A gap at the begin of the sequence belongs to the picture too.
-  double begin = stamps.front();
-  if (coverage && !coverage->gaps.empty()) begin = std::min(begin, coverage->gaps.front().begin);
+  const double threshold = gap_threshold(stamps), begin = begin_of(evaluation);
 
   Plot plot;
   plot.title = "Absolute error over time, alignment " + std::string(to_string(evaluation.options.alignment));
@@ -134,23 +200,49 @@ std::string error_over_time_svg(const Evaluation& evaluation) {
   plot.y_label = std::string("position error [") + unit.name + "]";
   plot.y_from_zero = true;
   plot.height = 380;
-  plot.band_label = coverage ? "frames without a pose" : "no pair of poses";
+  shade_gaps(evaluation, begin, plot);
   PlotLine error{"error", plot_colour::blue, {}, {}, 1.4, false, 1.0};
   for (std::size_t i = 0; i < stamps.size(); ++i) {
     if (i > 0 && stamps[i] - stamps[i - 1] > threshold) {
-      if (!coverage) plot.bands.push_back({stamps[i - 1] - begin, stamps[i] - begin});
+      if (!evaluation.coverage) plot.bands.push_back({stamps[i - 1] - begin, stamps[i] - begin});
       error.x.push_back(lift_pen);
       error.y.push_back(lift_pen);
     }
     error.x.push_back(stamps[i] - begin);
     error.y.push_back(evaluation.poses[i].error * unit.per_metre);
   }
-  if (coverage)
-    for (const CoverageGap& gap : coverage->gaps) plot.bands.push_back({gap.begin - begin, gap.end - begin});
   plot.lines = {error};
   const double rmse = evaluation.absolute_error.rmse;
   plot.levels = {{"RMSE " + fixed_text(rmse * unit.per_metre, unit.per_metre > 1.0 ? 1 : 3) + ' ' + unit.name,
                   plot_colour::vermilion, rmse * unit.per_metre}};
+  return to_svg(plot);
+}
+
+std::string position_over_time_svg(const Evaluation& evaluation, int axis) {
+  HOLDFAST_CHECK(axis >= 0 && axis < 3, "axis " << axis);
+  const double begin = begin_of(evaluation);
+  Plot plot;
+  plot.title = std::string(axis_names[axis]) + " over time";
+  plot.x_label = "time [s]";
+  plot.y_label = std::string(axis_names[axis]) + " [m]";
+  plot.height = 230;
+  shade_gaps(evaluation, begin, plot);
+  const auto line_of = [&](const std::vector<TimedPosition>& track, PlotLine line) {
+    std::vector<double> stamps;
+    for (const TimedPosition& point : track) stamps.push_back(point.timestamp);
+    const double threshold = gap_threshold(stamps);
+    for (std::size_t i = 0; i < track.size(); ++i) {
+      if (i > 0 && stamps[i] - stamps[i - 1] > threshold) {
+        line.x.push_back(lift_pen);
+        line.y.push_back(lift_pen);
+      }
+      line.x.push_back(stamps[i] - begin);
+      line.y.push_back(track[i].position[axis]);
+    }
+    return line;
+  };
+  plot.lines = {line_of(evaluation.estimate_track, {"estimate", plot_colour::sky, {}, {}, 3.4, false, 1.0}),
+                line_of(evaluation.truth_track, {"truth", plot_colour::black, {}, {}, 1.1, false, 1.0})};
   return to_svg(plot);
 }
 

@@ -120,7 +120,7 @@ std::vector<LegendEntry> legend_of(const Plot& plot) {
   return entries;
 }
 
-constexpr const char* band_style = "fill=\"#e9e4d6\"";
+constexpr const char* band_style = "fill=\"#f9d3c9\"";
 
 /// The legend in rows that begin at (left, top); `rows` receives their number.
 std::string draw_legend(const std::vector<LegendEntry>& entries, double left, double right, double top, int& rows) {

@@ -145,8 +145,12 @@ BuiltPipeline build_pipeline(const Configuration& configuration, const Registry&
   return {std::move(source), builder.build()};
 }
 
+std::unique_ptr<FrameSource> build_source(const Configuration& configuration, const Registry& registry) {
+  return make_source(configuration, registry, context_of_source(configuration));
+}
+
 BuiltSegmenter build_segmenter(const Configuration& configuration, const Registry& registry) {
-  auto source = make_source(configuration, registry, context_of_source(configuration));
+  std::unique_ptr<FrameSource> source = build_source(configuration, registry);
   PipelineBuilder builder = ConfigurationReader(configuration, registry).read(source->describe());
   return {std::move(source), ConfigurationReader::build_segmenter(std::move(builder))};
 }

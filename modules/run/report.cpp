@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/evaluation/report.hpp"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
 #include "holdfast/core/version.hpp"
+#include "holdfast/evaluation/evaluation_plots.hpp"
 #include "holdfast/evaluation/number_text.hpp"
 #include "holdfast/run/results.hpp"
 #include "summary.hpp"
@@ -92,19 +94,36 @@ ReportTable adjustment_report(const LoopRecord& record) {
 ReportSection summary_section(const RunRecord& record) {
   ReportSection summary = section("Summary");
   summary.values = summary_rows(record);
-  if (!record.failure.empty()) summary.text = "The run ended before its time: " + record.failure;
+  if (!record.failure.empty())
+    summary.text = "The run ended before its time: " + record.failure;
   else
     summary.text = coverage_warning(record);
   if (record.was_interrupted) summary.text = "The run was interrupted; this is what was done until then.";
   return summary;
 }
 
-ReportSection error_section(const Evaluation& evaluation) {
+/// How many frames have no pose, and what most of them suffered from; empty if all have one.
+std::string missing_poses_text(const RunSummary& summary) {
+  const std::vector<std::pair<TrackingTrouble, std::size_t>> troubles(summary.troubles().begin(),
+                                                                      summary.troubles().end());
+  const auto most = std::max_element(troubles.begin(), troubles.end(),
+                                     [](const auto& a, const auto& b) { return a.second < b.second; });
+  if (most == troubles.end() || most->second == 0) return "";
+  return " " + counted(summary.lost(), "frame") + " lost, shaded red in the plots; the most frequent trouble is '" +
+         to_string(most->first) + "' (" + counted(most->second, "frame") + ").";
+}
+
+ReportSection error_section(const Evaluation& evaluation, const RunSummary& summary) {
   ReportSection error = section("Trajectory");
   error.tables = {error_report(evaluation)};
-  error.text = "Aligned with the truth by a rigid motion (se3) over all pairs; stamps paired one to one within 0.02 s.";
-  error.figures.push_back({top_view_svg(evaluation), "The path against the truth"});
+  error.text =
+      "Aligned with the truth by a rigid motion (se3) over all pairs; stamps paired one to one within 0.02 s." +
+      missing_poses_text(summary);
+  error.figures.push_back(
+      {top_view_svg(evaluation), "The path by its error, and the true path as a thin line over it"});
   error.figures.push_back({error_over_time_svg(evaluation), "Absolute error over time"});
+  for (int axis = 0; axis < 3; ++axis)
+    error.figures.push_back({position_over_time_svg(evaluation, axis), axis == 2 ? "Position over time" : ""});
   return error;
 }
 
@@ -140,10 +159,10 @@ std::string report_html(const RunRecord& record) {
   Report report;
   report.title = record.source.name.empty() ? "Holdfast run" : "Holdfast: " + record.source.name;
   report.subtitle = record.configuration.file + ", seed " + std::to_string(run.seed) + ", " + choice_name(run.mode) +
-                    ", version " HOLDFAST_VERSION;
+                    ", version " HOLDFAST_VERSION ", commit " + build_commit() + "; " + machine_text();
   report.highlights = highlights(record);
   report.sections.push_back(summary_section(record));
-  if (record.evaluation) report.sections.push_back(error_section(*record.evaluation));
+  if (record.evaluation) report.sections.push_back(error_section(*record.evaluation, record.summary));
   report.sections.push_back(section("Stages"));
   report.sections.back().tables = {stage_report(record.summary)};
   if (!record.loops.loops.empty()) {

@@ -88,6 +88,7 @@ RunRecord run(BuiltPipeline& built, const Configuration& configuration, const Ru
 
 RunRecord run(const Configuration& configuration, const Registry& registry, const RunOptions& options) {
   BuiltPipeline built = build_pipeline(configuration, registry, options.pipeline);
+  if (options.wrap_source) built.source = options.wrap_source(std::move(built.source));
   RunRecord record = run(built, configuration, options);
   if (const StaticScene* scene = built.pipeline.static_scene()) record.dense_map = scene->cloud(built.pipeline.map());
   record.map = built.pipeline.take_map();

@@ -9,6 +9,7 @@
 #include "holdfast/core/version.hpp"
 #include "holdfast/evaluation/statistics.hpp"
 #include "holdfast/run/results.hpp"
+#include "summary.hpp"
 
 namespace holdfast {
 
@@ -142,6 +143,11 @@ Json masks_json(const std::vector<double>& ages) {
 }
 
 }  // namespace
+
+std::string machine_text() {
+  return processor() + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores, " +
+         to_string(simd_level());
+}
 
 const char* build_commit() { return HOLDFAST_COMMIT; }
 

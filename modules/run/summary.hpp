@@ -12,6 +12,9 @@ namespace holdfast {
 /// A share (0 to 1) in percent with two decimals: "97.50 %".
 std::string percent_text(double share);
 
+/// Processor, number of cores and SIMD level of this machine.
+std::string machine_text();
+
 /// Name and value of every figure that the terminal and the report show.
 std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& record);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
-#include "bench/browser.hpp"
+#include "support/browser.hpp"
 #include "bench/listed_recording.hpp"
 #include "cli/program.hpp"
 

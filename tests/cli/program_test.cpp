@@ -27,7 +27,7 @@ TEST_F(ProgramTest, HelpAndVersion) {
   const Outcome help = program_.run({"--help"});
   EXPECT_EQ(help.exit_code, 0);
   for (const char* command :
-       {"run", "bench", "evaluate", "map", "background", "simulate", "segment", "check", "modules"})
+       {"run", "bench", "evaluate", "view", "record", "map", "background", "simulate", "segment", "check", "modules"})
     EXPECT_THAT(help.output, HasSubstr(std::string("\n  ") + command + " "));
   EXPECT_EQ(help.errors, "");
   const Outcome version = program_.run({"--version"});
@@ -46,7 +46,7 @@ TEST_F(ProgramTest, HelpAndVersion) {
 }
 
 TEST_F(ProgramTest, OptionsHaveShortNames) {
-  for (const char* command : {"run", "segment", "background", "simulate", "bench"})
+  for (const char* command : {"run", "record", "segment", "background", "simulate", "bench"})
     EXPECT_THAT(program_.run({command, "--help"}).output, AllOf(HasSubstr("-o,--output"), HasSubstr("-q,--quiet")))
         << command;
 }

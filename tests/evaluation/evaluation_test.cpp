@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/evaluation/evaluation.hpp"
+#include "holdfast/evaluation/evaluation_plots.hpp"
 
 #include <gmock/gmock.h>
 
@@ -250,6 +251,27 @@ TEST(Evaluation, NamesStampsThatAreNoSeconds) {
       EXPECT_THAT(error.what(), ::testing::Not(HasSubstr("overlap")));
     }
   }
+}
+
+TEST(EvaluationPlots, ColourThePathByItsError) {
+  const Trajectory truth = wavy_trajectory(200, 30.0);
+  Trajectory estimate = truth;
+  for (std::size_t i = 100; i < 110; ++i) estimate[i].T_world_camera.translation().x() += 0.3;
+  EvaluationOptions options;
+  options.alignment = AlignmentKind::none;
+  const std::string svg = top_view_svg(evaluate(truth, estimate, options));
+  EXPECT_THAT(svg, AllOf(HasSubstr("stroke=\"#009e73\""), HasSubstr("stroke=\"#c8320a\""), HasSubstr(">above<")));
+  // The truth is drawn last, so that the estimate does not hide it.
+  EXPECT_GT(svg.rfind("stroke=\"#222222\""), svg.rfind("stroke=\"#c8320a\""));
+  EXPECT_THAT(top_view_svg(evaluate(truth, truth, options)), ::testing::Not(HasSubstr("stroke=\"#c8320a\"")))
+      << "no error is large";
+}
+
+TEST(EvaluationPlots, PositionsOverTime) {
+  const Trajectory truth = wavy_trajectory(200, 30.0);
+  const Evaluation evaluation = evaluate(truth, truth);
+  EXPECT_THAT(position_over_time_svg(evaluation, 1), AllOf(HasSubstr(">y [m]<"), HasSubstr(">truth<")));
+  EXPECT_THROW(position_over_time_svg(evaluation, 3), CheckError);
 }
 
 TEST(EvaluationPlots, ShadeGaps) {

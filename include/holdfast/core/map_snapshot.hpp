@@ -28,14 +28,21 @@ struct MapSnapshot {
     std::uint32_t observations = 0;  ///< number of keyframes that observe it
     float static_log_odds = 0.0F;    ///< accumulated log-odds that it is static; 0 = unknown
   };
+  /// An edge of the essential graph (Mur-Artal et al. 2015, section III-D), each pair listed once: the spanning tree,
+  /// and keyframes that share at least 100 points.
+  struct Covisibility {
+    KeyFrameId older;
+    KeyFrameId newer;
+  };
   /// A loop edge between two keyframes; each pair is listed once.
   struct Loop {
     KeyFrameId older;
     KeyFrameId newer;
   };
 
-  std::vector<KeyFrame> keyframes;  ///< oldest first
-  std::vector<Point> points;        ///< by id
+  std::vector<KeyFrame> keyframes;         ///< oldest first
+  std::vector<Point> points;               ///< by id
+  std::vector<Covisibility> covisibility;  ///< by the newer keyframe, oldest first
   std::vector<Loop> loops;
 };
 

@@ -61,6 +61,9 @@ inline BuiltPipeline build_pipeline(const Configuration& configuration, const Pi
   return build_pipeline(configuration, registry, options);
 }
 
+/// Makes the source of a configuration and nothing else. Throws any exception of its constructor.
+std::unique_ptr<FrameSource> build_source(const Configuration& configuration, const Registry& registry);
+
 /// A source and the segmenter that its frames are given to.
 struct BuiltSegmenter {
   std::unique_ptr<FrameSource> source;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,6 +29,9 @@ struct RunProgress {
 /// is recorded as its failure. stop must not throw.
 struct RunOptions {
   PipelineOptions pipeline;
+  /// Called once with the source, as it was made; the run reads what is returned, such as a source that records what it
+  /// reads from the first. Not called for a pipeline that the caller has built.
+  std::function<std::unique_ptr<FrameSource>(std::unique_ptr<FrameSource>)> wrap_source;
   /// Called once, after all modules have been made and before the first frame is read.
   std::function<void(const RunRecord& record)> on_start;
   std::function<void(const RunProgress& progress)> on_frame;

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <memory>
+#include <opencv2/core/mat.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "holdfast/core/camera.hpp"
+#include "holdfast/core/frame_result.hpp"
+#include "holdfast/core/id.hpp"
+#include "holdfast/core/map_snapshot.hpp"
+#include "holdfast/core/trajectory.hpp"
+
+namespace holdfast {
+
+/// Settings of a Viewer.
+struct ViewerOptions {
+  std::string listen = "127.0.0.1";  ///< numeric address to listen at; anything else than loopback opens it to others
+  int port = 0;                      ///< 0 = any free port
+  double speed = 0.0;                ///< of a recording: 1 = at its time stamps; 0 = as fast as it goes
+  int picture_width = 480;           ///< larger pictures are scaled down before they are sent [px]
+  double picture_rate = 12.0;        ///< most pictures per second
+  std::string title = {};            ///< shown at the top of the page
+  Camera camera = {};                ///< for the frustum, and for the size of the pictures
+};
+
+/// The colour image of a frame with what is drawn over it. Pixels are raw.
+struct ViewedPicture {
+  struct Feature {
+    float x = 0.0F, y = 0.0F;
+    float static_probability = 1.0F;  ///< 0 to 1
+    bool shows_point = false;         ///< matched to a map point
+  };
+  std::uint64_t index = 0;  ///< SensorFrame::index
+  cv::Mat colour;           ///< 8UC3 or 8UC1; owned, nobody else writes to it
+  std::vector<Feature> features;
+  std::vector<MapPointId> points;                ///< map points that the frame observes
+  std::vector<Eigen::Vector3f> moving_features;  ///< places of features that are believed to move, world frame [m]
+  /// Cells of a grid over the image, row by row: in the lower three bits the class (0 = none, 1 to 6, 7 = unknown), in
+  /// the upper four how certainly it moves (0 to 15). Empty = no mask.
+  std::vector<std::uint8_t> mask;
+  int mask_columns = 0;
+};
+
+/// A run that has ended, as far as it is known. The path is in the world frame of the map.
+struct ViewedRun {
+  std::string title;
+  Camera camera;
+  Trajectory path;
+  std::vector<float> errors;  ///< of the poses of `path` [m], NaN = unknown; empty = no truth
+  /// True positions, in the world frame of the map by the alignment of the evaluation; empty = unknown.
+  std::vector<std::pair<double, Eigen::Vector3d>> truth;
+  std::vector<std::pair<std::string, std::string>> figures;  ///< name and value, for the summary beside the map
+};
+
+/// Shows a run in browsers: a server of HTTP and WebSocket in a thread of its own, which serves one page and sends it
+/// what has changed. The page needs no other file and no network.
+///
+/// Every request has to name the token of address(), 128 random bits; others get 403. What is served is the page and
+/// the socket, no file. Of browsers only the messages of docs/viewer.md are accepted; any other message ends its
+/// connection.
+///
+/// No method waits for a browser except take_turn() and wait_for_browser(): what is given is kept until the thread of
+/// the server takes it, and a browser that is slower than the run gets fewer and larger changes. Any thread may call
+/// any method.
+class Viewer {
+ public:
+  /// Starts serving. Throws InputError when the address cannot be listened at.
+  static std::shared_ptr<Viewer> start(const ViewerOptions& options);
+  /// Closes all connections.
+  ~Viewer();
+  Viewer(const Viewer&) = delete;
+  Viewer& operator=(const Viewer&) = delete;
+
+  /// "http://127.0.0.1:40123/?token=0f..."
+  const std::string& address() const;
+  /// Whether a browser is connected.
+  bool is_watched() const;
+
+  /// The result of the next frame.
+  void add_frame(const FrameResult& result);
+  /// True when a browser would show another picture now: not more often than ViewerOptions::picture_rate.
+  bool wants_picture() const;
+  void set_picture(ViewedPicture picture);
+  /// True when it is time for another snapshot: five times a second, or less often if taking one has cost more than a
+  /// fiftieth of that; without a browser every two seconds, or a thousandth.
+  bool wants_map() const;
+  /// `seconds`: what making the snapshot took.
+  void set_map(MapSnapshot map, double seconds);
+  /// Reports a loop that was closed between two keyframes.
+  void add_loop(KeyFrameId keyframe, KeyFrameId candidate);
+  /// Replaces path and figures by those of a run that has ended.
+  void set_run(ViewedRun run);
+
+  /// Waits while a browser has paused the run, and for the time stamp of a frame at the chosen speed [s]. Returns at
+  /// once without a browser, when the last one leaves, and when the thread handles a signal: whoever stops a program
+  /// by a signal need not know of the viewer.
+  void take_turn(double timestamp);
+  /// Waits for the first browser, or until the thread handles a signal.
+  void wait_for_browser();
+
+ private:
+  struct State;
+  explicit Viewer(const ViewerOptions& options);
+  std::unique_ptr<State> state_;
+};
+
+/// The viewers of this process, oldest first. A program asks it for the addresses to show, and may keep a viewer that
+/// an observer has started beyond the end of the run.
+std::vector<std::shared_ptr<Viewer>> running_viewers();
+
+}  // namespace holdfast

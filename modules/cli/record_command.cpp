@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "record_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "configured_command.hpp"
+#include "holdfast/core/error.hpp"
+#include "holdfast/evaluation/number_text.hpp"
+#include "holdfast/pipeline/configured_pipeline.hpp"
+#include "recorder.hpp"
+#include "terminal.hpp"
+
+namespace holdfast {
+
+namespace {
+
+struct Arguments : ConfiguredArguments {
+  std::uint64_t frames = 0;
+};
+
+/// Until the source ends, a signal comes, there are enough frames or something throws.
+void record_frames(FrameSource& source, const Arguments& arguments, Recorder& recorder) {
+  std::optional<std::uint64_t> total = source.describe().frame_count;
+  if (arguments.frames > 0) total = std::min(total.value_or(arguments.frames), arguments.frames);
+  Progress progress(total, arguments.quiet);
+  while (!interrupted() && (arguments.frames == 0 || recorder.frame_count() < arguments.frames)) {
+    const std::optional<SensorFrame> frame = source.next();
+    if (!frame) return;
+    recorder.record(*frame);
+    progress.update(recorder.frame_count());
+  }
+}
+
+int record(const Arguments& arguments, const ProgramHost& host) {
+  catch_interrupts();
+  Registry registry = host.modules();
+  const Configuration configuration = load_configuration(arguments.configuration, arguments.overrides, registry);
+  print_warnings(configuration.warnings);
+  const std::unique_ptr<FrameSource> source = build_source(configuration, registry);
+  Recorder recorder(configuration, registry, source->describe(), arguments.output, arguments.overwrite);
+  std::string failure;
+  try {
+    record_frames(*source, arguments, recorder);
+  } catch (const std::exception& error) {
+    failure = error.what();
+  }
+  recorder.finish(source->truth());
+  const std::string written = counted(recorder.frame_count(), "frame") + " recorded in " + arguments.output.string();
+  if (!failure.empty()) {
+    print_error(failure + "\n" + written);
+    return 1;
+  }
+  if (recorder.frame_count() == 0) {
+    print_error("the source gave no frame, so that there is nothing to record");
+    return interrupted() ? interrupted_exit_code() : 1;
+  }
+  if (!arguments.quiet || interrupted())
+    std::printf("%s%s\nTo run it: holdfast run %s --output DIR\n", interrupted() ? "interrupted: " : "",
+                printable(written).c_str(), printable((arguments.output / "recording.yaml").string()).c_str());
+  return interrupted() ? interrupted_exit_code() : 0;
+}
+
+}  // namespace
+
+void add_record_command(CLI::App& app, int& exit_code, const ProgramHost& host) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = app.add_subcommand("record", "Record the frames of any source with depth, in TUM layout");
+  command->footer(
+      "\nReads the source of a configuration, tracks nothing, and writes into the output folder:\n"
+      "  rgb/, depth/       images, without loss (depth to 0.2 mm)   rgb.txt, depth.txt, associations.txt  their "
+      "lists\n"
+      "  groundtruth.txt    where the source has truth               recording.yaml  the configuration, on the "
+      "recording\n"
+      "`holdfast run --record DIR` records while it tracks. Exits 0 when the source came to its end, 130 on Ctrl-C, "
+      "143\n"
+      "on SIGTERM (what was recorded is whole), 2 when the configuration is wrong, 1 for anything else.\n\n"
+      "Examples\n"
+      "  holdfast record camera.yaml --output out/recording\n"
+      "  holdfast record examples/configs/demo.yaml --output out/recording --frames 100");
+  add_configured_options(*command, *arguments, "Folder for the recording", "Replace a recording in the folder");
+  command->add_option("--frames", arguments->frames, "Stop after this number of frames")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}));
+  command->callback([arguments, host, &exit_code] { exit_code = record(*arguments, host); });
+}
+
+}  // namespace holdfast

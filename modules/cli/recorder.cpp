@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "recorder.hpp"
+
+#include <utility>
+
+#include "holdfast/core/error.hpp"
+#include "holdfast/core/trajectory.hpp"
+
+namespace holdfast {
+
+namespace {
+
+constexpr const char* configuration_file = "recording.yaml";
+
+/// The configuration with the recording in the place of its source. Paths are relative, so that the folder can be
+/// moved.
+Configuration on_recording(const Configuration& original, const Registry& registry, const SourceDescription& source) {
+  Configuration result = original;
+  result.source = {.kind = FrameSource::kind, .name = "tum", .values = {}, .location = {configuration_file}};
+  const ModuleEntry* tum = registry.find(result.source.kind, result.source.name);
+  if (tum == nullptr) throw PluginError("a recording is read by the source 'tum', which these modules do not contain");
+  for (const Parameter& parameter : tum->parameters) result.source.values[parameter.name] = parameter.default_value;
+  result.source.values["path"] = std::string(".");
+  result.source.values["associations"] = std::string("associations.txt");
+  result.source.values["depth_factor"] = RecordingWriter::depth_units_per_metre;
+  if (!result.camera) result.camera = source.camera;
+  return result;
+}
+
+const SourceDescription& with_depth(const Configuration& configuration, const SourceDescription& source) {
+  if (source.has_depth) return source;
+  throw ConfigurationError(configuration.source.location,
+                           "the source '" + configuration.source.name +
+                               "' has no depth, and a recording in the layout of the TUM benchmark holds colour and "
+                               "depth; choose a source with depth");
+}
+
+class RecordedSource final : public FrameSource {
+ public:
+  RecordedSource(std::unique_ptr<FrameSource> source, Recorder& recorder)
+      : source_(std::move(source)), recorder_(recorder) {}
+
+  SourceDescription describe() const override { return source_->describe(); }
+  std::optional<SensorFrame> next() override {
+    std::optional<SensorFrame> frame = source_->next();
+    if (!frame) return std::nullopt;
+    return recorder_.record(*frame);
+  }
+  Trajectory truth() const override { return source_->truth(); }
+  std::vector<SkippedFrame> skipped() const override { return source_->skipped(); }
+
+ private:
+  std::unique_ptr<FrameSource> source_;
+  Recorder& recorder_;
+};
+
+}  // namespace
+
+std::vector<std::string> Recorder::entries() {
+  std::vector<std::string> names = RecordingWriter::entries();
+  names.emplace_back(configuration_file);
+  return names;
+}
+
+Recorder::Recorder(const Configuration& configuration, const Registry& registry, const SourceDescription& source,
+                   std::filesystem::path folder, bool overwrite)
+    : folder_(std::move(folder)),
+      configuration_(on_recording(configuration, registry, with_depth(configuration, source))),
+      lock_(prepare_output_folder(folder_, overwrite, entries())),
+      writer_(folder_, {}) {}
+
+SensorFrame Recorder::record(const SensorFrame& frame) {
+  if (frame.depth.empty() || frame.colour.empty())
+    throw InputError({"frame " + std::to_string(frame.index)},
+                     "has no colour or no depth image, and cannot be recorded; check the source");
+  SensorFrame recorded = RecordingWriter::as_recorded(frame);
+  writer_.add(recorded);
+  return recorded;
+}
+
+void Recorder::finish(const Trajectory& truth) {
+  writer_.finish(truth);
+  write_file_atomically(folder_ / configuration_file, to_yaml(configuration_));
+}
+
+std::unique_ptr<FrameSource> recorded_source(std::unique_ptr<FrameSource> source, Recorder& recorder) {
+  return std::make_unique<RecordedSource>(std::move(source), recorder);
+}
+
+}  // namespace holdfast

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "recording_writer.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <opencv2/imgcodecs.hpp>
+#include <utility>
+
+#include "holdfast/core/error.hpp"
+
+namespace holdfast {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int encoders = 2;
+constexpr std::size_t waiting_frames = 2;  // for each of them
+
+cv::Mat to_depth_units(const cv::Mat& depth) {
+  cv::Mat units(depth.size(), CV_16UC1);
+  for (int y = 0; y < depth.rows; ++y) {
+    const auto* from = depth.ptr<float>(y);
+    auto* to = units.ptr<std::uint16_t>(y);
+    for (int x = 0; x < depth.cols; ++x) {
+      const double value = std::round(from[x] * RecordingWriter::depth_units_per_metre);
+      to[x] = value <= 65535.0 ? static_cast<std::uint16_t>(value) : 0;  // farther than 13 m
+    }
+  }
+  return units;
+}
+
+/// As the source `tum` reads it.
+cv::Mat to_metres(const cv::Mat& units) {
+  cv::Mat depth(units.size(), CV_32FC1);
+  for (int y = 0; y < depth.rows; ++y) {
+    const auto* from = units.ptr<std::uint16_t>(y);
+    auto* to = depth.ptr<float>(y);
+    for (int x = 0; x < depth.cols; ++x)
+      to[x] = static_cast<float>(from[x]) / static_cast<float>(RecordingWriter::depth_units_per_metre);
+  }
+  return depth;
+}
+
+/// The digits that give the same number when they are read, at least six after the point.
+std::string exact_text(double value) {
+  char buffer[400];
+  std::string text(buffer, std::to_chars(buffer, buffer + sizeof(buffer), value, std::chars_format::fixed).ptr);
+  const std::size_t point = text.find('.');
+  const std::size_t decimals = point == std::string::npos ? 0 : text.size() - point - 1;
+  if (point == std::string::npos) text += '.';
+  if (decimals < 6) text.append(6 - decimals, '0');
+  return text;
+}
+
+double depth_stamp(const SensorFrame& frame) { return frame.timestamp + frame.depth_delay; }
+
+}  // namespace
+
+void write_image_atomically(const fs::path& file, const cv::Mat& image, const std::vector<int>& parameters) {
+  std::vector<std::uint8_t> bytes;
+  if (!cv::haveImageWriter(file.string()) || !cv::imencode(file.extension().string(), image, bytes, parameters))
+    throw InputError({file.string()}, "the image cannot be encoded; expected a name that ends with .png or .jpg");
+  write_file_atomically(file, std::string(bytes.begin(), bytes.end()));
+}
+
+const std::vector<std::string>& RecordingWriter::entries() {
+  static const std::vector<std::string> names = {"rgb.txt",         "depth.txt", "associations.txt",
+                                                 "groundtruth.txt", "rgb",       "depth"};
+  return names;
+}
+
+RecordingWriter::RecordingWriter(fs::path folder, Options options)
+    : folder_(std::move(folder)),
+      options_(std::move(options)),
+      colour_list_("# color images\n# timestamp filename\n"),
+      depth_list_("# depth maps\n# timestamp filename\n") {
+  for (const char* name : {"rgb", "depth"}) fs::create_directories(folder_ / name);
+  for (int i = 0; i < encoders; ++i)
+    encoders_.push_back(
+        std::make_unique<Worker<Job>>("recorder", waiting_frames, [this](const Job& job) { encode(job); }));
+}
+
+SensorFrame RecordingWriter::as_recorded(const SensorFrame& frame) {
+  SensorFrame recorded = frame;
+  recorded.depth = to_metres(to_depth_units(frame.depth));
+  recorded.depth_delay = depth_stamp(frame) - frame.timestamp;
+  return recorded;
+}
+
+std::string RecordingWriter::stamp_name(double timestamp) const {
+  if (options_.stamps == Stamps::exact) return exact_text(timestamp);
+  char text[400];
+  std::snprintf(text, sizeof(text), "%.6f", timestamp);
+  return text;
+}
+
+void RecordingWriter::encode(const Job& job) const {
+  write_image_atomically(job.colour_file, job.colour,
+                         options_.colour_format == "png" ? std::vector<int>{cv::IMWRITE_PNG_COMPRESSION, 1}
+                                                         : std::vector<int>{cv::IMWRITE_JPEG_QUALITY, 95});
+  write_image_atomically(job.depth_file, to_depth_units(job.depth), {cv::IMWRITE_PNG_COMPRESSION, 3});
+}
+
+void RecordingWriter::add(const SensorFrame& frame) {
+  const std::string colour_stamp = stamp_name(frame.timestamp), stamp = stamp_name(depth_stamp(frame));
+  const std::string colour_name = "rgb/" + colour_stamp + "." + options_.colour_format;
+  const std::string depth_name = "depth/" + stamp + ".png";
+  Worker<Job>& encoder = *encoders_[frames_ % encoders];
+  encoder.rethrow();
+  encoder.queue().push({folder_ / colour_name, folder_ / depth_name, frame.colour, frame.depth});
+  colour_list_ += colour_stamp + " " + colour_name + "\n";
+  depth_list_ += stamp + " " + depth_name + "\n";
+  associations_ += colour_stamp + " " + colour_name + " " + stamp + " " + depth_name + "\n";
+  ++frames_;
+}
+
+void RecordingWriter::finish(const Trajectory& truth) {
+  for (const auto& encoder : encoders_) encoder->finish();
+  for (const auto& encoder : encoders_) encoder->rethrow();
+  if (!truth.empty()) write_trajectory(folder_ / "groundtruth.txt", truth);
+  write_file_atomically(folder_ / "associations.txt", associations_);
+  write_file_atomically(folder_ / "depth.txt", depth_list_);
+  write_file_atomically(folder_ / "rgb.txt", colour_list_);
+}
+
+}  // namespace holdfast

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <opencv2/core/mat.hpp>
+#include <string>
+#include <vector>
+
+#include "holdfast/core/sensor_frame.hpp"
+#include "holdfast/core/trajectory.hpp"
+#include "holdfast/core/worker.hpp"
+
+namespace holdfast {
+
+/// Encodes by the file's extension, writes in one step. Throws InputError.
+void write_image_atomically(const std::filesystem::path& file, const cv::Mat& image,
+                            const std::vector<int>& parameters = {});
+
+/// Writes a recording in the layout of the TUM RGB-D benchmark: rgb/, depth/ (16 bit, 5000 units to the metre, 0 = no
+/// value), their lists rgb.txt and depth.txt, associations.txt and groundtruth.txt. Colour as PNG and time stamps are
+/// written without loss; depth is rounded to a fifth of a millimetre, which loses nothing of a camera that measures
+/// whole millimetres, and what lies beyond 13.1 m has no value.
+///
+/// Two threads encode, so that a camera of 30 frames per second loses none; add() waits for them when four frames wait.
+/// Every image is written in one step, lists last, so that no list names a missing image. Used by one thread.
+class RecordingWriter {
+ public:
+  static constexpr double depth_units_per_metre = 5000.0;  // of the TUM benchmark
+
+  /// How time stamps are written, in lists and as names of images.
+  enum class Stamps {
+    exact,         ///< all digits that a number needs, at least six after the point
+    microseconds,  ///< six digits after the point
+  };
+  struct Options {
+    std::string colour_format = "png";  ///< "png" or "jpg"
+    Stamps stamps = Stamps::exact;
+  };
+
+  /// Makes the folders.
+  RecordingWriter(std::filesystem::path folder, Options options);
+
+  /// What a reader will find of a frame: its depth and its depth_delay as they are recorded. The images are shared with
+  /// `frame` where nothing changes.
+  static SensorFrame as_recorded(const SensorFrame& frame);
+
+  /// Adds a frame with colour and depth; frames come in order. Throws InputError for a file that cannot be written,
+  /// maybe that of an earlier frame.
+  void add(const SensorFrame& frame);
+  /// The name of the images of a time stamp, without extension.
+  std::string stamp_name(double timestamp) const;
+  /// Waits for the images and writes the lists; an empty truth makes no file. Throws as add() does.
+  void finish(const Trajectory& truth);
+
+  std::uint64_t frame_count() const { return frames_; }
+
+  /// What it writes, lists first.
+  static const std::vector<std::string>& entries();
+
+ private:
+  /// An image that waits for its encoding.
+  struct Job {
+    std::filesystem::path colour_file, depth_file;
+    cv::Mat colour, depth;
+  };
+  void encode(const Job& job) const;
+
+  std::filesystem::path folder_;
+  Options options_;
+  std::string colour_list_, depth_list_, associations_;
+  std::uint64_t frames_ = 0;
+  std::vector<std::unique_ptr<Worker<Job>>> encoders_;
+};
+
+}  // namespace holdfast

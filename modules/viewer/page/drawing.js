@@ -1,0 +1,249 @@
+// Points and lines by WebGL 2.
+
+const pointShader = `#version 300 es
+precision highp float;
+layout(location = 0) in vec4 point;  // place and evidence
+uniform mat4 matrix;
+uniform vec4 colours[4];  // static, not measured, doubtful, moving; alpha 0 = not shown
+uniform vec2 size;        // on the screen: at a distance of 1, and least
+out vec4 colour;
+void main() {
+  gl_Position = matrix * vec4(point.xyz, 1.0);
+  gl_PointSize = clamp(size.x / gl_Position.w, size.y, 3.0 * size.y);
+  float e = point.w;
+  colour = colours[e > 0.5 ? 0 : e < -0.5 ? 3 : e == 0.0 ? 1 : 2];
+  if (!(e == e) || colour.a == 0.0) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+}`;
+const pointFragment = `#version 300 es
+precision mediump float;
+in vec4 colour;
+out vec4 pixel;
+void main() {
+  vec2 d = gl_PointCoord - 0.5;
+  if (dot(d, d) > 0.25) discard;
+  pixel = colour;
+}`;
+// Each segment is a rectangle on the screen, because lines of WebGL are one pixel wide; both ends come with each of its
+// four corners. Instances would be shorter, but renderers without a graphics card draw them one by one.
+const lineShader = `#version 300 es
+precision highp float;
+layout(location = 0) in vec3 a;
+layout(location = 1) in vec3 b;
+layout(location = 2) in vec4 tint;
+uniform mat4 matrix;
+uniform vec2 screen;
+uniform float width;
+out vec4 colour;
+void main() {
+  vec4 p = matrix * vec4(a, 1.0), q = matrix * vec4(b, 1.0);
+  float near = 1e-3;
+  if (p.w < near && q.w < near) { gl_Position = vec4(2.0, 2.0, 2.0, 1.0); return; }
+  if (p.w < near) p = mix(p, q, (near - p.w) / (q.w - p.w));
+  if (q.w < near) q = mix(q, p, (near - q.w) / (p.w - q.w));
+  vec2 along = (q.xy / q.w - p.xy / p.w) * screen;
+  float length_of = length(along);
+  vec2 across = length_of > 1e-6 ? vec2(-along.y, along.x) / length_of : vec2(0.0, 1.0);
+  bool isEnd = (gl_VertexID & 1) == 1;
+  vec4 end = isEnd ? q : p;
+  float side = (gl_VertexID & 2) == 2 ? 1.0 : -1.0;
+  end.xy += across * side * width / screen * end.w;
+  gl_Position = end;
+  colour = tint;
+}`;
+const lineFragment = `#version 300 es
+precision mediump float;
+in vec4 colour;
+out vec4 pixel;
+void main() { pixel = colour; }`;
+
+/// A colour of the style sheet as [r, g, b, a] from 0 to 1.
+const colourCache = new Map();
+function cssColour(name, alpha = 1) {
+  if (!colourCache.has(name)) {
+    const probe = document.createElement('span');
+    probe.style.color = `var(${name})`;
+    document.body.append(probe);
+    const [r, g, b] = getComputedStyle(probe).color.match(/[\d.]+/g).map(Number);
+    probe.remove();
+    colourCache.set(name, [r / 255, g / 255, b / 255]);
+  }
+  return [...colourCache.get(name), alpha];
+}
+/// From green over amber to red, for a share from 0 to 1.
+function rampColour(share) {
+  const [low, middle, high] = ['--static', '--doubtful', '--moving'].map((name) => cssColour(name));
+  return share < 0.5 ? mix(low, middle, 2 * share) : mix(middle, high, 2 * share - 1);
+}
+const objectColours = ['--series-4', '--series-3', '--series-5', '--series-0', '--series-1'];
+const objectColour = (id, alpha = 1) => cssColour(objectColours[id % objectColours.length], alpha);
+
+/// Segments with a colour each.
+class Lines {
+  constructor() { this.clear(); }
+  clear() { this.values = []; }
+  add(a, b, colour) { this.values.push(a[0], a[1], a[2], b[0], b[1], b[2], colour[0], colour[1], colour[2], colour[3] ?? 1); }
+  addBox(pose, low, high, colour) {
+    const corner = (i) => transform(pose, [i & 1 ? high[0] : low[0], i & 2 ? high[1] : low[1], i & 4 ? high[2] : low[2]]);
+    for (let i = 0; i < 8; ++i)
+      for (const axis of [1, 2, 4])
+        if (!(i & axis)) this.add(corner(i), corner(i | axis), colour);
+  }
+  addFrustum(pose, [width, height, fx, fy, cx, cy], depth, colour) {
+    const corner = (x, y) => transform(pose, [(x - cx) / fx * depth, (y - cy) / fy * depth, depth]);
+    const corners = [corner(0, 0), corner(width, 0), corner(width, height), corner(0, height)];
+    for (let i = 0; i < 4; ++i) {
+      this.add(pose, corners[i], colour);
+      this.add(corners[i], corners[(i + 1) % 4], colour);
+    }
+  }
+}
+
+class Renderer {
+  constructor(canvas) {
+    this.canvas = canvas;
+    this.gl = canvas.getContext('webgl2', {antialias: false, alpha: false});
+    if (!this.gl) return;
+    const gl = this.gl;
+    this.points = this.program(pointShader, pointFragment, ['matrix', 'colours', 'size']);
+    this.lines = this.program(lineShader, lineFragment, ['matrix', 'screen', 'width']);
+    this.pointBuffer = this.pointArray();
+    this.seenBuffer = gl.createBuffer();
+    this.movingBuffer = this.pointArray();
+    this.sets = new Map();
+    this.cornerBuffer = gl.createBuffer();
+    this.corners = 0;
+    gl.enable(gl.BLEND);
+    gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    gl.enable(gl.DEPTH_TEST);
+    gl.depthFunc(gl.LEQUAL);
+  }
+  program(vertex, fragment, uniforms) {
+    const gl = this.gl, made = gl.createProgram();
+    for (const [type, source] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]]) {
+      const shader = gl.createShader(type);
+      gl.shaderSource(shader, source);
+      gl.compileShader(shader);
+      if (!gl.getShaderParameter(shader, gl.COMPILE_STATUS) && !gl.isContextLost()) throw new Error(gl.getShaderInfoLog(shader));
+      gl.attachShader(made, shader);
+    }
+    gl.linkProgram(made);
+    return {program: made, ...Object.fromEntries(uniforms.map((name) => [name, gl.getUniformLocation(made, name)]))};
+  }
+  pointArray() {
+    const gl = this.gl, array = gl.createVertexArray(), buffer = gl.createBuffer();
+    gl.bindVertexArray(array);
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+    gl.enableVertexAttribArray(0);
+    gl.vertexAttribPointer(0, 4, gl.FLOAT, false, 16, 0);
+    return {array, buffer, capacity: 0, count: 0};
+  }
+  /// Takes over rows of place and evidence; only those of `range` have changed, if the buffer has room.
+  setPoints(target, data, count, range = null) {
+    const gl = this.gl;
+    gl.bindBuffer(gl.ARRAY_BUFFER, target.buffer);
+    if (target.capacity < data.length || !range) {
+      gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
+      target.capacity = data.length;
+    } else {
+      gl.bufferSubData(gl.ARRAY_BUFFER, 16 * range[0], data, 4 * range[0], 4 * (range[1] - range[0] + 1));
+    }
+    target.count = count;
+  }
+  setSeen(slots) {
+    const gl = this.gl;
+    gl.bindVertexArray(this.pointBuffer.array);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.seenBuffer);
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, slots, gl.DYNAMIC_DRAW);
+    gl.bindVertexArray(null);
+    this.seen = slots.length;
+  }
+  setLines(name, lines, width) {
+    const gl = this.gl, count = lines.values.length / 10;
+    if (!this.sets.has(name)) {
+      const array = gl.createVertexArray(), buffer = gl.createBuffer();
+      gl.bindVertexArray(array);
+      gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+      gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.cornerBuffer);
+      [[0, 3, gl.FLOAT, 0], [1, 3, gl.FLOAT, 12], [2, 4, gl.UNSIGNED_BYTE, 24]].forEach(([place, size, type, offset]) => {
+        gl.enableVertexAttribArray(place);
+        gl.vertexAttribPointer(place, size, type, type === gl.UNSIGNED_BYTE, 28, offset);
+      });
+      this.sets.set(name, {array, buffer});
+    }
+    gl.bindVertexArray(null);
+    this.reserveCorners(count);
+    const bytes = new ArrayBuffer(112 * count), floats = new Float32Array(bytes), colours = new Uint8Array(bytes);
+    for (let i = 0; i < count; ++i)
+      for (let corner = 0; corner < 4; ++corner) {
+        const at = 4 * i + corner;
+        for (let k = 0; k < 6; ++k) floats[7 * at + k] = lines.values[10 * i + k];
+        for (let k = 0; k < 4; ++k) colours[28 * at + 24 + k] = Math.round(255 * lines.values[10 * i + 6 + k]);
+      }
+    const set = this.sets.get(name);
+    gl.bindBuffer(gl.ARRAY_BUFFER, set.buffer);
+    gl.bufferData(gl.ARRAY_BUFFER, bytes, gl.DYNAMIC_DRAW);
+    set.count = count;
+    set.width = width;
+  }
+  /// Indices of two triangles for each of so many segments.
+  reserveCorners(count) {
+    if (count <= this.corners) return;
+    const gl = this.gl;
+    this.corners = Math.max(2 * this.corners, count, 1024);
+    const indices = new Uint32Array(6 * this.corners);
+    for (let i = 0; i < this.corners; ++i) indices.set([4 * i, 4 * i + 1, 4 * i + 2, 4 * i + 2, 4 * i + 1, 4 * i + 3], 6 * i);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.cornerBuffer);
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, indices, gl.STATIC_DRAW);
+  }
+
+  /// `step`: every so many points are drawn.
+  draw(view, shown, step = 1) {
+    const gl = this.gl, canvas = this.canvas;
+    const ratio = Math.min(2, devicePixelRatio || 1);
+    const width = Math.max(1, Math.round(canvas.clientWidth * ratio)), height = Math.max(1, Math.round(canvas.clientHeight * ratio));
+    if (canvas.width !== width || canvas.height !== height) { canvas.width = width; canvas.height = height; }
+    gl.viewport(0, 0, width, height);
+    gl.clearColor(...cssColour('--map-ground'));
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    const matrix = view.matrix(width / height);
+    gl.useProgram(this.lines.program);
+    gl.uniformMatrix4fv(this.lines.matrix, false, matrix);
+    gl.uniform2f(this.lines.screen, width, height);
+    for (const [name, set] of this.sets) {
+      if (shown[name] === false || !set.count) continue;
+      gl.bindVertexArray(set.array);
+      gl.uniform1f(this.lines.width, set.width * ratio);
+      gl.drawElements(gl.TRIANGLES, 6 * set.count, gl.UNSIGNED_INT, 0);
+    }
+    gl.useProgram(this.points.program);
+    gl.uniformMatrix4fv(this.points.matrix, false, matrix);
+    if (shown.points !== false && this.pointBuffer.count) {
+      gl.bindVertexArray(this.pointBuffer.array);
+      this.colours([cssColour('--static'), cssColour('--unmeasured'), cssColour('--doubtful'), cssColour('--moving')]);
+      gl.uniform2f(this.points.size, 0.014 * height, 2.2 * ratio);
+      this.setStep(this.pointBuffer, step);
+      gl.drawArrays(gl.POINTS, 0, Math.floor(this.pointBuffer.count / step));
+      this.setStep(this.pointBuffer, 1);
+      if (this.seen && shown.seen !== false) {
+        const accent = cssColour('--accent');
+        this.colours([accent, accent, accent, accent]);
+        gl.uniform2f(this.points.size, 0.02 * height, 3 * ratio);
+        gl.drawElements(gl.POINTS, this.seen, gl.UNSIGNED_INT, 0);
+      }
+    }
+    if (shown.moving !== false && this.movingBuffer.count) {
+      gl.bindVertexArray(this.movingBuffer.array);
+      const red = cssColour('--moving');
+      this.colours([red, red, red, red]);
+      gl.uniform2f(this.points.size, 0.02 * height, 2.4 * ratio);
+      gl.drawArrays(gl.POINTS, 0, this.movingBuffer.count);
+    }
+    gl.bindVertexArray(null);
+  }
+  setStep({buffer}, step) {
+    const gl = this.gl;
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+    gl.vertexAttribPointer(0, 4, gl.FLOAT, false, 16 * step, 0);
+  }
+  colours(list) { this.gl.uniform4fv(this.points.colours, new Float32Array(list.flat())); }
+}

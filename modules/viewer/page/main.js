@@ -1,0 +1,321 @@
+// Puts the page together: what has changed is drawn again, once a picture of the screen.
+
+let model = new Model();
+let connected = null;
+let now = null;      // number of a pose of a run that has ended, null = the last
+let playing = false;
+let errorMost = null;
+let fitted = null;   // middle and radius of the map
+let moved = true;    // the map has to be drawn again
+let loopFlash = 0;   // until when a loop that was just closed is shown
+
+const canvas = byId('map');
+const view = new PointOfView();
+const renderer = new Renderer(canvas);
+const picturePanel = new PicturePanel(), timesPanel = new TimesPanel();
+const shown = {};
+const layers = {points: 'map points', seen: 'points in view', moving: 'moving features', path: 'path', truth: 'true path',
+                keyframes: 'keyframes', covisibility: 'covisibility', loops: 'loops', objects: 'objects and trails', grid: 'grid'};
+
+if (!renderer.gl) {
+  byId('notice').textContent = 'This browser has no WebGL 2, so the map cannot be drawn; the rest of the page works.';
+  byId('notice').hidden = false;
+}
+for (const [name, label] of Object.entries(layers)) {
+  shown[name] = true;
+  byId('layers').append(element('label', {}, element('input', {
+    type: 'checkbox', checked: true, onchange: (event) => { shown[name] = event.target.checked; moved = true; },
+  }), label));
+}
+for (const [key, label] of Object.entries({orbit: 'Orbit', follow: 'Follow', top: 'Top'}))
+  byId('views').append(element('label', {}, element('input', {
+    type: 'radio', name: 'view', value: key, checked: key === 'orbit',
+    onchange: () => { view.mode = key; view.isFree = false; moved = true; },
+  }), element('span', {}, label)));
+byId('whole').addEventListener('click', () => { view.isFree = false; moved = true; });
+listenToPointers(canvas, view, () => { moved = true; });
+canvas.addEventListener('webglcontextlost', () => location.reload());
+
+const connection = new Connection((message, isFirst) => {
+  if (isFirst) {
+    model = new Model();  // the program tells everything again
+    now = null;
+    loopFlash = 0;
+  }
+  const loops = model.closedLoops;
+  model.apply(message);
+  if (!isFirst && model.closedLoops > loops) loopFlash = performance.now() + 4000;
+}, (isConnected) => {
+  connected = isConnected;
+  model.changed.add('state');
+});
+
+// Playing: a run in progress by the program, one that has ended here.
+function showControls() {
+  const finished = Boolean(model.state.finished);
+  byId('pause').textContent = finished ? (playing ? 'Pause' : 'Play') : model.state.paused ? 'Resume' : 'Pause';
+  byId('step').disabled = finished ? false : !model.state.paused;
+  byId('pause').disabled = byId('speed').disabled = connected === false && !finished;
+  byId('slider').hidden = !finished || model.path.count < 2;
+  byId('strip').hidden = model.history.count === 0;
+  byId('slider').max = Math.max(0, model.path.count - 1);
+  byId('slider').value = now ?? byId('slider').max;
+  if (!finished && document.activeElement !== byId('speed') && model.state.speed !== undefined) byId('speed').value = String(model.state.speed);
+  if (finished && byId('speed').value === '0') byId('speed').value = '1';
+}
+function seek(i) {
+  now = Math.max(0, Math.min(model.path.count - 1, Math.round(i)));
+  byId('slider').value = now;
+  model.changed.add('now');
+}
+byId('pause').addEventListener('click', () => {
+  if (!model.state.finished) return connection.send(model.state.paused ? 'resume' : 'pause');
+  playing = !playing;
+  if (playing && (now === null || now >= model.path.count - 1)) seek(0);
+  model.changed.add('state');
+});
+byId('step').addEventListener('click', () => {
+  if (!model.state.finished) return connection.send('step');
+  seek((now ?? -1) + 1);
+});
+byId('speed').addEventListener('change', (event) => {
+  if (!model.state.finished) connection.send(`speed ${event.target.value}`);
+});
+byId('slider').addEventListener('input', (event) => { playing = false; seek(Number(event.target.value)); model.changed.add('state'); });
+byId('errors').addEventListener('pointerdown', (event) => {
+  const first = model.stamps.data[0], span = model.stamps.data[model.stamps.count - 1] - first;
+  const stamp = first + event.offsetX / byId('errors').clientWidth * span;
+  let i = 0;
+  while (i < model.path.count - 1 && model.stamps.data[i] < stamp) ++i;
+  seek(i);
+});
+document.addEventListener('keydown', (event) => {
+  if (['INPUT', 'SELECT', 'BUTTON', 'SUMMARY'].includes(document.activeElement?.tagName)) return;
+  if (event.key === ' ') { event.preventDefault(); byId('pause').click(); }
+  if (event.key === '.') byId('step').click();
+});
+
+let lastTick = null;
+function play(time) {
+  const seconds = lastTick === null ? 0 : (time - lastTick) / 1000;
+  lastTick = time;
+  if (!playing || !model.state.finished || now === null) { play.stamp = null; return; }
+  play.stamp = (play.stamp ?? model.stamps.data[now]) + Math.min(0.2, seconds) * (Number(byId('speed').value) || 1);
+  let i = now;
+  while (i < model.path.count - 1 && model.stamps.data[i + 1] <= play.stamp) ++i;
+  if (i < model.path.count - 1 && model.stamps.data[i + 1] - model.stamps.data[i] > 2) play.stamp = model.stamps.data[++i];
+  if (i !== now) seek(i);
+  if (i === model.path.count - 1) { playing = false; model.changed.add('state'); }
+}
+
+/// Middle and radius of what matters of the map, outliers aside, and which way is up.
+function fit() {
+  const places = [];
+  const count = model.points.count, stride = Math.max(1, Math.floor(count / 3000));
+  for (let i = 0; i < count; i += stride) {
+    const [x, y, z, evidence] = model.points.row(i);
+    if (evidence === evidence) places.push([x, y, z]);
+  }
+  const steps = Math.max(1, Math.floor(model.path.count / 500));
+  const path = [];
+  for (let i = 0; i < model.path.count; i += steps) path.push([...model.path.row(i).subarray(0, 3)]);
+  if (places.length + path.length < 2) return null;
+  const all = places.concat(path);
+  const low = [], high = [];
+  for (let axis = 0; axis < 3; ++axis) {
+    const sorted = all.map((place) => place[axis]).sort((a, b) => a - b);
+    low.push(sorted[Math.floor(sorted.length * 0.04)]);
+    high.push(sorted[Math.min(sorted.length - 1, Math.floor(sorted.length * 0.96))]);
+  }
+  let up = [0, 0, 0];
+  for (const {pose} of model.keyframes.values()) up = add(up, turn(pose, [0, -1, 0]));
+  if (norm(up) > 0.5 * model.keyframes.size && model.keyframes.size) view.up = unit(up);
+  return {middle: scale(add(low, high), 0.5), radius: Math.max(0.3, 0.5 * norm(subtract(high, low))), low, high, places};
+}
+
+function buildGrid() {
+  const lines = new Lines();
+  if (fitted) {
+    const up = view.up, [a, b] = view.basis();
+    // Below nearly all points.
+    const heights = fitted.places.map((place) => dot(place, up)).sort((x, y) => x - y);
+    const floor = heights.length ? heights[Math.floor(heights.length * 0.01)] : dot(fitted.middle, up);
+    const step = fitted.radius > 40 ? 10 : fitted.radius > 8 ? 2 : fitted.radius > 2 ? 1 : 0.25;
+    const origin = add(fitted.middle, scale(up, floor - dot(fitted.middle, up)));
+    const reach = Math.ceil(fitted.radius * 1.3 / step) * step;
+    for (let at = -reach; at <= reach + 1e-9; at += step) {
+      const colour = cssColour('--muted', 0.16);
+      lines.add(add(origin, add(scale(a, at), scale(b, -reach))), add(origin, add(scale(a, at), scale(b, reach))), colour);
+      lines.add(add(origin, add(scale(b, at), scale(a, -reach))), add(origin, add(scale(b, at), scale(a, reach))), colour);
+    }
+  }
+  renderer.setLines('grid', lines, 1);
+}
+
+function buildPath() {
+  const lines = new Lines(), truth = new Lines();
+  errorMost = model.run?.has_errors ? errorScale(model) : null;
+  const plain = cssColour('--accent'), again = cssColour('--doubtful');
+  for (let i = 1; i < model.path.count; ++i) {
+    if (isGap(model, i)) continue;
+    const row = model.path.row(i);
+    const colour = errorMost === null ? (row[7] === 4 ? again : plain)
+        : Number.isFinite(row[8]) ? rampColour(Math.min(1, row[8] / errorMost)) : cssColour('--muted');
+    lines.add(model.path.row(i - 1), row, colour);
+  }
+  if (model.truth)
+    for (let i = 1; i < model.truth.stamps.length; ++i)
+      truth.add(model.truth.places.subarray(3 * i - 3, 3 * i), model.truth.places.subarray(3 * i, 3 * i + 3), cssColour('--text', 0.55));
+  renderer.setLines('path', lines, 2.6);
+  renderer.setLines('truth', truth, 1.4);
+}
+
+function buildKeyframes() {
+  const frusta = new Lines(), edges = new Lines(), loops = new Lines();
+  const size = Math.min(0.3, Math.max(0.05, (fitted?.radius ?? 2) * 0.02));
+  for (const {pose} of model.keyframes.values()) frusta.addFrustum(pose, model.head.camera, size, cssColour('--series-0', 0.6));
+  const connect = (pairs, lines, colour) => {
+    for (let i = 0; i < pairs.length; i += 2) {
+      const a = model.keyframes.get(pairs[i]), b = model.keyframes.get(pairs[i + 1]);
+      if (a && b) lines.add(a.pose, b.pose, colour);
+    }
+  };
+  connect(model.covisibility, edges, cssColour('--series-2', model.state.finished ? 0.14 : 0.28));
+  connect(model.loops, loops, cssColour('--loop'));
+  renderer.setLines('keyframes', frusta, 1.1);
+  renderer.setLines('covisibility', edges, 1);
+  renderer.setLines('loops', loops, performance.now() < loopFlash ? 5 : 2.4);
+}
+
+function buildObjects() {
+  const lines = new Lines();
+  for (const [id, places] of model.trails)
+    for (let i = 1; i < places.count; ++i)
+      if (norm(subtract(places.row(i), places.row(i - 1))) < 0.7) lines.add(places.row(i - 1), places.row(i), objectColour(id, 0.8));
+  if (!model.state.finished)
+    for (const object of model.objects)
+      lines.addBox(object.pose, object.box.slice(0, 3), object.box.slice(3), objectColour(object.id, object.hidden ? 0.35 : 1));
+  renderer.setLines('objects', lines, 1.8);
+}
+
+function buildCamera() {
+  const lines = new Lines();
+  const pose = model.pose(now);
+  if (pose) lines.addFrustum(pose, model.head.camera, Math.min(0.6, Math.max(0.12, (fitted?.radius ?? 2) * 0.06)), cssColour(model.state.status_number === 3 ? '--moving' : '--text'));
+  renderer.setLines('camera', lines, 2.2);
+}
+
+function showLegend() {
+  const entries = [['static', '--static'], ['doubtful', '--doubtful'], ['moving', '--moving'], ['not measured', '--unmeasured']]
+      .map(([name, colour]) => element('li', {}, element('i', {colour: `var(${colour})`}), name));
+  if (errorMost !== null)
+    entries.push(element('li', {}, element('i', {class: 'line', colour: 'linear-gradient(90deg, var(--static), var(--doubtful), var(--moving))'}), `path by error, to ${fixed(errorMost * 1e3, 1)} mm`));
+  else entries.push(element('li', {}, element('i', {class: 'line', colour: 'var(--accent)'}), 'path'));
+  if (model.truth) entries.push(element('li', {}, element('i', {class: 'line', colour: 'var(--text)'}), 'true path'));
+  if (model.loops.length) entries.push(element('li', {}, element('i', {class: 'line', colour: 'var(--loop)'}), 'loop'));
+  byId('legend').replaceChildren(...entries);
+}
+
+function showClock() {
+  const stamp = model.state.finished && now !== null ? model.stamps.data[now] : model.state.timestamp ?? model.stamps.data[Math.max(0, model.stamps.count - 1)];
+  const first = model.history.count ? model.history.data[0] : model.stamps.data[0];
+  byId('clock').textContent = Number.isFinite(stamp - first) ? `${fixed(stamp - first, 2)} s` : '';
+}
+
+let nextFit = 0, nextTimes = 0, nextObjects = 0;
+const frameTimes = [];
+/// Takes over what has changed since the last picture of the screen, and draws it.
+function refresh(time) {
+  requestAnimationFrame(refresh);
+  play(time);
+  const changed = model.changed;
+  const has = (...names) => changed.has('all') || names.some((name) => changed.has(name));
+  if (renderer.gl) {
+    if (has('points')) {
+      const range = model.changedPoints ?? null;
+      renderer.setPoints(renderer.pointBuffer, model.points.data, model.points.count, changed.has('all') ? null : range);
+      model.changedPoints = null;
+    }
+    if (has('picture') && model.picture) {
+      renderer.setSeen(model.seen.filter((slot) => slot < model.points.count));
+      const rows = new Float32Array(model.movingFeatures.length / 3 * 4);
+      for (let i = 0; i < rows.length / 4; ++i) rows.set([...model.movingFeatures.subarray(3 * i, 3 * i + 3), 0], 4 * i);
+      renderer.setPoints(renderer.movingBuffer, rows, model.state.finished ? 0 : rows.length / 4);
+    }
+    if (has('points', 'path', 'keyframes') && time > nextFit) {
+      fitted = fit() ?? fitted;
+      buildGrid();
+      nextFit = time + 700;
+    } else if (has('points', 'path') && time <= nextFit) {
+      setTimeout(() => model.changed.add('keyframes'), 750);
+    }
+    if (has('path', 'run', 'head')) buildPath();
+    if (has('keyframes', 'loop', 'head', 'run')) buildKeyframes();
+    if (loopFlash && performance.now() > loopFlash) { loopFlash = 0; buildKeyframes(); moved = true; }
+    if (has('objects', 'state') && time > nextObjects) { buildObjects(); nextObjects = time + 60; }
+    if (has('state', 'path', 'now', 'head')) buildCamera();
+  }
+  if (has('head')) {
+    byId('title').textContent = model.head.title || 'Holdfast';
+    document.title = `${model.head.title || 'run'} – Holdfast`;
+  }
+  if (has('picture') && model.picture) picturePanel.show(model.picture, model.head);
+  if (has('frames') && time > nextTimes) {
+    timesPanel.show(model);
+    drawStrip(model);
+    nextTimes = time + 150;
+  }
+  if (has('state', 'keyframes', 'path', 'run')) { showState(model, connected); showControls(); }
+  if (has('objects')) showObjects(model);
+  if (has('run', 'picture', 'frames')) showRun(model);
+  if (has('run', 'path', 'keyframes')) showLegend();
+  if (has('run', 'path', 'now') && errorMost !== null) drawErrors(model, errorMost, now);
+  if (has('state', 'now', 'run')) showClock();
+  const isBusy = changed.size > 0;
+  changed.clear();
+
+  let aims = false;
+  if (view.mode === 'follow' && model.pose(now)) aims = view.approach([...model.pose(now).slice(0, 3)], view.isFree ? null : Math.min(1.6, fitted?.radius ?? 1.6), 0.2);
+  else if (!view.isFree && fitted) aims = view.approach(fitted.middle, fitted.radius, 0.2);
+  if (!renderer.gl) return;
+  if (isBusy || moved || aims) {
+    chooseDetail(time);
+    renderer.draw(view, shown, detail.step);
+    moved = false;
+    frameTimes.push(time);
+    if (frameTimes.length > 60) frameTimes.shift();
+  } else if (detail.isReduced && time > detail.last + 250) {
+    renderer.draw(view, shown);
+    detail.isReduced = false;
+  }
+}
+
+/// A machine that cannot draw the whole map 25 times a second draws a part of the points while something moves, and all
+/// of them when it rests.
+const detail = {step: 1, last: 0, mean: 20, isReduced: false};
+function chooseDetail(time) {
+  const interval = time - detail.last;
+  if (interval < 1000) detail.mean += 0.2 * (interval - detail.mean);
+  detail.last = time;
+  const before = detail.step;
+  if (detail.mean > 42 && model.points.count / detail.step > 4000) detail.step = Math.min(16, 2 * detail.step);
+  else if (detail.mean < 22) detail.step = Math.max(1, detail.step / 2);
+  if (detail.step !== before) detail.mean = 32;  // see what it is worth first
+  detail.isReduced = detail.step > 1;
+}
+
+const redraw = () => { colourCache.clear(); model.changed.add('all'); picturePanel.draw(); };
+matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redraw);
+new ResizeObserver(() => { moved = true; model.changed.add('frames'); model.changed.add('run'); model.changed.add('now'); }).observe(document.body);
+// For tests, and for whoever wants to know: what is drawn, and how fast.
+globalThis.holdfastViewer = {
+  counts: () => ({points: model.points.count, path: model.path.count, keyframes: model.keyframes.size, loops: model.loops.length / 2,
+                  connected, state: model.state, truth: model.truth?.stamps.length ?? 0, picture: model.picture?.frame ?? null}),
+  place: (i) => [...model.path.row(i).subarray(0, 3)],
+  send: (text) => connection.send(text),
+  view,
+  draw: () => renderer.draw(view, shown),
+  framesPerSecond: () => 1000 * (frameTimes.length - 1) / (frameTimes.at(-1) - frameTimes[0]),
+  spin: (on) => { clearInterval(view.spinning); if (on) view.spinning = setInterval(() => view.rotate(0.01, 0), 10); moved = true; },
+};
+requestAnimationFrame(refresh);

@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "server.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
+#include <chrono>
+#include <csignal>
+#include <optional>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "holdfast/core/error.hpp"
+#include "holdfast/core/thread_name.hpp"
+
+namespace holdfast::viewer {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using boost::asio::ip::tcp;
+
+namespace {
+
+constexpr std::size_t longest_request = 8192;  // with its headers [bytes]
+constexpr std::size_t longest_command = 64;    // [bytes]
+constexpr int most_connections = 64;
+constexpr auto request_time = std::chrono::seconds(10);
+/// A browser that has not answered for so long is gone.
+constexpr auto idle_time = std::chrono::seconds(20);
+constexpr auto tick_watched = std::chrono::milliseconds(33);
+constexpr auto tick_alone = std::chrono::milliseconds(200);
+
+/// Compares in a time that does not tell how much of the text is right.
+bool is_same_secret(std::string_view given, std::string_view secret) {
+  if (given.size() != secret.size()) return false;
+  unsigned difference = 0;
+  for (std::size_t i = 0; i < secret.size(); ++i) difference |= static_cast<unsigned>(given[i] ^ secret[i]);
+  return difference == 0;
+}
+
+}  // namespace
+
+class SocketSession;
+
+struct Server::State {
+  State(std::string secret, std::string page_text, Handlers given)
+      : token(std::move(secret)), page(std::move(page_text)), handlers(std::move(given)) {}
+
+  void listen(const std::string& at, int port);
+  void run();
+  void accept();
+  void tick();
+  void add(const std::shared_ptr<SocketSession>& session);
+  void remove(const SocketSession* session);
+
+  std::string token, page, address;
+  Handlers handlers;
+  asio::io_context io{1};
+  tcp::acceptor acceptor{io};
+  asio::steady_timer timer{io};
+  std::vector<std::shared_ptr<SocketSession>> sessions;
+  int connections = 0;
+  std::thread thread;
+};
+
+/// A browser. Has at most one message on its way; what happens meanwhile is in the next one.
+class SocketSession : public std::enable_shared_from_this<SocketSession> {
+ public:
+  SocketSession(Server::State& server, tcp::socket socket) : server_(server), stream_(std::move(socket)) {}
+
+  void accept(const http::request<http::empty_body>& request) {
+    stream_.set_option(websocket::stream_base::timeout{request_time, idle_time, true});
+    stream_.set_option(websocket::stream_base::decorator(
+        [](websocket::response_type& response) { response.set(http::field::server, "holdfast"); }));
+    stream_.read_message_max(longest_command);
+    stream_.binary(true);
+    stream_.auto_fragment(false);
+    stream_.async_accept(request, [self = shared_from_this()](beast::error_code error) {
+      if (error) return;
+      self->server_.add(self);
+      self->read();
+      self->send();
+    });
+  }
+  /// Sends what the browser lacks, unless a message is on its way.
+  void send() {
+    if (is_sending_ || is_closed_) return;
+    outgoing_ = server_.handlers.update(progress_);
+    if (outgoing_.empty()) return;
+    is_sending_ = true;
+    stream_.async_write(asio::buffer(outgoing_), [self = shared_from_this()](beast::error_code error, std::size_t) {
+      self->is_sending_ = false;
+      if (error) self->leave();
+    });
+  }
+
+ private:
+  void read() {
+    stream_.async_read(incoming_, [self = shared_from_this()](beast::error_code error, std::size_t) {
+      if (error) return self->leave();
+      const std::string text = beast::buffers_to_string(self->incoming_.data());
+      self->incoming_.clear();
+      if (self->stream_.got_text() && self->server_.handlers.command(text)) return self->read();
+      self->leave();
+      self->stream_.async_close({websocket::close_code::policy_error, "unknown message"}, [self](beast::error_code) {});
+    });
+  }
+  void leave() {
+    if (is_closed_) return;
+    is_closed_ = true;
+    server_.remove(this);
+  }
+
+  Server::State& server_;
+  websocket::stream<beast::tcp_stream> stream_;
+  beast::flat_buffer incoming_;
+  std::string outgoing_;
+  Progress progress_;
+  bool is_sending_ = false, is_closed_ = false;
+};
+
+namespace {
+
+/// One request, which is answered, or becomes a SocketSession.
+class RequestSession : public std::enable_shared_from_this<RequestSession> {
+ public:
+  RequestSession(Server::State& server, tcp::socket socket) : server_(server), stream_(std::move(socket)) {
+    ++server_.connections;
+    parser_.emplace();
+    parser_->header_limit(longest_request);
+    parser_->body_limit(0);
+  }
+  ~RequestSession() { --server_.connections; }
+  RequestSession(const RequestSession&) = delete;
+  RequestSession& operator=(const RequestSession&) = delete;
+
+  void read() {
+    stream_.expires_after(request_time);
+    http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](beast::error_code error, std::size_t) {
+      if (!error)
+        self->answer();
+      else if (error != http::error::end_of_stream && error != beast::error::timeout)
+        self->refuse(http::status::bad_request, "not a request that is understood");
+    });
+  }
+
+ private:
+  void answer() {
+    const http::request<http::empty_body>& request = parser_->get();
+    const std::string_view target(request.target().data(), request.target().size());
+    const std::size_t mark = target.find('?');
+    const std::string_view path = target.substr(0, mark);
+    const std::string_view query = mark == std::string_view::npos ? "" : target.substr(mark + 1);
+    if (!is_same_secret(query, "token=" + server_.token))
+      return refuse(http::status::forbidden, "the token is missing or wrong; take the address that the program shows");
+    if (path != "/" && path != "/socket") return refuse(http::status::not_found, "there is only the page");
+    if (request.method() != http::verb::get) return refuse(http::status::method_not_allowed, "expected GET");
+    if (path == "/") return respond(http::status::ok, "text/html; charset=utf-8", server_.page);
+    if (!websocket::is_upgrade(request)) return refuse(http::status::upgrade_required, "expected a WebSocket");
+    if (static_cast<int>(server_.sessions.size()) >= Server::most_browsers)
+      return refuse(http::status::service_unavailable, "too many browsers watch this run");
+    stream_.expires_never();
+    std::make_shared<SocketSession>(server_, stream_.release_socket())->accept(request);
+  }
+  void refuse(http::status status, const std::string& reason) {
+    respond(status, "text/plain; charset=utf-8", reason + "\n");
+  }
+  void respond(http::status status, const char* type, std::string body) {
+    response_.result(status);
+    response_.version(11);
+    response_.set(http::field::server, "holdfast");
+    response_.set(http::field::content_type, type);
+    response_.set(http::field::cache_control, "no-store");
+    response_.set("Referrer-Policy", "no-referrer");
+    response_.set("X-Content-Type-Options", "nosniff");
+    response_.set("X-Frame-Options", "DENY");
+    response_.set("Content-Security-Policy",
+                  "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data: blob:; "
+                  "connect-src 'self' ws:; base-uri 'none'; form-action 'none'");
+    response_.body() = std::move(body);
+    response_.keep_alive(false);
+    response_.prepare_payload();
+    stream_.expires_after(request_time);
+    http::async_write(stream_, response_, [self = shared_from_this()](beast::error_code, std::size_t) {
+      beast::error_code ignored;
+      self->stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+    });
+  }
+
+  Server::State& server_;
+  beast::tcp_stream stream_;
+  beast::flat_buffer buffer_{longest_request};
+  std::optional<http::request_parser<http::empty_body>> parser_;
+  http::response<http::string_body> response_;
+};
+
+std::string host_of(const tcp::endpoint& endpoint) {
+  if (endpoint.address().is_unspecified()) {
+    std::array<char, 256> name{};
+    if (gethostname(name.data(), name.size() - 1) == 0) return name.data();
+  }
+  const std::string text = endpoint.address().to_string();
+  return endpoint.address().is_v6() ? "[" + text + "]" : text;
+}
+
+}  // namespace
+
+void Server::State::listen(const std::string& at, int port) {
+  const auto fail = [&](const std::string& reason) {
+    throw InputError({"viewer"},
+                     "cannot listen at " + at + ", port " + std::to_string(port) + ": " + reason +
+                         "; give `listen` a numeric address of this machine, and `port` 0 for any free one");
+  };
+  beast::error_code error;
+  const asio::ip::address numeric = asio::ip::make_address(at, error);
+  if (error) fail(error.message());
+  const tcp::endpoint endpoint(numeric, static_cast<std::uint16_t>(port));
+  acceptor.open(endpoint.protocol(), error);
+  if (error) fail(error.message());
+  acceptor.set_option(asio::socket_base::reuse_address(true), error);
+  acceptor.bind(endpoint, error);
+  if (error) fail(error.message());
+  acceptor.listen(asio::socket_base::max_listen_connections, error);
+  if (error) fail(error.message());
+  const tcp::endpoint bound = acceptor.local_endpoint();
+  address = "http://" + host_of(bound) + ":" + std::to_string(bound.port()) + "/?token=" + token;
+}
+
+void Server::State::accept() {
+  acceptor.async_accept([this](beast::error_code error, tcp::socket socket) {
+    if (error == asio::error::operation_aborted) return;
+    if (!error && connections < most_connections) {
+      beast::error_code ignored;
+      socket.set_option(tcp::no_delay(true), ignored);
+      std::make_shared<RequestSession>(*this, std::move(socket))->read();
+    }
+    accept();
+  });
+}
+
+void Server::State::tick() {
+  timer.expires_after(sessions.empty() ? tick_alone : tick_watched);
+  timer.async_wait([this](beast::error_code error) {
+    if (error) return;
+    handlers.tick();
+    const std::vector<std::shared_ptr<SocketSession>> now = sessions;  // sending can end one
+    for (const auto& session : now) session->send();
+    tick();
+  });
+}
+
+void Server::State::add(const std::shared_ptr<SocketSession>& session) {
+  sessions.push_back(session);
+  handlers.watched(static_cast<int>(sessions.size()));
+  handlers.tick();
+  tick();  // at once at the faster rate
+}
+
+void Server::State::remove(const SocketSession* session) {
+  std::erase_if(sessions, [&](const auto& other) { return other.get() == session; });
+  handlers.watched(static_cast<int>(sessions.size()));
+}
+
+void Server::State::run() {
+  name_this_thread("viewer");
+  accept();
+  tick();
+  io.run();
+}
+
+Server::Server(const std::string& listen, int port, std::string token, std::string page, Handlers handlers)
+    : state_(std::make_unique<State>(std::move(token), std::move(page), std::move(handlers))) {
+  state_->listen(listen, port);
+  // Signals are for the thread that runs the frames, which may be waiting for its turn.
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  state_->thread = std::thread([state = state_.get()] { state->run(); });
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
+
+Server::~Server() {
+  state_->io.stop();
+  state_->thread.join();
+}
+
+const std::string& Server::address() const { return state_->address; }
+
+}  // namespace holdfast::viewer

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/viewer/viewer.hpp"
+
+#include <sys/random.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <mutex>
+#include <optional>
+
+#include "holdfast/core/embedded_page.hpp"
+#include "holdfast/core/error.hpp"
+#include "holdfast/core/stage_times.hpp"
+#include "play_control.hpp"
+#include "scene.hpp"
+#include "server.hpp"
+
+namespace holdfast {
+
+std::span<const EmbeddedFile> embedded_viewer_page();
+
+namespace {
+
+/// Not of the run's seed: nobody shall be able to guess it.
+std::string random_token() {
+  std::array<unsigned char, 16> bytes{};
+  std::size_t filled = 0;
+  while (filled < bytes.size()) {
+    const ssize_t count = getrandom(bytes.data() + filled, bytes.size() - filled, 0);
+    if (count < 0 && errno != EINTR) throw Error("the viewer cannot make a token: the system gives no random numbers");
+    if (count > 0) filled += static_cast<std::size_t>(count);
+  }
+  std::string token;
+  for (const unsigned char byte : bytes) {
+    char digits[3];
+    std::snprintf(digits, sizeof(digits), "%02x", byte);
+    token += digits;
+  }
+  return token;
+}
+
+/// Since the clock of the machine began [s].
+double now() {
+  static const Stopwatch watch;
+  return watch.seconds();
+}
+
+std::mutex viewers_mutex;
+std::vector<std::weak_ptr<Viewer>> viewers;
+
+}  // namespace
+
+/// What was given and not taken by the thread of the server yet.
+struct Mailbox {
+  std::vector<FrameResult> frames;
+  std::optional<ViewedPicture> picture;
+  std::optional<MapSnapshot> map;
+  std::vector<std::pair<KeyFrameId, KeyFrameId>> loops;
+  std::optional<ViewedRun> run;
+};
+
+struct Viewer::State {
+  explicit State(const ViewerOptions& given)
+      : options(given),
+        control(given.speed),
+        scene(given),
+        server(given.listen, given.port, random_token(), embedded_page(embedded_viewer_page(), "viewer.html"),
+               {.tick = [this] { take_mail(); },
+                .update = [this](viewer::Progress& progress) { return scene.update(progress); },
+                .command = [this](std::string_view text) { return obey(text); },
+                .watched = [this](int count) { control.set_watchers(count); }}) {}
+  ~State() { control.close(); }
+
+  void take_mail();
+  bool obey(std::string_view text);
+
+  ViewerOptions options;
+  viewer::PlayControl control;
+  std::mutex mutex;
+  Mailbox mailbox;
+  std::atomic<bool> has_picture = false, has_map = false;
+  std::atomic<double> next_picture = 0.0, last_map = 0.0, map_cost = -1.0;
+  viewer::Scene scene;    // of the server's thread
+  viewer::Server server;  // last: its thread uses everything above
+};
+
+void Viewer::State::take_mail() {
+  Mailbox mail;
+  {
+    const std::lock_guard lock(mutex);
+    std::swap(mail, mailbox);
+  }
+  if (mail.map) scene.set_map(*mail.map);
+  for (const FrameResult& frame : mail.frames) scene.add(frame);
+  for (const auto& [keyframe, candidate] : mail.loops) scene.add_loop(keyframe, candidate);
+  if (mail.picture) scene.set_picture(*mail.picture);
+  if (mail.run) scene.set_run(std::move(*mail.run));
+  // Only now is another one wanted: whoever makes pictures and maps does not run ahead of this thread.
+  if (mail.picture) has_picture = false;
+  if (mail.map) has_map = false;
+  scene.set_play({control.is_paused(), control.speed(), control.watchers()});
+}
+
+bool Viewer::State::obey(std::string_view text) {
+  if (text == "pause")
+    control.pause();
+  else if (text == "resume")
+    control.resume();
+  else if (text == "step")
+    control.step();
+  else {
+    constexpr std::array<std::pair<std::string_view, double>, 6> speeds{{{"speed 0", 0.0},
+                                                                         {"speed 0.25", 0.25},
+                                                                         {"speed 0.5", 0.5},
+                                                                         {"speed 1", 1.0},
+                                                                         {"speed 2", 2.0},
+                                                                         {"speed 4", 4.0}}};
+    const auto* const speed =
+        std::find_if(speeds.begin(), speeds.end(), [&](const auto& s) { return s.first == text; });
+    if (speed == speeds.end()) return false;
+    control.set_speed(speed->second);
+  }
+  return true;
+}
+
+std::shared_ptr<Viewer> Viewer::start(const ViewerOptions& options) {
+  std::shared_ptr<Viewer> viewer(new Viewer(options));
+  const std::lock_guard lock(viewers_mutex);
+  std::erase_if(viewers, [](const std::weak_ptr<Viewer>& other) { return other.expired(); });
+  viewers.push_back(viewer);
+  return viewer;
+}
+
+Viewer::Viewer(const ViewerOptions& options) : state_(std::make_unique<State>(options)) {}
+Viewer::~Viewer() = default;
+
+const std::string& Viewer::address() const { return state_->server.address(); }
+bool Viewer::is_watched() const { return state_->control.watchers() > 0; }
+
+void Viewer::add_frame(const FrameResult& result) {
+  const std::lock_guard lock(state_->mutex);
+  state_->mailbox.frames.push_back(result);
+}
+
+bool Viewer::wants_picture() const { return is_watched() && !state_->has_picture && now() >= state_->next_picture; }
+
+void Viewer::set_picture(ViewedPicture picture) {
+  state_->next_picture = now() + 1.0 / state_->options.picture_rate;
+  state_->has_picture = true;
+  const std::lock_guard lock(state_->mutex);
+  state_->mailbox.picture = std::move(picture);
+}
+
+bool Viewer::wants_map() const {
+  if (state_->has_map) return false;
+  const double cost = state_->map_cost;
+  if (cost < 0.0) return true;
+  const double pause = is_watched() ? std::max(0.2, 50.0 * cost) : std::max(2.0, 1000.0 * cost);
+  return now() >= state_->last_map + pause;
+}
+
+void Viewer::set_map(MapSnapshot map, double seconds) {
+  state_->map_cost = seconds;
+  state_->last_map = now();
+  state_->has_map = true;
+  const std::lock_guard lock(state_->mutex);
+  state_->mailbox.map = std::move(map);
+}
+
+void Viewer::add_loop(KeyFrameId keyframe, KeyFrameId candidate) {
+  const std::lock_guard lock(state_->mutex);
+  state_->mailbox.loops.emplace_back(keyframe, candidate);
+}
+
+void Viewer::set_run(ViewedRun run) {
+  const std::lock_guard lock(state_->mutex);
+  state_->mailbox.run = std::move(run);
+}
+
+void Viewer::take_turn(double timestamp) { state_->control.take_turn(timestamp); }
+void Viewer::wait_for_browser() { state_->control.wait_for_watcher(); }
+
+std::vector<std::shared_ptr<Viewer>> running_viewers() {
+  const std::lock_guard lock(viewers_mutex);
+  std::vector<std::shared_ptr<Viewer>> running;
+  for (const std::weak_ptr<Viewer>& viewer : viewers)
+    if (std::shared_ptr<Viewer> alive = viewer.lock()) running.push_back(std::move(alive));
+  return running;
+}
+
+}  // namespace holdfast

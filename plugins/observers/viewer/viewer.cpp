@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/viewer/viewer.hpp"
+
+#include <utility>
+
+#include "holdfast/core/stage_times.hpp"
+#include "holdfast/interfaces/observer.hpp"
+#include "holdfast/plugin/plugin.hpp"
+#include "holdfast/settings/viewer.hpp"
+#include "picture.hpp"
+
+namespace holdfast {
+
+void ViewerSettings::describe(ParameterTable<ViewerSettings>& table) {
+  using S = ViewerSettings;
+  table.add("listen", &S::listen,
+            "numeric address to serve the page at; another one than 127.0.0.1 opens the run to other machines");
+  table.add("port", &S::port, "port to serve the page at; 0 = any free one").range(0, 65535);
+  table.add("wait", &S::wait, "wait for a browser after the first frame");
+  table.add("speed", &S::speed, "speed of the frames at first, relative to their time stamps; 0 = as fast as possible")
+      .range(0.0, 4.0);
+  table.add("picture_width", &S::picture_width, "wider pictures are scaled down before they are sent")
+      .range(64, 4096)
+      .unit("px");
+  table.add("picture_rate", &S::picture_rate, "maximum number of pictures per second").range(0.1, 60.0).unit("1/s");
+}
+
+namespace {
+
+/// Shows the run in browsers. Without a browser the cost of a frame is that of copying its result.
+class ViewerObserver final : public Observer {
+ public:
+  ViewerObserver(const ViewerSettings& settings, const CreationContext& context)
+      : viewer_(Viewer::start({.listen = settings.listen,
+                               .port = settings.port,
+                               .speed = settings.speed,
+                               .picture_width = settings.picture_width,
+                               .picture_rate = settings.picture_rate,
+                               .title = context.output_directory.filename().string(),
+                               .camera = context.camera})),
+        pictures_(context.camera),
+        waits_(settings.wait) {}
+
+  void on_frame(const SensorFrame& sensor_frame, const Frame& frame, const FrameResult& result) override {
+    viewer_->add_frame(result);
+    if (std::exchange(waits_, false)) viewer_->wait_for_browser();
+    if (viewer_->wants_picture() && !sensor_frame.colour.empty())
+      viewer_->set_picture(pictures_.make(sensor_frame, frame, result));
+    viewer_->take_turn(result.timestamp);
+  }
+  void on_keyframe(KeyFrameId, const ObservedMap& map) override {
+    if (viewer_->wants_map()) show(map);
+  }
+  void on_loop(KeyFrameId keyframe, KeyFrameId candidate, const ObservedMap& map) override {
+    show(map);
+    viewer_->add_loop(keyframe, candidate);
+  }
+  void on_finish(const Map& map) override { viewer_->set_map(make_snapshot(map), 0.0); }
+
+ private:
+  void show(const ObservedMap& map) {
+    const Stopwatch watch;
+    MapSnapshot snapshot = map.snapshot();
+    viewer_->set_map(std::move(snapshot), watch.seconds());
+  }
+
+  std::shared_ptr<Viewer> viewer_;
+  viewer_plugin::PictureMaker pictures_;
+  bool waits_;
+};
+
+}  // namespace
+
+HOLDFAST_PLUGIN(viewer, registry) {
+  registry.add<Observer, ViewerObserver, ViewerSettings>(
+      {.name = ViewerSettings::module,
+       .summary = "Shows the run in a browser while it goes: map, path, picture, objects and times per stage."});
+}
+
+}  // namespace holdfast

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+#include "holdfast/viewer/viewer.hpp"
+#include "support/browser.hpp"
+#include "viewer/viewed_world.hpp"
+
+namespace holdfast {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// The page in a real browser.
+class ViewerBrowserTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto program = test::find_browser();
+    if (!program) GTEST_SKIP() << "no chromium, chromium-browser or google-chrome in PATH to look at the page with";
+    profile_ = fs::path(testing::TempDir()) / ("holdfast_viewer_browser_" + std::to_string(getpid()));
+    browser_.emplace(*program, profile_);
+  }
+  void TearDown() override {
+    browser_.reset();
+    std::error_code ignored;
+    fs::remove_all(profile_, ignored);
+  }
+
+  /// Waits until an expression holds in the page.
+  bool becomes(const std::string& expression) {
+    for (int i = 0; i < 600; ++i) {
+      if (browser_->evaluate("Boolean(" + expression + ")") == true) return true;
+      usleep(50'000);
+    }
+    return false;
+  }
+  std::string text(const std::string& id) {
+    return browser_->evaluate("document.getElementById('" + id + "').textContent").get<std::string>();
+  }
+  void open() { browser_->open_page(viewer_->address()); }
+
+  std::shared_ptr<Viewer> viewer_ = Viewer::start({.title = "</script><b>run</b>"});
+  fs::path profile_;
+  std::optional<test::Browser> browser_;
+};
+
+const std::string counts = "globalThis.holdfastViewer?.counts()";
+
+TEST_F(ViewerBrowserTest, ShowsWhatComesAndWhatALoopMoves) {
+  viewer_->set_map(test::row_map(4), 0.0);
+  for (std::uint32_t i = 0; i < 4; ++i) viewer_->add_frame(test::row_frame(i));
+  open();
+  ASSERT_TRUE(becomes(counts + "?.points === 4 && " + counts + ".path === 4 && " + counts + ".keyframes === 4"));
+  EXPECT_EQ(text("title"), "</script><b>run</b>");
+  EXPECT_EQ(text("state"), "tracking");
+  EXPECT_TRUE(becomes("document.getElementById('stages').textContent.includes('features')"));
+
+  MapSnapshot closed = test::row_map(4);
+  closed.keyframes[3].T_world_camera = test::pose_at(3, 2);
+  closed.loops.push_back({test::keyframe_id(0), test::keyframe_id(3)});
+  viewer_->set_map(closed, 0.0);
+  viewer_->add_loop(test::keyframe_id(3), test::keyframe_id(0));
+  EXPECT_TRUE(becomes(counts + ".loops === 1 && holdfastViewer.place(3)[1] === 2"));
+  EXPECT_EQ(browser_->evaluate("holdfastViewer.place(0)[1]"), 0);
+
+  FrameResult lost = test::row_frame(5);
+  lost.status = TrackingStatus::lost;
+  lost.trouble = TrackingTrouble::few_features;
+  lost.T_world_camera.reset();
+  viewer_->add_frame(lost);
+  EXPECT_TRUE(becomes("document.getElementById('state').textContent.startsWith('lost')"));
+  EXPECT_EQ(browser_->evaluate("document.getElementById('state').className"), "state bad");
+  EXPECT_THAT(browser_->complaints(), IsEmpty());
+}
+
+TEST_F(ViewerBrowserTest, ShowsThePicture) {
+  ViewedPicture picture;
+  picture.index = 3;
+  picture.colour = cv::Mat(480, 640, CV_8UC3, cv::Scalar(0, 200, 0));
+  picture.features = {{100, 100, 1.0F, true}};
+  open();
+  ASSERT_TRUE(becomes(counts + "?.connected"));
+  viewer_->add_frame(test::row_frame(3));
+  viewer_->set_picture(picture);
+  EXPECT_TRUE(becomes("document.getElementById('picture-name').textContent === 'frame 3'"));
+  const std::string middle =
+      "[...document.getElementById('picture').getContext('2d').getImageData(240, 180, 1, 1).data]";
+  EXPECT_GT(browser_->evaluate(middle)[1].get<int>(), 180);
+  EXPECT_THAT(browser_->complaints(), IsEmpty());
+}
+
+TEST_F(ViewerBrowserTest, DrawsTheMap) {
+  viewer_->set_map(test::row_map(4), 0.0);
+  open();
+  ASSERT_TRUE(becomes(counts + "?.points === 4"));
+  if (browser_->evaluate("Boolean(document.getElementById('map').getContext('webgl2'))") == false)
+    GTEST_SKIP() << "this browser has no WebGL 2";
+  // The picture of the map in one step with its drawing, before the browser takes the buffer.
+  const std::string colours =
+      "(() => { holdfastViewer.draw(); const c = document.getElementById('map'), gl = c.getContext('webgl2');"
+      "const p = new Uint8Array(4 * c.width * c.height); gl.readPixels(0, 0, c.width, c.height, gl.RGBA, "
+      "gl.UNSIGNED_BYTE, p); return new Set(new Uint32Array(p.buffer)).size; })()";
+  EXPECT_TRUE(becomes(colours + " > 3")) << "ground, grid, points, keyframes";
+  const nlohmann::json before = browser_->evaluate("holdfastViewer.view.eye()");
+  browser_->click("document.querySelector('input[value=top]')");
+  EXPECT_NE(browser_->evaluate("holdfastViewer.view.eye()"), before);
+  EXPECT_THAT(browser_->complaints(), IsEmpty());
+}
+
+TEST_F(ViewerBrowserTest, ComesBackAfterTheConnectionWasLost) {
+  viewer_->set_map(test::row_map(4), 0.0);
+  open();
+  ASSERT_TRUE(becomes(counts + "?.points === 4"));
+  browser_->evaluate("holdfastViewer.send('what is this')");  // the program ends the connection
+  EXPECT_TRUE(becomes(counts + ".connected === false"));
+  viewer_->set_map(test::row_map(6), 0.0);
+  EXPECT_TRUE(becomes(counts + ".connected && " + counts + ".points === 6"));
+}
+
+TEST_F(ViewerBrowserTest, PausesAndShowsTheEnd) {
+  open();
+  ASSERT_TRUE(becomes(counts + "?.connected"));
+  viewer_->add_frame(test::row_frame(0));
+  browser_->click("document.getElementById('pause')");
+  EXPECT_TRUE(becomes("document.getElementById('pause').textContent === 'Resume'"));
+  browser_->click("document.getElementById('pause')");
+  EXPECT_TRUE(becomes("document.getElementById('pause').textContent === 'Pause'"));
+
+  ViewedRun run;
+  for (int i = 0; i < 50; ++i) {
+    run.path.push_back({i / 30.0, test::pose_at(i * 0.01)});
+    run.errors.push_back(0.001F * static_cast<float>(i));
+    run.truth.emplace_back(i / 30.0, Eigen::Vector3d(i * 0.01, 0.01, 0));
+  }
+  run.figures = {{"ATE RMSE", "<i>3 mm</i>"}};
+  viewer_->set_run(run);
+  ASSERT_TRUE(becomes(counts + ".state.finished && " + counts + ".truth === 50"));
+  EXPECT_TRUE(becomes("document.getElementById('pause').textContent === 'Play'"));
+  EXPECT_TRUE(becomes("document.getElementById('figures').textContent.includes('<i>3 mm</i>')"));
+  EXPECT_TRUE(becomes("!document.getElementById('slider').hidden && !document.getElementById('error-panel').hidden"));
+  browser_->evaluate(
+      "(() => { const s = document.getElementById('slider'); s.value = 20; s.dispatchEvent(new Event('input')); })()");
+  EXPECT_TRUE(becomes("document.getElementById('error-now').textContent === 'here 20.0 mm'"));
+  EXPECT_THAT(browser_->complaints(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace holdfast
