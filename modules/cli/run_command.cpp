@@ -46,7 +46,7 @@ void keep_map_out_of_results(const Arguments& arguments) {
 void keep_recording_out_of_results(const Arguments& arguments) {
   if (arguments.record.empty()) return;
   const auto canonical = [](const std::filesystem::path& folder) {  // with a slash at the end, or none, the same
-    return std::filesystem::weakly_canonical(folder / "").parent_path();
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(folder / "")).parent_path();
   };
   if (canonical(arguments.record) == canonical(arguments.output))
     throw UsageError("--record and --output name the same folder; give the recording one of its own");

@@ -19,6 +19,11 @@ class ViewProgramTest : public testing::Test {
     program_.write("run.yaml",
                    "source: { simulated: { duration: 1.5 } }\ncamera: tum_fr1\nfeatures: orb\noptimizer: schur\n");
   }
+  /// Starts the program; what an earlier one printed is gone.
+  pid_t start(const std::vector<std::string>& arguments) const {
+    std::filesystem::remove(program_.path("stdout"));
+    return program_.start(arguments);
+  }
   /// The address that the program prints.
   test::ViewerAddress address() const {
     for (int i = 0; i < 2400; ++i) {
@@ -38,7 +43,7 @@ class ViewProgramTest : public testing::Test {
 };
 
 TEST_F(ViewProgramTest, ShowsARunUntilItIsStoppedAndItsResultsLater) {
-  const pid_t run = program_.start({"run", "run.yaml", "--output", "out", "--view"});
+  const pid_t run = start({"run", "run.yaml", "--output", "out", "--view"});
   {
     test::SocketClient client(address());
     client.receive_until(is_finished);
@@ -50,7 +55,7 @@ TEST_F(ViewProgramTest, ShowsARunUntilItIsStoppedAndItsResultsLater) {
   EXPECT_THAT(program_.text("out/config.yaml"), HasSubstr("viewer:"));
 
   for (const char* shown : {"out", "out/map.hfm"}) {
-    const pid_t view = program_.start({"view", shown});
+    const pid_t view = start({"view", shown});
     {
       test::SocketClient client(address());
       const ReceivedMessage message = client.receive_until(is_finished);
@@ -70,13 +75,11 @@ TEST_F(ViewProgramTest, ShowsARunUntilItIsStoppedAndItsResultsLater) {
     }
     kill(view, SIGTERM);
     EXPECT_EQ(program_.finish(view).exit_code, 0);
-    std::filesystem::remove(program_.path("stdout"));
   }
 }
 
 TEST_F(ViewProgramTest, SameBytesWithAndWithoutABrowser) {
   ASSERT_EQ(program_.run({"run", "run.yaml", "--output", "alone"}).exit_code, 0);
-  std::filesystem::remove(program_.path("stdout"));
   const pid_t run = program_.start(
       {"run", "run.yaml", "--output", "watched", "--view", "--set", "observers=[{viewer: {wait: true}}]"});
   {

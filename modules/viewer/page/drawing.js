@@ -213,6 +213,7 @@ class Renderer {
       if (shown[name] === false || !set.count) continue;
       gl.bindVertexArray(set.array);
       gl.uniform1f(this.lines.width, set.width * ratio);
+      if (name === 'camera') continue;  // drawn last, over everything
       gl.drawElements(gl.TRIANGLES, 6 * set.count, gl.UNSIGNED_INT, 0);
     }
     gl.useProgram(this.points.program);
@@ -237,6 +238,15 @@ class Renderer {
       this.colours([red, red, red, red]);
       gl.uniform2f(this.points.size, 0.02 * height, 2.4 * ratio);
       gl.drawArrays(gl.POINTS, 0, this.movingBuffer.count);
+    }
+    const camera = this.sets.get('camera');
+    if (camera?.count) {
+      gl.useProgram(this.lines.program);
+      gl.bindVertexArray(camera.array);
+      gl.uniform1f(this.lines.width, camera.width * ratio);
+      gl.disable(gl.DEPTH_TEST);
+      gl.drawElements(gl.TRIANGLES, 6 * camera.count, gl.UNSIGNED_INT, 0);
+      gl.enable(gl.DEPTH_TEST);
     }
     gl.bindVertexArray(null);
   }

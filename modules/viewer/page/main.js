@@ -201,12 +201,12 @@ function buildObjects() {
 function buildCamera() {
   const lines = new Lines();
   const pose = model.pose(now);
-  if (pose) lines.addFrustum(pose, model.head.camera, Math.min(0.6, Math.max(0.12, (fitted?.radius ?? 2) * 0.06)), cssColour(model.state.status_number === 3 ? '--moving' : '--text'));
+  if (pose) lines.addFrustum(pose, model.head.camera, Math.min(1.5, Math.max(0.15, (fitted?.radius ?? 2) * 0.1)), cssColour(model.state.status_number === 3 ? '--moving' : '--text'));
   renderer.setLines('camera', lines, 2.2);
 }
 
 function showLegend() {
-  const entries = [['static', '--static'], ['doubtful', '--doubtful'], ['moving', '--moving'], ['not measured', '--unmeasured']]
+  const entries = [['static', '--static'], ['doubtful', '--doubtful'], ['moving', '--moving'], ['not measured', '--unmeasured'], ...(model.state.finished ? [] : [['in view', '--accent']])]
       .map(([name, colour]) => element('li', {}, element('i', {colour: `var(${colour})`}), name));
   if (errorMost !== null)
     entries.push(element('li', {}, element('i', {class: 'line', colour: 'linear-gradient(90deg, var(--static), var(--doubtful), var(--moving))'}), `path by error, to ${fixed(errorMost * 1e3, 1)} mm`));
@@ -268,7 +268,7 @@ function refresh(time) {
   if (has('state', 'keyframes', 'path', 'run')) { showState(model, connected); showControls(); }
   if (has('objects')) showObjects(model);
   if (has('run', 'picture', 'frames')) showRun(model);
-  if (has('run', 'path', 'keyframes')) showLegend();
+  if (has('run', 'path', 'keyframes', 'state')) showLegend();
   if (has('run', 'path', 'now') && errorMost !== null) drawErrors(model, errorMost, now);
   if (has('state', 'now', 'run')) showClock();
   const isBusy = changed.size > 0;
