@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdlib>
 
 #include "bench/listed_recording.hpp"
 #include "cli/program.hpp"
@@ -159,6 +160,20 @@ TEST_F(BenchExternalTest, AWrapperCallsASystemByItsName) {
   program_.write("matrix.yaml", "systems: { theirs: { wrapper: stella_slam } }\nsequences: {}\n");
   EXPECT_THAT(program_.run({"bench", "matrix.yaml", "--dry-run"}).errors,
               HasSubstr("matrix.yaml:1:31: there is no wrapper 'stella_slam'; did you mean 'stella_vslam'"));
+}
+
+/// The example for GNU parallel, with this host alone.
+TEST_F(BenchExternalTest, RunsGoThroughGnuParallel) {
+  if (std::system("parallel --version > /dev/null 2>&1") != 0)
+    GTEST_SKIP() << "GNU parallel (Debian: parallel) is missing";
+  program_.write("matrix.yaml", matrix({"good", "half"}));
+  const std::string command = "cd '" + program_.path("").string() +
+                              "' && HOLDFAST='" HOLDFAST_PROGRAM "' sh '" HOLDFAST_SOURCE_DIR
+                              "/examples/external/bench_over_ssh.sh' 2/: matrix.yaml out > log.txt 2>&1 < /dev/null";
+  ASSERT_EQ(std::system(command.c_str()), 0) << program_.text("log.txt");
+  EXPECT_THAT(program_.text("log.txt"), HasSubstr("2 of 2 runs were finished before"));
+  EXPECT_THAT(program_.text("out/tables/runs.csv"),
+              AllOf(HasSubstr("\ngood,little,,1,finished,0,50,50,"), HasSubstr("\nhalf,little,,1,finished,0,50,25,")));
 }
 
 TEST_F(BenchExternalTest, FindsTheMatricesOfTheProjectSound) {

@@ -195,7 +195,7 @@ TEST_F(ConfiguredPipeline, DescribesItsSections) {
     }
   }
   EXPECT_THAT(names, ::testing::ElementsAre("tracking", "stereo", "segmentation", "evidence", "mapping", "loop_closing",
-                                            "dense_map"));
+                                            "dense_map", "perturbation"));
 }
 
 }  // namespace
