@@ -79,8 +79,6 @@ StereoRectification::StereoRectification(const StereoCalibration& calibration) :
   camera_.fx = camera_.fy = focal_length;
   camera_.cx = 0.5 * (camera_.width - 1.0 - focal_length * (bounds.left + bounds.right));
   camera_.cy = 0.5 * (camera_.height - 1.0 - focal_length * (bounds.top + bounds.bottom));
-  left_ = maps_of(calibration.left, T_left_rectified_);
-  right_ = maps_of(calibration.right, T_right_rectified_);
 }
 
 StereoRectification::Maps StereoRectification::maps_of(const Camera& raw,
@@ -97,20 +95,21 @@ StereoRectification::Maps StereoRectification::maps_of(const Camera& raw,
   return maps;
 }
 
-cv::Mat StereoRectification::rectify_left(const cv::Mat& raw) const {
-  HOLDFAST_CHECK(raw.cols == calibration_.left.width && raw.rows == calibration_.left.height,
-                 raw.cols << "x" << raw.rows);
+cv::Mat StereoRectification::rectify(const cv::Mat& raw, const Camera& camera, const Eigen::Isometry3d& T_raw_rectified,
+                                     std::once_flag& once, Maps& maps) const {
+  HOLDFAST_CHECK(raw.cols == camera.width && raw.rows == camera.height, raw.cols << "x" << raw.rows);
+  std::call_once(once, [&] { maps = maps_of(camera, T_raw_rectified); });
   cv::Mat rectified;
-  cv::remap(raw, rectified, left_.whole, left_.fraction, cv::INTER_LINEAR);
+  cv::remap(raw, rectified, maps.whole, maps.fraction, cv::INTER_LINEAR);
   return rectified;
 }
 
+cv::Mat StereoRectification::rectify_left(const cv::Mat& raw) const {
+  return rectify(raw, calibration_.left, T_left_rectified_, left_once_, left_);
+}
+
 cv::Mat StereoRectification::rectify_right(const cv::Mat& raw) const {
-  HOLDFAST_CHECK(raw.cols == calibration_.right.width && raw.rows == calibration_.right.height,
-                 raw.cols << "x" << raw.rows);
-  cv::Mat rectified;
-  cv::remap(raw, rectified, right_.whole, right_.fraction, cv::INTER_LINEAR);
-  return rectified;
+  return rectify(raw, calibration_.right, T_right_rectified_, right_once_, right_);
 }
 
 }  // namespace holdfast

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <mutex>
 #include <opencv2/core/mat.hpp>
 
 #include "holdfast/core/camera.hpp"
@@ -46,11 +47,15 @@ class StereoRectification {
     cv::Mat whole, fraction;  // as of cv::convertMaps
   };
   Maps maps_of(const Camera& raw, const Eigen::Isometry3d& T_raw_rectified) const;
+  cv::Mat rectify(const cv::Mat& raw, const Camera& camera, const Eigen::Isometry3d& T_raw_rectified,
+                  std::once_flag& once, Maps& maps) const;
 
   StereoCalibration calibration_;
   Eigen::Isometry3d T_left_rectified_, T_right_rectified_;
   Camera camera_;
-  Maps left_, right_;
+  // Made with the first image: only then is it sure that images are as large as a calibration says.
+  mutable std::once_flag left_once_, right_once_;
+  mutable Maps left_, right_;
 };
 
 }  // namespace holdfast
