@@ -37,9 +37,9 @@ Answer ask(const std::vector<std::string>& command, const fs::path& folder) {
   std::ifstream stream(file, std::ios::binary);
   Answer answer{end->was_started && end->signal == 0 && end->exit_code == 0,
                 {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()}};
-  if (!end->was_started)
-    answer.text = "the program '" + command.front() + "' is not found; is this a host from which jobs are submitted?";
   fs::remove(file, ignored);
+  if (!end->was_started)
+    throw Error("the program '" + command.front() + "' is not found; is this a host from which jobs are submitted?");
   return answer;
 }
 

@@ -29,7 +29,8 @@ std::string shell_quoted(const std::string& word);
 /// Submits folder/job.sh as an array. Throws Error with what sbatch said.
 void submit_slurm(const SlurmOptions& options, const std::string& name, const std::filesystem::path& folder,
                   std::size_t count, bool alone);
-/// The tasks of all our batches; nothing while the controller does not answer. `folder` is for squeue's output.
+/// The tasks of all our batches; nothing while the controller does not answer. `folder` is for squeue's output. Throws
+/// Error if this host has no Slurm.
 std::optional<std::vector<QueuedTask>> query_slurm(const std::string& name, const std::filesystem::path& folder);
 /// Reads lines "name|task|state" of squeue; those of other jobs are left out.
 std::vector<QueuedTask> parse_queue(const std::string& text, const std::string& name);

@@ -115,7 +115,7 @@ TEST(PerturbedSourceTest, RepeatsItselfAndFollowsTheSeed) {
   }
 }
 
-/// A clip of a sequence is spoiled as the whole sequence is.
+/// Frames that are skipped change nothing about the others.
 TEST(PerturbedSourceTest, DoesNotDependOnTheFramesBefore) {
   for (const auto& [kind, settings] : all_perturbations()) {
     if (kind == "repeated" || kind == "late") continue;

@@ -59,6 +59,7 @@ SelectType=select/cons_tres
 SelectTypeParameters=CR_Core
 SchedulerParameters=sched_interval=1,batch_sched_delay=0
 ReturnToService=2
+SlurmdParameters=config_overrides
 SlurmdTimeout=10
 SlurmctldTimeout=10
 MaxArraySize=5001

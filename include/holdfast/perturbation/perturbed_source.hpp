@@ -12,9 +12,8 @@
 
 namespace holdfast {
 
-/// Wraps a source and makes its frames worse. What is drawn for a frame depends on the seed and the index of the frame
-/// alone, so that the same frame is spoiled in the same way wherever a sequence begins; only repeated and late frames
-/// depend on the frame before. Images of the wrapped source are never written to. The truth stays that of the source:
+/// Wraps a source and makes its frames worse. What is drawn for a frame depends on the seed and on SensorFrame::index
+/// alone, not on which frames came before; only repeated and late frames depend on the frame before. Images of the wrapped source are never written to. The truth stays that of the source:
 /// pose and masks of a frame are those of the images that it shows, and the occluder is a moving object (255) without a
 /// class. Used by one thread.
 class PerturbedSource final : public FrameSource {
