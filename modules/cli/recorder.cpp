@@ -16,6 +16,7 @@ constexpr const char* configuration_file = "recording.yaml";
 /// moved.
 Configuration on_recording(const Configuration& original, const Registry& registry, const SourceDescription& source) {
   Configuration result = original;
+  result.sections.erase("perturbation");  // the recorded frames have it already
   result.source = {.kind = FrameSource::kind, .name = "tum", .values = {}, .location = {configuration_file}};
   const ModuleEntry* tum = registry.find(result.source.kind, result.source.name);
   if (tum == nullptr) throw PluginError("a recording is read by the source 'tum', which these modules do not contain");
