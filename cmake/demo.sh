@@ -14,6 +14,9 @@ if [ "${1:-}" = --view ]; then
   view=yes
   shift
 fi
+case "${1:-}" in
+  -*) echo "demo: unknown option '$1'; known is --view" >&2; exit 2 ;;
+esac
 build=${1:-build}
 output=out/demo
 

@@ -80,7 +80,7 @@ class PointOfView {
   }
   /// Moves towards showing a place and a radius around it; true while there is way to go.
   approach(target, radius, share) {
-    const distance = radius === null ? this.distance : Math.max(0.5, radius * 1.85);
+    const distance = radius === null ? this.distance : Math.max(0.5, radius * 2);
     const left = norm(subtract(target, this.target)) + Math.abs(distance - this.distance);
     this.target = mix(this.target, target, share);
     this.distance += (distance - this.distance) * share;

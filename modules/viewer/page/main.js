@@ -287,16 +287,19 @@ function refresh(time) {
   } else if (detail.isReduced && time > detail.last + 250) {
     renderer.draw(view, shown);
     detail.isReduced = false;
+  } else {
+    detail.isMoving = false;
   }
 }
 
 /// A machine that cannot draw the whole map 25 times a second draws a part of the points while something moves, and all
 /// of them when it rests.
-const detail = {step: 1, last: 0, mean: 20, isReduced: false};
+const detail = {step: 1, last: 0, mean: 20, isReduced: false, isMoving: false};
 function chooseDetail(time) {
-  const interval = time - detail.last;
-  if (interval < 1000) detail.mean += 0.2 * (interval - detail.mean);
+  // Only times between pictures that follow each other tell how long drawing takes.
+  if (detail.isMoving) detail.mean += 0.3 * (Math.min(300, time - detail.last) - detail.mean);
   detail.last = time;
+  detail.isMoving = true;
   const before = detail.step;
   if (detail.mean > 42 && model.points.count / detail.step > 4000) detail.step = Math.min(16, 2 * detail.step);
   else if (detail.mean < 22) detail.step = Math.max(1, detail.step / 2);
