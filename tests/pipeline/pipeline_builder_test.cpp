@@ -138,12 +138,15 @@ TEST(PipelineBuilder, CameraAndMapMustFit) {
 
 TEST(PipelineBuilder, AMapIsContinuedByItsOwnExtractorOnly) {
   test::PointWorld world(find_camera("tum_fr1").value());
-  PipelineBuilder builder = builder_for(world);
-  Pipeline pipeline = builder.build();
-  run(pipeline, world, 10);
-  const Map map = pipeline.take_map();
+  const auto new_map = [&] {
+    PipelineBuilder builder = builder_for(world);
+    Pipeline pipeline = builder.build();
+    run(pipeline, world, 10);
+    return pipeline.take_map();
+  };
+  const MapFeatures own = new_map().features();
   const auto refusal = [&](const MapFeatures& features) -> std::string {
-    Map other = map;
+    Map other = new_map();
     other.set_features(features);
     PipelineBuilder continued = builder_for(world);
     continued.map(std::move(other)).loop_detector(std::make_unique<test::BruteForceDetector>());
@@ -154,14 +157,14 @@ TEST(PipelineBuilder, AMapIsContinuedByItsOwnExtractorOnly) {
     }
     return "";
   };
-  EXPECT_EQ(refusal(map.features()), "");
+  EXPECT_EQ(refusal(own), "");
   EXPECT_THAT(refusal({"orb", {}}), testing::AllOf(HasSubstr("'orb' with descriptors of 256 bits (hamming)"),
-                                                   HasSubstr("'" + map.features().extractor + "'")));
+                                                   HasSubstr("'" + own.extractor + "'")));
   DescriptorType numbers{DescriptorKind::float32, DescriptorMetric::cosine, 64, 0.1F, 0.2F};
-  EXPECT_THAT(refusal({map.features().extractor, numbers}), HasSubstr("64 float32 (cosine)"));
+  EXPECT_THAT(refusal({own.extractor, numbers}), HasSubstr("64 float32 (cosine)"));
   numbers = DescriptorType();
   numbers.loose_distance = 120.0F;
-  EXPECT_EQ(refusal({map.features().extractor, numbers}), "") << "recommended distances may differ";
+  EXPECT_EQ(refusal({own.extractor, numbers}), "") << "recommended distances may differ";
 }
 
 TEST(PipelineBuilder, TwoPipelinesInOneProcessShareNothing) {
