@@ -162,6 +162,41 @@ TEST_F(BenchExternalTest, AWrapperCallsASystemByItsName) {
               HasSubstr("matrix.yaml:1:31: there is no wrapper 'stella_slam'; did you mean 'stella_vslam'"));
 }
 
+TEST_F(BenchExternalTest, SaysWhatIsWrongWithExecutors) {
+  program_.write("matrix.yaml", "executor: { slurm: { processors: few, colour: red } }\n" + matrix({"good"}));
+  const auto errors = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"bench", "matrix.yaml", "--output", "out"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = program_.run(words);
+    EXPECT_EQ(outcome.exit_code, 2);
+    return outcome.errors;
+  };
+  EXPECT_THAT(errors({"--slurm", "poll_seconds=0"}),
+              AllOf(HasSubstr("matrix.yaml:1:34: found 'few' for 'processors' of slurm; expected a whole number"),
+                    HasSubstr("matrix.yaml:1:47: slurm has no option 'colour'; "),
+                    HasSubstr("--slurm poll_seconds=0: found '0' for 'poll_seconds'")));
+  program_.write("matrix.yaml", matrix({"good"}));
+  EXPECT_THAT(errors({"--attach"}), HasSubstr("the executor is local, whose runs end with it"));
+  EXPECT_THAT(errors({"--run", "good/little/repeat9"}), HasSubstr("the matrix has no run 'good/little/repeat9'"));
+  EXPECT_THAT(errors({"--table", "paper4"}), HasSubstr("paper4"));
+  program_.write("matrix.yaml", "executor: cloud\n" + matrix({"good"}));
+  EXPECT_THAT(errors({}), HasSubstr("matrix.yaml:1:11: found 'cloud' for 'executor'"));
+}
+
+/// What an executor calls on another machine: one run, no report, and nothing the second time.
+TEST_F(BenchExternalTest, OneRunAloneIsWhatAnExecutorAsksFor) {
+  program_.write("matrix.yaml", matrix({"good", "half"}));
+  const std::vector<std::string> words = {"bench", "matrix.yaml", "--output", "out", "--run", "half/little/repeat1"};
+  ASSERT_EQ(program_.run(words).exit_code, 0);
+  const std::string result = program_.path("out/runs/half/little/repeat1/result.json").string();
+  ASSERT_TRUE(std::filesystem::exists(result));
+  EXPECT_FALSE(std::filesystem::exists(program_.path("out/runs/good")));
+  EXPECT_FALSE(std::filesystem::exists(program_.path("out/report.md")));
+  const auto time = std::filesystem::last_write_time(result);
+  ASSERT_EQ(program_.run(words).exit_code, 0);
+  EXPECT_EQ(std::filesystem::last_write_time(result), time);
+}
+
 /// The example for GNU parallel, with this host alone.
 TEST_F(BenchExternalTest, RunsGoThroughGnuParallel) {
   if (std::system("parallel --version > /dev/null 2>&1") != 0)
