@@ -13,7 +13,7 @@ namespace holdfast {
 /// What a camera saw from where: one frame of a recording, as place recognition and its judge need it.
 struct PlaceView {
   double timestamp = 0.0;  ///< [s]
-  std::vector<Descriptor256> descriptors;
+  DescriptorBlock descriptors;
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< true
   std::vector<double> depth;                                         ///< on a grid of the image [m], 0 = no value
 };
