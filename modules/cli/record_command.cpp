@@ -49,7 +49,11 @@ int record(const Arguments& arguments, const ProgramHost& host) {
   } catch (const std::exception& error) {
     failure = error.what();
   }
-  recorder.finish(source->truth());
+  try {
+    recorder.finish(source->truth());
+  } catch (const InputError& error) {
+    failure += (failure.empty() ? "" : "\n") + std::string(error.what());
+  }
   const std::string written = counted(recorder.frame_count(), "frame") + " recorded in " + arguments.output.string();
   if (!failure.empty()) {
     print_error(failure + "\n" + written);

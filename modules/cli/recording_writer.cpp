@@ -108,7 +108,12 @@ void RecordingWriter::add(const SensorFrame& frame) {
   const std::string colour_name = "rgb/" + colour_stamp + "." + options_.colour_format;
   const std::string depth_name = "depth/" + stamp + ".png";
   Worker<Job>& encoder = *encoders_[frames_ % encoders];
-  encoder.rethrow();
+  try {
+    encoder.rethrow();
+  } catch (...) {
+    has_failed_ = true;
+    throw;
+  }
   encoder.queue().push({folder_ / colour_name, folder_ / depth_name, frame.colour, frame.depth});
   colour_list_ += colour_stamp + " " + colour_name + "\n";
   depth_list_ += stamp + " " + depth_name + "\n";
@@ -119,6 +124,8 @@ void RecordingWriter::add(const SensorFrame& frame) {
 void RecordingWriter::finish(const Trajectory& truth) {
   for (const auto& encoder : encoders_) encoder->finish();
   for (const auto& encoder : encoders_) encoder->rethrow();
+  if (has_failed_)
+    throw InputError({folder_.string()}, "an image could not be written, so that the recording has no lists");
   if (!truth.empty()) write_trajectory(folder_ / "groundtruth.txt", truth);
   write_file_atomically(folder_ / "associations.txt", associations_);
   write_file_atomically(folder_ / "depth.txt", depth_list_);

@@ -72,6 +72,7 @@ class RecordingWriter {
   Options options_;
   std::string colour_list_, depth_list_, associations_;
   std::uint64_t frames_ = 0;
+  bool has_failed_ = false;  // an image is missing
   std::vector<std::unique_ptr<Worker<Job>>> encoders_;
 };
 
