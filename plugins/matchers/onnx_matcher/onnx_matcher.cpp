@@ -98,10 +98,12 @@ void OnnxMatcher::match(const MatchSide& queries, const MatchSide& references, c
 
   const cv::Rect used(0, 0, static_cast<int>(references_.taken.size()), static_cast<int>(queries_.taken.size()));
   cv::Mat probabilities = cv::Mat(rows, columns, CV_32FC1, output.data)(used).clone();
-  if (settings_.dual_softmax)
+  if (settings_.dual_softmax) {
+    probabilities.convertTo(probabilities, CV_32F, 1.0 / settings_.temperature);
     dual_softmax(probabilities);
-  else
+  } else {
     cv::exp(probabilities, probabilities);
+  }
   const DescriptorDistances distances(type);
   for (const Assigned& pair : mutual_best(probabilities, static_cast<float>(settings_.threshold))) {
     const std::uint32_t query = queries_.taken[pair.row], reference = references_.taken[pair.column];

@@ -20,6 +20,7 @@ void OnnxMatcherSettings::describe(ParameterTable<OnnxMatcherSettings>& table) {
   table.add("dual_softmax", &S::dual_softmax,
             "scores are numbers of any size, over which a softmax is taken in both directions; otherwise they are "
             "logarithms of probabilities");
+  table.add("temperature", &S::temperature, "divisor of the scores before the dual softmax").range(1e-3, 1e3);
   table.add("threshold", &S::threshold, "minimum probability of a match").range(0, 1);
 }
 
