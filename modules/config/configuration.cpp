@@ -260,7 +260,9 @@ class Resolver {
   /// The default matcher is part of the pipeline, also where a program registers no module of this kind.
   ModuleChoice choose_matcher() {
     const char* fallback = "nearest";
-    if (at("matcher").kind == Kind::nothing && registry_.find("matcher", fallback) == nullptr)
+    const ConfigurationNode& node = at("matcher");
+    const bool is_named = node.kind == Kind::map && node.entries.size() == 1 && node.entries[0].key == fallback;
+    if ((node.kind == Kind::nothing || is_named) && registry_.find("matcher", fallback) == nullptr)
       return {"matcher", fallback, {}, {file_}};
     return choose("matcher", fallback);
   }
