@@ -61,7 +61,9 @@ Projection projection_of(const Evaluation& evaluation) {
   return {*vertical, true};
 }
 
-void append_track(PlotLine& line, const std::vector<TimedPosition>& track, const std::array<int, 2>& axes) {
+/// Appends a point of the plot for each pose; the line is lifted where poses are missing.
+template <class PointOf>
+void append_with_gaps(PlotLine& line, const std::vector<TimedPosition>& track, PointOf&& point_of) {
   std::vector<double> stamps;
   for (const TimedPosition& point : track) stamps.push_back(point.timestamp);
   const double threshold = gap_threshold(stamps);
@@ -70,9 +72,16 @@ void append_track(PlotLine& line, const std::vector<TimedPosition>& track, const
       line.x.push_back(lift_pen);
       line.y.push_back(lift_pen);
     }
-    line.x.push_back(track[i].position[axes[0]]);
-    line.y.push_back(track[i].position[axes[1]]);
+    const auto [x, y] = point_of(track[i]);
+    line.x.push_back(x);
+    line.y.push_back(y);
   }
+}
+
+void append_track(PlotLine& line, const std::vector<TimedPosition>& track, const std::array<int, 2>& axes) {
+  append_with_gaps(line, track, [&](const TimedPosition& pose) {
+    return std::pair(pose.position[axes[0]], pose.position[axes[1]]);
+  });
 }
 
 /// Metres, or millimetres when they read better.
@@ -228,17 +237,8 @@ std::string position_over_time_svg(const Evaluation& evaluation, int axis) {
   plot.height = 230;
   shade_gaps(evaluation, begin, plot);
   const auto line_of = [&](const std::vector<TimedPosition>& track, PlotLine line) {
-    std::vector<double> stamps;
-    for (const TimedPosition& point : track) stamps.push_back(point.timestamp);
-    const double threshold = gap_threshold(stamps);
-    for (std::size_t i = 0; i < track.size(); ++i) {
-      if (i > 0 && stamps[i] - stamps[i - 1] > threshold) {
-        line.x.push_back(lift_pen);
-        line.y.push_back(lift_pen);
-      }
-      line.x.push_back(stamps[i] - begin);
-      line.y.push_back(track[i].position[axis]);
-    }
+    append_with_gaps(line, track,
+                     [&](const TimedPosition& pose) { return std::pair(pose.timestamp - begin, pose.position[axis]); });
     return line;
   };
   plot.lines = {line_of(evaluation.estimate_track, {"estimate", plot_colour::sky, {}, {}, 3.4, false, 1.0}),

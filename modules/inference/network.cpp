@@ -16,7 +16,8 @@ namespace holdfast {
 namespace {
 
 /// The size of the input, from the options and from what the model declares, which must agree.
-cv::Size input_size(const NetworkOptions& options, const OnnxSignature& signature) {
+cv::Size input_size(const NetworkOptions& options, const OnnxNet& net) {
+  const OnnxSignature& signature = net.signature();
   const auto fail = [&](const std::string& message) { throw InputError({options.model.string()}, message); };
   if (signature.inputs.size() != 1)
     fail("has " + std::to_string(signature.inputs.size()) + " inputs, " + names(signature.inputs) +
@@ -33,17 +34,9 @@ cv::Size input_size(const NetworkOptions& options, const OnnxSignature& signatur
   if ((shape[0] != -1 && shape[0] != 1) || (channels != -1 && channels != 3))
     fail("has an input of " + input.shape_text() + "; expected " + expected + "; correct `layout`, or export the " +
          "network for one colour image");
-  const auto agree = [&](int configured, std::int64_t declared, const char* name) {
-    if (configured == 0 && declared == -1)
-      fail("has an input of " + input.shape_text() + ", of any " + name + "; set `" + name + "`");
-    if (configured != 0 && declared != -1 && configured != declared)
-      fail("has an input of " + input.shape_text() + ", but `" + name + "` is " + std::to_string(configured) +
-           "; expected " + std::to_string(declared) + ", or leave `" + name + "` out");
-    return configured != 0 ? configured : static_cast<int>(declared);
-  };
   const std::size_t row = options.channels_last ? 1 : 2;
-  const int height = agree(options.height, shape[row], "height");
-  return {agree(options.width, shape[row + 1], "width"), height};
+  const int height = net.agreed_size(input, options.height, shape[row], "height");
+  return {net.agreed_size(input, options.width, shape[row + 1], "width"), height};
 }
 
 std::string chosen_output(const NetworkOptions& options, const OnnxSignature& signature) {
@@ -128,7 +121,7 @@ Network::Network(const NetworkOptions& options) {
   require_three(options);
   parts_ = std::make_unique<Parts>(options);
   const OnnxSignature& signature = parts_->net.signature();
-  parts_->size = input_size(options, signature);
+  parts_->size = input_size(options, parts_->net);
   parts_->output = chosen_output(options, signature);
   for (std::size_t channel = 0; channel < 3; ++channel)
     for (std::size_t value = 0; value < 256; ++value)

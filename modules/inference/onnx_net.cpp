@@ -119,6 +119,18 @@ const OnnxTensor& OnnxNet::input(const std::string& name, const std::string& set
   return find(signature_.inputs, name, "input", setting, model_);
 }
 
+int OnnxNet::agreed_size(const OnnxTensor& input, int configured, std::int64_t declared,
+                         const std::string& setting) const {
+  if (configured == 0 && declared == -1)
+    throw InputError({model_.string()},
+                     "has an input of " + input.shape_text() + ", of any " + setting + "; set `" + setting + "`");
+  if (configured != 0 && declared != -1 && configured != declared)
+    throw InputError({model_.string()}, "has an input of " + input.shape_text() + ", but `" + setting + "` is " +
+                                            std::to_string(configured) + "; expected " + std::to_string(declared) +
+                                            ", or leave `" + setting + "` out");
+  return configured != 0 ? configured : static_cast<int>(declared);
+}
+
 void OnnxNet::set_input(const cv::Mat& values, const std::string& name) {
   for (auto& [known, input] : loaded_->inputs)
     if (known == name) {

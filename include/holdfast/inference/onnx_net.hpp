@@ -44,6 +44,10 @@ class OnnxNet {
   const OnnxTensor& output(const std::string& name, const std::string& setting) const;
   const OnnxTensor& input(const std::string& name, const std::string& setting) const;
 
+  /// The size of an input in one direction, from the configured one (0 = as declared) and the declared one (-1 = any),
+  /// which must agree; throws InputError otherwise. `setting` is the parameter that says the configured one.
+  int agreed_size(const OnnxTensor& input, int configured, std::int64_t declared, const std::string& setting) const;
+
   /// Sets an input, 32F of any dimensions, for the next run. Its data must stay as they are until then.
   void set_input(const cv::Mat& values, const std::string& name = "");
   /// Computes outputs: 32F with the dimensions of the network, valid until the next run. Throws InputError if the

@@ -41,16 +41,8 @@ void OnnxFeatures::choose_input() {
   if (shape.size() != 4 || (shape[0] != 1 && shape[0] != -1) || (shape[1] != 1 && shape[1] != 3 && shape[1] != -1))
     fail("has an input of " + input.shape_text() + "; " + expected_input);
   channels_ = shape[1] == 3 ? 3 : 1;
-  const auto choose = [&](int configured, std::int64_t declared, const char* name) {
-    if (configured == 0 && declared == -1)
-      fail("has an input of " + input.shape_text() + ", of any " + name + "; set `" + name + "`");
-    if (configured != 0 && declared != -1 && configured != declared)
-      fail("has an input of " + input.shape_text() + ", but `" + name + "` is " + std::to_string(configured) +
-           "; expected " + std::to_string(declared) + ", or leave `" + name + "` out");
-    return configured != 0 ? configured : static_cast<int>(declared);
-  };
-  height_ = choose(settings_.height, shape[2], "height");
-  width_ = choose(settings_.width, shape[3], "width");
+  height_ = net_.agreed_size(input, settings_.height, shape[2], "height");
+  width_ = net_.agreed_size(input, settings_.width, shape[3], "width");
 }
 
 void OnnxFeatures::choose_descriptors() {
