@@ -21,7 +21,7 @@ find_package(Threads REQUIRED)
 holdfast_find(Eigen3 3.4 libeigen3-dev ARGUMENTS NO_MODULE)
 # What only some plugins need is looked for only when these are built.
 set(HOLDFAST_OPENCV_COMPONENTS core calib3d imgproc imgcodecs video)
-if(HOLDFAST_PLUGIN_OPENCV_ORB)
+if(HOLDFAST_PLUGIN_OPENCV_ORB OR HOLDFAST_PLUGIN_SIFT OR HOLDFAST_PLUGIN_AKAZE)
   list(APPEND HOLDFAST_OPENCV_COMPONENTS features2d)
 endif()
 if(HOLDFAST_PLUGIN_OVERLAY)

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 
 #include "holdfast/bench/executor.hpp"
 #include "holdfast/core/error.hpp"
@@ -107,6 +108,11 @@ bool ActiveRun::poll() {
     process_.kill();
   }
   return false;
+}
+
+bool ActiveRun::was_terminated() const {
+  const int signal = cost_.process.signal;
+  return !out_of_time_ && (signal == SIGTERM || signal == SIGINT || signal == SIGHUP || signal == SIGKILL);
 }
 
 void ActiveRun::take_load() {

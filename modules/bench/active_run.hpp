@@ -18,6 +18,8 @@ class ActiveRun {
   const PlannedRun& run() const { return run_; }
   /// Returns whether its process has ended; after its time limit, asks it to end and then kills it.
   bool poll();
+  /// After poll() returned true: whether somebody else's signal ended the process.
+  bool was_terminated() const;
   /// Marks that another run is executed concurrently.
   void set_beside() { cost_.alone = false; }
   /// After poll() returned true: evaluates, writes the result and renames the folder.

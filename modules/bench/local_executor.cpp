@@ -103,6 +103,10 @@ bool execute_run(const RunPlan& plan, std::size_t index, const BenchOptions& opt
     }
     wait_for_processes(0.1);
   }
+  // A cluster ends a job by a signal to all of its processes, and this one may be the last to get it.
+  constexpr double lateness = 2.0;  // s
+  const Stopwatch since_end;
+  while (active.was_terminated() && !options.stop() && since_end.seconds() < lateness) wait_for_processes(0.1);
   if (options.stop()) {
     active.discard();
     return false;

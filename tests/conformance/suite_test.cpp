@@ -28,11 +28,7 @@ void register_one(Registry& registry) {
   });
 }
 
-void register_observer(Registry& registry) {
-  registry.add<Observer, NoSettings>(
-      {.name = "watcher", .summary = "None that can be tested."},
-      [](const NoSettings&, const CreationContext&) { return std::unique_ptr<Observer>(); });
-}
+void register_nothing(Registry&) {}
 
 std::string refusal(const Subject& subject) {
   try {
@@ -61,7 +57,7 @@ TEST(AddTests, NamesTheModulesThereAre) {
 }
 
 TEST(AddTests, RefusesAPluginWithoutAnythingToTest) {
-  EXPECT_THAT(refusal({.register_modules = register_observer}),
+  EXPECT_THAT(refusal({.register_modules = register_nothing}),
               AllOf(HasSubstr("no module that can be tested"), HasSubstr("segmenter")));
   EXPECT_THAT(refusal({.plugin = "/nowhere/libabsent.so"}), HasSubstr("there is no such file"));
 }

@@ -28,11 +28,16 @@ inline std::optional<std::filesystem::path> find_browser() {
   return std::nullopt;
 }
 
+/// Whether pages draw with WebGL. The library that draws it in place of a graphics card draws everything else, too, in
+/// which lines that lie upon each other leave no trace of the lower one.
+enum class BrowserDrawing { plain, webgl };
+
 /// A page in a headless Chromium that reaches nothing beyond this machine and draws without a graphics card, driven by
 /// real input events over the DevTools protocol: its messages go through a pair of pipes, each ended by a zero byte.
 class Browser {
  public:
-  Browser(const std::filesystem::path& program, const std::filesystem::path& profile) {
+  Browser(const std::filesystem::path& program, const std::filesystem::path& profile,
+          BrowserDrawing drawing = BrowserDrawing::plain) {
     int to_browser[2], from_browser[2];
     if (pipe(to_browser) != 0 || pipe(from_browser) != 0) throw std::runtime_error("no pipe");
     process_ = fork();
@@ -44,8 +49,10 @@ class Browser {
       dup2(nothing, 1), dup2(nothing, 2);
       setpgid(0, 0);
       const std::string folder = "--user-data-dir=" + profile.string();
-      execl(program.c_str(), program.c_str(), "--headless", "--no-sandbox", "--use-angle=swiftshader",
-            "--enable-unsafe-swiftshader", "--disable-dev-shm-usage", "--no-first-run",
+      const bool is_plain = drawing == BrowserDrawing::plain;
+      execl(program.c_str(), program.c_str(), "--headless", "--no-sandbox",
+            is_plain ? "--disable-gpu" : "--use-angle=swiftshader",
+            is_plain ? "--mute-audio" : "--enable-unsafe-swiftshader", "--disable-dev-shm-usage", "--no-first-run",
             "--disable-background-networking", "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
             "--remote-debugging-pipe", "--window-size=1280,900", folder.c_str(), static_cast<char*>(nullptr));
       _exit(127);

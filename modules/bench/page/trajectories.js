@@ -271,7 +271,7 @@ class ErrorPlot {
       cursor: {points: {size: 7}},
       scales: {x: {time: false}, y: isLogarithmic ? {distr: 3} : {range: (_, low, high) => [0, high > 0 ? 1.05 * high : 1]}},
       axes: [{...axis, label: undefined, values: (_, values) => values.map((v) => `${+v.toFixed(3)} s`)},
-             {...axis, size: 62, values: (_, values) => values.map((v) => (v === null ? null : `${+v.toPrecision(3)} m`))}],
+             {...axis, size: 78, values: (_, values) => values.map((v) => (v === null ? null : `${+v.toPrecision(3)} m`))}],
       series: [{}, ...runs.map((run) => ({stroke: () => colourOf(run), dash: dashOf(run), width: 1.5, spanGaps: false,
                                           points: {show: true, size: 5, fill: () => colourOf(run), filter: (plot, i) => lonelyPlaces(plot.data[i])}}))],
       hooks: {setCursor: [(plot) => {
