@@ -9,6 +9,7 @@ run(COMMAND ${CMAKE_COMMAND} --build ${build} --target consumer --parallel 2)
 run(COMMAND ${build}/consumer OUTPUT printed)
 set(expected "features/orb
 loop_detector/none
+matcher/nearest
 segmenter/none
 source/tum
 no optimizer module is called 'ceres'; it was left out of this build; configure Holdfast with -DHOLDFAST_PLUGIN_CERES=ON
