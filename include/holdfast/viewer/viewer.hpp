@@ -30,6 +30,7 @@ struct ViewerOptions {
 
 /// The colour image of a frame with what is drawn over it. Pixels are raw.
 struct ViewedPicture {
+  /// A feature that is drawn, in pixels of the picture.
   struct Feature {
     float x = 0.0F, y = 0.0F;
     float static_probability = 1.0F;  ///< 0 to 1
