@@ -58,7 +58,7 @@ TEST_F(ViewerBrowserTest, ShowsWhatComesAndWhatALoopMoves) {
   // The words follow with the next drawing.
   EXPECT_TRUE(becomes("document.getElementById('title').textContent === '</script><b>run</b>'")) << text("title");
   EXPECT_TRUE(becomes("document.getElementById('state').textContent === 'tracking'")) << text("state");
-  EXPECT_TRUE(becomes("document.getElementById('stages').textContent.includes('features')"));
+  EXPECT_TRUE(becomes("document.getElementById('stages').textContent.includes('features')")) << text("stages");
 
   MapSnapshot closed = test::row_map(4);
   closed.keyframes[3].T_world_camera = test::pose_at(3, 2);

@@ -3,7 +3,6 @@
 
 #include "holdfast/interfaces/feature_extractor.hpp"
 #include "holdfast/plugin/plugin.hpp"
-
 using namespace holdfast;
 struct Patches final : FeatureExtractor {
   Patches(const NoSettings&, const CreationContext&) {}
@@ -12,9 +11,10 @@ struct Patches final : FeatureExtractor {
   DescriptorType descriptor_type() const override {
     return {DescriptorKind::float32, DescriptorMetric::cosine, 64, /*strict=*/0.1F, /*loose=*/0.25F};
   }
-  void extract(const cv::Mat& grey, const cv::Mat& ignore, Features& out) override {
+  void extract(const cv::Mat& image, const cv::Mat& ignore, Features& out) override {
     out.resize(0, descriptor_type());
-    if (grey.cols < 24 || grey.rows < 24) return;
+    if (image.cols < 24 || image.rows < 24) return;
+    const cv::Mat grey = image.clone();  // filters of OpenCV read beyond a piece of a larger image
     std::vector<cv::Point2f> corners;
     cv::goodFeaturesToTrack(grey, corners, 1000, 0.002, 7, ignore.empty() ? cv::noArray() : cv::Mat(ignore == 0));
     for (const cv::Point2f& corner : corners) {

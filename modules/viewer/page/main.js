@@ -223,6 +223,7 @@ function showClock() {
 }
 
 let nextFit = 0, nextTimes = 0, nextObjects = 0;
+let framesWait = false, objectsWait = false;  // for their next turn: what is drawn seldom is not left out at the end
 const frameTimes = [];
 /// Takes over what has changed since the last picture of the screen, and draws it.
 function refresh(time) {
@@ -252,7 +253,8 @@ function refresh(time) {
     if (has('path', 'run', 'head')) buildPath();
     if (has('keyframes', 'loop', 'head', 'run')) buildKeyframes();
     if (loopFlash && performance.now() > loopFlash) { loopFlash = 0; buildKeyframes(); moved = true; }
-    if (has('objects', 'state') && time > nextObjects) { buildObjects(); nextObjects = time + 60; }
+    objectsWait ||= has('objects', 'state');
+    if (objectsWait && time > nextObjects) { buildObjects(); nextObjects = time + 60; objectsWait = false; moved = true; }
     if (has('state', 'path', 'now', 'head')) buildCamera();
   }
   if (has('head')) {
@@ -260,7 +262,9 @@ function refresh(time) {
     document.title = `${model.head.title || 'run'} – Holdfast`;
   }
   if (has('picture') && model.picture) picturePanel.show(model.picture, model.head);
-  if (has('frames') && time > nextTimes) {
+  framesWait ||= has('frames');
+  if (framesWait && time > nextTimes) {
+    framesWait = false;
     timesPanel.show(model);
     drawStrip(model);
     nextTimes = time + 150;
