@@ -24,6 +24,7 @@ set(HOLDFAST_PLUGIN_TABLE
   "filters         semantic_mask         filters/semantic_mask"
   "filters         epipolar_consistency  filters/epipolar_consistency"
   "loop_detector   flann                 loop_detectors/flann"
+  "loop_detector   global                loop_detectors/global"
   "observers       objects               observers/objects"
   "observers       overlay               observers/overlay"
   "observers       viewer                observers/viewer"

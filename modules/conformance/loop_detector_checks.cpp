@@ -16,8 +16,8 @@ namespace {
 const char* const header = "holdfast/interfaces/loop_detector.hpp";
 using Descriptors = std::vector<Descriptor256>;
 
-/// What a place looks like on a visit: its own descriptors, each with a few bits of noise.
-Descriptors view(std::uint64_t place, std::uint64_t visit, int count = 300) {
+/// Features of a place on a visit: its own descriptors, each with a few bits of noise.
+Descriptors features(std::uint64_t place, std::uint64_t visit, int count) {
   Random of_place(1000 + place), of_visit = Random(7).fork(place).fork(visit);
   Descriptors descriptors(static_cast<std::size_t>(count));
   for (Descriptor256& descriptor : descriptors) {
@@ -30,13 +30,36 @@ Descriptors view(std::uint64_t place, std::uint64_t visit, int count = 300) {
   return descriptors;
 }
 
+/// An image of a place on a visit: its own coloured squares, each pixel with some noise.
+cv::Mat image(std::uint64_t place, std::uint64_t visit) {
+  constexpr int rows = 240, columns = 320, square = 40;
+  Random of_place(1000 + place), of_visit = Random(7).fork(place).fork(visit);
+  cv::Mat image(rows, columns, CV_8UC3);
+  for (int top = 0; top < rows; top += square)
+    for (int left = 0; left < columns; left += square)
+      image(cv::Rect(left, top, square, square)) =
+          cv::Scalar(20 + of_place.below(200), 20 + of_place.below(200), 20 + of_place.below(200));
+  for (int row = 0; row < rows; ++row)
+    for (int k = 0; k < 3 * columns; ++k)
+      image.ptr<std::uint8_t>(row)[k] += static_cast<std::uint8_t>(of_visit.below(9));
+  return image;
+}
+
+/// What a place looks like on a visit, to a detector of features or of images; an image has no number of features.
+DescriptorBlock view(LoopDetector& detector, std::uint64_t place, std::uint64_t visit, int count = 300) {
+  if (detector.image_descriptor()) return detector.describe(image(place, visit), {});
+  DescriptorBlock block;
+  for (const Descriptor256& descriptor : features(place, visit, count)) block.push_back(descriptor);
+  return block;
+}
+
 KeyFrameId id(std::uint64_t place) {
   return {static_cast<std::uint32_t>(place), static_cast<std::uint32_t>(place % 3)};
 }
 
 constexpr std::uint64_t places = 20;
 void add_places(LoopDetector& detector) {
-  for (std::uint64_t place = 0; place < places; ++place) detector.add(id(place), view(place, 0));
+  for (std::uint64_t place = 0; place < places; ++place) detector.add(id(place), view(detector, place, 0));
 }
 
 /// Checks the contract of matches, which holds for every query.
@@ -72,7 +95,7 @@ void recognises_a_place(const Maker& maker) {
   const auto detector = maker.make<LoopDetector>();
   add_places(*detector);
   for (const std::uint64_t place : {0U, 7U, 19U}) {
-    const auto matches = detector->query(view(place, 1), 3);
+    const auto matches = detector->query(view(*detector, place, 1), 3);
     ASSERT_FALSE(matches.empty()) << "a place of 300 descriptors, seen again with 6 of 256 bits changed in each";
     EXPECT_EQ(matches[0].keyframe, id(place)) << "the best match of place " << place;
   }
@@ -81,18 +104,20 @@ void recognises_a_place(const Maker& maker) {
 void matches_are_sound(const Maker& maker) {
   const auto detector = maker.make<LoopDetector>();
   add_places(*detector);
-  detector->add({500, 1}, view(3, 0));  // looks exactly like place 3
+  detector->add({500, 1}, view(*detector, 3, 0));  // looks exactly like place 3
   std::set<KeyFrameId> known = all_ids();
   known.insert({500, 1});
-  for (const int max_count : {1, 2, 5, 1000}) expect_sound(detector->query(view(3, 0), max_count), known, max_count);
-  for (std::uint64_t place = 0; place < places; ++place) expect_sound(detector->query(view(place, 2), 4), known, 4);
+  for (const int max_count : {1, 2, 5, 1000})
+    expect_sound(detector->query(view(*detector, 3, 0), max_count), known, max_count);
+  for (std::uint64_t place = 0; place < places; ++place)
+    expect_sound(detector->query(view(*detector, place, 2), 4), known, 4);
 }
 
 void gives_at_most_what_was_asked(const Maker& maker) {
   const auto detector = maker.make<LoopDetector>();
   add_places(*detector);
   for (const int max_count : {0, -1})
-    EXPECT_TRUE(detector->query(view(1, 0), max_count).empty()) << max_count << " were asked for";
+    EXPECT_TRUE(detector->query(view(*detector, 1, 0), max_count).empty()) << max_count << " were asked for";
 }
 
 void forgets_what_is_removed(const Maker& maker) {
@@ -102,13 +127,13 @@ void forgets_what_is_removed(const Maker& maker) {
   for (const std::uint64_t place : {0U, 5U, 19U}) {
     detector->remove(id(place));
     known.erase(id(place));
-    expect_sound(detector->query(view(place, 0), 1000), known, 1000);
+    expect_sound(detector->query(view(*detector, place, 0), 1000), known, 1000);
   }
-  detector->add(id(5), view(5, 3));  // and it may come back
+  detector->add(id(5), view(*detector, 5, 3));  // and it may come back
   known.insert(id(5));
-  expect_sound(detector->query(view(5, 4), 1000), known, 1000);
+  expect_sound(detector->query(view(*detector, 5, 4), 1000), known, 1000);
   for (const KeyFrameId& keyframe : all_ids()) detector->remove(keyframe);
-  EXPECT_TRUE(detector->query(view(2, 0), 10).empty()) << "all were removed";
+  EXPECT_TRUE(detector->query(view(*detector, 2, 0), 10).empty()) << "all were removed";
 }
 
 void ignores_unknown_removals(const Maker& maker) {
@@ -117,33 +142,69 @@ void ignores_unknown_removals(const Maker& maker) {
   add_places(*detector);
   detector->remove({77, 0});
   detector->remove({3, 2});  // the slot is used, the generation is another
-  expect_sound(detector->query(view(3, 0), 1000), all_ids(), 1000);
+  expect_sound(detector->query(view(*detector, 3, 0), 1000), all_ids(), 1000);
+}
+
+/// Descriptors of no place, all alike; for a detector of images one image without anything in it.
+DescriptorBlock blank(LoopDetector& detector, std::size_t count) {
+  if (detector.image_descriptor()) return detector.describe(cv::Mat::zeros(240, 320, CV_8UC3), {});
+  return DescriptorBlock(DescriptorType(), count);
 }
 
 void lives_with_any_number_of_descriptors(const Maker& maker) {
   const auto detector = maker.make<LoopDetector>();
   EXPECT_TRUE(detector->query({}, 5).empty()) << "nothing was added";
-  EXPECT_TRUE(detector->query(view(0, 0), 5).empty()) << "nothing was added";
+  EXPECT_TRUE(detector->query(view(*detector, 0, 0), 5).empty()) << "nothing was added";
   const std::set<KeyFrameId> known{{1, 0}, {2, 0}, {3, 0}, {4, 0}};
-  detector->add({1, 0}, Descriptors());
-  detector->add({2, 0}, view(2, 0, 1));
-  detector->add({3, 0}, Descriptors(400));  // all alike
-  detector->add({4, 0}, view(4, 0, 5000));
-  for (const Descriptors& asked : {Descriptors(), view(2, 0, 1), Descriptors(700), view(4, 1, 5000)})
+  detector->add({1, 0}, DescriptorBlock());
+  detector->add({2, 0}, view(*detector, 2, 0, 1));
+  detector->add({3, 0}, blank(*detector, 400));
+  detector->add({4, 0}, view(*detector, 4, 0, 5000));
+  for (const DescriptorBlock& asked :
+       {DescriptorBlock(), view(*detector, 2, 0, 1), blank(*detector, 700), view(*detector, 4, 1, 5000)})
     expect_sound(detector->query(asked, 10), known, 10);
   for (const KeyFrameId& keyframe : known) detector->remove(keyframe);
-  EXPECT_TRUE(detector->query(Descriptors(3), 5).empty()) << "all were removed";
+  EXPECT_TRUE(detector->query(blank(*detector, 3), 5).empty()) << "all were removed";
+}
+
+void describes_images_alike(const Maker& maker) {
+  const auto detector = maker.make<LoopDetector>();
+  if (!detector->image_descriptor()) GTEST_SKIP() << "recognises places by the descriptors of features";
+  const DescriptorBlock first = detector->describe(image(3, 0), {});
+  ASSERT_FALSE(first.empty()) << "an image of coloured squares was not described";
+  EXPECT_TRUE(first.type().is_comparable(*detector->image_descriptor()))
+      << "made " << to_string(first.type()) << ", promised " << to_string(*detector->image_descriptor());
+  detector->describe(image(4, 0), {});
+  EXPECT_TRUE(first == detector->describe(image(3, 0), {})) << "the same image was described differently";
+  EXPECT_TRUE(first == detector->describe(image(3, 0), cv::Mat::zeros(240, 320, CV_8UC1)))
+      << "a mask in which nothing moves changed the description";
+  cv::Mat grey(240, 320, CV_8UC1, cv::Scalar(90));
+  EXPECT_NO_THROW(detector->describe(grey, {})) << "a grey image";
+  EXPECT_NO_THROW(detector->describe(image(3, 0), cv::Mat(240, 320, CV_8UC1, cv::Scalar(255)))) << "all moves";
+}
+
+void does_not_see_what_moves(const Maker& maker) {
+  const auto detector = maker.make<LoopDetector>();
+  if (!detector->image_descriptor()) GTEST_SKIP() << "recognises places by the descriptors of features";
+  cv::Mat moving = cv::Mat::zeros(240, 320, CV_8UC1), one = image(3, 0), other = one.clone();
+  const cv::Rect person(100, 60, 80, 180);
+  moving(person) = 255;
+  one(person) = cv::Scalar(200, 40, 10);
+  other(person) = cv::Scalar(10, 220, 130);
+  EXPECT_TRUE(detector->describe(one, moving) == detector->describe(other, moving))
+      << "pixels that move changed the description of the place";
 }
 
 /// Everything that a little history answers.
 std::vector<std::pair<KeyFrameId, double>> history(LoopDetector& detector, bool ask_often) {
   std::vector<std::pair<KeyFrameId, double>> answers;
   const auto ask = [&](std::uint64_t place) {
-    for (const PlaceMatch& match : detector.query(view(place, 5), 6)) answers.emplace_back(match.keyframe, match.score);
+    for (const PlaceMatch& match : detector.query(view(detector, place, 5), 6))
+      answers.emplace_back(match.keyframe, match.score);
   };
   for (std::uint64_t place = 0; place < places; ++place) {
-    detector.add(id(place), view(place, 0));
-    if (ask_often) detector.query(view(place / 2, 9), 5);
+    detector.add(id(place), view(detector, place, 0));
+    if (ask_often) detector.query(view(detector, place / 2, 9), 5);
     if (place % 4 == 3) ask(place / 2);
     if (place % 7 == 6) detector.remove(id(place - 3));
   }
@@ -182,7 +243,7 @@ void time(const Maker& maker) {
   add_places(*detector);
   std::uint64_t place = 0;
   report_time("loop_detector/" + maker.entry().description.name + ", query of 1000 among 20", 9,
-              [&] { detector->query(view(place++, 1, 1000), 5); });
+              [&] { detector->query(view(*detector, place++, 1, 1000), 5); });
 }
 
 }  // namespace
@@ -194,7 +255,7 @@ std::vector<Check> loop_detector_checks() {
   const Promise remove{header, "Removes a keyframe from the database; an unknown id is ignored."};
   const Promise same{
       header, "The same calls in the same order give the same matches, and a query does not affect later results."};
-  const Promise threads{header, "Used by one thread at a time."};
+  const Promise threads{header, "Used by one thread at a time, but for describe()."};
   return {
       {"RecognisesAPlace",
        {header, "A keyframe similar to the query; a larger score means greater similarity."},
@@ -204,8 +265,12 @@ std::vector<Check> loop_detector_checks() {
       {"ForgetsWhatIsRemoved", remove, forgets_what_is_removed},
       {"IgnoresUnknownRemovals", remove, ignores_unknown_removals},
       {"LivesWithAnyNumberOfDescriptors",
-       {header, "Adds a keyframe with any number of descriptors."},
+       {header, "Adds a keyframe with any number of descriptors, of its static features or from describe()."},
        lives_with_any_number_of_descriptors},
+      {"DescribesImagesAlike", {header, "The same image gives the same descriptors."}, describes_images_alike},
+      {"DoesNotSeeWhatMoves",
+       {header, "not 0 where something moves that does not belong to the place"},
+       does_not_see_what_moves},
       {"SameCallsSameMatches", same, same_calls_same_matches},
       {"AskingChangesNothing", same, asking_changes_nothing},
       {"MayChangeThreads", threads, may_change_threads},

@@ -62,4 +62,18 @@ void CoarseSampler::sample_labels(const cv::Mat& labels, std::uint8_t outside, s
     cells[i] = raw_[i] < 0 ? outside : labels.ptr<std::uint8_t>(raw_[i] / width_)[raw_[i] % width_];
 }
 
+cv::Mat CoarseSampler::pixels_of(const std::vector<std::uint8_t>& marked) const {
+  constexpr int half = CoarseGrid::step / 2;
+  cv::Mat pixels;
+  for (std::size_t i = 0; i < marked.size(); ++i) {
+    if (marked[i] == 0 || raw_[i] < 0) continue;
+    if (pixels.empty()) pixels = cv::Mat::zeros(height_, width_, CV_8UC1);
+    const int x = raw_[i] % width_, y = raw_[i] / width_;
+    for (int row = std::max(0, y - half); row <= std::min(height_ - 1, y + half); ++row)
+      std::fill_n(pixels.ptr<std::uint8_t>(row) + std::max(0, x - half),
+                  std::min(width_ - 1, x + half) - std::max(0, x - half) + 1, std::uint8_t{255});
+  }
+  return pixels;
+}
+
 }  // namespace holdfast

@@ -87,7 +87,7 @@ std::vector<KeyFrameId> LoopCloser::find_candidates(KeyFrameId id) {
       ++counts_.removed;
       return {};
     }
-    descriptors = static_descriptors(keyframe->frame);
+    descriptors = place_descriptors(keyframe->frame, detector_.image_descriptor().has_value());
     sequence = keyframe->sequence;
     ask_for = candidates_.matches_to_ask_for(map_, id);
   }

@@ -61,6 +61,10 @@ class ContentReader {
       expect(has_keyframes_ && !has_points_);
       content_.map.points = read_points(container_.payload(), content_.map.features.descriptors);
       has_points_ = true;
+    } else if (type == place_section) {
+      expect(has_points_ && !has_places_);
+      read_places(container_.payload(), content_.map.keyframes);
+      has_places_ = true;
     } else if (container_.required()) {
       container_.fail("found a section '" + type +
                       "' that this Holdfast does not know and cannot leave out: use a newer Holdfast");
@@ -71,8 +75,8 @@ class ContentReader {
     if (!right_place)
       fail("found section '" + container_.type() + "' where it does not belong; expected '" + camera_section + "', '" +
            lens_section + "' if there are such lenses, '" + descriptor_section + "' if there are such descriptors, '" +
-           keyframe_section + "', one '" + feature_section +
-           "' for each keyframe, '" + point_section + "', in this order");
+           keyframe_section + "', one '" + feature_section + "' for each keyframe, '" + point_section + "', '" +
+           place_section + "' if images were described, in this order");
   }
 
   void check_header() {
@@ -94,7 +98,8 @@ class ContentReader {
   FileContent content_;
   std::vector<std::uint32_t> feature_counts_;
   std::uint32_t features_read_ = 0;
-  bool has_tables_ = false, has_lenses_ = false, has_descriptors_ = false, has_keyframes_ = false, has_points_ = false;
+  bool has_tables_ = false, has_lenses_ = false, has_descriptors_ = false, has_keyframes_ = false, has_points_ = false,
+       has_places_ = false;
 };
 
 }  // namespace

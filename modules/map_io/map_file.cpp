@@ -34,25 +34,28 @@ void write_content(std::ostream& stream, const Map& map) {
   const SharedTables shared = tables_of(map, index);
   const MapFeatures& map_features = map.features();
   const bool has_descriptor_section = map_features != MapFeatures();
-  ByteWriter tables, lenses, descriptors, keyframes, points;
+  ByteWriter tables, lenses, descriptors, keyframes, points, places;
   if (has_descriptor_section) write_map_features(map_features, descriptors);
   write_tables(shared, tables);
   write_lenses(shared, lenses);
   write_keyframes(map, index, shared, keyframes);
   write_points(map, index, points);
+  write_places(map, index, places);
 
   FileHeader header;
   header.library_version = HOLDFAST_VERSION;
   const bool has_lenses = lenses.size() > 0;
-  const std::uint32_t optional_sections = (has_lenses ? 1U : 0U) + (has_descriptor_section ? 1U : 0U);
+  const bool has_places = places.size() > 0;
+  const std::uint32_t optional_sections =
+      (has_lenses ? 1U : 0U) + (has_descriptor_section ? 1U : 0U) + (has_places ? 1U : 0U);
   header.sections = 3 + optional_sections + static_cast<std::uint32_t>(index.keyframes().size());
   header.keyframes = static_cast<std::uint32_t>(index.keyframes().size());
   header.points = static_cast<std::uint32_t>(index.points().size());
   header.observations = observation_count(map);
   header.next_sequence = map.next_sequence();
   header.sensor = static_cast<std::uint32_t>(map.sensor());
-  header.file_size = header_size + header.sections * section_header_size + tables.size() + lenses.size() + descriptors.size() +
-                     keyframes.size() + points.size();
+  header.file_size = header_size + header.sections * section_header_size + tables.size() + lenses.size() +
+                     descriptors.size() + keyframes.size() + points.size() + places.size();
   for (const KeyFrameId id : index.keyframes())
     header.file_size += features_size(map.keyframe(id).frame.size(), map_features.descriptors);
 
@@ -69,6 +72,7 @@ void write_content(std::ostream& stream, const Map& map) {
     write_section(stream, feature_section, features.bytes());
   }
   write_section(stream, point_section, points.bytes());
+  if (has_places) write_section(stream, place_section, places.bytes());
 }
 
 /// Removes a file at the end of the scope unless keep() was called.

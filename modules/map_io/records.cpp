@@ -59,6 +59,25 @@ void put(const DescriptorView& descriptors, ByteWriter& writer) {
   }
 }
 
+void put(const DescriptorType& type, ByteWriter& writer) {
+  writer.put(static_cast<std::uint8_t>(type.kind));
+  writer.put(static_cast<std::uint8_t>(type.metric));
+  writer.put(type.length);
+  writer.put(type.strict_distance);
+  writer.put(type.loose_distance);
+}
+
+DescriptorType get_descriptor_type(ByteReader& reader) {
+  DescriptorType type;
+  type.kind = static_cast<DescriptorKind>(reader.get<std::uint8_t>());
+  type.metric = static_cast<DescriptorMetric>(reader.get<std::uint8_t>());
+  type.length = reader.get<std::uint32_t>();
+  type.strict_distance = reader.get<float>();
+  type.loose_distance = reader.get<float>();
+  if (const std::string trouble = trouble_of(type); !trouble.empty()) reader.fail("descriptors: " + trouble);
+  return type;
+}
+
 /// Replaces `block` by `count` descriptors. The padding of binary ones must be zero, and numbers finite.
 void get_descriptors(ByteReader& reader, const DescriptorType& type, std::size_t count, DescriptorBlock& block) {
   block.reset(type, count);
@@ -318,11 +337,7 @@ std::uint64_t features_size(std::size_t features, const DescriptorType& type) {
 void write_map_features(const MapFeatures& features, ByteWriter& writer) {
   writer.put(static_cast<std::uint16_t>(features.extractor.size()));
   writer.put_bytes(features.extractor);
-  writer.put(static_cast<std::uint8_t>(features.descriptors.kind));
-  writer.put(static_cast<std::uint8_t>(features.descriptors.metric));
-  writer.put(features.descriptors.length);
-  writer.put(features.descriptors.strict_distance);
-  writer.put(features.descriptors.loose_distance);
+  put(features.descriptors, writer);
 }
 
 MapFeatures read_map_features(ByteReader reader) {
@@ -334,15 +349,43 @@ MapFeatures read_map_features(ByteReader reader) {
   for (const char letter : features.extractor)
     if (static_cast<unsigned char>(letter) < 0x20 || letter == 0x7F)
       reader.fail("the name of the extractor holds a control character");
-  features.descriptors.kind = static_cast<DescriptorKind>(reader.get<std::uint8_t>());
-  features.descriptors.metric = static_cast<DescriptorMetric>(reader.get<std::uint8_t>());
-  features.descriptors.length = reader.get<std::uint32_t>();
-  features.descriptors.strict_distance = reader.get<float>();
-  features.descriptors.loose_distance = reader.get<float>();
-  if (const std::string trouble = trouble_of(features.descriptors); !trouble.empty())
-    reader.fail("descriptors: " + trouble);
+  features.descriptors = get_descriptor_type(reader);
   reader.expect_end();
   return features;
+}
+
+void write_places(const Map& map, const DenseIndex& index, ByteWriter& writer) {
+  std::vector<std::uint32_t> described;
+  for (std::uint32_t i = 0; i < index.keyframes().size(); ++i)
+    if (!map.keyframe(index.keyframes()[i]).frame.place.empty()) described.push_back(i);
+  if (described.empty()) return;
+  const DescriptorType type = map.keyframe(index.keyframes()[described.front()]).frame.place.type();
+  put(type, writer);
+  writer.put(static_cast<std::uint32_t>(described.size()));
+  for (const std::uint32_t i : described) {
+    const DescriptorBlock& place = map.keyframe(index.keyframes()[i]).frame.place;
+    HOLDFAST_CHECK(place.type().is_comparable(type),
+                   "descriptions of images by " << to_string(place.type()) << " and " << to_string(type));
+    writer.put(i);
+    writer.put(static_cast<std::uint32_t>(place.size()));
+    put(place.view(), writer);
+  }
+}
+
+void read_places(ByteReader reader, std::vector<KeyFrame>& keyframes) {
+  const DescriptorType type = get_descriptor_type(reader);
+  const std::uint32_t count = reader.get_count(8, "described keyframes");
+  std::uint32_t next = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto position = reader.get<std::uint32_t>();
+    if (position < next || position >= keyframes.size())
+      reader.fail("found keyframe " + std::to_string(position) + "; expected at least " + std::to_string(next) +
+                  " and less than " + std::to_string(keyframes.size()));
+    next = position + 1;
+    const std::uint32_t descriptors = reader.get_count(bytes_per_descriptor(type), "descriptors");
+    get_descriptors(reader, type, descriptors, keyframes[position].frame.place);
+  }
+  reader.expect_end();
 }
 
 void write_features(const Frame& frame, std::uint32_t position, const DenseIndex& index, ByteWriter& writer) {

@@ -20,6 +20,7 @@ inline constexpr const char* descriptor_section = "DESC";  ///< absent for ORB's
 inline constexpr const char* keyframe_section = "KEYF";
 inline constexpr const char* feature_section = "FEAT";
 inline constexpr const char* point_section = "POIN";
+inline constexpr const char* place_section = "PLAC";  ///< only if images of keyframes were described
 
 /// Cameras and pyramids that keyframes share; keyframes name them by position.
 struct SharedTables {
@@ -63,6 +64,8 @@ void write_points(const Map& map, const DenseIndex& index, ByteWriter& writer);
 /// Length of the payload of write_features.
 std::uint64_t features_size(std::size_t features, const DescriptorType& type);
 void write_map_features(const MapFeatures& features, ByteWriter& writer);
+/// Frame::place of all keyframes that have one; writes nothing if there is none.
+void write_places(const Map& map, const DenseIndex& index, ByteWriter& writer);
 
 /// Reading throws InputError.
 SharedTables read_tables(ByteReader reader);
@@ -76,5 +79,7 @@ void read_features(ByteReader reader, std::uint32_t position, std::uint32_t coun
                    Frame& frame);
 std::vector<MapPoint> read_points(ByteReader reader, const DescriptorType& type);
 MapFeatures read_map_features(ByteReader reader);
+/// Fills Frame::place of the keyframes.
+void read_places(ByteReader reader, std::vector<KeyFrame>& keyframes);
 
 }  // namespace holdfast::map_io

@@ -86,18 +86,7 @@ void MaskPropagator::set_pose(const std::optional<Eigen::Isometry3d>& T_camera_w
 }
 
 const cv::Mat& MaskPropagator::moving_pixels() {
-  constexpr int half = CoarseGrid::step / 2;
-  moving_pixels_.release();
-  for (std::size_t i = 0; i < labels_.moving.size(); ++i) {
-    if (labels_.moving[i] == 0) continue;
-    const std::int32_t raw = sampler_.raw_pixel(static_cast<int>(i));
-    if (raw < 0) continue;
-    if (moving_pixels_.empty()) moving_pixels_ = cv::Mat::zeros(camera_.height, camera_.width, CV_8UC1);
-    const int x = raw % camera_.width, y = raw / camera_.width;
-    for (int row = std::max(0, y - half); row <= std::min(camera_.height - 1, y + half); ++row)
-      std::fill_n(moving_pixels_.ptr<std::uint8_t>(row) + std::max(0, x - half),
-                  std::min(camera_.width - 1, x + half) - std::max(0, x - half) + 1, std::uint8_t{255});
-  }
+  moving_pixels_ = sampler_.pixels_of(labels_.moving);
   return moving_pixels_;
 }
 

@@ -84,6 +84,13 @@ void MovingWorld::end_frame(const Frame& frame, bool has_pose) {
   propagator_->set_pose(has_pose ? std::optional(frame.T_camera_world) : std::nullopt, frame.coarse, moving);
 }
 
+cv::Mat MovingWorld::moving_pixels(const CoarseView& view) const {
+  std::vector<std::uint8_t> moving(view.static_log_odds.size());
+  if (moving.size() != static_cast<std::size_t>(sampler_.grid().size())) return {};
+  for (std::size_t i = 0; i < moving.size(); ++i) moving[i] = view.static_log_odds[i] < 0.0F ? 1 : 0;
+  return sampler_.pixels_of(moving);
+}
+
 void MovingWorld::next_frame(double timestamp) {
   ++next_frame_number_;
   timestamp_ = timestamp;

@@ -62,6 +62,7 @@ struct Pipeline::State {
   struct LoopJob {
     KeyFrameId keyframe;
     std::vector<KeyFrameId> removed;
+    cv::Mat image;  // see image_to_describe()
   };
 
   /// What the mapping thread works on. A keyframe whose mask has not come yet comes again with it, and only then
@@ -69,6 +70,7 @@ struct Pipeline::State {
   struct MappingJob {
     KeyFrameId keyframe;
     bool is_final = true;
+    cv::Mat image = {};  // see image_to_describe()
   };
 
   /// What the full adjustment thread works on: the whole map.
@@ -79,6 +81,7 @@ struct Pipeline::State {
         map(std::move(parts.map)),
         moving_world(moving_world_parts(parts), map),
         detector(*parts.loop_detector),
+        describes_images(detector.image_descriptor().has_value()),
         tracker(parts.tracking, {parts.camera, *parts.features, *parts.optimizer, detector, moving_world, map,
                                  parts.run.seed, stereo_parts(parts), parts.sensor != Sensor::mono, *parts.matcher}),
         mapper(parts.mapping, parts.tracking.close_depth_factor, map, map_mutex, *parts.optimizer, *parts.matcher),
@@ -90,7 +93,7 @@ struct Pipeline::State {
     map.set_evidence_limit(static_cast<float>(parts.evidence.limit));
     closer.set_full_adjustment(&adjustment);
     for (const KeyFrameId keyframe : map.keyframes_by_age())
-      detector.add(keyframe, static_descriptors(map.keyframe(keyframe).frame));
+      detector.add(keyframe, place_descriptors(map.keyframe(keyframe).frame, describes_images));
     if (parts.dense_map.enabled && !parts.localise_only) scene.emplace(parts.camera, parts.dense_map);
     for (const std::string& name : parts.segmenter->classes()) {
       const std::vector<std::string>& out = parts.dense_map.classes;
@@ -109,6 +112,10 @@ struct Pipeline::State {
   /// Inserts the first of the two keyframes with which the map of one camera begins; the caller holds the map's lock.
   KeyFrameId begin_map(const TwoViewStart& start, StageTimes& times);
   LoopJob refine(const MappingJob& job, StageTimes& times);
+  /// The colour image of a keyframe if the loop detector will describe it; otherwise none, so that none is kept.
+  cv::Mat image_to_describe(const SensorFrame& frame) const { return describes_images ? frame.colour : cv::Mat(); }
+  /// Has the loop detector describe the image of a keyframe without what moves in it. Adds the stage "loops: describe".
+  void describe_place(const LoopJob& job, StageTimes& times);
   /// True when a loop was closed and the whole map should be adjusted.
   bool close_loops(const LoopJob& job, StageTimes& times);
   void adjust_map(StageTimes& times);
@@ -151,6 +158,7 @@ struct Pipeline::State {
   std::mutex surgery;  // see SharedMap
   MovingWorld moving_world;
   SharedLoopDetector detector;
+  bool describes_images;  // the detector, instead of using descriptors of features
   Tracker tracker;
   LocalMapper mapper;
   LoopCloser closer;
@@ -229,7 +237,7 @@ KeyFrameId Pipeline::State::begin_map(const TwoViewStart& start, StageTimes& tim
 }
 
 Pipeline::State::LoopJob Pipeline::State::refine(const MappingJob& given, StageTimes& times) {
-  LoopJob job{given.is_final ? given.keyframe : KeyFrameId(), {}};
+  LoopJob job{given.is_final ? given.keyframe : KeyFrameId(), {}, given.image};
   {
     const std::lock_guard surgeon(surgery);
     job.removed = mapper.refine(given.keyframe, times);
@@ -240,8 +248,23 @@ Pipeline::State::LoopJob Pipeline::State::refine(const MappingJob& given, StageT
   return job;
 }
 
+void Pipeline::State::describe_place(const LoopJob& job, StageTimes& times) {
+  CoarseView coarse;
+  {
+    const std::lock_guard lock(map_mutex);
+    const KeyFrame* keyframe = map.find_keyframe(job.keyframe);
+    if (keyframe == nullptr) return;
+    coarse.static_log_odds = keyframe->frame.coarse.static_log_odds;
+  }
+  const StageTimer timer(times, "loops: describe");
+  DescriptorBlock place = detector.describe(job.image, moving_world.moving_pixels(coarse));
+  const std::lock_guard lock(map_mutex);
+  if (KeyFrame* keyframe = map.find_keyframe(job.keyframe)) keyframe->frame.place = std::move(place);
+}
+
 bool Pipeline::State::close_loops(const LoopJob& job, StageTimes& times) {
   std::optional<ClosedLoop> loop;
+  if (job.keyframe.valid() && !job.image.empty()) describe_place(job, times);
   if (job.keyframe.valid()) loop = closer.process(job.keyframe, times);
   for (const KeyFrameId id : job.removed) closer.forget(id);
   if (!loop) {
@@ -327,7 +350,7 @@ double Pipeline::State::take_masks(StageTimes& times) {
       if (const KeyFrame* keyframe = map.find_keyframe(arrived->keyframe))
         keep_view(arrived->keyframe, arrived->frame, keyframe->frame.coarse, arrived->segmentation.labels, times);
     }
-    hand_to_mapping({arrived->keyframe}, times);
+    hand_to_mapping({arrived->keyframe, true, image_to_describe(arrived->frame)}, times);
   }
 }
 
@@ -344,7 +367,7 @@ void Pipeline::State::request_mask(const SensorFrame& frame, const FrameResult& 
     return;
   }
   keep_view(keyframe, frame, tracker.frame().coarse, {}, times);
-  hand_to_mapping({keyframe}, times);
+  hand_to_mapping({keyframe, true, image_to_describe(frame)}, times);
 }
 
 Pipeline::Pipeline(PipelineParts parts) : state_(std::make_unique<State>(checked(std::move(parts)))) {}

@@ -235,12 +235,35 @@ void PipelineBuilder::check_map() const {
                          named(parts_.features_name, here) +
                          "; expected the same extractor, because features of another one cannot be matched");
   }
+  check_places();
   parts_.map.keyframes().for_each([&](KeyFrameId, const KeyFrame& keyframe) {
     if (have_other_numbers(*keyframe.frame.camera, parts_.camera))
       throw InputError({map_name_}, "was made with the camera '" + keyframe.frame.camera->name +
                                         "', and the run has '" + parts_.camera.name +
                                         "' with other numbers; expected the same camera");
   });
+}
+
+/// A detector that compares images needs those of the map, as its own network describes them.
+void PipelineBuilder::check_places() const {
+  const std::optional<DescriptorType> needed = parts_.loop_detector->image_descriptor();
+  if (!needed) return;
+  bool has_places = false;
+  parts_.map.keyframes().for_each([&](KeyFrameId, const KeyFrame& keyframe) {
+    const DescriptorBlock& place = keyframe.frame.place;
+    if (place.empty()) return;
+    has_places = true;
+    if (!place.type().is_comparable(*needed))
+      throw InputError({map_name_}, "holds descriptions of its keyframes' images by " + to_string(place.type()) +
+                                        ", and the loop detector '" + loop_detector_->name + "' makes " +
+                                        to_string(*needed) +
+                                        "; expected the loop detector with the network that made the map");
+  });
+  if (!has_places)
+    throw InputError({map_name_}, "holds no descriptions of its keyframes' images, which the loop detector '" +
+                                      loop_detector_->name +
+                                      "' compares; expected a map that a run with this detector made, or another "
+                                      "detector, such as 'loop_detector: { flann: {} }'");
 }
 
 void PipelineBuilder::choose_sensor() {
@@ -267,6 +290,14 @@ void PipelineBuilder::make_modules() {
   if (features_) parts_.features_name = features_->name;
   parts_.features = make_if_any(features_);
   parts_.matcher = make_if_any(matcher_);
+  if (parts_.features && parts_.matcher) {
+    const std::string trouble = parts_.matcher->trouble_with(parts_.features->descriptor_type());
+    if (!trouble.empty())
+      complain(matcher_->place, "the matcher '" + matcher_->name + "'" + " " + trouble + ", and " + "the extractor '" +
+                                    parts_.features_name + "'" + " has " +
+                                    to_string(parts_.features->descriptor_type()) +
+                                    "; choose other features, or another matcher");
+  }
   parts_.segmenter = make_if_any(segmenter_);
   parts_.optimizer = make_if_any(optimizer_);
   parts_.loop_detector = make_if_any(loop_detector_);

@@ -63,6 +63,7 @@ void FrameBuilder::begin(const SensorFrame& sensor_frame, Frame& frame, StageTim
   frame.camera = camera_;
   frame.pyramid = pyramid_;
   frame.T_camera_world.setIdentity();
+  frame.place.clear();
   cv::cvtColor(colour, grey_, cv::COLOR_BGR2GRAY);
   if (!stereo_) {
     coarse_sampler_.sample_depth(depth, frame.coarse);

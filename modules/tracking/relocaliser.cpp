@@ -9,8 +9,9 @@
 
 namespace holdfast {
 
-bool Relocaliser::relocalise(KeyFrameId last_keyframe, KeyFrameId reference, Frame& frame, FrameResult& result) {
-  return coast(frame, result) || recover(last_keyframe, reference, frame, result) || find_place(frame, result);
+bool Relocaliser::relocalise(KeyFrameId last_keyframe, KeyFrameId reference, const cv::Mat& image, Frame& frame,
+                             FrameResult& result) {
+  return coast(frame, result) || recover(last_keyframe, reference, frame, result) || find_place(image, frame, result);
 }
 
 int Relocaliser::search_local_map(double window, Frame& frame) {
@@ -94,14 +95,16 @@ bool Relocaliser::align_with_keyframe(KeyFrameId keyframe, const std::optional<E
   return true;
 }
 
-bool Relocaliser::find_place(Frame& frame, FrameResult& result) {
+bool Relocaliser::find_place(const cv::Mat& image, Frame& frame, FrameResult& result) {
   parts_.history.interrupt();
   // The database contains static features only, and so does the query. Points that an earlier hypothesis matched say
   // nothing about this place: the weights come from the frame alone.
   std::fill(frame.map_points.begin(), frame.map_points.end(), MapPointId());
   parts_.estimator.build_problem(frame);
+  const bool of_image = parts_.detector.image_descriptor().has_value();
+  if (of_image) frame.place = parts_.detector.describe(image, parts_.moving_world.moving_pixels(frame.coarse));
   for (const PlaceMatch& place :
-       parts_.detector.query(static_descriptors(frame), settings_.relocalisation_candidates)) {
+       parts_.detector.query(place_descriptors(frame, of_image), settings_.relocalisation_candidates)) {
     const KeyFrame* keyframe = parts_.map.find_keyframe(place.keyframe);
     if (keyframe == nullptr) continue;  // removed a moment ago, and the detector does not know yet
     parts_.matcher.match_keyframe(keyframe->frame, frame);

@@ -26,7 +26,8 @@ Tracker::Tracker(const TrackingSettings& settings, const TrackerParts& parts)
       builder_(parts.camera, parts.features, settings.depth_edge_ratio),
       matcher_(settings, parts.map, parts.matcher),
       estimator_(parts.optimizer, parts.moving_world, parts.map),
-      relocaliser_(settings, {parts.detector, parts.map, matcher_, estimator_, history_}, parts.seed),
+      relocaliser_(settings, {parts.detector, parts.moving_world, parts.map, matcher_, estimator_, history_},
+                   parts.seed),
       keyframe_policy_(settings),
       state_(parts.map.keyframes().empty() ? State::waiting : State::lost) {
   if (parts.stereo) builder_.use_stereo(*parts.stereo);
@@ -173,7 +174,8 @@ bool Tracker::find_pose(TrackedView& view, FrameResult& result) {
   }
   {
     const StageTimer timer(result.times, "relocalisation");
-    if (!relocaliser_.relocalise(last_keyframe_, reference_keyframe_, view.frame, result)) return false;
+    if (!relocaliser_.relocalise(last_keyframe_, reference_keyframe_, view.sensor_frame.colour, view.frame, result))
+      return false;
   }
   return refine(view, result);
 }

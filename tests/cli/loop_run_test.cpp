@@ -40,6 +40,15 @@ TEST_F(LoopRunTest, TheHallIsClosedAndTwiceTheSame) {
   EXPECT_EQ(program_.text("a/map.hfm"), program_.text("b/map.hfm"));
 }
 
+TEST_F(LoopRunTest, TheHallIsClosedByImagesAsAWhole) {
+  const std::string network = HOLDFAST_PLACE_MODELS "/gist.onnx";
+  const nlohmann::json closed = run("loop.yaml", "global",
+                                    {"--set", "loop_detector={ global: { model: " + network +
+                                                  ", mean: [0, 0, 0], standard_deviation: [1, 1, 1] } }"});
+  EXPECT_GE(closed.at("loops").at("closed").size(), 1U);
+  EXPECT_LE(closed.at("evaluation").at("ate_m").at("rmse"), 0.03);
+}
+
 TEST_F(LoopRunTest, LookAlikeDesksCloseNothing) {
   const nlohmann::json corridor = run("corridor.yaml", "corridor");
   EXPECT_TRUE(corridor.at("loops").at("closed").empty());

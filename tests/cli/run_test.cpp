@@ -374,6 +374,32 @@ TEST_F(RunTest, AMapIsLocalisedInAndContinued) {
   EXPECT_EQ(program_.text("again/map.hfm"), program_.text("more/map.hfm"));
 }
 
+TEST_F(RunTest, AMapKeepsTheDescriptionsOfItsImages) {
+  const auto detector = [](const std::string& more) {
+    return std::string("loop_detector={ global: { model: " HOLDFAST_PLACE_MODELS "/gist.onnx, mean: [0, 0, 0], ") +
+           "standard_deviation: [1, 1, 1]" + more + " } }";
+  };
+  for (const auto& [folder, setting] : {std::pair("described", detector("")), {"words", "loop_detector=flann"}})
+    ASSERT_EQ(program_
+                  .run({"run", "room.yaml", "--set", setting, "--set", "source.simulated.duration=3", "--output",
+                        folder, "--quiet"})
+                  .exit_code,
+              0);
+  const auto localise = [&](const std::string& map, const std::string& setting) {
+    return program_.run({"run", "room.yaml", "--set", setting, "--set", "source.simulated.path=rpy", "--map", map,
+                         "--localise", "--output", "where", "--quiet", "--overwrite"});
+  };
+  const Outcome found = localise("described/map.hfm", detector(""));
+  ASSERT_EQ(found.exit_code, 0) << found.errors;
+  EXPECT_EQ(summary("where").at("frames").at("poses"), 15);
+  EXPECT_EQ(summary("where").at("frames").at("relocalised"), 1);
+  // Words do without descriptions, and descriptions cannot do without.
+  EXPECT_EQ(localise("described/map.hfm", "loop_detector=flann").exit_code, 0);
+  EXPECT_THAT(
+      localise("words/map.hfm", detector("")).errors,
+      HasSubstr("words/map.hfm: holds no descriptions of its keyframes' images, which the loop detector 'global'"));
+}
+
 TEST_F(RunTest, AMapThatCannotBeUsedIsAClearError) {
   ASSERT_EQ(program_.run({"run", "room.yaml", "--output", "made", "--quiet"}).exit_code, 0);
   const std::vector<std::string> run = {"run", "room.yaml", "--output", "out", "--map"};

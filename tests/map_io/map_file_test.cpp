@@ -71,6 +71,7 @@ void expect_same_frame(const Frame& a, const Frame& b) {
   expect_same_bits(a.depth, b.depth);
   expect_same_bits(a.right_x, b.right_x);
   expect_same_bits(a.static_probability, b.static_probability);
+  EXPECT_TRUE(a.place.empty() ? b.place.empty() : a.place == b.place);
 }
 
 void expect_same(const Map& a, const Map& b) {
@@ -227,6 +228,37 @@ TEST_F(MapFile, HoldsEveryLens) {
   };
   EXPECT_THAT(refusal(4, 77), ::testing::HasSubstr("found camera 77"));
   EXPECT_THAT(refusal(8, 9), ::testing::HasSubstr("found number 9; expected less than 2"));
+}
+
+TEST_F(MapFile, HoldsDescriptionsOfImages) {
+  Map map = random_map(8, 30, 11);
+  EXPECT_EQ(bytes_of(map).find("PLAC"), std::string::npos) << "maps of other detectors stay as they were";
+  const DescriptorType type{DescriptorKind::float32, DescriptorMetric::cosine, 11, 0.1F, 0.2F};
+  std::size_t count = 0;
+  float value = 0.0F;
+  for (const KeyFrameId id : map.keyframes_by_age()) {  // 0, 1, 2, 0, ... descriptors
+    DescriptorBlock place(type, count++ % 3);
+    for (std::size_t i = 0; i < place.size(); ++i)
+      for (float& number : place.numbers(i)) number = value += 0.01F;
+    map.keyframe(id).frame.place = std::move(place);
+  }
+  const std::string bytes = bytes_of(map);
+  write("map.hfm", bytes);
+  const Map again = read_map(path("map.hfm"));
+  expect_same(map, again);
+  EXPECT_TRUE(bytes_of(again) == bytes);
+  const std::size_t content = bytes.find("PLAC") + 24;
+  const auto refusal = [&](std::size_t offset, std::uint32_t wrong_value) {
+    std::string wrong = bytes;
+    std::memcpy(&wrong[content + offset], &wrong_value, sizeof(wrong_value));
+    test::repair_checksums(wrong);
+    return refusal_of(wrong);
+  };
+  EXPECT_THAT(refusal(14, 0xFFFFFFF0U), ::testing::HasSubstr("described keyframes"));
+  EXPECT_THAT(refusal(18, 700), ::testing::HasSubstr("found keyframe 700; expected at least 0 and less than"));
+  EXPECT_THAT(refusal(22, 1U << 30), ::testing::HasSubstr("descriptors, for which the section is too short"));
+  EXPECT_THAT(refusal(26, 0x7F800000U), ::testing::HasSubstr("not finite"));
+  EXPECT_THAT(refusal(2, 0), ::testing::HasSubstr("descriptors: "));
 }
 
 TEST_F(MapFile, SharedCamerasStayShared) {

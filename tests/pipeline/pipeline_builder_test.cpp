@@ -54,6 +54,29 @@ void expect_same(const Trajectory& first, const Trajectory& second) {
     EXPECT_EQ(first[i].T_world_camera.matrix(), second[i].T_world_camera.matrix()) << i;
 }
 
+/// Matches no bits, and says so before the first frame.
+class NumberMatcher final : public NearestMatcher {
+ public:
+  std::string trouble_with(const DescriptorType& type) const override {
+    return type.kind == DescriptorKind::binary ? "takes descriptors of numbers" : "";
+  }
+};
+
+/// Compares whole images, which it describes by a number of values.
+class ImageDetector final : public LoopDetector {
+ public:
+  explicit ImageDetector(std::uint32_t length)
+      : type_{DescriptorKind::float32, DescriptorMetric::cosine, length, 1, 1} {}
+  std::optional<DescriptorType> image_descriptor() const override { return type_; }
+  DescriptorBlock describe(const cv::Mat&, const cv::Mat&) override { return DescriptorBlock(type_, 1); }
+  void add(KeyFrameId, const DescriptorView&) override {}
+  void remove(KeyFrameId) override {}
+  std::vector<PlaceMatch> query(const DescriptorView&, int) const override { return {}; }
+
+ private:
+  DescriptorType type_;
+};
+
 /// Needs masks; says nothing.
 class MaskReader final : public DynamicFilter {
  public:
@@ -165,6 +188,45 @@ TEST(PipelineBuilder, AMapIsContinuedByItsOwnExtractorOnly) {
   numbers = DescriptorType();
   numbers.loose_distance = 120.0F;
   EXPECT_EQ(refusal({own.extractor, numbers}), "") << "recommended distances may differ";
+}
+
+TEST(PipelineBuilder, AMapKeepsWhatTheDetectorSaysOfImages) {
+  test::PointWorld world(find_camera("tum_fr1").value());
+  const auto new_map = [&](std::unique_ptr<LoopDetector> detector) {
+    PipelineBuilder builder = builder_for(world);
+    Pipeline pipeline = builder.loop_detector(std::move(detector)).build();
+    run(pipeline, world, 60);
+    return pipeline.take_map();
+  };
+  const auto refusal = [&](Map map, std::unique_ptr<LoopDetector> detector) -> std::string {
+    PipelineBuilder continued = builder_for(world);
+    continued.map(std::move(map)).loop_detector(std::move(detector));
+    try {
+      continued.build();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const Map described = new_map(std::make_unique<ImageDetector>(7));
+  ASSERT_FALSE(described.keyframes().empty());
+  described.keyframes().for_each(
+      [](KeyFrameId, const KeyFrame& keyframe) { EXPECT_EQ(keyframe.frame.place.size(), 1U); });
+  const auto again = [&] { return new_map(std::make_unique<ImageDetector>(7)); };
+  EXPECT_EQ(refusal(again(), std::make_unique<ImageDetector>(7)), "");
+  EXPECT_EQ(refusal(again(), std::make_unique<test::BruteForceDetector>()), "");
+  EXPECT_THAT(refusal(again(), std::make_unique<ImageDetector>(8)),
+              testing::AllOf(HasSubstr("by 7 float32 (cosine)"), HasSubstr("'own' makes 8 float32 (cosine)")));
+  EXPECT_THAT(refusal(new_map(std::make_unique<test::BruteForceDetector>()), std::make_unique<ImageDetector>(7)),
+              HasSubstr("holds no descriptions of its keyframes' images"));
+}
+
+TEST(PipelineBuilder, AMatcherRefusesFeaturesThatItCannotMatch) {
+  test::PointWorld world(find_camera("tum_fr1").value());
+  PipelineBuilder builder = builder_for(world);
+  EXPECT_THAT(complaints(builder.matcher(std::make_unique<NumberMatcher>())),
+              HasSubstr("the matcher 'own' takes descriptors of numbers, and the extractor 'own' has "
+                        "256 bits (hamming); choose other features, or another matcher"));
 }
 
 TEST(PipelineBuilder, TwoPipelinesInOneProcessShareNothing) {

@@ -68,6 +68,9 @@ class CoarseSampler {
   void sample_depth(const cv::Mat& depth, CoarseView& view) const;
   /// Labels (8UC1 of the camera's size) at the cells' centres; `outside` where a cell lies outside the image.
   void sample_labels(const cv::Mat& labels, std::uint8_t outside, std::vector<std::uint8_t>& cells) const;
+  /// Sets all raw pixels of the marked cells (not 0, one entry per cell) to 255 in an image of the camera's size, 8UC1;
+  /// empty if no cell is marked.
+  cv::Mat pixels_of(const std::vector<std::uint8_t>& marked) const;
   /// Raw pixel at the centre of a cell as row * width + column, or -1 outside the image.
   std::int32_t raw_pixel(int cell) const { return raw_[static_cast<std::size_t>(cell)]; }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "holdfast/core/frame.hpp"
@@ -17,14 +18,14 @@ using matching::FeatureMatch;
 /// One side of a comparison: features of an image, or points of a map.
 struct MatchSide {
   DescriptorView descriptors;
-  std::span<const std::uint32_t> selection;  ///< indices of those that take part, ascending
+  std::span<const std::uint32_t> selection = {};  ///< indices of those that take part, ascending
 
   // Entry i of each belongs to descriptor i. All are empty for points of a map, which no single image shows.
-  std::span<const float> x, y;           ///< undistorted [px of the full image]
-  std::span<const float> angle;          ///< orientation [rad]
-  std::span<const std::uint8_t> octave;  ///< pyramid level
-  std::span<const float> response;       ///< strength; comparable within one image only
-  int width = 0, height = 0;             ///< of the image [px]
+  std::span<const float> x = {}, y = {};      ///< undistorted [px of the full image]
+  std::span<const float> angle = {};          ///< orientation [rad]
+  std::span<const std::uint8_t> octave = {};  ///< pyramid level
+  std::span<const float> response = {};       ///< strength; comparable within one image only
+  int width = 0, height = 0;                  ///< of the image [px]
 };
 
 /// Features of a frame as one side. The frame and the selection must outlive it.
@@ -39,7 +40,7 @@ struct MatchLimits {
   bool mutual = false;
   /// Whether reference `other` is a rival of the nearest one; empty means all are. A place that was mapped twice is no
   /// reason to refuse a match.
-  std::function<bool(std::uint32_t nearest, std::uint32_t other)> is_rival;
+  std::function<bool(std::uint32_t nearest, std::uint32_t other)> is_rival = {};
 };
 
 /// Decides which features show the same point. Tracking, local mapping and loop closing call it from several threads at
@@ -51,6 +52,9 @@ class FeatureMatcher : public Module {
  public:
   static constexpr const char* kind = "matcher";
 
+  /// Why this matcher cannot match descriptors of a type, for the message that refuses it before the first frame; ""
+  /// when it can.
+  virtual std::string trouble_with(const DescriptorType& /*type*/) const { return {}; }
   /// Matches queries with references without any prediction: FeatureMatch::source is a query, FeatureMatch::feature a
   /// reference, each of the selections and at most once; ordered by reference. Replaces `matches`. Both sides are of
   /// comparable descriptors.

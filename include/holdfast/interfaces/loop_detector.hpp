@@ -2,6 +2,8 @@
 #pragma once
 
 #include <mutex>
+#include <opencv2/core/mat.hpp>
+#include <optional>
 #include <vector>
 
 #include "holdfast/core/descriptor.hpp"
@@ -16,13 +18,25 @@ struct PlaceMatch {
   double score = 0.0;
 };
 
-/// Place recognition by the descriptors of keyframes. Callers pass those of static features only, so that a place is
-/// not recognised by the people in it (Zeng et al. 2023, section 3.3). Used by one thread at a time.
+/// Place recognition by the descriptors of keyframes: those of their features, or those by which the detector itself
+/// describes a whole image. Callers pass those of static features, and describe images without what moves, so that a
+/// place is not recognised by the people in it (Zeng et al. 2023, section 3.3). Used by one thread at a time, but for
+/// describe().
 class LoopDetector : public Module {
  public:
   static constexpr const char* kind = "loop_detector";
 
-  /// Adds a keyframe with any number of descriptors. The keyframe must not be in the database yet.
+  /// The type of the descriptors that describe() makes. Nothing, the default, is for a detector that recognises places
+  /// by the descriptors of features; describe() is then never called.
+  virtual std::optional<DescriptorType> image_descriptor() const { return std::nullopt; }
+  /// Describes a whole image by any number of descriptors, usually one. `image`: 8UC1, or 8UC3 in the order blue,
+  /// green, red. `moving`: 8UC1 of the same size, not 0 where something moves that does not belong to the place, or
+  /// empty. The same image gives the same descriptors. One thread at a time calls it, beside another that calls the
+  /// functions below.
+  virtual DescriptorBlock describe(const cv::Mat& /*image*/, const cv::Mat& /*moving*/) { return {}; }
+
+  /// Adds a keyframe with any number of descriptors, of its static features or from describe(). The keyframe must not
+  /// be in the database yet.
   virtual void add(KeyFrameId keyframe, const DescriptorView& descriptors) = 0;
   /// Removes a keyframe from the database; an unknown id is ignored.
   virtual void remove(KeyFrameId keyframe) = 0;
@@ -40,12 +54,18 @@ class NullLoopDetector final : public LoopDetector {
   std::vector<PlaceMatch> query(const DescriptorView&, int) const override { return {}; }
 };
 
-/// Serialises access to another detector with a mutex, so that tracking can query while loop closing adds.
+/// Serialises access to another detector with a mutex, so that tracking can query while loop closing adds. Another
+/// mutex serialises describe(), which may take long.
 class SharedLoopDetector final : public LoopDetector {
  public:
   /// The detector must outlive this object.
   explicit SharedLoopDetector(LoopDetector& detector) : detector_(detector) {}
 
+  std::optional<DescriptorType> image_descriptor() const override { return detector_.image_descriptor(); }
+  DescriptorBlock describe(const cv::Mat& image, const cv::Mat& moving) override {
+    const std::lock_guard lock(description_mutex_);
+    return detector_.describe(image, moving);
+  }
   void add(KeyFrameId keyframe, const DescriptorView& descriptors) override {
     const std::lock_guard lock(mutex_);
     detector_.add(keyframe, descriptors);
@@ -62,6 +82,7 @@ class SharedLoopDetector final : public LoopDetector {
  private:
   LoopDetector& detector_;
   mutable std::mutex mutex_;
+  std::mutex description_mutex_;
 };
 
 }  // namespace holdfast

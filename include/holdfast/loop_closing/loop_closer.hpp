@@ -53,8 +53,9 @@ class LoopCloser {
 
   /// Searches for a loop at a keyframe, closes it, and adds the keyframe to the detector. Query and database use
   /// the descriptors of static features only, as static_probability says at this call: the keyframe's own mask must
-  /// have been applied before. It must be called once for each keyframe by increasing sequence, after local mapping has
-  /// processed it; a removed keyframe is skipped. Adds stages "loops: ...".
+  /// have been applied before. For a detector that describes images they use Frame::place, which must have been set. It
+  /// must be called once for each keyframe by increasing sequence, after local mapping has processed it; a removed
+  /// keyframe is skipped. Adds stages "loops: ...".
   std::optional<ClosedLoop> process(KeyFrameId keyframe, StageTimes& times);
 
   /// Removes a keyframe from the detector after it was removed from the map; has no effect if it was never added.

@@ -61,6 +61,11 @@ void mark_static(const Frame& frame, std::vector<std::uint8_t>& usable);
 /// Copies the descriptors of the static features, in the order of the features. Place recognition uses no others (Zeng
 /// et al. 2023, section 3.3); entry i is not that of feature i when a feature before it moves.
 DescriptorBlock static_descriptors(const Frame& frame);
+/// What place recognition compares frames by: Frame::place for a detector that describes images, and otherwise the
+/// static descriptors.
+inline DescriptorBlock place_descriptors(const Frame& frame, bool of_image) {
+  return of_image ? frame.place : static_descriptors(frame);
+}
 /// Sets `usable` to 1 for each feature without a map point and to 0 for the others.
 void mark_unmatched(const Frame& frame, std::vector<std::uint8_t>& usable);
 

@@ -108,6 +108,9 @@ class MovingWorld {
   /// Whether so many keyframes wait for their masks that only a frame that is about to be lost should become another.
   bool holds_keyframes() const { return queue_ && queue_->is_full(); }
 
+  /// Raw pixels (8UC1, not 0) of what is more likely moving than static in a view; empty if nothing is. Any thread.
+  cv::Mat moving_pixels(const CoarseView& view) const;
+
   // Fed by the pipeline.
 
   bool expects_masks() const { return queue_.has_value(); }

@@ -138,6 +138,7 @@ class PipelineBuilder {
   void choose_sensor();
   void check_filter(const ModuleOf<DynamicFilter>& module, const Needs& needs);
   void check_map() const;
+  void check_places() const;
   void complain(const SourceLocation& place, std::string message);
 
   Registry registry_;

@@ -10,6 +10,7 @@
 #include "holdfast/core/map.hpp"
 #include "holdfast/core/random.hpp"
 #include "holdfast/interfaces/loop_detector.hpp"
+#include "holdfast/moving_world/moving_world.hpp"
 #include "holdfast/tracking/frame_history.hpp"
 #include "holdfast/tracking/frame_matcher.hpp"
 #include "holdfast/tracking/pose_estimator.hpp"
@@ -19,7 +20,8 @@ namespace holdfast {
 
 /// What a Relocaliser works with; all of it must outlive the Relocaliser.
 struct RelocaliserParts {
-  const LoopDetector& detector;
+  LoopDetector& detector;
+  const MovingWorld& moving_world;
   const Map& map;
   FrameMatcher& matcher;
   PoseEstimator& estimator;
@@ -39,16 +41,18 @@ class Relocaliser {
   /// gives no alignment, the adjustment starts at `start`, or at the keyframe's pose without one.
   bool align_with_keyframe(KeyFrameId keyframe, const std::optional<Eigen::Isometry3d>& start, Frame& frame,
                            FrameResult& result);
-  /// All hypotheses for a lost camera, in this order: coast(), recover(), find_place().
-  bool relocalise(KeyFrameId last_keyframe, KeyFrameId reference, Frame& frame, FrameResult& result);
+  /// All hypotheses for a lost camera, in this order: coast(), recover(), find_place(). `image` is the frame's colour
+  /// image.
+  bool relocalise(KeyFrameId last_keyframe, KeyFrameId reference, const cv::Mat& image, Frame& frame,
+                  FrameResult& result);
 
   /// For a short time after the last tracked frame: searches the local map at shares of the last velocity's motion.
   bool coast(Frame& frame, FrameResult& result);
   /// Tries the last keyframe and the strongest neighbours of it and of the reference keyframe.
   bool recover(KeyFrameId last_keyframe, KeyFrameId reference, Frame& frame, FrameResult& result);
   /// Candidates by appearance, PnP with RANSAC, then guided search in the local map (Mur-Artal et al. 2015, section
-  /// V-C).
-  bool find_place(Frame& frame, FrameResult& result);
+  /// V-C). Describes the image first if the loop detector compares whole images.
+  bool find_place(const cv::Mat& image, Frame& frame, FrameResult& result);
 
  private:
   bool fits_surroundings(Frame& frame, FrameResult& result);

@@ -29,7 +29,7 @@ struct TrackerParts {
   const Camera& camera;
   FeatureExtractor& features;
   Optimizer& optimizer;
-  const LoopDetector& detector;
+  LoopDetector& detector;
   MovingWorld& moving_world;
   Map& map;
   std::uint64_t seed = 1;                  ///< of the random samples of relocalisation

@@ -73,12 +73,17 @@ void OnnxMatcher::fill(const MatchSide& side, Half& half) const {
   }
 }
 
+std::string OnnxMatcher::trouble_with(const DescriptorType& type) const {
+  if (type.kind == DescriptorKind::float32 && static_cast<int>(type.length) == length_) return {};
+  return "takes descriptors of " + std::to_string(length_) + " float32";
+}
+
 void OnnxMatcher::match(const MatchSide& queries, const MatchSide& references, const MatchLimits& limits,
                         std::vector<FeatureMatch>& matches) const {
   const DescriptorType& type = queries.descriptors.type();
   if (queries.x.empty() || references.x.empty()) return NearestMatcher::match(queries, references, limits, matches);
-  if (type.kind != DescriptorKind::float32 || static_cast<int>(type.length) != length_)
-    fail("takes descriptors of " + std::to_string(length_) + " float32, and the features have " + to_string(type) +
+  if (const std::string trouble = trouble_with(type); !trouble.empty())
+    fail(trouble + ", and the features have " + to_string(type) +
          "; expected the features that the network was made for");
   matches.clear();
   if (queries.selection.empty() || references.selection.empty()) return;

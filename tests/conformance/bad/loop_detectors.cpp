@@ -15,11 +15,47 @@ namespace {
 
 std::atomic<int> calls = 0;
 
+/// The mean colour of every cell of 40 x 40 pixels, as bits of which the more are set, the brighter it is.
+DescriptorBlock mean_colours(const cv::Mat& image, const cv::Mat& moving) {
+  constexpr int cell = 40, bits_of_channel = 64;
+  DescriptorBlock block;
+  for (int top = 0; top + cell <= image.rows; top += cell)
+    for (int left = 0; left + cell <= image.cols; left += cell) {
+      const cv::Rect where(left, top, cell, cell);
+      Descriptor256 descriptor;
+      for (int channel = 0; channel < image.channels(); ++channel) {
+        int sum = 0, count = 0;
+        for (int y = where.y; y < where.br().y; ++y)
+          for (int x = where.x; x < where.br().x; ++x) {
+            if (!moving.empty() && moving.at<std::uint8_t>(y, x) != 0) continue;
+            sum += image.ptr<std::uint8_t>(y)[x * image.channels() + channel];
+            ++count;
+          }
+        const int bits = count == 0 ? 0 : sum * bits_of_channel / (255 * count);
+        for (int bit = 0; bit < bits; ++bit)
+          descriptor.words[static_cast<std::size_t>(channel)] |= std::uint64_t{1} << bit;
+      }
+      block.push_back(descriptor);
+    }
+  return block;
+}
+
 class FaultyLoopDetector final : public LoopDetector {
  public:
   FaultyLoopDetector(std::string fault, const CreationContext& context)
       : fault_(std::move(fault)),
         flann_(sound_module<LoopDetector>(holdfast_register_plugin_flann, "flann", context)) {}
+
+  // The faults whose names begin with "image" are those of a detector of images.
+  std::optional<DescriptorType> image_descriptor() const override {
+    return fault_.starts_with("image") ? std::optional(DescriptorType()) : std::nullopt;
+  }
+  DescriptorBlock describe(const cv::Mat& image, const cv::Mat& moving) override {
+    DescriptorBlock block = mean_colours(image, fault_ == "image_with_people" ? cv::Mat() : moving);
+    if (fault_ == "image_of_a_mood") block.row(0)->words[3] = ++descriptions_;
+    if (fault_ == "image_of_numbers") return DescriptorBlock({DescriptorKind::float32, DescriptorMetric::cosine, 8}, 1);
+    return block;
+  }
 
   void add(KeyFrameId keyframe, const DescriptorView& descriptors) override {
     if (fault_ == "needs_descriptors" && descriptors.empty()) __builtin_trap();
@@ -51,6 +87,7 @@ class FaultyLoopDetector final : public LoopDetector {
   std::unique_ptr<LoopDetector> flann_;
   std::vector<KeyFrameId> known_;
   mutable int queries_ = 0;
+  std::uint64_t descriptions_ = 0;
 };
 
 }  // namespace
@@ -58,7 +95,8 @@ class FaultyLoopDetector final : public LoopDetector {
 void add_loop_detectors(Registry& registry) {
   add_faults<LoopDetector, FaultyLoopDetector>(
       registry, {"sound", "needs_descriptors", "strict", "never_forgets", "blind", "generous", "worst_first", "twice",
-                 "no_number", "learns_by_asking", "counts_calls"});
+                 "no_number", "learns_by_asking", "counts_calls", "image", "image_with_people", "image_of_a_mood",
+                 "image_of_numbers"});
 }
 
 }  // namespace holdfast::bad

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/plugin/plugin.hpp"
+
+#include "global_detector.hpp"
+
+namespace holdfast {
+
+void GlobalSettings::describe(ParameterTable<GlobalSettings>& table) {
+  using S = GlobalSettings;
+  table.add("model", &S::model, "network that describes a colour image by one vector, ONNX, float32").required();
+  table.add("width", &S::width, "width of the network input; 0 = as declared by the model").range(0, 8192).unit("px");
+  table.add("height", &S::height, "height of the network input; 0 = as declared by the model")
+      .range(0, 8192)
+      .unit("px");
+  table.add("colour_order", &S::colour_order, "order of the input channels");
+  table.add("scale", &S::scale, "input = (pixel * scale - mean) / standard_deviation, pixels from 0 to 255");
+  table.add("mean", &S::mean, "subtracted from each channel, in colour_order, after scale");
+  table.add("standard_deviation", &S::standard_deviation, "divides each channel, in colour_order");
+  table.add("output_name", &S::output_name, "name of the output, if the model has several");
+  table
+      .add("minimum_similarity", &S::minimum_similarity,
+           "cosine of the angle between the vectors of two images below which the places do not match; the score of a "
+           "match rises from 0 there to 1")
+      .range(-1.0, 0.999);
+}
+
+}  // namespace holdfast
+
+HOLDFAST_PLUGIN(global, registry) {
+  using namespace holdfast;
+  registry.add<LoopDetector, global_plugin::GlobalDetector, GlobalSettings>(
+      {.name = GlobalSettings::module,
+       .summary = "One vector per image by a network in ONNX format, such as NetVLAD or CosPlace.",
+       .paper = "Arandjelovic et al.: NetVLAD: CNN architecture for weakly supervised place recognition. CVPR 2016; "
+                "Berton, Masone, Caputo: Rethinking visual geo-localization for large-scale applications. CVPR 2022"});
+}
