@@ -28,10 +28,10 @@ void add_loop_detectors(Registry& registry);
 /// A module of ours, to be made worse.
 template <class Interface>
 std::unique_ptr<Interface> sound_module(void (*entry)(Registry&), const std::string& name,
-                                        const CreationContext& context) {
+                                        const CreationContext& context, const ParameterValues& values = {}) {
   Registry registry;
   entry(registry);
-  return registry.create<Interface>(name, {}, context);
+  return registry.create<Interface>(name, values, context);
 }
 
 }  // namespace holdfast::bad

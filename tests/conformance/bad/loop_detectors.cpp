@@ -44,11 +44,12 @@ class FaultyLoopDetector final : public LoopDetector {
  public:
   FaultyLoopDetector(std::string fault, const CreationContext& context)
       : fault_(std::move(fault)),
-        flann_(sound_module<LoopDetector>(holdfast_register_plugin_flann, "flann", context)) {}
+        flann_(sound_module<LoopDetector>(holdfast_register_plugin_flann, "flann", context,
+                                          is_of_images() ? ParameterValues{{"radius", 8.0}} : ParameterValues{})) {}
 
-  // The faults whose names begin with "image" are those of a detector of images.
+  // Those whose names begin with "image" describe images.
   std::optional<DescriptorType> image_descriptor() const override {
-    return fault_.starts_with("image") ? std::optional(DescriptorType()) : std::nullopt;
+    return is_of_images() ? std::optional(DescriptorType()) : std::nullopt;
   }
   DescriptorBlock describe(const cv::Mat& image, const cv::Mat& moving) override {
     DescriptorBlock block = mean_colours(image, fault_ == "image_with_people" ? cv::Mat() : moving);
@@ -83,6 +84,8 @@ class FaultyLoopDetector final : public LoopDetector {
   }
 
  private:
+  bool is_of_images() const { return fault_.starts_with("image"); }
+
   std::string fault_;
   std::unique_ptr<LoopDetector> flann_;
   std::vector<KeyFrameId> known_;
