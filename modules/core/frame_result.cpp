@@ -29,6 +29,8 @@ const char* to_string(TrackingMethod method) {
       return "recovered";
     case TrackingMethod::relocalised:
       return "relocalised";
+    case TrackingMethod::flow:
+      return "flow";
   }
   return "?";
 }

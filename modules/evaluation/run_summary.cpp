@@ -18,6 +18,7 @@ void RunSummary::add(const FrameResult& result, double decode_seconds) {
     ++fallbacks_[result.fallback];
     if (result.method == TrackingMethod::recovered) ++recovered_;
     if (result.method == TrackingMethod::relocalised) ++relocalised_;
+    if (result.method == TrackingMethod::flow) ++by_flow_;
   }
   stage("decode").push_back(decode_seconds);
   add(result.times);

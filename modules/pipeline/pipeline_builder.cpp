@@ -277,6 +277,10 @@ void PipelineBuilder::choose_sensor() {
     complain(place_, "dense_map needs depth images, and the sensor is '" + std::string(sensor_name(parts_.sensor)) +
                          "'; remove `dense_map`");
   if (parts_.sensor != Sensor::stereo) return;
+  if (parts_.tracking.between_keyframes == BetweenKeyframes::flow)
+    complain(place_,
+             "tracking.between_keyframes is 'flow', which does not follow features in the right image of a "
+             "stereo pair; expected 'features'");
   if (!parts_.camera.distortion.is_zero())
     complain(place_, "the camera of a stereo pair has distortion; expected rectified images, whose camera has none");
   // An extractor that was given as an object exists once: it finds the features of one image after the other.

@@ -104,6 +104,7 @@ Json frames_json(const RunRecord& record) {
           {"lost", s.lost()},
           {"recovered", s.recovered()},
           {"relocalised", s.relocalised()},
+          {"by_flow", s.by_flow()},
           {"by_odometry", s.count(TrackingFallback::odometry)},
           {"by_masked_features", s.count(TrackingFallback::masked_features)},
           {"by_dense_depth", s.count(TrackingFallback::dense_depth)},

@@ -85,6 +85,10 @@ void FrameBuilder::find_features(const SensorFrame& sensor_frame, const cv::Mat&
     else
       extractor_.extract(grey_, without, frame.features);
   }
+  complete(sensor_frame, frame, times);
+}
+
+void FrameBuilder::complete(const SensorFrame& sensor_frame, Frame& frame, StageTimes& times) {
   const StageTimer timer(times, "frame");
   undistortion_.undistort(frame.features.x, frame.features.y, frame.x, frame.y);
   if (stereo_)

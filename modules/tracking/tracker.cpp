@@ -31,6 +31,7 @@ Tracker::Tracker(const TrackingSettings& settings, const TrackerParts& parts)
       keyframe_policy_(settings),
       state_(parts.map.keyframes().empty() ? State::waiting : State::lost) {
   if (parts.stereo) builder_.use_stereo(*parts.stereo);
+  if (settings.between_keyframes == BetweenKeyframes::flow) flow_.emplace();
   if (!parts.has_depth) mono_.emplace(settings, parts.optimizer, parts.seed, parts.matcher);
 }
 
@@ -39,11 +40,38 @@ void Tracker::begin(const SensorFrame& sensor_frame, FrameResult& result) {
   result.timestamp = sensor_frame.timestamp;
   std::swap(current_, previous_);
   builder_.begin(sensor_frame, current_, result.times);
-  const cv::Mat ignored =
+  ignored_ =
       moving_world_.begin_frame(builder_.grey(), history_.predicted_step(current_.timestamp), current_, result.times);
-  builder_.find_features(sensor_frame, ignored, current_, result.times);
+  if (!flow_ || !follow_features(sensor_frame, result)) find_features(sensor_frame, result);
+}
+
+void Tracker::find_features(const SensorFrame& sensor_frame, FrameResult& result) {
+  followed_frames_ = 0;
+  builder_.find_features(sensor_frame, ignored_, current_, result.times);
   if (history_.has_velocity()) align_depth(sensor_frame, history_.predicted_step(current_.timestamp), result.times);
   result.features = static_cast<int>(current_.size());
+}
+
+bool Tracker::follow_features(const SensorFrame& sensor_frame, FrameResult& result) {
+  {
+    const StageTimer timer(result.times, "flow");
+    flow_->add_image(builder_.grey());
+    if (state_ != State::tracking || !history_.has_previous() || !history_.has_velocity()) {
+      flow_->clear();
+      return false;
+    }
+    if (followed_frames_ == 0) flow_->set_template(previous_);
+    if (followed_frames_ >= settings_.flow_frames) return false;
+    const Eigen::Isometry3d predicted = history_.predicted_step(current_.timestamp) * previous_.T_camera_world;
+    if (!flow_->follow(predicted, ignored_, current_.features)) return false;
+    const auto required = settings_.flow_share * static_cast<double>(flow_->size());
+    if (static_cast<double>(current_.features.size()) < required) return false;
+  }
+  ++followed_frames_;
+  builder_.complete(sensor_frame, current_, result.times);
+  align_depth(sensor_frame, history_.predicted_step(current_.timestamp), result.times);
+  result.features = static_cast<int>(current_.size());
+  return true;
 }
 
 void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
@@ -58,9 +86,13 @@ void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
   }
   if (history_.has_previous()) previous_.T_camera_world = history_.last_pose(map_);
   TrackedView view{sensor_frame, history_.has_previous() ? &previous_ : nullptr, current_};
-  moving_world_.evaluate(FilterStage::before_matching, view, result.times);
   odometry_extends_map_ = false;
-  const bool found = find_pose(view, result);
+  bool found = followed_frames_ > 0 && track_followed(view, result);
+  if (followed_frames_ > 0 && !found) find_features(sensor_frame, result);
+  if (!found) {
+    moving_world_.evaluate(FilterStage::before_matching, view, result.times);
+    found = find_pose(view, result);
+  }
   if (!found && was_lost_at_start() &&
       (mono_ ? start_again_with_two_views(result) : start_map(coasting_pose(current_.timestamp), result))) {
     end_frame(result);
@@ -72,7 +104,8 @@ void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
   if (found) {
     const StageTimer timer(result.times, "keyframe");
     const bool on_map = result.inliers >= settings_.minimum_inliers;
-    result.is_keyframe = !localises_only_ && (on_map ? needs_keyframe(result) : odometry_extends_map_);
+    result.is_keyframe =
+        !localises_only_ && followed_frames_ == 0 && (on_map ? needs_keyframe(result) : odometry_extends_map_);
     if (on_map || result.is_keyframe) last_feature_time_ = current_.timestamp;
     result.trouble = TrackingTrouble::none;
     result.objects = moving_world_.objects();
@@ -178,6 +211,38 @@ bool Tracker::find_pose(TrackedView& view, FrameResult& result) {
       return false;
   }
   return refine(view, result);
+}
+
+bool Tracker::track_followed(TrackedView& view, FrameResult& result) {
+  const double required =
+      std::max<double>(settings_.minimum_inliers, settings_.flow_share * static_cast<double>(flow_->size()));
+  moving_world_.evaluate(FilterStage::before_matching, view, result.times);
+  {
+    const StageTimer timer(result.times, "predict");
+    const std::vector<MapPointId>& points = flow_->found_points();
+    for (std::size_t i = 0; i < points.size(); ++i)
+      current_.map_points[i] = map_.find_point(points[i]) == nullptr ? MapPointId() : points[i];
+    current_.T_camera_world = predicted_pose();
+    if (estimator_.adjust(current_) < required) return false;
+    estimator_.drop_outliers(current_);
+  }
+  align_depth(view.sensor_frame, current_.T_camera_world * previous_.T_world_camera(), result.times);
+  evaluate_with_pose(view, result);
+  moving_world_.evaluate(FilterStage::after_matching, view, result.times);
+  const StageTimer timer(result.times, "local map");
+  result.inliers = estimator_.adjust(current_);
+  result.matches = estimator_.matches();
+  result.static_features = static_cast<int>(std::count_if(
+      current_.static_probability.begin(), current_.static_probability.end(), [](float p) { return is_static(p); }));
+  estimator_.drop_outliers(current_);
+  if (result.inliers < required || contradicts_motion(result.inliers) ||
+      estimator_.position_deviation() > settings_.maximum_deviation ||
+      moving_world_.contradicts_depth(current_, result.inliers, false, reference_keyframe_) ||
+      (!localises_only_ && needs_keyframe(result)))
+    return false;
+  result.method = TrackingMethod::flow;
+  moving_world_.accumulate(current_);
+  return true;
 }
 
 bool Tracker::predict(FrameResult& result) {

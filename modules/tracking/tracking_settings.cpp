@@ -50,6 +50,16 @@ void describe_poses(ParameterTable<S>& table) {
            "distance up to which a point agrees with a rigid alignment to a keyframe")
       .range(0.001, 10)
       .unit("m");
+  table.add(
+      "between_keyframes", &S::between_keyframes,
+      "features: every frame is tracked by features of its own; flow: frames that do not become keyframes are "
+      "tracked by the features of an earlier frame, which optical flow follows, as long as these agree with a pose "
+      "(not with stereo)");
+  table.add("flow_frames", &S::flow_frames, "frames in a row that are tracked by flow, at most").range(1, 1000);
+  table
+      .add("flow_share", &S::flow_share,
+           "share of the followed map points that must agree with a pose by flow; otherwise the frame gets features")
+      .range(0.1, 1);
   table.add("minimum_inliers", &S::minimum_inliers, "map points that must agree with a pose for it to be accepted")
       .range(6, 10000);
   table

@@ -374,6 +374,25 @@ TEST_F(RunTest, AMapIsLocalisedInAndContinued) {
   EXPECT_EQ(program_.text("again/map.hfm"), program_.text("more/map.hfm"));
 }
 
+TEST_F(RunTest, FramesBetweenKeyframesCanBeTrackedByFlow) {
+  const auto run = [&](const std::string& folder, const std::string& between) {
+    const Outcome outcome = program_.run({"run", "room.yaml", "--set", "tracking.between_keyframes=" + between, "--set",
+                                          "source.simulated.duration=4", "--output", folder, "--quiet"});
+    ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  };
+  run("features", "features");
+  EXPECT_EQ(summary("features").at("frames").at("by_flow"), 0);
+  run("flow", "flow");
+  const nlohmann::json frames = summary("flow").at("frames");
+  EXPECT_EQ(frames.at("coverage"), 1.0);
+  EXPECT_GT(frames.at("by_flow").get<int>(), frames.at("fed").get<int>() / 2);
+  EXPECT_LT(summary("flow").at("evaluation").at("ate_m").at("rmse").get<double>(),
+            0.002 + summary("features").at("evaluation").at("ate_m").at("rmse").get<double>());
+  run("again", "flow");
+  EXPECT_EQ(program_.text("again/trajectory.txt"), program_.text("flow/trajectory.txt"));
+  EXPECT_EQ(program_.text("again/map.hfm"), program_.text("flow/map.hfm"));
+}
+
 TEST_F(RunTest, AMapKeepsTheDescriptionsOfItsImages) {
   const auto detector = [](const std::string& more) {
     return std::string("loop_detector={ global: { model: " HOLDFAST_PLACE_MODELS "/gist.onnx, mean: [0, 0, 0], ") +

@@ -27,6 +27,7 @@ enum class TrackingMethod {
   reference_keyframe,  ///< descriptor matches with the reference keyframe
   recovered,           ///< after tracking was lost, from one of the last keyframes
   relocalised,         ///< after tracking was lost or in a loaded map, at a place recognised by the loop detector
+  flow,                ///< map points of an earlier frame, followed from its image by optical flow
 };
 
 /// What a pose is based on when the static features of a frame did not determine it.

@@ -35,6 +35,8 @@ class RunSummary {
   /// Number of frames whose pose was recovered after a loss, from the last keyframes or by place recognition.
   std::uint64_t recovered() const { return recovered_; }
   std::uint64_t relocalised() const { return relocalised_; }
+  /// Number of frames that were tracked by features of an earlier frame.
+  std::uint64_t by_flow() const { return by_flow_; }
   std::uint64_t count(TrackingStatus status) const;
   /// Number of tracked frames with this fallback.
   std::uint64_t count(TrackingFallback fallback) const;
@@ -54,7 +56,7 @@ class RunSummary {
   };
   std::vector<double>& stage(const std::string& name);
 
-  std::uint64_t frames_ = 0, recovered_ = 0, relocalised_ = 0, inliers_ = 0;
+  std::uint64_t frames_ = 0, recovered_ = 0, relocalised_ = 0, by_flow_ = 0, inliers_ = 0;
   std::map<TrackingStatus, std::uint64_t> statuses_;
   std::map<TrackingFallback, std::uint64_t> fallbacks_;
   std::map<TrackingTrouble, std::uint64_t> troubles_;

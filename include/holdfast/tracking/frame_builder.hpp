@@ -39,6 +39,9 @@ class FrameBuilder {
   /// cannot use the image (Camera::is_usable).
   void find_features(const SensorFrame& sensor_frame, const cv::Mat& ignore, Frame& frame, StageTimes& times);
 
+  /// The second half for a frame that has its features already: all but their extraction. Not for a stereo pair.
+  void complete(const SensorFrame& sensor_frame, Frame& frame, StageTimes& times);
+
   /// Reads the depth of the features in the depth image again, for a camera that moved by T_depth_colour between the
   /// exposures of the colour and the depth image. Does nothing for a stereo pair. Adds to the stage "frame".
   void align_depth(const SensorFrame& sensor_frame, const Eigen::Isometry3d& T_depth_colour, Frame& frame,

@@ -13,6 +13,7 @@
 #include "holdfast/interfaces/loop_detector.hpp"
 #include "holdfast/interfaces/optimizer.hpp"
 #include "holdfast/moving_world/moving_world.hpp"
+#include "holdfast/tracking/feature_flow.hpp"
 #include "holdfast/tracking/frame_builder.hpp"
 #include "holdfast/tracking/frame_history.hpp"
 #include "holdfast/tracking/frame_matcher.hpp"
@@ -103,6 +104,13 @@ class Tracker {
   bool start_again_with_two_views(FrameResult& result);
   void begin_map(FrameResult& result);
   bool find_pose(TrackedView& view, FrameResult& result);
+  /// Gives the current frame the features of an earlier one that flow finds in its image. False if it does not, and the
+  /// frame needs features of its own.
+  bool follow_features(const SensorFrame& sensor_frame, FrameResult& result);
+  /// The final pose of a frame with followed features. False if they do not determine it, or if the frame should become
+  /// a keyframe, which needs features of its own.
+  bool track_followed(TrackedView& view, FrameResult& result);
+  void find_features(const SensorFrame& sensor_frame, FrameResult& result);
   /// The pose, on which few inliers agree, is far from where constant velocity takes the camera.
   bool contradicts_motion(int inliers) const;
   /// A first pose of a camera that is not lost, from the motion model or the reference keyframe.
@@ -131,12 +139,15 @@ class Tracker {
   Relocaliser relocaliser_;
   KeyframePolicy keyframe_policy_;
   std::optional<MonoInitialiser> mono_;
+  std::optional<FeatureFlow> flow_;
 
   State state_;
   bool localises_only_ = false;
   bool begins_with_two_views_ = false;
   Frame current_, previous_;
   std::vector<OdometryMatch> odometry_;
+  cv::Mat ignored_;          // pixels of the current frame in which no features should be extracted
+  int followed_frames_ = 0;  // in a row, up to the current frame, that have features of an earlier one
   KeyFrameId reference_keyframe_;
   KeyFrameId last_keyframe_;
   double last_keyframe_time_ = 0.0;  // [s]

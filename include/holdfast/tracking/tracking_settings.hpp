@@ -3,10 +3,20 @@
 
 #include <vector>
 
+#include "holdfast/plugin/choice.hpp"
+
 namespace holdfast {
 
 template <class Settings>
 class ParameterTable;
+
+/// How frames are tracked that do not become keyframes: by features of their own, or by those of an earlier frame that
+/// are followed by optical flow.
+enum class BetweenKeyframes { features, flow };
+
+template <>
+inline constexpr Choice<BetweenKeyframes> choice_table<BetweenKeyframes>[] = {{"features", BetweenKeyframes::features},
+                                                                              {"flow", BetweenKeyframes::flow}};
 
 /// The `tracking` section of a configuration.
 struct TrackingSettings {
@@ -34,6 +44,11 @@ struct TrackingSettings {
   int local_keyframes = 80;         ///< whose points make the local map
   double odometry_time = 0.3;       ///< how long poses can be based on the previous frame, without the map [s]
   double depth_only_time = 1.0;     ///< how long poses can be based on dense depth alone [s]
+
+  // Optical flow.
+  BetweenKeyframes between_keyframes = BetweenKeyframes::features;
+  int flow_frames = 4;      ///< frames in a row that are tracked by flow, at most
+  double flow_share = 0.7;  ///< of the followed map points that must agree with the pose of a frame
 
   // Keyframes.
   double keyframe_minimum_interval = 0.0;  ///< [s]
