@@ -14,8 +14,8 @@
 namespace holdfast::openni2_plugin {
 
 struct Openni2Settings {
-  std::string device;
-  std::filesystem::path file;
+  std::string device = {};
+  std::filesystem::path file = {};
   std::string registration = "device";
   double max_time_difference = 0.02;
 
