@@ -173,10 +173,11 @@ class OpenNiCamera final : public DepthCamera {
                        "`source.openni2.file`");
     std::string uri = request_.file.empty() ? request_.device : request_.file.string();
     place_ = uri.empty() ? "OpenNI 2" : uri;
-    if (device_.open(uri.empty() ? openni::ANY_DEVICE : uri.c_str()) != openni::STATUS_OK)
-      fail((uri.empty() ? "no camera was found: " : "cannot be opened: ") + reason() +
-           (request_.file.empty() ? "; plug one in, or set `source.openni2.device`" + present_devices()
-                                  : "; expected a recording of OpenNI 2"));
+    if (device_.open(uri.empty() ? openni::ANY_DEVICE : uri.c_str()) != openni::STATUS_OK) {
+      const std::string why = (uri.empty() ? "no camera was found: " : "cannot be opened: ") + reason();
+      fail(why + (request_.file.empty() ? "; plug one in, or set `source.openni2.device`" + present_devices()
+                                        : "; expected a recording of OpenNI 2"));
+    }
     if (uri.empty()) place_ = std::string("camera ") + device_.getDeviceInfo().getName();
     watch_ = std::make_unique<Watch>(device_.getDeviceInfo().getUri());
   }
