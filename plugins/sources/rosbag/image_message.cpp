@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "image_message.hpp"
 
+#include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <opencv2/imgproc.hpp>
 #include <optional>
@@ -16,13 +18,10 @@ constexpr std::uint32_t largest_side = 1U << 15;  // as of image files
 
 [[noreturn]] void refuse(const std::string& place, const std::string& problem) { throw InputError({place}, problem); }
 
-/// std_msgs/Header; the time stamp [s].
-double read_message_header(ByteReader& reader) {
-  reader.number<std::uint32_t>("sequence number");
-  const auto seconds = reader.number<std::uint32_t>("time stamp");
-  const auto nanoseconds = reader.number<std::uint32_t>("time stamp");
+/// std_msgs/Header.
+void read_message_header(ByteReader& reader) {
+  reader.bytes(stamp_bytes, "header");
   reader.text("frame name");
-  return seconds + nanoseconds * 1e-9;
 }
 
 /// A sensor_msgs/Image; its pixels lie in the message.
@@ -123,7 +122,16 @@ double read_stamp(Bytes message, const std::string& place) {
   ByteReader reader(message, place);
   reader.number<std::uint32_t>("sequence number");
   const auto seconds = reader.number<std::uint32_t>("time stamp");
-  return seconds + reader.number<std::uint32_t>("time stamp") * 1e-9;
+  const auto nanoseconds = reader.number<std::uint32_t>("time stamp");
+  if (nanoseconds >= 1'000'000'000)
+    throw InputError({place}, "has a time stamp with " + std::to_string(nanoseconds) +
+                                  " nanoseconds; expected less than a second; the message is damaged");
+  // The number nearest to the decimal one, which is what a list of images gives.
+  char text[32];
+  const int length = std::snprintf(text, sizeof(text), "%u.%09u", seconds, nanoseconds);
+  double stamp = 0.0;
+  std::from_chars(text, text + length, stamp);
+  return stamp;
 }
 
 std::string encoding_of(Bytes message, const std::string& type, const std::string& place) {

@@ -2,8 +2,6 @@
 // A driver of OpenNI 2 with cameras that are not there, so that tests go through the real library: "fake:plain" and
 // "fake:unplugged", which goes after its images, register their depth; "fake:unregistered" does not. Image i = 1 ... of
 // both streams has values that tell i.
-#include <openni_driver.hpp>
-
 #include <atomic>
 #include <chrono>
 #include <cstring>
@@ -13,6 +11,7 @@
 #include <vector>
 
 #include "fake_images.hpp"
+#include "openni_driver.hpp"
 
 namespace {
 
