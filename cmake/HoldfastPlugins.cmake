@@ -8,8 +8,11 @@ set(HOLDFAST_PLUGIN_TABLE
   "source          euroc                 sources/euroc"
   "source          folder                sources/folder"
   "source          kitti                 sources/kitti"
+  "source          openni2               sources/openni2"
+  "source          rosbag                sources/rosbag"
   "source          simulated             sources/simulated"
   "source          tum                   sources/tum"
+  "source          v4l2                  sources/v4l2"
   "features        akaze                 features/akaze"
   "features        onnx_features         features/onnx_features"
   "features        opencv_orb            features/opencv_orb"
@@ -37,13 +40,34 @@ set(HOLDFAST_PLUGIN_TABLE
   "segmenter       unet                  segmenters/unet"
 )
 
-# The plugin `viewer` is built where Boost is; ours to look for early, because its option depends on it.
+# Plugins that are built where their libraries are; ours to look for early, because their options depend on them.
+# holdfast_optional_plugin(NAME WHAT PACKAGES VARIABLE ...): what is needed, and the variables of where it was found.
+set(HOLDFAST_OPTIONAL_PLUGINS "")
+function(holdfast_optional_plugin name what packages)
+  set(HOLDFAST_PLUGIN_DEFAULT_${name} ON)
+  foreach(variable IN LISTS ARGN)
+    mark_as_advanced(${variable})
+    if(NOT ${variable})
+      set(HOLDFAST_PLUGIN_DEFAULT_${name} OFF)
+    endif()
+  endforeach()
+  list(APPEND HOLDFAST_OPTIONAL_PLUGINS ${name})
+  set(HOLDFAST_OPTIONAL_PLUGINS ${HOLDFAST_OPTIONAL_PLUGINS} PARENT_SCOPE)
+  set(HOLDFAST_PLUGIN_DEFAULT_${name} ${HOLDFAST_PLUGIN_DEFAULT_${name}} PARENT_SCOPE)
+  set(HOLDFAST_PLUGIN_WHAT_${name} "${what}" PARENT_SCOPE)
+  set(HOLDFAST_PLUGIN_PACKAGES_${name} "${packages}" PARENT_SCOPE)
+endfunction()
+
 find_path(HOLDFAST_BOOST_INCLUDE_DIR boost/beast/version.hpp)
-mark_as_advanced(HOLDFAST_BOOST_INCLUDE_DIR)
-set(HOLDFAST_PLUGIN_DEFAULT_viewer ON)
-if(NOT HOLDFAST_BOOST_INCLUDE_DIR)
-  set(HOLDFAST_PLUGIN_DEFAULT_viewer OFF)
-endif()
+holdfast_optional_plugin(viewer "Boost.Beast" libboost-dev HOLDFAST_BOOST_INCLUDE_DIR)
+find_path(HOLDFAST_LZ4_INCLUDE_DIR lz4frame.h)
+find_path(HOLDFAST_BZ2_INCLUDE_DIR bzlib.h)
+find_library(HOLDFAST_BZ2_LIBRARY bz2)
+holdfast_optional_plugin(rosbag "lz4 or bzip2" "liblz4-dev libbz2-dev"
+  HOLDFAST_LZ4_INCLUDE_DIR HOLDFAST_BZ2_INCLUDE_DIR HOLDFAST_BZ2_LIBRARY)
+find_path(HOLDFAST_OPENNI2_INCLUDE_DIR OpenNI.h PATH_SUFFIXES openni2)
+find_library(HOLDFAST_OPENNI2_LIBRARY OpenNI2)
+holdfast_optional_plugin(openni2 "OpenNI 2" libopenni2-dev HOLDFAST_OPENNI2_INCLUDE_DIR HOLDFAST_OPENNI2_LIBRARY)
 
 set(HOLDFAST_PLUGIN_FOLDERS "")       # of the plugins that are built
 set(HOLDFAST_SETTINGS_INCLUDES "")    # of their settings, as C++
@@ -74,17 +98,20 @@ foreach(row IN LISTS HOLDFAST_PLUGIN_TABLE)
     endif()
   endif()
 endforeach()
-if(HOLDFAST_PLUGIN_VIEWER AND NOT HOLDFAST_BOOST_INCLUDE_DIR)
-  message(FATAL_ERROR "HOLDFAST_PLUGIN_VIEWER is ON, but Boost.Beast was not found: install Boost's headers (Debian: "
-          "libboost-dev), or build without the viewer: -DHOLDFAST_PLUGIN_VIEWER=OFF")
-elseif(HOLDFAST_PLUGIN_VIEWER)
-  message(STATUS "Holdfast: the viewer is built, with Boost in ${HOLDFAST_BOOST_INCLUDE_DIR}")
-elseif(NOT HOLDFAST_BOOST_INCLUDE_DIR)
-  message(STATUS "Holdfast: the viewer is not built: Boost.Beast was not found (Debian: libboost-dev; then configure "
-          "with -DHOLDFAST_PLUGIN_VIEWER=ON)")
-endif()
-# The tests of the viewer are left out with it.
-list(REMOVE_ITEM HOLDFAST_LEFT_OUT HOLDFAST_PLUGIN_VIEWER)
+foreach(name IN LISTS HOLDFAST_OPTIONAL_PLUGINS)
+  string(TOUPPER HOLDFAST_PLUGIN_${name} option)
+  set(what ${HOLDFAST_PLUGIN_WHAT_${name}})
+  set(packages ${HOLDFAST_PLUGIN_PACKAGES_${name}})
+  if(${option} AND NOT HOLDFAST_PLUGIN_DEFAULT_${name})
+    message(FATAL_ERROR "${option} is ON, but ${what} was not found: install it (Debian: ${packages}), or build without "
+            "the plugin `${name}`: -D${option}=OFF")
+  elseif(NOT HOLDFAST_PLUGIN_DEFAULT_${name})
+    message(STATUS "Holdfast: the plugin `${name}` is not built: ${what} was not found (Debian: ${packages}; then "
+            "configure with -D${option}=ON)")
+  endif()
+  # Its tests are left out with it.
+  list(REMOVE_ITEM HOLDFAST_LEFT_OUT ${option})
+endforeach()
 if(HOLDFAST_LEFT_OUT AND (HOLDFAST_BUILD_TESTS OR HOLDFAST_BUILD_EXAMPLES OR HOLDFAST_BUILD_BENCHMARKS))
   list(JOIN HOLDFAST_LEFT_OUT ", " options)
   message(FATAL_ERROR "Tests, examples and benchmarks use every plugin, but ${options} is OFF: configure with "

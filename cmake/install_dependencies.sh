@@ -12,6 +12,7 @@
 #   sh cmake/install_dependencies.sh --python-tests   the same, and what the tests of the Python package need
 #   sh cmake/install_dependencies.sh --bench-tests    also a browser, Slurm's daemons and GNU parallel for tests of the
 #                                                     bench
+#   sh cmake/install_dependencies.sh --cameras        also what the source `openni2` (Kinect, Xtion, Astra) is built of
 #   sh cmake/install_dependencies.sh --clang          also clang, for the fuzz targets and the quick sanitizer build
 #   sh cmake/install_dependencies.sh --clean-root     also mmdebstrap, for tests/clean_root.sh
 #   sh cmake/install_dependencies.sh --dry-run        say what would be installed, change nothing
@@ -19,7 +20,7 @@ set -eu
 
 packages="
   build-essential cmake ninja-build ccache git ca-certificates pkg-config
-  libeigen3-dev libopencv-dev libceres-dev libflann-dev liblz4-dev libdeflate-dev libjpeg-dev
+  libeigen3-dev libopencv-dev libceres-dev libflann-dev liblz4-dev libbz2-dev libdeflate-dev libjpeg-dev
   libboost-dev libyaml-cpp-dev libcli11-dev nlohmann-json3-dev
   libgtest-dev libgmock-dev"
 
@@ -38,11 +39,12 @@ for argument in "$@"; do
         packages="$packages mypy python3-matplotlib python3-nbformat python3-pandas python3-psutil python3-pytest"
       ;;
     --bench-tests) packages="$packages chromium munge parallel slurm-client slurmctld slurmd" ;;
+    --cameras) packages="$packages libopenni2-dev" ;;
     --clang) packages="$packages clang libclang-rt-14-dev llvm" ;;
     --clean-root) packages="$packages mmdebstrap" ;;
     --dry-run) dry_run=yes ;;
-    -h | --help) sed -n '3,17s/^# \{0,1\}//p' "$0"; exit 0 ;;
-    *) fail "unknown argument '$argument'; known are --training, --documentation, --benchmarks, --python, --python-tests, --bench-tests, --clang, --clean-root, --dry-run and --help" ;;
+    -h | --help) sed -n '3,18s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) fail "unknown argument '$argument'; known are --training, --documentation, --benchmarks, --python, --python-tests, --bench-tests, --cameras, --clang, --clean-root, --dry-run and --help" ;;
   esac
 done
 

@@ -63,6 +63,7 @@ int record(const Arguments& arguments, const ProgramHost& host) {
     print_error("the source gave no frame, so that there is nothing to record");
     return interrupted() ? interrupted_exit_code() : 1;
   }
+  if (const std::string losses = recorder.losses(); !losses.empty()) print_warning(losses);
   if (!arguments.quiet || interrupted())
     std::printf("%s%s\nTo run it: holdfast run %s --output DIR\n", interrupted() ? "interrupted: " : "",
                 printable(written).c_str(), printable((arguments.output / "recording.yaml").string()).c_str());
@@ -76,8 +77,8 @@ void add_record_command(CLI::App& app, int& exit_code, const ProgramHost& host) 
   CLI::App* command = app.add_subcommand("record", "Record the frames of any source with depth, in TUM layout");
   command->footer(
       "\nReads the source of a configuration, tracks nothing, and writes into the output folder:\n"
-      "  rgb/, depth/       images, without loss (depth to 0.2 mm)   rgb.txt, depth.txt, associations.txt  their "
-      "lists\n"
+      "  rgb/, depth/       images, without loss where depth is in whole units of the sensor, else to 0.2 mm\n"
+      "  rgb.txt, depth.txt, associations.txt  their lists\n"
       "  groundtruth.txt    where the source has truth               recording.yaml  the configuration, on the "
       "recording\n"
       "`holdfast run --record DIR` records while it tracks. Exits 0 when the source came to its end, 130 on Ctrl-C, "

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "holdfast/config/configuration.hpp"
 #include "holdfast/interfaces/frame_source.hpp"
@@ -25,6 +26,8 @@ class Recorder {
   /// Writes lists, truth and recording.yaml: the configuration, with the recording as its source.
   void finish(const Trajectory& truth);
 
+  /// What the recording lost of the frames, for people; empty if it has all.
+  std::string losses() const;
   std::uint64_t frame_count() const { return writer_.frame_count(); }
   const std::filesystem::path& folder() const { return folder_; }
 

@@ -2,12 +2,14 @@
 #include "recording_writer.hpp"
 
 #include <charconv>
-#include <cmath>
 #include <cstdio>
+#include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <utility>
 
+#include "depth_units.hpp"
 #include "holdfast/core/error.hpp"
+#include "png_encoder.hpp"
 
 namespace holdfast {
 
@@ -17,31 +19,6 @@ namespace {
 
 constexpr int encoders = 2;
 constexpr std::size_t waiting_frames = 2;  // for each of them
-
-cv::Mat to_depth_units(const cv::Mat& depth) {
-  cv::Mat units(depth.size(), CV_16UC1);
-  for (int y = 0; y < depth.rows; ++y) {
-    const auto* from = depth.ptr<float>(y);
-    auto* to = units.ptr<std::uint16_t>(y);
-    for (int x = 0; x < depth.cols; ++x) {
-      const double value = std::round(from[x] * RecordingWriter::depth_units_per_metre);
-      to[x] = value <= 65535.0 ? static_cast<std::uint16_t>(value) : 0;  // farther than 13 m
-    }
-  }
-  return units;
-}
-
-/// As the source `tum` reads it.
-cv::Mat to_metres(const cv::Mat& units) {
-  cv::Mat depth(units.size(), CV_32FC1);
-  for (int y = 0; y < depth.rows; ++y) {
-    const auto* from = units.ptr<std::uint16_t>(y);
-    auto* to = depth.ptr<float>(y);
-    for (int x = 0; x < depth.cols; ++x)
-      to[x] = static_cast<float>(from[x]) / static_cast<float>(RecordingWriter::depth_units_per_metre);
-  }
-  return depth;
-}
 
 /// The digits that give the same number when they are read, at least six after the point.
 std::string exact_text(double value) {
@@ -83,10 +60,21 @@ RecordingWriter::RecordingWriter(fs::path folder, Options options)
 }
 
 SensorFrame RecordingWriter::as_recorded(const SensorFrame& frame) {
+  choose_depth_factor(frame.depth);
   SensorFrame recorded = frame;
-  recorded.depth = to_metres(to_depth_units(frame.depth));
   recorded.depth_delay = depth_stamp(frame) - frame.timestamp;
+  if (const cv::Mat depth = depth_of_units(to_depth_units(frame.depth, depth_factor()), depth_factor());
+      !is_same_depth(depth, frame.depth)) {
+    recorded.depth = depth;
+    ++rounded_frames_;
+  }
   return recorded;
+}
+
+void RecordingWriter::choose_depth_factor(const cv::Mat& depth) {
+  if (depth_factor_ || cv::countNonZero(depth) == 0) return;
+  const double exact = exact_depth_factor(depth, options_.depth_factors);
+  depth_factor_ = exact > 0.0 ? exact : depth_units_per_metre;
 }
 
 std::string RecordingWriter::stamp_name(double timestamp) const {
@@ -97,10 +85,11 @@ std::string RecordingWriter::stamp_name(double timestamp) const {
 }
 
 void RecordingWriter::encode(const Job& job) const {
-  write_image_atomically(job.colour_file, job.colour,
-                         options_.colour_format == "png" ? std::vector<int>{cv::IMWRITE_PNG_COMPRESSION, 1}
-                                                         : std::vector<int>{cv::IMWRITE_JPEG_QUALITY, 95});
-  write_image_atomically(job.depth_file, to_depth_units(job.depth), {cv::IMWRITE_PNG_COMPRESSION, 3});
+  if (options_.colour_format == "png")
+    write_file_atomically(job.colour_file, encode_png(job.colour));
+  else
+    write_image_atomically(job.colour_file, job.colour, {cv::IMWRITE_JPEG_QUALITY, 95});
+  write_file_atomically(job.depth_file, encode_png(to_depth_units(job.depth, job.depth_factor)));
 }
 
 void RecordingWriter::add(const SensorFrame& frame) {
@@ -114,7 +103,8 @@ void RecordingWriter::add(const SensorFrame& frame) {
     has_failed_ = true;
     throw;
   }
-  encoder.queue().push({folder_ / colour_name, folder_ / depth_name, frame.colour, frame.depth});
+  choose_depth_factor(frame.depth);
+  encoder.queue().push({folder_ / colour_name, folder_ / depth_name, frame.colour, frame.depth, depth_factor()});
   colour_list_ += colour_stamp + " " + colour_name + "\n";
   depth_list_ += stamp + " " + depth_name + "\n";
   associations_ += colour_stamp + " " + colour_name + " " + stamp + " " + depth_name + "\n";

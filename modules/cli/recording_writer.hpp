@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,10 +20,11 @@ namespace holdfast {
 void write_image_atomically(const std::filesystem::path& file, const cv::Mat& image,
                             const std::vector<int>& parameters = {});
 
-/// Writes a recording in the layout of the TUM RGB-D benchmark: rgb/, depth/ (16 bit, 5000 units to the metre, 0 = no
-/// value), their lists rgb.txt and depth.txt, associations.txt and groundtruth.txt. Colour as PNG and time stamps are
-/// written without loss; depth is rounded to a fifth of a millimetre, which loses nothing of a camera that measures
-/// whole millimetres, and what lies beyond 13.1 m has no value.
+/// Writes a recording in the layout of the TUM RGB-D benchmark: rgb/, depth/ (16 bit, 0 = no value), their lists
+/// rgb.txt and depth.txt, associations.txt and groundtruth.txt. Colour as PNG and time stamps are written without loss,
+/// and so is depth of sensors that measure whole numbers of 16 bits: their units to the metre are those that the writer
+/// is told, or those that it finds by the first image with depth. Other depth is rounded to a fifth of a millimetre,
+/// the unit of the benchmark, and what lies beyond 13.1 m has no value then.
 ///
 /// Two threads encode, so that a camera of 30 frames per second loses none; add() waits for them when four frames wait.
 /// Every image is written in one step, lists last, so that no list names a missing image. Used by one thread.
@@ -38,6 +40,9 @@ class RecordingWriter {
   struct Options {
     std::string colour_format = "png";  ///< "png" or "jpg"
     Stamps stamps = Stamps::exact;
+    /// Units to the metre that are tried on the first image with depth, in this order; depth_units_per_metre where none
+    /// is exact.
+    std::vector<double> depth_factors = {depth_units_per_metre};
   };
 
   /// Makes the folders.
@@ -45,7 +50,7 @@ class RecordingWriter {
 
   /// What a reader will find of a frame: its depth and its depth_delay as they are recorded. The images are shared with
   /// `frame` where nothing changes.
-  static SensorFrame as_recorded(const SensorFrame& frame);
+  SensorFrame as_recorded(const SensorFrame& frame);
 
   /// Adds a frame with colour and depth; frames come in order. Throws InputError for a file that cannot be written,
   /// maybe that of an earlier frame.
@@ -56,6 +61,10 @@ class RecordingWriter {
   void finish(const Trajectory& truth);
 
   std::uint64_t frame_count() const { return frames_; }
+  /// Units to the metre of the depth images.
+  double depth_factor() const { return depth_factor_.value_or(depth_units_per_metre); }
+  /// Number of frames whose depth as_recorded() had to round.
+  std::uint64_t rounded_frames() const { return rounded_frames_; }
 
   /// What it writes, lists first.
   static const std::vector<std::string>& entries();
@@ -65,14 +74,17 @@ class RecordingWriter {
   struct Job {
     std::filesystem::path colour_file, depth_file;
     cv::Mat colour, depth;
+    double depth_factor = 0.0;
   };
+  void choose_depth_factor(const cv::Mat& depth);
   void encode(const Job& job) const;
 
   std::filesystem::path folder_;
   Options options_;
   std::string colour_list_, depth_list_, associations_;
-  std::uint64_t frames_ = 0;
-  bool has_failed_ = false;  // an image is missing
+  std::uint64_t frames_ = 0, rounded_frames_ = 0;
+  std::optional<double> depth_factor_;  // once there was depth
+  bool has_failed_ = false;             // an image is missing
   std::vector<std::unique_ptr<Worker<Job>>> encoders_;
 };
 

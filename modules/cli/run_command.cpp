@@ -153,7 +153,10 @@ int run_configuration(const Arguments& arguments, const ProgramHost& host) {
   }
   const int exit_code = print_end(arguments, record);
   print_report(arguments);
-  if (running.recorder) running.recorder->finish(running.truth);
+  if (running.recorder) {
+    running.recorder->finish(running.truth);
+    if (const std::string losses = running.recorder->losses(); !losses.empty()) print_warning(losses);
+  }
   if (arguments.view) show_until_stopped(running.viewers, record);
   return exit_code;
 }

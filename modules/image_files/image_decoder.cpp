@@ -133,8 +133,7 @@ cv::Mat ImageDecoder::read_colour(const std::filesystem::path& file, const SizeC
   return colour;
 }
 
-cv::Mat ImageDecoder::read_grey_or_colour(const std::filesystem::path& file, const SizeCheck& check_size) {
-  load(file);
+cv::Mat ImageDecoder::decode_grey_or_colour(const std::filesystem::path& file, const SizeCheck& check_size) {
   const ImageStructure image = examine_image(bytes_);
   require_decodable(file, image);
   if ((image.channels != 1 && image.channels != 3) || image.bits != 8)
@@ -155,7 +154,8 @@ cv::Mat ImageDecoder::read_grey_or_colour(const std::filesystem::path& file, con
 }
 
 cv::Mat ImageDecoder::read_grey(const std::filesystem::path& file, const SizeCheck& check_size) {
-  const cv::Mat decoded = read_grey_or_colour(file, check_size);
+  load(file);
+  const cv::Mat decoded = decode_grey_or_colour(file, check_size);
   if (decoded.channels() == 1) return decoded;
   cv::Mat grey;
   cv::cvtColor(decoded, grey, cv::COLOR_BGR2GRAY);
@@ -163,7 +163,18 @@ cv::Mat ImageDecoder::read_grey(const std::filesystem::path& file, const SizeChe
 }
 
 cv::Mat ImageDecoder::read_widened(const std::filesystem::path& file, const SizeCheck& check_size) {
-  const cv::Mat decoded = read_grey_or_colour(file, check_size);
+  load(file);
+  return decode_widened(file, check_size);
+}
+
+cv::Mat ImageDecoder::decode_widened(std::span<const std::uint8_t> bytes, const std::string& name,
+                                     const SizeCheck& check_size) {
+  bytes_.assign(bytes.begin(), bytes.end());
+  return decode_widened(std::filesystem::path(name), check_size);
+}
+
+cv::Mat ImageDecoder::decode_widened(const std::filesystem::path& file, const SizeCheck& check_size) {
+  const cv::Mat decoded = decode_grey_or_colour(file, check_size);
   if (decoded.channels() == 3) return decoded;
   cv::Mat colour;
   cv::cvtColor(decoded, colour, cv::COLOR_GRAY2BGR);
@@ -172,6 +183,17 @@ cv::Mat ImageDecoder::read_widened(const std::filesystem::path& file, const Size
 
 cv::Mat ImageDecoder::read_depth(const std::filesystem::path& file, double depth_factor, const SizeCheck& check_size) {
   load(file);
+  return decode_depth(file, depth_factor, check_size);
+}
+
+cv::Mat ImageDecoder::decode_depth(std::span<const std::uint8_t> bytes, const std::string& name, double depth_factor,
+                                   const SizeCheck& check_size) {
+  bytes_.assign(bytes.begin(), bytes.end());
+  return decode_depth(std::filesystem::path(name), depth_factor, check_size);
+}
+
+cv::Mat ImageDecoder::decode_depth(const std::filesystem::path& file, double depth_factor,
+                                   const SizeCheck& check_size) {
   const ImageStructure image = examine_image(bytes_);
   require_decodable(file, image);
   if (image.format != ImageStructure::Format::png || image.channels != 1 || image.bits != 16)

@@ -16,6 +16,12 @@ extern "C" void holdfast_register_plugin_tum(holdfast::Registry& registry);
 extern "C" void holdfast_register_plugin_folder(holdfast::Registry& registry);
 extern "C" void holdfast_register_plugin_euroc(holdfast::Registry& registry);
 extern "C" void holdfast_register_plugin_kitti(holdfast::Registry& registry);
+#ifdef HOLDFAST_PLUGIN_V4L2
+extern "C" void holdfast_register_plugin_v4l2(holdfast::Registry& registry);
+#endif
+#ifdef HOLDFAST_PLUGIN_ROSBAG
+extern "C" void holdfast_register_plugin_rosbag(holdfast::Registry& registry);
+#endif
 
 namespace holdfast::test {
 
@@ -96,6 +102,12 @@ std::unique_ptr<FrameSource> make_source(const std::string& name, const Paramete
   holdfast_register_plugin_folder(registry);
   holdfast_register_plugin_euroc(registry);
   holdfast_register_plugin_kitti(registry);
+#ifdef HOLDFAST_PLUGIN_V4L2
+  holdfast_register_plugin_v4l2(registry);
+#endif
+#ifdef HOLDFAST_PLUGIN_ROSBAG
+  holdfast_register_plugin_rosbag(registry);
+#endif
   CreationContext context;
   context.camera.width = width;
   context.camera.height = height;

@@ -6,6 +6,8 @@
 #include <functional>
 #include <memory>
 #include <opencv2/core/mat.hpp>
+#include <span>
+#include <string>
 #include <vector>
 
 namespace holdfast {
@@ -37,12 +39,21 @@ class ImageDecoder {
   cv::Mat read_widened(const std::filesystem::path& file, const SizeCheck& check_size = {});
   /// Decodes a 16-bit PNG with one channel to 32FC1 [m]: value / depth_factor, 0 = no value.
   cv::Mat read_depth(const std::filesystem::path& file, double depth_factor, const SizeCheck& check_size = {});
+  /// As read_widened() and read_depth(), of the bytes of such a file, which a message may hold; `name` stands for the
+  /// file in errors.
+  cv::Mat decode_widened(std::span<const std::uint8_t> bytes, const std::string& name,
+                         const SizeCheck& check_size = {});
+  cv::Mat decode_depth(std::span<const std::uint8_t> bytes, const std::string& name, double depth_factor,
+                       const SizeCheck& check_size = {});
   /// Decodes a PNG of labels to the stored type, 8UC1 or 16UC1. For a PNG with a palette (8 bits, such as those of
   /// Pascal VOC) the result contains the indices and not the colours.
   cv::Mat read_labels(const std::filesystem::path& file, const SizeCheck& check_size = {});
 
  private:
-  cv::Mat read_grey_or_colour(const std::filesystem::path& file, const SizeCheck& check_size);
+  // Of bytes_.
+  cv::Mat decode_grey_or_colour(const std::filesystem::path& file, const SizeCheck& check_size);
+  cv::Mat decode_widened(const std::filesystem::path& file, const SizeCheck& check_size);
+  cv::Mat decode_depth(const std::filesystem::path& file, double depth_factor, const SizeCheck& check_size);
   void load(const std::filesystem::path& file);
 
   std::vector<std::uint8_t> bytes_;

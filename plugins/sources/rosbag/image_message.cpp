@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "image_message.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+
+#include "holdfast/core/error.hpp"
+
+namespace holdfast::rosbag_plugin {
+
+namespace {
+
+constexpr std::uint32_t largest_side = 1U << 15;  // as of image files
+
+[[noreturn]] void refuse(const std::string& place, const std::string& problem) { throw InputError({place}, problem); }
+
+/// std_msgs/Header.
+void read_message_header(ByteReader& reader) {
+  reader.bytes(stamp_bytes, "header");
+  reader.text("frame name");
+}
+
+/// A sensor_msgs/Image; its pixels lie in the message.
+struct RawImage {
+  cv::Size size;
+  std::string encoding;
+  bool is_big_endian = false;
+  std::size_t bytes_to_next_row = 0;
+  Bytes pixels;
+};
+
+RawImage read_image(Bytes message, const std::string& place) {
+  ByteReader reader(message, place);
+  read_message_header(reader);
+  const auto height = reader.number<std::uint32_t>("height");
+  const auto width = reader.number<std::uint32_t>("width");
+  RawImage image;
+  image.encoding = reader.text("encoding");
+  image.is_big_endian = reader.number<std::uint8_t>("byte order") != 0;
+  image.bytes_to_next_row = reader.number<std::uint32_t>("row length");
+  image.pixels = reader.counted_bytes("pixels");
+  if (width < 1 || height < 1 || width > largest_side || height > largest_side)
+    refuse(place, "is an image of " + std::to_string(width) + "x" + std::to_string(height) + "; expected 1 to " +
+                      std::to_string(largest_side) + " pixels in width and height");
+  image.size = {static_cast<int>(width), static_cast<int>(height)};
+  return image;
+}
+
+/// Throws unless the message has rows of pixels of so many bytes.
+void check_pixels(const RawImage& image, std::size_t bytes_of_pixel, const std::string& place) {
+  const auto width = static_cast<std::size_t>(image.size.width), height = static_cast<std::size_t>(image.size.height);
+  if (image.bytes_to_next_row >= width * bytes_of_pixel && image.pixels.size() >= image.bytes_to_next_row * height)
+    return;
+  refuse(place, "has " + std::to_string(image.pixels.size()) + " bytes of pixels in rows of " +
+                    std::to_string(image.bytes_to_next_row) + "; an image of " + std::to_string(width) + "x" +
+                    std::to_string(height) + ", " + image.encoding + " has " +
+                    std::to_string(width * height * bytes_of_pixel) + " in rows of " +
+                    std::to_string(width * bytes_of_pixel) + "; the message is damaged");
+}
+
+/// The pixels as an image of that type, without a copy.
+cv::Mat view_of(const RawImage& image, int type) {
+  return {image.size, type, const_cast<std::uint8_t*>(image.pixels.data()), image.bytes_to_next_row};
+}
+
+/// How an encoding of colour becomes blue, green, red.
+struct ColourEncoding {
+  const char* name;
+  int type, conversion;  // -1: none
+};
+constexpr ColourEncoding colour_encodings[] = {
+    {"rgb8", CV_8UC3, cv::COLOR_RGB2BGR},
+    {"bgr8", CV_8UC3, -1},
+    {"8UC3", CV_8UC3, -1},
+    {"rgba8", CV_8UC4, cv::COLOR_RGBA2BGR},
+    {"bgra8", CV_8UC4, cv::COLOR_BGRA2BGR},
+    {"mono8", CV_8UC1, cv::COLOR_GRAY2BGR},
+    {"8UC1", CV_8UC1, cv::COLOR_GRAY2BGR},
+};
+
+/// A sensor_msgs/CompressedImage; its bytes lie in the message.
+struct CompressedImage {
+  std::string format;
+  Bytes bytes;
+};
+
+CompressedImage read_compressed(Bytes message, const std::string& place) {
+  ByteReader reader(message, place);
+  read_message_header(reader);
+  CompressedImage image;
+  image.format = reader.text("format");
+  image.bytes = reader.counted_bytes("compressed image");
+  return image;
+}
+
+float metres_of(float value) { return std::isfinite(value) && value > 0.0F ? value : 0.0F; }
+
+/// Numbers of `Stored` that lie anywhere in memory, each through `to_metres`.
+template <class Stored, class Convert>
+cv::Mat convert_depth(const RawImage& image, const std::string& place, const Convert& to_metres) {
+  check_pixels(image, sizeof(Stored), place);
+  cv::Mat depth(image.size, CV_32FC1);
+  for (int y = 0; y < depth.rows; ++y) {
+    const std::uint8_t* from = image.pixels.data() + image.bytes_to_next_row * static_cast<std::size_t>(y);
+    auto* to = depth.ptr<float>(y);
+    for (int x = 0; x < depth.cols; ++x) {
+      Stored value;
+      std::memcpy(&value, from + sizeof(Stored) * static_cast<std::size_t>(x), sizeof(Stored));
+      to[x] = to_metres(value);
+    }
+  }
+  return depth;
+}
+
+}  // namespace
+
+double read_stamp(Bytes message, const std::string& place) {
+  ByteReader reader(message, place);
+  reader.number<std::uint32_t>("sequence number");
+  const auto seconds = reader.number<std::uint32_t>("time stamp");
+  const auto nanoseconds = reader.number<std::uint32_t>("time stamp");
+  if (nanoseconds >= 1'000'000'000)
+    throw InputError({place}, "has a time stamp with " + std::to_string(nanoseconds) +
+                                  " nanoseconds; expected less than a second; the message is damaged");
+  // The number nearest to the decimal one, which is what a list of images gives.
+  char text[32];
+  const int length = std::snprintf(text, sizeof(text), "%u.%09u", seconds, nanoseconds);
+  double stamp = 0.0;
+  std::from_chars(text, text + length, stamp);
+  return stamp;
+}
+
+std::string encoding_of(Bytes message, const std::string& type, const std::string& place) {
+  if (type == compressed_image_type) return read_compressed(message, place).format;
+  return read_image(message, place).encoding;
+}
+
+bool is_depth_encoding(const std::string& encoding) {
+  return encoding == "32FC1" || encoding == "mono16" || encoding.starts_with("16UC1") ||
+         encoding.find("compressedDepth") != std::string::npos;
+}
+
+cv::Mat ImageMessages::colour(Bytes message, const std::string& type, const std::string& place,
+                              const ImageDecoder::SizeCheck& check_size) {
+  if (type == compressed_image_type)
+    return decoder_.decode_widened(read_compressed(message, place).bytes, place, check_size);
+  const RawImage image = read_image(message, place);
+  for (const ColourEncoding& encoding : colour_encodings) {
+    if (image.encoding != encoding.name) continue;
+    check_pixels(image, CV_ELEM_SIZE(encoding.type), place);
+    check_size(image.size);
+    const cv::Mat view = view_of(image, encoding.type);
+    if (encoding.conversion < 0) return view.clone();
+    cv::Mat converted;
+    cv::cvtColor(view, converted, encoding.conversion);
+    return converted;
+  }
+  std::string known;
+  for (const ColourEncoding& encoding : colour_encodings) known += std::string(", ") + encoding.name;
+  refuse(place, "has the encoding '" + image.encoding + "'; expected a colour image, one of " + known.substr(2) +
+                    "; choose another topic with `colour`, or convert it with image_proc");
+}
+
+cv::Mat ImageMessages::depth(Bytes message, const std::string& type, const std::string& place, double depth_factor,
+                             const ImageDecoder::SizeCheck& check_size) {
+  if (type == compressed_image_type) {
+    CompressedImage image = read_compressed(message, place);
+    constexpr std::size_t settings = 12;  // bytes that compressed_depth_image_transport writes before the PNG
+    if (image.format.find("compressedDepth") != std::string::npos) {
+      if (image.format.starts_with("32FC1"))
+        refuse(place,
+               "is depth of 32FC1 that was quantised by compressed_depth; expected 16UC1; choose another topic "
+               "with `depth`, or republish it as `raw`");
+      if (image.bytes.size() < settings) refuse(place, "is cut short: it has no image; the message is damaged");
+      image.bytes = image.bytes.subspan(settings);
+    }
+    return decoder_.decode_depth(image.bytes, place, depth_factor, check_size);
+  }
+  const RawImage image = read_image(message, place);
+  if (!is_depth_encoding(image.encoding))
+    refuse(place, "has the encoding '" + image.encoding +
+                      "'; expected a depth image, 16UC1, mono16 or 32FC1; choose another topic with `depth`");
+  if (image.is_big_endian)
+    refuse(place,
+           "has its bytes in the order of another processor; expected little-endian numbers; record the topic "
+           "again on an ordinary computer");
+  check_size(image.size);
+  if (image.encoding == "32FC1") return convert_depth<float>(image, place, metres_of);
+  // As the depth of files: the float nearest to the quotient.
+  if (const auto factor = static_cast<float>(depth_factor); factor == depth_factor)
+    return convert_depth<std::uint16_t>(image, place,
+                                        [factor](std::uint16_t v) { return static_cast<float>(v) / factor; });
+  return convert_depth<std::uint16_t>(image, place,
+                                      [depth_factor](std::uint16_t v) { return static_cast<float>(v / depth_factor); });
+}
+
+Camera read_camera_info(Bytes message, bool is_rectified, const std::string& place) {
+  ByteReader reader(message, place);
+  read_message_header(reader);
+  const auto height = reader.number<std::uint32_t>("height");
+  const auto width = reader.number<std::uint32_t>("width");
+  const std::string model = reader.text("distortion model");
+  const auto count = reader.number<std::uint32_t>("number of coefficients");
+  if (count > 14)
+    refuse(place, "has " + std::to_string(count) + " distortion coefficients; expected 14 at most; it is damaged");
+  double d[14] = {}, k[9], p[12];
+  for (std::uint32_t i = 0; i < count; ++i) d[i] = reader.number<double>("distortion");
+  for (double& number : k) number = reader.number<double>("K");
+  for (int i = 0; i < 9; ++i) reader.number<double>("R");
+  for (double& number : p) number = reader.number<double>("P");
+  const auto binning_x = reader.number<std::uint32_t>("binning");
+  const auto binning_y = reader.number<std::uint32_t>("binning");
+  if (binning_x > 1 || binning_y > 1)
+    refuse(place, "is of an image with " + std::to_string(binning_x) + "x" + std::to_string(binning_y) +
+                      " pixels put together; expected none; give the camera under `camera:` and `camera_info: none`");
+
+  Camera camera;
+  camera.name = "camera_info";
+  if (width < 1 || height < 1 || width > largest_side || height > largest_side)
+    refuse(place, "is of an image of " + std::to_string(width) + "x" + std::to_string(height) +
+                      "; expected the size of the images; give the camera under `camera:` and `camera_info: none`");
+  camera.width = static_cast<int>(width);
+  camera.height = static_cast<int>(height);
+  const double* matrix = is_rectified ? p : k;
+  const int row = is_rectified ? 4 : 3;
+  camera.fx = matrix[0];
+  camera.cx = matrix[2];
+  camera.fy = matrix[row + 1];
+  camera.cy = matrix[row + 2];
+  bool is_calibrated = camera.fx > 0.0 && camera.fy > 0.0;
+  for (const double number : {camera.fx, camera.fy, camera.cx, camera.cy})
+    is_calibrated = is_calibrated && std::isfinite(number) && std::abs(number) < 1e6;
+  if (!is_calibrated)
+    refuse(place,
+           "has a focal length or principal point that cannot be: the camera was not calibrated; give the "
+           "camera under `camera:` and `camera_info: none`");
+  for (const double number : d)
+    if (!std::isfinite(number)) refuse(place, "has a distortion coefficient that is no number");
+  if (is_rectified) return camera;
+
+  const bool is_fisheye = model == "equidistant" || model == "fisheye";
+  const bool is_known = model == "plumb_bob" || model == "rational_polynomial" || is_fisheye;
+  const bool is_without = count == 0;
+  const std::uint32_t most = is_fisheye ? 4 : model == "plumb_bob" ? 5 : 8;
+  bool is_within = count <= most;
+  for (std::uint32_t i = most; i < count; ++i) is_within = d[i] == 0.0;  // thin prisms and tilt that are not there
+  if (!is_without && (!is_known || !is_within || (is_fisheye && count != 4)))
+    refuse(place, "has the distortion model '" + model + "' with " + std::to_string(count) +
+                      " coefficients; expected plumb_bob (5), rational_polynomial (8) or equidistant (4); give the "
+                      "camera under `camera:` and `camera_info: none`");
+  camera.distortion =
+      is_fisheye
+          ? Distortion{.k1 = d[0], .k2 = d[1], .k3 = d[2], .k4 = d[3]}
+          : Distortion{.k1 = d[0], .k2 = d[1], .p1 = d[2], .p2 = d[3], .k3 = d[4], .k4 = d[5], .k5 = d[6], .k6 = d[7]};
+  if (is_fisheye && !is_without) camera.distortion.lens = Lens::fisheye;
+  if (const std::string trouble = camera.distortion.trouble(); !trouble.empty())
+    refuse(place, trouble + "; give the camera under `camera:` and `camera_info: none`");
+  return camera;
+}
+
+}  // namespace holdfast::rosbag_plugin

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "bag_file.hpp"
+#include "holdfast/core/association.hpp"
+#include "holdfast/core/error.hpp"
+#include "holdfast/image_files/image_sequence.hpp"
+#include "holdfast/interfaces/frame_source.hpp"
+#include "holdfast/plugin/plugin.hpp"
+#include "image_message.hpp"
+#include "topics.hpp"
+
+namespace holdfast {
+
+namespace {
+
+struct RosbagSettings {
+  std::filesystem::path path;
+  std::string colour, depth, camera_info;
+  double max_time_difference = 0.02;
+  double depth_factor = 1000.0;
+  std::filesystem::path truth;
+  std::string on_bad_frame = "fail";
+  std::int64_t start = 0;
+  std::int64_t frames = 0;
+
+  static void describe(ParameterTable<RosbagSettings>& table) {
+    using S = RosbagSettings;
+    table.add("path", &S::path, "bag of ROS 1, a file NAME.bag").required();
+    table.add("colour", &S::colour,
+              "topic of the colour images; empty = found: the one of a usual name, such as /camera/rgb/image_color, or "
+              "the only one");
+    table.add("depth", &S::depth,
+              "topic of the depth images, registered to the colour images; empty = found in the same way, if there is "
+              "one; none = colour alone");
+    table.add("camera_info", &S::camera_info,
+              "topic of the calibration of the colour camera; empty = camera_info beside the colour images, if it is "
+              "there and the configuration gives no camera; none = it is not read");
+    table
+        .add("max_time_difference", &S::max_time_difference,
+             "upper bound of the time difference between a colour image and its depth image")
+        .range(1e-6, 1.0)
+        .unit("s");
+    table.add("depth_factor", &S::depth_factor, "value of one metre in depth images of whole numbers (16UC1)")
+        .range(1.0, 65535.0);
+    table.add("truth", &S::truth, "ground-truth trajectory in TUM format");
+    table
+        .add("on_bad_frame", &S::on_bad_frame,
+             "reaction to a damaged or unsuitable image: stop with an error, or skip and count the frame")
+        .one_of({"fail", "skip"});
+    table.add("start", &S::start, "index of the first frame, from 0").at_least(0);
+    table.add("frames", &S::frames, "number of frames, 0 = all").at_least(0);
+  }
+};
+
+using namespace rosbag_plugin;
+
+/// A message and the time stamp of its header [s].
+struct StampedMessage {
+  double stamp = 0.0;
+  BagMessage message;
+};
+
+/// The messages of a topic in the order of their stamps, which must differ.
+std::vector<StampedMessage> stamped_messages(BagFile& bag, const std::string& topic) {
+  std::vector<StampedMessage> messages;
+  for (const BagMessage& message : bag.messages(topic))
+    messages.push_back({read_stamp(bag.head(message, stamp_bytes), bag.place_of(message)), message});
+  std::stable_sort(messages.begin(), messages.end(),
+                   [](const StampedMessage& a, const StampedMessage& b) { return a.stamp < b.stamp; });
+  for (std::size_t i = 1; i < messages.size(); ++i)
+    if (messages[i].stamp == messages[i - 1].stamp)
+      throw InputError({bag.place_of(messages[i].message)},
+                       "has the time stamp " + std::to_string(messages[i].stamp) +
+                           " s in its header, as an earlier one of this topic; expected stamps that increase; does "
+                           "the driver set them, and is there one driver alone?");
+  return messages;
+}
+
+struct BagFrame {
+  StampedMessage colour;
+  std::optional<StampedMessage> depth;
+};
+
+std::vector<BagFrame> find_bag_frames(BagFile& bag, const ChosenTopics& topics, const RosbagSettings& settings) {
+  const std::vector<StampedMessage> colour = stamped_messages(bag, topics.colour.name);
+  std::vector<BagFrame> frames;
+  if (topics.depth.name.empty()) {
+    for (const StampedMessage& message : colour) frames.push_back({message, {}});
+    select_range(frames, settings.start, settings.frames, settings.path, "colour images");
+    return frames;
+  }
+  const std::vector<StampedMessage> depth = stamped_messages(bag, topics.depth.name);
+  const auto stamps = [](const std::vector<StampedMessage>& messages) {
+    std::vector<double> list;
+    for (const StampedMessage& message : messages) list.push_back(message.stamp);
+    return list;
+  };
+  for (const auto& [i, j] : associate_stamps(stamps(colour), stamps(depth), settings.max_time_difference))
+    frames.push_back({colour[i], depth[j]});
+  const auto range = [](const std::string& topic, const std::vector<StampedMessage>& messages) {
+    return topic + " runs from " + std::to_string(messages.front().stamp) + " to " +
+           std::to_string(messages.back().stamp) + " s";
+  };
+  if (frames.empty())
+    throw InputError({settings.path.string()},
+                     "no colour and depth image lie within " + std::to_string(settings.max_time_difference) +
+                         " s: " + range(topics.colour.name, colour) + ", " + range(topics.depth.name, depth) +
+                         "; set `source.rosbag.max_time_difference`");
+  select_range(frames, settings.start, settings.frames, settings.path, "colour and depth pairs");
+  return frames;
+}
+
+/// Colour and depth images of a bag of ROS 1, associated as those of a recording in TUM layout.
+class RosbagSource final : public FrameSource {
+ public:
+  RosbagSource(const RosbagSettings& settings, const CreationContext& context)
+      : settings_(settings),
+        bag_(settings.path),
+        topics_(choose_topics(bag_, {settings.colour, settings.depth, settings.camera_info})),
+        frames_(find_bag_frames(bag_, topics_, settings)),
+        size_(context.camera.width, context.camera.height) {
+    description_.name = settings.path.stem().string();
+    description_.has_depth = !topics_.depth.name.empty();
+    description_.can_read_ahead = true;
+    description_.frame_count = frames_.size();
+    const bool camera_is_given = !(context.camera == Camera());
+    if (!topics_.camera_info.name.empty() && !(settings.camera_info.empty() && camera_is_given)) {
+      description_.camera = read_camera();
+      size_ = {description_.camera->width, description_.camera->height};
+    }
+    if (!settings.truth.empty()) truth_ = read_trajectory(settings.truth);
+  }
+
+  SourceDescription describe() const override { return description_; }
+  std::optional<SensorFrame> next() override {
+    while (position_ < frames_.size()) {
+      const std::uint64_t index = position_++;
+      try {
+        SensorFrame frame = decode(frames_[index]);
+        frame.index = index;
+        return frame;
+      } catch (const InputError& error) {
+        if (settings_.on_bad_frame == "fail") throw;
+        skipped_.push_back({index, frames_[index].colour.stamp, error.what()});
+      }
+    }
+    if (skipped_.size() == frames_.size())
+      throw InputError({settings_.path.string()}, "none of the " + std::to_string(frames_.size()) +
+                                                      " frames can be used; the first: " + skipped_.front().reason);
+    return std::nullopt;
+  }
+  Trajectory truth() const override { return truth_; }
+  std::vector<SkippedFrame> skipped() const override { return skipped_; }
+
+ private:
+  Camera read_camera() {
+    const BagMessage message = bag_.messages(topics_.camera_info.name).front();
+    return read_camera_info(bag_.content(message), is_rectified(topics_.colour.name), bag_.place_of(message));
+  }
+  SensorFrame decode(const BagFrame& source) {
+    SensorFrame frame;
+    frame.timestamp = source.colour.stamp;
+    std::string place = bag_.place_of(source.colour.message);
+    frame.colour =
+        images_.colour(bag_.content(source.colour.message), topics_.colour.type, place, [&](const cv::Size& size) {
+          if (size != size_)
+            throw InputError({place}, "is " + text_of(size) + " pixels, but the camera is " + text_of(size_) +
+                                          "; give the camera of this recording under `camera:`");
+        });
+    if (!source.depth) return frame;
+    frame.depth_delay = source.depth->stamp - source.colour.stamp;
+    place = bag_.place_of(source.depth->message);
+    frame.depth = images_.depth(bag_.content(source.depth->message), topics_.depth.type, place, settings_.depth_factor,
+                                [&](const cv::Size& size) {
+                                  if (size != size_)
+                                    throw InputError({place}, "is " + text_of(size) +
+                                                                  " pixels, but its colour image is " + text_of(size_) +
+                                                                  "; expected depth registered to the colour image; "
+                                                                  "choose its topic with `source.rosbag.depth`");
+                                });
+    return frame;
+  }
+  static std::string text_of(const cv::Size& size) {
+    return std::to_string(size.width) + "x" + std::to_string(size.height);
+  }
+
+  RosbagSettings settings_;
+  BagFile bag_;
+  ChosenTopics topics_;
+  std::vector<BagFrame> frames_;
+  cv::Size size_;
+  ImageMessages images_;
+  SourceDescription description_;
+  Trajectory truth_;
+  std::vector<SkippedFrame> skipped_;
+  std::size_t position_ = 0;
+};
+
+}  // namespace
+
+HOLDFAST_PLUGIN(rosbag, registry) {
+  registry.add<FrameSource, RosbagSource, RosbagSettings>(
+      {.name = "rosbag",
+       .summary = "Bags of ROS 1: colour, depth and calibration of their topics, named or found.",
+       .paper = ""});
+}
+
+}  // namespace holdfast

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "topics.hpp"
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "holdfast/core/error.hpp"
+#include "image_message.hpp"
+
+namespace holdfast::rosbag_plugin {
+
+namespace {
+
+// TUM, openni_launch, realsense2_camera, iai_kinect2, usb_cam. Depth only where it is registered to the colour image.
+constexpr const char* usual_colour[] = {"/camera/rgb/image_color",
+                                        "/camera/rgb/image_raw",
+                                        "/camera/rgb/image_rect_color",
+                                        "/camera/color/image_raw",
+                                        "/camera/color/image_rect_color",
+                                        "/kinect2/qhd/image_color_rect",
+                                        "/usb_cam/image_raw",
+                                        "/camera/image_raw"};
+constexpr const char* usual_depth[] = {"/camera/depth/image",
+                                       "/camera/depth_registered/image",
+                                       "/camera/depth_registered/image_raw",
+                                       "/camera/depth_registered/image_rect",
+                                       "/camera/depth_registered/hw_registered/image_rect",
+                                       "/camera/depth_registered/hw_registered/image_rect_raw",
+                                       "/camera/aligned_depth_to_color/image_raw",
+                                       "/kinect2/qhd/image_depth_rect"};
+
+bool is_image(const BagTopic& topic) { return topic.type == image_type || topic.type == compressed_image_type; }
+
+/// Without what image_transport adds for compressed images.
+std::string base_of(const std::string& topic) {
+  for (const std::string_view transport : {"/compressedDepth", "/compressed"})
+    if (topic.ends_with(transport)) return topic.substr(0, topic.size() - transport.size());
+  return topic;
+}
+
+std::string listed(const BagFile& bag) {
+  std::string text;
+  for (const BagTopic& topic : bag.topics())
+    text += "\n  " + topic.name + "  " + topic.type + "  " + std::to_string(topic.messages) +
+            (topic.messages == 1 ? " message" : " messages");
+  return text.empty() ? "; it has no topics" : "; its topics are" + text;
+}
+
+[[noreturn]] void refuse(const BagFile& bag, const std::string& problem) {
+  throw InputError({bag.path().string()}, problem + listed(bag));
+}
+
+BagTopic named_topic(const BagFile& bag, const std::string& name, const char* parameter, bool is_of_images) {
+  for (const BagTopic& topic : bag.topics()) {
+    if (topic.name != name) continue;
+    if (is_of_images ? !is_image(topic) : topic.type != camera_info_type)
+      refuse(bag, "the topic '" + name + "' has messages of the type " + topic.type + "; expected " +
+                      (is_of_images ? std::string(image_type) + " or " + compressed_image_type : camera_info_type) +
+                      "; set `source.rosbag." + parameter + '`');
+    if (topic.messages == 0) refuse(bag, "the topic '" + name + "' has no messages");
+    return topic;
+  }
+  refuse(bag, "has no topic '" + name + "'; set `source.rosbag." + parameter + '`');
+}
+
+/// The topic of a usual name, or the only one. Of a topic that is there as it is and compressed, the first.
+BagTopic found_topic(const BagFile& bag, const std::vector<BagTopic>& candidates, std::span<const char* const> usual,
+                     const char* parameter, const char* kind) {
+  std::vector<BagTopic> different;  // sorted by name, so that what is not compressed comes first
+  for (const BagTopic& topic : candidates)
+    if (different.empty() || base_of(different.back().name) != base_of(topic.name)) different.push_back(topic);
+  std::vector<BagTopic> of_usual_name;
+  for (const BagTopic& topic : different)
+    if (std::find(usual.begin(), usual.end(), base_of(topic.name)) != usual.end()) of_usual_name.push_back(topic);
+  const std::vector<BagTopic>& choice = of_usual_name.empty() ? different : of_usual_name;
+  if (choice.empty()) return {};
+  if (choice.size() == 1) return choice.front();
+  std::string names;
+  for (const BagTopic& topic : choice) names += (names.empty() ? "'" : ", '") + topic.name + "'";
+  refuse(bag, std::string("several topics have ") + kind + " images: " + names + "; name one with `source.rosbag." +
+                  parameter + '`');
+}
+
+}  // namespace
+
+bool is_rectified(const std::string& colour_topic) {
+  const std::string base = base_of(colour_topic);
+  return base.substr(base.rfind('/') + 1).find("rect") != std::string::npos;
+}
+
+ChosenTopics choose_topics(BagFile& bag, const TopicNames& names) {
+  const std::vector<BagTopic> topics = bag.topics();
+  ChosenTopics chosen;
+  if (!names.colour.empty()) chosen.colour = named_topic(bag, names.colour, "colour", true);
+  if (!names.depth.empty() && names.depth != "none") chosen.depth = named_topic(bag, names.depth, "depth", true);
+
+  if (names.colour.empty() || names.depth.empty()) {
+    std::vector<BagTopic> colour, depth;
+    for (const BagTopic& topic : topics) {
+      if (!is_image(topic) || topic.messages == 0) continue;
+      const BagMessage first = bag.messages(topic.name).front();
+      const std::string encoding = encoding_of(bag.content(first), topic.type, bag.place_of(first));
+      (is_depth_encoding(encoding) ? depth : colour).push_back(topic);
+    }
+    if (names.colour.empty()) chosen.colour = found_topic(bag, colour, usual_colour, "colour", "colour");
+    if (names.depth.empty()) chosen.depth = found_topic(bag, depth, usual_depth, "depth", "depth");
+  }
+  if (chosen.colour.name.empty()) refuse(bag, "has no colour images");
+
+  if (names.camera_info == "none") return chosen;
+  if (!names.camera_info.empty()) {
+    chosen.camera_info = named_topic(bag, names.camera_info, "camera_info", false);
+    return chosen;
+  }
+  const std::string base = base_of(chosen.colour.name);
+  const std::string beside = base.substr(0, base.rfind('/') + 1) + "camera_info";
+  for (const BagTopic& topic : topics)
+    if (topic.name == beside && topic.type == camera_info_type && topic.messages > 0) chosen.camera_info = topic;
+  return chosen;
+}
+
+}  // namespace holdfast::rosbag_plugin

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgcodecs.hpp>
+
+#include "cli/program.hpp"
+#include "support/bag_writer.hpp"
+
+namespace holdfast {
+namespace {
+
+std::uint64_t nanoseconds(const std::string& stamp) {
+  return static_cast<std::uint64_t>(std::llround(std::stod(stamp) * 1e6)) * 1000;
+}
+
+/// A recording in TUM layout as a bag of the TUM benchmark has it: depth in metres, 32 bits.
+std::string bag_of(const test::Program& program, const std::string& folder, const std::string& compression) {
+  test::BagWriter bag(compression, 4);
+  std::istringstream pairs(program.text(folder + "/associations.txt"));
+  std::string colour_stamp, colour, depth_stamp, depth;
+  while (pairs >> colour_stamp >> colour >> depth_stamp >> depth) {
+    const cv::Mat units = cv::imread(program.path(folder + "/" + depth).string(), cv::IMREAD_UNCHANGED);
+    cv::Mat metres(units.size(), CV_32FC1);
+    for (int y = 0; y < units.rows; ++y)
+      for (int x = 0; x < units.cols; ++x) {
+        const auto value = static_cast<float>(units.at<std::uint16_t>(y, x));
+        metres.at<float>(y, x) = value == 0.0F ? std::nanf("") : value / 5000.0F;
+      }
+    bag.add("/camera/depth/image", "sensor_msgs/Image", nanoseconds(depth_stamp),
+            test::image_message(nanoseconds(depth_stamp), "32FC1", metres));
+    bag.add("/camera/rgb/image_color", "sensor_msgs/Image", nanoseconds(colour_stamp) + 1'000'000,
+            test::image_message(nanoseconds(colour_stamp), "bgr8",
+                                cv::imread(program.path(folder + "/" + colour).string())));
+  }
+  return bag.finish();
+}
+
+TEST(BagRunTest, ARunOnABagIsTheRunOnTheFolder) {
+  const test::Program program;
+  const auto run = [&](const std::vector<std::string>& words) {
+    const test::Outcome outcome = program.run(words);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  };
+  run({"simulate", "--duration", "1", "--output", "folder", "--quiet"});
+  program.write("recording.bag", bag_of(program, "folder", "lz4"));
+  const std::string rest = "camera: tum_fr1\nfeatures: orb\noptimizer: schur\n";
+  program.write("folder.yaml", "source: { tum: { path: folder } }\n" + rest);
+  program.write("bag.yaml", "source: { rosbag: { path: recording.bag } }\n" + rest);
+  run({"run", "folder.yaml", "--output", "out_folder", "--quiet"});
+  run({"run", "bag.yaml", "--output", "out_bag", "--quiet"});
+  EXPECT_FALSE(program.text("out_bag/trajectory.txt").empty());
+  EXPECT_EQ(program.text("out_bag/trajectory.txt"), program.text("out_folder/trajectory.txt"));
+  EXPECT_EQ(program.text("out_bag/map.hfm"), program.text("out_folder/map.hfm"));
+
+  // What is recorded of the bag is the folder again.
+  run({"record", "bag.yaml", "--output", "again", "--quiet"});
+  EXPECT_EQ(program.text("again/rgb.txt"), program.text("folder/rgb.txt"));
+  EXPECT_EQ(program.text("again/depth.txt"), program.text("folder/depth.txt"));
+  run({"run", "again/recording.yaml", "--output", "out_again", "--quiet"});
+  EXPECT_EQ(program.text("out_again/trajectory.txt"), program.text("out_folder/trajectory.txt"));
+}
+
+}  // namespace
+}  // namespace holdfast

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <OpenNI.h>
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <thread>
+
+#include "fake_images.hpp"
+#include "openni2_source.hpp"
+#include "sources/recording.hpp"
+
+namespace holdfast {
+namespace {
+
+using openni2_plugin::DepthCamera;
+using openni2_plugin::Openni2Settings;
+using openni2_plugin::Openni2Source;
+using openni2_plugin::StreamImage;
+using test::input_error;
+using test::read_all;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+std::unique_ptr<FrameSource> open(const Openni2Settings& settings, int width = fake_width) {
+  CreationContext context;
+  context.camera.width = width;
+  context.camera.height = fake_height;
+  return std::make_unique<Openni2Source>(settings, context);
+}
+
+/// The number of the image that the driver made.
+int number_of(const SensorFrame& frame) { return frame.colour.at<cv::Vec3b>(3, 5)[2] / 10; }
+
+/// Frames are those that the driver gave, unmirrored and in pairs, whichever were lost on a busy machine.
+void expect_fake_frames(const std::vector<SensorFrame>& frames) {
+  ASSERT_FALSE(frames.empty());
+  for (const SensorFrame& frame : frames) {
+    const int i = number_of(frame);
+    EXPECT_EQ(frame.colour.at<cv::Vec3b>(3, 5), cv::Vec3b(5, 2, fake_red(i)));
+    EXPECT_EQ(frame.depth.at<float>(3, 5), static_cast<float>(fake_depth(i, 5)) / 1000.0F)
+        << "the depth image of the same time";
+    EXPECT_NEAR(frame.timestamp - frames[0].timestamp, 0.033333 * (i - number_of(frames[0])), 1e-9);
+    EXPECT_EQ(frame.index - frames[0].index, static_cast<std::uint64_t>(i - number_of(frames[0])));
+  }
+}
+
+TEST(Openni2DeviceTest, ACameraGivesItsFramesUntilItIsUnplugged) {
+  const auto source = open({.device = "fake:unplugged"});
+  EXPECT_TRUE(source->describe().has_depth);
+  EXPECT_FALSE(source->describe().frame_count.has_value());
+  std::vector<SensorFrame> frames;
+  const std::string message = input_error([&] {
+    while (std::optional<SensorFrame> frame = source->next()) frames.push_back(*frame);
+  });
+  EXPECT_THAT(message, AllOf(StartsWith("fake:unplugged: "), HasSubstr("was unplugged")));
+  expect_fake_frames(frames);
+  EXPECT_NEAR(frames[0].timestamp, static_cast<double>(fake_colour_time(number_of(frames[0]))) * 1e-6, 1e-9);
+  EXPECT_NEAR(frames[0].depth_delay, 0.004, 1e-9);
+  EXPECT_FALSE(source->next().has_value());
+}
+
+TEST(Openni2DeviceTest, TheFirstCameraIsTakenWithoutAName) { EXPECT_TRUE(open({})->next().has_value()); }
+
+TEST(Openni2DeviceTest, SaysWhatACameraCannotDo) {
+  EXPECT_THAT(input_error([] { open({.device = "fake:none"}); }),
+              AllOf(StartsWith("fake:none: cannot be opened"), HasSubstr("`source.openni2.device`"),
+                    HasSubstr("\n  fake:plain")));
+  EXPECT_THAT(input_error([] { open({.device = "fake:plain"}, 640); }),
+              AllOf(HasSubstr("its colour has no size of 640x48"), HasSubstr("it has 64x48 at 30 Hz")));
+  EXPECT_THAT(input_error([] { open({.device = "fake:unregistered"}); }),
+              AllOf(HasSubstr("cannot register its depth"), HasSubstr("registration: none")));
+  EXPECT_TRUE(open({.device = "fake:unregistered", .registration = "none"})->next().has_value());
+  EXPECT_THAT(input_error([] { open({.file = "/none.oni"}); }), StartsWith("/none.oni: is missing"));
+}
+
+class OpenNiFileTest : public testing::Test {
+ protected:
+  /// Records the fake camera, as NiViewer2 would.
+  std::string record() const {
+    const std::string file = (folder_.path() / "recording.oni").string();
+    openni::OpenNI::initialize();
+    {
+      openni::Device device;
+      EXPECT_EQ(device.open("fake:plain"), openni::STATUS_OK);
+      openni::VideoStream colour, depth;
+      EXPECT_EQ(colour.create(device, openni::SENSOR_COLOR), openni::STATUS_OK);
+      EXPECT_EQ(depth.create(device, openni::SENSOR_DEPTH), openni::STATUS_OK);
+      openni::Recorder recorder;
+      EXPECT_EQ(recorder.create(file.c_str()), openni::STATUS_OK);
+      recorder.attach(colour, false);
+      recorder.attach(depth, false);
+      recorder.start();
+      colour.start();
+      depth.start();
+      std::this_thread::sleep_for(std::chrono::milliseconds(700));
+      recorder.stop();
+      recorder.destroy();
+      colour.destroy();
+      depth.destroy();
+      device.close();
+    }
+    openni::OpenNI::shutdown();
+    return file;
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(OpenNiFileTest, ARecordingIsPlayedOnceAndTheSameEveryTime) {
+  const std::string file = record();
+  std::unique_ptr<FrameSource> source = open({.file = file});
+  EXPECT_EQ(source->describe().name, "recording");
+  const std::vector<SensorFrame> frames = read_all(*source);
+  expect_fake_frames(frames);
+  EXPECT_GE(frames.size(), 5u);
+  EXPECT_TRUE(source->skipped().empty());
+  EXPECT_FALSE(source->next().has_value());
+  source.reset();  // a device of one name exists once in a process
+  const std::vector<SensorFrame> again = read_all(*open({.file = file}));
+  ASSERT_EQ(again.size(), frames.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) EXPECT_EQ(again[i].timestamp, frames[i].timestamp);
+  EXPECT_THAT(input_error([&] { open({.file = file}, 640); }), HasSubstr("but the camera is 640x48"));
+  const std::string text = folder_.write("text.oni", "this is no recording");
+  EXPECT_THAT(input_error([&] { open({.file = text}); }), StartsWith(text + ": "));
+}
+
+/// Gives the images that a test names, then nothing.
+class ListedImages final : public DepthCamera {
+ public:
+  explicit ListedImages(std::vector<StreamImage> images) : images_(std::move(images)) {}
+  std::optional<StreamImage> next() override {
+    if (position_ == images_.size()) return std::nullopt;
+    return images_[position_++];
+  }
+
+ private:
+  std::vector<StreamImage> images_;
+  std::size_t position_ = 0;
+};
+
+StreamImage colour(std::uint64_t number, std::uint64_t time) {
+  return {false, number, time, cv::Mat(2, 2, CV_8UC3, cv::Scalar::all(static_cast<double>(number)))};
+}
+StreamImage depth(std::uint64_t number, std::uint64_t time) {
+  return {true, number, time, cv::Mat(2, 2, CV_32FC1, cv::Scalar::all(static_cast<double>(number)))};
+}
+
+struct Paired {
+  std::vector<int> colours, depths;
+  std::vector<SkippedFrame> skipped;
+};
+Paired paired(std::vector<StreamImage> images) {
+  Openni2Source source(Openni2Settings{}, std::make_unique<ListedImages>(std::move(images)));
+  Paired result;
+  for (const SensorFrame& frame : read_all(source)) {
+    result.colours.push_back(frame.colour.at<cv::Vec3b>(0, 0)[0]);
+    result.depths.push_back(static_cast<int>(frame.depth.at<float>(0, 0)));
+  }
+  result.skipped = source.skipped();
+  return result;
+}
+
+TEST(Openni2PairsTest, ImagesNearInTimeAreAFrameWhicheverComesFirst) {
+  const Paired result = paired({depth(1, 1000), colour(1, 9000), colour(2, 42'000), depth(2, 34'000)});
+  EXPECT_THAT(result.colours, ElementsAre(1, 2));
+  EXPECT_THAT(result.depths, ElementsAre(1, 2));
+  EXPECT_TRUE(result.skipped.empty());
+}
+
+TEST(Openni2PairsTest, ColourWithoutDepthAndLostColourAreCounted) {
+  const Paired result =
+      paired({colour(1, 1000), depth(1, 2000), colour(2, 34'000), colour(3, 67'000), depth(3, 68'000),
+              colour(6, 167'000), depth(6, 168'000), depth(7, 233'000), colour(7, 200'000), colour(8, 233'000)});
+  EXPECT_THAT(result.colours, ElementsAre(1, 3, 6, 8));
+  EXPECT_THAT(result.depths, ElementsAre(1, 3, 6, 7));
+  ASSERT_EQ(result.skipped.size(), 4u);
+  EXPECT_THAT(result.skipped[0].reason, HasSubstr("no depth image near enough"));
+  EXPECT_NEAR(result.skipped[0].timestamp, 0.034, 1e-9);
+  EXPECT_THAT(result.skipped[1].reason, HasSubstr("was not fetched in time"));
+  EXPECT_NEAR(result.skipped[1].timestamp, 0.1003333, 1e-5);
+  EXPECT_THAT(result.skipped[3].reason, HasSubstr("no depth image near enough"));
+}
+
+TEST(Openni2PairsTest, RefusesStampsThatDoNotIncreaseAndRecordingsWithoutPairs) {
+  EXPECT_THAT(input_error([] {
+                paired({colour(1, 1000), colour(2, 1000)});
+              }),
+              HasSubstr("expected time stamps that increase"));
+  EXPECT_THAT(input_error([] { paired({colour(1, 1000), depth(1, 90'000)}); }), HasSubstr("max_time_difference"));
+}
+
+}  // namespace
+}  // namespace holdfast
