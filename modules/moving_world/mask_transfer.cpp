@@ -87,6 +87,7 @@ void MaskTransfer::transfer(const CoarseView& from_view, const CellMask& from, c
                 .to = to,
                 .warp = geometry::Warp(T_to_from.inverse(), geometry::pinhole_of(camera_), min_depth),
                 .warped = warped_};
+  if (!has_depth_) return transfer_by_points_alone(job);
   rays_x_.resize(grid.columns);
   for (int column = 0; column < grid.columns; ++column) rays_x_[column] = job.warp.ray_x(grid.x_of(column));
   for (int row = 0; row < grid.rows; ++row) {
@@ -104,6 +105,40 @@ void MaskTransfer::transfer(const CoarseView& from_view, const CellMask& from, c
   }
   grow(to_view, to);
   fill_holes(to_view, to);
+}
+
+void MaskTransfer::transfer_by_points_alone(const Job& job) {
+  const CoarseGrid& grid = job.to_view.grid;
+  // The nearest cell of the grid: what lies at its border continues beyond it.
+  const auto cell_at = [&](int column, int row) {
+    return static_cast<std::size_t>(std::clamp(row, 0, grid.rows - 1) * grid.columns +
+                                    std::clamp(column, 0, grid.columns - 1));
+  };
+  const auto clamped_cells = [](float pixels, int cells) {
+    return static_cast<int>(std::floor(std::clamp(pixels / CoarseGrid::step, -1.0F, static_cast<float>(cells))));
+  };
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) {
+      const std::size_t cell = static_cast<std::size_t>(row * grid.columns + column);
+      const std::size_t place = static_cast<std::size_t>((row / block) * block_columns_ + column / block);
+      const std::size_t movers = mover_count_[place];
+      if (movers == 0) {
+        const auto warped =
+            job.warp.project_direction(job.warp.ray_x(grid.x_of(column)), job.warp.ray_y(grid.y_of(row)));
+        if (!warped) continue;
+        const std::size_t source =
+            cell_at(clamped_cells(warped->x - grid.left, grid.columns), clamped_cells(warped->y - grid.top, grid.rows));
+        job.take(cell, source);
+        continue;
+      }
+      std::size_t votes = 0, source = 0;
+      for (std::size_t k = 0; k < movers; ++k) {
+        const Mover& mover = movers_[place * max_movers + k];
+        const std::size_t there = cell_at(column + mover.columns, row + mover.rows);
+        if (CellMask::is_object(job.from.labels[there]) && votes++ == 0) source = there;
+      }
+      if (2 * votes >= movers) job.take(cell, source);
+    }
 }
 
 bool MaskTransfer::take_by_ego_motion(const Job& job, int column, int row) {
