@@ -46,7 +46,7 @@ class MaskTransfer {
   struct Job;
   void find_movers(const CoarseGrid& grid, const FollowedPairs& pairs);
   /// All cells of a view without depth.
-  void transfer_by_points_alone(const Job& job);
+  void transfer_by_points_alone(const Job& job, const FollowedPairs& pairs);
   /// Copies from where ego-motion moves the cell from; false when its own motion has to be looked for.
   bool take_by_ego_motion(const Job& job, int column, int row);
   void take_by_object_motion(const Job& job, int column, int row);
