@@ -109,7 +109,18 @@ void LocalMapper::make_points_from_depth(KeyFrameId id) {
 void LocalMapper::drop_moving_features(KeyFrameId id) {
   const Frame& frame = map_.keyframe(id).frame;
   for (std::uint32_t i = 0; i < frame.size(); ++i)
-    if (frame.map_points[i].valid() && !is_static(frame, i)) map_.remove_observation(frame.map_points[i], id);
+    if (frame.map_points[i].valid() && !is_static(frame, i)) drop_observation(frame.map_points[i], id);
+}
+
+void LocalMapper::drop_observation(MapPointId point, KeyFrameId keyframe) {
+  map_.remove_observation(point, keyframe);
+  if (map_.sensor() != Sensor::mono) return;
+  // Where a view contradicts a point, two others alone do not confirm it, and one does not even locate it.
+  constexpr std::size_t required = 3;
+  const MapPoint* left = map_.find_point(point);
+  if (left == nullptr || left->observations.size() >= required) return;
+  map_.remove_point(point);
+  ++counts_.points_removed;
 }
 
 void LocalMapper::remove_moving_points() {

@@ -24,8 +24,8 @@ CellMask sample_mask(const CoarseSampler& sampler, const Segmentation& segmentat
   return mask;
 }
 
-MaskPropagator::MaskPropagator(const Camera& camera, const CoarseSampler& sampler, double memory)
-    : camera_(camera), sampler_(sampler), memory_(memory), transfer_(camera) {}
+MaskPropagator::MaskPropagator(const Camera& camera, const CoarseSampler& sampler, double memory, bool has_depth)
+    : camera_(camera), sampler_(sampler), memory_(memory), transfer_(camera, has_depth) {}
 
 void MaskPropagator::advance(const cv::Mat& grey, const Frame& frame, const Eigen::Isometry3d& T_frame_previous) {
   std::swap(current_, previous_);

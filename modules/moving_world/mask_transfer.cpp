@@ -11,6 +11,8 @@ namespace holdfast {
 
 namespace {
 
+constexpr int reach = 3;  // blocks in which a followed point tells how its object moves
+
 /// Depths of a static surface, seen from two poses, differ by less [m].
 float same_place(float depth) { return 0.01F + 0.012F * depth; }
 /// Depths of a surface that moved differ by less, when its motion is known [m].
@@ -28,7 +30,7 @@ void MaskTransfer::find_movers(const CoarseGrid& grid, const FollowedPairs& pair
   const std::size_t blocks = static_cast<std::size_t>(block_columns_) * static_cast<std::size_t>(block_rows_);
   movers_.resize(blocks * max_movers);
   mover_count_.assign(blocks, 0);
-  constexpr float reach = 3.0F * block * CoarseGrid::step;  // px
+  constexpr float radius = static_cast<float>(reach * block * CoarseGrid::step);  // px
   for (int row = 0; row < block_rows_; ++row)
     for (int column = 0; column < block_columns_; ++column) {
       const float x = grid.left + (static_cast<float>(column) + 0.5F) * block * CoarseGrid::step;
@@ -38,7 +40,7 @@ void MaskTransfer::find_movers(const CoarseGrid& grid, const FollowedPairs& pair
       for (std::size_t i = 0; i < pairs.size(); ++i) {
         const float dx = pairs.to_x[i] - x, dy = pairs.to_y[i] - y;
         const float distance = dx * dx + dy * dy;
-        if (distance > reach * reach || (count == max_movers && distance >= nearest[count - 1].first)) continue;
+        if (distance > radius * radius || (count == max_movers && distance >= nearest[count - 1].first)) continue;
         std::size_t place = count < max_movers ? count++ : count - 1;
         for (; place > 0 && nearest[place - 1].first > distance; --place) nearest[place] = nearest[place - 1];
         nearest[place] = {distance, i};
@@ -87,6 +89,7 @@ void MaskTransfer::transfer(const CoarseView& from_view, const CellMask& from, c
                 .to = to,
                 .warp = geometry::Warp(T_to_from.inverse(), geometry::pinhole_of(camera_), min_depth),
                 .warped = warped_};
+  if (!has_depth_) return transfer_by_points_alone(job, pairs);
   rays_x_.resize(grid.columns);
   for (int column = 0; column < grid.columns; ++column) rays_x_[column] = job.warp.ray_x(grid.x_of(column));
   for (int row = 0; row < grid.rows; ++row) {
@@ -104,6 +107,49 @@ void MaskTransfer::transfer(const CoarseView& from_view, const CellMask& from, c
   }
   grow(to_view, to);
   fill_holes(to_view, to);
+}
+
+void MaskTransfer::transfer_by_points_alone(const Job& job, const FollowedPairs& pairs) {
+  const CoarseGrid& grid = job.to_view.grid;
+  // Blocks near which points were followed: what was there moved with them, and nothing of it stays behind.
+  std::vector<std::uint8_t> is_followed(mover_count_.size(), 0);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const int column = grid.column_of(pairs.from_x[i]) / block, row = grid.row_of(pairs.from_y[i]) / block;
+    for (int r = std::max(0, row - reach); r <= std::min(block_rows_ - 1, row + reach); ++r)
+      for (int c = std::max(0, column - reach); c <= std::min(block_columns_ - 1, column + reach); ++c)
+        is_followed[static_cast<std::size_t>(r * block_columns_ + c)] = 1;
+  }
+  // The nearest cell of the grid: what lies at its border continues beyond it.
+  const auto cell_at = [&](int column, int row) {
+    return static_cast<std::size_t>(std::clamp(row, 0, grid.rows - 1) * grid.columns +
+                                    std::clamp(column, 0, grid.columns - 1));
+  };
+  const auto clamped_cells = [](float pixels, int cells) {
+    return static_cast<int>(std::floor(std::clamp(pixels / CoarseGrid::step, -1.0F, static_cast<float>(cells))));
+  };
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) {
+      const std::size_t cell = static_cast<std::size_t>(row * grid.columns + column);
+      const std::size_t place = static_cast<std::size_t>((row / block) * block_columns_ + column / block);
+      const std::size_t movers = mover_count_[place];
+      if (movers == 0) {
+        const auto warped =
+            job.warp.project_direction(job.warp.ray_x(grid.x_of(column)), job.warp.ray_y(grid.y_of(row)));
+        if (!warped) continue;
+        const int from_column = std::clamp(clamped_cells(warped->x - grid.left, grid.columns), 0, grid.columns - 1);
+        const int from_row = std::clamp(clamped_cells(warped->y - grid.top, grid.rows), 0, grid.rows - 1);
+        if (is_followed[static_cast<std::size_t>((from_row / block) * block_columns_ + from_column / block)] == 0)
+          job.take(cell, cell_at(from_column, from_row));
+        continue;
+      }
+      std::size_t votes = 0, source = 0;
+      for (std::size_t k = 0; k < movers; ++k) {
+        const Mover& mover = movers_[place * max_movers + k];
+        const std::size_t there = cell_at(column + mover.columns, row + mover.rows);
+        if (CellMask::is_object(job.from.labels[there]) && votes++ == 0) source = there;
+      }
+      if (2 * votes >= movers) job.take(cell, source);
+    }
 }
 
 bool MaskTransfer::take_by_ego_motion(const Job& job, int column, int row) {

@@ -10,7 +10,7 @@ MovingWorld::MovingWorld(MovingWorldParts parts, Map& map)
   if (parts.segmenter == nullptr) return;
   classes_ = parts.segmenter->classes();
   movable_ = parts.segmenter->movable();
-  propagator_.emplace(parts.camera, sampler_, parts.segmentation.memory);
+  propagator_.emplace(parts.camera, sampler_, parts.segmentation.memory, parts.has_depth);
   queue_.emplace(*parts.segmenter, parts.segmentation, parts.threaded);
 }
 

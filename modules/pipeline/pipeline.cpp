@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <deque>
 #include <mutex>
+#include <opencv2/core.hpp>
 #include <optional>
 
 #include "holdfast/core/error.hpp"
@@ -107,8 +108,8 @@ struct Pipeline::State {
 
   void start_threads();
   void check_stamp(const SensorFrame& frame);
-  /// The frame as given, or in `without` what the sensor of this pipeline has of it.
-  const SensorFrame& used_images(const SensorFrame& given, SensorFrame& without) const;
+  /// The frame as given, or in `other` what the sensor of this pipeline has of it, in colour where a part needs that.
+  const SensorFrame& used_images(const SensorFrame& given, SensorFrame& other) const;
   /// Inserts the first of the two keyframes with which the map of one camera begins; the caller holds the map's lock.
   KeyFrameId begin_map(const TwoViewStart& start, StageTimes& times);
   LoopJob refine(const MappingJob& job, StageTimes& times);
@@ -217,14 +218,22 @@ void Pipeline::State::check_stamp(const SensorFrame& frame) {
   last_timestamp = frame.timestamp;
 }
 
-const SensorFrame& Pipeline::State::used_images(const SensorFrame& given, SensorFrame& without) const {
+const SensorFrame& Pipeline::State::used_images(const SensorFrame& given, SensorFrame& other) const {
   const bool drops_depth = parts.sensor != Sensor::rgbd && !given.depth.empty();
   const bool drops_right = parts.sensor != Sensor::stereo && !given.right.empty();
-  if (!drops_depth && !drops_right) return given;
-  without = given;
-  if (drops_depth) without.depth.release();
-  if (drops_right) without.right.release();
-  return without;
+  // Tracking and mapping need grey alone.
+  const bool shows_colour =
+      moving_world.expects_masks() || moving_world.weights_features() || !parts.observers.empty() || scene.has_value();
+  const bool gets_channels = shows_colour && given.colour.type() == CV_8UC1;
+  if (!drops_depth && !drops_right && !gets_channels) return given;
+  other = given;
+  if (drops_depth) other.depth.release();
+  if (drops_right) other.right.release();
+  if (gets_channels) {
+    other.colour = cv::Mat();
+    cv::merge(std::vector<cv::Mat>(3, given.colour), other.colour);
+  }
+  return other;
 }
 
 KeyFrameId Pipeline::State::begin_map(const TwoViewStart& start, StageTimes& times) {
@@ -379,8 +388,8 @@ Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
 
 FrameResult Pipeline::feed(const SensorFrame& given) {
   State& s = *state_;
-  SensorFrame without;
-  const SensorFrame& frame = s.used_images(given, without);
+  SensorFrame other;
+  const SensorFrame& frame = s.used_images(given, other);
   s.check_stamp(frame);
   s.rethrow_failures();
   if (s.mapping && !s.parts.run.paced()) s.mapping->queue().wait_for_room();

@@ -56,7 +56,7 @@ Layout layout_of(ImageKind kind) {
       return {"uint8", "(rows, columns, 3), blue green red as cv2 reads it", 'u', 1, 3, CV_8UC3};
     case ImageKind::depth:
       return {"float32", "(rows, columns) in metres, 0 where there is none", 'f', 4, 1, CV_32FC1};
-    case ImageKind::right:  // whichever of the two the array is, see image_of_array
+    case ImageKind::colour_or_grey:  // whichever of the two the array is, see image_of_array
     case ImageKind::label:
       break;
   }
@@ -101,7 +101,7 @@ bool has_contiguous_rows(const py::array& array, const Layout& layout) {
 
 cv::Mat image_of_array(const py::object& object, ImageKind kind, const char* name) {
   if (object.is_none()) return {};
-  if (kind == ImageKind::right) {
+  if (kind == ImageKind::colour_or_grey) {
     const bool is_grey = py::isinstance<py::array>(object) && py::reinterpret_borrow<py::array>(object).ndim() == 2;
     kind = is_grey ? ImageKind::label : ImageKind::colour;
   }

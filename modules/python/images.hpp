@@ -10,10 +10,10 @@ namespace holdfast::python {
 
 /// Kinds of images, each with its dtype and shape.
 enum class ImageKind {
-  colour,  ///< uint8 (rows, columns, 3), blue green red
-  depth,   ///< float32 (rows, columns) [m], 0 = no value
-  label,   ///< uint8 (rows, columns)
-  right,   ///< uint8 (rows, columns, 3), blue green red, or (rows, columns)
+  colour,          ///< uint8 (rows, columns, 3), blue green red
+  depth,           ///< float32 (rows, columns) [m], 0 = no value
+  label,           ///< uint8 (rows, columns)
+  colour_or_grey,  ///< uint8 (rows, columns, 3), blue green red, or (rows, columns)
 };
 
 /// The image of an array, empty for None. It refers to the memory of the array and keeps the array alive, in any

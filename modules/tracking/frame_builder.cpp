@@ -40,11 +40,13 @@ FrameBuilder::FrameBuilder(const Camera& camera, FeatureExtractor& extractor, do
 void FrameBuilder::begin(const SensorFrame& sensor_frame, Frame& frame, StageTimes& times) {
   const cv::Mat& colour = sensor_frame.colour;
   const auto size_text = [](int width, int height) { return std::to_string(width) + "x" + std::to_string(height); };
-  if (colour.type() != CV_8UC3 || colour.cols != camera_->width || colour.rows != camera_->height)
+  const bool is_grey = colour.type() == CV_8UC1;
+  if ((!is_grey && colour.type() != CV_8UC3) || colour.cols != camera_->width || colour.rows != camera_->height)
     throw InputError({"frame " + std::to_string(sensor_frame.index)},
                      "the colour image is " + size_text(colour.cols, colour.rows) + " with " +
                          std::to_string(colour.channels()) + " channels; expected " +
-                         size_text(camera_->width, camera_->height) + " with 3 channels of 8 bit, as the camera says");
+                         size_text(camera_->width, camera_->height) +
+                         " with 1 or 3 channels of 8 bit, as the camera says");
   const cv::Mat& depth = sensor_frame.depth;
   if (!depth.empty() && (depth.type() != CV_32FC1 || depth.size() != colour.size()))
     throw InputError({"frame " + std::to_string(sensor_frame.index)},
@@ -64,7 +66,8 @@ void FrameBuilder::begin(const SensorFrame& sensor_frame, Frame& frame, StageTim
   frame.pyramid = pyramid_;
   frame.T_camera_world.setIdentity();
   frame.place.clear();
-  cv::cvtColor(colour, grey_, cv::COLOR_BGR2GRAY);
+  if (!is_grey) cv::cvtColor(colour, converted_, cv::COLOR_BGR2GRAY);
+  grey_ = is_grey ? colour : converted_;
   if (!stereo_) {
     coarse_sampler_.sample_depth(depth, frame.coarse);
     return;

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numbers>
 
 #include "holdfast/core/median.hpp"
+#include "holdfast/geometry/two_view_certainty.hpp"
 #include "holdfast/interfaces/frame_observations.hpp"
 #include "holdfast/matching/rotation_consistency.hpp"
 
@@ -83,9 +85,21 @@ TrackingTrouble MonoInitialiser::add(Frame& frame) {
   const auto motion = geometry::find_two_view_motion(
       *frame.camera, pairs,
       {.minimum_points = settings_.minimum_start_points / 2, .minimum_inliers = min_inliers, .seed = random_.next()});
-  if (!motion || !adjust(*motion, frame)) return TrackingTrouble::little_parallax;
+  if (!motion || !adjust(*motion, frame) || !is_certain(pairs, frame)) return TrackingTrouble::little_parallax;
   has_reference_ = false;
   return TrackingTrouble::none;
+}
+
+bool MonoInitialiser::is_certain(const std::vector<geometry::PixelPair>& pairs, const Frame& frame) const {
+  if (settings_.start_deviation == 0.0) return true;
+  std::vector<geometry::PixelPair> used;
+  std::size_t match = 0;  // the points of the start are in the order of their matches
+  for (const TwoViewStart::Point& point : start_.points) {
+    while (matches_[match].source != point.in_reference || matches_[match].feature != point.in_frame) ++match;
+    used.push_back(pairs[match]);
+  }
+  return geometry::direction_deviation(*frame.camera, used, frame.T_camera_world) <=
+         settings_.start_deviation * std::numbers::pi / 180.0;
 }
 
 void MonoInitialiser::place(const Eigen::Isometry3d& T_reference_world, Frame& frame) {

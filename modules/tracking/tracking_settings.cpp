@@ -20,6 +20,12 @@ void describe_poses(ParameterTable<S>& table) {
            "metres are in this unit then")
       .range(0.5, 100);
   table
+      .add("start_deviation", &S::start_deviation,
+           "with one camera, standard deviation of the direction of motion between the first two views above which the "
+           "map does not begin yet, as where people leave a small part of the image; 0 = off")
+      .range(0, 90)
+      .unit("deg");
+  table
       .add("close_depth_factor", &S::close_depth_factor,
            "depth up to this many baselines is trusted alone; farther points are triangulated")
       .range(1, 10000);

@@ -209,6 +209,37 @@ TEST_F(LocalMapperTest, AMaskTakesMatchesOfMovingFeaturesBack) {
   }
 }
 
+TEST_F(LocalMapperTest, OneCameraDropsAPointThatAMaskLeavesWithTwoViews) {
+  map.set_sensor(Sensor::mono);
+  add_keyframe(frame_at(beside(0)));
+  for (const double x : {0.05, 0.1, 0.15}) {
+    Frame frame = frame_at(beside(x));
+    match(frame, 1);
+    mapper->insert(frame, false, times);
+  }
+  const KeyFrameId last = map.keyframes_by_age().back();
+  std::vector<MapPointId> of_two, of_more;
+  Frame& frame = map.keyframe(last).frame;
+  for (std::size_t i = 0; i < frame.size(); ++i) {
+    const MapPoint* point = map.find_point(frame.map_points[i]);
+    if (point == nullptr || point->observations.size() < 3) continue;
+    // The second of two groups keeps three other views.
+    (point->observations.size() == 3 ? of_two : of_more).push_back(frame.map_points[i]);
+    frame.static_probability[i] = 0.1F;
+  }
+  ASSERT_GT(of_more.size(), 20U);
+  for (std::size_t i = 0; i < of_more.size() / 2; ++i) {
+    map.remove_observation(of_more[i], map.keyframes_by_age().front());
+    of_two.push_back(of_more[i]);
+  }
+  of_more.erase(of_more.begin(), of_more.begin() + static_cast<std::ptrdiff_t>(of_more.size() / 2));
+  mapper->refine(last, times);
+  for (const MapPointId point : of_two) EXPECT_EQ(map.find_point(point), nullptr);
+  std::size_t left = 0;
+  for (const MapPointId point : of_more) left += map.find_point(point) != nullptr ? 1 : 0;
+  EXPECT_GT(left, of_more.size() * 8 / 10);
+}
+
 TEST_F(LocalMapperTest, PointsThatWereFoundToMoveLeave) {
   add_keyframe(frame_at(beside(0)));
   std::vector<MapPointId> moving, doubtful;

@@ -85,6 +85,55 @@ TEST(MaskTransfer, FollowedPointsTakeTheMaskAlong) {
   }
 }
 
+/// As transferred(), of one camera: without depth, and with points of which the depth is not known.
+std::vector<std::uint8_t> transferred_without_depth(const BoxWorld& world, Sight before, Sight after,
+                                                    FollowedPairs pairs) {
+  std::fill(before.view.depth.begin(), before.view.depth.end(), 0.0F);
+  std::fill(after.view.depth.begin(), after.view.depth.end(), 0.0F);
+  std::fill(pairs.from_depth.begin(), pairs.from_depth.end(), 0.0F);
+  std::fill(pairs.to_depth.begin(), pairs.to_depth.end(), 0.0F);
+  MaskTransfer transfer(world.camera, false);
+  CellMask to;
+  transfer.transfer(before.view, before.exact(), after.view, after.T_world_camera.inverse() * before.T_world_camera,
+                    pairs, to);
+  return to.labels;
+}
+
+TEST(MaskTransfer, WithoutDepthPointsAloneTakeTheMaskAlong) {
+  const BoxWorld::Box from = box_at(-0.3), to = box_at(0.1);
+  BoxWorld world;
+  world.boxes = {from};
+  const Sight before(world, at_origin);
+  world.boxes = {to};
+  const Sight after(world, at_origin);
+  const FollowedPairs pairs = follow(from, to, before, after, world.camera);
+  EXPECT_GE(overlap(transferred_without_depth(world, before, after, pairs), after.truth), 0.9);
+  // An object without any texture turns with the camera, and keeps its size.
+  const Sight turned_away(world, turned(10));
+  EXPECT_GE(overlap(transferred_without_depth(world, after, turned_away, {}), turned_away.truth), 0.85);
+}
+
+TEST(MaskTransfer, WithoutDepthWhatComesOverTheBorderOfTheImageBelongsToItsObject) {
+  const BoxWorld::Box from = box_at(-0.88), to = box_at(-0.78);
+  BoxWorld world;
+  world.boxes = {from};
+  const Sight before(world, at_origin);
+  world.boxes = {to};
+  const Sight after(world, at_origin);
+  const auto area = [](const Sight& sight) { return std::count(sight.truth.begin(), sight.truth.end(), 1); };
+  ASSERT_GT(area(before), 100);
+  ASSERT_GT(area(after), area(before) * 13 / 10);
+  FollowedPairs pairs;
+  const FollowedPairs all = follow(from, to, before, after, world.camera);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all.from_x[i] < 0.0F) continue;  // not in the image yet
+    pairs.from_x.push_back(all.from_x[i]), pairs.from_y.push_back(all.from_y[i]);
+    pairs.to_x.push_back(all.to_x[i]), pairs.to_y.push_back(all.to_y[i]);
+    pairs.from_depth.push_back(0.0F), pairs.to_depth.push_back(0.0F);
+  }
+  EXPECT_GE(overlap(transferred_without_depth(world, before, after, pairs), after.truth), 0.9);
+}
+
 TEST(MaskTransfer, WhatStandsStillStaysWhereTheCameraSeesIt) {
   BoxWorld world;
   world.boxes = {box_at(0.0)};

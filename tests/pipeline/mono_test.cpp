@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 
 #include "holdfast/evaluation/evaluation.hpp"
 #include "holdfast/pipeline/pipeline_builder.hpp"
@@ -108,6 +109,51 @@ TEST_F(MonoTest, ThreadsTrackAsOneThreadDoes) {
   std::size_t poses = 0;
   EXPECT_LT(error(pipeline.trajectory(), 0.0, poses), 0.01);
   EXPECT_GT(poses, 100U);
+}
+
+TEST_F(MonoTest, GreyImagesServeAsColourOnesDo) {
+  // A segmenter gets three channels; without it, grey is all that is read.
+  class ColourOnly final : public Segmenter {
+   public:
+    const std::vector<std::string>& classes() const override { return classes_; }
+    Segmentation segment(const SensorFrame& frame) override {
+      EXPECT_EQ(frame.colour.type(), CV_8UC3);
+      Segmentation segmentation;
+      segmentation.labels = cv::Mat::zeros(frame.colour.size(), CV_8UC1);
+      return segmentation;
+    }
+
+   private:
+    std::vector<std::string> classes_{"background", "person"};
+  };
+  for (const bool segments : {false, true}) {
+    std::vector<Trajectory> trajectories;
+    for (const bool is_grey : {false, true}) {
+      PipelineBuilder builder;
+      builder.camera(simulator_.camera())
+          .sensor(Sensor::mono)
+          .features(OrbSettings{.count = 500})
+          .optimizer(SchurSettings{});
+      if (segments) builder.segmenter(std::make_unique<ColourOnly>());
+      Pipeline pipeline = builder.build();
+      for (std::uint64_t index = 0; index < 40; ++index) {
+        SensorFrame frame = simulator_.frame(index);
+        cv::Mat grey;
+        cv::cvtColor(frame.colour, grey, cv::COLOR_BGR2GRAY);
+        if (is_grey)
+          frame.colour = grey;
+        else
+          cv::cvtColor(grey, frame.colour, cv::COLOR_GRAY2BGR);
+        pipeline.feed(frame);
+      }
+      pipeline.finish();
+      trajectories.push_back(pipeline.trajectory());
+    }
+    ASSERT_GT(trajectories[0].size(), 10U);
+    ASSERT_EQ(trajectories[0].size(), trajectories[1].size());
+    for (std::size_t i = 0; i < trajectories[0].size(); ++i)
+      EXPECT_EQ(trajectories[0][i].T_world_camera.matrix(), trajectories[1][i].T_world_camera.matrix());
+  }
 }
 
 }  // namespace

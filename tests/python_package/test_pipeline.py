@@ -63,9 +63,9 @@ def test_arrays_live_as_long_as_their_images(frames):
     "colour, depth, message",
     [
         (
-            numpy.zeros((480, 640), numpy.uint8),
+            numpy.zeros((480, 640, 4), numpy.uint8),
             None,
-            r"colour: found an array of shape \(480, 640\); expected .*uint8",
+            r"colour: found an array of shape \(480, 640, 4\); expected .*uint8",
         ),
         (numpy.zeros((480, 640, 3)), None, r"colour: found an array of float64.*\.astype\(numpy.uint8\)"),
         (numpy.zeros((480, 640, 3), numpy.uint8), numpy.zeros((480, 640), numpy.uint16), "depth: .*/ 5000"),
@@ -116,6 +116,23 @@ def test_right_images_are_shared_and_may_be_grey(pairs):
         assert holdfast.Frame(0.0, pairs[0].colour, right=right).right.ctypes.data == right.ctypes.data
         with holdfast.Pipeline(PIPELINE, camera=pairs.camera, stereo=True) as pipeline:
             assert pipeline.feed(0.0, pairs[0].colour, right=right).status == "initialised"
+
+
+def test_colour_may_be_grey(frames, fresh_modules):
+    grey = [numpy.array(frame.colour[:, :, 1]) for frame in frames[:2]]
+    assert holdfast.Frame(0.0, grey[0]).colour.ctypes.data == grey[0].ctypes.data
+    with holdfast.Pipeline(PIPELINE) as pipeline:
+        assert pipeline.feed(0.0, grey[0], frames[0].depth).status == "initialised"
+    seen = []
+
+    @holdfast.register("shape_reader")
+    class ShapeReader(holdfast.Observer):
+        def on_frame(self, frame, features, result):
+            seen.append(frame.colour.shape)
+
+    with holdfast.Pipeline({**PIPELINE, "observers": ["shape_reader"]}) as pipeline:
+        pipeline.feed(0.0, grey[0], frames[0].depth)
+    assert seen == [(480, 640, 3)], "modules get three channels"
 
 
 def test_right_images_belong_to_stereo_pipelines(frames, pairs):

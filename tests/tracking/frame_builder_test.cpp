@@ -90,6 +90,25 @@ TEST(FrameBuilder, FeaturesLieWhereTheWorldIs) {
   }
 }
 
+TEST(FrameBuilder, AGreyImageIsTakenAsItIs) {
+  test::PointWorld world(Camera{});
+  test::PointExtractor extractor(world);
+  FrameBuilder builder(world.camera(), extractor, 0.0);
+  Frame frame;
+  StageTimes times;
+  SensorFrame sensor_frame = world.frame(0, 0.0, Eigen::Isometry3d::Identity());
+  const cv::Mat grey(world.camera().height, world.camera().width, CV_8UC1, cv::Scalar(7));
+  sensor_frame.colour = grey;
+  builder.begin(sensor_frame, frame, times);
+  EXPECT_EQ(builder.grey().data, grey.data);
+  sensor_frame.colour = cv::Mat(grey.size(), CV_8UC3, cv::Scalar::all(200));
+  builder.begin(sensor_frame, frame, times);
+  EXPECT_EQ(builder.grey().at<std::uint8_t>(100, 100), 200);
+  EXPECT_EQ(grey.at<std::uint8_t>(100, 100), 7) << "the caller may still look at it";
+  sensor_frame.colour = cv::Mat(grey.size(), CV_16UC1, cv::Scalar(7));
+  EXPECT_THROW(builder.begin(sensor_frame, frame, times), InputError);
+}
+
 TEST(FrameBuilder, ARightImageIsNotWrittenToAndMustFit) {
   test::PointWorld world(Camera{});
   test::PointExtractor extractor(world);

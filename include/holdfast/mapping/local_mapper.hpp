@@ -63,6 +63,9 @@ class LocalMapper {
  private:
   void make_points_from_depth(KeyFrameId keyframe);
   void drop_moving_features(KeyFrameId keyframe);
+  /// Removes an observation that contradicts its point. With one camera, the point goes as well when fewer than three
+  /// are left (as in ORB-SLAM).
+  void drop_observation(MapPointId point, KeyFrameId keyframe);
   void remove_moving_points();
   void remove_weak_points(KeyFrameId keyframe);
   void triangulate_points(KeyFrameId keyframe);

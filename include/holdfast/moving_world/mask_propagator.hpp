@@ -30,8 +30,9 @@ CellMask sample_mask(const CoarseSampler& sampler, const Segmentation& segmentat
 /// One thread.
 class MaskPropagator {
  public:
-  /// The sampler must outlive the propagator. `memory` is the time after which the confidence has halved [s].
-  MaskPropagator(const Camera& camera, const CoarseSampler& sampler, double memory);
+  /// The sampler must outlive the propagator. `memory` is the time after which the confidence has halved [s];
+  /// `has_depth` says whether frames may have depth.
+  MaskPropagator(const Camera& camera, const CoarseSampler& sampler, double memory, bool has_depth = true);
 
   /// `T_frame_previous` is the predicted motion of the camera since the last frame. The frame needs its coarse depth,
   /// but no features, and must stay valid until the next call.

@@ -29,9 +29,14 @@ struct FollowedPairs {
 /// into the floor. After the idea of NGD-SLAM (Zhang et al. 2024, section III-B: points of the last mask are followed
 /// by optical flow and the mask is rebuilt by depth), with the background as a second source of motion. Keeps its
 /// buffers; one thread.
+///
+/// One camera without depth has the followed points alone: a cell is labelled if at least half of the points near it
+/// say that an object moved here. An object continues beyond the border of the image, so that the parts that come into
+/// view are labelled as well. Where no point is followed, the camera's rotation alone moves the labels.
 class MaskTransfer {
  public:
-  explicit MaskTransfer(const Camera& camera) : camera_(camera) {}
+  /// `has_depth`: whether views may have depth; without it, their depths are not read.
+  explicit MaskTransfer(const Camera& camera, bool has_depth = true) : camera_(camera), has_depth_(has_depth) {}
 
   /// `T_to_from` is the motion of the camera. `to` must not be `from`; all its arrays are replaced, its age is kept.
   void transfer(const CoarseView& from_view, const CellMask& from, const CoarseView& to_view,
@@ -40,6 +45,8 @@ class MaskTransfer {
  private:
   struct Job;
   void find_movers(const CoarseGrid& grid, const FollowedPairs& pairs);
+  /// All cells of a view without depth.
+  void transfer_by_points_alone(const Job& job, const FollowedPairs& pairs);
   /// Copies from where ego-motion moves the cell from; false when its own motion has to be looked for.
   bool take_by_ego_motion(const Job& job, int column, int row);
   void take_by_object_motion(const Job& job, int column, int row);
@@ -56,6 +63,7 @@ class MaskTransfer {
   static constexpr int max_movers = 4;
 
   Camera camera_;
+  bool has_depth_;
   int block_columns_ = 0, block_rows_ = 0;
   std::vector<Mover> movers_;  // max_movers for each block
   std::vector<std::uint8_t> mover_count_;

@@ -67,9 +67,8 @@ class FrameBuilder {
   cv::Mat unusable_;  // 8UC1, not 0 where the camera cannot use the image; empty if it can everywhere
   cv::Mat ignored_;
   std::optional<StereoDepth> stereo_;
-  cv::Mat grey_;
-  cv::Mat grey_right_;       // of the sensor frame, or of the buffer
-  cv::Mat converted_right_;  // the buffer: images of a sensor frame must not be written to
+  cv::Mat grey_, grey_right_;            // of the sensor frame, or of the buffers
+  cv::Mat converted_, converted_right_;  // the buffers: images of a sensor frame must not be written to
 };
 
 }  // namespace holdfast

@@ -52,6 +52,9 @@ class MonoInitialiser {
   void take_reference(const Frame& frame);
   /// Matches features of the frame with the static ones of the reference.
   void match(const Frame& frame, const std::vector<std::uint32_t>& features);
+  /// Whether the points of start() determine the direction of the motion (TrackingSettings::start_deviation). Entry i
+  /// of `pairs` belongs to matches_[i].
+  bool is_certain(const std::vector<geometry::PixelPair>& pairs, const Frame& frame) const;
   /// Adjusts both poses and the points, and gives the map its unit. False if too few points are left.
   bool adjust(const geometry::TwoViewMotion& motion, Frame& frame);
 

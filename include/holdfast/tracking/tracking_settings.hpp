@@ -21,8 +21,11 @@ inline constexpr Choice<BetweenKeyframes> choice_table<BetweenKeyframes>[] = {{"
 /// The `tracking` section of a configuration.
 struct TrackingSettings {
   // Start and first pose.
-  int minimum_start_points = 100;    ///< points with depth in the first frame; fewer make a map too weak to track by
-  double start_depth = 1.5;          ///< one camera: median depth of the first points; sets the unit of the map
+  int minimum_start_points = 100;  ///< points with depth in the first frame; fewer make a map too weak to track by
+  double start_depth = 1.5;        ///< one camera: median depth of the first points; sets the unit of the map
+  /// One camera: standard deviation of the direction of motion between the first two views above which the start waits
+  /// [deg]; 0 = off. What people leave of an image may hardly tell translation from rotation.
+  double start_deviation = 0.0;
   double close_depth_factor = 40.0;  ///< baselines; beyond it, noise of depth exceeds that of triangulation (ORB-SLAM2)
   double depth_edge_ratio = 0.05;    ///< share of the depth; features at larger steps of depth have none; 0 = off
   bool depth_alignment = true;       ///< depth of features is corrected for the ego-motion between colour and depth

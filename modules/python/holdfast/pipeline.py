@@ -93,12 +93,12 @@ class Pipeline:
     def feed(self, timestamp: Any, colour: Any = None, depth: Any = None, right: Any = None) -> FrameResult:
         """Processes one frame and returns what tracking found.
 
-        `timestamp` [s] rises strictly. `colour` is uint8 (rows, columns, 3), blue green red as cv2 reads it; `depth` is
-        float32 (rows, columns) along the optical axis [m], 0 where there is none. `right` is the right image of a
-        stereo pair, whose left image is `colour`: uint8 (rows, columns, 3) or (rows, columns); a pipeline with `stereo`
-        expects one in every frame, others refuse it. A Frame is accepted in their place. The images are shared, not
-        copied: do not write to them afterwards; a camera that reuses its buffer hands over copies. Only arrays whose
-        rows are not contiguous, such as image[:, :, ::-1], are copied.
+        `timestamp` [s] rises strictly. `colour` is uint8 (rows, columns, 3), blue green red as cv2 reads it, or grey
+        (rows, columns); `depth` is float32 (rows, columns) along the optical axis [m], 0 where there is none. `right`
+        is the right image of a stereo pair, whose left image is `colour`: uint8 (rows, columns, 3) or (rows, columns);
+        a pipeline with `stereo` expects one in every frame, others refuse it. A Frame is accepted in their place. The
+        images are shared, not copied: do not write to them afterwards; a camera that reuses its buffer hands over
+        copies. Only arrays whose rows are not contiguous, such as image[:, :, ::-1], are copied.
 
         Trouble with a frame is a result, not an exception. Raises InputError for arrays of another kind and for time
         stamps that do not rise, and what a thread of the pipeline raised.
