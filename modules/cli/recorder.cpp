@@ -5,6 +5,7 @@
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/trajectory.hpp"
+#include "holdfast/perturbation/perturbed_source.hpp"
 
 namespace holdfast {
 
@@ -16,7 +17,10 @@ constexpr const char* configuration_file = "recording.yaml";
 /// moved.
 Configuration on_recording(const Configuration& original, const Registry& registry, const SourceDescription& source) {
   Configuration result = original;
-  result.sections.erase("perturbation");  // the recorded frames have it already
+  PerturbationSettings perturbation;
+  if (const auto section = original.sections.find("perturbation"); section != original.sections.end())
+    perturbation = ParameterTable<PerturbationSettings>().settings(section->second);
+  result.sections.erase("perturbation");  // the recorded frames and the camera below have it already
   result.source = {.kind = FrameSource::kind, .name = "tum", .values = {}, .location = {configuration_file}};
   const ModuleEntry* tum = registry.find(result.source.kind, result.source.name);
   if (tum == nullptr) throw PluginError("a recording is read by the source 'tum', which these modules do not contain");
@@ -24,7 +28,7 @@ Configuration on_recording(const Configuration& original, const Registry& regist
   result.source.values["path"] = std::string(".");
   result.source.values["associations"] = std::string("associations.txt");
   result.source.values["depth_factor"] = RecordingWriter::depth_units_per_metre;
-  if (!result.camera) result.camera = source.camera;
+  result.camera = original.camera ? perturbed_camera(*original.camera, perturbation, original.run.seed) : source.camera;
   return result;
 }
 

@@ -15,6 +15,7 @@
 extern "C" void holdfast_register_plugin_tum(holdfast::Registry& registry);
 extern "C" void holdfast_register_plugin_folder(holdfast::Registry& registry);
 extern "C" void holdfast_register_plugin_euroc(holdfast::Registry& registry);
+extern "C" void holdfast_register_plugin_icl_nuim(holdfast::Registry& registry);
 extern "C" void holdfast_register_plugin_kitti(holdfast::Registry& registry);
 
 namespace holdfast::test {
