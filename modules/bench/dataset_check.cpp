@@ -277,7 +277,7 @@ class Checker {
   /// with noise have other names.
   std::string truth_name(DatasetLayout layout) {
     std::string name = recipe_ ? recipe_->truth : "groundtruth.txt";
-    if (layout == DatasetLayout::icl_nuim && !is_file(folder_ / name)) {
+    if (layout == DatasetLayout::icl_nuim && (recipe_ == nullptr || !is_file(folder_ / name))) {
       try {
         name = icl_nuim_truth_file(folder_).filename().string();
       } catch (const InputError&) {

@@ -96,6 +96,7 @@ std::unique_ptr<FrameSource> make_source(const std::string& name, const Paramete
   holdfast_register_plugin_tum(registry);
   holdfast_register_plugin_folder(registry);
   holdfast_register_plugin_euroc(registry);
+  holdfast_register_plugin_icl_nuim(registry);
   holdfast_register_plugin_kitti(registry);
   CreationContext context;
   context.camera.width = width;
