@@ -7,6 +7,7 @@ include_guard()
 set(HOLDFAST_PLUGIN_TABLE
   "source          euroc                 sources/euroc"
   "source          folder                sources/folder"
+  "source          icl_nuim              sources/icl_nuim"
   "source          kitti                 sources/kitti"
   "source          openni2               sources/openni2"
   "source          rosbag                sources/rosbag"

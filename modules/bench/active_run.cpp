@@ -1,29 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "active_run.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <csignal>
 
 #include "holdfast/bench/executor.hpp"
 #include "holdfast/core/error.hpp"
+#include "recorded_copies.hpp"
+#include "run_folders.hpp"
 
 namespace holdfast {
 
 namespace fs = std::filesystem;
 
 namespace {
-
-constexpr const char* incomplete_mark = ".incomplete-";
-
-fs::path incomplete_folder(const fs::path& folder) {
-  char host[256] = {};
-  gethostname(host, sizeof(host) - 1);  // processes of several nodes may have the same number
-  return folder.parent_path() /
-         ("." + folder.filename().string() + incomplete_mark + host + "-" + std::to_string(getpid()));
-}
 
 Placeholders placeholders(const RecordedSequence& sequence, const fs::path& folder) {
   return {{"sequence", sequence.folder.string()},
@@ -36,6 +27,11 @@ Placeholders placeholders(const RecordedSequence& sequence, const fs::path& fold
 /// Where a system left its trajectory, or where it runs: relative to its folder.
 fs::path below(const fs::path& folder, const std::string& path) {
   return fs::path(path).is_absolute() ? fs::path(path) : folder / path;
+}
+
+RecordedSequence sequence_of(const RunPlan& plan, const PlannedRun& run, const fs::path& output) {
+  if (!plan.variants[run.variant].is_external()) return {};
+  return run.copy ? read_copy(plan.copies[*run.copy], output) : *plan.recordings[run.sequence];
 }
 
 }  // namespace
@@ -59,12 +55,13 @@ ActiveRun::ActiveRun(const RunPlan& plan, const PlannedRun& run, const BenchOpti
       grace_(options.grace),
       final_folder_(fs::absolute(folder_of(run, options.output))),
       folder_(incomplete_folder(final_folder_)),
-      process_(start(plan, run, options, folder_)) {
+      sequence_(sequence_of(plan, run, options.output)),
+      process_(start(plan, run, sequence_, options, folder_)) {
   cost_.alone = true;
 }
 
-Process ActiveRun::start(const RunPlan& plan, const PlannedRun& run, const BenchOptions& options,
-                         const fs::path& folder) {
+Process ActiveRun::start(const RunPlan& plan, const PlannedRun& run, const RecordedSequence& sequence,
+                         const BenchOptions& options, const fs::path& folder) {
   std::error_code error;
   fs::remove_all(folder, error);
   fs::create_directories(folder, error);
@@ -82,7 +79,6 @@ Process ActiveRun::start(const RunPlan& plan, const PlannedRun& run, const Bench
     return Process(request);
   }
   const ExternalSystem& system = plan.matrix.systems[*variant.system];
-  const RecordedSequence& sequence = *plan.recordings[run.sequence];
   write_file_atomically(folder / external_request_file, run.request);
   write_file_atomically(folder / "associations.txt", associations_text(sequence));
   write_file_atomically(folder / "settings.yaml", orb_slam2_settings(sequence, system.settings));
@@ -142,7 +138,7 @@ void ActiveRun::judge_end() {
 
 void ActiveRun::evaluate_external() {
   const ExternalSystem& system = plan_.matrix.systems[*plan_.variants[run_.variant].system];
-  const RecordedSequence& sequence = *plan_.recordings[run_.sequence];
+  const RecordedSequence& sequence = sequence_;
   const Placeholders values = placeholders(sequence, folder_);
   const fs::path working_folder = below(folder_, fill_placeholders(system.folder, values));
   const SalvagedTrajectory salvaged =

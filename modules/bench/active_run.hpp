@@ -33,8 +33,8 @@ class ActiveRun {
   const RunCost& cost() const { return cost_; }
 
  private:
-  static Process start(const RunPlan& plan, const PlannedRun& run, const BenchOptions& options,
-                       const std::filesystem::path& folder);
+  static Process start(const RunPlan& plan, const PlannedRun& run, const RecordedSequence& sequence,
+                       const BenchOptions& options, const std::filesystem::path& folder);
   void judge_end();
   void take_load();
   void evaluate_external();
@@ -44,6 +44,7 @@ class ActiveRun {
   std::filesystem::path output_;
   double grace_;
   std::filesystem::path final_folder_, folder_;
+  RecordedSequence sequence_;  ///< that an external system gets
   RunResult result_;
   RunCost cost_;
   bool out_of_time_ = false;

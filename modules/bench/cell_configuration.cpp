@@ -106,7 +106,10 @@ std::optional<Configuration> CellConfigurations::build(const std::vector<const A
   const std::size_t before = diagnostics_.size();
   ConfigurationNode root = *file_root;
   set(root, {"source", sequence.location, sequence.source});
-  if (sequence.camera) set(root, {"camera", sequence.location, *sequence.camera});
+  if (sequence.camera)
+    set(root, {"camera", sequence.location, *sequence.camera});
+  else if (sequence.brings_camera)
+    std::erase_if(root.entries, [](const ConfigurationNode::Entry& entry) { return entry.key == "camera"; });
   if (matrix_.mode) set(root, {"run.mode", matrix_.mode->location, scalar(matrix_.mode->text, matrix_.mode->location)});
   for (const AxisValue* value : values)
     for (const KeyValue& change : value->overrides) set(root, change);
@@ -114,6 +117,42 @@ std::optional<Configuration> CellConfigurations::build(const std::vector<const A
   if (diagnostics_.size() != before) return std::nullopt;
   try {
     return resolve_configuration(root, path->text, registry_, sections_);
+  } catch (const ConfigurationError& error) {
+    diagnostics_.insert(diagnostics_.end(), error.diagnostics().begin(), error.diagnostics().end());
+    return std::nullopt;
+  }
+}
+
+namespace {
+
+/// The first module of a kind that needs no settings.
+std::string any_module(const Registry& registry, const std::string& kind) {
+  for (const std::string& name : registry.names(kind)) {
+    const std::vector<Parameter>& parameters = registry.find(kind, name)->parameters;
+    if (std::none_of(parameters.begin(), parameters.end(), [](const Parameter& each) { return each.is_required; }))
+      return name;
+  }
+  return "none";
+}
+
+}  // namespace
+
+std::optional<Configuration> CellConfigurations::build_recording(const MatrixSequence& sequence,
+                                                                 const AxisValue* perturbation) {
+  ConfigurationNode root;
+  root.kind = Kind::map;
+  root.location.file = matrix_.file.string();
+  const std::size_t before = diagnostics_.size();
+  set(root, {"source", sequence.location, sequence.source});
+  if (sequence.camera) set(root, {"camera", sequence.location, *sequence.camera});
+  // A configuration must have these, and a recording does not run them.
+  for (const char* section : {"features", "optimizer"})
+    set(root, {section, sequence.location, scalar(any_module(registry_, section), sequence.location)});
+  if (perturbation != nullptr)
+    for (const KeyValue& change : perturbation->overrides) set(root, change);
+  if (diagnostics_.size() != before) return std::nullopt;
+  try {
+    return resolve_configuration(root, matrix_.file.string(), registry_, sections_);
   } catch (const ConfigurationError& error) {
     diagnostics_.insert(diagnostics_.end(), error.diagnostics().begin(), error.diagnostics().end());
     return std::nullopt;

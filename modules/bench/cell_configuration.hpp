@@ -22,6 +22,10 @@ class CellConfigurations {
   /// `values`: one of each axis. Nothing when something is wrong.
   std::optional<Configuration> build(const std::vector<const AxisValue*>& values, const MatrixSequence& sequence);
 
+  /// What `holdfast record` gets to write the frames of a sequence: its source and camera, and a value of the axis
+  /// `perturbation`, which may be nullptr. Nothing when something is wrong.
+  std::optional<Configuration> build_recording(const MatrixSequence& sequence, const AxisValue* perturbation);
+
  private:
   const ConfigurationNode* file(const PlacedText& path);
   void override_for_sequence(ConfigurationNode& root, const MatrixSequence& sequence,

@@ -8,6 +8,7 @@
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/evaluation/number_text.hpp"
 #include "holdfast/image_files/calibrated_recording.hpp"
+#include "holdfast/image_files/icl_nuim_files.hpp"
 #include "holdfast/image_files/image_decoder.hpp"
 #include "holdfast/image_files/image_structure.hpp"
 #include "holdfast/image_files/recording_pairs.hpp"
@@ -63,7 +64,7 @@ class Checker {
       check_icl();
     else
       check_tum();
-    check_truth();
+    check_truth(layout);
     return check_;
   }
 
@@ -272,8 +273,22 @@ class Checker {
     check_images(masks, [&](const fs::path& file) { return decoder_.read_labels(file); });
   }
 
-  void check_truth() {
-    const std::string name = recipe_ ? recipe_->truth : "groundtruth.txt";
+  /// The name of the file with the true poses; of a recording of ICL-NUIM the one that is there, since the recordings
+  /// with noise have other names.
+  std::string truth_name(DatasetLayout layout) {
+    std::string name = recipe_ ? recipe_->truth : "groundtruth.txt";
+    if (layout == DatasetLayout::icl_nuim && (recipe_ == nullptr || !is_file(folder_ / name))) {
+      try {
+        name = icl_nuim_truth_file(folder_).filename().string();
+      } catch (const InputError&) {
+        if (recipe_ == nullptr) name = "NAME.gt.freiburg";
+      }
+    }
+    return name;
+  }
+
+  void check_truth(DatasetLayout layout) {
+    const std::string name = truth_name(layout);
     if (!is_file(folder_ / name)) {
       problem(name + " is missing, the true poses; without them there is nothing to measure");
       return;
@@ -323,6 +338,8 @@ DatasetLayout layout_of(const fs::path& folder) {
   if (fs::is_directory(folder / "mav0", ignored) || fs::is_directory(folder / "cam0", ignored))
     return DatasetLayout::euroc;
   if (is_file(folder / "calib.txt") && !is_file(folder / "rgb.txt")) return DatasetLayout::kitti;
+  // Lists that were made for a recording in TUM layout have the same name.
+  if (is_file(folder / icl_list) && !is_file(folder / "rgb.txt")) return DatasetLayout::icl_nuim;
   return DatasetLayout::tum;
 }
 
@@ -336,10 +353,7 @@ std::vector<ListedPair> dataset_pairs(const fs::path& folder, DatasetLayout layo
                                             "'; expected a recording with depth images, which can be associated with "
                                             "the colour images");
   if (layout == DatasetLayout::tum) return recording_pairs(folder, {}, max_difference);
-  std::vector<ListedPair> pairs = read_association_list(folder / icl_list);
-  for (ListedPair& pair : pairs)
-    if (pair.colour.name.find("depth") != std::string::npos) std::swap(pair.colour, pair.depth);
-  return pairs;
+  return icl_nuim_pairs(folder);
 }
 
 }  // namespace holdfast

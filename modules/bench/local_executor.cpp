@@ -3,6 +3,7 @@
 
 #include "active_run.hpp"
 #include "holdfast/bench/executor.hpp"
+#include "recorded_copies.hpp"
 
 namespace holdfast {
 
@@ -90,6 +91,7 @@ std::unique_ptr<Executor> make_local_executor(const RunPlan& plan, const BenchOp
 bool execute_run(const RunPlan& plan, std::size_t index, const BenchOptions& options) {
   const PlannedRun& run = plan.runs[index];
   if (has_result(plan, run, options.output)) return true;
+  if (!make_copies(plan, {index}, options)) return false;
   ActiveRun active(plan, run, options);
   // Only a run that was promised a machine of its own is known to be alone there.
   if (!run.alone) active.set_beside();

@@ -116,20 +116,16 @@ void follow_recipe(const ConfigurationNode& node, StrictMap& map, MatrixSequence
   }
   if (path != nullptr && is_stereo(recipe->layout)) {  // they bring their cameras
     sequence.source = map_of(layout_name(recipe->layout), map_of("path", *path));
+    sequence.brings_camera = true;
     sequence.about = recipe->how_to_get();
     sequence.published = recipe->name;
     return;
   }
-  if (recipe->layout == DatasetLayout::icl_nuim)
-    map.complain(node.location,
-                 "the recording '" + recipe->name +
-                     "' is not in TUM layout; write its pairs by `holdfast dataset associate`, its truth to "
-                     "groundtruth.txt, and give source: { tum: { path: ..., associations: ... } } and camera");
   if (path == nullptr) return;
-  ConfigurationNode tum = map_of("path", *path);
-  if (recipe->truth_left) tum.entries.push_back({"truth_left", node.location, *recipe->truth_left});
-  if (recipe->truth_right) tum.entries.push_back({"truth_right", node.location, *recipe->truth_right});
-  sequence.source = map_of("tum", std::move(tum));
+  ConfigurationNode source = map_of("path", *path);
+  if (recipe->truth_left) source.entries.push_back({"truth_left", node.location, *recipe->truth_left});
+  if (recipe->truth_right) source.entries.push_back({"truth_right", node.location, *recipe->truth_right});
+  sequence.source = map_of(layout_name(recipe->layout), std::move(source));
   ConfigurationNode camera = node;
   camera.text = recipe->camera.name;
   sequence.camera = camera;

@@ -62,11 +62,14 @@ std::optional<Diagnostic> missing_data(const MatrixSequence& sequence, const Con
                                        const Registry& registry) {
   if (const auto variable = unset_variable(sequence)) return missing(sequence, unset(*variable));
   const ParameterValues& source = configuration.source.values;
+  if (const fs::path list = fs::path(text_of(source, "path")) / "associations.txt";
+      configuration.source.name == "icl_nuim" && is_there(list.parent_path()) && !is_there(list))
+    return missing(sequence, "'" + list.string() + "' is missing");
   if (configuration.source.name == "tum")
     if (const auto list = missing_list(text_of(source, "path"), text_of(source, "associations")))
       return missing(sequence, *list);
-  for (const ModuleChoice* choice :
-       {&configuration.source, &configuration.segmenter, &configuration.features, &configuration.matcher, &configuration.loop_detector}) {
+  for (const ModuleChoice* choice : {&configuration.source, &configuration.segmenter, &configuration.features,
+                                     &configuration.matcher, &configuration.loop_detector}) {
     const ModuleEntry* entry = registry.find(choice->kind, choice->name);
     if (entry == nullptr) continue;
     for (const Parameter& parameter : entry->parameters) {
@@ -103,17 +106,23 @@ std::optional<Diagnostic> missing_program(const ExternalSystem& system) {
   return std::nullopt;
 }
 
+void require_plain_lens(const Camera& camera, const MatrixSequence& sequence, std::vector<Diagnostic>& diagnostics) {
+  const Distortion& distortion = camera.distortion;
+  if (distortion.lens == Lens::radial_tangential && !distortion.is_rational()) return;
+  diagnostics.push_back({sequence.camera ? sequence.camera->location : sequence.location,
+                         "the camera of sequence '" + sequence.name +
+                             "' has a lens that external systems get no settings for; expected k1, k2, p1, p2 and k3 "
+                             "alone"});
+}
+
 std::optional<RecordedSequence> recorded_sequence(const MatrixSequence& sequence, const Registry& registry,
+                                                  const std::optional<Camera>& camera_by_folder,
                                                   std::vector<Diagnostic>& diagnostics,
                                                   std::vector<Diagnostic>& missing_ones) {
   const ConfigurationNode* tum = sequence.source.find("tum");
   const ModuleEntry* entry = registry.find("source", "tum");
   if (tum == nullptr || entry == nullptr) {
-    diagnostics.push_back(
-        {sequence.location, "sequence '" + sequence.name +
-                                "' is no recording in TUM layout, which external systems read; write it as one "
-                                "(`holdfast simulate`), or exclude it: { system: NAME, sequence: " +
-                                sequence.name + " }"});
+    diagnostics.push_back({sequence.location, "sequence '" + sequence.name + "' is no recording in TUM layout"});
     return std::nullopt;
   }
   RecordedSequence recorded;
@@ -122,14 +131,13 @@ std::optional<RecordedSequence> recorded_sequence(const MatrixSequence& sequence
   if (!sequence.camera)
     diagnostics.push_back({sequence.location, "sequence '" + sequence.name +
                                                   "' needs 'camera', because external systems get a settings file for "
-                                                  "it; expected a known name or numbers"});
-  else if (const auto camera = read_camera(*sequence.camera, diagnostics))
+                                                  "it; expected a known name, numbers, or auto"});
+  else if (sequence.camera->kind == ConfigurationNode::Kind::scalar && sequence.camera->text == "auto") {
+    if (!camera_by_folder) return std::nullopt;  // what is wrong was said where the name of the folder was read
+    recorded.camera = *camera_by_folder;
+  } else if (const auto camera = read_camera(*sequence.camera, diagnostics))
     recorded.camera = *camera;
-  if (const Distortion& d = recorded.camera.distortion; d.lens != Lens::radial_tangential || d.is_rational())
-    diagnostics.push_back({sequence.camera->location,
-                           "the camera of sequence '" + sequence.name +
-                               "' has a lens that external systems get no settings for; expected k1, k2, p1, p2 and k3 "
-                               "alone"});
+  require_plain_lens(recorded.camera, sequence, diagnostics);
   const ParameterValues values = read_parameters(*tum, entry->parameters, "source 'tum'", diagnostics);
   if (diagnostics.size() != before) return std::nullopt;
   if (const auto variable = unset_variable(sequence)) {

@@ -19,9 +19,13 @@ bool is_program_in_path(const std::string& name);
 /// Why a system cannot be started.
 std::optional<Diagnostic> missing_program(const ExternalSystem& system);
 
-/// The recording of a sequence as external systems get it. Nothing when it is missing (then `missing` says why) or
-/// unfit (then `diagnostics` do).
+/// Complains of a camera whose lens the settings file of external systems cannot say.
+void require_plain_lens(const Camera& camera, const MatrixSequence& sequence, std::vector<Diagnostic>& diagnostics);
+
+/// The recording in TUM layout of a sequence as external systems get it. `camera_by_folder` is the camera of a sequence
+/// with `camera: auto`. Nothing when it is missing (then `missing` says why) or unfit (then `diagnostics` do).
 std::optional<RecordedSequence> recorded_sequence(const MatrixSequence& sequence, const Registry& registry,
+                                                  const std::optional<Camera>& camera_by_folder,
                                                   std::vector<Diagnostic>& diagnostics,
                                                   std::vector<Diagnostic>& missing);
 

@@ -38,7 +38,9 @@ std::string latex_text(const std::string& text) {
 namespace {
 
 std::string latex_cell(const PaperTable::Cell& cell) {
-  const std::string text = cell.text == "-" ? "--" : latex_text(cell.text);
+  std::string text = cell.text == "-" ? "--" : latex_text(cell.text);
+  const bool is_negative = text.size() > 1 && text[0] == '-' && std::isdigit(static_cast<unsigned char>(text[1])) != 0;
+  if (is_negative) text.replace(0, 1, "$-$");  // outside mathematics it would be a hyphen
   return (cell.is_best ? "\\textbf{" + text + "}" : text) + (cell.is_short ? "*" : "");
 }
 

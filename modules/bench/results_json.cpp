@@ -144,6 +144,9 @@ std::string results_json(const RunPlan& plan, const BenchResults& results, const
     Json values = Json::object();
     for (std::size_t a = 0; a < variant.choices.size(); ++a)
       values[plan.matrix.axes[a].name] = plan.matrix.axes[a].values[variant.choices[a]].name;
+    for (const Axis& axis : plan.matrix.axes)
+      if (variant.perturbation && axis.name == perturbation_axis)
+        values[axis.name] = axis.values[*variant.perturbation].name;
     json["variants"].push_back({{"name", variant.name},
                                 {"external", variant.is_external()},
                                 {"values", values},

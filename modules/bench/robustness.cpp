@@ -54,7 +54,8 @@ class CurveMaker {
  private:
   const Axis& axis() const { return plan_.matrix.axes[*axis_]; }
   const AxisValue& value_of(std::size_t variant) const {
-    return axis().values[plan_.variants[variant].choices[*axis_]];
+    const Variant& of = plan_.variants[variant];
+    return axis().values[of.is_external() ? of.perturbation.value_or(0) : of.choices[*axis_]];
   }
 
   std::vector<std::string> kinds() const {
@@ -70,18 +71,19 @@ class CurveMaker {
   }
 
   bool is_same_method(std::size_t a, std::size_t b) const {
-    if (plan_.variants[a].is_external() || plan_.variants[b].is_external()) return false;
+    if (plan_.variants[a].is_external() || plan_.variants[b].is_external())
+      return plan_.variants[a].system == plan_.variants[b].system;
     std::vector<std::size_t> first = plan_.variants[a].choices, second = plan_.variants[b].choices;
     first[*axis_] = second[*axis_] = 0;
     return first == second;
   }
   bool is_first_of_its_method(std::size_t variant) const {
-    if (plan_.variants[variant].is_external()) return false;
     for (std::size_t other = 0; other < variant; ++other)
       if (is_same_method(variant, other)) return false;
     return true;
   }
   std::string method(std::size_t variant) const {
+    if (const auto system = plan_.variants[variant].system) return plan_.matrix.systems[*system].name;
     std::string name;
     for (std::size_t a = 0; a < plan_.matrix.axes.size(); ++a)
       if (a != *axis_)

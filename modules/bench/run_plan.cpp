@@ -78,7 +78,13 @@ class Planner {
       variant.name = matrix().systems[i].name;
       variant.system = i;
       variant.alone = matrix().systems[i].timing;
-      product.push_back(variant);
+      const Axis* axis = perturbations();
+      if (axis == nullptr) product.push_back(variant);
+      for (std::size_t value = 0; axis != nullptr && value < axis->values.size(); ++value) {
+        Variant& perturbed = product.emplace_back(variant);
+        perturbed.perturbation = value;
+        if (axis->values[value].name != unperturbed) perturbed.name += "+" + axis->values[value].name;
+      }
     }
     for (std::size_t i = 0; i < product.size(); ++i)
       for (std::size_t j = 0; j < i; ++j)
@@ -108,6 +114,13 @@ class Planner {
               complain(change.location, "the source is given by `sequences`, not by an axis");
         }
     }
+  }
+
+  /// The axis `perturbation`, the only one that external systems have, or nullptr.
+  const Axis* perturbations() const {
+    for (const Axis& axis : matrix().axes)
+      if (axis.name == perturbation_axis) return &axis;
+    return nullptr;
   }
 
   std::vector<std::string> axis_names() const {
@@ -159,7 +172,9 @@ class Planner {
                          [&](const PlacedText& value) { return value.text == name; });
     };
     if (condition.key.text == "sequence") return is_one(matrix().sequences[sequence].name);
-    if (condition.key.text == "system") return variant.is_external() && is_one(variant.name);
+    if (condition.key.text == "system") return variant.is_external() && is_one(matrix().systems[*variant.system].name);
+    if (variant.perturbation && condition.key.text == perturbation_axis)
+      return is_one(perturbations()->values[*variant.perturbation].name);
     for (std::size_t i = 0; i < variant.choices.size(); ++i)
       if (matrix().axes[i].name == condition.key.text) return is_one(matrix().axes[i].values[variant.choices[i]].name);
     return false;
@@ -232,6 +247,7 @@ class Planner {
       }
     }
     if (fixed.empty()) return;
+    find_unperturbed_systems(fixed);
     for (std::size_t i = 0; i < plan_.variants.size(); ++i) {
       if (plan_.variants[i].is_external()) continue;
       std::vector<std::size_t> choices = plan_.variants[i].choices;
@@ -240,6 +256,16 @@ class Planner {
         if (j != i && plan_.variants[j].choices == choices && !plan_.variants[j].is_external())
           plan_.variants[i].baseline = j;
     }
+  }
+
+  /// `baseline: { perturbation: none }` is one of external systems, too.
+  void find_unperturbed_systems(const std::vector<std::pair<std::size_t, std::size_t>>& fixed) {
+    if (fixed.size() != 1 || &matrix().axes[fixed.front().first] != perturbations()) return;
+    for (Variant& variant : plan_.variants)
+      for (std::size_t j = 0; j < plan_.variants.size(); ++j)
+        if (variant.is_external() && plan_.variants[j].system == variant.system && &plan_.variants[j] != &variant &&
+            plan_.variants[j].perturbation == fixed.front().second)
+          variant.baseline = j;
   }
 
   bool is_asked_for(std::size_t variant, std::size_t sequence) const {
@@ -302,13 +328,15 @@ class Planner {
                                       did_you_mean(*unknown, placeholder_names()));
     if (system.command.empty()) return;
     if (const auto missing = missing_program(system)) plan_.missing.push_back(*missing);
-    std::optional<RecordedSequence>& recording = plan_.recordings[sequence];
-    if (!recording) recording = recorded_sequence(matrix().sequences[sequence], registry_, found_, plan_.missing);
     nlohmann::ordered_json request = {{"command", system.command},
                                       {"folder", system.folder},
                                       {"environment", system.environment},
                                       {"trajectory", system.trajectory}};
-    if (recording) {
+    const std::optional<std::size_t> copy = copy_for(plan_.variants[variant], sequence);
+    if (copy) {
+      request["settings"] = system.settings;
+      request["copy"] = plan_.copies[*copy].configuration;
+    } else if (const std::optional<RecordedSequence>& recording = recording_of(plan_.variants[variant], sequence)) {
       request["sequence"] = recording->folder.string();
       request["settings"] = orb_slam2_settings(*recording, system.settings);
       request["associations"] = associations_text(*recording);
@@ -318,10 +346,85 @@ class Planner {
     for (int repeat = 1; repeat <= repeats; ++repeat) {
       PlannedRun run = run_of(variant, sequence, "repeat" + std::to_string(repeat));
       run.repeat = repeat;
+      run.copy = copy;
       run.time_limit = system.time_limit.value_or(matrix().time_limit);
       run.request = request.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
       plan_.runs.push_back(std::move(run));
     }
+  }
+
+  /// What the axis `perturbation` adds to a system's frames; nullptr when nothing.
+  const AxisValue* perturbation_of(const Variant& variant) const {
+    if (!variant.perturbation) return nullptr;
+    const AxisValue& value = perturbations()->values[*variant.perturbation];
+    return value.overrides.empty() && !value.configuration ? nullptr : &value;
+  }
+
+  static bool has_tum_layout(const MatrixSequence& sequence) { return sequence.source.find("tum") != nullptr; }
+
+  /// Of frames that a system gets as they were recorded.
+  const std::optional<RecordedSequence>& recording_of(const Variant& variant, std::size_t sequence) {
+    static const std::optional<RecordedSequence> nothing;
+    const MatrixSequence& on = matrix().sequences[sequence];
+    if (perturbation_of(variant) != nullptr || !has_tum_layout(on)) return nothing;
+    std::optional<RecordedSequence>& recording = plan_.recordings[sequence];
+    if (!recording) {
+      const auto configuration = configurations_->build_recording(on, nullptr);
+      recording =
+          recorded_sequence(on, registry_, configuration ? configuration->camera : std::nullopt, found_, plan_.missing);
+    }
+    return recording;
+  }
+
+  /// The copy of frames that a system cannot get as they were recorded; nothing when it can, or when something is
+  /// wrong.
+  std::optional<std::size_t> copy_for(const Variant& variant, std::size_t sequence) {
+    const MatrixSequence& on = matrix().sequences[sequence];
+    const AxisValue* perturbation = perturbation_of(variant);
+    if (perturbation == nullptr && has_tum_layout(on)) return std::nullopt;
+    if (on.source.find("kitti") != nullptr || on.source.find("euroc") != nullptr) {
+      complain(on.location,
+               "sequence '" + on.name +
+                   "' has stereo pairs, and external systems get colour and depth; exclude it: { system: " +
+                   matrix().systems[*variant.system].name + ", sequence: " + on.name + " }");
+      return std::nullopt;
+    }
+    if (perturbation != nullptr && !is_only_of_frames(*perturbation)) return std::nullopt;
+    std::optional<Configuration> configuration = configurations_->build_recording(on, perturbation);
+    if (!configuration) return std::nullopt;
+    if (const auto missing = missing_data(on, *configuration, registry_)) {
+      plan_.missing.push_back(*missing);
+      return std::nullopt;
+    }
+    if (configuration->camera) require_plain_lens(*configuration->camera, on, found_);
+    configuration->run.seed = matrix().seeds.front();
+    RecordedCopy copy{on.name + "/" + (perturbation == nullptr ? unperturbed : perturbation->name), on.name,
+                      to_yaml(*configuration)};
+    for (std::size_t i = 0; i < plan_.copies.size(); ++i)
+      if (plan_.copies[i].id == copy.id) return i;
+    plan_.copies.push_back(std::move(copy));
+    return plan_.copies.size() - 1;
+  }
+
+  /// Whether a value of the axis changes nothing but frames: an external system has no other parameters of ours.
+  bool is_only_of_frames(const AxisValue& value) {
+    if (value.configuration) {
+      complain(value.configuration->location,
+               "'" + value.name +
+                   "' of the axis 'perturbation' names a configuration, which external systems do not "
+                   "have; exclude it for them: { system: NAME, perturbation: " +
+                   value.name + " }");
+      return false;
+    }
+    for (const KeyValue& change : value.overrides)
+      if (change.key != perturbation_axis && !change.key.starts_with(std::string(perturbation_axis) + ".")) {
+        complain(change.location, "'" + value.name + "' of the axis 'perturbation' sets '" + change.key +
+                                      "', which external systems do not have; exclude it for them: { system: NAME, "
+                                      "perturbation: " +
+                                      value.name + " }");
+        return false;
+      }
+    return true;
   }
 
   Registry& registry_;

@@ -6,13 +6,13 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <memory>
 
 #include "active_run.hpp"
 #include "holdfast/bench/executor.hpp"
 #include "holdfast/core/error.hpp"
+#include "recorded_copies.hpp"
+#include "run_folders.hpp"
 
 namespace holdfast {
 
@@ -39,15 +39,10 @@ class FolderLock {
   int file_;
 };
 
-std::string content(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
-
 bool is_finished(const RunPlan& plan, const PlannedRun& run, const fs::path& folder) {
   std::error_code ignored;
   const char* request = plan.variants[run.variant].is_external() ? external_request_file : configuration_file;
-  return fs::exists(folder / result_file, ignored) && content(folder / request) == run.request;
+  return fs::exists(folder / result_file, ignored) && content_of(folder / request) == run.request;
 }
 
 }  // namespace
@@ -106,7 +101,17 @@ BenchResults run_bench(
   std::vector<std::size_t> waiting;
   for (std::size_t i = 0; i < plan.runs.size(); ++i)
     if (!results.results[i]) waiting.push_back(i);
-  if (waiting.empty()) return results;
+  const auto forget_copies = [&] {
+    if (!options.keep_copies) remove_copies(options.output);
+  };
+  if (waiting.empty()) {
+    forget_copies();
+    return results;
+  }
+  if (!make_copies(plan, waiting, options)) {
+    results.was_stopped = true;
+    return results;
+  }
 
   const Stopwatch watch;
   const auto executor = make_executor(plan, options);
@@ -127,6 +132,7 @@ BenchResults run_bench(
              watch.seconds() / static_cast<double>(ended_here) * static_cast<double>(left)});
     }
   }
+  if (!results.was_stopped) forget_copies();
   if (options.executor != ExecutorKind::local && !results.was_stopped) remove_incomplete_runs(options.output / "runs");
   return results;
 }

@@ -41,7 +41,7 @@ struct Arguments {
   std::string matrix;
   fs::path output;
   int jobs = 1;
-  bool resume = false, attach = false, dry_run = false, timing = false, quiet = false;
+  bool resume = false, attach = false, dry_run = false, timing = false, keep_copies = false, quiet = false;
   std::vector<std::string> data, tables, slurm;
   std::string executor, run;
 };
@@ -108,6 +108,7 @@ std::string command_to_resume(const Arguments& arguments, const ProgramHost& hos
   for (const std::string& each : arguments.slurm) text += " --slurm " + each;
   if (arguments.jobs != 1) text += " --jobs " + std::to_string(arguments.jobs);
   if (arguments.timing) text += " --timing";
+  if (arguments.keep_copies) text += " --keep-copies";
   for (const std::string& each : arguments.tables) text += " --table " + each;
   for (const std::string& each : arguments.data) text += " --data " + each;
   return text;
@@ -176,6 +177,7 @@ void bench(const Arguments& arguments, const ProgramHost& host, int& exit_code) 
   options.program = host.command.empty() ? std::vector<std::string>{own_program().string()} : host.command;
   options.jobs = arguments.jobs;
   options.stop = interrupted;
+  options.keep_copies = arguments.keep_copies;
   if (!arguments.run.empty()) {
     execute_one(arguments, plan, options, exit_code);
     return;
@@ -257,6 +259,8 @@ void add_bench_command(CLI::App& app, int& exit_code, const ProgramHost& host) {
       ->type_name("ID");
   command->add_flag("--dry-run", arguments->dry_run, "List the runs, and what is missing for them; run nothing");
   command->add_flag("--timing", arguments->timing, "Every run alone, whatever --jobs says");
+  command->add_flag("--keep-copies", arguments->keep_copies,
+                    "Keep the recordings in OUTPUT/copies that external systems got, perturbed or of other sources");
   command
       ->add_option("--table", arguments->tables,
                    "Print a table as papers do, and write tables/NAME.tex, .md and .csv: paper2 (ATE), paper3 (RPE)")

@@ -98,9 +98,11 @@ void show(const DatasetRecipe& recipe) {
     line("images", count_text(recipe.pairs) + " stereo pairs");
     line("source", layout_name(recipe.layout));
   } else {
+    const bool is_numbered = recipe.layout == DatasetLayout::icl_nuim;
     line("camera", camera_text(recipe.camera));
     line("images", count_text(recipe.colour) + " colour, " + count_text(recipe.depth) + " depth, " +
-                       count_text(recipe.pairs) + " pairs within 0.02 s");
+                       count_text(recipe.pairs) + (is_numbered ? " pairs" : " pairs within 0.02 s"));
+    line("source", layout_name(recipe.layout));
   }
   if (recipe.truth_left || recipe.truth_right)
     line("truth", "of markers; a matrix with this recipe transforms it to the camera");

@@ -7,6 +7,7 @@
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/trajectory.hpp"
+#include "holdfast/perturbation/perturbed_source.hpp"
 
 namespace holdfast {
 
@@ -18,14 +19,17 @@ constexpr const char* configuration_file = "recording.yaml";
 /// moved.
 Configuration on_recording(const Configuration& original, const Registry& registry, const SourceDescription& source) {
   Configuration result = original;
-  result.sections.erase("perturbation");  // the recorded frames have it already
+  PerturbationSettings perturbation;
+  if (const auto section = original.sections.find("perturbation"); section != original.sections.end())
+    perturbation = ParameterTable<PerturbationSettings>().settings(section->second);
+  result.sections.erase("perturbation");  // the recorded frames and the camera below have it already
   result.source = {.kind = FrameSource::kind, .name = "tum", .values = {}, .location = {configuration_file}};
   const ModuleEntry* tum = registry.find(result.source.kind, result.source.name);
   if (tum == nullptr) throw PluginError("a recording is read by the source 'tum', which these modules do not contain");
   for (const Parameter& parameter : tum->parameters) result.source.values[parameter.name] = parameter.default_value;
   result.source.values["path"] = std::string(".");
   result.source.values["associations"] = std::string("associations.txt");
-  if (!result.camera) result.camera = source.camera;
+  result.camera = original.camera ? perturbed_camera(*original.camera, perturbation, original.run.seed) : source.camera;
   return result;
 }
 

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 
@@ -142,8 +144,11 @@ TEST_F(BenchExternalTest, AWrapperCallsASystemByItsName) {
   program_.write(
       "stella/run_tum_rgbd_slam",
       "#!/bin/sh\n[ \"$1 $3\" = '-v -d' ] || exit 9\n"
+      "[ \"$(sed -n 4p $4/rgb.txt)\" = '100.000000 recording/rgb/0.png' ] || exit 8\n"
+      "[ \"$(sed -n 53p $4/depth.txt)\" = '104.900000 recording/depth/49.png' ] || exit 7\n"
       "exec sh " HOLDFAST_SOURCE_DIR
-      "/examples/external/stand_in.sh \"${6%stella.yaml}associations.txt\" \"${6%stella.yaml}settings.yaml\" \"$4\" "
+      "/examples/external/stand_in.sh \"${6%stella.yaml}associations.txt\" \"${6%stella.yaml}settings.yaml\" "
+      "\"$4/recording\" "
       "\"${6%stella.yaml}frame_trajectory.txt\"\n");
   std::filesystem::permissions(program_.path("stella/run_tum_rgbd_slam"), std::filesystem::perms::owner_all);
   program_.write("matrix.yaml",
@@ -156,10 +161,124 @@ TEST_F(BenchExternalTest, AWrapperCallsASystemByItsName) {
       << program_.text("out/runs/theirs/little/repeat1/log.txt");
   EXPECT_THAT(program_.text("out/runs/theirs/little/repeat1/stella.yaml"),
               AllOf(HasSubstr("  setup: RGBD\n"), HasSubstr("  fx: 535.4\n"), HasSubstr("  cols: 640\n"),
-                    HasSubstr("  depthmap_factor: 5000.0\n")));
+                    HasSubstr("  depthmap_factor: 5000.0\n"), HasSubstr("  baseline_dist_thr: 0.08\n")));
   program_.write("matrix.yaml", "systems: { theirs: { wrapper: stella_slam } }\nsequences: {}\n");
   EXPECT_THAT(program_.run({"bench", "matrix.yaml", "--dry-run"}).errors,
               HasSubstr("matrix.yaml:1:31: there is no wrapper 'stella_slam'; did you mean 'stella_vslam'"));
+}
+
+/// Both run where they find their own files, and DynaSLAM gets masks by the names of the colour images.
+TEST_F(BenchExternalTest, WrappersGiveSystemsWhatTheyLookForBesideThem) {
+  const auto make_build = [&](const std::string& folder, const std::string& check) {
+    std::filesystem::create_directories(program_.path(folder + "/Examples/RGB-D"));
+    const std::string program = folder + "/Examples/RGB-D/rgbd_tum";
+    program_.write(program, "#!/bin/sh\n" + check +
+                                "\nexec sh " HOLDFAST_SOURCE_DIR
+                                "/examples/external/stand_in.sh \"$4\" \"$2\" \"$3\" CameraTrajectory.txt\n");
+    std::filesystem::permissions(program_.path(program), std::filesystem::perms::owner_all);
+  };
+  make_build("ngd", "[ $# = 4 ] && [ -e ./Thirdparty/YOLO/coco.names ] || exit 9");
+  std::filesystem::create_directories(program_.path("ngd/Thirdparty/YOLO"));
+  program_.write("ngd/Thirdparty/YOLO/coco.names", "");
+  make_build("dyna",
+             "[ $# = 5 ] && [ -e ./Examples/RGB-D ] && [ -e ./src/python ] || exit 9\n"
+             "[ \"$(cat \"$5/7.png\")\" = seven ] && [ ! -e \"$5/8.png\" ] || exit 8");
+  std::filesystem::create_directories(program_.path("dyna/src/python"));
+  std::filesystem::create_directories(program_.path("recording/mask"));
+  program_.write("recording/mask/7.png", "seven");
+  // In place of a display.
+  std::filesystem::create_directories(program_.path("bin"));
+  program_.write("bin/xvfb-run", "#!/bin/sh\nshift\nexec \"$@\"\n");
+  std::filesystem::permissions(program_.path("bin/xvfb-run"), std::filesystem::perms::owner_all);
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", (program_.path("bin").string() + ":" + path).c_str(), 1);
+  program_.write("matrix.yaml",
+                 "systems: { ngd: { wrapper: ngd_slam, repeats: 1 }, dyna: { wrapper: dynaslam, repeats: 1 } }\n"
+                 "sequences: { little: { source: { tum: { path: recording, frames: 50 } }, camera: tum_fr3 } }\n");
+  const Outcome outcome =
+      program_.run({"bench", "matrix.yaml", "--output", "out", "--data", "NGD_SLAM=" + program_.path("ngd").string(),
+                    "--data", "DYNASLAM=" + program_.path("dyna").string()});
+  setenv("PATH", path.c_str(), 1);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(program_.text("out/tables/runs.csv"), AllOf(HasSubstr("\nngd,little,,1,finished,0,50,50,1,"),
+                                                          HasSubstr("\ndyna,little,,1,finished,0,50,50,1,")))
+      << program_.text("out/runs/dyna/little/repeat1/log.txt");
+}
+
+/// Frames that no recording holds: of another source, and perturbed. The stand-in has a pose for every frame it gets.
+TEST_F(BenchExternalTest, SystemsGetCopiesOfPerturbedFramesAndOfOtherSources) {
+  std::string text =
+      "axes: { perturbation: { dropped: [0.5], calibration: [0.1] } }\nbaseline: { perturbation: none }\n"
+      "base: plain.yaml\n" +
+      matrix({"good"});
+  text.erase(text.find("baseline: good\n"), 15);
+  text.replace(text.find("sequences: "), std::string::npos,
+               "exclude: [{ system: good, perturbation: calibration-0.1, sequence: second }]\n"
+               "sequences:\n  room: { source: { simulated: { path: xyz, duration: 1 } }, camera: &small { width: 160, "
+               "height: 120, fx: 140, fy: 140, cx: 80, cy: 60 } }\n"
+               "  second: { source: { simulated: { path: rpy, duration: 0.5 } }, camera: *small }\n");
+  program_.write("plain.yaml", "features: { orb: { count: 100 } }\noptimizer: schur\n");
+  program_.write("matrix.yaml", text);
+  const std::vector<std::string> words = {"bench", "matrix.yaml", "--output", "out", "--keep-copies"};
+  const Outcome outcome = program_.run(words);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_FALSE(std::filesystem::exists(program_.path("out/runs/good+calibration-0.1/second")));
+  const auto frames = [&](const std::string& copy) {
+    const std::string list = program_.text("out/copies/" + copy + "/associations.txt");
+    return std::count(list.begin(), list.end(), '\n');
+  };
+  EXPECT_EQ(frames("room/none"), 30);
+  const auto kept = frames("room/dropped-0.5");
+  EXPECT_TRUE(kept > 5 && kept < 25) << kept;
+  const std::string runs = program_.text("out/tables/runs.csv"), count = std::to_string(kept);
+  EXPECT_THAT(runs, AllOf(HasSubstr("\ngood,room,,1,finished,0,30,30,1,"),
+                          HasSubstr("\ngood+dropped-0.5,room,,1,finished,0," + count + "," + count + ",1,")));
+  const auto focal_length = [&](const std::string& variant) {
+    const std::string settings = program_.text("out/runs/" + variant + "/room/repeat1/settings.yaml");
+    return std::stod(settings.substr(settings.find("Camera.fx: ") + 11));
+  };
+  EXPECT_NEAR(std::abs(focal_length("good+calibration-0.1") / focal_length("good") - 1.0), 0.1, 1e-9);
+  EXPECT_THAT(program_.text("out/tables/robustness.csv"), HasSubstr("\ndropped,,good,0.5,2,2,"));
+  EXPECT_THAT(program_.text("out/results.json"), HasSubstr("\"perturbation\": \"dropped-0.5\""));
+
+  // Nothing is recorded twice, and at the end the copies go.
+  const auto time = std::filesystem::last_write_time(program_.path("out/copies/room/none/rgb.txt"));
+  std::filesystem::remove_all(program_.path("out/runs/good"));
+  ASSERT_EQ(program_.run({"bench", "matrix.yaml", "--output", "out", "--keep-copies", "--resume"}).exit_code, 0);
+  EXPECT_EQ(std::filesystem::last_write_time(program_.path("out/copies/room/none/rgb.txt")), time);
+  ASSERT_EQ(program_.run({"bench", "matrix.yaml", "--output", "out", "--resume"}).exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(program_.path("out/copies")));
+  EXPECT_EQ(program_.text("out/tables/runs.csv"), runs);
+}
+
+TEST_F(BenchExternalTest, SaysWhichFramesASystemCannotGet) {
+  std::string text =
+      "axes:\n  perturbation: { both: { perturbation.noise: 5, run.mode: threaded } }\nbase: plain.yaml\n" +
+      matrix({"good"});
+  text.replace(text.find("sequences: "), std::string::npos,
+               "sequences:\n  street: { recipe: kitti_04, path: recording }\n"
+               "  little: { source: { tum: { path: recording } }, camera: auto }\n");
+  program_.write("plain.yaml", "features: orb\noptimizer: schur\n");
+  program_.write("matrix.yaml", text);
+  const Outcome outcome = program_.run({"bench", "matrix.yaml", "--dry-run"});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(
+      outcome.errors,
+      AllOf(HasSubstr("sequence 'street' has stereo pairs, and external systems get colour and depth; exclude it"),
+            HasSubstr("'both' of the axis 'perturbation' sets 'run.mode', which external systems do not have"),
+            HasSubstr("found 'auto' for 'camera', but the name of the folder 'recording' says none")));
+}
+
+/// `camera: auto` is the camera that the folder is named after.
+TEST_F(BenchExternalTest, SystemsGetTheCameraOfTheFolder) {
+  test::write_listed_recording(program_, "rgbd_dataset_freiburg2_little");
+  std::string text = matrix({"good"});
+  text.replace(text.find("path: recording"), 15, "path: rgbd_dataset_freiburg2_little");
+  text.replace(text.find("camera: tum_fr3"), 15, "camera: auto");
+  program_.write("matrix.yaml", text);
+  const Outcome outcome = program_.run({"bench", "matrix.yaml", "--output", "out"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(program_.text("out/runs/good/little/repeat1/settings.yaml"), HasSubstr("Camera.fx: 520.908"));
 }
 
 TEST_F(BenchExternalTest, SaysWhatIsWrongWithExecutors) {
@@ -211,9 +330,33 @@ TEST_F(BenchExternalTest, RunsGoThroughGnuParallel) {
               AllOf(HasSubstr("\ngood,little,,1,finished,0,50,50,"), HasSubstr("\nhalf,little,,1,finished,0,50,25,")));
 }
 
+/// `mono.yaml` names the camera of another recording.
+TEST_F(BenchExternalTest, ARecipeOfPairsReplacesTheCameraOfAConfiguration) {
+  std::filesystem::create_directories(program_.path("04/image_0"));
+  std::filesystem::create_directories(program_.path("04/image_1"));
+  program_.write("04/calib.txt", "P0: 50 0 32 0 0 50 24 0 0 0 1 0\nP1: 50 0 32 -25 0 50 24 0 0 0 1 0\n");
+  program_.write("04/poses.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
+  program_.write("04/times.txt", "0\n");
+  program_.write("mono.yaml",
+                 "source: { tum: { path: recording } }\ncamera: tum_fr1\nsensor: mono\n"
+                 "features: orb\noptimizer: schur\n");
+  program_.write("matrix.yaml", "base: mono.yaml\nsequences: { street: { recipe: kitti_04, path: 04 } }\n");
+  ASSERT_EQ(program_.run({"bench", "matrix.yaml", "--output", "out"}).exit_code, 0);
+  const std::string configuration = program_.text("out/runs/mono/street/seed1-repeat1/config.yaml");
+  EXPECT_THAT(configuration, AllOf(HasSubstr("kitti:"), Not(HasSubstr("\ncamera:"))));
+}
+
 TEST_F(BenchExternalTest, FindsTheMatricesOfTheProjectSound) {
   // `composed` has two of the five again, with masks by the U-Net.
-  for (const auto& [name, variants] : {std::pair{"bonn", 5}, {"composed", 7}, {"simulated", 5}, {"tum_dynamic", 5}}) {
+  for (const auto& [name, variants] : {std::pair{"bonn", 5},
+                                       {"composed", 7},
+                                       {"euroc", 2},
+                                       {"icl_nuim", 2},
+                                       {"kitti", 2},
+                                       {"robustness", 74},
+                                       {"robustness_people", 50},
+                                       {"simulated", 5},
+                                       {"tum_dynamic", 5}}) {
     const Outcome list =
         program_.run({"bench", HOLDFAST_SOURCE_DIR "/benchmarks/" + std::string(name) + ".yaml", "--dry-run"});
     EXPECT_EQ(list.exit_code, 0) << name << "\n" << list.errors;

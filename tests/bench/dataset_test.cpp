@@ -200,6 +200,20 @@ TEST_F(DatasetCheckTest, TurnsTheListsOfIclNuimRound) {
   EXPECT_EQ(pairs[1].depth.name, "depth/1.png");
 }
 
+TEST_F(DatasetCheckTest, LooksAtARecordingOfIclNuim) {
+  fs::rename(path("rgb.txt"), path("rgb_list"));
+  program_.write("rec/associations.txt", "1 depth/0.png 1 rgb/0.png\n2 depth/1.png 2 rgb/1.png\n");
+  EXPECT_EQ(layout_of(program_.path("rec")), DatasetLayout::icl_nuim);
+  const auto check = [&] { return check_dataset(program_.path("rec"), find_recipe("icl_lr_kt0")); };
+  EXPECT_THAT(check().problems, ElementsAre(HasSubstr("livingRoom0.gt.freiburg is missing, the true poses")));
+  program_.write("rec/livingRoom0n.gt.freiburg", "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n");
+  EXPECT_THAT(check().problems, IsEmpty()) << "that of the recording with noise";
+  EXPECT_THAT(check().facts, AllOf(Contains("2 colour-depth pairs"), Contains("2 true poses")));
+  EXPECT_THAT(check_dataset(program_.path("rec"), nullptr).problems, IsEmpty());
+  fs::remove(path("depth/1.png"));
+  EXPECT_THAT(check().problems, ElementsAre(HasSubstr("associations.txt lists 1 image that is missing: depth/1.png")));
+}
+
 /// A sequence of three pairs in KITTI's layout; the source's own tests look at its content.
 TEST_F(DatasetCheckTest, LooksAtStereoPairs) {
   for (const char* side : {"image_0", "image_1"}) {
@@ -233,6 +247,8 @@ TEST_F(DatasetCheckTest, LooksAtStereoPairs) {
 TEST_F(DatasetCheckTest, IsACommand) {
   EXPECT_THAT(program_.run({"dataset", "list", "euroc_mh_01"}).output,
               AllOf(HasSubstr("3682 stereo pairs"), HasSubstr("mav0/cam0/"), HasSubstr("source    euroc")));
+  EXPECT_THAT(program_.run({"dataset", "list", "icl_of_kt3"}).output,
+              AllOf(HasSubstr("fy 480 "), HasSubstr("traj3.gt.freiburg"), HasSubstr("source    icl_nuim")));
   EXPECT_THAT(program_.run({"dataset", "list"}).output,
               AllOf(HasSubstr("fr3_walking_xyz"), HasSubstr("bonn_crowd3"), HasSubstr("licence: CC BY 4.0")));
   EXPECT_THAT(program_.run({"dataset", "list", "fr1_xyz"}).output,
@@ -322,6 +338,7 @@ TEST_F(RecipeMatrixTest, StereoPairsBringTheirCamera) {
   ASSERT_NE(sequence.source.find("kitti"), nullptr);
   EXPECT_FALSE(sequence.camera.has_value());
   EXPECT_EQ(sequence.published, "kitti_04");
+  EXPECT_TRUE(sequence.brings_camera);
 }
 
 TEST_F(RecipeMatrixTest, TurnsTheTruthOfBonnToTheCamera) {
@@ -346,15 +363,25 @@ TEST_F(RecipeMatrixTest, TurnsTheTruthOfBonnToTheCamera) {
   EXPECT_EQ(matrix_of("truth_right"), T_ros * T_m);
 }
 
+TEST_F(RecipeMatrixTest, ReadsIclNuimByItsOwnSource) {
+  write("matrix.yaml", "base: plain.yaml\nsequences:\n  kt0: { recipe: icl_lr_kt0, path: one }\n");
+  const Matrix matrix = read_matrix(folder_ / "matrix.yaml", {}, diagnostics_);
+  EXPECT_THAT(problems(), IsEmpty());
+  const MatrixSequence& sequence = matrix.sequences.at(0);
+  ASSERT_NE(sequence.source.find("icl_nuim"), nullptr);
+  EXPECT_NE(sequence.source.find("icl_nuim")->find("path"), nullptr);
+  ASSERT_TRUE(sequence.camera.has_value());
+  EXPECT_EQ(sequence.camera->text, "icl_nuim");
+}
+
 TEST_F(RecipeMatrixTest, SaysWhatIsWrongWithARecipe) {
   plan(
       "base: plain.yaml\nsequences:\n  a: { recipe: fr3_walking_xzy, path: one }\n  b: { recipe: w21 }\n"
-      "  c: { source: { tum: { path: one } }, path: two }\n  d: { recipe: icl_lr_kt0, path: one }\n");
+      "  c: { source: { tum: { path: one } }, path: two }\n");
   EXPECT_THAT(problems(), Contains(HasSubstr("matrix.yaml:3:16: there is no recipe 'fr3_walking_xzy'; did you mean "
                                              "'fr3_walking_xyz'?")));
   EXPECT_THAT(problems(), Contains(HasSubstr("sequence 'b' needs 'path'")));
   EXPECT_THAT(problems(), Contains(HasSubstr("'path' of sequence 'c' goes with 'recipe'")));
-  EXPECT_THAT(problems(), Contains(HasSubstr("'icl_lr_kt0' is not in TUM layout")));
 }
 
 }  // namespace

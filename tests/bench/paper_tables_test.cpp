@@ -67,6 +67,9 @@ TEST_F(PaperTablesTest, WritesLatexByteForByte) {
             "s0 & RMSE & 0.50 & \\textbf{0.25} & 50.00 \\% \\\\\n\\bottomrule\n\\end{tabular}\n\n\\smallskip\n"
             "\\footnotesize Improvements in per cent: (baseline - value) / baseline. The smallest value of a row is "
             "bold.\n\\end{table}\n");
+  table.rows[0].cells[4].text = "-10.72 %";
+  table.rows[0].cells[3].text = "-";
+  EXPECT_THAT(to_latex(table), HasSubstr("\\textbf{--} & $-$10.72 \\% \\\\\n"));
   EXPECT_EQ(latex_text("100 % of {a} & \\b~^$#"),
             "100 \\% of \\{a\\} \\& \\textbackslash{}b\\textasciitilde{}\\textasciicircum{}\\$\\#");
 }

@@ -15,6 +15,7 @@
 extern "C" void holdfast_register_plugin_tum(holdfast::Registry& registry);
 extern "C" void holdfast_register_plugin_folder(holdfast::Registry& registry);
 extern "C" void holdfast_register_plugin_euroc(holdfast::Registry& registry);
+extern "C" void holdfast_register_plugin_icl_nuim(holdfast::Registry& registry);
 extern "C" void holdfast_register_plugin_kitti(holdfast::Registry& registry);
 #ifdef HOLDFAST_PLUGIN_V4L2
 extern "C" void holdfast_register_plugin_v4l2(holdfast::Registry& registry);
@@ -101,6 +102,7 @@ std::unique_ptr<FrameSource> make_source(const std::string& name, const Paramete
   holdfast_register_plugin_tum(registry);
   holdfast_register_plugin_folder(registry);
   holdfast_register_plugin_euroc(registry);
+  holdfast_register_plugin_icl_nuim(registry);
   holdfast_register_plugin_kitti(registry);
 #ifdef HOLDFAST_PLUGIN_V4L2
   holdfast_register_plugin_v4l2(registry);

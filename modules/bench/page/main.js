@@ -13,7 +13,7 @@ function remember(changes) {
 }
 
 function showHead() {
-  byId('about').textContent = results.about;
+  byId('about').replaceChildren(...withCode(results.about));
   const done = results.runs.filter((run) => run.result !== null);
   const troubled = done.filter(hasTrouble);
   const facts = [

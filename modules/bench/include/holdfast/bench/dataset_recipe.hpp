@@ -15,7 +15,8 @@ namespace holdfast {
 /// How the files of a recording are arranged.
 enum class DatasetLayout {
   tum,       ///< rgb.txt and depth.txt list the images with their stamps (Sturm et al., IROS 2012)
-  icl_nuim,  ///< associations.txt lists numbered pairs, the depth image first (Handa et al., ICRA 2014)
+  icl_nuim,  ///< associations.txt lists numbered pairs, the depth image first (Handa et al., ICRA 2014); what the
+             ///< source `icl_nuim` reads
   kitti,     ///< stereo pairs of the KITTI odometry data (Geiger et al., CVPR 2012); what the source `kitti` reads
   euroc,     ///< stereo pairs in the ASL layout (Burri et al., IJRR 2016); what the source `euroc` reads
 };

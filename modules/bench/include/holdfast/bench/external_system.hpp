@@ -26,6 +26,14 @@ struct RecordedSequence {
   TruthTransform truth;            ///< of groundtruth.txt
 };
 
+/// Frames that external systems can only get as a copy in TUM layout, because their source is another one or because
+/// they are perturbed. Made by `holdfast record`, once for all runs that need it.
+struct RecordedCopy {
+  std::string id;             ///< SEQUENCE/PERTURBATION: its folder below `copies`
+  std::string name;           ///< of the sequence
+  std::string configuration;  ///< what is recorded: source, camera, perturbation and seed
+};
+
 /// Lines "colour_stamp colour_file depth_stamp depth_file", stamps with 6 decimals.
 std::string associations_text(const RecordedSequence& sequence);
 

@@ -57,6 +57,7 @@ struct MatrixSequence {
   SourceLocation location;
   ConfigurationNode source;                 ///< as the section `source` of a configuration
   std::optional<ConfigurationNode> camera;  ///< as the section `camera`; nothing: the configuration's
+  bool brings_camera = false;               ///< its source knows the camera, so that the configuration's does not count
   /// Overrides of configurations on this sequence. A key of a module (segmenter.precomputed.path) applies only if the
   /// configuration selects that module.
   std::vector<KeyValue> overrides;

@@ -16,9 +16,12 @@ namespace holdfast {
 
 /// What is compared: one value of every axis, or an external system.
 struct Variant {
-  std::string name;                     ///< the values' names joined by '+', or the system's
-  std::vector<std::size_t> choices;     ///< value of each axis; empty for a system
-  std::optional<std::size_t> system;    ///< of Matrix::systems
+  /// The values' names joined by '+', or the system's, with '+' and the perturbation where there is one.
+  std::string name;
+  std::vector<std::size_t> choices;   ///< value of each axis; empty for a system
+  std::optional<std::size_t> system;  ///< of Matrix::systems
+  /// Of a system: the value of the axis `perturbation`, where the matrix has one.
+  std::optional<std::size_t> perturbation;
   std::optional<std::size_t> baseline;  ///< the variant it is measured against; nothing for a baseline itself
   bool alone = false;                   ///< its runs are executed alone
 
@@ -33,7 +36,8 @@ struct PlannedRun {
   std::uint64_t seed = 0;  ///< 0 for an external system, which has its own randomness
   int repeat = 1;          ///< from 1
   bool alone = false;
-  double time_limit = 0.0;  ///< [s]
+  double time_limit = 0.0;          ///< [s]
+  std::optional<std::size_t> copy;  ///< of RunPlan::copies, which an external system gets in place of the recording
   /// All input of the run: the resolved configuration, or the call of an external system. A finished run with the same
   /// request is not repeated.
   std::string request;
@@ -47,6 +51,7 @@ struct RunPlan {
   std::vector<PlannedRun> runs;
   std::vector<std::pair<std::size_t, std::size_t>> comparisons;  ///< (before, after): every variant with its baseline
   std::vector<std::optional<RecordedSequence>> recordings;       ///< by sequence: those that external systems run on
+  std::vector<RecordedCopy> copies;                              ///< that external systems need
   std::map<std::string, std::string> perturbation_units;         ///< unit of a strength by name of the perturbation
   std::vector<Diagnostic> missing;  ///< folders, files and programs that are not there, with where to get them
 };

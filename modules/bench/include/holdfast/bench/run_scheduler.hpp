@@ -37,7 +37,8 @@ struct BenchOptions {
   SlurmOptions slurm;
   /// Command that executes one run of this benchmark when `--run ID` is added; for executors on other machines.
   std::vector<std::string> run_command;
-  double grace = 10.0;  ///< time between asking a process to end and killing it [s]
+  bool keep_copies = false;  ///< copies of frames for external systems stay when all runs are done
+  double grace = 10.0;       ///< time between asking a process to end and killing it [s]
   /// Polled several times per second; if it returns true, unfinished runs are aborted.
   std::function<bool()> stop = [] { return false; };
 };
