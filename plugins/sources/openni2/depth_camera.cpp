@@ -4,9 +4,11 @@
 #include <OpenNI.h>
 
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <set>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -136,6 +138,9 @@ class OpenNiCamera final : public DepthCamera {
       if (stream->start() != openni::STATUS_OK) fail("does not start: " + reason());
   }
   ~OpenNiCamera() override {
+    colour_.stop();
+    depth_.stop();
+    let_player_rest();
     colour_.destroy();
     depth_.destroy();
     watch_.reset();
@@ -163,6 +168,12 @@ class OpenNiCamera final : public DepthCamera {
  private:
   static constexpr int step = 250;  // ms, after which unplugging is looked for
 
+  /// The thread of the library that plays a file looks through the streams without a lock. While none is started it
+  /// does so every 10 ms and sleeps in between: streams come and go then.
+  void let_player_rest() const {
+    if (device_.isFile()) std::this_thread::sleep_for(std::chrono::milliseconds(25));
+  }
+
   [[noreturn]] void fail(const std::string& problem) const { throw InputError({place_}, problem); }
 
   void open() {
@@ -180,6 +191,7 @@ class OpenNiCamera final : public DepthCamera {
     }
     if (uri.empty()) place_ = std::string("camera ") + device_.getDeviceInfo().getName();
     watch_ = std::make_unique<Watch>(device_.getDeviceInfo().getUri());
+    let_player_rest();
   }
 
   static std::string present_devices() {

@@ -107,7 +107,9 @@ class OpenNiFileTest : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(OpenNiFileTest, ARecordingIsPlayedOnceAndTheSameEveryTime) {
+// Not in every run: the thread of OpenNI 2.2 that plays files goes through its list of streams without a lock, and
+// crashes now and then when a device is closed. Run it by --gtest_also_run_disabled_tests.
+TEST_F(OpenNiFileTest, DISABLED_ARecordingIsPlayedOnceAndTheSameEveryTime) {
   const std::string file = record();
   std::unique_ptr<FrameSource> source = open({.file = file});
   EXPECT_EQ(source->describe().name, "recording");
