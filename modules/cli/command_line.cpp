@@ -11,6 +11,7 @@
 
 #include "background_command.hpp"
 #include "bench_command.hpp"
+#include "calibrate_command.hpp"
 #include "check_command.hpp"
 #include "completion_command.hpp"
 #include "dataset_command.hpp"
@@ -78,6 +79,7 @@ void add_commands(CLI::App& app, int& exit_code, const ProgramHost& host) {
   add_run_command(app, exit_code, host);
   add_view_command(app, exit_code);
   add_record_command(app, exit_code, host);
+  add_calibrate_command(app, exit_code, host);
   add_bench_command(app, exit_code, host);
   add_dataset_command(app, exit_code);
   add_evaluate_command(app, exit_code);

@@ -11,12 +11,13 @@
 namespace holdfast {
 
 std::span<const EmbeddedFile> embedded_report_style();
+std::span<const EmbeddedFile> embedded_report_script();
 
 namespace {
 
-std::string style() {
+std::string joined(std::span<const EmbeddedFile> files) {
   std::string text;
-  for (const EmbeddedFile& file : embedded_report_style()) text += file.content;
+  for (const EmbeddedFile& file : files) text += file.content;
   return text;
 }
 
@@ -73,8 +74,9 @@ std::string to_html(const ReportSection& section) {
 std::string to_html(const Report& report) {
   std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
   html += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n";
-  html += element("title", report.title) + "\n<style>" + style() + "</style>\n</head>\n<body>\n<main>\n";
-  html += element("h1", report.title) + '\n';
+  html += element("title", report.title) + "\n<style>" + joined(embedded_report_style()) + "</style>\n<script>\n" +
+          joined(embedded_report_script()) + "</script>\n</head>\n<body>\n<main>\n";
+  html += "<header>" + element("h1", report.title) + "<span data-theme></span></header>\n";
   if (!report.subtitle.empty()) html += element("p class=\"subtitle\"", report.subtitle) + '\n';
   if (!report.highlights.empty()) {
     html += "<div class=\"highlights\">\n";

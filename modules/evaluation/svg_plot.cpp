@@ -190,7 +190,7 @@ std::string draw_axes(const Plot& plot, const Frame& frame) {
   const std::string grid = stroke("#e3e3e3", 1.0, false);
   const double height = frame.bottom - frame.top;
   const Ticks x_ticks = round_ticks(frame.x.begin, frame.x.end, plot.width / 95);
-  const Ticks y_ticks = round_ticks(frame.y.begin, frame.y.end, static_cast<int>(height / 50.0));
+  const Ticks y_ticks = round_ticks(frame.y.begin, frame.y.end, std::max(4, static_cast<int>(height / 50.0)));
   for (const double value : x_ticks.values) {
     const double x = frame.pixel_x(value);
     svg += line_element(x, frame.top, x, frame.bottom, grid);

@@ -26,8 +26,8 @@ class ProgramTest : public ::testing::Test {
 TEST_F(ProgramTest, HelpAndVersion) {
   const Outcome help = program_.run({"--help"});
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* command :
-       {"run", "bench", "evaluate", "view", "record", "map", "background", "simulate", "segment", "check", "modules"})
+  for (const char* command : {"run", "bench", "calibrate", "evaluate", "view", "record", "map", "background",
+                              "simulate", "segment", "check", "modules"})
     EXPECT_THAT(help.output, HasSubstr(std::string("\n  ") + command + " "));
   EXPECT_EQ(help.errors, "");
   const Outcome version = program_.run({"--version"});

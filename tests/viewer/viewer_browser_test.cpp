@@ -112,6 +112,45 @@ TEST_F(ViewerBrowserTest, DrawsTheMap) {
   EXPECT_THAT(browser_->complaints(), IsEmpty());
 }
 
+TEST_F(ViewerBrowserTest, DrawsPointsWhereTheyAre) {
+  viewer_->set_map(test::row_map(4), 0.0);
+  open();
+  ASSERT_TRUE(becomes(counts + "?.points === 4"));
+  if (browser_->evaluate("Boolean(document.getElementById('map').getContext('webgl2'))") == false)
+    GTEST_SKIP() << "this browser has no WebGL 2";
+  for (const char* layer : {"path", "keyframes", "covisibility", "loops", "grid"})
+    browser_->evaluate(
+        "(() => { for (const label of document.querySelectorAll('#layers label')) if (label.textContent === '" +
+        std::string(layer) + "') label.querySelector('input').click(); })()");
+  // The pixels at the places of all points, and one in a corner, where none is.
+  const std::string differences =
+      "(() => { holdfastViewer.draw(); const c = document.getElementById('map'), gl = c.getContext('webgl2');"
+      "const m = holdfastViewer.view.matrix(c.width / c.height), p = new Uint8Array(4);"
+      "const at = (x, y) => (gl.readPixels(x, y, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, p), p.join());"
+      "const ground = at(2, c.height - 3);"
+      "return [0, 1, 2, 3].filter((i) => { const [x, y, z] = holdfastViewer.point(i);"
+      "const row = (r) => m[r] * x + m[4 + r] * y + m[8 + r] * z + m[12 + r];"
+      "return at(Math.floor((row(0) / row(3) + 1) / 2 * c.width), Math.floor((row(1) / row(3) + 1) / 2 * c.height)) "
+      "!== ground;"
+      "}).length; })()";
+  EXPECT_TRUE(becomes(differences + " === 4"));
+  EXPECT_THAT(browser_->complaints(), IsEmpty());
+}
+
+TEST_F(ViewerBrowserTest, IsDarkOrLightAsChosen) {
+  const std::string ground = "getComputedStyle(document.body).backgroundColor";
+  open();
+  ASSERT_TRUE(becomes(counts + "?.connected"));
+  const nlohmann::json before = browser_->evaluate(ground);
+  browser_->click("document.querySelector('button.theme')");
+  EXPECT_NE(browser_->evaluate(ground), before);
+  open();
+  EXPECT_NE(browser_->evaluate(ground), before) << "remembered";
+  browser_->click("document.querySelector('button.theme')");
+  EXPECT_EQ(browser_->evaluate(ground), before);
+  EXPECT_THAT(browser_->complaints(), IsEmpty());
+}
+
 TEST_F(ViewerBrowserTest, ComesBackAfterTheConnectionWasLost) {
   viewer_->set_map(test::row_map(4), 0.0);
   open();

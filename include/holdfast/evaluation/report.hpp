@@ -47,8 +47,8 @@ struct Report {
   std::vector<ReportSection> sections;
 };
 
-/// Formats a report as a self-contained HTML page: styles and figures are inline, there are no scripts. All texts are
-/// escaped, the SVG of figures is not. The same report gives the same bytes. Throws CheckError if a row and its header
+/// Formats a report as a self-contained HTML page: styles, figures and a switch between dark and light are inline. Texts
+/// are escaped, the SVG of figures is not. The same report gives the same bytes. Throws CheckError if a row and its header
 /// differ in length, or if the numbers of bars and rows differ.
 std::string to_html(const Report& report);
 

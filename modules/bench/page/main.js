@@ -78,4 +78,4 @@ for (const link of document.querySelectorAll('a[href^="#"]'))
 // No link leads to a section that has nothing to show.
 for (const link of document.querySelectorAll('nav a'))
   link.hidden = document.querySelector(link.getAttribute('href')).hidden;
-matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => section.show());
+document.addEventListener('themechange', () => section.show());

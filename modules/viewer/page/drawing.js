@@ -112,6 +112,15 @@ class Renderer {
     this.sets = new Map();
     this.cornerBuffer = gl.createBuffer();
     this.corners = 0;
+    this.isSoft = drawsBySoftware(gl);
+    if (this.isSoft) {
+      this.image = this.program(imageShader, imageFragment, []);
+      this.pointImage = new PointImage();
+      this.texture = gl.createTexture();
+      gl.bindTexture(gl.TEXTURE_2D, this.texture);
+      for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
+      for (const wrap of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, wrap, gl.CLAMP_TO_EDGE);
+    }
     gl.enable(gl.BLEND);
     gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     gl.enable(gl.DEPTH_TEST);
@@ -140,6 +149,9 @@ class Renderer {
   /// Takes over rows of place and evidence; only those of `range` have changed, if the buffer has room.
   setPoints(target, data, count, range = null) {
     const gl = this.gl;
+    target.data = data;
+    target.count = count;
+    if (this.isSoft) return;
     gl.bindBuffer(gl.ARRAY_BUFFER, target.buffer);
     if (target.capacity < data.length || !range) {
       gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
@@ -147,15 +159,16 @@ class Renderer {
     } else {
       gl.bufferSubData(gl.ARRAY_BUFFER, 16 * range[0], data, 4 * range[0], 4 * (range[1] - range[0] + 1));
     }
-    target.count = count;
   }
   setSeen(slots) {
     const gl = this.gl;
+    this.seenSlots = slots;
+    this.seen = slots.length;
+    if (this.isSoft) return;
     gl.bindVertexArray(this.pointBuffer.array);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.seenBuffer);
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, slots, gl.DYNAMIC_DRAW);
     gl.bindVertexArray(null);
-    this.seen = slots.length;
   }
   setLines(name, lines, width) {
     const gl = this.gl, count = lines.values.length / 10;
@@ -199,13 +212,14 @@ class Renderer {
   /// `step`: every so many points are drawn.
   draw(view, shown, step = 1) {
     const gl = this.gl, canvas = this.canvas;
-    const ratio = Math.min(2, devicePixelRatio || 1);
+    const ratio = this.isSoft ? 1 : Math.min(2, devicePixelRatio || 1);
     const width = Math.max(1, Math.round(canvas.clientWidth * ratio)), height = Math.max(1, Math.round(canvas.clientHeight * ratio));
     if (canvas.width !== width || canvas.height !== height) { canvas.width = width; canvas.height = height; }
     gl.viewport(0, 0, width, height);
     gl.clearColor(...cssColour('--map-ground'));
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     const matrix = view.matrix(width / height);
+    if (this.isSoft) this.drawPointImage(matrix, shown, step, width, height);
     gl.useProgram(this.lines.program);
     gl.uniformMatrix4fv(this.lines.matrix, false, matrix);
     gl.uniform2f(this.lines.screen, width, height);
@@ -216,29 +230,7 @@ class Renderer {
       if (name === 'camera') continue;  // drawn last, over everything
       gl.drawElements(gl.TRIANGLES, 6 * set.count, gl.UNSIGNED_INT, 0);
     }
-    gl.useProgram(this.points.program);
-    gl.uniformMatrix4fv(this.points.matrix, false, matrix);
-    if (shown.points !== false && this.pointBuffer.count) {
-      gl.bindVertexArray(this.pointBuffer.array);
-      this.colours([cssColour('--static'), cssColour('--unmeasured'), cssColour('--doubtful'), cssColour('--moving')]);
-      gl.uniform2f(this.points.size, 0.014 * height, 2.2 * ratio);
-      this.setStep(this.pointBuffer, step);
-      gl.drawArrays(gl.POINTS, 0, Math.floor(this.pointBuffer.count / step));
-      this.setStep(this.pointBuffer, 1);
-      if (this.seen && shown.seen !== false) {
-        const accent = cssColour('--accent');
-        this.colours([accent, accent, accent, accent]);
-        gl.uniform2f(this.points.size, 0.02 * height, 3 * ratio);
-        gl.drawElements(gl.POINTS, this.seen, gl.UNSIGNED_INT, 0);
-      }
-    }
-    if (shown.moving !== false && this.movingBuffer.count) {
-      gl.bindVertexArray(this.movingBuffer.array);
-      const red = cssColour('--moving');
-      this.colours([red, red, red, red]);
-      gl.uniform2f(this.points.size, 0.02 * height, 2.4 * ratio);
-      gl.drawArrays(gl.POINTS, 0, this.movingBuffer.count);
-    }
+    if (!this.isSoft) this.drawPoints(matrix, shown, step, height, ratio);
     const camera = this.sets.get('camera');
     if (camera?.count) {
       gl.useProgram(this.lines.program);
@@ -250,10 +242,58 @@ class Renderer {
     }
     gl.bindVertexArray(null);
   }
+  /// What is drawn as points: {target, slots, colours, near, least}; the sizes as shares of the height and in pixels.
+  pointLayers(shown) {
+    const accent = cssColour('--accent'), red = cssColour('--moving');
+    const evidence = [cssColour('--static'), cssColour('--unmeasured'), cssColour('--doubtful'), red];
+    const layers = [];
+    if (shown.points !== false && this.pointBuffer.count) {
+      layers.push({target: this.pointBuffer, colours: evidence, near: 0.014, least: 2.2});
+      if (this.seen && shown.seen !== false)
+        layers.push({target: this.pointBuffer, slots: this.seenSlots, colours: Array(4).fill(accent), near: 0.02, least: 3});
+    }
+    if (shown.moving !== false && this.movingBuffer.count)
+      layers.push({target: this.movingBuffer, colours: Array(4).fill(red), near: 0.02, least: 2.4});
+    return layers;
+  }
+  drawPoints(matrix, shown, step, height, ratio) {
+    const gl = this.gl;
+    gl.useProgram(this.points.program);
+    gl.uniformMatrix4fv(this.points.matrix, false, matrix);
+    for (const {target, slots, colours, near, least} of this.pointLayers(shown)) {
+      gl.bindVertexArray(target.array);
+      gl.uniform4fv(this.points.colours, new Float32Array(colours.flat()));
+      gl.uniform2f(this.points.size, near * height, least * ratio);
+      if (slots) {
+        gl.drawElements(gl.POINTS, slots.length, gl.UNSIGNED_INT, 0);
+      } else {
+        this.setStep(target, step);
+        gl.drawArrays(gl.POINTS, 0, Math.floor(target.count / step));
+        this.setStep(target, 1);
+      }
+    }
+  }
+  /// The points as an image, below the lines.
+  drawPointImage(matrix, shown, step, width, height) {
+    const gl = this.gl, image = this.pointImage, isNew = image.width !== width || image.height !== height;
+    image.begin(width, height, cssColour('--map-ground'));
+    for (const {target, slots, colours, near, least} of this.pointLayers(shown))
+      image.draw(target.data, target.count, matrix, colours, near * height, least, {slots, step: slots ? 1 : step});
+    const bytes = new Uint8Array(image.pixels.buffer);
+    gl.bindTexture(gl.TEXTURE_2D, this.texture);
+    if (isNew) gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, width, height, 0, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+    else gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+    gl.useProgram(this.image.program);
+    gl.disable(gl.DEPTH_TEST);
+    gl.disable(gl.BLEND);
+    gl.bindVertexArray(null);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    gl.enable(gl.BLEND);
+    gl.enable(gl.DEPTH_TEST);
+  }
   setStep({buffer}, step) {
     const gl = this.gl;
     gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
     gl.vertexAttribPointer(0, 4, gl.FLOAT, false, 16 * step, 0);
   }
-  colours(list) { this.gl.uniform4fv(this.points.colours, new Float32Array(list.flat())); }
 }

@@ -225,9 +225,20 @@ function showClock() {
 let nextFit = 0, nextTimes = 0, nextObjects = 0;
 let framesWait = false, objectsWait = false;  // for their next turn: what is drawn seldom is not left out at the end
 const frameTimes = [];
+/// Asks for the next turn: with the next picture of the screen, or, when nothing has changed for a while, when something
+/// does. A browser without a graphics card works for every picture that it is asked for, even if nothing is drawn.
+let quietTurns = 0;
+function awaitTurn() {
+  const isAsked = quietTurns < 30 || model.changed.size > 0 || moved || playing || framesWait || objectsWait || loopFlash > 0 || detail.isReduced;
+  if (isAsked) requestAnimationFrame(refresh);
+  else setTimeout(awaitTurn, 40);
+}
 /// Takes over what has changed since the last picture of the screen, and draws it.
 function refresh(time) {
-  requestAnimationFrame(refresh);
+  update(time);
+  awaitTurn();
+}
+function update(time) {
   play(time);
   const changed = model.changed;
   const has = (...names) => changed.has('all') || names.some((name) => changed.has(name));
@@ -281,6 +292,7 @@ function refresh(time) {
   let aims = false;
   if (view.mode === 'follow' && model.pose(now)) aims = view.approach([...model.pose(now).slice(0, 3)], view.isFree ? null : Math.min(1.6, fitted?.radius ?? 1.6), 0.2);
   else if (!view.isFree && fitted) aims = view.approach(fitted.middle, fitted.radius, 0.2);
+  quietTurns = isBusy || moved || aims ? 0 : quietTurns + 1;
   if (!renderer.gl) return;
   if (isBusy || moved || aims) {
     chooseDetail(time);
@@ -305,24 +317,26 @@ function chooseDetail(time) {
   detail.last = time;
   detail.isMoving = true;
   const before = detail.step;
-  if (detail.mean > 42 && model.points.count / detail.step > 4000) detail.step = Math.min(16, 2 * detail.step);
+  if (detail.mean > 42 && model.points.count / detail.step > 4000)
+    detail.step = Math.min(8, 2 * detail.step);  // WebGL knows no rows of more than 255 bytes
   else if (detail.mean < 22) detail.step = Math.max(1, detail.step / 2);
   if (detail.step !== before) detail.mean = 32;  // see what it is worth first
   detail.isReduced = detail.step > 1;
 }
 
 const redraw = () => { colourCache.clear(); model.changed.add('all'); picturePanel.draw(); };
-matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redraw);
+document.addEventListener('themechange', redraw);
 new ResizeObserver(() => { moved = true; model.changed.add('frames'); model.changed.add('run'); model.changed.add('now'); }).observe(document.body);
 // For tests, and for whoever wants to know: what is drawn, and how fast.
 globalThis.holdfastViewer = {
   counts: () => ({points: model.points.count, path: model.path.count, keyframes: model.keyframes.size, loops: model.loops.length / 2,
                   connected, state: model.state, truth: model.truth?.stamps.length ?? 0, picture: model.picture?.frame ?? null}),
+  point: (i) => [...model.points.row(i).subarray(0, 3)],
   place: (i) => [...model.path.row(i).subarray(0, 3)],
   send: (text) => connection.send(text),
   view,
   draw: () => renderer.draw(view, shown),
   framesPerSecond: () => 1000 * (frameTimes.length - 1) / (frameTimes.at(-1) - frameTimes[0]),
-  spin: (on) => { clearInterval(view.spinning); if (on) view.spinning = setInterval(() => view.rotate(0.01, 0), 10); moved = true; },
+  spin: (on) => { clearInterval(view.spinning); frameTimes.length = 0; if (on) view.spinning = setInterval(() => { view.rotate(0.01, 0); moved = true; }, 10); },
 };
 requestAnimationFrame(refresh);
