@@ -4,11 +4,9 @@
 #include <OpenNI.h>
 
 #include <atomic>
-#include <chrono>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <set>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -42,34 +40,23 @@ class Library {
   Library& operator=(const Library&) = delete;
 };
 
-/// What becomes of a device, told by threads of the library.
-class Watch final : public openni::OpenNI::DeviceDisconnectedListener,
-                    public openni::OpenNI::DeviceStateChangedListener {
+/// Whether a device was unplugged, told by threads of the library.
+class Watch final : public openni::OpenNI::DeviceDisconnectedListener {
  public:
-  explicit Watch(std::string uri) : uri_(std::move(uri)) {
-    openni::OpenNI::addDeviceDisconnectedListener(this);
-    openni::OpenNI::addDeviceStateChangedListener(this);
-  }
-  ~Watch() override {
-    openni::OpenNI::removeDeviceDisconnectedListener(this);
-    openni::OpenNI::removeDeviceStateChangedListener(this);
-  }
+  explicit Watch(std::string uri) : uri_(std::move(uri)) { openni::OpenNI::addDeviceDisconnectedListener(this); }
+  ~Watch() override { openni::OpenNI::removeDeviceDisconnectedListener(this); }
   Watch(const Watch&) = delete;
   Watch& operator=(const Watch&) = delete;
 
   bool is_unplugged() const { return is_unplugged_; }
-  bool is_at_end() const { return is_at_end_; }
 
  private:
   void onDeviceDisconnected(const openni::DeviceInfo* device) override {
     if (uri_ == device->getUri()) is_unplugged_ = true;
   }
-  void onDeviceStateChanged(const openni::DeviceInfo* device, openni::DeviceState state) override {
-    if (uri_ == device->getUri() && state == openni::DEVICE_STATE_EOF) is_at_end_ = true;
-  }
 
   std::string uri_;
-  std::atomic<bool> is_unplugged_ = false, is_at_end_ = false;
+  std::atomic<bool> is_unplugged_ = false;
 };
 
 /// Rows of pixels of a frame, after its size was compared with its bytes.
@@ -80,7 +67,7 @@ cv::Mat pixels_of(const openni::VideoFrameRef& frame, int type, const std::strin
   if (frame.getWidth() < 1 || frame.getHeight() < 1 || row < width * CV_ELEM_SIZE(type) || bytes < row * height)
     throw InputError({place}, "gave an image of " + std::to_string(width) + "x" + std::to_string(height) +
                                   " pixels in rows of " + std::to_string(row) + " bytes, " + std::to_string(bytes) +
-                                  " bytes in all; the driver or the recording is damaged");
+                                  " bytes in all; the driver is damaged");
   return {frame.getHeight(), frame.getWidth(), type, const_cast<void*>(frame.getData()), row};
 }
 
@@ -130,17 +117,13 @@ class OpenNiCamera final : public DepthCamera {
     open();
     start(openni::SENSOR_COLOR, colour_);
     start(openni::SENSOR_DEPTH, depth_);
-    if (device_.isFile())
-      play_as_asked();
-    else
-      register_depth();
+    register_depth();
     for (openni::VideoStream* stream : {&colour_, &depth_})
       if (stream->start() != openni::STATUS_OK) fail("does not start: " + reason());
   }
   ~OpenNiCamera() override {
     colour_.stop();
     depth_.stop();
-    let_player_rest();
     colour_.destroy();
     depth_.destroy();
     watch_.reset();
@@ -152,15 +135,11 @@ class OpenNiCamera final : public DepthCamera {
   std::optional<StreamImage> next() override {
     openni::VideoStream* streams[] = {&colour_, &depth_};
     int ready = -1;
-    // At the end of a recording what has come already is taken, and nothing else is waited for.
-    const bool was_at_end = watch_->is_at_end();
     for (int waited = 0; waited < patience; waited += step) {
-      const openni::Status status = openni::OpenNI::waitForAnyStream(streams, 2, &ready, was_at_end ? 0 : step);
+      const openni::Status status = openni::OpenNI::waitForAnyStream(streams, 2, &ready, step);
       if (status == openni::STATUS_OK) return read(*streams[ready]);
       if (watch_->is_unplugged()) fail("the camera was unplugged");
       if (status != openni::STATUS_TIME_OUT) fail("gave no image: " + reason());
-      if (was_at_end) return std::nullopt;
-      if (watch_->is_at_end()) return next();
     }
     fail("gave no image for " + std::to_string(patience / 1000) + " s; unplug it and plug it in again");
   }
@@ -168,30 +147,20 @@ class OpenNiCamera final : public DepthCamera {
  private:
   static constexpr int step = 250;  // ms, after which unplugging is looked for
 
-  /// The thread of the library that plays a file looks through the streams without a lock. While none is started it
-  /// does so every 10 ms and sleeps in between: streams come and go then.
-  void let_player_rest() const {
-    if (device_.isFile()) std::this_thread::sleep_for(std::chrono::milliseconds(25));
-  }
-
   [[noreturn]] void fail(const std::string& problem) const { throw InputError({place_}, problem); }
 
   void open() {
-    std::error_code error;
-    if (!request_.file.empty() && !std::filesystem::is_regular_file(request_.file, error))
-      throw InputError({request_.file.string()},
-                       "is missing; expected a recording of OpenNI 2, a file NAME.oni; set "
-                       "`source.openni2.file`");
-    std::string uri = request_.file.empty() ? request_.device : request_.file.string();
+    const std::string& uri = request_.device;
     place_ = uri.empty() ? "OpenNI 2" : uri;
-    if (device_.open(uri.empty() ? openni::ANY_DEVICE : uri.c_str()) != openni::STATUS_OK) {
-      const std::string why = (uri.empty() ? "no camera was found: " : "cannot be opened: ") + reason();
-      fail(why + (request_.file.empty() ? "; plug one in, or set `source.openni2.device`" + present_devices()
-                                        : "; expected a recording of OpenNI 2"));
-    }
+    if (uri.ends_with(".oni"))
+      fail(
+          "is a recording; the player of OpenNI 2.2 crashes now and then, and is not used; expected the URI of a "
+          "camera");
+    if (device_.open(uri.empty() ? openni::ANY_DEVICE : uri.c_str()) != openni::STATUS_OK)
+      fail((uri.empty() ? "no camera was found: " : "cannot be opened: ") + reason() +
+           "; plug one in, or set `source.openni2.device`" + present_devices());
     if (uri.empty()) place_ = std::string("camera ") + device_.getDeviceInfo().getName();
     watch_ = std::make_unique<Watch>(device_.getDeviceInfo().getUri());
-    let_player_rest();
   }
 
   static std::string present_devices() {
@@ -208,15 +177,13 @@ class OpenNiCamera final : public DepthCamera {
     if (!device_.hasSensor(sensor)) fail(std::string("has no ") + name + "; expected a camera with colour and depth");
     if (stream.create(device_, sensor) != openni::STATUS_OK)
       fail(std::string("its ") + name + " cannot be opened: " + reason());
-    if (!device_.isFile()) {
-      choose_mode(sensor, stream, name);
-      stream.setMirroringEnabled(false);  // a camera that cannot mirror refuses, and does not
-    }
+    choose_mode(sensor, stream, name);
+    stream.setMirroringEnabled(false);  // a camera that cannot mirror refuses, and does not
     const openni::VideoMode mode = stream.getVideoMode();
     if (mode.getResolutionX() != request_.width || mode.getResolutionY() != request_.height)
       fail(std::string("its ") + name + " is " + text_of(mode) + ", but the camera is " +
            std::to_string(request_.width) + "x" + std::to_string(request_.height) +
-           "; give the camera that recorded it under `camera:`");
+           "; give the camera that it is under `camera:`");
     if (sensor == openni::SENSOR_DEPTH && !units_per_metre(mode.getPixelFormat()))
       fail("gives depth in the pixel format " + std::to_string(mode.getPixelFormat()) +
            " of OpenNI; expected millimetres or tenths of them");
@@ -250,14 +217,6 @@ class OpenNiCamera final : public DepthCamera {
            std::to_string(mode.getFps()) + " Hz";
   }
 
-  void play_as_asked() {
-    openni::PlaybackControl* playback = device_.getPlaybackControl();
-    constexpr float when_asked = -1.0F;
-    if (playback == nullptr || playback->setRepeatEnabled(false) != openni::STATUS_OK ||
-        playback->setSpeed(when_asked) != openni::STATUS_OK)
-      fail("cannot be played: " + reason());
-  }
-
   void register_depth() {
     if (!request_.registers_depth) return;
     constexpr auto mode = openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR;
@@ -280,7 +239,7 @@ class OpenNiCamera final : public DepthCamera {
     } else {
       image.image = colour_of(frame, place_);
     }
-    if (stream.getMirroringEnabled()) cv::flip(image.image, image.image, 1);  // of a recording
+    if (stream.getMirroringEnabled()) cv::flip(image.image, image.image, 1);  // by a camera that always mirrors
     return image;
   }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <memory>
 #include <opencv2/core/mat.hpp>
 #include <optional>
@@ -20,24 +19,23 @@ struct StreamImage {
 
 /// What is asked of a camera.
 struct DepthCameraRequest {
-  std::string device;          ///< its URI; empty = the first one
-  std::filesystem::path file;  ///< a recording *.oni in the place of a camera
-  int width = 0, height = 0;   ///< [px]
-  double frame_rate = 0.0;     ///< [1/s]
+  std::string device;         ///< its URI; empty = the first one
+  int width = 0, height = 0;  ///< [px]
+  double frame_rate = 0.0;    ///< [1/s]
   bool registers_depth = true;
 };
 
-/// A camera with colour and depth, or a recording of one, through OpenNI 2; tests give one of their own. Images are not
+/// A camera with colour and depth through OpenNI 2; tests give one of their own. Images are not
 /// mirrored. Used by one thread.
 class DepthCamera {
  public:
   virtual ~DepthCamera() = default;
-  /// Waits for the next image of either stream; empty at the end of a recording. Throws InputError for a camera that
+  /// Waits for the next image of either stream; empty when there will be none. Throws InputError for a camera that
   /// was unplugged, or that gives no images for five seconds.
   virtual std::optional<StreamImage> next() = 0;
 };
 
-/// Opens a camera or a recording. Throws InputError for one that is missing or cannot be opened, for a size that it
+/// Opens a camera. Throws InputError for one that is missing or cannot be opened, for a size that it
 /// does not have, with those that it has, and for a camera that cannot register its depth.
 std::unique_ptr<DepthCamera> open_depth_camera(const DepthCameraRequest& request);
 

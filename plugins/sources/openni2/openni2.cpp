@@ -17,11 +17,9 @@ constexpr std::uint64_t most_lost_at_once = 300;  // a longer gap is a camera th
 void Openni2Settings::describe(ParameterTable<Openni2Settings>& table) {
   using S = Openni2Settings;
   table.add("device", &S::device, "URI of the camera; empty = the first one");
-  table.add("file", &S::file, "a recording of OpenNI 2, NAME.oni, in the place of a camera");
   table
-      .add(
-          "registration", &S::registration,
-          "device: the camera registers its depth to its colour; none: they fit already. A recording is taken as it is")
+      .add("registration", &S::registration,
+           "device: the camera registers its depth to its colour; none: they fit already")
       .one_of({"device", "none"});
   table
       .add("max_time_difference", &S::max_time_difference,
@@ -31,21 +29,17 @@ void Openni2Settings::describe(ParameterTable<Openni2Settings>& table) {
 }
 
 Openni2Source::Openni2Source(const Openni2Settings& settings, const CreationContext& context)
-    : Openni2Source(settings,
-                    open_depth_camera({settings.device, settings.file, context.camera.width, context.camera.height,
-                                       context.camera.frame_rate, settings.registration == "device"})) {}
+    : Openni2Source(settings, open_depth_camera({settings.device, context.camera.width, context.camera.height,
+                                                 context.camera.frame_rate, settings.registration == "device"})) {}
 
 Openni2Source::Openni2Source(const Openni2Settings& settings, std::unique_ptr<DepthCamera> camera)
     : settings_(settings), camera_(std::move(camera)) {}
 
-std::string Openni2Source::place() const {
-  if (!settings_.file.empty()) return settings_.file.string();
-  return settings_.device.empty() ? "OpenNI 2" : settings_.device;
-}
+std::string Openni2Source::place() const { return settings_.device.empty() ? "OpenNI 2" : settings_.device; }
 
 SourceDescription Openni2Source::describe() const {
   SourceDescription description;
-  description.name = settings_.file.empty() ? "camera of OpenNI 2" : settings_.file.stem().string();
+  description.name = "camera of OpenNI 2";
   description.has_depth = true;
   description.can_read_ahead = true;
   return description;
@@ -128,7 +122,6 @@ HOLDFAST_PLUGIN(openni2, registry) {
   using namespace holdfast::openni2_plugin;
   registry.add<holdfast::FrameSource, Openni2Source, Openni2Settings>(
       {.name = "openni2",
-       .summary =
-           "Cameras with colour and depth through OpenNI 2 (Kinect, Xtion, Astra), and recordings of them (.oni).",
+       .summary = "Cameras with colour and depth through OpenNI 2 (Kinect, Xtion, Astra).",
        .paper = ""});
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,7 +14,6 @@ namespace holdfast::openni2_plugin {
 
 struct Openni2Settings {
   std::string device = {};
-  std::filesystem::path file = {};
   std::string registration = "device";
   double max_time_difference = 0.02;
 
