@@ -28,7 +28,7 @@ struct SensorFrame {
   /// Time from the exposure of the colour image to that of the depth image [s]: negative if depth came first, 0 if the
   /// sensor exposes both together or the source does not know.
   double depth_delay = 0.0;
-  cv::Mat colour;  ///< 8UC3, blue green red
+  cv::Mat colour;  ///< 8UC3, blue green red; Pipeline::feed() takes grey images, 8UC1, as well
   cv::Mat depth;   ///< 32FC1 along the optical axis [m], 0 = no value; same size as colour; may be empty
   /// 8UC1 or 8UC3, the image of the right camera of a rectified stereo pair, whose left camera took `colour`: a point
   /// lies in the same row of both, Camera::baseline * fx / depth columns further left in this one. Same size as colour;
