@@ -3,7 +3,9 @@
 const verdictOf = (comparison) => {
   if (!comparison.enough) return {text: 'too few to tell', kind: ''};
   if (!comparison.significant) return {text: 'not significant', kind: ''};
-  return comparison.gain > 0 ? {text: 'significantly better', kind: 'good'} : {text: 'significantly worse', kind: 'bad'};
+  const direction = comparison.gain > 0 ? 'better' : 'worse';
+  if (!(comparison.p_holm < 0.05)) return {text: `${direction} by itself, not among all comparisons`, kind: ''};
+  return {text: `significantly ${direction}`, kind: comparison.gain > 0 ? 'good' : 'bad'};
 };
 
 /// The gain on every sequence of a comparison: baseline - variant.
