@@ -168,9 +168,10 @@ ViewedRun viewed_run(const RunRecord& record) {
     for (const EvaluatedPose& pose : evaluation->poses) errors.emplace_back(pose.timestamp, pose.error);
     run.errors = errors_of(run.path, errors);
     const TrajectoryAlignment& alignment = evaluation->alignment;
-    for (const TimedPosition& place : evaluation->truth_track)
-      run.truth.emplace_back(
-          place.timestamp, alignment.rotation.transpose() * (place.position - alignment.translation) / alignment.scale);
+    for (const TimedPose& pose : evaluation->truth_track)
+      run.truth.emplace_back(pose.timestamp, alignment.rotation.transpose() *
+                                                 (pose.T_world_camera.translation() - alignment.translation) /
+                                                 alignment.scale);
     add("ATE RMSE", millimetres(evaluation->absolute_error.rmse));
   }
   add("coverage", fixed_text(record.coverage() * 100.0, 1) + " %");

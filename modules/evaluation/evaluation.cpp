@@ -68,12 +68,19 @@ std::string unit_advice(const std::string& name, double stamp, double other_stam
 }
 
 /// The truth from shortly before the first to shortly after the last pose of the estimate.
-std::vector<TimedPosition> track_between(const Trajectory& truth, double begin, double end) {
-  std::vector<TimedPosition> track;
+Trajectory track_between(const Trajectory& truth, double begin, double end) {
+  Trajectory track;
   for (const TimedPose& pose : truth)
-    if (pose.timestamp >= begin && pose.timestamp <= end)
-      track.push_back({pose.timestamp, pose.T_world_camera.translation()});
+    if (pose.timestamp >= begin && pose.timestamp <= end) track.push_back(pose);
   return track;
+}
+
+/// The pose of the estimate in the world frame of the truth.
+TimedPose aligned(const TimedPose& pose, const TrajectoryAlignment& alignment) {
+  TimedPose result = pose;
+  result.T_world_camera.linear() = alignment.rotation * pose.T_world_camera.linear();
+  result.T_world_camera.translation() = alignment.apply(pose.T_world_camera.translation());
+  return result;
 }
 
 }  // namespace
@@ -131,8 +138,7 @@ Evaluation evaluate(const Trajectory& truth_as_given, const Trajectory& estimate
   }
 
   result.truth_track = track_between(truth, estimate_stamps.front(), estimate_stamps.back());
-  for (const TimedPose& pose : estimate)
-    result.estimate_track.push_back({pose.timestamp, result.alignment.apply(pose.T_world_camera.translation())});
+  for (const TimedPose& pose : estimate) result.estimate_track.push_back(aligned(pose, result.alignment));
   return result;
 }
 

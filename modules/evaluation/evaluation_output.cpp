@@ -203,21 +203,36 @@ std::string to_json(const Evaluation& evaluation) {
 std::string to_tracks_json(const Evaluation& evaluation) {
   const auto numbers = [](std::initializer_list<double> values, int decimals) {
     std::string text;
-    for (const double value : values) text += "," + fixed_text(value, decimals);
+    for (const double value : values) {
+      text += ',';
+      text += fixed_text(value, decimals);
+    }
     return text;
   };
-  const auto track = [&](const std::vector<TimedPosition>& positions) {
+  const auto track = [&](const Trajectory& poses) {
     std::string text;
-    for (const TimedPosition& p : positions)
-      text += (text.empty() ? "[" : ",[") + fixed_text(p.timestamp, 3) +
-              numbers({p.position.x(), p.position.y(), p.position.z()}, 4) + "]";
+    for (const TimedPose& pose : poses) {
+      const Eigen::Vector3d position = pose.T_world_camera.translation();
+      text += (text.empty() ? "[" : ",[") + fixed_text(pose.timestamp, 3) +
+              numbers({position.x(), position.y(), position.z()}, 4) + "]";
+    }
+    return text;
+  };
+  const auto rotations = [&](const Trajectory& poses) {
+    std::string text;
+    for (const TimedPose& pose : poses) {
+      Eigen::Quaterniond q(pose.T_world_camera.linear());
+      if (q.w() < 0.0) q.coeffs() *= -1.0;
+      text += (text.empty() ? "[" : ",[") + fixed_text(q.x(), 5) + numbers({q.y(), q.z(), q.w()}, 5) + "]";
+    }
     return text;
   };
   std::string errors;
   for (const EvaluatedPose& pose : evaluation.poses)
     errors += (errors.empty() ? "[" : ",[") + fixed_text(pose.timestamp, 3) + numbers({pose.error}, 6) + "]";
   return "{\"truth\":[" + track(evaluation.truth_track) + "],\n\"estimate\":[" + track(evaluation.estimate_track) +
-         "],\n\"error\":[" + errors + "]}\n";
+         "],\n\"error\":[" + errors + "],\n\"truth_rotation\":[" + rotations(evaluation.truth_track) +
+         "],\n\"estimate_rotation\":[" + rotations(evaluation.estimate_track) + "]}\n";
 }
 
 std::string to_csv(const Evaluation& evaluation) {

@@ -2,15 +2,17 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include "holdfast/core/check.hpp"
+#include "holdfast/evaluation/camera_angles.hpp"
 #include "holdfast/evaluation/evaluation.hpp"
 #include "holdfast/evaluation/evaluation_plots.hpp"
 #include "holdfast/evaluation/number_text.hpp"
 #include "holdfast/evaluation/statistics.hpp"
 #include "holdfast/evaluation/svg_plot.hpp"
+#include "relative_error.hpp"
+#include "vertical_axis.hpp"
 
 namespace holdfast {
 
@@ -34,14 +36,6 @@ struct Projection {
   std::array<int, 2> axes() const { return {sight == 0 ? 1 : 0, sight == 2 ? 1 : 2}; }
 };
 
-/// The axis of the truth along which cameras that are carried upright feel gravity; nothing when they do not tell.
-std::optional<int> vertical_axis(const Eigen::Vector3d& mean_up) {
-  int axis = 2;
-  const double largest = mean_up.cwiseAbs().maxCoeff(&axis);
-  constexpr double decisive = 0.7;  // within 45 degrees on average
-  return largest > decisive ? std::optional(axis) : std::nullopt;
-}
-
 Projection projection_of(const Evaluation& evaluation) {
   Eigen::Vector3d minimum = evaluation.poses.front().truth, maximum = minimum;
   for (const EvaluatedPose& pose : evaluation.poses) {
@@ -53,7 +47,7 @@ Projection projection_of(const Evaluation& evaluation) {
   // Strictly less, so that the projection axis is z in case of a tie: the actual top view if z points up.
   for (const int axis : {1, 0})
     if (extent[axis] < extent[narrowest]) narrowest = axis;
-  const std::optional<int> vertical = vertical_axis(evaluation.mean_up);
+  const auto vertical = vertical_axis(evaluation.mean_up);
   if (!vertical) return {narrowest, narrowest == 2};
   // A path in a vertical plane would be a line from above.
   constexpr double nearly_flat = 0.2;
@@ -61,11 +55,11 @@ Projection projection_of(const Evaluation& evaluation) {
   return {*vertical, true};
 }
 
-/// Appends a point of the plot for each pose; the line is lifted where poses are missing.
-template <class PointOf>
-void append_with_gaps(PlotLine& line, const std::vector<TimedPosition>& track, PointOf&& point_of) {
+/// Appends a point of the plot for each pose or its like; the line is lifted where poses are missing.
+template <class Timed, class PointOf>
+void append_with_gaps(PlotLine& line, const std::vector<Timed>& track, PointOf&& point_of) {
   std::vector<double> stamps;
-  for (const TimedPosition& point : track) stamps.push_back(point.timestamp);
+  for (const Timed& point : track) stamps.push_back(point.timestamp);
   const double threshold = gap_threshold(stamps);
   for (std::size_t i = 0; i < track.size(); ++i) {
     if (i > 0 && stamps[i] - stamps[i - 1] > threshold) {
@@ -78,9 +72,10 @@ void append_with_gaps(PlotLine& line, const std::vector<TimedPosition>& track, P
   }
 }
 
-void append_track(PlotLine& line, const std::vector<TimedPosition>& track, const std::array<int, 2>& axes) {
-  append_with_gaps(line, track, [&](const TimedPosition& pose) {
-    return std::pair(pose.position[axes[0]], pose.position[axes[1]]);
+void append_track(PlotLine& line, const Trajectory& track, const std::array<int, 2>& axes) {
+  append_with_gaps(line, track, [&](const TimedPose& pose) {
+    const Eigen::Vector3d position = pose.T_world_camera.translation();
+    return std::pair(position[axes[0]], position[axes[1]]);
   });
 }
 
@@ -119,9 +114,8 @@ std::vector<PlotLine> path_by_error(const Evaluation& evaluation, const std::arr
                      1.0});
   }
   lines.push_back({"", plot_colour::grey, {}, {}, width, false, 1.0});
-  const std::vector<TimedPosition>& track = evaluation.estimate_track;
-  std::vector<double> stamps;
-  for (const TimedPosition& point : track) stamps.push_back(point.timestamp);
+  const Trajectory& track = evaluation.estimate_track;
+  const std::vector<double> stamps = stamps_of(track);
   const double threshold = gap_threshold(stamps);
   std::size_t next = 0;  // of the evaluated poses, which are some of those of the track
   std::size_t last_line = lines.size();
@@ -146,9 +140,9 @@ std::vector<PlotLine> path_by_error(const Evaluation& evaluation, const std::arr
     if (choice != last_line) {
       line.x.push_back(lift_pen);
       line.y.push_back(lift_pen);
-      add(track[i - 1].position);
+      add(track[i - 1].T_world_camera.translation());
     }
-    add(track[i].position);
+    add(track[i].T_world_camera.translation());
     last_line = choice;
   }
   std::erase_if(lines, [](const PlotLine& line) { return line.x.empty(); });
@@ -168,6 +162,28 @@ double begin_of(const Evaluation& evaluation) {
   if (evaluation.coverage && !evaluation.coverage->gaps.empty())
     begin = std::min(begin, evaluation.coverage->gaps.front().begin);
   return begin;
+}
+
+/// Plots one value of the estimate and of the truth over time: the truth thin over the broad estimate.
+template <class Timed, class ValueOf>
+std::string compared_over_time(const Evaluation& evaluation, const std::string& name, const std::string& unit,
+                               const std::vector<Timed>& estimate, const std::vector<Timed>& truth,
+                               const ValueOf& value_of) {
+  const double begin = begin_of(evaluation);
+  Plot plot;
+  plot.title = name + " over time";
+  plot.x_label = "time [s]";
+  plot.y_label = name + " [" + unit + "]";
+  plot.height = 230;
+  shade_gaps(evaluation, begin, plot);
+  const auto line_of = [&](const std::vector<Timed>& track, PlotLine line) {
+    append_with_gaps(line, track,
+                     [&](const Timed& timed) { return std::pair(timed.timestamp - begin, value_of(timed)); });
+    return line;
+  };
+  plot.lines = {line_of(estimate, {"estimate", plot_colour::sky, {}, {}, 3.4, false, 1.0}),
+                line_of(truth, {"truth", plot_colour::black, {}, {}, 1.1, false, 1.0})};
+  return to_svg(plot);
 }
 
 }  // namespace
@@ -229,21 +245,17 @@ std::string error_over_time_svg(const Evaluation& evaluation) {
 
 std::string position_over_time_svg(const Evaluation& evaluation, int axis) {
   HOLDFAST_CHECK(axis >= 0 && axis < 3, "axis " << axis);
-  const double begin = begin_of(evaluation);
-  Plot plot;
-  plot.title = std::string(axis_names[axis]) + " over time";
-  plot.x_label = "time [s]";
-  plot.y_label = std::string(axis_names[axis]) + " [m]";
-  plot.height = 230;
-  shade_gaps(evaluation, begin, plot);
-  const auto line_of = [&](const std::vector<TimedPosition>& track, PlotLine line) {
-    append_with_gaps(line, track,
-                     [&](const TimedPosition& pose) { return std::pair(pose.timestamp - begin, pose.position[axis]); });
-    return line;
-  };
-  plot.lines = {line_of(evaluation.estimate_track, {"estimate", plot_colour::sky, {}, {}, 3.4, false, 1.0}),
-                line_of(evaluation.truth_track, {"truth", plot_colour::black, {}, {}, 1.1, false, 1.0})};
-  return to_svg(plot);
+  return compared_over_time(evaluation, axis_names[axis], "m", evaluation.estimate_track, evaluation.truth_track,
+                            [axis](const TimedPose& pose) { return pose.T_world_camera.translation()[axis]; });
+}
+
+std::string angle_over_time_svg(const Evaluation& evaluation, int angle) {
+  HOLDFAST_CHECK(angle >= 0 && angle < 3, "angle " << angle);
+  constexpr double CameraAngles::*angles[3] = {&CameraAngles::roll, &CameraAngles::pitch, &CameraAngles::yaw};
+  constexpr const char* names[3] = {"roll", "pitch", "yaw"};
+  const EvaluatedAngles compared = camera_angles(evaluation);
+  return compared_over_time(evaluation, names[angle], "deg", compared.estimate, compared.truth,
+                            [member = angles[angle]](const CameraAngles& camera) { return camera.*member; });
 }
 
 }  // namespace holdfast

@@ -12,6 +12,7 @@ namespace holdfast {
 
 std::span<const EmbeddedFile> embedded_report_style();
 std::span<const EmbeddedFile> embedded_report_script();
+std::span<const EmbeddedFile> embedded_report_clip_script();
 
 namespace {
 
@@ -49,6 +50,27 @@ std::string to_html(const ReportTable& table) {
   return html + "</tbody>\n</table>\n";
 }
 
+std::string lines_of(const std::vector<std::string>& texts) {
+  std::string lines;
+  for (const std::string& text : texts) lines += (lines.empty() ? "" : "\n") + text;
+  return lines;
+}
+
+/// The first picture and a player, which is hidden until its script runs.
+std::string to_html(const ReportClip& clip) {
+  HOLDFAST_CHECK(!clip.pictures.empty() && clip.names.size() == clip.pictures.size() && clip.interval > 0.0,
+                 "clip '" << clip.caption << "' pictures " << clip.pictures.size() << " names " << clip.names.size()
+                          << " interval " << clip.interval);
+  std::string html = "<figure class=\"clip\" data-interval=\"" + shortest_text(clip.interval) + "\" data-pictures=\"" +
+                     escape_markup(lines_of(clip.pictures)) + "\" data-names=\"" + escape_markup(lines_of(clip.names)) +
+                     "\">\n<img src=\"" + escape_markup(clip.pictures.front()) + "\" alt=\"" +
+                     escape_markup(clip.names.front()) + "\">\n";
+  html += "<div class=\"player\" hidden><button type=\"button\">Play</button><input type=\"range\" min=\"0\" max=\"" +
+          std::to_string(clip.pictures.size() - 1) + "\" value=\"0\" aria-label=\"Picture\"><output></output></div>\n";
+  if (!clip.caption.empty()) html += element("figcaption", clip.caption) + '\n';
+  return html + "</figure>\n";
+}
+
 std::string to_html(const ReportSection& section) {
   std::string html = "<section>\n";
   if (!section.heading.empty()) html += element("h2", section.heading) + '\n';
@@ -65,6 +87,7 @@ std::string to_html(const ReportSection& section) {
     if (!figure.caption.empty()) html += element("figcaption", figure.caption) + '\n';
     html += "</figure>\n";
   }
+  for (const ReportClip& clip : section.clips) html += to_html(clip);
   if (!section.preformatted.empty()) html += element("pre", section.preformatted) + '\n';
   return html + "</section>\n";
 }
@@ -86,6 +109,8 @@ std::string to_html(const Report& report) {
     html += "</div>\n";
   }
   for (const ReportSection& section : report.sections) html += to_html(section);
+  if (std::any_of(report.sections.begin(), report.sections.end(), [](const auto& s) { return !s.clips.empty(); }))
+    html += "<script>\n" + joined(embedded_report_clip_script()) + "</script>\n";
   return html + "</main>\n</body>\n</html>\n";
 }
 

@@ -198,7 +198,7 @@ void bind_run(py::module_& module) {
       .def_property_readonly("dense_map", &dense_map_of)
       .def("map", [](std::shared_ptr<RunRecord> record) { return std::shared_ptr<Map>(record, &record->map); })
       .def("run_json", &run_json)
-      .def("report_html", &report_html)
+      .def("report_html", [](const RunRecord& record) { return report_html(record); })
       .def("summary_text", &summary_text)
       .def("coverage_warning", &coverage_warning)
       .def(

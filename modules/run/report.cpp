@@ -2,6 +2,7 @@
 #include "holdfast/evaluation/report.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <string>
 #include <utility>
 
@@ -124,6 +125,11 @@ ReportSection error_section(const Evaluation& evaluation, const RunSummary& summ
   error.figures.push_back({error_over_time_svg(evaluation), "Absolute error over time"});
   for (int axis = 0; axis < 3; ++axis)
     error.figures.push_back({position_over_time_svg(evaluation, axis), axis == 2 ? "Position over time" : ""});
+  for (int angle = 0; angle < 3; ++angle)
+    error.figures.push_back({angle_over_time_svg(evaluation, angle),
+                             angle < 2 ? ""
+                                       : "Rotation over time: roll clockwise, pitch up and yaw to the right are "
+                                         "positive; yaw is 0 in the first view of the truth"});
   return error;
 }
 
@@ -143,6 +149,31 @@ ReportSection skipped_section(const std::vector<SkippedFrame>& skipped) {
   return result;
 }
 
+/// "overlay/frame_000012.jpg" is of frame 12.
+std::string frame_name(const std::string& picture) {
+  const std::string stem = std::filesystem::path(picture).stem().string();
+  return "frame " + std::to_string(std::stoull(stem.substr(stem.rfind('_') + 1)));
+}
+
+/// The pictures at the speed of the recording.
+ReportSection picture_section(const RunRecord& record, const std::vector<std::string>& pictures) {
+  ReportClip clip;
+  clip.pictures = pictures;
+  for (const std::string& picture : pictures) clip.names.push_back(frame_name(picture));
+  const std::vector<double>& stamps = record.frame_stamps;
+  constexpr double shortest = 0.01, longest = 1.0;  // s
+  if (stamps.size() > 1)
+    clip.interval =
+        std::clamp((stamps.back() - stamps.front()) / static_cast<double>(pictures.size()), shortest, longest);
+  clip.caption =
+      "Masks are tinted by class and what moves is red; features from green (static) to red (moving), filled with a "
+      "map "
+      "point. The pictures are in the folder overlay beside this page.";
+  ReportSection result = section("Pictures");
+  result.clips = {std::move(clip)};
+  return result;
+}
+
 std::vector<ReportHighlight> highlights(const RunRecord& record) {
   std::vector<ReportHighlight> result;
   if (record.evaluation)
@@ -154,7 +185,9 @@ std::vector<ReportHighlight> highlights(const RunRecord& record) {
 
 }  // namespace
 
-std::string report_html(const RunRecord& record) {
+std::string report_html(const RunRecord& record) { return report_html(record, {}); }
+
+std::string report_html(const RunRecord& record, const std::vector<std::string>& pictures) {
   const RunSettings& run = record.configuration.run;
   Report report;
   report.title = record.source.name.empty() ? "Holdfast run" : "Holdfast: " + record.source.name;
@@ -162,6 +195,7 @@ std::string report_html(const RunRecord& record) {
                     ", version " HOLDFAST_VERSION ", commit " + build_commit() + "; " + machine_text();
   report.highlights = highlights(record);
   report.sections.push_back(summary_section(record));
+  if (!pictures.empty()) report.sections.push_back(picture_section(record, pictures));
   if (record.evaluation) report.sections.push_back(error_section(*record.evaluation, record.summary));
   report.sections.push_back(section("Stages"));
   report.sections.back().tables = {stage_report(record.summary)};

@@ -87,7 +87,7 @@ void write_results(const RunRecord& record, const std::filesystem::path& folder)
     results.write_text("evaluation.json", [&] { return to_json(*record.evaluation); });
     results.write_text("tracks.json", [&] { return to_tracks_json(*record.evaluation); });
   }
-  results.write_text("report.html", [&] { return report_html(record); });
+  results.write_text("report.html", [&] { return report_html(record, overlay_pictures(folder)); });
   if (record.evaluation) {
     results.write_text("trajectory.svg", [&] { return top_view_svg(*record.evaluation); });
     results.write_text("error.svg", [&] { return error_over_time_svg(*record.evaluation); });

@@ -178,6 +178,23 @@ TEST(EvaluationOutput, HoldsTheSameFiguresInJsonAndCsv) {
   EXPECT_EQ(way_mean, evaluation.error_per_way.translation.mean);
 }
 
+TEST(EvaluationOutput, TracksHoldAlignedPoses) {
+  const Trajectory truth = wavy_trajectory(100, 30.0);
+  const auto json = nlohmann::json::parse(
+      to_tracks_json(evaluate(truth, moved(truth, some_transform(), 0.5), with_alignment(AlignmentKind::sim3))));
+  for (const char* key : {"truth", "estimate", "truth_rotation", "estimate_rotation", "error"})
+    ASSERT_EQ(json.at(key).size(), 100u) << key;
+  for (std::size_t i = 0; i < 100; ++i) {
+    const Eigen::Quaterniond expected(truth[i].T_world_camera.linear());
+    for (const char* key : {"truth_rotation", "estimate_rotation"}) {
+      const auto row = json.at(key).at(i).get<std::vector<double>>();
+      ASSERT_EQ(row.size(), 4u);
+      const Eigen::Quaterniond found(row[3], row[0], row[1], row[2]);
+      EXPECT_NEAR(found.angularDistance(expected), 0.0, 1e-4) << key << " row " << i;
+    }
+  }
+}
+
 TEST(EvaluationOutput, SaysWhatIsUnknown) {
   const Trajectory truth = test::straight_trajectory(50, 30.0, 0.1);  // 0.16 m: no pair is 1 m apart
   EvaluationOptions options;
@@ -272,6 +289,14 @@ TEST(EvaluationPlots, PositionsOverTime) {
   const Evaluation evaluation = evaluate(truth, truth);
   EXPECT_THAT(position_over_time_svg(evaluation, 1), AllOf(HasSubstr(">y [m]<"), HasSubstr(">truth<")));
   EXPECT_THROW(position_over_time_svg(evaluation, 3), CheckError);
+}
+
+TEST(EvaluationPlots, AnglesOverTime) {
+  const Trajectory truth = wavy_trajectory(200, 30.0);
+  const Evaluation evaluation = evaluate(truth, truth);
+  EXPECT_THAT(angle_over_time_svg(evaluation, 0), AllOf(HasSubstr(">roll over time<"), HasSubstr(">roll [deg]<")));
+  EXPECT_THAT(angle_over_time_svg(evaluation, 2), AllOf(HasSubstr(">yaw [deg]<"), HasSubstr(">truth<")));
+  EXPECT_THROW(angle_over_time_svg(evaluation, 3), CheckError);
 }
 
 TEST(EvaluationPlots, ShadeGaps) {

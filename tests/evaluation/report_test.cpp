@@ -49,6 +49,23 @@ TEST(Report, DrawsAlarmingFiguresInRed) {
   EXPECT_THAT(html, HasSubstr("<div class=\"highlight alarming\"><b>12 %</b>"));
 }
 
+TEST(Report, RefersToThePicturesOfAClip) {
+  EXPECT_THAT(to_html(sample()), Not(HasSubstr("figure.clip"))) << "no script without a clip";
+  Report report = sample();
+  report.sections[0].clips = {
+      {{"overlay/frame_000000.jpg", "overlay/frame_000002.jpg"}, {"frame 0", "a \"2\""}, 0.05, "Masks"}};
+  const std::string html = to_html(report);
+  EXPECT_THAT(html, HasSubstr("<img src=\"overlay/frame_000000.jpg\" alt=\"frame 0\">"));
+  EXPECT_THAT(html, HasSubstr("data-pictures=\"overlay/frame_000000.jpg\noverlay/frame_000002.jpg\""));
+  EXPECT_THAT(html, HasSubstr("data-names=\"frame 0\na &quot;2&quot;\""));
+  EXPECT_THAT(html, HasSubstr("<div class=\"player\" hidden>")) << "nothing to press without JavaScript";
+  EXPECT_THAT(html, HasSubstr("querySelectorAll('figure.clip')"));
+  report.sections[0].clips[0].names.pop_back();
+  EXPECT_THROW(to_html(report), CheckError);
+  report.sections[0].clips = {ReportClip{}};
+  EXPECT_THROW(to_html(report), CheckError) << "a clip without pictures";
+}
+
 TEST(Report, RefusesRaggedTables) {
   Report report = sample();
   report.sections[0].tables[0].rows[1].pop_back();

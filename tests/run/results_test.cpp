@@ -167,6 +167,30 @@ TEST_F(ResultsTest, LowCoverageIsAWarningWithItsCommonestTrouble) {
   EXPECT_EQ(coverage_warning(record_), "") << "frames that were not read say nothing";
 }
 
+/// The files that an observer `overlay` leaves, and others, which are none of its pictures.
+TEST_F(ResultsTest, TheReportPlaysThePicturesOfTheOverlay) {
+  EXPECT_TRUE(overlay_pictures(folder_).empty());
+  fs::create_directories(folder_ / "overlay");
+  for (const char* name : {"frame_000010.jpg", "frame_000002.jpg", "frame_1000000.jpg", "frame_.jpg", "frame_1x.jpg",
+                           "overlay.mp4", "frame_000003.txt", "frame_99999999999999999999.jpg"})
+    std::ofstream(folder_ / "overlay" / name);
+  EXPECT_THAT(overlay_pictures(folder_), ::testing::ElementsAre("overlay/frame_000002.jpg", "overlay/frame_000010.jpg",
+                                                                "overlay/frame_1000000.jpg"));
+  write_results(record_, folder_);
+  EXPECT_THAT(text("report.html"), AllOf(HasSubstr("<img src=\"overlay/frame_000002.jpg\" alt=\"frame 2\">"),
+                                         HasSubstr("data-names=\"frame 2\nframe 10\nframe 1000000\""),
+                                         HasSubstr("data-interval=\"0.32")));  // 29 / 30 s by three pictures
+  EXPECT_THAT(report_html(record_), ::testing::Not(HasSubstr("overlay/")));
+}
+
+TEST_F(ResultsTest, TheReportShowsPositionAndRotationOverTime) {
+  const std::string html = report_html(record_);
+  for (const std::string name : {"x", "y", "z", "roll", "pitch", "yaw"})
+    EXPECT_THAT(html, HasSubstr("<title>" + name + " over time</title>"));
+  record_.evaluation.reset();
+  EXPECT_THAT(report_html(record_), ::testing::Not(HasSubstr("roll over time")));
+}
+
 TEST_F(ResultsTest, CountsHaveTheirPlural) {
   record_.map_keyframes = 1;
   record_.trajectory.resize(1);

@@ -33,12 +33,6 @@ struct EvaluatedPose {
   double error = 0.0;                                  ///< their distance [m]
 };
 
-/// A position with its time, in the world frame of the ground truth.
-struct TimedPosition {
-  double timestamp = 0.0;                              ///< [s]
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
-};
-
 /// Relative pose error (Sturm et al. 2012, section V-A) over pairs of poses i, j of the estimate.
 ///
 /// error = E inv(G) with E = inv(T_i) T_j of the estimate (translations multiplied by the scale of the alignment, which
@@ -108,10 +102,10 @@ struct Evaluation {
   RelativeError error_per_time;
   RelativeError error_per_way;
   SegmentError segment_error;
-  std::optional<ScaleDrift> scale_drift;      ///< empty unless the alignment is sim3, and where nothing can be said
-  std::optional<Coverage> coverage;           ///< empty if the frames were not given
-  std::vector<TimedPosition> truth_track;     ///< ground truth between the first and the last pose of the estimate
-  std::vector<TimedPosition> estimate_track;  ///< all poses of the estimate, aligned
+  std::optional<ScaleDrift> scale_drift;  ///< empty unless the alignment is sim3, and where nothing can be said
+  std::optional<Coverage> coverage;       ///< empty if the frames were not given
+  Trajectory truth_track;                 ///< ground truth between the first and the last pose of the estimate
+  Trajectory estimate_track;              ///< all poses of the estimate, aligned: in the world frame of the truth
   /// Mean over the compared true poses of the direction that is up in the image (-y of the camera), in the frame of the
   /// truth. Near 1 in length for a camera that is carried upright: then it is opposite to gravity.
   Eigen::Vector3d mean_up = Eigen::Vector3d::Zero();
@@ -132,7 +126,9 @@ std::string to_json(const Evaluation& evaluation);
 std::string to_csv(const Evaluation& evaluation);
 
 /// Formats the compared trajectories for plotting: {"truth": [[t, x, y, z], ...], "estimate": the same, aligned,
-/// "error": [[t, metres], ...]}, time stamps [s] with a precision of 1 ms and positions [m] with 0.1 mm.
+/// "error": [[t, metres], ...], "truth_rotation": [[qx, qy, qz, qw], ...], "estimate_rotation": the same, aligned}; the
+/// rotations belong to the positions of the same row. Time stamps [s] have a precision of 1 ms, positions [m] of 0.1
+/// mm, quaternions five decimals.
 std::string to_tracks_json(const Evaluation& evaluation);
 
 /// Plots the aligned estimate and the ground truth with equal scales, projected along an axis of the ground truth: the

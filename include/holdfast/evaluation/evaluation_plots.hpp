@@ -11,4 +11,8 @@ namespace holdfast {
 /// frame of the ground truth. Frames without a pose are shaded as in error_over_time_svg(). Self-contained SVG.
 std::string position_over_time_svg(const Evaluation& evaluation, int axis);
 
+/// Plots one angle (0 = roll, 1 = pitch, 2 = yaw) of the aligned estimate and of the ground truth over time in degrees,
+/// as camera_angles() defines them. Frames without a pose are shaded as in error_over_time_svg(). Self-contained SVG.
+std::string angle_over_time_svg(const Evaluation& evaluation, int angle);
+
 }  // namespace holdfast

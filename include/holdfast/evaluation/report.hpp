@@ -22,6 +22,16 @@ struct ReportFigure {
   std::string caption;
 };
 
+/// Pictures that the page plays one after the other, with a button and a slider. The page refers to them, so that it
+/// stays small; without JavaScript it shows the first one.
+struct ReportClip {
+  std::vector<std::string>
+      pictures;                    ///< addresses relative to the page, without line breaks: "overlay/frame_000000.jpg"
+  std::vector<std::string> names;  ///< one for each picture, without line breaks: "frame 0"
+  double interval = 0.1;           ///< time from one picture to the next [s]
+  std::string caption;
+};
+
 /// A heading and its content, in this order; empty parts are omitted.
 struct ReportSection {
   std::string heading;
@@ -29,6 +39,7 @@ struct ReportSection {
   std::vector<std::pair<std::string, std::string>> values;  ///< name and value
   std::vector<ReportTable> tables;
   std::vector<ReportFigure> figures;
+  std::vector<ReportClip> clips;
   std::string preformatted;  ///< in a fixed-width font; for a configuration
 };
 
@@ -47,9 +58,10 @@ struct Report {
   std::vector<ReportSection> sections;
 };
 
-/// Formats a report as a self-contained HTML page: styles, figures and a switch between dark and light are inline. Texts
-/// are escaped, the SVG of figures is not. The same report gives the same bytes. Throws CheckError if a row and its header
-/// differ in length, or if the numbers of bars and rows differ.
+/// Formats a report as a self-contained HTML page: styles, figures and a switch between dark and light are inline.
+/// Texts are escaped, the SVG of figures is not. The same report gives the same bytes. Throws CheckError if a row and
+/// its header differ in length, if the numbers of bars and rows differ, or if a clip has no picture, not one name for
+/// each, or an interval that is not positive.
 std::string to_html(const Report& report);
 
 }  // namespace holdfast

@@ -34,6 +34,12 @@ const char* build_commit();
 std::string run_json(const RunRecord& record);
 /// The content of report.html: one self-contained page.
 std::string report_html(const RunRecord& record);
+/// The same with the pictures of the observer `overlay`, which the page plays: their addresses relative to the page, as
+/// overlay_pictures() gives them. The page refers to them and does not contain them.
+std::string report_html(const RunRecord& record, const std::vector<std::string>& pictures);
+/// The pictures (jpg or png) that the observer `overlay` has written into the folder of a run, by frame: paths relative
+/// to the folder. Empty where there are none, or a video.
+std::vector<std::string> overlay_pictures(const std::filesystem::path& folder);
 /// A short summary for a terminal: stage times and one line per figure.
 std::string summary_text(const RunRecord& record);
 
