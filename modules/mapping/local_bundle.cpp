@@ -76,7 +76,8 @@ void LocalMapper::apply_bundle() {
     if (!problem_.observations[o].outlier) continue;
     const auto& [point, keyframe] = problem_observations_[o];
     if (map_.find_point(point) == nullptr) continue;
-    drop_observation(point, keyframe);
+    map_.remove_observation(point, keyframe);
+    drop_weak_point(point);
     ++counts_.observations_removed;
   }
   for (const MapPointId point : problem_points_)

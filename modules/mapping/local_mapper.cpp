@@ -57,7 +57,7 @@ std::vector<KeyFrameId> LocalMapper::refine(KeyFrameId keyframe, StageTimes& tim
       const std::lock_guard lock(mutex_);
       if (map_.find_keyframe(keyframe) == nullptr) return {};
       // Its mask may have come since it was inserted.
-      drop_moving_features(keyframe);
+      for (const MapPointId point : drop_moving_features(keyframe)) drop_weak_point(point);
       make_points_from_depth(keyframe);
       remove_moving_points();
       remove_weak_points(keyframe);
@@ -106,14 +106,19 @@ void LocalMapper::make_points_from_depth(KeyFrameId id) {
   }
 }
 
-void LocalMapper::drop_moving_features(KeyFrameId id) {
+std::vector<MapPointId> LocalMapper::drop_moving_features(KeyFrameId id) {
+  std::vector<MapPointId> dropped;
   const Frame& frame = map_.keyframe(id).frame;
-  for (std::uint32_t i = 0; i < frame.size(); ++i)
-    if (frame.map_points[i].valid() && !is_static(frame, i)) drop_observation(frame.map_points[i], id);
+  for (std::uint32_t i = 0; i < frame.size(); ++i) {
+    const MapPointId point = frame.map_points[i];
+    if (!point.valid() || is_static(frame, i)) continue;
+    map_.remove_observation(point, id);
+    dropped.push_back(point);
+  }
+  return dropped;
 }
 
-void LocalMapper::drop_observation(MapPointId point, KeyFrameId keyframe) {
-  map_.remove_observation(point, keyframe);
+void LocalMapper::drop_weak_point(MapPointId point) {
   if (map_.sensor() != Sensor::mono) return;
   // Where a view contradicts a point, two others alone do not confirm it, and one does not even locate it.
   constexpr std::size_t required = 3;

@@ -126,18 +126,19 @@ TEST_F(MonoTest, GreyImagesServeAsColourOnesDo) {
    private:
     std::vector<std::string> classes_{"background", "person"};
   };
+  std::vector<SensorFrame> frames;
+  for (std::uint64_t index = 0; index < 120; ++index) frames.push_back(simulator_.frame(index));
   for (const bool segments : {false, true}) {
     std::vector<Trajectory> trajectories;
     for (const bool is_grey : {false, true}) {
       PipelineBuilder builder;
       builder.camera(simulator_.camera())
           .sensor(Sensor::mono)
-          .features(OrbSettings{.count = 500})
+          .features(OrbSettings{.count = 1000})
           .optimizer(SchurSettings{});
       if (segments) builder.segmenter(std::make_unique<ColourOnly>());
       Pipeline pipeline = builder.build();
-      for (std::uint64_t index = 0; index < 40; ++index) {
-        SensorFrame frame = simulator_.frame(index);
+      for (SensorFrame frame : frames) {
         cv::Mat grey;
         cv::cvtColor(frame.colour, grey, cv::COLOR_BGR2GRAY);
         if (is_grey)

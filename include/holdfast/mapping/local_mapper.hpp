@@ -62,10 +62,11 @@ class LocalMapper {
 
  private:
   void make_points_from_depth(KeyFrameId keyframe);
-  void drop_moving_features(KeyFrameId keyframe);
-  /// Removes an observation that contradicts its point. With one camera, the point goes as well when fewer than three
-  /// are left (as in ORB-SLAM).
-  void drop_observation(MapPointId point, KeyFrameId keyframe);
+  /// Removes the observations of a keyframe that are probably on something that moves, and returns their points.
+  std::vector<MapPointId> drop_moving_features(KeyFrameId keyframe);
+  /// With one camera, removes a point that has lost a view and is left with fewer than three (as in ORB-SLAM). For the
+  /// thread of refine(), which counts on points to stay meanwhile.
+  void drop_weak_point(MapPointId point);
   void remove_moving_points();
   void remove_weak_points(KeyFrameId keyframe);
   void triangulate_points(KeyFrameId keyframe);
