@@ -23,14 +23,12 @@ ImageSequenceOptions options_of(const CalibratedRecording& recording, bool skip_
 
 CalibratedSource::CalibratedSource(CalibratedRecording recording, const std::filesystem::path& folder,
                                    bool skip_bad_frames)
-    : truth_(std::move(recording.truth)),
-      sequence_(std::move(recording.files), options_of(recording, skip_bad_frames)) {
+    : ImageSequenceSource(std::move(recording.files), options_of(recording, skip_bad_frames)) {
   description_.name = folder_name(folder);
   description_.has_right = recording.has_right;
-  description_.can_read_ahead = true;
   description_.camera = recording.camera;
-  description_.frame_count = sequence_.size();
   description_.truth_frame = recording.truth_frame;
+  truth_ = std::move(recording.truth);
 }
 
 }  // namespace holdfast

@@ -85,11 +85,6 @@ void MaskPropagator::set_pose(const std::optional<Eigen::Isometry3d>& T_camera_w
     labels_.moving[i] = CellMask::is_object(labels_.labels[i]) && evaluated.static_log_odds[i] < moving ? 1 : 0;
 }
 
-const cv::Mat& MaskPropagator::moving_pixels() {
-  moving_pixels_ = sampler_.pixels_of(labels_.moving);
-  return moving_pixels_;
-}
-
 void MaskPropagator::renew_points(const Frame& frame) {
   // While no segmentation is awaited, only points on objects are followed; every part of an object has one.
   const CoarseGrid& grid = frame.coarse.grid;

@@ -231,14 +231,9 @@ bool Tracker::track_followed(TrackedView& view, FrameResult& result) {
   moving_world_.evaluate(FilterStage::after_matching, view, result.times);
   const StageTimer timer(result.times, "local map");
   result.inliers = estimator_.adjust(current_);
-  result.matches = estimator_.matches();
-  result.static_features = static_cast<int>(std::count_if(
-      current_.static_probability.begin(), current_.static_probability.end(), [](float p) { return is_static(p); }));
+  count_matches(result);
   estimator_.drop_outliers(current_);
-  if (result.inliers < required || contradicts_motion(result.inliers) ||
-      estimator_.position_deviation() > settings_.maximum_deviation ||
-      moving_world_.contradicts_depth(current_, result.inliers, false, reference_keyframe_) ||
-      (!localises_only_ && needs_keyframe(result)))
+  if (result.inliers < required || is_refuted(result.inliers, false) || (!localises_only_ && needs_keyframe(result)))
     return false;
   result.method = TrackingMethod::flow;
   moving_world_.accumulate(current_);
@@ -276,10 +271,7 @@ bool Tracker::track_odometry(TrackedView& view, FrameResult& result) {
   matcher_.match_local_map(static_cast<float>(settings_.local_map_window), current_);
   // Points of one frame are less certain than those of the map: twice as many have to agree.
   const int inliers = estimator_.adjust(current_, odometry_);
-  if (inliers < 2 * settings_.minimum_inliers || contradicts_motion(inliers) ||
-      estimator_.position_deviation() > settings_.maximum_deviation ||
-      moving_world_.contradicts_depth(current_, inliers, false, reference_keyframe_))
-    return false;
+  if (inliers < 2 * settings_.minimum_inliers || is_refuted(inliers, false)) return false;
   // Where the map ends, the camera would be lost before long; a pose as certain as this begins new map.
   constexpr int certain_inliers = 8;          // times minimum_inliers
   constexpr double certain_deviation = 0.25;  // of maximum_deviation
@@ -381,6 +373,17 @@ bool Tracker::contradicts_motion(int inliers) const {
          Eigen::AngleAxisd(change.linear()).angle() > settings_.jump_angle * std::numbers::pi / 180.0 * frames;
 }
 
+bool Tracker::is_refuted(int inliers, bool was_lost) {
+  return (!was_lost && contradicts_motion(inliers)) || estimator_.position_deviation() > settings_.maximum_deviation ||
+         moving_world_.contradicts_depth(current_, inliers, was_lost, reference_keyframe_);
+}
+
+void Tracker::count_matches(FrameResult& result) const {
+  result.matches = estimator_.matches();
+  result.static_features = static_cast<int>(std::count_if(
+      current_.static_probability.begin(), current_.static_probability.end(), [](float p) { return is_static(p); }));
+}
+
 bool Tracker::track_local_map(const TrackedView& view, FrameResult& result) {
   {
     const StageTimer timer(result.times, "local map");
@@ -391,17 +394,13 @@ bool Tracker::track_local_map(const TrackedView& view, FrameResult& result) {
       moving_world_.evaluate(FilterStage::after_matching, view, result.times))
     result.inliers = estimator_.adjust(current_);
   const StageTimer timer(result.times, "local map");
-  result.matches = estimator_.matches();
-  result.static_features = static_cast<int>(std::count_if(
-      current_.static_probability.begin(), current_.static_probability.end(), [](float p) { return is_static(p); }));
+  count_matches(result);
   estimator_.drop_outliers(current_);
   matcher_.local_map().count_found(current_);
   const bool was_lost = result.method == TrackingMethod::recovered || result.method == TrackingMethod::relocalised;
   // A wide search finds some agreement anywhere: twice as many have to agree.
   const int required = was_lost ? 2 * settings_.minimum_inliers : settings_.minimum_inliers;
-  if (result.inliers < required || (!was_lost && contradicts_motion(result.inliers)) ||
-      estimator_.position_deviation() > settings_.maximum_deviation ||
-      moving_world_.contradicts_depth(current_, result.inliers, was_lost, reference_keyframe_)) {
+  if (result.inliers < required || is_refuted(result.inliers, was_lost)) {
     result.trouble = TrackingTrouble::few_inliers;
     return false;
   }

@@ -219,12 +219,8 @@ TEST_F(MapFile, HoldsEveryLens) {
   expect_same(map, again);
   EXPECT_TRUE(bytes_of(again) == bytes);
   // Damage that the checksums would hide if they were right is found as well.
-  const std::size_t content = bytes.find("LENS") + 24;
   const auto refusal = [&](std::size_t offset, std::uint32_t value) {
-    std::string wrong = bytes;
-    std::memcpy(&wrong[content + offset], &value, sizeof(value));
-    test::repair_checksums(wrong);
-    return refusal_of(wrong);
+    return refusal_with(bytes, "LENS", offset, value);
   };
   EXPECT_THAT(refusal(4, 77), ::testing::HasSubstr("found camera 77"));
   EXPECT_THAT(refusal(8, 9), ::testing::HasSubstr("found number 9; expected less than 2"));
@@ -247,12 +243,8 @@ TEST_F(MapFile, HoldsDescriptionsOfImages) {
   const Map again = read_map(path("map.hfm"));
   expect_same(map, again);
   EXPECT_TRUE(bytes_of(again) == bytes);
-  const std::size_t content = bytes.find("PLAC") + 24;
   const auto refusal = [&](std::size_t offset, std::uint32_t wrong_value) {
-    std::string wrong = bytes;
-    std::memcpy(&wrong[content + offset], &wrong_value, sizeof(wrong_value));
-    test::repair_checksums(wrong);
-    return refusal_of(wrong);
+    return refusal_with(bytes, "PLAC", offset, wrong_value);
   };
   EXPECT_THAT(refusal(14, 0xFFFFFFF0U), ::testing::HasSubstr("described keyframes"));
   EXPECT_THAT(refusal(18, 700), ::testing::HasSubstr("found keyframe 700; expected at least 0 and less than"));

@@ -11,7 +11,6 @@
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/image_files/image_sequence.hpp"
 #include "holdfast/image_files/stereo_rectification.hpp"
-#include "holdfast/interfaces/frame_source.hpp"
 
 namespace holdfast {
 
@@ -60,19 +59,9 @@ struct EurocOptions {
 CalibratedRecording read_euroc_recording(const EurocOptions& options);
 
 /// The frames of a CalibratedRecording; grey images are widened to three equal channels.
-class CalibratedSource : public FrameSource {
+class CalibratedSource : public ImageSequenceSource {
  public:
   CalibratedSource(CalibratedRecording recording, const std::filesystem::path& folder, bool skip_bad_frames);
-
-  SourceDescription describe() const override { return description_; }
-  std::optional<SensorFrame> next() override { return sequence_.next(); }
-  Trajectory truth() const override { return truth_; }
-  std::vector<SkippedFrame> skipped() const override { return sequence_.skipped(); }
-
- private:
-  SourceDescription description_;
-  Trajectory truth_;
-  ImageSequence sequence_;
 };
 
 }  // namespace holdfast

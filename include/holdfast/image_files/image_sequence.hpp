@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "holdfast/core/error.hpp"
@@ -63,6 +64,29 @@ class ImageSequence {
   ImageDecoder decoder_;
   std::vector<SkippedFrame> skipped_;
   bool is_of_other_size_ = false;  ///< the image read last
+};
+
+/// A source whose frames are those of an ImageSequence. Derived classes complete the description, in which the number
+/// of frames is set, and the truth.
+class ImageSequenceSource : public FrameSource {
+ public:
+  SourceDescription describe() const override { return description_; }
+  std::optional<SensorFrame> next() override { return sequence_.next(); }
+  Trajectory truth() const override { return truth_; }
+  std::vector<SkippedFrame> skipped() const override { return sequence_.skipped(); }
+
+ protected:
+  ImageSequenceSource(std::vector<ImageFiles> files, const ImageSequenceOptions& options)
+      : sequence_(std::move(files), options) {
+    description_.can_read_ahead = true;
+    description_.frame_count = sequence_.size();
+  }
+
+  SourceDescription description_;
+  Trajectory truth_;
+
+ private:
+  ImageSequence sequence_;
 };
 
 /// Throws InputError unless `folder` is a folder: "is missing; expected EXPECTED; set `SETTING`".

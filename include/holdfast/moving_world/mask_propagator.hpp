@@ -49,7 +49,7 @@ class MaskPropagator {
   const PointFollower::Points& points() const { return follower_.points(); }
   /// Raw pixels (8UC1, not 0) of objects that moved when they were last evaluated; empty when there are none. The
   /// reference is valid until the next call.
-  const cv::Mat& moving_pixels();
+  cv::Mat moving_pixels() const { return sampler_.pixels_of(labels_.moving); }
 
  private:
   /// The part of a frame from which its labels can be transferred to a later one.
@@ -81,7 +81,6 @@ class MaskPropagator {
   FollowedPairs pairs_;
   std::vector<int> bucket_strength_;
   std::vector<std::int32_t> bucket_cell_;
-  cv::Mat moving_pixels_;
   CellMask mask_;
 };
 

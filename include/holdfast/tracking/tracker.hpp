@@ -113,6 +113,11 @@ class Tracker {
   void find_features(const SensorFrame& sensor_frame, FrameResult& result);
   /// The pose, on which few inliers agree, is far from where constant velocity takes the camera.
   bool contradicts_motion(int inliers) const;
+  /// The pose of the current frame contradicts inertia (unless the camera was lost), is not determined well enough by
+  /// its inliers, or contradicts the depth of keyframes.
+  bool is_refuted(int inliers, bool was_lost);
+  /// Counts the matches of the last adjustment and the static features.
+  void count_matches(FrameResult& result) const;
   /// A first pose of a camera that is not lost, from the motion model or the reference keyframe.
   bool predict(FrameResult& result);
   /// Takes a first pose to the final one. False if the local map does not confirm it.

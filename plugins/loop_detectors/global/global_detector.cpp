@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/inference/network_parameters.hpp"
 
 namespace holdfast::global_plugin {
 
@@ -13,17 +14,6 @@ namespace {
 
 /// Less of an image than this says too little about the place.
 constexpr double least_visible_share = 0.1;
-
-NetworkOptions network_options(const GlobalSettings& s) {
-  return {.model = s.model,
-          .width = s.width,
-          .height = s.height,
-          .rgb = s.colour_order == ColourOrder::rgb,
-          .scale = s.scale,
-          .mean = s.mean,
-          .standard_deviation = s.standard_deviation,
-          .output_name = s.output_name};
-}
 
 }  // namespace
 

@@ -2,20 +2,14 @@
 #include "holdfast/plugin/plugin.hpp"
 
 #include "global_detector.hpp"
+#include "holdfast/inference/network_parameters.hpp"
 
 namespace holdfast {
 
 void GlobalSettings::describe(ParameterTable<GlobalSettings>& table) {
   using S = GlobalSettings;
   table.add("model", &S::model, "network that describes a colour image by one vector, ONNX, float32").required();
-  table.add("width", &S::width, "width of the network input; 0 = as declared by the model").range(0, 8192).unit("px");
-  table.add("height", &S::height, "height of the network input; 0 = as declared by the model")
-      .range(0, 8192)
-      .unit("px");
-  table.add("colour_order", &S::colour_order, "order of the input channels");
-  table.add("scale", &S::scale, "input = (pixel * scale - mean) / standard_deviation, pixels from 0 to 255");
-  table.add("mean", &S::mean, "subtracted from each channel, in colour_order, after scale");
-  table.add("standard_deviation", &S::standard_deviation, "divides each channel, in colour_order");
+  describe_network_input(table);
   table.add("output_name", &S::output_name, "name of the output, if the model has several");
   table
       .add("minimum_similarity", &S::minimum_similarity,

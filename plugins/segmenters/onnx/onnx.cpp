@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/inference/network_parameters.hpp"
 #include "holdfast/inference/network_segmenter.hpp"
 #include "holdfast/plugin/did_you_mean.hpp"
 #include "holdfast/plugin/plugin.hpp"
@@ -16,14 +17,7 @@ namespace holdfast {
 void OnnxSettings::describe(ParameterTable<OnnxSettings>& table) {
   using S = OnnxSettings;
   table.add("model", &S::model, "network for semantic segmentation, ONNX, float32").required();
-  table.add("width", &S::width, "width of the network input; 0 = as declared by the model").range(0, 8192).unit("px");
-  table.add("height", &S::height, "height of the network input; 0 = as declared by the model")
-      .range(0, 8192)
-      .unit("px");
-  table.add("colour_order", &S::colour_order, "order of the input channels");
-  table.add("scale", &S::scale, "input = (pixel * scale - mean) / standard_deviation, pixels from 0 to 255");
-  table.add("mean", &S::mean, "subtracted from each channel, in colour_order, after scale");
-  table.add("standard_deviation", &S::standard_deviation, "divides each channel, in colour_order");
+  describe_network_input(table);
   table.add("layout", &S::layout, "layout of input and output: channels before or after height and width");
   table.add("output", &S::output,
             "output of the network: scores before softmax, probabilities, or class indices; a single channel of logits "
@@ -43,17 +37,11 @@ void OnnxSettings::describe(ParameterTable<OnnxSettings>& table) {
 
 namespace {
 
-NetworkOptions network_options(const OnnxSettings& s) {
-  return {.model = s.model,
-          .width = s.width,
-          .height = s.height,
-          .rgb = s.colour_order == ColourOrder::rgb,
-          .scale = s.scale,
-          .mean = s.mean,
-          .standard_deviation = s.standard_deviation,
-          .channels_last = s.layout == TensorLayout::nhwc,
-          .output_name = s.output_name,
-          .threads = s.threads};
+NetworkOptions options_of(const OnnxSettings& s) {
+  NetworkOptions options = network_options(s);
+  options.channels_last = s.layout == TensorLayout::nhwc;
+  options.threads = s.threads;
+  return options;
 }
 
 OutputForm output_form(const OnnxSettings& s) {
@@ -84,7 +72,7 @@ void check_classes(const OnnxSettings& settings) {
 class OnnxSegmenter final : public NetworkSegmenter {
  public:
   OnnxSegmenter(const OnnxSettings& settings, const CreationContext&)
-      : NetworkSegmenter((check_classes(settings), network_options(settings)), output_form(settings), settings.classes,
+      : NetworkSegmenter((check_classes(settings), options_of(settings)), output_form(settings), settings.classes,
                          settings.movable) {}
 };
 

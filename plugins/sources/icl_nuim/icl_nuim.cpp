@@ -56,29 +56,17 @@ std::vector<ImageFiles> find_pairs(const IclNuimSettings& settings) {
 
 /// A rendered recording of ICL-NUIM (Handa et al., ICRA 2014) in its TUM-compatible form, with the truth turned to the
 /// camera of its images.
-class IclNuimSource final : public FrameSource {
+class IclNuimSource final : public ImageSequenceSource {
  public:
   IclNuimSource(const IclNuimSettings& settings, const CreationContext& context)
-      : sequence_(find_pairs(settings),
-                  {depth_factor, context.camera.width, context.camera.height, settings.on_bad_frame == "skip"}),
-        truth_(read_icl_nuim_truth(settings.truth.empty() ? icl_nuim_truth_file(settings.path) : settings.truth,
-                                   settings.frame_rate)) {
+      : ImageSequenceSource(find_pairs(settings), {depth_factor, context.camera.width, context.camera.height,
+                                                   settings.on_bad_frame == "skip"}) {
+    truth_ = read_icl_nuim_truth(settings.truth.empty() ? icl_nuim_truth_file(settings.path) : settings.truth,
+                                 settings.frame_rate);
     description_.name = folder_name(settings.path);
     description_.has_depth = true;
-    description_.can_read_ahead = true;
-    description_.frame_count = sequence_.size();
     description_.truth_frame = "transformed";
   }
-
-  SourceDescription describe() const override { return description_; }
-  std::optional<SensorFrame> next() override { return sequence_.next(); }
-  Trajectory truth() const override { return truth_; }
-  std::vector<SkippedFrame> skipped() const override { return sequence_.skipped(); }
-
- private:
-  ImageSequence sequence_;
-  SourceDescription description_;
-  Trajectory truth_;
 };
 
 }  // namespace

@@ -69,30 +69,18 @@ std::vector<ImageFiles> find_pairs(const TumSettings& settings) {
 
 /// A recording in the layout of the TUM RGB-D benchmark (Sturm et al., IROS 2012), which the Bonn RGB-D Dynamic dataset
 /// shares. A colour image without a depth image near enough in time makes no frame.
-class TumSource final : public FrameSource {
+class TumSource final : public ImageSequenceSource {
  public:
   TumSource(const TumSettings& settings, const CreationContext& context)
-      : sequence_(find_pairs(settings), {settings.depth_factor, context.camera.width, context.camera.height,
-                                         settings.on_bad_frame == "skip"}) {
+      : ImageSequenceSource(find_pairs(settings), {settings.depth_factor, context.camera.width, context.camera.height,
+                                                   settings.on_bad_frame == "skip"}) {
     description_.name = folder_name(settings.path);
     description_.has_depth = true;
-    description_.can_read_ahead = true;
-    description_.frame_count = sequence_.size();
     const TruthTransform transform = make_truth_transform(settings.truth_left, settings.truth_right, "source.tum");
     description_.truth_frame = transform.frame();
     if (const auto truth_file = settings.path / "groundtruth.txt"; std::filesystem::exists(truth_file))
       truth_ = transformed(transform, read_trajectory(truth_file));
   }
-
-  SourceDescription describe() const override { return description_; }
-  std::optional<SensorFrame> next() override { return sequence_.next(); }
-  Trajectory truth() const override { return truth_; }
-  std::vector<SkippedFrame> skipped() const override { return sequence_.skipped(); }
-
- private:
-  ImageSequence sequence_;
-  SourceDescription description_;
-  Trajectory truth_;
 };
 
 }  // namespace

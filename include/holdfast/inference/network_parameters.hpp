@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "holdfast/inference/network.hpp"
+#include "holdfast/plugin/parameter_table.hpp"
+
+namespace holdfast {
+
+/// Adds the parameters that say what a network takes: size, colours and normalisation of its image.
+template <class Settings>
+void describe_network_input(ParameterTable<Settings>& table) {
+  table.add("width", &Settings::width, "width of the network input; 0 = as declared by the model")
+      .range(0, 8192)
+      .unit("px");
+  table.add("height", &Settings::height, "height of the network input; 0 = as declared by the model")
+      .range(0, 8192)
+      .unit("px");
+  table.add("colour_order", &Settings::colour_order, "order of the input channels");
+  table.add("scale", &Settings::scale, "input = (pixel * scale - mean) / standard_deviation, pixels from 0 to 255");
+  table.add("mean", &Settings::mean, "subtracted from each channel, in colour_order, after scale");
+  table.add("standard_deviation", &Settings::standard_deviation, "divides each channel, in colour_order");
+}
+
+/// The options of a network with these parameters and the settings `model` and `output_name`.
+template <class Settings>
+NetworkOptions network_options(const Settings& settings) {
+  return {.model = settings.model,
+          .width = settings.width,
+          .height = settings.height,
+          .rgb = settings.colour_order == decltype(settings.colour_order)::rgb,
+          .scale = settings.scale,
+          .mean = settings.mean,
+          .standard_deviation = settings.standard_deviation,
+          .output_name = settings.output_name};
+}
+
+}  // namespace holdfast
