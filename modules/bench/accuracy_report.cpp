@@ -76,9 +76,7 @@ class AccuracyReport {
                             has_pairs ? error_text(c.gain) + unit : "-", percent_text(c.gain_percent, 1),
                             c.enough ? error_text(c.interval.low) + " to " + error_text(c.interval.high) + unit : "-",
                             c.enough ? probability_text(c.test.p) : "-", c.enough ? probability_text(c.adjusted) : "-",
-                            !c.enough            ? "too few to tell"
-                            : c.is_significant() ? "significant"
-                                                 : "not significant"});
+                            c.verdict()});
     }
     add(table);
   }

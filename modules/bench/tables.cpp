@@ -158,11 +158,7 @@ ReportTable comparisons_table(const RunPlan& plan, const Analysis& analysis) {
                       unit_of(c.quantity), text_of(c.sequences.size()), text_of(c.left_out), text_of(c.better),
                       text_of(c.worse), text_of(c.gain), text_of(c.gain_percent), tested(c.interval.low),
                       tested(c.interval.high), text_of(c.test.pairs), tested(c.test.rank_sum), tested(c.test.p),
-                      tested(c.adjusted),
-                      !c.enough            ? "too few to tell"
-                      : c.is_significant() ? "significant"
-                                           : "not significant",
-                      c.sequences.empty() ? "" : text_of(c.least_coverage_after),
+                      tested(c.adjusted), c.verdict(), c.sequences.empty() ? "" : text_of(c.least_coverage_after),
                       c.sequences.empty() ? "" : text_of(c.least_coverage_before)});
   }
   return t;

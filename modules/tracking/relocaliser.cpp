@@ -8,6 +8,12 @@
 #include "holdfast/matching/frame_features.hpp"
 
 namespace holdfast {
+namespace {
+
+/// Of the matches of a wide search near a wrong pose of one camera, up to a seventh agree with it after an adjustment.
+constexpr double chance_share = 1.0 / 6.0;
+
+}  // namespace
 
 bool Relocaliser::relocalise(KeyFrameId last_keyframe, KeyFrameId reference, const cv::Mat& image, Frame& frame,
                              FrameResult& result) {
@@ -53,6 +59,8 @@ bool Relocaliser::recover(KeyFrameId last_keyframe, KeyFrameId reference, Frame&
     if (static_cast<int>(tried.size()) >= max_keyframes) break;
     tried.push_back(candidate);
     if (!align_with_keyframe(candidate, std::nullopt, frame, result) || !is_reachable(frame)) continue;
+    // The depth of the features contradicts a wrong pose; with one camera, only points around it can.
+    if (parts_.map.sensor() == Sensor::mono && !fits_surroundings(frame, result)) continue;
     result.method = TrackingMethod::recovered;
     return true;
   }
@@ -127,9 +135,14 @@ bool Relocaliser::find_place(const cv::Mat& image, Frame& frame, FrameResult& re
 bool Relocaliser::fits_surroundings(Frame& frame, FrameResult& result) {
   // The first pose depends on few points and may be off by pixels: a wide window finds more, a narrow one the rest.
   search_local_map(settings_.relocalisation_window * settings_.local_map_window, frame);
-  if (search_local_map(settings_.local_map_window, frame) >= settings_.relocalisation_inliers) return true;
+  const int inliers = search_local_map(settings_.local_map_window, frame);
+  if (inliers >= settings_.relocalisation_inliers && is_beyond_chance(inliers)) return true;
   result.trouble = TrackingTrouble::few_inliers;
   return false;
+}
+
+bool Relocaliser::is_beyond_chance(int inliers) const {
+  return parts_.map.sensor() != Sensor::mono || inliers >= chance_share * parts_.estimator.matches();
 }
 
 bool Relocaliser::is_reachable(const Frame& frame) const {

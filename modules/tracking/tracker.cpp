@@ -400,7 +400,8 @@ bool Tracker::track_local_map(const TrackedView& view, FrameResult& result) {
   const bool was_lost = result.method == TrackingMethod::recovered || result.method == TrackingMethod::relocalised;
   // A wide search finds some agreement anywhere: twice as many have to agree.
   const int required = was_lost ? 2 * settings_.minimum_inliers : settings_.minimum_inliers;
-  if (result.inliers < required || is_refuted(result.inliers, was_lost)) {
+  if (result.inliers < required || (was_lost && !relocaliser_.is_beyond_chance(result.inliers)) ||
+      is_refuted(result.inliers, was_lost)) {
     result.trouble = TrackingTrouble::few_inliers;
     return false;
   }

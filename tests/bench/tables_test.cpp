@@ -49,9 +49,10 @@ TEST_F(TablesTest, GivesImprovementsInPerCentOfTheBaseline) {
 
 TEST_F(TablesTest, TestsSixPairsAndSaysSo) {
   add_pairs(6);
-  const Comparison comparison = analyse(plan_, results_).comparisons.front();
+  Comparison comparison = analyse(plan_, results_).comparisons.front();
   EXPECT_TRUE(comparison.enough);
   EXPECT_DOUBLE_EQ(comparison.test.p, 0.03125);
+  EXPECT_STREQ(comparison.verdict(), "significant");
   EXPECT_EQ(comparison.better, 6U);
   EXPECT_NEAR(comparison.gain, 0.125, 1e-12);
   EXPECT_NEAR(comparison.gain_percent, 62.5, 1e-9);
@@ -59,6 +60,8 @@ TEST_F(TablesTest, TestsSixPairsAndSaysSo) {
               AllOf(HasSubstr("`better` against `plain`: smaller ATE RMSE on 6 of 6 sequences, by 0.1250 m (median "
                               "of the differences; of the ratios 62.5 %)"),
                     HasSubstr("is significant (p = 0.0312, 6 pairs")));
+  comparison.adjusted = 0.3125;
+  EXPECT_STREQ(comparison.verdict(), "significant alone");
 }
 
 TEST_F(TablesTest, TestsNothingBelowSixPairs) {

@@ -53,6 +53,9 @@ class Relocaliser {
   /// Candidates by appearance, PnP with RANSAC, then guided search in the local map (Mur-Artal et al. 2015, section
   /// V-C). Describes the image first if the loop detector compares whole images.
   bool find_place(const cv::Mat& image, Frame& frame, FrameResult& result);
+  /// Whether so many inliers of the last adjustment tell a pose from a wrong one. Depth does so for other sensors;
+  /// with one camera, their share of the matches must.
+  bool is_beyond_chance(int inliers) const;
 
  private:
   bool fits_surroundings(Frame& frame, FrameResult& result);

@@ -69,6 +69,12 @@ struct Comparison {
   double least_coverage_before = 1.0, least_coverage_after = 1.0;  ///< over these sequences
 
   bool is_significant() const { return enough && test.p < 0.05; }
+  /// "too few to tell", "not significant", "significant alone" (before Holm's correction only) or "significant".
+  const char* verdict() const {
+    if (!enough) return "too few to tell";
+    if (!is_significant()) return "not significant";
+    return adjusted < 0.05 ? "significant" : "significant alone";
+  }
 };
 
 /// Statistics of a benchmark's results, by cell and relative to the baseline.
