@@ -65,6 +65,8 @@ const char* to_string(TrackingTrouble trouble) {
       return "too little parallax";
     case TrackingTrouble::no_mask:
       return "no mask yet";
+    case TrackingTrouble::weak_start:
+      return "weak start";
   }
   return "?";
 }

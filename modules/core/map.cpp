@@ -146,6 +146,14 @@ void Map::remove_point(MapPointId point_id) {
   points_.erase(point_id);
 }
 
+void Map::remove_all() {
+  for (const MapPointId id : points_.ids()) points_.erase(id);
+  for (const KeyFrameId id : keyframes_.ids()) keyframes_.erase(id);
+  removed_keyframes_.clear();
+  next_sequence_ = 0;
+  ++version_;
+}
+
 void Map::clear() {
   keyframes_.clear();
   points_.clear();

@@ -24,9 +24,7 @@ KeyFrameId LocalMapper::insert(const Frame& frame, bool points_wait, StageTimes&
 KeyFrameId LocalMapper::begin(const Frame& frame, std::span<const std::pair<Eigen::Vector3d, std::uint32_t>> points,
                               std::vector<MapPointId>& ids, StageTimes& times) {
   const StageTimer timer(times, "mapping: insertion");
-  const bool begins_again = !map_.keyframes().empty();
   const KeyFrameId keyframe = map_.add_keyframe(frame);
-  if (begins_again) begun_again_at_ = map_.keyframe(keyframe).sequence;
   ++counts_.keyframes_made;
   ids.clear();
   for (const auto& [position, feature] : points) {
@@ -143,8 +141,7 @@ void LocalMapper::remove_weak_points(KeyFrameId id) {
   // (Mur-Artal et al. 2015, section VI-B). Depth confirms a point as well as another view does.
   const bool is_mono = map_.sensor() == Sensor::mono;
   const std::size_t required = is_mono ? 3 : 2;
-  const bool can_be_confirmed =
-      map_.keyframes().size() >= required && (begun_again_at_ == 0 || now + 1 >= begun_again_at_ + required);
+  const bool can_be_confirmed = map_.keyframes().size() >= required;
   std::erase_if(recent_points_, [&](MapPointId point_id) {
     const MapPoint* point = map_.find_point(point_id);
     if (point == nullptr) return true;

@@ -110,6 +110,8 @@ struct Pipeline::State {
   void check_stamp(const SensorFrame& frame);
   /// The frame as given, or in `other` what the sensor of this pipeline has of it, in colour where a part needs that.
   const SensorFrame& used_images(const SensorFrame& given, SensorFrame& other) const;
+  /// Removes the whole map, which began wrong, from every part that knows of it.
+  void give_map_up(StageTimes& times);
   /// Inserts the first of the two keyframes with which the map of one camera begins; the caller holds the map's lock.
   KeyFrameId begin_map(const TwoViewStart& start, StageTimes& times);
   LoopJob refine(const MappingJob& job, StageTimes& times);
@@ -243,6 +245,25 @@ KeyFrameId Pipeline::State::begin_map(const TwoViewStart& start, StageTimes& tim
   const KeyFrameId first = mapper.begin(start.reference, points, ids, times);
   tracker.map_begun(first, ids);
   return first;
+}
+
+void Pipeline::State::give_map_up(StageTimes& times) {
+  LoopJob job;
+  mapper.request_stop();
+  {
+    const std::lock_guard surgeon(surgery);  // an adjustment that runs counts on its keyframes
+    const std::lock_guard lock(map_mutex);
+    job.removed = map.keyframes_by_age();
+    map.remove_all();
+    mapper.forget_map();
+    tracker.forget_map();
+  }
+  keyframes_kept.clear();
+  // Mapping and masks find out by themselves that a keyframe is gone.
+  if (loop_closing)
+    loop_closing->queue().push(std::move(job));
+  else
+    close_loops(job, times);
 }
 
 Pipeline::State::LoopJob Pipeline::State::refine(const MappingJob& given, StageTimes& times) {
@@ -422,6 +443,7 @@ FrameResult Pipeline::feed(const SensorFrame& given) {
       if (s.mapping || s.moving_world.expects_masks()) s.tracker.keyframe_added(result.keyframe);
     }
   }
+  if (s.tracker.gave_map_up()) s.give_map_up(result.times);
   if (first_keyframe.valid()) s.hand_to_mapping({first_keyframe}, result.times);
   s.request_mask(frame, result, result.times);
   if (result.is_keyframe) {

@@ -29,6 +29,8 @@ const char* advice(TrackingTrouble trouble) {
              "what it sees; turning on the spot is not enough.";
     case TrackingTrouble::no_mask:
       return "Check that the segmenter gives results.";
+    case TrackingTrouble::weak_start:
+      return "One camera needs a start with texture at several depths, and masks that cover the people in view.";
     case TrackingTrouble::none:
       break;
   }

@@ -102,13 +102,6 @@ bool MonoInitialiser::is_certain(const std::vector<geometry::PixelPair>& pairs, 
          settings_.start_deviation * std::numbers::pi / 180.0;
 }
 
-void MonoInitialiser::place(const Eigen::Isometry3d& T_reference_world, Frame& frame) {
-  start_.reference.T_camera_world = T_reference_world;
-  frame.T_camera_world = frame.T_camera_world * T_reference_world;
-  const Eigen::Isometry3d T_world_reference = T_reference_world.inverse();
-  for (TwoViewStart::Point& point : start_.points) point.position = T_world_reference * point.position;
-}
-
 bool MonoInitialiser::adjust(const geometry::TwoViewMotion& motion, Frame& frame) {
   BundleProblem problem;
   problem.camera = frame.camera.get();

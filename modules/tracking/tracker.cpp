@@ -75,7 +75,7 @@ bool Tracker::follow_features(const SensorFrame& sensor_frame, FrameResult& resu
 }
 
 void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
-  begins_with_two_views_ = false;
+  begins_with_two_views_ = gave_map_up_ = false;
   if (state_ == State::waiting) {
     if (mono_)
       start_with_two_views(sensor_frame, result);
@@ -93,12 +93,15 @@ void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
     moving_world_.evaluate(FilterStage::before_matching, view, result.times);
     found = find_pose(view, result);
   }
-  if (!found && was_lost_at_start() &&
-      (mono_ ? start_again_with_two_views(result) : start_map(coasting_pose(current_.timestamp), result))) {
+  if (mono_) {
+    const bool is_weak = found && is_weak_start(result);
+    if (is_weak) result.trouble = TrackingTrouble::weak_start;
+    gave_map_up_ = is_weak || (!found && was_lost_at_start());
+    found = found && !is_weak;
+  } else if (!found && was_lost_at_start() && start_map(coasting_pose(current_.timestamp), result)) {
     end_frame(result);
     return;
   }
-  if (found && mono_) mono_->forget();  // what was a reference for a new start
   state_ = found ? State::tracking : State::lost;
   result.status = found ? TrackingStatus::tracked : TrackingStatus::lost;
   if (found) {
@@ -171,16 +174,34 @@ void Tracker::start_with_two_views(const SensorFrame& sensor_frame, FrameResult&
   result.inliers = static_cast<int>(mono_->start().points.size());
 }
 
-bool Tracker::start_again_with_two_views(FrameResult& result) {
-  moving_world_.weight_features(current_);
-  const StageTimer timer(result.times, "initialisation");
-  if (mono_->add(current_) != TrackingTrouble::none) return false;
-  mono_->place(coasting_pose(mono_->start().reference.timestamp), current_);
-  std::fill(current_.map_points.begin(), current_.map_points.end(), MapPointId());
-  begins_with_two_views_ = true;
-  begin_map(result);
-  result.inliers = static_cast<int>(mono_->start().points.size());
+bool Tracker::is_weak_start(const FrameResult& result) {
+  constexpr double first_age = 0.3, last_age = 0.5;  // s; before, a right map is small too
+  const double age = current_.timestamp - map_start_time_;
+  if (age >= first_age && age <= last_age && result.matches > 0) {
+    // How many of the static features are in the map, times how many of those agree with the pose.
+    const double inliers = result.inliers, found = result.matches, seen = std::max(result.static_features, 1);
+    start_support_ += inliers / seen * inliers / found;
+    ++start_frames_;
+  }
+  if (age <= last_age || start_frames_ == 0) return false;
+  const double support = start_support_ / start_frames_;
+  start_frames_ = 0;
+  start_support_ = 0.0;
+  // A place without texture may offer no better start: each further one needs half as much.
+  if (support >= std::ldexp(settings_.start_support, -weak_starts_)) return false;
+  ++weak_starts_;
   return true;
+}
+
+void Tracker::forget_map() {
+  history_.clear();
+  mono_->forget();
+  if (flow_) flow_->clear();
+  followed_frames_ = 0;
+  state_ = State::waiting;
+  reference_keyframe_ = last_keyframe_ = KeyFrameId();
+  last_keyframe_time_ = last_feature_time_ = 0.0;
+  gave_map_up_ = false;
 }
 
 void Tracker::map_begun(KeyFrameId reference, const std::vector<MapPointId>& points) {
@@ -190,6 +211,8 @@ void Tracker::map_begun(KeyFrameId reference, const std::vector<MapPointId>& poi
 }
 
 void Tracker::begin_map(FrameResult& result) {
+  start_support_ = 0.0;
+  start_frames_ = 0;
   map_start_time_ = last_feature_time_ = current_.timestamp;
   state_ = State::tracking;
   result.status = TrackingStatus::initialised;

@@ -26,6 +26,12 @@ void describe_poses(ParameterTable<S>& table) {
       .range(0, 90)
       .unit("deg");
   table
+      .add("start_support", &S::start_support,
+           "with one camera, share of a frame's static features that are found in the map 0.3 to 0.5 s after its start, "
+           "times the share of those that agree with the pose; a map with less is given up, and another one begins; half "
+           "is enough for each further start; 0 = off")
+      .range(0, 1);
+  table
       .add("close_depth_factor", &S::close_depth_factor,
            "depth up to this many baselines is trusted alone; farther points are triangulated")
       .range(1, 10000);

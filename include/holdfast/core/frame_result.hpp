@@ -47,6 +47,7 @@ enum class TrackingTrouble {
   few_inliers,
   little_parallax,  ///< one camera has not moved enough to begin a map
   no_mask,          ///< the map of one camera begins when the first mask says where people are
+  weak_start,       ///< the map of one camera did not grow after its start and was given up; another one begins
 };
 
 const char* to_string(TrackingStatus status);

@@ -115,6 +115,9 @@ class Map {
   void touch() { ++version_; }
 
   void clear();
+  /// Removes all keyframes and points, as if the map had not begun: the next keyframe is the first. Unlike after
+  /// clear(), ids of what was removed stay unknown to the map and are not given again.
+  void remove_all();
 
   /// Replaces the whole map by `content`, whose positions become the ids, and rebuilds the feature grids. The content
   /// must satisfy the invariants of Map: observations agree on both sides, every point has at least one and its

@@ -54,6 +54,9 @@ class LocalMapper {
   /// ...".
   std::vector<KeyFrameId> refine(KeyFrameId keyframe, StageTimes& times);
 
+  /// As if no keyframe had been inserted, but for counts(). The map is empty; no other thread refines.
+  void forget_map() { recent_points_.clear(); }
+
   /// Requests a running bundle adjustment to end after its current iteration; may be called by any thread.
   void request_stop() { stop_ = true; }
 
@@ -90,7 +93,6 @@ class LocalMapper {
   const FeatureMatcher& matcher_;
   std::atomic<bool> stop_{false};
   std::vector<MapPointId> recent_points_;
-  std::uint64_t begun_again_at_ = 0;  // sequence number of the first keyframe of the last begin() beside other map
   MappingCounts counts_;
 
   // Keyframes, points and observations of the bundle problem.

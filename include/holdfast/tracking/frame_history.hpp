@@ -30,6 +30,9 @@ class FrameHistory {
                     {timestamp, keyframe, Eigen::Isometry3d::Identity(), 1.0});
   }
 
+  /// Forgets all frames.
+  void clear() { *this = FrameHistory(); }
+
   bool empty() const { return records_.empty(); }
   /// Whether the frame before the current one was tracked.
   bool has_previous() const { return has_previous_; }

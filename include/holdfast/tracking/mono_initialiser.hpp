@@ -42,9 +42,6 @@ class MonoInitialiser {
 
   /// Valid after add() returned no trouble, until the next call.
   const TwoViewStart& start() const { return start_; }
-  /// Moves start(), and the frame that add() was given, to where the reference has this pose (T_camera_world): for a
-  /// map that goes on from another one.
-  void place(const Eigen::Isometry3d& T_reference_world, Frame& frame);
   /// Gives the reference up: the next frame becomes one.
   void forget() { has_reference_ = false; }
 

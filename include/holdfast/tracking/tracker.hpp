@@ -44,7 +44,7 @@ struct TrackerParts {
 /// decides on a keyframe. MovingWorld decides what to trust in each step. A frame that static features do not determine
 /// is tracked relative to the previous one, by masked features as well, or by dense depth (TrackingFallback). A lost
 /// camera is relocalised (Relocaliser); one that is lost right after the start begins the map anew, beside what there
-/// is of it.
+/// is of it. One camera gives such a map up instead, and a map that does not grow after its start too.
 ///
 /// The tracker writes to the map only what it observes of points: how often they are visible and found, and their
 /// static log-odds (through MovingWorld). One thread.
@@ -70,6 +70,12 @@ class Tracker {
   /// The reference became `reference`, and the points of the start, in their order, became `points`; the caller holds
   /// the lock of the map.
   void map_begun(KeyFrameId reference, const std::vector<MapPointId>& points);
+
+  /// Whether the frame just located showed that the map of one camera began wrong: remove all of it, call forget_map(),
+  /// and the next frames begin another one.
+  bool gave_map_up() const { return gave_map_up_; }
+  /// As if no frame had been tracked. The map is empty; the caller holds its lock.
+  void forget_map();
 
   /// The frame last tracked, with features, matches and pose.
   const Frame& frame() const { return current_; }
@@ -99,9 +105,9 @@ class Tracker {
   bool start_map(const Eigen::Isometry3d& T_camera_world, FrameResult& result);
   /// The same for one camera, whose map begins with two views.
   void start_with_two_views(const SensorFrame& sensor_frame, FrameResult& result);
-  /// The same for a camera that was lost: the reference is put where the motion model puts the camera. Two lost frames
-  /// are needed at least; what a frame was lost for stays in the result until then.
-  bool start_again_with_two_views(FrameResult& result);
+  /// Whether the map of one camera began with people, or with points that do not determine its shape: few new points
+  /// fit it then. Judged once, from what the frames of a short time after the start found in it.
+  bool is_weak_start(const FrameResult& result);
   void begin_map(FrameResult& result);
   bool find_pose(TrackedView& view, FrameResult& result);
   /// Gives the current frame the features of an earlier one that flow finds in its image. False if it does not, and the
@@ -149,6 +155,10 @@ class Tracker {
   State state_;
   bool localises_only_ = false;
   bool begins_with_two_views_ = false;
+  bool gave_map_up_ = false;
+  int weak_starts_ = 0;
+  double start_support_ = 0.0;  // sum over the frames that judge the start
+  int start_frames_ = 0;        // their number
   Frame current_, previous_;
   std::vector<OdometryMatch> odometry_;
   cv::Mat ignored_;          // pixels of the current frame in which no features should be extracted
