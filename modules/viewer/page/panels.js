@@ -90,7 +90,7 @@ class PicturePanel {
   drawMask(context, factor) {
     const {mask, mask_columns: columns} = this.picture, rows = mask.length / columns;
     const cells = new ImageData(columns, rows);
-    const tints = [null, [30, 120, 255], [200, 0, 200], [0, 200, 200], [255, 140, 0], [120, 220, 120], [150, 110, 255], [0, 0, 0]];
+    const tints = [null, ...classTints, [0, 0, 0]];
     for (let i = 0; i < mask.length; ++i) {
       const kind = mask[i] & 7, moving = mask[i] >> 4;
       let [r, g, b] = tints[kind] ?? [255, 0, 0], alpha = kind === 7 ? 70 : kind ? 115 : 0;
