@@ -259,7 +259,7 @@ function showClock() {
   byId('clock').textContent = Number.isFinite(stamp - first) ? `${fixed(stamp - first, 2)} s` : '';
 }
 
-let nextFit = 0, nextTimes = 0, nextObjects = 0;
+let nextFit = 0, nextTimes = 0, nextObjects = 0, lastAim = 0;
 let framesWait = false, objectsWait = false;  // for their next turn: what is drawn seldom is not left out at the end
 const frameTimes = [];
 /// Asks for the next turn: with the next picture of the screen, or, when nothing has changed for a while, when something
@@ -285,8 +285,8 @@ function update(time) {
       renderer.setPoints(renderer.pointBuffer, model.points.data, model.points.count, changed.has('all') ? null : range);
       model.changedPoints = null;
     }
-    if (has('picture') && model.picture) {
-      renderer.setSeen(model.seen.filter((slot) => slot < model.points.count));
+    if (has('picture', 'run') && model.picture) {
+      renderer.setSeen(model.state.finished ? new Uint32Array() : model.seen.filter((slot) => slot < model.points.count));
       const count = model.movingFeatures.length / 3, rows = new Float32Array(pointWidth * count);
       for (let i = 0; i < count; ++i) rows.set(model.movingFeatures.subarray(3 * i, 3 * i + 3), pointWidth * i);
       renderer.setPoints(renderer.movingBuffer, rows, model.state.finished ? 0 : count);
@@ -333,9 +333,12 @@ function update(time) {
   const isBusy = changed.size > 0;
   changed.clear();
 
+  // A fifth of the way with each picture at sixty per second, and more where there are fewer.
+  const share = 1 - 0.8 ** Math.min(10, Math.max(1, (time - lastAim) / 17));
+  lastAim = time;
   let aims = false;
-  if (view.mode === 'follow' && model.pose(now)) aims = view.approach([...model.pose(now).slice(0, 3)], view.isFree ? null : Math.min(1.6, fitted?.radius ?? 1.6), 0.2);
-  else if (!view.isFree && fitted) aims = view.approach(fitted.middle, fitted.radius, 0.2);
+  if (view.mode === 'follow' && model.pose(now)) aims = view.approach([...model.pose(now).slice(0, 3)], view.isFree ? null : Math.min(1.6, fitted?.radius ?? 1.6), share);
+  else if (!view.isFree && fitted) aims = view.approach(fitted.middle, fitted.radius, share);
   quietTurns = isBusy || moved || aims ? 0 : quietTurns + 1;
   if (!renderer.gl) return;
   if (isBusy || moved || aims) {

@@ -51,7 +51,12 @@ function showState(model, connected) {
   if (status === 4) text = state.method === 'relocalised' ? 'relocalised' : 'found again';
   if (state.finished) { text = 'finished'; kind = ''; }
   if (state.paused) text += ', paused';
-  if (connected === false) { text = 'connection lost'; kind = 'bad'; }
+  // A result that is here does not need the program any more.
+  if (connected === false) {
+    text = state.finished ? 'finished, no connection' : 'connection lost';
+    kind = state.finished ? '' : 'bad';
+  }
+  byId('state').title = connected === false ? 'The program has ended, or was started again and shows a new address. What was received stays here.' : '';
   byId('state').textContent = text;
   byId('state').className = `state ${kind}`;
   const counts = [['frame', state.frame], ['keyframes', state.keyframes], ['points', state.points],
