@@ -116,9 +116,14 @@ document.addEventListener('keydown', (event) => {
   actions[event.key]();
 });
 // What was clicked keeps no keys for itself: the next space pauses. The keyboard's own way to a control is as ever.
-document.addEventListener('pointerup', () => setTimeout(() => {
-  if (document.activeElement?.matches('button, summary, input[type=radio], input[type=checkbox]')) document.activeElement.blur();
-}));
+document.addEventListener('click', (event) => {
+  if (event.detail === 0) return;  // of the keyboard
+  const release = () => {
+    if (document.activeElement?.matches('button, summary, input[type=radio], input[type=checkbox]')) document.activeElement.blur();
+  };
+  release();
+  setTimeout(release);  // a label gives its control the focus after this
+});
 
 let lastTick = null;
 function play(time) {
