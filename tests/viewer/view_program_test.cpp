@@ -154,7 +154,7 @@ TEST_F(ViewProgramTest, InAChromiumWhileItRunsAndAfterwards) {
   expect_it_fits(browser);
   kill(run, SIGINT);
   EXPECT_EQ(program_.finish(run).exit_code, 0);
-  EXPECT_TRUE(becomes(browser, "document.getElementById('state').textContent === 'finished, no connection'"));
+  EXPECT_TRUE(becomes(browser, "document.getElementById('state').textContent === 'finished, offline'"));
 
   const pid_t view = start({"view", "out"});
   browser.open_page(text_of(address()));

@@ -53,7 +53,7 @@ function showState(model, connected) {
   if (state.paused) text += ', paused';
   // A result that is here does not need the program any more.
   if (connected === false) {
-    text = state.finished ? 'finished, no connection' : 'connection lost';
+    text = state.finished ? 'finished, offline' : 'connection lost';
     kind = state.finished ? '' : 'bad';
   }
   byId('state').title = connected === false ? 'The program has ended, or was started again and shows a new address. What was received stays here.' : '';
