@@ -133,8 +133,9 @@ void expect_it_fits(test::Browser& browser) {
       browser.show_at(width, 800, is_dark);
       EXPECT_TRUE(becomes(browser, "document.documentElement.scrollWidth <= " + std::to_string(width))) << width;
       EXPECT_EQ(browser.evaluate(overlaps), "") << width;
-      EXPECT_EQ(browser.evaluate("getComputedStyle(document.body).backgroundColor"),
-                is_dark ? "rgb(20, 23, 27)" : "rgb(255, 255, 255)");
+      // Both pages have the colours of one style sheet.
+      EXPECT_EQ(browser.evaluate("getComputedStyle(document.documentElement).getPropertyValue('--ground').trim()"),
+                is_dark ? "#14171b" : "#ffffff");
     }
 }
 
