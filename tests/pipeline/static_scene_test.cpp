@@ -106,7 +106,7 @@ TEST(PipelineStaticScene, IsToldToObservers) {
       EXPECT_EQ(told.classes.size(), segmented ? 3U : 0U);
       EXPECT_EQ(told.keyframes.size(), pipeline.static_scene()->views().size());
       for (const std::size_t points : told.points) {
-        EXPECT_GT(points, 100U);
+        EXPECT_GT(points, 10U);  // the world has depth at its points alone
         EXPECT_LE(points, 1000U);
       }
       EXPECT_LT(told.farthest_from_truth, 0.02);
