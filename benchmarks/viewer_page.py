@@ -29,11 +29,11 @@ PAGE_FOLDERS = [SOURCE / "modules/viewer/page", SOURCE / "modules/evaluation/pag
 ROOM = """testModel((m) => {
   let seed = 1;
   const random = () => (seed = seed * 16807 % 2147483647) / 2147483647;
-  const count = 100000, half = [3, 3, 1.5], values = new Float32Array(4 * count);
+  const count = 100000, half = [3, 3, 1.5], values = new Float32Array(pointWidth * count);
   for (let i = 0; i < count; ++i) {
     const wall = Math.floor(6 * random()), place = half.map((h) => h * (2 * random() - 1));
     place[wall >> 1] = (wall & 1 ? 1 : -1) * half[wall >> 1];
-    values.set([...place, 4 * random() - 1.5], 4 * i);
+    values.set([...place, 4 * random() - 1.5, 255], pointWidth * i);
   }
   m.points.reserve(count);
   m.points.data.set(values);

@@ -26,9 +26,8 @@ void add_view_command(CLI::App& app, int& exit_code) {
   command->footer(
       "\nPrints an address to open and serves it until Ctrl-C. The page shows map, path, keyframes and loops; where "
       "the\n"
-      "recording had ground truth, the path is coloured by its error and the true path is beside it. `holdfast run "
-      "--view`\n"
-      "shows the same while a run goes.\n\n"
+      "recording had ground truth, the path is coloured by its error and the true path is beside it; a dense\n"
+      "static_map.ply is shown as well. `holdfast run --view` shows the same while a run goes.\n\n"
       "Examples\n"
       "  holdfast view out/demo\n"
       "  holdfast view out/demo/map.hfm --port 8080");

@@ -10,6 +10,7 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/evaluation/alignment.hpp"
 #include "holdfast/evaluation/number_text.hpp"
+#include "holdfast/map_io/cloud_ply.hpp"
 #include "holdfast/map_io/map_file.hpp"
 
 namespace holdfast {
@@ -150,6 +151,8 @@ FoundResults find_in_folder(const fs::path& folder) {
   if (has("map.hfm")) read_map_of(folder / "map.hfm", found);
   if (has("trajectory.txt")) found.run.path = read_trajectory(folder / "trajectory.txt");
   if (found.run.path.empty() && found.map) found.run.path = keyframe_path(*found.map);
+  if (has("static_map.ply"))  // without a dense map it has the points of the map, which are there already
+    found.run.cloud = read_cloud_ply(folder / "static_map.ply").value_or(std::vector<CloudPoint>());
   if (has("tracks.json")) read_truth(folder / "tracks.json", found.run);
   if (has("run.json")) found.run.figures = figures_of(read_json(folder / "run.json"));
   return found;
@@ -162,6 +165,7 @@ ViewedRun viewed_run(const RunRecord& record) {
   run.title = record.source.name;
   run.camera = record.camera;
   run.path = record.trajectory;
+  if (record.dense_map) run.cloud = *record.dense_map;
   const auto add = [&](const char* name, const std::string& value) { run.figures.emplace_back(name, value); };
   if (const std::optional<Evaluation>& evaluation = record.evaluation) {
     std::vector<std::pair<double, double>> errors;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "check.hpp"
 #include "filter_scene.hpp"
 #include "holdfast/interfaces/observer.hpp"
@@ -26,9 +28,13 @@ std::vector<KeyFrameId> keyframes_of(const Map& map) { return map.keyframes_by_a
 void show_run(Observer& observer, FilterScene& scene, TrackingStatus status) {
   const ObservedMap observed([&] { return make_snapshot(scene.map()); });
   const std::vector<KeyFrameId> keyframes = keyframes_of(scene.map());
+  observer.on_start({"background", "person"});
   for (const Moment& moment : scene.moments()) {
     observer.on_frame(moment.sensor, moment.frame, result_of(moment, status));
     observer.on_keyframe(keyframes.back(), observed);
+    ObservedView view{.keyframe = keyframes.back(), .timestamp = moment.frame.timestamp};
+    view.points = [](std::size_t most) { return std::vector<CloudPoint>(std::min<std::size_t>(most, 10)); };
+    observer.on_static_view(view);
   }
   observer.on_loop(keyframes.back(), keyframes.front(), observed);
   observer.on_finish(scene.map());

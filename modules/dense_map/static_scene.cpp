@@ -14,12 +14,29 @@ std::size_t StaticScene::view_bytes() const {
   return static_cast<std::size_t>(camera().width) * static_cast<std::size_t>(camera().height) * 5;
 }
 
-void StaticScene::add(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse, const cv::Mat& labels,
-                      const std::vector<bool>& left_out) {
+const KeptView& StaticScene::add(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse,
+                                 const cv::Mat& labels, const std::vector<bool>& left_out) {
   if (static_cast<int>(views_.size()) >= settings_.keyframes) make_room();
   const auto next = std::upper_bound(views_.begin(), views_.end(), frame.index,
                                      [](std::uint64_t index, const KeptView& v) { return index < v.frame_index; });
-  views_.insert(next, sampler_.sample(keyframe, frame, coarse, labels, left_out));
+  return *views_.insert(next, sampler_.sample(keyframe, frame, coarse, labels, left_out));
+}
+
+std::vector<CloudPoint> StaticScene::surface(const KeptView& view, std::size_t most) const {
+  const int width = view.depth.cols, height = view.depth.rows;
+  const auto pixels = [](int length, int step) { return static_cast<std::size_t>((length + step / 2) / step); };
+  int step = 1;
+  while (pixels(width, step) * pixels(height, step) > most && step < std::max(width, height)) ++step;
+  std::vector<CloudPoint> points;
+  for (int y = step / 2; y < height; y += step)
+    for (int x = step / 2; x < width; x += step) {
+      const double depth = view.depth_at(x, y);
+      if (depth <= 0.0 || depth > settings_.maximum_depth || view.moves(x, y)) continue;
+      const Eigen::Vector3f place = camera().back_project(x, y, depth).cast<float>();
+      const cv::Vec3b& colour = view.colour.ptr<cv::Vec3b>(y)[x];
+      points.push_back({place.x(), place.y(), place.z(), colour[2], colour[1], colour[0]});
+    }
+  return points;
 }
 
 void StaticScene::make_room() {

@@ -100,6 +100,7 @@ struct Pipeline::State {
       const std::vector<std::string>& out = parts.dense_map.classes;
       left_out.push_back(std::find(out.begin(), out.end(), name) != out.end());
     }
+    for (const auto& observer : parts.observers) observer->on_start(parts.segmenter->classes());
     if (parts.localise_only)
       tracker.localise_only();
     else if (parts.run.threaded())
@@ -128,9 +129,12 @@ struct Pipeline::State {
   /// Requests the mask of the frame last tracked, if it should have one. A keyframe that cannot be segmented now goes
   /// on without a mask.
   void request_mask(const SensorFrame& frame, const FrameResult& result, StageTimes& times);
-  /// `coarse` and `labels` (may be empty) are the final evidence of motion in the keyframe.
-  void keep_view(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse, const cv::Mat& labels,
-                 StageTimes& times);
+  /// `coarse` and `labels` (may be empty) are the final evidence of motion in the keyframe. Returns what was kept until
+  /// the next call, nullptr without a dense map.
+  const KeptView* keep_view(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse,
+                            const cv::Mat& labels, StageTimes& times);
+  /// Tells the observers of a kept view, if there is one; the caller holds no lock.
+  void show_view(const KeptView* view);
   /// Paced mode never waits here: a keyframe that finds no room is kept and handed on with a later frame.
   void hand_to_mapping(const MappingJob& job, StageTimes& times);
   void hand_on_kept_keyframes();
@@ -357,11 +361,22 @@ void Pipeline::State::hand_on_kept_keyframes() {
   }
 }
 
-void Pipeline::State::keep_view(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse,
-                                const cv::Mat& labels, StageTimes& times) {
-  if (!scene) return;
+const KeptView* Pipeline::State::keep_view(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse,
+                                           const cv::Mat& labels, StageTimes& times) {
+  if (!scene) return nullptr;
   const StageTimer timer(times, "dense map: keep");
-  scene->add(keyframe, frame, coarse, labels, left_out);
+  return &scene->add(keyframe, frame, coarse, labels, left_out);
+}
+
+void Pipeline::State::show_view(const KeptView* view) {
+  if (view == nullptr || parts.observers.empty()) return;
+  ObservedView observed{.keyframe = view->keyframe, .timestamp = view->timestamp};
+  observed.points = [this, view](std::size_t most) { return scene->surface(*view, most); };
+  {
+    const TrackingLock lock(map_mutex);
+    observed.T_world_camera = map.pose_of(view->keyframe).inverse();
+  }
+  for (const auto& observer : parts.observers) observer->on_static_view(observed);
 }
 
 double Pipeline::State::take_masks(StageTimes& times) {
@@ -372,14 +387,17 @@ double Pipeline::State::take_masks(StageTimes& times) {
     if (!arrived) return seconds;
     seconds += watch.seconds();
     if (!arrived->keyframe.valid()) continue;
+    const KeptView* kept = nullptr;
     {
       watch.restart();
       const TrackingLock lock(map_mutex);
       moving_world.evaluate_keyframe(*arrived, times);
       seconds += watch.seconds();
       if (const KeyFrame* keyframe = map.find_keyframe(arrived->keyframe))
-        keep_view(arrived->keyframe, arrived->frame, keyframe->frame.coarse, arrived->segmentation.labels, times);
+        kept =
+            keep_view(arrived->keyframe, arrived->frame, keyframe->frame.coarse, arrived->segmentation.labels, times);
     }
+    show_view(kept);
     hand_to_mapping({arrived->keyframe, true, image_to_describe(arrived->frame)}, times);
   }
 }
@@ -396,7 +414,7 @@ void Pipeline::State::request_mask(const SensorFrame& frame, const FrameResult& 
     if (parts.sensor == Sensor::mono) hand_to_mapping({keyframe, false}, times);
     return;
   }
-  keep_view(keyframe, frame, tracker.frame().coarse, {}, times);
+  show_view(keep_view(keyframe, frame, tracker.frame().coarse, {}, times));
   hand_to_mapping({keyframe, true, image_to_describe(frame)}, times);
 }
 

@@ -105,21 +105,26 @@ ReportSection summary_section(const RunRecord& record) {
 
 /// How many frames have no pose, and what most of them suffered from; empty if all have one.
 std::string missing_poses_text(const RunSummary& summary) {
+  const std::uint64_t missing = summary.lost() + summary.count(TrackingStatus::waiting);
+  if (missing == 0) return "";
   const std::vector<std::pair<TrackingTrouble, std::size_t>> troubles(summary.troubles().begin(),
                                                                       summary.troubles().end());
   const auto most = std::max_element(troubles.begin(), troubles.end(),
                                      [](const auto& a, const auto& b) { return a.second < b.second; });
-  if (most == troubles.end() || most->second == 0) return "";
-  return " " + counted(summary.lost(), "frame") + " lost, shaded red in the plots; the most frequent trouble is '" +
-         to_string(most->first) + "' (" + counted(most->second, "frame") + ").";
+  const std::string text = " Without a pose: " + counted(missing, "frame") + ", shaded red in the plots";
+  if (most == troubles.end() || most->second == 0) return text + ".";
+  return text + "; the most frequent trouble is '" + to_string(most->first) + "' (" + counted(most->second, "frame") +
+         ").";
 }
 
 ReportSection error_section(const Evaluation& evaluation, const RunSummary& summary) {
   ReportSection error = section("Trajectory");
   error.tables = {error_report(evaluation)};
-  error.text =
-      "Aligned with the truth by a rigid motion (se3) over all pairs; stamps paired one to one within 0.02 s." +
-      missing_poses_text(summary);
+  const AlignmentKind kind = evaluation.options.alignment;
+  const std::string motion = kind == AlignmentKind::sim3   ? "Aligned with the truth by a motion with scale (sim3)"
+                             : kind == AlignmentKind::none ? "Compared with the truth without alignment"
+                                                           : "Aligned with the truth by a rigid motion (se3)";
+  error.text = motion + " over all pairs; stamps paired one to one within 0.02 s." + missing_poses_text(summary);
   error.figures.push_back(
       {top_view_svg(evaluation), "The path by its error, and the true path as a thin line over it"});
   error.figures.push_back({error_over_time_svg(evaluation), "Absolute error over time"});

@@ -89,6 +89,19 @@ void Scene::set_map(const MapSnapshot& map) {
   map_.update(map, ++version_);
   state_version_ = version_;
   if (map_.has_corrections() && !run_) follow_keyframes();
+  cloud_.follow(map_, version_);
+}
+
+void Scene::set_classes(std::vector<std::string> names) {
+  classes_ = std::move(names);
+  head_version_ = ++version_;
+}
+
+void Scene::add(std::span<const ViewedClass> classes) { map_.add(classes, ++version_); }
+
+void Scene::add(ViewedSurface surface) {
+  if (const Eigen::Isometry3d* pose = map_.pose(surface.keyframe)) surface.T_world_camera = *pose;
+  cloud_.add(std::move(surface));
 }
 
 void Scene::follow_keyframes() {
@@ -131,6 +144,7 @@ void Scene::set_run(ViewedRun run) {
                      Eigen::Quaternionf(pose.linear().cast<float>()), KeyFrameId(), TrackingStatus::tracked,
                      TrackingMethod::none, i < run.errors.size() ? run.errors[i] : unknown, 0});
   }
+  if (!run.cloud.empty()) cloud_.replace(std::exchange(run.cloud, {}));
   run_ = std::move(run);
 }
 
@@ -145,7 +159,8 @@ void Scene::describe_head(Message& message) const {
   message.json()["head"] = {{"title", options_.title},
                             {"version", HOLDFAST_VERSION},
                             {"camera", {camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy}},
-                            {"frame_rate", camera.frame_rate}};
+                            {"frame_rate", camera.frame_rate},
+                            {"classes", classes_}};
 }
 
 void Scene::describe_state(Message& message) const {
@@ -272,7 +287,7 @@ void Scene::describe_run(Message& message) const {
 }
 
 std::string Scene::update(Progress& progress) const {
-  if (progress.has_head && progress.version == version_) return {};
+  if (progress.has_head && progress.version == version_ && !cloud_.has_more(progress.cloud)) return {};
   const std::uint64_t since = progress.version;
   Message message;
   if (!progress.has_head || head_version_ > since) describe_head(message);
@@ -283,6 +298,7 @@ std::string Scene::update(Progress& progress) const {
   describe_frames(progress, message);
   describe_path(progress, message);
   map_.describe(since, message);
+  cloud_.describe(progress.cloud, message);
   describe_picture(progress, message);
   if (run_version_ > since) describe_run(message);
   if (progress.loops < closed_loops_.size()) {

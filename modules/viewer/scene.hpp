@@ -5,10 +5,12 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "dense_cloud.hpp"
 #include "holdfast/core/frame_result.hpp"
 #include "holdfast/viewer/viewer.hpp"
 #include "message.hpp"
@@ -25,6 +27,7 @@ struct Progress {
   std::uint64_t trails = 0;  ///< number of positions of moving objects
   std::uint64_t frames = 0;  ///< number of the next frame for the time chart
   std::uint64_t picture = 0, loops = 0;
+  CloudProgress cloud;
 };
 
 /// How the run is being played, as the page shows it.
@@ -41,6 +44,9 @@ class Scene {
 
   void add(const FrameResult& result);
   void set_map(const MapSnapshot& map);
+  void set_classes(std::vector<std::string> names);
+  void add(std::span<const ViewedClass> classes);
+  void add(ViewedSurface surface);
   void set_picture(const ViewedPicture& picture);
   void add_loop(KeyFrameId keyframe, KeyFrameId candidate);
   void set_run(ViewedRun run);
@@ -82,6 +88,8 @@ class Scene {
   ViewerOptions options_;
   std::uint64_t version_ = 1, head_version_ = 1, state_version_ = 1, run_version_ = 0;
   ShownMap map_;
+  DenseCloud cloud_;
+  std::vector<std::string> classes_;
   std::vector<PathEntry> path_;
   std::uint64_t path_number_ = 1;
   std::deque<ChartEntry> chart_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "server.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -227,6 +228,7 @@ void Server::State::listen(const std::string& at, int port) {
   const tcp::endpoint endpoint(numeric, static_cast<std::uint16_t>(port));
   acceptor.open(endpoint.protocol(), error);
   if (error) fail(error.message());
+  fcntl(acceptor.native_handle(), F_SETFD, FD_CLOEXEC);  // a program that this one starts would keep the port
   acceptor.set_option(asio::socket_base::reuse_address(true), error);
   acceptor.bind(endpoint, error);
   if (error) fail(error.message());
@@ -242,6 +244,7 @@ void Server::State::accept() {
     if (!error && connections < most_connections) {
       beast::error_code ignored;
       socket.set_option(tcp::no_delay(true), ignored);
+      fcntl(socket.native_handle(), F_SETFD, FD_CLOEXEC);
       std::make_shared<RequestSession>(*this, std::move(socket))->read();
     }
     accept();

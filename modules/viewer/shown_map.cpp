@@ -65,10 +65,23 @@ void ShownMap::update_points(const MapSnapshot& map, std::uint64_t version) {
         (position - point.position).norm() < static_cast<float>(smallest_move) &&
         std::abs(given.static_log_odds - point.evidence) < smallest_evidence)
       continue;
-    point = {position, given.static_log_odds, given.id.generation, true, version};
+    const Class known = given.id.slot < classes_.size() ? classes_[given.id.slot] : Class();
+    const std::uint8_t label = known.generation == given.id.generation ? known.label : unknown_class;
+    point = {position, given.static_log_odds, given.id.generation, true, label, version};
   }
   remove_missing(points_, is_listed, version);
   point_count_ = map.points.size();
+}
+
+void ShownMap::add(std::span<const ViewedClass> classes, std::uint64_t version) {
+  for (const auto& [id, label] : classes) {
+    entry_at(classes_, id.slot) = {id.generation, label};
+    if (id.slot >= points_.size()) continue;
+    Point& point = points_[id.slot];
+    if (!point.exists || point.generation != id.generation) continue;
+    point.label = label;
+    point.version = version;
+  }
 }
 
 void ShownMap::update_keyframes(const MapSnapshot& map, std::uint64_t version) {
@@ -98,10 +111,14 @@ void ShownMap::update_keyframes(const MapSnapshot& map, std::uint64_t version) {
   keyframe_count_ = map.keyframes.size();
 }
 
+const Eigen::Isometry3d* ShownMap::pose(KeyFrameId id) const {
+  const bool is_shown = id.valid() && id.slot < keyframes_.size() && keyframes_[id.slot].exists &&
+                        keyframes_[id.slot].generation == id.generation;
+  return is_shown ? &keyframes_[id.slot].T_world_camera : nullptr;
+}
+
 std::optional<Eigen::Isometry3d> ShownMap::correction(KeyFrameId id, double timestamp) const {
-  if (id.valid() && id.slot < keyframes_.size() && keyframes_[id.slot].exists &&
-      keyframes_[id.slot].generation == id.generation)
-    return keyframes_[id.slot].correction;
+  if (pose(id) != nullptr) return keyframes_[id.slot].correction;
   if (by_time_.empty()) return std::nullopt;
   auto next = std::lower_bound(by_time_.begin(), by_time_.end(), std::make_pair(timestamp, std::uint32_t{0}));
   if (next == by_time_.end() ||
@@ -113,6 +130,7 @@ std::optional<Eigen::Isometry3d> ShownMap::correction(KeyFrameId id, double time
 void ShownMap::describe(std::uint64_t since, Message& message) const {
   std::vector<std::uint32_t> slots;
   std::vector<float> values;
+  std::vector<std::uint8_t> labels;
   constexpr float none = std::numeric_limits<float>::quiet_NaN();
   for (std::uint32_t slot = 0; slot < points_.size(); ++slot) {
     const Point& point = points_[slot];
@@ -120,9 +138,11 @@ void ShownMap::describe(std::uint64_t since, Message& message) const {
     slots.push_back(slot);
     values.insert(values.end(),
                   {point.position.x(), point.position.y(), point.position.z(), point.exists ? point.evidence : none});
+    if (!classes_.empty()) labels.push_back(point.label);
   }
   message.add("point_slots", slots);
   message.add("point_values", values);
+  message.add("point_classes", labels);
   slots.clear(), values.clear();
   std::vector<double> stamps;
   for (std::uint32_t slot = 0; slot < keyframes_.size(); ++slot) {

@@ -4,10 +4,12 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "holdfast/core/map_snapshot.hpp"
+#include "holdfast/viewer/viewer.hpp"
 #include "message.hpp"
 
 namespace holdfast::viewer {
@@ -18,15 +20,20 @@ class ShownMap {
  public:
   /// Moves of points and keyframes below this [m] are not worth a message.
   static constexpr double smallest_move = 1e-3;
+  static constexpr std::uint8_t unknown_class = 255;
 
   /// Takes over a snapshot as `version`, which is larger than every one before.
   void update(const MapSnapshot& map, std::uint64_t version);
+  /// Takes over classes of points as `version`. A point may come with a later snapshot.
+  void add(std::span<const ViewedClass> classes, std::uint64_t version);
   /// Adds everything that changed after version `since`; 0 = all.
   void describe(std::uint64_t since, Message& message) const;
 
   std::size_t keyframe_count() const { return keyframe_count_; }
   std::size_t point_count() const { return point_count_; }
 
+  /// T_world_camera of a keyframe; nullptr when it is not in the map.
+  const Eigen::Isometry3d* pose(KeyFrameId keyframe) const;
   /// What has to be applied from the left to a pose of the path that was estimated relative to a keyframe, so that it
   /// follows the keyframe. Of a keyframe that is gone, that of the nearest in time. Empty: nothing. Answers for the
   /// last update.
@@ -40,7 +47,12 @@ class ShownMap {
     float evidence = 0.0F;
     std::uint32_t generation = 0;
     bool exists = false;
+    std::uint8_t label = unknown_class;
     std::uint64_t version = 0;
+  };
+  struct Class {
+    std::uint32_t generation = 0;  // of the point
+    std::uint8_t label = unknown_class;
   };
   struct KeyFrame {
     Eigen::Isometry3d T_world_camera;
@@ -55,6 +67,7 @@ class ShownMap {
   void update_keyframes(const MapSnapshot& map, std::uint64_t version);
 
   std::vector<Point> points_;        // by slot
+  std::vector<Class> classes_;       // by slot, also of points that are not in the map yet
   std::vector<KeyFrame> keyframes_;  // by slot
   std::vector<std::uint32_t> covisibility_, loops_;
   std::uint64_t covisibility_version_ = 0, loops_version_ = 0;

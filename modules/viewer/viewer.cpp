@@ -58,6 +58,9 @@ struct Mailbox {
   std::vector<FrameResult> frames;
   std::optional<ViewedPicture> picture;
   std::optional<MapSnapshot> map;
+  std::optional<std::vector<std::string>> class_names;
+  std::vector<ViewedClass> classes;
+  std::vector<ViewedSurface> surfaces;
   std::vector<std::pair<KeyFrameId, KeyFrameId>> loops;
   std::optional<ViewedRun> run;
 };
@@ -93,7 +96,10 @@ void Viewer::State::take_mail() {
     const std::lock_guard lock(mutex);
     std::swap(mail, mailbox);
   }
+  if (mail.class_names) scene.set_classes(std::move(*mail.class_names));
+  if (!mail.classes.empty()) scene.add(mail.classes);
   if (mail.map) scene.set_map(*mail.map);
+  for (ViewedSurface& surface : mail.surfaces) scene.add(std::move(surface));
   for (const FrameResult& frame : mail.frames) scene.add(frame);
   for (const auto& [keyframe, candidate] : mail.loops) scene.add_loop(keyframe, candidate);
   if (mail.picture) scene.set_picture(*mail.picture);
@@ -168,6 +174,22 @@ void Viewer::set_map(MapSnapshot map, double seconds) {
   state_->has_map = true;
   const std::lock_guard lock(state_->mutex);
   state_->mailbox.map = std::move(map);
+}
+
+void Viewer::set_classes(std::vector<std::string> names) {
+  const std::lock_guard lock(state_->mutex);
+  state_->mailbox.class_names = std::move(names);
+}
+
+void Viewer::add_point_classes(std::vector<ViewedClass> classes) {
+  const std::lock_guard lock(state_->mutex);
+  std::vector<ViewedClass>& kept = state_->mailbox.classes;
+  kept.insert(kept.end(), classes.begin(), classes.end());
+}
+
+void Viewer::add_surface(ViewedSurface surface) {
+  const std::lock_guard lock(state_->mutex);
+  state_->mailbox.surfaces.push_back(std::move(surface));
 }
 
 void Viewer::add_loop(KeyFrameId keyframe, KeyFrameId candidate) {

@@ -36,6 +36,27 @@ TEST(StaticScene, PutsTheWallWhereItIs) {
   }
 }
 
+TEST(StaticScene, GivesTheSurfaceOfAView) {
+  WallWorld world;
+  StaticScene scene(world.camera, small_settings());
+  world.show(scene, 0.3, 0.3, true);
+  const KeptView& view = scene.views().front();  // 80 x 60 pixels, a part of them on the square
+  const std::vector<CloudPoint> all = scene.surface(view, 80 * 60);
+  EXPECT_GT(all.size(), 2000U);
+  EXPECT_LT(all.size(), 4500U);
+  EXPECT_EQ(count_green(all), 0);
+  for (const CloudPoint& point : all) {
+    ASSERT_NEAR(point.z, WallWorld::wall_z, KeptView::depth_unit);
+    const cv::Vec3b colour = WallWorld::wall_colour(point.x + 0.3, point.y);
+    ASSERT_NEAR(point.blue, colour[0], 3);
+    ASSERT_NEAR(point.red, colour[2], 3);
+  }
+  for (const std::size_t most : {std::size_t{1000}, std::size_t{100}, std::size_t{1}}) {
+    EXPECT_LE(scene.surface(view, most).size(), most);
+    if (most > 1) EXPECT_GT(scene.surface(view, most).size(), most / 4);
+  }
+}
+
 TEST(StaticScene, FollowsThePosesThatTheMapHasAtTheEnd) {
   WallWorld world;
   StaticScene scene(world.camera, small_settings());

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "holdfast/dense_map/static_scene.hpp"
 #include "holdfast/pipeline/pipeline.hpp"
 #include "holdfast/plugin/registry.hpp"
@@ -27,7 +29,37 @@ class RightThird final : public Segmenter {
   }
 };
 
-Pipeline fed_pipeline(bool enabled, bool segmented, bool threaded) {
+/// What an observer is told of the dense map.
+struct Told {
+  std::vector<std::string> classes;
+  std::vector<KeyFrameId> keyframes;
+  std::vector<std::size_t> points;
+  double farthest_from_truth = 0.0;  // of the poses [m]
+  bool has_person = false;
+};
+
+class ViewObserver final : public Observer {
+ public:
+  explicit ViewObserver(Told& told) : told_(told) {}
+  void on_start(const std::vector<std::string>& classes) override {
+    EXPECT_TRUE(told_.keyframes.empty());
+    told_.classes = classes;
+  }
+  void on_static_view(const ObservedView& view) override {
+    told_.keyframes.push_back(view.keyframe);
+    const std::vector<CloudPoint> points = view.points(1000);
+    told_.points.push_back(points.size());
+    EXPECT_GE(view.points(4000).size(), points.size());
+    const double error = (view.T_world_camera.translation() - test::path_pose(view.timestamp).translation()).norm();
+    told_.farthest_from_truth = std::max(told_.farthest_from_truth, error);
+    for (const CloudPoint& point : points) told_.has_person = told_.has_person || point.x > 0.4F * point.z;
+  }
+
+ private:
+  Told& told_;
+};
+
+Pipeline fed_pipeline(bool enabled, bool segmented, bool threaded, Told* told = nullptr) {
   test::PointWorld world(find_camera("tum_fr3").value());
   Registry registry;
   holdfast_register_plugin_ceres(registry);
@@ -38,6 +70,7 @@ Pipeline fed_pipeline(bool enabled, bool segmented, bool threaded) {
   parts.dense_map.enabled = enabled;
   if (threaded) parts.run.mode = RunMode::threaded;
   if (segmented) parts.segmenter = std::make_unique<RightThird>();
+  if (told != nullptr) parts.observers.push_back(std::make_unique<ViewObserver>(*told));
   Pipeline pipeline(std::move(parts));
   for (int i = 0; i < 60; ++i)
     pipeline.feed(world.frame(static_cast<std::uint64_t>(i), i / 30.0, test::path_pose(i / 30.0)));
@@ -63,6 +96,26 @@ TEST(PipelineStaticScene, HasEveryKeyframeWithItsOwnMask) {
       }
       EXPECT_FALSE(scene->cloud(pipeline.map()).empty());
     }
+}
+
+TEST(PipelineStaticScene, IsToldToObservers) {
+  for (const bool segmented : {false, true})
+    for (const bool threaded : {false, true}) {
+      Told told;
+      const Pipeline pipeline = fed_pipeline(true, segmented, threaded, &told);
+      EXPECT_EQ(told.classes.size(), segmented ? 3U : 0U);
+      EXPECT_EQ(told.keyframes.size(), pipeline.static_scene()->views().size());
+      for (const std::size_t points : told.points) {
+        EXPECT_GT(points, 10U);  // the world has depth at its points alone
+        EXPECT_LE(points, 1000U);
+      }
+      EXPECT_LT(told.farthest_from_truth, 0.02);
+      EXPECT_EQ(told.has_person, !segmented) << "the right third of the image";
+    }
+  Told told;
+  fed_pipeline(false, true, false, &told);
+  EXPECT_TRUE(told.keyframes.empty());
+  EXPECT_EQ(told.classes.size(), 3U);
 }
 
 }  // namespace

@@ -88,6 +88,13 @@ class Browser {
     if (answer.contains("exceptionDetails")) throw std::runtime_error(answer.dump());
     return answer.at("result").contains("value") ? answer.at("result").at("value") : Json(nullptr);
   }
+  /// The size of the window [px], and whether the system asks for dark pages.
+  void show_at(int width, int height, bool is_dark) {
+    call("Emulation.setDeviceMetricsOverride",
+         {{"width", width}, {"height", height}, {"deviceScaleFactor", 1}, {"mobile", false}});
+    call("Emulation.setEmulatedMedia",
+         {{"features", {{{"name", "prefers-color-scheme"}, {"value", is_dark ? "dark" : "light"}}}}});
+  }
   /// Presses the mouse's button on the middle of the element that an expression gives.
   void click(const std::string& element) {
     const Json place =
@@ -98,18 +105,24 @@ class Browser {
       call("Input.dispatchMouseEvent",
            {{"type", type}, {"x", place[0]}, {"y", place[1]}, {"button", "left"}, {"clickCount", 1}});
   }
-  void press_enter() {
-    call("Input.dispatchKeyEvent",
-         {{"type", "keyDown"}, {"key", "Enter"}, {"code", "Enter"}, {"windowsVirtualKeyCode", 13}, {"text", "\r"}});
-    call("Input.dispatchKeyEvent",
-         {{"type", "keyUp"}, {"key", "Enter"}, {"code", "Enter"}, {"windowsVirtualKeyCode", 13}});
-  }
+  void press_enter() { press("Enter", "Enter", 13, "\r"); }
+  void press_space() { press(" ", "Space", 32, " "); }
+  void press_left() { press("ArrowLeft", "ArrowLeft", 37); }
+  void press_right() { press("ArrowRight", "ArrowRight", 39); }
   /// What pages complained about: exceptions, refused content, failed requests.
   const std::vector<std::string>& complaints() const { return complaints_; }
 
  private:
   using Json = nlohmann::json;
 
+  void press(const char* key, const char* code, int number, const char* text = nullptr) {
+    Json event = {{"type", "keyDown"}, {"key", key}, {"code", code}, {"windowsVirtualKeyCode", number}};
+    if (text != nullptr) event["text"] = text;
+    call("Input.dispatchKeyEvent", event);
+    event.erase("text");
+    event["type"] = "keyUp";
+    call("Input.dispatchKeyEvent", event);
+  }
   Json call(const std::string& method, const Json& parameters = Json::object()) {
     Json message = {{"id", ++last_id_}, {"method", method}, {"params", parameters}};
     if (!session_.empty()) message["sessionId"] = session_;

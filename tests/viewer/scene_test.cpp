@@ -82,6 +82,54 @@ TEST(SceneTest, TellsWhichPointsAreGone) {
   EXPECT_EQ(message.array<float>("keyframe_values")[7], 0.0F);
 }
 
+TEST(SceneTest, TellsTheClassesOfPoints) {
+  Scene scene({});
+  Progress progress;
+  scene.set_map(test::row_map(3));
+  EXPECT_FALSE(ReceivedMessage(scene.update(progress)).has("point_classes")) << "nothing is known of classes";
+
+  scene.set_classes({"background", "person"});
+  const std::vector<ViewedClass> classes{{test::point_id(1), 1}, {test::point_id(3), 1}, {test::point_id(2, 5), 1}};
+  scene.add(classes);
+  ReceivedMessage message(scene.update(progress));
+  EXPECT_THAT(message.json["head"]["classes"], ElementsAre("background", "person"));
+  EXPECT_THAT(message.array<std::uint32_t>("point_slots"), ElementsAre(1));
+  EXPECT_THAT(message.array<std::uint8_t>("point_classes"), ElementsAre(1));
+  EXPECT_THAT(message.array<float>("point_values"), ElementsAre(1, 0, 2, 1)) << "with its place, as in every row";
+
+  scene.set_map(test::row_map(4));  // brings point 3, whose class came before it
+  message = ReceivedMessage(scene.update(progress));
+  EXPECT_THAT(message.array<std::uint32_t>("point_slots"), ElementsAre(3));
+  EXPECT_THAT(message.array<std::uint8_t>("point_classes"), ElementsAre(1));
+
+  MapSnapshot map = test::row_map(4);
+  map.points[1].id.generation = 1;  // another point in the slot
+  scene.set_map(map);
+  message = ReceivedMessage(scene.update(progress));
+  EXPECT_THAT(message.array<std::uint8_t>("point_classes"), ElementsAre(255));
+
+  Progress late;
+  EXPECT_THAT(ReceivedMessage(scene.update(late)).array<std::uint8_t>("point_classes"), ElementsAre(255, 255, 255, 1));
+}
+
+TEST(SceneTest, BringsTheDenseCloudWithTheRestOfTheMap) {
+  Scene scene({});
+  MapSnapshot map = test::row_map(2);
+  map.keyframes[1].T_world_camera = pose_at(1, 4);
+  scene.set_map(map);
+  scene.add(ViewedSurface{test::keyframe_id(1), 1.0, pose_at(1), {{0, 0, 2, 1, 2, 3}}});
+  Progress progress;
+  ReceivedMessage message(scene.update(progress));
+  EXPECT_EQ(message.array<float>("surface_poses")[1], 4.0F) << "where the keyframe is now";
+  EXPECT_EQ(scene.update(progress), "");
+  ViewedRun run;
+  run.cloud = {{5, 6, 7, 1, 2, 3}};
+  scene.set_run(run);
+  message = ReceivedMessage(scene.update(progress));
+  EXPECT_EQ(message.json["new_cloud"], true);
+  EXPECT_THAT(message.array<float>("surface_places"), ElementsAre(5, 6, 7));
+}
+
 TEST(SceneTest, ThePathFollowsItsKeyframesAfterALoop) {
   Scene scene({});
   scene.set_map(test::row_map(3));

@@ -4,6 +4,7 @@
 #include <csignal>
 
 #include "cli/program.hpp"
+#include "support/browser.hpp"
 #include "viewer/socket_client.hpp"
 
 namespace holdfast {
@@ -76,6 +77,99 @@ TEST_F(ViewProgramTest, ShowsARunUntilItIsStoppedAndItsResultsLater) {
     kill(view, SIGTERM);
     EXPECT_EQ(program_.finish(view).exit_code, 0);
   }
+}
+
+TEST_F(ViewProgramTest, ShowsTheDenseCloudOfARunAndOfItsResults) {
+  const auto has_cloud = [](const ReceivedMessage& message) { return message.has("surface_places"); };
+  const pid_t run = start({"run", "run.yaml", "--output", "out", "--view", "--set", "dense_map.enabled=true", "--set",
+                           "observers=[{viewer: {wait: true}}]"});
+  {
+    test::SocketClient client(address());
+    EXPECT_FALSE(is_finished(client.receive_until(has_cloud))) << "while the run goes";
+    client.receive_until(is_finished);
+  }
+  kill(run, SIGINT);
+  EXPECT_EQ(program_.finish(run).exit_code, 0);
+  const pid_t view = start({"view", "out"});
+  {
+    test::SocketClient client(address());
+    const ReceivedMessage message = client.receive_until(has_cloud);
+    EXPECT_GT(message.array<float>("surface_places").size(), 3U * 1000U);
+    EXPECT_EQ(message.array<float>("surface_places").size(), message.array<std::uint8_t>("surface_colours").size());
+  }
+  kill(view, SIGTERM);
+  EXPECT_EQ(program_.finish(view).exit_code, 0);
+  std::filesystem::resize_file(program_.path("out/static_map.ply"), 1000);
+  const test::Outcome outcome = program_.run({"view", "out"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.errors, HasSubstr("static_map.ply: states"));
+}
+
+/// The address as the program prints it.
+std::string text_of(const test::ViewerAddress& address) {
+  return "http://" + address.host + ":" + address.port + "/?token=" + address.token;
+}
+
+/// Waits until an expression holds in the page.
+bool becomes(test::Browser& browser, const std::string& expression) {
+  for (int i = 0; i < 1200; ++i) {
+    if (browser.evaluate("Boolean(" + expression + ")") == true) return true;
+    usleep(50'000);
+  }
+  return false;
+}
+
+/// Nothing is wider than the window, and no control lies on another, from a large screen to a phone, dark and light.
+void expect_it_fits(test::Browser& browser) {
+  const std::string overlaps =
+      "(() => { const boxes = [...document.querySelectorAll('header > *, footer > *, footer button, footer select, "
+      "#slider')].filter((e) => e.getClientRects().length && !e.querySelector('button, select, input'));"
+      "const names = []; boxes.forEach((a, i) => boxes.slice(i + 1).forEach((b) => { const p = "
+      "a.getBoundingClientRect(), q = b.getBoundingClientRect();"
+      "if (Math.min(p.right, q.right) - Math.max(p.left, q.left) > 1 && Math.min(p.bottom, q.bottom) - Math.max(p.top, "
+      "q.top) > 1) names.push(a.id + a.className + ' on ' + b.id + b.className); })); return names.join(', '); })()";
+  for (const int width : {1300, 800, 400})
+    for (const bool is_dark : {false, true}) {
+      browser.show_at(width, 800, is_dark);
+      EXPECT_TRUE(becomes(browser, "document.documentElement.scrollWidth <= " + std::to_string(width))) << width;
+      EXPECT_EQ(browser.evaluate(overlaps), "") << width;
+      // Both pages have the colours of one style sheet.
+      EXPECT_EQ(browser.evaluate("getComputedStyle(document.documentElement).getPropertyValue('--ground').trim()"),
+                is_dark ? "#14171b" : "#ffffff");
+    }
+}
+
+TEST_F(ViewProgramTest, InAChromiumWhileItRunsAndAfterwards) {
+  const auto chromium = test::find_browser();
+  if (!chromium) GTEST_SKIP() << "no chromium, chromium-browser or google-chrome in PATH to look at the page with";
+  test::Browser browser(*chromium, program_.path("profile"), test::BrowserDrawing::webgl);
+  const std::string counts = "globalThis.holdfastViewer?.counts()";
+  const pid_t run = start({"run", "run.yaml", "--output", "out", "--view", "--set", "dense_map.enabled=true", "--set",
+                           "observers=[{viewer: {wait: true, speed: 1}}]"});
+  browser.open_page(text_of(address()));
+  EXPECT_TRUE(
+      becomes(browser, counts + "?.points > 100 && " + counts + ".path > 3 && " + counts + ".picture !== null"));
+  EXPECT_TRUE(becomes(browser, counts + ".cloud > 1000"));
+  expect_it_fits(browser);
+  EXPECT_TRUE(becomes(browser, counts + ".state.finished && " + counts + ".path === 45 && " + counts + ".truth > 40"));
+  expect_it_fits(browser);
+  kill(run, SIGINT);
+  EXPECT_EQ(program_.finish(run).exit_code, 0);
+  EXPECT_TRUE(becomes(browser, "document.getElementById('state').textContent === 'finished, offline'"));
+
+  const pid_t view = start({"view", "out"});
+  browser.open_page(text_of(address()));
+  EXPECT_TRUE(becomes(browser, counts + "?.points > 100 && " + counts + ".path === 45 && " + counts + ".cloud > 1000"));
+  EXPECT_TRUE(becomes(browser,
+                      "!document.getElementById('error-panel').hidden && "
+                      "!document.getElementById('slider').hidden"));
+  EXPECT_TRUE(becomes(browser, "document.getElementById('colourings').hidden")) << "files keep no classes";
+  expect_it_fits(browser);
+  kill(view, SIGTERM);
+  EXPECT_EQ(program_.finish(view).exit_code, 0);
+
+  browser.open_page("file://" + program_.path("out/report.html").string());
+  expect_it_fits(browser);
 }
 
 TEST_F(ViewProgramTest, SameBytesWithAndWithoutABrowser) {

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <future>
 
 #include "holdfast/viewer/viewer.hpp"
 #include "support/browser.hpp"
@@ -42,6 +43,21 @@ class ViewerBrowserTest : public ::testing::Test {
     return browser_->evaluate("document.getElementById('" + id + "').textContent").get<std::string>();
   }
   void open() { browser_->open_page(viewer_->address()); }
+  void hide(const std::vector<std::string>& layers) {
+    for (const std::string& layer : layers)
+      browser_->evaluate("document.querySelector('#layers [data-layer=" + layer + "] input').click()");
+  }
+  /// A run that has ended, of 50 poses.
+  static ViewedRun ended_run() {
+    ViewedRun run;
+    for (int i = 0; i < 50; ++i) {
+      run.path.push_back({i / 30.0, test::pose_at(i * 0.01)});
+      run.errors.push_back(0.001F * static_cast<float>(i));
+      run.truth.emplace_back(i / 30.0, Eigen::Vector3d(i * 0.01, 0.01, 0));
+    }
+    run.figures = {{"ATE RMSE", "<i>3 mm</i>"}};
+    return run;
+  }
 
   std::shared_ptr<Viewer> viewer_ = Viewer::start({.title = "</script><b>run</b>"});
   fs::path profile_;
@@ -118,10 +134,7 @@ TEST_F(ViewerBrowserTest, DrawsPointsWhereTheyAre) {
   ASSERT_TRUE(becomes(counts + "?.points === 4"));
   if (browser_->evaluate("Boolean(document.getElementById('map').getContext('webgl2'))") == false)
     GTEST_SKIP() << "this browser has no WebGL 2";
-  for (const char* layer : {"path", "keyframes", "covisibility", "loops", "grid"})
-    browser_->evaluate(
-        "(() => { for (const label of document.querySelectorAll('#layers label')) if (label.textContent === '" +
-        std::string(layer) + "') label.querySelector('input').click(); })()");
+  hide({"path", "keyframes", "covisibility", "loops", "grid"});
   // The pixels at the places of all points, and one in a corner, where none is.
   const std::string differences =
       "(() => { holdfastViewer.draw(); const c = document.getElementById('map'), gl = c.getContext('webgl2');"
@@ -161,6 +174,20 @@ TEST_F(ViewerBrowserTest, ComesBackAfterTheConnectionWasLost) {
   EXPECT_TRUE(becomes(counts + ".connected && " + counts + ".points === 6"));
 }
 
+TEST_F(ViewerBrowserTest, KeepsWhatItHasWhenTheProgramIsGone) {
+  viewer_->set_map(test::row_map(4), 0.0);
+  open();
+  ASSERT_TRUE(becomes(counts + "?.points === 4"));
+  const int port = std::stoi(viewer_->address().substr(viewer_->address().rfind(':') + 1));
+  viewer_.reset();
+  EXPECT_TRUE(becomes("document.getElementById('state').textContent === 'connection lost'"));
+  EXPECT_EQ(browser_->evaluate("document.getElementById('pause').disabled"), true);
+  viewer_ = Viewer::start({.port = port});  // has another token, so that this page cannot be its
+  usleep(1'500'000);
+  EXPECT_FALSE(viewer_->is_watched());
+  EXPECT_EQ(browser_->evaluate(counts + ".points"), 4);
+}
+
 TEST_F(ViewerBrowserTest, PausesAndShowsTheEnd) {
   open();
   ASSERT_TRUE(becomes(counts + "?.connected"));
@@ -170,14 +197,7 @@ TEST_F(ViewerBrowserTest, PausesAndShowsTheEnd) {
   browser_->click("document.getElementById('pause')");
   EXPECT_TRUE(becomes("document.getElementById('pause').textContent === 'Pause'"));
 
-  ViewedRun run;
-  for (int i = 0; i < 50; ++i) {
-    run.path.push_back({i / 30.0, test::pose_at(i * 0.01)});
-    run.errors.push_back(0.001F * static_cast<float>(i));
-    run.truth.emplace_back(i / 30.0, Eigen::Vector3d(i * 0.01, 0.01, 0));
-  }
-  run.figures = {{"ATE RMSE", "<i>3 mm</i>"}};
-  viewer_->set_run(run);
+  viewer_->set_run(ended_run());
   ASSERT_TRUE(becomes(counts + ".state.finished && " + counts + ".truth === 50"));
   EXPECT_TRUE(becomes("document.getElementById('pause').textContent === 'Play'"));
   EXPECT_TRUE(becomes("document.getElementById('figures').textContent.includes('<i>3 mm</i>')"));
@@ -185,6 +205,100 @@ TEST_F(ViewerBrowserTest, PausesAndShowsTheEnd) {
   browser_->evaluate(
       "(() => { const s = document.getElementById('slider'); s.value = 20; s.dispatchEvent(new Event('input')); })()");
   EXPECT_TRUE(becomes("document.getElementById('error-now').textContent === 'here 20.0 mm'"));
+  EXPECT_THAT(browser_->complaints(), IsEmpty());
+}
+
+/// The colour of the pixel at map point i, as a text.
+std::string pixel_at_point(int i) {
+  return "(() => { holdfastViewer.draw(); const c = document.getElementById('map'), gl = c.getContext('webgl2');"
+         "const m = holdfastViewer.view.matrix(c.width / c.height), p = new Uint8Array(4);"
+         "const [x, y, z] = holdfastViewer.point(" +
+         std::to_string(i) +
+         "); const row = (r) => m[r] * x + m[4 + r] * y + m[8 + r] * z + m[12 + r];"
+         "gl.readPixels(Math.floor((row(0) / row(3) + 1) / 2 * c.width), Math.floor((row(1) / row(3) + 1) / 2 * "
+         "c.height), 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, p); return p.join(); })()";
+}
+
+TEST_F(ViewerBrowserTest, ColoursPointsByStateOrClass) {
+  viewer_->set_map(test::row_map(4), 0.0);
+  open();
+  ASSERT_TRUE(becomes(counts + "?.points === 4"));
+  const std::string has_choice = "!document.getElementById('colourings').hidden";
+  EXPECT_EQ(browser_->evaluate(has_choice), false) << "there are no classes";
+  viewer_->set_classes({"background", "<b>person</b>"});
+  viewer_->add_point_classes({{test::point_id(1), 0}, {test::point_id(2), 1}});
+  EXPECT_TRUE(becomes("holdfastViewer.classOf(2) === 1 && holdfastViewer.classOf(1) === 0 && " + has_choice));
+  EXPECT_EQ(browser_->evaluate("holdfastViewer.classOf(0)"), 255);
+  if (browser_->evaluate("Boolean(document.getElementById('map').getContext('webgl2'))") == false)
+    GTEST_SKIP() << "this browser has no WebGL 2";
+  hide({"path", "keyframes", "covisibility", "loops", "grid"});
+  EXPECT_TRUE(becomes(pixel_at_point(1) + " === " + pixel_at_point(2))) << "both are static";
+  browser_->click("document.querySelector('input[value=class]')");
+  EXPECT_TRUE(becomes(pixel_at_point(1) + " !== " + pixel_at_point(2)));
+  EXPECT_EQ(browser_->evaluate(pixel_at_point(2)), "30,120,255,255") << "as over the picture";
+  EXPECT_TRUE(becomes("document.getElementById('legend').textContent.includes('<b>person</b>')")) << text("legend");
+  browser_->click("document.querySelector('input[value=state]')");
+  EXPECT_TRUE(becomes("document.getElementById('legend').textContent.includes('doubtful')"));
+  EXPECT_THAT(browser_->complaints(), IsEmpty());
+}
+
+TEST_F(ViewerBrowserTest, ShowsTheDenseCloudWhichFollowsItsKeyframes) {
+  viewer_->set_map(test::row_map(4), 0.0);
+  open();
+  ASSERT_TRUE(becomes(counts + "?.points === 4"));
+  const std::string has_layer = "!document.querySelector('[data-layer=cloud]').hidden";
+  EXPECT_EQ(browser_->evaluate(has_layer), false);
+  viewer_->add_surface(
+      {test::keyframe_id(3), 3.0, test::pose_at(3), {{0, 0.5F, 2, 255, 128, 7}, {1, 0.5F, 2, 9, 9, 9}}});
+  EXPECT_TRUE(becomes(counts + ".cloud === 2 && " + has_layer));
+  EXPECT_EQ(browser_->evaluate("holdfastViewer.cloudPoint(0)"), nlohmann::json({3, 0.5, 2, 0, 0xff8007}));
+  MapSnapshot closed = test::row_map(4);
+  closed.keyframes[3].T_world_camera = test::pose_at(3, 2);
+  viewer_->set_map(closed, 0.0);
+  EXPECT_TRUE(becomes("holdfastViewer.cloudPoint(0)[1] === 2.5"));
+  ViewedRun run = ended_run();
+  run.cloud = {{7, 8, 9, 1, 2, 3}};
+  viewer_->set_run(run);
+  EXPECT_TRUE(becomes(counts + ".cloud === 1 && holdfastViewer.cloudPoint(0)[0] === 7"));
+  EXPECT_THAT(browser_->complaints(), IsEmpty());
+}
+
+TEST_F(ViewerBrowserTest, SpacePausesAndArrowsStep) {
+  open();
+  ASSERT_TRUE(becomes(counts + "?.connected"));
+  viewer_->add_frame(test::row_frame(0));
+  browser_->press_space();
+  EXPECT_TRUE(becomes(counts + ".state.paused"));
+  std::future<void> frame = std::async(std::launch::async, [this] { viewer_->take_turn(0.0); });
+  browser_->press_right();
+  frame.get();
+  // What was clicked last does not take the keys.
+  browser_->click("document.querySelector('input[value=top]')");
+  browser_->press_space();
+  EXPECT_TRUE(becomes(counts + ".state.paused === false"));
+
+  viewer_->set_run(ended_run());
+  ASSERT_TRUE(becomes(counts + ".state.finished && document.getElementById('slider').max === '49'"));
+  browser_->press_left();
+  EXPECT_TRUE(becomes("document.getElementById('slider').value === '48'"));
+  browser_->press_left();
+  browser_->press_right();
+  browser_->press_right();
+  EXPECT_TRUE(becomes("document.getElementById('slider').value === '49'"));
+  EXPECT_THAT(browser_->complaints(), IsEmpty());
+}
+
+TEST_F(ViewerBrowserTest, WhoeverComesAfterTheEndSeesTheChartsAsWell) {
+  for (std::uint32_t i = 0; i < 4; ++i) viewer_->add_frame(test::row_frame(i));
+  viewer_->set_run(ended_run());
+  open();
+  ASSERT_TRUE(becomes(counts + "?.state.finished"));
+  for (const char* chart : {"times", "strip", "errors"})
+    EXPECT_TRUE(becomes(
+        "(() => { const c = document.getElementById('" + std::string(chart) +
+        "'), e = document.createElement('canvas'); e.width = c.width; e.height = c.height; return c.toDataURL() "
+        "!== e.toDataURL(); })()"))
+        << chart;
   EXPECT_THAT(browser_->complaints(), IsEmpty());
 }
 

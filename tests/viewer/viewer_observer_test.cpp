@@ -5,6 +5,7 @@
 #include "holdfast/plugin/registry.hpp"
 #include "holdfast/viewer/viewer.hpp"
 #include "picture.hpp"
+#include "point_classes.hpp"
 #include "viewer/socket_client.hpp"
 #include "viewer/viewed_world.hpp"
 
@@ -67,6 +68,38 @@ TEST(ViewerObserverTest, ShowsFramesMapAndPictureToABrowser) {
   client.receive_until([](const ReceivedMessage& m) { return m.has("point_slots") && m.json["state"]["points"] == 0; });
 }
 
+TEST(ViewerObserverTest, ShowsClassesAndTheDenseCloud) {
+  Registry registry;
+  holdfast_register_plugin_viewer(registry);
+  const CreationContext context;
+  const auto observer = registry.create<Observer>("viewer", {}, context);
+  test::SocketClient client{test::ViewerAddress(running_viewers().front()->address())};
+  observer->on_start({"background", "person"});
+  ObservedView view{.keyframe = test::keyframe_id(0), .T_world_camera = test::pose_at(3)};
+  std::size_t asked = 0;
+  view.points = [&](std::size_t most) {
+    asked = most;
+    return std::vector<CloudPoint>{{0, 0, 2, 1, 2, 3}};
+  };
+  observer->on_static_view(view);
+  EXPECT_LE(asked, 5000U);
+  Frame frame = two_features(context.camera);
+  frame.coarse.grid = CoarseSampler(context.camera).grid();
+  frame.coarse.mask.assign(static_cast<std::size_t>(frame.coarse.grid.size()), 1, 255);
+  SensorFrame sensor_frame;
+  sensor_frame.colour = cv::Mat(context.camera.height, context.camera.width, CV_8UC3, cv::Scalar::all(80));
+  observer->on_frame(sensor_frame, frame, test::row_frame(1));
+  observer->on_keyframe(test::keyframe_id(0), ObservedMap([] { return test::row_map(6); }));
+  bool has_cloud = false, has_classes = false;
+  client.receive_until([&](const ReceivedMessage& m) {
+    has_cloud = has_cloud || m.array<float>("surface_places") == std::vector<float>{0, 0, 2};
+    const auto slots = m.array<std::uint32_t>("point_slots");
+    const auto classes = m.array<std::uint8_t>("point_classes");
+    for (std::size_t i = 0; i < classes.size(); ++i) has_classes = has_classes || (slots[i] == 4 && classes[i] == 1);
+    return has_cloud && has_classes;
+  });
+}
+
 TEST(ViewerObserverTest, AProgramCanKeepTheViewerBeyondTheRun) {
   Registry registry;
   holdfast_register_plugin_viewer(registry);
@@ -74,6 +107,41 @@ TEST(ViewerObserverTest, AProgramCanKeepTheViewerBeyondTheRun) {
   const std::vector<std::shared_ptr<Viewer>> kept = running_viewers();
   observer.reset();
   EXPECT_EQ(running_viewers(), kept);
+}
+
+/// A frame that sees point 4, with a mask of one label.
+Frame labelled_frame(std::uint8_t label, std::uint32_t generation = 0) {
+  static const Camera camera;
+  Frame frame = two_features(camera);
+  frame.map_points[0].generation = generation;
+  frame.coarse.grid = CoarseSampler(camera).grid();
+  frame.coarse.mask.assign(static_cast<std::size_t>(frame.coarse.grid.size()), label, 255);
+  return frame;
+}
+
+TEST(PointClassesTest, TheMajorityOfMasksDecides) {
+  viewer_plugin::PointClasses classes;
+  const auto change = [&](std::uint8_t label, std::uint32_t generation = 0) {
+    const std::vector<ViewedClass> changes = classes.add(labelled_frame(label, generation));
+    EXPECT_LE(changes.size(), 1U);
+    if (changes.empty()) return -1;
+    EXPECT_EQ(changes[0].point, test::point_id(4, generation));
+    return static_cast<int>(changes[0].label);
+  };
+  EXPECT_EQ(change(CellMask::unknown), -1) << "says nothing";
+  EXPECT_EQ(change(0), 0);
+  EXPECT_EQ(change(0), -1);
+  EXPECT_EQ(change(2), -1) << "one against two";
+  EXPECT_EQ(change(2), -1) << "a draw leaves it";
+  EXPECT_EQ(change(2), 2);
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(change(2), -1);
+  int frames = 1;
+  while (change(0) != 0 && frames < 100) ++frames;
+  EXPECT_LE(frames, 25) << "what was long is not for ever";
+  EXPECT_EQ(change(1, 7), 1) << "another point in the same slot begins anew";
+  Frame unmasked = labelled_frame(1, 9);
+  unmasked.coarse.mask.clear();
+  EXPECT_THAT(classes.add(unmasked), SizeIs(0));
 }
 
 TEST(PictureMakerTest, SamplesMaskAndMotionOnTheRawImage) {

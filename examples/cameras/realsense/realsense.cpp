@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A source of frames for a camera whose library Debian does not have: Intel RealSense by librealsense 2. The source for
-// another camera, such as a Kinect 2 by libfreenect2, differs in what is between the two lines of dashes: open it, ask
+// another camera, such as ../kinect2, differs in what is between the two lines of dashes: open it, ask
 // for colour and depth of one size, wait for a pair, register the depth to the colour, and give the time of the camera.
 //
 // It is written after the documentation of librealsense 2.54 and compiled against its declarations; nobody has run it

@@ -17,9 +17,10 @@ class StaticScene {
  public:
   StaticScene(const Camera& camera, const DenseMapSettings& settings);
 
-  /// Adds a keyframe whose mask is final; see ViewSampler::sample. Keyframes may be added in any order.
-  void add(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse, const cv::Mat& labels,
-           const std::vector<bool>& left_out);
+  /// Adds a keyframe whose mask is final; see ViewSampler::sample. Keyframes may be added in any order. The kept view
+  /// is valid until the next call.
+  const KeptView& add(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse, const cv::Mat& labels,
+                      const std::vector<bool>& left_out);
 
   const DenseMapSettings& settings() const { return settings_; }
   /// The kept views by increasing frame index.
@@ -27,6 +28,10 @@ class StaticScene {
   /// The pinhole camera of the views.
   const Camera& camera() const { return sampler_.camera(); }
   std::size_t view_bytes() const;
+
+  /// Static points of a kept view up to DenseMapSettings::maximum_depth, in the frame of its camera [m]: those of the
+  /// finest regular grid of pixels with at most `most` pixels.
+  std::vector<CloudPoint> surface(const KeptView& view, std::size_t most) const;
 
   /// The fused cloud in world coordinates: one point per occupied voxel, at the mean position and with the mean colour
   /// of its pixels, in voxel order. A voxel needs minimum_views views and must not be removed. The pose of a view is

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
+#include "holdfast/core/cloud_point.hpp"
 #include "holdfast/core/frame.hpp"
 #include "holdfast/core/frame_result.hpp"
 #include "holdfast/core/map.hpp"
@@ -33,6 +37,17 @@ class ObservedMap {
   mutable std::optional<MapSnapshot> snapshot_;
 };
 
+/// What a keyframe sees of the static scene, as the dense map keeps it. Valid during the call that it is an argument
+/// of.
+struct ObservedView {
+  KeyFrameId keyframe = {};
+  double timestamp = 0.0;                                            ///< of the keyframe [s]
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< pose of the keyframe at the time of the call
+  /// Coloured points of static surfaces in the frame of the camera [m]: at most so many, evenly over the image. The
+  /// cost is proportional to the number, about 0.02 ms for 5000.
+  std::function<std::vector<CloudPoint>(std::size_t most)> points = {};
+};
+
 /// Observes a run. Every method does nothing unless overridden. In sequential mode the thread that feeds frames calls
 /// all of them; arguments are valid during the call only. No lock is held during a call: a slow observer delays the
 /// thread that calls it, and no other. An exception ends the run; feed() or finish() throws it.
@@ -40,10 +55,16 @@ class Observer : public Module {
  public:
   static constexpr const char* kind = "observers";
 
+  /// Once, before the first frame. `classes`: names of the segmenter's classes by label, see Segmenter::classes();
+  /// empty without a segmenter.
+  virtual void on_start(const std::vector<std::string>& /*classes*/) {}
   /// After each frame, by the tracking thread.
   virtual void on_frame(const SensorFrame&, const Frame&, const FrameResult&) {}
   /// After local mapping has processed a keyframe that is still in the map, by the mapping thread.
   virtual void on_keyframe(KeyFrameId, const ObservedMap&) {}
+  /// When a keyframe's mask is final and the dense map has kept its image, by the tracking thread, or by the one that
+  /// calls finish(); never without DenseMapSettings::enabled.
+  virtual void on_static_view(const ObservedView&) {}
   /// After a loop was closed between two keyframes, by the loop closing thread.
   virtual void on_loop(KeyFrameId, KeyFrameId, const ObservedMap&) {}
   /// Once at the end of the run, when all threads have ended, by the thread that calls finish().

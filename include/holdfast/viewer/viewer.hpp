@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "holdfast/core/camera.hpp"
+#include "holdfast/core/cloud_point.hpp"
 #include "holdfast/core/frame_result.hpp"
 #include "holdfast/core/id.hpp"
 #include "holdfast/core/map_snapshot.hpp"
@@ -47,6 +48,20 @@ struct ViewedPicture {
   int mask_columns = 0;
 };
 
+/// The class that a map point belongs to.
+struct ViewedClass {
+  MapPointId point;
+  std::uint8_t label = 0;  ///< index into the names of Viewer::set_classes()
+};
+
+/// Surfaces that a keyframe sees. They follow the keyframe when the map is corrected.
+struct ViewedSurface {
+  KeyFrameId keyframe;
+  double timestamp = 0.0;  ///< of the keyframe [s]
+  Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();
+  std::vector<CloudPoint> points;  ///< in the frame of the keyframe's camera
+};
+
 /// A run that has ended, as far as it is known. The path is in the world frame of the map.
 struct ViewedRun {
   std::string title;
@@ -56,6 +71,8 @@ struct ViewedRun {
   /// True positions, in the world frame of the map by the alignment of the evaluation; empty = unknown.
   std::vector<std::pair<double, Eigen::Vector3d>> truth;
   std::vector<std::pair<std::string, std::string>> figures;  ///< name and value, for the summary beside the map
+  /// The dense cloud, in the world frame of the map; empty = there is none, and surfaces that were given stay.
+  std::vector<CloudPoint> cloud;
 };
 
 /// Shows a run in browsers: a server of HTTP and WebSocket in a thread of its own, which serves one page and sends it
@@ -92,6 +109,12 @@ class Viewer {
   bool wants_map() const;
   /// `seconds`: what making the snapshot took.
   void set_map(MapSnapshot map, double seconds);
+  /// Names of classes by label; label 0 is the background. Empty = nothing is known of classes.
+  void set_classes(std::vector<std::string> names);
+  /// Map points whose class is new or has changed; they need not be in a snapshot yet.
+  void add_point_classes(std::vector<ViewedClass> classes);
+  /// Adds to the dense cloud, of which browsers get at most 100,000 points: the larger the scene, the coarser.
+  void add_surface(ViewedSurface surface);
   /// Reports a loop that was closed between two keyframes.
   void add_loop(KeyFrameId keyframe, KeyFrameId candidate);
   /// Replaces path and figures by those of a run that has ended.

@@ -122,11 +122,13 @@ function listenToPointers(canvas, view, moved) {
     moved();
   }, {passive: false});
   canvas.addEventListener('keydown', (event) => {
-    const actions = {
+    // Arrows alone step through the run.
+    const turns = {
       ArrowLeft: () => view.rotate(0.1, 0), ArrowRight: () => view.rotate(-0.1, 0),
       ArrowUp: () => view.rotate(0, 0.1), ArrowDown: () => view.rotate(0, -0.1),
-      '+': () => view.zoom(0.85), '-': () => view.zoom(1.18), '0': () => { view.isFree = false; },
     };
+    const zooms = {'+': () => view.zoom(0.85), '-': () => view.zoom(1.18), '0': () => { view.isFree = false; }};
+    const actions = event.shiftKey ? {...turns, ...zooms} : zooms;
     if (!actions[event.key] || event.ctrlKey || event.metaKey) return;
     event.preventDefault();
     actions[event.key]();

@@ -3,16 +3,21 @@
 const pointShader = `#version 300 es
 precision highp float;
 layout(location = 0) in vec4 point;  // place and evidence
+layout(location = 1) in float tint;  // class, or colour
 uniform mat4 matrix;
-uniform vec4 colours[4];  // static, not measured, doubtful, moving; alpha 0 = not shown
+uniform int kind;         // of colour: 0 by evidence, 1 by class, 2 the point's own
+uniform vec4 colours[8];  // by evidence: static, not measured, doubtful, moving; or by class
 uniform vec2 size;        // on the screen: at a distance of 1, and least
 out vec4 colour;
 void main() {
   gl_Position = matrix * vec4(point.xyz, 1.0);
   gl_PointSize = clamp(size.x / gl_Position.w, size.y, 3.0 * size.y);
   float e = point.w;
-  colour = colours[e > 0.5 ? 0 : e < -0.5 ? 3 : e == 0.0 ? 1 : 2];
-  if (!(e == e) || colour.a == 0.0) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+  int packed = int(tint);
+  if (kind == 0) colour = colours[e > 0.5 ? 0 : e < -0.5 ? 3 : e == 0.0 ? 1 : 2];
+  else if (kind == 1) colour = colours[packed == 255 ? 7 : packed == 0 ? 0 : (packed - 1) % 6 + 1];
+  else colour = vec4(vec3(packed >> 16, packed >> 8 & 255, packed & 255) / 255.0, 1.0);
+  if (!(e == e)) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
 }`;
 const pointFragment = `#version 300 es
 precision mediump float;
@@ -77,6 +82,13 @@ function rampColour(share) {
 const objectColours = ['--series-4', '--series-3', '--series-5', '--series-0', '--series-1'];
 const objectColour = (id, alpha = 1) => cssColour(objectColours[id % objectColours.length], alpha);
 
+/// Colours of classes, the same on the map as over the picture. Label 0 is the background.
+const classTints = [[30, 120, 255], [200, 0, 200], [0, 200, 200], [255, 140, 0], [120, 220, 120], [150, 110, 255]];
+/// The place of a label among the colours of classColours(); more classes than colours begin anew.
+const classPlace = (label) => (label === unknownClass ? 7 : label === 0 ? 0 : (label - 1) % classTints.length + 1);
+/// Colours by classPlace().
+const classColours = () => [cssColour('--static'), ...classTints.map((tint) => [...tint.map((x) => x / 255), 1]), cssColour('--unmeasured')];
+
 /// Segments with a colour each.
 class Lines {
   constructor() { this.clear(); }
@@ -104,11 +116,13 @@ class Renderer {
     this.gl = canvas.getContext('webgl2', {antialias: false, alpha: false});
     if (!this.gl) return;
     const gl = this.gl;
-    this.points = this.program(pointShader, pointFragment, ['matrix', 'colours', 'size']);
+    this.points = this.program(pointShader, pointFragment, ['matrix', 'kind', 'colours', 'size']);
     this.lines = this.program(lineShader, lineFragment, ['matrix', 'screen', 'width']);
     this.pointBuffer = this.pointArray();
     this.seenBuffer = gl.createBuffer();
     this.movingBuffer = this.pointArray();
+    this.cloudBuffer = this.pointArray();
+    this.byClass = false;  // colours of map points
     this.sets = new Map();
     this.cornerBuffer = gl.createBuffer();
     this.corners = 0;
@@ -143,10 +157,11 @@ class Renderer {
     gl.bindVertexArray(array);
     gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
     gl.enableVertexAttribArray(0);
-    gl.vertexAttribPointer(0, 4, gl.FLOAT, false, 16, 0);
+    gl.enableVertexAttribArray(1);
+    this.setStep({buffer}, 1);
     return {array, buffer, capacity: 0, count: 0};
   }
-  /// Takes over rows of place and evidence; only those of `range` have changed, if the buffer has room.
+  /// Takes over rows of points; only those of `range` have changed, if the buffer has room.
   setPoints(target, data, count, range = null) {
     const gl = this.gl;
     target.data = data;
@@ -157,7 +172,7 @@ class Renderer {
       gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
       target.capacity = data.length;
     } else {
-      gl.bufferSubData(gl.ARRAY_BUFFER, 16 * range[0], data, 4 * range[0], 4 * (range[1] - range[0] + 1));
+      gl.bufferSubData(gl.ARRAY_BUFFER, 4 * pointWidth * range[0], data, pointWidth * range[0], pointWidth * (range[1] - range[0] + 1));
     }
   }
   setSeen(slots) {
@@ -242,26 +257,29 @@ class Renderer {
     }
     gl.bindVertexArray(null);
   }
-  /// What is drawn as points: {target, slots, colours, near, least}; the sizes as shares of the height and in pixels.
+  /// What is drawn as points: {target, slots, kind, colours, near, least}; the sizes as shares of the height and in pixels.
   pointLayers(shown) {
-    const accent = cssColour('--accent'), red = cssColour('--moving');
-    const evidence = [cssColour('--static'), cssColour('--unmeasured'), cssColour('--doubtful'), red];
-    const layers = [];
+    const red = cssColour('--moving'), layers = [];
+    if (shown.cloud !== false && this.cloudBuffer.count)
+      layers.push({target: this.cloudBuffer, kind: 2, colours: Array(8).fill(red), near: 0.012, least: 1.6});
     if (shown.points !== false && this.pointBuffer.count) {
-      layers.push({target: this.pointBuffer, colours: evidence, near: 0.014, least: 2.2});
-      if (this.seen && shown.seen !== false)
-        layers.push({target: this.pointBuffer, slots: this.seenSlots, colours: Array(4).fill(accent), near: 0.02, least: 3});
+      const evidence = [cssColour('--static'), cssColour('--unmeasured'), cssColour('--doubtful'), red];
+      layers.push({target: this.pointBuffer, kind: this.byClass ? 1 : 0, colours: this.byClass ? classColours() : [...evidence, ...evidence],
+                   near: 0.014, least: 2.2});
+      if (this.seen && shown.seen !== false && !this.byClass)
+        layers.push({target: this.pointBuffer, slots: this.seenSlots, kind: 0, colours: Array(8).fill(cssColour('--accent')), near: 0.02, least: 3});
     }
     if (shown.moving !== false && this.movingBuffer.count)
-      layers.push({target: this.movingBuffer, colours: Array(4).fill(red), near: 0.02, least: 2.4});
+      layers.push({target: this.movingBuffer, kind: 0, colours: Array(8).fill(red), near: 0.02, least: 2.4});
     return layers;
   }
   drawPoints(matrix, shown, step, height, ratio) {
     const gl = this.gl;
     gl.useProgram(this.points.program);
     gl.uniformMatrix4fv(this.points.matrix, false, matrix);
-    for (const {target, slots, colours, near, least} of this.pointLayers(shown)) {
+    for (const {target, slots, kind, colours, near, least} of this.pointLayers(shown)) {
       gl.bindVertexArray(target.array);
+      gl.uniform1i(this.points.kind, kind);
       gl.uniform4fv(this.points.colours, new Float32Array(colours.flat()));
       gl.uniform2f(this.points.size, near * height, least * ratio);
       if (slots) {
@@ -277,8 +295,8 @@ class Renderer {
   drawPointImage(matrix, shown, step, width, height) {
     const gl = this.gl, image = this.pointImage, isNew = image.width !== width || image.height !== height;
     image.begin(width, height, cssColour('--map-ground'));
-    for (const {target, slots, colours, near, least} of this.pointLayers(shown))
-      image.draw(target.data, target.count, matrix, colours, near * height, least, {slots, step: slots ? 1 : step});
+    for (const {target, slots, kind, colours, near, least} of this.pointLayers(shown))
+      image.draw(target.data, target.count, matrix, kind, colours, near * height, least, {slots, step: slots ? 1 : step});
     const bytes = new Uint8Array(image.pixels.buffer);
     gl.bindTexture(gl.TEXTURE_2D, this.texture);
     if (isNew) gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, width, height, 0, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
@@ -294,6 +312,7 @@ class Renderer {
   setStep({buffer}, step) {
     const gl = this.gl;
     gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-    gl.vertexAttribPointer(0, 4, gl.FLOAT, false, 16 * step, 0);
+    gl.vertexAttribPointer(0, 4, gl.FLOAT, false, 4 * pointWidth * step, 0);
+    gl.vertexAttribPointer(1, 1, gl.FLOAT, false, 4 * pointWidth * step, 16);
   }
 }

@@ -14,19 +14,28 @@ const view = new PointOfView();
 const renderer = new Renderer(canvas);
 const picturePanel = new PicturePanel(), timesPanel = new TimesPanel();
 const shown = {};
-const layers = {points: 'map points', seen: 'points in view', moving: 'moving features', path: 'path', truth: 'true path',
+const layers = {points: 'map points', cloud: 'dense cloud', seen: 'points in view', moving: 'moving features', path: 'path', truth: 'true path',
                 keyframes: 'keyframes', covisibility: 'covisibility', loops: 'loops', objects: 'objects and trails', grid: 'grid'};
 
+const layerOf = (name) => byId('layers').querySelector(`[data-layer=${name}]`);
 if (!renderer.gl) {
   byId('notice').textContent = 'This browser has no WebGL 2, so the map cannot be drawn; the rest of the page works.';
   byId('notice').hidden = false;
 }
 for (const [name, label] of Object.entries(layers)) {
   shown[name] = true;
-  byId('layers').append(element('label', {}, element('input', {
+  byId('layers').append(element('label', {'data-layer': name}, element('input', {
     type: 'checkbox', checked: true, onchange: (event) => { shown[name] = event.target.checked; moved = true; },
   }), label));
 }
+layerOf('cloud').hidden = true;  // until there is one
+const colourings = {state: 'State', class: 'Class'};
+for (const [key, label] of Object.entries(colourings))
+  byId('colourings').append(element('label', {title: key === 'state' ? 'colour points by whether they stand still' : 'colour points by their class'},
+      element('input', {
+        type: 'radio', name: 'colouring', value: key, checked: key === 'state',
+        onchange: () => { renderer.byClass = key === 'class'; moved = true; showLegend(); },
+      }), element('span', {}, label)));
 for (const [key, label] of Object.entries({orbit: 'Orbit', follow: 'Follow', top: 'Top'}))
   byId('views').append(element('label', {}, element('input', {
     type: 'radio', name: 'view', value: key, checked: key === 'orbit',
@@ -75,8 +84,7 @@ byId('pause').addEventListener('click', () => {
   model.changed.add('state');
 });
 byId('step').addEventListener('click', () => {
-  if (!model.state.finished) return connection.send('step');
-  seek((now ?? -1) + 1);
+  step(1);
 });
 byId('speed').addEventListener('change', (event) => {
   if (!model.state.finished) connection.send(`speed ${event.target.value}`);
@@ -89,10 +97,32 @@ byId('errors').addEventListener('pointerdown', (event) => {
   while (i < model.path.count - 1 && model.stamps.data[i] < stamp) ++i;
   seek(i);
 });
+/// One frame on or back. A run in progress knows no way back; it pauses first.
+function step(by) {
+  if (model.state.finished) {
+    playing = false;
+    seek((now ?? model.path.count - 1) + by);
+    model.changed.add('state');
+  } else if (by > 0) {
+    connection.send('step');
+  }
+}
 document.addEventListener('keydown', (event) => {
   if (['INPUT', 'SELECT', 'BUTTON', 'SUMMARY'].includes(document.activeElement?.tagName)) return;
-  if (event.key === ' ') { event.preventDefault(); byId('pause').click(); }
-  if (event.key === '.') byId('step').click();
+  if (event.ctrlKey || event.metaKey || event.altKey || event.shiftKey) return;
+  const actions = {' ': () => byId('pause').click(), '.': () => step(1), ArrowRight: () => step(1), ArrowLeft: () => step(-1)};
+  if (!actions[event.key]) return;
+  event.preventDefault();
+  actions[event.key]();
+});
+// What was clicked keeps no keys for itself: the next space pauses. The keyboard's own way to a control is as ever.
+document.addEventListener('click', (event) => {
+  if (event.detail === 0) return;  // of the keyboard
+  const release = () => {
+    if (document.activeElement?.matches('button, summary, input[type=radio], input[type=checkbox]')) document.activeElement.blur();
+  };
+  release();
+  setTimeout(release);  // a label gives its control the focus after this
 });
 
 let lastTick = null;
@@ -205,9 +235,21 @@ function buildCamera() {
   renderer.setLines('camera', lines, 2.2);
 }
 
+/// Names and colours of the classes that points have.
+function namedClasses() {
+  const colours = classColours();
+  const names = model.head.classes.map((name, label) => [name, toText(colours[classPlace(label)])]).filter((_, label) => model.seenClasses.has(label));
+  if (model.seenClasses.has(unknownClass)) names.push(['class unknown', 'var(--unmeasured)']);
+  return names;
+}
 function showLegend() {
-  const entries = [['static', '--static'], ['doubtful', '--doubtful'], ['moving', '--moving'], ['not measured', '--unmeasured'], ...(model.state.finished ? [] : [['in view', '--accent']])]
-      .map(([name, colour]) => element('li', {}, element('i', {colour: `var(${colour})`}), name));
+  const hasClasses = (model.head.classes?.length ?? 0) > 0;
+  byId('colourings').hidden = !hasClasses;
+  const byClass = renderer.byClass && hasClasses;
+  const kinds = byClass ? namedClasses()
+      : [['static', '--static'], ['doubtful', '--doubtful'], ['moving', '--moving'], ['not measured', '--unmeasured'],
+         ...(model.state.finished ? [] : [['in view', '--accent']])].map(([name, colour]) => [name, `var(${colour})`]);
+  const entries = kinds.map(([name, colour]) => element('li', {}, element('i', {colour}), name));
   if (errorMost !== null)
     entries.push(element('li', {}, element('i', {class: 'line', colour: 'linear-gradient(90deg, var(--static), var(--doubtful), var(--moving))'}), `path by error, to ${fixed(errorMost * 1e3, 1)} mm`));
   else entries.push(element('li', {}, element('i', {class: 'line', colour: 'var(--accent)'}), 'path'));
@@ -222,7 +264,7 @@ function showClock() {
   byId('clock').textContent = Number.isFinite(stamp - first) ? `${fixed(stamp - first, 2)} s` : '';
 }
 
-let nextFit = 0, nextTimes = 0, nextObjects = 0;
+let nextFit = 0, nextTimes = 0, nextObjects = 0, lastAim = 0;
 let framesWait = false, objectsWait = false;  // for their next turn: what is drawn seldom is not left out at the end
 const frameTimes = [];
 /// Asks for the next turn: with the next picture of the screen, or, when nothing has changed for a while, when something
@@ -248,11 +290,16 @@ function update(time) {
       renderer.setPoints(renderer.pointBuffer, model.points.data, model.points.count, changed.has('all') ? null : range);
       model.changedPoints = null;
     }
-    if (has('picture') && model.picture) {
-      renderer.setSeen(model.seen.filter((slot) => slot < model.points.count));
-      const rows = new Float32Array(model.movingFeatures.length / 3 * 4);
-      for (let i = 0; i < rows.length / 4; ++i) rows.set([...model.movingFeatures.subarray(3 * i, 3 * i + 3), 0], 4 * i);
-      renderer.setPoints(renderer.movingBuffer, rows, model.state.finished ? 0 : rows.length / 4);
+    if (has('picture', 'run') && model.picture) {
+      renderer.setSeen(model.state.finished ? new Uint32Array() : model.seen.filter((slot) => slot < model.points.count));
+      const count = model.movingFeatures.length / 3, rows = new Float32Array(pointWidth * count);
+      for (let i = 0; i < count; ++i) rows.set(model.movingFeatures.subarray(3 * i, 3 * i + 3), pointWidth * i);
+      renderer.setPoints(renderer.movingBuffer, rows, model.state.finished ? 0 : count);
+    }
+    if (has('cloud')) {
+      renderer.setPoints(renderer.cloudBuffer, model.cloud.data, model.cloud.count, changed.has('all') ? null : model.changedCloud ?? null);
+      model.changedCloud = null;
+      layerOf('cloud').hidden = model.cloud.count === 0;
     }
     if (has('points', 'path', 'keyframes') && time > nextFit) {
       fitted = fit() ?? fitted;
@@ -272,6 +319,9 @@ function update(time) {
     byId('title').textContent = model.head.title || 'Holdfast';
     document.title = `${model.head.title || 'run'} – Holdfast`;
   }
+  // Panels are shown before they are drawn: what is hidden has no size.
+  if (has('run', 'picture', 'frames')) showRun(model);
+  if (has('state', 'keyframes', 'path', 'run', 'frames')) showControls();
   if (has('picture') && model.picture) picturePanel.show(model.picture, model.head);
   framesWait ||= has('frames');
   if (framesWait && time > nextTimes) {
@@ -280,18 +330,20 @@ function update(time) {
     drawStrip(model);
     nextTimes = time + 150;
   }
-  if (has('state', 'keyframes', 'path', 'run')) { showState(model, connected); showControls(); }
+  if (has('state', 'keyframes', 'path', 'run')) showState(model, connected);
   if (has('objects')) showObjects(model);
-  if (has('run', 'picture', 'frames')) showRun(model);
-  if (has('run', 'path', 'keyframes', 'state')) showLegend();
+  if (has('run', 'path', 'keyframes', 'state', 'head', 'points')) showLegend();
   if (has('run', 'path', 'now') && errorMost !== null) drawErrors(model, errorMost, now);
   if (has('state', 'now', 'run')) showClock();
   const isBusy = changed.size > 0;
   changed.clear();
 
+  // A fifth of the way with each picture at sixty per second, and more where there are fewer.
+  const share = 1 - 0.8 ** Math.min(10, Math.max(1, (time - lastAim) / 17));
+  lastAim = time;
   let aims = false;
-  if (view.mode === 'follow' && model.pose(now)) aims = view.approach([...model.pose(now).slice(0, 3)], view.isFree ? null : Math.min(1.6, fitted?.radius ?? 1.6), 0.2);
-  else if (!view.isFree && fitted) aims = view.approach(fitted.middle, fitted.radius, 0.2);
+  if (view.mode === 'follow' && model.pose(now)) aims = view.approach([...model.pose(now).slice(0, 3)], view.isFree ? null : Math.min(1.6, fitted?.radius ?? 1.6), share);
+  else if (!view.isFree && fitted) aims = view.approach(fitted.middle, fitted.radius, share);
   quietTurns = isBusy || moved || aims ? 0 : quietTurns + 1;
   if (!renderer.gl) return;
   if (isBusy || moved || aims) {
@@ -317,7 +369,7 @@ function chooseDetail(time) {
   detail.last = time;
   detail.isMoving = true;
   const before = detail.step;
-  if (detail.mean > 42 && model.points.count / detail.step > 4000)
+  if (detail.mean > 42 && (model.points.count + model.cloud.count) / detail.step > 4000)
     detail.step = Math.min(8, 2 * detail.step);  // WebGL knows no rows of more than 255 bytes
   else if (detail.mean < 22) detail.step = Math.max(1, detail.step / 2);
   if (detail.step !== before) detail.mean = 32;  // see what it is worth first
@@ -329,9 +381,11 @@ document.addEventListener('themechange', redraw);
 new ResizeObserver(() => { moved = true; model.changed.add('frames'); model.changed.add('run'); model.changed.add('now'); }).observe(document.body);
 // For tests, and for whoever wants to know: what is drawn, and how fast.
 globalThis.holdfastViewer = {
-  counts: () => ({points: model.points.count, path: model.path.count, keyframes: model.keyframes.size, loops: model.loops.length / 2,
+  counts: () => ({points: model.points.count, cloud: model.cloud.count, path: model.path.count, keyframes: model.keyframes.size, loops: model.loops.length / 2,
                   connected, state: model.state, truth: model.truth?.stamps.length ?? 0, picture: model.picture?.frame ?? null}),
   point: (i) => [...model.points.row(i).subarray(0, 3)],
+  classOf: (i) => model.points.row(i)[4],
+  cloudPoint: (i) => [...model.cloud.row(i)],
   place: (i) => [...model.path.row(i).subarray(0, 3)],
   send: (text) => connection.send(text),
   view,

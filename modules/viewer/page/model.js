@@ -38,14 +38,20 @@ const statusNames = ['waiting', 'map begun', 'tracking', 'lost', 'found again'];
 const statusKinds = ['warn', 'good', 'good', 'bad', 'warn'];
 const pathWidth = 9;  // x y z, quaternion x y z w, status, error
 
+const pointWidth = 5;  // x y z, evidence (NaN = none), class; of the dense cloud: x y z, 0, colour as red << 16 | green << 8 | blue
+const unknownClass = 255;
+
 class Model {
   constructor() {
-    this.head = {title: 'Holdfast', camera: [640, 480, 525, 525, 319.5, 239.5], frame_rate: 30};
+    this.head = {title: 'Holdfast', camera: [640, 480, 525, 525, 319.5, 239.5], frame_rate: 30, classes: []};
     this.state = {};
     this.stages = [];
     this.frames = [];        // the last ones: [timestamp, status, tracking ms, [stage, ms, ...]]
     this.history = new Rows(2, Float64Array);  // timestamp and status of every frame
-    this.points = new Rows(4);                 // by slot: x y z evidence; NaN = none
+    this.points = new Rows(pointWidth);        // by slot
+    this.cloud = new Rows(pointWidth);         // in the world
+    this.cloudPlaces = new Rows(3);            // the same in the frames of their keyframes
+    this.surfaces = [];                        // of keyframes: {begin, count} in the cloud
     this.keyframes = new Map();                // by slot: {pose, stamp}
     this.covisibility = new Uint32Array();
     this.loops = new Uint32Array();
@@ -57,6 +63,7 @@ class Model {
     this.objects = [];
     this.trails = new Map();  // by object: Rows of places
     this.picture = null;
+    this.seenClasses = new Set();  // labels that any point has had
     this.changed = new Set(['all']);
   }
 
@@ -68,7 +75,8 @@ class Model {
     if (json.stages) this.stages = json.stages;
     if (json.objects) { this.objects = json.objects; mark('objects'); }
     if (json.frames) this.addFrames(json.frames);
-    if (arrays.point_slots) this.setPoints(arrays.point_slots, arrays.point_values);
+    if (arrays.point_slots) this.setPoints(arrays.point_slots, arrays.point_values, arrays.point_classes);
+    this.takeCloud(json, arrays);
     if (arrays.keyframe_slots) this.setKeyframes(arrays);
     if (json.covisibility !== undefined) { this.covisibility = arrays.covisibility?.slice() ?? new Uint32Array(); mark('keyframes'); }
     if (json.loops !== undefined) { this.loops = arrays.loops?.slice() ?? new Uint32Array(); mark('keyframes'); }
@@ -91,15 +99,48 @@ class Model {
     for (const [stamp, status] of frames) this.history.append([stamp, status]);
     this.changed.add('frames');
   }
-  setPoints(slots, values) {
+  setPoints(slots, values, classes) {
     let least = Infinity, most = -1;
     for (const slot of slots) { least = Math.min(least, slot); most = Math.max(most, slot); }
     this.points.reserve(most + 1);
-    for (let slot = this.points.count; slot <= most; ++slot) this.points.data[4 * slot + 3] = NaN;
+    for (let slot = this.points.count; slot <= most; ++slot) this.points.data[pointWidth * slot + 3] = NaN;
     this.points.count = Math.max(this.points.count, most + 1);
-    for (let i = 0; i < slots.length; ++i) this.points.data.set(values.subarray(4 * i, 4 * i + 4), 4 * slots[i]);
+    for (let i = 0; i < slots.length; ++i) {
+      this.points.data.set(values.subarray(4 * i, 4 * i + 4), pointWidth * slots[i]);
+      this.points.data[pointWidth * slots[i] + 4] = classes?.[i] ?? unknownClass;
+    }
+    if (classes) for (const label of classes) this.seenClasses.add(label);
     this.changedPoints = [Math.min(least, this.changedPoints?.[0] ?? Infinity), Math.max(most, this.changedPoints?.[1] ?? -1)];
     this.changed.add('points');
+  }
+  /// The dense cloud: surfaces that keyframes see, each with a pose that moves with its keyframe.
+  takeCloud(json, arrays) {
+    if (json.new_cloud) {
+      this.cloud.count = this.cloudPlaces.count = 0;
+      this.surfaces = [];
+      this.changed.add('cloud');
+    }
+    const {moved_surfaces: moved, surface_counts: counts} = arrays;
+    for (let i = 0; i < (moved?.length ?? 0); ++i)
+      this.placeSurface(this.surfaces[moved[i]], arrays.moved_surface_poses.subarray(7 * i, 7 * i + 7));
+    if (counts) {
+      const {surface_colours: colours} = arrays, rows = new Float32Array(pointWidth * colours.length / 3);
+      for (let i = 0; 3 * i < colours.length; ++i) rows[pointWidth * i + 4] = colours[3 * i] << 16 | colours[3 * i + 1] << 8 | colours[3 * i + 2];
+      let begin = this.cloud.count;
+      this.cloud.append(rows);
+      this.cloudPlaces.append(arrays.surface_places);
+      counts.forEach((count, i) => {
+        this.surfaces.push({begin, count});
+        this.placeSurface(this.surfaces.at(-1), arrays.surface_poses.subarray(7 * i, 7 * i + 7));
+        begin += count;
+      });
+    }
+  }
+  placeSurface({begin, count}, pose) {
+    for (let i = begin; i < begin + count; ++i) this.cloud.data.set(transform(pose, this.cloudPlaces.row(i)), pointWidth * i);
+    const [least, most] = this.changedCloud ?? [Infinity, -1];
+    this.changedCloud = [Math.min(least, begin), Math.max(most, begin + count - 1)];
+    this.changed.add('cloud');
   }
   setKeyframes({keyframe_slots: slots, keyframe_values: values, keyframe_stamps: stamps}) {
     for (let i = 0; i < slots.length; ++i) {

@@ -51,7 +51,12 @@ function showState(model, connected) {
   if (status === 4) text = state.method === 'relocalised' ? 'relocalised' : 'found again';
   if (state.finished) { text = 'finished'; kind = ''; }
   if (state.paused) text += ', paused';
-  if (connected === false) { text = 'connection lost'; kind = 'bad'; }
+  // A result that is here does not need the program any more.
+  if (connected === false) {
+    text = state.finished ? 'finished, offline' : 'connection lost';
+    kind = state.finished ? '' : 'bad';
+  }
+  byId('state').title = connected === false ? 'The program has ended, or was started again and shows a new address. What was received stays here.' : '';
   byId('state').textContent = text;
   byId('state').className = `state ${kind}`;
   const counts = [['frame', state.frame], ['keyframes', state.keyframes], ['points', state.points],
@@ -90,7 +95,7 @@ class PicturePanel {
   drawMask(context, factor) {
     const {mask, mask_columns: columns} = this.picture, rows = mask.length / columns;
     const cells = new ImageData(columns, rows);
-    const tints = [null, [30, 120, 255], [200, 0, 200], [0, 200, 200], [255, 140, 0], [120, 220, 120], [150, 110, 255], [0, 0, 0]];
+    const tints = [null, ...classTints, [0, 0, 0]];
     for (let i = 0; i < mask.length; ++i) {
       const kind = mask[i] & 7, moving = mask[i] >> 4;
       let [r, g, b] = tints[kind] ?? [255, 0, 0], alpha = kind === 7 ? 70 : kind ? 115 : 0;

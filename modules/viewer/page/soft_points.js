@@ -16,6 +16,9 @@ function packedColour([r, g, b]) {
                          : bytes[0] << 24 | bytes[1] << 16 | bytes[2] << 8 | bytes[3]) >>> 0;
 }
 
+/// The same for red << 16 | green << 8 | blue.
+const packedNumber = isLittleEndian ? (n) => (0xff000000 | (n & 255) << 16 | n & 0xff00 | n >> 16) >>> 0 : (n) => (n << 8 | 255) >>> 0;
+
 /// An image with the distance of what each pixel shows; its first row is the lowest.
 class PointImage {
   begin(width, height, ground) {
@@ -27,21 +30,21 @@ class PointImage {
     this.pixels.fill(packedColour(ground));
     this.depths.fill(Infinity);
   }
-  /// Rows of place and evidence, those of `slots` or every `step`-th, as squares: `near` is their size in pixels at a
-  /// distance of 1, `least` the smallest. `colours`: static, not measured, doubtful, moving; null = not shown.
-  draw(rows, count, matrix, colours, near, least, {slots = null, step = 1} = {}) {
+  /// Rows of points, those of `slots` or every `step`-th, as squares: `near` is their size in pixels at a distance of 1,
+  /// `least` the smallest. `kind` and `colours` as the shader of points has them.
+  draw(rows, count, matrix, kind, colours, near, least, {slots = null, step = 1} = {}) {
     const {width, height, pixels, depths} = this;
-    const packed = colours.map((colour) => (colour ? packedColour(colour) : null));
+    const packed = colours.map(packedColour), byLabel = Uint32Array.from({length: 256}, (_, label) => packed[classPlace(label)]);
     const [m0, m1, , m3, m4, m5, , m7, m8, m9, , m11, m12, m13, , m15] = matrix;
     const total = slots ? slots.length : count;
     const halfWidth = 0.5 * width, halfHeight = 0.5 * height, largest = 3 * least;
     for (let k = 0; k < total; k += step) {
-      const at = 4 * (slots ? slots[k] : k);
+      const at = pointWidth * (slots ? slots[k] : k);
       const x = rows[at], y = rows[at + 1], z = rows[at + 2], evidence = rows[at + 3];
       const w = m3 * x + m7 * y + m11 * z + m15;
       if (!(w > 1e-3) || evidence !== evidence) continue;
-      const colour = packed[evidence > 0.5 ? 0 : evidence < -0.5 ? 3 : evidence === 0 ? 1 : 2];
-      if (colour === null) continue;
+      const colour = kind === 0 ? packed[evidence > 0.5 ? 0 : evidence < -0.5 ? 3 : evidence === 0 ? 1 : 2]
+          : kind === 1 ? byLabel[rows[at + 4]] : packedNumber(rows[at + 4]);
       const size = Math.max(1, Math.min(largest, Math.max(least, near / w)) + 0.5 | 0), shift = 0.5 * (size - 1);
       let left = Math.round((m0 * x + m4 * y + m8 * z + m12) / w * halfWidth + halfWidth - 0.5 - shift);
       let low = Math.round((m1 * x + m5 * y + m9 * z + m13) / w * halfHeight + halfHeight - 0.5 - shift);

@@ -8,6 +8,7 @@
 #include "holdfast/plugin/plugin.hpp"
 #include "holdfast/settings/viewer.hpp"
 #include "picture.hpp"
+#include "point_classes.hpp"
 
 namespace holdfast {
 
@@ -41,8 +42,15 @@ class ViewerObserver final : public Observer {
         pictures_(context.camera),
         waits_(settings.wait) {}
 
+  void on_start(const std::vector<std::string>& classes) override {
+    has_classes_ = !classes.empty();
+    viewer_->set_classes(classes);
+  }
   void on_frame(const SensorFrame& sensor_frame, const Frame& frame, const FrameResult& result) override {
     viewer_->add_frame(result);
+    if (has_classes_)
+      if (std::vector<ViewedClass> changes = classes_.add(frame); !changes.empty())
+        viewer_->add_point_classes(std::move(changes));
     if (std::exchange(waits_, false)) viewer_->wait_for_browser();
     if (viewer_->wants_picture() && !sensor_frame.colour.empty())
       viewer_->set_picture(pictures_.make(sensor_frame, frame, result));
@@ -51,6 +59,9 @@ class ViewerObserver final : public Observer {
   void on_keyframe(KeyFrameId, const ObservedMap& map) override {
     if (viewer_->wants_map()) show(map);
   }
+  void on_static_view(const ObservedView& view) override {
+    viewer_->add_surface({view.keyframe, view.timestamp, view.T_world_camera, view.points(surface_points)});
+  }
   void on_loop(KeyFrameId keyframe, KeyFrameId candidate, const ObservedMap& map) override {
     show(map);
     viewer_->add_loop(keyframe, candidate);
@@ -58,6 +69,9 @@ class ViewerObserver final : public Observer {
   void on_finish(const Map& map) override { viewer_->set_map(make_snapshot(map), 0.0); }
 
  private:
+  /// Of a keyframe for the dense cloud: every fourth pixel of a kept image of 320x240.
+  static constexpr std::size_t surface_points = 5000;
+
   void show(const ObservedMap& map) {
     const Stopwatch watch;
     MapSnapshot snapshot = map.snapshot();
@@ -66,6 +80,8 @@ class ViewerObserver final : public Observer {
 
   std::shared_ptr<Viewer> viewer_;
   viewer_plugin::PictureMaker pictures_;
+  viewer_plugin::PointClasses classes_;
+  bool has_classes_ = false;
   bool waits_;
 };
 
