@@ -42,6 +42,12 @@ watch() {
   case "${code:-0}" in 0 | 130 | 143) ;; *) verdict=1; echo "$name: exit code $code" >&2; tail -n 20 "$work/log" >&2 ;; esac
   # Least squares over the lines after the first sixth of the time, which fills the map and the caches. An image file
   # may be open when a line is written, so that descriptors and threads are the least of each half.
+  awk -F, -v name="$name" -v all=$((minutes * 60)) '
+    NR > 1 { memory[int($1 * 10 / (all + 1))] = $2 }
+    END {
+      printf "%s: memory [MB] at the end of each tenth:", name
+      for (i = 0; i < 10; i++) if (i in memory) printf " %d", memory[i] / 1024
+      print "" }' "$table"
   awk -F, -v name="$name" -v begin=$((minutes * 10)) -v middle=$((minutes * 35)) '
     NR > 1 && $1 >= begin {
       n++; x += $1; y += $2; xx += $1 * $1; xy += $1 * $2
