@@ -73,16 +73,21 @@ if ! wants recording; then
   :
 elif [ -n "${HOLDFAST_DATA:-}" ] && [ -d "$recording" ]; then
   mkdir "$work/looped"
+  # Both lists have one period, or depth would drift away from colour.
+  period=$(grep -hv '^#' "$recording/rgb.txt" "$recording/depth.txt" | awk '
+    NR == 1 || $1 < first { first = $1 }
+    $1 > last { last = $1 }
+    END { printf "%.6f %.6f", first, last - first + 0.02 }')
   for kind in rgb depth; do
     ln -s "$recording/$kind" "$work/looped/$kind"
-    grep -v '^#' "$recording/$kind.txt" | awk -v minutes="$minutes" '
+    grep -v '^#' "$recording/$kind.txt" | awk -v minutes="$minutes" -v period="$period" '
       { stamp[NR] = $1; name[NR] = $2 }
       END {
-        length_of = stamp[NR] - stamp[1]
-        for (k = 0; 2 * k * length_of < minutes * 60 + 60; k++) {
-          begin = stamp[1] + 2 * k * length_of
-          for (i = 1; i < NR; i++) printf "%.6f %s\n", begin + stamp[i] - stamp[1], name[i]
-          for (i = NR; i > 1; i--) printf "%.6f %s\n", begin + length_of + stamp[NR] - stamp[i], name[i]
+        split(period, of, " ")
+        for (k = 0; 2 * k * of[2] < minutes * 60 + 60; k++) {
+          begin = of[1] + k * (2 * of[2] + 0.02)
+          for (i = 1; i <= NR; i++) printf "%.6f %s\n", begin + stamp[i] - of[1], name[i]
+          for (i = NR; i >= 1; i--) printf "%.6f %s\n", begin + 2 * of[2] - (stamp[i] - of[1]), name[i]
         }
       }' > "$work/looped/$kind.txt"
   done
