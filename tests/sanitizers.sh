@@ -61,6 +61,14 @@ run() {
     --set segmenter=truth --set "run.mode=$3"
 }
 
+# run_one_camera PRESET MODE DURATION: the same with one camera, whose points come and go in two threads.
+run_one_camera() {
+  step "$1: one camera, $2" "build-$1/bin/holdfast" run examples/configs/mono.yaml --output "$work/$1-mono-$2" --quiet \
+    --set "source={simulated: {scene: $root/examples/scenes/walking_xyz.yaml, duration: $3}}" --set camera=tum_fr3 \
+    --set segmenter=truth --set 'filters=[semantic_mask, epipolar_consistency]' --set tracking.minimum_inliers=15 \
+    --set tracking.keyframe_tracked_ratio=0.9 --set "run.mode=$2"
+}
+
 test_quick() {
   flags="-O1 -DNDEBUG"  # without line numbers it compiles faster; the full mode tells them
   # Without the program and the bench, which are half of what there is to compile.
@@ -92,6 +100,7 @@ test_address() {
   for configuration in full paper objects; do
     for mode in sequential threaded; do run asan "$configuration" "$mode" 3; done
   done
+  for mode in sequential threaded; do run_one_camera asan "$mode" 4; done
   map=$work/asan-full-sequential/map.hfm
   step "asan: map export" build-asan/bin/holdfast map export "$map" --points "$work/points.ply" \
     --trajectory "$work/keyframes.txt" --json "$work/map.json"
@@ -116,6 +125,7 @@ test_thread() {
     step "tsan: $test" "build-tsan/tests/$test"
   done
   for configuration in full paper objects; do run tsan "$configuration" threaded 2; done
+  run_one_camera tsan threaded 4
 }
 
 for part in $parts; do "test_$part"; done

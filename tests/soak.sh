@@ -42,6 +42,12 @@ watch() {
   case "${code:-0}" in 0 | 130 | 143) ;; *) verdict=1; echo "$name: exit code $code" >&2; tail -n 20 "$work/log" >&2 ;; esac
   # Least squares over the lines after the first sixth of the time, which fills the map and the caches. An image file
   # may be open when a line is written, so that descriptors and threads are the least of each half.
+  awk -F, -v name="$name" -v all=$((minutes * 60)) '
+    NR > 1 { memory[int($1 * 10 / (all + 1))] = $2 }
+    END {
+      printf "%s: memory [MB] at the end of each tenth:", name
+      for (i = 0; i < 10; i++) if (i in memory) printf " %d", memory[i] / 1024
+      print "" }' "$table"
   awk -F, -v name="$name" -v begin=$((minutes * 10)) -v middle=$((minutes * 35)) '
     NR > 1 && $1 >= begin {
       n++; x += $1; y += $2; xx += $1 * $1; xy += $1 * $2
@@ -67,16 +73,21 @@ if ! wants recording; then
   :
 elif [ -n "${HOLDFAST_DATA:-}" ] && [ -d "$recording" ]; then
   mkdir "$work/looped"
+  # Both lists have one period, or depth would drift away from colour.
+  period=$(grep -hv '^#' "$recording/rgb.txt" "$recording/depth.txt" | awk '
+    NR == 1 || $1 < first { first = $1 }
+    $1 > last { last = $1 }
+    END { printf "%.6f %.6f", first, last - first + 0.02 }')
   for kind in rgb depth; do
     ln -s "$recording/$kind" "$work/looped/$kind"
-    grep -v '^#' "$recording/$kind.txt" | awk -v minutes="$minutes" '
+    grep -v '^#' "$recording/$kind.txt" | awk -v minutes="$minutes" -v period="$period" '
       { stamp[NR] = $1; name[NR] = $2 }
       END {
-        length_of = stamp[NR] - stamp[1]
-        for (k = 0; 2 * k * length_of < minutes * 60 + 60; k++) {
-          begin = stamp[1] + 2 * k * length_of
-          for (i = 1; i < NR; i++) printf "%.6f %s\n", begin + stamp[i] - stamp[1], name[i]
-          for (i = NR; i > 1; i--) printf "%.6f %s\n", begin + length_of + stamp[NR] - stamp[i], name[i]
+        split(period, of, " ")
+        for (k = 0; 2 * k * of[2] < minutes * 60 + 60; k++) {
+          begin = of[1] + k * (2 * of[2] + 0.02)
+          for (i = 1; i <= NR; i++) printf "%.6f %s\n", begin + stamp[i] - of[1], name[i]
+          for (i = NR; i >= 1; i--) printf "%.6f %s\n", begin + 2 * of[2] - (stamp[i] - of[1]), name[i]
         }
       }' > "$work/looped/$kind.txt"
   done

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/evaluation/run_summary.hpp"
 
-#include <algorithm>
 #include <cstdio>
-#include <numeric>
-
-#include "holdfast/evaluation/statistics.hpp"
 
 namespace holdfast {
 
@@ -20,13 +16,13 @@ void RunSummary::add(const FrameResult& result, double decode_seconds) {
     if (result.method == TrackingMethod::relocalised) ++relocalised_;
     if (result.method == TrackingMethod::flow) ++by_flow_;
   }
-  stage("decode").push_back(decode_seconds);
+  stage("decode").add(decode_seconds);
   add(result.times);
   tracking_seconds_.push_back(result.tracking_seconds);
 }
 
 void RunSummary::add(const StageTimes& background) {
-  for (const StageTimes::Entry& entry : background.entries()) stage(std::string(entry.stage)).push_back(entry.seconds);
+  for (const StageTimes::Entry& entry : background.entries()) stage(std::string(entry.stage)).add(entry.seconds);
 }
 
 std::uint64_t RunSummary::count(TrackingStatus status) const {
@@ -44,22 +40,20 @@ double RunSummary::mean_inliers() const {
   return tracked_frames == 0 ? 0.0 : static_cast<double>(inliers_) / static_cast<double>(tracked_frames);
 }
 
-std::vector<double>& RunSummary::stage(const std::string& name) {
+DurationRecord& RunSummary::stage(const std::string& name) {
   for (Stage& known : stages_)
     if (known.name == name) return known.seconds;
   return stages_.emplace_back(Stage{name, {}}).seconds;
 }
 
 namespace {
-StageRow row_of(const std::string& name, const std::vector<double>& seconds) {
-  StageRow row;
-  row.stage = name;
-  row.frames = seconds.size();
+StageRow row_of(const std::string& name, const DurationRecord& seconds) {
+  StageRow row{.stage = name, .frames = seconds.count()};
   if (seconds.empty()) return row;
-  row.median = median(seconds);
-  row.p95 = percentile(seconds, 95.0);
-  row.maximum = *std::max_element(seconds.begin(), seconds.end());
-  row.total = std::accumulate(seconds.begin(), seconds.end(), 0.0);
+  row.median = seconds.median();
+  row.p95 = seconds.percentile(95.0);
+  row.maximum = seconds.maximum();
+  row.total = seconds.total();
   return row;
 }
 }  // namespace
@@ -76,9 +70,11 @@ std::vector<StageRow> RunSummary::stages() const {
 }
 
 StageRow RunSummary::tracking() const {
-  StageRow row = row_of("tracking", tracking_seconds_);
+  DurationRecord seconds;
+  for (const double frame : tracking_seconds_) seconds.add(frame);
+  StageRow row = row_of("tracking", seconds);
   double total = 0.0;
-  for (const Stage& known : stages_) total += std::accumulate(known.seconds.begin(), known.seconds.end(), 0.0);
+  for (const Stage& known : stages_) total += known.seconds.total();
   row.share = total > 0.0 ? row.total / total : 0.0;
   return row;
 }

@@ -40,10 +40,16 @@ void FullAdjustment::request_stop() {
   stop_ = true;
 }
 
+void FullAdjustment::cancel() {
+  cancelled_ = true;  // first: prepare() clears the request, and then looks here
+  request_stop();
+}
+
 void FullAdjustment::prepare() {
   const std::lock_guard surgeon(surgery_);  // no correction is half done, and no request is for one to come
   stop_ = false;
   stop_time_ = 0;
+  if (cancelled_) request_stop();
   summary_ = {};
   problem_ = {};
   points_.clear();

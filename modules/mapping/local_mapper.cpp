@@ -2,6 +2,7 @@
 #include "holdfast/mapping/local_mapper.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "holdfast/matching/frame_features.hpp"
@@ -159,35 +160,57 @@ void LocalMapper::remove_weak_points(KeyFrameId id) {
   });
 }
 
+namespace {
+
+/// The points that a keyframe sees, and those of them that three others see at the same or a finer scale. With a
+/// `limit` [m], only features with depth up to it count.
+struct SeenPoints {
+  int all = 0, redundant = 0;
+};
+
+SeenPoints seen_points(const Map& map, KeyFrameId id, std::optional<float> limit) {
+  constexpr int enough = 3;
+  const Frame& frame = map.keyframe(id).frame;
+  SeenPoints seen;
+  for (std::uint32_t feature = 0; feature < frame.size(); ++feature) {
+    if (!frame.map_points[feature].valid()) continue;
+    if (limit && (!frame.has_depth(feature) || frame.depth[feature] > *limit)) continue;
+    ++seen.all;
+    const MapPoint& point = map.point(frame.map_points[feature]);
+    if (static_cast<int>(point.observations.size()) <= enough) continue;
+    int others = 0;
+    for (const Observation& observation : point.observations) {
+      if (observation.keyframe == id) continue;
+      const auto& octave = map.keyframe(observation.keyframe).frame.features.octave;
+      if (octave[observation.feature] <= frame.features.octave[feature] + 1 && ++others >= enough) break;
+    }
+    if (others >= enough) ++seen.redundant;
+  }
+  return seen;
+}
+
+}  // namespace
+
 std::vector<KeyFrameId> LocalMapper::remove_redundant_keyframes(KeyFrameId id) {
+  // Close points decide (Mur-Artal and Tardos 2017, section III-D). A keyframe that sees few of them, because people
+  // stand before a far wall, would stay for ever, and many of them with it. Filters compare the depth of recent ones;
+  // once it is not among these, all its points decide.
+  constexpr std::uint64_t recent = 200;
   std::vector<KeyFrameId> removed;
   if (settings_.redundant_share >= 1.0) return removed;
   const std::vector<CovisibilityEdge> neighbours = map_.keyframe(id).covisible;
   const std::uint64_t sequence = map_.keyframe(id).sequence;
+  const bool has_depth = map_.sensor() != Sensor::mono;
   for (const CovisibilityEdge& edge : neighbours) {
     const KeyFrame& keyframe = map_.keyframe(edge.keyframe);
     if (!keyframe.parent.valid() || !keyframe.loop_edges.empty()) continue;
     if (keyframe.sequence > sequence) continue;  // waits to be refined itself
-    const Frame& frame = keyframe.frame;
-    const bool has_depth = map_.sensor() != Sensor::mono;
-    const float close = static_cast<float>(close_depth_factor_ * frame.camera->baseline);
-    int points = 0, redundant = 0;
-    for (std::uint32_t feature = 0; feature < frame.size(); ++feature) {
-      if (!frame.map_points[feature].valid()) continue;
-      if (has_depth && (!frame.has_depth(feature) || frame.depth[feature] > close)) continue;
-      ++points;
-      const MapPoint& point = map_.point(frame.map_points[feature]);
-      constexpr int enough = 3;
-      if (static_cast<int>(point.observations.size()) <= enough) continue;
-      int others = 0;
-      for (const Observation& observation : point.observations) {
-        if (observation.keyframe == edge.keyframe) continue;
-        const auto& octave = map_.keyframe(observation.keyframe).frame.features.octave;
-        if (octave[observation.feature] <= frame.features.octave[feature] + 1 && ++others >= enough) break;
-      }
-      if (others >= enough) ++redundant;
-    }
-    if (redundant <= settings_.redundant_share * points) continue;
+    std::optional<float> close;
+    if (has_depth) close = static_cast<float>(close_depth_factor_ * keyframe.frame.camera->baseline);
+    SeenPoints seen = seen_points(map_, edge.keyframe, close);
+    if (has_depth && seen.all < settings_.minimum_depth_points && keyframe.sequence + recent < sequence)
+      seen = seen_points(map_, edge.keyframe, std::nullopt);
+    if (seen.redundant <= settings_.redundant_share * seen.all) continue;
     map_.remove_keyframe(edge.keyframe);
     removed.push_back(edge.keyframe);
     ++counts_.keyframes_removed;

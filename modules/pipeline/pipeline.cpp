@@ -495,7 +495,7 @@ void Pipeline::finish() {
 void Pipeline::interrupt() {
   state_->interrupted = true;
   state_->mapper.request_stop();
-  state_->adjustment.request_stop();
+  state_->adjustment.cancel();
 }
 
 std::vector<StageTimes> Pipeline::take_background_times() {

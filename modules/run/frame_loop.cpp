@@ -25,7 +25,7 @@ class FrameLoop {
     const std::optional<FedFrame> fed = read();
     if (!fed) return false;
     source_has_more_ = true;
-    record_.frame_stamps.push_back(fed->frame.timestamp);
+    if (!record_.threads) record_.frame_stamps.push_back(fed->frame.timestamp);  // else the reader keeps them
     last_index_ = fed->frame.index;
     feed(fed->frame, fed->decode_seconds);
     if (record_.threads) record_.threads->delays.push_back(fed->since_due.seconds());

@@ -15,25 +15,30 @@ void FrameHistory::add(const Frame& frame, KeyFrameId reference, const Map& map)
     has_velocity_ = true;
   }
   has_previous_ = true;
-  Record record{frame.timestamp, reference, Eigen::Isometry3d::Identity()};
+  Record record{frame.timestamp, reference};
+  T_last_reference_ = Eigen::Isometry3d::Identity();
+  last_reference_scale_ = 1.0;
   if (reference.valid()) {
-    record.T_camera_reference = frame.T_camera_world * map.pose_of(reference).inverse();
-    record.reference_scale = map.scale_of(reference);
+    T_last_reference_ = frame.T_camera_world * map.pose_of(reference).inverse();
+    last_reference_scale_ = map.scale_of(reference);
+    record.R_camera_reference = Eigen::Quaterniond(T_last_reference_.linear());
+    record.t_camera_reference = T_last_reference_.translation() / last_reference_scale_;
   }
   records_.push_back(record);
 }
 
 void FrameHistory::became_keyframe(KeyFrameId keyframe, double timestamp) {
   if (records_.empty() || records_.back().timestamp != timestamp) return;
-  records_.back() = {timestamp, keyframe, Eigen::Isometry3d::Identity()};
+  records_.back() = {timestamp, keyframe};
+  T_last_reference_ = Eigen::Isometry3d::Identity();
+  last_reference_scale_ = 1.0;
 }
 
-Eigen::Isometry3d FrameHistory::last_pose(const Map& map) const { return pose(records_.back(), map); }
-
-Eigen::Isometry3d FrameHistory::pose(const Record& record, const Map& map) {
-  Eigen::Isometry3d T_camera_reference = record.T_camera_reference;
-  T_camera_reference.translation() *= map.scale_of(record.reference) / record.reference_scale;
-  return T_camera_reference * map.pose_of(record.reference);
+Eigen::Isometry3d FrameHistory::last_pose(const Map& map) const {
+  const KeyFrameId reference = records_.back().reference;
+  Eigen::Isometry3d T_camera_reference = T_last_reference_;
+  T_camera_reference.translation() *= map.scale_of(reference) / last_reference_scale_;
+  return T_camera_reference * map.pose_of(reference);
 }
 
 Eigen::Isometry3d FrameHistory::predicted_step(double timestamp) const {
@@ -54,7 +59,11 @@ Eigen::Isometry3d FrameHistory::extrapolate(double timestamp, double share) cons
 Trajectory FrameHistory::trajectory(const Map& map) const {
   Trajectory trajectory;
   trajectory.reserve(records_.size());
-  for (const Record& record : records_) trajectory.push_back({record.timestamp, pose(record, map).inverse()});
+  for (const Record& record : records_) {
+    Eigen::Isometry3d T_camera_reference(record.R_camera_reference);
+    T_camera_reference.translation() = record.t_camera_reference * map.scale_of(record.reference);
+    trajectory.push_back({record.timestamp, (T_camera_reference * map.pose_of(record.reference)).inverse()});
+  }
   return trajectory;
 }
 

@@ -67,6 +67,15 @@ TEST_F(FullAdjustmentTest, StoppedOneChangesNothing) {
   EXPECT_TRUE(adjustment.run().applied);  // and the next one starts afresh
 }
 
+TEST_F(FullAdjustmentTest, ACancelledOneDoesNotBeginAgain) {
+  // A run that is interrupted still works off what waits, and that may close another loop.
+  adjustment.cancel();
+  const FullAdjustmentSummary summary = adjustment.run();
+  EXPECT_TRUE(summary.stop_requested);
+  EXPECT_FALSE(summary.applied);
+  EXPECT_EQ(summary.bundle.iterations, 0);
+}
+
 TEST_F(FullAdjustmentTest, StopAfterTheSolverStillCounts) {
   // A loop that was closed in between has moved the map: the result belongs to the map of before.
   const Eigen::Matrix4d before = map.pose_of(last).matrix();

@@ -140,6 +140,30 @@ TEST_F(LocalMapperTest, KeyframesThatShowNothingNewAreRemovedButNeverTheFirst) {
   EXPECT_NE(map.find_keyframe(first), nullptr);
 }
 
+TEST_F(LocalMapperTest, KeyframesWithoutClosePointsAreRemovedOnceTheyAreOld) {
+  // As among people who stand before a far wall: nothing that is seen lies within a baseline.
+  LocalMapper far_mapper(MappingSettings{}, 1.0, map, mutex, *optimizer);
+  const auto add = [&](double x) {
+    Frame frame = frame_at(beside(x));
+    match(frame, 1);
+    const KeyFrameId keyframe = far_mapper.insert(frame, false, times);
+    far_mapper.refine(keyframe, times);
+    return keyframe;
+  };
+  const KeyFrameId first = add(0.0);
+  for (int i = 1; i < 6; ++i) add(0.001 * i);
+  ASSERT_EQ(map.keyframes().size(), 6U) << "the depth of recent ones is needed";
+  for (int i = 0; i < 200; ++i) {
+    const KeyFrameId other = map.add_keyframe(frame_at(beside(-50.0)));
+    map.hang_on(other, first);
+    map.remove_keyframe(other);
+  }
+  const KeyFrameId last = add(0.006);
+  EXPECT_LE(map.keyframes().size(), 5U);
+  EXPECT_NE(map.find_keyframe(first), nullptr);
+  EXPECT_NE(map.find_keyframe(last), nullptr);
+}
+
 TEST_F(LocalMapperTest, PointsThatNobodyFindsAgainLeave) {
   add_keyframe(frame_at(beside(0)));
   std::vector<MapPointId> missed;

@@ -7,10 +7,12 @@
 #include <vector>
 
 #include "holdfast/core/frame_result.hpp"
+#include "holdfast/evaluation/duration_record.hpp"
 
 namespace holdfast {
 
-/// Processing time of one stage over a run. Median, 95th percentile and maximum are over the frames in which it ran.
+/// Processing time of one stage over a run. Median, 95th percentile and maximum are over the frames in which it ran,
+/// as exact as DurationRecord says.
 struct StageRow {
   std::string stage;
   std::size_t frames = 0;
@@ -52,9 +54,9 @@ class RunSummary {
  private:
   struct Stage {
     std::string name;
-    std::vector<double> seconds;
+    DurationRecord seconds;
   };
-  std::vector<double>& stage(const std::string& name);
+  DurationRecord& stage(const std::string& name);
 
   std::uint64_t frames_ = 0, recovered_ = 0, relocalised_ = 0, by_flow_ = 0, inliers_ = 0;
   std::map<TrackingStatus, std::uint64_t> statuses_;

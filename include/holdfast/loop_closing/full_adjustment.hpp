@@ -24,8 +24,8 @@ namespace holdfast {
 /// ends.
 ///
 /// Threads: prepare, solve and apply are called in this order by one thread at a time, request_stop by any thread. A
-/// request is effective from prepare() to the end of apply(); prepare() clears earlier requests. With one thread, the
-/// same map gives bit-identical results.
+/// request is effective from prepare() to the end of apply(); prepare() clears earlier requests, but those of cancel().
+/// With one thread, the same map gives bit-identical results.
 class FullAdjustment {
  public:
   /// All references must outlive this object.
@@ -46,6 +46,9 @@ class FullAdjustment {
 
   /// Requests solve() to end within one iteration and apply() to have no effect.
   void request_stop();
+  /// Requests the same of this adjustment and of all later ones, which end before their first iteration. From any
+  /// thread.
+  void cancel();
 
  private:
   void move_map();
@@ -57,6 +60,7 @@ class FullAdjustment {
   std::mutex& surgery_;
   Optimizer& optimizer_;
   std::atomic<bool> stop_{false};
+  std::atomic<bool> cancelled_{false};
   std::atomic<std::int64_t> stop_time_{0};  // [ns] of the steady clock; 0 = not requested
   BundleProblem problem_;
   std::vector<KeyFrameId> keyframes_;    // by pose

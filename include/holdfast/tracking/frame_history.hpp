@@ -26,8 +26,7 @@ class FrameHistory {
 
   /// Adds a keyframe that was taken before the last tracked frame, but after all others.
   void add_before_last(KeyFrameId keyframe, double timestamp) {
-    records_.insert(records_.end() - (records_.empty() ? 0 : 1),
-                    {timestamp, keyframe, Eigen::Isometry3d::Identity(), 1.0});
+    records_.insert(records_.end() - (records_.empty() ? 0 : 1), {timestamp, keyframe, {}});
   }
 
   /// Forgets all frames.
@@ -54,12 +53,15 @@ class FrameHistory {
   struct Record {
     double timestamp;
     KeyFrameId reference;
-    Eigen::Isometry3d T_camera_reference;
-    double reference_scale = 1.0;  // KeyFrame::scale of the reference when it was added
+    // The pose of the last record is also kept as it came (T_last_reference_): the motion model needs every bit.
+    Eigen::Quaternion<double, Eigen::DontAlign> R_camera_reference = {1.0, 0.0, 0.0, 0.0};
+    Eigen::Vector3d t_camera_reference = Eigen::Vector3d::Zero();  // [m], at scale 1 of the reference
   };
-  static Eigen::Isometry3d pose(const Record& record, const Map& map);
+  static_assert(sizeof(Record) == 72, "one is kept of every frame");
 
   std::vector<Record> records_;
+  Eigen::Isometry3d T_last_reference_ = Eigen::Isometry3d::Identity();  // T_camera_reference of the last record
+  double last_reference_scale_ = 1.0;                                   // KeyFrame::scale when it was added
   bool has_previous_ = false;
   bool has_velocity_ = false;
   Eigen::Isometry3d velocity_ = Eigen::Isometry3d::Identity();  // T_current_previous
