@@ -27,10 +27,10 @@ struct TrackingSettings {
   /// [deg]; 0 = off. What people leave of an image may hardly tell translation from rotation.
   double start_deviation = 0.0;
   /// One camera: after 0.3 to 0.5 s, the share of a frame's static features that are found in the map, times the share
-  /// of those that agree with the pose; a map with less was begun with people, or with points that hardly determine its
-  /// shape, and is given up. Right maps have 0.12 to 0.5, wrong ones 0.05 to 0.07. Half is enough for each further
-  /// start. 0 = off.
-  double start_support = 0.09;
+  /// of those that agree with the pose; a map with less is given up. Maps that were begun with people, or with points
+  /// that hardly determine their shape, have 0.05 to 0.1, others 0.08 to 0.5. Half is enough for each further start.
+  /// 0 = off.
+  double start_support = 0.0;
   double close_depth_factor = 40.0;  ///< baselines; beyond it, noise of depth exceeds that of triangulation (ORB-SLAM2)
   double depth_edge_ratio = 0.05;    ///< share of the depth; features at larger steps of depth have none; 0 = off
   bool depth_alignment = true;       ///< depth of features is corrected for the ego-motion between colour and depth
