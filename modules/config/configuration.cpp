@@ -39,6 +39,12 @@ void CameraSettings::describe(ParameterTable<CameraSettings>& table) {
       .one_of(lens_names());
   table.add("baseline", &S::baseline, "of the stereo pair that depth stands for").range(1e-4, 100).unit("m");
   table.add("frame_rate", &S::frame_rate, "images per second").range(0.01, 10000).unit("1/s");
+  table
+      .add("readout", &S::readout,
+           "time from the exposure of the first row to that of the last, of a camera with a rolling shutter; below 0: "
+           "the last row comes first")
+      .range(-0.1, 0.1)
+      .unit("s");
 }
 
 CameraSettings camera_settings(const Camera& camera) {
@@ -60,13 +66,14 @@ CameraSettings camera_settings(const Camera& camera) {
           d.k6,
           lens_name(d.lens),
           camera.baseline,
-          camera.frame_rate};
+          camera.frame_rate,
+          camera.readout};
 }
 
 Camera make_camera(const CameraSettings& s) {
   const Distortion distortion{
       s.k1, s.k2, s.p1, s.p2, s.k3, s.k4, s.k5, s.k6, find_lens(s.lens).value_or(Lens::radial_tangential)};
-  return {s.name, s.width, s.height, s.fx, s.fy, s.cx, s.cy, distortion, s.baseline, s.frame_rate};
+  return {s.name, s.width, s.height, s.fx, s.fy, s.cx, s.cy, distortion, s.baseline, s.frame_rate, s.readout};
 }
 
 std::optional<Camera> read_camera(const ConfigurationNode& node, std::vector<Diagnostic>& diagnostics) {

@@ -134,6 +134,11 @@ void Camera::undistorted_bounds(Eigen::Vector2d& minimum, Eigen::Vector2d& maxim
 }
 
 namespace {
+/// Of the colour camera of a Kinect [s]: Ringaby and Forssen, "Scan Rectification for Structured Light Range Sensors
+/// with Rolling Shutters", ICCV 2011; estimated from freiburg1_xyz and freiburg1_rpy (docs/rotation.md): 0.026 as well.
+/// The Xtion of tum_fr3 and bonn has the same design, and tracking begins with the same time there.
+constexpr double kinect_readout = 0.026;
+
 const std::array<Camera, 7>& known_cameras() {
   // TUM: https://cvg.cit.tum.de/data/datasets/rgbd-dataset/file_formats (colour camera of each freiburg setup).
   // Bonn: https://www.ipb.uni-bonn.de/data/rgbd-dynamic-dataset (colour camera). ICL-NUIM: Handa et al., ICRA 2014, who
@@ -149,7 +154,8 @@ const std::array<Camera, 7>& known_cameras() {
        237.756098,
        {0.039903, -0.099343, -0.000730, -0.000144, 0.0},
        0.08,
-       30.0},
+       30.0,
+       kinect_readout},
       {"euroc",
        752,
        480,
@@ -171,7 +177,8 @@ const std::array<Camera, 7>& known_cameras() {
        255.313989,
        {0.262383, -0.953104, -0.005358, 0.002628, 1.163314},
        0.08,
-       30.0},
+       30.0,
+       kinect_readout},
       {"tum_fr2",
        640,
        480,
@@ -181,8 +188,9 @@ const std::array<Camera, 7>& known_cameras() {
        249.701764,
        {0.231222, -0.784899, -0.003257, -0.000105, 0.917205},
        0.08,
-       30.0},
-      {"tum_fr3", 640, 480, 535.4, 539.2, 320.1, 247.6, {}, 0.08, 30.0},
+       30.0,
+       kinect_readout},
+      {"tum_fr3", 640, 480, 535.4, 539.2, 320.1, 247.6, {}, 0.08, 30.0, kinect_readout},
   }};
   return cameras;
 }

@@ -49,6 +49,7 @@ PipelineBuilder& PipelineBuilder::source(const SourceDescription& description) {
   source_name_ = description.name;
   has_depth_ = description.has_depth;
   has_right_ = description.has_right;
+  has_global_shutter_ = description.has_global_shutter;
   context_.class_names = description.class_names;
   return *this;
 }
@@ -177,6 +178,10 @@ void PipelineBuilder::check_camera() {
                                 "' brings its own camera, and 'camera' names one with other numbers; remove one of "
                                 "them");
   if (source_camera_) parts_.camera = *source_camera_;
+  if (has_global_shutter_) {
+    parts_.camera.readout = 0.0;
+    parts_.tracking.rolling_shutter = RollingShutterMode::off;
+  }
   // Without a pair, the baseline only says what counts as near, in the map's own unit.
   if (parts_.sensor == Sensor::mono) parts_.camera.baseline = Camera().baseline;
   if (!source_camera_ && !has_camera_) {

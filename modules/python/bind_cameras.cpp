@@ -28,12 +28,13 @@ std::string camera_text(const Camera& camera) {
 
 void bind_cameras(py::module_& module) {
   py::class_<Camera>(module, "Camera",
-                     "A pinhole camera with lens distortion [px]; baseline [m], frame_rate [1/s]. The coefficients are "
+                     "A pinhole camera with lens distortion [px]; baseline [m], frame_rate [1/s], readout [s] of a "
+                     "rolling shutter. The coefficients are "
                      "OpenCV's: k1, k2, p1, p2, k3 and, of the rational model, k4, k5, k6 of the lens "
                      "'radial_tangential'; k1, k2, k3, k4 of the lens 'fisheye'.")
       .def(py::init([](int width, int height, double fx, double fy, double cx, double cy, double k1, double k2,
                        double p1, double p2, double k3, double baseline, double frame_rate, const std::string& name,
-                       double k4, double k5, double k6, const std::string& lens) {
+                       double k4, double k5, double k6, const std::string& lens, double readout) {
              if (width < 1 || height < 1 || !(fx > 0.0) || !(fy > 0.0))
                throw InputError({"camera"},
                                 "has no area or no focal length; expected width, height, fx and fy above 0");
@@ -43,12 +44,13 @@ void bind_cameras(py::module_& module) {
              const Distortion distortion{k1, k2, p1, p2, k3, k4, k5, k6, *known};
              if (const std::string trouble = distortion.trouble(); !trouble.empty())
                throw InputError({"camera"}, trouble);
-             return Camera{name, width, height, fx, fy, cx, cy, distortion, baseline, frame_rate};
+             return Camera{name, width, height, fx, fy, cx, cy, distortion, baseline, frame_rate, readout};
            }),
            py::kw_only(), py::arg("width"), py::arg("height"), py::arg("fx"), py::arg("fy"), py::arg("cx"),
            py::arg("cy"), py::arg("k1") = 0.0, py::arg("k2") = 0.0, py::arg("p1") = 0.0, py::arg("p2") = 0.0,
            py::arg("k3") = 0.0, py::arg("baseline") = 0.08, py::arg("frame_rate") = 30.0, py::arg("name") = "",
-           py::arg("k4") = 0.0, py::arg("k5") = 0.0, py::arg("k6") = 0.0, py::arg("lens") = "radial_tangential")
+           py::arg("k4") = 0.0, py::arg("k5") = 0.0, py::arg("k6") = 0.0, py::arg("lens") = "radial_tangential",
+           py::arg("readout") = 0.0)
       .def_readonly("name", &Camera::name)
       .def_readonly("width", &Camera::width)
       .def_readonly("height", &Camera::height)
@@ -61,6 +63,7 @@ void bind_cameras(py::module_& module) {
       .def_property_readonly("lens", [](const Camera& camera) { return lens_name(camera.distortion.lens); })
       .def_readonly("baseline", &Camera::baseline)
       .def_readonly("frame_rate", &Camera::frame_rate)
+      .def_readonly("readout", &Camera::readout)
       .def("__eq__", [](const Camera& a, const Camera& b) { return a == b; })
       .def("__repr__", &camera_text);
   module.def("camera", &known_camera, py::arg("name"),

@@ -91,6 +91,28 @@ void FrameBuilder::find_features(const SensorFrame& sensor_frame, const cv::Mat&
   complete(sensor_frame, frame, times);
 }
 
+void FrameBuilder::place_features(const SensorFrame& sensor_frame, const FrameMotion& motion, bool aligns_depth,
+                                  const RollingShutter& shutter, const Map& map, Frame& frame,
+                                  StageTimes& times) const {
+  if (stereo_ || (!aligns_depth && !shutter.is_active())) return;
+  const StageTimer timer(times, "frame");
+  // Depth is measured row by row as well, almost at the same pace, so that it is read where the rows show it.
+  if (shutter.is_active()) undistortion_.undistort(frame.features.x, frame.features.y, frame.x, frame.y);
+  if (aligns_depth)
+    depth_reader_.align(sensor_frame.depth, motion.during(sensor_frame.depth_delay), frame);
+  else
+    depth_reader_.read(sensor_frame.depth, frame);
+  if (!shutter.is_active()) return;
+  shutter.correct(motion, map, frame);
+  build_grid(frame);
+}
+
+void FrameBuilder::build_grid(Frame& frame) const {
+  frame.grid.build(frame.x, frame.y,
+                   {static_cast<float>(minimum_.x()), static_cast<float>(minimum_.y()),
+                    static_cast<float>(maximum_.x()), static_cast<float>(maximum_.y())});
+}
+
 void FrameBuilder::complete(const SensorFrame& sensor_frame, Frame& frame, StageTimes& times) {
   const StageTimer timer(times, "frame");
   undistortion_.undistort(frame.features.x, frame.features.y, frame.x, frame.y);
@@ -101,9 +123,7 @@ void FrameBuilder::complete(const SensorFrame& sensor_frame, Frame& frame, Stage
   frame.map_points.assign(frame.size(), MapPointId());
   frame.static_probability.assign(frame.size(), 1.0F);
   frame.measured_log_odds.assign(frame.size(), 0.0F);
-  frame.grid.build(frame.x, frame.y,
-                   {static_cast<float>(minimum_.x()), static_cast<float>(minimum_.y()),
-                    static_cast<float>(maximum_.x()), static_cast<float>(maximum_.y())});
+  build_grid(frame);
 }
 
 }  // namespace holdfast

@@ -29,6 +29,7 @@ Tracker::Tracker(const TrackingSettings& settings, const TrackerParts& parts)
       relocaliser_(settings, {parts.detector, parts.moving_world, parts.map, matcher_, estimator_, history_},
                    parts.seed),
       keyframe_policy_(settings),
+      shutter_(parts.stereo ? RollingShutterMode::off : settings.rolling_shutter, parts.camera.readout),
       state_(parts.map.keyframes().empty() ? State::waiting : State::lost) {
   if (parts.stereo) builder_.use_stereo(*parts.stereo);
   if (settings.between_keyframes == BetweenKeyframes::flow) flow_.emplace();
@@ -48,7 +49,7 @@ void Tracker::begin(const SensorFrame& sensor_frame, FrameResult& result) {
 void Tracker::find_features(const SensorFrame& sensor_frame, FrameResult& result) {
   followed_frames_ = 0;
   builder_.find_features(sensor_frame, ignored_, current_, result.times);
-  if (history_.has_velocity()) align_depth(sensor_frame, history_.predicted_step(current_.timestamp), result.times);
+  if (history_.has_velocity()) place_features(sensor_frame, history_.predicted_step(current_.timestamp), result.times);
   result.features = static_cast<int>(current_.size());
 }
 
@@ -69,7 +70,7 @@ bool Tracker::follow_features(const SensorFrame& sensor_frame, FrameResult& resu
   }
   ++followed_frames_;
   builder_.complete(sensor_frame, current_, result.times);
-  align_depth(sensor_frame, history_.predicted_step(current_.timestamp), result.times);
+  place_features(sensor_frame, history_.predicted_step(current_.timestamp), result.times);
   result.features = static_cast<int>(current_.size());
   return true;
 }
@@ -107,6 +108,9 @@ void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
   if (found) {
     const StageTimer timer(result.times, "keyframe");
     const bool on_map = result.inliers >= settings_.minimum_inliers;
+    if (on_map && history_.has_previous())
+      if (const auto motion = motion_by(current_.T_camera_world * previous_.T_world_camera()))
+        shutter_.learn(*motion, map_, current_);
     result.is_keyframe =
         !localises_only_ && followed_frames_ == 0 && (on_map ? needs_keyframe(result) : odometry_extends_map_);
     if (on_map || result.is_keyframe) last_feature_time_ = current_.timestamp;
@@ -117,12 +121,18 @@ void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
   end_frame(result);
 }
 
-void Tracker::align_depth(const SensorFrame& sensor_frame, const Eigen::Isometry3d& step, StageTimes& times) {
-  constexpr double min_delay = 1e-4, max_interval = 0.2;  // s; over a longer interval the velocity may have changed
+std::optional<FrameMotion> Tracker::motion_by(const Eigen::Isometry3d& step) const {
+  constexpr double max_interval = 0.2;  // s; over a longer one the velocity may have changed
   const double interval = current_.timestamp - history_.last_timestamp();
-  if (!settings_.depth_alignment || std::abs(sensor_frame.depth_delay) < min_delay || interval > max_interval) return;
-  const double steps = sensor_frame.depth_delay / interval;
-  builder_.align_depth(sensor_frame, geometry::exp_se3(steps * geometry::log_se3(step)), current_, times);
+  if (interval > max_interval) return std::nullopt;
+  return FrameMotion{geometry::log_se3(step), interval};
+}
+
+void Tracker::place_features(const SensorFrame& sensor_frame, const Eigen::Isometry3d& step, StageTimes& times) {
+  constexpr double min_delay = 1e-4;  // s
+  const bool aligns_depth = settings_.depth_alignment && std::abs(sensor_frame.depth_delay) >= min_delay;
+  if (const std::optional<FrameMotion> motion = motion_by(step))
+    builder_.place_features(sensor_frame, *motion, aligns_depth, shutter_, map_, current_, times);
 }
 
 bool Tracker::was_lost_at_start() const {
@@ -249,7 +259,7 @@ bool Tracker::track_followed(TrackedView& view, FrameResult& result) {
     if (estimator_.adjust(current_) < required) return false;
     estimator_.drop_outliers(current_);
   }
-  align_depth(view.sensor_frame, current_.T_camera_world * previous_.T_world_camera(), result.times);
+  place_features(view.sensor_frame, current_.T_camera_world * previous_.T_world_camera(), result.times);
   evaluate_with_pose(view, result);
   moving_world_.evaluate(FilterStage::after_matching, view, result.times);
   const StageTimer timer(result.times, "local map");
@@ -272,7 +282,7 @@ bool Tracker::refine(TrackedView& view, FrameResult& result) {
   if (!history_.has_previous()) view.previous = nullptr;  // relocalisation gives the previous frame up
   // The measured motion replaces the predicted one.
   if (history_.has_previous())
-    align_depth(view.sensor_frame, current_.T_camera_world * previous_.T_world_camera(), result.times);
+    place_features(view.sensor_frame, current_.T_camera_world * previous_.T_world_camera(), result.times);
   evaluate_with_pose(view, result);
   return track_local_map(view, result);
 }

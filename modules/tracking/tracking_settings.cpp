@@ -140,6 +140,9 @@ void describe_keyframes(ParameterTable<S>& table) {
   table.add("depth_alignment", &S::depth_alignment,
             "whether the depth of features is corrected for the motion of the camera between the exposures of the "
             "colour and the depth image, where the source knows both times");
+  table.add("rolling_shutter", &S::rolling_shutter,
+            "whether features are corrected for the motion of the camera while its rows are exposed one after another: "
+            "fixed = by the readout time of the camera; estimated = the same, and the time is estimated while tracking");
 }
 
 void describe_relocalisation(ParameterTable<S>& table) {

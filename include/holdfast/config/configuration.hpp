@@ -33,6 +33,7 @@ struct CameraSettings {
   std::string lens = "radial_tangential";
   double baseline = 0.08;
   double frame_rate = 30.0;
+  double readout = 0.0;
 
   static void describe(ParameterTable<CameraSettings>& table);
 };

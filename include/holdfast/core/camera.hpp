@@ -65,6 +65,9 @@ struct Camera {
   Distortion distortion;
   double baseline = 0.08;    ///< of the virtual (or real) stereo pair [m]; about 0.08 m for a Kinect
   double frame_rate = 30.0;  ///< [1/s]
+  /// From the exposure of the first row to that of the last (rolling shutter) [s]; 0 = all rows at once, below 0 = the
+  /// last row first. The time stamp of an image is that of its middle row.
+  double readout = 0.0;
 
   /// Undistorted pixel of a point in the camera frame; z must be positive.
   Eigen::Vector2d project(const Eigen::Vector3d& point) const {

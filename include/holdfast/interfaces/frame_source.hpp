@@ -24,6 +24,8 @@ struct SourceDescription {
   std::string name;  ///< name of the sequence, for titles
   bool has_depth = false;
   bool has_right = false;  ///< frames have a right image; see SensorFrame::right
+  /// All rows of an image are known to be exposed at once, whatever Camera::readout says.
+  bool has_global_shutter = false;
   /// Frames do not depend on what happens between two calls of next(), as those of a recording, so that a sequential
   /// run may read ahead in another thread. False for a source that other code influences during a run.
   bool can_read_ahead = false;

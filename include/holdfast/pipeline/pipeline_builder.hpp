@@ -146,6 +146,7 @@ class PipelineBuilder {
   CreationContext context_;
   std::optional<Camera> source_camera_;
   bool has_camera_ = false;
+  bool has_global_shutter_ = false;
   bool has_depth_ = true;
   bool has_right_ = false;
   std::optional<Sensor> sensor_;

@@ -12,6 +12,7 @@
 #include "holdfast/core/stage_times.hpp"
 #include "holdfast/interfaces/feature_extractor.hpp"
 #include "holdfast/tracking/depth_reader.hpp"
+#include "holdfast/tracking/rolling_shutter.hpp"
 #include "holdfast/tracking/stereo_depth.hpp"
 #include "holdfast/tracking/undistortion_table.hpp"
 
@@ -42,14 +43,12 @@ class FrameBuilder {
   /// The second half for a frame that has its features already: all but their extraction. Not for a stereo pair.
   void complete(const SensorFrame& sensor_frame, Frame& frame, StageTimes& times);
 
-  /// Reads the depth of the features in the depth image again, for a camera that moved by T_depth_colour between the
-  /// exposures of the colour and the depth image. Does nothing for a stereo pair. Adds to the stage "frame".
-  void align_depth(const SensorFrame& sensor_frame, const Eigen::Isometry3d& T_depth_colour, Frame& frame,
-                   StageTimes& times) const {
-    if (stereo_) return;
-    const StageTimer timer(times, "frame");
-    depth_reader_.align(sensor_frame.depth, T_depth_colour, frame);
-  }
+  /// Places the features again for a camera that moves: reads their depth where the depth image shows them, which was
+  /// exposed before or after the colour image, if `aligns_depth`; and takes them from the exposures of their rows to
+  /// that of the middle row. Does nothing for a stereo pair. Adds to the stage "frame". The caller holds the lock of
+  /// the map if features have map points.
+  void place_features(const SensorFrame& sensor_frame, const FrameMotion& motion, bool aligns_depth,
+                      const RollingShutter& shutter, const Map& map, Frame& frame, StageTimes& times) const;
 
   const std::shared_ptr<const Camera>& camera() const { return camera_; }
   const CoarseSampler& coarse_sampler() const { return coarse_sampler_; }
@@ -57,6 +56,8 @@ class FrameBuilder {
   const cv::Mat& grey() const { return grey_; }
 
  private:
+  void build_grid(Frame& frame) const;
+
   std::shared_ptr<const Camera> camera_;
   std::shared_ptr<const ScalePyramid> pyramid_;
   FeatureExtractor& extractor_;

@@ -21,6 +21,7 @@
 #include "holdfast/tracking/mono_initialiser.hpp"
 #include "holdfast/tracking/pose_estimator.hpp"
 #include "holdfast/tracking/relocaliser.hpp"
+#include "holdfast/tracking/rolling_shutter.hpp"
 #include "holdfast/tracking/tracking_settings.hpp"
 
 namespace holdfast {
@@ -83,6 +84,9 @@ class Tracker {
   /// caller holds the lock of the map.
   void keyframe_added(KeyFrameId keyframe);
 
+  /// What is known of the rolling shutter by now.
+  const RollingShutter& rolling_shutter() const { return shutter_; }
+
   /// Every tracked frame's pose by the map as it is now; the caller holds the lock of the map. Frames follow the
   /// keyframes that they were tracked against.
   Trajectory trajectory() const { return history_.trajectory(map_); }
@@ -90,9 +94,11 @@ class Tracker {
  private:
   enum class State { waiting, tracking, lost };
 
-  /// Corrects the depth of the current frame for the motion between the exposures of colour and depth, a share of the
-  /// motion since the previous frame: step = T_current_previous.
-  void align_depth(const SensorFrame& sensor_frame, const Eigen::Isometry3d& step, StageTimes& times);
+  /// The motion since the previous frame, T_current_previous = step; nothing after so long that it says little about
+  /// the velocity now.
+  std::optional<FrameMotion> motion_by(const Eigen::Isometry3d& step) const;
+  /// Places the features of the current frame again, for a camera that moved so since the previous one.
+  void place_features(const SensorFrame& sensor_frame, const Eigen::Isometry3d& step, StageTimes& times);
   /// Whether the camera was lost so soon after the map began that waiting for a known view is not worth it: with a
   /// first keyframe on people, or a wrong first mask, next to nothing of the map may be left.
   bool was_lost_at_start() const;
@@ -151,6 +157,7 @@ class Tracker {
   KeyframePolicy keyframe_policy_;
   std::optional<MonoInitialiser> mono_;
   std::optional<FeatureFlow> flow_;
+  RollingShutter shutter_;
 
   State state_;
   bool localises_only_ = false;

@@ -14,6 +14,16 @@ class ParameterTable;
 /// are followed by optical flow.
 enum class BetweenKeyframes { features, flow };
 
+/// Whether features are corrected for the time between the exposures of the rows of an image, and whether that time is
+/// the camera's or estimated during the run, beginning with the camera's.
+enum class RollingShutterMode { off, fixed, estimated };
+
+template <>
+inline constexpr Choice<RollingShutterMode> choice_table<RollingShutterMode>[] = {
+    {"off", RollingShutterMode::off},
+    {"fixed", RollingShutterMode::fixed},
+    {"estimated", RollingShutterMode::estimated}};
+
 template <>
 inline constexpr Choice<BetweenKeyframes> choice_table<BetweenKeyframes>[] = {{"features", BetweenKeyframes::features},
                                                                               {"flow", BetweenKeyframes::flow}};
@@ -34,6 +44,7 @@ struct TrackingSettings {
   double close_depth_factor = 40.0;  ///< baselines; beyond it, noise of depth exceeds that of triangulation (ORB-SLAM2)
   double depth_edge_ratio = 0.05;    ///< share of the depth; features at larger steps of depth have none; 0 = off
   bool depth_alignment = true;       ///< depth of features is corrected for the ego-motion between colour and depth
+  RollingShutterMode rolling_shutter = RollingShutterMode::estimated;
   double motion_window = 15.0;       ///< search radius around a prediction, at level 0 [px]
   double motion_window_retry = 2.0;  ///< factor on motion_window for the second try, after a sudden motion
   int minimum_matches = 20;          ///< with the previous frame; half as many inliers accept the first pose

@@ -58,6 +58,7 @@ class SimulatedSource final : public FrameSource {
                        simulation::to_string(scene.camera.path) + ", seed " + std::to_string(scene.seed);
     description.has_depth = !is_stereo();
     description.has_right = is_stereo();
+    description.has_global_shutter = true;
     description.can_read_ahead = true;
     description.class_names = simulator_.class_names();
     description.frame_count = simulator_.frame_count();
