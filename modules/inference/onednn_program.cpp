@@ -68,6 +68,19 @@ Elementwise elementwise(const PlannedLayer& layer) {
   return {dnnl::algorithm::eltwise_relu};
 }
 
+/// The primitive of oneDNN's favourite implementation that can be made. `chosen` becomes the description of that one:
+/// some that say they can do a layer then cannot compile it.
+template <class Primitive>
+Primitive make_primitive(typename Primitive::primitive_desc& chosen) {
+  while (true) {
+    try {
+      return Primitive(chosen);
+    } catch (const dnnl::error&) {
+      if (!chosen.next_impl()) throw;
+    }
+  }
+}
+
 }  // namespace
 
 OnednnProgram::OnednnProgram(const NetworkPlan& plan, NetworkPrecision precision)
@@ -170,7 +183,8 @@ void OnednnProgram::add_convolution(const PlannedLayer& layer, const NetworkPlan
                                        pair(layer.window.after))
             : typename Primitive::desc(inference, algorithm, from_any, weights_any, to_any, pair(layer.window.stride),
                                        dilation, pair(layer.window.before), pair(layer.window.after));
-    const typename Primitive::primitive_desc chosen(description, attributes(layer), engine_);
+    typename Primitive::primitive_desc chosen(description, attributes(layer), engine_);
+    const Primitive primitive = make_primitive<Primitive>(chosen);
     Arguments arguments = {
         {DNNL_ARG_SRC, in_layout(layer.inputs[0], chosen.src_desc())},
         {DNNL_ARG_WEIGHTS, weights_in_layout(stored, layer.weights->numbers, chosen.weights_desc())}};
@@ -192,7 +206,7 @@ void OnednnProgram::add_convolution(const PlannedLayer& layer, const NetworkPlan
       place(layer.output, chosen.dst_desc());
     }
     arguments[DNNL_ARG_DST] = output.memory;
-    add_step(Primitive(chosen), chosen.scratchpad_desc(), std::move(arguments));
+    add_step(primitive, chosen.scratchpad_desc(), std::move(arguments));
   };
   if (layer.kind == LayerKind::convolution)
     build(dnnl::convolution_forward(), dnnl::algorithm::convolution_direct);
@@ -221,20 +235,21 @@ void OnednnProgram::add_blocks(const PlannedLayer& layer, const NetworkPlan& pla
   const dnnl::convolution_forward::desc description(
       inference, dnnl::algorithm::convolution_direct, {dims(from), precision_, memory::format_tag::any},
       {stored.dims(), precision_, memory::format_tag::any}, bias_layout, spread, {1, 1}, {0, 0}, {0, 0});
-  const dnnl::convolution_forward::primitive_desc chosen(description, attributes(layer), engine_);
+  dnnl::convolution_forward::primitive_desc chosen(description, attributes(layer), engine_);
+  const auto primitive = make_primitive<dnnl::convolution_forward>(chosen);
   const std::size_t buffer = acquire(spread.get_size());
   copies_.push_back(buffer);
-  add_step(dnnl::convolution_forward(chosen), chosen.scratchpad_desc(),
+  add_step(primitive, chosen.scratchpad_desc(),
            {{DNNL_ARG_SRC, in_layout(layer.inputs[0], chosen.src_desc())},
             {DNNL_ARG_WEIGHTS, weights_in_layout(stored, weights, chosen.weights_desc())},
             {DNNL_ARG_BIAS, weights_in_layout(bias_layout, bias, bias_layout)},
             {DNNL_ARG_DST, memory_in(buffer, spread)}});
 
   place(layer.output, {dims(plan.tensors[layer.output]), type_of(layer.output), memory::format_tag::nhwc});
-  const std::int64_t row = columns * outputs, line = from[3] * row;  // of a block, of the output
-  const memory::dims sizes = {from[0] * from[2], from[3], rows, row};
-  const memory::desc gathered(sizes, precision_, memory::dims{from[3] * rows * row, rows * row, row, 1});
-  const memory::desc laid_out(sizes, type_of(layer.output), memory::dims{rows * line, row, line, 1});
+  const std::int64_t piece = columns * outputs, row = from[3] * piece;  // values in a row of a block, of the output
+  const memory::dims sizes = {from[0] * from[2], from[3], rows, piece};
+  const memory::desc gathered(sizes, precision_, memory::dims{rows * row, rows * piece, piece, 1});
+  const memory::desc laid_out(sizes, type_of(layer.output), memory::dims{rows * row, piece, row, 1});
   add_copy(memory_in(buffer, gathered), memory_in(*tensors_[layer.output].buffer, laid_out));
 }
 
