@@ -79,7 +79,7 @@ class OnnxSegmenter final : public NetworkSegmenter {
 HOLDFAST_PLUGIN(onnx, registry) {
   registry.add<Segmenter, OnnxSegmenter, OnnxSettings>(
       {.name = OnnxSettings::module,
-       .summary = "Runs any semantic segmentation network in ONNX format on the CPU with OpenCV."});
+       .summary = "Runs any semantic segmentation network in ONNX format on the CPU with OpenCV or oneDNN."});
 }
 
 }  // namespace holdfast
