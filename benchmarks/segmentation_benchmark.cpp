@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Time of the U-Net for one 640x480 frame, on one thread, resizing and labels included. Images: 40 frames spread over
-// the TUM sequence in $HOLDFAST_DATA/tum_fr1_xyz, or synthetic ones when HOLDFAST_DATA is unset. The counter
-// `to_cv_orb` is the median time divided by that of cv::ORB(1000), image by image in turn with it, so that a busy
-// machine slows both.
+// Time of the U-Net for one 640x480 frame, by size, engine and precision, on one thread, resizing and labels included.
+// Images: 40 frames spread over the TUM sequence in $HOLDFAST_DATA/tum_fr1_xyz, or synthetic ones when HOLDFAST_DATA is
+// unset. The counter `to_cv_orb` is the median time divided by that of cv::ORB(1000), image by image in turn with it,
+// so that a busy machine slows both.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -17,6 +17,7 @@
 #include <string>
 #include <vector>
 
+#include "holdfast/core/error.hpp"
 #include "holdfast/interfaces/segmenter.hpp"
 #include "holdfast/plugin/builtin.hpp"
 #include "holdfast/plugin/registry.hpp"
@@ -58,11 +59,11 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-void unet(benchmark::State& state, const std::string& size, bool mirror) {
+void unet(benchmark::State& state, const ParameterValues& settings) {
   static const std::vector<cv::Mat> images = load_images();
   Registry registry;
   register_builtin_plugins(registry);
-  const auto segmenter = registry.create<Segmenter>("unet", {{"size", size}, {"mirror", mirror}}, CreationContext{});
+  const auto segmenter = registry.create<Segmenter>("unet", settings, CreationContext{});
   const cv::Ptr<cv::ORB> reference = cv::ORB::create(1000);
   std::vector<cv::KeyPoint> keypoints;
   cv::Mat descriptors, grey;
@@ -81,15 +82,35 @@ void unet(benchmark::State& state, const std::string& size, bool mirror) {
   state.counters["cv_orb_ms"] = 1e3 * median(reference_times);
   state.counters["to_cv_orb"] = median(times) / median(reference_times);
 }
-BENCHMARK_CAPTURE(unet, small, "small", false)->UseManualTime()->Iterations(40)->Unit(benchmark::kMillisecond);
-
-BENCHMARK_CAPTURE(unet, base, "base", false)->UseManualTime()->Iterations(40)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(unet, base_mirror, "base", true)->UseManualTime()->Iterations(40)->Unit(benchmark::kMillisecond);
+/// With every engine and precision that this build and this processor have.
+void register_benchmarks() {
+  Registry registry;
+  register_builtin_plugins(registry);
+  for (const char* size : {"small", "base"})
+    for (const bool mirror : {false, true})
+      for (const auto& [engine, precision] : {std::pair("opencv", "fp32"), {"onednn", "fp32"}, {"onednn", "bf16"}}) {
+        const ParameterValues settings = {{"size", std::string(size)},
+                                          {"mirror", mirror},
+                                          {"engine", std::string(engine)},
+                                          {"precision", std::string(precision)}};
+        try {
+          registry.create<Segmenter>("unet", settings, CreationContext{});
+        } catch (const ConfigurationError&) {
+          continue;
+        }
+        const std::string name = std::string("unet/") + size + (mirror ? "_mirror/" : "/") + engine + "/" + precision;
+        benchmark::RegisterBenchmark(name.c_str(), unet, settings)
+            ->UseManualTime()
+            ->Iterations(40)
+            ->Unit(benchmark::kMillisecond);
+      }
+}
 
 }  // namespace
 
 int main(int argc, char** argv) {
   cv::setNumThreads(1);
+  register_benchmarks();
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
   benchmark::RunSpecifiedBenchmarks();

@@ -9,110 +9,20 @@
 #include <utility>
 
 #include "holdfast/core/error.hpp"
+#include "onnx_fields.hpp"
+#include "protobuf.hpp"
 
 namespace holdfast {
 
 namespace {
 
-using Bytes = std::span<const std::uint8_t>;
+using namespace onnx;
+using namespace protobuf;
 
-/// Values of TensorProto.DataType.
-namespace type {
-constexpr std::uint64_t float32 = 1, int64 = 7, half_precision = 10, float64 = 11, uint32 = 12, uint64 = 13;
-}  // namespace type
-
-/// Field numbers of onnx.proto3.
-namespace field {
-constexpr std::uint32_t model_graph = 7;
-constexpr std::uint32_t graph_node = 1, graph_initializer = 5, graph_input = 11, graph_output = 12;
-constexpr std::uint32_t graph_sparse_initializer = 15, sparse_values = 1;
-constexpr std::uint32_t node_input = 1, node_output = 2, node_name = 3, node_operator = 4, node_attribute = 5;
-constexpr std::uint32_t attribute_tensor = 5, attribute_graph = 6, attribute_tensors = 10, attribute_graphs = 11;
-constexpr std::uint32_t tensor_dimension = 1, tensor_data_type = 2, tensor_name = 8;
-constexpr std::uint32_t tensor_floats = 4, tensor_int32s = 5, tensor_int64s = 7, tensor_raw = 9, tensor_doubles = 10;
-constexpr std::uint32_t tensor_uint64s = 11, tensor_location = 14;
-constexpr std::uint32_t value_name = 1, value_type = 2;
-constexpr std::uint32_t type_tensor = 1;
-constexpr std::uint32_t tensor_type_element = 1, tensor_type_shape = 2;
-constexpr std::uint32_t shape_dimension = 1;
-constexpr std::uint32_t dimension_value = 1;
-}  // namespace field
-
-struct Field {
-  std::uint32_t number = 0;
-  std::uint32_t wire = 0;   ///< how the value is encoded
-  std::uint64_t value = 0;  ///< of a varint
-  Bytes content;            ///< of a length-delimited field
-};
-
-constexpr std::uint32_t wire_varint = 0, wire_eight_bytes = 1, wire_content = 2, wire_four_bytes = 5;
-
-struct Malformed {};
 /// A well-formed model that OpenCV must not see: what is wrong, what was expected and what to do.
 struct Unusable {
   std::string message;
 };
-
-/// The fields of a message, one after the other.
-class Message {
- public:
-  explicit Message(Bytes bytes) : rest_(bytes) {}
-
-  bool is_at_end() const { return rest_.empty(); }
-  std::optional<Field> next() {
-    if (rest_.empty()) return std::nullopt;
-    const std::uint64_t key = varint();
-    Field result;
-    result.number = static_cast<std::uint32_t>(key >> 3);
-    if (result.number == 0) throw Malformed();
-    result.wire = key & 7;
-    switch (result.wire) {
-      case wire_varint:
-        result.value = varint();
-        break;
-      case wire_eight_bytes:
-        take(8);
-        break;
-      case wire_content:
-        result.content = take(varint());
-        break;
-      case wire_four_bytes:
-        take(4);
-        break;
-      default:
-        throw Malformed();
-    }
-    return result;
-  }
-
-  std::uint64_t varint() {
-    std::uint64_t value = 0;
-    for (int shift = 0; shift < 64; shift += 7) {
-      const std::uint8_t byte = take(1)[0];
-      value |= std::uint64_t{byte & 0x7fU} << shift;
-      if ((byte & 0x80) == 0) return value;
-    }
-    throw Malformed();
-  }
-
- private:
-  Bytes take(std::uint64_t count) {
-    if (count > rest_.size()) throw Malformed();
-    const Bytes taken = rest_.first(count);
-    rest_ = rest_.subspan(count);
-    return taken;
-  }
-
-  Bytes rest_;
-};
-
-template <class Visit>
-void each_field(Bytes bytes, Visit&& visit) {
-  Message message(bytes);
-  while (const std::optional<Field> found = message.next()) visit(*found);
-}
-
-std::string text(Bytes bytes) { return {bytes.begin(), bytes.end()}; }
 
 std::int64_t read_dimension(Bytes bytes) {
   std::int64_t size = -1;
@@ -315,15 +225,15 @@ std::string shape_text(std::span<const std::int64_t> shape) {
 
 std::string OnnxTensor::shape_text() const { return holdfast::shape_text(shape); }
 
-OnnxSignature read_onnx_signature(Bytes bytes, const std::filesystem::path& file) {
+OnnxSignature read_onnx_signature(std::span<const std::uint8_t> bytes, const std::filesystem::path& file) {
   std::optional<OnnxSignature> signature;
   try {
-    each_field(bytes, [&](const Field& part) {
-      if (part.number != field::model_graph || part.content.empty()) return;
-      if (signature) throw Malformed();
+    protobuf::each_field(bytes, [&](const protobuf::Field& part) {
+      if (part.number != onnx::field::model_graph || part.content.empty()) return;
+      if (signature) throw protobuf::Malformed();
       signature = read_graph(part.content);
     });
-  } catch (const Malformed&) {
+  } catch (const protobuf::Malformed&) {
     signature.reset();
   } catch (const Unusable& model) {
     throw InputError({file.string()}, model.message);

@@ -94,7 +94,7 @@ TEST(OnnxSegmenter, WrongModelsSayWhatWasFoundAndExpected) {
   EXPECT_THAT(error("two_outputs", {{"output_name", "score"}}),
               HasSubstr("has no output 'score'; did you mean 'scores'?"));
   EXPECT_THAT(error("two_inputs"), HasSubstr("has 2 inputs"));
-  EXPECT_THAT(error("half"), HasSubstr("float16 numbers, which OpenCV cannot read"));
+  EXPECT_THAT(error("half"), HasSubstr("float16 numbers, which no engine here can read"));
   EXPECT_THAT(error("strange_layer"), AllOf(HasSubstr("strange_layer.onnx: cannot be"), HasSubstr("Sorcery")));
   EXPECT_THAT(error("logits", {{"output", "labels"}}), HasSubstr("1 x 1 x height x width"));
   EXPECT_THAT(error("one_channel",

@@ -2,6 +2,7 @@
 // The shipped weights on photographs that they were not trained on: plugins/segmenters/unet/training/validation.txt.
 #include <algorithm>
 #include <fstream>
+#include <iostream>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
@@ -54,6 +55,49 @@ TEST(UnetData, FindsPeopleInPhotographsThatItNeverSaw) {
   // docs: plugins/segmenters/unet/README.md says how well it does on all of them.
   EXPECT_GT(evaluator.result().classes[person].iou(), 0.55);
 }
+
+#if defined(HOLDFAST_ONEDNN)
+/// Of all pixels of 40 photographs with people and 20 frames of a room, the share whose labels differ from OpenCV's.
+double share_of_other_labels(const fs::path& data, const std::string& precision) {
+  std::vector<fs::path> files;
+  const std::vector<std::string> names = held_out_photographs();
+  for (std::size_t i = 0; i < 40; ++i) files.push_back(data / "people" / "voc_person" / "images" / (names[i] + ".jpg"));
+  std::vector<fs::path> room;
+  for (const auto& entry : fs::directory_iterator(data / "tum_fr1_xyz" / "rgb")) room.push_back(entry.path());
+  std::sort(room.begin(), room.end());
+  for (std::size_t i = 0; i < 20; ++i) files.push_back(room[i * room.size() / 20]);
+  const auto opencv = test::make_segmenter(holdfast_register_plugin_unet, "unet", {});
+  const auto onednn = test::make_segmenter(holdfast_register_plugin_unet, "unet",
+                                           {{"engine", std::string("onednn")}, {"precision", precision}});
+  double pixels = 0.0, others = 0.0;
+  for (const fs::path& file : files) {
+    SensorFrame frame = test::frame_of(0.0, 16, 16);
+    frame.colour = cv::imread(file.string());
+    EXPECT_FALSE(frame.colour.empty()) << file;
+    const cv::Mat differs = opencv->segment(frame).labels != onednn->segment(frame).labels;
+    pixels += static_cast<double>(differs.total());
+    others += cv::countNonZero(differs);
+  }
+  return others / pixels;
+}
+
+TEST(UnetData, BothEnginesGiveTheSameLabels) {
+  const char* data = std::getenv("HOLDFAST_DATA");
+  if (data == nullptr) GTEST_SKIP() << "HOLDFAST_DATA is not set";
+  for (const char* folder : {"people/voc_person", "tum_fr1_xyz/rgb"})
+    if (!fs::exists(fs::path(data) / folder)) GTEST_SKIP() << folder << " is missing";
+  const double full = share_of_other_labels(data, "fp32");
+  std::cout << "fp32: other labels " << full << '\n';
+  EXPECT_LE(full, 0.0001);
+  try {
+    const double half = share_of_other_labels(data, "bf16");
+    std::cout << "bf16: other labels " << half << '\n';
+    EXPECT_LE(half, 0.01);
+  } catch (const ConfigurationError& error) {
+    EXPECT_NE(std::string(error.what()).find("AVX512_BF16"), std::string::npos) << error.what();
+  }
+}
+#endif
 
 }  // namespace
 }  // namespace holdfast

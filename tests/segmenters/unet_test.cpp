@@ -82,6 +82,28 @@ TEST(UnetSegmenter, WithItsMirrorImageLeftAndRightAreAlike) {
 
 INSTANTIATE_TEST_SUITE_P(Sizes, Unet, testing::Values("small", "base"));
 
+#if defined(HOLDFAST_ONEDNN)
+TEST(UnetSegmenter, BothEnginesGiveTheSameLabels) {
+  simulation::Simulator room = room_with("{ at: [2.5, 3.0] }");
+  const SensorFrame frame = room.frame(0);
+  for (const char* size : {"small", "base"}) {
+    const cv::Mat expected = make({{"size", std::string(size)}})->segment(frame).labels;
+    const auto differing = [&](const char* precision) {
+      const auto segmenter =
+          make({{"size", std::string(size)}, {"engine", std::string("onednn")}, {"precision", std::string(precision)}});
+      const cv::Mat differs = segmenter->segment(frame).labels != expected;
+      return static_cast<double>(cv::countNonZero(differs)) / static_cast<double>(expected.total());
+    };
+    EXPECT_LE(differing("fp32"), 0.0001) << size;
+    try {
+      EXPECT_LE(differing("bf16"), 0.01) << size;
+    } catch (const ConfigurationError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("AVX512_BF16"));
+    }
+  }
+}
+#endif
+
 TEST(UnetSegmenter, SaysWhatItKnowsAndWhatMoves) {
   const auto segmenter = make();
   EXPECT_THAT(segmenter->classes(), ElementsAre("background", "person", "chair", "table", "tv"));

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "holdfast/settings/network_engine.hpp"
+
 namespace holdfast {
 
 /// Model and preprocessing of a network. The input is the image, resized to width x height without preserving its
@@ -19,7 +21,7 @@ struct NetworkOptions {
   /// or, with in_background, until the first run.
   std::span<const std::uint8_t> bytes = {};
   /// Load `bytes` in another thread, for which the first run waits. For models that are known to be good: layers that
-  /// OpenCV cannot load are then an error of the first run.
+  /// the engine cannot load are then an error of the first run.
   bool in_background = false;
   int width = 0;  ///< of the input [px]; 0 = as declared by the model
   int height = 0;
@@ -29,16 +31,20 @@ struct NetworkOptions {
   std::vector<double> standard_deviation = {1.0, 1.0, 1.0};
   bool channels_last = false;  ///< NHWC: input (and output) are 1 x height x width x channels
   std::string output_name;     ///< empty = the only output
-  int threads = 0;  ///< number of threads of OpenCV for the whole process, set on construction; 0 = unchanged
+  NetworkEngine engine = NetworkEngine::opencv;
+  NetworkPrecision precision = NetworkPrecision::fp32;
+  /// OpenCV: number of threads for the whole process, set on construction; 0 = unchanged. oneDNN: number of threads for
+  /// this network; 0 = 1.
+  int threads = 0;
 };
 
 /// An OnnxNet with one colour image as input and one output. Used by one thread at a time.
 class Network {
  public:
   /// Loads the model, or begins to with in_background. Throws InputError, which states what was found and what was
-  /// expected, for a missing file, a file that is not an ONNX model, float16 weights (not supported by OpenCV), an
-  /// input that is not one image with three channels, a size other than the declared one, an unknown output name, and
-  /// layers that OpenCV cannot run.
+  /// expected, for a missing file, a file that is not an ONNX model, float16 weights, an input that is not one image
+  /// with three channels, a size other than the declared one, an unknown output name, and layers that OpenCV cannot
+  /// load. Throws ConfigurationError for an engine or a precision that is not there.
   explicit Network(const NetworkOptions& options);
   ~Network();
   Network(const Network&) = delete;

@@ -21,6 +21,20 @@ void describe_network_input(ParameterTable<Settings>& table) {
   table.add("standard_deviation", &Settings::standard_deviation, "divides each channel, in colour_order");
 }
 
+/// Adds the parameters that say what computes a network.
+template <class Settings>
+void describe_network_engine(ParameterTable<Settings>& table) {
+  table.add("engine", &Settings::engine,
+            "what computes the network: OpenCV, or oneDNN, which is faster and knows fewer operators");
+  table.add("precision", &Settings::precision,
+            "numbers that the network computes with; bf16 needs `engine: onednn` and a processor with AVX512_BF16");
+  table
+      .add("threads", &Settings::threads,
+           "number of threads; of OpenCV for the whole process, because it has no other setting, 0 = unchanged "
+           "(holdfast: 1); of oneDNN for this network, 0 = 1")
+      .range(0, 256);
+}
+
 /// The options of a network with these parameters and the settings `model` and `output_name`.
 template <class Settings>
 NetworkOptions network_options(const Settings& settings) {

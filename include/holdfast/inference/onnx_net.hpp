@@ -10,12 +10,13 @@
 #include <vector>
 
 #include "holdfast/inference/onnx_signature.hpp"
+#include "holdfast/settings/network_engine.hpp"
 
 namespace holdfast {
 
-/// A network in ONNX format with any inputs and outputs of float32, run on the CPU by OpenCV's DNN module. It is the
-/// only class that uses this module. The same inputs give the same outputs on the same machine; OpenCV selects its
-/// kernels by processor, so that the last bits may differ on another processor. Used by one thread at a time.
+/// A network in ONNX format with any inputs and outputs of float32, run on the CPU by OpenCV's DNN module or by oneDNN.
+/// The same inputs give the same outputs on the same machine; both engines select their kernels by processor, so that
+/// the last bits may differ on another processor. Used by one thread at a time, not necessarily the one that made it.
 class OnnxNet {
  public:
   /// Where the network comes from.
@@ -25,13 +26,17 @@ class OnnxNet {
     /// or, with in_background, until the first run.
     std::span<const std::uint8_t> bytes = {};
     /// Load `bytes` in another thread, for which the first run waits. For models that are known to be good: layers that
-    /// OpenCV cannot load are then an error of the first run.
+    /// the engine cannot load are then an error of the first run.
     bool in_background = false;
+    NetworkEngine engine = NetworkEngine::opencv;
+    NetworkPrecision precision = NetworkPrecision::fp32;
+    int threads = 1;  ///< of oneDNN for this network; OpenCV has one number for the whole process
   };
 
   /// Reads the signature and loads the model, or begins to. Throws InputError, which states what was found and what was
-  /// expected, for a missing file, a file that is not an ONNX model, float16 weights (not supported by OpenCV), and
-  /// layers that OpenCV cannot load.
+  /// expected, for a missing file, a file that is not an ONNX model, float16 weights, and layers that OpenCV cannot
+  /// load; those that oneDNN cannot run are errors of the first run. Throws ConfigurationError for an engine that this
+  /// build has not, and a precision that the engine or the processor has not.
   explicit OnnxNet(const File& file);
   ~OnnxNet();
   OnnxNet(const OnnxNet&) = delete;

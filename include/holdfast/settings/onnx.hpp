@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "holdfast/plugin/choice.hpp"
+#include "holdfast/settings/network_engine.hpp"
 
 namespace holdfast {
 
@@ -49,8 +50,11 @@ struct OnnxSettings {
   std::string output_name;  ///< name of the output; needed if the model has several
   /// Class names by channel or label; the first is the background.
   std::vector<std::string> classes = {"background", "person"};
-  std::vector<std::string> movable;  ///< the subset of classes that can move; empty = not specified
-  int threads = 0;                   ///< number of threads of OpenCV for the whole process; 0 = unchanged
+  std::vector<std::string> movable;                     ///< the subset of classes that can move; empty = not specified
+  NetworkEngine engine = NetworkEngine::opencv;         ///< what computes the network
+  NetworkPrecision precision = NetworkPrecision::fp32;  ///< bf16: with onednn, where the processor has it
+  /// OpenCV: for the whole process, 0 = unchanged; oneDNN: for this network, 0 = 1.
+  int threads = 0;
 
   static void describe(ParameterTable<OnnxSettings>& table);
 };

@@ -28,11 +28,7 @@ void OnnxSettings::describe(ParameterTable<OnnxSettings>& table) {
       "class names by channel or label; the first is the background if the network has one; 'unknown' is reserved "
       "for unlabelled pixels");
   table.add("movable", &S::movable, "the subset of classes that can move; empty = not specified");
-  table
-      .add("threads", &S::threads,
-           "number of threads of OpenCV for the whole process, because OpenCV has no other setting; 0 = unchanged "
-           "(holdfast: 1)")
-      .range(0, 256);
+  describe_network_engine(table);
 }
 
 namespace {
@@ -40,6 +36,8 @@ namespace {
 NetworkOptions options_of(const OnnxSettings& s) {
   NetworkOptions options = network_options(s);
   options.channels_last = s.layout == TensorLayout::nhwc;
+  options.engine = s.engine;
+  options.precision = s.precision;
   options.threads = s.threads;
   return options;
 }
@@ -81,7 +79,7 @@ class OnnxSegmenter final : public NetworkSegmenter {
 HOLDFAST_PLUGIN(onnx, registry) {
   registry.add<Segmenter, OnnxSegmenter, OnnxSettings>(
       {.name = OnnxSettings::module,
-       .summary = "Runs any semantic segmentation network in ONNX format on the CPU with OpenCV."});
+       .summary = "Runs any semantic segmentation network in ONNX format on the CPU with OpenCV or oneDNN."});
 }
 
 }  // namespace holdfast

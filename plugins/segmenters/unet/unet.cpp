@@ -5,6 +5,7 @@
 #include <string>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/inference/network_parameters.hpp"
 #include "holdfast/inference/network_segmenter.hpp"
 #include "holdfast/plugin/plugin.hpp"
 #include "holdfast/settings/unet.hpp"
@@ -27,11 +28,7 @@ void UnetSettings::describe(ParameterTable<UnetSettings>& table) {
             "average the scores of the image and its mirror image: slightly more accurate, twice the time");
   table.add("model", &S::model,
             "other weights in ONNX format, as written by training/export.py; empty = the built-in weights");
-  table
-      .add("threads", &S::threads,
-           "number of threads of OpenCV for the whole process, because OpenCV has no other setting; 0 = unchanged "
-           "(holdfast: 1)")
-      .range(0, 256);
+  describe_network_engine(table);
 }
 
 namespace {
@@ -63,6 +60,8 @@ NetworkOptions network_options(const UnetSettings& settings) {
   // What training/samples.py does to a pixel.
   options.mean = {0.5, 0.5, 0.5};
   options.standard_deviation = {0.25, 0.25, 0.25};
+  options.engine = settings.engine;
+  options.precision = settings.precision;
   options.threads = settings.threads;
   options.model = settings.model;
   if (settings.model.empty()) {

@@ -50,6 +50,10 @@ def integers(name, values):
     return content(5, content(1, name) + b"".join(number(8, v) for v in values) + number(20, 7))
 
 
+def real(name, value):
+    return content(5, content(1, name) + varint(2 << 3 | 5) + struct.pack("<f", value) + number(20, 1))
+
+
 def node(kind, inputs, output, *attributes):
     ins = b"".join(content(1, i) for i in inputs)
     return content(1, ins + content(2, output) + content(3, output + "_node") + content(4, kind) + b"".join(attributes))
@@ -70,6 +74,50 @@ def convolution(rows, image, output, stride=1, element=FLOAT):
                  integers("strides", [stride, stride])),
             [tensor("weight", [len(rows), 3, 1, 1], weights, element),
              tensor("bias", [len(rows)], [row[3] for row in rows], element)])
+
+
+def every_layer():
+    """A small U-Net with every operator and way of padding that both engines know; its weights are of no use."""
+    weights, nodes, state = [], [], 1
+
+    def random_tensor(name, shape, spread):
+        nonlocal state
+        count = 1
+        for side in shape:
+            count *= side
+        values = []
+        for _ in range(count):
+            state = (state * 1103515245 + 12345) % (1 << 31)
+            values.append(spread * (state / (1 << 30) - 1.0))
+        weights.append(tensor(name, shape, values))
+
+    def layer(kind, inputs, output, *attributes):
+        nodes.append(node(kind, inputs, output, *attributes))
+        return output
+
+    def conv(output, source, channels_in, channels, size, stride=1, pad=0, dilation=1, groups=1, kind="Conv", more=()):
+        shape = ([channels_in, channels // groups] if kind == "ConvTranspose" else [channels, channels_in // groups])
+        random_tensor(output + "_weight", shape + [size, size], 2.0 / (shape[1] * size * size) ** 0.5)
+        random_tensor(output + "_bias", [channels], 0.5)
+        return layer(kind, [source, output + "_weight", output + "_bias"], output, integers("kernel_shape", [size, size]),
+                     integers("strides", [stride, stride]), integers("pads", [pad] * 4),
+                     integers("dilations", [dilation, dilation]), integer("group", groups), *more)
+
+    first = layer("Relu", [conv("first", "image", 3, 8, 3, pad=1)], "first_relu")
+    inner = layer("Clip", [conv("inner", first, 8, 8, 3, pad=1, groups=8)], "inner_clip", real("min", 0.0), real("max", 6.0))
+    skip = layer("Add", [first, conv("narrow", inner, 8, 8, 1)], "skip")
+    half = layer("MaxPool", [skip], "half", integers("kernel_shape", [2, 2]), integers("strides", [2, 2]))
+    deep = layer("LeakyRelu", [conv("deep", half, 8, 12, 3, stride=2, pad=1)], "deep_relu", real("alpha", 0.2))
+    mean = layer("AveragePool", [deep], "mean", integers("kernel_shape", [3, 3]), integers("pads", [1] * 4))
+    up = layer("Relu", [conv("up", mean, 12, 8, 3, stride=2, pad=1, kind="ConvTranspose",
+                             more=[integers("output_padding", [1, 1])])], "up_relu")
+    joined = layer("Concat", [half, up], "joined", integer("axis", 1))
+    wide = layer("Sigmoid", [conv("wide", joined, 16, 8, 3, pad=2, dilation=2, groups=2)], "wide_sigmoid")
+    top = layer("Relu", [conv("top", wide, 8, 6, 2, stride=2, kind="ConvTranspose")], "top_relu")
+    last = layer("Concat", [skip, top], "last", integer("axis", 1))
+    conv("scores", last, 14, 3, 1)
+    return model(nodes, [value_info("image", [1, 3, "height", "width"])],
+                 [value_info("scores", [1, 3, "height", "width"])], weights, opset=10)
 
 
 def main():
@@ -112,6 +160,8 @@ def main():
     half, half_weights = convolution(SCORES, "image", "scores", element=FLOAT16)
     write("half", model([half], [value_info("image", [1, 3] + plane, FLOAT16)],
                         [value_info("scores", [1, 3] + plane, FLOAT16)], half_weights))
+
+    write("every_layer", every_layer())
 
     total = node("Add", ["image", "other"], "sum")
     write("two_inputs", model([total], [image, value_info("other", [1, 3] + plane)],

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "holdfast/plugin/choice.hpp"
+
+namespace holdfast {
+
+/// What computes a network: OpenCV's DNN module, or oneDNN where the build has it.
+enum class NetworkEngine { opencv, onednn };
+
+/// Numbers that a network computes with: 32 bits, or 16 bits with an exponent of eight (bfloat16), which needs a
+/// processor with instructions for them.
+enum class NetworkPrecision { fp32, bf16 };
+
+template <>
+inline constexpr Choice<NetworkEngine> choice_table<NetworkEngine>[] = {{"opencv", NetworkEngine::opencv},
+                                                                        {"onednn", NetworkEngine::onednn}};
+template <>
+inline constexpr Choice<NetworkPrecision> choice_table<NetworkPrecision>[] = {{"fp32", NetworkPrecision::fp32},
+                                                                              {"bf16", NetworkPrecision::bf16}};
+
+}  // namespace holdfast

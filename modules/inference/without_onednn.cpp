@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The engine onednn in builds without its library.
+#include "holdfast/core/check.hpp"
+#include "holdfast/core/error.hpp"
+#include "network_runner.hpp"
+
+namespace holdfast {
+
+void require_onednn(NetworkPrecision) {
+  throw ConfigurationError(SourceLocation{},
+                           "engine: found onednn, but this build has no oneDNN; expected opencv; or install oneDNN 2 "
+                           "(Debian: libdnnl-dev), configure with -DHOLDFAST_ONEDNN=ON and build again");
+}
+
+std::unique_ptr<NetworkRunner> load_with_onednn(const std::filesystem::path&, std::span<const std::uint8_t>,
+                                                NetworkPrecision, int) {
+  HOLDFAST_CHECK(false, "this build has no oneDNN");
+  return nullptr;
+}
+
+}  // namespace holdfast
