@@ -248,7 +248,7 @@ function isGap(model, i) {
 function showObjects(model) {
   byId('objects-panel').hidden = model.objects.length === 0;
   byId('objects').replaceChildren(...model.objects.map((object) => element('li', {},
-      element('i', {colour: toText(objectColour(object.id))}), `${object.id} ${object.class || 'object'}`,
+      element('i', {colour: toText(objectColour(object.id))}), element('span', {title: object.class || null}, `${object.id} ${object.class || 'object'}`),
       element('b', {}, object.hidden ? 'hidden' : object.moving ? `${fixed(object.speed, 2)} m/s` : 'at rest'))));
 }
 
