@@ -5,6 +5,9 @@
   benchmarks/viewer_page.py                     draws a map of 100,000 points: processor time per picture, pictures per second
   benchmarks/viewer_page.py --run ARGUMENTS     starts `holdfast run ARGUMENTS --view` as well: seconds from its start to the
                                                 first picture in a browser that is open already
+  benchmarks/viewer_page.py --cost 4 --run ARGUMENTS
+                                                four interleaved runs each without the viewer, with it, and with a browser in
+                                                addition: time of tracking and of the run, processor time of run and browser
 
 Processor times do not depend on what else the machine does; pictures per second and seconds do, so the load is printed, too.
 """
@@ -18,6 +21,7 @@ import re
 import select
 import shutil
 import signal
+import statistics
 import subprocess
 import tempfile
 import time
@@ -29,11 +33,11 @@ PAGE_FOLDERS = [SOURCE / "modules/viewer/page", SOURCE / "modules/evaluation/pag
 ROOM = """testModel((m) => {
   let seed = 1;
   const random = () => (seed = seed * 16807 % 2147483647) / 2147483647;
-  const count = 100000, half = [3, 3, 1.5], values = new Float32Array(pointWidth * count);
+  const count = 100000, half = [3, 3, 1.5], width = m.points.width, values = new Float32Array(width * count);
   for (let i = 0; i < count; ++i) {
     const wall = Math.floor(6 * random()), place = half.map((h) => h * (2 * random() - 1));
     place[wall >> 1] = (wall & 1 ? 1 : -1) * half[wall >> 1];
-    values.set([...place, 4 * random() - 1.5, 255], pointWidth * i);
+    values.set([...place, 4 * random() - 1.5, 255], width * i);
   }
   m.points.reserve(count);
   m.points.data.set(values);
@@ -184,16 +188,67 @@ def measure_first_picture(browser, program, arguments):
         run.wait()
 
 
+def run_once(program, arguments, folder, browser=None, view=False):
+    """Seconds of tracking and of the whole run, processor seconds of the program, and of the browser meanwhile."""
+    command = [program, "run", *arguments, "--output", folder + "/out", "--overwrite"]
+    if view:
+        command += ["--set", "observers=[{viewer: {wait: %s}}]" % ("true" if browser else "false"), "--view"]
+    run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    before = browser_time = 0.0
+    try:
+        for line in run.stdout:
+            found = re.search(r"http://\S+token=\w+", line)
+            if found and browser and not before:
+                before = browser.processor_seconds()
+                browser.call("Page.navigate", url=found[0])
+            if "until Ctrl-C" in line:
+                break
+        if browser:
+            browser_time = browser.processor_seconds() - before
+        spent = processor_seconds(run.pid) if view else None
+        if view:
+            run.send_signal(signal.SIGINT)
+        before_end = os.times()
+        run.stdout.read()
+        run.wait()
+        if spent is None:
+            after = os.times()
+            spent = after.children_user + after.children_system - before_end.children_user - before_end.children_system
+        if browser:
+            browser.call("Page.navigate", url="about:blank")
+    finally:
+        run.kill()
+        run.wait()
+    record = json.loads((pathlib.Path(folder) / "out/run.json").read_text())
+    return record["tracking"]["total_s"], record["tracking"]["median_s"], record["total_s"], spent, browser_time
+
+
+def measure_cost(browser, program, arguments, folder, count):
+    kinds = {"without the viewer": (None, False), "with it": (None, True), "and with a browser": (browser, True)}
+    found = {name: [] for name in kinds}
+    for _ in range(count):
+        for name, (watching, view) in kinds.items():
+            found[name].append(run_once(program, arguments, folder, watching, view))
+    print(f"medians of {count} runs     tracking [s]  a frame [ms]  whole run [s]  processor: run [s]  browser [s]")
+    for name, rows in found.items():
+        tracking, frame, whole, own, other = (statistics.median(column) for column in zip(*rows))
+        print(f"{name:22} {tracking:12.2f} {1e3 * frame:13.2f} {whole:14.2f} {own:19.2f} {other:12.2f}")
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--program", default=SOURCE / "build/bin/holdfast")
+    parser.add_argument("--cost", type=int, default=0, metavar="RUNS")
     parser.add_argument("--run", nargs=argparse.REMAINDER)
     chosen = parser.parse_args()
     opened = Browser()
     try:
         with tempfile.TemporaryDirectory() as scratch:
-            measure_drawing(opened, scratch)
-            if chosen.run:
+            if chosen.cost and chosen.run:
+                measure_cost(opened, chosen.program, chosen.run, scratch, chosen.cost)
+            else:
+                measure_drawing(opened, scratch)
+            if chosen.run and not chosen.cost:
                 measure_first_picture(opened, chosen.program, [*chosen.run, "--output", scratch + "/out"])
     finally:
         opened.close()

@@ -49,6 +49,15 @@ bool is_same_secret(std::string_view given, std::string_view secret) {
   return difference == 0;
 }
 
+/// The rate that a message asks for, nothing if it is no such message.
+std::optional<double> asked_rate(std::string_view text) {
+  constexpr std::array<std::pair<std::string_view, double>, 5> rates{
+      {{"rate 1", 1.0}, {"rate 2", 2.0}, {"rate 5", 5.0}, {"rate 10", 10.0}, {"rate 30", Server::fastest_rate}}};
+  for (const auto& [name, rate] : rates)
+    if (name == text) return rate;
+  return std::nullopt;
+}
+
 }  // namespace
 
 class SocketSession;
@@ -63,6 +72,7 @@ struct Server::State {
   void tick();
   void add(const std::shared_ptr<SocketSession>& session);
   void remove(const SocketSession* session);
+  void report() const;
 
   std::string token, page, address;
   Handlers handlers;
@@ -93,17 +103,24 @@ class SocketSession : public std::enable_shared_from_this<SocketSession> {
       self->send();
     });
   }
-  /// Sends what the browser lacks, unless a message is on its way.
+  /// Sends what the browser lacks, unless a message is on its way or the browser has asked for fewer.
   void send() {
     if (is_sending_ || is_closed_) return;
+    const auto now = std::chrono::steady_clock::now();
+    if (last_sent_ && rate_ < Server::fastest_rate &&
+        std::chrono::duration<double>(now - *last_sent_).count() * rate_ < 1.0)
+      return;
     outgoing_ = server_.handlers.update(progress_);
     if (outgoing_.empty()) return;
     is_sending_ = true;
+    last_sent_ = now;
     stream_.async_write(asio::buffer(outgoing_), [self = shared_from_this()](beast::error_code error, std::size_t) {
       self->is_sending_ = false;
       if (error) self->leave();
     });
   }
+
+  double rate() const { return rate_; }
 
  private:
   void read() {
@@ -111,10 +128,17 @@ class SocketSession : public std::enable_shared_from_this<SocketSession> {
       if (error) return self->leave();
       const std::string text = beast::buffers_to_string(self->incoming_.data());
       self->incoming_.clear();
-      if (self->stream_.got_text() && self->server_.handlers.command(text)) return self->read();
+      if (self->stream_.got_text() && self->obey(text)) return self->read();
       self->leave();
       self->stream_.async_close({websocket::close_code::policy_error, "unknown message"}, [self](beast::error_code) {});
     });
+  }
+  bool obey(const std::string& text) {
+    const std::optional<double> rate = asked_rate(text);
+    if (!rate) return server_.handlers.command(text);
+    rate_ = *rate;
+    server_.report();
+    return true;
   }
   void leave() {
     if (is_closed_) return;
@@ -127,6 +151,8 @@ class SocketSession : public std::enable_shared_from_this<SocketSession> {
   beast::flat_buffer incoming_;
   std::string outgoing_;
   Progress progress_;
+  double rate_ = Server::fastest_rate;  // most messages per second
+  std::optional<std::chrono::steady_clock::time_point> last_sent_;
   bool is_sending_ = false, is_closed_ = false;
 };
 
@@ -264,14 +290,20 @@ void Server::State::tick() {
 
 void Server::State::add(const std::shared_ptr<SocketSession>& session) {
   sessions.push_back(session);
-  handlers.watched(static_cast<int>(sessions.size()));
+  report();
   handlers.tick();
   tick();  // at once at the faster rate
 }
 
 void Server::State::remove(const SocketSession* session) {
   std::erase_if(sessions, [&](const auto& other) { return other.get() == session; });
-  handlers.watched(static_cast<int>(sessions.size()));
+  report();
+}
+
+void Server::State::report() const {
+  double rate = 0.0;
+  for (const auto& session : sessions) rate = std::max(rate, session->rate());
+  handlers.watched(static_cast<int>(sessions.size()), rate);
 }
 
 void Server::State::run() {

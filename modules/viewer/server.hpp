@@ -15,6 +15,8 @@ class Server {
  public:
   /// How many browsers are served at the same time; others are refused (503).
   static constexpr int most_browsers = 8;
+  /// How many messages per second a browser gets at most, unless it asks for fewer.
+  static constexpr double fastest_rate = 30.0;
 
   /// All are called in the thread of the server.
   struct Handlers {
@@ -22,10 +24,10 @@ class Server {
     std::function<void()> tick;
     /// The bytes that a browser lacks, empty = none.
     std::function<std::string(Progress&)> update;
-    /// A message of a browser. False: it is none that is known, and its connection ends.
+    /// A message of a browser, other than one about the rate. False: it is none that is known, and its connection ends.
     std::function<bool(std::string_view)> command;
-    /// The number of browsers has changed.
-    std::function<void(int)> watched;
+    /// The number of browsers has changed, or the largest number of messages per second that one of them wants.
+    std::function<void(int count, double rate)> watched;
   };
 
   /// Throws InputError when the address cannot be listened at.

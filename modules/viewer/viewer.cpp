@@ -74,7 +74,11 @@ struct Viewer::State {
                {.tick = [this] { take_mail(); },
                 .update = [this](viewer::Progress& progress) { return scene.update(progress); },
                 .command = [this](std::string_view text) { return obey(text); },
-                .watched = [this](int count) { control.set_watchers(count); }}) {}
+                .watched =
+                    [this](int count, double fastest) {
+                      if (count > 0) rate = fastest;
+                      control.set_watchers(count);
+                    }}) {}
   ~State() { control.close(); }
 
   void take_mail();
@@ -85,9 +89,10 @@ struct Viewer::State {
   std::mutex mutex;
   Mailbox mailbox;
   std::atomic<bool> has_picture = false, has_map = false;
-  std::atomic<double> next_picture = 0.0, last_map = 0.0, map_cost = -1.0;
-  viewer::Scene scene;    // of the server's thread
-  viewer::Server server;  // last: its thread uses everything above
+  std::atomic<double> last_picture = -1e9, last_map = 0.0, map_cost = -1.0;
+  std::atomic<double> rate = viewer::Server::fastest_rate;  // of messages, of the browser that wants most
+  viewer::Scene scene;                                      // of the server's thread
+  viewer::Server server;                                    // last: its thread uses everything above
 };
 
 void Viewer::State::take_mail() {
@@ -151,10 +156,13 @@ void Viewer::add_frame(const FrameResult& result) {
   state_->mailbox.frames.push_back(result);
 }
 
-bool Viewer::wants_picture() const { return is_watched() && !state_->has_picture && now() >= state_->next_picture; }
+bool Viewer::wants_picture() const {
+  if (!is_watched() || state_->has_picture) return false;
+  return now() >= state_->last_picture + 1.0 / std::min<double>(state_->options.picture_rate, state_->rate);
+}
 
 void Viewer::set_picture(ViewedPicture picture) {
-  state_->next_picture = now() + 1.0 / state_->options.picture_rate;
+  state_->last_picture = now();
   state_->has_picture = true;
   const std::lock_guard lock(state_->mutex);
   state_->mailbox.picture = std::move(picture);
@@ -164,7 +172,7 @@ bool Viewer::wants_map() const {
   if (state_->has_map) return false;
   const double cost = state_->map_cost;
   if (cost < 0.0) return true;
-  const double pause = is_watched() ? std::max(0.2, 50.0 * cost) : std::max(2.0, 1000.0 * cost);
+  const double pause = is_watched() ? std::max({0.2, 1.0 / state_->rate, 50.0 * cost}) : std::max(2.0, 1000.0 * cost);
   return now() >= state_->last_map + pause;
 }
 

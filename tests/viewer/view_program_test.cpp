@@ -4,12 +4,14 @@
 #include <csignal>
 
 #include "cli/program.hpp"
-#include "support/browser.hpp"
+#include "viewer/page_fit.hpp"
 #include "viewer/socket_client.hpp"
 
 namespace holdfast {
 namespace {
 
+using test::becomes;
+using test::expect_it_fits;
 using test::ReceivedMessage;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
@@ -108,35 +110,6 @@ TEST_F(ViewProgramTest, ShowsTheDenseCloudOfARunAndOfItsResults) {
 /// The address as the program prints it.
 std::string text_of(const test::ViewerAddress& address) {
   return "http://" + address.host + ":" + address.port + "/?token=" + address.token;
-}
-
-/// Waits until an expression holds in the page.
-bool becomes(test::Browser& browser, const std::string& expression) {
-  for (int i = 0; i < 1200; ++i) {
-    if (browser.evaluate("Boolean(" + expression + ")") == true) return true;
-    usleep(50'000);
-  }
-  return false;
-}
-
-/// Nothing is wider than the window, and no control lies on another, from a large screen to a phone, dark and light.
-void expect_it_fits(test::Browser& browser) {
-  const std::string overlaps =
-      "(() => { const boxes = [...document.querySelectorAll('header > *, footer > *, footer button, footer select, "
-      "#slider')].filter((e) => e.getClientRects().length && !e.querySelector('button, select, input'));"
-      "const names = []; boxes.forEach((a, i) => boxes.slice(i + 1).forEach((b) => { const p = "
-      "a.getBoundingClientRect(), q = b.getBoundingClientRect();"
-      "if (Math.min(p.right, q.right) - Math.max(p.left, q.left) > 1 && Math.min(p.bottom, q.bottom) - Math.max(p.top, "
-      "q.top) > 1) names.push(a.id + a.className + ' on ' + b.id + b.className); })); return names.join(', '); })()";
-  for (const int width : {1300, 800, 400})
-    for (const bool is_dark : {false, true}) {
-      browser.show_at(width, 800, is_dark);
-      EXPECT_TRUE(becomes(browser, "document.documentElement.scrollWidth <= " + std::to_string(width))) << width;
-      EXPECT_EQ(browser.evaluate(overlaps), "") << width;
-      // Both pages have the colours of one style sheet.
-      EXPECT_EQ(browser.evaluate("getComputedStyle(document.documentElement).getPropertyValue('--ground').trim()"),
-                is_dark ? "#14171b" : "#ffffff");
-    }
 }
 
 TEST_F(ViewProgramTest, InAChromiumWhileItRunsAndAfterwards) {

@@ -6,7 +6,7 @@
 #include <future>
 
 #include "holdfast/viewer/viewer.hpp"
-#include "support/browser.hpp"
+#include "viewer/page_fit.hpp"
 #include "viewer/viewed_world.hpp"
 
 namespace holdfast {
@@ -31,14 +31,7 @@ class ViewerBrowserTest : public ::testing::Test {
     fs::remove_all(profile_, ignored);
   }
 
-  /// Waits until an expression holds in the page.
-  bool becomes(const std::string& expression) {
-    for (int i = 0; i < 600; ++i) {
-      if (browser_->evaluate("Boolean(" + expression + ")") == true) return true;
-      usleep(50'000);
-    }
-    return false;
-  }
+  bool becomes(const std::string& expression) { return test::becomes(*browser_, expression); }
   std::string text(const std::string& id) {
     return browser_->evaluate("document.getElementById('" + id + "').textContent").get<std::string>();
   }
@@ -260,6 +253,75 @@ TEST_F(ViewerBrowserTest, ShowsTheDenseCloudWhichFollowsItsKeyframes) {
   run.cloud = {{7, 8, 9, 1, 2, 3}};
   viewer_->set_run(run);
   EXPECT_TRUE(becomes(counts + ".cloud === 1 && holdfastViewer.cloudPoint(0)[0] === 7"));
+  EXPECT_THAT(browser_->complaints(), IsEmpty());
+}
+
+TEST_F(ViewerBrowserTest, APageDrawnByTheProcessorIsCalmUntilSomebodyTouchesIt) {
+  viewer_->add_frame(test::row_frame(0));
+  open();
+  ASSERT_TRUE(becomes(counts + "?.connected"));
+  EXPECT_TRUE(becomes("holdfastViewer.pace().calm && holdfastViewer.pace().rate < 30"));
+  // What comes is shown all the same.
+  viewer_->add_frame(test::row_frame(1));
+  viewer_->set_map(test::row_map(3), 0.0);
+  EXPECT_TRUE(becomes(counts + ".points === 3 && document.getElementById('counts').textContent.includes('points3')"));
+  // Of a busy machine the page may be calm again before it is asked.
+  bool was_lively = false;
+  for (int i = 0; i < 20 && !was_lively; ++i) {
+    browser_->press_space();
+    was_lively = browser_->evaluate("!holdfastViewer.pace().calm && holdfastViewer.pace().rate === 30") == true;
+  }
+  EXPECT_TRUE(was_lively);
+  EXPECT_THAT(browser_->complaints(), IsEmpty());
+}
+
+TEST_F(ViewerBrowserTest, NothingIsTooWideWhateverItIsCalled) {
+  const std::string name = "a_recording_with_a_name_that_somebody_has_put_together_from_everything_that_is_known_of_it";
+  const auto viewer = Viewer::start({.title = name + "/" + name});
+  viewer->set_classes({"background", name, "a class of several words that is longer than anybody would call one, too"});
+  viewer->set_map(test::row_map(4), 0.0);
+  viewer->add_point_classes({{test::point_id(0), 1}, {test::point_id(1), 2}, {test::point_id(2), 255}});
+  for (std::uint32_t i = 0; i < 300; ++i) {
+    FrameResult frame = test::row_frame(i);
+    frame.index = 4'000'000'000U + i;
+    frame.timestamp = 1e6 * i;
+    frame.inliers = frame.features = 2'000'000'000;
+    frame.tracking_seconds = 12.3456;
+    for (const char* stage : {"features of an extractor whose name is longer than the panel is wide, by far",
+                              "another_stage_without_any_place_where_a_line_could_be_broken_into_two", "third"})
+      frame.times.add(stage, 12.3456);
+    MovingObject object;
+    object.id = 4'000'000'000U;
+    object.class_name = name;
+    object.moving = true;
+    object.velocity = Eigen::Vector3d(1e6, 0.0, 0.0);
+    object.box.extend(Eigen::Vector3f::Constant(-1.0F)).extend(Eigen::Vector3f::Ones());
+    object.last_seen = frame.timestamp;
+    object.T_world_object = test::pose_at(0.0);
+    frame.objects = {object};
+    if (i > 290) {
+      frame.status = TrackingStatus::lost;
+      frame.trouble = TrackingTrouble::few_features;
+      frame.T_world_camera.reset();
+    }
+    viewer->add_frame(frame);
+  }
+  ViewedPicture picture;
+  picture.index = 4'000'000'000U;
+  picture.colour = cv::Mat(480, 640, CV_8UC3, cv::Scalar(0, 200, 0));
+  browser_->open_page(viewer->address());
+  ASSERT_TRUE(becomes(counts + "?.connected"));
+  viewer->set_picture(picture);
+  ASSERT_TRUE(becomes(counts + ".path > 200 && !document.getElementById('colourings').hidden"));
+  browser_->click("document.querySelector('input[value=class]')");
+  test::expect_it_fits(*browser_);
+  ViewedRun run = ended_run();
+  run.title = name;
+  run.errors.assign(50, 12345.6F);
+  run.figures = {{"ATE RMSE", "123456789.12 mm"}, {"commit", name}, {name, name}};
+  viewer->set_run(run);
+  ASSERT_TRUE(becomes(counts + ".state.finished && !document.getElementById('figures-panel').hidden"));
+  test::expect_it_fits(*browser_);
   EXPECT_THAT(browser_->complaints(), IsEmpty());
 }
 

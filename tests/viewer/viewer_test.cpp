@@ -185,6 +185,41 @@ TEST_F(ViewerTest, ABrowserChoosesTheSpeed) {
   viewer_->take_turn(1e6);
 }
 
+TEST_F(ViewerTest, ABrowserGetsNoMoreThanItAsksFor) {
+  const auto viewer = Viewer::start({.picture_rate = 60.0});
+  SocketClient client{ViewerAddress(viewer->address())};
+  client.receive();
+  ViewedPicture picture;
+  picture.colour = cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(99));
+  const auto next_picture = [&] {
+    const Stopwatch watch;
+    viewer->set_picture(picture);
+    while (!viewer->wants_picture()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return watch.seconds();
+  };
+  // Times can only be longer than they should be, not shorter: the machine may do other work as well.
+  client.send("rate 1");
+  double longest = 0.0;
+  for (int i = 0; i < 200 && longest < 0.9; ++i) longest = next_picture();
+  EXPECT_GE(longest, 0.9) << "one picture per second";
+  const auto shows_frame = [](std::uint32_t frame) {
+    return [frame](const ReceivedMessage& message) { return has_state(message, "frame", frame); };
+  };
+  viewer->add_frame(test::row_frame(0));
+  client.receive_until(shows_frame(0));
+  const Stopwatch watch;
+  for (std::uint32_t frame = 1; frame < 3; ++frame) {
+    viewer->add_frame(test::row_frame(frame));
+    client.receive_until(shows_frame(frame));
+  }
+  EXPECT_GE(watch.seconds(), 1.0) << "two messages, each a second after the last";
+  SocketClient other{ViewerAddress(viewer->address())};
+  other.receive();
+  double shortest = 1e9;
+  for (int i = 0; i < 200 && shortest > 0.5; ++i) shortest = std::min(shortest, next_picture());
+  EXPECT_LT(shortest, 0.5) << "as often as the browser that wants most";
+}
+
 TEST_F(ViewerTest, NobodyPausesTheRunAfterLeaving) {
   std::future<void> frame;
   {
@@ -231,7 +266,8 @@ TEST_F(ViewerTest, WaitsForTheFirstBrowser) {
 
 TEST_F(ViewerTest, AcceptsOnlyTheDocumentedMessages) {
   const std::set<std::string> documented = {"pause",     "resume",  "step",    "speed 0", "speed 0.25",
-                                            "speed 0.5", "speed 1", "speed 2", "speed 4"};
+                                            "speed 0.5", "speed 1", "speed 2", "speed 4", "rate 1",
+                                            "rate 2",    "rate 5",  "rate 10", "rate 30"};
   SocketClient witness(address_);
   witness.receive();
   Random random(7);
@@ -246,7 +282,8 @@ TEST_F(ViewerTest, AcceptsOnlyTheDocumentedMessages) {
     if (kind < 0.4) {
       text = random_text(static_cast<std::size_t>(random.uniform() * 70));
     } else {  // nearly documented
-      text = *std::next(documented.begin(), static_cast<std::ptrdiff_t>(random.uniform() * 9));
+      text = *std::next(documented.begin(),
+                        static_cast<std::ptrdiff_t>(random.uniform() * static_cast<double>(documented.size())));
       if (kind < 0.6)
         text += random_text(1);
       else if (kind < 0.8)

@@ -101,11 +101,12 @@ class Viewer {
 
   /// The result of the next frame.
   void add_frame(const FrameResult& result);
-  /// True when a browser would show another picture now: not more often than ViewerOptions::picture_rate.
+  /// True when a browser would show another picture now: not more often than ViewerOptions::picture_rate, and than the
+  /// browsers ask for.
   bool wants_picture() const;
   void set_picture(ViewedPicture picture);
-  /// True when it is time for another snapshot: five times a second, or less often if taking one has cost more than a
-  /// fiftieth of that; without a browser every two seconds, or a thousandth.
+  /// True when it is time for another snapshot: five times a second, or less often if browsers ask for that or taking one
+  /// has cost more than a fiftieth of the time; without a browser every two seconds, or a thousandth.
   bool wants_map() const;
   /// `seconds`: what making the snapshot took.
   void set_map(MapSnapshot map, double seconds);

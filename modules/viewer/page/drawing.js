@@ -257,6 +257,8 @@ class Renderer {
     }
     gl.bindVertexArray(null);
   }
+  /// Waits until everything is drawn: only reading a pixel does.
+  finish() { this.gl.readPixels(0, 0, 1, 1, this.gl.RGBA, this.gl.UNSIGNED_BYTE, new Uint8Array(4)); }
   /// What is drawn as points: {target, slots, kind, colours, near, least}; the sizes as shares of the height and in pixels.
   pointLayers(shown) {
     const red = cssColour('--moving'), layers = [];

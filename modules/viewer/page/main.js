@@ -12,6 +12,7 @@ let loopFlash = 0;   // until when a loop that was just closed is shown
 const canvas = byId('map');
 const view = new PointOfView();
 const renderer = new Renderer(canvas);
+const pace = new Pace(Boolean(renderer.isSoft));
 const picturePanel = new PicturePanel(), timesPanel = new TimesPanel();
 const shown = {};
 const layers = {points: 'map points', cloud: 'dense cloud', seen: 'points in view', moving: 'moving features', path: 'path', truth: 'true path',
@@ -56,8 +57,21 @@ const connection = new Connection((message, isFirst) => {
   if (!isFirst && model.closedLoops > loops) loopFlash = performance.now() + 4000;
 }, (isConnected) => {
   connected = isConnected;
+  pace.rate = 30;  // of a new connection
   model.changed.add('state');
 });
+for (const kind of ['pointerdown', 'wheel', 'keydown', 'input', 'change'])
+  document.addEventListener(kind, () => pace.touch(), {capture: true, passive: true});
+document.addEventListener('pointermove', (event) => { if (event.buttons) pace.touch(); }, {capture: true, passive: true});
+document.addEventListener('themechange', () => pace.touch());
+/// Has the program send as many messages as can be shown.
+function askForRate() {
+  if (!connected) return;
+  const rate = pace.messageRate();
+  if (rate === pace.rate) return;
+  pace.rate = rate;
+  connection.send(`rate ${rate}`);
+}
 
 // Playing: a run in progress by the program, one that has ended here.
 function showControls() {
@@ -271,13 +285,31 @@ const frameTimes = [];
 /// does. A browser without a graphics card works for every picture that it is asked for, even if nothing is drawn.
 let quietTurns = 0;
 function awaitTurn() {
+  askForRate();
+  // In a run that goes on; one that has ended needs no processor.
+  if (pace.isCalm() && !model.state.finished && !playing) {
+    let timer = null;
+    const go = () => {
+      clearTimeout(timer);
+      pace.wake = () => {};
+      requestAnimationFrame(refresh);
+    };
+    pace.wake = go;
+    timer = setTimeout(go, Math.max(0, pace.last + pace.pause() - performance.now()));
+    return;
+  }
   const isAsked = quietTurns < 30 || model.changed.size > 0 || moved || playing || framesWait || objectsWait || loopFlash > 0 || detail.isReduced;
   if (isAsked) requestAnimationFrame(refresh);
   else setTimeout(awaitTurn, 40);
 }
 /// Takes over what has changed since the last picture of the screen, and draws it.
 function refresh(time) {
+  pace.last = performance.now();
   update(time);
+  if (pace.isDear && frameTimes.at(-1) === time) {
+    renderer.finish();
+    pace.drew(performance.now() - pace.last);
+  }
   awaitTurn();
 }
 function update(time) {
@@ -391,6 +423,7 @@ globalThis.holdfastViewer = {
   view,
   draw: () => renderer.draw(view, shown),
   framesPerSecond: () => 1000 * (frameTimes.length - 1) / (frameTimes.at(-1) - frameTimes[0]),
-  spin: (on) => { clearInterval(view.spinning); frameTimes.length = 0; if (on) view.spinning = setInterval(() => { view.rotate(0.01, 0); moved = true; }, 10); },
+  spin: (on) => { clearInterval(view.spinning); frameTimes.length = 0; if (on) view.spinning = setInterval(() => { view.rotate(0.01, 0); moved = true; pace.touch(); }, 10); },
+  pace: () => ({calm: pace.isCalm(), pause: pace.pause(), cost: pace.cost, rate: pace.rate}),
 };
 requestAnimationFrame(refresh);

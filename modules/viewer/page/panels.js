@@ -21,13 +21,17 @@ const cssText = (name, alpha = 1) => {
 };
 const toText = ([r, g, b]) => `rgb(${Math.round(255 * r)}, ${Math.round(255 * g)}, ${Math.round(255 * b)})`;
 
+/// Where a canvas is drawn. Without a graphics card its imitation takes ten times as long for lines and circles as the
+/// browser's own drawing, which a browser uses when it is told that pixels will be read.
+const contextOf = (canvas) => canvas.getContext('2d', {willReadFrequently: Boolean(renderer.isSoft)});
+
 /// A canvas of the size that it has on the screen, in its pixels: [context, width, height], or nothing if it is hidden.
 function prepared(canvas) {
   const ratio = Math.min(2, devicePixelRatio || 1), width = canvas.clientWidth, height = canvas.clientHeight;
   if (!width || !height) return null;
   canvas.width = Math.round(width * ratio);
   canvas.height = Math.round(height * ratio);
-  const context = canvas.getContext('2d');
+  const context = contextOf(canvas);
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
   context.clearRect(0, 0, width, height);
   return [context, width, height];
@@ -86,7 +90,7 @@ class PicturePanel {
     const {canvas, image, picture} = this;
     canvas.width = image.width;
     canvas.height = image.height;
-    const context = canvas.getContext('2d');
+    const context = contextOf(canvas);
     context.drawImage(image, 0, 0);
     const factor = image.width / this.head.camera[0];
     if (this.switches[0].checked && picture.mask.length) this.drawMask(context, factor);
@@ -107,7 +111,7 @@ class PicturePanel {
       cells.data.set([r, g, b, alpha], 4 * i);
     }
     const small = new OffscreenCanvas(columns, rows);
-    small.getContext('2d').putImageData(cells, 0, 0);
+    contextOf(small).putImageData(cells, 0, 0);
     context.drawImage(small, 0, 0, columns * 8 * factor, rows * 8 * factor);
   }
   drawFeatures(context, factor) {
@@ -244,7 +248,7 @@ function isGap(model, i) {
 function showObjects(model) {
   byId('objects-panel').hidden = model.objects.length === 0;
   byId('objects').replaceChildren(...model.objects.map((object) => element('li', {},
-      element('i', {colour: toText(objectColour(object.id))}), `${object.id} ${object.class || 'object'}`,
+      element('i', {colour: toText(objectColour(object.id))}), element('span', {title: object.class || null}, `${object.id} ${object.class || 'object'}`),
       element('b', {}, object.hidden ? 'hidden' : object.moving ? `${fixed(object.speed, 2)} m/s` : 'at rest'))));
 }
 
