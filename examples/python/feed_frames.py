@@ -9,6 +9,7 @@ import holdfast
 
 camera = holdfast.simulate(overrides={"duration": float(sys.argv[1]) if len(sys.argv) > 1 else 3.0})
 config = {"camera": "tum_fr1", "features": "orb", "optimizer": "ceres", "run": {"mode": "threaded"}}
+config["tracking"] = {"rolling_shutter": "off"}  # the simulator exposes all rows of an image at once
 with holdfast.Pipeline(config) as pipeline:
     for frame in camera:
         result = pipeline.feed(frame.timestamp, frame.colour, frame.depth)

@@ -83,7 +83,8 @@ Recorder::Recorder(const Configuration& configuration, const Registry& registry,
     : folder_(std::move(folder)),
       configuration_(on_recording(configuration, registry, with_depth(configuration, source))),
       lock_(prepare_output_folder(folder_, overwrite, entries())),
-      writer_(folder_, {.depth_factors = depth_factors(configuration)}) {}
+      writer_(folder_,
+              {.depth_factors = depth_factors(configuration), .has_global_shutter = source.has_global_shutter}) {}
 
 SensorFrame Recorder::record(const SensorFrame& frame) {
   if (frame.depth.empty() || frame.colour.empty())

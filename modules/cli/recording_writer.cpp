@@ -43,8 +43,8 @@ void write_image_atomically(const fs::path& file, const cv::Mat& image, const st
 }
 
 const std::vector<std::string>& RecordingWriter::entries() {
-  static const std::vector<std::string> names = {"rgb.txt",         "depth.txt", "associations.txt",
-                                                 "groundtruth.txt", "rgb",       "depth"};
+  static const std::vector<std::string> names = {
+      "rgb.txt", "depth.txt", "associations.txt", "groundtruth.txt", "shutter.txt", "rgb", "depth"};
   return names;
 }
 
@@ -117,6 +117,7 @@ void RecordingWriter::finish(const Trajectory& truth) {
   if (has_failed_)
     throw InputError({folder_.string()}, "an image could not be written, so that the recording has no lists");
   if (!truth.empty()) write_trajectory(folder_ / "groundtruth.txt", truth);
+  if (options_.has_global_shutter) write_file_atomically(folder_ / "shutter.txt", "global\n");
   write_file_atomically(folder_ / "associations.txt", associations_);
   write_file_atomically(folder_ / "depth.txt", depth_list_);
   write_file_atomically(folder_ / "rgb.txt", colour_list_);

@@ -21,7 +21,8 @@ void write_image_atomically(const std::filesystem::path& file, const cv::Mat& im
                             const std::vector<int>& parameters = {});
 
 /// Writes a recording in the layout of the TUM RGB-D benchmark: rgb/, depth/ (16 bit, 0 = no value), their lists
-/// rgb.txt and depth.txt, associations.txt and groundtruth.txt. Colour as PNG and time stamps are written without loss,
+/// rgb.txt and depth.txt, associations.txt and groundtruth.txt; beside them shutter.txt, with the word "global", where
+/// all rows of an image were exposed at once. Colour as PNG and time stamps are written without loss,
 /// and so is depth of sensors that measure whole numbers of 16 bits: their units to the metre are those that the writer
 /// is told, or those that it finds by the first image with depth. Other depth is rounded to a fifth of a millimetre,
 /// the unit of the benchmark, and what lies beyond 13.1 m has no value then.
@@ -43,6 +44,7 @@ class RecordingWriter {
     /// Units to the metre that are tried on the first image with depth, in this order; depth_units_per_metre where none
     /// is exact.
     std::vector<double> depth_factors = {depth_units_per_metre};
+    bool has_global_shutter = false;  ///< see SourceDescription
   };
 
   /// Makes the folders.

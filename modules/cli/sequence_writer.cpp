@@ -75,7 +75,9 @@ const std::vector<std::string>& SequenceWriter::entries() {
 SequenceWriter::SequenceWriter(const simulation::Simulator& simulator, fs::path folder, std::string colour_format)
     : simulator_(simulator),
       folder_(std::move(folder)),
-      recording_(folder_, {std::move(colour_format), RecordingWriter::Stamps::microseconds}),
+      recording_(folder_, {.colour_format = std::move(colour_format),
+                           .stamps = RecordingWriter::Stamps::microseconds,
+                           .has_global_shutter = true}),
       mask_list_("# object masks: 0 = static world, k = object k of objects.json\n# timestamp filename\n"),
       label_list_("# class labels: index into the classes of scene.json\n# timestamp filename\n") {
   for (const char* name : {"mask", "labels"}) fs::create_directories(folder_ / name);

@@ -26,6 +26,7 @@ CalibratedSource::CalibratedSource(CalibratedRecording recording, const std::fil
     : ImageSequenceSource(std::move(recording.files), options_of(recording, skip_bad_frames)) {
   description_.name = folder_name(folder);
   description_.has_right = recording.has_right;
+  description_.has_global_shutter = true;  // the cameras of KITTI and EuRoC
   description_.camera = recording.camera;
   description_.truth_frame = recording.truth_frame;
   truth_ = std::move(recording.truth);

@@ -130,7 +130,7 @@ Network::Network(const NetworkOptions& options) {
     for (std::size_t value = 0; value < 256; ++value)
       parts_->value[channel][value] = static_cast<float>(
           (static_cast<double>(value) * options.scale - options.mean[channel]) / options.standard_deviation[channel]);
-  if (options.engine == NetworkEngine::opencv && options.threads > 0) cv::setNumThreads(options.threads);
+  if (options.engine != NetworkEngine::onednn && options.threads > 0) cv::setNumThreads(options.threads);
   const int h = parts_->size.height, w = parts_->size.width;
   const int channels_first[] = {1, 3, h, w}, channels_last[] = {1, h, w, 3};
   parts_->input.create(4, options.channels_last ? channels_last : channels_first, CV_32F);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/inference/network.hpp"
 #include "network_runner.hpp"
 #include "onednn_program.hpp"
 #include "onnx_graph.hpp"
@@ -76,6 +77,8 @@ class OnednnRunner final : public NetworkRunner {
 };
 
 }  // namespace
+
+bool has_onednn() { return true; }
 
 void require_onednn(NetworkPrecision precision) {
   if (precision != NetworkPrecision::bf16) return;

@@ -2,9 +2,12 @@
 // The engine onednn in builds without its library.
 #include "holdfast/core/check.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/inference/network.hpp"
 #include "network_runner.hpp"
 
 namespace holdfast {
+
+bool has_onednn() { return false; }
 
 void require_onednn(NetworkPrecision) {
   throw ConfigurationError(SourceLocation{},

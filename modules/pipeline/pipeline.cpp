@@ -542,6 +542,10 @@ LoopRecord Pipeline::loop_record() const {
   return state_->loop_record;
 }
 Sensor Pipeline::sensor() const { return state_->parts.sensor; }
+double Pipeline::readout() const {
+  const RollingShutter& shutter = state_->tracker.rolling_shutter();
+  return shutter.is_active() ? shutter.readout() : 0.0;
+}
 const Camera& Pipeline::camera() const { return state_->parts.camera; }
 
 }  // namespace holdfast

@@ -63,6 +63,7 @@ void record_pipeline(const Pipeline& pipeline, RunRecord& record) {
   record.mapping = pipeline.mapping_counts();
   record.loops = pipeline.loop_record();
   record.mask_ages = pipeline.mask_latencies();
+  record.readout = pipeline.readout();
 }
 
 }  // namespace

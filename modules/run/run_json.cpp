@@ -178,6 +178,7 @@ std::string run_json(const RunRecord& record) {
   json["loops"] = loops_json(record.loops);
   json["masks"] = masks_json(record.mask_ages);
   json["mean_inliers"] = s.mean_inliers();
+  json["readout_s"] = record.readout;
   json["evaluation"] = record.evaluation ? Json::parse(to_json(*record.evaluation)) : Json(nullptr);
   json["tracking"] = stage_json(s.tracking());
   Json& stages = json["stages"] = Json::array();

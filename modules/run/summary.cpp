@@ -61,6 +61,8 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& r
                                       " by masked features, " + std::to_string(dense) + " by dense depth");
   rows.emplace_back("map", counted(record.map_keyframes, "keyframe") + ", " + counted(record.map_points, "point") +
                                "; " + fixed_text(s.mean_inliers(), 0) + " inliers a frame");
+  if (record.readout != 0.0)
+    rows.emplace_back("rolling shutter", "rows are exposed during " + fixed_text(1e3 * record.readout, 1) + " ms");
   if (record.configuration.loop_detector.name != "none")
     rows.emplace_back("loops", std::to_string(record.loops.loops.size()) + " closed");
   if (record.evaluation) {

@@ -10,6 +10,12 @@ namespace holdfast {
 
 namespace {
 
+/// The camera of frames, whose features are where an image exposed at once would show them.
+Camera exposed_at_once(Camera camera) {
+  camera.readout = 0.0;
+  return camera;
+}
+
 /// Where the camera cannot use its image; empty if there is no such place.
 cv::Mat unusable_pixels(const Camera& camera) {
   if (camera.distortion.lens != Lens::fisheye) return {};
@@ -27,7 +33,7 @@ cv::Mat unusable_pixels(const Camera& camera) {
 }  // namespace
 
 FrameBuilder::FrameBuilder(const Camera& camera, FeatureExtractor& extractor, double depth_edge_ratio)
-    : camera_(std::make_shared<const Camera>(camera)),
+    : camera_(std::make_shared<const Camera>(exposed_at_once(camera))),
       pyramid_(std::make_shared<const ScalePyramid>(extractor.pyramid())),
       extractor_(extractor),
       depth_reader_(camera_, depth_edge_ratio),

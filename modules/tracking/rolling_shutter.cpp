@@ -20,16 +20,13 @@ Eigen::Vector3d velocity_of(const FrameMotion& motion, const Eigen::Vector3d& X)
   return (motion.tangent.head<3>() + motion.tangent.tail<3>().cross(X)) / motion.interval;
 }
 
-}  // namespace
-
-// What steps of the first second of a hand-held recording add up to, and those of two seconds.
+// What the frames of a third of a second of a hand-held recording add up to, and those of two seconds.
 constexpr double initial_information = 3e6, remembered_information = 1.5e7;
 
+}  // namespace
+
 RollingShutter::RollingShutter(RollingShutterMode mode, double readout)
-    : mode_(mode),
-      readout_(readout),
-      // A known camera is not left for the steps of a few frames.
-      information_(readout != 0.0 ? remembered_information : initial_information) {}
+    : mode_(mode), readout_(readout), information_(initial_information) {}
 
 void RollingShutter::correct(const FrameMotion& motion, const Map& map, Frame& frame) const {
   constexpr double typical_depth = 2.0, min_depth = 0.05;  // m
@@ -61,7 +58,8 @@ void RollingShutter::learn(const FrameMotion& motion, const Map& map, const Fram
   constexpr int minimum_points = 50;
   constexpr double min_depth = 0.05;  // m
   constexpr double enlargement = 4.0;
-  constexpr double longest = 0.1;  // s
+  constexpr double largest_share = 0.5;  // of the step by one frame: a map may be better than most
+  constexpr double longest = 0.1;        // s
   const Camera& camera = *frame.camera;
   Eigen::Matrix<double, 7, 7> normal = Eigen::Matrix<double, 7, 7>::Zero();  // pose, readout
   Eigen::Matrix<double, 7, 1> gradient = Eigen::Matrix<double, 7, 1>::Zero();
@@ -88,10 +86,11 @@ void RollingShutter::learn(const FrameMotion& motion, const Map& map, const Fram
   const Eigen::Matrix<double, 6, 1> eliminated =
       normal.topLeftCorner<6, 6>().ldlt().solve(normal.topRightCorner<6, 1>());
   const double information = normal(6, 6) - normal.topRightCorner<6, 1>().dot(eliminated);
-  const double step = -(gradient(6) - eliminated.dot(gradient.head<6>()));  // times the information
+  const double step = -(gradient(6) - eliminated.dot(gradient.head<6>())) / information;
   if (!std::isfinite(step) || !(information > 0.0)) return;
   information_ = std::min(information_ + information, remembered_information);
-  readout_ = std::clamp(readout_ + enlargement * step / information_, -longest, longest);
+  const double share = std::min(enlargement * information / information_, largest_share);
+  readout_ = std::clamp(readout_ + share * step, -longest, longest);
 }
 
 }  // namespace holdfast

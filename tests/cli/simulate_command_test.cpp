@@ -194,7 +194,7 @@ TEST_F(SimulateScene, SameSeedSameBytesInEveryFile) {
     const fs::path name = fs::relative(entry.path(), root_ / "a");
     EXPECT_TRUE(content(entry.path()) == content(root_ / "b" / name)) << name;
   }
-  EXPECT_EQ(files, 12);  // four images, four lists of them, associations, poses, objects, scene
+  EXPECT_EQ(files, 13);  // four images, four lists of them, associations, poses, objects, scene, shutter
   const nlohmann::json about = nlohmann::json::parse(content(root_ / "a" / "scene.json"));
   EXPECT_EQ(about["seed"], 7);
   EXPECT_EQ(about["depth_sensor"]["noise"], 0.5);

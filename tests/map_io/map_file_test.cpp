@@ -205,6 +205,7 @@ TEST_F(MapFile, HoldsEveryLens) {
   const std::string plain = bytes_of(map);
   EXPECT_EQ(plain.find("LENS"), std::string::npos) << "readers of old read maps of plain lenses";
   Camera fisheye = *find_camera("tum_fr3"), rational = fisheye;
+  fisheye.readout = rational.readout = 0.0;
   fisheye.distortion = {.k1 = -0.1, .k2 = 0.02, .k3 = 0.03, .k4 = -0.004};
   fisheye.distortion.lens = Lens::fisheye;
   rational.distortion = {0.5, -2.6, 0.0007, -0.0002, 1.5, 0.39, -2.43, 1.43};

@@ -18,7 +18,9 @@ namespace holdfast::test {
 inline Map random_map(int keyframes, std::size_t features, std::uint64_t seed, const MapFeatures& map_features = {}) {
   Random random(seed);
   const auto real = [&](double low, double high) { return random.uniform(low, high); };
-  std::vector<std::shared_ptr<const Camera>> cameras = {std::make_shared<const Camera>(*find_camera("tum_fr1")),
+  Camera exposed_at_once = *find_camera("tum_fr1");  // like those of all maps
+  exposed_at_once.readout = 0.0;
+  std::vector<std::shared_ptr<const Camera>> cameras = {std::make_shared<const Camera>(exposed_at_once),
                                                         std::make_shared<const Camera>()};
   const std::vector<std::shared_ptr<const ScalePyramid>> pyramids = {std::make_shared<const ScalePyramid>(8, 1.2),
                                                                      std::make_shared<const ScalePyramid>(4, 1.5)};

@@ -12,7 +12,12 @@ import pytest
 
 import holdfast
 
-PIPELINE = {"camera": "tum_fr1", "features": {"orb": {"count": 600}}, "optimizer": "ceres"}
+PIPELINE = {
+    "camera": "tum_fr1",
+    "features": {"orb": {"count": 600}},
+    "optimizer": "ceres",
+    "tracking": {"rolling_shutter": "off"},  # simulated images are exposed at once
+}
 SCENE = pathlib.Path(os.environ["HOLDFAST_SOURCE_DIR"]) / "examples/scenes/walking_xyz.yaml"
 # 1000 in the slow test: a pipeline that leaks 5 kB shows there.
 MEMORY_PIPELINES = int(os.environ.get("HOLDFAST_MEMORY_PIPELINES", "100"))

@@ -38,6 +38,9 @@ struct NetworkOptions {
   int threads = 0;
 };
 
+/// Whether this build has the engine onednn.
+bool has_onednn();
+
 /// An OnnxNet with one colour image as input and one output. Used by one thread at a time.
 class Network {
  public:

@@ -25,7 +25,8 @@ void describe_network_input(ParameterTable<Settings>& table) {
 template <class Settings>
 void describe_network_engine(ParameterTable<Settings>& table) {
   table.add("engine", &Settings::engine,
-            "what computes the network: OpenCV, or oneDNN, which is faster and knows fewer operators");
+            "what computes the network: opencv; onednn, which is faster and knows fewer operators; auto = onednn for the "
+            "built-in network where this build has it, otherwise opencv");
   table.add("precision", &Settings::precision,
             "numbers that the network computes with; bf16 needs `engine: onednn` and a processor with AVX512_BF16");
   table

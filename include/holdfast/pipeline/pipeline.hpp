@@ -114,6 +114,8 @@ class Pipeline {
   LoopRecord loop_record() const;
   const Camera& camera() const;
   Sensor sensor() const;
+  /// The readout time by which features are corrected now, estimated if the settings say so [s]; 0 = not corrected.
+  double readout() const;
 
   /// Stage times of background work done since the last call; in sequential mode they are in each FrameResult.
   std::vector<StageTimes> take_background_times();

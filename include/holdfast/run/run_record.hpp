@@ -36,6 +36,7 @@ struct RunRecord {
   SourceDescription source;
   Camera camera;
   Sensor sensor = Sensor::rgbd;
+  double readout = 0.0;  ///< Pipeline::readout() at the end [s]
   RunSummary summary;  ///< counts and stage times over all frames
   std::vector<SkippedFrame> skipped;
   std::vector<double> frame_stamps;  ///< time stamps of all frames of the source, skipped ones included, sorted [s]

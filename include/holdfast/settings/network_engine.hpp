@@ -5,16 +5,17 @@
 
 namespace holdfast {
 
-/// What computes a network: OpenCV's DNN module, or oneDNN where the build has it.
-enum class NetworkEngine { opencv, onednn };
+/// What computes a network: OpenCV's DNN module, or oneDNN where the build has it. automatic: oneDNN for a network
+/// whose operators it is known to have, where the build has it; otherwise OpenCV.
+enum class NetworkEngine { automatic, opencv, onednn };
 
 /// Numbers that a network computes with: 32 bits, or 16 bits with an exponent of eight (bfloat16), which needs a
 /// processor with instructions for them.
 enum class NetworkPrecision { fp32, bf16 };
 
 template <>
-inline constexpr Choice<NetworkEngine> choice_table<NetworkEngine>[] = {{"opencv", NetworkEngine::opencv},
-                                                                        {"onednn", NetworkEngine::onednn}};
+inline constexpr Choice<NetworkEngine> choice_table<NetworkEngine>[] = {
+    {"auto", NetworkEngine::automatic}, {"opencv", NetworkEngine::opencv}, {"onednn", NetworkEngine::onednn}};
 template <>
 inline constexpr Choice<NetworkPrecision> choice_table<NetworkPrecision>[] = {{"fp32", NetworkPrecision::fp32},
                                                                               {"bf16", NetworkPrecision::bf16}};

@@ -26,7 +26,7 @@ struct OnnxMatcherSettings {
   /// 2021); otherwise they are logarithms of probabilities, as of SuperGlue and LightGlue.
   bool dual_softmax = false;
   double temperature = 1.0;  ///< divisor of scores before the dual softmax; 0.1 in Sun et al. 2021
-  double threshold = 0.1;  ///< minimum probability of a match
+  double threshold = 0.1;    ///< minimum probability of a match
 
   static void describe(ParameterTable<OnnxMatcherSettings>& table);
 };

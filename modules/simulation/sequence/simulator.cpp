@@ -26,11 +26,16 @@ CameraPath make_path(const Scene& scene, const Stage& stage) {
   if (plan.path == PathKind::waypoints) return {plan.waypoints, scene.seed, plan.style};
   return {plan.path, stage, scene.seed, plan.style};
 }
+Camera exposed_at_once(Camera camera) {
+  camera.readout = 0.0;
+  return camera;
+}
+
 }  // namespace
 
 Simulator::Simulator(const Scene& scene, const Camera& camera)
     : scene_(scene),
-      camera_(camera),
+      camera_(exposed_at_once(camera)),
       scene_world_(make_scene_world(scene)),
       path_(make_path(scene, scene_world_.stage)),
       renderer_(scene_world_.world, camera_) {

@@ -36,7 +36,7 @@ namespace {
 NetworkOptions options_of(const OnnxSettings& s) {
   NetworkOptions options = network_options(s);
   options.channels_last = s.layout == TensorLayout::nhwc;
-  options.engine = s.engine;
+  options.engine = s.engine == NetworkEngine::automatic ? NetworkEngine::opencv : s.engine;
   options.precision = s.precision;
   options.threads = s.threads;
   return options;

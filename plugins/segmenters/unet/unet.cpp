@@ -61,6 +61,8 @@ NetworkOptions network_options(const UnetSettings& settings) {
   options.mean = {0.5, 0.5, 0.5};
   options.standard_deviation = {0.25, 0.25, 0.25};
   options.engine = settings.engine;
+  if (settings.engine == NetworkEngine::automatic)
+    options.engine = settings.model.empty() && has_onednn() ? NetworkEngine::onednn : NetworkEngine::opencv;
   options.precision = settings.precision;
   options.threads = settings.threads;
   options.model = settings.model;

@@ -65,6 +65,7 @@ class IclNuimSource final : public ImageSequenceSource {
                                  settings.frame_rate);
     description_.name = folder_name(settings.path);
     description_.has_depth = true;
+    description_.has_global_shutter = true;  // rendered
     description_.truth_frame = "transformed";
   }
 };

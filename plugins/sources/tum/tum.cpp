@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <fstream>
+#include <string>
 #include <utility>
 
 #include "holdfast/core/folder_name.hpp"
@@ -69,6 +71,18 @@ std::vector<ImageFiles> find_pairs(const TumSettings& settings) {
 
 /// A recording in the layout of the TUM RGB-D benchmark (Sturm et al., IROS 2012), which the Bonn RGB-D Dynamic dataset
 /// shares. A colour image without a depth image near enough in time makes no frame.
+/// What shutter.txt says, which Holdfast writes beside its own recordings; without the file, the camera knows.
+bool has_global_shutter(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "shutter.txt";
+  std::ifstream stream(file);
+  if (!stream) return false;
+  std::string word;
+  stream >> word;
+  if (word != "global" && word != "rolling")
+    throw InputError({file.string(), 1}, "expected 'global' (all rows of an image are exposed at once) or 'rolling'");
+  return word == "global";
+}
+
 class TumSource final : public ImageSequenceSource {
  public:
   TumSource(const TumSettings& settings, const CreationContext& context)
@@ -76,6 +90,7 @@ class TumSource final : public ImageSequenceSource {
                                                    settings.on_bad_frame == "skip"}) {
     description_.name = folder_name(settings.path);
     description_.has_depth = true;
+    description_.has_global_shutter = has_global_shutter(settings.path);
     const TruthTransform transform = make_truth_transform(settings.truth_left, settings.truth_right, "source.tum");
     description_.truth_frame = transform.frame();
     if (const auto truth_file = settings.path / "groundtruth.txt"; std::filesystem::exists(truth_file))

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/tracking/rolling_shutter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "holdfast/core/scale_pyramid.hpp"
+
+namespace holdfast {
+namespace {
+
+constexpr double interval = 1.0 / 30.0, readout = 0.03;
+
+FrameMotion motion_of(const Eigen::Vector3d& velocity, const Eigen::Vector3d& rotation) {
+  FrameMotion motion{geometry::Vector6d::Zero(), interval};
+  motion.tangent << interval * velocity, interval * rotation;
+  return motion;
+}
+
+/// Points in front of a camera whose rows are exposed one after another.
+class RollingShutterTest : public testing::Test {
+ protected:
+  RollingShutterTest() : camera_(std::make_shared<const Camera>(find_camera("tum_fr3").value())) {
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> column(0, camera_->width), row(0, camera_->height), depth(0.8, 5.0);
+    for (int i = 0; i < 500; ++i) {
+      world_.push_back(camera_->back_project(column(random), row(random), depth(random)));
+    }
+  }
+
+  /// The pixel that shows a point of the world at a moment after the exposure of the middle row.
+  Eigen::Vector3d seen(const Eigen::Isometry3d& T_camera_world, const FrameMotion& motion, double seconds,
+                       const Eigen::Vector3d& point) const {
+    return motion.during(seconds) * (T_camera_world * point);
+  }
+
+  /// A frame as the camera takes it: every point where its own row shows it.
+  Frame take(const Eigen::Isometry3d& T_camera_world, const FrameMotion& motion) const {
+    Frame frame;
+    frame.camera = camera_;
+    frame.pyramid = std::make_shared<const ScalePyramid>(8, 1.2);
+    frame.T_camera_world = T_camera_world;
+    frame.features.resize(world_.size());
+    for (std::size_t i = 0; i < world_.size(); ++i) {
+      double seconds = 0.0;
+      Eigen::Vector3d point;
+      Eigen::Vector2d pixel;
+      for (int step = 0; step < 20; ++step) {
+        point = seen(T_camera_world, motion, seconds, world_[i]);
+        pixel = camera_->project(point);
+        seconds = (pixel.y() / camera_->height - 0.5) * readout;
+      }
+      frame.features.x[i] = static_cast<float>(pixel.x());
+      frame.features.y[i] = static_cast<float>(pixel.y());
+      frame.features.octave[i] = 0;
+      frame.x.push_back(static_cast<float>(pixel.x()));
+      frame.y.push_back(static_cast<float>(pixel.y()));
+      frame.depth.push_back(static_cast<float>(point.z()));
+      frame.right_x.push_back(static_cast<float>(camera_->right_x(pixel.x(), point.z())));
+    }
+    frame.map_points.assign(world_.size(), MapPointId());
+    frame.static_probability.assign(world_.size(), 1.0F);
+    return frame;
+  }
+
+  double largest_error(const Frame& frame) const {
+    double largest = 0.0;
+    for (std::size_t i = 0; i < world_.size(); ++i) {
+      const Eigen::Vector2d pixel = camera_->project(frame.T_camera_world * world_[i]);
+      largest = std::max(largest, (pixel - Eigen::Vector2d(frame.x[i], frame.y[i])).norm());
+    }
+    return largest;
+  }
+
+  std::shared_ptr<const Camera> camera_;
+  std::vector<Eigen::Vector3d> world_;
+};
+
+TEST_F(RollingShutterTest, TakesFeaturesToTheExposureOfTheMiddleRow) {
+  const FrameMotion motion = motion_of({0.3, -0.2, 0.1}, {0.5, 1.5, -0.8});
+  Frame frame = take(Eigen::Isometry3d::Identity(), motion);
+  EXPECT_GT(largest_error(frame), 10.0);
+  RollingShutter(RollingShutterMode::fixed, readout).correct(motion, Map(), frame);
+  EXPECT_LT(largest_error(frame), 0.02);
+  for (std::size_t i = 0; i < world_.size(); ++i) {
+    EXPECT_NEAR(frame.depth[i], world_[i].z(), 1e-3);
+    EXPECT_NEAR(frame.right_x[i], camera_->right_x(frame.x[i], frame.depth[i]), 1e-3);
+  }
+}
+
+TEST_F(RollingShutterTest, FeaturesWithoutDepthAreCorrectedForRotation) {
+  const FrameMotion motion = motion_of(Eigen::Vector3d::Zero(), {0.5, 1.5, -0.8});
+  Frame frame = take(Eigen::Isometry3d::Identity(), motion);
+  frame.depth.assign(world_.size(), 0.0F);
+  RollingShutter(RollingShutterMode::fixed, readout).correct(motion, Map(), frame);
+  EXPECT_LT(largest_error(frame), 0.02);
+  for (const float depth : frame.depth) EXPECT_EQ(depth, 0.0F);
+}
+
+TEST_F(RollingShutterTest, FeaturesWithoutDepthHaveThatOfTheirMapPoints) {
+  const FrameMotion motion = motion_of({0.6, 0.0, 0.0}, Eigen::Vector3d::Zero());
+  Frame frame = take(Eigen::Isometry3d::Identity(), motion);
+  Map map;
+  for (std::size_t i = 0; i < world_.size(); ++i) frame.map_points[i] = map.add_point(world_[i], 0);
+  frame.depth.assign(world_.size(), 0.0F);
+  RollingShutter(RollingShutterMode::fixed, readout).correct(motion, map, frame);
+  EXPECT_LT(largest_error(frame), 0.02);
+}
+
+TEST_F(RollingShutterTest, IsOffWithoutReadoutTime) {
+  EXPECT_FALSE(RollingShutter(RollingShutterMode::fixed, 0.0).is_active());
+  EXPECT_FALSE(RollingShutter(RollingShutterMode::off, readout).is_active());
+  EXPECT_TRUE(RollingShutter(RollingShutterMode::fixed, readout).is_active());
+}
+
+/// Estimates the readout time while a camera swings, beginning with a wrong one.
+double estimate(const std::function<Frame(const Eigen::Isometry3d&, const FrameMotion&)>& take, const Map& map,
+                const std::vector<MapPointId>& points, RollingShutter shutter) {
+  for (int i = 0; i < 60; ++i) {
+    const double swing = std::sin(0.3 * i);
+    const FrameMotion motion = motion_of({0.1 * swing, 0.2, 0.0}, {0.4, 1.2 * swing, 0.3 * swing});
+    Frame frame = take(Eigen::Isometry3d::Identity(), motion);
+    frame.map_points = points;
+    if (shutter.is_active()) shutter.correct(motion, map, frame);
+    shutter.learn(motion, map, frame);
+  }
+  return shutter.readout();
+}
+
+TEST_F(RollingShutterTest, FindsTheReadoutTime) {
+  Map map;
+  std::vector<MapPointId> points;
+  for (const Eigen::Vector3d& point : world_) points.push_back(map.add_point(point, 0));
+  const auto picture = [this](const Eigen::Isometry3d& pose, const FrameMotion& motion) { return take(pose, motion); };
+  EXPECT_NEAR(estimate(picture, map, points, {RollingShutterMode::estimated, 0.0}), readout, 1e-4);
+  EXPECT_NEAR(estimate(picture, map, points, {RollingShutterMode::estimated, 0.05}), readout, 1e-3);
+  EXPECT_EQ(estimate(picture, map, points, {RollingShutterMode::fixed, 0.01}), 0.01);
+}
+
+}  // namespace
+}  // namespace holdfast
