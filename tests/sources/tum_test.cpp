@@ -186,6 +186,16 @@ TEST_F(TumSourceTest, TruthIsGivenWhereThereIsOne) {
   EXPECT_THAT(error(), StartsWith(place("groundtruth.txt", 2)));
 }
 
+TEST_F(TumSourceTest, ARecordingMaySayThatItsRowsAreExposedAtOnce) {
+  EXPECT_FALSE(open()->describe().has_global_shutter);
+  folder_.write("shutter.txt", "rolling\n");
+  EXPECT_FALSE(open()->describe().has_global_shutter);
+  folder_.write("shutter.txt", "global\n");
+  EXPECT_TRUE(open()->describe().has_global_shutter);
+  folder_.write("shutter.txt", "glob\n");
+  EXPECT_THAT(error(), AllOf(StartsWith(place("shutter.txt", 1)), HasSubstr("expected 'global'")));
+}
+
 TEST_F(TumSourceTest, BadFolders) {
   EXPECT_THAT(input_error([] {
                 test::make_source("tum", {{"path", std::string("/nowhere/recording")}});
