@@ -97,6 +97,11 @@ void FrameBuilder::find_features(const SensorFrame& sensor_frame, const cv::Mat&
   complete(sensor_frame, frame, times);
 }
 
+void FrameBuilder::set_budget(double factor) {
+  extractor_.set_budget(factor);
+  if (stereo_) stereo_->set_budget(factor);
+}
+
 void FrameBuilder::place_features(const SensorFrame& sensor_frame, const FrameMotion& motion, bool aligns_depth,
                                   const RollingShutter& shutter, const Map& map, Frame& frame,
                                   StageTimes& times) const {

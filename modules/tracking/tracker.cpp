@@ -48,9 +48,18 @@ void Tracker::begin(const SensorFrame& sensor_frame, FrameResult& result) {
 
 void Tracker::find_features(const SensorFrame& sensor_frame, FrameResult& result) {
   followed_frames_ = 0;
+  builder_.set_budget(feature_budget());
   builder_.find_features(sensor_frame, ignored_, current_, result.times);
   if (history_.has_velocity()) place_features(sensor_frame, history_.predicted_step(current_.timestamp), result.times);
   result.features = static_cast<int>(current_.size());
+}
+
+double Tracker::feature_budget() const {
+  if (state_ == State::waiting || previous_.size() == 0) return 1.0;
+  const auto& probability = previous_.static_probability;
+  const auto kept = std::count_if(probability.begin(), probability.end(), [](float p) { return is_static(p); });
+  const double share = static_cast<double>(kept) / static_cast<double>(previous_.size());
+  return std::clamp(settings_.crowd_share / std::max(share, 1e-3), 1.0, settings_.crowd_features);
 }
 
 bool Tracker::follow_features(const SensorFrame& sensor_frame, FrameResult& result) {

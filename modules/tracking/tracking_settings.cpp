@@ -26,10 +26,12 @@ void describe_poses(ParameterTable<S>& table) {
       .range(0, 90)
       .unit("deg");
   table
-      .add("start_support", &S::start_support,
-           "with one camera, share of a frame's static features that are found in the map 0.3 to 0.5 s after its start, "
-           "times the share of those that agree with the pose; a map with less is given up, and another one begins; half "
-           "is enough for each further start; 0 = off")
+      .add(
+          "start_support", &S::start_support,
+          "with one camera, share of a frame's static features that are found in the map 0.3 to 0.5 s after its start, "
+          "times the share of those that agree with the pose; a map with less is given up, and another one begins; "
+          "half "
+          "is enough for each further start; 0 = off")
       .range(0, 1);
   table
       .add("close_depth_factor", &S::close_depth_factor,
@@ -72,6 +74,15 @@ void describe_poses(ParameterTable<S>& table) {
       .add("flow_share", &S::flow_share,
            "share of the followed map points that must agree with a pose by flow; otherwise the frame gets features")
       .range(0.1, 1);
+  table
+      .add("crowd_features", &S::crowd_features,
+           "factor on the extractor's number of features, at most, where moving things leave few static ones; 1 = off")
+      .range(1, 10);
+  table
+      .add("crowd_share", &S::crowd_share,
+           "share of the previous frame's features that were static, below which there are more of them: so many that "
+           "the number of static ones stays at this share of the extractor's")
+      .range(0, 1);
   table.add("minimum_inliers", &S::minimum_inliers, "map points that must agree with a pose for it to be accepted")
       .range(6, 10000);
   table
@@ -140,9 +151,10 @@ void describe_keyframes(ParameterTable<S>& table) {
   table.add("depth_alignment", &S::depth_alignment,
             "whether the depth of features is corrected for the motion of the camera between the exposures of the "
             "colour and the depth image, where the source knows both times");
-  table.add("rolling_shutter", &S::rolling_shutter,
-            "whether features are corrected for the motion of the camera while its rows are exposed one after another: "
-            "fixed = by the readout time of the camera; estimated = the same, and the time is estimated while tracking");
+  table.add(
+      "rolling_shutter", &S::rolling_shutter,
+      "whether features are corrected for the motion of the camera while its rows are exposed one after another: "
+      "fixed = by the readout time of the camera; estimated = the same, and the time is estimated while tracking");
 }
 
 void describe_relocalisation(ParameterTable<S>& table) {

@@ -50,6 +50,9 @@ class FrameBuilder {
   void place_features(const SensorFrame& sensor_frame, const FrameMotion& motion, bool aligns_depth,
                       const RollingShutter& shutter, const Map& map, Frame& frame, StageTimes& times) const;
 
+  /// From the next frame on, find_features() extracts `factor` times as many features (FeatureExtractor::set_budget).
+  void set_budget(double factor);
+
   const std::shared_ptr<const Camera>& camera() const { return camera_; }
   const CoarseSampler& coarse_sampler() const { return coarse_sampler_; }
   /// The grey image of the last frame that was built (8UC1); valid until the next.

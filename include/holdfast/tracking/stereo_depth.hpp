@@ -32,6 +32,10 @@ class StereoDepth {
   /// The depth image of a pair of 8UC1 images: 32FC1 [m] of the same size, 0 = none; blocks of 2 x 2 pixels have one
   /// depth. Empty unless parts.is_dense. Valid until the next call.
   const cv::Mat& dense(const cv::Mat& left, const cv::Mat& right);
+  /// The number of features of the right image, as FeatureExtractor::set_budget; that of the left one is the caller's.
+  void set_budget(double factor) {
+    if (parts_.right_features != nullptr) parts_.right_features->set_budget(factor);
+  }
   /// Extracts the features of both images, those of the left one by `extractor` into frame.features without those where
   /// `ignore` is not 0. depth() is next.
   void extract(const cv::Mat& left, const cv::Mat& right, const cv::Mat& ignore, FeatureExtractor& extractor,

@@ -52,11 +52,13 @@ struct TrackingSettings {
       0.06;  ///< inlier distance of the RANSAC alignment [m]; 2.3 standard deviations of a Kinect at 4 m
 
   // Local map.
-  double local_map_window = 3.0;    ///< factor on the search radius of LocalMap::project
-  double descriptor_ratio = 0.8;    ///< best to second best distance, after Lowe 2004
-  double strict_distance = 0.0;     ///< of descriptors, of a match without any prediction; 0 = the extractor's
-  double loose_distance = 0.0;      ///< of descriptors, of a match near its prediction; 0 = the extractor's
-  int minimum_inliers = 30;         ///< map points that must agree with a pose
+  double local_map_window = 3.0;  ///< factor on the search radius of LocalMap::project
+  double descriptor_ratio = 0.8;  ///< best to second best distance, after Lowe 2004
+  double strict_distance = 0.0;   ///< of descriptors, of a match without any prediction; 0 = the extractor's
+  double loose_distance = 0.0;    ///< of descriptors, of a match near its prediction; 0 = the extractor's
+  double crowd_features = 2.0;    ///< factor on the number of features where people leave few of them, at most; 1 = off
+  double crowd_share = 0.8;       ///< share of static features below which there are more of them
+  int minimum_inliers = 30;       ///< map points that must agree with a pose
   double maximum_deviation = 0.02;  ///< standard deviation of the position [m]
   double jump_distance = 0.06;      ///< [m] from constant velocity in 1/30 s: 54 m/s^2
   double jump_angle = 3.0;          ///< [deg], the same

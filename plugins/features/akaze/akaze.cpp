@@ -49,7 +49,8 @@ AkazeExtractor::AkazeExtractor(const AkazeSettings& settings, const CreationCont
 void AkazeExtractor::extract(const cv::Mat& grey, const cv::Mat& ignore, Features& out) {
   out.resize(0, type_);
   if (!keypoints::find_keypoints(*akaze_, grey, ignore, mask_, keypoints_, descriptors_)) return;
-  const std::vector<std::uint32_t> strongest = keypoints::strongest_keypoints(keypoints_, count_);
+  const std::vector<std::uint32_t> strongest = keypoints::strongest_keypoints(
+      keypoints_, static_cast<std::size_t>(std::lround(static_cast<double>(count_) * budget_)));
   std::vector<cv::KeyPoint> kept;
   for (const std::uint32_t i : strongest) kept.push_back(keypoints_[i]);
   keypoints::copy_keypoints(kept, out);

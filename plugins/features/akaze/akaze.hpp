@@ -17,11 +17,13 @@ class AkazeExtractor final : public FeatureExtractor {
   explicit AkazeExtractor(const AkazeSettings& settings, const CreationContext& context = {});
 
   void extract(const cv::Mat& grey, const cv::Mat& ignore, Features& out) override;
+  void set_budget(double factor) override { budget_ = factor; }
   const ScalePyramid& pyramid() const override { return pyramid_; }
   DescriptorType descriptor_type() const override { return type_; }
 
  private:
   std::size_t count_;
+  double budget_ = 1.0;
   ScalePyramid pyramid_;
   DescriptorType type_;
   cv::Ptr<cv::AKAZE> akaze_;

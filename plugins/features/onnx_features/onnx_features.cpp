@@ -87,7 +87,7 @@ std::vector<HeatPoint> OnnxFeatures::find_keypoints() const {
                              .suppression_radius = settings_.suppression_radius,
                              .border = settings_.border,
                              .subpixel = settings_.subpixel,
-                             .count = static_cast<std::size_t>(settings_.count)});
+                             .count = static_cast<std::size_t>(std::lround(settings_.count * budget_))});
 }
 
 std::vector<HeatPoint> OnnxFeatures::read_keypoints() const {
@@ -152,7 +152,7 @@ void OnnxFeatures::extract(const cv::Mat& grey, const cv::Mat& ignore, Features&
 
   const float scale_x = static_cast<float>(grey.cols) / static_cast<float>(width_);
   const float scale_y = static_cast<float>(grey.rows) / static_cast<float>(height_);
-  const auto count = static_cast<std::size_t>(settings_.count);
+  const auto count = static_cast<std::size_t>(std::lround(settings_.count * budget_));
   std::size_t kept = 0;
   for (std::size_t i = 0; i < points.size() && kept < count; ++i) {
     const float x = (points[i].x + 0.5F) * scale_x - 0.5F, y = (points[i].y + 0.5F) * scale_y - 0.5F;

@@ -27,6 +27,7 @@ class OnnxFeatures final : public FeatureExtractor {
   explicit OnnxFeatures(const OnnxFeaturesSettings& settings, const CreationContext& context = {});
 
   void extract(const cv::Mat& grey, const cv::Mat& ignore, Features& out) override;
+  void set_budget(double factor) override { budget_ = factor; }
   const ScalePyramid& pyramid() const override { return pyramid_; }
   DescriptorType descriptor_type() const override { return type_; }
   bool has_angles() const override { return false; }
@@ -42,6 +43,7 @@ class OnnxFeatures final : public FeatureExtractor {
   [[noreturn]] void fail(const std::string& message) const;
 
   OnnxFeaturesSettings settings_;
+  double budget_ = 1.0;
   OnnxNet net_;
   ScalePyramid pyramid_{1, 2.0};
   DescriptorType type_;

@@ -7,8 +7,8 @@
 
 #include <opencv2/features2d.hpp>
 
-#include "holdfast/plugin/parameter_table.hpp"
 #include "holdfast/keypoints/keypoints.hpp"
+#include "holdfast/plugin/parameter_table.hpp"
 
 namespace holdfast {
 
@@ -29,12 +29,18 @@ constexpr int border = 31;  // [px of the level], OpenCV's default edge threshol
 }  // namespace
 
 OpencvOrb::OpencvOrb(const OpencvOrbSettings& settings, const CreationContext&)
-    : pyramid_(settings.levels, settings.scale_factor),
+    : count_(settings.count),
+      pyramid_(settings.levels, settings.scale_factor),
       orb_(std::make_unique<cv::Ptr<cv::ORB>>(cv::ORB::create(
           settings.count, static_cast<float>(settings.scale_factor), settings.levels, border, /*firstLevel=*/0,
           /*WTA_K=*/2, cv::ORB::HARRIS_SCORE, /*patchSize=*/border, settings.fast_threshold))) {}
 
 OpencvOrb::~OpencvOrb() = default;
+
+void OpencvOrb::set_budget(double factor) {
+  const int wanted = static_cast<int>(std::lround(count_ * factor));
+  if ((*orb_)->getMaxFeatures() != wanted) (*orb_)->setMaxFeatures(wanted);
+}
 
 int OpencvOrb::usable_levels(const cv::Mat& grey) const {
   const int size = std::min(grey.cols, grey.rows);

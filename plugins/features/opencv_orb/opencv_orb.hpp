@@ -25,12 +25,14 @@ class OpencvOrb : public FeatureExtractor {
   ~OpencvOrb() override;
 
   void extract(const cv::Mat& grey, const cv::Mat& ignore, Features& out) override;
+  void set_budget(double factor) override;
   const ScalePyramid& pyramid() const override { return pyramid_; }
 
  private:
   /// Levels on which the image is still large enough for a feature; OpenCV fails on levels that vanish.
   int usable_levels(const cv::Mat& grey) const;
 
+  int count_;
   ScalePyramid pyramid_;
   std::unique_ptr<cv::Ptr<cv::ORB>> orb_;
   std::vector<cv::KeyPoint> keypoints_;

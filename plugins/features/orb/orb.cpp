@@ -102,7 +102,7 @@ void OrbExtractor::select() {
   const int levels = work_->pyramid.levels();
   double share_left = 0;
   for (int level = 0; level < levels; ++level) share_left += scales_.inverse_scale[level];
-  std::size_t left = static_cast<std::size_t>(settings_.count);
+  std::size_t left = static_cast<std::size_t>(std::lround(settings_.count * budget_));
   for (int level = levels - 1; level >= 0; --level) {
     const double share = scales_.inverse_scale[level];
     const auto wanted =
