@@ -91,7 +91,8 @@ elif [ -n "${HOLDFAST_DATA:-}" ] && [ -d "$recording" ]; then
         }
       }' > "$work/looped/$kind.txt"
   done
-  watch recording --set camera=tum_fr1 --set source.tum.path="$work/looped" --set segmenter=none \
+  # At the pace of its stamps: as fast as it goes, the recording would be over long before the minutes are.
+  watch recording --set run.pace=timestamps --set camera=tum_fr1 --set source.tum.path="$work/looped" --set segmenter=none \
     --set 'filters=[multi_view_depth]'
 else
   echo "recording: skipped, because HOLDFAST_DATA names no folder with tum_fr1_xyz"

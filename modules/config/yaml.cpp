@@ -6,6 +6,7 @@
 #include <map>
 
 #include "holdfast/config/configuration_node.hpp"
+#include "holdfast/config/missing_file.hpp"
 #include "holdfast/core/text_file.hpp"
 #include "yaml_tree.hpp"
 
@@ -146,13 +147,15 @@ ConfigurationNode read_yaml(const std::filesystem::path& file) {
   if (is_named_pipe(file))
     throw ConfigurationError(SourceLocation{file.string()},
                              "is a named pipe, which may never end; expected a configuration in YAML");
+  std::error_code trouble;  // a name that is too long, or below a folder that may not be read, is no file either
+  const bool is_folder = std::filesystem::is_directory(file, trouble);
   std::ifstream stream(file, std::ios::binary);
-  if (!stream || std::filesystem::is_directory(file))
+  if (!stream || is_folder)
     throw ConfigurationError(SourceLocation{file.string()},
-                             std::string(!std::filesystem::exists(file)        ? "there is no such file"
-                                         : std::filesystem::is_directory(file) ? "is a folder"
-                                                                               : "cannot be read") +
-                                 "; expected a configuration in YAML");
+                             (!std::filesystem::exists(file, trouble) ? missing_file_text(file, "file")
+                              : is_folder                             ? "is a folder;"
+                                                                      : "cannot be read;") +
+                                 std::string(" expected a configuration in YAML"));
   const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   // What comes through the system's /dev/stdin lies in no folder: paths in it count from the current one.
   const bool is_file = !file.string().starts_with("/dev/");

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "fixture.hpp"
+#include "holdfast/config/missing_file.hpp"
 
 namespace holdfast {
 namespace {
@@ -85,6 +89,26 @@ TEST(Yaml, RefusesWhatIsNoMap) {
 TEST(Yaml, NamesAFileThatCannotBeRead) {
   EXPECT_THROW(read_yaml("/nowhere/c.yaml"), ConfigurationError);
   EXPECT_THROW(read_yaml("/"), ConfigurationError);
+  EXPECT_THROW(read_yaml(std::string(300, 'a') + ".yaml"), ConfigurationError);
+}
+
+TEST(Yaml, AMissingFileIsAnsweredWithTheNearestOfItsFolder) {
+  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "holdfast_missing_file_test";
+  std::filesystem::create_directories(folder);
+  for (const char* name : {"crowd.yaml", "crowds.yaml", "walking.txt"}) std::ofstream(folder / name) << "a: 1\n";
+  EXPECT_EQ(missing_file_text(folder / "crwod.yaml", "scene file"),
+            "there is no such scene file; did you mean 'crowd.yaml'?");
+  EXPECT_EQ(missing_file_text(folder / "walking.yaml", "file"), "there is no such file;");
+  EXPECT_EQ(missing_file_text(folder / "below/crowd.yaml", "file"),
+            "there is no such file; its folder is missing too;");
+  try {
+    read_yaml(folder / "crwod.yaml");
+    ADD_FAILURE() << "a file that is not there was read";
+  } catch (const ConfigurationError& error) {
+    EXPECT_EQ(error.diagnostics().front().message,
+              "there is no such file; did you mean 'crowd.yaml'? expected a configuration in YAML");
+  }
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -153,7 +153,16 @@ lights_out:
               ElementsAre(HasSubstr("belongs to the path waypoints")));
   EXPECT_THAT(problems("people: [{ at: [1, 2], do: [{ walk: { to: [] } }] }]\n"), ElementsAre(HasSubstr("empty list")));
   EXPECT_THAT(problems("- office\n"), ElementsAre(HasSubstr("expected a map with room")));
-  EXPECT_THROW(read_scene("no_such_scene.yaml"), ConfigurationError);
+}
+
+TEST_F(SceneFile, SaysThatItIsMissingAndWhichOneWasMeant) {
+  read("room: office\n");
+  try {
+    read_scene(file_.parent_path() / "holdfast_scene_flie_test.yaml");
+    ADD_FAILURE() << "a scene that is not there was read";
+  } catch (const ConfigurationError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("there is no such scene file; did you mean 'holdfast_scene_file_test.yaml'?"));
+  }
 }
 
 TEST_F(SceneFile, RefusesPlacesFarFromAnyRoom) {

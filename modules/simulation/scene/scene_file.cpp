@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "holdfast/config/missing_file.hpp"
 #include "holdfast/config/parameter_reader.hpp"
 #include "holdfast/plugin/did_you_mean.hpp"
 #include "scene_records.hpp"
@@ -215,6 +216,11 @@ void add_section(std::vector<SectionDescription>& sections, const std::string& n
 }  // namespace
 
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  std::error_code trouble;
+  if (!file.empty() && !std::filesystem::exists(file, trouble))
+    throw ConfigurationError({file.string()}, missing_file_text(file, "scene file") +
+                                                  " expected a file with room, camera, people, ...; without a file "
+                                                  "the scene is an empty office");
   ConfigurationNode root = file.empty() ? ConfigurationNode{} : read_yaml(file);
   if (root.kind != Kind::map && root.kind != Kind::nothing)
     throw ConfigurationError({file.string()},
