@@ -239,6 +239,17 @@ void same_image_same_features(const Maker& maker) {
   expect_same(first, extract(*maker.make<FeatureExtractor>(), picture()), "by a second instance");
 }
 
+void budget_comes_and_goes(const Maker& maker) {
+  const cv::Mat grey = picture();
+  const auto extractor = maker.make<FeatureExtractor>();
+  const Features before = extract(*extractor, grey);
+  extractor->set_budget(2.0);
+  const Features more = extract(*extractor, grey);
+  EXPECT_GE(more.size(), before.size()) << "a larger budget gives fewer features";
+  extractor->set_budget(1.0);
+  expect_same(before, extract(*extractor, grey), "after a larger budget has come and gone");
+}
+
 void may_change_threads(const Maker& maker) {
   const auto extractor = maker.make<FeatureExtractor>();
   const cv::Mat grey = picture();
@@ -320,6 +331,9 @@ std::vector<Check> feature_extractor_checks() {
         "Whether Features::angle is the orientation of a feature, which turns with the image. Otherwise all angles are "
         "0."},
        angles_are_as_promised},
+      {"BudgetComesAndGoes",
+       {extractor_header, "The same image with the same budget gives the same features."},
+       budget_comes_and_goes},
       {"HonoursIgnore", ignore, honours_ignore},
       {"TakesNothingWhereAllIsIgnored", ignore, takes_nothing_where_all_is_ignored},
       {"FindsNothingInTinyImages", any_size, finds_nothing_in_tiny_images},

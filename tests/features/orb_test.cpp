@@ -86,6 +86,19 @@ TEST(Orb, GivesExactlyTheCountWhereThereAreEnoughCorners) {
   }
 }
 
+TEST(Orb, ABudgetMultipliesTheCount) {
+  const cv::Mat image = test::scene_image(640, 480, 4);
+  OrbSettings settings;
+  settings.count = 400;
+  OrbExtractor extractor(settings);
+  Features features;
+  for (const auto& [budget, count] : {std::pair{1.5, 600U}, std::pair{2.0, 800U}, std::pair{1.0, 400U}}) {
+    extractor.set_budget(budget);
+    extractor.extract(image, cv::Mat(), features);
+    EXPECT_EQ(features.size(), count);
+  }
+}
+
 TEST(Orb, FeaturesTurnWithTheImage) {
   const cv::Mat image = test::scene_image(480, 480, 5);
   const Features features = extract(image);

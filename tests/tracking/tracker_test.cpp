@@ -37,9 +37,11 @@ class SparseExtractor final : public FeatureExtractor {
       out.octave[i] = all.octave[k], out.descriptors.of_256_bits()[i] = all.descriptors.of_256_bits()[k];
     }
   }
+  void set_budget(double factor) override { budget = factor; }
   const ScalePyramid& pyramid() const override { return all_.pyramid(); }
 
   std::size_t every = 1;
+  double budget = 1.0;
 
  private:
   test::PointExtractor all_;
@@ -327,6 +329,24 @@ TEST(Tracker, MaskedFeaturesCountWhereStaticOnesDoNotSuffice) {
     EXPECT_LT(error(result, at(0.25)), 0.01);
     bench.mask_covers = false;
     EXPECT_EQ(bench.feed(0.53, at(0.265)).fallback, TrackingFallback::none);
+  }
+}
+
+TEST(Tracker, WherePeopleLeaveFewFeaturesMoreAreAskedFor) {
+  for (const double most : {2.0, 1.0}) {
+    TrackingSettings settings;
+    settings.crowd_features = most;
+    Bench bench(settings, true, {}, 5, with_fallback());
+    bench.walk(0.0, 0.5);
+    EXPECT_EQ(bench.extractor.budget, 1.0) << "nobody is there";
+    bench.mask_covers = true;
+    bench.feed(0.5, at(0.25));
+    bench.feed(0.53, at(0.265));
+    EXPECT_EQ(bench.extractor.budget, most) << "one feature in 80 is static";
+    bench.mask_covers = false;
+    bench.feed(0.56, at(0.28));
+    bench.feed(0.6, at(0.3));
+    EXPECT_EQ(bench.extractor.budget, 1.0) << "nobody is there any more";
   }
 }
 

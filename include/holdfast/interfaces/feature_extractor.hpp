@@ -17,10 +17,11 @@ class FeatureExtractor : public Module {
   /// Extracts features from a grey image (8UC1, any size); an empty image or one too small for a feature gives none.
   /// `ignore` is empty or 8UC1 of the same size; no features are extracted where it is not 0, with a tolerance of two
   /// pixels of the feature's octave. Neither image is written to. `out` is replaced. The same image gives the same
-  /// features in the same order, on every call with the same budget and at every SIMD level.
+  /// features in the same order, on every call and at every SIMD level.
   virtual void extract(const cv::Mat& grey, const cv::Mat& ignore, Features& out) = 0;
-  /// From the next image on, extracts `factor` (at least 1) times as many features as its settings say: where people
-  /// cover much of the image, what they leave has to do. An extractor without such a number ignores it.
+  /// From the next image on, extracts up to `factor` (at least 1) times as many features as the settings say: where
+  /// people cover much of an image, what they leave has to do. An extractor without such a number ignores it. The same
+  /// image with the same budget gives the same features.
   virtual void set_budget(double factor) { static_cast<void>(factor); }
   /// The scale pyramid to which Features::octave refers; constant after construction. An extractor without octaves has
   /// a pyramid of one level.
