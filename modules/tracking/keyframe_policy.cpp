@@ -9,9 +9,10 @@ KeyframeSituation KeyframePolicy::measure(const Frame& frame, int inliers, KeyFr
   KeyframeSituation situation{.inliers = inliers, .keyframes = map.keyframes().size()};
   // Established points were observed by another keyframe, too, as soon as there is another.
   const std::size_t enough_observations = situation.keyframes <= 2 ? 1 : 2;
-  for (const MapPointId id : map.keyframe(reference).frame.map_points)
-    if (const MapPoint* point = map.find_point(id); point && point->observations.size() >= enough_observations)
-      ++situation.reference_points;
+  if (const KeyFrame* keyframe = map.find_keyframe(reference))
+    for (const MapPointId id : keyframe->frame.map_points)
+      if (const MapPoint* point = map.find_point(id); point && point->observations.size() >= enough_observations)
+        ++situation.reference_points;
   const float close = static_cast<float>(settings_.close_depth_factor * frame.camera->baseline);
   for (std::size_t i = 0; i < frame.size(); ++i) {
     if (!frame.has_depth(i) || frame.depth[i] > close) continue;

@@ -452,8 +452,11 @@ bool Tracker::track_local_map(const TrackedView& view, FrameResult& result) {
   return true;
 }
 
-bool Tracker::needs_keyframe(const FrameResult& result) const {
-  KeyframeSituation situation = keyframe_policy_.measure(current_, result.inliers, reference_keyframe_, map_);
+bool Tracker::needs_keyframe(const FrameResult& result) {
+  // Frames that are tracked by the previous one keep their reference, which mapping may have removed since.
+  const bool is_kept = map_.find_keyframe(reference_keyframe_) != nullptr;
+  const KeyFrameId reference = is_kept ? reference_keyframe_ : matcher_.local_map().reference_keyframe();
+  KeyframeSituation situation = keyframe_policy_.measure(current_, result.inliers, reference, map_);
   situation.since_last = current_.timestamp - last_keyframe_time_;
   situation.mask_age = moving_world_.mask_age();
   situation.on_hold = moving_world_.holds_keyframes();

@@ -127,5 +127,12 @@ TEST(KeyframePolicy, MeasuresClosePointsAndEstablishedPoints) {
   }
 }
 
+TEST(KeyframePolicy, AReferenceThatWasRemovedHasNoPoints) {
+  Map map;
+  map.add_observation(map.add_point(Eigen::Vector3d::UnitZ(), 0), map.add_keyframe(frame_with({1.0F})), 0);
+  EXPECT_EQ(KeyframePolicy(TrackingSettings()).measure(frame_with({1.0F}), 50, KeyFrameId(), map).reference_points, 0)
+      << "no keyframe of the map has this id";
+}
+
 }  // namespace
 }  // namespace holdfast

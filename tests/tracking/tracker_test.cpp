@@ -336,7 +336,7 @@ TEST(Tracker, WherePeopleLeaveFewFeaturesMoreAreAskedFor) {
   for (const double most : {2.0, 1.0}) {
     TrackingSettings settings;
     settings.crowd_features = most;
-    Bench bench(settings, true, {}, 5, with_fallback());
+    Bench bench(settings, true);
     bench.walk(0.0, 0.5);
     EXPECT_EQ(bench.extractor.budget, 1.0) << "nobody is there";
     bench.mask_covers = true;

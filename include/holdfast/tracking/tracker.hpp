@@ -145,7 +145,7 @@ class Tracker {
   bool predict_with_reference(FrameResult& result);
   void evaluate_with_pose(const TrackedView& view, FrameResult& result);
   bool track_local_map(const TrackedView& view, FrameResult& result);
-  bool needs_keyframe(const FrameResult& result) const;
+  bool needs_keyframe(const FrameResult& result);
   void end_frame(FrameResult& result);
 
   const TrackingSettings settings_;

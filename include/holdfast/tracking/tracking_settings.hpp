@@ -56,7 +56,7 @@ struct TrackingSettings {
   double descriptor_ratio = 0.8;  ///< best to second best distance, after Lowe 2004
   double strict_distance = 0.0;   ///< of descriptors, of a match without any prediction; 0 = the extractor's
   double loose_distance = 0.0;    ///< of descriptors, of a match near its prediction; 0 = the extractor's
-  double crowd_features = 2.0;    ///< factor on the number of features where people leave few of them, at most; 1 = off
+  double crowd_features = 1.0;    ///< factor on the number of features where people leave few of them, at most; 1 = off
   double crowd_share = 0.8;       ///< share of static features below which there are more of them
   int minimum_inliers = 30;       ///< map points that must agree with a pose
   double maximum_deviation = 0.02;  ///< standard deviation of the position [m]
