@@ -116,10 +116,10 @@ class Tracker {
   bool is_weak_start(const FrameResult& result);
   void begin_map(FrameResult& result);
   bool find_pose(TrackedView& view, FrameResult& result);
-  /// Gives the current frame the features of an earlier one that flow finds in its image. False if it does not, and the
-  /// frame needs features of its own.
   /// How many times the extractor's features are wanted, after the share of static ones in the previous frame.
   double feature_budget() const;
+  /// Gives the current frame the features of an earlier one that flow finds in its image. False if it does not, and the
+  /// frame needs features of its own.
   bool follow_features(const SensorFrame& sensor_frame, FrameResult& result);
   /// The final pose of a frame with followed features. False if they do not determine it, or if the frame should become
   /// a keyframe, which needs features of its own.
