@@ -7,7 +7,8 @@
                                                 first picture in a browser that is open already
   benchmarks/viewer_page.py --cost 4 --run ARGUMENTS
                                                 four interleaved runs each without the viewer, with it, and with a browser in
-                                                addition: time of tracking and of the run, processor time of run and browser
+                                                addition: time of tracking, processor time of the thread that tracks, of the
+                                                viewer's, and of the browser, loading of the page included
 
 Processor times do not depend on what else the machine does; pictures per second and seconds do, so the load is printed, too.
 """
@@ -24,6 +25,7 @@ import signal
 import statistics
 import subprocess
 import tempfile
+import threading
 import time
 
 SOURCE = pathlib.Path(__file__).resolve().parent.parent
@@ -50,11 +52,9 @@ ROOM = """testModel((m) => {
   m.changed.add('all');
 })"""
 DRAW = """(() => {
-  const gl = document.getElementById('map').getContext('webgl2'), pixel = new Uint8Array(4);
   for (let i = 0; i < %d; ++i) {
     holdfastViewer.view.rotate(0.05, 0);
-    holdfastViewer.draw();
-    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+    holdfastViewer.pixel(0, 0);
   }
 })()"""
 
@@ -76,7 +76,7 @@ class Browser:
         program = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
         if program is None:
             raise SystemExit("no chromium, chromium-browser or google-chrome in PATH")
-        options = ["--headless", "--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-first-run",
+        options = ["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run",
                    "--disable-dev-shm-usage", "--disable-background-networking", "--remote-debugging-pipe",
                    "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1", "--window-size=1280,900",
                    f"--user-data-dir={self.profile}"]
@@ -135,6 +135,28 @@ def processor_seconds(process):
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
+class ThreadTimes(threading.Thread):
+    """Processor seconds of the threads of a process by name, as far as they were seen before its end."""
+
+    def __init__(self, process):
+        super().__init__(daemon=True)
+        self.process, self.seconds = process, {}
+        self.start()
+
+    def run(self):
+        while self.process.poll() is None:
+            self.look()
+            time.sleep(0.02)
+
+    def look(self):
+        for folder in pathlib.Path(f"/proc/{self.process.pid}/task").glob("*"):
+            try:
+                name = "tracking" if folder.name == str(self.process.pid) else (folder / "comm").read_text().strip()
+                self.seconds[name] = processor_seconds(f"{self.process.pid}/task/{folder.name}")
+            except OSError:
+                pass  # gone in the meantime
+
+
 def page_without_server(folder):
     """The page with a socket that never answers, and a door to its model."""
 
@@ -189,12 +211,14 @@ def measure_first_picture(browser, program, arguments):
 
 
 def run_once(program, arguments, folder, browser=None, view=False):
-    """Seconds of tracking and of the whole run, processor seconds of the program, and of the browser meanwhile."""
+    """Seconds of tracking, of a frame in the median and of the run; processor seconds of the thread that tracks, of the
+    viewer's, and of the browser meanwhile."""
     command = [program, "run", *arguments, "--output", folder + "/out", "--overwrite"]
     if view:
         command += ["--set", "observers=[{viewer: {wait: %s}}]" % ("true" if browser else "false"), "--view"]
     run = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     before = browser_time = 0.0
+    threads = ThreadTimes(run)
     try:
         for line in run.stdout:
             found = re.search(r"http://\S+token=\w+", line)
@@ -205,22 +229,19 @@ def run_once(program, arguments, folder, browser=None, view=False):
                 break
         if browser:
             browser_time = browser.processor_seconds() - before
-        spent = processor_seconds(run.pid) if view else None
         if view:
+            threads.look()
             run.send_signal(signal.SIGINT)
-        before_end = os.times()
         run.stdout.read()
         run.wait()
-        if spent is None:
-            after = os.times()
-            spent = after.children_user + after.children_system - before_end.children_user - before_end.children_system
         if browser:
             browser.call("Page.navigate", url="about:blank")
     finally:
         run.kill()
         run.wait()
     record = json.loads((pathlib.Path(folder) / "out/run.json").read_text())
-    return record["tracking"]["total_s"], record["tracking"]["median_s"], record["total_s"], spent, browser_time
+    return (record["tracking"]["total_s"], record["tracking"]["median_s"], record["total_s"], threads.seconds["tracking"],
+            threads.seconds.get("viewer", 0.0), browser_time)
 
 
 def measure_cost(browser, program, arguments, folder, count):
@@ -229,10 +250,10 @@ def measure_cost(browser, program, arguments, folder, count):
     for _ in range(count):
         for name, (watching, view) in kinds.items():
             found[name].append(run_once(program, arguments, folder, watching, view))
-    print(f"medians of {count} runs     tracking [s]  a frame [ms]  whole run [s]  processor: run [s]  browser [s]")
+    print(f"medians of {count} runs     tracking [s]  a frame [ms]  run [s]  processor: tracking's thread [s]  viewer's [s]  browser [s]")
     for name, rows in found.items():
-        tracking, frame, whole, own, other = (statistics.median(column) for column in zip(*rows))
-        print(f"{name:22} {tracking:12.2f} {1e3 * frame:13.2f} {whole:14.2f} {own:19.2f} {other:12.2f}")
+        tracking, frame, whole, own, viewer, other = (statistics.median(column) for column in zip(*rows))
+        print(f"{name:22} {tracking:12.2f} {1e3 * frame:13.2f} {whole:8.2f} {own:32.2f} {viewer:13.2f} {other:12.2f}")
 
 
 if __name__ == "__main__":

@@ -87,8 +87,7 @@ class Checker {
     const auto colour = check_list("rgb.txt", "colour", recipe_ ? recipe_->colour : std::nullopt);
     const auto depth = check_list("depth.txt", "depth", recipe_ ? recipe_->depth : std::nullopt);
     for (const ListedImage& image : colour) stamps_.push_back(image.timestamp);
-    check_images(colour, [&](const fs::path& file) { return decoder_.read_colour(file); });
-    check_images(depth, [&](const fs::path& file) { return decoder_.read_depth(file, 5000.0); });
+    check_colour_and_depth(colour, depth);
     if (has_lists && !colour.empty() && !depth.empty())
       attempt([&] { check_pairs(dataset_pairs(folder_, DatasetLayout::tum, max_time_difference).size()); });
     if ((recipe_ && recipe_->has_masks) || is_file(folder_ / "mask.txt")) check_masks(colour);
@@ -110,8 +109,7 @@ class Checker {
       check_presence(icl_list, depth);
       check_ends(icl_list, colour);
       check_ends(icl_list, depth);
-      check_images(colour, [&](const fs::path& file) { return decoder_.read_colour(file); });
-      check_images(depth, [&](const fs::path& file) { return decoder_.read_depth(file, 5000.0); });
+      check_colour_and_depth(colour, depth);
       check_pairs(colour.size());
     });
   }
@@ -149,7 +147,7 @@ class Checker {
       const std::string list = std::string("the ") + side + " camera";
       check_presence(list, images);
       check_ends(list, images);
-      check_images(images, [&](const fs::path& file) { return decoder_.read_grey(file); });
+      check_images(images, [&](const fs::path& file) { decoder_.read_grey(file); });
     };
     check_side(recording.left_size, "left", &ImageFiles::colour, &ImageFiles::colour_listed_at);
     if (recording.has_right)
@@ -204,7 +202,8 @@ class Checker {
 
   /// Looks at the begin and the end of every file: a broken download shows there.
   void check_ends(const std::string& list, const std::vector<ListedImage>& images) {
-    Examples damaged, of_other_size;
+    Examples damaged, of_other_size, too_large;
+    cv::Size expected = size_;
     for (const ListedImage& image : images) {
       const fs::path file = folder_ / image.name;
       if (!is_file(file)) continue;
@@ -219,22 +218,42 @@ class Checker {
       const std::string place = place_of(image);
       if (!problem_of_file.empty()) {
         damaged.add(place + " " + problem_of_file);
-        damaged_.insert(image.name);
-      } else if (size_.width > 0 && (structure.width != size_.width || structure.height != size_.height)) {
-        of_other_size.add(place + " has " + std::to_string(structure.width) + "x" + std::to_string(structure.height) +
-                          " pixels");
+        unusable_.insert(image.name);
+        continue;
       }
+      const cv::Size size(structure.width, structure.height);
+      const std::string has =
+          place + " has " + std::to_string(size.width) + "x" + std::to_string(size.height) + " pixels";
+      if (!structure.has_camera_size()) {
+        too_large.add(has);
+        unusable_.insert(image.name);
+        continue;
+      }
+      if (expected.width == 0) expected = size;
+      if (size == expected) continue;
+      of_other_size.add(has);
+      unusable_.insert(image.name);
     }
     if (damaged.count > 0)
       problem(list + " lists " + counted(damaged.count, "image") + " that " + (damaged.count == 1 ? "is" : "are") +
               " damaged: " + damaged.text() + "; copy or download " + (damaged.count == 1 ? "it" : "them") + " again");
     if (of_other_size.count > 0)
       problem(list + " lists " + counted(of_other_size.count, "image") + " of another size: " + of_other_size.text() +
-              "; expected " + std::to_string(size_.width) + "x" + std::to_string(size_.height) + " " + camera_ +
-              ": is this another recording?");
+              "; expected " + std::to_string(expected.width) + "x" + std::to_string(expected.height) + " " +
+              (size_.width > 0 ? camera_ : "of the list's first image") + ": is this another recording?");
+    if (too_large.count > 0)
+      problem(list + " lists " + counted(too_large.count, "image") + " that " + (too_large.count == 1 ? "is" : "are") +
+              " larger than a camera's: " + too_large.text() + "; expected at most " + ImageStructure::largest() +
+              "; make " + (too_large.count == 1 ? "it" : "them") + " smaller");
   }
 
-  /// Decodes images spread over the whole recording, the first and the last among them.
+  void check_colour_and_depth(const std::vector<ListedImage>& colour, const std::vector<ListedImage>& depth) {
+    check_images(colour, [&](const fs::path& file) { decoder_.read_colour(file); });
+    check_images(depth, [&](const fs::path& file) { decoder_.read_depth(file, 5000.0); });
+  }
+
+  /// Decodes images spread over the whole recording, the first and the last among them, but for those that check_ends()
+  /// has found to be damaged, too large or of another size.
   template <class Decode>
   void check_images(const std::vector<ListedImage>& images, const Decode& decode) {
     constexpr std::size_t sample = 11;
@@ -243,7 +262,7 @@ class Checker {
     for (std::size_t i = 0; i < sample; ++i) chosen.insert(i * (images.size() - 1) / (sample - 1));
     for (const std::size_t i : chosen) {
       const fs::path file = folder_ / images[i].name;
-      if (is_file(file) && !damaged_.contains(images[i].name)) attempt([&] { decode(file); });
+      if (is_file(file) && !unusable_.contains(images[i].name)) attempt([&] { decode(file); });
     }
   }
 
@@ -270,7 +289,7 @@ class Checker {
     if (!masks.empty() && without > 0)
       problem(counted(static_cast<std::size_t>(without), "colour image") +
               " without a mask of the same stamp in mask.txt; every one needs one: compose the sequence again");
-    check_images(masks, [&](const fs::path& file) { return decoder_.read_labels(file); });
+    check_images(masks, [&](const fs::path& file) { decoder_.read_labels(file); });
   }
 
   /// The name of the file with the true poses; of a recording of ICL-NUIM the one that is there, since the recordings
@@ -320,8 +339,8 @@ class Checker {
   std::string camera_;  ///< whose size that is
   DatasetCheck check_;
   ImageDecoder decoder_;
-  std::set<std::string> damaged_;  ///< names of images that are known to be
-  std::vector<double> stamps_;     ///< of the colour images
+  std::set<std::string> unusable_;  ///< names of images that are damaged, too large or of another size
+  std::vector<double> stamps_;      ///< of the colour images
 };
 
 }  // namespace

@@ -133,7 +133,7 @@ std::optional<RecordedSequence> recorded_sequence(const MatrixSequence& sequence
                                                   "' needs 'camera', because external systems get a settings file for "
                                                   "it; expected a known name, numbers, or auto"});
   else if (sequence.camera->kind == ConfigurationNode::Kind::scalar && sequence.camera->text == "auto") {
-    if (!camera_by_folder) return std::nullopt;  // what is wrong was said where the name of the folder was read
+    if (!camera_by_folder) return std::nullopt;  // the plan has said that it is unknown
     recorded.camera = *camera_by_folder;
   } else if (const auto camera = read_camera(*sequence.camera, diagnostics))
     recorded.camera = *camera;

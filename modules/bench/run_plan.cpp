@@ -298,6 +298,7 @@ class Planner {
     std::optional<Configuration> configuration = configurations_->build(values, on);
     check_overridden_modules();
     if (!configuration) return;
+    check_camera(on, *configuration);
     if (const auto missing = missing_data(on, *configuration, registry_)) plan_.missing.push_back(*missing);
     for (const std::uint64_t seed : matrix().seeds)
       for (int repeat = 1; repeat <= matrix().repeats; ++repeat) {
@@ -360,6 +361,12 @@ class Planner {
     return value.overrides.empty() && !value.configuration ? nullptr : &value;
   }
 
+  /// A recording in TUM layout does not know its camera; other sources are asked when a run opens them.
+  void check_camera(const MatrixSequence& sequence, const Configuration& configuration) {
+    if (!configuration.unknown_camera || configuration.camera || !has_tum_layout(sequence)) return;
+    complain(configuration.unknown_camera->location, configuration.unknown_camera->message);
+  }
+
   static bool has_tum_layout(const MatrixSequence& sequence) { return sequence.source.find("tum") != nullptr; }
 
   /// Of frames that a system gets as they were recorded.
@@ -370,6 +377,7 @@ class Planner {
     std::optional<RecordedSequence>& recording = plan_.recordings[sequence];
     if (!recording) {
       const auto configuration = configurations_->build_recording(on, nullptr);
+      if (configuration) check_camera(on, *configuration);
       recording =
           recorded_sequence(on, registry_, configuration ? configuration->camera : std::nullopt, found_, plan_.missing);
     }

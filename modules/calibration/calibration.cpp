@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "calibration_problem.hpp"
+#include "holdfast/core/counted.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/median.hpp"
 
@@ -159,8 +160,8 @@ Calibration calibrate(const std::vector<BoardView>& views, const CalibrationBoar
   for (const BoardView& view : views)
     if (view.corners.size() >= fewest_corners) result.views.emplace_back().view = view;
   if (result.views.size() < fewest_views)
-    throw Error("found " + std::to_string(result.views.size()) +
-                " views with six corners or more; expected at least 3, better 20, from different sides");
+    throw Error("found " + counted(result.views.size(), "view") +
+                " with six corners or more; expected at least 3, better 20, from different sides");
   constexpr int most_rounds = 4;
   for (int round = 0;; ++round) {
     const CalibrationProblem problem = solve(result.views, board, width, height, options);

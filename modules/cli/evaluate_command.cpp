@@ -37,9 +37,9 @@ struct EvaluateArguments {
 
 constexpr const char* explanation = R"(
 Trajectories are in one of these formats, which --format auto recognises; '#' begins a comment:
-  tum        timestamp tx ty tz qx qy qz qw; seconds and metres
+  tum        timestamp tx ty tz qx qy qz qw, separated by blanks; seconds and metres
   kitti      12 numbers, the rows of T_world_camera; stamps from --times, else ten poses a second
-  euroc      timestamp, tx, ty, tz, qw, qx, qy, qz, ...; nanoseconds and metres
+  euroc      timestamp, tx, ty, tz, qw, qx, qy, qz, ..., with commas; nanoseconds and metres
 
 Definitions
   pairing    stamps one-to-one, the nearest first, closer than --max-dt

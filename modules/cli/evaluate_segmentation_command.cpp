@@ -59,6 +59,8 @@ Definitions
   accuracy   correctly labelled pixels / true pixels
   detected   of the images that show the class, those where its IoU is above 0.5
   boundary   IoU of the outlines, 2 % of the image's diagonal wide (person only)
+  calibr.    mean difference between the confidence of pixels found to be of the class and the share of
+             them that are; of a segmenter with confidence
 
 Examples
   holdfast evaluate-segmentation --labels masks --label-map '{1-254: person}' --predictions out/labels
@@ -130,7 +132,8 @@ Outcome compare(const Arguments& arguments, const std::map<std::string, fs::path
   Progress progress(pairs.size(), arguments.quiet);
   for (std::size_t i = 0; i < pairs.size() && !interrupted(); i += arguments.every) {
     const cv::Mat truth = labels.read(pairs[i].labels);
-    evaluator.add(truth, found_of(pairs[i].other, truth));
+    const Segmentation found = found_of(pairs[i].other, truth);
+    evaluator.add(truth, found.labels, found.confidence);
     progress.update(i + 1);
   }
   return {evaluator.result(), {}};
@@ -142,7 +145,7 @@ Outcome compare_folders(const Arguments& arguments) {
   return compare(arguments, predictions.files(), labels, [&](const fs::path& file, const cv::Mat& truth) {
     const cv::Mat found = predictions.read(file);
     require_same_size(file, found.size(), truth.size());
-    return translated(found, predictions.classes(), labels.classes());
+    return Segmentation{translated(found, predictions.classes(), labels.classes()), {}};
   });
 }
 
@@ -161,7 +164,7 @@ Outcome segment_images(const Arguments& arguments, const Configuration& configur
     const Segmentation found = segmenter->segment(frame);
     seconds += watch.seconds();
     if (found.empty()) throw InputError({file.string()}, "the segmenter has nothing for this image");
-    return translated(found.labels, segmenter->classes(), labels.classes());
+    return Segmentation{translated(found.labels, segmenter->classes(), labels.classes()), found.confidence};
   });
   outcome.seconds_per_image = seconds / static_cast<double>(outcome.evaluation.images);
   return outcome;
@@ -191,7 +194,7 @@ Outcome segment_source(const Arguments& arguments, const Configuration& configur
       seconds += watch.seconds();
       if (!found.empty())
         evaluator.add(translated(frame->truth->class_labels, known, classes),
-                      translated(found.labels, built.segmenter->classes(), classes));
+                      translated(found.labels, built.segmenter->classes(), classes), found.confidence);
     }
     progress.update(done);
   }

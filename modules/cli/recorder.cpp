@@ -29,7 +29,12 @@ Configuration on_recording(const Configuration& original, const Registry& regist
   for (const Parameter& parameter : tum->parameters) result.source.values[parameter.name] = parameter.default_value;
   result.source.values["path"] = std::string(".");
   result.source.values["associations"] = std::string("associations.txt");
-  result.camera = original.camera ? perturbed_camera(*original.camera, perturbation, original.run.seed) : source.camera;
+  const bool source_precedes = original.unknown_camera.has_value();
+  if (original.camera && !(source_precedes && source.camera))
+    result.camera = perturbed_camera(*original.camera, perturbation, original.run.seed);
+  else
+    result.camera = source.camera;
+  result.unknown_camera.reset();
   return result;
 }
 

@@ -137,6 +137,10 @@ void read_map_of(const fs::path& file, FoundResults& found) {
   const std::vector<KeyFrameId> keyframes = map.keyframes_by_age();
   if (!keyframes.empty()) found.run.camera = *map.keyframe(keyframes.front()).frame.camera;
   found.map = make_snapshot(map);
+  found.class_names = map.classes();
+  map.points().for_each([&](MapPointId id, const MapPoint& point) {
+    if (point.label != CellMask::unknown) found.classes.push_back({id, point.label});
+  });
 }
 
 FoundResults find_in_folder(const fs::path& folder) {

@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "holdfast/core/map_snapshot.hpp"
 #include "holdfast/run/run_record.hpp"
@@ -17,6 +19,8 @@ ViewedRun viewed_run(const RunRecord& record);
 struct FoundResults {
   ViewedRun run;
   std::optional<MapSnapshot> map;
+  std::vector<std::string> class_names;  ///< empty = the map has no classes
+  std::vector<ViewedClass> classes;      ///< of points whose class is known
 };
 
 /// Reads the results of a run from its folder, as far as they are there, or a map file. The truth comes from

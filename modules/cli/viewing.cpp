@@ -56,6 +56,10 @@ void show_results_until_stopped(const std::filesystem::path& results, const std:
   FoundResults found = find_results(results);
   const std::shared_ptr<Viewer> viewer =
       Viewer::start({.listen = listen, .port = port, .title = found.run.title, .camera = found.run.camera});
+  if (!found.class_names.empty()) {
+    viewer->set_classes(std::move(found.class_names));
+    viewer->add_point_classes(std::move(found.classes));
+  }
   if (found.map) viewer->set_map(std::move(*found.map), 0.0);
   viewer->set_run(std::move(found.run));
   print_addresses({viewer});

@@ -293,12 +293,14 @@ class Resolver {
     const std::string folder = source_folder();
     const std::optional<std::string> named = camera_of_recording(folder);
     if (node.kind == Kind::scalar && node.text == "auto") {
-      if (named)
-        result_.camera = find_camera(*named);
-      else if (!folder.empty())  // a source without a folder may know its camera
-        complain(node.location, "found 'auto' for 'camera', but the name of the folder '" + folder +
-                                    "' says none; expected one such as rgbd_dataset_freiburg1_xyz or rgbd_bonn_crowd; "
-                                    "give 'camera' a name or numbers");
+      if (named) result_.camera = find_camera(*named);
+      const std::string known_by_name = folder.empty()
+                                            ? ""
+                                            : ", and the name of the folder '" + folder +
+                                                  "' says none, as rgbd_dataset_freiburg1_xyz or rgbd_bonn_crowd would";
+      result_.unknown_camera =
+          Diagnostic{node.location, "found 'auto' for 'camera', but the source '" + result_.source.name +
+                                        "' does not know its own" + known_by_name + "; expected a name or numbers"};
       return;
     }
     result_.camera = holdfast::read_camera(node, diagnostics_);

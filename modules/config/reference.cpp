@@ -46,7 +46,7 @@ std::vector<Entry> all_entries(const Registry& registry, const std::vector<Secti
   for (const std::string& camera : camera_names()) cameras += (cameras.empty() ? "" : ", ") + camera;
   add_section("camera",
               "The camera: one of the names " + cameras +
-                  ", or by numbers; auto = the one that the name of the source's folder says, such as "
+                  ", or by numbers; auto = the source's own, else the one that the name of its folder says, such as "
                   "rgbd_dataset_freiburg1_xyz or rgbd_bonn_crowd.",
               ParameterTable<CameraSettings>().parameters());
   const auto add_sections = [&](bool plain) {

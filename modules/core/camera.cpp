@@ -139,12 +139,13 @@ namespace {
 /// there.
 constexpr double kinect_readout = 0.026;
 
-const std::array<Camera, 7>& known_cameras() {
+const std::array<Camera, 10>& known_cameras() {
   // TUM: https://cvg.cit.tum.de/data/datasets/rgbd-dataset/file_formats (colour camera of each freiburg setup).
   // Bonn: https://www.ipb.uni-bonn.de/data/rgbd-dynamic-dataset (colour camera). ICL-NUIM: Handa et al., ICRA 2014, who
   // give fy as -480 because the y axis of their renderer points up; here y points down. EuRoC: Burri et al., IJRR 2016,
-  // mav0/cam0/sensor.yaml of every sequence, and the distance of the two cameras.
-  static const std::array<Camera, 7> cameras = {{
+  // mav0/cam0/sensor.yaml of every sequence, and the distance of the two cameras. KITTI: Geiger et al., CVPR 2012,
+  // calib.txt of the odometry sequences 00 to 02, 03, and 04 to 12, rectified grey pair.
+  static const std::array<Camera, 10> cameras = {{
       {"bonn",
        640,
        480,
@@ -168,6 +169,9 @@ const std::array<Camera, 7>& known_cameras() {
        20.0},
       {"icl_nuim", 640, 480, 481.20, 480.00, 319.50, 239.50, {}, 0.08, 30.0},
       {"kinect2", 960, 540, 540.686, 540.686, 479.75, 269.75, {}, 0.08, 30.0},
+      {"kitti_00", 1241, 376, 718.856, 718.856, 607.1928, 185.2157, {}, 386.1448 / 718.856, 10.0},
+      {"kitti_03", 1242, 375, 721.5377, 721.5377, 609.5593, 172.854, {}, 387.5744 / 721.5377, 10.0},
+      {"kitti_04", 1226, 370, 707.0912, 707.0912, 601.8873, 183.1104, {}, 379.8145 / 707.0912, 10.0},
       {"tum_fr1",
        640,
        480,

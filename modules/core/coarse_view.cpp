@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/sensor_frame.hpp"
 
 namespace holdfast {
 
@@ -37,21 +38,25 @@ void CoarseSampler::sample_depth(const cv::Mat& depth, CoarseView& view) const {
   if (depth.empty()) return;
   HOLDFAST_CHECK(depth.type() == CV_32FC1 && depth.cols == width_ && depth.rows == height_,
                  depth.cols << "x" << depth.rows << ", type " << depth.type());
+  const cv::Mat continuous = depth.isContinuous() ? depth : depth.clone();
+  const float* values = continuous.ptr<float>();
+  // Where depths are missing, mispredicted branches keep the processor from loading ahead by itself.
+  constexpr std::size_t ahead = 40;
   for (std::size_t i = 0; i < raw_.size(); ++i) {
+    if (i + ahead < raw_.size()) __builtin_prefetch(values + std::max(raw_[i + ahead], 0));
     if (raw_[i] < 0) continue;
-    const int x = raw_[i] % width_, y = raw_[i] / width_;
-    const auto value_at = [&](int column, int row) {
-      if (column < 0 || row < 0 || column >= width_ || row >= height_) return 0.0F;
-      const float value = depth.ptr<float>(row)[column];
-      return value > 0.0F && std::isfinite(value) ? value : 0.0F;
-    };
-    float value = value_at(x, y);
-    for (const auto& [dx, dy] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
-      if (value > 0.0F) break;
-      value = value_at(x + dx, y + dy);
-    }
-    view.depth[i] = value;
+    const float value = values[raw_[i]];
+    view.depth[i] = is_measured_depth(value) ? value : measured_beside(values, raw_[i]);
   }
+}
+
+float CoarseSampler::measured_beside(const float* depth, std::int32_t pixel) const {
+  const int x = pixel % width_, y = pixel / width_;
+  if (x > 0 && is_measured_depth(depth[pixel - 1])) return depth[pixel - 1];
+  if (x + 1 < width_ && is_measured_depth(depth[pixel + 1])) return depth[pixel + 1];
+  if (y > 0 && is_measured_depth(depth[pixel - width_])) return depth[pixel - width_];
+  if (y + 1 < height_ && is_measured_depth(depth[pixel + width_])) return depth[pixel + width_];
+  return 0.0F;
 }
 
 void CoarseSampler::sample_labels(const cv::Mat& labels, std::uint8_t outside, std::vector<std::uint8_t>& cells) const {
@@ -65,13 +70,21 @@ void CoarseSampler::sample_labels(const cv::Mat& labels, std::uint8_t outside, s
 cv::Mat CoarseSampler::pixels_of(const std::vector<std::uint8_t>& marked) const {
   constexpr int half = CoarseGrid::step / 2;
   cv::Mat pixels;
+  const auto is_marked = [&](std::size_t cell) { return marked[cell] != 0 && raw_[cell] >= 0; };
   for (std::size_t i = 0; i < marked.size(); ++i) {
-    if (marked[i] == 0 || raw_[i] < 0) continue;
+    if (!is_marked(i)) continue;
     if (pixels.empty()) pixels = cv::Mat::zeros(height_, width_, CV_8UC1);
-    const int x = raw_[i] % width_, y = raw_[i] / width_;
+    // The squares of cells beside each other are filled together where they meet in one row of the image.
+    const int y = raw_[i] / width_, first = raw_[i] - y * width_;
+    int last = first;
+    for (; i + 1 < marked.size() && is_marked(i + 1); ++i) {
+      const int next = raw_[i + 1] - y * width_;
+      if (next < last || next > std::min(last + 2 * half + 1, width_ - 1)) break;
+      last = next;
+    }
+    const int left = std::max(0, first - half), width = std::min(width_ - 1, last + half) - left + 1;
     for (int row = std::max(0, y - half); row <= std::min(height_ - 1, y + half); ++row)
-      std::fill_n(pixels.ptr<std::uint8_t>(row) + std::max(0, x - half),
-                  std::min(width_ - 1, x + half) - std::max(0, x - half) + 1, std::uint8_t{255});
+      std::fill_n(pixels.ptr<std::uint8_t>(row) + left, width, std::uint8_t{255});
   }
   return pixels;
 }

@@ -3,11 +3,36 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "holdfast/core/descriptor_distance.hpp"
 
 namespace holdfast {
+
+namespace {
+
+/// Index of the descriptor with the smallest median distance to all, itself included; the first of equal ones.
+std::size_t find_central(const DescriptorBlock& descriptors) {
+  const std::size_t count = descriptors.size();
+  std::vector<std::uint32_t> candidates(count);
+  std::iota(candidates.begin(), candidates.end(), 0U);
+  std::size_t best = 0;
+  float best_median = std::numeric_limits<float>::infinity();
+  std::vector<float> distances(count * count, 0.0F), row(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    float* of_this = &distances[i * count];
+    descriptor_distances(descriptors, i, descriptors, std::span(candidates).subspan(i + 1), of_this + i + 1);
+    for (std::size_t j = 0; j < i; ++j) of_this[j] = distances[j * count + i];
+    row.assign(of_this, of_this + count);
+    const auto middle = row.begin() + static_cast<std::ptrdiff_t>((count - 1) / 2);
+    std::nth_element(row.begin(), middle, row.end());
+    if (*middle < best_median) best_median = *middle, best = i;
+  }
+  return best;
+}
+
+}  // namespace
 
 KeyFrameId Map::add_keyframe(Frame frame) {
   const KeyFrameId id = keyframes_.emplace();
@@ -70,30 +95,18 @@ void Map::update_point(MapPointId point_id) {
   MapPoint& point = points_.at(point_id);
   update_point_geometry(point_id);
 
-  // The descriptor with the smallest median distance to all others represents the point.
-  const std::size_t count = point.observations.size();
-  DescriptorBlock descriptors(keyframes_.at(point.observations[0].keyframe).frame.features.descriptors.type());
-  descriptors.reserve(count);
-  std::vector<std::uint32_t> candidates(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Observation& observation = point.observations[i];
-    descriptors.append(keyframes_.at(observation.keyframe).frame.features.descriptors, observation.feature);
-    candidates[i] = static_cast<std::uint32_t>(i);
-  }
-  std::size_t best = 0;
-  float best_median = std::numeric_limits<float>::infinity();
-  std::vector<float> distances(count * count, 0.0F), row(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    float* of_this = &distances[i * count];
-    descriptor_distances(descriptors, i, descriptors, std::span(candidates).subspan(i + 1), of_this + i + 1);
-    for (std::size_t j = 0; j < i; ++j) of_this[j] = distances[j * count + i];
-    row.assign(of_this, of_this + count);
-    const auto middle = row.begin() + static_cast<std::ptrdiff_t>((count - 1) / 2);
-    std::nth_element(row.begin(), middle, row.end());
-    if (*middle < best_median) best_median = *middle, best = i;
-  }
+  const auto descriptors_of = [&](const Observation& observation) -> const DescriptorBlock& {
+    return keyframes_.at(observation.keyframe).frame.features.descriptors;
+  };
+  const Observation& first = point.observations[0];
   point.descriptor.clear();
-  point.descriptor.append(descriptors, best);
+  // The median of one or two distances is the 0 between a descriptor and itself.
+  if (point.observations.size() <= 2) return point.descriptor.append(descriptors_of(first), first.feature);
+  DescriptorBlock descriptors(descriptors_of(first).type());
+  descriptors.reserve(point.observations.size());
+  for (const Observation& observation : point.observations)
+    descriptors.append(descriptors_of(observation), observation.feature);
+  point.descriptor.append(descriptors, find_central(descriptors));
 }
 
 void Map::update_point_geometry(MapPointId point_id) {
@@ -133,6 +146,7 @@ void Map::fuse_points(MapPointId from_id, MapPointId to_id) {
   MapPoint& to = points_.at(to_id);
   to.visible_count += from.visible_count;
   to.found_count += from.found_count;
+  if (to.label == CellMask::unknown) to.label = from.label;
   to.static_log_odds = std::clamp(to.static_log_odds + from.static_log_odds, -evidence_limit_, evidence_limit_);
   points_.erase(from_id);
   update_point(to_id);
@@ -151,6 +165,7 @@ void Map::remove_all() {
   for (const KeyFrameId id : keyframes_.ids()) keyframes_.erase(id);
   removed_keyframes_.clear();
   next_sequence_ = 0;
+  last_piece_ = 0;
   ++version_;
 }
 
@@ -159,6 +174,7 @@ void Map::clear() {
   points_.clear();
   removed_keyframes_.clear();
   next_sequence_ = 0;
+  last_piece_ = 0;
   sensor_ = Sensor::rgbd;
   ++version_;
 }

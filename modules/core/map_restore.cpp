@@ -209,6 +209,7 @@ void Map::restore(MapContent content) {
   next_sequence_ = content.next_sequence;
   sensor_ = content.sensor;
   features_ = std::move(content.features);
+  classes_ = std::move(content.classes);
   version_ = version + 1;
 }
 

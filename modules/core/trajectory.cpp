@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "holdfast/core/counted.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/text_file.hpp"
 
@@ -15,13 +16,16 @@ namespace holdfast {
 
 namespace {
 
-/// The words of a line, separated by blanks or commas; '#' begins a comment.
+/// The words of a line, separated by blanks or commas; '#' begins a comment. A column with nothing between its commas
+/// is an empty word.
 void split(std::string_view line, std::vector<std::string_view>& words) {
   words.clear();
   line = line.substr(0, line.find('#'));
   while (true) {
     const std::size_t begin = line.find_first_not_of(" \t\r,");
     if (begin == std::string_view::npos) return;
+    const auto commas = std::count(line.begin(), line.begin() + static_cast<std::ptrdiff_t>(begin), ',');
+    for (auto i = words.empty() ? 0 : 1; i < commas; ++i) words.emplace_back();
     const std::size_t end = std::min(line.find_first_of(" \t\r,", begin), line.size());
     words.push_back(line.substr(begin, end - begin));
     line.remove_prefix(end);
@@ -32,7 +36,7 @@ void split(std::string_view line, std::vector<std::string_view>& words) {
 bool parse_numbers(const std::vector<std::string_view>& words, std::vector<double>& numbers) {
   numbers.clear();
   for (std::string_view word : words) {
-    if (word.front() == '+') word.remove_prefix(1);
+    if (word.starts_with('+')) word.remove_prefix(1);
     double value = 0.0;
     const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (error != std::errc() || stop != word.data() + word.size()) return false;
@@ -43,6 +47,32 @@ bool parse_numbers(const std::vector<std::string_view>& words, std::vector<doubl
 
 /// No clock has counted so many seconds.
 bool is_in_nanoseconds(double stamp) { return std::isfinite(stamp) && stamp >= 1e14; }
+
+/// Whether a comment names the columns of a pose with the quaternion's real part before the others ("qw qx qy qz",
+/// "q_w [],q_x []", "q_RS_w").
+bool names_real_part_first(std::string_view comment) {
+  const auto first_of = [&](std::initializer_list<std::string_view> names) {
+    std::size_t first = std::string_view::npos;
+    for (const std::string_view name : names) first = std::min(first, comment.find(name));
+    return first;
+  };
+  const std::size_t real = first_of({"qw", "q_w", "q_RS_w"}), imaginary = first_of({"qx", "q_x", "q_RS_x"});
+  return real != std::string_view::npos && imaginary != std::string_view::npos && real < imaginary;
+}
+
+/// Why eight numbers may be no pose in the format whose stamps they have, although they can be read as one: the place
+/// of the quaternion's real part is a matter of the format, and a wrong one is not seen in the numbers.
+std::string doubt(TrajectoryFormat format, bool has_commas, bool real_part_first) {
+  if (format == TrajectoryFormat::tum && has_commas)
+    return "numbers are separated by commas, as in EuRoC's format, where the quaternion begins with qw, but its stamps "
+           "are in nanoseconds; where it ends with qw, replace the commas by blanks";
+  if (format == TrajectoryFormat::tum && real_part_first)
+    return "a comment above says that the quaternion begins with qw";
+  if (format == TrajectoryFormat::euroc && !has_commas && !real_part_first)
+    return "stamps are in nanoseconds, as in EuRoC's format, but without its commas; ORB-SLAM3 writes such files, with "
+           "qw at the end: divide their stamps by 1e9";
+  return {};
+}
 
 /// The format that a line looks like; nothing for none that is known.
 /// `in_nanoseconds`: a comment of the file says so.
@@ -59,11 +89,11 @@ const char* description(TrajectoryFormat format) {
     case TrajectoryFormat::kitti:
       return "KITTI's format (12 numbers of a matrix, without a stamp)";
     case TrajectoryFormat::euroc:
-      return "EuRoC's format (stamps in nanoseconds, then tx ty tz qw qx qy qz)";
+      return "EuRoC's format (stamps in nanoseconds, then tx ty tz qw qx qy qz, separated by commas)";
     case TrajectoryFormat::tum:
       break;
   }
-  return "TUM format (t tx ty tz qx qy qz qw, t in seconds)";
+  return "TUM format (t tx ty tz qx qy qz qw, t in seconds, separated by blanks)";
 }
 
 /// The pose that the numbers of a line say; the stamp of KITTI's is the caller's. Its rotation may be zero.
@@ -149,10 +179,11 @@ TrajectoryFile read_trajectory_file(const std::filesystem::path& file, const Tra
   std::optional<TrajectoryFormat> format = reading.format;
   constexpr double kitti_interval = 0.1;  // s
   std::size_t pose_number = 0;
-  bool in_nanoseconds = reading.format == TrajectoryFormat::euroc;
+  bool in_nanoseconds = reading.format == TrajectoryFormat::euroc, real_part_first = in_nanoseconds;
   for (int line_number = 1; std::getline(stream, line); ++line_number) {
     // The header of EuRoC's files; stamps that begin at 0 look like seconds.
     if (line.starts_with('#') && line.find("[ns]") != std::string::npos) in_nanoseconds = true;
+    if (line.starts_with('#') && names_real_part_first(line)) real_part_first = true;
     split(line, words);
     if (words.empty()) continue;
     const bool parsed = parse_numbers(words, numbers);
@@ -160,9 +191,14 @@ TrajectoryFile read_trajectory_file(const std::filesystem::path& file, const Tra
     if (!format) format = found;
     if (!found || found != format)
       throw InputError({file.string(), line_number},
-                       "found " + std::to_string(words.size()) + " columns, '" + line.substr(0, 60) + "'" +
+                       "found " + counted(words.size(), "column") + ", '" + line.substr(0, 60) + "'" +
                            (found ? std::string("; it looks like ") + description(*found) : "") + "; expected " +
                            description(format.value_or(TrajectoryFormat::tum)) + "; convert the file");
+    const std::string_view content = std::string_view(line).substr(0, line.find('#'));
+    if (const std::string reason = doubt(*format, content.find(',') != std::string_view::npos, real_part_first);
+        !reason.empty())
+      throw InputError({file.string(), line_number}, "found '" + line.substr(0, 60) + "': " + reason + "; expected " +
+                                                         description(*format) + "; convert the file");
     result.format = *format;
     const auto [position, rotation] = pose_of(numbers, *format);
     const std::size_t number = pose_number++;
@@ -189,7 +225,7 @@ TrajectoryFile read_trajectory_file(const std::filesystem::path& file, const Tra
   }
   if (stream.bad()) throw InputError({file.string()}, "reading stopped before the end; is the disk in order?");
   if (result.format == TrajectoryFormat::kitti && !reading.stamps.empty() && pose_number != reading.stamps.size())
-    throw InputError({file.string()}, "found " + std::to_string(pose_number) + " poses for " +
+    throw InputError({file.string()}, "found " + counted(pose_number, "pose") + " for " +
                                           std::to_string(reading.stamps.size()) +
                                           " time stamps; expected one stamp for each pose");
   const std::size_t count = trajectory.size();

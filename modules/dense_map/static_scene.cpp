@@ -50,6 +50,10 @@ void StaticScene::make_room() {
   views_.erase(views_.begin() + static_cast<std::ptrdiff_t>(least));
 }
 
+void StaticScene::forget_removed(const Map& map) {
+  std::erase_if(views_, [&](const KeptView& view) { return !map.piece_of(view.keyframe); });
+}
+
 std::vector<CloudPoint> StaticScene::cloud(const Map& map) const {
   dense_map::VoxelGrid grid = dense_map::fuse(*this, dense_map::poses_of(*this, map), settings_.minimum_views);
   std::vector<dense_map::Voxel>& voxels = grid.voxels();

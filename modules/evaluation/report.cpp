@@ -29,7 +29,7 @@ std::string element(const std::string& tag, const std::string& text) {
 std::string to_html(const ReportTable& table) {
   HOLDFAST_CHECK(table.bars.empty() || table.bars.size() == table.rows.size(),
                  "table '" << table.caption << "' bars " << table.bars.size() << " rows " << table.rows.size());
-  std::string html = "<table>\n";
+  std::string html = "<div class=\"scroll\"><table>\n";
   if (!table.caption.empty()) html += element("caption", table.caption) + '\n';
   html += "<thead><tr>";
   for (const std::string& name : table.header) html += element("th scope=\"col\"", name);
@@ -47,7 +47,7 @@ std::string to_html(const ReportTable& table) {
     }
     html += "</tr>\n";
   }
-  return html + "</tbody>\n</table>\n";
+  return html + "</tbody>\n</table></div>\n";
 }
 
 std::string lines_of(const std::vector<std::string>& texts) {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/evaluation/run_summary.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
+#include <string_view>
 
 namespace holdfast {
 
@@ -58,6 +61,16 @@ StageRow row_of(const std::string& name, const DurationRecord& seconds) {
 }
 }  // namespace
 
+namespace {
+/// The place of a stage's part in the pipeline. A stage outside of tracking is called by its part.
+int part_of(std::string_view stage) {
+  constexpr std::array<std::string_view, 4> parts{"segmentation", "mapping: ", "loops: ", "dense map: "};
+  const auto* const found =
+      std::find_if(parts.begin(), parts.end(), [&](std::string_view part) { return stage.starts_with(part); });
+  return found == parts.end() ? 0 : static_cast<int>(found - parts.begin()) + 1;
+}
+}  // namespace
+
 std::vector<StageRow> RunSummary::stages() const {
   std::vector<StageRow> rows;
   double total = 0.0;
@@ -65,6 +78,8 @@ std::vector<StageRow> RunSummary::stages() const {
     rows.push_back(row_of(known.name, known.seconds));
     total += rows.back().total;
   }
+  std::stable_sort(rows.begin(), rows.end(),
+                   [](const StageRow& a, const StageRow& b) { return part_of(a.stage) < part_of(b.stage); });
   for (StageRow& row : rows) row.share = total > 0.0 ? row.total / total : 0.0;
   return rows;
 }

@@ -69,7 +69,34 @@ void compare_outlines(const cv::Mat& labels, const cv::Mat& predictions, std::ui
     }
 }
 
+void add_confidence(const cv::Mat& labels, const cv::Mat& predictions, const cv::Mat& confidence,
+                    std::vector<ClassEvaluation>& classes) {
+  for (ClassEvaluation& one : classes) one.confidence_bins.resize(confidence_bin_count);
+  for (int y = 0; y < labels.rows; ++y) {
+    const auto* label = labels.ptr<std::uint8_t>(y);
+    const auto* prediction = predictions.ptr<std::uint8_t>(y);
+    const auto* certainty = confidence.ptr<std::uint8_t>(y);
+    for (int x = 0; x < labels.cols; ++x) {
+      if (label[x] == unknown || prediction[x] == unknown) continue;
+      ConfidenceBin& bin = classes[prediction[x]].confidence_bins[certainty[x] * confidence_bin_count / 256];
+      ++bin.pixels;
+      bin.correct += label[x] == prediction[x];
+      bin.confidence += certainty[x] / 255.0;
+    }
+  }
+}
+
 }  // namespace
+
+double ClassEvaluation::calibration_error() const {
+  double difference = 0.0;
+  std::uint64_t pixels = 0;
+  for (const ConfidenceBin& bin : confidence_bins) {
+    difference += std::abs(bin.confidence - static_cast<double>(bin.correct));
+    pixels += bin.pixels;
+  }
+  return pixels == 0 ? std::numeric_limits<double>::quiet_NaN() : difference / static_cast<double>(pixels);
+}
 
 double ClassEvaluation::iou() const { return ratio(both, true_pixels + found_pixels - both); }
 double ClassEvaluation::accuracy() const { return ratio(both, true_pixels); }
@@ -99,10 +126,13 @@ SegmentationEvaluator::SegmentationEvaluator(std::vector<std::string> classes, c
   for (std::string& name : classes) result_.classes.push_back({.name = std::move(name)});
 }
 
-void SegmentationEvaluator::add(const cv::Mat& labels, const cv::Mat& predictions) {
+void SegmentationEvaluator::add(const cv::Mat& labels, const cv::Mat& predictions, const cv::Mat& confidence) {
   HOLDFAST_CHECK(labels.type() == CV_8UC1 && predictions.type() == CV_8UC1 && labels.size() == predictions.size(),
                  "labels " << labels.type() << ' ' << labels.cols << 'x' << labels.rows << " predictions "
                            << predictions.type() << ' ' << predictions.cols << 'x' << predictions.rows);
+  HOLDFAST_CHECK(confidence.empty() || (confidence.type() == CV_8UC1 && confidence.size() == labels.size()),
+                 "confidence " << confidence.type() << ' ' << confidence.cols << 'x' << confidence.rows << " labels "
+                               << labels.cols << 'x' << labels.rows);
   std::vector<std::uint64_t> pairs(256 * 256);
   for (int y = 0; y < labels.rows; ++y) {
     const auto* label = labels.ptr<std::uint8_t>(y);
@@ -134,6 +164,7 @@ void SegmentationEvaluator::add(const cv::Mat& labels, const cv::Mat& prediction
     ++sum.images;
     sum.detected += image.iou() > detection_threshold;
   }
+  if (!confidence.empty()) add_confidence(labels, predictions, confidence, result_.classes);
   if (outlined_ < count && here[outlined_].true_pixels + here[outlined_].found_pixels > 0)
     compare_outlines(labels, predictions, static_cast<std::uint8_t>(outlined_), result_.classes[outlined_]);
 }

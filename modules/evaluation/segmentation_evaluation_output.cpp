@@ -17,6 +17,23 @@ std::string left(const std::string& text, std::size_t width) {
 }
 std::string percent(double share) { return std::isnan(share) ? "-" : fixed_text(100.0 * share, 2); }
 
+using Json = nlohmann::ordered_json;
+
+/// Reliability diagram of a class; intervals without pixels are left out.
+Json reliability(const ClassEvaluation& one) {
+  Json bins = Json::array();
+  for (std::size_t i = 0; i < one.confidence_bins.size(); ++i) {
+    const ConfidenceBin& bin = one.confidence_bins[i];
+    if (bin.pixels == 0) continue;
+    const auto pixels = static_cast<double>(bin.pixels);
+    bins.push_back({{"from", static_cast<double>(i) / confidence_bin_count},
+                    {"pixels", bin.pixels},
+                    {"confidence", bin.confidence / pixels},
+                    {"correct", static_cast<double>(bin.correct) / pixels}});
+  }
+  return bins;
+}
+
 }  // namespace
 
 std::string to_text(const SegmentationEvaluation& evaluation) {
@@ -26,22 +43,24 @@ std::string to_text(const SegmentationEvaluation& evaluation) {
     for (const std::string& cell : cells) line += right(cell, width);
     return line + '\n';
   };
-  std::string text =
-      row("", {"IoU [%]", "accuracy [%]", "detected [%]", "boundary [%]", "false [%]", "images", "pixels [%]"});
+  std::string text = row("", {"IoU [%]", "accuracy [%]", "detected [%]", "boundary [%]", "calibr. [%]", "false [%]",
+                              "images", "pixels [%]"});
   const auto known = static_cast<double>(evaluation.known_pixels);
   for (const ClassEvaluation& one : evaluation.classes)
     text += row(one.name, {percent(one.iou()), percent(one.accuracy()), percent(one.detection_rate()),
-                           percent(one.boundary_iou()), percent(static_cast<double>(one.false_pixels()) / known),
-                           std::to_string(one.images), percent(static_cast<double>(one.true_pixels) / known)});
+                           percent(one.boundary_iou()), percent(one.calibration_error()),
+                           percent(static_cast<double>(one.false_pixels()) / known), std::to_string(one.images),
+                           percent(static_cast<double>(one.true_pixels) / known)});
   text += row("mean", {percent(evaluation.mean_iou()), percent(evaluation.mean_accuracy())});
   text += row("all pixels", {"", percent(evaluation.overall_accuracy())});
   return text + std::to_string(evaluation.images) + " images, " + std::to_string(evaluation.known_pixels) +
          " pixels with a true label. detected: images that show the class where its IoU is above 0.5.\n"
-         "false: pixels found to be of the class that are not, of all.\n";
+         "false: pixels found to be of the class that are not, of all. calibr.: mean difference between confidence and "
+         "share of "
+         "correct pixels.\n";
 }
 
 std::string to_json(const SegmentationEvaluation& evaluation) {
-  using Json = nlohmann::ordered_json;
   Json classes = Json::array();
   for (const ClassEvaluation& one : evaluation.classes)
     classes.push_back({{"name", one.name},
@@ -53,7 +72,9 @@ std::string to_json(const SegmentationEvaluation& evaluation) {
                        {"found_pixels", one.found_pixels},
                        {"correct_pixels", one.both},
                        {"images", one.images},
-                       {"detected_images", one.detected}});
+                       {"detected_images", one.detected},
+                       {"calibration_error", one.calibration_error()},
+                       {"reliability", reliability(one)}});
   const Json json = {{"images", evaluation.images},
                      {"known_pixels", evaluation.known_pixels},
                      {"correct_pixels", evaluation.correct_pixels},

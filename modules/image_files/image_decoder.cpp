@@ -19,16 +19,13 @@ namespace holdfast {
 
 namespace {
 
-/// Above this the decoding library refuses an image, and prints.
-constexpr int largest_side = 1 << 15;
-
 void require_decodable(const std::filesystem::path& file, const ImageStructure& image) {
   if (!image.problem.empty())
     throw InputError({file.string()},
                      image.problem + "; expected a complete PNG or JPEG image; copy or download the file again");
-  if (image.width < 1 || image.height < 1 || image.width > largest_side || image.height > largest_side)
-    throw InputError({file.string()}, "is an image of " + image.to_string() + "; expected 1 to " +
-                                          std::to_string(largest_side) + " pixels in width and height");
+  if (!image.has_camera_size())
+    throw InputError({file.string()}, "is an image of " + image.to_string() +
+                                          "; expected at least one pixel and at most " + ImageStructure::largest());
 }
 
 [[noreturn]] void throw_damaged(const std::filesystem::path& file) {

@@ -8,6 +8,7 @@
 #include <functional>
 #include <string_view>
 
+#include "holdfast/core/counted.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/text_file.hpp"
 
@@ -40,8 +41,7 @@ class ListLine {
 
   void require_words(std::size_t count) const {
     if (words_.size() != count)
-      fail("found " + std::to_string(words_.size()) + (words_.size() == 1 ? " word" : " words") + " in '" +
-           std::string(text_.substr(0, 80)) + "'");
+      fail("found " + counted(words_.size(), "word") + " in '" + std::string(text_.substr(0, 80)) + "'");
   }
 
   ListedImage image(std::size_t first_word, bool has_name) const {

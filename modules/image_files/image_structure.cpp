@@ -154,6 +154,25 @@ std::string ImageStructure::to_string() const {
          (channels == 1 ? " channel of " : " channels of ") + std::to_string(bits) + " bits";
 }
 
+namespace {
+
+/// Above this the decoding library refuses an image, and prints.
+constexpr int largest_side = 1 << 15;
+/// Decoded, a colour image of that size takes 0.6 GB for a moment.
+constexpr int largest_millions = 100;
+
+}  // namespace
+
+bool ImageStructure::has_camera_size() const {
+  return width >= 1 && height >= 1 && width <= largest_side && height <= largest_side &&
+         std::int64_t{width} * height <= largest_millions * std::int64_t{1'000'000};
+}
+
+std::string ImageStructure::largest() {
+  return std::to_string(largest_side) + " pixels in width and height, and " + std::to_string(largest_millions) +
+         " million pixels";
+}
+
 ImageStructure examine_image(std::span<const std::uint8_t> bytes) {
   ImageStructure image;
   if (bytes.empty())

@@ -7,6 +7,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "holdfast/core/counted.hpp"
+
 namespace holdfast::yaml_numbers {
 
 SourceLocation location(const std::filesystem::path& file, const YAML::Mark& mark) {
@@ -68,7 +70,7 @@ std::vector<double> numbers(const std::filesystem::path& file, const YAML::Node&
   for (const std::size_t count : counts)
     if (values.size() == count) return values;
   throw InputError(location(file, node.Mark()),
-                   "found " + std::to_string(values.size()) + " numbers for " + key + "; expected " + expected);
+                   "found " + counted(values.size(), "number") + " for " + key + "; expected " + expected);
 }
 
 std::optional<Eigen::Isometry3d> rigid_motion(const std::vector<double>& row_by_row) {

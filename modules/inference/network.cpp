@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "holdfast/core/counted.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/inference/onnx_net.hpp"
 #include "holdfast/plugin/did_you_mean.hpp"
@@ -62,7 +63,7 @@ void require_three(const NetworkOptions& options) {
   for (const auto& [name, values] :
        {std::pair("mean", &options.mean), std::pair("standard_deviation", &options.standard_deviation)})
     if (values->size() != 3)
-      fail(name, "found " + std::to_string(values->size()) + " numbers; expected 3, one for each channel");
+      fail(name, "found " + counted(values->size(), "number") + "; expected 3, one for each channel");
   for (const double value : options.standard_deviation)
     if (!(value > 0.0)) fail("standard_deviation", "found " + std::to_string(value) + "; expected numbers above 0");
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 
 #include "holdfast/interfaces/frame_observations.hpp"
 #include "map_motion.hpp"
@@ -13,6 +14,28 @@ namespace {
 std::int64_t now_in_nanoseconds() {
   using std::chrono::duration_cast, std::chrono::nanoseconds, std::chrono::steady_clock;
   return duration_cast<nanoseconds>(steady_clock::now().time_since_epoch()).count();
+}
+
+/// Fewer points that another keyframe sees as well hardly determine a pose: such a keyframe would leave its place for a
+/// slightly lower cost.
+constexpr int least_shared_points = 15;
+
+/// The keyframes that an adjustment can place, oldest first; the first of every piece holds it and is always there.
+std::vector<KeyFrameId> placeable_keyframes(const Map& map) {
+  std::vector<int> shared(map.keyframes().slot_count(), 0);
+  map.points().for_each([&](MapPointId, const MapPoint& point) {
+    if (point.observations.size() < 2) return;
+    for (const Observation& observation : point.observations) ++shared[observation.keyframe.slot];
+  });
+  std::vector<KeyFrameId> keyframes = map.keyframes_by_age();
+  std::vector<std::uint32_t> pieces;
+  std::erase_if(keyframes, [&](KeyFrameId id) {
+    const std::uint32_t piece = map.keyframe(id).piece;
+    const bool is_first = std::find(pieces.begin(), pieces.end(), piece) == pieces.end();
+    if (is_first) pieces.push_back(piece);
+    return !is_first && shared[id.slot] < least_shared_points;
+  });
+  return keyframes;
 }
 
 /// Calls function(index) for 0 ... count - 1 and lets go of the map's lock after every 1000 of them.
@@ -58,13 +81,17 @@ void FullAdjustment::prepare() {
   problem_.function_tolerance = settings_.full_tolerance;
 
   const std::lock_guard lock(map_mutex_);
-  keyframes_ = map_.keyframes_by_age();
-  std::vector<std::uint32_t> pose_of_slot(map_.keyframes().slot_count(), 0);
+  keyframes_ = placeable_keyframes(map_);
+  constexpr std::uint32_t left_out = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> pose_of_slot(map_.keyframes().slot_count(), left_out);
+  std::vector<std::uint32_t> pieces;  // the first keyframe of each holds it in place
   for (std::uint32_t i = 0; i < keyframes_.size(); ++i) {
-    const Frame& frame = map_.keyframe(keyframes_[i]).frame;
-    if (i == 0) problem_.camera = frame.camera.get();
+    const KeyFrame& keyframe = map_.keyframe(keyframes_[i]);
+    if (i == 0) problem_.camera = keyframe.frame.camera.get();
     pose_of_slot[keyframes_[i].slot] = i;
-    problem_.poses.push_back({frame.T_camera_world, i == 0});
+    const bool is_first = std::find(pieces.begin(), pieces.end(), keyframe.piece) == pieces.end();
+    if (is_first) pieces.push_back(keyframe.piece);
+    problem_.poses.push_back({keyframe.frame.T_camera_world, is_first});
   }
   points_.reserve(map_.points().size());
   problem_.points.reserve(map_.points().size());
@@ -73,8 +100,10 @@ void FullAdjustment::prepare() {
     points_.push_back(id);
     problem_.points.push_back(point.position);
     for (const Observation& observation : point.observations)
-      problem_.observations.push_back(bundle_observation(map_.keyframe(observation.keyframe).frame, observation.feature,
-                                                         pose_of_slot[observation.keyframe.slot], index));
+      if (pose_of_slot[observation.keyframe.slot] != left_out)
+        problem_.observations.push_back(bundle_observation(map_.keyframe(observation.keyframe).frame,
+                                                           observation.feature, pose_of_slot[observation.keyframe.slot],
+                                                           index));
   });
   before_ = problem_.points;
 }
@@ -91,9 +120,20 @@ void FullAdjustment::solve() {
 }
 
 FullAdjustmentSummary FullAdjustment::apply() {
-  const std::lock_guard surgeon(surgery_);
-  summary_.stop_requested = stop_;
-  if (!summary_.bundle.usable || summary_.stop_requested) return summary_;
+  {
+    const std::lock_guard surgeon(surgery_);
+    summary_.stop_requested = stop_;
+    if (summary_.bundle.usable && !summary_.stop_requested) change_map();
+  }
+  // The next one may be far away, or never come.
+  problem_ = BundleProblem();
+  keyframes_ = std::vector<KeyFrameId>();
+  points_ = std::vector<MapPointId>();
+  before_ = std::vector<Eigen::Vector3d>();
+  return summary_;
+}
+
+void FullAdjustment::change_map() {
   move_map();
   remove_outliers();
   in_portions(map_mutex_, points_.size(), [this](std::size_t i) {
@@ -102,7 +142,6 @@ FullAdjustmentSummary FullAdjustment::apply() {
   const std::lock_guard lock(map_mutex_);
   map_.touch();
   summary_.applied = true;
-  return summary_;
 }
 
 void FullAdjustment::move_map() {

@@ -33,8 +33,10 @@ std::vector<KeyFrameId> LoopCandidates::choose(const Map& map, KeyFrameId keyfra
   for (const PlaceMatch& match : matches) {
     const KeyFrame* other = map.find_keyframe(match.keyframe);
     if (other == nullptr || near[match.keyframe.slot] != 0) continue;
-    if (other->sequence + static_cast<std::uint64_t>(settings_.minimum_gap) > keyframe.sequence) continue;
-    if (match.score < settings_.score_share * least_neighbour) continue;
+    if (other->piece == keyframe.piece) {
+      if (other->sequence + static_cast<std::uint64_t>(settings_.minimum_gap) > keyframe.sequence) continue;
+      if (match.score < settings_.score_share * least_neighbour) continue;
+    }
     candidates.push_back(match);
     if (static_cast<int>(candidates.size()) == settings_.candidates) break;
   }
@@ -48,7 +50,8 @@ std::vector<KeyFrameId> LoopCandidates::choose(const Map& map, KeyFrameId keyfra
       });
       if (shared) now.times = std::max(now.times, before.times + 1);
     }
-    if (now.times >= settings_.consistent_keyframes) chosen.push_back(now.best);
+    const bool may_join_pieces = map.keyframe(now.best).piece != keyframe.piece;
+    if (may_join_pieces || now.times >= settings_.consistent_keyframes) chosen.push_back(now.best);
   }
   groups_ = std::move(groups);
   return chosen;

@@ -132,14 +132,19 @@ std::optional<LoopMeasurement> LoopCloser::check(LoopTrial& trial) {
   PlacePoints old_points;
   {
     const std::lock_guard lock(map_mutex_);
-    trial.way = way_between(map_, trial.keyframe, trial.candidate);
-    old_points = old_points_in_view(settings_, map_, trial.keyframe);
+    trial.joins_pieces = map_.keyframe(trial.keyframe).piece != map_.keyframe(trial.candidate).piece;
+    if (!trial.joins_pieces) {
+      trial.way = way_between(map_, trial.keyframe, trial.candidate);
+      old_points = old_points_in_view(settings_, map_, trial.keyframe);
+    }
   }
   trial.correction = pose_change(frame->T_camera_world, checked.T_camera_world);
   trial.scale = checked.scale;
   const PoseChange believed = believed_drift(settings_, trial.way, solid.with_scale);
   const bool scale_is_plausible = std::abs(std::log(checked.scale)) <= std::log(settings_.largest_scale_drift);
-  if (trial.correction.metres > believed.metres || trial.correction.degrees > believed.degrees || !scale_is_plausible)
+  if (trial.joins_pieces)
+    trial.verdict = LoopVerdict::closed;  // the pose of one piece relative to the other was a guess
+  else if (trial.correction.metres > believed.metres || trial.correction.degrees > believed.degrees || !scale_is_plausible)
     trial.verdict = LoopVerdict::implausible_correction;
   else if (present_pose_is_confirmed(settings_, matcher_, optimizer_, *frame, old_points, checked.T_camera_world))
     trial.verdict = LoopVerdict::pose_confirmed;
@@ -158,6 +163,7 @@ std::optional<ClosedLoop> LoopCloser::correct(LoopTrial& trial, const LoopMeasur
   ClosedLoop loop{.keyframe = trial.keyframe,
                   .candidate = trial.candidate,
                   .inliers = trial.inliers,
+                  .joins_pieces = trial.joins_pieces,
                   .way = trial.way,
                   .correction = trial.correction,
                   .scale = trial.scale};

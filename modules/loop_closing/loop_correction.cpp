@@ -23,8 +23,12 @@ bool LoopCorrection::run() {
     const std::lock_guard lock(map_mutex_);
     current_side_ = with_neighbours(map_, loop_.keyframe, settings_.neighbours);
     place_side_ = with_neighbours(map_, loop_.candidate, settings_.neighbours);
+    keyframe_piece_ = map_.keyframe(loop_.keyframe).piece;
+    place_piece_ = map_.keyframe(loop_.candidate).piece;
     build_graph();
     add_loop_edges();
+    fix_pieces();
+    bring_pieces_together();
   }
   const GraphSummary summary =
       loop_.with_scale ? optimizer_.optimize_similarity_graph(graph_) : optimizer_.optimize_pose_graph(graph_);
@@ -32,6 +36,7 @@ bool LoopCorrection::run() {
   {
     const std::lock_guard lock(map_mutex_);
     move_map();
+    map_.join_pieces(keyframe_piece_, place_piece_);
     fuse_matches();
     // Tracking may have added keyframes around this one while the graph was solved; they see the same points.
     current_side_ = with_neighbours(map_, loop_.keyframe, 2 * settings_.neighbours);
@@ -55,7 +60,7 @@ void LoopCorrection::build_graph() {
   node_of_slot_.assign(map_.keyframes().slot_count(), 0);
   for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
     node_of_slot_[nodes_[i].slot] = i;
-    graph_.nodes.push_back({map_.keyframe(nodes_[i]).frame.T_camera_world, i == 0});
+    graph_.nodes.push_back({map_.keyframe(nodes_[i]).frame.T_camera_world, false});
   }
   graph_.iterations = settings_.graph_iterations;
 
@@ -97,6 +102,28 @@ void LoopCorrection::add_loop_edges() {
   };
   for (const KeyFrameId place : place_side_) add(loop_.keyframe, place);
   for (std::size_t i = 1; i < current_side_.size(); ++i) add(current_side_[i], loop_.candidate);
+}
+
+void LoopCorrection::fix_pieces() {
+  std::vector<std::uint32_t> fixed;
+  if (keyframe_piece_ != place_piece_) fixed.push_back(std::max(keyframe_piece_, place_piece_));
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const std::uint32_t piece = map_.keyframe(nodes_[i]).piece;
+    if (std::find(fixed.begin(), fixed.end(), piece) != fixed.end()) continue;
+    graph_.nodes[i].fixed = true;
+    fixed.push_back(piece);
+  }
+}
+
+void LoopCorrection::bring_pieces_together() {
+  if (keyframe_piece_ == place_piece_) return;
+  const Eigen::Isometry3d& T_camera_old = graph_.nodes[node_of_slot_[loop_.keyframe.slot]].T_camera_world;
+  Eigen::Isometry3d T_old_new = T_camera_old.inverse() * loop_.T_camera_world;
+  if (place_piece_ > keyframe_piece_) T_old_new = T_old_new.inverse();
+  const std::uint32_t moving = std::max(keyframe_piece_, place_piece_);
+  for (std::size_t i = 0; i < nodes_.size(); ++i)
+    if (map_.keyframe(nodes_[i]).piece == moving)
+      graph_.nodes[i].T_camera_world = graph_.nodes[i].T_camera_world * T_old_new;
 }
 
 void LoopCorrection::move_map() {

@@ -37,6 +37,10 @@ class LoopCorrection {
  private:
   void build_graph();
   void add_loop_edges();
+  /// Holds the first keyframe of every piece but the younger one of those that the loop joins.
+  void fix_pieces();
+  /// Where the loop joins two pieces, moves the younger one as a whole: the solver needs a start nearby.
+  void bring_pieces_together();
   void move_map();
   void fuse_matches();
   void fuse_into(KeyFrameId target);
@@ -51,6 +55,7 @@ class LoopCorrection {
   std::vector<KeyFrameId> current_side_, place_side_;  // the keyframe and the candidate first
   std::vector<KeyFrameId> nodes_;
   std::vector<std::uint32_t> node_of_slot_;
+  std::uint32_t keyframe_piece_ = 0, place_piece_ = 0;
   PoseGraphProblem graph_;
   int points_fused_ = 0;
 };

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "crc32c.hpp"
+#include "holdfast/core/counted.hpp"
 #include "holdfast/core/error.hpp"
 
 namespace holdfast::map_io {
@@ -53,10 +54,10 @@ std::string encode(const FileHeader& header) {
   return writer.bytes();
 }
 
-std::string encode_section_header(const std::string& type, const std::string& payload) {
+std::string encode_section_header(const std::string& type, const std::string& payload, std::uint32_t flags) {
   ByteWriter writer;
   writer.put_bytes(type);
-  writer.put(section_required);
+  writer.put(flags);
   writer.put(static_cast<std::uint64_t>(payload.size()));
   writer.put(crc32c(payload.data(), payload.size()));
   writer.put(crc32c(writer.bytes().data(), writer.size()));
@@ -136,8 +137,7 @@ void ContainerReader::read_header() {
 
 bool ContainerReader::next() {
   if (sections_read_ == header_.sections) {
-    if (position_ != size_)
-      fail("found " + std::to_string(size_ - position_) + " bytes after the last section; " + damaged);
+    if (position_ != size_) fail("found " + counted(size_ - position_, "byte") + " after the last section; " + damaged);
     return false;
   }
   const std::uint64_t begin = position_;

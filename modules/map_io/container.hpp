@@ -32,7 +32,8 @@ struct FileHeader {
 /// The bytes of the header, checksum included.
 std::string encode(const FileHeader& header);
 /// The bytes before a section's payload; `type` has four letters.
-std::string encode_section_header(const std::string& type, const std::string& payload);
+std::string encode_section_header(const std::string& type, const std::string& payload,
+                                  std::uint32_t flags = section_required);
 
 /// Reads a map file from the front to the back and checks every byte: magic, version, sizes, checksums. Throws
 /// InputError.

@@ -40,8 +40,12 @@ void append_point(const MapPoint& point, std::size_t position, const Map& map, c
        << point.viewing_direction << R"(,"minimum_distance":)" << point.minimum_distance << R"(,"maximum_distance":)"
        << point.maximum_distance << R"(,"reference_keyframe":)" << index.of(point.reference_keyframe)
        << R"(,"created_at":)" << point.created_at << R"(,"visible_count":)" << point.visible_count
-       << R"(,"found_count":)" << point.found_count << R"(,"static_log_odds":)" << point.static_log_odds
-       << R"(,"observations":[)";
+       << R"(,"found_count":)" << point.found_count << R"(,"static_log_odds":)" << point.static_log_odds;
+  if (point.label < map.classes().size())
+    json << R"(,"label":)" << int{point.label};
+  else if (!map.classes().empty())
+    json << R"(,"label":null)";
+  json << R"(,"observations":[)";
   bool first = true;
   for (const Observation& observation : point.observations) {
     const Frame& frame = map.keyframe(observation.keyframe).frame;
@@ -117,7 +121,9 @@ std::string map_json(const Map& map) {
     append_keyframe(map.keyframe(index.keyframes()[i]), i, index, tables, json);
   }
   append_pairs(map, index, covisibility, loops);
-  json << "],\n\"covisibility\":[" << covisibility.text() << "],\n\"loops\":[" << loops.text() << "],\n\"points\":[";
+  json << "],\n\"covisibility\":[" << covisibility.text() << "],\n\"loops\":[" << loops.text() << "],\n\"classes\":[";
+  for (std::size_t i = 0; i < map.classes().size(); ++i) (json << (i == 0 ? "" : ",")).quote(map.classes()[i]);
+  json << "],\n\"points\":[";
   for (std::size_t i = 0; i < index.points().size(); ++i) {
     json << (i == 0 ? "\n" : ",\n");
     append_point(map.point(index.points()[i]), i, map, index, json);

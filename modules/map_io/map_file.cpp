@@ -22,8 +22,9 @@ std::uint64_t observation_count(const Map& map) {
   return count;
 }
 
-void write_section(std::ostream& stream, const char* type, const std::string& payload) {
-  const std::string header = encode_section_header(type, payload);
+void write_section(std::ostream& stream, const char* type, const std::string& payload,
+                   std::uint32_t flags = section_required) {
+  const std::string header = encode_section_header(type, payload, flags);
   stream.write(header.data(), static_cast<std::streamsize>(header.size()));
   stream.write(payload.data(), static_cast<std::streamsize>(payload.size()));
 }
@@ -34,20 +35,22 @@ void write_content(std::ostream& stream, const Map& map) {
   const SharedTables shared = tables_of(map, index);
   const MapFeatures& map_features = map.features();
   const bool has_descriptor_section = map_features != MapFeatures();
-  ByteWriter tables, lenses, descriptors, keyframes, points, places;
+  ByteWriter tables, lenses, descriptors, keyframes, points, places, classes;
   if (has_descriptor_section) write_map_features(map_features, descriptors);
   write_tables(shared, tables);
   write_lenses(shared, lenses);
   write_keyframes(map, index, shared, keyframes);
   write_points(map, index, points);
   write_places(map, index, places);
+  write_classes(map, index, classes);
 
   FileHeader header;
   header.library_version = HOLDFAST_VERSION;
   const bool has_lenses = lenses.size() > 0;
   const bool has_places = places.size() > 0;
+  const bool has_classes = classes.size() > 0;
   const std::uint32_t optional_sections =
-      (has_lenses ? 1U : 0U) + (has_descriptor_section ? 1U : 0U) + (has_places ? 1U : 0U);
+      (has_lenses ? 1U : 0U) + (has_descriptor_section ? 1U : 0U) + (has_places ? 1U : 0U) + (has_classes ? 1U : 0U);
   header.sections = 3 + optional_sections + static_cast<std::uint32_t>(index.keyframes().size());
   header.keyframes = static_cast<std::uint32_t>(index.keyframes().size());
   header.points = static_cast<std::uint32_t>(index.points().size());
@@ -55,7 +58,7 @@ void write_content(std::ostream& stream, const Map& map) {
   header.next_sequence = map.next_sequence();
   header.sensor = static_cast<std::uint32_t>(map.sensor());
   header.file_size = header_size + header.sections * section_header_size + tables.size() + lenses.size() +
-                     descriptors.size() + keyframes.size() + points.size() + places.size();
+                     descriptors.size() + keyframes.size() + points.size() + places.size() + classes.size();
   for (const KeyFrameId id : index.keyframes())
     header.file_size += features_size(map.keyframe(id).frame.size(), map_features.descriptors);
 
@@ -73,6 +76,7 @@ void write_content(std::ostream& stream, const Map& map) {
   }
   write_section(stream, point_section, points.bytes());
   if (has_places) write_section(stream, place_section, places.bytes());
+  if (has_classes) write_section(stream, class_section, classes.bytes(), 0);
 }
 
 /// Removes a file at the end of the scope unless keep() was called.

@@ -39,6 +39,17 @@ std::string camera_text(const Camera& camera) {
                                                   : ", distorted");
 }
 
+/// Names are quoted, because anything can be in them.
+std::string classes_text(const MapInfo& info) {
+  JsonText text;
+  std::uint64_t unknown = info.points;
+  for (const auto& [name, points] : info.classes) {
+    text.quote(name) << " " << points << ", ";
+    unknown -= points;
+  }
+  return std::move((text << "unknown " << unknown).text());
+}
+
 void add_keyframes(const std::vector<KeyFrame>& keyframes, MapInfo& info) {
   info.keyframes = keyframes.size();
   for (const KeyFrame& keyframe : keyframes) {
@@ -58,6 +69,7 @@ void add_points(const std::vector<MapPoint>& points, MapInfo& info) {
   if (!points.empty()) info.minimum_point = info.maximum_point = points.front().position;
   for (const MapPoint& point : points) {
     info.observations += point.observations.size();
+    if (point.label < info.classes.size()) ++info.classes[point.label].second;
     info.minimum_point = info.minimum_point.cwiseMin(point.position);
     info.maximum_point = info.maximum_point.cwiseMax(point.position);
   }
@@ -79,6 +91,7 @@ MapInfo read_map_info(const std::filesystem::path& file) {
   info.features = content.features;
   for (const auto& camera : content.tables.cameras) info.cameras.push_back(*camera);
   add_keyframes(content.map.keyframes, info);
+  for (const std::string& name : content.map.classes) info.classes.emplace_back(name, 0);
   add_points(content.map.points, info);
   return info;
 }
@@ -94,6 +107,7 @@ std::string to_text(const MapInfo& info) {
   rows.emplace_back("keyframes", std::to_string(info.keyframes) + ", " + std::to_string(info.features) + " features, " +
                                      std::to_string(info.covisibility_edges) + " covisibility edges");
   rows.emplace_back("points", std::to_string(info.points) + ", " + std::to_string(info.observations) + " observations");
+  if (!info.classes.empty()) rows.emplace_back("classes", classes_text(info));
   rows.emplace_back("loops", std::to_string(info.loops));
   if (info.keyframes > 0)
     rows.emplace_back("time", fixed(info.last_timestamp - info.first_timestamp, 2) + " s, from " +
@@ -122,14 +136,14 @@ std::string to_json(const MapInfo& info) {
   json.quote(to_string(info.map_features.descriptors)) << ",\n  \"cameras\": [";
   json.list(info.cameras, ",\n    ") << "],\n  \"keyframes\": " << info.keyframes
                                      << ",\n  \"features\": " << info.features << ",\n  \"points\": " << info.points
-                                     << ",\n  \"observations\": " << info.observations
-                                     << ",\n  \"covisibility_edges\": " << info.covisibility_edges
-                                     << ",\n  \"loops\": " << info.loops
-                                     << ",\n  \"next_sequence\": " << info.next_sequence
-                                     << ",\n  \"first_timestamp\": " << info.first_timestamp
-                                     << ",\n  \"last_timestamp\": " << info.last_timestamp
-                                     << ",\n  \"minimum_point\": " << info.minimum_point
-                                     << ",\n  \"maximum_point\": " << info.maximum_point << "\n}\n";
+                                     << ",\n  \"observations\": " << info.observations << ",\n  \"classes\": {";
+  for (std::size_t k = 0; k < info.classes.size(); ++k)
+    (json << (k == 0 ? "" : ", ")).quote(info.classes[k].first) << ": " << info.classes[k].second;
+  json << "}"
+       << ",\n  \"covisibility_edges\": " << info.covisibility_edges << ",\n  \"loops\": " << info.loops
+       << ",\n  \"next_sequence\": " << info.next_sequence << ",\n  \"first_timestamp\": " << info.first_timestamp
+       << ",\n  \"last_timestamp\": " << info.last_timestamp << ",\n  \"minimum_point\": " << info.minimum_point
+       << ",\n  \"maximum_point\": " << info.maximum_point << "\n}\n";
   return std::move(json.text());
 }
 

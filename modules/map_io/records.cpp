@@ -130,6 +130,8 @@ IdType get_id(ByteReader& reader) {
   return position == no_index ? IdType() : IdType{position, 0};
 }
 
+bool is_label(std::uint8_t label, std::size_t classes) { return label < classes || label == CellMask::unknown; }
+
 void refuse(const ByteReader& reader, const char* kind, std::size_t position, const std::string& trouble) {
   if (!trouble.empty()) reader.fail(kind + (" " + std::to_string(position)) + ": " + trouble);
 }
@@ -470,6 +472,42 @@ std::vector<MapPoint> read_points(ByteReader reader, const DescriptorType& type)
   }
   reader.expect_end();
   return points;
+}
+
+void write_classes(const Map& map, const DenseIndex& index, ByteWriter& writer) {
+  if (map.classes().empty()) return;
+  writer.put(static_cast<std::uint32_t>(map.classes().size()));
+  for (const std::string& name : map.classes()) {
+    writer.put(static_cast<std::uint32_t>(name.size()));
+    writer.put_bytes(name);
+  }
+  writer.put(static_cast<std::uint32_t>(index.points().size()));
+  for (const MapPointId id : index.points()) {
+    const std::uint8_t label = map.point(id).label;
+    HOLDFAST_CHECK(is_label(label, map.classes().size()), "point " << id.slot << ": label " << int{label});
+    writer.put(label);
+  }
+}
+
+std::vector<std::string> read_classes(ByteReader reader, std::vector<MapPoint>& points) {
+  const std::uint32_t classes = reader.get_count(sizeof(std::uint32_t), "classes");
+  if (classes == 0 || classes > CellMask::unknown)
+    reader.fail("found " + std::to_string(classes) + " classes; expected 1 to " + std::to_string(CellMask::unknown));
+  std::vector<std::string> names;
+  for (std::uint32_t i = 0; i < classes; ++i)
+    names.emplace_back(reader.get_bytes(reader.get_count(1, "letters of a name")));
+  const std::uint32_t labels = reader.get_count(1, "labels");
+  if (labels != points.size())
+    reader.fail("found " + std::to_string(labels) + " labels; expected one for each of " +
+                std::to_string(points.size()) + " points");
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i].label = reader.get<std::uint8_t>();
+    if (!is_label(points[i].label, names.size()))
+      reader.fail("point " + std::to_string(i) + ": found label " + std::to_string(points[i].label) +
+                  "; expected less than " + std::to_string(names.size()) + ", or " + std::to_string(CellMask::unknown));
+  }
+  reader.expect_end();
+  return names;
 }
 
 }  // namespace holdfast::map_io

@@ -21,6 +21,7 @@ inline constexpr const char* keyframe_section = "KEYF";
 inline constexpr const char* feature_section = "FEAT";
 inline constexpr const char* point_section = "POIN";
 inline constexpr const char* place_section = "PLAC";  ///< only if images of keyframes were described
+inline constexpr const char* class_section = "CLAS";  ///< only if points have classes; not required
 
 /// Cameras and pyramids that keyframes share; keyframes name them by position.
 struct SharedTables {
@@ -66,6 +67,8 @@ std::uint64_t features_size(std::size_t features, const DescriptorType& type);
 void write_map_features(const MapFeatures& features, ByteWriter& writer);
 /// Frame::place of all keyframes that have one; writes nothing if there is none.
 void write_places(const Map& map, const DenseIndex& index, ByteWriter& writer);
+/// Names of classes and the labels of all points; writes nothing if there are no classes.
+void write_classes(const Map& map, const DenseIndex& index, ByteWriter& writer);
 
 /// Reading throws InputError.
 SharedTables read_tables(ByteReader reader);
@@ -81,5 +84,7 @@ std::vector<MapPoint> read_points(ByteReader reader, const DescriptorType& type)
 MapFeatures read_map_features(ByteReader reader);
 /// Fills Frame::place of the keyframes.
 void read_places(ByteReader reader, std::vector<KeyFrame>& keyframes);
+/// The names; fills MapPoint::label of the points.
+std::vector<std::string> read_classes(ByteReader reader, std::vector<MapPoint>& points);
 
 }  // namespace holdfast::map_io

@@ -9,9 +9,10 @@
 
 namespace holdfast {
 
-KeyFrameId LocalMapper::insert(const Frame& frame, bool points_wait, StageTimes& times) {
+KeyFrameId LocalMapper::insert(const Frame& frame, bool points_wait, StageTimes& times, std::uint32_t piece) {
   const StageTimer timer(times, "mapping: insertion");
   const KeyFrameId keyframe = map_.add_keyframe(frame);
+  map_.keyframe(keyframe).piece = piece;
   ++counts_.keyframes_made;
   drop_moving_features(keyframe);
   if (!points_wait) make_points_from_depth(keyframe);
@@ -42,10 +43,13 @@ KeyFrameId LocalMapper::begin(const Frame& frame, std::span<const std::pair<Eige
 
 void LocalMapper::link(KeyFrameId keyframe) {
   map_.update_covisibility(keyframe, settings_.covisibility_minimum);
-  if (map_.keyframes().size() < 2 || map_.keyframe(keyframe).parent.valid()) return;
+  if (map_.keyframe(keyframe).parent.valid()) return;
   // Where the map ended, the motion model or odometry goes on from the last keyframe.
   const std::vector<KeyFrameId> by_age = map_.keyframes_by_age();
-  map_.hang_on(keyframe, by_age[by_age.size() - 2]);
+  const std::uint32_t piece = map_.keyframe(keyframe).piece;
+  const auto last = std::find_if(by_age.rbegin() + 1, by_age.rend(),
+                                 [&](KeyFrameId id) { return map_.keyframe(id).piece == piece; });
+  if (last != by_age.rend()) map_.hang_on(keyframe, *last);
 }
 
 std::vector<KeyFrameId> LocalMapper::refine(KeyFrameId keyframe, StageTimes& times) {
@@ -146,17 +150,20 @@ void LocalMapper::remove_weak_points(KeyFrameId id) {
   std::erase_if(recent_points_, [&](MapPointId point_id) {
     const MapPoint* point = map_.find_point(point_id);
     if (point == nullptr) return true;
-    // With one camera, a keyframe comes again with its mask, when later ones have made points.
-    if (is_mono && point->created_at > now) return false;
-    const std::uint64_t age = now - point->created_at;
+    // Later keyframes may have made points while this one waited. Where it waited for its mask, they made them by an
+    // older mask, which may show people where they were: only a second view has confirmed that such points stand still.
+    const bool is_later = point->created_at > now;
+    if (is_later && (is_mono || !expects_masks_)) return false;
+    const std::uint64_t age = now - std::min(now, point->created_at);
     const bool rarely_found = point->found_ratio() < static_cast<float>(settings_.weak_found_ratio);
-    const bool unconfirmed = can_be_confirmed && age >= (is_mono ? 1U : 2U) && point->observations.size() < required;
+    const bool is_due = is_later || age >= (is_mono ? 1U : 2U);
+    const bool unconfirmed = can_be_confirmed && is_due && point->observations.size() < required;
     if (rarely_found || unconfirmed) {
       map_.remove_point(point_id);
       ++counts_.points_removed;
       return true;
     }
-    return age >= static_cast<std::uint64_t>(settings_.probation_keyframes);
+    return is_later || age >= static_cast<std::uint64_t>(settings_.probation_keyframes);
   });
 }
 

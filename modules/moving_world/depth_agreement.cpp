@@ -4,10 +4,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "holdfast/core/coarse_cells.hpp"
 #include "holdfast/geometry/se3.hpp"
 #include "holdfast/geometry/warp.hpp"
 
 namespace holdfast {
+namespace {
+
+constexpr int enough_cells = 50;  // for a share of them to say something
+
+}  // namespace
 
 bool DepthAgreement::choose(const Map& map, KeyFrameId reference, double timestamp) {
   constexpr std::size_t most = 3;
@@ -30,11 +36,11 @@ bool DepthAgreement::choose(const Map& map, KeyFrameId reference, double timesta
 }
 
 Eigen::Isometry3d DepthAgreement::find_view(const Frame& frame, const Eigen::Isometry3d& T_camera_world,
-                                            const Eigen::Isometry3d& step) const {
+                                            double share_there, const Eigen::Isometry3d& step) const {
   // On the motion from the last frame to the next: the best of five poses, then of two between it and its neighbours.
   const auto motion = geometry::log_se3(step);
   const auto view_at = [&](double steps) { return geometry::exp_se3(steps * motion); };
-  double best_steps = 0.0, best_share = share(frame, T_camera_world);
+  double best_steps = 0.0, best_share = share_there;
   const auto try_at = [&](double steps) {
     const double there = share(frame, view_at(steps) * T_camera_world);
     if (there <= best_share) return;
@@ -52,30 +58,32 @@ DepthAgreement::Counts DepthAgreement::count(const Frame& frame, const Eigen::Is
   const CoarseGrid& grid = frame.coarse.grid;
   const geometry::Pinhole camera = geometry::pinhole_of(*frame.camera);
   const int columns = std::max(0, (grid.columns - stride / 2 + stride - 1) / stride);
+  const auto size = static_cast<std::size_t>(columns);
   Eigen::ArrayXf rays_x(columns), depths(columns);
   geometry::WarpedRow warped;
+  std::vector<std::int32_t> cells(size);
   Counts counts;
   for (const Frame* keyframe : keyframes_) {
     if (!(keyframe->coarse.grid == grid)) continue;
     const geometry::Warp warp(keyframe->T_view_world() * T_view_world.inverse(), camera);
-    const std::vector<float>& known = keyframe->coarse.static_log_odds;
+    const float* const seen = keyframe->coarse.depth.data();
+    const bool is_evaluated = !keyframe->coarse.static_log_odds.empty();
+    const float* const known = keyframe->coarse.static_log_odds.data();
     for (int i = 0; i < columns; ++i) rays_x[i] = warp.ray_x(grid.x_of(stride / 2 + i * stride));
     for (int row = stride / 2; row < grid.rows; row += stride) {
       const float* here = &frame.coarse.depth[static_cast<std::size_t>(row * grid.columns + stride / 2)];
       for (int i = 0; i < columns; ++i) depths[i] = here[i * stride];
       warp.row(rays_x, warp.ray_y(grid.y_of(row)), depths, warped);
+      find_cells(grid, {warped.x.data(), size}, {warped.y.data(), size}, cells);
       for (int i = 0; i < columns; ++i) {
         const float expected = warped.z[i];
-        if (depths[i] == 0.0F || !warp.is_visible(expected)) continue;
-        const int cell = grid.cell_of(warped.x[i], warped.y[i]);
-        if (cell < 0) continue;
-        const std::size_t index = static_cast<std::size_t>(cell);
-        if (!known.empty() && known[index] < 0.0F) continue;
-        const float seen = keyframe->coarse.depth[index];
-        if (seen == 0.0F) continue;
+        const std::int32_t cell = cells[static_cast<std::size_t>(i)];
+        if (cell < 0 || depths[i] == 0.0F || !warp.is_visible(expected)) continue;
+        if (is_evaluated && known[cell] < 0.0F) continue;
+        if (seen[cell] == 0.0F) continue;
         ++counts.compared;
-        counts.agreeing += std::abs(seen - expected) < 0.01F + 0.01F * expected ? 1 : 0;
-        counts.farther += expected - seen > 0.05F + 0.03F * expected ? 1 : 0;
+        counts.agreeing += std::abs(seen[cell] - expected) < 0.01F + 0.01F * expected ? 1 : 0;
+        counts.farther += expected - seen[cell] > 0.05F + 0.03F * expected ? 1 : 0;
       }
     }
   }
@@ -83,17 +91,20 @@ DepthAgreement::Counts DepthAgreement::count(const Frame& frame, const Eigen::Is
 }
 
 double DepthAgreement::share(const Frame& frame, const Eigen::Isometry3d& T_view_world) const {
-  constexpr int enough = 50;
   const Counts counts = count(frame, T_view_world);
-  return counts.compared < enough ? 0.0 : static_cast<double>(counts.agreeing) / counts.compared;
+  return counts.compared < enough_cells ? 0.0 : static_cast<double>(counts.agreeing) / counts.compared;
+}
+
+bool DepthAgreement::disagrees(const Frame& frame, const Eigen::Isometry3d& T_view_world, double least_share) const {
+  const Counts counts = count(frame, T_view_world);
+  return counts.compared >= enough_cells && static_cast<double>(counts.agreeing) / counts.compared < least_share;
 }
 
 double DepthAgreement::support(const Frame& frame, const Eigen::Isometry3d& T_view_world) const {
   // A pose from which everything seems to stand before the known surfaces is wrong, too.
-  constexpr int enough = 50;
   constexpr double least_share = 0.2;
   const Counts counts = count(frame, T_view_world);
-  if (counts.agreeing < enough || counts.agreeing < least_share * counts.compared) return 0.0;
+  if (counts.agreeing < enough_cells || counts.agreeing < least_share * counts.compared) return 0.0;
   return static_cast<double>(counts.agreeing) / (counts.agreeing + counts.farther);
 }
 

@@ -19,6 +19,7 @@ bool FilterChain::has(FilterStage stage) const {
 }
 
 void FilterChain::apply(std::size_t filter, const FilterContext& context) {
+  has_new_cells_ = true;
   evidence_.begin_stage(names_[filter]);
   filters_[filter]->apply(context, evidence_);
 }
@@ -47,7 +48,7 @@ bool FilterChain::discount_priors() {
   return discounts_priors_;
 }
 
-void FilterChain::weight_features(const Map& map, Frame& frame) const {
+void FilterChain::weight_features(const Map& map, Frame& frame) {
   if (filters_.empty()) return;
   frame.static_probability.resize(frame.size());
   frame.measured_log_odds.resize(frame.size());
@@ -57,9 +58,12 @@ void FilterChain::weight_features(const Map& map, Frame& frame) const {
     if (frame.map_points[i].valid())
       if (const MapPoint* point = map.find_point(frame.map_points[i])) measured += point->static_log_odds;
     frame.measured_log_odds[i] = measured;
-    frame.static_probability[i] = probability(start + prior(i) + measured);
+    Weight& weight = weighted_[i];
+    const float log_odds = start + prior(i) + measured;
+    if (log_odds != weight.log_odds) weight = {log_odds, probability(log_odds)};
+    frame.static_probability[i] = weight.probability;
   }
-  frame.coarse.static_log_odds = evidence_.cells();
+  if (std::exchange(has_new_cells_, false)) frame.coarse.static_log_odds = evidence_.cells();
 }
 
 void FilterChain::accumulate(const Frame& frame, Map& map) const {

@@ -2,8 +2,8 @@
 #include "holdfast/moving_world/mask_propagator.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 
 namespace holdfast {
 
@@ -37,17 +37,21 @@ void MaskPropagator::advance(const cv::Mat& grey, const Frame& frame, const Eige
   transfer_.transfer(previous_.coarse, labels_, current_.coarse, T_frame_previous, pairs_, next_labels_);
   std::swap(labels_, next_labels_);
   renew_points(frame);
-  take_view(frame, current_);
+  take_points(current_);
   publish();
 }
 
 void MaskPropagator::take_view(const Frame& frame, View& view) const {
-  const PointFollower::Points& points = follower_.points();
   view.frame_index = frame.index;
   view.timestamp = frame.timestamp;
   view.coarse.grid = frame.coarse.grid;
   view.coarse.depth = frame.coarse.depth;
   view.T_camera_world.reset();
+  take_points(view);
+}
+
+void MaskPropagator::take_points(View& view) const {
+  const PointFollower::Points& points = follower_.points();
   view.ids = points.id;
   view.x = points.x, view.y = points.y, view.depth = points.depth;
 }
@@ -85,55 +89,56 @@ void MaskPropagator::set_pose(const std::optional<Eigen::Isometry3d>& T_camera_w
     labels_.moving[i] = CellMask::is_object(labels_.labels[i]) && evaluated.static_log_odds[i] < moving ? 1 : 0;
 }
 
+template <class IsWanted>
+int MaskPropagator::strongest_corner(const CoarseGrid& grid, int first_column, int first_row,
+                                     const IsWanted& is_wanted) const {
+  int strongest = 200;  // of Scharr derivatives: less is no corner
+  int best = -1;
+  for (int row = first_row; row < std::min(first_row + bucket, grid.rows); ++row)
+    for (int column = first_column; column < std::min(first_column + bucket, grid.columns); ++column) {
+      const int cell = row * grid.columns + column;
+      if (!is_wanted(cell)) continue;
+      const cv::Point pixel = raw_pixel(cell);
+      const int strength = follower_.corner_strength(pixel.x, pixel.y);
+      if (strength <= strongest) continue;
+      strongest = strength;
+      best = cell;
+    }
+  return best;
+}
+
 void MaskPropagator::renew_points(const Frame& frame) {
   // While no segmentation is awaited, only points on objects are followed; every part of an object has one.
   const CoarseGrid& grid = frame.coarse.grid;
   const PointFollower::Points& points = follower_.points();
   const int columns = (grid.columns + bucket - 1) / bucket, rows = (grid.rows + bucket - 1) / bucket;
-  const auto is_wanted = [&](int cell) {
-    return !remembered_.empty() || CellMask::is_object(labels_.labels[static_cast<std::size_t>(cell)]);
-  };
-  const auto bucket_at = [&](int column, int row) {
-    return static_cast<std::size_t>((row / bucket) * columns + column / bucket);
+  const auto is_wanted = [wants_all = !remembered_.empty(), labels = labels_.labels.data()](int cell) {
+    return wants_all || CellMask::is_object(labels[cell]);
   };
   follower_.filter([&](std::size_t i) {
     const int cell = grid.cell_of(points.x[i], points.y[i]);
     return cell >= 0 && is_wanted(cell);
   });
-  constexpr int min_strength = 200;  // of Scharr derivatives
-  bucket_cell_.assign(static_cast<std::size_t>(columns * rows), -1);
-  bucket_strength_.assign(static_cast<std::size_t>(columns * rows), min_strength);
+  has_point_.assign(static_cast<std::size_t>(columns * rows), 0);
   for (std::size_t i = 0; i < points.size(); ++i)
-    bucket_strength_[bucket_at(grid.column_of(points.x[i]), grid.row_of(points.y[i]))] =
-        std::numeric_limits<int>::max();
-  for (int row = 0; row < grid.rows; ++row)
-    for (int column = 0; column < grid.columns; ++column) {
-      const int cell = row * grid.columns + column;
-      if (!is_wanted(cell)) continue;
-      const std::size_t place = bucket_at(column, row);
-      const std::int32_t raw = sampler_.raw_pixel(cell);
-      if (raw < 0 || bucket_strength_[place] == std::numeric_limits<int>::max()) continue;
-      const int strength =
-          follower_.corner_strength(static_cast<float>(raw % camera_.width), static_cast<float>(raw / camera_.width));
-      if (strength <= bucket_strength_[place]) continue;
-      bucket_strength_[place] = strength;
-      bucket_cell_[place] = cell;
+    has_point_[static_cast<std::size_t>((grid.row_of(points.y[i]) / bucket) * columns +
+                                        grid.column_of(points.x[i]) / bucket)] = 1;
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column) {
+      if (has_point_[static_cast<std::size_t>(row * columns + column)] != 0) continue;
+      const int cell = strongest_corner(grid, column * bucket, row * bucket, is_wanted);
+      if (cell < 0) continue;
+      const cv::Point pixel = raw_pixel(cell);
+      follower_.add(frame, static_cast<float>(pixel.x), static_cast<float>(pixel.y), 0);
     }
-  for (const std::int32_t cell : bucket_cell_) {
-    if (cell < 0) continue;
-    const std::int32_t raw = sampler_.raw_pixel(cell);
-    follower_.add(frame, static_cast<float>(raw % camera_.width), static_cast<float>(raw / camera_.width), 0);
-  }
 }
 
 void MaskPropagator::remember() {
   if (frame_ == nullptr) return;
-  const std::optional<Eigen::Isometry3d> pose = current_.T_camera_world;
   remembered_.push_back({});
   if (labels_.empty()) labels_.assign(current_.coarse.depth.size(), CellMask::unknown, 0);
   renew_points(*frame_);
-  take_view(*frame_, current_);
-  current_.T_camera_world = pose;
+  take_points(current_);
   remembered_.back() = current_;
 }
 
@@ -166,9 +171,10 @@ void MaskPropagator::publish() {
   const double share = std::exp2(-std::max(0.0, age) / memory_);
   mask_.age = age;
   mask_.labels = labels_.labels;
+  std::array<std::uint8_t, 256> faded;  // by confidence
+  for (std::size_t i = 0; i < faded.size(); ++i) faded[i] = static_cast<std::uint8_t>(static_cast<double>(i) * share);
   mask_.confidence.resize(labels_.confidence.size());
-  for (std::size_t i = 0; i < mask_.confidence.size(); ++i)
-    mask_.confidence[i] = static_cast<std::uint8_t>(labels_.confidence[i] * share);
+  for (std::size_t i = 0; i < mask_.confidence.size(); ++i) mask_.confidence[i] = faded[labels_.confidence[i]];
 }
 
 }  // namespace holdfast

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "holdfast/core/coarse_cells.hpp"
 #include "holdfast/geometry/warp.hpp"
 
 namespace holdfast {
@@ -22,41 +23,57 @@ float apart(float depth) { return 0.02F + 0.03F * depth; }
 /// Depths of neighbouring cells of one surface differ by less [m].
 float continues_surface(float depth) { return 0.02F + 0.015F * depth; }
 
+/// Whether a cell beside this one has no label.
+bool is_outline(const std::vector<std::uint8_t>& labels, const CoarseGrid& grid, int column, int row) {
+  const std::uint8_t* const label = &labels[static_cast<std::size_t>(row * grid.columns + column)];
+  return (column > 0 && label[-1] == 0) || (column + 1 < grid.columns && label[1] == 0) ||
+         (row > 0 && label[-grid.columns] == 0) || (row + 1 < grid.rows && label[grid.columns] == 0);
+}
+
 }  // namespace
 
 void MaskTransfer::find_movers(const CoarseGrid& grid, const FollowedPairs& pairs) {
   block_columns_ = (grid.columns + block - 1) / block;
   block_rows_ = (grid.rows + block - 1) / block;
   const std::size_t blocks = static_cast<std::size_t>(block_columns_) * static_cast<std::size_t>(block_rows_);
-  movers_.resize(blocks * max_movers);
+  nearest_.resize(blocks * max_movers);
   mover_count_.assign(blocks, 0);
+  for (std::size_t i = 0; i < pairs.size(); ++i) add_to_blocks(grid, pairs.to_x[i], pairs.to_y[i], i);
+
+  movers_.resize(blocks * max_movers);
+  const auto cells = [](float pixels) { return static_cast<int>(std::lround(pixels / CoarseGrid::step)); };
+  for (std::size_t place = 0; place < blocks; ++place)
+    for (std::size_t k = place * max_movers; k < place * max_movers + mover_count_[place]; ++k) {
+      const std::size_t i = nearest_[k].pair;
+      const bool deep = pairs.from_depth[i] > 0.0F && pairs.to_depth[i] > 0.0F;
+      movers_[k] = {cells(pairs.from_x[i] - pairs.to_x[i]), cells(pairs.from_y[i] - pairs.to_y[i]),
+                    deep ? pairs.from_depth[i] - pairs.to_depth[i] : 0.0F};
+    }
+}
+
+void MaskTransfer::add_to_blocks(const CoarseGrid& grid, float x, float y, std::size_t pair) {
   constexpr float radius = static_cast<float>(reach * block * CoarseGrid::step);  // px
-  for (int row = 0; row < block_rows_; ++row)
-    for (int column = 0; column < block_columns_; ++column) {
-      const float x = grid.left + (static_cast<float>(column) + 0.5F) * block * CoarseGrid::step;
-      const float y = grid.top + (static_cast<float>(row) + 0.5F) * block * CoarseGrid::step;
-      std::array<std::pair<float, std::size_t>, max_movers> nearest;
-      std::size_t count = 0;
-      for (std::size_t i = 0; i < pairs.size(); ++i) {
-        const float dx = pairs.to_x[i] - x, dy = pairs.to_y[i] - y;
-        const float distance = dx * dx + dy * dy;
-        if (distance > radius * radius || (count == max_movers && distance >= nearest[count - 1].first)) continue;
-        std::size_t place = count < max_movers ? count++ : count - 1;
-        for (; place > 0 && nearest[place - 1].first > distance; --place) nearest[place] = nearest[place - 1];
-        nearest[place] = {distance, i};
-      }
+  const auto centre = [](float begin, int place) {
+    return begin + (static_cast<float>(place) + 0.5F) * block * CoarseGrid::step;
+  };
+  const int last_row = std::min(block_rows_ - 1, grid.row_of(y + radius) / block);
+  const int last_column = std::min(block_columns_ - 1, grid.column_of(x + radius) / block);
+  for (int row = std::max(0, grid.row_of(y - radius) / block); row <= last_row; ++row)
+    for (int column = std::max(0, grid.column_of(x - radius) / block); column <= last_column; ++column) {
+      const float dx = x - centre(grid.left, column), dy = y - centre(grid.top, row);
+      const float distance = dx * dx + dy * dy;
+      if (distance > radius * radius) continue;
       const std::size_t index =
           static_cast<std::size_t>(row) * static_cast<std::size_t>(block_columns_) + static_cast<std::size_t>(column);
-      mover_count_[index] = static_cast<std::uint8_t>(count);
-      for (std::size_t k = 0; k < count; ++k) {
-        const std::size_t i = nearest[k].second;
-        const auto cells = [](float pixels) { return static_cast<int>(std::lround(pixels / CoarseGrid::step)); };
-        const bool deep = pairs.from_depth[i] > 0.0F && pairs.to_depth[i] > 0.0F;
-        movers_[index * max_movers + k] = {cells(pairs.from_x[i] - pairs.to_x[i]),
-                                           cells(pairs.from_y[i] - pairs.to_y[i]),
-                                           deep ? pairs.from_depth[i] - pairs.to_depth[i] : 0.0F};
-      }
+      insert_by_distance({distance, pair}, &nearest_[index * max_movers], mover_count_[index]);
     }
+}
+
+void MaskTransfer::insert_by_distance(const Neighbour& added, Neighbour* nearest, std::uint8_t& count) {
+  if (count == max_movers && added.distance >= nearest[count - 1].distance) return;
+  std::size_t place = count < max_movers ? count++ : count - 1U;
+  for (; place > 0 && nearest[place - 1].distance > added.distance; --place) nearest[place] = nearest[place - 1];
+  nearest[place] = added;
 }
 
 /// One transfer: both views, both masks, and the ego-motion.
@@ -65,8 +82,7 @@ struct MaskTransfer::Job {
   const CellMask& from;
   const CoarseView& to_view;
   CellMask& to;
-  geometry::Warp warp;          // by T_from_to
-  geometry::WarpedRow& warped;  // cells of the row in work, with their depth
+  geometry::Warp warp;  // by T_from_to
 
   void take(std::size_t cell, std::size_t source) const {
     to.labels[cell] = from.labels[source];
@@ -87,20 +103,15 @@ void MaskTransfer::transfer(const CoarseView& from_view, const CellMask& from, c
                 .from = from,
                 .to_view = to_view,
                 .to = to,
-                .warp = geometry::Warp(T_to_from.inverse(), geometry::pinhole_of(camera_), min_depth),
-                .warped = warped_};
+                .warp = geometry::Warp(T_to_from.inverse(), geometry::pinhole_of(camera_), min_depth)};
   if (!has_depth_) return transfer_by_points_alone(job, pairs);
   rays_x_.resize(grid.columns);
   for (int column = 0; column < grid.columns; ++column) rays_x_[column] = job.warp.ray_x(grid.x_of(column));
   for (int row = 0; row < grid.rows; ++row) {
-    job.warp.row(
-        rays_x_, job.warp.ray_y(grid.y_of(row)),
-        Eigen::Map<const Eigen::ArrayXf>(&to_view.depth[static_cast<std::size_t>(row * grid.columns)], grid.columns),
-        warped_);
-    for (int column = 0; column < grid.columns; ++column) {
-      const std::size_t cell = static_cast<std::size_t>(row * grid.columns + column);
-      if (take_by_ego_motion(job, column, row)) continue;
+    take_row_by_ego_motion(job, row);
+    for (const int column : open_columns_) {
       take_by_object_motion(job, column, row);
+      const std::size_t cell = static_cast<std::size_t>(row * grid.columns + column);
       if (to_view.depth[cell] > 0.0F || to.labels[cell] != 0) continue;
       take_without_depth(job, column, row);
     }
@@ -152,25 +163,40 @@ void MaskTransfer::transfer_by_points_alone(const Job& job, const FollowedPairs&
     }
 }
 
-bool MaskTransfer::take_by_ego_motion(const Job& job, int column, int row) {
+void MaskTransfer::take_row_by_ego_motion(const Job& job, int row) {
   const CoarseGrid& grid = job.to_view.grid;
-  const std::size_t cell = static_cast<std::size_t>(row * grid.columns + column);
-  if (!(job.to_view.depth[cell] > 0.0F)) return false;
-  const bool is_visible = job.warp.is_visible(job.warped.z[column]);
-  const int source = is_visible ? grid.cell_of(job.warped.x[column], job.warped.y[column]) : -1;
-  const float z = is_visible ? job.warped.z[column] : 0.0F;
-  const float before = source < 0 ? 0.0F : job.from_view.depth[static_cast<std::size_t>(source)];
-  if (before == 0.0F) {
-    previous_state_[cell] = CellState::unobserved;
-  } else if (std::abs(before - z) < apart(z)) {
-    previous_state_[cell] = CellState::same_surface;
-    job.take(cell, static_cast<std::size_t>(source));
-    // At almost the same place, the surface may still be an object that has just arrived there.
-    return job.to.labels[cell] != 0 || std::abs(before - z) < same_place(z);
-  } else if (before > z + apart(z)) {
-    previous_state_[cell] = CellState::free_space;
+  const auto columns = static_cast<std::size_t>(grid.columns), begin = static_cast<std::size_t>(row) * columns;
+  const float* depth = &job.to_view.depth[begin];
+  job.warp.row(rays_x_, job.warp.ray_y(grid.y_of(row)), Eigen::Map<const Eigen::ArrayXf>(depth, grid.columns), warped_);
+  sources_.resize(columns);
+  find_cells(grid, {warped_.x.data(), columns}, {warped_.y.data(), columns}, sources_);
+  open_columns_.clear();
+  // Locals, because the compiler must assume that storing a byte changes anything that is reached by a reference.
+  const float* const z = warped_.z.data();
+  const float* const depth_before = job.from_view.depth.data();
+  const std::int32_t* const sources = sources_.data();
+  CellState* const state = &previous_state_[begin];
+  const std::uint8_t* const labels = job.from.labels.data();
+  for (std::size_t column = 0; column < columns; ++column) {
+    bool is_open = true;
+    if (depth[column] > 0.0F) {
+      const bool has_source = job.warp.is_visible(z[column]) && sources[column] >= 0;
+      const std::size_t source = has_source ? static_cast<std::size_t>(sources[column]) : 0;
+      const float before = has_source ? depth_before[source] : 0.0F;
+      const float change = std::abs(before - z[column]), limit = apart(z[column]);
+      if (before == 0.0F) {
+        state[column] = CellState::unobserved;
+      } else if (change < limit) {
+        state[column] = CellState::same_surface;
+        job.take(begin + column, source);
+        // At almost the same place, the surface may still be an object that has just arrived there.
+        is_open = labels[source] == 0 && !(change < same_place(z[column]));
+      } else if (before > z[column] + limit) {
+        state[column] = CellState::free_space;
+      }
+    }
+    if (is_open) open_columns_.push_back(static_cast<int>(column));
   }
-  return false;
 }
 
 void MaskTransfer::take_by_object_motion(const Job& job, int column, int row) {
@@ -221,10 +247,12 @@ void MaskTransfer::grow(const CoarseView& to_view, CellMask& to) {
   constexpr std::array<std::pair<int, int>, 4> neighbours{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
   front_.clear();
   start_depth_.resize(to.labels.size());
-  for (std::int32_t cell = 0; cell < grid.size(); ++cell)
-    if (CellMask::is_object(to.labels[static_cast<std::size_t>(cell)])) {
-      front_.push_back(cell);
-      start_depth_[static_cast<std::size_t>(cell)] = to_view.depth[static_cast<std::size_t>(cell)];
+  for (int row = 0; row < grid.rows; ++row)
+    for (int column = 0; column < grid.columns; ++column) {
+      const std::size_t cell = static_cast<std::size_t>(row * grid.columns + column);
+      if (!CellMask::is_object(to.labels[cell]) || !is_outline(to.labels, grid, column, row)) continue;
+      front_.push_back(static_cast<std::int32_t>(cell));
+      start_depth_[cell] = to_view.depth[cell];
     }
   for (int step = 0; step < max_steps && !front_.empty(); ++step) {
     next_front_.clear();
@@ -258,21 +286,21 @@ void MaskTransfer::grow(const CoarseView& to_view, CellMask& to) {
 void MaskTransfer::fill_holes(const CoarseView& to_view, CellMask& to) {
   // Cells without depth amid an object belong to it.
   const CoarseGrid& grid = to_view.grid;
-  for (int row = 1; row + 1 < grid.rows; ++row)
-    for (int column = 1; column + 1 < grid.columns; ++column) {
-      const std::size_t cell = static_cast<std::size_t>(row * grid.columns + column);
-      if (to.labels[cell] != 0 || to_view.depth[cell] > 0.0F) continue;
-      const auto width = static_cast<std::ptrdiff_t>(grid.columns);
+  const std::size_t width = static_cast<std::size_t>(grid.columns);
+  std::uint8_t* const labels = to.labels.data();
+  const float* const depth = to_view.depth.data();
+  for (std::size_t row = 1; row + 1 < static_cast<std::size_t>(grid.rows); ++row)
+    for (std::size_t cell = row * width + 1; cell + 1 < (row + 1) * width; ++cell) {
+      if (labels[cell] != 0 || depth[cell] > 0.0F) continue;
       int labelled = 0;
       std::uint8_t label = 0, quality = 255;
-      for (const std::ptrdiff_t offset : {-width, width, std::ptrdiff_t{-1}, std::ptrdiff_t{1}}) {
-        const std::size_t other = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(cell) + offset);
-        if (!CellMask::is_object(to.labels[other])) continue;
+      for (const std::size_t other : {cell - width, cell + width, cell - 1, cell + 1}) {
+        if (!CellMask::is_object(labels[other])) continue;
         ++labelled;
-        label = to.labels[other];
+        label = labels[other];
         quality = std::min(quality, to.confidence[other]);
       }
-      if (labelled >= 3) to.labels[cell] = label, to.confidence[cell] = quality;
+      if (labelled >= 3) labels[cell] = label, to.confidence[cell] = quality;
     }
 }
 

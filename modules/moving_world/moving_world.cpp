@@ -38,6 +38,7 @@ bool MovingWorld::evaluate(FilterStage stage, const TrackedView& view, StageTime
   const StageTimer timer(times, "filters");
   FilterContext inputs = context(view.sensor_frame, view.frame);
   inputs.previous = view.previous;
+  inputs.piece = view.piece;
   if (stage != FilterStage::before_matching) inputs.T_camera_world = &view.frame.T_camera_world;
   filters_.evaluate(stage, inputs);
   return true;
@@ -46,11 +47,14 @@ bool MovingWorld::evaluate(FilterStage stage, const TrackedView& view, StageTime
 void MovingWorld::check_pose(const PosePrediction& prediction, KeyFrameId reference, Frame& frame, StageTimes& times) {
   const StageTimer timer(times, "filters");
   if (!has_depth_ || !depth_agreement_.choose(map_, reference, frame.timestamp)) return;
-  if (depth_agreement_.share(frame, prediction.T_camera_world) >
-      depth_agreement_.share(frame, frame.T_camera_world) + filters_.settings().prediction_lead)
+  double share = depth_agreement_.share(frame, frame.T_camera_world);
+  const double predicted_share = depth_agreement_.share(frame, prediction.T_camera_world);
+  if (predicted_share > share + filters_.settings().prediction_lead) {
     frame.T_camera_world = prediction.T_camera_world;
-  frame.coarse.T_view_camera =
-      depth_agreement_.find_view(frame, frame.T_camera_world, frame.T_camera_world * prediction.T_world_previous);
+    share = predicted_share;
+  }
+  frame.coarse.T_view_camera = depth_agreement_.find_view(frame, frame.T_camera_world, share,
+                                                          frame.T_camera_world * prediction.T_world_previous);
 }
 
 bool MovingWorld::contradicts_depth(const Frame& frame, int inliers, bool was_lost, KeyFrameId reference) {
@@ -64,6 +68,11 @@ bool MovingWorld::contradicts_depth(const Frame& frame, int inliers, bool was_lo
   if (!depth_agreement_.choose(map_, reference, frame.timestamp)) return false;
   return depth_agreement_.share(frame, frame.T_view_world()) <
          (was_lost ? limits.depth_check_share_lost : limits.depth_check_share);
+}
+
+bool MovingWorld::is_view_filled(const Frame& frame, KeyFrameId reference) {
+  if (!has_depth_ || filters_.empty() || !depth_agreement_.choose(map_, reference, frame.timestamp)) return false;
+  return depth_agreement_.disagrees(frame, frame.T_view_world(), filters_.settings().depth_check_share);
 }
 
 std::optional<Eigen::Isometry3d> MovingWorld::align_depth(const Frame& frame, const Eigen::Isometry3d& predicted,
@@ -118,6 +127,7 @@ void MovingWorld::evaluate_keyframe(const ArrivedMask& arrived, StageTimes& time
   const StageTimer timer(times, "masks");
   keyframe->frame.coarse.mask = arrived.mask;
   FilterContext inputs = context(arrived.frame, keyframe->frame);
+  inputs.piece = keyframe->piece;
   inputs.T_camera_world = &keyframe->frame.T_camera_world;
   inputs.segmentation = &arrived.segmentation;
   filters_.evaluate_keyframe(inputs, keyframe->frame);

@@ -66,15 +66,6 @@ void PointFollower::advance(const cv::Mat& grey, const Frame& frame) {
   compact(found_);
 }
 
-int PointFollower::corner_strength(float raw_x, float raw_y) const {
-  // The finest level of the pyramid is followed by its derivatives.
-  const cv::Mat& derivatives = pyramid_[1];
-  const int column = static_cast<int>(raw_x * 0.5F), row = static_cast<int>(raw_y * 0.5F);
-  if (column < 0 || row < 0 || column >= derivatives.cols || row >= derivatives.rows) return 0;
-  const cv::Vec2s gradient = derivatives.at<cv::Vec2s>(row, column);
-  return std::min(std::abs(gradient[0]), std::abs(gradient[1]));
-}
-
 void PointFollower::add(const Frame& frame, float raw_x, float raw_y, std::uint8_t label) {
   float x = 0.0F, y = 0.0F;
   undistort(frame, raw_x, raw_y, x, y);

@@ -73,6 +73,7 @@ class ConfigurationReader {
   ConfigurationReader(const Configuration& configuration, const Registry& registry)
       : configuration_(configuration), builder_(registry) {
     builder_.place_ = {configuration.file};
+    builder_.unknown_camera_ = configuration.unknown_camera;
   }
 
   PipelineBuilder read(const SourceDescription& source) {
@@ -147,7 +148,10 @@ BuiltPipeline build_pipeline(const Configuration& configuration, const Registry&
 }
 
 std::unique_ptr<FrameSource> build_source(const Configuration& configuration, const Registry& registry) {
-  return make_source(configuration, registry, context_of_source(configuration));
+  auto source = make_source(configuration, registry, context_of_source(configuration));
+  if (configuration.unknown_camera && !configuration.camera && !source->describe().camera)
+    throw ConfigurationError({*configuration.unknown_camera});
+  return source;
 }
 
 BuiltSegmenter build_segmenter(const Configuration& configuration, const Registry& registry) {

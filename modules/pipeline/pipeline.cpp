@@ -91,7 +91,9 @@ struct Pipeline::State {
         adjustment(parts.loop_closing, {map, map_mutex, surgery}, *parts.optimizer) {
     map.set_sensor(parts.sensor);
     map.set_features({parts.features_name, parts.features->descriptor_type()});
+    if (!parts.segmenter->classes().empty() && !parts.localise_only) map.set_classes(parts.segmenter->classes());
     map.set_evidence_limit(static_cast<float>(parts.evidence.limit));
+    if (moving_world.expects_masks()) mapper.expect_masks();
     closer.set_full_adjustment(&adjustment);
     for (const KeyFrameId keyframe : map.keyframes_by_age())
       detector.add(keyframe, place_descriptors(map.keyframe(keyframe).frame, describes_images));
@@ -115,6 +117,8 @@ struct Pipeline::State {
   void give_map_up(StageTimes& times);
   /// Inserts the first of the two keyframes with which the map of one camera begins; the caller holds the map's lock.
   KeyFrameId begin_map(const TwoViewStart& start, StageTimes& times);
+  /// Removes the pieces of the map that nothing joined with the main one; the threads have ended.
+  void drop_loose_pieces();
   LoopJob refine(const MappingJob& job, StageTimes& times);
   /// The colour image of a keyframe if the loop detector will describe it; otherwise none, so that none is kept.
   cv::Mat image_to_describe(const SensorFrame& frame) const { return describes_images ? frame.colour : cv::Mat(); }
@@ -147,6 +151,10 @@ struct Pipeline::State {
     background_times.push_back(std::move(times));
   }
   void rethrow_failures();
+  bool begins_on_people() {
+    const TrackingLock lock(map_mutex);
+    return tracker.is_start_refuted();
+  }
   bool has_keyframe(KeyFrameId keyframe) {
     const std::lock_guard lock(map_mutex);
     return map.find_keyframe(keyframe) != nullptr;
@@ -259,6 +267,7 @@ void Pipeline::State::give_map_up(StageTimes& times) {
     const std::lock_guard lock(map_mutex);
     job.removed = map.keyframes_by_age();
     map.remove_all();
+    if (scene) scene->forget_removed(map);
     mapper.forget_map();
     tracker.forget_map();
   }
@@ -268,6 +277,14 @@ void Pipeline::State::give_map_up(StageTimes& times) {
     loop_closing->queue().push(std::move(job));
   else
     close_loops(job, times);
+}
+
+void Pipeline::State::drop_loose_pieces() {
+  const std::lock_guard lock(map_mutex);
+  const std::uint32_t main = tracker.main_piece();
+  if (map.keyframes_outside(main).empty()) return;
+  map.keep_piece(main);
+  if (scene) scene->forget_removed(map);
 }
 
 Pipeline::State::LoopJob Pipeline::State::refine(const MappingJob& given, StageTimes& times) {
@@ -405,7 +422,8 @@ double Pipeline::State::take_masks(StageTimes& times) {
 void Pipeline::State::request_mask(const SensorFrame& frame, const FrameResult& result, StageTimes& times) {
   const KeyFrameId keyframe = result.is_keyframe ? result.keyframe : KeyFrameId();
   // One camera looks for its first two views by masks that are as fresh as they can be.
-  const bool is_needed = parts.sensor == Sensor::mono && result.status == TrackingStatus::waiting;
+  const bool is_needed =
+      (parts.sensor == Sensor::mono && result.status == TrackingStatus::waiting) || tracker.needs_mask();
   const bool is_requested = moving_world.request_mask(frame, keyframe, times, is_needed);
   if (!result.is_keyframe) return;
   if (is_requested) {
@@ -437,6 +455,7 @@ FrameResult Pipeline::feed(const SensorFrame& given) {
   s.moving_world.next_frame(frame.timestamp);
   s.hand_on_kept_keyframes();
   const double mask_seconds = s.take_masks(result.times);
+  if (s.begins_on_people()) s.give_map_up(result.times);
   KeyFrameId first_keyframe;
   const Stopwatch watch;
   s.tracker.begin(frame, result);
@@ -452,12 +471,14 @@ FrameResult Pipeline::feed(const SensorFrame& given) {
     }
     if (result.is_keyframe) {
       // Without a map, or with little of it in view, there is nothing to track by until the mask comes, which takes the
-      // points on people back.
-      const bool is_new_view = result.status == TrackingStatus::initialised ||
-                               result.inliers < s.parts.segmentation.new_view_share * result.static_features;
+      // points on people back. Right after a loss, people are what hides the map, and tracking would follow them.
+      const bool shows_little = result.inliers < s.parts.segmentation.new_view_share * result.static_features;
+      const bool is_new_view =
+          result.status == TrackingStatus::initialised || (shows_little && !s.tracker.was_just_found());
       const bool wait_for_mask = s.moving_world.expects_masks() && !is_new_view;
       if (const TwoViewStart* start = s.tracker.two_view_start()) first_keyframe = s.begin_map(*start, result.times);
-      result.keyframe = s.mapper.insert(s.tracker.frame(), wait_for_mask, result.times);
+      const std::uint32_t piece = s.tracker.begins_piece() ? s.map.new_piece() : s.tracker.piece();
+      result.keyframe = s.mapper.insert(s.tracker.frame(), wait_for_mask, result.times, piece);
       if (s.mapping || s.moving_world.expects_masks()) s.tracker.keyframe_added(result.keyframe);
     }
   }
@@ -486,9 +507,11 @@ void Pipeline::finish() {
   if (s.full_adjustment) s.full_adjustment->finish();
   s.finished = true;
   s.rethrow_failures();
+  s.drop_loose_pieces();
   // What was seen after the last loop ties its two ends together further: the result deserves it.
   if (s.keyframes_since_adjustment > 0 && !s.interrupted)
     s.in_background([&](StageTimes& times) { s.adjust_map(times); });
+  if (!s.parts.segmenter->classes().empty() && !s.parts.localise_only) s.map.classify_points();
   for (const auto& observer : s.parts.observers) observer->on_finish(s.map);
 }
 
@@ -540,6 +563,10 @@ const MappingCounts& Pipeline::mapping_counts() const { return state_->mapper.co
 LoopRecord Pipeline::loop_record() const {
   const std::lock_guard lock(state_->record_mutex);
   return state_->loop_record;
+}
+LossRecord Pipeline::loss_record() const {
+  const TrackingLock lock(state_->map_mutex);
+  return state_->tracker.loss_record();
 }
 Sensor Pipeline::sensor() const { return state_->parts.sensor; }
 double Pipeline::readout() const {

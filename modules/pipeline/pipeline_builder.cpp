@@ -173,7 +173,7 @@ void PipelineBuilder::check_camera() {
   parts_.sensor = sensor_.value_or(offered);
   // The baseline of a real pair is the source's; that of the configured camera is of a virtual one.
   if (source_camera_ && parts_.sensor != Sensor::rgbd) parts_.camera.baseline = source_camera_->baseline;
-  if (source_camera_ && has_camera_ && have_other_numbers(*source_camera_, parts_.camera))
+  if (source_camera_ && has_camera_ && !unknown_camera_ && have_other_numbers(*source_camera_, parts_.camera))
     complain(source_place_, "the source '" + source_name_ +
                                 "' brings its own camera, and 'camera' names one with other numbers; remove one of "
                                 "them");
@@ -184,7 +184,9 @@ void PipelineBuilder::check_camera() {
   }
   // Without a pair, the baseline only says what counts as near, in the map's own unit.
   if (parts_.sensor == Sensor::mono) parts_.camera.baseline = Camera().baseline;
-  if (!source_camera_ && !has_camera_) {
+  if (!source_camera_ && !has_camera_ && unknown_camera_)
+    complain(unknown_camera_->location, unknown_camera_->message);
+  else if (!source_camera_ && !has_camera_) {
     std::string known;
     for (const std::string& name : camera_names()) known += (known.empty() ? "" : ", ") + name;
     const std::string source =

@@ -62,6 +62,7 @@ void record_pipeline(const Pipeline& pipeline, RunRecord& record) {
   record.map_points = pipeline.map().points().size();
   record.mapping = pipeline.mapping_counts();
   record.loops = pipeline.loop_record();
+  record.losses = pipeline.loss_record();
   record.mask_ages = pipeline.mask_latencies();
   record.readout = pipeline.readout();
 }

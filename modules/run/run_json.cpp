@@ -69,6 +69,7 @@ Json loops_json(const LoopRecord& record) {
                      {"candidate_timestamp", event.candidate_timestamp},
                      {"inliers", event.loop.inliers},
                      {"points_fused", event.loop.points_fused},
+                     {"joins_pieces", event.loop.joins_pieces},
                      {"way_m", event.loop.way},
                      {"correction_m", event.loop.correction.metres},
                      {"correction_deg", event.loop.correction.degrees},
@@ -108,6 +109,8 @@ Json frames_json(const RunRecord& record) {
           {"by_odometry", s.count(TrackingFallback::odometry)},
           {"by_masked_features", s.count(TrackingFallback::masked_features)},
           {"by_dense_depth", s.count(TrackingFallback::dense_depth)},
+          {"tracked_backwards", record.losses.tracked_backwards},
+          {"left_out", record.losses.left_out},
           {"poses", record.trajectory.size()},
           {"coverage", record.coverage()}};
 }
@@ -115,6 +118,7 @@ Json frames_json(const RunRecord& record) {
 Json map_json(const RunRecord& record) {
   return {{"keyframes", record.map_keyframes},
           {"points", record.map_points},
+          {"pieces_begun", record.losses.pieces},
           {"keyframes_made", record.mapping.keyframes_made},
           {"keyframes_removed", record.mapping.keyframes_removed},
           {"points_from_depth", record.mapping.points_from_depth},
@@ -149,8 +153,6 @@ std::string machine_text() {
   return processor() + ", " + std::to_string(std::thread::hardware_concurrency()) + " cores, " +
          to_string(simd_level());
 }
-
-const char* build_commit() { return HOLDFAST_COMMIT; }
 
 std::string run_json(const RunRecord& record) {
   const RunSummary& s = record.summary;

@@ -53,6 +53,12 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& r
                     percent_text(record.coverage()) + " (" + counted(record.trajectory.size(), "pose") + ")");
   rows.emplace_back("lost", counted(s.lost(), "frame") + ", recovered " + counted(s.recovered(), "time") +
                                 ", relocalised " + std::to_string(s.relocalised()));
+  const LossRecord& losses = record.losses;
+  if (losses.tracked_backwards > 0)
+    rows.back().second += ", " + counted(losses.tracked_backwards, "frame") + " tracked backwards";
+  if (losses.pieces > 0)
+    rows.back().second += ", " + counted(losses.pieces, "new piece") + " of the map begun, " +
+                          counted(losses.left_out, "frame") + " left out with those that nothing joined";
   const std::uint64_t odometry = s.count(TrackingFallback::odometry);
   const std::uint64_t masked = s.count(TrackingFallback::masked_features);
   const std::uint64_t dense = s.count(TrackingFallback::dense_depth);

@@ -2,10 +2,10 @@
 #include "holdfast/tracking/depth_reader.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 
+#include "holdfast/core/sensor_frame.hpp"
 #include "holdfast/geometry/warp.hpp"
 
 namespace holdfast {
@@ -20,7 +20,7 @@ float DepthReader::depth_at(const cv::Mat& depth, float x, float y) const {
   const int column = static_cast<int>(x + 0.5F), row = static_cast<int>(y + 0.5F);
   if (column >= depth.cols || row >= depth.rows) return 0.0F;
   const float value = depth.at<float>(row, column);
-  if (!(value > 0.0F) || !std::isfinite(value)) return 0.0F;
+  if (!is_measured_depth(value)) return 0.0F;
   if (edge_ratio_ <= 0.0) return value;
   // At a depth edge the feature may lie on either surface, so that its depth is unknown.
   float nearest = value, farthest = value, sum = value;
@@ -28,7 +28,7 @@ float DepthReader::depth_at(const cv::Mat& depth, float x, float y) const {
   const auto at = [&](int c, int r) {
     if (c < 0 || r < 0 || c >= depth.cols || r >= depth.rows) return 0.0F;
     const float neighbour = depth.at<float>(r, c);
-    if (!(neighbour > 0.0F) || !std::isfinite(neighbour)) return 0.0F;
+    if (!is_measured_depth(neighbour)) return 0.0F;
     nearest = std::min(nearest, neighbour);
     farthest = std::max(farthest, neighbour);
     return neighbour;

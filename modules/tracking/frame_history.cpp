@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 
 #include "holdfast/geometry/se3.hpp"
 
@@ -25,6 +27,16 @@ void FrameHistory::add(const Frame& frame, KeyFrameId reference, const Map& map)
     record.t_camera_reference = T_last_reference_.translation() / last_reference_scale_;
   }
   records_.push_back(record);
+}
+
+void FrameHistory::add_past(const Frame& frame, KeyFrameId reference, const Map& map) {
+  Record record{frame.timestamp, reference};
+  const Eigen::Isometry3d T_camera_reference = frame.T_camera_world * map.pose_of(reference).inverse();
+  record.R_camera_reference = Eigen::Quaterniond(T_camera_reference.linear());
+  record.t_camera_reference = T_camera_reference.translation() / map.scale_of(reference);
+  const auto later = std::upper_bound(records_.begin(), records_.end(), frame.timestamp,
+                                      [](double time, const Record& other) { return time < other.timestamp; });
+  records_.insert(later, record);
 }
 
 void FrameHistory::became_keyframe(KeyFrameId keyframe, double timestamp) {
@@ -56,10 +68,27 @@ Eigen::Isometry3d FrameHistory::extrapolate(double timestamp, double share) cons
   return geometry::exp_se3(share * steps * geometry::log_se3(velocity_));
 }
 
+std::uint32_t FrameHistory::main_piece(const Map& map) const {
+  std::map<std::uint32_t, std::size_t> frames;
+  for (const Record& record : records_)
+    if (const std::optional<std::uint32_t> piece = map.piece_of(record.reference)) ++frames[*piece];
+  const auto most =
+      std::max_element(frames.begin(), frames.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  return most == frames.end() ? 0 : most->first;
+}
+
+std::size_t FrameHistory::frames_left_out(const Map& map) const {
+  const std::uint32_t piece = main_piece(map);
+  return static_cast<std::size_t>(std::count_if(
+      records_.begin(), records_.end(), [&](const Record& record) { return map.piece_of(record.reference) != piece; }));
+}
+
 Trajectory FrameHistory::trajectory(const Map& map) const {
   Trajectory trajectory;
   trajectory.reserve(records_.size());
+  const std::uint32_t piece = main_piece(map);
   for (const Record& record : records_) {
+    if (map.piece_of(record.reference) != piece) continue;
     Eigen::Isometry3d T_camera_reference(record.R_camera_reference);
     T_camera_reference.translation() = record.t_camera_reference * map.scale_of(record.reference);
     trajectory.push_back({record.timestamp, (T_camera_reference * map.pose_of(record.reference)).inverse()});

@@ -6,10 +6,12 @@
 namespace holdfast {
 
 KeyframeSituation KeyframePolicy::measure(const Frame& frame, int inliers, KeyFrameId reference, const Map& map) const {
-  KeyframeSituation situation{.inliers = inliers, .keyframes = map.keyframes().size()};
+  const KeyFrame* const keyframe = map.find_keyframe(reference);
+  KeyframeSituation situation{.inliers = inliers,
+                              .keyframes = map.keyframes_in(keyframe == nullptr ? 0 : keyframe->piece)};
   // Established points were observed by another keyframe, too, as soon as there is another.
   const std::size_t enough_observations = situation.keyframes <= 2 ? 1 : 2;
-  if (const KeyFrame* keyframe = map.find_keyframe(reference))
+  if (keyframe != nullptr)
     for (const MapPointId id : keyframe->frame.map_points)
       if (const MapPoint* point = map.find_point(id); point && point->observations.size() >= enough_observations)
         ++situation.reference_points;

@@ -9,8 +9,31 @@
 
 namespace holdfast {
 
+namespace {
+
+/// Since a point was first seen [s]: somebody who walks past the camera is in view for about as long.
+constexpr double established_age = 1.0;
+/// So many established points that agree with each other determine a pose.
+constexpr int min_established = 50;
+/// 95 % of the reprojection errors of a right point are within chi-square 5.99 of two degrees of freedom; the pose that
+/// new points are compared with, and the points themselves, are uncertain as well.
+constexpr double max_new_error = 4.0 * 5.991;
+
+int count_static_inliers(const PoseProblem& problem) {
+  int inliers = 0;
+  for (std::size_t i = 0; i < problem.size(); ++i)
+    inliers += problem.inlier[i] != 0 && is_static(problem.weight[i]) ? 1 : 0;
+  return inliers;
+}
+
+}  // namespace
+
 void PoseEstimator::build_problem(Frame& frame) {
   moving_world_.weight_features(frame);
+  collect_observations(frame);
+}
+
+void PoseEstimator::collect_observations(Frame& frame) {
   problem_.clear();
   features_.clear();
   problem_.camera = frame.camera.get();
@@ -34,7 +57,12 @@ int PoseEstimator::adjust(Frame& frame) {
 }
 
 int PoseEstimator::adjust(Frame& frame, std::vector<OdometryMatch>& odometry) {
-  build_problem(frame);
+  moving_world_.weight_features(frame);
+  return adjust_as_weighted(frame, odometry);
+}
+
+int PoseEstimator::adjust_as_weighted(Frame& frame, std::vector<OdometryMatch>& odometry) {
+  collect_observations(frame);
   // A feature that has found a map point since says more by that.
   std::erase_if(odometry, [&](const OdometryMatch& match) { return frame.map_points[match.feature].valid(); });
   for (const OdometryMatch& match : odometry) add_observation(problem_, frame, match.feature, match.position);
@@ -46,7 +74,44 @@ int PoseEstimator::adjust(Frame& frame, std::vector<OdometryMatch>& odometry) {
   return inliers;
 }
 
+bool PoseEstimator::is_established(const MapPoint& point, double now) const {
+  const KeyFrame* first = map_.find_keyframe(point.reference_keyframe);
+  if (first == nullptr) return false;
+  const double age = now - first->frame.timestamp;
+  return age >= established_age || age < 0.0;  // a loaded map may be of a later recording
+}
+
+void PoseEstimator::reject_new_points(const Frame& frame) {
+  rejected_.assign(problem_.size(), 1);
+  established_.clear();
+  established_.camera = problem_.camera;
+  established_.T_camera_world = problem_.T_camera_world;
+  for (std::size_t i = 0; i < features_.size(); ++i) {
+    if (!is_established(map_.point(frame.map_points[features_[i]]), frame.timestamp)) continue;
+    rejected_[i] = 0;
+    add_observation(established_, frame, features_[i], problem_.points[i]);
+  }
+  established_.inlier.assign(established_.size(), 0);
+  const bool decides = established_.size() >= min_established && established_.size() < problem_.size() &&
+                       optimizer_.optimize_pose(established_).usable &&
+                       count_static_inliers(established_) >= min_established;
+  if (!decides) {
+    rejected_.clear();
+    return;
+  }
+  problem_.T_camera_world = established_.T_camera_world;
+  for (std::size_t i = 0; i < rejected_.size(); ++i) {
+    if (rejected_[i] == 0) continue;
+    const Eigen::Vector3d point = problem_.T_camera_world * problem_.points[i];
+    const Eigen::Vector2d error = problem_.camera->project(point) - Eigen::Vector2d(problem_.x[i], problem_.y[i]);
+    rejected_[i] = !(point.z() > 0.0) || error.squaredNorm() * problem_.inverse_sigma2[i] >= max_new_error ? 1 : 0;
+    if (rejected_[i] != 0) problem_.weight[i] = 0.0F;
+  }
+}
+
 int PoseEstimator::solve(Frame& frame) {
+  rejected_.clear();
+  if (map_.sensor() == Sensor::mono && moving_world_.weights_features()) reject_new_points(frame);
   const PoseSummary summary = optimizer_.optimize_pose(problem_);
   position_deviation_ = summary.usable ? std::sqrt(summary.covariance.topLeftCorner<3, 3>().trace()) : 0.0;
   if (!summary.usable) {
@@ -54,12 +119,10 @@ int PoseEstimator::solve(Frame& frame) {
     return 0;
   }
   frame.T_camera_world = problem_.T_camera_world;
-  if (!moving_world_.weights_features()) return summary.inliers;
+  for (std::size_t i = 0; i < rejected_.size(); ++i)
+    if (rejected_[i] != 0) problem_.inlier[i] = 0;
   // Features that are probably moving may agree by chance and do not support a pose.
-  int inliers = 0;
-  for (std::size_t i = 0; i < problem_.size(); ++i)
-    inliers += problem_.inlier[i] != 0 && is_static(problem_.weight[i]) ? 1 : 0;
-  return inliers;
+  return moving_world_.weights_features() ? count_static_inliers(problem_) : summary.inliers;
 }
 
 void PoseEstimator::drop_outliers(Frame& frame) const {

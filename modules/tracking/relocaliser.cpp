@@ -17,7 +17,9 @@ constexpr double chance_share = 1.0 / 6.0;
 
 bool Relocaliser::relocalise(KeyFrameId last_keyframe, KeyFrameId reference, const cv::Mat& image, Frame& frame,
                              FrameResult& result) {
-  return coast(frame, result) || recover(last_keyframe, reference, frame, result) || find_place(image, frame, result);
+  if (coast(frame, result)) return true;
+  parts_.history.interrupt();
+  return recover(last_keyframe, reference, frame, result) || find_place(image, frame, result);
 }
 
 int Relocaliser::search_local_map(double window, Frame& frame) {
@@ -52,7 +54,6 @@ bool Relocaliser::recover(KeyFrameId last_keyframe, KeyFrameId reference, Frame&
     if (parts_.map.find_keyframe(id) == nullptr) continue;
     for (const KeyFrameId neighbour : parts_.map.best_covisible(id, max_keyframes)) candidates.push_back(neighbour);
   }
-  parts_.history.interrupt();
   std::vector<KeyFrameId> tried;
   for (const KeyFrameId candidate : candidates) {
     if (std::find(tried.begin(), tried.end(), candidate) != tried.end()) continue;
@@ -104,7 +105,6 @@ bool Relocaliser::align_with_keyframe(KeyFrameId keyframe, const std::optional<E
 }
 
 bool Relocaliser::find_place(const cv::Mat& image, Frame& frame, FrameResult& result) {
-  parts_.history.interrupt();
   // The database contains static features only, and so does the query. Points that an earlier hypothesis matched say
   // nothing about this place: the weights come from the frame alone.
   std::fill(frame.map_points.begin(), frame.map_points.end(), MapPointId());

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 #include <utility>
 
 #include "holdfast/geometry/se3.hpp"
 #include "holdfast/matching/frame_features.hpp"
+#include "holdfast/tracking/inertia.hpp"
 
 namespace holdfast {
 
@@ -28,11 +28,13 @@ Tracker::Tracker(const TrackingSettings& settings, const TrackerParts& parts)
       estimator_(parts.optimizer, parts.moving_world, parts.map),
       relocaliser_(settings, {parts.detector, parts.moving_world, parts.map, matcher_, estimator_, history_},
                    parts.seed),
+      backwards_(settings_, {parts.map, parts.moving_world, matcher_, estimator_, history_}),
       keyframe_policy_(settings),
       shutter_(parts.stereo ? RollingShutterMode::off : settings.rolling_shutter, parts.camera.readout),
       state_(parts.map.keyframes().empty() ? State::waiting : State::lost) {
   if (parts.stereo) builder_.use_stereo(*parts.stereo);
   if (settings.between_keyframes == BetweenKeyframes::flow) flow_.emplace();
+  start_is_judged_ = !parts.has_depth || settings.start_share <= 0.0 || !parts.map.keyframes().empty();
   if (!parts.has_depth) mono_.emplace(settings, parts.optimizer, parts.seed, parts.matcher);
 }
 
@@ -85,17 +87,17 @@ bool Tracker::follow_features(const SensorFrame& sensor_frame, FrameResult& resu
 }
 
 void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
-  begins_with_two_views_ = gave_map_up_ = false;
+  begins_with_two_views_ = gave_map_up_ = begins_piece_ = false;
   if (state_ == State::waiting) {
     if (mono_)
       start_with_two_views(sensor_frame, result);
     else
-      start_map(Eigen::Isometry3d::Identity(), result);
+      start_with_depth(sensor_frame, result);
     end_frame(result);
     return;
   }
   if (history_.has_previous()) previous_.T_camera_world = history_.last_pose(map_);
-  TrackedView view{sensor_frame, history_.has_previous() ? &previous_ : nullptr, current_};
+  TrackedView view{sensor_frame, history_.has_previous() ? &previous_ : nullptr, current_, piece()};
   odometry_extends_map_ = false;
   bool found = followed_frames_ > 0 && track_followed(view, result);
   if (followed_frames_ > 0 && !found) find_features(sensor_frame, result);
@@ -109,9 +111,17 @@ void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
     gave_map_up_ = is_weak || (!found && was_lost_at_start());
     found = found && !is_weak;
   } else if (!found && was_lost_at_start() && start_map(coasting_pose(current_.timestamp), result)) {
+    begins_piece_ = piece() != 0;  // the first piece goes on, since frames may follow it that were tracked before
+    end_frame(result);
+    return;
+  } else if (!found && should_begin_piece() && start_map(coasting_pose(current_.timestamp), result)) {
+    begins_piece_ = true;
+    if (!left_reference_.valid()) left_keyframe_ = last_keyframe_, left_reference_ = reference_keyframe_;
     end_frame(result);
     return;
   }
+  if (found && left_reference_.valid()) return_from_piece(view, result);
+  if (found && state_ == State::lost) found_time_ = current_.timestamp;
   state_ = found ? State::tracking : State::lost;
   result.status = found ? TrackingStatus::tracked : TrackingStatus::lost;
   if (found) {
@@ -154,6 +164,27 @@ bool Tracker::was_lost_at_start() const {
   return age < settings_.young_map_time && lost_for > std::max(min_patience, patience_share * age);
 }
 
+bool Tracker::should_begin_piece() {
+  if (localises_only_ || history_.empty() || settings_.restart_time <= 0.0) return false;
+  if (current_.timestamp - history_.last_timestamp() <= settings_.restart_time) return false;
+  // A piece that began on people would never fit the rest.
+  if (moving_world_.expects_masks() &&
+      (!moving_world_.has_mask() || moving_world_.mask_age() > settings_.keyframe_mask_age))
+    return false;
+  return can_begin_among_people();
+}
+
+LossRecord Tracker::loss_record() const {
+  return {.tracked_backwards = backwards_.tracked(), .pieces = pieces_, .left_out = history_.frames_left_out(map_)};
+}
+
+bool Tracker::needs_mask() const { return !localises_only_ && !mono_ && state_ == State::lost && !history_.empty(); }
+
+bool Tracker::was_just_found() const {
+  constexpr double recent = 0.5;  // s; until a mask made since then has arrived
+  return found_time_ && current_.timestamp - *found_time_ < recent;
+}
+
 Eigen::Isometry3d Tracker::predicted_pose() const {
   return history_.predicted_step(current_.timestamp) * previous_.T_camera_world;
 }
@@ -175,6 +206,36 @@ bool Tracker::start_map(const Eigen::Isometry3d& T_camera_world, FrameResult& re
   std::fill(current_.map_points.begin(), current_.map_points.end(), MapPointId());
   begin_map(result);
   return true;
+}
+
+void Tracker::start_with_depth(const SensorFrame& sensor_frame, FrameResult& result) {
+  if (moving_world_.has_mask()) {
+    moving_world_.evaluate(FilterStage::before_matching, {sensor_frame, nullptr, current_}, result.times);
+    if (!can_begin_among_people()) {
+      result.trouble = TrackingTrouble::few_features;
+      return;
+    }
+  }
+  start_map(Eigen::Isometry3d::Identity(), result);
+}
+
+bool Tracker::can_begin_among_people() {
+  moving_world_.weight_features(current_);
+  int usable = 0;
+  for (std::size_t i = 0; i < current_.size(); ++i) usable += current_.has_depth(i) && is_static(current_, i) ? 1 : 0;
+  return usable >= settings_.minimum_start_points;
+}
+
+bool Tracker::is_start_refuted() {
+  if (start_is_judged_ || !moving_world_.has_mask()) return false;
+  start_is_judged_ = true;
+  if (localises_only_ || map_.keyframes().empty()) return false;
+  const Frame& first = map_.keyframe(map_.keyframes_by_age().front()).frame;
+  const auto kept = std::count_if(first.static_probability.begin(), first.static_probability.end(),
+                                  [](float p) { return is_static(p); });
+  if (static_cast<double>(kept) < settings_.start_share * static_cast<double>(first.size())) return true;
+  backwards_.clear();
+  return false;
 }
 
 void Tracker::start_with_two_views(const SensorFrame& sensor_frame, FrameResult& result) {
@@ -214,7 +275,7 @@ bool Tracker::is_weak_start(const FrameResult& result) {
 
 void Tracker::forget_map() {
   history_.clear();
-  mono_->forget();
+  if (mono_) mono_->forget();
   if (flow_) flow_->clear();
   followed_frames_ = 0;
   state_ = State::waiting;
@@ -253,6 +314,33 @@ bool Tracker::find_pose(TrackedView& view, FrameResult& result) {
       return false;
   }
   return refine(view, result);
+}
+
+void Tracker::return_from_piece(TrackedView& view, FrameResult& result) {
+  // A loop has joined the two, or the camera is back.
+  if (map_.piece_of(left_reference_).value_or(piece()) == piece()) {
+    left_keyframe_ = left_reference_ = KeyFrameId();
+    return;
+  }
+  constexpr std::uint64_t interval = 3;  // frames; the search takes as long as tracking
+  if (result.index % interval != 0) return;
+  const Frame in_piece = current_;
+  const KeyFrameId reference = reference_keyframe_;
+  FrameResult trial = result;
+  bool found = false;
+  {
+    const StageTimer timer(result.times, "relocalisation");
+    found = relocaliser_.recover(left_keyframe_, left_reference_, current_, trial);
+  }
+  if (!found || !track_local_map(view, trial) || trial.inliers < settings_.relocalisation_inliers) {
+    current_ = in_piece;
+    reference_keyframe_ = reference;
+    return;
+  }
+  trial.times = result.times;
+  result = trial;
+  history_.interrupt();
+  left_keyframe_ = left_reference_ = KeyFrameId();
 }
 
 bool Tracker::track_followed(TrackedView& view, FrameResult& result) {
@@ -313,7 +401,11 @@ bool Tracker::track_odometry(TrackedView& view, FrameResult& result) {
   matcher_.match_local_map(static_cast<float>(settings_.local_map_window), current_);
   // Points of one frame are less certain than those of the map: twice as many have to agree.
   const int inliers = estimator_.adjust(current_, odometry_);
-  if (inliers < 2 * settings_.minimum_inliers || is_refuted(inliers, false)) return false;
+  // They may all be on one person, who hides the room: however many they are, no camera jumps.
+  constexpr double impossible = 3.0;  // times jump_distance and jump_angle
+  if (inliers < 2 * settings_.minimum_inliers || is_refuted(inliers, false) || jumps(impossible) ||
+      moving_world_.is_view_filled(current_, reference_keyframe_))
+    return false;
   // Where the map ends, the camera would be lost before long; a pose as certain as this begins new map.
   constexpr int certain_inliers = 8;          // times minimum_inliers
   constexpr double certain_deviation = 0.25;  // of maximum_deviation
@@ -404,15 +496,21 @@ void Tracker::evaluate_with_pose(const TrackedView& view, FrameResult& result) {
 bool Tracker::contradicts_motion(int inliers) const {
   // Two groups of features move rigidly where a person fills much of the view, and the person's may be the larger one.
   // A camera has inertia: from one frame to the next, its velocity changes by little.
-  if (inliers >= sure_inliers * settings_.minimum_inliers || !history_.has_previous() || !history_.has_velocity())
-    return false;
-  constexpr double frame_interval = 1.0 / 30.0, max_interval = 0.2;  // s; later, the prediction says little
+  return inliers < sure_inliers * settings_.minimum_inliers && jumps(1.0);
+}
+
+bool Tracker::jumps(double factor) const {
+  if (!history_.has_previous() || !history_.has_velocity()) return false;
+  constexpr double max_interval = 0.2;  // s; later, the prediction says little
   const double interval = current_.timestamp - history_.last_timestamp();
   if (interval > max_interval) return false;
-  const Eigen::Isometry3d change = current_.T_camera_world * predicted_pose().inverse();
-  const double frames = std::max(1.0, interval / frame_interval);
-  return change.translation().norm() > settings_.jump_distance * frames ||
-         Eigen::AngleAxisd(change.linear()).angle() > settings_.jump_angle * std::numbers::pi / 180.0 * frames;
+  return contradicts_inertia(current_.T_camera_world * predicted_pose().inverse(), interval, settings_, factor);
+}
+
+bool Tracker::lacks_support(int inliers, int static_features) const {
+  constexpr double first_age = 0.5;   // s; before, a right map of one camera is small too
+  constexpr double min_share = 0.06;  // without people, 0.12 and more; on a person who fills the view, 0.02 to 0.05
+  return mono_ && current_.timestamp - map_start_time_ > first_age && inliers < min_share * static_features;
 }
 
 bool Tracker::is_refuted(int inliers, bool was_lost) {
@@ -443,7 +541,7 @@ bool Tracker::track_local_map(const TrackedView& view, FrameResult& result) {
   // A wide search finds some agreement anywhere: twice as many have to agree.
   const int required = was_lost ? 2 * settings_.minimum_inliers : settings_.minimum_inliers;
   if (result.inliers < required || (was_lost && !relocaliser_.is_beyond_chance(result.inliers)) ||
-      is_refuted(result.inliers, was_lost)) {
+      lacks_support(result.inliers, result.static_features) || is_refuted(result.inliers, was_lost)) {
     result.trouble = TrackingTrouble::few_inliers;
     return false;
   }
@@ -469,12 +567,21 @@ void Tracker::keyframe_added(KeyFrameId keyframe) {
   current_.T_camera_world = stored.T_camera_world;
   reference_keyframe_ = last_keyframe_ = keyframe;
   last_keyframe_time_ = current_.timestamp;
+  backwards_.keyframe_added(keyframe);
   history_.became_keyframe(keyframe, current_.timestamp);
 }
 
 void Tracker::end_frame(FrameResult& result) {
+  pieces_ += begins_piece_ ? 1U : 0U;
   const bool has_pose = result.status == TrackingStatus::initialised || result.status == TrackingStatus::tracked;
   moving_world_.end_frame(current_, has_pose);
+  // Until the first mask arrives, the map may have begun on people.
+  const bool is_provisional = !start_is_judged_ && moving_world_.expects_masks() && !moving_world_.has_mask();
+  constexpr int start_frames = 30;  // as long as a mask may take
+  if (is_provisional)
+    backwards_.keep(current_, start_frames, result.times);
+  else if (!has_pose && !mono_)
+    backwards_.keep(current_, settings_.backward_frames, result.times);
   if (!has_pose) {
     history_.interrupt();
     return;
@@ -482,6 +589,7 @@ void Tracker::end_frame(FrameResult& result) {
   result.T_world_camera = current_.T_world_camera();
   if (reference_keyframe_.valid()) result.keyframe = reference_keyframe_;
   history_.add(current_, reference_keyframe_, map_);
+  if (result.status == TrackingStatus::tracked && !is_provisional) backwards_.track(current_, result.times);
 }
 
 }  // namespace holdfast

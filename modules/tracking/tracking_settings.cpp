@@ -165,6 +165,23 @@ void describe_relocalisation(ParameterTable<S>& table) {
            "the map anew where the motion model puts it; 0 = never")
       .range(0, 100)
       .unit("s");
+  table
+      .add("restart_time", &S::restart_time,
+           "a camera that is lost for longer than this begins a new piece of the map where the motion model puts it; "
+           "the first place that is seen in both joins it with the rest, and frames of pieces that nothing joins have "
+           "no pose in the end; 0 = never (always so with one camera)")
+      .range(0, 1000)
+      .unit("s");
+  table
+      .add("backward_frames", &S::backward_frames,
+           "frames without a pose that are kept, at most, to be tracked backwards from the next frame that has one; "
+           "their poses come with the trajectory of the run; 0 = none")
+      .range(0, 1000);
+  table
+      .add("start_share", &S::start_share,
+           "when the first mask shows that less than this share of the first keyframe's features is static, the map "
+           "began on what moves and begins anew; 0 = never (always so with one camera, which waits for the mask)")
+      .range(0, 1);
   table.add("coasting_time", &S::coasting_time, "a lost camera is searched for along its last velocity for this long")
       .range(0, 100)
       .unit("s");

@@ -51,8 +51,12 @@ bool is_same_secret(std::string_view given, std::string_view secret) {
 
 /// The rate that a message asks for, nothing if it is no such message.
 std::optional<double> asked_rate(std::string_view text) {
-  constexpr std::array<std::pair<std::string_view, double>, 5> rates{
-      {{"rate 1", 1.0}, {"rate 2", 2.0}, {"rate 5", 5.0}, {"rate 10", 10.0}, {"rate 30", Server::fastest_rate}}};
+  constexpr std::array<std::pair<std::string_view, double>, 6> rates{{{"rate 0", 0.0},
+                                                                      {"rate 1", 1.0},
+                                                                      {"rate 2", 2.0},
+                                                                      {"rate 5", 5.0},
+                                                                      {"rate 10", 10.0},
+                                                                      {"rate 30", Server::fastest_rate}}};
   for (const auto& [name, rate] : rates)
     if (name == text) return rate;
   return std::nullopt;

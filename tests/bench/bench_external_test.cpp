@@ -266,7 +266,7 @@ TEST_F(BenchExternalTest, SaysWhichFramesASystemCannotGet) {
       outcome.errors,
       AllOf(HasSubstr("sequence 'street' has stereo pairs, and external systems get colour and depth; exclude it"),
             HasSubstr("'both' of the axis 'perturbation' sets 'run.mode', which external systems do not have"),
-            HasSubstr("found 'auto' for 'camera', but the name of the folder 'recording' says none")));
+            HasSubstr("the source 'tum' does not know its own, and the name of the folder 'recording' says none")));
 }
 
 /// `camera: auto` is the camera that the folder is named after.

@@ -11,6 +11,7 @@
 #include "cli/program.hpp"
 #include "holdfast/bench/dataset_check.hpp"
 #include "holdfast/bench/published.hpp"
+#include "sources/png_file.hpp"
 
 namespace holdfast {
 namespace {
@@ -168,6 +169,25 @@ TEST_F(DatasetCheckTest, LooksAtEveryFile) {
   cv::imwrite(path("rgb/121.png").string(), cv::Mat(240, 320, CV_8UC3, cv::Scalar::all(1)));
   EXPECT_THAT(problems(), AllOf(Contains(HasSubstr("rgb/117.png (line 18) is neither a PNG nor a JPEG image")),
                                 Contains(HasSubstr("1 image of another size: rgb/121.png (line 22) has 320x240"))));
+}
+
+/// A small file that would take gigabytes is known by its header, whatever camera the recording has.
+TEST_F(DatasetCheckTest, DecodesNoImageThatIsLargerThanACamera) {
+  constexpr int side = 20000;
+  const std::vector<std::uint8_t> no_pixels(100, 0);  // to decode it would be reported as damage
+  const auto bytes = test::png_of_stream({.width = side, .height = side, .bits = 8, .colour_type = 2}, no_pixels);
+  std::ofstream(path("rgb/0.png"), std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  const auto too_large = HasSubstr(
+      "rgb.txt lists 1 image that is larger than a camera's: rgb/0.png (line 2) has 20000x20000 pixels; "
+      "expected at most 32768 pixels in width");
+  EXPECT_THAT(problems(), ElementsAre(too_large));
+  EXPECT_THAT(check_dataset(program_.path("rec"), nullptr).problems, ElementsAre(too_large));
+  // Without a camera that is known, the images of a list have one size.
+  cv::imwrite(path("depth/2.png").string(), cv::Mat(240, 320, CV_16UC1, cv::Scalar::all(1)));
+  EXPECT_THAT(check_dataset(program_.path("rec"), nullptr).problems,
+              ElementsAre(too_large, HasSubstr("depth.txt lists 1 image of another size: depth/2.png (line 4) has "
+                                               "320x240 pixels; expected 640x480 of the list's first image")));
 }
 
 TEST_F(DatasetCheckTest, SaysWhatIsKnownToBeAbsentAsAFact) {

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <opencv2/imgcodecs.hpp>
+
 #include "cli/program.hpp"
 
 namespace holdfast {
@@ -49,6 +51,31 @@ TEST_F(CheckTest, FindsWhatTheModulesOfARunMiss) {
   EXPECT_THAT(outcome.errors, HasSubstr("nowhere.onnx"));
   outcome = check({"segmenter={python: {file: nowhere.py}}"});
   EXPECT_NE(outcome.exit_code, 0);
+}
+
+TEST_F(CheckTest, CameraAutoAsksTheSource) {
+  const auto write_images = [&](const std::string& folder) {
+    std::filesystem::create_directories(program_.path(folder));
+    for (const char* name : {"/000000.png", "/000001.png"})
+      cv::imwrite(program_.path(folder + name).string(), cv::Mat(48, 64, CV_8UC1, cv::Scalar(90)));
+  };
+  // Its own calibration precedes that of the known camera that the folder is named after.
+  for (const std::string folder : {"street", "kitti_00_street"}) {
+    write_images(folder + "/image_0"), write_images(folder + "/image_1");
+    program_.write(folder + "/calib.txt", "P0: 50 0 32 0 0 50 24 0 0 0 1 0\nP1: 50 0 32 -25 0 50 24 0 0 0 1 0\n");
+    const Outcome outcome =
+        program_.run({"check", "good.yaml", "--set", "source.kitti.path=" + folder, "--set", "camera=auto"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+    EXPECT_EQ(outcome.output, "ok good.yaml: kitti -> orb -> ceres\n");
+  }
+  // A folder of images knows its camera only if a calibration is named.
+  program_.write("good.yaml",
+                 "source: { folder: { path: street, colour: image_0 } }\nsensor: mono\ncamera: auto\nfeatures: orb\n"
+                 "optimizer: ceres\n");
+  const Outcome outcome = check({});
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.errors, AllOf(HasSubstr("good.yaml:3:9: found 'auto' for 'camera', but the source 'folder' does"),
+                                    HasSubstr("the name of the folder 'street' says none")));
 }
 
 TEST_F(CheckTest, LooksAtTheConfigurationAloneWhenAsked) {

@@ -126,19 +126,8 @@ TEST(MonoRun, TracksRealRecordings) {
   const nlohmann::json desk = run_mono(program, "desk", {std::string("source.tum.path=") + data + "/tum_fr1_xyz"});
   EXPECT_GE(desk.at("frames").at("poses"), 768);  // of 792
   EXPECT_LE(error(desk), 0.011);
-  std::vector<std::string> arguments{
-      "run",      mono_configuration, "--set",  std::string("source={kitti: {path: ") + data + "/kitti_stereo_51}}",
-      "--output", "street",           "--quiet"};
-  // The source brings its camera.
-  const nlohmann::json street = [&] {
-    std::string text = program.text(mono_configuration);
-    text.replace(text.find("camera: tum_fr1\n"), 16, "");
-    program.write("street.yaml", text);
-    arguments[1] = "street.yaml";
-    const test::Outcome outcome = program.run(arguments);
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
-    return nlohmann::json::parse(program.text("street/run.json"));
-  }();
+  const nlohmann::json street =
+      run_mono(program, "street", {std::string("source.kitti.path=") + data + "/kitti_stereo_51", "camera=auto"});
   EXPECT_GE(street.at("frames").at("poses"), 47);  // begun within five frames of 51
   EXPECT_LE(error(street), 0.2);                   // of a way of 60 m
 }

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <opencv2/imgcodecs.hpp>
 
 #include "cli/program.hpp"
 
@@ -64,6 +65,21 @@ TEST_F(RecordTest, LosesNothingOfADepthInWholeUnits) {
   std::filesystem::rename(program_.path("second"), program_.path("elsewhere/third"));
   run(words("run", "elsewhere/third/recording.yaml", "out_third"));
   EXPECT_EQ(program_.text("out_third/trajectory.txt"), program_.text("out_first/trajectory.txt"));
+}
+
+TEST_F(RecordTest, KeepsTheCameraThatTheSourceKnows) {
+  for (const char* folder : {"tum_fr1_desk/rgb", "tum_fr1_desk/depth"})
+    std::filesystem::create_directories(program_.path(folder));
+  for (const char* name : {"/0.png", "/1.png"}) {
+    cv::imwrite(program_.path("tum_fr1_desk/rgb").string() + name, cv::Mat(48, 64, CV_8UC3, cv::Scalar(9, 9, 9)));
+    cv::imwrite(program_.path("tum_fr1_desk/depth").string() + name, cv::Mat(48, 64, CV_16UC1, cv::Scalar(5000)));
+  }
+  program_.write("tum_fr1_desk/camera.yaml", "{ width: 64, height: 48, fx: 51.5, fy: 51.5, cx: 32, cy: 24 }\n");
+  program_.write("folder.yaml",
+                 "source: { folder: { path: tum_fr1_desk, colour: rgb, depth: depth, intrinsics: "
+                 "tum_fr1_desk/camera.yaml } }\ncamera: auto\nfeatures: orb\noptimizer: schur\n");
+  run(words("record", "folder.yaml", "recording"));
+  EXPECT_THAT(program_.text("recording/recording.yaml"), HasSubstr("fx: 51.5"));
 }
 
 // Depth images between the colour images, stamps with as many digits as a clock has.

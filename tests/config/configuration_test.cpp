@@ -41,10 +41,18 @@ TEST(Configuration, CameraAutoFollowsTheNameOfTheFolder) {
   EXPECT_EQ(camera("/data/rgbd_bonn_crowd"), "bonn");
   EXPECT_EQ(camera("/data/tum_fr1_xyz"), "tum_fr1");
   EXPECT_EQ(resolve(test::good, {"camera=auto", "source.tum.path=/rgbd_bonn_crowd"}).camera, find_camera("bonn"));
+}
+
+TEST(Configuration, CameraAutoLeavesAFolderThatNamesNoneToTheSource) {
   const std::string silent = "source: { tum: { path: kitchen } }\ncamera: auto\nfeatures: orb\noptimizer: ceres\n";
-  EXPECT_THAT(test::problems(silent),
-              testing::ElementsAre(testing::AllOf(testing::HasSubstr("c.yaml:2:9: found 'auto' for 'camera'"),
-                                                  testing::HasSubstr("the folder 'kitchen' says none; expected"))));
+  const Configuration c = resolve(silent);
+  EXPECT_FALSE(c.camera.has_value());
+  ASSERT_TRUE(c.unknown_camera.has_value());
+  EXPECT_THAT(c.unknown_camera->to_string(),
+              testing::AllOf(testing::StartsWith("c.yaml:2:9: found 'auto' for 'camera', but the source 'tum'"),
+                             testing::HasSubstr("the folder 'kitchen' says none"),
+                             testing::HasSubstr("expected a name or numbers")));
+  EXPECT_FALSE(resolve(test::good).unknown_camera.has_value());
 }
 
 TEST(Configuration, WarnsOfAFolderNamedAfterAnotherCamera) {

@@ -43,6 +43,24 @@ TEST_P(KnownCamera, BoundsHoldTheWholeImage) {
 
 INSTANTIATE_TEST_SUITE_P(All, KnownCamera, testing::ValuesIn(camera_names()));
 
+TEST(KnownCameras, KittiHasOneForEachCalibrationOfItsSequences) {
+  // Rows of P1 in calib.txt of sequences 00, 03 and 04: fx, cx, cy, and -fx * baseline.
+  const struct {
+    const char* name;
+    double fx, cx, cy, fx_baseline;
+  } published[] = {{"kitti_00", 7.188560000000e+02, 6.071928000000e+02, 1.852157000000e+02, 3.861448000000e+02},
+                   {"kitti_03", 7.215377000000e+02, 6.095593000000e+02, 1.728540000000e+02, 3.875744000000e+02},
+                   {"kitti_04", 7.070912000000e+02, 6.018873000000e+02, 1.831104000000e+02, 3.798145000000e+02}};
+  for (const auto& [name, fx, cx, cy, fx_baseline] : published) {
+    const Camera camera = find_camera(name).value();
+    EXPECT_EQ(camera.fx, fx) << name;
+    EXPECT_EQ(camera.cx, cx) << name;
+    EXPECT_EQ(camera.cy, cy) << name;
+    EXPECT_NEAR(camera.fx * camera.baseline, fx_baseline, 1e-9) << name;
+    EXPECT_TRUE(camera.distortion.is_zero()) << name;
+  }
+}
+
 /// Lenses that find_camera() does not know: an action camera, a wide one, and a calibration with a denominator.
 std::vector<Camera> lenses() {
   Camera fisheye;

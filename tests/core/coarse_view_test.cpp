@@ -3,9 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <opencv2/core.hpp>
+#include <tuple>
 
+#include "holdfast/core/check.hpp"
+#include "holdfast/core/coarse_cells.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/random.hpp"
 
 namespace holdfast {
 namespace {
@@ -43,6 +49,51 @@ TEST(CoarseGrid, ACellHoldsItsCentreAndNothingBeyondItsBorder) {
   EXPECT_EQ(grid.cell_of(0.0F, grid.top + 5 * 4 + 0.01F), -1);
   EXPECT_EQ(grid.cell_of(1e30F, 20.0F), -1);
   EXPECT_EQ(grid.cell_of(-1e30F, 20.0F), -1);
+}
+
+TEST(CoarseGrid, CellsOfManyPixelsAreThoseOfEach) {
+  const CoarseGrid grid{.columns = 37, .rows = 23, .left = -3.25F, .top = 10.5F};
+  std::vector<float> x, y;
+  Random random(1);
+  for (int i = 0; i < 1000; ++i) {
+    x.push_back(static_cast<float>(random.uniform(-20, 160)));
+    y.push_back(static_cast<float>(random.uniform(0, 120)));
+  }
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  const float right = grid.left + 37 * 4, bottom = grid.top + 23 * 4;
+  for (const float special : {grid.left, grid.top, right, bottom, std::nextafter(right, 0.0F),
+                              std::nextafter(bottom, 0.0F), -0.0F, 1e30F, -1e30F, infinity, -infinity})
+    for (const float other : {20.0F, special}) {
+      x.push_back(special), y.push_back(other);
+      x.push_back(other), y.push_back(special);
+    }
+  std::vector<std::int32_t> cells(x.size());
+  find_cells(grid, x, y, cells);
+  for (std::size_t i = 0; i < x.size(); ++i) EXPECT_EQ(cells[i], grid.cell_of(x[i], y[i])) << x[i] << " " << y[i];
+  find_cells(grid, x, y, cells, 2);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const int column = grid.column_of(x[i]), row = grid.row_of(y[i]);
+    const bool is_inner = column >= 2 && row >= 2 && column + 2 < grid.columns && row + 2 < grid.rows;
+    EXPECT_EQ(cells[i], is_inner ? grid.cell_of(x[i], y[i]) : -1) << x[i] << " " << y[i];
+  }
+  EXPECT_THROW(find_cells(grid, x, y, std::span(cells).first(5)), CheckError);
+}
+
+TEST(CoarseSampler, MarkedCellsBecomeSquaresWithinTheImage) {
+  for (const Camera& camera : {without_distortion(), find_camera("tum_fr1").value()}) {
+    const CoarseSampler sampler(camera);
+    std::vector<std::uint8_t> marked(static_cast<std::size_t>(sampler.grid().size()), 0);
+    EXPECT_TRUE(sampler.pixels_of(marked).empty());
+    cv::Mat expected = cv::Mat::zeros(camera.height, camera.width, CV_8UC1);
+    // Every seventh cell: some of them at each border.
+    for (int cell = 0; cell < sampler.grid().size(); cell += 7) {
+      marked[static_cast<std::size_t>(cell)] = 1;
+      if (sampler.raw_pixel(cell) < 0) continue;
+      const int x = sampler.raw_pixel(cell) % camera.width, y = sampler.raw_pixel(cell) / camera.width;
+      expected(cv::Rect(x - 2, y - 2, 5, 5) & cv::Rect(0, 0, camera.width, camera.height)) = 255;
+    }
+    EXPECT_EQ(cv::norm(sampler.pixels_of(marked), expected, cv::NORM_INF), 0.0) << camera.name;
+  }
 }
 
 TEST(CoarseSampler, CoversAnUndistortedImageExactly) {
@@ -131,6 +182,33 @@ TEST(CoarseSampler, AMissingDepthIsTakenFromTheNextPixelOnly) {
   }();
   ASSERT_EQ(empty.depth.size(), static_cast<std::size_t>(sampler.grid().size()));
   EXPECT_EQ(*std::max_element(empty.depth.begin(), empty.depth.end()), 0.0F);
+}
+
+TEST(CoarseSampler, OfSeveralMeasuredNeighboursTheOneInTheSameRowCounts) {
+  const Camera camera = without_distortion();
+  const CoarseSampler sampler(camera);
+  const int cell = 60 * sampler.grid().columns + 80;
+  const int x = sampler.raw_pixel(cell) % camera.width, y = sampler.raw_pixel(cell) / camera.width;
+  cv::Mat depth = cv::Mat::zeros(camera.height, camera.width, CV_32FC1);
+  CoarseView view;
+  for (const auto& [column, row, value] :
+       {std::tuple{x, y + 1, 4.0F}, {x, y - 1, 3.0F}, {x + 1, y, 2.0F}, {x - 1, y, 1.0F}}) {
+    depth.at<float>(row, column) = value;
+    sampler.sample_depth(depth, view);
+    EXPECT_EQ(view.depth[static_cast<std::size_t>(cell)], value);
+  }
+}
+
+TEST(CoarseSampler, ReadsAPartOfALargerImage) {
+  const Camera camera = find_camera("tum_fr1").value();
+  const CoarseSampler sampler(camera);
+  cv::Mat larger(camera.height + 10, camera.width + 20, CV_32FC1, cv::Scalar(7.0));
+  const cv::Mat part = larger(cv::Rect(13, 4, camera.width, camera.height));
+  ramp_image(camera).copyTo(part);
+  CoarseView of_part, of_image;
+  sampler.sample_depth(part, of_part);
+  sampler.sample_depth(ramp_image(camera), of_image);
+  EXPECT_EQ(of_part.depth, of_image.depth);
 }
 
 TEST(CoarseSampler, LabelsOutsideTheImageAreWhatTheCallerSays) {

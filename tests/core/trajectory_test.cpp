@@ -48,12 +48,12 @@ class TrajectoryTest : public ::testing::Test {
   std::filesystem::path folder_;
 };
 
-TEST_F(TrajectoryTest, ReadsBlanksTabsCommasCommentsAndWindowsLineEnds) {
+TEST_F(TrajectoryTest, ReadsBlanksTabsCommentsAndWindowsLineEnds) {
   const Trajectory trajectory =
       read_trajectory(write("# timestamp tx ty tz qx qy qz qw\r\n"
                             "1.5 1 2 3 0 0 0 2\r\n"
                             "\n"
-                            "2.5,+4,-5,6e-1,0,0,1,0 # a comment\n"
+                            "2.5 +4 -5  6e-1 0 0 1 0 # a comment, of words\n"
                             "3.5\t7 8 9 1 0 0 0"));
   ASSERT_EQ(trajectory.size(), 3u);
   EXPECT_EQ(trajectory[0].timestamp, 1.5);
@@ -111,7 +111,7 @@ TEST_F(TrajectoryTest, NormalisesQuaternions) {
 TEST_F(TrajectoryTest, NamesTheLineOfAnError) {
   const std::string message = error_of(write("# head\n1 0 0 0 0 0 0 1\n2 0 0 zero 0 0 0 1\n"));
   EXPECT_THAT(message, HasSubstr("trajectory.txt:3: found 8 columns, '2 0 0 zero"));
-  EXPECT_THAT(message, HasSubstr("expected TUM format (t tx ty tz qx qy qz qw, t in seconds)"));
+  EXPECT_THAT(message, HasSubstr("expected TUM format (t tx ty tz qx qy qz qw, t in seconds, separated by blanks)"));
   EXPECT_THAT(error_of(write("1 0 0 0 0 0 0\n")), HasSubstr("trajectory.txt:1:"));
 }
 
@@ -127,6 +127,35 @@ TEST_F(TrajectoryTest, RefusesOtherFormatsByName) {
               AllOf(HasSubstr("trajectory.txt:1: found 8 columns, 'timestamp,tx"), HasSubstr("expected TUM format")));
   EXPECT_THAT(error_of(write("1 0 0 0 0 0 0 1 0.5\n")), HasSubstr("found 9 columns"));
   EXPECT_THAT(error_of(write("1 0 0 0 0 0 0 1 further words\n")), HasSubstr("found 10 columns"));
+}
+
+/// Eight numbers do not show whether the quaternion begins or ends with its real part.
+TEST_F(TrajectoryTest, RefusesWhatMayHaveTheRealPartElsewhere) {
+  const auto error_of_any = [&](const std::string& content) -> std::string {
+    try {
+      read_trajectory_file(write(content), {.format = std::nullopt, .stamps = {}});
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  for (const char* rows : {"100.5,1,2,3,1,0,0,0\n", "100.5, 1, 2, 3, 1, 0, 0, 0\n"}) {
+    const auto refused = AllOf(HasSubstr("trajectory.txt:1: found '100.5,"), HasSubstr("as in EuRoC's format"),
+                               HasSubstr("replace the commas by blanks"), HasSubstr("expected TUM format"));
+    EXPECT_THAT(error_of(write(rows)), refused);
+    EXPECT_THAT(error_of_any(rows), refused);
+  }
+  const auto header = HasSubstr("a comment above says that the quaternion begins with qw");
+  EXPECT_THAT(error_of_any("# timestamp tx ty tz qw qx qy qz\n100.5 1 2 3 1 0 0 0\n"), header);
+  EXPECT_THAT(error_of_any("#timestamp, p_x [m], q_w [], q_x []\n100.5 1 2 3 1 0 0 0\n"), header);
+  EXPECT_EQ(error_of_any("# timestamp tx ty tz qx qy qz qw\n100.5 1 2 3 0 0 0 1\n"), "no error");
+  // As ORB-SLAM3 writes the poses of EuRoC's recordings.
+  const std::string orb_slam3 = "1403636580838555648.000000 4.6 -1.7 0.7 0.0 0.0 0.0 1.0\n";
+  EXPECT_THAT(error_of_any(orb_slam3), AllOf(HasSubstr("ORB-SLAM3"), HasSubstr("divide their stamps by 1e9")));
+  EXPECT_EQ(error_of_any("# t qw qx qy qz\n" + orb_slam3), "no error");
+  EXPECT_EQ(read_trajectory_file(write(orb_slam3), {.format = TrajectoryFormat::euroc, .stamps = {}}).poses.size(), 1U);
+  // A column without a number would move the others.
+  EXPECT_THAT(error_of_any("1403636580838555648,4.6,,-1.7,0.7,0.5,-0.1,-0.8,-0.1\n"), HasSubstr("found 9 columns"));
 }
 
 TEST_F(TrajectoryTest, EveryFormatIsRecognisedAndGivesThePosesBack) {

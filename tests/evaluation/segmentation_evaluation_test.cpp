@@ -52,6 +52,37 @@ TEST(SegmentationEvaluation, FiguresOfASmallImageByHand) {
   EXPECT_EQ(person.false_pixels(), 1U);
 }
 
+TEST(SegmentationEvaluation, ConfidenceIsComparedWithTheShareOfCorrectPixels) {
+  SegmentationEvaluator evaluator({"background", "person"});
+  cv::Mat confidence(2, 4, CV_8UC1);
+  // Row 0: three predictions of 'person' at 0.8, two of them right, and one at 1. Row 1: background, one pixel unknown.
+  for (int x = 0; x < 4; ++x) {
+    confidence.at<std::uint8_t>(0, x) = x < 3 ? 204 : 255;
+    confidence.at<std::uint8_t>(1, x) = 153;
+  }
+  evaluator.add(image_of({"1101", "000?"}), image_of({"1111", "0000"}), confidence);
+  const ClassEvaluation &background = evaluator.result().classes[0], &person = evaluator.result().classes[1];
+  ASSERT_EQ(person.confidence_bins.size(), confidence_bin_count);
+  const ConfidenceBin &at_80 = person.confidence_bins[204 * confidence_bin_count / 256],
+                      &last = person.confidence_bins.back();
+  EXPECT_EQ(at_80.pixels, 3U);
+  EXPECT_EQ(at_80.correct, 2U);
+  EXPECT_NEAR(at_80.confidence, 2.4, 1e-12);
+  EXPECT_EQ(last.pixels, 1U);
+  EXPECT_NEAR(person.calibration_error(), (2.4 - 2.0) / 4.0, 1e-12);
+  EXPECT_NEAR(background.calibration_error(), 0.4, 1e-12) << "the unknown pixel does not count";
+  const auto json = nlohmann::json::parse(to_json(evaluator.result()));
+  ASSERT_EQ(json["classes"][1]["reliability"].size(), 2U) << "intervals without pixels are left out";
+  EXPECT_NEAR(json["classes"][1]["reliability"][0]["correct"], 2.0 / 3.0, 1e-12);
+  EXPECT_NEAR(json["classes"][1]["reliability"][0]["confidence"], 0.8, 1e-12);
+  EXPECT_THAT(to_text(evaluator.result()), HasSubstr("10.00"));
+
+  EXPECT_THROW(evaluator.add(image_of({"11"}), image_of({"11"}), confidence), CheckError);
+  SegmentationEvaluator without({"background", "person"});
+  without.add(image_of({"11"}), image_of({"11"}));
+  EXPECT_TRUE(std::isnan(without.result().classes[1].calibration_error()));
+}
+
 TEST(SegmentationEvaluation, DetectedAboveAHalfImageByImage) {
   SegmentationEvaluator evaluator({"background", "person"});
   const cv::Mat half = image_of({"11", "00"}), most = image_of({"11", "10"}), none = image_of({"00", "00"});

@@ -130,9 +130,9 @@ TEST(Kernels, ResizeIsBilinearAndTheSameAtEveryLevel) {
 }
 
 cv::Mat blurred(const Kernels& kernels, const cv::Mat& image) {
-  std::vector<std::uint8_t> row(image.cols);
+  std::vector<std::uint8_t> rows(2 * static_cast<std::size_t>(image.cols));
   cv::Mat output(image.size(), CV_8UC1, cv::Scalar(0));
-  kernels.blur(view_of(image), row.data(), {output.data, static_cast<std::ptrdiff_t>(output.step)});
+  kernels.blur(view_of(image), rows.data(), {output.data, static_cast<std::ptrdiff_t>(output.step)});
   return output;
 }
 

@@ -139,6 +139,20 @@ TEST_F(SemanticMaskTest, TheBorderBelongsToTheMaskUnlessItLiesBehind) {
   }
 }
 
+TEST_F(SemanticMaskTest, AFewPixelsOfAPersonAreFoundFromAllSides) {
+  for (const int place : {0, 14, 15, 16, 31, 32, 300, 478}) {
+    exact.labels = cv::Mat::zeros(480, 640, CV_8UC1);
+    exact.labels(cv::Rect(place, place, 2, 2)).setTo(2);
+    for (const auto& [offset, expected] :
+         {std::pair{-12, background}, {-10, movable}, {0, movable}, {11, movable}, {13, background}})
+      for (const auto& [x, y] : {std::pair{place + offset, place}, {place, place + offset}}) {
+        if (x < 0 || y < 0 || x >= 640 || y >= 480) continue;
+        const std::size_t feature = add_feature(static_cast<float>(x), static_cast<float>(y), 0.0F);
+        EXPECT_EQ(said(feature, true), expected) << place << " " << x << " " << y;
+      }
+  }
+}
+
 TEST_F(SemanticMaskTest, FeaturesAtTheImageBorderAreJudged) {
   for (const auto& [x, y] : {std::pair{639.0F, 0.0F}, {639.0F, 479.0F}, {300.0F, 0.0F}}) {
     const std::size_t feature = add_feature(x, y, wall_depth);

@@ -2,6 +2,7 @@
 #include "holdfast/loop_closing/full_adjustment.hpp"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include "holdfast/plugin/registry.hpp"
 #include "loop_closing/map_checks.hpp"
@@ -53,6 +54,44 @@ TEST_F(FullAdjustmentTest, LowersTheErrorOfTheMap) {
   EXPECT_TRUE(map.keyframe(map.keyframes().ids().front())
                   .frame.T_camera_world.isApprox(test::RingWorld::pose_at(0).inverse(), 1e-12));
   test::expect_consistent(map);
+}
+
+TEST_F(FullAdjustmentTest, AKeyframeWithFewPointsStaysWithItsParent) {
+  // Ten points, of which the matches are wrong: alone, the keyframe would follow them.
+  std::vector<MapPointId> points;
+  for (const MapPointId point : map.keyframe(last).frame.map_points)
+    if (point.valid() && map.point(point).observations.size() > 1) points.push_back(point);
+  ASSERT_GT(points.size(), 20U);
+  for (std::size_t i = 10; i < points.size(); ++i) map.remove_observation(points[i], last);
+  Frame& frame = map.keyframe(last).frame;
+  for (std::size_t i = 0; i < frame.size(); ++i) frame.x[i] += 40.0F, frame.right_x[i] += 40.0F;
+  const KeyFrameId parent = map.keyframe(last).parent;
+  ASSERT_TRUE(parent.valid());
+  const Eigen::Isometry3d relative = map.pose_of(last) * map.pose_of(parent).inverse();
+  const FullAdjustmentSummary summary = adjustment.run();
+  EXPECT_TRUE(summary.applied);
+  EXPECT_EQ(summary.keyframes, 19);
+  EXPECT_EQ(summary.keyframes_carried, 1);
+  EXPECT_TRUE((map.pose_of(last) * map.pose_of(parent).inverse()).isApprox(relative, 1e-9));
+}
+
+/// Bytes that the process has allocated and not freed.
+std::size_t allocated() {
+  const struct mallinfo2 info = mallinfo2();
+  return info.uordblks + info.hblkhd;
+}
+
+/// The next adjustment may be far away, or never come.
+TEST_F(FullAdjustmentTest, KeepsNoCopyOfTheMap) {
+  if (allocated() == 0) GTEST_SKIP() << "this allocator does not say how much it gave";
+  adjustment.run();  // what libraries allocate once
+  const std::size_t before = allocated();
+  adjustment.prepare();
+  const std::size_t with_copy = allocated();
+  ASSERT_GT(with_copy, before + 32 * map.points().size());
+  adjustment.solve();
+  adjustment.apply();
+  EXPECT_LT(allocated(), before + (with_copy - before) / 10);
 }
 
 TEST_F(FullAdjustmentTest, StoppedOneChangesNothing) {

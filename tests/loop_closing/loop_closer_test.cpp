@@ -111,6 +111,39 @@ TEST_F(LoopCloserTest, SameInputSameBits) {
   }
 }
 
+TEST_F(LoopCloserTest, APlaceSeenInTwoPiecesJoinsThem) {
+  // Lost for a while, the camera goes on where it believes to be: a metre and 40 degrees from where it is.
+  test::RingWorld world(0.0);
+  world.add_wall(0, round_trip, 2500);
+  ASSERT_FALSE(walk(world, 0, 0.4 * round_trip, 24));
+  Eigen::Isometry3d mistake = Eigen::Isometry3d::Identity();
+  mistake.linear() = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  mistake.translation() = Eigen::Vector3d(1.0, 0.1, 0.2);
+  world.begin_piece(map, mistake);
+  const auto loop = walk(world, 0.5 * round_trip, 1.2 * round_trip, 42);
+  ASSERT_TRUE(loop);
+  EXPECT_TRUE(loop->joins_pieces);
+  EXPECT_GT(error_before, 0.9);
+  EXPECT_LT(world.largest_error(map), 0.05);  // of 24 keyframes, which moved as one
+  map.keyframes().for_each([](KeyFrameId, const KeyFrame& keyframe) { EXPECT_EQ(keyframe.piece, 0U); });
+  test::expect_consistent(map);
+}
+
+TEST_F(LoopCloserTest, ALoopLeavesOtherPiecesWhereTheyAre) {
+  test::RingWorld world;
+  world.add_wall(0, round_trip, 2500);
+  walk(world, 0, 0.1 * round_trip, 6);
+  const KeyFrameId of_first_piece = map.keyframes().ids().front();
+  const Eigen::Matrix4d before = map.pose_of(of_first_piece).matrix();
+  world.begin_piece(map, Eigen::Isometry3d(Eigen::Translation3d(1.0, 0.0, 0.0)));
+  detector.clear();  // it recognises the second piece only
+  const auto loop = walk(world, 0.2 * round_trip, 1.4 * round_trip, 72);
+  ASSERT_TRUE(loop);
+  EXPECT_FALSE(loop->joins_pieces);
+  EXPECT_TRUE(map.pose_of(of_first_piece).matrix() == before);
+  EXPECT_EQ(map.keyframe(loop->keyframe).piece, 1U);
+}
+
 TEST_F(LoopCloserTest, LookAlikePlaceIsRefused) {
   // The wall opposite to the beginning is a copy of it: everything but the way agrees.
   test::RingWorld world;

@@ -71,7 +71,9 @@ class RingWorld {
       frame.T_camera_world = truth.inverse();
     } else {
       const Eigen::Isometry3d T_last_this = truth_.at(last_).inverse() * truth * drift_;
-      frame.T_camera_world = geometry::orthonormalised((map.pose_of(last_).inverse() * T_last_this).inverse());
+      frame.T_camera_world =
+          geometry::orthonormalised((map.pose_of(last_).inverse() * T_last_this * mistake_).inverse());
+      mistake_ = Eigen::Isometry3d::Identity();
     }
     frame.timestamp = static_cast<double>(map.next_sequence());
     constexpr std::uint64_t memory = 6;  // keyframes
@@ -81,6 +83,7 @@ class RingWorld {
       if (known->second.sequence + memory >= map.next_sequence()) frame.map_points[i] = known->second.point;
     }
     const KeyFrameId id = map.add_keyframe(frame);
+    map.keyframe(id).piece = piece_;
     const KeyFrame& keyframe = map.keyframe(id);
     for (std::uint32_t i = 0; i < keyframe.frame.size(); ++i) {
       MapPointId point = keyframe.frame.map_points[i];
@@ -95,6 +98,13 @@ class RingWorld {
     last_ = id;
     truth_[id] = truth;
     return id;
+  }
+
+  /// The next keyframe begins a new piece of the map, with a pose that is off by `mistake` and none of the points.
+  void begin_piece(Map& map, const Eigen::Isometry3d& mistake) {
+    latest_.clear();
+    mistake_ = mistake;
+    piece_ = map.new_piece();
   }
 
   /// Largest distance of a keyframe from where it truly is.
@@ -162,6 +172,8 @@ class RingWorld {
   std::shared_ptr<const Camera> camera_;
   std::shared_ptr<const ScalePyramid> pyramid_;
   Eigen::Isometry3d drift_;
+  Eigen::Isometry3d mistake_ = Eigen::Isometry3d::Identity();
+  std::uint32_t piece_ = 0;
   std::vector<Eigen::Vector3d> points_;
   std::vector<Descriptor256> descriptors_;
   std::vector<std::size_t> shown_;  // of the last frame

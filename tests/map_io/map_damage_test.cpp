@@ -193,5 +193,25 @@ TEST_F(MapDamage, InconsistentContent) {
   EXPECT_THAT(refusal_with(64, std::uint64_t{0}), HasSubstr("expected less than the next, 0"));
 }
 
+TEST_F(MapDamage, Classes) {
+  Map map = random_map(4, 10, 9);
+  map.set_classes({"background", "person"});
+  for (const MapPointId id : map.points().ids()) map.point(id).label = 1;
+  const std::string bytes = bytes_of(map);
+  const std::size_t classes = find_section(bytes, "CLAS") + 24, labels = classes + 4 + 4 + 10 + 4 + 6;
+  const auto refusal_with = [&](std::size_t offset, auto value) {
+    std::string changed = bytes;
+    put_at(changed, offset, value);
+    repair_checksums(changed);
+    return refusal_of(changed);
+  };
+  EXPECT_THAT(refusal_with(classes, 0U), HasSubstr("found 0 classes; expected 1 to 255"));
+  EXPECT_THAT(refusal_with(classes, 0x10000000U), HasSubstr("count of 268435456 classes"));
+  EXPECT_THAT(refusal_with(classes + 4, 0x10000000U), HasSubstr("letters of a name"));
+  EXPECT_THAT(refusal_with(labels, 3U), HasSubstr("found 3 labels; expected one for each of"));
+  EXPECT_THAT(refusal_with(labels + 4, std::uint8_t{2}), HasSubstr("point 0: found label 2; expected less than 2"));
+  EXPECT_EQ(refusal_with(labels + 4, std::uint8_t{255}), "");
+}
+
 }  // namespace
 }  // namespace holdfast

@@ -131,7 +131,17 @@ TEST_F(MapExport, AllAsJson) {
     EXPECT_EQ(entry["observations"].back()[1], last.feature);
     EXPECT_EQ(entry["observations"].back()[2].get<float>(), map.keyframe(last.keyframe).frame.x[last.feature]);
   });
+  EXPECT_TRUE(json["classes"].empty());
+  EXPECT_FALSE(json["points"][0].contains("label"));
   EXPECT_EQ(nlohmann::json::parse(map_json(Map()))["points"].size(), 0U);
+
+  Map classified = read_map(path("map.hfm"));
+  classified.set_classes({"background", "person"});
+  classified.point({0, 0}).label = 1;
+  const auto with_classes = nlohmann::json::parse(map_json(classified));
+  EXPECT_EQ(with_classes["classes"][1], "person");
+  EXPECT_EQ(with_classes["points"][0]["label"], 1);
+  EXPECT_TRUE(with_classes["points"][1]["label"].is_null());
 }
 
 }  // namespace

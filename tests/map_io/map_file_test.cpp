@@ -77,6 +77,7 @@ void expect_same_frame(const Frame& a, const Frame& b) {
 void expect_same(const Map& a, const Map& b) {
   const Positions in_a(a), in_b(b);
   EXPECT_EQ(a.next_sequence(), b.next_sequence());
+  EXPECT_EQ(a.classes(), b.classes());
   ASSERT_EQ(in_a.keyframes.size(), in_b.keyframes.size());
   ASSERT_EQ(in_a.points.size(), in_b.points.size());
   for (std::size_t i = 0; i < in_a.keyframes.size(); ++i) {
@@ -105,6 +106,7 @@ void expect_same(const Map& a, const Map& b) {
     EXPECT_EQ(p.visible_count, q.visible_count);
     EXPECT_EQ(p.found_count, q.found_count);
     EXPECT_EQ(p.static_log_odds, q.static_log_odds);
+    EXPECT_EQ(p.label, q.label);
     ASSERT_EQ(p.observations.size(), q.observations.size());
     for (std::size_t o = 0; o < p.observations.size(); ++o) {
       EXPECT_EQ(in_a.of(p.observations[o].keyframe), in_b.of(q.observations[o].keyframe));
@@ -252,6 +254,36 @@ TEST_F(MapFile, HoldsDescriptionsOfImages) {
   EXPECT_THAT(refusal(22, 1U << 30), ::testing::HasSubstr("descriptors, for which the section is too short"));
   EXPECT_THAT(refusal(26, 0x7F800000U), ::testing::HasSubstr("not finite"));
   EXPECT_THAT(refusal(2, 0), ::testing::HasSubstr("descriptors: "));
+}
+
+TEST_F(MapFile, HoldsClasses) {
+  Map map = random_map(8, 20, 21);
+  write_map(path("none.hfm"), map);
+  const std::string without = content(path("none.hfm"));
+  EXPECT_EQ(without.find("CLAS"), std::string::npos);
+
+  map.set_classes({"background", "person\n", std::string(300, 'x')});
+  std::uint8_t next = 0;
+  for (const MapPointId id : map.points().ids())
+    map.point(id).label = next == 3 ? CellMask::unknown : next, next = (next + 1) % 4;
+  write_map(path("classes.hfm"), map);
+  const Map again = read_map(path("classes.hfm"));
+  expect_same(map, again);
+  write_map(path("again.hfm"), again);
+  EXPECT_TRUE(content(path("classes.hfm")) == content(path("again.hfm")));
+
+  // Readers that do not know the section leave it out.
+  std::string older = content(path("classes.hfm"));
+  const std::size_t section = older.find("CLAS");
+  ASSERT_NE(section, std::string::npos);
+  std::uint32_t flags = 0;
+  std::memcpy(&flags, older.data() + section + 4, sizeof(flags));
+  EXPECT_EQ(flags & 1U, 0U);
+  EXPECT_EQ(older.substr(76, section - 76), without.substr(76)) << "everything else is as in a file without classes";
+
+  map.set_classes({});
+  write_map(path("removed.hfm"), map);
+  EXPECT_TRUE(content(path("removed.hfm")) == without);
 }
 
 TEST_F(MapFile, SharedCamerasStayShared) {

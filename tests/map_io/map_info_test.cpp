@@ -13,6 +13,7 @@ namespace {
 
 using test::random_map;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using MapInfoTest = test::MapFileTest;
 
 TEST_F(MapInfoTest, CountsWhatIsThere) {
@@ -72,6 +73,25 @@ TEST_F(MapInfoTest, TextAndJson) {
   write_map(path("empty.hfm"), Map());
   EXPECT_EQ(nlohmann::json::parse(to_json(read_map_info(path("empty.hfm"))))["keyframes"], 0);
   EXPECT_THAT(to_text(read_map_info(path("empty.hfm"))), HasSubstr("keyframes  0, "));
+}
+
+TEST_F(MapInfoTest, CountsClasses) {
+  Map map = random_map(6, 20, 4);
+  write_map(path("map.hfm"), map);
+  EXPECT_THAT(to_text(read_map_info(path("map.hfm"))), Not(HasSubstr("classes")));
+  EXPECT_TRUE(nlohmann::json::parse(to_json(read_map_info(path("map.hfm"))))["classes"].empty());
+
+  map.set_classes({"background", "a \"cat\"\x1b[31m"});
+  const std::vector<MapPointId> points = map.points().ids();
+  map.point(points[0]).label = map.point(points[1]).label = 0;
+  map.point(points[2]).label = 1;
+  write_map(path("map.hfm"), map);
+  const MapInfo info = read_map_info(path("map.hfm"));
+  EXPECT_THAT(to_text(info), HasSubstr("\nclasses    \"background\" 2, \"a \\\"cat\\\"\\u001b[31m\" 1, unknown " +
+                                       std::to_string(points.size() - 3) + "\n"));
+  const auto json = nlohmann::json::parse(to_json(info));
+  EXPECT_EQ(json["classes"]["background"], 2);
+  EXPECT_EQ(json["classes"]["a \"cat\"\x1b[31m"], 1);
 }
 
 /// Features are not decoded, yet their damage is seen.

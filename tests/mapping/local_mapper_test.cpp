@@ -214,6 +214,27 @@ TEST_F(LocalMapperTest, PointsThatWaitComeWithTheirMask) {
     EXPECT_EQ(map.keyframe(id).frame.map_points[i].valid(), i % 3 != 0 && frame.depth[i] <= 3.2F && frame.has_depth(i));
 }
 
+TEST_F(LocalMapperTest, PointsOfLaterKeyframesStayUnlessAMaskMayContradictThem) {
+  // Tracking inserts keyframes while mapping is busy with an older one.
+  for (const bool expects_masks : {false, true}) {
+    if (expects_masks) mapper->expect_masks();
+    add_keyframe(frame_at(beside(0)));
+    const KeyFrameId busy_with = mapper->insert(frame_at(beside(0.1)), false, times);
+    const KeyFrameId later = mapper->insert(frame_at(beside(1.5)), false, times);
+    const std::vector<MapPointId> made = map.keyframe(later).frame.map_points;
+    mapper->refine(busy_with, times);
+    std::size_t left = 0, all = 0;
+    for (const MapPointId point : made) {
+      all += point.valid() ? 1 : 0;
+      left += map.find_point(point) != nullptr ? 1 : 0;
+    }
+    ASSERT_GT(all, 50U);
+    EXPECT_EQ(left, expects_masks ? 0U : all);
+    map.remove_all();
+    mapper->forget_map();
+  }
+}
+
 TEST_F(LocalMapperTest, AMaskTakesMatchesOfMovingFeaturesBack) {
   add_keyframe(frame_at(beside(0)));
   Frame frame = frame_at(beside(0.05));

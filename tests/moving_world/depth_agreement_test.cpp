@@ -137,7 +137,7 @@ TEST_F(DepthAgreementTest, FindsWhereOnTheWayTheDepthWasTaken) {
   for (const double steps : {0.0, 0.4, -0.6, 0.8}) {
     const Isometry3d T_view_camera = geometry::exp_se3(steps * geometry::log_se3(step));
     const Frame frame = furnished_room().frame((T_view_camera * T_camera_world).inverse(), 2.0);
-    const Isometry3d found = agreement.find_view(frame, T_camera_world, step);
+    const Isometry3d found = agreement.find_view(frame, T_camera_world, agreement.share(frame, T_camera_world), step);
     const double found_steps = geometry::log_se3(found).norm() / geometry::log_se3(step).norm();
     EXPECT_NEAR(found_steps, std::abs(steps), 0.05) << steps;
     EXPECT_LE((found.translation() - T_view_camera.translation()).norm(), 0.05 * step.translation().norm()) << steps;

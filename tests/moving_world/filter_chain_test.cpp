@@ -112,6 +112,40 @@ class OfMask final : public DynamicFilter {
   }
 };
 
+/// Says of every cell that it is static, once the local map was matched.
+class LateCells final : public DynamicFilter {
+ public:
+  Needs needs() const override { return {.matches = true}; }
+  void apply(const FilterContext&, StaticEvidence& evidence) override {
+    for (std::size_t cell = 0; cell < evidence.cells().size(); ++cell) evidence.add_cell(cell, 1.5F);
+  }
+};
+
+TEST(FilterChain, WeightsAndCellsFollowWhatBecomesKnownWithinAFrame) {
+  FilterChain chain(plain_settings());
+  chain.add("early", std::make_unique<EveryNth>(2, -1.0F));
+  chain.add("late", std::make_unique<LateCells>());
+  const SensorFrame sensor_frame;
+  Map map;
+  for (int round = 0; round < 2; ++round) {
+    Frame frame = six_features();
+    frame.coarse.depth.assign(4, 1.0F);
+    const FilterContext context{.sensor_frame = sensor_frame, .frame = frame, .map = map};
+    chain.begin(frame);
+    chain.evaluate(FilterStage::before_matching, context);
+    chain.weight_features(map, frame);
+    EXPECT_EQ(frame.coarse.static_log_odds, std::vector<float>(4, 0.0F));
+    EXPECT_EQ(frame.static_probability[1], 0.5F);
+    frame.map_points[1] = map.add_point(Eigen::Vector3d::Zero(), 0);
+    map.point(frame.map_points[1]).static_log_odds = 2.0F;
+    chain.evaluate(FilterStage::after_matching, context);
+    chain.weight_features(map, frame);
+    EXPECT_EQ(frame.coarse.static_log_odds, std::vector<float>(4, 1.5F));
+    EXPECT_NEAR(frame.static_probability[1], 1.0 / (1.0 + std::exp(-2.0)), 1e-6);
+    EXPECT_NEAR(frame.static_probability[2], 1.0 / (1.0 + std::exp(1.0)), 1e-6);
+  }
+}
+
 TEST(FilterChain, DiscountedPriorsCostLittleUntilTheNextFrame) {
   EvidenceSettings settings;  // a static prior of 2, at most -1.5 after the discount
   settings.fallback = true;

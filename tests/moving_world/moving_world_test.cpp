@@ -289,5 +289,21 @@ TEST_F(MovingWorldDepth, FewInliersMustNotContradictTheRoom) {
   EXPECT_FALSE(world.contradicts_depth(frame, 60, true, reference));
 }
 
+TEST_F(MovingWorldDepth, WhatWasNotThereMayFillTheView) {
+  const Isometry3d here = at(0.1);
+  Frame frame = room().frame(here, 2.0);
+  EXPECT_FALSE(world.is_view_filled(frame, reference));
+  // Somebody stands 0.4 m before the camera: what the keyframe knows of the view is hidden.
+  for (float& depth : frame.coarse.depth) depth = 0.4F;
+  EXPECT_TRUE(world.is_view_filled(frame, reference));
+  // Where the keyframe knows nothing, nothing speaks against what is seen.
+  frame.T_camera_world = at(100.0).inverse();
+  EXPECT_FALSE(world.is_view_filled(frame, reference));
+  // Without filters, everything is trusted.
+  MovingWorld trusting({.camera = Camera()}, map);
+  frame.T_camera_world = here.inverse();
+  EXPECT_FALSE(trusting.is_view_filled(frame, reference));
+}
+
 }  // namespace
 }  // namespace holdfast

@@ -56,8 +56,7 @@ class PointFollowerTest : public testing::Test {
         cv::Point best(x, y);
         for (int dy = 0; dy < 40; dy += 2)
           for (int dx = 0; dx < 40; dx += 2)
-            if (follower.corner_strength(static_cast<float>(x + dx), static_cast<float>(y + dy)) >
-                follower.corner_strength(static_cast<float>(best.x), static_cast<float>(best.y)))
+            if (follower.corner_strength(x + dx, y + dy) > follower.corner_strength(best.x, best.y))
               best = {x + dx, y + dy};
         follower.add(frame, static_cast<float>(best.x), static_cast<float>(best.y), 4);
       }
@@ -188,11 +187,11 @@ TEST_F(PointFollowerTest, CornersAreStrongAndEdgesAreNot) {
   cv::Mat image(480, 640, CV_8UC1, cv::Scalar(50));
   image(cv::Rect(200, 100, 200, 200)).setTo(220);
   follower.advance(image, frame_with_depth(2.0F));
-  EXPECT_GT(follower.corner_strength(200.0F, 100.0F), 200);
-  EXPECT_LT(follower.corner_strength(200.0F, 200.0F), 50);
-  EXPECT_EQ(follower.corner_strength(100.0F, 400.0F), 0);
-  EXPECT_EQ(follower.corner_strength(1e4F, 10.0F), 0);
-  EXPECT_EQ(follower.corner_strength(10.0F, 1e4F), 0);
+  EXPECT_GT(follower.corner_strength(200, 100), 200);
+  EXPECT_LT(follower.corner_strength(200, 200), 50);
+  EXPECT_EQ(follower.corner_strength(100, 400), 0);
+  EXPECT_EQ(follower.corner_strength(10000, 10), 0);
+  EXPECT_EQ(follower.corner_strength(10, 10000), 0);
 }
 
 }  // namespace

@@ -63,6 +63,13 @@ class FakeOptimizer final : public Optimizer {
   GraphSummary optimize_pose_graph(PoseGraphProblem&) override { return {}; }
 };
 
+struct RecordingSettings {
+  std::filesystem::path path;
+  static void describe(ParameterTable<RecordingSettings>& table) {
+    table.add("path", &RecordingSettings::path, "folder").required();
+  }
+};
+
 template <class Interface, class Make>
 void add(Registry& registry, const char* name, Make make) {
   registry.add<Interface, NoSettings>({.name = name}, [make](const NoSettings&, const CreationContext& context) {
@@ -80,6 +87,10 @@ class ConfiguredPipeline : public ::testing::Test {
       world.told.push_back(context);
       return std::make_unique<FakeSource>(world.source);
     });
+    registry_.add<FrameSource, RecordingSettings>(
+        {.name = "recorded"}, [&world](const RecordingSettings&, const CreationContext&) {
+          return std::unique_ptr<FrameSource>(std::make_unique<FakeSource>(world.source));
+        });
     add<FeatureExtractor>(registry_, "fake", [&world](const CreationContext& context) {
       world.told.push_back(context);
       return std::make_unique<FakeFeatures>();
@@ -133,6 +144,39 @@ TEST_F(ConfiguredPipeline, TheCameraComesFromOneOfBoth) {
   EXPECT_EQ(world_.told.back().camera, find_camera("tum_fr3"));  // the features are made for it
   EXPECT_THAT(complaints("camera: tum_fr1\n"),
               HasSubstr("the source 'fake' brings its own camera, and 'camera' names one with other numbers"));
+}
+
+TEST_F(ConfiguredPipeline, CameraAutoIsTheSourcesOwn) {
+  EXPECT_THAT(complaints("camera: auto\n"),
+              HasSubstr("c.yaml:4:9: found 'auto' for 'camera', but the source 'fake' does not know its own"));
+  world_.source.camera = find_camera("tum_fr3");
+  EXPECT_EQ(build("camera: auto\n").pipeline.camera(), find_camera("tum_fr3"));
+  EXPECT_EQ(world_.told.back().camera, find_camera("tum_fr3"));
+}
+
+TEST_F(ConfiguredPipeline, TheSourcesOwnCameraPrecedesThatOfTheFoldersName) {
+  const auto camera_of = [&] {
+    const std::string text =
+        "source: { recorded: { path: rgbd_bonn_crowd } }\nfeatures: fake\noptimizer: fake\n"
+        "camera: auto\n";
+    const ConfigurationNode root = parse_yaml(text, "c.yaml", "/");
+    const Configuration configuration = resolve_configuration(root, "c.yaml", registry_, pipeline_sections());
+    return build_pipeline(configuration, registry_, {}).pipeline.camera();
+  };
+  EXPECT_EQ(camera_of(), find_camera("bonn"));
+  world_.source.camera = find_camera("tum_fr3");
+  EXPECT_EQ(camera_of(), find_camera("tum_fr3"));
+}
+
+TEST_F(ConfiguredPipeline, ASourceAloneNeedsItsCameraToo) {
+  const auto build_alone = [&] {
+    const ConfigurationNode root =
+        parse_yaml("source: fake\nfeatures: fake\noptimizer: fake\ncamera: auto\n", "c.yaml", "/");
+    build_source(resolve_configuration(root, "c.yaml", registry_, pipeline_sections()), registry_);
+  };
+  EXPECT_THROW(build_alone(), ConfigurationError);
+  world_.source.camera = find_camera("tum_fr3");
+  EXPECT_NO_THROW(build_alone());
 }
 
 TEST_F(ConfiguredPipeline, BothMaySayTheSameCamera) {

@@ -115,12 +115,14 @@ struct Options {
   SegmentedFrames on = SegmentedFrames::keyframes;
   std::string people_are_called = "person";
   bool overlooks_people = false;  ///< no filter sees anybody
+  std::size_t begin = 0;          ///< the first of the frames that is fed
+  double start_share = 0.0;
 };
 
 struct WholeRun {
   explicit WholeRun(const People& people, const Options& options = {}) : pipeline(parts_of(people, options)) {
-    for (const SensorFrame& frame : people.frames()) {
-      results.push_back(pipeline.feed(frame));
+    for (std::size_t i = options.begin; i < people.frames().size(); ++i) {
+      results.push_back(pipeline.feed(people.frames()[i]));
       if (!options.threaded && results.back().is_keyframe) points_at_once.push_back(points_of(results.back().keyframe));
     }
     pipeline.finish();
@@ -137,6 +139,7 @@ struct WholeRun {
     parts.optimizer = registry.create<Optimizer>("ceres", {}, context);
     parts.loop_detector = std::make_unique<NotingDetector>(database);
     parts.segmentation.latency = options.latency;
+    parts.tracking.start_share = options.start_share;
     parts.segmentation.new_view_share = options.new_view_share;
     parts.segmentation.on = options.on;
     if (options.threaded) parts.run.mode = RunMode::threaded;
@@ -153,18 +156,20 @@ struct WholeRun {
     const std::vector<MapPointId>& points = pipeline.map().keyframe(keyframe).frame.map_points;
     return std::count_if(points.begin(), points.end(), [](MapPointId id) { return id.valid(); });
   }
-  /// Largest distance from the truth, both relative to the first frame [m].
+  /// Largest distance from the truth, both relative to the last frame with a pose [m].
   double largest_error(const People& people) const {
     double largest = 0.0;
     const Trajectory trajectory = pipeline.trajectory();
-    for (const TimedPose& pose : trajectory)
+    const auto truth_at = [&](double time) {
       for (const SensorFrame& frame : people.frames())
-        if (frame.timestamp == pose.timestamp)
-          largest = std::max(
-              largest,
-              (pose.T_world_camera.translation() -
-               (people.frames().front().truth->T_world_camera->inverse() * *frame.truth->T_world_camera).translation())
-                  .norm());
+        if (frame.timestamp == time) return *frame.truth->T_world_camera;
+      return Eigen::Isometry3d::Identity();
+    };
+    const TimedPose& last = trajectory.back();
+    const Eigen::Isometry3d T_truth_world = truth_at(last.timestamp) * last.T_world_camera.inverse();
+    for (const TimedPose& pose : trajectory)
+      largest = std::max(
+          largest, (T_truth_world * pose.T_world_camera.translation() - truth_at(pose.timestamp).translation()).norm());
     return largest;
   }
   int points_on_people_at_end(const People& people) const {
@@ -252,6 +257,22 @@ TEST_F(PeopleTest, PeopleStayOutOfTheMapHoweverLateTheirMasksCome) {
       }
     }
   }
+}
+
+TEST_F(PeopleTest, AMapThatBeganOnPeopleBeginsAnewWithTheFirstMask) {
+  // The first frame that is fed shows little but people; their mask comes five frames later.
+  constexpr std::size_t begin = 30;
+  const WholeRun stays(people(), {.begin = begin});
+  const WholeRun restarts(people(), {.begin = begin, .start_share = 0.75});
+  const auto starts = [](const WholeRun& run) {
+    return std::count_if(run.results.begin(), run.results.end(),
+                         [](const FrameResult& result) { return result.status == TrackingStatus::initialised; });
+  };
+  EXPECT_EQ(starts(stays), 1);
+  EXPECT_EQ(starts(restarts), 2);
+  EXPECT_EQ(restarts.results[5].status, TrackingStatus::initialised);
+  EXPECT_LT(restarts.largest_error(people()), 0.5 * stays.largest_error(people()));
+  expect_clean_keyframes(restarts);
 }
 
 TEST_F(PeopleTest, AKeyframeOfANewViewDoesNotWaitForItsMask) {

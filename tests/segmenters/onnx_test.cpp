@@ -101,7 +101,7 @@ TEST(OnnxSegmenter, WrongModelsSayWhatWasFoundAndExpected) {
                     {{"classes", std::vector<std::string>{"background", "person"}}, {"output", "probabilities"}}),
               HasSubstr("expected probabilities, 0 to 1; is it `output: logits`?"));
   EXPECT_THAT(error("../make_models.py"), HasSubstr("is missing"));
-  EXPECT_THAT(error("logits", {{"mean", std::vector<double>{1.0}}}), HasSubstr("mean: found 1 numbers; expected 3"));
+  EXPECT_THAT(error("logits", {{"mean", std::vector<double>{1.0}}}), HasSubstr("mean: found 1 number; expected 3"));
 }
 
 TEST(OnnxSegmenter, WrongNamesAreToldAtOnce) {

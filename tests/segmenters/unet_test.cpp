@@ -63,6 +63,28 @@ TEST_P(Unet, SameImageSameLabels) {
   }
 }
 
+TEST(UnetSegmenter, RegionsOfPeopleNeedACertainPixel) {
+  simulation::Simulator room = room_with("{ at: [2.5, 3.0] }");
+  SensorFrame frame = room.frame(0);
+  // Less and less contrast, until people are found of whom the network is not certain.
+  int largest = 255;
+  for (double contrast = 0.7; contrast > 0.05 && largest == 255; contrast *= 0.7) {
+    frame.colour = room.frame(0).colour.clone();
+    frame.colour.convertTo(frame.colour, -1, contrast, 128.0 * (1.0 - contrast));
+    const Segmentation all = make()->segment(frame);
+    const cv::Mat people = all.labels == 1;
+    double highest = 255.0;
+    if (cv::countNonZero(people) > 0) cv::minMaxLoc(all.confidence, nullptr, &highest, nullptr, nullptr, people);
+    largest = static_cast<int>(highest);
+  }
+  ASSERT_LT(largest, 255);
+  const auto people_with = [&](int certainty) {
+    return cv::countNonZero(make({{"region_confidence", certainty / 255.0}})->segment(frame).labels == 1);
+  };
+  EXPECT_GT(people_with(largest), 0);
+  EXPECT_EQ(people_with(largest + 1), 0);
+}
+
 TEST(UnetSegmenter, WithItsMirrorImageLeftAndRightAreAlike) {
   simulation::Simulator room = room_with("{ at: [2.5, 3.0] }");
   const SensorFrame frame = room.frame(0);

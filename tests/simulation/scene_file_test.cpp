@@ -140,7 +140,7 @@ lights_out:
 )"),
       ElementsAre("1:1: a scene has no parameter 'rooom'; did you mean 'room'?",
                   HasSubstr("2:17: found 'circle' for 'path' of the camera: 'circle' is not among them"),
-                  HasSubstr("4:11: found 1 numbers; expected a place of 2"),
+                  HasSubstr("4:11: found 1 number; expected a place of 2"),
                   "4:23: there is no action 'wlak'; did you mean 'walk'?",
                   HasSubstr("4:64: found 3 numbers; expected a place of 2"), HasSubstr("the action 'walk' needs 'to'"),
                   HasSubstr("the action 'sit' has no parameter 'walk'"), HasSubstr("a person needs 'at'"),

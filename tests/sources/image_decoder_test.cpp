@@ -5,6 +5,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include "sources/png_file.hpp"
 #include "sources/recording.hpp"
 
 namespace holdfast {
@@ -130,6 +131,28 @@ TEST_F(ImageDecoderTest, AHeaderThatDescribesNoImageIsDamage) {
   bytes.replace(29, 4, "\xf3\xf0\x12\xd2");
   folder_.write("d.png", bytes);
   EXPECT_THAT(depth_error("d.png"), HasSubstr("its header describes no kind of image"));
+}
+
+/// Known by the header: the pixels of these files are missing, which would be damage.
+TEST_F(ImageDecoderTest, AnImageLargerThanACamerasIsNotDecoded) {
+  const auto write = [&](int width, int height, std::uint8_t bits, std::uint8_t colour_type) {
+    const test::Bytes bytes = test::png_of_stream(
+        {.width = width, .height = height, .bits = bits, .colour_type = colour_type}, test::Bytes(100, 0));
+    folder_.write("large.png", std::string(bytes.begin(), bytes.end()));
+  };
+  const auto refused = HasSubstr(
+      "expected at least one pixel and at most 32768 pixels in width and height, and 100 "
+      "million pixels");
+  write(20000, 20000, 8, 2);
+  EXPECT_THAT(colour_error("large.png"), AllOf(HasSubstr("20000x20000"), refused));
+  EXPECT_THAT(input_error([&] { decoder_.read_grey(file("large.png")); }), refused);
+  write(40000, 2, 8, 2);
+  EXPECT_THAT(colour_error("large.png"), refused);
+  write(10001, 10000, 16, 0);
+  EXPECT_THAT(depth_error("large.png"), refused);
+  EXPECT_THAT(input_error([&] { decoder_.read_labels(file("large.png")); }), refused);
+  write(300, 300, 16, 0);
+  EXPECT_THAT(depth_error("large.png"), HasSubstr("is damaged"));
 }
 
 TEST_F(ImageDecoderTest, JpegWithoutDataIsDamaged) {

@@ -31,6 +31,12 @@ class StereoMatcherTest : public ::testing::Test {
         left_.at<std::uint8_t>(row, column) = static_cast<std::uint8_t>(random_.next() % 200);
     cv::GaussianBlur(left_, left_, cv::Size(), 1.5);
     cv::normalize(left_, left_, 10, 200, cv::NORM_MINMAX);
+    show(8.0F, 0);
+  }
+
+  /// The right image and the features, of one octave, for a disparity of `first_disparity_` in the first row.
+  void show(float first_disparity, std::uint8_t octave) {
+    first_disparity_ = first_disparity;
     cv::Mat map_x(height, width, CV_32FC1), map_y(height, width, CV_32FC1);
     for (int row = 0; row < height; ++row)
       for (int column = 0; column < width; ++column) {
@@ -39,24 +45,28 @@ class StereoMatcherTest : public ::testing::Test {
       }
     cv::remap(left_, right_, map_x, map_y, cv::INTER_CUBIC, cv::BORDER_REFLECT);
     right_ += cv::Scalar(12);  // its exposure differs
+    right_features_.clear();
+    frame_.features.clear();
+    frame_.x.clear(), frame_.y.clear();
     for (int y = 20; y < height - 20; y += 20)
-      for (int x = 60; x < width - 20; x += 20) add(static_cast<float>(x), static_cast<float>(y));
+      for (int x = 60; x < width - 20; x += 20) add(static_cast<float>(x), static_cast<float>(y), octave);
   }
 
-  static float disparity_at(float row) { return 8.0F + 0.043F * row; }
+  float disparity_at(float row) const { return first_disparity_ + 0.043F * row; }
 
-  void add(float x, float y) {
+  void add(float x, float y, std::uint8_t octave) {
     Descriptor256 descriptor;
     for (std::uint64_t& word : descriptor.words) word = random_.next();
-    // The keypoint in the right image is off by up to a pixel.
-    const auto noise = [&] { return static_cast<float>(random_.uniform(-1.0, 1.0)); };
-    push(frame_.features, x, y, descriptor);
-    push(right_features_, x - disparity_at(y) + noise(), y + noise(), descriptor);
+    // The keypoint in the right image is off by up to a pixel of its level.
+    const double scale = frame_.pyramid->scale[octave];
+    const auto noise = [&] { return static_cast<float>(random_.uniform(-scale, scale)); };
+    push(frame_.features, x, y, octave, descriptor);
+    push(right_features_, x - disparity_at(y) + noise(), y + noise(), octave, descriptor);
     frame_.x.push_back(x), frame_.y.push_back(y);
   }
-  static void push(Features& features, float x, float y, const Descriptor256& descriptor) {
+  static void push(Features& features, float x, float y, std::uint8_t octave, const Descriptor256& descriptor) {
     features.x.push_back(x), features.y.push_back(y), features.angle.push_back(0), features.response.push_back(1);
-    features.octave.push_back(0), features.descriptors.push_back(descriptor);
+    features.octave.push_back(octave), features.descriptors.push_back(descriptor);
   }
   void match(const StereoSettings& settings = {}) {
     StereoMatcher(settings).match(left_, right_, right_features_, frame_);
@@ -68,6 +78,7 @@ class StereoMatcherTest : public ::testing::Test {
   }
 
   Random random_{7};
+  float first_disparity_ = 0.0F;  // px, in the first row
   cv::Mat left_, right_;
   Frame frame_;
   Features right_features_;
@@ -82,6 +93,19 @@ TEST_F(StereoMatcherTest, TheDisparityIsThatOfTheImagesNotThatOfTheKeypoints) {
     EXPECT_NEAR(disparity, disparity_at(frame_.y[i]), 0.15F) << i;
     EXPECT_NEAR(frame_.depth[i], 20.0F / disparity, 1e-4F) << i;
   }
+}
+
+TEST_F(StereoMatcherTest, TheDisparityHasNoBiasAtAnyDistanceOrOctave) {
+  for (const float first_disparity : {1.0F, 3.0F, 8.0F, 25.0F})
+    for (const int octave : {0, 3, 7}) {
+      show(first_disparity, static_cast<std::uint8_t>(octave));
+      match();
+      double sum = 0.0;
+      for (std::size_t i = 0; i < frame_.size(); ++i)
+        if (frame_.has_depth(i)) sum += frame_.x[i] - frame_.right_x[i] - disparity_at(frame_.y[i]);
+      ASSERT_GT(with_depth(), frame_.size() / 2);
+      EXPECT_NEAR(sum / static_cast<double>(with_depth()), 0.0, 0.015) << first_disparity << " px, octave " << octave;
+    }
 }
 
 TEST_F(StereoMatcherTest, AFeatureWithoutItsLikeInTheRowHasNoDepth) {

@@ -228,6 +228,58 @@ TEST(Tracker, ALostCameraIsRecoveredAmongTheLastKeyframes) {
   }
 }
 
+TEST(Tracker, FramesOfALossAreTrackedBackwardsOnceTheCameraIsFound) {
+  // After the dark, the camera is somewhere else. It sees the map, but cannot have come there before a second is over.
+  for (const int kept : {30, 10, 0}) {
+    TrackingSettings settings = without_relocalisation();
+    settings.recovery_keyframes = 5;
+    settings.relocalisation_tolerance = 0.0;
+    settings.relocalisation_speed = 0.4;
+    settings.backward_frames = kept;
+    Bench bench(settings);
+    bench.walk(0.0, 0.5);
+    const auto place = [](double time) { return at(-0.1 + 0.1 * (time - 0.5), 0.2, 0.1); };
+    std::size_t lost = 0, dark = 0;
+    for (int i = 15; i < 75; ++i) {
+      const double time = i / 30.0;
+      const bool is_dark = i < 20;
+      const FrameResult result = bench.feed(time, place(time), !is_dark);
+      lost += result.status == TrackingStatus::lost && !is_dark ? 1U : 0U;
+      dark += is_dark ? 1U : 0U;
+    }
+    ASSERT_GT(lost, 10U);
+    ASSERT_LT(lost, 30U);
+    EXPECT_EQ(bench.tracker.loss_record().tracked_backwards,
+              std::min<std::size_t>(lost, static_cast<std::size_t>(kept)));
+    const Trajectory trajectory = bench.tracker.trajectory();
+    EXPECT_EQ(trajectory.size(), 75 - dark - lost + bench.tracker.loss_record().tracked_backwards);
+    for (std::size_t i = 0; i < trajectory.size(); ++i) {
+      const double time = trajectory[i].timestamp;
+      if (i > 0) EXPECT_GT(time, trajectory[i - 1].timestamp);
+      if (time < 0.5 - 1e-9) continue;
+      EXPECT_LT((trajectory[i].T_world_camera.translation() - place(time).translation()).norm(), 0.01) << time;
+    }
+  }
+}
+
+TEST(Tracker, ACameraThatIsLostForLongBeginsAPiece) {
+  for (const double time : {0.3, 0.0}) {
+    TrackingSettings settings = without_relocalisation();
+    settings.restart_time = time;
+    Bench bench(settings);
+    bench.walk(0.0, 0.5);
+    bool began = false;
+    for (int i = 15; i < 45 && !began; ++i) {
+      const double now = i / 30.0;
+      const FrameResult result = bench.feed(now, at(0.25, 1.0, 0.3), i > 17);
+      began = bench.tracker.begins_piece();
+      EXPECT_EQ(result.status, began ? TrackingStatus::initialised : TrackingStatus::lost);
+      if (began) EXPECT_NEAR(now - 14.0 / 30.0, 0.3, 0.07);
+    }
+    EXPECT_EQ(began, time > 0.0);
+  }
+}
+
 TEST(Tracker, APlaceThatTheCameraCannotHaveReachedIsRejected) {
   for (const double tolerance : {1.0, 0.05}) {
     TrackingSettings settings = without_relocalisation();
@@ -259,6 +311,30 @@ TEST(Tracker, InALoadedMapItIsRelocalisedAtAPlaceOfTheLoopDetector) {
     EXPECT_LT(error(result, place), 0.01);
     EXPECT_FALSE(result.is_keyframe);
     EXPECT_EQ(bench.feed(0.03, place).method, TrackingMethod::motion_model);
+  }
+}
+
+TEST(Tracker, OneCameraIsNotCarriedByAMapThatExplainsNextToNothing) {
+  TrackingSettings settings;
+  settings.minimum_start_points = settings.minimum_inliers = settings.relocalisation_inliers = 10;
+  settings.minimum_matches = 10;
+  for (const std::size_t every : {5U, 25U}) {  // of the features that the camera sees have a point in the map
+    SCOPED_TRACE(every);
+    Bench maker(settings);
+    maker.extractor.every = every;
+    ASSERT_EQ(maker.feed(0.0, at(0.0)).status, TrackingStatus::initialised);
+    maker.map.set_sensor(Sensor::mono);
+    Bench bench(settings, false, std::move(maker.map));
+    Tracker tracker(settings, {bench.world.camera(), bench.extractor, bench.optimizer, bench.detector,
+                               bench.moving_world, bench.map, 1, std::nullopt, false});
+    SensorFrame frame = bench.world.frame(0, 0.0, at(0.02, 0.01));
+    frame.depth.release();
+    FrameResult result;
+    bench.moving_world.next_frame(frame.timestamp);
+    tracker.begin(frame, result);
+    tracker.locate(frame, result);
+    EXPECT_GE(result.inliers, 2 * settings.minimum_inliers);
+    EXPECT_EQ(result.status, every < 10 ? TrackingStatus::tracked : TrackingStatus::lost);
   }
 }
 
@@ -496,6 +572,38 @@ TEST(Tracker, FewFeaturesThatJumpAreRefused) {
     const FrameResult result = bench.feed(0.5 + 2.0 / 30.0, jumped);
     EXPECT_EQ(result.status, every == 2 ? TrackingStatus::tracked : TrackingStatus::lost) << every;
   }
+}
+
+TEST(Tracker, WithoutTheMapNoNumberOfFeaturesMakesTheCameraJump) {
+  // The camera has turned out of the map; all features of the previous frame agree with a step forward, which only the
+  // shorter one can be.
+  for (const double step : {0.1, 0.3}) {
+    TrackingSettings settings = without_relocalisation();
+    settings.odometry_time = 0.3;
+    Bench bench(settings);
+    bench.feed(0.0, turned(0.0));
+    bench.tracker.localise_only();
+    double time = 1.0 / 30.0;
+    while (time < 2.0 && bench.feed(time, turned(1.2 * time)).fallback != TrackingFallback::odometry)
+      time += 1.0 / 30.0;
+    ASSERT_LT(time, 2.0);
+    time += 1.0 / 30.0;
+    const FrameResult result = bench.feed(time, turned(1.2 * time) * at(0.0, 0.0, step));
+    EXPECT_EQ(result.status, step < 0.2 ? TrackingStatus::tracked : TrackingStatus::lost) << step;
+  }
+}
+
+TEST(Tracker, RightAfterALossItSaysSo) {
+  Bench bench;
+  bench.walk(0.0, 0.5);
+  EXPECT_FALSE(bench.tracker.was_just_found());
+  for (int i = 15; i < 18; ++i) bench.feed(i / 30.0, at(Bench::speed * i / 30.0), false);
+  EXPECT_TRUE(bench.tracker.needs_mask()) << "to find the camera by what is static";
+  ASSERT_EQ(bench.feed(0.6, at(Bench::speed * 0.6)).status, TrackingStatus::tracked);
+  EXPECT_FALSE(bench.tracker.needs_mask());
+  EXPECT_TRUE(bench.tracker.was_just_found());
+  bench.walk(0.6 + 1.0 / 30.0, 1.2);
+  EXPECT_FALSE(bench.tracker.was_just_found());
 }
 
 TEST(Tracker, KeyframesAreMadeWhenThePolicySaysSo) {

@@ -107,6 +107,34 @@ TEST_F(ViewProgramTest, ShowsTheDenseCloudOfARunAndOfItsResults) {
   EXPECT_THAT(outcome.errors, HasSubstr("static_map.ply: states"));
 }
 
+TEST_F(ViewProgramTest, ShowsTheClassesOfARunAndOfItsResults) {
+  constexpr std::uint8_t no_class = 255;
+  const auto has_classes = [](const ReceivedMessage& message) {
+    if (!message.has("point_classes")) return false;
+    const auto labels = message.array<std::uint8_t>("point_classes");
+    return std::any_of(labels.begin(), labels.end(), [](std::uint8_t label) { return label != no_class; });
+  };
+  const pid_t run = start({"run", "run.yaml", "--output", "out", "--view", "--set", "segmenter=truth"});
+  {
+    test::SocketClient client(address());
+    client.receive_until(has_classes);
+    client.receive_until(is_finished);
+  }
+  kill(run, SIGINT);
+  EXPECT_EQ(program_.finish(run).exit_code, 0);
+  for (const char* shown : {"out", "out/map.hfm"}) {
+    const pid_t view = start({"view", shown});
+    {
+      test::SocketClient client(address());
+      const ReceivedMessage message = client.receive_until(has_classes);
+      EXPECT_EQ(message.json["head"]["classes"][0], "background");
+    }
+    kill(view, SIGTERM);
+    EXPECT_EQ(program_.finish(view).exit_code, 0);
+  }
+  EXPECT_THAT(program_.run({"map", "info", "out/map.hfm"}).output, HasSubstr("\nclasses    \"background\" "));
+}
+
 /// The address as the program prints it.
 std::string text_of(const test::ViewerAddress& address) {
   return "http://" + address.host + ":" + address.port + "/?token=" + address.token;
@@ -115,7 +143,7 @@ std::string text_of(const test::ViewerAddress& address) {
 TEST_F(ViewProgramTest, InAChromiumWhileItRunsAndAfterwards) {
   const auto chromium = test::find_browser();
   if (!chromium) GTEST_SKIP() << "no chromium, chromium-browser or google-chrome in PATH to look at the page with";
-  test::Browser browser(*chromium, program_.path("profile"), test::BrowserDrawing::webgl);
+  test::Browser browser(*chromium, program_.path("profile"));
   const std::string counts = "globalThis.holdfastViewer?.counts()";
   const pid_t run = start({"run", "run.yaml", "--output", "out", "--view", "--set", "dense_map.enabled=true", "--set",
                            "observers=[{viewer: {wait: true, speed: 1}}]"});
@@ -136,7 +164,7 @@ TEST_F(ViewProgramTest, InAChromiumWhileItRunsAndAfterwards) {
   EXPECT_TRUE(becomes(browser,
                       "!document.getElementById('error-panel').hidden && "
                       "!document.getElementById('slider').hidden"));
-  EXPECT_TRUE(becomes(browser, "document.getElementById('colourings').hidden")) << "files keep no classes";
+  EXPECT_TRUE(becomes(browser, "document.getElementById('colourings').hidden")) << "there was no segmenter";
   expect_it_fits(browser);
   kill(view, SIGTERM);
   EXPECT_EQ(program_.finish(view).exit_code, 0);

@@ -23,7 +23,7 @@ class ViewerBrowserTest : public ::testing::Test {
     const auto program = test::find_browser();
     if (!program) GTEST_SKIP() << "no chromium, chromium-browser or google-chrome in PATH to look at the page with";
     profile_ = fs::path(testing::TempDir()) / ("holdfast_viewer_browser_" + std::to_string(getpid()));
-    browser_.emplace(*program, profile_, test::BrowserDrawing::webgl);
+    browser_.emplace(*program, profile_, drawing());
   }
   void TearDown() override {
     browser_.reset();
@@ -31,11 +31,12 @@ class ViewerBrowserTest : public ::testing::Test {
     fs::remove_all(profile_, ignored);
   }
 
+  virtual test::BrowserDrawing drawing() const { return test::BrowserDrawing::plain; }
   bool becomes(const std::string& expression) { return test::becomes(*browser_, expression); }
   std::string text(const std::string& id) {
     return browser_->evaluate("document.getElementById('" + id + "').textContent").get<std::string>();
   }
-  void open() { browser_->open_page(viewer_->address()); }
+  void open(const std::string& fragment = "") { browser_->open_page(viewer_->address() + fragment); }
   void hide(const std::vector<std::string>& layers) {
     for (const std::string& layer : layers)
       browser_->evaluate("document.querySelector('#layers [data-layer=" + layer + "] input').click()");
@@ -103,43 +104,75 @@ TEST_F(ViewerBrowserTest, ShowsThePicture) {
   EXPECT_THAT(browser_->complaints(), IsEmpty());
 }
 
-TEST_F(ViewerBrowserTest, DrawsTheMap) {
+/// The page as a browser without a graphics card draws it, and by WebGL.
+class ViewerDrawingTest : public ViewerBrowserTest, public ::testing::WithParamInterface<test::BrowserDrawing> {
+ protected:
+  test::BrowserDrawing drawing() const override { return GetParam(); }
+  void open() {
+    const bool is_webgl = GetParam() == test::BrowserDrawing::webgl;
+    ViewerBrowserTest::open(is_webgl ? "#webgl" : "");
+    ASSERT_TRUE(becomes("globalThis.holdfastViewer"));
+    EXPECT_EQ(browser_->evaluate("holdfastViewer.drawsBySoftware()"), !is_webgl);
+  }
+  /// The colour of the pixel where a place of the world is, moved by so many pixels, as an expression.
+  static std::string pixel_at(const std::string& place, int right = 0, int down = 0) {
+    return "(() => { const [width, height] = holdfastViewer.size(), m = holdfastViewer.view.matrix(width / height);"
+           "const [x, y, z] = " +
+           place +
+           "; const row = (r) => m[r] * x + m[4 + r] * y + m[8 + r] * z + m[12 + r];"
+           "return holdfastViewer.pixel(Math.floor((row(0) / row(3) + 1) / 2 * width) + " +
+           std::to_string(right) + ", Math.floor((1 - row(1) / row(3)) / 2 * height) + " + std::to_string(down) +
+           ").join(); })()";
+  }
+  static std::string pixel_at_point(int i) { return pixel_at("holdfastViewer.point(" + std::to_string(i) + ")"); }
+};
+
+TEST_P(ViewerDrawingTest, PointsWhereTheyAre) {
   viewer_->set_map(test::row_map(4), 0.0);
   open();
   ASSERT_TRUE(becomes(counts + "?.points === 4"));
-  if (browser_->evaluate("Boolean(document.getElementById('map').getContext('webgl2'))") == false)
-    GTEST_SKIP() << "this browser has no WebGL 2";
-  // The picture of the map in one step with its drawing, before the browser takes the buffer.
-  const std::string colours =
-      "(() => { holdfastViewer.draw(); const c = document.getElementById('map'), gl = c.getContext('webgl2');"
-      "const p = new Uint8Array(4 * c.width * c.height); gl.readPixels(0, 0, c.width, c.height, gl.RGBA, "
-      "gl.UNSIGNED_BYTE, p); return new Set(new Uint32Array(p.buffer)).size; })()";
-  EXPECT_TRUE(becomes(colours + " > 3")) << "ground, grid, points, keyframes";
+  hide({"path", "keyframes", "covisibility", "loops", "grid"});
+  const std::string ground = "holdfastViewer.pixel(2, 2).join()";
+  for (int i = 0; i < 4; ++i) EXPECT_TRUE(becomes(pixel_at_point(i) + " !== " + ground)) << "point " << i;
+  hide({"points"});
+  EXPECT_TRUE(becomes(pixel_at_point(0) + " === " + ground));
   const nlohmann::json before = browser_->evaluate("holdfastViewer.view.eye()");
   browser_->click("document.querySelector('input[value=top]')");
   EXPECT_NE(browser_->evaluate("holdfastViewer.view.eye()"), before);
   EXPECT_THAT(browser_->complaints(), IsEmpty());
 }
 
-TEST_F(ViewerBrowserTest, DrawsPointsWhereTheyAre) {
-  viewer_->set_map(test::row_map(4), 0.0);
+TEST_P(ViewerDrawingTest, LinesWhereTheyAreAndPointsInFrontOfThem) {
+  MapSnapshot map = test::row_map(4);
+  map.covisibility.clear();
+  map.points.resize(2);
+  viewer_->set_map(map, 0.0);
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    FrameResult frame = test::row_frame(i);
+    frame.timestamp = i / 30.0;  // no line goes from a frame to the next that was tracked much later
+    viewer_->add_frame(frame);
+  }
   open();
-  ASSERT_TRUE(becomes(counts + "?.points === 4"));
-  if (browser_->evaluate("Boolean(document.getElementById('map').getContext('webgl2'))") == false)
-    GTEST_SKIP() << "this browser has no WebGL 2";
-  hide({"path", "keyframes", "covisibility", "loops", "grid"});
-  // The pixels at the places of all points, and one in a corner, where none is.
-  const std::string differences =
-      "(() => { holdfastViewer.draw(); const c = document.getElementById('map'), gl = c.getContext('webgl2');"
-      "const m = holdfastViewer.view.matrix(c.width / c.height), p = new Uint8Array(4);"
-      "const at = (x, y) => (gl.readPixels(x, y, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, p), p.join());"
-      "const ground = at(2, c.height - 3);"
-      "return [0, 1, 2, 3].filter((i) => { const [x, y, z] = holdfastViewer.point(i);"
-      "const row = (r) => m[r] * x + m[4 + r] * y + m[8 + r] * z + m[12 + r];"
-      "return at(Math.floor((row(0) / row(3) + 1) / 2 * c.width), Math.floor((row(1) / row(3) + 1) / 2 * c.height)) "
-      "!== ground;"
-      "}).length; })()";
-  EXPECT_TRUE(becomes(differences + " === 4"));
+  ASSERT_TRUE(becomes(counts + "?.path === 4 && " + counts + ".points === 2"));
+  hide({"keyframes", "loops", "grid", "points", "seen"});
+  const std::string ground = "holdfastViewer.pixel(2, 2).join()";
+  EXPECT_TRUE(becomes(pixel_at("[0.5, 0, 0]") + " !== " + ground)) << "the path is there";
+  EXPECT_TRUE(becomes(pixel_at("[2.5, 0, 0]") + " !== " + ground));
+  for (const int down : {-5, 5})
+    EXPECT_EQ(browser_->evaluate(pixel_at("[1.5, 0, 0]", 0, down) + " === " + ground), true) << "and nowhere else";
+  hide({"path"});
+  EXPECT_TRUE(becomes(pixel_at("[0.5, 0, 0]") + " === " + ground));
+
+  // A point between the eye and the path.
+  hide({"path", "points"});
+  browser_->evaluate("holdfastViewer.view.isFree = true");
+  const std::string eye = "holdfastViewer.view.eye().map((e, i) => 0.1 * e + 0.9 * [1.5, 0, 0][i])";
+  const nlohmann::json place = browser_->evaluate(eye);
+  const std::string path_colour = browser_->evaluate(pixel_at("[1.5, 0, 0]")).get<std::string>();
+  map.points[0].position = Eigen::Vector3d(place[0], place[1], place[2]);
+  map.points[0].static_log_odds = -3.0F;
+  viewer_->set_map(map, 0.0);
+  EXPECT_TRUE(becomes(pixel_at("[1.5, 0, 0]") + " !== '" + path_colour + "'"));
   EXPECT_THAT(browser_->complaints(), IsEmpty());
 }
 
@@ -201,18 +234,7 @@ TEST_F(ViewerBrowserTest, PausesAndShowsTheEnd) {
   EXPECT_THAT(browser_->complaints(), IsEmpty());
 }
 
-/// The colour of the pixel at map point i, as a text.
-std::string pixel_at_point(int i) {
-  return "(() => { holdfastViewer.draw(); const c = document.getElementById('map'), gl = c.getContext('webgl2');"
-         "const m = holdfastViewer.view.matrix(c.width / c.height), p = new Uint8Array(4);"
-         "const [x, y, z] = holdfastViewer.point(" +
-         std::to_string(i) +
-         "); const row = (r) => m[r] * x + m[4 + r] * y + m[8 + r] * z + m[12 + r];"
-         "gl.readPixels(Math.floor((row(0) / row(3) + 1) / 2 * c.width), Math.floor((row(1) / row(3) + 1) / 2 * "
-         "c.height), 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, p); return p.join(); })()";
-}
-
-TEST_F(ViewerBrowserTest, ColoursPointsByStateOrClass) {
+TEST_P(ViewerDrawingTest, ColoursPointsByStateOrClass) {
   viewer_->set_map(test::row_map(4), 0.0);
   open();
   ASSERT_TRUE(becomes(counts + "?.points === 4"));
@@ -222,8 +244,6 @@ TEST_F(ViewerBrowserTest, ColoursPointsByStateOrClass) {
   viewer_->add_point_classes({{test::point_id(1), 0}, {test::point_id(2), 1}});
   EXPECT_TRUE(becomes("holdfastViewer.classOf(2) === 1 && holdfastViewer.classOf(1) === 0 && " + has_choice));
   EXPECT_EQ(browser_->evaluate("holdfastViewer.classOf(0)"), 255);
-  if (browser_->evaluate("Boolean(document.getElementById('map').getContext('webgl2'))") == false)
-    GTEST_SKIP() << "this browser has no WebGL 2";
   hide({"path", "keyframes", "covisibility", "loops", "grid"});
   EXPECT_TRUE(becomes(pixel_at_point(1) + " === " + pixel_at_point(2))) << "both are static";
   browser_->click("document.querySelector('input[value=class]')");
@@ -234,6 +254,12 @@ TEST_F(ViewerBrowserTest, ColoursPointsByStateOrClass) {
   EXPECT_TRUE(becomes("document.getElementById('legend').textContent.includes('doubtful')"));
   EXPECT_THAT(browser_->complaints(), IsEmpty());
 }
+
+INSTANTIATE_TEST_SUITE_P(All, ViewerDrawingTest,
+                         ::testing::Values(test::BrowserDrawing::plain, test::BrowserDrawing::webgl),
+                         [](const auto& info) {
+                           return info.param == test::BrowserDrawing::plain ? "ByTheProcessor" : "ByWebGl";
+                         });
 
 TEST_F(ViewerBrowserTest, ShowsTheDenseCloudWhichFollowsItsKeyframes) {
   viewer_->set_map(test::row_map(4), 0.0);
@@ -273,6 +299,42 @@ TEST_F(ViewerBrowserTest, APageDrawnByTheProcessorIsCalmUntilSomebodyTouchesIt) 
   }
   EXPECT_TRUE(was_lively);
   EXPECT_THAT(browser_->complaints(), IsEmpty());
+}
+
+TEST_F(ViewerBrowserTest, APageBehindAnotherTabAsksForNothing) {
+  open();
+  ASSERT_TRUE(becomes(counts + "?.connected"));
+  const auto be_hidden = [&](const std::string& value) {
+    browser_->evaluate("(() => { Object.defineProperty(document, 'hidden', {value: " + value +
+                       ", configurable: true}); document.dispatchEvent(new Event('visibilitychange')); })()");
+  };
+  be_hidden("true");
+  EXPECT_TRUE(becomes("holdfastViewer.pace().rate === 0"));
+  usleep(300'000);  // until the program knows
+  viewer_->set_map(test::row_map(4), 0.0);
+  usleep(300'000);
+  EXPECT_EQ(browser_->evaluate(counts + ".points"), 0);
+  EXPECT_FALSE(viewer_->wants_map());
+  EXPECT_FALSE(viewer_->wants_picture());
+  be_hidden("false");
+  EXPECT_TRUE(becomes(counts + ".points === 4"));
+  EXPECT_TRUE(viewer_->wants_picture());
+  EXPECT_THAT(browser_->complaints(), IsEmpty());
+}
+
+TEST_F(ViewerBrowserTest, NoTwoMovingObjectsHaveTheSameColour) {
+  open();
+  ASSERT_TRUE(becomes("globalThis.holdfastViewer"));
+  // Of twelve that follow each other, any two differ by a tenth of the range of a channel at least.
+  const std::string nearest =
+      "(() => { let nearest = 9; for (let first = 0; first < 100; ++first) for (let i = 0; i < 12; ++i) "
+      "for (let k = 0; k < i; ++k) { const a = holdfastViewer.objectColour(first + i), b = "
+      "holdfastViewer.objectColour(first + k); nearest = Math.min(nearest, Math.max(...[0, 1, 2].map((c) => "
+      "Math.abs(a[c] - b[c])))); } return nearest; })()";
+  for (const bool is_dark : {false, true}) {
+    browser_->show_at(1300, 800, is_dark);
+    EXPECT_GE(browser_->evaluate(nearest).get<double>(), 0.1);
+  }
 }
 
 TEST_F(ViewerBrowserTest, NothingIsTooWideWhateverItIsCalled) {

@@ -220,6 +220,26 @@ TEST_F(ViewerTest, ABrowserGetsNoMoreThanItAsksFor) {
   EXPECT_LT(shortest, 0.5) << "as often as the browser that wants most";
 }
 
+TEST_F(ViewerTest, ABrowserThatAsksForNothingGetsNothing) {
+  SocketClient client(address_);
+  client.receive();
+  viewer_->set_map(test::row_map(1), 0.0);
+  client.send("rate 0");
+  client.send("pause");  // of which it would be told
+  while (viewer_->wants_picture()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_FALSE(viewer_->wants_map());
+  viewer_->add_frame(test::row_frame(0));
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  viewer_->add_frame(test::row_frame(1));
+  client.send("rate 30");
+  // Everything in one message.
+  const ReceivedMessage message =
+      client.receive_until([](const ReceivedMessage& received) { return received.json.contains("frames"); });
+  EXPECT_TRUE(has_state(message, "frame", 1U));
+  EXPECT_TRUE(has_state(message, "paused", true));
+  EXPECT_EQ(message.json["frames"].size(), 2U);
+}
+
 TEST_F(ViewerTest, NobodyPausesTheRunAfterLeaving) {
   std::future<void> frame;
   {
@@ -266,8 +286,8 @@ TEST_F(ViewerTest, WaitsForTheFirstBrowser) {
 
 TEST_F(ViewerTest, AcceptsOnlyTheDocumentedMessages) {
   const std::set<std::string> documented = {"pause",     "resume",  "step",    "speed 0", "speed 0.25",
-                                            "speed 0.5", "speed 1", "speed 2", "speed 4", "rate 1",
-                                            "rate 2",    "rate 5",  "rate 10", "rate 30"};
+                                            "speed 0.5", "speed 1", "speed 2", "speed 4", "rate 0",
+                                            "rate 1",    "rate 2",  "rate 5",  "rate 10", "rate 30"};
   SocketClient witness(address_);
   witness.receive();
   Random random(7);
@@ -277,6 +297,10 @@ TEST_F(ViewerTest, AcceptsOnlyTheDocumentedMessages) {
     return text;
   };
   for (int i = 0; i < 1000; ++i) {
+    if (i % 100 == 0) {  // a browser that answers no ping for twenty seconds is gone
+      viewer_->add_frame(test::row_frame(100 + static_cast<std::uint32_t>(i)));
+      witness.receive_until([&](const ReceivedMessage& message) { return has_state(message, "frame", 100 + i); });
+    }
     std::string text;
     const double kind = random.uniform();
     if (kind < 0.4) {

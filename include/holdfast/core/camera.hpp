@@ -101,7 +101,8 @@ struct Camera {
 };
 
 /// Returns the calibration of a camera known by name, or nothing. Names: tum_fr1, tum_fr2, tum_fr3 (TUM RGB-D
-/// calibration page), bonn (Bonn RGB-D Dynamic), euroc (left camera of EuRoC MAV), icl_nuim, kinect2 (960x540).
+/// calibration page), bonn (Bonn RGB-D Dynamic), euroc (left camera of EuRoC MAV), icl_nuim, kinect2 (960x540),
+/// kitti_00, kitti_03, kitti_04 (KITTI's odometry sequences 00 to 02, 03, and 04 to 12; rectified).
 std::optional<Camera> find_camera(const std::string& name);
 /// All names that find_camera() accepts, sorted.
 std::vector<std::string> camera_names();

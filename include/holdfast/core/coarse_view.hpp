@@ -75,6 +75,9 @@ class CoarseSampler {
   std::int32_t raw_pixel(int cell) const { return raw_[static_cast<std::size_t>(cell)]; }
 
  private:
+  /// The depth of a neighbour of a pixel without one, 0 if they have none either.
+  float measured_beside(const float* depth, std::int32_t pixel) const;
+
   int width_, height_;
   CoarseGrid grid_;
   std::vector<std::int32_t> raw_;

@@ -45,12 +45,13 @@ class FeatureGrid {
   std::vector<std::uint32_t> features_;    // by cell
 };
 
+// Truncation differs from rounding down below 0 only, where both are clamped to the border cells.
 inline int FeatureGrid::column_of(float x) const {
-  return std::clamp(static_cast<int>(std::floor((x - bounds_.min_x) * inverse_cell_)), 0, columns_ - 1);
+  return std::clamp(static_cast<int>((x - bounds_.min_x) * inverse_cell_), 0, columns_ - 1);
 }
 
 inline int FeatureGrid::row_of(float y) const {
-  return std::clamp(static_cast<int>(std::floor((y - bounds_.min_y) * inverse_cell_)), 0, rows_ - 1);
+  return std::clamp(static_cast<int>((y - bounds_.min_y) * inverse_cell_), 0, rows_ - 1);
 }
 
 inline void FeatureGrid::build(std::span<const float> x, std::span<const float> y, const PixelBounds& bounds,
@@ -79,17 +80,23 @@ inline void FeatureGrid::query(float centre_x, float centre_y, float radius, std
   if (features_.empty()) return;
   const int first_column = column_of(centre_x - radius), last_column = column_of(centre_x + radius);
   const int first_row = row_of(centre_y - radius), last_row = row_of(centre_y + radius);
+  std::size_t count = found.size();
   for (int row = first_row; row <= last_row; ++row) {
     // The cells of a row are contiguous in memory: one run per row.
     const std::size_t row_begin = static_cast<std::size_t>(row) * columns_;
     const std::uint32_t begin = cell_begin_[row_begin + first_column];
     const std::uint32_t end = cell_begin_[row_begin + last_column + 1];
+    found.resize(count + (end - begin));
+    // Without a branch, because no processor can predict which features are near.
     for (std::uint32_t i = begin; i < end; ++i) {
       const std::uint32_t feature = features_[i];
-      if (std::abs(x[feature] - centre_x) < radius && std::abs(y[feature] - centre_y) < radius)
-        found.push_back(feature);
+      const bool is_near_x = std::abs(x[feature] - centre_x) < radius,
+                 is_near_y = std::abs(y[feature] - centre_y) < radius;
+      found[count] = feature;
+      count += static_cast<std::size_t>(is_near_x & is_near_y);
     }
   }
+  found.resize(count);
 }
 
 }  // namespace holdfast

@@ -4,6 +4,8 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <map>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "holdfast/core/keyframe.hpp"
@@ -22,6 +24,7 @@ struct MapContent {
   std::uint64_t next_sequence = 0;  ///< greater than every keyframe's sequence
   Sensor sensor = Sensor::rgbd;
   MapFeatures features;
+  std::vector<std::string> classes;  ///< names that MapPoint::label refers to
 };
 
 /// Keyframes and map points, referred to by ids. The map keeps all links between them consistent: a feature of a
@@ -65,7 +68,7 @@ class Map {
   void update_point_geometry(MapPointId point);
 
   /// Merges `from` into `to`: moves its observations and removes it. If a keyframe observes both, `to` keeps its own
-  /// observation. Their static log-odds are summed, within the evidence limit.
+  /// observation. Their static log-odds are summed, within the evidence limit; `to` keeps its class if it has one.
   void fuse_points(MapPointId from, MapPointId to);
   void remove_point(MapPointId point);
 
@@ -79,6 +82,19 @@ class Map {
   /// Removes a keyframe with its observations, covisibility edges and loop edges. Its children in the spanning tree get
   /// new parents among their neighbours. Its pose stays available relative to its parent; see pose_of().
   void remove_keyframe(KeyFrameId keyframe);
+
+  /// Number for a new piece of the map (KeyFrame::piece).
+  std::uint32_t new_piece() { return ++last_piece_; }
+  /// The piece of a keyframe; that of a removed one is its parent's. Nothing for a keyframe of a removed piece.
+  std::optional<std::uint32_t> piece_of(KeyFrameId keyframe) const;
+  /// Makes two pieces one, which keeps the lower number: their keyframes are in the right place now.
+  void join_pieces(std::uint32_t first, std::uint32_t second);
+  /// The keyframes of all pieces but one, oldest first.
+  std::vector<KeyFrameId> keyframes_outside(std::uint32_t piece) const;
+  /// How many keyframes a piece has.
+  std::size_t keyframes_in(std::uint32_t piece) const;
+  /// Removes the keyframes of all pieces but one, and their points. pose_of() knows them no longer.
+  void keep_piece(std::uint32_t piece);
 
   /// Adds a loop edge between two keyframes, on both sides. Adding it again has no effect.
   void add_loop_edge(KeyFrameId first, KeyFrameId second);
@@ -108,6 +124,14 @@ class Map {
   /// Which features the keyframes have.
   const MapFeatures& features() const { return features_; }
   void set_features(MapFeatures features) { features_ = std::move(features); }
+  /// Names of the classes that points can have, by MapPoint::label; empty = points have no classes.
+  const std::vector<std::string>& classes() const { return classes_; }
+  /// Replaces the names; those beyond the 255th, which no label refers to, are dropped. Points keep their class by its
+  /// name: the label follows it, and becomes unknown if the name is gone.
+  void set_classes(std::vector<std::string> names);
+  /// Gives each point the class that most of the masks of the keyframes that observe it show at its place; of equally
+  /// many the one with the lower label. A point that no mask shows keeps its class.
+  void classify_points();
 
   /// Incremented by touch(); a holder of copied map data compares versions to detect that the copy is outdated.
   std::uint64_t version() const { return version_; }
@@ -140,8 +164,10 @@ class Map {
   MapPoints points_;
   std::map<KeyFrameId, Removed> removed_keyframes_;
   std::uint64_t next_sequence_ = 0;
+  std::uint32_t last_piece_ = 0;
   Sensor sensor_ = Sensor::rgbd;
   MapFeatures features_;
+  std::vector<std::string> classes_;
   std::uint64_t version_ = 0;
   float evidence_limit_ = 4.0F;  // the default of EvidenceSettings::limit
 };

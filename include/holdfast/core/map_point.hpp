@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "holdfast/core/cell_mask.hpp"
 #include "holdfast/core/descriptor.hpp"
 #include "holdfast/core/id.hpp"
 
@@ -30,6 +31,8 @@ struct MapPoint {
   std::uint32_t visible_count = 1;        ///< frames in which it is predicted to be visible
   std::uint32_t found_count = 1;          ///< frames in which it was matched
   float static_log_odds = 0.0F;           ///< accumulated log-odds that the point is static; 0 = unknown
+  /// Class, an index into Map::classes(). In a run it is found at the end, by Map::classify_points().
+  std::uint8_t label = CellMask::unknown;
 
   float found_ratio() const { return static_cast<float>(found_count) / static_cast<float>(visible_count); }
 };

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <opencv2/core/mat.hpp>
 #include <optional>
@@ -19,6 +20,9 @@ struct FrameTruth {
   /// but at rest.
   std::vector<std::uint8_t> moving_objects;
 };
+
+/// Whether a pixel of a depth image holds a measurement: a positive, finite number.
+inline bool is_measured_depth(float depth) { return depth > 0.0F && depth <= std::numeric_limits<float>::max(); }
 
 /// What a camera, or a stereo pair of cameras, took at one moment. The images are shared, not copied, and must not be
 /// written to.

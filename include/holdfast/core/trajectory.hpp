@@ -24,15 +24,17 @@ Trajectory sort_and_clean(Trajectory trajectory);
 
 /// Reads a trajectory in TUM format: lines "timestamp tx ty tz qx qy qz qw", where '#' begins a comment. The result is
 /// sorted and cleaned as by sort_and_clean(). Quaternions are normalised; lines with a zero quaternion are skipped.
-/// Throws InputError (file and line) for a file that cannot be read or a line that is not a pose of exactly 8 numbers;
-/// the message names the format of another data set that it looks like.
+/// Throws InputError (file and line) for a file that cannot be read or a line that is not a pose of exactly 8 numbers
+/// separated by blanks; the message names the format of another data set that it looks like. Numbers do not show where
+/// the quaternion's real part is, so that commas, and a comment that names it first, are errors as well.
 Trajectory read_trajectory(const std::filesystem::path& file);
 
 /// How the lines of a trajectory file say a pose.
 enum class TrajectoryFormat {
   tum,    ///< "t tx ty tz qx qy qz qw", t in seconds
   kitti,  ///< 12 numbers: the upper three rows of T_world_camera, row by row; no stamp
-  euroc,  ///< "t, tx, ty, tz, qw, qx, qy, qz", t in nanoseconds; further columns (velocity, biases) are not read
+  euroc,  ///< "t, tx, ty, tz, qw, qx, qy, qz", t in nanoseconds; further columns (velocity, biases) are not read. To be
+          ///< recognised it needs its commas, or a comment that names qw first
 };
 
 /// tum, kitti or euroc.

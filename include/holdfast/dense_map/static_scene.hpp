@@ -22,6 +22,9 @@ class StaticScene {
   const KeptView& add(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse, const cv::Mat& labels,
                       const std::vector<bool>& left_out);
 
+  /// Forgets the views of keyframes that were removed with their piece of the map, and have no pose any more.
+  void forget_removed(const Map& map);
+
   const DenseMapSettings& settings() const { return settings_; }
   /// The kept views by increasing frame index.
   const std::vector<KeptView>& views() const { return views_; }

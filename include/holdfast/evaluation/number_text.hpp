@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "holdfast/core/counted.hpp"
+
 namespace holdfast {
 
 // Number formatting independent of the locale, which may use decimal commas.
@@ -56,11 +58,6 @@ inline std::string escape_markup(std::string_view text) {
     }
   }
   return escaped;
-}
-
-/// "1 frame", "2 frames": a count and a noun whose plural ends in s.
-inline std::string counted(std::size_t count, const std::string& noun) {
-  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
 }  // namespace holdfast

@@ -46,7 +46,8 @@ class RunSummary {
   double mean_inliers() const;
   /// Time from images to pose of every frame [s].
   const std::vector<double>& tracking_seconds() const { return tracking_seconds_; }
-  /// Stages in the order of their first completion.
+  /// Stages in the order of the pipeline: those of tracking, segmentation, mapping, loop closing, the dense map; of
+  /// each in the order of their first completion.
   std::vector<StageRow> stages() const;
   /// The row of the total tracking time.
   StageRow tracking() const;

@@ -9,6 +9,13 @@
 
 namespace holdfast {
 
+/// Predictions whose confidence lies in one interval.
+struct ConfidenceBin {
+  std::uint64_t pixels = 0;
+  std::uint64_t correct = 0;
+  double confidence = 0.0;  ///< sum over the pixels, each from 0 to 1
+};
+
 /// Segmentation accuracy of one class over all images. A figure without pixels or images is NaN.
 struct ClassEvaluation {
   std::string name;
@@ -18,6 +25,9 @@ struct ClassEvaluation {
   std::size_t images = 0;                               ///< images whose labels contain the class
   std::size_t detected = 0;                             ///< of these, images in which its IoU is above 0.5
   std::uint64_t boundary_union = 0, boundary_both = 0;  ///< pixels of the two boundaries
+  /// The labelled pixels that were predicted as the class, in confidence_bin_count intervals of equal width from 0 to 1
+  /// (reliability diagram); empty where predictions came without confidence.
+  std::vector<ConfidenceBin> confidence_bins;
 
   /// Intersection over union (IoU) of the pixels of all images.
   double iou() const;
@@ -29,9 +39,15 @@ struct ClassEvaluation {
   /// IoU of the boundaries over all images. The boundary of a region consists of its pixels within 2 % of the image
   /// diagonal of a pixel outside the region or of the image border (Cheng et al., CVPR 2021).
   double boundary_iou() const;
+  /// Expected calibration error of the predictions of the class: the mean over their pixels of the difference, per
+  /// interval of confidence, between mean confidence and share of correct predictions (Guo et al., On calibration of
+  /// modern neural networks, ICML 2017, equation 3).
+  double calibration_error() const;
   /// Pixels wrongly predicted as the class.
   std::uint64_t false_pixels() const { return found_pixels - both; }
 };
+
+inline constexpr std::size_t confidence_bin_count = 20;
 
 /// Agreement of predicted labels with the ground truth.
 struct SegmentationEvaluation {
@@ -54,9 +70,9 @@ class SegmentationEvaluator {
   explicit SegmentationEvaluator(std::vector<std::string> classes, const std::string& outlined = "person");
 
   /// Adds labels and predictions of one image: 8UC1 of the same size, index into the classes. Pixels with unknown
-  /// labels (255) are ignored. An unknown prediction is wrong and belongs to no class. Throws CheckError for a wrong
-  /// type, size or label.
-  void add(const cv::Mat& labels, const cv::Mat& predictions);
+  /// labels (255) are ignored. An unknown prediction is wrong and belongs to no class. `confidence` is empty or 8UC1 of
+  /// the same size, 255 = certain. Throws CheckError for a wrong type, size or label.
+  void add(const cv::Mat& labels, const cv::Mat& predictions, const cv::Mat& confidence = {});
 
   const SegmentationEvaluation& result() const { return result_; }
 

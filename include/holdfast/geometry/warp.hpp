@@ -39,17 +39,16 @@ class Warp {
   }
 
  public:
-  /// Points nearer to the second camera than `minimum_depth` [m] have no pixel there.
-  Warp(const Eigen::Isometry3d& T_to_from, const Pinhole& from, const Pinhole& to, float minimum_depth = 0.1F)
-
+  /// Points nearer to the second camera than `nearest` [m] have no pixel there.
+  Warp(const Eigen::Isometry3d& T_to_from, const Pinhole& from, const Pinhole& to, float nearest = 0.1F)
       : R_(T_to_from.linear().cast<float>()),
         t_(T_to_from.translation().cast<float>()),
         from_(from),
         to_(to),
-        minimum_depth_(minimum_depth) {}
+        minimum_depth_(nearest) {}
   /// Both views from one camera.
-  Warp(const Eigen::Isometry3d& T_to_from, const Pinhole& camera, float minimum_depth = 0.1F)
-      : Warp(T_to_from, camera, camera, minimum_depth) {}
+  Warp(const Eigen::Isometry3d& T_to_from, const Pinhole& camera, float nearest = 0.1F)
+      : Warp(T_to_from, camera, camera, nearest) {}
 
   /// The ray of a column or row of the first view.
   float ray_x(float x) const { return (x - from_.cx) / from_.fx; }

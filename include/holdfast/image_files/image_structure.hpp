@@ -25,6 +25,12 @@ struct ImageStructure {
 
   /// Description such as "640x480, 3 channels of 8 bits".
   std::string to_string() const;
+
+  /// Whether a camera may have taken the image: it has pixels, and not more than largest(). A small file can hold an
+  /// image that takes gigabytes when it is decoded.
+  bool has_camera_size() const;
+  /// "32768 pixels in width and height, and 100 million pixels".
+  static std::string largest();
 };
 
 /// Checks the structure of a complete PNG (ISO/IEC 15948: signature, chunks with their checksums, IEND) or JPEG file

@@ -14,7 +14,9 @@ struct ClosedLoop {
   KeyFrameId candidate;  ///< keyframe of the revisited place
   int inliers = 0;       ///< points of the place that are matched in the keyframe
   int points_fused = 0;
-  double way = 0.0;       ///< length of the shortest path between the two before the correction [m]
+  /// Whether the two were in different pieces of the map (KeyFrame::piece), which this loop joins.
+  bool joins_pieces = false;
+  double way = 0.0;       ///< length of the shortest path between the two before the correction [m]; 0 between pieces
   PoseChange correction;  ///< measured correction of the keyframe
   double scale = 1.0;     ///< length at the place that was 1 around the keyframe; 1 where depth is measured
   /// Measured relative pose, which maps points of the candidate's camera frame to the keyframe's.

@@ -35,7 +35,8 @@ class FullAdjustment {
   void prepare();
   /// Solves the problem without a lock; checks for a request to stop between iterations.
   void solve();
-  /// Applies the result. Acquires the surgery mutex, and the map's lock for a few milliseconds at a time.
+  /// Applies the result, and frees the copy. Acquires the surgery mutex, and the map's lock for a few milliseconds at a
+  /// time.
   FullAdjustmentSummary apply();
   /// Calls the three functions in order; for sequential mode.
   FullAdjustmentSummary run() {
@@ -51,6 +52,7 @@ class FullAdjustment {
   void cancel();
 
  private:
+  void change_map();
   void move_map();
   void remove_outliers();
 

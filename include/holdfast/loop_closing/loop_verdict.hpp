@@ -42,7 +42,8 @@ struct LoopTrial {
   int inliers = 0;        ///< points of the place that are matched in the keyframe
   int expected = 0;       ///< points of the place that are predicted to be visible in the keyframe
   int cells = 0;          ///< number of 16 cells over the image with at least two inliers
-  double way = 0.0;       ///< length of the path between the two in the map [m], with one metre per radian
+  bool joins_pieces = false;  ///< the two are in different pieces of the map
+  double way = 0.0;           ///< length of the path between the two in the map [m], with one metre per radian
   PoseChange correction;  ///< correction that the loop requires
   double scale = 1.0;     ///< length at the place that is 1 around the keyframe; 1 where depth is measured
 };

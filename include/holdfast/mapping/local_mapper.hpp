@@ -38,9 +38,9 @@ class LocalMapper {
         matcher_(matcher) {}
 
   /// Inserts a tracked frame into the map as a keyframe and creates points from its depth; with `points_wait`, refine()
-  /// creates them later. Only features that are more likely static than moving create points. Takes little time; the
-  /// caller holds the lock of the map. Adds the stage "mapping: insertion".
-  KeyFrameId insert(const Frame& frame, bool points_wait, StageTimes& times);
+  /// creates them later. Only features that are more likely static than moving create points. The keyframe belongs to
+  /// `piece` of the map. Takes little time; the caller holds the lock of the map. Adds the stage "mapping: insertion".
+  KeyFrameId insert(const Frame& frame, bool points_wait, StageTimes& times, std::uint32_t piece = 0);
 
   /// Begins a map without depth: inserts the first keyframe with points that the next one shows as well. `points` lists
   /// each position [world] and the feature of the keyframe that shows it; the ids of the points are written to `ids`,
@@ -48,6 +48,10 @@ class LocalMapper {
   /// lock of the map. Adds the stage "mapping: insertion".
   KeyFrameId begin(const Frame& frame, std::span<const std::pair<Eigen::Vector3d, std::uint32_t>> points,
                    std::vector<MapPointId>& ids, StageTimes& times);
+
+  /// Keyframes are refined when their masks have come, which is after later ones were inserted: points that these made
+  /// in the meantime, by an older mask, need a second view. Call it before the first insert().
+  void expect_masks() { expects_masks_ = true; }
 
   /// Refines the map around an inserted keyframe and returns the removed keyframes. Acquires the lock of the map for
   /// short intervals and not during the bundle adjustment. Has no effect for a removed keyframe. Adds stages "mapping:
@@ -74,7 +78,7 @@ class LocalMapper {
   void remove_weak_points(KeyFrameId keyframe);
   void triangulate_points(KeyFrameId keyframe);
   void triangulate_with(KeyFrameId keyframe, KeyFrameId neighbour);
-  /// Updates the covisibility of a new keyframe, which gets a parent in any case.
+  /// Updates the covisibility of a new keyframe, which gets a parent unless it is the first of its piece.
   void link(KeyFrameId keyframe);
   std::vector<KeyFrameId> fusion_targets(KeyFrameId keyframe) const;
   void fuse_with_neighbours(KeyFrameId keyframe);
@@ -92,6 +96,7 @@ class LocalMapper {
   Optimizer& optimizer_;
   const FeatureMatcher& matcher_;
   std::atomic<bool> stop_{false};
+  bool expects_masks_ = false;
   std::vector<MapPointId> recent_points_;
   MappingCounts counts_;
 

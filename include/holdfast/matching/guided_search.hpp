@@ -98,12 +98,20 @@ class GuidedSearch {
     const int min_octave = windows.min_octave[window], max_octave = windows.max_octave[window];
     candidates_.clear();
     Traits::near(view, x, y, radius, candidates_);
-    std::erase_if(candidates_, [&](std::uint32_t feature) {
+    // Without a branch for each feature, because no processor can predict which of them fit.
+    const bool all_usable = usable.empty();
+    std::size_t count = 0;
+    for (const std::uint32_t feature : candidates_) {
       const int octave = Traits::octave(view, feature);
-      if (octave < min_octave || octave > max_octave || (!usable.empty() && usable[feature] == 0)) return true;
-      if (gate == PositionGate::chi_square) return !agrees_with_prediction(view, feature, x, y, right_x);
-      return std::abs(Traits::right_x(view, feature) - right_x) > radius;  // false when either is NaN
-    });
+      const bool is_expected = (octave >= min_octave) & (octave <= max_octave);
+      const bool is_usable = all_usable || usable[feature] != 0;
+      const bool is_here = gate == PositionGate::chi_square
+                               ? agrees_with_prediction(view, feature, x, y, right_x)
+                               : !(std::abs(Traits::right_x(view, feature) - right_x) > radius);  // NaN: unknown
+      candidates_[count] = feature;
+      count += static_cast<std::size_t>(is_expected & is_usable & is_here);
+    }
+    candidates_.resize(count);
   }
 
   static bool is_ambiguous(const View& view, const NearestTwo<Distance>& nearest, float ratio) {

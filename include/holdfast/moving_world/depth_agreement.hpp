@@ -19,6 +19,8 @@ class DepthAgreement {
   bool choose(const Map& map, KeyFrameId reference, double timestamp);
   /// Share of the compared cells whose depth agrees with a keyframe's, 0 to 1; 0 when too few can be compared.
   double share(const Frame& frame, const Eigen::Isometry3d& T_view_world) const;
+  /// Whether cells enough can be compared, and a smaller share than `least_share` of them agrees.
+  bool disagrees(const Frame& frame, const Eigen::Isometry3d& T_view_world, double least_share) const;
   /// Share of the cells that agree among those that agree or contradict a keyframe: they measure more depth than a
   /// static surface allows. Cells that are nearer than the keyframe's surface are not counted, because a person may
   /// stand there. 0 when too few cells agree, or less than a fifth of those compared.
@@ -28,8 +30,8 @@ class DepthAgreement {
   /// Newcombe et al. 2011, equations 16 to 24) on coarse views.
   Eigen::Isometry3d align(const Frame& frame, const Eigen::Isometry3d& T_view_world) const;
   /// Estimates the colour-depth time offset as a pose on the inter-frame motion: T_view_camera. `step` is the motion
-  /// T_frame_previous.
-  Eigen::Isometry3d find_view(const Frame& frame, const Eigen::Isometry3d& T_camera_world,
+  /// T_frame_previous; `share_there` is share(frame, T_camera_world), which the caller knows.
+  Eigen::Isometry3d find_view(const Frame& frame, const Eigen::Isometry3d& T_camera_world, double share_there,
                               const Eigen::Isometry3d& step) const;
 
  private:

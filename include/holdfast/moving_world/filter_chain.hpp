@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -41,6 +42,8 @@ class FilterChain {
     evidence_.reset(frame.size(), frame.coarse.depth.size());
     evaluated_ = {};
     discounts_priors_ = false;
+    weighted_.assign(frame.size(), {});
+    has_new_cells_ = true;
   }
   /// Runs the filters of a stage in their order, once per frame; a second call has no effect.
   void evaluate(FilterStage stage, const FilterContext& context);
@@ -48,8 +51,8 @@ class FilterChain {
   /// `fallback_log_odds`. False if that changes no feature, or if the settings exclude it.
   bool discount_priors();
   bool discounts_priors() const { return discounts_priors_; }
-  /// Sets static_probability, measured_log_odds and the log-odds of the coarse cells.
-  void weight_features(const Map& map, Frame& frame) const;
+  /// Sets static_probability, measured_log_odds and the log-odds of the coarse cells of the frame that was begun.
+  void weight_features(const Map& map, Frame& frame);
   /// Adds the frame's measurements to the map points that it shows, and to those that filters measured themselves.
   void accumulate(const Frame& frame, Map& map) const;
   /// Evaluates a keyframe again by its own segmentation (context.segmentation and the mask in `frame`): the class
@@ -73,6 +76,13 @@ class FilterChain {
   StaticEvidence evidence_;
   std::array<bool, 3> evaluated_ = {};  // by FilterStage, of this frame
   bool discounts_priors_ = false;
+  /// The last weight of a feature of this frame. Most log-odds stay as they are while matches change.
+  struct Weight {
+    float log_odds = std::numeric_limits<float>::quiet_NaN();  // not computed
+    float probability = 0.0F;
+  };
+  std::vector<Weight> weighted_;
+  bool has_new_cells_ = false;  // since the frame was weighted
 };
 
 }  // namespace holdfast

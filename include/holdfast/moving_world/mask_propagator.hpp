@@ -63,8 +63,17 @@ class MaskPropagator {
   };
 
   void take_view(const Frame& frame, View& view) const;
+  void take_points(View& view) const;
   void pair_with(const View& view, const std::vector<std::uint8_t>& labels_there);
   void renew_points(const Frame& frame);
+  /// The raw pixel at the centre of a cell; its x is negative outside the image.
+  cv::Point raw_pixel(int cell) const {
+    const std::int32_t raw = sampler_.raw_pixel(cell);
+    return {raw % camera_.width, raw / camera_.width};
+  }
+  /// The wanted cell of a bucket, given by its first column and row, with most of a corner; -1 if none has enough.
+  template <class IsWanted>
+  int strongest_corner(const CoarseGrid& grid, int first_column, int first_row, const IsWanted& is_wanted) const;
   void publish();
 
   Camera camera_;
@@ -79,8 +88,7 @@ class MaskPropagator {
   bool segmented_ = false;         // at least once
   double labels_from_ = 0.0;       // time of the segmented frame [s]
   FollowedPairs pairs_;
-  std::vector<int> bucket_strength_;
-  std::vector<std::int32_t> bucket_cell_;
+  std::vector<std::uint8_t> has_point_;  // by bucket
   CellMask mask_;
 };
 

@@ -44,11 +44,20 @@ class MaskTransfer {
 
  private:
   struct Job;
+  /// A followed pair near the centre of a block.
+  struct Neighbour {
+    float distance;  // px^2
+    std::size_t pair;
+  };
   void find_movers(const CoarseGrid& grid, const FollowedPairs& pairs);
+  /// Offers a pair that ends at (x, y) to the blocks within reach.
+  void add_to_blocks(const CoarseGrid& grid, float x, float y, std::size_t pair);
+  /// Keeps the max_movers nearest pairs of a block; of equally distant ones the first.
+  static void insert_by_distance(const Neighbour& added, Neighbour* nearest, std::uint8_t& count);
   /// All cells of a view without depth.
   void transfer_by_points_alone(const Job& job, const FollowedPairs& pairs);
-  /// Copies from where ego-motion moves the cell from; false when its own motion has to be looked for.
-  bool take_by_ego_motion(const Job& job, int column, int row);
+  /// Copies a row from where ego-motion moves its cells from; sets open_columns_.
+  void take_row_by_ego_motion(const Job& job, int row);
   void take_by_object_motion(const Job& job, int column, int row);
   void take_without_depth(const Job& job, int column, int row);
   void grow(const CoarseView& to_view, CellMask& to);
@@ -65,14 +74,17 @@ class MaskTransfer {
   Camera camera_;
   bool has_depth_;
   int block_columns_ = 0, block_rows_ = 0;
-  std::vector<Mover> movers_;  // max_movers for each block
+  std::vector<Neighbour> nearest_;  // max_movers for each block
+  std::vector<Mover> movers_;       // max_movers for each block
   std::vector<std::uint8_t> mover_count_;
   /// Ego-motion-compensated state of a cell in the previous view.
   enum class CellState : std::uint8_t { same_surface, free_space, occluded, unobserved };
   std::vector<CellState> previous_state_;
   Eigen::ArrayXf rays_x_;
-  geometry::WarpedRow warped_;
-  std::vector<float> start_depth_;  // depth at which the growth into this cell began [m]
+  geometry::WarpedRow warped_;         // cells of the row in work, with their depth
+  std::vector<std::int32_t> sources_;  // cells from which ego-motion moves them
+  std::vector<int> open_columns_;      // of the row in work, where motion of an object has to be looked for
+  std::vector<float> start_depth_;     // depth at which the growth into this cell began [m]
   std::vector<std::int32_t> front_, next_front_;
 };
 

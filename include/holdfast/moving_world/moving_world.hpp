@@ -38,6 +38,7 @@ struct TrackedView {
   const SensorFrame& sensor_frame;
   const Frame* previous;  ///< the previous frame with its pose; nullptr when it has none
   Frame& frame;
+  std::uint32_t piece = 0;  ///< of the map, in which the frame is tracked
 };
 
 /// A pose of the current frame from the motion model.
@@ -78,7 +79,7 @@ class MovingWorld {
   bool evaluate(FilterStage stage, const TrackedView& view, StageTimes& times);
   bool has(FilterStage stage) const { return filters_.has(stage); }
   /// * Sets the weights of the frame's features from the evidence so far.
-  void weight_features(Frame& frame) const { filters_.weight_features(map_, frame); }
+  void weight_features(Frame& frame) { filters_.weight_features(map_, frame); }
   /// Whether weights differ: inliers among features that are probably moving then do not count for a pose.
   bool weights_features() const { return !filters_.empty(); }
   /// * If matches on moving objects biased the pose, replaces it by the motion model's prediction: the one whose depth
@@ -87,6 +88,10 @@ class MovingWorld {
   /// * Whether a pose with this number of inliers contradicts the depth of the keyframes around `reference`. The limits
   /// are stricter after a loss, see EvidenceSettings.
   bool contradicts_depth(const Frame& frame, int inliers, bool was_lost, KeyFrameId reference);
+  /// * Whether keyframes around `reference` know the depth of the frame's view, and next to nothing of it is seen from
+  /// the frame's pose: something that was not there fills the view, and features that agree with each other may be on
+  /// it. False where the keyframes know nothing.
+  bool is_view_filled(const Frame& frame, KeyFrameId reference);
   /// Lets features on masks count as well, for another attempt at this frame, if that changes anything. From then on
   /// contradicts_depth() requires the support of dense depth whatever the number of inliers.
   bool discount_priors() { return has_depth_ && filters_.discount_priors(); }

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
@@ -27,7 +30,7 @@ class PointFollower {
   /// Moves the points to a new image (8UC1) of `camera`; `frame` gives the depth.
   void advance(const cv::Mat& grey, const Frame& frame);
   /// How much of a corner the last image has at a raw pixel; 0 = nothing to follow.
-  int corner_strength(float raw_x, float raw_y) const;
+  int corner_strength(int raw_x, int raw_y) const;
   /// Adds a point at a raw pixel of the last image.
   void add(const Frame& frame, float raw_x, float raw_y, std::uint8_t label);
   /// Keeps the points for which `keep` says so.
@@ -48,6 +51,15 @@ class PointFollower {
   std::vector<std::uint8_t> found_;
   std::vector<float> error_;
 };
+
+inline int PointFollower::corner_strength(int raw_x, int raw_y) const {
+  // The finest level of the pyramid is followed by its derivatives.
+  const cv::Mat& derivatives = pyramid_[1];
+  const int column = raw_x / 2, row = raw_y / 2;
+  if (raw_x < 0 || raw_y < 0 || column >= derivatives.cols || row >= derivatives.rows) return 0;
+  const std::int16_t* gradient = derivatives.ptr<std::int16_t>(row) + std::ptrdiff_t{2} * column;
+  return std::min(std::abs(gradient[0]), std::abs(gradient[1]));
+}
 
 template <class Keep>
 void PointFollower::filter(const Keep& keep) {

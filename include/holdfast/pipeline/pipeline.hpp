@@ -24,6 +24,7 @@
 #include "holdfast/mapping/mapping_settings.hpp"
 #include "holdfast/moving_world/evidence_settings.hpp"
 #include "holdfast/moving_world/segmentation_settings.hpp"
+#include "holdfast/tracking/loss_record.hpp"
 #include "holdfast/tracking/stereo_settings.hpp"
 #include "holdfast/tracking/tracking_settings.hpp"
 
@@ -96,7 +97,8 @@ class Pipeline {
   /// Makes long adjustments in progress end after their current iteration. From any thread.
   void interrupt();
 
-  /// Poses of all tracked frames, in order, as corrected by all that came later. World frame: the first camera's, or
+  /// Poses of all tracked frames, in order, as corrected by all that came later; where the map is in pieces, those of
+  /// the piece with most frames (TrackingSettings::restart_time). World frame: the first camera's, or
   /// that of the map that was continued.
   Trajectory trajectory() const;
   /// Poses of the keyframes in the map, by time.
@@ -116,6 +118,9 @@ class Pipeline {
   Sensor sensor() const;
   /// The readout time by which features are corrected now, estimated if the settings say so [s]; 0 = not corrected.
   double readout() const;
+
+  /// What became of frames around losses; complete after finish().
+  LossRecord loss_record() const;
 
   /// Stage times of background work done since the last call; in sequential mode they are in each FrameResult.
   std::vector<StageTimes> take_background_times();

@@ -145,6 +145,7 @@ class PipelineBuilder {
   PipelineParts parts_;
   CreationContext context_;
   std::optional<Camera> source_camera_;
+  std::optional<Diagnostic> unknown_camera_;  // Configuration::unknown_camera
   bool has_camera_ = false;
   bool has_global_shutter_ = false;
   bool has_depth_ = true;

@@ -51,6 +51,7 @@ struct RunRecord {
   std::optional<std::vector<CloudPoint>> dense_map;  ///< cloud of the static scene, with dense_map.enabled
   MappingCounts mapping;
   LoopRecord loops;
+  LossRecord losses;
   std::vector<double> mask_ages;        ///< age of each segmentation mask when it was first used [s]
   std::optional<ThreadRecord> threads;  ///< in threaded mode
 

@@ -27,7 +27,8 @@ struct UnetSettings {
   int height = 0;                  ///< likewise
   /// Average the scores of the image and its mirror image; doubles the time and improves the masks slightly.
   bool mirror = false;
-  std::filesystem::path model;  ///< ONNX file with other weights; empty = the weights of the library
+  double region_confidence = 0.0;  ///< a region of people counts if a pixel of it is as certain; 0 = all count
+  std::filesystem::path model;     ///< ONNX file with other weights; empty = the weights of the library
   NetworkEngine engine = NetworkEngine::automatic;      ///< what computes the network
   NetworkPrecision precision = NetworkPrecision::fp32;  ///< bf16: with onednn, where the processor has it
   /// OpenCV: for the whole process, 0 = unchanged; oneDNN: for this network, 0 = 1.

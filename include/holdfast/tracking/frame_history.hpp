@@ -29,6 +29,9 @@ class FrameHistory {
     records_.insert(records_.end() - (records_.empty() ? 0 : 1), {timestamp, keyframe, {}});
   }
 
+  /// Adds a frame that was taken before the last tracked one and has got its pose later.
+  void add_past(const Frame& frame, KeyFrameId reference, const Map& map);
+
   /// Forgets all frames.
   void clear() { *this = FrameHistory(); }
 
@@ -46,7 +49,11 @@ class FrameHistory {
   /// Motion since the last tracked frame if the camera went on with `share` of its last velocity, also after a loss.
   Eigen::Isometry3d extrapolate(double timestamp, double share) const;
 
-  /// Poses of all tracked frames by the map as it is now.
+  /// The piece of the map with most of the tracked frames; of equal ones the oldest.
+  std::uint32_t main_piece(const Map& map) const;
+  /// How many tracked frames are not in the main piece.
+  std::size_t frames_left_out(const Map& map) const;
+  /// Poses of the tracked frames of the main piece, by the map as it is now.
   Trajectory trajectory(const Map& map) const;
 
  private:

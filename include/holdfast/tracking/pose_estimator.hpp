@@ -14,10 +14,15 @@ namespace holdfast {
 
 /// Estimates the pose of a frame from its matches with map points, weighted by the probability that each feature is
 /// static. Keeps its buffers; one thread. The caller holds the map's lock.
+///
+/// With one camera among people, established points precede new ones: a part of a person that no mask shows gets map
+/// points, too, which agree with each other and, being near, determine the translation more than the room does. Where
+/// the points that were first seen a second ago or earlier determine the pose, newer ones are outliers unless they
+/// agree with it. With depth, filters measure what moves; without filters, nothing is expected to move.
 class PoseEstimator {
  public:
   /// All must outlive the estimator.
-  PoseEstimator(Optimizer& optimizer, const MovingWorld& moving_world, const Map& map)
+  PoseEstimator(Optimizer& optimizer, MovingWorld& moving_world, const Map& map)
       : optimizer_(optimizer), moving_world_(moving_world), map_(map) {}
 
   /// Weights the frame's features and builds the motion-only problem of all its matches, which starts at the frame's
@@ -29,6 +34,8 @@ class PoseEstimator {
   /// The same with points that are not in the map beside those that are. Drops the outliers of both from the frame's
   /// matches and from `odometry`.
   int adjust(Frame& frame, std::vector<OdometryMatch>& odometry);
+  /// The same for a frame that is not the current one: its features keep the weights that they have.
+  int adjust_as_weighted(Frame& frame, std::vector<OdometryMatch>& odometry);
   /// Removes the matches that are outliers of the last problem.
   void drop_outliers(Frame& frame) const;
 
@@ -40,13 +47,18 @@ class PoseEstimator {
   double position_deviation() const { return position_deviation_; }
 
  private:
+  void collect_observations(Frame& frame);
   int solve(Frame& frame);
+  bool is_established(const MapPoint& point, double now) const;
+  void reject_new_points(const Frame& frame);
 
   Optimizer& optimizer_;
-  const MovingWorld& moving_world_;
+  MovingWorld& moving_world_;
   const Map& map_;
   PoseProblem problem_;
   std::vector<std::uint32_t> features_;  // of the problem's observations
+  PoseProblem established_;              // the observations of established points
+  std::vector<std::uint8_t> rejected_;   // by the problem's observations: new points that contradict established ones
   double position_deviation_ = 0.0;
 };
 

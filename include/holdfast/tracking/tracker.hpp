@@ -13,11 +13,13 @@
 #include "holdfast/interfaces/loop_detector.hpp"
 #include "holdfast/interfaces/optimizer.hpp"
 #include "holdfast/moving_world/moving_world.hpp"
+#include "holdfast/tracking/backward_tracker.hpp"
 #include "holdfast/tracking/feature_flow.hpp"
 #include "holdfast/tracking/frame_builder.hpp"
 #include "holdfast/tracking/frame_history.hpp"
 #include "holdfast/tracking/frame_matcher.hpp"
 #include "holdfast/tracking/keyframe_policy.hpp"
+#include "holdfast/tracking/loss_record.hpp"
 #include "holdfast/tracking/mono_initialiser.hpp"
 #include "holdfast/tracking/pose_estimator.hpp"
 #include "holdfast/tracking/relocaliser.hpp"
@@ -65,6 +67,16 @@ class Tracker {
   /// frame() to local mapping and call keyframe_added() before the next frame.
   void locate(const SensorFrame& sensor_frame, FrameResult& result);
 
+  /// Whether the frame just located begins a new piece of the map, because the camera was lost.
+  bool begins_piece() const { return begins_piece_; }
+  /// Whether the camera was lost a moment ago: what fills its view may be what it was lost by.
+  bool was_just_found() const;
+  /// Whether a mask of the frame just located is needed, although it has no pose: what is known to be static finds the
+  /// camera again, or begins a new piece.
+  bool needs_mask() const;
+  /// The piece of the map that the camera is tracked in; the caller holds the lock of the map.
+  std::uint32_t piece() const { return map_.piece_of(reference_keyframe_).value_or(0); }
+
   /// The views that begin the map of one camera, when the frame just located did so: hand the reference to local
   /// mapping, call map_begun(), and go on with frame() as with any keyframe. Otherwise nullptr.
   const TwoViewStart* two_view_start() const { return begins_with_two_views_ ? &mono_->start() : nullptr; }
@@ -78,6 +90,13 @@ class Tracker {
   /// As if no frame had been tracked. The map is empty; the caller holds its lock.
   void forget_map();
 
+  /// Whether the mask that arrived first shows that the map began on what moves: remove all of it, call forget_map(),
+  /// and the next frame begins another one, from which those before it are tracked backwards. The caller holds the lock
+  /// of the map.
+  bool is_start_refuted();
+  /// What became of frames around losses until now; the caller holds the lock of the map.
+  LossRecord loss_record() const;
+
   /// The frame last tracked, with features, matches and pose.
   const Frame& frame() const { return current_; }
   /// Takes over the matches and the pose of the keyframe that the tracked frame became, as local mapping left them; the
@@ -87,6 +106,8 @@ class Tracker {
   /// What is known of the rolling shutter by now.
   const RollingShutter& rolling_shutter() const { return shutter_; }
 
+  /// The piece of the map with most of the tracked frames; the caller holds the lock of the map.
+  std::uint32_t main_piece() const { return history_.main_piece(map_); }
   /// Every tracked frame's pose by the map as it is now; the caller holds the lock of the map. Frames follow the
   /// keyframes that they were tracked against.
   Trajectory trajectory() const { return history_.trajectory(map_); }
@@ -102,6 +123,8 @@ class Tracker {
   /// Whether the camera was lost so soon after the map began that waiting for a known view is not worth it: with a
   /// first keyframe on people, or a wrong first mask, next to nothing of the map may be left.
   bool was_lost_at_start() const;
+  /// Whether the camera has been lost for so long that it should go on in a new piece of the map.
+  bool should_begin_piece();
   /// T_camera_world of a camera that goes on from the previous frame with its last velocity.
   Eigen::Isometry3d predicted_pose() const;
   /// T_camera_world where the motion model puts a lost camera at a time [s]; after the coasting time, where it was last
@@ -109,6 +132,10 @@ class Tracker {
   Eigen::Isometry3d coasting_pose(double timestamp) const;
   /// Makes the current frame the first keyframe of what comes, at the given pose, if enough of its features have depth.
   bool start_map(const Eigen::Isometry3d& T_camera_world, FrameResult& result);
+  /// Begins the map with this frame, without what a mask shows to be movable if one is there.
+  void start_with_depth(const SensorFrame& sensor_frame, FrameResult& result);
+  /// Weights the features of the current frame; whether enough static ones have depth for a map to begin with them.
+  bool can_begin_among_people();
   /// The same for one camera, whose map begins with two views.
   void start_with_two_views(const SensorFrame& sensor_frame, FrameResult& result);
   /// Whether the map of one camera began with people, or with points that do not determine its shape: few new points
@@ -116,6 +143,8 @@ class Tracker {
   bool is_weak_start(const FrameResult& result);
   void begin_map(FrameResult& result);
   bool find_pose(TrackedView& view, FrameResult& result);
+  /// Looks for a camera that is tracked in a new piece of the map where it was lost, and goes on there if it succeeds.
+  void return_from_piece(TrackedView& view, FrameResult& result);
   /// How many times the extractor's features are wanted, after the share of static ones in the previous frame.
   double feature_budget() const;
   /// Gives the current frame the features of an earlier one that flow finds in its image. False if it does not, and the
@@ -127,6 +156,11 @@ class Tracker {
   void find_features(const SensorFrame& sensor_frame, FrameResult& result);
   /// The pose, on which few inliers agree, is far from where constant velocity takes the camera.
   bool contradicts_motion(int inliers) const;
+  /// The pose is `factor` times farther from constant velocity than jump_distance or jump_angle.
+  bool jumps(double factor) const;
+  /// Whether the map of one camera explains next to nothing of what counts as static in the frame just adjusted, as
+  /// where a person whom no mask shows fills the view. New points would fit any scale that such a pose goes on with.
+  bool lacks_support(int inliers, int static_features) const;
   /// The pose of the current frame contradicts inertia (unless the camera was lost), is not determined well enough by
   /// its inliers, or contradicts the depth of keyframes.
   bool is_refuted(int inliers, bool was_lost);
@@ -156,6 +190,7 @@ class Tracker {
   FrameMatcher matcher_;
   PoseEstimator estimator_;
   Relocaliser relocaliser_;
+  BackwardTracker backwards_;
   KeyframePolicy keyframe_policy_;
   std::optional<MonoInitialiser> mono_;
   std::optional<FeatureFlow> flow_;
@@ -164,6 +199,9 @@ class Tracker {
   State state_;
   bool localises_only_ = false;
   bool begins_with_two_views_ = false;
+  bool begins_piece_ = false;
+  bool start_is_judged_ = false;
+  std::size_t pieces_ = 0;
   bool gave_map_up_ = false;
   int weak_starts_ = 0;
   double start_support_ = 0.0;  // sum over the frames that judge the start
@@ -172,9 +210,12 @@ class Tracker {
   std::vector<OdometryMatch> odometry_;
   cv::Mat ignored_;          // pixels of the current frame in which no features should be extracted
   int followed_frames_ = 0;  // in a row, up to the current frame, that have features of an earlier one
+  /// The last and the reference keyframe when the camera was lost before it began a piece; invalid if it did not.
+  KeyFrameId left_keyframe_, left_reference_;
   KeyFrameId reference_keyframe_;
   KeyFrameId last_keyframe_;
-  double last_keyframe_time_ = 0.0;  // [s]
+  double last_keyframe_time_ = 0.0;   // [s]
+  std::optional<double> found_time_;  // when the camera was found after its last loss [s]
   // [s], of the frame that began the map, or began it anew; a loaded map began long ago
   double map_start_time_ = -std::numeric_limits<double>::infinity();
   double last_feature_time_ = 0.0;     // [s], of the last pose that matches with the map determined

@@ -56,7 +56,7 @@ struct TrackingSettings {
   double descriptor_ratio = 0.8;  ///< best to second best distance, after Lowe 2004
   double strict_distance = 0.0;   ///< of descriptors, of a match without any prediction; 0 = the extractor's
   double loose_distance = 0.0;    ///< of descriptors, of a match near its prediction; 0 = the extractor's
-  double crowd_features = 1.0;    ///< factor on the number of features where people leave few of them, at most; 1 = off
+  double crowd_features = 2.0;    ///< factor on the number of features where people leave few of them, at most; 1 = off
   double crowd_share = 0.8;       ///< share of static features below which there are more of them
   int minimum_inliers = 30;       ///< map points that must agree with a pose
   double maximum_deviation = 0.02;  ///< standard deviation of the position [m]
@@ -82,6 +82,9 @@ struct TrackingSettings {
   int keyframe_close_possible = 70;   ///< features
 
   // Relocalisation.
+  double restart_time = 0.0;                              ///< [s]; a camera lost for longer begins a new piece of map
+  int backward_frames = 60;                               ///< kept, of those without a pose
+  double start_share = 0.0;                               ///< of the first keyframe's features
   double young_map_time = 1.0;                            ///< [s]; a map lost so soon after its start begins anew
   double coasting_time = 1.0;                             ///< [s]
   std::vector<double> coasting_shares = {1.0, 0.5, 0.0};  ///< of the last velocity: it goes on, slows down, or stops

@@ -6,6 +6,7 @@
 
 #include "holdfast/config/missing_file.hpp"
 #include "holdfast/config/parameter_reader.hpp"
+#include "holdfast/core/counted.hpp"
 #include "holdfast/plugin/did_you_mean.hpp"
 #include "scene_records.hpp"
 
@@ -82,7 +83,7 @@ class SceneReader {
   template <int dimension>
   Eigen::Matrix<double, dimension, 1> place(const std::vector<double>& numbers, const ConfigurationNode& node) {
     if (numbers.size() == dimension) return Eigen::Map<const Eigen::Matrix<double, dimension, 1>>(numbers.data());
-    complain(node.location, "found " + std::to_string(numbers.size()) + " numbers; expected a place of " +
+    complain(node.location, "found " + counted(numbers.size(), "number") + "; expected a place of " +
                                 std::to_string(dimension) +
                                 (dimension == 2 ? ": [x, y] in metres" : ": [x, y, z] in metres"));
     return Eigen::Matrix<double, dimension, 1>::Zero();
@@ -127,7 +128,7 @@ class SceneReader {
       complain(node.location, "the camera path waypoints needs 'along: [[x, y, z], ...]'");
     else if (plan.path == PathKind::waypoints && !record.along.empty() && record.along.size() < least)
       complain(node.find("along")->location,
-               "found " + std::to_string(record.along.size()) + " places; expected at least " + std::to_string(least));
+               "found " + counted(record.along.size(), "place") + "; expected at least " + std::to_string(least));
     // A path from the command line leaves the waypoints of the file unused.
     const ConfigurationNode* path = node.find("path");
     const bool overridden = path != nullptr && path->location.file != node.location.file;

@@ -1,4 +1,4 @@
-// Points and lines by WebGL 2.
+// Points and lines by WebGL 2, and colours.
 
 const pointShader = `#version 300 es
 precision highp float;
@@ -79,8 +79,13 @@ function rampColour(share) {
   const [low, middle, high] = ['--static', '--doubtful', '--moving'].map((name) => cssColour(name));
   return share < 0.5 ? mix(low, middle, 2 * share) : mix(middle, high, 2 * share - 1);
 }
-const objectColours = ['--series-4', '--series-3', '--series-5', '--series-0', '--series-1'];
-const objectColour = (id, alpha = 1) => cssColour(objectColours[id % objectColours.length], alpha);
+/// Of a moving object: each number is as far on the circle of hues as the golden ratio says, so that those near each other
+/// differ and none comes twice.
+function objectColour(id, alpha = 1) {
+  const hue = (200 + 137.508 * id) % 360;
+  const channel = (n) => { const k = (n + hue / 30) % 12; return 0.52 - 0.38 * Math.max(-1, Math.min(k - 3, 9 - k, 1)); };
+  return [...mix([channel(0), channel(8), channel(4)], cssColour('--text'), 0.15), alpha];
+}
 
 /// Colours of classes, the same on the map as over the picture. Label 0 is the background.
 const classTints = [[30, 120, 255], [200, 0, 200], [0, 200, 200], [255, 140, 0], [120, 220, 120], [150, 110, 255]];
@@ -110,12 +115,27 @@ class Lines {
   }
 }
 
+/// What is drawn as points: {target, slots, kind, colours, near, least}; the sizes as shares of the height and in pixels.
+function pointLayers(renderer, shown) {
+  const red = cssColour('--moving'), layers = [];
+  if (shown.cloud !== false && renderer.cloudBuffer.count)
+    layers.push({target: renderer.cloudBuffer, kind: 2, colours: Array(8).fill(red), near: 0.012, least: 1.6});
+  if (shown.points !== false && renderer.pointBuffer.count) {
+    const evidence = [cssColour('--static'), cssColour('--unmeasured'), cssColour('--doubtful'), red];
+    layers.push({target: renderer.pointBuffer, kind: renderer.byClass ? 1 : 0, colours: renderer.byClass ? classColours() : [...evidence, ...evidence],
+                 near: 0.014, least: 2.2});
+    if (renderer.seen && shown.seen !== false && !renderer.byClass)
+      layers.push({target: renderer.pointBuffer, slots: renderer.seenSlots, kind: 0, colours: Array(8).fill(cssColour('--accent')), near: 0.02, least: 3});
+  }
+  if (shown.moving !== false && renderer.movingBuffer.count)
+    layers.push({target: renderer.movingBuffer, kind: 0, colours: Array(8).fill(red), near: 0.02, least: 2.4});
+  return layers;
+}
+
+/// Draws by a graphics card.
 class Renderer {
-  constructor(canvas) {
-    this.canvas = canvas;
-    this.gl = canvas.getContext('webgl2', {antialias: false, alpha: false});
-    if (!this.gl) return;
-    const gl = this.gl;
+  constructor(canvas, gl) {
+    Object.assign(this, {canvas, gl, isSoft: false});
     this.points = this.program(pointShader, pointFragment, ['matrix', 'kind', 'colours', 'size']);
     this.lines = this.program(lineShader, lineFragment, ['matrix', 'screen', 'width']);
     this.pointBuffer = this.pointArray();
@@ -126,15 +146,6 @@ class Renderer {
     this.sets = new Map();
     this.cornerBuffer = gl.createBuffer();
     this.corners = 0;
-    this.isSoft = drawsBySoftware(gl);
-    if (this.isSoft) {
-      this.image = this.program(imageShader, imageFragment, []);
-      this.pointImage = new PointImage();
-      this.texture = gl.createTexture();
-      gl.bindTexture(gl.TEXTURE_2D, this.texture);
-      for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, filter, gl.NEAREST);
-      for (const wrap of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, wrap, gl.CLAMP_TO_EDGE);
-    }
     gl.enable(gl.BLEND);
     gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
     gl.enable(gl.DEPTH_TEST);
@@ -164,9 +175,7 @@ class Renderer {
   /// Takes over rows of points; only those of `range` have changed, if the buffer has room.
   setPoints(target, data, count, range = null) {
     const gl = this.gl;
-    target.data = data;
     target.count = count;
-    if (this.isSoft) return;
     gl.bindBuffer(gl.ARRAY_BUFFER, target.buffer);
     if (target.capacity < data.length || !range) {
       gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
@@ -179,7 +188,6 @@ class Renderer {
     const gl = this.gl;
     this.seenSlots = slots;
     this.seen = slots.length;
-    if (this.isSoft) return;
     gl.bindVertexArray(this.pointBuffer.array);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.seenBuffer);
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, slots, gl.DYNAMIC_DRAW);
@@ -227,14 +235,13 @@ class Renderer {
   /// `step`: every so many points are drawn.
   draw(view, shown, step = 1) {
     const gl = this.gl, canvas = this.canvas;
-    const ratio = this.isSoft ? 1 : Math.min(2, devicePixelRatio || 1);
+    const ratio = Math.min(2, devicePixelRatio || 1);
     const width = Math.max(1, Math.round(canvas.clientWidth * ratio)), height = Math.max(1, Math.round(canvas.clientHeight * ratio));
     if (canvas.width !== width || canvas.height !== height) { canvas.width = width; canvas.height = height; }
     gl.viewport(0, 0, width, height);
     gl.clearColor(...cssColour('--map-ground'));
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     const matrix = view.matrix(width / height);
-    if (this.isSoft) this.drawPointImage(matrix, shown, step, width, height);
     gl.useProgram(this.lines.program);
     gl.uniformMatrix4fv(this.lines.matrix, false, matrix);
     gl.uniform2f(this.lines.screen, width, height);
@@ -245,7 +252,7 @@ class Renderer {
       if (name === 'camera') continue;  // drawn last, over everything
       gl.drawElements(gl.TRIANGLES, 6 * set.count, gl.UNSIGNED_INT, 0);
     }
-    if (!this.isSoft) this.drawPoints(matrix, shown, step, height, ratio);
+    this.drawPoints(matrix, shown, step, height, ratio);
     const camera = this.sets.get('camera');
     if (camera?.count) {
       gl.useProgram(this.lines.program);
@@ -258,28 +265,18 @@ class Renderer {
     gl.bindVertexArray(null);
   }
   /// Waits until everything is drawn: only reading a pixel does.
-  finish() { this.gl.readPixels(0, 0, 1, 1, this.gl.RGBA, this.gl.UNSIGNED_BYTE, new Uint8Array(4)); }
-  /// What is drawn as points: {target, slots, kind, colours, near, least}; the sizes as shares of the height and in pixels.
-  pointLayers(shown) {
-    const red = cssColour('--moving'), layers = [];
-    if (shown.cloud !== false && this.cloudBuffer.count)
-      layers.push({target: this.cloudBuffer, kind: 2, colours: Array(8).fill(red), near: 0.012, least: 1.6});
-    if (shown.points !== false && this.pointBuffer.count) {
-      const evidence = [cssColour('--static'), cssColour('--unmeasured'), cssColour('--doubtful'), red];
-      layers.push({target: this.pointBuffer, kind: this.byClass ? 1 : 0, colours: this.byClass ? classColours() : [...evidence, ...evidence],
-                   near: 0.014, least: 2.2});
-      if (this.seen && shown.seen !== false && !this.byClass)
-        layers.push({target: this.pointBuffer, slots: this.seenSlots, kind: 0, colours: Array(8).fill(cssColour('--accent')), near: 0.02, least: 3});
-    }
-    if (shown.moving !== false && this.movingBuffer.count)
-      layers.push({target: this.movingBuffer, kind: 0, colours: Array(8).fill(red), near: 0.02, least: 2.4});
-    return layers;
+  finish() { this.pixel(0, 0); }
+  /// Red, green, blue and 255 of a pixel; the first row is the highest.
+  pixel(x, y) {
+    const pixel = new Uint8Array(4);
+    this.gl.readPixels(x, this.canvas.height - 1 - y, 1, 1, this.gl.RGBA, this.gl.UNSIGNED_BYTE, pixel);
+    return [...pixel];
   }
   drawPoints(matrix, shown, step, height, ratio) {
     const gl = this.gl;
     gl.useProgram(this.points.program);
     gl.uniformMatrix4fv(this.points.matrix, false, matrix);
-    for (const {target, slots, kind, colours, near, least} of this.pointLayers(shown)) {
+    for (const {target, slots, kind, colours, near, least} of pointLayers(this, shown)) {
       gl.bindVertexArray(target.array);
       gl.uniform1i(this.points.kind, kind);
       gl.uniform4fv(this.points.colours, new Float32Array(colours.flat()));
@@ -293,28 +290,23 @@ class Renderer {
       }
     }
   }
-  /// The points as an image, below the lines.
-  drawPointImage(matrix, shown, step, width, height) {
-    const gl = this.gl, image = this.pointImage, isNew = image.width !== width || image.height !== height;
-    image.begin(width, height, cssColour('--map-ground'));
-    for (const {target, slots, kind, colours, near, least} of this.pointLayers(shown))
-      image.draw(target.data, target.count, matrix, kind, colours, near * height, least, {slots, step: slots ? 1 : step});
-    const bytes = new Uint8Array(image.pixels.buffer);
-    gl.bindTexture(gl.TEXTURE_2D, this.texture);
-    if (isNew) gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, width, height, 0, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
-    else gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
-    gl.useProgram(this.image.program);
-    gl.disable(gl.DEPTH_TEST);
-    gl.disable(gl.BLEND);
-    gl.bindVertexArray(null);
-    gl.drawArrays(gl.TRIANGLES, 0, 3);
-    gl.enable(gl.BLEND);
-    gl.enable(gl.DEPTH_TEST);
-  }
   setStep({buffer}, step) {
     const gl = this.gl;
     gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
     gl.vertexAttribPointer(0, 4, gl.FLOAT, false, 4 * pointWidth * step, 0);
     gl.vertexAttribPointer(1, 1, gl.FLOAT, false, 4 * pointWidth * step, 16);
   }
+}
+
+/// What draws on a canvas: a graphics card where there is one, else the processor. The fragment #webgl of the address asks for
+/// WebGL in any case.
+function makeRenderer(canvas) {
+  const isForced = location.hash === '#webgl';
+  const gl = canvas.getContext('webgl2', {antialias: false, alpha: false, failIfMajorPerformanceCaveat: !isForced});
+  if (gl && (isForced || !drawsBySoftware(gl))) return new Renderer(canvas, gl);
+  if (!gl) return new SoftRenderer(canvas);
+  gl.getExtension('WEBGL_lose_context')?.loseContext();
+  const other = canvas.cloneNode();  // a canvas has one kind of context for ever
+  canvas.replaceWith(other);
+  return new SoftRenderer(other);
 }

@@ -9,20 +9,16 @@ let fitted = null;   // middle and radius of the map
 let moved = true;    // the map has to be drawn again
 let loopFlash = 0;   // until when a loop that was just closed is shown
 
-const canvas = byId('map');
 const view = new PointOfView();
-const renderer = new Renderer(canvas);
-const pace = new Pace(Boolean(renderer.isSoft));
+const renderer = makeRenderer(byId('map'));
+const canvas = renderer.canvas;
+const pace = new Pace(renderer.isSoft);
 const picturePanel = new PicturePanel(), timesPanel = new TimesPanel();
 const shown = {};
 const layers = {points: 'map points', cloud: 'dense cloud', seen: 'points in view', moving: 'moving features', path: 'path', truth: 'true path',
                 keyframes: 'keyframes', covisibility: 'covisibility', loops: 'loops', objects: 'objects and trails', grid: 'grid'};
 
 const layerOf = (name) => byId('layers').querySelector(`[data-layer=${name}]`);
-if (!renderer.gl) {
-  byId('notice').textContent = 'This browser has no WebGL 2, so the map cannot be drawn; the rest of the page works.';
-  byId('notice').hidden = false;
-}
 for (const [name, label] of Object.entries(layers)) {
   shown[name] = true;
   byId('layers').append(element('label', {'data-layer': name}, element('input', {
@@ -59,11 +55,13 @@ const connection = new Connection((message, isFirst) => {
   connected = isConnected;
   pace.rate = 30;  // of a new connection
   model.changed.add('state');
+  askForRate();
 });
 for (const kind of ['pointerdown', 'wheel', 'keydown', 'input', 'change'])
   document.addEventListener(kind, () => pace.touch(), {capture: true, passive: true});
 document.addEventListener('pointermove', (event) => { if (event.buttons) pace.touch(); }, {capture: true, passive: true});
 document.addEventListener('themechange', () => pace.touch());
+document.addEventListener('visibilitychange', () => { askForRate(); pace.touch(); });
 /// Has the program send as many messages as can be shown.
 function askForRate() {
   if (!connected) return;
@@ -256,6 +254,7 @@ function namedClasses() {
   if (model.seenClasses.has(unknownClass)) names.push(['class unknown', 'var(--unmeasured)']);
   return names;
 }
+let shownLegend = '';
 function showLegend() {
   const hasClasses = (model.head.classes?.length ?? 0) > 0;
   byId('colourings').hidden = !hasClasses;
@@ -263,6 +262,9 @@ function showLegend() {
   const kinds = byClass ? namedClasses()
       : [['static', '--static'], ['doubtful', '--doubtful'], ['moving', '--moving'], ['not measured', '--unmeasured'],
          ...(model.state.finished ? [] : [['in view', '--accent']])].map(([name, colour]) => [name, `var(${colour})`]);
+  const legend = JSON.stringify([kinds, errorMost, Boolean(model.truth), model.loops.length > 0]);
+  if (legend === shownLegend) return;
+  shownLegend = legend;
   const entries = kinds.map(([name, colour]) => element('li', {}, element('i', {colour}), name));
   if (errorMost !== null)
     entries.push(element('li', {}, element('i', {class: 'line', colour: 'linear-gradient(90deg, var(--static), var(--doubtful), var(--moving))'}), `path by error, to ${fixed(errorMost * 1e3, 1)} mm`));
@@ -279,28 +281,29 @@ function showClock() {
 }
 
 let nextFit = 0, nextTimes = 0, nextObjects = 0, lastAim = 0;
-let framesWait = false, objectsWait = false;  // for their next turn: what is drawn seldom is not left out at the end
+let fitWaits = null, framesWait = false, objectsWait = false;  // for their next turn: what is drawn seldom is not left out at the end
 const frameTimes = [];
 /// Asks for the next turn: with the next picture of the screen, or, when nothing has changed for a while, when something
 /// does. A browser without a graphics card works for every picture that it is asked for, even if nothing is drawn.
 let quietTurns = 0;
 function awaitTurn() {
   askForRate();
-  // In a run that goes on; one that has ended needs no processor.
-  if (pace.isCalm() && !model.state.finished && !playing) {
+  const wait = (milliseconds, then) => {
     let timer = null;
     const go = () => {
       clearTimeout(timer);
       pace.wake = () => {};
-      requestAnimationFrame(refresh);
+      then();
     };
     pace.wake = go;
-    timer = setTimeout(go, Math.max(0, pace.last + pace.pause() - performance.now()));
-    return;
-  }
+    timer = setTimeout(go, Math.max(0, milliseconds));
+  };
+  // In a run that goes on; one that has ended needs no processor.
+  if (pace.isCalm() && !model.state.finished && !playing)
+    return wait(pace.last + pace.pause() - performance.now(), () => requestAnimationFrame(refresh));
   const isAsked = quietTurns < 30 || model.changed.size > 0 || moved || playing || framesWait || objectsWait || loopFlash > 0 || detail.isReduced;
   if (isAsked) requestAnimationFrame(refresh);
-  else setTimeout(awaitTurn, 40);
+  else wait(pace.isCalm() ? 200 : 40, awaitTurn);
 }
 /// Takes over what has changed since the last picture of the screen, and draws it.
 function refresh(time) {
@@ -316,43 +319,42 @@ function update(time) {
   play(time);
   const changed = model.changed;
   const has = (...names) => changed.has('all') || names.some((name) => changed.has(name));
-  if (renderer.gl) {
-    if (has('points')) {
-      const range = model.changedPoints ?? null;
-      renderer.setPoints(renderer.pointBuffer, model.points.data, model.points.count, changed.has('all') ? null : range);
-      model.changedPoints = null;
-    }
-    if (has('picture', 'run') && model.picture) {
-      renderer.setSeen(model.state.finished ? new Uint32Array() : model.seen.filter((slot) => slot < model.points.count));
-      const count = model.movingFeatures.length / 3, rows = new Float32Array(pointWidth * count);
-      for (let i = 0; i < count; ++i) rows.set(model.movingFeatures.subarray(3 * i, 3 * i + 3), pointWidth * i);
-      renderer.setPoints(renderer.movingBuffer, rows, model.state.finished ? 0 : count);
-    }
-    if (has('cloud')) {
-      renderer.setPoints(renderer.cloudBuffer, model.cloud.data, model.cloud.count, changed.has('all') ? null : model.changedCloud ?? null);
-      model.changedCloud = null;
-      layerOf('cloud').hidden = model.cloud.count === 0;
-    }
-    if (has('points', 'path', 'keyframes') && time > nextFit) {
-      fitted = fit() ?? fitted;
-      buildGrid();
-      nextFit = time + 700;
-    } else if (has('points', 'path') && time <= nextFit) {
-      setTimeout(() => model.changed.add('keyframes'), 750);
-    }
-    if (has('path', 'run', 'head')) buildPath();
-    if (has('keyframes', 'loop', 'head', 'run')) buildKeyframes();
-    if (loopFlash && performance.now() > loopFlash) { loopFlash = 0; buildKeyframes(); moved = true; }
-    objectsWait ||= has('objects', 'state');
-    if (objectsWait && time > nextObjects) { buildObjects(); nextObjects = time + 60; objectsWait = false; moved = true; }
-    if (has('state', 'path', 'now', 'head')) buildCamera();
+  if (has('points')) {
+    const range = model.changedPoints ?? null;
+    renderer.setPoints(renderer.pointBuffer, model.points.data, model.points.count, changed.has('all') ? null : range);
+    model.changedPoints = null;
   }
+  if (has('picture', 'run') && model.picture) {
+    renderer.setSeen(model.state.finished ? new Uint32Array() : model.seen.filter((slot) => slot < model.points.count));
+    const count = model.movingFeatures.length / 3, rows = new Float32Array(pointWidth * count);
+    for (let i = 0; i < count; ++i) rows.set(model.movingFeatures.subarray(3 * i, 3 * i + 3), pointWidth * i);
+    renderer.setPoints(renderer.movingBuffer, rows, model.state.finished ? 0 : count);
+  }
+  if (has('cloud')) {
+    renderer.setPoints(renderer.cloudBuffer, model.cloud.data, model.cloud.count, changed.has('all') ? null : model.changedCloud ?? null);
+    model.changedCloud = null;
+    layerOf('cloud').hidden = model.cloud.count === 0;
+  }
+  if (has('points', 'path', 'keyframes') && time > nextFit) {
+    fitted = fit() ?? fitted;
+    buildGrid();
+    nextFit = time + (pace.isCalm() ? 2000 : 700);
+  } else if (has('points', 'path') && time <= nextFit) {
+    fitWaits ??= setTimeout(() => { fitWaits = null; model.changed.add('keyframes'); }, nextFit - time + 50);
+  }
+  if (has('path', 'run', 'head')) buildPath();
+  if (has('keyframes', 'loop', 'head', 'run')) buildKeyframes();
+  if (loopFlash && performance.now() > loopFlash) { loopFlash = 0; buildKeyframes(); moved = true; }
+  objectsWait ||= has('objects', 'state');
+  if (objectsWait && time > nextObjects) { buildObjects(); nextObjects = time + 60; objectsWait = false; moved = true; }
+  if (has('state', 'path', 'now', 'head')) buildCamera();
   if (has('head')) {
     byId('title').textContent = model.head.title || 'Holdfast';
     document.title = `${model.head.title || 'run'} – Holdfast`;
   }
   // Panels are shown before they are drawn: what is hidden has no size.
-  if (has('run', 'picture', 'frames')) showRun(model);
+  if (has('run')) showRun(model);
+  if (has('run', 'picture', 'frames')) showPanels(model);
   if (has('state', 'keyframes', 'path', 'run', 'frames')) showControls();
   if (has('picture') && model.picture) picturePanel.show(model.picture, model.head);
   framesWait ||= has('frames');
@@ -360,7 +362,7 @@ function update(time) {
     framesWait = false;
     timesPanel.show(model);
     drawStrip(model);
-    nextTimes = time + 150;
+    nextTimes = time + pace.panelPause();
   }
   if (has('state', 'keyframes', 'path', 'run')) showState(model, connected);
   if (has('objects')) showObjects(model);
@@ -377,7 +379,6 @@ function update(time) {
   if (view.mode === 'follow' && model.pose(now)) aims = view.approach([...model.pose(now).slice(0, 3)], view.isFree ? null : Math.min(1.6, fitted?.radius ?? 1.6), share);
   else if (!view.isFree && fitted) aims = view.approach(fitted.middle, fitted.radius, share);
   quietTurns = isBusy || moved || aims ? 0 : quietTurns + 1;
-  if (!renderer.gl) return;
   if (isBusy || moved || aims) {
     chooseDetail(time);
     renderer.draw(view, shown, detail.step);
@@ -422,6 +423,10 @@ globalThis.holdfastViewer = {
   send: (text) => connection.send(text),
   view,
   draw: () => renderer.draw(view, shown),
+  size: () => [canvas.width, canvas.height],
+  drawsBySoftware: () => renderer.isSoft,
+  pixel: (x, y) => { renderer.draw(view, shown); return renderer.pixel(x, y); },
+  objectColour: (id) => objectColour(id),
   framesPerSecond: () => 1000 * (frameTimes.length - 1) / (frameTimes.at(-1) - frameTimes[0]),
   spin: (on) => { clearInterval(view.spinning); frameTimes.length = 0; if (on) view.spinning = setInterval(() => { view.rotate(0.01, 0); moved = true; pace.touch(); }, 10); },
   pace: () => ({calm: pace.isCalm(), pause: pace.pause(), cost: pace.cost, rate: pace.rate}),

@@ -3,6 +3,10 @@
 const byId = (id) => document.getElementById(id);
 const fixed = (value, decimals) => (Number.isFinite(value) ? value.toFixed(decimals).replace('-', '−') : '–');
 const grouped = (value) => String(value).replace(/\B(?=(\d{3})+$)/g, '\u202f');
+/// The same text again would be laid out again.
+function setText(element, text) {
+  if (element.textContent !== text) element.textContent = text;
+}
 /// An element with children; texts become text nodes, so nothing in a name is ever markup.
 function element(tag, attributes = {}, ...children) {
   const made = document.createElement(tag);
@@ -23,14 +27,19 @@ const toText = ([r, g, b]) => `rgb(${Math.round(255 * r)}, ${Math.round(255 * g)
 
 /// Where a canvas is drawn. Without a graphics card its imitation takes ten times as long for lines and circles as the
 /// browser's own drawing, which a browser uses when it is told that pixels will be read.
-const contextOf = (canvas) => canvas.getContext('2d', {willReadFrequently: Boolean(renderer.isSoft)});
+const contextOf = (canvas) => canvas.getContext('2d', {willReadFrequently: renderer.isSoft});
+
+/// A new size is new memory, also where it is the old one.
+function resize(canvas, width, height) {
+  if (canvas.width !== width) canvas.width = width;
+  if (canvas.height !== height) canvas.height = height;
+}
 
 /// A canvas of the size that it has on the screen, in its pixels: [context, width, height], or nothing if it is hidden.
 function prepared(canvas) {
   const ratio = Math.min(2, devicePixelRatio || 1), width = canvas.clientWidth, height = canvas.clientHeight;
   if (!width || !height) return null;
-  canvas.width = Math.round(width * ratio);
-  canvas.height = Math.round(height * ratio);
+  resize(canvas, Math.round(width * ratio), Math.round(height * ratio));
   const context = contextOf(canvas);
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
   context.clearRect(0, 0, width, height);
@@ -61,12 +70,16 @@ function showState(model, connected) {
     kind = state.finished ? '' : 'bad';
   }
   byId('state').title = connected === false ? 'The program has ended, or was started again and shows a new address. What was received stays here.' : '';
-  byId('state').textContent = text;
+  setText(byId('state'), text);
   byId('state').className = `state ${kind}`;
   const counts = [['frame', state.frame], ['keyframes', state.keyframes], ['points', state.points],
                   ['inliers', state.finished ? undefined : state.inliers], ['loops', model.loops.length / 2]];
-  byId('counts').replaceChildren(...counts.filter(([, value]) => value !== undefined)
-      .map(([name, value]) => element('div', {}, element('dt', {}, name), element('dd', {}, grouped(value)))));
+  for (const [name, value] of counts) {
+    let entry = [...byId('counts').children].find((child) => child.firstChild.textContent === name);
+    if (!entry) byId('counts').append(entry = element('div', {}, element('dt', {}, name), element('dd')));
+    entry.hidden = value === undefined;
+    if (value !== undefined) setText(entry.lastChild, grouped(value));
+  }
 }
 
 /// Draws the picture with its mask and features; a newer one that comes meanwhile wins.
@@ -88,8 +101,7 @@ class PicturePanel {
   draw() {
     if (!this.image) return;
     const {canvas, image, picture} = this;
-    canvas.width = image.width;
-    canvas.height = image.height;
+    resize(canvas, image.width, image.height);
     const context = contextOf(canvas);
     context.drawImage(image, 0, 0);
     const factor = image.width / this.head.camera[0];
@@ -256,6 +268,8 @@ function showRun(model) {
   byId('figures-panel').hidden = !model.run || model.run.figures.length === 0;
   byId('figures').replaceChildren(...(model.run?.figures ?? []).map(([name, value]) =>
       element('tr', {}, element('th', {scope: 'row'}, name), element('td', {}, value))));
+}
+function showPanels(model) {
   byId('error-panel').hidden = !model.run?.has_errors;
   byId('picture-panel').hidden = !model.picture;
   byId('times-panel').hidden = model.frames.length === 0;

@@ -28,17 +28,21 @@ void CornerDetector::score(const ImageView& image, const Region& region, int thr
 
 void CornerDetector::find_empty_cells(const std::vector<Corner>& corners) {
   const int columns = std::max(1, width_ / cell_size_), rows = std::max(1, height_ / cell_size_);
+  // Position x belongs to cell x * columns / width, whose first position is the rounded-up border.
+  const auto first_x = [&](int column) { return (column * width_ + columns - 1) / columns; };
+  const auto first_y = [&](int row) { return (row * height_ + rows - 1) / rows; };
   cell_column_.resize(width_);
   cell_row_.resize(height_);
-  for (int x = 0; x < width_; ++x) cell_column_[x] = static_cast<std::uint16_t>(x * columns / width_);
-  for (int y = 0; y < height_; ++y) cell_row_[y] = static_cast<std::uint16_t>(y * rows / height_);
+  for (int column = 0; column < columns; ++column)
+    std::fill(cell_column_.begin() + first_x(column), cell_column_.begin() + first_x(column + 1),
+              static_cast<std::uint16_t>(column));
+  for (int row = 0; row < rows; ++row)
+    std::fill(cell_row_.begin() + first_y(row), cell_row_.begin() + first_y(row + 1), static_cast<std::uint16_t>(row));
   is_occupied_.assign(static_cast<std::size_t>(columns) * rows, 0);
   for (const Corner& corner : corners)
     is_occupied_[cell_row_[corner.y - border] * columns + cell_column_[corner.x - border]] = 1;
 
-  // The first position of a cell is the rounded-up border; runs of empty cells of a row are searched in one go.
-  const auto first_x = [&](int column) { return (column * width_ + columns - 1) / columns; };
-  const auto first_y = [&](int row) { return (row * height_ + rows - 1) / rows; };
+  // Runs of empty cells of a row are searched in one go.
   empty_.clear();
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns;) {

@@ -18,26 +18,28 @@ void ResizeAxis::build(int input_size, int output_size) {
     weight[i] = static_cast<std::uint8_t>(std::clamp(std::lround((position - first[i]) * 128.0), 1L, 127L));
   }
 
+  block_output.clear();
   block_begin.clear();
   block_shuffle.clear();
   block_weights.clear();
-  for (int begin = 0; begin < output_size; begin += 8) {
-    const int end = std::min(begin + 8, output_size);
-    if (first[end - 1] + 1 - first[begin] > 15) {
-      block_begin.clear();
-      return;
+  constexpr int block = 8, pair = 2 * block;
+  if (output_size < pair) return;
+  for (int i = 0; i + block <= output_size; ++i)
+    if (first[i + block - 1] + 1 - first[i] > 15) return;
+  for (int begin = 0; begin < output_size; begin += pair)
+    for (const int half : {0, block}) {
+      const int output = std::min(begin, output_size - pair) + half;
+      block_output.push_back(output);
+      block_begin.push_back(first[output]);
+      auto& shuffle = block_shuffle.emplace_back();
+      auto& weights = block_weights.emplace_back();
+      for (int i = 0; i < block; ++i) {
+        shuffle[2 * i] = static_cast<std::uint8_t>(first[output + i] - first[output]);
+        shuffle[2 * i + 1] = static_cast<std::uint8_t>(shuffle[2 * i] + 1);
+        weights[2 * i] = static_cast<std::int8_t>(128 - weight[output + i]);
+        weights[2 * i + 1] = static_cast<std::int8_t>(weight[output + i]);
+      }
     }
-    block_begin.push_back(first[begin]);
-    auto& shuffle = block_shuffle.emplace_back();
-    auto& weights = block_weights.emplace_back();
-    for (int i = begin; i < end; ++i) {
-      const int pair = 2 * (i - begin);
-      shuffle[pair] = static_cast<std::uint8_t>(first[i] - first[begin]);
-      shuffle[pair + 1] = static_cast<std::uint8_t>(shuffle[pair] + 1);
-      weights[pair] = static_cast<std::int8_t>(128 - weight[i]);
-      weights[pair + 1] = static_cast<std::int8_t>(weight[i]);
-    }
-  }
 }
 
 const Kernels& kernels(SimdLevel level) {

@@ -49,9 +49,10 @@ inline constexpr int blur_radius = 3;
 struct ResizeAxis {
   std::vector<int> first;
   std::vector<std::uint8_t> weight;
-  /// Per block of 8 outputs, for the vector kernels: where its 16 input bytes begin, which of them to take (pairs), and
-  /// the pairs' weights. Empty when 8 outputs need more than 16 inputs (ratios above about 2).
-  std::vector<int> block_begin;
+  /// Per block of 8 outputs, for the vector kernels: its first output, where its 16 input bytes begin, which of them to
+  /// take (pairs), and the pairs' weights. Blocks come in adjacent pairs, of which the last overlaps the one before.
+  /// Empty when 8 outputs need more than 16 inputs (ratios above about 2), and for fewer than 16 outputs.
+  std::vector<int> block_output, block_begin;
   std::vector<std::array<std::uint8_t, 16>> block_shuffle;
   std::vector<std::array<std::int8_t, 16>> block_weights;
 
@@ -78,7 +79,7 @@ struct Kernels {
   /// Scores of FAST-9 of 16 (Rosten and Drummond 2006): the largest threshold at which the pixel is a corner, 0 where
   /// that is below `threshold` (1 to 254). Reads 3 pixels beyond the region on each side.
   void (*fast_scores)(const ImageView& region, int threshold, const OutputRows& scores);
-  /// Scores of a pixel and its eight neighbours, row by row, without a threshold. Reads 17 pixels to the right.
+  /// Scores of a pixel and its eight neighbours, row by row, without a threshold. Reads 5 pixels to the right.
   void (*neighbour_scores)(const std::uint8_t* pixel, std::ptrdiff_t stride, std::uint8_t* scores);
   /// Columns of a row of scores that are maxima of their 3 x 3 neighbourhood (of equal neighbours the first in reading
   /// order), ascending; returns how many. Reads one score beyond the row on each side.
@@ -86,13 +87,13 @@ struct Kernels {
   /// Bilinear reduction. `row` has room for the input width plus 32.
   void (*resize)(const ImageView& input, const ResizeAxis& columns, const ResizeAxis& rows, std::uint8_t* row,
                  const OutputRows& output);
-  /// Gaussian blur of all pixels that are blur_radius or more from the border; the others are left alone. `row` has
-  /// room for the width.
-  void (*blur)(const ImageView& input, std::uint8_t* row, const OutputRows& output);
+  /// Gaussian blur of all pixels that are blur_radius or more from the border; the others are left alone. `rows` has
+  /// room for twice the width.
+  void (*blur)(const ImageView& input, std::uint8_t* rows, const OutputRows& output);
   /// First moments of the disc around a pixel: sums of column * grey and row * grey, from the centre. Reads 16 pixels
   /// to the right.
   void (*moments)(const std::uint8_t* centre, std::ptrdiff_t stride, int& moment_x, int& moment_y);
-  /// Bit i is set where centre[offsets[i]] < centre[offsets[256 + i]]. Reads up to 3 bytes beyond an offset.
+  /// Bit i is set where centre[offsets[i]] < centre[offsets[256 + i]].
   void (*describe)(const std::uint8_t* centre, const std::int32_t* offsets, Descriptor256& descriptor);
 };
 

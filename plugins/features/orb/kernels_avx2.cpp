@@ -35,8 +35,21 @@ struct Simd {
   HOLDFAST_TARGET_INLINE static Vector interleave_high(Vector a, Vector b) { return _mm256_unpackhi_epi8(a, b); }
   HOLDFAST_TARGET_INLINE static Vector multiply_pairs(Vector a, Vector b) { return _mm256_maddubs_epi16(a, b); }
   HOLDFAST_TARGET_INLINE static Vector add16(Vector a, Vector b) { return _mm256_add_epi16(a, b); }
-  HOLDFAST_TARGET_INLINE static Vector shift_right16(Vector v) { return _mm256_srli_epi16(v, 7); }
+  /// Rounded: (v + 64) / 128.
+  HOLDFAST_TARGET_INLINE static Vector divide_by_128(Vector v) { return _mm256_mulhrs_epi16(v, fill16(256)); }
+  HOLDFAST_TARGET_INLINE static Vector to_high_bytes(Vector v) { return _mm256_slli_epi16(v, 8); }
   HOLDFAST_TARGET_INLINE static Vector pack(Vector low, Vector high) { return _mm256_packus_epi16(low, high); }
+  /// Blocks of 16 bytes, and the 8 bytes that each becomes.
+  static constexpr int blocks = 2;
+  HOLDFAST_TARGET_INLINE static Vector load_blocks(const std::uint8_t* row, const int* begin) {
+    return _mm256_loadu2_m128i(reinterpret_cast<const __m128i*>(row + begin[1]),
+                               reinterpret_cast<const __m128i*>(row + begin[0]));
+  }
+  HOLDFAST_TARGET_INLINE static void store_blocks(std::uint8_t* p, Vector v) {
+    const Vector packed = _mm256_permute4x64_epi64(_mm256_packus_epi16(v, v), 0x08);
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(p), _mm256_castsi256_si128(packed));
+  }
+  HOLDFAST_TARGET_INLINE static Vector shuffle(Vector v, Vector from) { return _mm256_shuffle_epi8(v, from); }
   HOLDFAST_TARGET_INLINE static Vector widen(Vector v) { return _mm256_madd_epi16(v, _mm256_set1_epi16(1)); }
   HOLDFAST_TARGET_INLINE static Vector add32(Vector a, Vector b) { return _mm256_add_epi32(a, b); }
   HOLDFAST_TARGET_INLINE static int sum32(Vector v) {
@@ -49,28 +62,13 @@ struct Simd {
 
 #include "kernels_vector.inl"
 
-HOLDFAST_TARGET void describe(const std::uint8_t* centre, const std::int32_t* offsets, Descriptor256& descriptor) {
-  const int* base = reinterpret_cast<const int*>(centre);
-  const __m256i low_byte = _mm256_set1_epi32(0xff);
-  for (int word = 0; word < 4; ++word) {
-    std::uint64_t bits = 0;
-    for (int group = 0; group < 64; group += 8) {
-      const std::int32_t* pair = offsets + word * 64 + group;
-      const __m256i a = _mm256_i32gather_epi32(base, Simd::load(pair), 1);
-      const __m256i b = _mm256_i32gather_epi32(base, Simd::load(pair + 256), 1);
-      const __m256i less = _mm256_cmpgt_epi32(_mm256_and_si256(b, low_byte), _mm256_and_si256(a, low_byte));
-      bits |= static_cast<std::uint64_t>(_mm256_movemask_ps(_mm256_castsi256_ps(less))) << group;
-    }
-    descriptor.words[word] = bits;
-  }
-}
-
 }  // namespace
 
 const Kernels& avx2_kernels() {
-  // Three pixels of a row do not fill even a small vector.
-  static const Kernels table = {fast_scores, sse4_kernels().neighbour_scores, local_maxima, resize, blur, moments,
-                                describe};
+  // Three rows of three pixels do not fill even a small vector, and a gather takes longer than inserting bytes one by
+  // one.
+  static const Kernels table = {fast_scores, sse4_kernels().neighbour_scores, local_maxima, resize, blur,
+                                moments,     sse4_kernels().describe};
   return table;
 }
 

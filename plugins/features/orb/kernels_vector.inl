@@ -42,8 +42,8 @@ HOLDFAST_TARGET_INLINE Vector exact_scores(Vector centre, const Vector* p) {
   return Simd::maximum(Simd::subtract(brightest, centre), Simd::subtract(centre, darkest));
 }
 
-HOLDFAST_TARGET_INLINE void fast_scores_block(const std::uint8_t* pixel, const std::ptrdiff_t* offsets, Vector threshold,
-                                              std::uint8_t* scores) {
+HOLDFAST_TARGET_INLINE void fast_scores_block(const std::uint8_t* pixel, const std::ptrdiff_t* offsets,
+                                              Vector threshold, std::uint8_t* scores) {
   const Vector centre = Simd::load(pixel);
   Vector p[16];
   Vector low = Simd::fill(0), high = Simd::fill(255);
@@ -109,68 +109,88 @@ HOLDFAST_TARGET void resize(const ImageView& input, const ResizeAxis& columns, c
                             std::uint8_t* row, const OutputRows& output) {
   const std::ptrdiff_t input_stride = input.stride;
   const int input_width = input.width;
-  const int output_width = static_cast<int>(columns.first.size());
-  if (columns.block_begin.empty() || input_width < bytes || output_width < 8)
+  if (columns.block_output.empty() || input_width < bytes)
     return scalar_kernels().resize(input, columns, rows, row, output);
-  const Vector half = Simd::fill16(64);
+  // Bytes may alias the tables, so that the compiler would load these for every block.
+  const std::size_t blocks = columns.block_output.size();
+  const int *first_output = columns.block_output.data(), *begin = columns.block_begin.data();
+  const auto* shuffle = columns.block_shuffle.data();
+  const auto* block_weights = columns.block_weights.data();
   for (std::size_t y = 0; y < rows.first.size(); ++y) {
     const std::uint8_t* upper = input.at(0, rows.first[y]);
     const Vector weights = Simd::fill_pairs(128 - rows.weight[y], rows.weight[y]);
     for (int x = 0;; x += bytes) {
       x = x + bytes <= input_width ? x : input_width - bytes;
       const Vector a = Simd::load(upper + x), b = Simd::load(upper + x + input_stride);
-      const Vector low = Simd::add16(Simd::multiply_pairs(Simd::interleave_low(a, b), weights), half);
-      const Vector high = Simd::add16(Simd::multiply_pairs(Simd::interleave_high(a, b), weights), half);
-      Simd::store(row + x, Simd::pack(Simd::shift_right16(low), Simd::shift_right16(high)));
+      const Vector low = Simd::divide_by_128(Simd::multiply_pairs(Simd::interleave_low(a, b), weights));
+      const Vector high = Simd::divide_by_128(Simd::multiply_pairs(Simd::interleave_high(a, b), weights));
+      Simd::store(row + x, Simd::pack(low, high));
       if (x + bytes >= input_width) break;
     }
     std::uint8_t* out = output.data + static_cast<std::ptrdiff_t>(y) * output.stride;
-    const int full_blocks = output_width / 8;
-    for (int block = 0; block < full_blocks; ++block) {
-      const __m128i pixels = _mm_loadu_si128(reinterpret_cast<const __m128i*>(row + columns.block_begin[block]));
-      const __m128i shuffle = _mm_loadu_si128(reinterpret_cast<const __m128i*>(columns.block_shuffle[block].data()));
-      const __m128i weight = _mm_loadu_si128(reinterpret_cast<const __m128i*>(columns.block_weights[block].data()));
-      const __m128i sum = _mm_maddubs_epi16(_mm_shuffle_epi8(pixels, shuffle), weight);
-      const __m128i rounded = _mm_srli_epi16(_mm_add_epi16(sum, _mm_set1_epi16(64)), 7);
-      _mm_storel_epi64(reinterpret_cast<__m128i*>(out + 8 * block), _mm_packus_epi16(rounded, rounded));
-    }
-    for (int x = 8 * full_blocks; x < output_width; ++x) {
-      const int first = columns.first[x], weight = columns.weight[x];
-      out[x] = static_cast<std::uint8_t>((row[first] * (128 - weight) + row[first + 1] * weight + 64) >> 7);
+    for (std::size_t block = 0; block < blocks; block += Simd::blocks) {
+      const Vector pairs = Simd::shuffle(Simd::load_blocks(row, begin + block), Simd::load(shuffle + block));
+      const Vector sums = Simd::multiply_pairs(pairs, Simd::load(block_weights + block));
+      Simd::store_blocks(out + first_output[block], Simd::divide_by_128(sums));
     }
   }
 }
 
-HOLDFAST_TARGET_INLINE Vector blur_block(const std::uint8_t* p, std::ptrdiff_t step, const Vector* weights) {
-  const Vector a = Simd::load(p - 3 * step), b = Simd::load(p - 2 * step), c = Simd::load(p - step);
-  const Vector d = Simd::load(p), e = Simd::load(p + step), f = Simd::load(p + 2 * step), g = Simd::load(p + 3 * step);
-  Vector low = Simd::fill16(64), high = Simd::fill16(64);
-  low = Simd::add16(low, Simd::multiply_pairs(Simd::interleave_low(a, b), weights[0]));
-  high = Simd::add16(high, Simd::multiply_pairs(Simd::interleave_high(a, b), weights[0]));
-  low = Simd::add16(low, Simd::multiply_pairs(Simd::interleave_low(c, d), weights[1]));
-  high = Simd::add16(high, Simd::multiply_pairs(Simd::interleave_high(c, d), weights[1]));
-  low = Simd::add16(low, Simd::multiply_pairs(Simd::interleave_low(e, f), weights[2]));
-  high = Simd::add16(high, Simd::multiply_pairs(Simd::interleave_high(e, f), weights[2]));
-  low = Simd::add16(low, Simd::multiply_pairs(Simd::interleave_low(g, Simd::fill(0)), weights[3]));
-  high = Simd::add16(high, Simd::multiply_pairs(Simd::interleave_high(g, Simd::fill(0)), weights[3]));
-  return Simd::pack(Simd::shift_right16(low), Simd::shift_right16(high));
+/// Weights of the blur of two adjacent outputs, in pairs: an output reads seven inputs, so that eight serve both.
+struct BlurWeights {
+  Vector first[4] = {Simd::fill_pairs(blur_weights[3], blur_weights[2]),
+                     Simd::fill_pairs(blur_weights[1], blur_weights[0]),
+                     Simd::fill_pairs(blur_weights[1], blur_weights[2]), Simd::fill_pairs(blur_weights[3], 0)};
+  Vector second[4] = {Simd::fill_pairs(0, blur_weights[3]), Simd::fill_pairs(blur_weights[2], blur_weights[1]),
+                      Simd::fill_pairs(blur_weights[0], blur_weights[1]),
+                      Simd::fill_pairs(blur_weights[2], blur_weights[3])};
+  HOLDFAST_TARGET_INLINE BlurWeights() {}
+};
+
+/// Weighted mean of pairs of inputs, in 16 bits.
+HOLDFAST_TARGET_INLINE Vector blur_pairs(const Vector* pairs, const Vector* weights) {
+  const Vector near =
+      Simd::add16(Simd::multiply_pairs(pairs[0], weights[0]), Simd::multiply_pairs(pairs[1], weights[1]));
+  const Vector far =
+      Simd::add16(Simd::multiply_pairs(pairs[2], weights[2]), Simd::multiply_pairs(pairs[3], weights[3]));
+  return Simd::divide_by_128(Simd::add16(near, far));
 }
 
-HOLDFAST_TARGET void blur(const ImageView& input, std::uint8_t* row, const OutputRows& output) {
+/// Blurs down the columns: a vector of the row of `p` and of the one below.
+HOLDFAST_TARGET_INLINE void blur_down(const std::uint8_t* p, std::ptrdiff_t stride, const BlurWeights& weights,
+                                      std::uint8_t* first, std::uint8_t* second) {
+  Vector low[4], high[4];
+  for (int i = 0; i < 4; ++i) {
+    const Vector a = Simd::load(p + (2 * i - 3) * stride), b = Simd::load(p + (2 * i - 2) * stride);
+    low[i] = Simd::interleave_low(a, b);
+    high[i] = Simd::interleave_high(a, b);
+  }
+  Simd::store(first, Simd::pack(blur_pairs(low, weights.first), blur_pairs(high, weights.first)));
+  Simd::store(second, Simd::pack(blur_pairs(low, weights.second), blur_pairs(high, weights.second)));
+}
+
+/// Blurs along a row: the pairs of a vector's even outputs are those of its odd ones.
+HOLDFAST_TARGET_INLINE Vector blur_along(const std::uint8_t* p, const BlurWeights& weights) {
+  const Vector pairs[4] = {Simd::load(p - 3), Simd::load(p - 1), Simd::load(p + 1), Simd::load(p + 3)};
+  return Simd::bit_or(blur_pairs(pairs, weights.first), Simd::to_high_bytes(blur_pairs(pairs, weights.second)));
+}
+
+HOLDFAST_TARGET void blur(const ImageView& input, std::uint8_t* rows, const OutputRows& output) {
   const int width = input.width;
-  const int inner = width - 2 * blur_radius;
-  if (inner < bytes) return scalar_kernels().blur(input, row, output);
-  const Vector weights[4] = {Simd::fill_pairs(blur_weights[3], blur_weights[2]),
-                             Simd::fill_pairs(blur_weights[1], blur_weights[0]),
-                             Simd::fill_pairs(blur_weights[1], blur_weights[2]), Simd::fill_pairs(blur_weights[3], 0)};
-  for (int y = blur_radius; y < input.height - blur_radius; ++y) {
-    const std::uint8_t* in = input.at(0, y);
-    for (int x = 0; x < width - bytes; x += bytes) Simd::store(row + x, blur_block(in + x, input.stride, weights));
-    Simd::store(row + width - bytes, blur_block(in + width - bytes, input.stride, weights));
-    std::uint8_t* out = output.data + y * output.stride + blur_radius;
-    const std::uint8_t* from = row + blur_radius;
-    for (int x = 0; x < inner - bytes; x += bytes) Simd::store(out + x, blur_block(from + x, 1, weights));
-    Simd::store(out + inner - bytes, blur_block(from + inner - bytes, 1, weights));
+  const int inner = width - 2 * blur_radius, last = input.height - blur_radius - 2;
+  if (inner < bytes || last < blur_radius) return scalar_kernels().blur(input, rows, output);
+  const BlurWeights weights;
+  for (int y = blur_radius; y <= last + 1; y += 2) {
+    const int upper = y < last ? y : last;  // the last two rows overlap those before if their number is odd
+    const std::uint8_t* in = input.at(0, upper);
+    for (int x = 0; x < width - bytes; x += bytes) blur_down(in + x, input.stride, weights, rows + x, rows + width + x);
+    blur_down(in + width - bytes, input.stride, weights, rows + width - bytes, rows + 2 * width - bytes);
+    for (int i = 0; i < 2; ++i) {
+      std::uint8_t* out = output.data + (upper + i) * output.stride + blur_radius;
+      const std::uint8_t* from = rows + i * width + blur_radius;
+      for (int x = 0; x < inner - bytes; x += bytes) Simd::store(out + x, blur_along(from + x, weights));
+      Simd::store(out + inner - bytes, blur_along(from + inner - bytes, weights));
+    }
   }
 }
 

@@ -56,7 +56,7 @@ struct OrbExtractor::Work {
   orb_plugin::EvenSpread spread;
   orb_plugin::SteeredPattern pattern;
   std::vector<std::vector<Corner>> corners;  // by level
-  std::vector<std::uint8_t> blurred, row;
+  std::vector<std::uint8_t> blurred, rows;
 };
 
 OrbExtractor::OrbExtractor(const OrbSettings& settings, const CreationContext&, SimdLevel level)
@@ -126,16 +126,17 @@ void OrbExtractor::describe(Features& out) {
   // All levels are blurred into one buffer of one stride, so that one table of offsets serves them all.
   const ImageView& full = pyramid.view(0);
   const std::ptrdiff_t stride = (full.width + 63) / 64 * 64;
-  if (const std::size_t size = static_cast<std::size_t>(stride) * full.height; work_->blurred.size() < size + 4)
-    work_->blurred.resize(size + 4);
-  if (work_->row.size() < static_cast<std::size_t>(full.width)) work_->row.resize(full.width);
+  if (const std::size_t size = static_cast<std::size_t>(stride) * full.height; work_->blurred.size() < size)
+    work_->blurred.resize(size);
+  if (const std::size_t size = static_cast<std::size_t>(2 * full.width); work_->rows.size() < size)
+    work_->rows.resize(size);
   work_->pattern.build(stride);
 
   std::size_t i = 0;
   for (int level = 0; level < pyramid.levels(); ++level) {
     if (work_->corners[level].empty()) continue;
     const ImageView& image = pyramid.view(level);
-    kernels.blur(image, work_->row.data(), {work_->blurred.data(), stride});
+    kernels.blur(image, work_->rows.data(), {work_->blurred.data(), stride});
     for (const Corner& corner : work_->corners[level]) {
       int moment_x = 0, moment_y = 0;
       kernels.moments(image.at(corner.x, corner.y), image.stride, moment_x, moment_y);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "holdfast/core/coarse_cells.hpp"
 #include "holdfast/geometry/warp.hpp"
 #include "holdfast/plugin/plugin.hpp"
 
@@ -39,6 +40,7 @@ void MultiViewDepth::choose_keyframes(const FilterContext& context) {
   candidates_.clear();
   context.map.keyframes().for_each([&](KeyFrameId id, const KeyFrame& keyframe) {
     const Frame& frame = keyframe.frame;
+    if (keyframe.piece != context.piece) return;
     if (frame.coarse.empty() || !(frame.coarse.grid == context.frame.coarse.grid)) return;
     const double cosine = direction.dot(frame.T_camera_world.linear().row(2));
     const double distance = (frame.T_world_camera().translation() - centre).norm();
@@ -73,6 +75,7 @@ void MultiViewDepth::compare(const FilterContext& context) {
   depth_.resize(size);
   through_.assign(size, 0.0F);
   same_.assign(size, 0.0F);
+  cells_.resize(static_cast<std::size_t>(columns_));
   for (int row = 0; row < rows_; ++row)
     for (int column = 0; column < columns_; ++column)
       depth_[static_cast<std::size_t>(row * columns_ + column)] =
@@ -90,13 +93,14 @@ void MultiViewDepth::compare(const FilterContext& context) {
       const float* depths = &depth_[static_cast<std::size_t>(row * columns_)];
       warp.row(rays_x_, warp.ray_y(grid.y_of(row * stride)), Eigen::Map<const Eigen::ArrayXf>(depths, columns_),
                warped_);
+      // Not at the border, because is_seen_through() reads the cells around.
+      find_cells(grid, {warped_.x.data(), cells_.size()}, {warped_.y.data(), cells_.size()}, cells_, 1);
       for (int column = 0; column < columns_; ++column) {
         const float z = warped_.z[column];
         if (depths[column] == 0.0F || !warp.is_visible(z)) continue;
+        if (cells_[static_cast<std::size_t>(column)] < 0) continue;
         const std::size_t block = static_cast<std::size_t>(row * columns_ + column);
-        const int c = grid.column_of(warped_.x[column]), r = grid.row_of(warped_.y[column]);
-        if (c < 1 || r < 1 || c + 1 >= grid.columns || r + 1 >= grid.rows) continue;
-        const std::size_t cell = static_cast<std::size_t>(r * grid.columns + c);
+        const std::size_t cell = static_cast<std::size_t>(cells_[static_cast<std::size_t>(column)]);
         const float seen = there[cell];
         if (seen == 0.0F) continue;
         if (std::abs(seen - z) < noise(z)) {
@@ -235,16 +239,22 @@ void MultiViewDepth::apply(const FilterContext& context, StaticEvidence& evidenc
   grow();
   evaluate_features(context, evidence);
   evaluate_points(context, evidence);
-  const CoarseGrid& grid = context.frame.coarse.grid;
+  evaluate_cells(context.frame.coarse.grid, evidence);
+}
+
+void MultiViewDepth::evaluate_cells(const CoarseGrid& grid, StaticEvidence& evidence) const {
   if (evidence.cells().size() != static_cast<std::size_t>(grid.size())) return;
-  for (int row = 0; row < rows_ * stride; ++row)
-    for (int column = 0; column < columns_ * stride; ++column) {
-      const std::size_t block = static_cast<std::size_t>((row / stride) * columns_ + column / stride);
-      const std::size_t cell = static_cast<std::size_t>(row * grid.columns + column);
-      if (moving_[block] != 0)
-        evidence.add_cell(cell, static_cast<float>(settings_.moving_log_odds));
-      else if (score_[block] > 0.0F)
-        evidence.add_cell(cell, static_cast<float>(settings_.static_log_odds) * std::min(1.0F, score_[block] / 2.0F));
+  for (int row = 0; row < rows_; ++row)
+    for (int column = 0; column < columns_; ++column) {
+      const std::size_t block = static_cast<std::size_t>(row * columns_ + column);
+      const bool is_moving = moving_[block] != 0;
+      if (!is_moving && !(score_[block] > 0.0F)) continue;
+      const float log_odds = is_moving
+                                 ? static_cast<float>(settings_.moving_log_odds)
+                                 : static_cast<float>(settings_.static_log_odds) * std::min(1.0F, score_[block] / 2.0F);
+      for (int r = row * stride; r < (row + 1) * stride; ++r)
+        for (int c = column * stride; c < (column + 1) * stride; ++c)
+          evidence.add_cell(static_cast<std::size_t>(r * grid.columns + c), log_odds);
     }
 }
 

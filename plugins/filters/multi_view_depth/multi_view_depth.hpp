@@ -43,6 +43,7 @@ class MultiViewDepth final : public DynamicFilter {
   void evaluate_features(const FilterContext& context, StaticEvidence& evidence) const;
   bool is_at_edge(const CoarseGrid& grid, float x, float y, float reach) const;
   void evaluate_points(const FilterContext& context, StaticEvidence& evidence);
+  void evaluate_cells(const CoarseGrid& grid, StaticEvidence& evidence) const;
 
   MultiViewDepthSettings settings_;
   std::vector<Candidate> candidates_;
@@ -50,6 +51,7 @@ class MultiViewDepth final : public DynamicFilter {
   int columns_ = 0, rows_ = 0;  // blocks
   Eigen::ArrayXf rays_x_;
   geometry::WarpedRow warped_;
+  std::vector<std::int32_t> cells_;  // of a keyframe, where a row of blocks lies
   std::vector<float> depth_, through_, same_, score_;
   std::vector<std::uint8_t> moving_, evaluated_;
   std::vector<int> front_, next_front_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/interfaces/dynamic_filter.hpp"
@@ -37,7 +39,11 @@ namespace {
 /// Adds a negative prior to features on masks of movable classes.
 class SemanticMask final : public DynamicFilter {
  public:
-  SemanticMask(const SemanticMaskSettings& settings, const CreationContext&) : settings_(settings) {}
+  SemanticMask(const SemanticMaskSettings& settings, const CreationContext&) : settings_(settings) {
+    for (std::size_t confidence = 0; confidence < movable_log_odds_.size(); ++confidence)
+      movable_log_odds_[confidence] =
+          static_cast<float>(settings.movable_log_odds * static_cast<double>(confidence) / 255.0);
+  }
 
   Needs needs() const override { return {.segmentation = true}; }
 
@@ -74,8 +80,40 @@ class SemanticMask final : public DynamicFilter {
     evidence.add(feature, static_cast<float>(log_odds * confidence / 255.0), StaticEvidence::Kind::prior);
   }
 
-  void apply_exact(const FilterContext& context, StaticEvidence& evidence) const {
+  /// Marks the tiles of an image of labels in which any pixel is movable.
+  void mark_movable_tiles(const cv::Mat& labels) {
+    tile_columns_ = (labels.cols + tile - 1) / tile;
+    movable_tiles_.assign(static_cast<std::size_t>(tile_columns_ * ((labels.rows + tile - 1) / tile)), 0);
+    for (int row = 0; row < labels.rows; ++row) {
+      const std::uint8_t* const label = labels.ptr<std::uint8_t>(row);
+      std::uint8_t* const tiles = &movable_tiles_[static_cast<std::size_t>((row / tile) * tile_columns_)];
+      for (int first = 0; first < labels.cols; first += tile) {
+        const int last = std::min(first + tile, labels.cols);
+        if (tiles[first / tile] == 0) tiles[first / tile] = is_any_movable(label + first, label + last);
+      }
+    }
+  }
+
+  /// Whether any of up to `tile` labels is movable. Most are background, which is recognised as a whole.
+  bool is_any_movable(const std::uint8_t* first, const std::uint8_t* last) const {
+    static constexpr std::array<std::uint8_t, tile> background{};
+    if (movable_[0] == 0 && last - first == tile && std::memcmp(first, background.data(), tile) == 0) return false;
+    return std::any_of(first, last, [&](std::uint8_t label) { return movable_[label] != 0; });
+  }
+
+  /// Whether a tile within `reach` pixels of a pixel of the image is marked.
+  bool is_near_movable_tile(const cv::Mat& labels, int x, int y, int reach) const {
+    const int last_column = std::min(x + reach, labels.cols - 1) / tile;
+    const int last_row = std::min(y + reach, labels.rows - 1) / tile;
+    for (int row = std::max(0, y - reach) / tile; row <= last_row; ++row)
+      for (int column = std::max(0, x - reach) / tile; column <= last_column; ++column)
+        if (movable_tiles_[static_cast<std::size_t>(row * tile_columns_ + column)] != 0) return true;
+    return false;
+  }
+
+  void apply_exact(const FilterContext& context, StaticEvidence& evidence) {
     const cv::Mat& labels = context.segmentation->labels;
+    mark_movable_tiles(labels);
     const cv::Mat& confidence = context.segmentation->confidence;
     const cv::Mat& depth = context.sensor_frame.depth;
     const Frame& frame = context.frame;
@@ -90,7 +128,8 @@ class SemanticMask final : public DynamicFilter {
       std::uint8_t label = labels.at<std::uint8_t>(y, x);
       bool movable = movable_[label] != 0;
       std::uint8_t certainty = sure(x, y);
-      for (int dy = -settings_.dilate; dy <= settings_.dilate && !movable; dy += stride)
+      const bool is_far = !movable && !is_near_movable_tile(labels, x, y, settings_.dilate);
+      for (int dy = -settings_.dilate; dy <= settings_.dilate && !movable && !is_far; dy += stride)
         for (int dx = -settings_.dilate; dx <= settings_.dilate && !movable; dx += stride) {
           const int column = x + dx, row = y + dy;
           if (column < 0 || row < 0 || column >= labels.cols || row >= labels.rows) continue;
@@ -159,8 +198,7 @@ class SemanticMask final : public DynamicFilter {
 
   void evaluate_cells(const CellMask& mask, StaticEvidence& evidence) const {
     for (std::size_t cell = 0; cell < mask.labels.size() && cell < evidence.cells().size(); ++cell)
-      if (movable_[mask.labels[cell]] != 0)
-        evidence.add_cell(cell, static_cast<float>(settings_.movable_log_odds * mask.confidence[cell] / 255.0));
+      if (movable_[mask.labels[cell]] != 0) evidence.add_cell(cell, movable_log_odds_[mask.confidence[cell]]);
   }
 
   bool lies_behind(float depth, float mask_depth) const {
@@ -168,8 +206,12 @@ class SemanticMask final : public DynamicFilter {
   }
 
   static constexpr std::uint8_t unknown = 255;
+  static constexpr int tile = 16;  // pixels
   SemanticMaskSettings settings_;
   std::array<std::uint8_t, 256> movable_{};
+  std::vector<std::uint8_t> movable_tiles_;  // row by row
+  int tile_columns_ = 0;
+  std::array<float, 256> movable_log_odds_{};                                // by confidence
   std::vector<std::uint8_t> movable_cells_, beside_movable_, near_movable_;  // 1 = yes, by cell
 };
 

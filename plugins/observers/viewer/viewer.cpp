@@ -66,7 +66,16 @@ class ViewerObserver final : public Observer {
     show(map);
     viewer_->add_loop(keyframe, candidate);
   }
-  void on_finish(const Map& map) override { viewer_->set_map(make_snapshot(map), 0.0); }
+  void on_finish(const Map& map) override {
+    // From here on what the map says: that is what its file keeps.
+    std::vector<ViewedClass> classes;
+    if (has_classes_)
+      map.points().for_each([&](MapPointId id, const MapPoint& point) {
+        if (point.label != CellMask::unknown) classes.push_back({id, point.label});
+      });
+    viewer_->add_point_classes(std::move(classes));
+    viewer_->set_map(make_snapshot(map), 0.0);
+  }
 
  private:
   /// Of a keyframe for the dense cloud: every fourth pixel of a kept image of 320x240.

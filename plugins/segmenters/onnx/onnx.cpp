@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "holdfast/core/counted.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/inference/network_parameters.hpp"
 #include "holdfast/inference/network_segmenter.hpp"
@@ -54,7 +55,7 @@ void check_classes(const OnnxSettings& settings) {
   std::vector<Diagnostic> diagnostics;
   const auto problem = [&](const std::string& message) { diagnostics.push_back({{}, "segmenter.onnx." + message}); };
   if (settings.classes.size() < 2 || settings.classes.size() > 254)
-    problem("classes: found " + std::to_string(settings.classes.size()) + " names; expected 2 to 254");
+    problem("classes: found " + counted(settings.classes.size(), "name") + "; expected 2 to 254");
   for (auto name = settings.classes.begin(); name != settings.classes.end(); ++name) {
     if (name->empty()) problem("classes: a name is empty");
     if (std::find(settings.classes.begin(), name, *name) != name)

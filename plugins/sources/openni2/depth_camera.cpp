@@ -154,8 +154,9 @@ class OpenNiCamera final : public DepthCamera {
     place_ = uri.empty() ? "OpenNI 2" : uri;
     if (uri.ends_with(".oni"))
       fail(
-          "is a recording; the player of OpenNI 2.2 crashes now and then, and is not used; expected the URI of a "
-          "camera");
+          "is a recording of OpenNI, whose player loses images; expected the URI of a camera. Convert it once, to a "
+          "bag for the source 'rosbag', or to images with lists for the source 'tum' (docs/cameras.md). `holdfast "
+          "record` records a camera");
     if (device_.open(uri.empty() ? openni::ANY_DEVICE : uri.c_str()) != openni::STATUS_OK)
       fail((uri.empty() ? "no camera was found: " : "cannot be opened: ") + reason() +
            "; plug one in, or set `source.openni2.device`" + present_devices());

@@ -72,7 +72,8 @@ TEST(Openni2DeviceTest, SaysWhatACameraCannotDo) {
   EXPECT_THAT(input_error([] { open({.device = "fake:unregistered"}); }),
               AllOf(HasSubstr("cannot register its depth"), HasSubstr("registration: none")));
   EXPECT_TRUE(open({.device = "fake:unregistered", .registration = "none"})->next().has_value());
-  EXPECT_THAT(input_error([] { open({.device = "some.oni"}); }), StartsWith("some.oni: is a recording"));
+  EXPECT_THAT(input_error([] { open({.device = "some.oni"}); }),
+              AllOf(StartsWith("some.oni: is a recording"), HasSubstr("for the source 'rosbag'")));
 }
 
 /// Gives the images that a test names, then nothing.

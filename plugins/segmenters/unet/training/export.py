@@ -22,11 +22,13 @@ from pack import PackError
 from weights import folded, load_weights
 
 
-def export(model, input_size, path, caution=0.0):
-    """`model`: for evaluation; it is changed."""
+def export(model, input_size, path, caution=0.0, temperature=1.0):
+    """`model`: for evaluation; it is changed. Scores are divided by the temperature: the same labels, other confidence."""
     model = folded(model.eval())
     with torch.no_grad():
         model.head.bias[PERSON] -= caution
+        model.head.weight /= temperature
+        model.head.bias /= temperature
     model.coarse_heads = torch.nn.ModuleList()
     picture = torch.zeros(1, 3, input_size[1], input_size[0])
     with warnings.catch_warnings():
@@ -42,9 +44,13 @@ def main():
     parser.add_argument("onnx", type=pathlib.Path, help="file to write")
     parser.add_argument("--caution", type=float, default=0.0,
                         help="subtracted from the score of 'person', where it is found too often (default: 0)")
+    parser.add_argument("--temperature", type=float, default=1.0,
+                        help="divides the scores, so that confidence is a probability; calibrate.py finds it (default: 1)")
     arguments = parser.parse_args()
+    if not arguments.temperature > 0.0:
+        parser.error(f"a temperature of {arguments.temperature}; expected more than 0")
     model, (width, height) = load_weights(arguments.weights)
-    export(model, (width, height), arguments.onnx, arguments.caution)
+    export(model, (width, height), arguments.onnx, arguments.caution, arguments.temperature)
     print(f"{arguments.onnx}: size '{model.size}', trained for {width}x{height}, sides multiples of "
           f"{multiple(model.size)}, "
           f"{arguments.onnx.stat().st_size / 1e6:.2f} MB")

@@ -30,6 +30,32 @@ def run(program, *arguments):
         raise PackError(f"{program} failed:\n{result.stdout}{result.stderr}")
 
 
+def check_temperature(folder, onnx, model, pictures):
+    """Scores are divided by the temperature."""
+    divided = onnx.with_name("divided.onnx")
+    run("export.py", folder / "weights.npz", divided, "--temperature", 2)
+    read_back = load_onnx(divided)
+    with torch.no_grad():
+        read_back = with_normalisation(read_back, [pictures], in_order(read_back))
+        difference = float((2.0 * read_back(pictures) - model(pictures)).abs().max())
+    if not difference < 1e-3:
+        raise PackError(f"{divided}: twice its scores differ by {difference} from those of weights.npz; expected the same")
+
+
+def check_kept_blocks(folder, pack):
+    """A training with --keep-blocks leaves these blocks alone, and their normalisation, and changes the others."""
+    before = folder / "mobile" / "weights.npz"
+    run("train.py", pack, "--output", folder / "kept", "--size", "mobile", "--batch", 2, "--workers", 0, "--width", 64,
+        "--height", 64, "--steps", 2, "--start-from", before, "--keep-blocks", 3, "--keep-normalisation", "--coarse-share", 0,
+        "--warm-up", 1, "--room-roll", 25, "--shares", "simulated=0.5", "composed=0.5")
+    before, after = np.load(before), np.load(folder / "kept" / "weights.npz")
+    changed = [name for name in before.files if before[name].dtype.kind == "f" and not np.array_equal(before[name], after[name])]
+    kept = ("stem.", "down.0.", "down.1.", "down.2.", "coarse_heads.")
+    wrong = [name for name in changed if name.startswith(kept) or "running_" in name]
+    if wrong or not any(name.startswith("down.3.") for name in changed):
+        raise PackError(f"--keep-blocks 3 changed {wrong[:3] or changed[:3]}; expected weights of the other blocks only")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("simulated", type=pathlib.Path, help="a sequence that `holdfast simulate` wrote")
@@ -58,6 +84,9 @@ def main():
         difference = float((read_back(pictures) - model(pictures)).abs().max())
     if not difference < 1e-3:
         raise PackError(f"{onnx}: scores differ by {difference} from those of weights.npz; expected the same")
+    check_temperature(arguments.output, onnx, model, pictures)
+    run("calibrate.py", pack, arguments.output / "weights.npz", "--width", 64, "--height", 48, "--every", 1)
+    run("int8_labels.py", pack, onnx, "--width", 64, "--height", 48, "--pictures", 4)
     run("train.py", pack, "--output", arguments.output / "further", "--size", "tiny", "--batch", 4, "--workers", 0,
         "--steps", 2, "--start-from", onnx)
     run("train.py", pack, "--output", arguments.output / "paper", "--preset", "paper", "--batch", 2, "--workers", 0,
@@ -67,6 +96,7 @@ def main():
         run("train.py", pack, "--output", folder, "--size", size, "--batch", 2, "--workers", 0, "--width", 64,
             "--height", 64, "--steps", 2)
         run("export.py", folder / "weights.npz", folder / "unet.onnx")
+    check_kept_blocks(arguments.output, pack)
     picture = read_pack(pack)[0][0].picture
     cv2.imwrite(str(arguments.output / "picture.png"), picture)
     cv2.imwrite(str(arguments.output / "labels.png"), found_labels(model, picture, input_size).astype(np.uint8))

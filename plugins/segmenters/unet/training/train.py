@@ -60,15 +60,15 @@ def class_loss(scores, labels, class_weights):
     return loss
 
 
-def training_loss(outputs, labels, class_weights):
+def training_loss(outputs, labels, class_weights, coarse_share):
     fine = functional.interpolate(outputs[0], size=labels.shape[1:], mode="bilinear", align_corners=False)
     own_labels = torch.where(is_other_thing(labels), 0, labels)
     loss = class_loss(fine, own_labels, class_weights) + 0.5 * soft_dice(fine, own_labels)
     told_apart = torch.cat([class_weights, class_weights.new_ones(TOLD_APART - len(CLASSES))])
-    for scores in outputs[1:]:
+    for scores in outputs[1:] if coarse_share else []:
         step = labels.shape[1] // scores.shape[2]
         coarse_labels = labels[:, step // 2::step, step // 2::step]
-        loss = loss + 0.2 * class_loss(scores, coarse_labels, told_apart)
+        loss = loss + coarse_share * class_loss(scores, coarse_labels, told_apart)
     return loss
 
 
@@ -81,11 +81,18 @@ class Training:
         self.model = make_model(arguments.size, arguments.dropout)
         if arguments.start_from:
             self.start_from(arguments.start_from, first_batches)
+        self.normalisation_is_kept = arguments.keep_normalisation
+        if arguments.keep_blocks:
+            if not isinstance(self.model, MobileUNet):
+                raise PackError(f"--keep-blocks with size '{arguments.size}', expected with --size mobile")
+            for part in [self.model.stem, *self.model.down[:arguments.keep_blocks]]:
+                part.requires_grad_(False)
         self.model = self.model.to(memory_format=torch.channels_last)
         self.average = copy.deepcopy(self.model.state_dict())
-        encoder = [value for part in (self.model.stem, self.model.down) for value in part.parameters()]
+        encoder = [value for part in (self.model.stem, self.model.down) for value in part.parameters()
+                   if value.requires_grad]
         known = set(encoder)
-        others = [value for value in self.model.parameters() if value not in known]
+        others = [value for value in self.model.parameters() if value.requires_grad and value not in known]
         kind = {"adamw": torch.optim.AdamW, "adam": torch.optim.Adam}[arguments.optimizer]
         self.optimizer = kind([dict(params=encoder, share=arguments.encoder_rate), dict(params=others, share=1.0)],
                               lr=arguments.learning_rate, betas=(0.9, 0.999), weight_decay=arguments.weight_decay,
@@ -106,6 +113,13 @@ class Training:
         if weights.size != self.model.size:
             raise PackError(f"{path}: holds size '{weights.size}', expected '{self.model.size}'")
         self.model.load_state_dict(weights.state_dict())
+
+    def train_mode(self):
+        self.model.train()
+        if self.normalisation_is_kept:
+            for part in self.model.modules():
+                if isinstance(part, torch.nn.BatchNorm2d):
+                    part.eval()
 
     def average_weights(self, fraction=0.999):
         """Running mean over the steps: smoother, and better, than the last step's weights."""
@@ -155,9 +169,9 @@ class Log:
         self.header_is_written = True
 
 
-def learning_rate(progress, step, highest):
-    """Warm-up over 200 steps, then half a cosine down to a hundredth."""
-    return highest * min(1.0, (step + 1) / 200) * (0.01 + 0.99 * 0.5 * (1.0 + math.cos(math.pi * min(progress, 1.0))))
+def learning_rate(progress, step, highest, warm_up):
+    """Warm-up over some steps, then half a cosine down to a hundredth."""
+    return highest * min(1.0, (step + 1) / max(warm_up, 1)) * (0.01 + 0.99 * 0.5 * (1.0 + math.cos(math.pi * min(progress, 1.0))))
 
 
 def train(arguments):
@@ -169,7 +183,7 @@ def train(arguments):
 
     def batches_from(step):
         samples = Samples(training_entries, sizes, arguments.batch, arguments.seed, step * arguments.batch,
-                          arguments.whole)
+                          arguments.whole, arguments.shares, arguments.room_roll)
         return iter(torch.utils.data.DataLoader(samples, arguments.batch, num_workers=arguments.workers))
 
     training = Training(arguments, (pictures for pictures, _ in itertools.islice(batches_from(0), 24)))
@@ -188,14 +202,14 @@ def train(arguments):
     mean_loss, count = 0.0, 0
     started, measured_at, saved_at = time.monotonic() - training.seconds, training.seconds, training.seconds
     while progress() < 1.0:
-        rate = learning_rate(progress(), training.step, arguments.learning_rate)
+        rate = learning_rate(progress(), training.step, arguments.learning_rate, arguments.warm_up)
         for group in training.optimizer.param_groups:
             group["lr"] = rate * group["share"]
         pictures, labels = next(batches)
-        training.model.train()
+        training.train_mode()
         training.optimizer.zero_grad(set_to_none=True)
         outputs = training.model(pictures.contiguous(memory_format=torch.channels_last))
-        loss = training_loss(outputs, labels, class_weights)
+        loss = training_loss(outputs, labels, class_weights, arguments.coarse_share)
         loss.backward()
         torch.nn.utils.clip_grad_norm_(training.model.parameters(), 5.0)
         training.optimizer.step()
@@ -218,6 +232,17 @@ def train(arguments):
         if last or training.seconds - saved_at >= 60.0 * arguments.save_every:
             training.save(arguments.output)
             saved_at = time.monotonic() - started
+
+
+class Shares(argparse.Action):
+    """SOURCE=SHARE ... as a dictionary."""
+
+    def __call__(self, parser, namespace, values, option_string=None):
+        try:
+            pairs = [value.split("=") for value in values]
+            setattr(namespace, self.dest, {source: float(share) for source, share in pairs})
+        except ValueError:
+            parser.error(f"{option_string} {' '.join(values)}; expected SOURCE=SHARE, such as nyu=0.15")
 
 
 def size_of(text):
@@ -244,6 +269,8 @@ def main():
     parser.add_argument("--resume", action="store_true", help="go on from the checkpoint in --output, if there is one")
     parser.add_argument("--batch", type=int, default=16)
     parser.add_argument("--learning-rate", type=float, default=1.5e-3, help="the highest (default: 1.5e-3)")
+    parser.add_argument("--warm-up", type=int, default=200, metavar="STEPS",
+                        help="steps in which the learning rate rises (default: 200)")
     parser.add_argument("--encoder-rate", type=float, default=1.0, metavar="SHARE",
                         help="the contracting path's learning rate, as a share of the others' (default: 1)")
     parser.add_argument("--optimizer", choices=("adamw", "adam"), default="adamw")
@@ -252,8 +279,21 @@ def main():
     parser.add_argument("--dropout", type=float, default=0.1)
     parser.add_argument("--class-weights", type=float, nargs=5, default=[1.0, 1.3, 1.0, 1.0, 1.0],
                         help="in the loss: background, person, chair, table, tv")
+    parser.add_argument("--coarse-share", type=float, default=0.2,
+                        help="weight in the loss of each of the coarse heads; an ONNX file holds none, so that they would "
+                             "disturb a short run from it: 0 (default: 0.2)")
     parser.add_argument("--whole", type=float, default=0.25,
                         help="how often a picture is shown whole, not a part of it (default: 0.25; in a last run 0.5)")
+    parser.add_argument("--shares", nargs="+", action=Shares, metavar="SOURCE=SHARE",
+                        help="how often samples are of a source of the pack, or 'composed' (default: see samples.py)")
+    parser.add_argument("--room-roll", type=float, default=0.0, metavar="DEGREES",
+                        help="standard deviation of the roll in half of the pictures of rooms, which are blurred twice as "
+                             "often then; 0 = as all pictures (default: 0)")
+    parser.add_argument("--keep-blocks", type=int, default=0, metavar="COUNT",
+                        help="the stem and the first blocks of the contracting path of --size mobile, which cost most of "
+                             "the time, keep their weights (default: 0)")
+    parser.add_argument("--keep-normalisation", action="store_true",
+                        help="batch normalisation keeps its mean and variance: for small rates and batches")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--workers", type=int, default=1, help="processes that make samples (default: 1; 0 = none)")

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <numbers>
+
+#include "holdfast/tracking/tracking_settings.hpp"
+
+namespace holdfast {
+
+/// Whether a pose contradicts the inertia of a camera. `change` takes the pose that constant velocity predicts to the
+/// pose in question, T_camera_predicted, after `interval` seconds; allowed are `factor` times
+/// TrackingSettings::jump_distance and jump_angle for each 1/30 s, and for 1/30 s at least.
+inline bool contradicts_inertia(const Eigen::Isometry3d& change, double interval, const TrackingSettings& settings,
+                                double factor = 1.0) {
+  constexpr double frame_interval = 1.0 / 30.0;  // s
+  const double frames = factor * std::max(1.0, interval / frame_interval);
+  return change.translation().norm() > settings.jump_distance * frames ||
+         Eigen::AngleAxisd(change.linear()).angle() > settings.jump_angle * std::numbers::pi / 180.0 * frames;
+}
+
+}  // namespace holdfast

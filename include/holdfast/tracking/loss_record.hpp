@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+
+namespace holdfast {
+
+/// What became of the frames around losses.
+struct LossRecord {
+  std::size_t tracked_backwards = 0;  ///< frames that had no pose and got one after later frames
+  std::size_t pieces = 0;             ///< pieces of the map that a lost camera began
+  std::size_t left_out = 0;           ///< frames that had a pose in a piece that nothing joined with the rest
+};
+
+}  // namespace holdfast

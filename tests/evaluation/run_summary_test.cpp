@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/evaluation/run_summary.hpp"
+
+#include <gtest/gtest.h>
+
+namespace holdfast {
+namespace {
+
+TEST(RunSummary, StagesAreInTheOrderOfThePipeline) {
+  RunSummary summary;
+  FrameResult first;
+  for (const char* stage : {"frame", "features", "mapping: insertion", "dense map: keep"})
+    first.times.add(stage, 0.001);
+  summary.add(first, 0.002);
+  StageTimes background;
+  for (const char* stage : {"loops: candidates", "mapping: points", "segmentation"}) background.add(stage, 0.001);
+  summary.add(background);
+  FrameResult second;
+  for (const char* stage : {"frame", "predict", "local map"}) second.times.add(stage, 0.001);
+  summary.add(second, 0.002);
+
+  std::vector<std::string> names;
+  double shares = 0.0;
+  for (const StageRow& row : summary.stages()) {
+    names.push_back(row.stage);
+    shares += row.share;
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"decode", "frame", "features", "predict", "local map", "segmentation",
+                                             "mapping: insertion", "mapping: points", "loops: candidates",
+                                             "dense map: keep"}));
+  EXPECT_NEAR(shares, 1.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace holdfast
