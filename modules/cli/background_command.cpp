@@ -27,7 +27,7 @@ namespace holdfast {
 
 namespace {
 
-struct Arguments : ConfiguredArguments {
+struct BackgroundArguments : ConfiguredArguments {
   int every = 1;
 };
 
@@ -40,7 +40,7 @@ void write_png(const std::filesystem::path& file, const cv::Mat& picture) {
 }
 
 /// Pictures of every n-th kept keyframe, and a table of what was replaced in them.
-std::size_t write_pictures(const StaticScene& scene, const Map& map, const Arguments& arguments) {
+std::size_t write_pictures(const StaticScene& scene, const Map& map, const BackgroundArguments& arguments) {
   const BackgroundPainter painter(scene, map);
   const std::filesystem::path folder = arguments.output / pictures_folder;
   std::filesystem::create_directories(folder);
@@ -61,7 +61,7 @@ std::size_t write_pictures(const StaticScene& scene, const Map& map, const Argum
   return count;
 }
 
-int print_end(const Arguments& arguments, const RunRecord& record, std::size_t pictures) {
+int print_end(const BackgroundArguments& arguments, const RunRecord& record, std::size_t pictures) {
   const bool was_interrupted = record.was_interrupted || interrupted();
   if (!record.failure.empty())
     print_error(record.failure);
@@ -74,7 +74,7 @@ int print_end(const Arguments& arguments, const RunRecord& record, std::size_t p
   return record.failure.empty() && pictures > 0 ? 0 : 1;
 }
 
-int draw_background(const Arguments& arguments, const ProgramHost& host) {
+int draw_background(const BackgroundArguments& arguments, const ProgramHost& host) {
   cv::setNumThreads(1);
   catch_interrupts();
   Registry registry = host.modules();
@@ -101,7 +101,7 @@ int draw_background(const Arguments& arguments, const ProgramHost& host) {
 }  // namespace
 
 void add_background_command(CLI::App& app, int& exit_code, const ProgramHost& host) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<BackgroundArguments>();
   CLI::App* command = app.add_subcommand("background", "Draw keyframes with what moves replaced by what is behind it");
   command->footer(
       "\nRuns the pipeline with `dense_map.enabled: true` and writes into DIR/background, per keyframe:\n"

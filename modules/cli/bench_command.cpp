@@ -37,7 +37,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct BenchArguments {
   std::string matrix;
   fs::path output;
   int jobs = 1;
@@ -65,7 +65,7 @@ void sort_diagnostics(std::vector<Diagnostic>& diagnostics) {
   });
 }
 
-std::string time_text(double seconds) {
+std::string duration_text(double seconds) {
   const int whole = static_cast<int>(seconds + 0.5);
   if (whole < 100) return std::to_string(whole) + " s";
   return whole < 6000 ? std::to_string((whole + 30) / 60) + " min" : fixed_text(seconds / 3600.0, 1) + " h";
@@ -76,8 +76,8 @@ void print_end(const PlannedRun& run, const RunResult& result, const RunCost& co
   text += result.counts() ? "ATE RMSE " + error_text(result.errors[0][0]) + " m, coverage " +
                                 fixed_text(100.0 * result.coverage(), 1) + " %"
                           : red(outcome_text(result), STDERR_FILENO);
-  text += ", " + time_text(cost.process.wall_seconds);
-  if (progress.done < progress.total) text += "; " + time_text(progress.seconds_left) + " left";
+  text += ", " + duration_text(cost.process.wall_seconds);
+  if (progress.done < progress.total) text += "; " + duration_text(progress.seconds_left) + " left";
   std::fprintf(stderr, "%s\n", text.c_str());
 }
 
@@ -88,7 +88,7 @@ fs::path own_program() {
   return program;
 }
 
-void prepare_folder(const Arguments& arguments) {
+void prepare_folder(const BenchArguments& arguments) {
   std::error_code ignored;
   if (!arguments.resume && !arguments.attach && fs::exists(arguments.output, ignored) &&
       !fs::is_empty(arguments.output, ignored))
@@ -99,7 +99,7 @@ void prepare_folder(const Arguments& arguments) {
     throw InputError({arguments.output.string()}, "the output folder cannot be made");
 }
 
-std::string command_to_resume(const Arguments& arguments, const ProgramHost& host) {
+std::string command_to_resume(const BenchArguments& arguments, const ProgramHost& host) {
   std::string text;
   for (const std::string& word : host.command) text += word + " ";
   if (text.empty()) text = "holdfast ";
@@ -115,7 +115,7 @@ std::string command_to_resume(const Arguments& arguments, const ProgramHost& hos
 }
 
 /// What executes one run of this bench on another machine that has the same files, when `--run ID` is added.
-std::vector<std::string> command_of_one_run(const Arguments& arguments, const Matrix& matrix,
+std::vector<std::string> command_of_one_run(const BenchArguments& arguments, const Matrix& matrix,
                                             const std::vector<std::string>& program) {
   std::vector<std::string> words = program;
   words.insert(words.end(),
@@ -126,7 +126,7 @@ std::vector<std::string> command_of_one_run(const Arguments& arguments, const Ma
 }
 
 /// The executor of the matrix, as options of the command change it.
-void choose_executor(const Arguments& arguments, const Matrix& matrix, BenchOptions& options,
+void choose_executor(const BenchArguments& arguments, const Matrix& matrix, BenchOptions& options,
                      std::vector<Diagnostic>& diagnostics) {
   const std::string& name = arguments.executor.empty() ? matrix.executor.name : arguments.executor;
   options.executor = name == "slurm" ? ExecutorKind::slurm : ExecutorKind::local;
@@ -141,7 +141,7 @@ void choose_executor(const Arguments& arguments, const Matrix& matrix, BenchOpti
 }
 
 /// One run, as a task of an executor. Reports nothing but what is wrong.
-void execute_one(const Arguments& arguments, const RunPlan& plan, const BenchOptions& options, int& exit_code) {
+void execute_one(const BenchArguments& arguments, const RunPlan& plan, const BenchOptions& options, int& exit_code) {
   for (std::size_t i = 0; i < plan.runs.size(); ++i) {
     if (plan.runs[i].id != arguments.run) continue;
     fs::create_directories(options.output / "runs");
@@ -151,7 +151,7 @@ void execute_one(const Arguments& arguments, const RunPlan& plan, const BenchOpt
   throw UsageError("the matrix has no run '" + arguments.run + "'; --dry-run lists all");
 }
 
-void bench(const Arguments& arguments, const ProgramHost& host, int& exit_code) {
+void bench(const BenchArguments& arguments, const ProgramHost& host, int& exit_code) {
   std::vector<Diagnostic> diagnostics;
   Matrix matrix = read_matrix(arguments.matrix, variables_of(arguments.data), diagnostics);
   matrix.timing = matrix.timing || arguments.timing;
@@ -214,7 +214,7 @@ void bench(const Arguments& arguments, const ProgramHost& host, int& exit_code) 
 }  // namespace
 
 void add_bench_command(CLI::App& app, int& exit_code, const ProgramHost& host) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<BenchArguments>();
   CLI::App* command = app.add_subcommand("bench", "Run a matrix of systems, configurations, sequences and repeats");
   command->footer(
       "\nEverything that is wrong with the matrix or with a configuration that follows from it is reported at once,\n"

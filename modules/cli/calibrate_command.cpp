@@ -25,7 +25,7 @@ namespace holdfast {
 
 namespace {
 
-struct Arguments {
+struct CalibrateArguments {
   std::vector<std::filesystem::path> images;
   std::string configuration;
   std::vector<std::string> overrides;
@@ -37,7 +37,7 @@ struct Arguments {
   CalibrationViews::Options views;
 };
 
-CalibrationBoard board_of(const Arguments& arguments) {
+CalibrationBoard board_of(const CalibrateArguments& arguments) {
   CalibrationBoard board;
   board.pattern = find_board_pattern(arguments.pattern).value();
   char rest = 0;
@@ -60,14 +60,14 @@ void write_plot(const std::string& file, const Calibration& calibration, const C
   write_file_atomically(file, std::string(bytes.begin(), bytes.end()));
 }
 
-int print_board(const Arguments& arguments) {
+int print_board(const CalibrateArguments& arguments) {
   require_new_files({arguments.print_board}, arguments.overwrite);
   write_output(arguments.print_board, board_svg(board_of(arguments)));
   return 0;
 }
 
 /// The views of whatever the arguments name.
-void collect(const Arguments& arguments, const ProgramHost& host, CalibrationViews& views) {
+void collect(const CalibrateArguments& arguments, const ProgramHost& host, CalibrationViews& views) {
   if (arguments.configuration.empty()) return views.add_files(arguments.images);
   Registry registry = host.modules();
   const Configuration configuration = load_configuration(arguments.configuration, arguments.overrides, registry);
@@ -75,7 +75,7 @@ void collect(const Arguments& arguments, const ProgramHost& host, CalibrationVie
   views.add_source(*build_source(configuration, registry));
 }
 
-void require_views(const Arguments& arguments, const CalibrationViews& views) {
+void require_views(const CalibrateArguments& arguments, const CalibrationViews& views) {
   constexpr std::size_t fewest = 3;
   if (views.views().size() >= fewest) return;
   const std::string place =
@@ -89,7 +89,7 @@ void require_views(const Arguments& arguments, const CalibrationViews& views) {
                        ", sharp and evenly lit");
 }
 
-int calibrate_camera(const Arguments& arguments, const ProgramHost& host) {
+int calibrate_camera(const CalibrateArguments& arguments, const ProgramHost& host) {
   if (arguments.images.empty() == arguments.configuration.empty())
     throw UsageError("expected either images, a folder of images or a video, or --config CONFIG");
   if (arguments.json == "-" && arguments.output == "-")
@@ -126,7 +126,7 @@ int calibrate_camera(const Arguments& arguments, const ProgramHost& host) {
   return 0;
 }
 
-void add_board_options(CLI::App& command, Arguments& arguments) {
+void add_board_options(CLI::App& command, CalibrateArguments& arguments) {
   command.add_option("--board", arguments.board, "Inner corners of the board, where four squares meet")
       ->type_name("COLUMNSxROWS")
       ->capture_default_str();
@@ -151,7 +151,7 @@ void add_board_options(CLI::App& command, Arguments& arguments) {
       ->type_name("FILE");
 }
 
-constexpr const char* explanation =
+constexpr const char* calibrate_explanation =
     "\nPhotograph a printed board twenty times: in every part of the image, near enough to fill a third of it, turned "
     "by\n"
     "20 to 45 degrees to each side, up and down. The report says how far the result can be trusted and what to "
@@ -167,9 +167,9 @@ constexpr const char* explanation =
 }  // namespace
 
 void add_calibrate_command(CLI::App& app, int& exit_code, const ProgramHost& host) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<CalibrateArguments>();
   CLI::App* command = app.add_subcommand("calibrate", "Find the numbers of a camera from pictures of a board");
-  command->footer(explanation);
+  command->footer(calibrate_explanation);
   command->add_option("IMAGES", arguments->images, "Folders of images, images, and videos");
   command->add_option("--config", arguments->configuration, "Take the images of this configuration's source instead")
       ->type_name("CONFIG");

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/size_text.hpp"
 #include "holdfast/image_files/image_decoder.hpp"
 #include "terminal.hpp"
 
@@ -42,8 +43,6 @@ std::vector<fs::path> listed(const std::vector<fs::path>& files) {
   }
   return result;
 }
-
-std::string size_text(const cv::Size& size) { return std::to_string(size.width) + "x" + std::to_string(size.height); }
 
 cv::Mat to_grey(const cv::Mat& image) {
   if (image.channels() == 1) return image;
@@ -96,8 +95,9 @@ void CalibrationViews::require_size(const cv::Mat& image, const std::string& nam
     first_ = name;
   }
   if (image.size() != size_)
-    throw InputError({name}, "found an image of " + size_text(image.size()) + " pixels; expected " + size_text(size_) +
-                                 " as of " + first_ + ": all images must come from one camera in one mode");
+    throw InputError({name}, "found an image of " + size_text(image.cols, image.rows) + " pixels; expected " +
+                                 size_text(size_.width, size_.height) + " as of " + first_ +
+                                 ": all images must come from one camera in one mode");
 }
 
 void CalibrationViews::add_image(const cv::Mat& grey, const std::string& name) {

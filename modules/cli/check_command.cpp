@@ -19,13 +19,13 @@ namespace holdfast {
 
 namespace {
 
-struct Arguments {
+struct CheckArguments {
   std::string configuration;
   std::vector<std::string> overrides;
   bool print = false, without_data = false;
 };
 
-void check(const Arguments& arguments, const ProgramHost& host) {
+void check(const CheckArguments& arguments, const ProgramHost& host) {
   Registry registry = host.modules();
   const Configuration configuration = load_configuration(arguments.configuration, arguments.overrides, registry);
   print_warnings(configuration.warnings);
@@ -47,7 +47,7 @@ void check(const Arguments& arguments, const ProgramHost& host) {
 }  // namespace
 
 void add_check_command(CLI::App& app, int&, const ProgramHost& host) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<CheckArguments>();
   CLI::App* command = app.add_subcommand("check", "Check a configuration without running it");
   command->footer(
       "\nEvery mistake is reported at once, as file:line:column: what was found, what was expected. Then every module\n"

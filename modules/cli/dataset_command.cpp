@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct DatasetArguments {
   std::string name;  ///< of a recipe
   fs::path folder, output;
   double max_time_difference = 0.02;
@@ -38,7 +38,7 @@ const DatasetRecipe& required_recipe(const std::string& name) {
 }
 
 /// The recipe that was named, or the one of the folder; nullptr when neither.
-const DatasetRecipe* chosen_recipe(const Arguments& arguments) {
+const DatasetRecipe* chosen_recipe(const DatasetArguments& arguments) {
   return arguments.name.empty() ? recipe_of_folder(arguments.folder) : &required_recipe(arguments.name);
 }
 
@@ -113,7 +113,7 @@ void show(const DatasetRecipe& recipe) {
   line("remark", recipe.about);
 }
 
-void check(const Arguments& arguments, int& exit_code) {
+void check(const DatasetArguments& arguments, int& exit_code) {
   const DatasetRecipe* recipe = chosen_recipe(arguments);
   const DatasetCheck result = check_dataset(arguments.folder, recipe);
   for (const std::string& fact : result.facts) std::printf("  %s\n", printable(fact).c_str());
@@ -129,7 +129,7 @@ void check(const Arguments& arguments, int& exit_code) {
   exit_code = is_good ? 0 : 1;
 }
 
-void associate(const Arguments& arguments, int& exit_code) {
+void associate(const DatasetArguments& arguments, int& exit_code) {
   const DatasetRecipe* recipe = chosen_recipe(arguments);
   const fs::path output = arguments.output.empty() ? arguments.folder / "associations.txt" : arguments.output;
   require_new_files({output}, arguments.overwrite);
@@ -144,7 +144,7 @@ void associate(const Arguments& arguments, int& exit_code) {
 }  // namespace
 
 void add_dataset_command(CLI::App& app, int& exit_code) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<DatasetArguments>();
   CLI::App* command = app.add_subcommand("dataset", "What recordings there are, and whether a folder holds one");
   command->require_subcommand(1);
   command->footer(

@@ -35,7 +35,7 @@ struct EvaluateArguments {
   EvaluationOptions options;
 };
 
-constexpr const char* explanation = R"(
+constexpr const char* evaluate_explanation = R"(
 Trajectories are in one of these formats, which --format auto recognises; '#' begins a comment:
   tum        timestamp tx ty tz qx qy qz qw, separated by blanks; seconds and metres
   kitti      12 numbers, the rows of T_world_camera; stamps from --times, else ten poses a second
@@ -120,7 +120,7 @@ void add_evaluate_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<EvaluateArguments>();
   CLI::App* command =
       app.add_subcommand("evaluate", "Compare an estimated trajectory with the truth: ATE, RPE, coverage");
-  command->footer(explanation);
+  command->footer(evaluate_explanation);
   command->add_option("TRUTH", arguments->truth, "True trajectory; '-': standard input")->required();
   command->add_option("ESTIMATE", arguments->estimate, "Estimated trajectory; '-': standard input")->required();
   command

@@ -15,6 +15,7 @@
 
 #include "holdfast/config/configuration.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/size_text.hpp"
 #include "holdfast/core/stage_times.hpp"
 #include "holdfast/core/text_file.hpp"
 #include "holdfast/core/trajectory.hpp"
@@ -32,7 +33,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Arguments {
+struct EvaluateSegmentationArguments {
   std::string configuration;
   std::vector<std::string> overrides;
   std::string labels, predictions, images;
@@ -42,7 +43,7 @@ struct Arguments {
   bool overwrite = false, quiet = false;
 };
 
-constexpr const char* explanation = R"(
+constexpr const char* evaluate_segmentation_explanation = R"(
 Compares, with the true labels in --labels,
   --predictions DIR        label images of the same names
   CONFIG --images DIR      what the segmenter of a configuration finds in images of the same names
@@ -81,12 +82,10 @@ std::vector<std::string> read_names(const fs::path& file) {
   return names;
 }
 
-std::string size_text(const cv::Size& size) { return std::to_string(size.width) + "x" + std::to_string(size.height); }
-
 void require_same_size(const fs::path& file, const cv::Size& found, const cv::Size& labels) {
   if (found != labels)
-    throw InputError({file.string()}, "is " + size_text(found) + " pixels, its labels " + size_text(labels) +
-                                          "; expected the same size");
+    throw InputError({file.string()}, "is " + size_text(found.width, found.height) + " pixels, its labels " +
+                                          size_text(labels.width, labels.height) + "; expected the same size");
 }
 
 /// A label image and its counterpart.
@@ -95,7 +94,8 @@ struct Pair {
 };
 
 /// Those with labels and a counterpart, and of a list all: a name of it that lacks one is an error.
-std::vector<Pair> pairs_of(const Arguments& arguments, const std::map<std::string, fs::path>& labels,
+std::vector<Pair> pairs_of(const EvaluateSegmentationArguments& arguments,
+                           const std::map<std::string, fs::path>& labels,
                            const std::map<std::string, fs::path>& others) {
   std::vector<Pair> pairs;
   if (arguments.list.empty()) {
@@ -125,8 +125,8 @@ struct Outcome {
 };
 
 template <class Found>
-Outcome compare(const Arguments& arguments, const std::map<std::string, fs::path>& others, LabelFolder& labels,
-                const Found& found_of) {
+Outcome compare(const EvaluateSegmentationArguments& arguments, const std::map<std::string, fs::path>& others,
+                LabelFolder& labels, const Found& found_of) {
   SegmentationEvaluator evaluator(labels.classes());
   const std::vector<Pair> pairs = pairs_of(arguments, labels.files(), others);
   Progress progress(pairs.size(), arguments.quiet);
@@ -139,7 +139,7 @@ Outcome compare(const Arguments& arguments, const std::map<std::string, fs::path
   return {evaluator.result(), {}};
 }
 
-Outcome compare_folders(const Arguments& arguments) {
+Outcome compare_folders(const EvaluateSegmentationArguments& arguments) {
   LabelFolder labels(arguments.labels, arguments.label_map, "--label-map");
   LabelFolder predictions(arguments.predictions, arguments.prediction_map, "--prediction-map");
   return compare(arguments, predictions.files(), labels, [&](const fs::path& file, const cv::Mat& truth) {
@@ -149,7 +149,8 @@ Outcome compare_folders(const Arguments& arguments) {
   });
 }
 
-Outcome segment_images(const Arguments& arguments, const Configuration& configuration, const Registry& registry) {
+Outcome segment_images(const EvaluateSegmentationArguments& arguments, const Configuration& configuration,
+                       const Registry& registry) {
   LabelFolder labels(arguments.labels, arguments.label_map, "--label-map");
   const auto segmenter =
       registry.create<Segmenter>(configuration.segmenter.name, configuration.segmenter.values, CreationContext{});
@@ -170,7 +171,8 @@ Outcome segment_images(const Arguments& arguments, const Configuration& configur
   return outcome;
 }
 
-Outcome segment_source(const Arguments& arguments, const Configuration& configuration, const Registry& registry) {
+Outcome segment_source(const EvaluateSegmentationArguments& arguments, const Configuration& configuration,
+                       const Registry& registry) {
   BuiltSegmenter built = build_segmenter(configuration, registry);
   const SourceDescription description = built.source->describe();
   const std::vector<std::string>& known = description.class_names;
@@ -201,7 +203,7 @@ Outcome segment_source(const Arguments& arguments, const Configuration& configur
   return {evaluator.result(), seconds / static_cast<double>(evaluator.result().images)};
 }
 
-Outcome evaluate_by(const Arguments& arguments, const ProgramHost& host) {
+Outcome evaluate_by(const EvaluateSegmentationArguments& arguments, const ProgramHost& host) {
   if (arguments.configuration.empty()) {
     if (arguments.labels.empty() || arguments.predictions.empty())
       throw UsageError("nothing to compare; expected --labels with --predictions, or a configuration");
@@ -218,7 +220,7 @@ Outcome evaluate_by(const Arguments& arguments, const ProgramHost& host) {
                                   : segment_images(arguments, configuration, registry);
 }
 
-int run(const Arguments& arguments, const ProgramHost& host) {
+int run(const EvaluateSegmentationArguments& arguments, const ProgramHost& host) {
   catch_interrupts();
   require_new_files({arguments.json}, arguments.overwrite);
   const Outcome outcome = evaluate_by(arguments, host);
@@ -234,10 +236,10 @@ int run(const Arguments& arguments, const ProgramHost& host) {
 }  // namespace
 
 void add_evaluate_segmentation_command(CLI::App& app, int& exit_code, const ProgramHost& host) {
-  const auto arguments = std::make_shared<Arguments>();
+  const auto arguments = std::make_shared<EvaluateSegmentationArguments>();
   CLI::App* command =
       app.add_subcommand("evaluate-segmentation", "Compare label images, or a segmenter, with the truth");
-  command->footer(explanation);
+  command->footer(evaluate_segmentation_explanation);
   command->add_option("CONFIG", arguments->configuration, "Configuration in YAML, whose segmenter is measured");
   command->add_option("--labels", arguments->labels, "Folder of true label images (PNG)")->type_name("DIR");
   command->add_option("--predictions", arguments->predictions, "Folder of label images to compare with them")

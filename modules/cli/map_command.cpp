@@ -24,7 +24,7 @@ struct MapArguments {
   std::string points_to, trajectory_to, json_to;
 };
 
-constexpr const char* explanation = R"(
+constexpr const char* map_explanation = R"(
 A map (.hfm) is written by `holdfast run` into its results folder. Its layout and the members of
 the JSON are described in docs/map_format.md.
 
@@ -91,7 +91,7 @@ void add_map_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<MapArguments>();
   CLI::App* command = app.add_subcommand("map", "Show what a saved map holds, or export it for other programs");
   command->require_subcommand(1);
-  command->footer(explanation);
+  command->footer(map_explanation);
 
   CLI::App* info = command->add_subcommand("info", "Print cameras, counts, time span and extent of a map");
   info->footer(info_explanation);

@@ -21,14 +21,14 @@ namespace holdfast {
 
 namespace {
 
-struct Arguments {
+struct ModulesArguments {
   std::string name;
   std::vector<std::string> plugins;
   bool markdown = false;
   bool json = false;
 };
 
-int print_modules(const Arguments& arguments, const ProgramHost& host) {
+int print_modules(const ModulesArguments& arguments, const ProgramHost& host) {
   Registry registry = host.modules();
   for (const std::string& plugin : arguments.plugins) load_plugin(registry, plugin);
   const ReferenceFormat format = arguments.json       ? ReferenceFormat::json
@@ -49,7 +49,7 @@ int print_modules(const Arguments& arguments, const ProgramHost& host) {
 }  // namespace
 
 void add_modules_command(CLI::App& app, int& exit_code, const ProgramHost& host) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ModulesArguments>();
   CLI::App* command = app.add_subcommand("modules", "Print what a configuration can say: modules and their parameters");
   command->footer(
       "\nThe reference is made from the same tables that check configurations.\n\n"

@@ -19,12 +19,12 @@ namespace holdfast {
 
 namespace {
 
-struct Arguments : ConfiguredArguments {
+struct RecordArguments : ConfiguredArguments {
   std::uint64_t frames = 0;
 };
 
 /// Until the source ends, a signal comes, there are enough frames or something throws.
-void record_frames(FrameSource& source, const Arguments& arguments, Recorder& recorder) {
+void record_frames(FrameSource& source, const RecordArguments& arguments, Recorder& recorder) {
   std::optional<std::uint64_t> total = source.describe().frame_count;
   if (arguments.frames > 0) total = std::min(total.value_or(arguments.frames), arguments.frames);
   Progress progress(total, arguments.quiet);
@@ -36,7 +36,7 @@ void record_frames(FrameSource& source, const Arguments& arguments, Recorder& re
   }
 }
 
-int record(const Arguments& arguments, const ProgramHost& host) {
+int record(const RecordArguments& arguments, const ProgramHost& host) {
   catch_interrupts();
   Registry registry = host.modules();
   const Configuration configuration = load_configuration(arguments.configuration, arguments.overrides, registry);
@@ -73,7 +73,7 @@ int record(const Arguments& arguments, const ProgramHost& host) {
 }  // namespace
 
 void add_record_command(CLI::App& app, int& exit_code, const ProgramHost& host) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RecordArguments>();
   CLI::App* command = app.add_subcommand("record", "Record the frames of any source with depth, in TUM layout");
   command->footer(
       "\nReads the source of a configuration, tracks nothing, and writes into the output folder:\n"

@@ -29,13 +29,13 @@ namespace {
 
 constexpr int low_coverage_exit_code = 3;
 
-struct Arguments : ConfiguredArguments {
+struct RunArguments : ConfiguredArguments {
   std::filesystem::path map, record;
   bool localise = false, strict = false, view = false;
 };
 
 /// Results would take the place of the map that the run begins with.
-void keep_map_out_of_results(const Arguments& arguments) {
+void keep_map_out_of_results(const RunArguments& arguments) {
   std::error_code ignored;
   if (arguments.map.empty() || !std::filesystem::exists(arguments.map, ignored)) return;
   if (std::filesystem::equivalent(std::filesystem::absolute(arguments.map).parent_path(), arguments.output, ignored))
@@ -43,7 +43,7 @@ void keep_map_out_of_results(const Arguments& arguments) {
                      "lies in the output folder, where this run's results would replace it; choose another --output");
 }
 
-void keep_recording_out_of_results(const Arguments& arguments) {
+void keep_recording_out_of_results(const RunArguments& arguments) {
   if (arguments.record.empty()) return;
   const auto canonical = [](const std::filesystem::path& folder) {  // with a slash at the end, or none, the same
     return std::filesystem::weakly_canonical(std::filesystem::absolute(folder / "")).parent_path();
@@ -63,7 +63,7 @@ struct Running {
 };
 
 /// Takes the folder; a run that was killed there is named, so that nobody takes its results for whole ones.
-FolderLock prepare_folder(const Arguments& arguments) {
+FolderLock prepare_folder(const RunArguments& arguments) {
   try {
     return prepare_output_folder(arguments.output, arguments.overwrite, result_names());
   } catch (const OutputFolderNotEmpty&) {
@@ -77,7 +77,7 @@ FolderLock prepare_folder(const Arguments& arguments) {
 }
 
 /// Shows the progress of a run, prepares its folder, keeps its poses as they come and asks for its end after a signal.
-RunOptions options_of(const Arguments& arguments, const Registry& registry, const Configuration& configuration,
+RunOptions options_of(const RunArguments& arguments, const Registry& registry, const Configuration& configuration,
                       const Stopwatch& since_start, Running& running) {
   RunOptions options;
   if (!arguments.record.empty())
@@ -105,7 +105,7 @@ RunOptions options_of(const Arguments& arguments, const Registry& registry, cons
   return options;
 }
 
-int print_end(const Arguments& arguments, const RunRecord& record) {
+int print_end(const RunArguments& arguments, const RunRecord& record) {
   if (!arguments.quiet && record.summary.frames() > 0) std::fputs(printable(summary_text(record)).c_str(), stdout);
   const std::string warning = coverage_warning(record);
   if (!record.failure.empty())
@@ -125,12 +125,12 @@ int print_end(const Arguments& arguments, const RunRecord& record) {
 }
 
 /// The last line: where to look.
-void print_report(const Arguments& arguments) {
+void print_report(const RunArguments& arguments) {
   if (!arguments.quiet)
     std::printf("%-20s %s\n", "report", printable((arguments.output / "report.html").string()).c_str());
 }
 
-int run_configuration(const Arguments& arguments, const ProgramHost& host) {
+int run_configuration(const RunArguments& arguments, const ProgramHost& host) {
   const Stopwatch since_start;
   cv::setNumThreads(1);  // OpenCV's own threads would change neither result nor, at this size, time for the better
   catch_interrupts();
@@ -164,7 +164,7 @@ int run_configuration(const Arguments& arguments, const ProgramHost& host) {
 }  // namespace
 
 void add_run_command(CLI::App& app, int& exit_code, const ProgramHost& host) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<RunArguments>();
   CLI::App* command = app.add_subcommand("run", "Track a camera through a recording or a simulation");
   command->footer(
       "\nWrites into the output folder:\n"

@@ -28,7 +28,7 @@ namespace holdfast {
 
 namespace {
 
-struct Arguments : ConfiguredArguments {
+struct SegmentArguments : ConfiguredArguments {
   std::uint64_t every = 1;
 };
 
@@ -38,7 +38,7 @@ struct Counts {
 };
 
 /// Until the source ends, a signal comes or something throws.
-void segment_frames(BuiltSegmenter& built, const Arguments& arguments, LabelWriter& writer, Counts& counts) {
+void segment_frames(BuiltSegmenter& built, const SegmentArguments& arguments, LabelWriter& writer, Counts& counts) {
   Progress progress(built.source->describe().frame_count, arguments.quiet);
   std::uint64_t done = 0;
   while (!interrupted()) {
@@ -55,7 +55,7 @@ void segment_frames(BuiltSegmenter& built, const Arguments& arguments, LabelWrit
   }
 }
 
-int segment(const Arguments& arguments, const ProgramHost& host) {
+int segment(const SegmentArguments& arguments, const ProgramHost& host) {
   cv::setNumThreads(1);  // as `run` does; the segmenter may ask for more
   catch_interrupts();
   Registry registry = host.modules();
@@ -92,7 +92,7 @@ int segment(const Arguments& arguments, const ProgramHost& host) {
 }  // namespace
 
 void add_segment_command(CLI::App& app, int& exit_code, const ProgramHost& host) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SegmentArguments>();
   CLI::App* command = app.add_subcommand("segment", "Segment a recording once, for the segmenter 'precomputed'");
   command->footer(
       "\nRuns the source and the segmenter of a configuration, nothing else, so that a slow network works once and "

@@ -26,7 +26,7 @@ namespace holdfast {
 
 namespace {
 
-struct Arguments {
+struct SimulateArguments {
   std::filesystem::path scene;
   std::filesystem::path output;
   std::filesystem::path preview;
@@ -40,7 +40,7 @@ struct Arguments {
 };
 
 /// What the options say, as overrides of the scene: those with a name of their own first.
-std::vector<std::string> all_overrides(const Arguments& arguments) {
+std::vector<std::string> all_overrides(const SimulateArguments& arguments) {
   std::vector<std::string> overrides;
   const auto add = [&](const char* key, const std::optional<std::string>& value) {
     if (value) overrides.push_back(std::string(key) + "=" + *value);
@@ -59,7 +59,7 @@ std::vector<std::string> all_overrides(const Arguments& arguments) {
   return overrides;
 }
 
-int simulate(const Arguments& arguments) {
+int simulate(const SimulateArguments& arguments) {
   if (arguments.output.empty() && arguments.preview.empty())
     throw UsageError("nothing to write; expected --output FOLDER, --preview FILE.png, or both");
   const std::optional<Camera> camera = find_camera(arguments.camera);
@@ -95,7 +95,7 @@ int simulate(const Arguments& arguments) {
 }  // namespace
 
 void add_simulate_command(CLI::App& app, int& exit_code) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<SimulateArguments>();
   CLI::App* command =
       app.add_subcommand("simulate", "Write a sequence from a simulated scene, in TUM layout with exact truth");
   command->footer(

@@ -12,7 +12,7 @@ namespace holdfast {
 
 namespace {
 
-struct Arguments {
+struct ViewArguments {
   std::filesystem::path results;
   std::string listen = "127.0.0.1";
   int port = 0;
@@ -21,7 +21,7 @@ struct Arguments {
 }  // namespace
 
 void add_view_command(CLI::App& app, int& exit_code) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<ViewArguments>();
   CLI::App* command = app.add_subcommand("view", "Show the results of a run, or a map, in the browser");
   command->footer(
       "\nPrints an address to open and serves it until Ctrl-C. The page shows map, path, keyframes and loops; where "

@@ -17,6 +17,7 @@ std::size_t find_central(const DescriptorBlock& descriptors) {
   const std::size_t count = descriptors.size();
   std::vector<std::uint32_t> candidates(count);
   std::iota(candidates.begin(), candidates.end(), 0U);
+  const auto half = static_cast<std::ptrdiff_t>((count - 1) / 2);
   std::size_t best = 0;
   float best_median = std::numeric_limits<float>::infinity();
   std::vector<float> distances(count * count, 0.0F), row(count);
@@ -24,10 +25,12 @@ std::size_t find_central(const DescriptorBlock& descriptors) {
     float* of_this = &distances[i * count];
     descriptor_distances(descriptors, i, descriptors, std::span(candidates).subspan(i + 1), of_this + i + 1);
     for (std::size_t j = 0; j < i; ++j) of_this[j] = distances[j * count + i];
+    // A smaller median has more distances below the best one, which costs less to count than the median to find.
+    const auto is_below = [best_median](float distance) { return distance < best_median; };
+    if (std::count_if(of_this, of_this + count, is_below) <= half) continue;
     row.assign(of_this, of_this + count);
-    const auto middle = row.begin() + static_cast<std::ptrdiff_t>((count - 1) / 2);
-    std::nth_element(row.begin(), middle, row.end());
-    if (*middle < best_median) best_median = *middle, best = i;
+    std::nth_element(row.begin(), row.begin() + half, row.end());
+    best_median = row[static_cast<std::size_t>(half)], best = i;
   }
   return best;
 }

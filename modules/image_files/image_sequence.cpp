@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "holdfast/core/size_text.hpp"
 #include "holdfast/image_files/image_list.hpp"
 
 namespace holdfast {
 
 namespace {
-
-std::string size_text(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
 
 /// Runs read; what is wrong with an image is told at the line of the list that names it.
 template <class Read>

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/size_text.hpp"
 
 namespace holdfast {
 
@@ -45,7 +46,6 @@ FrameBuilder::FrameBuilder(const Camera& camera, FeatureExtractor& extractor, do
 
 void FrameBuilder::begin(const SensorFrame& sensor_frame, Frame& frame, StageTimes& times) {
   const cv::Mat& colour = sensor_frame.colour;
-  const auto size_text = [](int width, int height) { return std::to_string(width) + "x" + std::to_string(height); };
   const bool is_grey = colour.type() == CV_8UC1;
   if ((!is_grey && colour.type() != CV_8UC3) || colour.cols != camera_->width || colour.rows != camera_->height)
     throw InputError({"frame " + std::to_string(sensor_frame.index)},
