@@ -112,7 +112,7 @@ void orb(benchmark::State& state) {
   OrbExtractor extractor({}, {}, level);
   run_extractor(state, extractor);
 }
-BENCHMARK(orb)->DenseRange(0, 2)->UseManualTime()->Iterations(120)->Unit(benchmark::kMillisecond);
+BENCHMARK(orb)->DenseRange(0, 3)->UseManualTime()->Iterations(120)->Unit(benchmark::kMillisecond);
 
 std::vector<Descriptor256> random_descriptors(std::size_t count) {
   Random random(7);

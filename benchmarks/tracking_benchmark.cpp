@@ -34,7 +34,7 @@ BuiltPipeline build_rgbd(const std::string& extractor) {
   const char* data = std::getenv("HOLDFAST_DATA");
   const std::string source = data != nullptr ? "{ tum: { path: '" + std::string(data) + "/tum_fr1_xyz' } }"
                                              : std::string("{ simulated: { path: xyz, duration: 10 } }");
-  return build("source: " + source + "\ncamera: tum_fr1\nfeatures: " + extractor + "\noptimizer: ceres\n");
+  return build("source: " + source + "\ncamera: tum_fr1\nfeatures: " + extractor + "\noptimizer: schur\n");
 }
 
 /// Threaded, so that the calling thread tracks and does nothing else; the right image has a thread as well.

@@ -2,6 +2,7 @@
 #include "holdfast/tracking/depth_reader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <utility>
 
@@ -22,23 +23,40 @@ float DepthReader::depth_at(const cv::Mat& depth, float x, float y) const {
   const float value = depth.at<float>(row, column);
   if (!is_measured_depth(value)) return 0.0F;
   if (edge_ratio_ <= 0.0) return value;
+  // Opposite neighbours, four on each side; 0 = not measured. Without branches, because most of them are measured, but
+  // not predictably so.
+  constexpr int reach = 2;
+  constexpr std::array<int, 4> column_steps{reach, -reach, 0, reach}, row_steps{0, reach, reach, reach};
+  std::array<float, 4> one{}, other{};
+  const auto measured = [](float neighbour) { return is_measured_depth(neighbour) ? neighbour : 0.0F; };
+  if (column >= reach && row >= reach && column + reach < depth.cols && row + reach < depth.rows) {
+    const auto* above = depth.ptr<float>(row - reach) + column;
+    const auto* level = depth.ptr<float>(row) + column;
+    const auto* below = depth.ptr<float>(row + reach) + column;
+    one = {level[reach], below[-reach], below[0], below[reach]};
+    other = {level[-reach], above[reach], above[0], above[-reach]};
+    for (float& neighbour : one) neighbour = measured(neighbour);
+    for (float& neighbour : other) neighbour = measured(neighbour);
+  } else {
+    const auto at = [&](int c, int r) {
+      return c < 0 || r < 0 || c >= depth.cols || r >= depth.rows ? 0.0F : measured(depth.at<float>(r, c));
+    };
+    for (std::size_t i = 0; i < one.size(); ++i) {
+      one[i] = at(column + column_steps[i], row + row_steps[i]);
+      other[i] = at(column - column_steps[i], row - row_steps[i]);
+    }
+  }
   // At a depth edge the feature may lie on either surface, so that its depth is unknown.
   float nearest = value, farthest = value, sum = value;
   int count = 1;
-  const auto at = [&](int c, int r) {
-    if (c < 0 || r < 0 || c >= depth.cols || r >= depth.rows) return 0.0F;
-    const float neighbour = depth.at<float>(r, c);
-    if (!is_measured_depth(neighbour)) return 0.0F;
-    nearest = std::min(nearest, neighbour);
-    farthest = std::max(farthest, neighbour);
-    return neighbour;
-  };
-  constexpr int reach = 2;
-  for (const auto& [c, r] : {std::pair{reach, 0}, {-reach, reach}, {0, reach}, {reach, reach}}) {
-    const float one = at(column + c, row + r), other = at(column - c, row - r);
-    if (one == 0.0F || other == 0.0F) continue;
-    sum += one + other;
-    count += 2;
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    for (const float neighbour : {one[i], other[i]}) {
+      nearest = std::min(nearest, neighbour > 0.0F ? neighbour : nearest);
+      farthest = std::max(farthest, neighbour);
+    }
+    const bool both = one[i] > 0.0F && other[i] > 0.0F;
+    sum += both ? one[i] + other[i] : 0.0F;
+    count += both ? 2 : 0;
   }
   return farthest - nearest > edge_ratio_ * value ? 0.0F : sum / static_cast<float>(count);
 }

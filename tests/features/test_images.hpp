@@ -44,7 +44,7 @@ inline cv::Mat scene_image(int width, int height, std::uint64_t seed) {
 /// Every SIMD level that this processor has.
 inline std::vector<SimdLevel> simd_levels() {
   std::vector<SimdLevel> levels;
-  for (const SimdLevel level : {SimdLevel::scalar, SimdLevel::sse4, SimdLevel::avx2})
+  for (const SimdLevel level : {SimdLevel::scalar, SimdLevel::sse4, SimdLevel::avx2, SimdLevel::avx512})
     if (level <= simd_level()) levels.push_back(level);
   return levels;
 }

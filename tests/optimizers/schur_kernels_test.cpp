@@ -241,7 +241,7 @@ TEST(SchurKernels, EveryLevelGivesTheSameBits) {
     return all;
   };
   const std::vector<double> expected = solve(SimdLevel::scalar);
-  for (const SimdLevel level : {SimdLevel::sse4, SimdLevel::avx2}) {
+  for (const SimdLevel level : {SimdLevel::sse4, SimdLevel::avx2, SimdLevel::avx512}) {
     if (level > simd_level()) continue;
     const std::vector<double> found = solve(level);
     ASSERT_EQ(found.size(), expected.size());

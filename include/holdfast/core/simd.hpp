@@ -7,7 +7,7 @@
 namespace holdfast {
 
 /// SIMD instruction set of the integer kernels. Every kernel gives bit-identical results at every level.
-enum class SimdLevel { scalar = 0, sse4 = 1, avx2 = 2 };
+enum class SimdLevel { scalar = 0, sse4 = 1, avx2 = 2, avx512 = 3 };
 
 namespace detail {
 inline SimdLevel detect_simd_level() {
@@ -16,18 +16,21 @@ inline SimdLevel detect_simd_level() {
   __builtin_cpu_init();
   if (__builtin_cpu_supports("sse4.1") && __builtin_cpu_supports("popcnt")) level = SimdLevel::sse4;
   if (level == SimdLevel::sse4 && __builtin_cpu_supports("avx2")) level = SimdLevel::avx2;
+  if (level == SimdLevel::avx2 && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))
+    level = SimdLevel::avx512;
 #endif
   if (const char* wanted = std::getenv("HOLDFAST_SIMD")) {
     const std::string_view name = wanted;
     if (name == "scalar") level = SimdLevel::scalar;
     if (name == "sse4" && level > SimdLevel::sse4) level = SimdLevel::sse4;
+    if (name == "avx2" && level > SimdLevel::avx2) level = SimdLevel::avx2;
   }
   return level;
 }
 }  // namespace detail
 
-/// The highest level that this processor supports; the environment variable HOLDFAST_SIMD (scalar, sse4, avx2) can
-/// lower it.
+/// The highest level that this processor supports; the environment variable HOLDFAST_SIMD (scalar, sse4,
+/// avx2) can lower it.
 inline SimdLevel simd_level() {
   static const SimdLevel level = detail::detect_simd_level();
   return level;
@@ -42,6 +45,8 @@ inline const char* to_string(SimdLevel level) {
       return "sse4";
     case SimdLevel::avx2:
       return "avx2";
+    case SimdLevel::avx512:
+      return "avx512";
   }
   return "?";
 }

@@ -45,6 +45,7 @@ void ResizeAxis::build(int input_size, int output_size) {
 const Kernels& kernels(SimdLevel level) {
   HOLDFAST_CHECK(level <= simd_level(), to_string(level) << " asked for, " << to_string(simd_level()) << " available");
 #if defined(__x86_64__)
+  if (level == SimdLevel::avx512) return avx512_kernels();
   if (level == SimdLevel::avx2) return avx2_kernels();
   if (level == SimdLevel::sse4) return sse4_kernels();
 #endif

@@ -104,6 +104,7 @@ const Kernels& scalar_kernels();
 #if defined(__x86_64__)
 const Kernels& sse4_kernels();
 const Kernels& avx2_kernels();
+const Kernels& avx512_kernels();
 #endif
 
 }  // namespace holdfast::orb_plugin

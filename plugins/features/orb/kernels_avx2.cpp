@@ -14,6 +14,7 @@ const Kernels& narrower_kernels() { return sse4_kernels(); }
 
 /// Operations on 32 bytes. interleave_* and pack work within halves of 16 bytes; one undoes the other.
 struct Simd {
+  using Bits = std::uint32_t;
   using Vector = __m256i;
   static constexpr int bytes = 32;
   HOLDFAST_TARGET_INLINE static Vector load(const void* p) { return _mm256_loadu_si256(static_cast<const Vector*>(p)); }
@@ -26,9 +27,7 @@ struct Simd {
   HOLDFAST_TARGET_INLINE static Vector and_not(Vector a, Vector b) { return _mm256_andnot_si256(a, b); }
   HOLDFAST_TARGET_INLINE static Vector equal(Vector a, Vector b) { return _mm256_cmpeq_epi8(a, b); }
   HOLDFAST_TARGET_INLINE static bool any(Vector v) { return _mm256_testz_si256(v, v) == 0; }
-  HOLDFAST_TARGET_INLINE static std::uint32_t mask(Vector v) {
-    return static_cast<std::uint32_t>(_mm256_movemask_epi8(v));
-  }
+  HOLDFAST_TARGET_INLINE static Bits mask(Vector v) { return static_cast<Bits>(_mm256_movemask_epi8(v)); }
   HOLDFAST_TARGET_INLINE static Vector fill16(int value) { return _mm256_set1_epi16(static_cast<short>(value)); }
   HOLDFAST_TARGET_INLINE static Vector fill_pairs(int first, int second) { return fill16(first | second << 8); }
   HOLDFAST_TARGET_INLINE static Vector interleave_low(Vector a, Vector b) { return _mm256_unpacklo_epi8(a, b); }
@@ -60,6 +59,7 @@ struct Simd {
   }
 };
 
+#include "kernels_any_width.inl"
 #include "kernels_vector.inl"
 
 }  // namespace

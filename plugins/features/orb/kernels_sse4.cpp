@@ -17,6 +17,7 @@ const Kernels& narrower_kernels() { return scalar_kernels(); }
 
 /// Operations on 16 bytes.
 struct Simd {
+  using Bits = std::uint32_t;
   using Vector = __m128i;
   static constexpr int bytes = 16;
   HOLDFAST_TARGET_INLINE static Vector load(const void* p) { return _mm_loadu_si128(static_cast<const Vector*>(p)); }
@@ -29,9 +30,7 @@ struct Simd {
   HOLDFAST_TARGET_INLINE static Vector and_not(Vector a, Vector b) { return _mm_andnot_si128(a, b); }
   HOLDFAST_TARGET_INLINE static Vector equal(Vector a, Vector b) { return _mm_cmpeq_epi8(a, b); }
   HOLDFAST_TARGET_INLINE static bool any(Vector v) { return _mm_testz_si128(v, v) == 0; }
-  HOLDFAST_TARGET_INLINE static std::uint32_t mask(Vector v) {
-    return static_cast<std::uint32_t>(_mm_movemask_epi8(v));
-  }
+  HOLDFAST_TARGET_INLINE static Bits mask(Vector v) { return static_cast<Bits>(_mm_movemask_epi8(v)); }
   HOLDFAST_TARGET_INLINE static Vector fill16(int value) { return _mm_set1_epi16(static_cast<short>(value)); }
   HOLDFAST_TARGET_INLINE static Vector fill_pairs(int first, int second) { return fill16(first | second << 8); }
   HOLDFAST_TARGET_INLINE static Vector interleave_low(Vector a, Vector b) { return _mm_unpacklo_epi8(a, b); }
@@ -60,6 +59,7 @@ struct Simd {
   }
 };
 
+#include "kernels_any_width.inl"
 #include "kernels_vector.inl"
 
 /// Four pixels of each of three rows, which begin left of a pixel.

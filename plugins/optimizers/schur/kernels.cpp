@@ -8,7 +8,7 @@ namespace holdfast::schur_plugin {
 const Kernels& kernels(SimdLevel level) {
   HOLDFAST_CHECK(level <= simd_level(), to_string(level) << " asked for, " << to_string(simd_level()) << " available");
 #if defined(__x86_64__)
-  if (level == SimdLevel::avx2) return avx2_kernels();
+  if (level >= SimdLevel::avx2) return avx2_kernels();
 #endif
   return baseline_kernels();
 }
