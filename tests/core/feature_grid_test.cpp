@@ -36,7 +36,7 @@ TEST(FeatureGrid, FindsWhatASearchThroughAllFinds) {
       const auto x = static_cast<float>(random.uniform(-40, 240)), y = static_cast<float>(random.uniform(-40, 240));
       const auto radius = static_cast<float>(random.uniform(0, 60));
       std::vector<std::uint32_t> found, expected;
-      grid.query(x, y, radius, points.x, points.y, found);
+      grid.query(x, y, radius, found);
       for (std::uint32_t i = 0; i < points.x.size(); ++i)
         if (std::abs(points.x[i] - x) < radius && std::abs(points.y[i] - y) < radius) expected.push_back(i);
       std::sort(found.begin(), found.end());
@@ -50,7 +50,7 @@ TEST(FeatureGrid, AppendsInOrderOfCellsThenOfIndices) {
   const std::vector<float> x = {55, 5, 6, 15, 5}, y = {5, 5, 15, 5, 5};
   grid.build(x, y, {0, 0, 60, 20}, 10);
   std::vector<std::uint32_t> found = {99};
-  grid.query(10, 10, 12, x, y, found);
+  grid.query(10, 10, 12, found);
   EXPECT_EQ(found, (std::vector<std::uint32_t>{99, 1, 4, 3, 2}));
 }
 
@@ -58,9 +58,9 @@ TEST(FeatureGrid, OfNothingFindsNothing) {
   FeatureGrid grid;
   std::vector<std::uint32_t> found;
   EXPECT_TRUE(grid.empty());
-  grid.query(0, 0, 10, {}, {}, found);
+  grid.query(0, 0, 10, found);
   grid.build({}, {}, {0, 0, 640, 480});
-  grid.query(0, 0, 10, {}, {}, found);
+  grid.query(0, 0, 10, found);
   EXPECT_TRUE(grid.empty());
   EXPECT_TRUE(found.empty());
 }

@@ -188,7 +188,7 @@ TEST_F(MapFile, AMapThatWasReadGoesOn) {
   const Frame& first = map.keyframe(ids.front()).frame;
   for (std::uint32_t f = 0; f < first.size(); ++f) {
     std::vector<std::uint32_t> found;
-    first.grid.query(first.x[f], first.y[f], 0.5F, first.x, first.y, found);
+    first.grid.query(first.x[f], first.y[f], 0.5F, found);
     EXPECT_THAT(found, ::testing::Contains(f));
   }
   Frame frame = map.keyframe(ids.back()).frame;

@@ -24,7 +24,7 @@ struct ViewTraits<Frame> {
   static int octave(const Frame& frame, std::uint32_t feature) { return frame.features.octave[feature]; }
   static Descriptors descriptors(const Frame& frame) { return frame.features.descriptors; }
   static void near(const Frame& frame, float x, float y, float radius, std::vector<std::uint32_t>& found) {
-    frame.grid.query(x, y, radius, frame.x, frame.y, found);
+    frame.grid.query(x, y, radius, found);
   }
   static bool covers(const Frame& frame, float x, float y) { return frame.grid.covers(x, y); }
   static Pinhole camera(const Frame& frame) {
