@@ -10,9 +10,15 @@ function(holdfast_target_defaults target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   if(HOLDFAST_WARNINGS)
     target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor)
+    if(HOLDFAST_UNITY)
+      # Files that are compiled together see each other's names.
+      target_compile_options(${target} PRIVATE -Wno-shadow)
+    endif()
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-      # False alarms of GCC 12 in its own std::string (bugs 105329, 105562 and 105651).
-      target_compile_options(${target} PRIVATE -Wno-restrict -Wno-maybe-uninitialized -Wno-stringop-overflow)
+      # False alarms of GCC 12 in its own std::string (bugs 105329, 105562 and 105651), and of designated initialisers
+      # that leave a member at its default.
+      target_compile_options(${target} PRIVATE -Wno-restrict -Wno-maybe-uninitialized -Wno-stringop-overflow
+                                               -Wno-array-bounds -Wno-missing-field-initializers)
     endif()
   endif()
   if(HOLDFAST_WARNINGS_AS_ERRORS)

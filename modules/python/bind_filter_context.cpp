@@ -30,7 +30,7 @@ py::array descriptor_rows(const DescriptorView& all) {
   py::array_t<Number> array({static_cast<py::ssize_t>(all.size()), static_cast<py::ssize_t>(columns)});
   for (std::size_t i = 0; i < all.size(); ++i)
     std::memcpy(array.mutable_data(static_cast<py::ssize_t>(i)), all.row(i), all.type().bytes());
-  return std::move(array);
+  return array;
 }
 
 /// Bytes of binary descriptors, numbers of the others.

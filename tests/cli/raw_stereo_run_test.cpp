@@ -145,7 +145,9 @@ double run(const test::Program& program, const std::string& configuration, const
   const test::Outcome outcome = program.run(arguments);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   const nlohmann::json summary = nlohmann::json::parse(program.text(output + "/run.json"));
-  if (configuration == "stereo") EXPECT_EQ(summary.at("frames").at("poses"), stereo_frames);
+  if (configuration == "stereo") {
+    EXPECT_EQ(summary.at("frames").at("poses"), stereo_frames);
+  }
   return summary.at("evaluation").at("ate_m").at("rmse").get<double>();
 }
 

@@ -32,10 +32,15 @@ class StopTest : public ::testing::Test {
     for (const auto& entry : fs::directory_iterator(program_.path("out"))) {
       const std::string name = entry.path().filename().string(), text = test::content(entry.path());
       EXPECT_NE(entry.path().extension(), ".tmp") << name;
-      if (entry.path().extension() == ".json") EXPECT_TRUE(nlohmann::json::accept(text)) << name;
-      if (entry.path().extension() == ".txt" && !text.empty()) EXPECT_EQ(text.back(), '\n') << name;
-      if (entry.path().extension() == ".hfm")
+      if (entry.path().extension() == ".json") {
+        EXPECT_TRUE(nlohmann::json::accept(text)) << name;
+      }
+      if (entry.path().extension() == ".txt" && !text.empty()) {
+        EXPECT_EQ(text.back(), '\n') << name;
+      }
+      if (entry.path().extension() == ".hfm") {
         EXPECT_EQ(program_.run({"map", "info", entry.path().string()}).exit_code, 0) << name;
+      }
     }
   }
 

@@ -53,7 +53,9 @@ TEST(StaticScene, GivesTheSurfaceOfAView) {
   }
   for (const std::size_t most : {std::size_t{1000}, std::size_t{100}, std::size_t{1}}) {
     EXPECT_LE(scene.surface(view, most).size(), most);
-    if (most > 1) EXPECT_GT(scene.surface(view, most).size(), most / 4);
+    if (most > 1) {
+      EXPECT_GT(scene.surface(view, most).size(), most / 4);
+    }
   }
 }
 

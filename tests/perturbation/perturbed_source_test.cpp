@@ -151,7 +151,9 @@ TEST(PerturbedSourceTest, LateStampsIncreaseStrictlyAndStayWithinTheDelay) {
     const double delay = frames[i].timestamp - TexturedSource::frame(i).timestamp;
     EXPECT_GE(delay, 0.0);
     EXPECT_LT(delay, 0.21);
-    if (i > 0) EXPECT_GT(frames[i].timestamp, frames[i - 1].timestamp);
+    if (i > 0) {
+      EXPECT_GT(frames[i].timestamp, frames[i - 1].timestamp);
+    }
   }
 }
 

@@ -142,7 +142,9 @@ TEST_F(MonoTest, ThreadsTrackAsOneThreadDoes) {
   for (std::uint64_t index = 0; index < 180; ++index) {
     const FrameResult result = feed(pipeline, index);
     begun = begun || result.status == TrackingStatus::initialised;
-    if (begun) EXPECT_NE(result.status, TrackingStatus::lost) << index;
+    if (begun) {
+      EXPECT_NE(result.status, TrackingStatus::lost) << index;
+    }
   }
   pipeline.finish();
   std::size_t poses = 0;

@@ -78,7 +78,9 @@ TEST_P(DepthReaderTest, AlignsDepthThatWasExposedLater) {
   EXPECT_LT(once, 0.15 * before);
   EXPECT_LT(error(frame), 0.1 * before);
   for (std::size_t i = 0; i < frame.size(); ++i)
-    if (frame.has_depth(i)) ASSERT_NEAR(frame.right_x[i], world_.camera.right_x(frame.x[i], frame.depth[i]), 1e-3);
+    if (frame.has_depth(i)) {
+      ASSERT_NEAR(frame.right_x[i], world_.camera.right_x(frame.x[i], frame.depth[i]), 1e-3);
+    }
 }
 
 TEST_P(DepthReaderTest, WithoutMotionAlignmentChangesNothing) {

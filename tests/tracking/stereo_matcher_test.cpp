@@ -137,13 +137,17 @@ TEST_F(StereoMatcherTest, DepthsOutsideTheRangeAreLeftOut) {
   match(near);
   EXPECT_LT(with_depth(), frame_.size() * 6 / 10);
   for (std::size_t i = 0; i < frame_.size(); ++i) {
-    if (frame_.has_depth(i)) EXPECT_LE(frame_.x[i] - frame_.right_x[i], 12.0F);
+    if (frame_.has_depth(i)) {
+      EXPECT_LE(frame_.x[i] - frame_.right_x[i], 12.0F);
+    }
   }
   StereoSettings far;
   far.minimum_disparity = 12.0;
   match(far);
   for (std::size_t i = 0; i < frame_.size(); ++i) {
-    if (frame_.has_depth(i)) EXPECT_GE(frame_.x[i] - frame_.right_x[i], 12.0F);
+    if (frame_.has_depth(i)) {
+      EXPECT_GE(frame_.x[i] - frame_.right_x[i], 12.0F);
+    }
   }
 }
 

@@ -255,7 +255,9 @@ TEST(Tracker, FramesOfALossAreTrackedBackwardsOnceTheCameraIsFound) {
     EXPECT_EQ(trajectory.size(), 75 - dark - lost + bench.tracker.loss_record().tracked_backwards);
     for (std::size_t i = 0; i < trajectory.size(); ++i) {
       const double time = trajectory[i].timestamp;
-      if (i > 0) EXPECT_GT(time, trajectory[i - 1].timestamp);
+      if (i > 0) {
+        EXPECT_GT(time, trajectory[i - 1].timestamp);
+      }
       if (time < 0.5 - 1e-9) continue;
       EXPECT_LT((trajectory[i].T_world_camera.translation() - place(time).translation()).norm(), 0.01) << time;
     }
@@ -274,7 +276,9 @@ TEST(Tracker, ACameraThatIsLostForLongBeginsAPiece) {
       const FrameResult result = bench.feed(now, at(0.25, 1.0, 0.3), i > 17);
       began = bench.tracker.begins_piece();
       EXPECT_EQ(result.status, began ? TrackingStatus::initialised : TrackingStatus::lost);
-      if (began) EXPECT_NEAR(now - 14.0 / 30.0, 0.3, 0.07);
+      if (began) {
+        EXPECT_NEAR(now - 14.0 / 30.0, 0.3, 0.07);
+      }
     }
     EXPECT_EQ(began, time > 0.0);
   }
