@@ -113,7 +113,7 @@ TEST(CameraPath, MotionsOfTheHandInTheOfficeStayWhatTheyWere) {
 }
 
 TEST(CameraPath, SeedChangesTheMotionAndShakeScalesTheTremor) {
-  const auto at = [](std::uint64_t seed, const PathStyle& style) {
+  const auto at = [](std::uint64_t seed, const PathStyle& style) -> Vector3d {
     return CameraPath(PathKind::fixed, office(), seed, style).pose(3).translation();
   };
   EXPECT_GT((CameraPath(PathKind::xyz, office(), 1).pose(3).translation() -
