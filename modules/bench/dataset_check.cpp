@@ -5,6 +5,7 @@
 #include <set>
 
 #include "holdfast/core/folder_name.hpp"
+#include "holdfast/core/size_text.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/evaluation/number_text.hpp"
 #include "holdfast/image_files/calibrated_recording.hpp"
@@ -133,7 +134,7 @@ class Checker {
     if (expected && frames + 2 + *expected / 100 < *expected)
       problem(counted(frames, what) + "; expected " + std::to_string(*expected) + ": the recording was cut");
     const Camera& camera = recording.camera;
-    fact("camera of its own files: " + std::to_string(camera.width) + "x" + std::to_string(camera.height) +
+    fact("camera of its own files: " + size_text(camera.width, camera.height) +
          (recording.has_right ? ", baseline " + fixed_text(camera.baseline, 3) + " m" : "") +
          (recording.rectification ? ", to be rectified" : ""));
     const auto check_side = [&](const cv::Size& size, const char* side, fs::path ImageFiles::*member,
@@ -222,8 +223,7 @@ class Checker {
         continue;
       }
       const cv::Size size(structure.width, structure.height);
-      const std::string has =
-          place + " has " + std::to_string(size.width) + "x" + std::to_string(size.height) + " pixels";
+      const std::string has = place + " has " + size_text(size.width, size.height) + " pixels";
       if (!structure.has_camera_size()) {
         too_large.add(has);
         unusable_.insert(image.name);
@@ -239,7 +239,7 @@ class Checker {
               " damaged: " + damaged.text() + "; copy or download " + (damaged.count == 1 ? "it" : "them") + " again");
     if (of_other_size.count > 0)
       problem(list + " lists " + counted(of_other_size.count, "image") + " of another size: " + of_other_size.text() +
-              "; expected " + std::to_string(expected.width) + "x" + std::to_string(expected.height) + " " +
+              "; expected " + size_text(expected.width, expected.height) + " " +
               (size_.width > 0 ? camera_ : "of the list's first image") + ": is this another recording?");
     if (too_large.count > 0)
       problem(list + " lists " + counted(too_large.count, "image") + " that " + (too_large.count == 1 ? "is" : "are") +

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "holdfast/core/size_text.hpp"
 #include "holdfast/evaluation/number_text.hpp"
 
 namespace holdfast {
@@ -53,7 +54,7 @@ std::string camera_yaml(const Calibration& calibration, const CalibrationBoard& 
 std::string to_text(const Calibration& calibration, const CalibrationAssessment& assessment) {
   const Camera& camera = calibration.camera;
   std::string text = counted(calibration.views.size(), "view") + ", " + std::to_string(calibration.used_count()) +
-                     " used; images " + std::to_string(camera.width) + "x" + std::to_string(camera.height) + ", lens " +
+                     " used; images " + size_text(camera.width, camera.height) + ", lens " +
                      lens_name(camera.distortion.lens) + "\nreprojection error " + fixed_text(calibration.rms, 3) +
                      " px RMS\n\n";
   for (const CalibratedNumber& number : calibration.numbers)

@@ -13,6 +13,7 @@
 #include "holdfast/bench/dataset_recipe.hpp"
 #include "holdfast/bench/external_system.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/size_text.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/evaluation/number_text.hpp"
 #include "output_file.hpp"
@@ -46,9 +47,9 @@ std::string count_text(const std::optional<std::size_t>& count) { return count ?
 
 std::string camera_text(const Camera& camera) {
   const Distortion& d = camera.distortion;
-  std::string text = camera.name + ", " + std::to_string(camera.width) + "x" + std::to_string(camera.height) + ", fx " +
-                     shortest_text(camera.fx) + " fy " + shortest_text(camera.fy) + " cx " + shortest_text(camera.cx) +
-                     " cy " + shortest_text(camera.cy);
+  std::string text = camera.name + ", " + size_text(camera.width, camera.height) + ", fx " + shortest_text(camera.fx) +
+                     " fy " + shortest_text(camera.fy) + " cx " + shortest_text(camera.cx) + " cy " +
+                     shortest_text(camera.cy);
   if (d.is_zero()) return text;
   const bool is_fisheye = d.lens == Lens::fisheye;
   std::vector<const char*> names = {"k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6"};

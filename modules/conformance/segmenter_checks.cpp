@@ -6,6 +6,7 @@
 #include <set>
 
 #include "check.hpp"
+#include "holdfast/core/size_text.hpp"
 #include "holdfast/interfaces/segmenter.hpp"
 #include "scene.hpp"
 
@@ -23,8 +24,6 @@ std::vector<SensorFrame> frames() {
   return result;
 }
 
-std::string size_text(const cv::Mat& image) { return std::to_string(image.cols) + "x" + std::to_string(image.rows); }
-
 /// Checks the contract of a result, which holds for every frame.
 void expect_sound(Segmenter& segmenter, const SensorFrame& frame, const Segmentation& result) {
   const std::size_t classes = segmenter.classes().size();
@@ -35,7 +34,8 @@ void expect_sound(Segmenter& segmenter, const SensorFrame& frame, const Segmenta
   ASSERT_NE(classes, 0U) << "labels from a segmenter without classes";
   ASSERT_EQ(result.labels.type(), CV_8UC1) << "the labels' type; 0 is 8UC1";
   ASSERT_EQ(result.labels.size(), frame.colour.size())
-      << "the labels are " << size_text(result.labels) << ", the frame is " << size_text(frame.colour);
+      << "the labels are " << size_text(result.labels.cols, result.labels.rows) << ", the frame is "
+      << size_text(frame.colour.cols, frame.colour.rows);
   for (int y = 0; y < result.labels.rows; ++y)
     for (int x = 0; x < result.labels.cols; ++x) {
       const std::uint8_t label = result.labels.at<std::uint8_t>(y, x);
@@ -45,7 +45,8 @@ void expect_sound(Segmenter& segmenter, const SensorFrame& frame, const Segmenta
   if (result.confidence.empty()) return;
   ASSERT_EQ(result.confidence.type(), CV_8UC1) << "the confidence's type; 0 is 8UC1";
   ASSERT_EQ(result.confidence.size(), frame.colour.size())
-      << "the confidence is " << size_text(result.confidence) << ", the frame is " << size_text(frame.colour);
+      << "the confidence is " << size_text(result.confidence.cols, result.confidence.rows) << ", the frame is "
+      << size_text(frame.colour.cols, frame.colour.rows);
 }
 
 /// Segments a frame that the segmenter may refuse; what it gives must be sound.

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/sensor_frame.hpp"
 
 namespace holdfast {
 
@@ -14,7 +15,7 @@ namespace {
 constexpr std::uint8_t unknown_label = 255;
 
 std::uint16_t to_units(float depth) {
-  if (!(depth > 0.0F) || !std::isfinite(depth)) return 0;
+  if (!is_measured_depth(depth)) return 0;
   const double units = depth / KeptView::depth_unit;
   return units >= KeptView::depth_bits ? std::uint16_t{0} : static_cast<std::uint16_t>(std::lround(units));
 }

@@ -59,9 +59,7 @@ StageRow row_of(const std::string& name, const DurationRecord& seconds) {
   row.total = seconds.total();
   return row;
 }
-}  // namespace
 
-namespace {
 /// The place of a stage's part in the pipeline. A stage outside of tracking is called by its part.
 int part_of(std::string_view stage) {
   constexpr std::array<std::string_view, 4> parts{"segmentation", "mapping: ", "loops: ", "dense map: "};

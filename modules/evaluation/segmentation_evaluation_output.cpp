@@ -55,9 +55,8 @@ std::string to_text(const SegmentationEvaluation& evaluation) {
   text += row("all pixels", {"", percent(evaluation.overall_accuracy())});
   return text + std::to_string(evaluation.images) + " images, " + std::to_string(evaluation.known_pixels) +
          " pixels with a true label. detected: images that show the class where its IoU is above 0.5.\n"
-         "false: pixels found to be of the class that are not, of all. calibr.: mean difference between confidence and "
-         "share of "
-         "correct pixels.\n";
+         "false: pixels found to be of the class that are not, of all. "
+         "calibr.: mean difference between confidence and share of correct pixels.\n";
 }
 
 std::string to_json(const SegmentationEvaluation& evaluation) {

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/size_text.hpp"
 #include "holdfast/image_files/image_structure.hpp"
 #include "jpeg_pixels.hpp"
 #include "png_plain.hpp"
@@ -213,14 +214,14 @@ cv::Mat ImageDecoder::read_labels(const std::filesystem::path& file, const SizeC
   const bool is_indexed = image.palette && image.index_bits == 8;
   const bool is_grey = image.channels == 1 && (image.bits == 8 || image.bits == 16);
   if (!is_png || !(is_indexed || is_grey))
-    throw InputError({file.string()},
-                     std::string("is a ") + (is_png ? "PNG" : "JPEG") + " image of " +
-                         (image.palette ? std::to_string(image.width) + "x" + std::to_string(image.height) +
-                                              ", indices of " + std::to_string(image.index_bits) +
-                                              (image.index_bits == 1 ? " bit" : " bits") + " into a palette"
-                                        : image.to_string()) +
-                         "; expected a label image, a PNG of 1 channel of 8 or 16 bits, or with a palette of 8 bits; "
-                         "convert it without changing its values");
+    throw InputError(
+        {file.string()},
+        std::string("is a ") + (is_png ? "PNG" : "JPEG") + " image of " +
+            (image.palette ? size_text(image.width, image.height) + ", indices of " + std::to_string(image.index_bits) +
+                                 (image.index_bits == 1 ? " bit" : " bits") + " into a palette"
+                           : image.to_string()) +
+            "; expected a label image, a PNG of 1 channel of 8 or 16 bits, or with a palette of 8 bits; "
+            "convert it without changing its values");
   if (check_size) check_size({image.width, image.height});
   if (is_indexed) bytes_ = palette_indices_as_grey(bytes_);
   cv::Mat labels;

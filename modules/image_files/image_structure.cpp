@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/size_text.hpp"
 
 namespace holdfast {
 
@@ -150,7 +151,7 @@ void examine_jpeg(Bytes bytes, ImageStructure& image) {
 }  // namespace
 
 std::string ImageStructure::to_string() const {
-  return std::to_string(width) + "x" + std::to_string(height) + ", " + std::to_string(channels) +
+  return size_text(width, height) + ", " + std::to_string(channels) +
          (channels == 1 ? " channel of " : " channels of ") + std::to_string(bits) + " bits";
 }
 

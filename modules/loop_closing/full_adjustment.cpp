@@ -7,6 +7,7 @@
 
 #include "holdfast/interfaces/frame_observations.hpp"
 #include "map_motion.hpp"
+#include "piece_set.hpp"
 
 namespace holdfast {
 namespace {
@@ -28,11 +29,9 @@ std::vector<KeyFrameId> placeable_keyframes(const Map& map) {
     for (const Observation& observation : point.observations) ++shared[observation.keyframe.slot];
   });
   std::vector<KeyFrameId> keyframes = map.keyframes_by_age();
-  std::vector<std::uint32_t> pieces;
+  PieceSet pieces;
   std::erase_if(keyframes, [&](KeyFrameId id) {
-    const std::uint32_t piece = map.keyframe(id).piece;
-    const bool is_first = std::find(pieces.begin(), pieces.end(), piece) == pieces.end();
-    if (is_first) pieces.push_back(piece);
+    const bool is_first = pieces.add(map.keyframe(id).piece);
     return !is_first && shared[id.slot] < least_shared_points;
   });
   return keyframes;
@@ -84,14 +83,13 @@ void FullAdjustment::prepare() {
   keyframes_ = placeable_keyframes(map_);
   constexpr std::uint32_t left_out = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> pose_of_slot(map_.keyframes().slot_count(), left_out);
-  std::vector<std::uint32_t> pieces;  // the first keyframe of each holds it in place
+  PieceSet pieces;
   for (std::uint32_t i = 0; i < keyframes_.size(); ++i) {
     const KeyFrame& keyframe = map_.keyframe(keyframes_[i]);
     if (i == 0) problem_.camera = keyframe.frame.camera.get();
     pose_of_slot[keyframes_[i].slot] = i;
-    const bool is_first = std::find(pieces.begin(), pieces.end(), keyframe.piece) == pieces.end();
-    if (is_first) pieces.push_back(keyframe.piece);
-    problem_.poses.push_back({keyframe.frame.T_camera_world, is_first});
+    const bool holds_piece = pieces.add(keyframe.piece);
+    problem_.poses.push_back({keyframe.frame.T_camera_world, holds_piece});
   }
   points_.reserve(map_.points().size());
   problem_.points.reserve(map_.points().size());

@@ -5,6 +5,7 @@
 
 #include "holdfast/matching/point_fusion.hpp"
 #include "map_motion.hpp"
+#include "piece_set.hpp"
 #include "place_points.hpp"
 
 namespace holdfast {
@@ -105,14 +106,9 @@ void LoopCorrection::add_loop_edges() {
 }
 
 void LoopCorrection::fix_pieces() {
-  std::vector<std::uint32_t> fixed;
-  if (keyframe_piece_ != place_piece_) fixed.push_back(std::max(keyframe_piece_, place_piece_));
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    const std::uint32_t piece = map_.keyframe(nodes_[i]).piece;
-    if (std::find(fixed.begin(), fixed.end(), piece) != fixed.end()) continue;
-    graph_.nodes[i].fixed = true;
-    fixed.push_back(piece);
-  }
+  PieceSet done;
+  if (keyframe_piece_ != place_piece_) done.add(std::max(keyframe_piece_, place_piece_));
+  for (std::size_t i = 0; i < nodes_.size(); ++i) graph_.nodes[i].fixed = done.add(map_.keyframe(nodes_[i]).piece);
 }
 
 void LoopCorrection::bring_pieces_together() {

@@ -23,28 +23,20 @@ float DepthReader::depth_at(const cv::Mat& depth, float x, float y) const {
   const float value = depth.at<float>(row, column);
   if (!is_measured_depth(value)) return 0.0F;
   if (edge_ratio_ <= 0.0) return value;
-  // Opposite neighbours, four on each side; 0 = not measured. Without branches, because most of them are measured, but
-  // not predictably so.
+  // Pairs of opposite neighbours; 0 = not measured. Without branches, because most of them are measured, but not
+  // predictably so.
   constexpr int reach = 2;
   constexpr std::array<int, 4> column_steps{reach, -reach, 0, reach}, row_steps{0, reach, reach, reach};
+  const bool is_inside = column >= reach && row >= reach && column + reach < depth.cols && row + reach < depth.rows;
+  const auto at = [&](int c, int r) {
+    if (!is_inside && (c < 0 || r < 0 || c >= depth.cols || r >= depth.rows)) return 0.0F;
+    const float neighbour = depth.at<float>(r, c);
+    return is_measured_depth(neighbour) ? neighbour : 0.0F;
+  };
   std::array<float, 4> one{}, other{};
-  const auto measured = [](float neighbour) { return is_measured_depth(neighbour) ? neighbour : 0.0F; };
-  if (column >= reach && row >= reach && column + reach < depth.cols && row + reach < depth.rows) {
-    const auto* above = depth.ptr<float>(row - reach) + column;
-    const auto* level = depth.ptr<float>(row) + column;
-    const auto* below = depth.ptr<float>(row + reach) + column;
-    one = {level[reach], below[-reach], below[0], below[reach]};
-    other = {level[-reach], above[reach], above[0], above[-reach]};
-    for (float& neighbour : one) neighbour = measured(neighbour);
-    for (float& neighbour : other) neighbour = measured(neighbour);
-  } else {
-    const auto at = [&](int c, int r) {
-      return c < 0 || r < 0 || c >= depth.cols || r >= depth.rows ? 0.0F : measured(depth.at<float>(r, c));
-    };
-    for (std::size_t i = 0; i < one.size(); ++i) {
-      one[i] = at(column + column_steps[i], row + row_steps[i]);
-      other[i] = at(column - column_steps[i], row - row_steps[i]);
-    }
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    one[i] = at(column + column_steps[i], row + row_steps[i]);
+    other[i] = at(column - column_steps[i], row - row_steps[i]);
   }
   // At a depth edge the feature may lie on either surface, so that its depth is unknown.
   float nearest = value, farthest = value, sum = value;

@@ -17,26 +17,26 @@ void FrameHistory::add(const Frame& frame, KeyFrameId reference, const Map& map)
     has_velocity_ = true;
   }
   has_previous_ = true;
-  Record record{frame.timestamp, reference};
   T_last_reference_ = Eigen::Isometry3d::Identity();
   last_reference_scale_ = 1.0;
   if (reference.valid()) {
     T_last_reference_ = frame.T_camera_world * map.pose_of(reference).inverse();
     last_reference_scale_ = map.scale_of(reference);
-    record.R_camera_reference = Eigen::Quaterniond(T_last_reference_.linear());
-    record.t_camera_reference = T_last_reference_.translation() / last_reference_scale_;
   }
-  records_.push_back(record);
+  records_.push_back(record_of(frame.timestamp, reference, T_last_reference_, last_reference_scale_));
 }
 
 void FrameHistory::add_past(const Frame& frame, KeyFrameId reference, const Map& map) {
-  Record record{frame.timestamp, reference};
   const Eigen::Isometry3d T_camera_reference = frame.T_camera_world * map.pose_of(reference).inverse();
-  record.R_camera_reference = Eigen::Quaterniond(T_camera_reference.linear());
-  record.t_camera_reference = T_camera_reference.translation() / map.scale_of(reference);
   const auto later = std::upper_bound(records_.begin(), records_.end(), frame.timestamp,
                                       [](double time, const Record& other) { return time < other.timestamp; });
-  records_.insert(later, record);
+  records_.insert(later, record_of(frame.timestamp, reference, T_camera_reference, map.scale_of(reference)));
+}
+
+FrameHistory::Record FrameHistory::record_of(double timestamp, KeyFrameId reference,
+                                             const Eigen::Isometry3d& T_camera_reference, double reference_scale) {
+  return {timestamp, reference, Eigen::Quaternion<double, Eigen::DontAlign>(T_camera_reference.linear()),
+          T_camera_reference.translation() / reference_scale};
 }
 
 void FrameHistory::became_keyframe(KeyFrameId keyframe, double timestamp) {

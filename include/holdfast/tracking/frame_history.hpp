@@ -65,6 +65,8 @@ class FrameHistory {
     Eigen::Vector3d t_camera_reference = Eigen::Vector3d::Zero();  // [m], at scale 1 of the reference
   };
   static_assert(sizeof(Record) == 72, "one is kept of every frame");
+  static Record record_of(double timestamp, KeyFrameId reference, const Eigen::Isometry3d& T_camera_reference,
+                          double reference_scale);
 
   std::vector<Record> records_;
   Eigen::Isometry3d T_last_reference_ = Eigen::Isometry3d::Identity();  // T_camera_reference of the last record

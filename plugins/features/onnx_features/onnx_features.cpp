@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/size_text.hpp"
 
 namespace holdfast::onnx_features_plugin {
 
@@ -80,7 +81,7 @@ void OnnxFeatures::fill_input(const cv::Mat& grey) {
 std::vector<HeatPoint> OnnxFeatures::find_keypoints() const {
   const cv::Mat heat = heat_map_of(outputs_[0]);
   if (heat.empty() || heat.cols != width_ || heat.rows != height_)
-    fail("gives scores that are no map of the input's " + std::to_string(width_) + "x" + std::to_string(height_) +
+    fail("gives scores that are no map of the input's " + size_text(width_, height_) +
          " pixels; expected 1 x 1 x height x width, or cells as SuperPoint has them; correct `scores`, or name "
          "`keypoints`");
   return keypoints_of(heat, {.threshold = static_cast<float>(settings_.threshold),

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/size_text.hpp"
 #include "holdfast/image_files/image_decoder.hpp"
 #include "holdfast/image_files/label_map.hpp"
 #include "holdfast/interfaces/segmenter.hpp"
@@ -58,17 +59,14 @@ class PrecomputedSegmenter final : public Segmenter {
     const cv::Mat values = decoder_.read_labels(file->path, [&](const cv::Size& size) {
       if (size != frame.colour.size())
         throw InputError({file->path.string()},
-                         "is " + size_text(size) + " pixels, but the frame is " + size_text(frame.colour.size()) +
+                         "is " + size_text(size.width, size.height) + " pixels, but the frame is " +
+                             size_text(frame.colour.cols, frame.colour.rows) +
                              "; expected labels of the frame's size; scale them without interpolation");
     });
     return {labels_.apply(values, file->path), {}};
   }
 
  private:
-  static std::string size_text(const cv::Size& size) {
-    return std::to_string(size.width) + "x" + std::to_string(size.height);
-  }
-
   LabelMap labels_;
   std::vector<LabelFile> files_;
   double tolerance_;

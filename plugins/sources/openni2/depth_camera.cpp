@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/size_text.hpp"
 
 namespace holdfast::openni2_plugin {
 
@@ -183,8 +184,7 @@ class OpenNiCamera final : public DepthCamera {
     const openni::VideoMode mode = stream.getVideoMode();
     if (mode.getResolutionX() != request_.width || mode.getResolutionY() != request_.height)
       fail(std::string("its ") + name + " is " + text_of(mode) + ", but the camera is " +
-           std::to_string(request_.width) + "x" + std::to_string(request_.height) +
-           "; give the camera that it is under `camera:`");
+           size_text(request_.width, request_.height) + "; give the camera that it is under `camera:`");
     if (sensor == openni::SENSOR_DEPTH && !units_per_metre(mode.getPixelFormat()))
       fail("gives depth in the pixel format " + std::to_string(mode.getPixelFormat()) +
            " of OpenNI; expected millimetres or tenths of them");
@@ -214,8 +214,7 @@ class OpenNiCamera final : public DepthCamera {
   }
 
   static std::string text_of(const openni::VideoMode& mode) {
-    return std::to_string(mode.getResolutionX()) + "x" + std::to_string(mode.getResolutionY()) + " at " +
-           std::to_string(mode.getFps()) + " Hz";
+    return size_text(mode.getResolutionX(), mode.getResolutionY()) + " at " + std::to_string(mode.getFps()) + " Hz";
   }
 
   void register_depth() {

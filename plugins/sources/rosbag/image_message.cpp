@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/sensor_frame.hpp"
 
 namespace holdfast::rosbag_plugin {
 
@@ -97,7 +98,7 @@ CompressedImage read_compressed(Bytes message, const std::string& place) {
   return image;
 }
 
-float metres_of(float value) { return std::isfinite(value) && value > 0.0F ? value : 0.0F; }
+float metres_of(float value) { return is_measured_depth(value) ? value : 0.0F; }
 
 /// Numbers of `Stored` that lie anywhere in memory, each through `to_metres`.
 template <class Stored, class Convert>

@@ -8,6 +8,7 @@
 #include "bag_file.hpp"
 #include "holdfast/core/association.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/size_text.hpp"
 #include "holdfast/image_files/image_sequence.hpp"
 #include "holdfast/interfaces/frame_source.hpp"
 #include "holdfast/plugin/plugin.hpp"
@@ -169,7 +170,8 @@ class RosbagSource final : public FrameSource {
     frame.colour =
         images_.colour(bag_.content(source.colour.message), topics_.colour.type, place, [&](const cv::Size& size) {
           if (size != size_)
-            throw InputError({place}, "is " + text_of(size) + " pixels, but the camera is " + text_of(size_) +
+            throw InputError({place}, "is " + size_text(size.width, size.height) + " pixels, but the camera is " +
+                                          size_text(size_.width, size_.height) +
                                           "; give the camera of this recording under `camera:`");
         });
     if (!source.depth) return frame;
@@ -178,15 +180,13 @@ class RosbagSource final : public FrameSource {
     frame.depth = images_.depth(bag_.content(source.depth->message), topics_.depth.type, place, settings_.depth_factor,
                                 [&](const cv::Size& size) {
                                   if (size != size_)
-                                    throw InputError({place}, "is " + text_of(size) +
-                                                                  " pixels, but its colour image is " + text_of(size_) +
+                                    throw InputError({place}, "is " + size_text(size.width, size.height) +
+                                                                  " pixels, but its colour image is " +
+                                                                  size_text(size_.width, size_.height) +
                                                                   "; expected depth registered to the colour image; "
                                                                   "choose its topic with `source.rosbag.depth`");
                                 });
     return frame;
-  }
-  static std::string text_of(const cv::Size& size) {
-    return std::to_string(size.width) + "x" + std::to_string(size.height);
   }
 
   RosbagSettings settings_;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/size_text.hpp"
 #include "holdfast/plugin/plugin.hpp"
 #include "v4l2_source.hpp"
 
@@ -88,9 +89,8 @@ std::optional<SensorFrame> V4l2Source::next() {
     throw InputError({place()}, "frame " + std::to_string(index_) + " is damaged: it cannot be decoded");
   if (frame.colour.channels() == 1) cv::cvtColor(frame.colour, frame.colour, cv::COLOR_GRAY2BGR);
   if (frame.colour.size() != size_ || frame.colour.type() != CV_8UC3)
-    throw InputError({place()}, "has frames of " + std::to_string(frame.colour.cols) + "x" +
-                                    std::to_string(frame.colour.rows) + " pixels, but the camera is " +
-                                    std::to_string(size_.width) + "x" + std::to_string(size_.height) +
+    throw InputError({place()}, "has frames of " + size_text(frame.colour.cols, frame.colour.rows) +
+                                    " pixels, but the camera is " + size_text(size_.width, size_.height) +
                                     "; give the camera that took them under `camera:`");
   frame.timestamp = stamp_of_frame();
   if (last_stamp_ && !(frame.timestamp > *last_stamp_))

@@ -10,6 +10,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/size_text.hpp"
 
 namespace holdfast::v4l2_plugin {
 
@@ -104,9 +105,8 @@ std::unique_ptr<VideoInput> open_camera(const CameraRequest& request) {
   const int width = static_cast<int>(capture.get(cv::CAP_PROP_FRAME_WIDTH));
   const int height = static_cast<int>(capture.get(cv::CAP_PROP_FRAME_HEIGHT));
   if (width != request.width || height != request.height)
-    throw InputError({device}, "the camera gives " + std::to_string(width) + "x" + std::to_string(height) +
-                                   " pixels where the configuration has " + std::to_string(request.width) + "x" +
-                                   std::to_string(request.height) +
+    throw InputError({device}, "the camera gives " + size_text(width, height) + " pixels where the configuration has " +
+                                   size_text(request.width, request.height) +
                                    "; calibrate it at a size that it has (`v4l2-ctl --list-formats-ext`), and give "
                                    "that size under `camera:`");
   set_exposure(capture, request.exposure, device);

@@ -19,7 +19,7 @@ import torch
 from torch.nn import functional
 
 from classes import IGNORED, NOT_PERSON, is_other_thing
-from pack import PackError, read_pack
+from pack import PackError, not_measured, read_pack
 from photographs import resized
 from samples import to_tensor
 from weights import load_onnx, load_weights
@@ -74,7 +74,7 @@ def main():
     arguments = parser.parse_args()
     torch.set_num_threads(arguments.threads)
     training, held_out = read_pack(arguments.pack)
-    entries = [entry for entry in held_out if entry.source != "voc_person"]
+    entries = not_measured(held_out)
     entries += training[::arguments.every] if arguments.every else []
     if not entries:
         raise PackError(f"{arguments.pack}: holds nothing to calibrate with; expected pictures that are held out, or --every")

@@ -18,7 +18,7 @@ import torch
 
 from classes import PERSON
 from measure import found_labels
-from pack import PackError, read_pack
+from pack import PackError, not_measured, read_pack
 from weights import folded, load_onnx
 
 
@@ -62,7 +62,7 @@ def main():
     arguments = parser.parse_args()
     torch.set_num_threads(arguments.threads)
     training, held_out = read_pack(arguments.pack)
-    compared = [entry for entry in held_out if entry.source != "voc_person"] or training[1::2]
+    compared = not_measured(held_out) or training[1::2]
     calibration = training[::max(1, len(training) // arguments.pictures)]
     size = (arguments.width, arguments.height)
     model = folded(load_onnx(arguments.model).eval())

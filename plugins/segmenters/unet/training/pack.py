@@ -65,3 +65,8 @@ def read_pack(path):
         label = cv2.imdecode(labels[label_ends[i]:label_ends[i + 1]], cv2.IMREAD_GRAYSCALE)
         (held_out if validation[i] else training).append(Entry(str(name), picture, label))
     return training, held_out
+
+
+def not_measured(held_out):
+    """Held-out entries by which something may be chosen: all but the photographs that accuracy is measured on."""
+    return [entry for entry in held_out if entry.source != "voc_person"]
