@@ -20,7 +20,7 @@ holdfast_check_compiler(${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION})
 find_package(Threads REQUIRED)
 holdfast_find(Eigen3 3.4 libeigen3-dev ARGUMENTS NO_MODULE)
 # What only some plugins need is looked for only when these are built.
-set(HOLDFAST_OPENCV_COMPONENTS core calib3d imgproc imgcodecs video)
+set(HOLDFAST_OPENCV_COMPONENTS core calib3d imgproc imgcodecs)
 if(HOLDFAST_PLUGIN_OPENCV_ORB OR HOLDFAST_PLUGIN_SIFT OR HOLDFAST_PLUGIN_AKAZE)
   list(APPEND HOLDFAST_OPENCV_COMPONENTS features2d)
 endif()

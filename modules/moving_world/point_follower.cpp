@@ -3,16 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <opencv2/imgproc.hpp>
-#include <opencv2/video/tracking.hpp>
 
 namespace holdfast {
 
 namespace {
 
-constexpr int levels = 2;  // above the half resolution: at the top, a pixel is eight of the image
-const cv::Size window(9, 9);
+constexpr PointFlowSettings flow_settings{.iterations = 10, .precision = 0.05F, .largest_difference = 25.0F};
 
 float depth_at(const Frame& frame, float x, float y) {
   const int cell = frame.coarse.grid.cell_of(x, y);
@@ -31,39 +27,29 @@ void undistort(const Frame& frame, float raw_x, float raw_y, float& x, float& y)
 }  // namespace
 
 void PointFollower::advance(const cv::Mat& grey, const Frame& frame) {
-  cv::resize(grey, half_, cv::Size(grey.cols / 2, grey.rows / 2), 0, 0, cv::INTER_AREA);
-  std::swap(pyramid_, previous_pyramid_);
-  cv::buildOpticalFlowPyramid(half_, pyramid_, window, levels, true, cv::BORDER_REFLECT_101, cv::BORDER_CONSTANT,
-                              false);
+  std::swap(image_, last_image_);
+  image_.build(grey);
   if (points_.size() == 0) return;
 
   const std::size_t count = points_.size();
-  before_.resize(count), after_.resize(count), step_.resize(count);
+  flow_.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
-    before_[i] = {(points_.raw_x[i] - 0.5F) * 0.5F, (points_.raw_y[i] - 0.5F) * 0.5F};
-    after_[i] = before_[i] + step_[i];
+    flow_.from_x[i] = points_.raw_x[i], flow_.from_y[i] = points_.raw_y[i];
+    flow_.to_x[i] = points_.raw_x[i] + step_x_[i], flow_.to_y[i] = points_.raw_y[i] + step_y_[i];
   }
-  cv::calcOpticalFlowPyrLK(previous_pyramid_, pyramid_, before_, after_, found_, error_, window, levels,
-                           cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 10, 0.05),
-                           cv::OPTFLOW_USE_INITIAL_FLOW, 1e-4);
+  follow_points(last_image_, image_, flow_settings, flow_);
   for (std::size_t i = 0; i < count; ++i) {
-    if (found_[i] == 0) continue;
-    constexpr float largest_error = 25.0F;  // mean grey level
-    const float raw_x = after_[i].x * 2.0F + 0.5F, raw_y = after_[i].y * 2.0F + 0.5F;
-    const bool inside = raw_x >= 0.0F && raw_y >= 0.0F && raw_x <= static_cast<float>(grey.cols - 1) &&
-                        raw_y <= static_cast<float>(grey.rows - 1);
-    found_[i] = inside && error_[i] < largest_error ? 1 : 0;
-    if (found_[i] == 0) continue;
-    step_[i] = after_[i] - before_[i];
-    points_.raw_x[i] = raw_x, points_.raw_y[i] = raw_y;
-    undistort(frame, raw_x, raw_y, points_.x[i], points_.y[i]);
+    if (flow_.found[i] == 0) continue;
+    step_x_[i] = flow_.to_x[i] - flow_.from_x[i], step_y_[i] = flow_.to_y[i] - flow_.from_y[i];
+    points_.raw_x[i] = flow_.to_x[i], points_.raw_y[i] = flow_.to_y[i];
+    undistort(frame, flow_.to_x[i], flow_.to_y[i], points_.x[i], points_.y[i]);
     const float depth = depth_at(frame, points_.x[i], points_.y[i]);
     // A point that jumps in depth slid off its object.
     if (depth > 0.0F && points_.depth[i] > 0.0F && std::abs(depth - points_.depth[i]) > 0.1F + 0.05F * depth)
-      found_[i] = 0;
+      flow_.found[i] = 0;
     if (depth > 0.0F) points_.depth[i] = depth;
   }
-  compact(found_);
+  compact(flow_.found);
 }
 
 void PointFollower::add(const Frame& frame, float raw_x, float raw_y, std::uint8_t label) {
@@ -74,8 +60,7 @@ void PointFollower::add(const Frame& frame, float raw_x, float raw_y, std::uint8
   points_.x.push_back(x), points_.y.push_back(y);
   points_.depth.push_back(depth_at(frame, x, y));
   points_.label.push_back(label);
-  step_.resize(points_.size() - 1);
-  step_.emplace_back(0.0F, 0.0F);
+  step_x_.push_back(0.0F), step_y_.push_back(0.0F);
 }
 
 void PointFollower::compact(const std::vector<std::uint8_t>& keep) {
@@ -87,14 +72,14 @@ void PointFollower::compact(const std::vector<std::uint8_t>& keep) {
     points_.x[kept] = points_.x[i], points_.y[kept] = points_.y[i];
     points_.depth[kept] = points_.depth[i];
     points_.label[kept] = points_.label[i];
-    step_[kept] = step_[i];
+    step_x_[kept] = step_x_[i], step_y_[kept] = step_y_[i];
     ++kept;
   }
   points_.id.resize(kept);
-  for (std::vector<float>* values : {&points_.raw_x, &points_.raw_y, &points_.x, &points_.y, &points_.depth})
+  for (std::vector<float>* values :
+       {&points_.raw_x, &points_.raw_y, &points_.x, &points_.y, &points_.depth, &step_x_, &step_y_})
     values->resize(kept);
   points_.label.resize(kept);
-  step_.resize(kept);
 }
 
 }  // namespace holdfast

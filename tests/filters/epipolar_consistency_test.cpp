@@ -66,7 +66,7 @@ TEST(EpipolarConsistency, IsSilentWhileTheCameraOnlyTurns) {
 TEST(EpipolarConsistency, SameFramesSameEvidence) {
   std::array<std::vector<StaticEvidence::Contribution>, 2> said;
   for (auto& statements : said) {
-    JudgedFrames frames("simulated", scene("empty", {"duration=0.6", "camera.speed=4"}));
+    JudgedFrames frames("simulated", scene("empty", {"duration=0.9", "camera.speed=4"}));
     EpipolarConsistency filter({}, frames.context());
     frames.run(filter, [&](const SensorFrame&, const Frame&, const StaticEvidence& evidence) {
       statements.insert(statements.end(), evidence.contributions().begin(), evidence.contributions().end());

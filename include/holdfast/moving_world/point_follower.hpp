@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
 #include "holdfast/core/frame.hpp"
+#include "holdfast/optical_flow/point_flow.hpp"
 
 namespace holdfast {
 
-/// Image points followed from frame to frame by pyramidal Lucas-Kanade flow at half resolution (Bouguet 2000). Points
+/// Image points followed from frame to frame by follow_points(), each from where its last step would bring it. Points
 /// are added where the caller wants them and keep rising ids; those that are lost disappear. One thread.
 class PointFollower {
  public:
@@ -30,7 +29,7 @@ class PointFollower {
   /// Moves the points to a new image (8UC1) of `camera`; `frame` gives the depth.
   void advance(const cv::Mat& grey, const Frame& frame);
   /// How much of a corner the last image has at a raw pixel; 0 = nothing to follow.
-  int corner_strength(int raw_x, int raw_y) const;
+  int corner_strength(int raw_x, int raw_y) const { return holdfast::corner_strength(image_, raw_x / 2, raw_y / 2); }
   /// Adds a point at a raw pixel of the last image.
   void add(const Frame& frame, float raw_x, float raw_y, std::uint8_t label);
   /// Keeps the points for which `keep` says so.
@@ -45,21 +44,10 @@ class PointFollower {
 
   Points points_;
   std::uint64_t next_id_ = 0;
-  cv::Mat half_;
-  std::vector<cv::Mat> pyramid_, previous_pyramid_;
-  std::vector<cv::Point2f> before_, after_, step_;
-  std::vector<std::uint8_t> found_;
-  std::vector<float> error_;
+  ImagePyramid image_, last_image_;
+  PointFlow flow_;
+  std::vector<float> step_x_, step_y_;  // of the last image [px]
 };
-
-inline int PointFollower::corner_strength(int raw_x, int raw_y) const {
-  // The finest level of the pyramid is followed by its derivatives.
-  const cv::Mat& derivatives = pyramid_[1];
-  const int column = raw_x / 2, row = raw_y / 2;
-  if (raw_x < 0 || raw_y < 0 || column >= derivatives.cols || row >= derivatives.rows) return 0;
-  const std::int16_t* gradient = derivatives.ptr<std::int16_t>(row) + std::ptrdiff_t{2} * column;
-  return std::min(std::abs(gradient[0]), std::abs(gradient[1]));
-}
 
 template <class Keep>
 void PointFollower::filter(const Keep& keep) {

@@ -7,13 +7,14 @@
 #include <vector>
 
 #include "holdfast/core/frame.hpp"
+#include "holdfast/optical_flow/point_flow.hpp"
 
 namespace holdfast {
 
-/// Follows the features of one image, the template, into the images after it by pyramidal Lucas-Kanade flow at half
-/// resolution (Bouguet 2000), in place of extracting features there and matching them. Tracking by flow between
-/// keyframes is the idea of NGD-SLAM (Zhang et al. 2024). Every image is compared with the template and not with the
-/// image before it, so that errors do not add up. Keeps its buffers; one thread.
+/// Follows the features of one image, the template, into the images after it by follow_points(), in place of extracting
+/// features there and matching them. Tracking by flow between keyframes is the idea of NGD-SLAM (Zhang et al. 2024).
+/// Every image is compared with the template and not with the image before it, so that errors do not add up. Keeps its
+/// buffers; one thread.
 class FeatureFlow {
  public:
   /// Prepares an image (8UC1) for follow(), and perhaps for set_template() later. Must be called for every image.
@@ -45,13 +46,10 @@ class FeatureFlow {
   std::vector<std::uint8_t> has_depth_;
   std::vector<float> x_, y_;  // undistorted [px]
   Features features_;
-  std::vector<cv::Mat> template_pyramid_;
+  ImagePyramid template_;
 
-  cv::Mat half_, last_half_;  // the last image, and the one before
-  std::vector<cv::Mat> pyramid_;
-  std::vector<cv::Point2f> before_, after_;
-  std::vector<std::uint8_t> found_;
-  std::vector<float> error_;
+  ImagePyramid image_, last_image_;
+  PointFlow flow_;
   std::vector<MapPointId> found_points_;
 };
 

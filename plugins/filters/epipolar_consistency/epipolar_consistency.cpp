@@ -48,9 +48,9 @@ void EpipolarConsistency::collect_pairs(const Frame& frame, const StaticEvidence
   pairs_.clear();
   places_.clear();
   for (std::size_t k = 0; k < chosen_.size(); ++k) {
-    if (flow_.found[k] == 0) continue;
+    if (flow_.found()[k] == 0) continue;
     const std::uint32_t i = chosen_[k];
-    const Eigen::Vector2d raw_before(flow_.before_x[k], flow_.before_y[k]), now(frame.x[i], frame.y[i]);
+    const Eigen::Vector2d raw_before(flow_.before_x()[k], flow_.before_y()[k]), now(frame.x[i], frame.y[i]);
     const Eigen::Vector2d moved(raw_before.x() - frame.features.x[i], raw_before.y() - frame.features.y[i]);
     const Eigen::Vector2f before = undistorted_near(camera_, raw_before, now + moved).cast<float>();
     const bool is_trusted = frame.static_probability[i] >= 0.5F && evidence.log_odds(i) >= 0.0F;
@@ -63,7 +63,7 @@ void EpipolarConsistency::collect_pairs(const Frame& frame, const StaticEvidence
 void EpipolarConsistency::apply(const FilterContext& context, StaticEvidence& evidence) {
   const Frame& frame = context.frame;
   verdict_ = Verdict::few_points;
-  if (!FeatureFlow::can_follow(context.sensor_frame.colour)) return;
+  if (context.sensor_frame.colour.empty()) return;
   flow_.add_image(context.sensor_frame.colour, context.sensor_frame.timestamp);
   if (!flow_.ready()) return;
   choose_features(frame);
@@ -82,7 +82,7 @@ void EpipolarConsistency::apply(const FilterContext& context, StaticEvidence& ev
     if (distance2[p] > threshold2) suspect_.push_back(places_[p]);
   flow_.check_back(suspect_);  // a tracking failure resembles motion
   for (std::size_t p = 0; p < places_.size(); ++p) {
-    if (flow_.found[places_[p]] == 0) continue;
+    if (flow_.found()[places_[p]] == 0) continue;
     const bool moves = distance2[p] > threshold2;
     const auto log_odds = static_cast<float>(moves ? -settings_.moving : settings_.fixed);
     if (log_odds != 0.0F) evidence.add(chosen_[places_[p]], log_odds);

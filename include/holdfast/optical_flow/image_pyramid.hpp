@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+
+namespace holdfast {
+
+/// An image at a half, a quarter and an eighth of its resolution, in grey, for follow_points(). Each pixel is the mean
+/// of four of the level below. Pixel centres have integer coordinates at every level, so that x of the image is
+/// 0.5 * x - 0.25 in the first level. Keeps its buffers. One thread.
+class ImagePyramid {
+ public:
+  static constexpr int levels = 3;
+  /// Each level is surrounded by this many pixels, which repeat its border.
+  static constexpr int border = 8;
+
+  /// `image` is 8UC1 or 8UC3 (BGR). Levels that would have no pixel stay empty.
+  void build(const cv::Mat& image);
+  bool empty() const { return size_.empty(); }
+  /// Of the image [px].
+  cv::Size size() const { return size_; }
+  /// 8UC1; pixels up to `border` outside may be read.
+  const cv::Mat& level(int index) const { return levels_[static_cast<std::size_t>(index)]; }
+
+ private:
+  cv::Size size_;
+  cv::Mat half_colour_;
+  std::array<cv::Mat, levels> padded_, levels_;  // the second are windows into the first
+};
+
+/// How much of a corner an image has at a pixel of its first level: the smaller one of the magnitudes of both
+/// derivatives by Scharr's filter (32 times grey levels per pixel). 0 outside the image.
+int corner_strength(const ImagePyramid& pyramid, int x, int y);
+
+}  // namespace holdfast

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "holdfast/core/simd.hpp"
+#include "holdfast/optical_flow/image_pyramid.hpp"
+
+namespace holdfast {
+
+/// Points in two images; entry i of each array belongs to point i. Positions are in pixels of the full image.
+struct PointFlow {
+  std::vector<float> from_x, from_y;  ///< input: the points in the first image
+  std::vector<float> to_x, to_y;      ///< input: where they are expected in the second image; output: where they are
+  std::vector<std::uint8_t> found;    ///< output: 1 = found; otherwise to_x and to_y mean nothing
+
+  std::size_t size() const { return from_x.size(); }
+  void resize(std::size_t count);
+};
+
+struct PointFlowSettings {
+  int iterations = 10;              ///< at most, per level of the pyramid
+  float precision = 0.05F;          ///< a step shorter than this ends the iteration [px of the level]
+  float largest_difference = 25.0;  ///< mean of the grey levels' differences in the window above which a point is lost
+};
+
+/// Finds points of one image in another by the pyramidal Lucas-Kanade method (Bouguet, "Pyramidal implementation of the
+/// Lucas Kanade feature tracker", 2000): from the coarsest level to the finest, a window of 8 x 8 pixels is moved until
+/// the sum of its squared differences is least. A point is lost where its window has no texture in two directions,
+/// where it leaves the image, and where the windows differ too much. The images must have the same size. Points are
+/// independent of each other; results have the same bits on every processor.
+void follow_points(const ImagePyramid& from, const ImagePyramid& to, const PointFlowSettings& settings, PointFlow& flow,
+                   SimdLevel simd = simd_level());
+
+}  // namespace holdfast
