@@ -36,8 +36,8 @@ cv::Mat synthetic_image(std::uint64_t seed) {
   Random random(seed);
   cv::Mat image(480, 640, CV_8UC1, cv::Scalar(128));
   for (int i = 0; i < 400; ++i) {
-    const cv::Point corner(static_cast<int>(random.below(640)), static_cast<int>(random.below(480)));
-    const cv::Size size(4 + static_cast<int>(random.below(80)), 4 + static_cast<int>(random.below(80)));
+    const cv::Point corner{static_cast<int>(random.below(640)), static_cast<int>(random.below(480))};
+    const cv::Size size{4 + static_cast<int>(random.below(80)), 4 + static_cast<int>(random.below(80))};
     cv::rectangle(image, cv::Rect(corner, size), cv::Scalar(random.below(256)), cv::FILLED);
   }
   cv::GaussianBlur(image, image, cv::Size(3, 3), 0.8);

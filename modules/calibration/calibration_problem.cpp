@@ -102,6 +102,7 @@ struct CalibrationProblem::Equations {
     reduced = A;
     reduced.diagonal() *= 1.0 + damping;
     right = a;
+    if (A.rows() == 0) return;  // Eigen 3.4 takes the address of the first element of an empty right-hand side
     for (std::size_t v = 0; v < C.size(); ++v) {
       const auto inverse = damped(v, damping).ldlt();
       reduced -= B[v] * inverse.solve(B[v].transpose());

@@ -24,7 +24,8 @@ void FilterScene::choose_points() {
   Random random(17);
   for (int i = 0; i < wanted_points; ++i) {
     const Camera& camera = *camera_;
-    const auto hit = scene_.look(0, random.uniform(0.0, camera.width - 1.0), random.uniform(0.0, camera.height - 1.0));
+    const double y = random.uniform(0.0, camera.height - 1.0), x = random.uniform(0.0, camera.width - 1.0);
+    const auto hit = scene_.look(0, x, y);
     if (hit.depth <= 0.0) continue;
     Point point{hit.point, hit.label == Scene::person, static_cast<std::uint8_t>(random.below(4)), {}, {}};
     for (std::uint64_t& word : point.descriptor.words) word = random.next();

@@ -188,8 +188,8 @@ cv::Mat block_texture(int width, int height, int block, Random random) {
   cv::Mat texture(height, width, CV_8UC3);
   for (int top = 0; top < height; top += block)
     for (int left = 0; left < width; left += block) {
-      const cv::Vec3b colour(static_cast<std::uint8_t>(random.below(256)), static_cast<std::uint8_t>(random.below(256)),
-                             static_cast<std::uint8_t>(random.below(256)));
+      cv::Vec3b colour;
+      for (int channel = 2; channel >= 0; --channel) colour[channel] = static_cast<std::uint8_t>(random.below(256));
       for (int y = top; y < std::min(height, top + block); ++y)
         for (int x = left; x < std::min(width, left + block); ++x) texture.at<cv::Vec3b>(y, x) = colour;
     }

@@ -56,7 +56,7 @@ inline BoardView exact_view(const CalibrationBoard& board, const Camera& camera,
   for (int i = 0; i < board.corner_count(); ++i) {
     Eigen::Vector2d pixel = camera.distort(camera.project(pose * board.corner(i)));
     if (pixel.x() < 0 || pixel.y() < 0 || pixel.x() > camera.width - 1 || pixel.y() > camera.height - 1) continue;
-    if (random != nullptr) pixel += noise * Eigen::Vector2d(random->normal(), random->normal());
+    if (random != nullptr) pixel += noise * Eigen::Vector2d{random->normal(), random->normal()};
     view.corners.push_back(i);
     view.pixels.push_back(pixel);
   }

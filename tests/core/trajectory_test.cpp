@@ -241,9 +241,9 @@ TEST_F(TrajectoryTest, ReadsWhatItWrote) {
   for (int i = 0; i < 50; ++i) {
     TimedPose pose;
     pose.timestamp = 1.3e9 + i / 30.0;
-    const Eigen::Quaterniond rotation(random.normal(), random.normal(), random.normal(), random.normal());
+    const Eigen::Quaterniond rotation{random.normal(), random.normal(), random.normal(), random.normal()};
     pose.T_world_camera =
-        Eigen::Translation3d(random.normal(), random.normal(), random.normal()) * rotation.normalized();
+        Eigen::Translation3d{random.normal(), random.normal(), random.normal()} * rotation.normalized();
     trajectory.push_back(pose);
   }
   write_trajectory(folder_ / "out.txt", trajectory);

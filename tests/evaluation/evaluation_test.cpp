@@ -83,7 +83,7 @@ TEST(Evaluation, MeasuresKnownNoise) {
   Random random(3);
   constexpr double sigma = 0.01;
   for (TimedPose& pose : estimate)
-    pose.T_world_camera.translation() += sigma * Eigen::Vector3d(random.normal(), random.normal(), random.normal());
+    pose.T_world_camera.translation() += sigma * Eigen::Vector3d{random.normal(), random.normal(), random.normal()};
   const Evaluation evaluation = evaluate(truth, estimate);
   // The length of a normal vector in space: root mean square sigma sqrt(3), mean sigma sqrt(8 / pi).
   EXPECT_NEAR(evaluation.absolute_error.rmse, sigma * std::sqrt(3.0), 0.02 * sigma * std::sqrt(3.0));

@@ -24,7 +24,8 @@ inline cv::Mat scene_image(int width, int height, std::uint64_t seed) {
   cv::Mat image(height, width, CV_8UC1, cv::Scalar(128));
   const int count = width * height / 700;
   for (int i = 0; i < count; ++i) {
-    const cv::Point at(static_cast<int>(random.below(width)), static_cast<int>(random.below(height)));
+    const int y = static_cast<int>(random.below(height)), x = static_cast<int>(random.below(width));
+    const cv::Point at(x, y);
     const cv::Scalar grey(random.below(256));
     if (i % 3 == 0)
       cv::circle(image, at, 3 + static_cast<int>(random.below(20)), grey, cv::FILLED);

@@ -130,7 +130,7 @@ TEST_F(MultiViewDepthTest, AnErrorOfThePredictedPoseMakesNoMovement) {
   remember(furnished_room());
   const BoxWorld world = furnished_room();
   Random random(4);
-  const auto direction = [&] { return Vector3d(random.normal(), random.normal(), random.normal()).normalized(); };
+  const auto direction = [&] { return Vector3d{random.normal(), random.normal(), random.normal()}.normalized(); };
   for (int trial = 0; trial < 20; ++trial) {
     const Frame frame = world.frame(pose(3, {0.05, 0.02, 0.05}), now);
     const Isometry3d predicted = pose(0.5, 0.01 * direction(), direction()) * frame.T_camera_world;

@@ -29,7 +29,7 @@ class ObservedPoints {
     frame_.features.resize(count);
     frame_.static_probability.assign(count, 1.0F);
     for (std::size_t i = 0; i < count; ++i) {
-      in_camera_.emplace_back(random.uniform(-0.8, 0.8), random.uniform(-0.6, 0.6), random.uniform(1.0, 3.0));
+      in_camera_.push_back({random.uniform(-0.8, 0.8), random.uniform(-0.6, 0.6), random.uniform(1.0, 3.0)});
       frame_.map_points.push_back(map_.add_point(T_camera_world_.inverse() * in_camera_.back(), 0));
       frame_.features.octave[i] = static_cast<std::uint8_t>(i % 3);
     }

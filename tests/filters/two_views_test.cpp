@@ -34,12 +34,12 @@ Views make_views(const SceneKind& kind, std::uint64_t seed = 1, int count = 400)
   for (int i = 0; i < count; ++i) {
     const bool moves = random.uniform() < kind.movers;
     const double depth = moves ? random.uniform(1.2, 1.5) : kind.plane ? 2.5 : random.uniform(1.2, 4.0);
-    Eigen::Vector3d point(random.uniform(-0.55, 0.55) * depth, random.uniform(-0.4, 0.4) * depth, depth);
+    Eigen::Vector3d point{random.uniform(-0.55, 0.55) * depth, random.uniform(-0.4, 0.4) * depth, depth};
     const Eigen::Vector2d a = point.hnormalized();
     if (moves) {
       Eigen::Vector3d motion = kind.motion;
       if (!kind.coherent)
-        motion = 0.06 * Eigen::Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+        motion = 0.06 * Eigen::Vector3d{random.normal(), random.normal(), random.normal()}.normalized();
       point += motion;
     }
     const Eigen::Vector2d b = (rotation * (point - kind.translation)).hnormalized();

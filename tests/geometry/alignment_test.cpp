@@ -17,9 +17,9 @@ struct Clouds {
     const Eigen::Isometry3d motion = exp_se3(synthetic::tangent(random, 1.0, 1.0));
     truth = {scale, motion.linear(), motion.translation()};
     for (int i = 0; i < count; ++i) {
-      source.emplace_back(random.normal(), random.normal(), random.normal());
+      source.push_back({random.normal(), random.normal(), random.normal()});
       target.push_back(truth * source.back() +
-                       noise * Eigen::Vector3d(random.normal(), random.normal(), random.normal()));
+                       noise * Eigen::Vector3d{random.normal(), random.normal(), random.normal()});
     }
   }
   double error(const Similarity& found) const {
@@ -61,7 +61,7 @@ TEST(Alignment, RefusesWhatDoesNotDetermineAMotion) {
 TEST(Alignment, RansacFindsTheMajority) {
   Clouds clouds(100, 1.3, 0.01, 4);
   Random random(5);
-  for (int i = 0; i < 40; ++i) clouds.target[i] += Eigen::Vector3d(random.uniform(0.5, 3), random.uniform(-3, 3), 0.0);
+  for (int i = 0; i < 40; ++i) clouds.target[i] += Eigen::Vector3d{random.uniform(0.5, 3), random.uniform(-3, 3), 0.0};
   AlignmentRansacOptions options;
   options.with_scale = true;
   const auto found = align_points_ransac(clouds.source, clouds.target, options);

@@ -12,7 +12,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 Eigen::Vector3d axis(Random& random) {
-  return Eigen::Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+  return Eigen::Vector3d{random.normal(), random.normal(), random.normal()}.normalized();
 }
 
 TEST(So3, LogUndoesExpAtEveryAngle) {

@@ -17,7 +17,8 @@ TEST(P3p, OneOfTheSolutionsIsTheTruth) {
     const Eigen::Isometry3d truth = exp_se3(synthetic::tangent(random, 1.0, 1.0));
     std::array<Eigen::Vector3d, 3> points, directions;
     for (int i = 0; i < 3; ++i) {
-      directions[i] = camera.back_project(random.uniform(0, 640), random.uniform(0, 480), 1.0);
+      const double x = random.uniform(0, 640), y = random.uniform(0, 480);
+      directions[i] = camera.back_project(x, y, 1.0);
       points[i] = truth.inverse() * (random.uniform(0.5, 5.0) * directions[i]);
     }
     double nearest = 1e9;

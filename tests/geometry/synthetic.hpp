@@ -89,9 +89,8 @@ inline BundleCase bundle_case(const Camera& camera, int fixed, int free, int poi
   while (static_cast<int>(result.points.size()) < points) {
     const int first = static_cast<int>(random.below(static_cast<std::uint32_t>(poses)));
     const Eigen::Isometry3d T_world_camera = result.poses[first].inverse();
-    const Eigen::Vector3d point =
-        T_world_camera * camera.back_project(random.uniform(0, camera.width), random.uniform(0, camera.height),
-                                             random.uniform(0.8, 4.0));
+    const double x = random.uniform(0, camera.width), y = random.uniform(0, camera.height);
+    const Eigen::Vector3d point = T_world_camera * camera.back_project(x, y, random.uniform(0.8, 4.0));
     std::vector<BundleProblem::Observation> seen;
     for (int i = std::max(0, first - track / 2); i < poses && static_cast<int>(seen.size()) < track; ++i) {
       const Eigen::Vector3d p = result.poses[i] * point;
@@ -118,7 +117,7 @@ inline BundleCase bundle_case(const Camera& camera, int fixed, int free, int poi
     }
     result.points.push_back(point);
     problem.points.push_back(point +
-                             Eigen::Vector3d(0.02 * random.normal(), 0.02 * random.normal(), 0.02 * random.normal()));
+                             Eigen::Vector3d{0.02 * random.normal(), 0.02 * random.normal(), 0.02 * random.normal()});
   }
   return result;
 }

@@ -26,7 +26,7 @@ struct Scene {
       const Eigen::Vector3d point = camera.back_project(x, y, depth);
       const Eigen::Vector2d a = camera.project(point), b = camera.project(T_b_a * point);
       const auto noisy = [&](const Eigen::Vector2d& pixel) -> Eigen::Vector2d {
-        return pixel + noise * Eigen::Vector2d(random.normal(), random.normal());
+        return pixel + noise * Eigen::Vector2d{random.normal(), random.normal()};
       };
       PixelPair pair{noisy(a), noisy(b), 1.0, 1.0};
       if (random.uniform() < outliers) pair.b = {random.uniform(0, 640), random.uniform(0, 480)};

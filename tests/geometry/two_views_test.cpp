@@ -19,9 +19,10 @@ struct TwoViews {
     Vector6d between = synthetic::tangent(random, 0.05, 0.05);
     between[0] -= 0.3;
     T_b_world = exp_se3(between) * T_a_world;
-    for (int i = 0; i < 50; ++i)
-      points.push_back(T_a_world.inverse() * camera.back_project(random.uniform(150, 500), random.uniform(50, 400),
-                                                                 random.uniform(1.0, 4.0)));
+    for (int i = 0; i < 50; ++i) {
+      const double x = random.uniform(150, 500), y = random.uniform(50, 400);
+      points.push_back(T_a_world.inverse() * camera.back_project(x, y, random.uniform(1.0, 4.0)));
+    }
   }
   Eigen::Vector2d in_a(const Eigen::Vector3d& point) const { return camera.project(T_a_world * point); }
   Eigen::Vector2d in_b(const Eigen::Vector3d& point) const { return camera.project(T_b_world * point); }

@@ -234,7 +234,8 @@ TEST(FlannDetector, ScoresLieBetweenZeroAndOne) {
   Random random(4);
   const auto places = make_places(10);
   for (std::uint32_t i = 0; i < 200; ++i) {
-    auto view = seen_again(places[random.below(10)], random.uniform(), 30, random);
+    const std::size_t place = random.below(10);
+    auto view = seen_again(places[place], random.uniform(), 30, random);
     view.insert(view.end(), view.begin(), view.begin() + 20);
     for (const PlaceMatch& match : detector.query(view, 300)) {
       EXPECT_GT(match.score, 0.0);

@@ -150,13 +150,17 @@ TEST(MovingThings, CullingNeverChangesThePicture) {
   World world;
   const TextureArea area = white(world);
   Random random(11);
+  const auto anywhere = [&random](double size) {
+    const double z = random.uniform(-size, size), y = random.uniform(-size, size), x = random.uniform(-size, size);
+    return Vector3d(x, y, z);
+  };
   for (int i = 0; i < 150; ++i) {
     Object& box = world.objects.emplace_back();
     box.name = box.class_name = "box";
     const float size = static_cast<float>(random.uniform(0.05, 0.5));
     add_box(box.mesh, {Vector3f::Constant(-size), Vector3f(size, size, 0.5F * size)},
             {area, area, area, area, area, area}, 1.0F);
-    const Vector3d place(random.uniform(-3, 3), random.uniform(-3, 3), random.uniform(-3, 3));
+    const Vector3d place = anywhere(3);
     box.T_world_object = Translation3d(place) * AngleAxisd(random.uniform(0, 6), Vector3d(1, 2, 3).normalized());
     if (i % 2 == 0) {  // half of them as things that move
       const Isometry3d pose = box.T_world_object;
@@ -164,8 +168,8 @@ TEST(MovingThings, CullingNeverChangesThePicture) {
     }
   }
   for (int i = 0; i < 5; ++i) {
-    const Vector3d eye(random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2));
-    const Vector3d target(random.uniform(-2, 2), random.uniform(-2, 2), random.uniform(-2, 2));
+    const Vector3d eye = anywhere(2);
+    const Vector3d target = anywhere(2);
     expect_brute_force(world, *find_camera("tum_fr3"), look_at(eye, target), 0.3 * i, 9, 100);
   }
 }

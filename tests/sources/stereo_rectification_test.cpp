@@ -36,7 +36,7 @@ TEST_P(AnyPair, PointsLieInOneRowTheirDisparityApart) {
   EXPECT_NEAR(camera.baseline, 0.11, 1e-12);
   Random random(3);
   for (int i = 0; i < 200; ++i) {
-    const Eigen::Vector3d left(random.uniform(-1.0, 1.0), random.uniform(-0.7, 0.7), random.uniform(1.0, 4.0));
+    const Eigen::Vector3d left{random.uniform(-1.0, 1.0), random.uniform(-0.7, 0.7), random.uniform(1.0, 4.0)};
     const Eigen::Vector3d right = raw.T_left_right.inverse() * left;
     const auto in = [](const Eigen::Isometry3d& T_raw_rectified, const Eigen::Vector3d& point) -> Eigen::Vector3d {
       return T_raw_rectified.inverse() * point;

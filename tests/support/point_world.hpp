@@ -22,7 +22,8 @@ class PointWorld {
   explicit PointWorld(Camera camera, int points = 1500, std::uint64_t seed = 5)
       : camera_(std::move(camera)), random_(seed) {
     for (int i = 0; i < points; ++i) {
-      points_.emplace_back(random_.uniform(-2.5, 2.5), random_.uniform(-1.8, 1.8), random_.uniform(1.2, 4.0));
+      const double z = random_.uniform(1.2, 4.0), y = random_.uniform(-1.8, 1.8), x = random_.uniform(-2.5, 2.5);
+      points_.emplace_back(x, y, z);
       Descriptor256 descriptor;
       for (std::uint64_t& word : descriptor.words) word = random_.next();
       descriptors_.push_back(descriptor);

@@ -90,7 +90,7 @@ void MultiViewDepth::compare(const FilterContext& context) {
     rays_x_.resize(columns_);
     for (int column = 0; column < columns_; ++column) rays_x_[column] = warp.ray_x(grid.x_of(column * stride));
     for (int row = 0; row < rows_; ++row) {
-      const float* depths = &depth_[static_cast<std::size_t>(row * columns_)];
+      const float* depths = depth_.data() + static_cast<std::ptrdiff_t>(row) * columns_;
       warp.row(rays_x_, warp.ray_y(grid.y_of(row * stride)), Eigen::Map<const Eigen::ArrayXf>(depths, columns_),
                warped_);
       // Not at the border, because is_seen_through() reads the cells around.

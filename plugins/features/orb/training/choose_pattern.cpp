@@ -83,7 +83,8 @@ class Sampler {
 /// The same scene seen again: turned, scaled, with another exposure and noise.
 cv::Mat seen_again(const cv::Mat& image, Random& random, cv::Matx23d& transform) {
   const cv::Point2f centre(static_cast<float>(image.cols) / 2, static_cast<float>(image.rows) / 2);
-  transform = cv::getRotationMatrix2D(centre, random.uniform(-30, 30), random.uniform(0.85, 1.15));
+  const double scale = random.uniform(0.85, 1.15), degrees = random.uniform(-30, 30);
+  transform = cv::getRotationMatrix2D(centre, degrees, scale);
   cv::Mat again;
   cv::warpAffine(image, again, transform, image.size(), cv::INTER_LINEAR, cv::BORDER_REFLECT_101);
   const double gain = random.uniform(0.8, 1.2), offset = random.uniform(-15, 15);
