@@ -26,6 +26,7 @@ struct Part {
   std::size_t frames = 0, lost = 0, keyframes_made = 0;
   std::size_t keyframes = 0, points = 0, loops = 0;  // at its end
   double memory = 0.0;                               // resident at its end [MB]
+  double allocated = 0.0;                            // of that, in use by the program's own allocations [MB]
 };
 
 /// Resident memory, what the allocator only keeps for later given back first.
@@ -35,6 +36,11 @@ double resident_megabytes() {
   double total = 0.0, resident = 0.0;
   stream >> total >> resident;
   return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
+}
+
+double allocated_megabytes() {
+  const struct mallinfo2 info = mallinfo2();
+  return static_cast<double>(info.uordblks + info.hblkhd) / 1e6;
 }
 
 double tracking_of(const FrameResult& result) { return result.tracking_seconds; }
@@ -66,8 +72,10 @@ std::vector<Part> run(BuiltPipeline& built) {
     part.points = built.pipeline.map().points().size();
     part.loops = built.pipeline.loop_record().loops.size();
     part.memory = resident_megabytes();
-    std::fprintf(stderr, "%zu of %zu frames, tracking %.2f ms, %zu keyframes, %.0f MB\n", fed,
-                 static_cast<std::size_t>(count), median(part.tracking) * 1e3, part.keyframes, part.memory);
+    part.allocated = allocated_megabytes();
+    std::fprintf(stderr, "%zu of %zu frames, tracking %.2f ms, %zu keyframes, %.0f MB, %.1f MB allocated\n", fed,
+                 static_cast<std::size_t>(count), median(part.tracking) * 1e3, part.keyframes, part.memory,
+                 part.allocated);
   }
   built.pipeline.finish();
   return result;
@@ -76,13 +84,12 @@ std::vector<Part> run(BuiltPipeline& built) {
 void write_table(const std::filesystem::path& file, const std::vector<Part>& parts) {
   std::ofstream csv(file);
   csv << "tenth,frames,lost,tracking_median_ms,tracking_p95_ms,keyframes_made,keyframe_median_ms,keyframes,points,"
-         "loops,"
-         "memory_mb\n";
+         "loops,memory_mb,allocated_mb\n";
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const Part& p = parts[i];
     csv << i + 1 << ',' << p.frames << ',' << p.lost << ',' << median(p.tracking) * 1e3 << ','
         << percentile(p.tracking, 95.0) * 1e3 << ',' << p.keyframes_made << ',' << median(p.background) * 1e3 << ','
-        << p.keyframes << ',' << p.points << ',' << p.loops << ',' << p.memory << '\n';
+        << p.keyframes << ',' << p.points << ',' << p.loops << ',' << p.memory << ',' << p.allocated << '\n';
   }
 }
 
