@@ -17,17 +17,19 @@ std::int64_t now_in_nanoseconds() {
   return duration_cast<nanoseconds>(steady_clock::now().time_since_epoch()).count();
 }
 
-/// Fewer points that another keyframe sees as well hardly determine a pose: such a keyframe would leave its place for a
-/// slightly lower cost.
-constexpr int least_shared_points = 15;
-
-/// The keyframes that an adjustment can place, oldest first; the first of every piece holds it and is always there.
-std::vector<KeyFrameId> placeable_keyframes(const Map& map) {
+/// By keyframe slot, how many of its points another keyframe sees as well.
+std::vector<int> count_shared_points(const Map& map) {
   std::vector<int> shared(map.keyframes().slot_count(), 0);
   map.points().for_each([&](MapPointId, const MapPoint& point) {
     if (point.observations.size() < 2) return;
     for (const Observation& observation : point.observations) ++shared[observation.keyframe.slot];
   });
+  return shared;
+}
+
+/// The keyframes that an adjustment can place, oldest first; the first of every piece holds it and is always there.
+std::vector<KeyFrameId> placeable_keyframes(const Map& map) {
+  const std::vector<int> shared = count_shared_points(map);
   std::vector<KeyFrameId> keyframes = map.keyframes_by_age();
   PieceSet pieces;
   std::erase_if(keyframes, [&](KeyFrameId id) {
@@ -35,6 +37,35 @@ std::vector<KeyFrameId> placeable_keyframes(const Map& map) {
     return !is_first && shared[id.slot] < least_shared_points;
   });
   return keyframes;
+}
+
+/// Leaves out the new poses of keyframes that fled: that few points hold, which lie so badly that the pose went far
+/// from where it was relative to the keyframe's parent. Without a pose of their own, they move with their parents.
+void leave_out_fled(const Map& map, std::vector<KeyFrameId>& keyframes, std::vector<Eigen::Isometry3d>& poses) {
+  constexpr int few_points = 4 * least_shared_points;
+  constexpr double far = 0.2, far_angle = 0.2;  // m, rad
+  const std::vector<int> shared = count_shared_points(map);
+  // By slot, the motion of the world around a keyframe, new from old.
+  std::vector<Eigen::Isometry3d> motion(map.keyframes().slot_count(), Eigen::Isometry3d::Identity());
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < keyframes.size(); ++i) {
+    const KeyFrame* keyframe = map.find_keyframe(keyframes[i]);
+    if (keyframe == nullptr) continue;
+    const Eigen::Isometry3d& old_pose = keyframe->frame.T_camera_world;
+    Eigen::Isometry3d& own = motion[keyframes[i].slot];
+    own = poses[i].inverse() * old_pose;
+    if (keyframe->parent.valid() && shared[keyframes[i].slot] < few_points) {
+      // Where the keyframe would be if it moved with its parent, seen from where it would go.
+      const Eigen::Isometry3d carried = poses[i] * motion[keyframe->parent.slot] * old_pose.inverse();
+      if (carried.translation().norm() > far || Eigen::AngleAxisd(carried.linear()).angle() > far_angle) {
+        own = motion[keyframe->parent.slot];
+        continue;
+      }
+    }
+    keyframes[kept] = keyframes[i], poses[kept] = poses[i];
+    ++kept;
+  }
+  keyframes.resize(kept), poses.resize(kept);
 }
 
 /// Calls function(index) for 0 ... count - 1 and lets go of the map's lock after every 1000 of them.
@@ -148,7 +179,9 @@ void FullAdjustment::move_map() {
 
   // Poses and points in one go: nobody may see the one without the other.
   const std::lock_guard lock(map_mutex_);
-  const MapMotion motion(map_, keyframes_, poses);
+  std::vector<KeyFrameId> keyframes = keyframes_;
+  leave_out_fled(map_, keyframes, poses);
+  const MapMotion motion(map_, keyframes, poses);
   summary_.keyframes_carried = motion.move_keyframes(map_);
   std::vector<std::uint8_t> is_placed(map_.points().slot_count(), 0);
   for (std::size_t i = 0; i < points_.size(); ++i) {

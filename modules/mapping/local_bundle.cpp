@@ -39,15 +39,18 @@ void LocalMapper::build_bundle_problem(KeyFrameId id) {
   problem_.robust_iterations = settings_.bundle_robust_iterations;
   problem_.final_iterations = settings_.bundle_final_iterations;
   problem_observations_.clear();
+  std::vector<int> shared_points(moving, 0);
   for (std::uint32_t p = 0; p < points.size(); ++p) {
     const MapPoint& point = map_.point(points[p]);
     problem_.points.push_back(point.position);
+    const bool is_shared = point.observations.size() > 1;
     for (const Observation& observation : point.observations) {
       std::int32_t& pose = pose_of_slot[observation.keyframe.slot];
       if (pose < 0) {
         pose = static_cast<std::int32_t>(keyframes.size());
         keyframes.push_back(observation.keyframe);
       }
+      if (is_shared && static_cast<std::size_t>(pose) < moving) ++shared_points[static_cast<std::size_t>(pose)];
       problem_.observations.push_back(bundle_observation(map_.keyframe(observation.keyframe).frame, observation.feature,
                                                          static_cast<std::uint32_t>(pose), p));
       problem_observations_.emplace_back(points[p], observation.keyframe);
@@ -55,7 +58,8 @@ void LocalMapper::build_bundle_problem(KeyFrameId id) {
   }
   for (std::size_t i = 0; i < keyframes.size(); ++i) {
     const KeyFrame& keyframe = map_.keyframe(keyframes[i]);
-    problem_.poses.push_back({keyframe.frame.T_camera_world, i >= moving || keyframe.sequence == 0});
+    const bool is_held = i < moving && shared_points[i] >= least_shared_points;
+    problem_.poses.push_back({keyframe.frame.T_camera_world, !is_held || keyframe.sequence == 0});
   }
   // Something must hold the map in place: without a fixed keyframe, the oldest one does.
   if (std::none_of(problem_.poses.begin(), problem_.poses.end(), [](const auto& pose) { return pose.fixed; })) {

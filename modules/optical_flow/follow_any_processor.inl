@@ -64,30 +64,27 @@ HOLDFAST_TARGET_INLINE bool take_template(const cv::Mat& level, float x, float y
   Place place;
   if (!find_place(level, x, y, 1, place)) return false;
   const auto stride = static_cast<std::ptrdiff_t>(level.step);
-  // Rows -1 to 8 of the window, interpolated between columns, then between rows.
-  std::array<Row, window + 2> grey;
-  Row upper, lower, left_upper, left_lower, right_upper, right_lower;
-  const std::uint8_t* pixels = place.corner - stride;
-  interpolate(pixels, place.fraction_x, upper);
+  // Rows -1 to 8 of the window, each one pixel to the left, in its place and one pixel to the right: their difference,
+  // and their mean with the weights 3, 10 and 3, of which Scharr's derivatives are made.
+  std::array<Row, window + 2> across, smooth;
+  std::array<Row, 3> upper, lower, now;
+  const std::uint8_t* pixels = place.corner - stride - 1;
+  for (int shift = 0; shift < 3; ++shift) interpolate(pixels + shift, place.fraction_x, upper[shift]);
   for (int row = 0; row < window + 2; ++row) {
     pixels += stride;
-    interpolate(pixels, place.fraction_x, lower);
-    grey[row] = upper + place.fraction_y * (lower - upper);
-    upper = lower;
+    for (int shift = 0; shift < 3; ++shift) {
+      interpolate(pixels + shift, place.fraction_x, lower[shift]);
+      now[shift] = upper[shift] + place.fraction_y * (lower[shift] - upper[shift]);
+      upper[shift] = lower[shift];
+    }
+    across[row] = now[2] - now[0];
+    smooth[row] = 0.1875F * (now[0] + now[2]) + 0.625F * now[1];
+    if (row > 0 && row <= window) result.grey[row - 1] = now[1];
   }
-  pixels = place.corner;
-  interpolate(pixels - 1, place.fraction_x, left_upper);
-  interpolate(pixels + 1, place.fraction_x, right_upper);
   Row xx{}, xy{}, yy{};
   for (int row = 0; row < window; ++row) {
-    pixels += stride;
-    interpolate(pixels - 1, place.fraction_x, left_lower);
-    interpolate(pixels + 1, place.fraction_x, right_lower);
-    const Row left = left_upper + place.fraction_y * (left_lower - left_upper);
-    const Row right = right_upper + place.fraction_y * (right_lower - right_upper);
-    left_upper = left_lower, right_upper = right_lower;
-    result.grey[row] = grey[row + 1];
-    const Row along_x = 0.5F * (right - left), along_y = 0.5F * (grey[row + 2] - grey[row]);
+    const Row along_x = 0.09375F * (across[row] + across[row + 2]) + 0.3125F * across[row + 1];
+    const Row along_y = 0.5F * (smooth[row + 2] - smooth[row]);
     xx += along_x * along_x, xy += along_x * along_y, yy += along_y * along_y;
     result.along_x[row] = along_x, result.along_y[row] = along_y;
   }
@@ -151,9 +148,9 @@ HOLDFAST_TARGET_INLINE float difference_at(const Template& wanted, const cv::Mat
   return sum_of(sum) / static_cast<float>(window * window);
 }
 
-/// Positions of the full image in a level and back: centres of pixels have integer coordinates in all.
-HOLDFAST_TARGET_INLINE float to_level(float full, float scale) { return (full + 0.5F) * scale - 0.5F; }
-HOLDFAST_TARGET_INLINE float to_full(float level, float scale) { return (level + 0.5F) / scale - 0.5F; }
+/// Positions of the full image in a level whose pixels are `scale` times as many, and back.
+HOLDFAST_TARGET_INLINE float to_level(float full, float scale) { return (full - 0.5F) * scale; }
+HOLDFAST_TARGET_INLINE float to_full(float level, float scale) { return level / scale + 0.5F; }
 
 HOLDFAST_TARGET_INLINE void follow_all(const ImagePyramid& from, const ImagePyramid& to,
                                        const PointFlowSettings& settings, PointFlow& flow) {

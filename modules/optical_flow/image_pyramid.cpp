@@ -28,36 +28,39 @@ void fill_border(cv::Mat& padded) {
   }
 }
 
-/// Halves an image, without its last column or row where their number is odd.
-void halve(const cv::Mat& image, cv::Mat half) {
-  cv::resize(image(cv::Rect(0, 0, 2 * half.cols, 2 * half.rows)), half, half.size(), 0, 0, cv::INTER_AREA);
-}
-
 }  // namespace
 
 void ImagePyramid::build(const cv::Mat& image) {
   HOLDFAST_CHECK(image.type() == CV_8UC1 || image.type() == CV_8UC3, "image type " << image.type());
   size_ = image.size();
   cv::Size size(size_.width / 2, size_.height / 2);
-  for (std::size_t i = 0; i < levels; ++i, size = {size.width / 2, size.height / 2}) {
+  for (std::size_t i = 0; i < levels; ++i, size = {(size.width + 1) / 2, (size.height + 1) / 2}) {
     cv::Mat& level = levels_[i];
-    if (level.size() != size || level.empty()) {
+    if (size.empty()) {
       level = cv::Mat();
-      if (size.empty()) continue;
-      padded_[i] = cv::Mat(size.height + 2 * border, size.width + 2 * border, CV_8UC1);
+      continue;
+    }
+    if (level.size() != size) {
+      padded_[i].create(size.height + 2 * border, size.width + 2 * border, CV_8UC1);
       level = padded_[i](cv::Rect({border, border}, size));
     }
-    if (i > 0) {
-      halve(levels_[i - 1], level);
-    } else if (image.channels() == 1) {
-      halve(image, level);
-    } else {
-      half_colour_.create(size, CV_8UC3);
-      halve(image, half_colour_);
-      cv::cvtColor(half_colour_, level, cv::COLOR_BGR2GRAY);
-    }
+    if (i > 0)
+      cv::pyrDown(levels_[i - 1], level, size);
+    else
+      take_half(image, level);
     fill_border(padded_[i]);
   }
+}
+
+void ImagePyramid::take_half(const cv::Mat& image, cv::Mat& half) {
+  // Without the last column or row where their number is odd.
+  const cv::Mat even = image(cv::Rect(0, 0, 2 * half.cols, 2 * half.rows));
+  if (image.channels() == 1) {
+    cv::resize(even, half, half.size(), 0, 0, cv::INTER_AREA);
+    return;
+  }
+  cv::resize(even, half_colour_, half.size(), 0, 0, cv::INTER_AREA);
+  cv::cvtColor(half_colour_, half, cv::COLOR_BGR2GRAY);
 }
 
 int corner_strength(const ImagePyramid& pyramid, int x, int y) {

@@ -110,6 +110,7 @@ Json frames_json(const RunRecord& record) {
           {"by_masked_features", s.count(TrackingFallback::masked_features)},
           {"by_dense_depth", s.count(TrackingFallback::dense_depth)},
           {"tracked_backwards", record.losses.tracked_backwards},
+          {"withdrawn", record.losses.withdrawn},
           {"left_out", record.losses.left_out},
           {"poses", record.trajectory.size()},
           {"coverage", record.coverage()}};

@@ -56,6 +56,7 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& r
   const LossRecord& losses = record.losses;
   if (losses.tracked_backwards > 0)
     rows.back().second += ", " + counted(losses.tracked_backwards, "frame") + " tracked backwards";
+  if (losses.withdrawn > 0) rows.back().second += ", " + counted(losses.withdrawn, "pose") + " withdrawn";
   if (losses.pieces > 0)
     rows.back().second += ", " + counted(losses.pieces, "new piece") + " of the map begun, " +
                           counted(losses.left_out, "frame") + " left out with those that nothing joined";

@@ -11,19 +11,19 @@
 namespace holdfast {
 
 void FrameHistory::add(const Frame& frame, KeyFrameId reference, const Map& map) {
-  if (has_previous_) {
-    velocity_ = frame.T_camera_world * last_pose(map).inverse();
-    velocity_interval_ = frame.timestamp - last_timestamp();
-    has_velocity_ = true;
+  if (last_.has_previous) {
+    last_.velocity = frame.T_camera_world * last_pose(map).inverse();
+    last_.velocity_interval = frame.timestamp - last_timestamp();
+    last_.has_velocity = true;
   }
-  has_previous_ = true;
-  T_last_reference_ = Eigen::Isometry3d::Identity();
-  last_reference_scale_ = 1.0;
+  last_.has_previous = true;
+  last_.T_camera_reference = Eigen::Isometry3d::Identity();
+  last_.reference_scale = 1.0;
   if (reference.valid()) {
-    T_last_reference_ = frame.T_camera_world * map.pose_of(reference).inverse();
-    last_reference_scale_ = map.scale_of(reference);
+    last_.T_camera_reference = frame.T_camera_world * map.pose_of(reference).inverse();
+    last_.reference_scale = map.scale_of(reference);
   }
-  records_.push_back(record_of(frame.timestamp, reference, T_last_reference_, last_reference_scale_));
+  records_.push_back(record_of(frame.timestamp, reference, last_.T_camera_reference, last_.reference_scale));
 }
 
 void FrameHistory::add_past(const Frame& frame, KeyFrameId reference, const Map& map) {
@@ -31,6 +31,20 @@ void FrameHistory::add_past(const Frame& frame, KeyFrameId reference, const Map&
   const auto later = std::upper_bound(records_.begin(), records_.end(), frame.timestamp,
                                       [](double time, const Record& other) { return time < other.timestamp; });
   records_.insert(later, record_of(frame.timestamp, reference, T_camera_reference, map.scale_of(reference)));
+}
+
+FrameHistory::Mark FrameHistory::mark() const {
+  Mark mark;
+  mark.count_ = records_.size();
+  mark.last_ = last_;
+  return mark;
+}
+
+std::size_t FrameHistory::return_to(const Mark& mark) {
+  const std::size_t forgotten = records_.size() - mark.count_;
+  records_.erase(records_.begin() + static_cast<std::ptrdiff_t>(mark.count_), records_.end());
+  last_ = mark.last_;
+  return forgotten;
 }
 
 FrameHistory::Record FrameHistory::record_of(double timestamp, KeyFrameId reference,
@@ -42,30 +56,31 @@ FrameHistory::Record FrameHistory::record_of(double timestamp, KeyFrameId refere
 void FrameHistory::became_keyframe(KeyFrameId keyframe, double timestamp) {
   if (records_.empty() || records_.back().timestamp != timestamp) return;
   records_.back() = {timestamp, keyframe};
-  T_last_reference_ = Eigen::Isometry3d::Identity();
-  last_reference_scale_ = 1.0;
+  last_.T_camera_reference = Eigen::Isometry3d::Identity();
+  last_.reference_scale = 1.0;
 }
 
 Eigen::Isometry3d FrameHistory::last_pose(const Map& map) const {
   const KeyFrameId reference = records_.back().reference;
-  Eigen::Isometry3d T_camera_reference = T_last_reference_;
-  T_camera_reference.translation() *= map.scale_of(reference) / last_reference_scale_;
+  Eigen::Isometry3d T_camera_reference = last_.T_camera_reference;
+  T_camera_reference.translation() *= map.scale_of(reference) / last_.reference_scale;
   return T_camera_reference * map.pose_of(reference);
 }
 
 Eigen::Isometry3d FrameHistory::predicted_step(double timestamp) const {
-  if (!has_velocity_ || velocity_interval_ <= 0.0) return Eigen::Isometry3d::Identity();
+  if (!last_.has_velocity || last_.velocity_interval <= 0.0) return Eigen::Isometry3d::Identity();
   // Recordings leave frames out: the velocity is applied over the time that really passed, but not over gaps that are
   // much longer than the interval that it was measured in.
   constexpr double max_intervals = 4.0;
   constexpr double same_interval = 0.05;  // jitter of time stamps, as a share of the interval
-  const double ratio = std::clamp((timestamp - last_timestamp()) / velocity_interval_, 0.0, max_intervals);
-  return std::abs(ratio - 1.0) < same_interval ? velocity_ : geometry::exp_se3(ratio * geometry::log_se3(velocity_));
+  const double ratio = std::clamp((timestamp - last_timestamp()) / last_.velocity_interval, 0.0, max_intervals);
+  return std::abs(ratio - 1.0) < same_interval ? last_.velocity
+                                               : geometry::exp_se3(ratio * geometry::log_se3(last_.velocity));
 }
 
 Eigen::Isometry3d FrameHistory::extrapolate(double timestamp, double share) const {
-  const double steps = velocity_interval_ > 0.0 ? (timestamp - last_timestamp()) / velocity_interval_ : 0.0;
-  return geometry::exp_se3(share * steps * geometry::log_se3(velocity_));
+  const double steps = last_.velocity_interval > 0.0 ? (timestamp - last_timestamp()) / last_.velocity_interval : 0.0;
+  return geometry::exp_se3(share * steps * geometry::log_se3(last_.velocity));
 }
 
 std::uint32_t FrameHistory::main_piece(const Map& map) const {

@@ -59,7 +59,9 @@ bool Relocaliser::recover(KeyFrameId last_keyframe, KeyFrameId reference, Frame&
     if (std::find(tried.begin(), tried.end(), candidate) != tried.end()) continue;
     if (static_cast<int>(tried.size()) >= max_keyframes) break;
     tried.push_back(candidate);
-    if (!align_with_keyframe(candidate, std::nullopt, frame, result) || !is_reachable(frame)) continue;
+    if (!align_with_keyframe(candidate, std::nullopt, frame, result) ||
+        !is_reachable(frame, settings_.relocalisation_tolerance))
+      continue;
     // The depth of the features contradicts a wrong pose; with one camera, only points around it can.
     if (parts_.map.sensor() == Sensor::mono && !fits_surroundings(frame, result)) continue;
     result.method = TrackingMethod::recovered;
@@ -125,7 +127,7 @@ bool Relocaliser::find_place(const cv::Mat& image, Frame& frame, FrameResult& re
     }
     frame.T_camera_world = parts_.estimator.problem().T_camera_world;
     parts_.estimator.drop_outliers(frame);
-    if (!fits_surroundings(frame, result) || !is_reachable(frame)) continue;
+    if (!fits_surroundings(frame, result) || !is_reachable(frame, settings_.relocalisation_tolerance)) continue;
     result.method = TrackingMethod::relocalised;
     return true;
   }
@@ -145,13 +147,12 @@ bool Relocaliser::is_beyond_chance(int inliers) const {
   return parts_.map.sensor() != Sensor::mono || inliers >= chance_share * parts_.estimator.matches();
 }
 
-bool Relocaliser::is_reachable(const Frame& frame) const {
+bool Relocaliser::is_reachable(const Frame& frame, double tolerance) const {
   const FrameHistory& history = parts_.history;
   if (history.empty()) return true;  // a camera may start anywhere in a loaded map
   const Eigen::Isometry3d T_camera_world = history.last_pose(parts_.map);
   const double distance = (T_camera_world.inverse().translation() - frame.T_world_camera().translation()).norm();
-  return distance <= settings_.relocalisation_tolerance +
-                         settings_.relocalisation_speed * (frame.timestamp - history.last_timestamp());
+  return distance <= tolerance + settings_.relocalisation_speed * (frame.timestamp - history.last_timestamp());
 }
 
 }  // namespace holdfast

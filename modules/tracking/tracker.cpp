@@ -121,6 +121,7 @@ void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
     return;
   }
   if (found && left_reference_.valid()) return_from_piece(view, result);
+  confirm_recovery(found, result.inliers);
   if (found && state_ == State::lost) found_time_ = current_.timestamp;
   state_ = found ? State::tracking : State::lost;
   result.status = found ? TrackingStatus::tracked : TrackingStatus::lost;
@@ -130,14 +131,30 @@ void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
     if (on_map && history_.has_previous())
       if (const auto motion = motion_by(current_.T_camera_world * previous_.T_world_camera()))
         shutter_.learn(*motion, map_, current_);
-    result.is_keyframe =
-        !localises_only_ && followed_frames_ == 0 && (on_map ? needs_keyframe(result) : odometry_extends_map_);
+    result.is_keyframe = !localises_only_ && !unconfirmed_ && followed_frames_ == 0 &&
+                         (on_map ? needs_keyframe(result) : odometry_extends_map_);
     if (on_map || result.is_keyframe) last_feature_time_ = current_.timestamp;
     result.trouble = TrackingTrouble::none;
     result.objects = moving_world_.objects();
     if (result.is_keyframe) matcher_.local_map().write_counts(map_);  // local mapping evaluates points by them
   }
   end_frame(result);
+}
+
+void Tracker::confirm_recovery(bool found, int inliers) {
+  if (mono_ || localises_only_ || left_reference_.valid()) return;
+  constexpr int sure_frames = 8;  // in a row; frames of the loss are tracked backwards no earlier
+  const bool is_sure = inliers >= sure_inliers * settings_.minimum_inliers;
+  if (!found) {
+    if (!unconfirmed_) return;
+    withdrawn_ += history_.return_to(unconfirmed_->before);
+    backwards_.forget_located();
+    unconfirmed_.reset();
+  } else if (state_ == State::lost && !is_sure && !history_.empty()) {
+    unconfirmed_ = {history_.mark()};
+  } else if (unconfirmed_ && (is_sure || ++unconfirmed_->frames >= sure_frames)) {
+    unconfirmed_.reset();
+  }
 }
 
 std::optional<FrameMotion> Tracker::motion_by(const Eigen::Isometry3d& step) const {
@@ -175,10 +192,15 @@ bool Tracker::should_begin_piece() {
 }
 
 LossRecord Tracker::loss_record() const {
-  return {.tracked_backwards = backwards_.tracked(), .pieces = pieces_, .left_out = history_.frames_left_out(map_)};
+  return {.tracked_backwards = backwards_.tracked(),
+          .withdrawn = withdrawn_,
+          .pieces = pieces_,
+          .left_out = history_.frames_left_out(map_)};
 }
 
-bool Tracker::needs_mask() const { return !localises_only_ && !mono_ && state_ == State::lost && !history_.empty(); }
+bool Tracker::needs_mask() const {
+  return !localises_only_ && !mono_ && (state_ == State::lost || unconfirmed_) && !history_.empty();
+}
 
 bool Tracker::was_just_found() const {
   constexpr double recent = 0.5;  // s; until a mask made since then has arrived
@@ -231,9 +253,15 @@ bool Tracker::is_start_refuted() {
   start_is_judged_ = true;
   if (localises_only_ || map_.keyframes().empty()) return false;
   const Frame& first = map_.keyframe(map_.keyframes_by_age().front()).frame;
-  const auto kept = std::count_if(first.static_probability.begin(), first.static_probability.end(),
-                                  [](float p) { return is_static(p); });
-  if (static_cast<double>(kept) < settings_.start_share * static_cast<double>(first.size())) return true;
+  int kept = 0, usable = 0;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    if (!is_static(first, i)) continue;
+    ++kept;
+    usable += first.has_depth(i) ? 1 : 0;
+  }
+  // Where little is left to begin with, a map that is wrong in part is better than none.
+  if (kept < settings_.start_share * static_cast<double>(first.size()) && usable >= settings_.minimum_start_points)
+    return true;
   backwards_.clear();
   return false;
 }
@@ -279,6 +307,7 @@ void Tracker::forget_map() {
   if (flow_) flow_->clear();
   followed_frames_ = 0;
   state_ = State::waiting;
+  unconfirmed_.reset();
   reference_keyframe_ = last_keyframe_ = KeyFrameId();
   last_keyframe_time_ = last_feature_time_ = 0.0;
   gave_map_up_ = false;
@@ -540,7 +569,11 @@ bool Tracker::track_local_map(const TrackedView& view, FrameResult& result) {
   const bool was_lost = result.method == TrackingMethod::recovered || result.method == TrackingMethod::relocalised;
   // A wide search finds some agreement anywhere: twice as many have to agree.
   const int required = was_lost ? 2 * settings_.minimum_inliers : settings_.minimum_inliers;
+  // Among few inliers may be those of a person who resembles the map: they are not taken for a correction of the pose
+  // before the loss.
+  const bool is_sure = result.inliers >= sure_inliers * settings_.minimum_inliers || mono_ || left_reference_.valid();
   if (result.inliers < required || (was_lost && !relocaliser_.is_beyond_chance(result.inliers)) ||
+      (was_lost && !is_sure && !relocaliser_.is_reachable(current_, 0.0)) ||
       lacks_support(result.inliers, result.static_features) || is_refuted(result.inliers, was_lost)) {
     result.trouble = TrackingTrouble::few_inliers;
     return false;
@@ -589,7 +622,8 @@ void Tracker::end_frame(FrameResult& result) {
   result.T_world_camera = current_.T_world_camera();
   if (reference_keyframe_.valid()) result.keyframe = reference_keyframe_;
   history_.add(current_, reference_keyframe_, map_);
-  if (result.status == TrackingStatus::tracked && !is_provisional) backwards_.track(current_, result.times);
+  if (result.status == TrackingStatus::tracked && !is_provisional && !unconfirmed_)
+    backwards_.track(current_, result.times);
 }
 
 }  // namespace holdfast

@@ -126,10 +126,10 @@ class BoardCamera {
     if (!(place.z() > 0.0)) return wall;
     // The margin and the first square lie before the first inner corner.
     const double mm = 1e3, offset = 2.0 * board_.square * mm;
-    const int column = static_cast<int>(std::floor((place.x() / place.z() * mm + offset) * pixels_per_mm));
-    const int row = static_cast<int>(std::floor((place.y() / place.z() * mm + offset) * pixels_per_mm));
-    if (column < 0 || row < 0 || column >= print_.cols || row >= print_.rows) return wall;
-    return print_.at<std::uint8_t>(row, column);
+    const double x = (place.x() / place.z() * mm + offset) * pixels_per_mm;
+    const double y = (place.y() / place.z() * mm + offset) * pixels_per_mm;
+    if (!(x >= 0.0 && y >= 0.0 && x < print_.cols && y < print_.rows)) return wall;
+    return print_.at<std::uint8_t>(static_cast<int>(y), static_cast<int>(x));
   }
 
   static constexpr double wall = 120.0;

@@ -75,6 +75,37 @@ TEST_F(FullAdjustmentTest, AKeyframeWithFewPointsStaysWithItsParent) {
   EXPECT_TRUE((map.pose_of(last) * map.pose_of(parent).inverse()).isApprox(relative, 1e-9));
 }
 
+/// Moves the last camera far away, whatever the problem.
+class Flight final : public Optimizer {
+ public:
+  BundleSummary optimize_bundle(BundleProblem& problem, const std::atomic<bool>&) override {
+    problem.poses.back().T_camera_world.translation().x() += 0.5;
+    return {.usable = true};
+  }
+  GraphSummary optimize_pose_graph(PoseGraphProblem&) override { return {}; }
+};
+
+TEST_F(FullAdjustmentTest, AKeyframeThatFewPointsHoldDoesNotFlee) {
+  std::vector<MapPointId> points;
+  for (const MapPointId point : map.keyframe(last).frame.map_points)
+    if (point.valid() && map.point(point).observations.size() > 1) points.push_back(point);
+  ASSERT_GT(points.size(), 70U);
+  const KeyFrameId parent = map.keyframe(last).parent;
+  Flight flight;
+  FullAdjustment fleeing{LoopClosingSettings{}, {map, map_mutex, surgery}, flight};
+  for (const std::size_t left : {70U, 40U}) {
+    for (std::size_t i = left; i < points.size(); ++i) map.remove_observation(points[i], last);
+    points.resize(left);
+    const Eigen::Isometry3d relative = map.pose_of(last) * map.pose_of(parent).inverse();
+    const FullAdjustmentSummary summary = fleeing.run();
+    EXPECT_TRUE(summary.applied);
+    EXPECT_EQ(summary.keyframes, 20);
+    const bool stays = (map.pose_of(last) * map.pose_of(parent).inverse()).isApprox(relative, 1e-9);
+    EXPECT_EQ(stays, left < 60) << left;
+    EXPECT_EQ(summary.keyframes_carried, stays ? 1 : 0);
+  }
+}
+
 /// Bytes that the process has allocated and not freed.
 std::size_t allocated() {
   const struct mallinfo2 info = mallinfo2();

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "holdfast/plugin/registry.hpp"
 #include "holdfast/tracking/frame_builder.hpp"
 #include "support/point_world.hpp"
@@ -125,6 +127,29 @@ TEST_F(LocalMapperTest, APoseThatIsOffIsPulledBack) {
   frame.T_camera_world = beside(0.115).inverse();  // 15 mm off
   const KeyFrameId id = add_keyframe(frame);
   EXPECT_NEAR(map.keyframe(id).frame.T_world_camera().translation().x(), 0.1, 0.002);
+}
+
+TEST_F(LocalMapperTest, APoseThatFewPointsHoldStays) {
+  add_keyframe(frame_at(beside(0)));
+  // So far aside that next to no point of the first keyframe is still in view.
+  Frame frame;
+  const auto matches = [&frame] {
+    return std::count_if(frame.map_points.begin(), frame.map_points.end(), [](MapPointId id) { return id.valid(); });
+  };
+  double x = 1.0;
+  do {
+    x += 0.05;
+    frame = frame_at(beside(x));
+    match(frame, 1);
+  } while (matches() > 3);
+  const Eigen::Isometry3d off = beside(x + 0.015).inverse();
+  frame.T_camera_world = off;
+  const KeyFrameId id = add_keyframe(frame);
+  int shared = 0;
+  for (const MapPointId point : map.keyframe(id).frame.map_points)
+    shared += point.valid() && map.point(point).observations.size() > 1 ? 1 : 0;
+  ASSERT_GT(shared, 3);
+  EXPECT_TRUE(map.keyframe(id).frame.T_camera_world.isApprox(off, 1e-12)) << shared;
 }
 
 TEST_F(LocalMapperTest, KeyframesThatShowNothingNewAreRemovedButNeverTheFirst) {

@@ -299,6 +299,25 @@ TEST(Tracker, APlaceThatTheCameraCannotHaveReachedIsRejected) {
   }
 }
 
+TEST(Tracker, WhereFewAgreeTheTolerancePlaysNoRole) {
+  // The place is 0.55 m away, 0.3 m can be reached, and the tolerance is 1 m.
+  for (const bool shows_little : {true, false}) {
+    TrackingSettings settings = without_relocalisation();
+    settings.recovery_keyframes = 5;
+    Bench bench(settings);
+    bench.walk(0.0, 0.5);
+    if (shows_little) bench.extractor.every = bench.world.seen().size() / 90;
+    bench.feed(0.5, at(0.25), false);
+    const Isometry3d elsewhere = at(-0.25, 0.2, 0.1);
+    const FrameResult result = bench.feed(0.6, elsewhere);
+    EXPECT_EQ(result.status, shows_little ? TrackingStatus::lost : TrackingStatus::tracked) << result.inliers;
+    EXPECT_GE(result.inliers, 2 * settings.minimum_inliers);
+    if (!shows_little) {
+      EXPECT_LT(error(result, elsewhere), 0.01);
+    }
+  }
+}
+
 TEST(Tracker, InALoadedMapItIsRelocalisedAtAPlaceOfTheLoopDetector) {
   for (const int candidates : {5, 0}) {
     Bench maker;

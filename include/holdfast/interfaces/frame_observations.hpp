@@ -11,6 +11,10 @@
 /// feature belongs to the static world.
 namespace holdfast {
 
+/// Fewer points that another keyframe sees as well hardly determine the pose of a keyframe in a bundle adjustment: it
+/// would leave its place for a slightly lower cost.
+inline constexpr int least_shared_points = 15;
+
 /// Adds to the pose problem of `frame` that its feature number `feature` shows `point` (world [m]).
 inline void add_observation(PoseProblem& problem, const Frame& frame, std::size_t feature,
                             const Eigen::Vector3d& point) {

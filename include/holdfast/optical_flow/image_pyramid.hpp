@@ -8,16 +8,16 @@
 
 namespace holdfast {
 
-/// An image at a half, a quarter and an eighth of its resolution, in grey, for follow_points(). Each pixel is the mean
-/// of four of the level below. Pixel centres have integer coordinates at every level, so that x of the image is
-/// 0.5 * x - 0.25 in the first level. Keeps its buffers. One thread.
+/// An image at a half of its resolution and less, in grey, for follow_points(). Each pixel of the first level is the
+/// mean of four of the image: x of the image is 0.5 * x - 0.25 there, with integers at the centres of pixels. Each
+/// further level is every second pixel of the one before, smoothed: x is 0.5 * x there. Keeps its buffers. One thread.
 class ImagePyramid {
  public:
   static constexpr int levels = 3;
   /// Each level is surrounded by this many pixels, which repeat its border.
   static constexpr int border = 8;
 
-  /// `image` is 8UC1 or 8UC3 (BGR). Levels that would have no pixel stay empty.
+  /// `image` is 8UC1 or 8UC3 (BGR). All levels of an image without two rows and columns are empty.
   void build(const cv::Mat& image);
   bool empty() const { return size_.empty(); }
   /// Of the image [px].
@@ -26,6 +26,8 @@ class ImagePyramid {
   const cv::Mat& level(int index) const { return levels_[static_cast<std::size_t>(index)]; }
 
  private:
+  void take_half(const cv::Mat& image, cv::Mat& half);
+
   cv::Size size_;
   cv::Mat half_colour_;
   std::array<cv::Mat, levels> padded_, levels_;  // the second are windows into the first

@@ -20,6 +20,7 @@ struct PointFlow {
   void resize(std::size_t count);
 };
 
+/// When follow_points() ends and what it takes for found.
 struct PointFlowSettings {
   int iterations = 10;              ///< at most, per level of the pyramid
   float precision = 0.05F;          ///< a step shorter than this ends the iteration [px of the level]

@@ -42,6 +42,8 @@ class BackwardTracker {
   void keep(const Frame& frame, int most, StageTimes& times);
   /// The frame that was located last became a keyframe.
   void keyframe_added(KeyFrameId keyframe);
+  /// The camera was not where it was located since the kept frames: they wait for the next time.
+  void forget_located();
   /// Forgets the kept frames.
   void clear();
 
@@ -57,8 +59,8 @@ class BackwardTracker {
   bool begin(bool now);
   void track_kept(int most);
   bool find_pose(Frame& frame);
-  /// The pose that was last adjusted is not determined well enough by its inliers, or contradicts the depth of keyframes
-  /// or inertia.
+  /// The pose that was last adjusted is not determined well enough by its inliers, or contradicts the depth of
+  /// keyframes or inertia.
   bool is_refuted(const Frame& frame, const Eigen::Isometry3d& predicted, int inliers);
 
   const TrackingSettings& settings_;

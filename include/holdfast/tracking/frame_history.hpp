@@ -20,7 +20,7 @@ class FrameHistory {
   void add(const Frame& frame, KeyFrameId reference, const Map& map);
   /// The last frame was not tracked: there is no previous frame and no velocity for the motion model. extrapolate()
   /// still knows the velocity of the last tracked frame.
-  void interrupt() { has_previous_ = has_velocity_ = false; }
+  void interrupt() { last_.has_previous = last_.has_velocity = false; }
   /// Makes the last tracked frame, if that is its time stamp, the reference of itself: it became this keyframe.
   void became_keyframe(KeyFrameId keyframe, double timestamp);
 
@@ -32,13 +32,19 @@ class FrameHistory {
   /// Adds a frame that was taken before the last tracked one and has got its pose later.
   void add_past(const Frame& frame, KeyFrameId reference, const Map& map);
 
+  /// What the last tracked frames say, to return to.
+  class Mark;
+  Mark mark() const;
+  /// Forgets the frames that were added since the mark; returns how many. None may have been added before it meanwhile.
+  std::size_t return_to(const Mark& mark);
+
   /// Forgets all frames.
   void clear() { *this = FrameHistory(); }
 
   bool empty() const { return records_.empty(); }
   /// Whether the frame before the current one was tracked.
-  bool has_previous() const { return has_previous_; }
-  bool has_velocity() const { return has_velocity_; }
+  bool has_previous() const { return last_.has_previous; }
+  bool has_velocity() const { return last_.has_velocity; }
   /// Time stamp of the last tracked frame [s]; the history must not be empty.
   double last_timestamp() const { return records_.back().timestamp; }
   /// T_camera_world of the last tracked frame by the map as it is now; the history must not be empty.
@@ -60,7 +66,7 @@ class FrameHistory {
   struct Record {
     double timestamp;
     KeyFrameId reference;
-    // The pose of the last record is also kept as it came (T_last_reference_): the motion model needs every bit.
+    // The pose of the last record is also kept as it came (Last::T_camera_reference): the motion model needs every bit.
     Eigen::Quaternion<double, Eigen::DontAlign> R_camera_reference = {1.0, 0.0, 0.0, 0.0};
     Eigen::Vector3d t_camera_reference = Eigen::Vector3d::Zero();  // [m], at scale 1 of the reference
   };
@@ -68,13 +74,25 @@ class FrameHistory {
   static Record record_of(double timestamp, KeyFrameId reference, const Eigen::Isometry3d& T_camera_reference,
                           double reference_scale);
 
+  /// Of the last tracked frames, beside their records.
+  struct Last {
+    Eigen::Isometry3d T_camera_reference = Eigen::Isometry3d::Identity();  // of the last record
+    double reference_scale = 1.0;                                          // KeyFrame::scale when it was added
+    bool has_previous = false;
+    bool has_velocity = false;
+    Eigen::Isometry3d velocity = Eigen::Isometry3d::Identity();  // T_current_previous
+    double velocity_interval = 0.0;                              // [s]
+  };
+
   std::vector<Record> records_;
-  Eigen::Isometry3d T_last_reference_ = Eigen::Isometry3d::Identity();  // T_camera_reference of the last record
-  double last_reference_scale_ = 1.0;                                   // KeyFrame::scale when it was added
-  bool has_previous_ = false;
-  bool has_velocity_ = false;
-  Eigen::Isometry3d velocity_ = Eigen::Isometry3d::Identity();  // T_current_previous
-  double velocity_interval_ = 0.0;                              // [s]
+  Last last_;
+};
+
+/// A moment of a history.
+class FrameHistory::Mark {
+  friend class FrameHistory;
+  std::size_t count_ = 0;
+  Last last_;
 };
 
 }  // namespace holdfast

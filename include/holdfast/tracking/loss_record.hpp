@@ -8,6 +8,7 @@ namespace holdfast {
 /// What became of the frames around losses.
 struct LossRecord {
   std::size_t tracked_backwards = 0;  ///< frames that had no pose and got one after later frames
+  std::size_t withdrawn = 0;          ///< frames that had a pose after a loss and lost it, because nothing confirmed it
   std::size_t pieces = 0;             ///< pieces of the map that a lost camera began
   std::size_t left_out = 0;           ///< frames that had a pose in a piece that nothing joined with the rest
 };

@@ -56,11 +56,12 @@ class Relocaliser {
   /// Whether so many inliers of the last adjustment tell a pose from a wrong one. Depth does so for other sensors;
   /// with one camera, their share of the matches must.
   bool is_beyond_chance(int inliers) const;
+  /// Whether the camera can have moved to the frame's pose since it was last tracked, at
+  /// TrackingSettings::relocalisation_speed; `tolerance` [m] is for a last pose that had gone astray.
+  bool is_reachable(const Frame& frame, double tolerance) const;
 
  private:
   bool fits_surroundings(Frame& frame, FrameResult& result);
-  /// Whether the camera can have moved to the frame's pose since it was last tracked.
-  bool is_reachable(const Frame& frame) const;
   int search_local_map(double window, Frame& frame);
 
   TrackingSettings settings_;

@@ -164,6 +164,9 @@ class Tracker {
   /// The pose of the current frame contradicts inertia (unless the camera was lost), is not determined well enough by
   /// its inliers, or contradicts the depth of keyframes.
   bool is_refuted(int inliers, bool was_lost);
+  /// A pose found after a loss on which few inliers agree has to be confirmed by those that follow; if the camera is
+  /// lost before, it and the poses since are withdrawn. No keyframe is made meanwhile.
+  void confirm_recovery(bool found, int inliers);
   /// Counts the matches of the last adjustment and the static features.
   void count_matches(FrameResult& result) const;
   /// A first pose of a camera that is not lost, from the motion model or the reference keyframe.
@@ -214,8 +217,14 @@ class Tracker {
   KeyFrameId left_keyframe_, left_reference_;
   KeyFrameId reference_keyframe_;
   KeyFrameId last_keyframe_;
-  double last_keyframe_time_ = 0.0;   // [s]
-  std::optional<double> found_time_;  // when the camera was found after its last loss [s]
+  double last_keyframe_time_ = 0.0;  // [s]
+  struct Recovery {
+    FrameHistory::Mark before;
+    int frames = 1;
+  };
+  std::optional<Recovery> unconfirmed_;  // since the last loss
+  std::size_t withdrawn_ = 0;            // frames
+  std::optional<double> found_time_;     // when the camera was found after its last loss [s]
   // [s], of the frame that began the map, or began it anew; a loaded map began long ago
   double map_start_time_ = -std::numeric_limits<double>::infinity();
   double last_feature_time_ = 0.0;     // [s], of the last pose that matches with the map determined

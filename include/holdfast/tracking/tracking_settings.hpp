@@ -84,7 +84,7 @@ struct TrackingSettings {
   // Relocalisation.
   double restart_time = 0.0;                              ///< [s]; a camera lost for longer begins a new piece of map
   int backward_frames = 60;                               ///< kept, of those without a pose
-  double start_share = 0.0;                               ///< of the first keyframe's features
+  double start_share = 0.6;                               ///< of the first keyframe's features
   double young_map_time = 1.0;                            ///< [s]; a map lost so soon after its start begins anew
   double coasting_time = 1.0;                             ///< [s]
   std::vector<double> coasting_shares = {1.0, 0.5, 0.0};  ///< of the last velocity: it goes on, slows down, or stops
