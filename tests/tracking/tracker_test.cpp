@@ -318,6 +318,34 @@ TEST(Tracker, WhereFewAgreeTheTolerancePlaysNoRole) {
   }
 }
 
+TEST(Tracker, AWeakRecoveryIsWithdrawnUnlessItIsConfirmed) {
+  // After the dark few features show the map, for some frames or for longer; then it is dark again.
+  for (const int frames : {3, 12}) {
+    TrackingSettings settings = without_relocalisation();
+    settings.recovery_keyframes = 5;
+    settings.backward_frames = 0;
+    Bench bench(settings);
+    bench.walk(0.0, 0.5);
+    bench.extractor.every = bench.world.seen().size() / 90;
+    bench.feed(0.5, at(0.25), false);
+    const std::size_t before = bench.tracker.trajectory().size();
+    const int first = 18;  // of 30 a second
+    for (int i = first; i < first + frames; ++i) {
+      const FrameResult result = bench.feed(i / 30.0, at(0.25));
+      EXPECT_EQ(result.status, TrackingStatus::tracked) << i;
+      EXPECT_LT(result.inliers, 4 * settings.minimum_inliers);
+      if (i < first + 7) {
+        EXPECT_FALSE(result.is_keyframe) << i;
+      }
+    }
+    bench.feed((first + frames) / 30.0, at(0.25), false);
+    const bool is_confirmed = frames > 8;
+    const auto found = static_cast<std::size_t>(frames);
+    EXPECT_EQ(bench.tracker.trajectory().size(), before + (is_confirmed ? found : 0));
+    EXPECT_EQ(bench.tracker.loss_record().withdrawn, is_confirmed ? 0U : found);
+  }
+}
+
 TEST(Tracker, InALoadedMapItIsRelocalisedAtAPlaceOfTheLoopDetector) {
   for (const int candidates : {5, 0}) {
     Bench maker;
