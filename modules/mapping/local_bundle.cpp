@@ -39,7 +39,7 @@ void LocalMapper::build_bundle_problem(KeyFrameId id) {
   problem_.robust_iterations = settings_.bundle_robust_iterations;
   problem_.final_iterations = settings_.bundle_final_iterations;
   problem_observations_.clear();
-  std::vector<int> shared_points(moving, 0);
+  problem_shared_points_.assign(moving, 0);
   for (std::uint32_t p = 0; p < points.size(); ++p) {
     const MapPoint& point = map_.point(points[p]);
     problem_.points.push_back(point.position);
@@ -50,7 +50,8 @@ void LocalMapper::build_bundle_problem(KeyFrameId id) {
         pose = static_cast<std::int32_t>(keyframes.size());
         keyframes.push_back(observation.keyframe);
       }
-      if (is_shared && static_cast<std::size_t>(pose) < moving) ++shared_points[static_cast<std::size_t>(pose)];
+      if (is_shared && static_cast<std::size_t>(pose) < moving)
+        ++problem_shared_points_[static_cast<std::size_t>(pose)];
       problem_.observations.push_back(bundle_observation(map_.keyframe(observation.keyframe).frame, observation.feature,
                                                          static_cast<std::uint32_t>(pose), p));
       problem_observations_.emplace_back(points[p], observation.keyframe);
@@ -58,8 +59,7 @@ void LocalMapper::build_bundle_problem(KeyFrameId id) {
   }
   for (std::size_t i = 0; i < keyframes.size(); ++i) {
     const KeyFrame& keyframe = map_.keyframe(keyframes[i]);
-    const bool is_held = i < moving && shared_points[i] >= least_shared_points;
-    problem_.poses.push_back({keyframe.frame.T_camera_world, !is_held || keyframe.sequence == 0});
+    problem_.poses.push_back({keyframe.frame.T_camera_world, i >= moving || keyframe.sequence == 0});
   }
   // Something must hold the map in place: without a fixed keyframe, the oldest one does.
   if (std::none_of(problem_.poses.begin(), problem_.poses.end(), [](const auto& pose) { return pose.fixed; })) {
@@ -72,9 +72,15 @@ void LocalMapper::build_bundle_problem(KeyFrameId id) {
 
 void LocalMapper::apply_bundle() {
   // Everything is still there: others only add while this thread refines.
-  for (std::size_t i = 0; i < problem_keyframes_.size(); ++i)
-    if (!problem_.poses[i].fixed)
-      map_.keyframe(problem_keyframes_[i]).frame.T_camera_world = problem_.poses[i].T_camera_world;
+  for (std::size_t i = 0; i < problem_keyframes_.size(); ++i) {
+    if (problem_.poses[i].fixed) continue;
+    Eigen::Isometry3d& pose = map_.keyframe(problem_keyframes_[i]).frame.T_camera_world;
+    const Eigen::Isometry3d change = problem_.poses[i].T_camera_world * pose.inverse();
+    constexpr double far = 0.5, far_angle = 0.5;  // m, rad
+    const bool has_fled = problem_shared_points_[i] < least_shared_points &&
+                          (change.translation().norm() > far || Eigen::AngleAxisd(change.linear()).angle() > far_angle);
+    if (!has_fled) pose = problem_.poses[i].T_camera_world;
+  }
   for (std::size_t p = 0; p < problem_points_.size(); ++p) map_.point(problem_points_[p]).position = problem_.points[p];
   for (std::size_t o = 0; o < problem_.observations.size(); ++o) {
     if (!problem_.observations[o].outlier) continue;

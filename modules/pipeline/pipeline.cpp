@@ -507,6 +507,10 @@ void Pipeline::finish() {
   if (s.full_adjustment) s.full_adjustment->finish();
   s.finished = true;
   s.rethrow_failures();
+  s.in_background([&](StageTimes& times) {
+    const std::lock_guard lock(s.map_mutex);
+    s.tracker.finish(times);
+  });
   s.drop_loose_pieces();
   // What was seen after the last loop ties its two ends together further: the result deserves it.
   if (s.keyframes_since_adjustment > 0 && !s.interrupted)

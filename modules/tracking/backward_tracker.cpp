@@ -11,13 +11,16 @@ namespace holdfast {
 
 void BackwardTracker::keep(const Frame& frame, int most, StageTimes& times) {
   if (most == 0) return;
-  if (located_) {  // lost again, before the last loss was over
-    const StageTimer timer(times, "backwards");
-    if (anchor_ || begin(true)) track_kept(static_cast<int>(frames_.size()));
-    clear();
-  }
+  if (located_) finish(times);  // lost again, before the last loss was over
   if (static_cast<int>(frames_.size()) >= most) frames_.pop_front();
   frames_.push_back(frame);
+}
+
+void BackwardTracker::finish(StageTimes& times) {
+  if (!located_) return clear();
+  const StageTimer timer(times, "backwards");
+  if (anchor_ || begin(true)) track_kept(static_cast<int>(frames_.size()));
+  clear();
 }
 
 void BackwardTracker::keyframe_added(KeyFrameId keyframe) {

@@ -146,15 +146,24 @@ void Tracker::confirm_recovery(bool found, int inliers) {
   constexpr int sure_frames = 8;  // in a row; frames of the loss are tracked backwards no earlier
   const bool is_sure = inliers >= sure_inliers * settings_.minimum_inliers;
   if (!found) {
-    if (!unconfirmed_) return;
-    withdrawn_ += history_.return_to(unconfirmed_->before);
-    backwards_.forget_located();
-    unconfirmed_.reset();
+    withdraw_recovery();
   } else if (state_ == State::lost && !is_sure && !history_.empty()) {
     unconfirmed_ = {history_.mark()};
   } else if (unconfirmed_ && (is_sure || ++unconfirmed_->frames >= sure_frames)) {
     unconfirmed_.reset();
   }
+}
+
+void Tracker::withdraw_recovery() {
+  if (!unconfirmed_) return;
+  withdrawn_ += history_.return_to(unconfirmed_->before);
+  backwards_.forget_located();
+  unconfirmed_.reset();
+}
+
+void Tracker::finish(StageTimes& times) {
+  withdraw_recovery();
+  backwards_.finish(times);
 }
 
 std::optional<FrameMotion> Tracker::motion_by(const Eigen::Isometry3d& step) const {

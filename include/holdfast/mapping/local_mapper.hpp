@@ -100,6 +100,8 @@ class LocalMapper {
   std::vector<MapPointId> recent_points_;
   MappingCounts counts_;
 
+  // Of each free keyframe of the bundle problem, how many of its points another keyframe sees as well.
+  std::vector<int> problem_shared_points_;
   // Keyframes, points and observations of the bundle problem.
   BundleProblem problem_;
   std::vector<KeyFrameId> problem_keyframes_;

@@ -40,6 +40,8 @@ class BackwardTracker {
   /// Keeps a copy of a frame that follows all others; only the last `most` stay. The frames of an earlier loss that
   /// still wait are tracked first. Adds the stage "backwards" where it tracks.
   void keep(const Frame& frame, int most, StageTimes& times);
+  /// Tracks all kept frames, because no other frame follows.
+  void finish(StageTimes& times);
   /// The frame that was located last became a keyframe.
   void keyframe_added(KeyFrameId keyframe);
   /// The camera was not where it was located since the kept frames: they wait for the next time.

@@ -94,6 +94,9 @@ class Tracker {
   /// and the next frame begins another one, from which those before it are tracked backwards. The caller holds the lock
   /// of the map.
   bool is_start_refuted();
+  /// No frame follows: poses after a loss that nothing has confirmed are withdrawn, and frames that wait to be tracked
+  /// backwards are. The caller holds the lock of the map.
+  void finish(StageTimes& times);
   /// What became of frames around losses until now; the caller holds the lock of the map.
   LossRecord loss_record() const;
 
@@ -167,6 +170,7 @@ class Tracker {
   /// A pose found after a loss on which few inliers agree has to be confirmed by those that follow; if the camera is
   /// lost before, it and the poses since are withdrawn. No keyframe is made meanwhile.
   void confirm_recovery(bool found, int inliers);
+  void withdraw_recovery();
   /// Counts the matches of the last adjustment and the static features.
   void count_matches(FrameResult& result) const;
   /// A first pose of a camera that is not lost, from the motion model or the reference keyframe.
