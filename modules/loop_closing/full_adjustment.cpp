@@ -39,35 +39,6 @@ std::vector<KeyFrameId> placeable_keyframes(const Map& map) {
   return keyframes;
 }
 
-/// Leaves out the new poses of keyframes that fled: that few points hold, which lie so badly that the pose went far
-/// from where it was relative to the keyframe's parent. Without a pose of their own, they move with their parents.
-void leave_out_fled(const Map& map, std::vector<KeyFrameId>& keyframes, std::vector<Eigen::Isometry3d>& poses) {
-  constexpr int few_points = 4 * least_shared_points;
-  constexpr double far = 0.2, far_angle = 0.2;  // m, rad
-  const std::vector<int> shared = count_shared_points(map);
-  // By slot, the motion of the world around a keyframe, new from old.
-  std::vector<Eigen::Isometry3d> motion(map.keyframes().slot_count(), Eigen::Isometry3d::Identity());
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < keyframes.size(); ++i) {
-    const KeyFrame* keyframe = map.find_keyframe(keyframes[i]);
-    if (keyframe == nullptr) continue;
-    const Eigen::Isometry3d& old_pose = keyframe->frame.T_camera_world;
-    Eigen::Isometry3d& own = motion[keyframes[i].slot];
-    own = poses[i].inverse() * old_pose;
-    if (keyframe->parent.valid() && shared[keyframes[i].slot] < few_points) {
-      // Where the keyframe would be if it moved with its parent, seen from where it would go.
-      const Eigen::Isometry3d carried = poses[i] * motion[keyframe->parent.slot] * old_pose.inverse();
-      if (carried.translation().norm() > far || Eigen::AngleAxisd(carried.linear()).angle() > far_angle) {
-        own = motion[keyframe->parent.slot];
-        continue;
-      }
-    }
-    keyframes[kept] = keyframes[i], poses[kept] = poses[i];
-    ++kept;
-  }
-  keyframes.resize(kept), poses.resize(kept);
-}
-
 /// Calls function(index) for 0 ... count - 1 and lets go of the map's lock after every 1000 of them.
 template <class Function>
 void in_portions(MapMutex& mutex, std::size_t count, Function&& function) {
@@ -179,9 +150,12 @@ void FullAdjustment::move_map() {
 
   // Poses and points in one go: nobody may see the one without the other.
   const std::lock_guard lock(map_mutex_);
-  std::vector<KeyFrameId> keyframes = keyframes_;
-  leave_out_fled(map_, keyframes, poses);
-  const MapMotion motion(map_, keyframes, poses);
+  // Points may lie so badly that more of them do not hold a pose either.
+  constexpr int few_points = 4 * least_shared_points;
+  const std::vector<int> shared = count_shared_points(map_);
+  std::vector<std::uint8_t> is_weak;
+  for (const KeyFrameId id : keyframes_) is_weak.push_back(shared[id.slot] < few_points ? 1 : 0);
+  const MapMotion motion(map_, keyframes_, poses, {}, is_weak);
   summary_.keyframes_carried = motion.move_keyframes(map_);
   std::vector<std::uint8_t> is_placed(map_.points().slot_count(), 0);
   for (std::size_t i = 0; i < points_.size(); ++i) {

@@ -6,13 +6,15 @@
 namespace holdfast {
 
 MapMotion::MapMotion(const Map& map, std::span<const KeyFrameId> keyframes, std::span<const Eigen::Isometry3d> poses,
-                     std::span<const double> scales)
+                     std::span<const double> scales, std::span<const std::uint8_t> is_weak)
     : motion_(map.keyframes().slot_count(), Eigen::Isometry3d::Identity()), scale_(motion_.size(), 1.0) {
   std::vector<const Eigen::Isometry3d*> given(motion_.size(), nullptr);
+  std::vector<std::uint8_t> may_flee(motion_.size(), 0);
   for (std::size_t i = 0; i < keyframes.size(); ++i) {
     if (map.find_keyframe(keyframes[i]) == nullptr) continue;
     given[keyframes[i].slot] = &poses[i];
     if (!scales.empty()) scale_[keyframes[i].slot] = scales[i];
+    if (!is_weak.empty()) may_flee[keyframes[i].slot] = is_weak[i];
   }
 
   // Parents are older than their children, so their motion is known when the children's turn comes.
@@ -25,12 +27,16 @@ MapMotion::MapMotion(const Map& map, std::span<const KeyFrameId> keyframes, std:
     double& scale = scale_[id.slot];
     // With a scale, new camera = scale * old camera for every point; a pose keeps its rotation and unit of length.
     Eigen::Isometry3d scaled_pose = old_pose;
-    if (given[id.slot] != nullptr) {
+    const Eigen::Isometry3d& with_parent = keyframe.parent.valid() ? motion_[keyframe.parent.slot] : before;
+    constexpr double far = 0.2, far_angle = 0.2;  // m, rad
+    const bool has_fled = given[id.slot] != nullptr && may_flee[id.slot] != 0 && keyframe.parent.valid() &&
+                          geometry::exceeds(*given[id.slot] * with_parent * old_pose.inverse(), far, far_angle);
+    if (given[id.slot] != nullptr && !has_fled) {
       scaled_pose.translation() *= scale;
       poses_.push_back({id, *given[id.slot], false, scale});
       motion = geometry::orthonormalised(given[id.slot]->inverse() * scaled_pose);
     } else {
-      motion = keyframe.parent.valid() ? motion_[keyframe.parent.slot] : before;
+      motion = with_parent;
       scale = keyframe.parent.valid() ? scale_[keyframe.parent.slot] : scale_before;
       scaled_pose.translation() *= scale;
       poses_.push_back({id, geometry::orthonormalised(scaled_pose * motion.inverse()), true, scale});

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -16,9 +17,11 @@ namespace holdfast {
 class MapMotion {
  public:
   /// `poses[i]` is the new T_camera_world of `keyframes[i]`; those that left the map are passed over.
-  /// `scales[i]`, where there are any, is what lengths around that keyframe are multiplied by.
+  /// `scales[i]`, where there are any, is what lengths around that keyframe are multiplied by. `is_weak[i]`, where there
+  /// are any, says that few points hold the keyframe: if its new pose is more than 0.2 m or 0.2 rad from where it would
+  /// go with its parent, it fled, and goes with its parent.
   MapMotion(const Map& map, std::span<const KeyFrameId> keyframes, std::span<const Eigen::Isometry3d> poses,
-            std::span<const double> scales = {});
+            std::span<const double> scales = {}, std::span<const std::uint8_t> is_weak = {});
 
   /// Sets the poses of all keyframes; returns how many were carried along.
   int move_keyframes(Map& map) const;

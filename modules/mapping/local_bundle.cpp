@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
+#include "holdfast/geometry/se3.hpp"
 #include "holdfast/interfaces/frame_observations.hpp"
 #include "holdfast/mapping/local_mapper.hpp"
 #include "holdfast/matching/point_block.hpp"
@@ -77,8 +78,7 @@ void LocalMapper::apply_bundle() {
     Eigen::Isometry3d& pose = map_.keyframe(problem_keyframes_[i]).frame.T_camera_world;
     const Eigen::Isometry3d change = problem_.poses[i].T_camera_world * pose.inverse();
     constexpr double far = 0.5, far_angle = 0.5;  // m, rad
-    const bool has_fled = problem_shared_points_[i] < least_shared_points &&
-                          (change.translation().norm() > far || Eigen::AngleAxisd(change.linear()).angle() > far_angle);
+    const bool has_fled = problem_shared_points_[i] < least_shared_points && geometry::exceeds(change, far, far_angle);
     if (!has_fled) pose = problem_.poses[i].T_camera_world;
   }
   for (std::size_t p = 0; p < problem_points_.size(); ++p) map_.point(problem_points_[p]).position = problem_.points[p];

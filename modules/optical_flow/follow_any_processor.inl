@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The Lucas-Kanade search, compiled once per set of instructions. The including file defines HOLDFAST_TARGET_INLINE,
-// the way its functions are declared, and before the end of its anonymous namespace a function
-// load(const std::uint8_t*, Row&), which makes numbers of eight pixels. Every set gives the same bits.
+// The Lucas-Kanade search, compiled once per set of instructions; every set gives the same bits. The including file
+// defines HOLDFAST_TARGET and HOLDFAST_TARGET_INLINE, the way functions are declared for its processor,
+// HOLDFAST_FOLLOW, the name of its search, and load(const std::uint8_t*, Row&), which makes numbers of eight pixels.
 
-constexpr int window = 8;              // pixels, both ways; a row is one vector
+#include <array>
+#include <cmath>
+
+namespace holdfast::point_flow {
+namespace {
+
 constexpr float half_window = 3.5F;    // from the point to the centres of the outermost pixels
 constexpr float least_texture = 0.1F;  // smaller eigenvalue of the mean of products of derivatives [grey levels^2/px^2]
 constexpr float oscillation = 0.01F;   // two steps that cancel out to this: the minimum lies between them [px]
 
-/// One row of the window. The width is fixed, so that sums have the same order whatever the processor offers.
-using Row = float __attribute__((vector_size(4 * window)));
 using HalfRow = float __attribute__((vector_size(2 * window), may_alias));
 
 HOLDFAST_TARGET_INLINE float sum_of(const Row& row) {
@@ -17,9 +20,6 @@ HOLDFAST_TARGET_INLINE float sum_of(const Row& row) {
   const HalfRow four = halves[0] + halves[1];
   return (four[0] + four[2]) + (four[1] + four[3]);
 }
-
-/// Eight pixels as numbers.
-HOLDFAST_TARGET_INLINE void load(const std::uint8_t* pixels, Row& row);
 
 /// Where a window lies in a level: the pixel at its upper left corner, and the position's fraction of a pixel.
 struct Place {
@@ -148,12 +148,14 @@ HOLDFAST_TARGET_INLINE float difference_at(const Template& wanted, const cv::Mat
   return sum_of(sum) / static_cast<float>(window * window);
 }
 
-/// Positions of the full image in a level whose pixels are `scale` times as many, and back.
+/// Positions of the full image in a level that is `scale` times as wide, and back.
 HOLDFAST_TARGET_INLINE float to_level(float full, float scale) { return (full - 0.5F) * scale; }
 HOLDFAST_TARGET_INLINE float to_full(float level, float scale) { return level / scale + 0.5F; }
 
-HOLDFAST_TARGET_INLINE void follow_all(const ImagePyramid& from, const ImagePyramid& to,
-                                       const PointFlowSettings& settings, PointFlow& flow) {
+}  // namespace
+
+HOLDFAST_TARGET void HOLDFAST_FOLLOW(const ImagePyramid& from, const ImagePyramid& to,
+                                     const PointFlowSettings& settings, PointFlow& flow) {
   const auto width = static_cast<float>(from.size().width), height = static_cast<float>(from.size().height);
   Template wanted;
   for (std::size_t i = 0; i < flow.size(); ++i) {
@@ -175,3 +177,5 @@ HOLDFAST_TARGET_INLINE void follow_all(const ImagePyramid& from, const ImagePyra
     flow.found[i] = found ? 1 : 0;
   }
 }
+
+}  // namespace holdfast::point_flow

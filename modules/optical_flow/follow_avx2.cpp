@@ -4,17 +4,14 @@
 #if defined(__x86_64__)
 #include <immintrin.h>
 
-#include <array>
-#include <cmath>
 #include <cstring>
 
 #define HOLDFAST_TARGET __attribute__((target("avx2")))
 #define HOLDFAST_TARGET_INLINE HOLDFAST_TARGET __attribute__((always_inline)) inline
+#define HOLDFAST_FOLLOW follow_avx2
 
 namespace holdfast::point_flow {
 namespace {
-
-#include "follow_any_processor.inl"
 
 HOLDFAST_TARGET_INLINE void load(const std::uint8_t* pixels, Row& row) {
   const __m256 numbers =
@@ -23,11 +20,7 @@ HOLDFAST_TARGET_INLINE void load(const std::uint8_t* pixels, Row& row) {
 }
 
 }  // namespace
-
-HOLDFAST_TARGET void follow_avx2(const ImagePyramid& from, const ImagePyramid& to, const PointFlowSettings& settings,
-                                 PointFlow& flow) {
-  follow_all(from, to, settings, flow);
-}
-
 }  // namespace holdfast::point_flow
+
+#include "follow_any_processor.inl"
 #endif

@@ -31,10 +31,6 @@ void BackwardTracker::keyframe_added(KeyFrameId keyframe) {
 
 void BackwardTracker::clear() {
   frames_.clear();
-  forget_located();
-}
-
-void BackwardTracker::forget_located() {
   located_.reset();
   after_.clear();
   keyframe_ = reference_ = KeyFrameId();

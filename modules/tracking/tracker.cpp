@@ -143,13 +143,12 @@ void Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
 
 void Tracker::confirm_recovery(bool found, int inliers) {
   if (mono_ || localises_only_ || left_reference_.valid()) return;
-  constexpr int sure_frames = 8;  // in a row; frames of the loss are tracked backwards no earlier
-  const bool is_sure = inliers >= sure_inliers * settings_.minimum_inliers;
+  constexpr int sure_frames = 8;  // in a row
   if (!found) {
     withdraw_recovery();
-  } else if (state_ == State::lost && !is_sure && !history_.empty()) {
+  } else if (state_ == State::lost && !is_sure(inliers) && !history_.empty()) {
     unconfirmed_ = {history_.mark()};
-  } else if (unconfirmed_ && (is_sure || ++unconfirmed_->frames >= sure_frames)) {
+  } else if (unconfirmed_ && (is_sure(inliers) || ++unconfirmed_->frames >= sure_frames)) {
     unconfirmed_.reset();
   }
 }
@@ -157,7 +156,6 @@ void Tracker::confirm_recovery(bool found, int inliers) {
 void Tracker::withdraw_recovery() {
   if (!unconfirmed_) return;
   withdrawn_ += history_.return_to(unconfirmed_->before);
-  backwards_.forget_located();
   unconfirmed_.reset();
 }
 
@@ -329,6 +327,7 @@ void Tracker::map_begun(KeyFrameId reference, const std::vector<MapPointId>& poi
 }
 
 void Tracker::begin_map(FrameResult& result) {
+  unconfirmed_.reset();
   start_support_ = 0.0;
   start_frames_ = 0;
   map_start_time_ = last_feature_time_ = current_.timestamp;
@@ -531,10 +530,12 @@ void Tracker::evaluate_with_pose(const TrackedView& view, FrameResult& result) {
   estimator_.drop_outliers(current_);
 }
 
+bool Tracker::is_sure(int inliers) const { return inliers >= sure_inliers * settings_.minimum_inliers; }
+
 bool Tracker::contradicts_motion(int inliers) const {
   // Two groups of features move rigidly where a person fills much of the view, and the person's may be the larger one.
   // A camera has inertia: from one frame to the next, its velocity changes by little.
-  return inliers < sure_inliers * settings_.minimum_inliers && jumps(1.0);
+  return !is_sure(inliers) && jumps(1.0);
 }
 
 bool Tracker::jumps(double factor) const {
@@ -578,11 +579,10 @@ bool Tracker::track_local_map(const TrackedView& view, FrameResult& result) {
   const bool was_lost = result.method == TrackingMethod::recovered || result.method == TrackingMethod::relocalised;
   // A wide search finds some agreement anywhere: twice as many have to agree.
   const int required = was_lost ? 2 * settings_.minimum_inliers : settings_.minimum_inliers;
-  // Among few inliers may be those of a person who resembles the map: they are not taken for a correction of the pose
-  // before the loss.
-  const bool is_sure = result.inliers >= sure_inliers * settings_.minimum_inliers || mono_ || left_reference_.valid();
+  // Few inliers may lie on a person: they are not taken for a correction of the pose before the loss.
+  const bool may_be_anywhere = is_sure(result.inliers) || mono_ || left_reference_.valid();
   if (result.inliers < required || (was_lost && !relocaliser_.is_beyond_chance(result.inliers)) ||
-      (was_lost && !is_sure && !relocaliser_.is_reachable(current_, 0.0)) ||
+      (was_lost && !may_be_anywhere && !relocaliser_.is_reachable(current_, 0.0)) ||
       lacks_support(result.inliers, result.static_features) || is_refuted(result.inliers, was_lost)) {
     result.trouble = TrackingTrouble::few_inliers;
     return false;

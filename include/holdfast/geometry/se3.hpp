@@ -27,6 +27,11 @@ inline Vector6d log_se3(const Eigen::Isometry3d& motion) {
   return result;
 }
 
+/// Whether a motion goes farther than `distance` [m] or turns by more than `angle` [rad].
+inline bool exceeds(const Eigen::Isometry3d& motion, double distance, double angle) {
+  return motion.translation().norm() > distance || Eigen::AngleAxisd(motion.linear()).angle() > angle;
+}
+
 /// motion * exp(d) = exp(adjoint * d) * motion (equation 175).
 inline Matrix6d adjoint_se3(const Eigen::Isometry3d& motion) {
   Matrix6d result = Matrix6d::Zero();

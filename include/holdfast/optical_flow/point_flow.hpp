@@ -22,9 +22,9 @@ struct PointFlow {
 
 /// When follow_points() ends and what it takes for found.
 struct PointFlowSettings {
-  int iterations = 10;              ///< at most, per level of the pyramid
-  float precision = 0.05F;          ///< a step shorter than this ends the iteration [px of the level]
-  float largest_difference = 25.0;  ///< mean of the grey levels' differences in the window above which a point is lost
+  int iterations = 10;               ///< at most, per level of the pyramid
+  float precision = 0.05F;           ///< a step shorter than this ends the iteration [px of the level]
+  float largest_difference = 25.0F;  ///< mean of the grey levels' differences in the window above which a point is lost
 };
 
 /// Finds points of one image in another by the pyramidal Lucas-Kanade method (Bouguet, "Pyramidal implementation of the

@@ -44,8 +44,6 @@ class BackwardTracker {
   void finish(StageTimes& times);
   /// The frame that was located last became a keyframe.
   void keyframe_added(KeyFrameId keyframe);
-  /// The camera was not where it was located since the kept frames: they wait for the next time.
-  void forget_located();
   /// Forgets the kept frames.
   void clear();
 

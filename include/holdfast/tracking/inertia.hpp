@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "holdfast/geometry/se3.hpp"
 #include "holdfast/tracking/tracking_settings.hpp"
 
 namespace holdfast {
@@ -16,8 +17,8 @@ inline bool contradicts_inertia(const Eigen::Isometry3d& change, double interval
                                 double factor = 1.0) {
   constexpr double frame_interval = 1.0 / 30.0;  // s
   const double frames = factor * std::max(1.0, interval / frame_interval);
-  return change.translation().norm() > settings.jump_distance * frames ||
-         Eigen::AngleAxisd(change.linear()).angle() > settings.jump_angle * std::numbers::pi / 180.0 * frames;
+  return geometry::exceeds(change, settings.jump_distance * frames,
+                           settings.jump_angle * std::numbers::pi / 180.0 * frames);
 }
 
 }  // namespace holdfast

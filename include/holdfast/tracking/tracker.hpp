@@ -71,8 +71,8 @@ class Tracker {
   bool begins_piece() const { return begins_piece_; }
   /// Whether the camera was lost a moment ago: what fills its view may be what it was lost by.
   bool was_just_found() const;
-  /// Whether a mask of the frame just located is needed, although it has no pose: what is known to be static finds the
-  /// camera again, or begins a new piece.
+  /// Whether a mask of the frame just located is needed, although it has no pose or an unconfirmed one: what is known
+  /// to be static finds the camera again, or begins a new piece.
   bool needs_mask() const;
   /// The piece of the map that the camera is tracked in; the caller holds the lock of the map.
   std::uint32_t piece() const { return map_.piece_of(reference_keyframe_).value_or(0); }
@@ -157,6 +157,8 @@ class Tracker {
   /// a keyframe, which needs features of its own.
   bool track_followed(TrackedView& view, FrameResult& result);
   void find_features(const SensorFrame& sensor_frame, FrameResult& result);
+  /// So many inliers need no other support.
+  bool is_sure(int inliers) const;
   /// The pose, on which few inliers agree, is far from where constant velocity takes the camera.
   bool contradicts_motion(int inliers) const;
   /// The pose is `factor` times farther from constant velocity than jump_distance or jump_angle.
