@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -19,8 +20,13 @@ using testing::HasSubstr;
 
 class SceneFile : public testing::Test {
  protected:
-  SceneFile() : file_(fs::path(testing::TempDir()) / "holdfast_scene_file_test.yaml") {}
-  ~SceneFile() override { fs::remove(file_); }
+  // A folder of its own, because tests run at the same time.
+  SceneFile()
+      : file_(fs::path(testing::TempDir()) / ("holdfast_scene_file_" + std::to_string(getpid())) /
+              "holdfast_scene_file_test.yaml") {
+    fs::create_directories(file_.parent_path());
+  }
+  ~SceneFile() override { fs::remove_all(file_.parent_path()); }
 
   Scene read(const std::string& text, const std::vector<std::string>& overrides = {}) {
     std::ofstream(file_) << text;
