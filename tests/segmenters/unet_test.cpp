@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 #include "holdfast/simulation/scene_file.hpp"
 #include "holdfast/simulation/simulator.hpp"
@@ -100,6 +101,16 @@ TEST(UnetSegmenter, WithItsMirrorImageLeftAndRightAreAlike) {
   };
   EXPECT_LT(difference(true), 640 * 480 / 10000);
   EXPECT_GT(difference(false), 640 * 480 / 1000);
+}
+
+TEST(UnetSegmenter, ASecondLookFindsMoreOfPeopleWhoAreFarAway) {
+  simulation::Simulator room = room_with("{ at: [1.5, 5.0] }");
+  const auto once = make(), twice = make({{"second_look", true}});
+  EXPECT_GT(compare(*twice, room, 0).iou(), compare(*once, room, 0).iou() + 0.1);
+  // An image that the first look shows in full has no second one.
+  SensorFrame small = room.frame(0);
+  cv::resize(small.colour, small.colour, cv::Size(384, 288), 0, 0, cv::INTER_AREA);
+  EXPECT_EQ(cv::norm(once->segment(small).labels, twice->segment(small).labels, cv::NORM_INF), 0.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Sizes, Unet, testing::Values("small", "base"));

@@ -27,6 +27,8 @@ struct UnetSettings {
   int height = 0;                  ///< likewise
   /// Average the scores of the image and its mirror image; doubles the time and improves the masks slightly.
   bool mirror = false;
+  /// Look again at the part of the image in which the network is least certain; up to twice the time.
+  bool second_look = false;
   double region_confidence = 0.0;  ///< a region of people counts if a pixel of it is as certain; 0 = all count
   std::filesystem::path model;     ///< ONNX file with other weights; empty = the weights of the library
   NetworkEngine engine = NetworkEngine::automatic;      ///< what computes the network
