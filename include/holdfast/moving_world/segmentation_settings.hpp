@@ -16,7 +16,9 @@ enum class SegmentedFrames {
 struct SegmentationSettings {
   SegmentedFrames on = SegmentedFrames::keyframes;
   int every = 5;        ///< with every_n, the n [frames]
-  int latency = 5;      ///< in sequential mode, frames after which a mask is applied; about a small network's 0.15 s
+  /// In sequential mode, frames after which a mask is applied. Threaded, at 30 frames/s on two cores, the masks of `unet`
+  /// are one frame old in the median and at most two in 95 %; with the engine `opencv` two in the median.
+  int latency = 3;
   double memory = 1.0;  ///< time after which the confidence of a propagated mask has halved [s]
   /// The points of a keyframe wait for its mask unless less than this share of its static features shows map points: a
   /// camera that turns to a new view would be lost before the mask arrives.
