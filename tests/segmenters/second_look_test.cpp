@@ -54,16 +54,15 @@ TEST(SecondLook, BothLooksDecideInTheWindowAndTheFirstElsewhere) {
   // A cell has as many pixels as one of the second look.
   EXPECT_NEAR(static_cast<double>(image.width) / columns, static_cast<double>(window->width) / cells.width, 0.05);
   const auto background_at = [&](double x, double y) {
-    return both.ptr<float>(0, 0, static_cast<int>(y * rows / image.height))[static_cast<int>(x * columns / image.width)];
+    return both.ptr<float>(0, 0,
+                           static_cast<int>(y * rows / image.height))[static_cast<int>(x * columns / image.width)];
   };
   EXPECT_FLOAT_EQ(background_at(20, 20), 0.5F * (0.5F - 3.0F));
   EXPECT_FLOAT_EQ(background_at(window->br().x - 20, window->br().y - 20), 0.5F * (20.0F - 3.0F));
   EXPECT_FLOAT_EQ(background_at(window->br().x + 20, window->br().y + 20), 20.0F);
 }
 
-TEST(SecondLook, IsNotTakenWithoutDoubt) {
-  EXPECT_FALSE(SecondLook().begin(certain_scores(), image, input, person));
-}
+TEST(SecondLook, IsNotTakenWithoutDoubt) { EXPECT_FALSE(SecondLook().begin(certain_scores(), image, input, person)); }
 
 TEST(SecondLook, IsNotTakenAtImagesThatHoldNoMoreThanTheFirstSaw) {
   SecondLook look;

@@ -20,7 +20,8 @@ constexpr int search_step = 4;        // cells of the first look
 
 int rounded(double value) { return static_cast<int>(std::lround(value)); }
 
-/// One class of scores as an image, which shares the memory.
+/// One class of scores as an image, which shares the memory. cv::Mat has no view of constant values: what is made of
+/// constant scores must not be written to.
 cv::Mat plane(const cv::Mat& scores, int channel) {
   const int height = scores.size[2], width = scores.size[3];
   return {height, width, CV_32F, const_cast<float*>(scores.ptr<float>(0, channel))};

@@ -10,8 +10,8 @@ namespace holdfast::unet_plugin {
 /// the image to the input of the network, in which people who are far away are few pixels; the second one shows a part
 /// of the image at up to 5/3 of that size. One thread; keeps its buffers.
 ///
-/// Scores are 1 x classes x height x width, 32F, before softmax. Scores of an image that the second look improves have
-/// its size of a cell: more cells, of which it replaces a window.
+/// Scores are 1 x classes x height x width, 32F, before softmax. The result has more cells than the scores of the first
+/// look: a cell covers as many pixels as one of the second look.
 class SecondLook {
  public:
   /// Resizes the scores of the first look at an image to the size of cells of the second look, and returns the pixels
@@ -25,7 +25,8 @@ class SecondLook {
   const cv::Mat& combine(const cv::Mat& scores_of_window);
 
  private:
-  /// Sums of doubts of all cells above and left of each corner of the cells, as cv::integral() has them.
+  /// Fills sums_: at each corner of a cell, the sum of the doubts of all cells above and left of it (an integral
+  /// image).
   void sum_doubts(const cv::Mat& scores, int person);
 
   cv::Mat sums_;      // 64F, one row and one column more than the scores
