@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <opencv2/core.hpp>
 
 namespace holdfast::unet_plugin {
 namespace {
@@ -60,6 +61,17 @@ TEST(SecondLook, BothLooksDecideInTheWindowAndTheFirstElsewhere) {
   EXPECT_FLOAT_EQ(background_at(20, 20), 0.5F * (0.5F - 3.0F));
   EXPECT_FLOAT_EQ(background_at(window->br().x - 20, window->br().y - 20), 0.5F * (20.0F - 3.0F));
   EXPECT_FLOAT_EQ(background_at(window->br().x + 20, window->br().y + 20), 20.0F);
+}
+
+TEST(SecondLook, TheFirstDimensionMayBeMissing) {
+  SecondLook four, three;
+  cv::Mat scores = doubt_at({40, 30, 20, 20});
+  const std::array<int, 3> sizes{classes, cells.height, cells.width};
+  const cv::Mat short_scores(3, sizes.data(), CV_32F, scores.data);
+  const auto window = three.begin(short_scores, image, input, person);
+  EXPECT_EQ(window, four.begin(scores, image, input, person));
+  ASSERT_TRUE(window.has_value());
+  EXPECT_EQ(cv::norm(three.combine(short_scores), four.combine(scores), cv::NORM_INF), 0.0);
 }
 
 TEST(SecondLook, IsNotTakenWithoutDoubt) { EXPECT_FALSE(SecondLook().begin(certain_scores(), image, input, person)); }

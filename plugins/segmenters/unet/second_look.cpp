@@ -20,40 +20,48 @@ constexpr int search_step = 4;        // cells of the first look
 
 int rounded(double value) { return static_cast<int>(std::lround(value)); }
 
+/// Sizes of scores; their first dimension, which is 1, may be missing.
+struct Shape {
+  int classes, height, width;
+
+  explicit Shape(const cv::Mat& scores)
+      : classes(scores.size[scores.dims - 3]),
+        height(scores.size[scores.dims - 2]),
+        width(scores.size[scores.dims - 1]) {}
+};
+
 /// One class of scores as an image, which shares the memory. cv::Mat has no view of constant values: what is made of
 /// constant scores must not be written to.
 cv::Mat plane(const cv::Mat& scores, int channel) {
-  const int height = scores.size[2], width = scores.size[3];
-  return {height, width, CV_32F, const_cast<float*>(scores.ptr<float>(0, channel))};
+  const Shape shape(scores);
+  const std::ptrdiff_t size = static_cast<std::ptrdiff_t>(shape.height) * shape.width;
+  return {shape.height, shape.width, CV_32F, const_cast<float*>(scores.ptr<float>()) + channel * size};
 }
 
 }  // namespace
 
 void SecondLook::sum_doubts(const cv::Mat& scores, int person) {
-  const int classes = scores.size[1], height = scores.size[2], width = scores.size[3];
-  sums_.create(height + 1, width + 1, CV_64F);
-  sums_.row(0).setTo(0.0);
-  for (int y = 0; y < height; ++y) {
-    const double* const above = sums_.ptr<double>(y);
-    double* const sums = sums_.ptr<double>(y + 1);
-    double of_row = 0.0;
-    sums[0] = 0.0;
-    for (int x = 0; x < width; ++x) {
-      float best_other = -1e30F;
-      for (int channel = 0; channel < classes; ++channel)
-        if (channel != person) best_other = std::max(best_other, scores.ptr<float>(0, channel, y)[x]);
-      // Like 4 p (1 - p) of the probability p, to 0.15, without an exponential function.
-      const float half_lead = 0.5F * (scores.ptr<float>(0, person, y)[x] - best_other);
-      const float square = half_lead * half_lead;
-      of_row += static_cast<double>(1.0F / (1.0F + square * square));
-      sums[x + 1] = above[x + 1] + of_row;
-    }
+  const Shape shape(scores);
+  doubts_.create(shape.height, shape.width, CV_32F);
+  const std::size_t cells = doubts_.total();
+  const float* const score = scores.ptr<float>();
+  float* const doubt = doubts_.ptr<float>();
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    float best_other = -1e30F;
+    for (int channel = 0; channel < shape.classes; ++channel)
+      if (channel != person) best_other = std::max(best_other, score[static_cast<std::size_t>(channel) * cells + cell]);
+    // Like 4 p (1 - p) of the probability p, to 0.15, without an exponential function.
+    const float half_lead = 0.5F * (score[static_cast<std::size_t>(person) * cells + cell] - best_other);
+    const float square = half_lead * half_lead;
+    doubt[cell] = 1.0F / (1.0F + square * square);
   }
+  cv::integral(doubts_, sums_, CV_64F);
 }
 
 std::optional<cv::Rect> SecondLook::begin(const cv::Mat& scores, cv::Size image, cv::Size input, int person) {
-  HOLDFAST_CHECK(scores.dims == 4 && scores.type() == CV_32F && person < scores.size[1], scores.dims);
-  const int classes = scores.size[1], height = scores.size[2], width = scores.size[3];
+  HOLDFAST_CHECK(scores.dims >= 3 && scores.type() == CV_32F && scores.isContinuous(), scores.dims);
+  const auto [classes, height, width] = Shape(scores);
+  HOLDFAST_CHECK(person < classes, person << " " << classes);
   // Cells of the second look in the whole image: not finer than the image's pixels allow.
   const int columns = rounded(std::min(width / share, static_cast<double>(width) * image.width / input.width));
   const int rows = rounded(std::min(height / share, static_cast<double>(height) * image.height / input.height));
@@ -87,17 +95,12 @@ std::optional<cv::Rect> SecondLook::begin(const cv::Mat& scores, cv::Size image,
 }
 
 const cv::Mat& SecondLook::combine(const cv::Mat& scores_of_window) {
-  HOLDFAST_CHECK(scores_of_window.dims == 4 && scores_of_window.size[1] == combined_.size[1] &&
-                     scores_of_window.size[2] == window_.height && scores_of_window.size[3] == window_.width,
-                 scores_of_window.dims);
-  for (int channel = 0; channel < combined_.size[1]; ++channel) {
-    const cv::Mat second = plane(scores_of_window, channel);
-    cv::Mat first = plane(combined_, channel)(window_);
-    for (int y = 0; y < window_.height; ++y) {
-      const float* const from = second.ptr<float>(y);
-      float* const to = first.ptr<float>(y);
-      for (int x = 0; x < window_.width; ++x) to[x] = 0.5F * (to[x] + from[x]);
-    }
+  const auto [classes, height, width] = Shape(scores_of_window);
+  HOLDFAST_CHECK(classes == Shape(combined_).classes && cv::Size(width, height) == window_.size(),
+                 classes << " " << height << " " << width);
+  for (int channel = 0; channel < classes; ++channel) {
+    cv::Mat both = plane(combined_, channel)(window_);
+    cv::addWeighted(both, 0.5, plane(scores_of_window, channel), 0.5, 0.0, both);
   }
   return combined_;
 }

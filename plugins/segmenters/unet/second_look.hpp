@@ -10,8 +10,8 @@ namespace holdfast::unet_plugin {
 /// the image to the input of the network, in which people who are far away are few pixels; the second one shows a part
 /// of the image at up to 5/3 of that size. One thread; keeps its buffers.
 ///
-/// Scores are 1 x classes x height x width, 32F, before softmax. The result has more cells than the scores of the first
-/// look: a cell covers as many pixels as one of the second look.
+/// Scores are classes x height x width, 32F and contiguous, before softmax; a dimension of 1 may precede. The result
+/// has more cells than the scores of the first look: a cell covers as many pixels as one of the second look.
 class SecondLook {
  public:
   /// Resizes the scores of the first look at an image to the size of cells of the second look, and returns the pixels
@@ -25,11 +25,11 @@ class SecondLook {
   const cv::Mat& combine(const cv::Mat& scores_of_window);
 
  private:
-  /// Fills sums_: at each corner of a cell, the sum of the doubts of all cells above and left of it (an integral
-  /// image).
+  /// Fills sums_ with the doubts of the cells.
   void sum_doubts(const cv::Mat& scores, int person);
 
-  cv::Mat sums_;      // 64F, one row and one column more than the scores
+  cv::Mat doubts_;    // 32F, of each cell of the first look
+  cv::Mat sums_;      // 64F, their cv::integral()
   cv::Mat combined_;  // scores of the image, in cells of the second look
   cv::Rect window_;   // of combined_ that the second look shows
 };

@@ -98,7 +98,6 @@ class UnetSegmenter final : public NetworkSegmenter {
                          {"background", "person", "chair", "table", "tv"}, {"person"}),
         mirror_(settings.mirror),
         second_look_(settings.second_look),
-        input_(network_options(settings).width, network_options(settings).height),
         region_confidence_(static_cast<std::uint8_t>(std::lround(255.0 * settings.region_confidence))) {}
 
   Segmentation segment(const SensorFrame& frame) override {
@@ -111,15 +110,15 @@ class UnetSegmenter final : public NetworkSegmenter {
   cv::Mat scores(const cv::Mat& colour) override {
     const cv::Mat first = look(colour);
     if (!second_look_ || !has_form_of_ours(first)) return first;
-    const std::optional<cv::Rect> window = closer_.begin(first, colour.size(), input_, person);
+    const std::optional<cv::Rect> window = closer_.begin(first, colour.size(), input_size(), person);
     return window ? closer_.combine(look(colour(*window))) : first;
   }
 
  private:
-  /// Other outputs, which `model` may bring, are for decode_segmentation() to accept or to refuse.
+  /// Other outputs, which `model` may bring, are for decode_segmentation() to refuse.
   bool has_form_of_ours(const cv::Mat& scores) const {
-    return scores.dims == 4 && scores.size[1] == static_cast<int>(classes().size()) && scores.isContinuous() &&
-           scores.type() == CV_32F;
+    return scores.dims >= 3 && scores.size[scores.dims - 3] == static_cast<int>(classes().size()) &&
+           scores.isContinuous() && scores.type() == CV_32F;
   }
 
   cv::Mat look(const cv::Mat& colour) {
@@ -136,7 +135,6 @@ class UnetSegmenter final : public NetworkSegmenter {
 
   static constexpr std::uint8_t person = 1;  // index of the class
   bool mirror_, second_look_;
-  cv::Size input_;
   std::uint8_t region_confidence_;
   cv::Mat mean_;
   SecondLook closer_;
