@@ -16,10 +16,14 @@ cmake --preset release -B "$build" \
   -DHOLDFAST_PYTHON_PACKAGE=ON
 cmake --build "$build" --parallel "$jobs"
 
-run_tests() { ctest --test-dir "$build" --parallel "$jobs" --output-on-failure --no-tests=error "$@"; }
+# What a group of tests prints is kept in BUILD_FOLDER/tests_GROUP.log.
+run_tests() {
+  group=$1; shift
+  ctest --test-dir "$build" --parallel "$jobs" --output-on-failure --no-tests=error --output-log "$build/tests_$group.log" "$@"
+}
 # The quick ones first, so that a plain mistake shows within seconds; the others run even when those fail.
 verdict=0
-run_tests --label-regex '^quick$' || verdict=1
-run_tests --label-exclude '^quick$' || verdict=1
+run_tests quick --label-regex '^quick$' || verdict=1
+run_tests others --label-exclude '^quick$' || verdict=1
 [ "$verdict" -eq 0 ] && echo "All tests passed." || echo "Some tests failed: see above." >&2
 exit "$verdict"

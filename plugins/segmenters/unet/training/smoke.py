@@ -56,6 +56,12 @@ def check_kept_blocks(folder, pack):
         raise PackError(f"--keep-blocks 3 changed {wrong[:3] or changed[:3]}; expected weights of the other blocks only")
 
 
+def computes_with_16_bits():
+    """Whether this processor does, on Linux."""
+    processor = pathlib.Path("/proc/cpuinfo")
+    return processor.exists() and "avx512_bf16" in processor.read_text()
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("simulated", type=pathlib.Path, help="a sequence that `holdfast simulate` wrote")
@@ -88,7 +94,7 @@ def main():
     run("calibrate.py", pack, arguments.output / "weights.npz", "--width", 64, "--height", 48, "--every", 1)
     run("int8_labels.py", pack, onnx, "--width", 64, "--height", 48, "--pictures", 4)
     run("train.py", pack, "--output", arguments.output / "further", "--size", "tiny", "--batch", 4, "--workers", 0,
-        "--steps", 2, "--start-from", onnx)
+        "--steps", 2, "--start-from", onnx, "--precision", "bf16" if computes_with_16_bits() else "fp32")
     run("train.py", pack, "--output", arguments.output / "paper", "--preset", "paper", "--batch", 2, "--workers", 0,
         "--width", 32, "--height", 32, "--steps", 2)
     for size in ("mobile", "plain"):

@@ -208,7 +208,9 @@ def train(arguments):
         pictures, labels = next(batches)
         training.train_mode()
         training.optimizer.zero_grad(set_to_none=True)
-        outputs = training.model(pictures.contiguous(memory_format=torch.channels_last))
+        with torch.autocast("cpu", torch.bfloat16, enabled=arguments.precision == "bf16"):
+            outputs = training.model(pictures.contiguous(memory_format=torch.channels_last))
+        outputs = [scores.float() for scores in outputs]
         loss = training_loss(outputs, labels, class_weights, arguments.coarse_share)
         loss.backward()
         torch.nn.utils.clip_grad_norm_(training.model.parameters(), 5.0)
@@ -294,6 +296,9 @@ def main():
                              "the time, keep their weights (default: 0)")
     parser.add_argument("--keep-normalisation", action="store_true",
                         help="batch normalisation keeps its mean and variance: for small rates and batches")
+    parser.add_argument("--precision", choices=("fp32", "bf16"), default="fp32",
+                        help="bf16 computes convolutions with 16 bits, the weights stay as they are: several times faster "
+                             "on processors with AVX512_BF16, slower on others (default: fp32)")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--threads", type=int, default=1)
     parser.add_argument("--workers", type=int, default=1, help="processes that make samples (default: 1; 0 = none)")
