@@ -104,8 +104,8 @@ TEST(UnetSegmenter, WithItsMirrorImageLeftAndRightAreAlike) {
 }
 
 TEST(UnetSegmenter, ASecondLookFindsMoreOfPeopleWhoAreFarAway) {
-  simulation::Simulator room = room_with("{ at: [1.5, 5.0] }");
-  const auto once = make(), twice = make({{"second_look", true}});
+  simulation::Simulator room = room_with("{ at: [2.5, 5.0] }");
+  const auto once = make({{"size", "small"}}), twice = make({{"size", "small"}, {"second_look", true}});
   EXPECT_GT(compare(*twice, room, 0).iou(), compare(*once, room, 0).iou() + 0.1);
   // An image that the first look shows in full has no second one.
   SensorFrame small = room.frame(0);
