@@ -14,6 +14,7 @@ sh cmake/install_dependencies.sh --training --documentation --benchmarks --camer
 cmake --preset release -B "$build" \
   -DHOLDFAST_UNITY=ON -DHOLDFAST_BUILD_TESTS=ON -DHOLDFAST_BUILD_BENCHMARKS=ON -DHOLDFAST_BUILD_EXAMPLES=ON -DHOLDFAST_PYTHON=ON \
   -DHOLDFAST_PYTHON_PACKAGE=ON
+rm -f "$build"/tests_*.log  # those of an earlier run say nothing about this one
 cmake --build "$build" --parallel "$jobs"
 
 # What a group of tests prints is kept in BUILD_FOLDER/tests_GROUP.log.
