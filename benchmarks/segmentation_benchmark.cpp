@@ -86,7 +86,7 @@ void unet(benchmark::State& state, const ParameterValues& settings) {
 void register_benchmarks() {
   Registry registry;
   register_builtin_plugins(registry);
-  for (const char* size : {"small", "base"})
+  for (const char* size : {"small", "base", "large"})
     for (const bool mirror : {false, true})
       for (const auto& [engine, precision] : {std::pair("opencv", "fp32"), {"onednn", "fp32"}, {"onednn", "bf16"}}) {
         const ParameterValues settings = {{"size", std::string(size)},

@@ -4,11 +4,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace holdfast::test {
@@ -65,7 +68,26 @@ class Program {
   }
   Outcome run(const std::vector<std::string>& arguments) const { return finish(start(arguments)); }
 
+  /// Waits until a run has written a pose to its folder, or ended. How long that takes on a busy machine is not known
+  /// beforehand, so that no fixed time will do.
+  void wait_for_pose(pid_t process, const std::string& folder) const {
+    constexpr auto longest = std::chrono::seconds(120);
+    const auto started = std::chrono::steady_clock::now();
+    while (std::chrono::steady_clock::now() < started + longest && !has_ended(process)) {
+      std::ifstream trajectory(path(folder + "/trajectory.txt"));
+      for (std::string line; std::getline(trajectory, line);)
+        if (!line.empty() && line.front() != '#') return;
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  }
+
  private:
+  /// finish() still finds what it left.
+  static bool has_ended(pid_t process) {
+    siginfo_t info{};
+    return waitid(P_PID, static_cast<id_t>(process), &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid != 0;
+  }
+
   std::filesystem::path folder_;
 };
 

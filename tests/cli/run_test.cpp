@@ -47,14 +47,12 @@ class RunTest : public ::testing::Test {
     damaged_ = images[9].filename().string();
   }
 
-  /// Starts a run of ten minutes, and returns when it has begun to read frames.
+  /// Starts a run of ten minutes, and returns when it has poses.
   pid_t start_long_run(const std::string& folder, const std::vector<std::string>& more = {}) const {
     std::vector<std::string> words = {"run", "room.yaml", "--set", "source.simulated.duration=600", "-o", folder};
     words.insert(words.end(), more.begin(), more.end());
     const pid_t process = program_.start(words);
-    for (int i = 0; i < 3000 && !fs::exists(program_.path(folder + "/trajectory.txt")); ++i)
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    std::this_thread::sleep_for(std::chrono::seconds(2));
+    program_.wait_for_pose(process, folder);
     return process;
   }
 
@@ -191,9 +189,7 @@ TEST_F(RunTest, SkipsDamagedImagesWhereAllowed) {
 TEST_F(RunTest, KeepsWhatWasDoneWhenInterrupted) {
   const pid_t process =
       program_.start({"run", "room.yaml", "--set", "source.simulated.duration=600", "--output", "out"});
-  for (int i = 0; i < 3000 && !fs::exists(program_.path("out/config.yaml")); ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  std::this_thread::sleep_for(std::chrono::seconds(3));
+  program_.wait_for_pose(process, "out");
   kill(process, SIGINT);
   const Outcome outcome = program_.finish(process);
   EXPECT_EQ(outcome.exit_code, 130) << outcome.errors;
@@ -324,9 +320,7 @@ TEST_F(RunTest, ThreadsStopWhenInterrupted) {
   const pid_t process =
       program_.start({"run", "room.yaml", "--set", "source.simulated.duration=600", "--set", "run.mode=threaded",
                       "--set", "run.pace=timestamps", "--set", "run.late_frames=drop", "--output", "out"});
-  for (int i = 0; i < 3000 && !fs::exists(program_.path("out/config.yaml")); ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  std::this_thread::sleep_for(std::chrono::seconds(2));
+  program_.wait_for_pose(process, "out");
   kill(process, SIGINT);
   const Outcome outcome = program_.finish(process);
   EXPECT_EQ(outcome.exit_code, 130) << outcome.errors;

@@ -113,13 +113,13 @@ TEST(UnetSegmenter, ASecondLookFindsMoreOfPeopleWhoAreFarAway) {
   EXPECT_EQ(cv::norm(once->segment(small).labels, twice->segment(small).labels, cv::NORM_INF), 0.0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Sizes, Unet, testing::Values("small", "base"));
+INSTANTIATE_TEST_SUITE_P(Sizes, Unet, testing::Values("small", "base", "large"));
 
 #if defined(HOLDFAST_ONEDNN)
 TEST(UnetSegmenter, BothEnginesGiveTheSameLabels) {
   simulation::Simulator room = room_with("{ at: [2.5, 3.0] }");
   const SensorFrame frame = room.frame(0);
-  for (const char* size : {"small", "base"}) {
+  for (const char* size : {"small", "base", "large"}) {
     const cv::Mat expected = make({{"size", std::string(size)}})->segment(frame).labels;
     const auto differing = [&](const char* precision) {
       const auto segmenter =

@@ -12,17 +12,18 @@ class Segmenter;
 template <class Settings>
 class ParameterTable;
 
-/// Size of the input of the U-Net: small is 224x192 pixels, base is 384x288.
-enum class UnetSize { small, base };
+/// Size of the input of the U-Net: small is 224x192 pixels, base is 384x288, large is 512x384.
+enum class UnetSize { small, base, large };
 template <>
-inline constexpr Choice<UnetSize> choice_table<UnetSize>[] = {{"small", UnetSize::small}, {"base", UnetSize::base}};
+inline constexpr Choice<UnetSize> choice_table<UnetSize>[] = {
+    {"small", UnetSize::small}, {"base", UnetSize::base}, {"large", UnetSize::large}};
 
 /// Settings of the segmenter `unet`. Ranges and units: `holdfast modules unet`.
 struct UnetSettings {
   using Interface = Segmenter;
   static constexpr const char* module = "unet";
 
-  UnetSize size = UnetSize::base;  ///< small takes half the time of base
+  UnetSize size = UnetSize::base;  ///< small takes half the time of base, large twice
   int width = 0;                   ///< of the network input, a multiple of 32 [px]; 0 = given by `size`
   int height = 0;                  ///< likewise
   /// Average the scores of the image and its mirror image; doubles the time and improves the masks slightly.

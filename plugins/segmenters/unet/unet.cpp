@@ -21,8 +21,8 @@ namespace holdfast {
 void UnetSettings::describe(ParameterTable<UnetSettings>& table) {
   using S = UnetSettings;
   table.add("size", &S::size,
-            "size of the network input: small (224x192) takes half the time of base (384x288), which is more "
-            "accurate");
+            "size of the network input: small (224x192) takes half the time of base (384x288), which is more accurate; "
+            "large (512x384) takes twice the time and finds more people who are far away");
   table.add("width", &S::width, "width of the network input, a multiple of 32; 0 = given by size")
       .range(0, 4096)
       .unit("px");
@@ -62,9 +62,15 @@ void check_side(const char* name, int pixels) {
 struct Look {
   int width, height;  ///< [px]
 };
-constexpr Look base_look{384, 288}, small_look{224, 192};
 
-const Look& look_of(const UnetSettings& settings) { return settings.size == UnetSize::small ? small_look : base_look; }
+Look look_of(const UnetSettings& settings) {
+  switch (settings.size) {
+    case UnetSize::small: return {224, 192};
+    case UnetSize::base: break;
+    case UnetSize::large: return {512, 384};
+  }
+  return {384, 288};
+}
 
 NetworkOptions network_options(const UnetSettings& settings) {
   NetworkOptions options;

@@ -179,7 +179,7 @@ def train(arguments):
     training_entries, held_out = read_pack(arguments.pack)
     sizes = [(arguments.width, arguments.height)]
     if arguments.also:
-        sizes = sizes * 2 + [arguments.also]
+        sizes = sizes * 2 + arguments.also
 
     def batches_from(step):
         samples = Samples(training_entries, sizes, arguments.batch, arguments.seed, step * arguments.batch,
@@ -223,8 +223,9 @@ def train(arguments):
         if last or training.seconds - measured_at >= 60.0 * arguments.measure_every:
             model = training.averaged_model()
             figures = validation(model, training.input_size)
-            if arguments.also:
-                figures.update({f"small_{name}": value for name, value in validation(model, arguments.also).items()})
+            for size in arguments.also:
+                prefix = f"{size[0]}x{size[1]}_"
+                figures.update({prefix + name: value for name, value in validation(model, size).items()})
             row = dict(step=training.step, minutes=round(training.seconds / 60, 2), learning_rate=f"{rate:.2e}",
                        loss=round(mean_loss / count, 4), **{name: round(float(v), 4) for name, v in figures.items()})
             print("  ".join(f"{name} {value}" for name, value in row.items()), flush=True)
@@ -259,8 +260,9 @@ def main():
     parser.add_argument("--size", choices=SIZES, default="mobile")
     parser.add_argument("--width", type=int, help="of the input [px] (default: as the size ships with)")
     parser.add_argument("--height", type=int)
-    parser.add_argument("--also", type=size_of, metavar="WxH",
-                        help="every third batch has this size, for weights that are good at both, such as 160x128")
+    parser.add_argument("--also", type=size_of, nargs="+", default=[], metavar="WxH",
+                        help="after every two batches, one of each of these sizes follows, for weights that are good at all "
+                             "of them, such as 160x128")
     length = parser.add_mutually_exclusive_group()
     length.add_argument("--minutes", type=float, default=60.0, help="length of the run (default: 60)")
     length.add_argument("--steps", type=int, help="length of the run, exactly repeatable")
@@ -311,7 +313,7 @@ def main():
     arguments.width = arguments.width or SIZES[arguments.size][1][0]
     arguments.height = arguments.height or SIZES[arguments.size][1][1]
     unit = multiple(arguments.size)
-    for width, height in [(arguments.width, arguments.height)] + ([arguments.also] if arguments.also else []):
+    for width, height in [(arguments.width, arguments.height), *arguments.also]:
         if width % unit or height % unit:
             parser.error(f"an input of {width}x{height}; expected multiples of {unit}")
     arguments.output.mkdir(parents=True, exist_ok=True)
