@@ -94,7 +94,8 @@ def main():
     run("calibrate.py", pack, arguments.output / "weights.npz", "--width", 64, "--height", 48, "--every", 1)
     run("int8_labels.py", pack, onnx, "--width", 64, "--height", 48, "--pictures", 4)
     run("train.py", pack, "--output", arguments.output / "further", "--size", "tiny", "--batch", 4, "--workers", 0,
-        "--steps", 2, "--start-from", onnx, "--precision", "bf16" if computes_with_16_bits() else "fp32")
+        "--also", "64x64", "32x32", "--steps", 4, "--start-from", onnx,
+        "--precision", "bf16" if computes_with_16_bits() else "fp32")
     run("train.py", pack, "--output", arguments.output / "paper", "--preset", "paper", "--batch", 2, "--workers", 0,
         "--width", 32, "--height", 32, "--steps", 2)
     for size in ("mobile", "plain"):
