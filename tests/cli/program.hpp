@@ -68,21 +68,27 @@ class Program {
   }
   Outcome run(const std::vector<std::string>& arguments) const { return finish(start(arguments)); }
 
-  /// Waits until a run has written a pose to its folder, or ended. How long that takes on a busy machine is not known
+  /// Waits until the condition holds or the program has ended. How long that takes on a busy machine is not known
   /// beforehand, so that no fixed time will do.
-  void wait_for_pose(pid_t process, const std::string& folder) const {
+  template <class Condition>
+  void wait_until(pid_t process, const Condition& holds) const {
     constexpr auto longest = std::chrono::seconds(120);
     const auto started = std::chrono::steady_clock::now();
-    while (std::chrono::steady_clock::now() < started + longest && !has_ended(process)) {
+    while (!holds() && !has_ended(process) && std::chrono::steady_clock::now() < started + longest)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  /// Waits until a run has written so many poses to its folder.
+  void wait_for_poses(pid_t process, const std::string& folder, int count = 1) const {
+    wait_until(process, [&] {
+      int poses = 0;
       std::ifstream trajectory(path(folder + "/trajectory.txt"));
-      for (std::string line; std::getline(trajectory, line);)
-        if (!line.empty() && line.front() != '#') return;
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    }
+      for (std::string line; std::getline(trajectory, line);) poses += line.empty() || line.front() == '#' ? 0 : 1;
+      return poses >= count;
+    });
   }
 
  private:
-  /// finish() still finds what it left.
+  /// The process stays for finish() to collect.
   static bool has_ended(pid_t process) {
     siginfo_t info{};
     return waitid(P_PID, static_cast<id_t>(process), &info, WEXITED | WNOHANG | WNOWAIT) != 0 || info.si_pid != 0;

@@ -52,7 +52,7 @@ class RunTest : public ::testing::Test {
     std::vector<std::string> words = {"run", "room.yaml", "--set", "source.simulated.duration=600", "-o", folder};
     words.insert(words.end(), more.begin(), more.end());
     const pid_t process = program_.start(words);
-    program_.wait_for_pose(process, folder);
+    program_.wait_for_poses(process, folder);
     return process;
   }
 
@@ -189,7 +189,7 @@ TEST_F(RunTest, SkipsDamagedImagesWhereAllowed) {
 TEST_F(RunTest, KeepsWhatWasDoneWhenInterrupted) {
   const pid_t process =
       program_.start({"run", "room.yaml", "--set", "source.simulated.duration=600", "--output", "out"});
-  program_.wait_for_pose(process, "out");
+  program_.wait_for_poses(process, "out");
   kill(process, SIGINT);
   const Outcome outcome = program_.finish(process);
   EXPECT_EQ(outcome.exit_code, 130) << outcome.errors;
@@ -226,9 +226,7 @@ TEST_F(RunTest, AHangupEndsItAsSigtermDoes) {
 
 TEST_F(RunTest, AKilledRunLeavesItsPosesAndSaysSo) {
   const pid_t process = start_long_run("out");
-  // Poses are flushed each second.
-  for (int i = 0; i < 3000 && lines(program_.text("out/trajectory.txt")) < 5; ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  program_.wait_for_poses(process, "out", 5);
   kill(process, SIGKILL);
   EXPECT_EQ(program_.finish(process).exit_code, 1000 + SIGKILL);
   EXPECT_FALSE(fs::exists(program_.path("out/run.json")));
@@ -320,7 +318,7 @@ TEST_F(RunTest, ThreadsStopWhenInterrupted) {
   const pid_t process =
       program_.start({"run", "room.yaml", "--set", "source.simulated.duration=600", "--set", "run.mode=threaded",
                       "--set", "run.pace=timestamps", "--set", "run.late_frames=drop", "--output", "out"});
-  program_.wait_for_pose(process, "out");
+  program_.wait_for_poses(process, "out");
   kill(process, SIGINT);
   const Outcome outcome = program_.finish(process);
   EXPECT_EQ(outcome.exit_code, 130) << outcome.errors;

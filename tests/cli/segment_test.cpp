@@ -3,12 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <csignal>
 #include <cstdint>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
-#include <thread>
 
 #include "cli/program.hpp"
 
@@ -154,8 +152,7 @@ TEST_F(SegmentTest, AFailureKeepsWhatIsDone) {
 TEST_F(SegmentTest, AnInterruptKeepsWhatIsDone) {
   program_.write("long.yaml", configuration("truth: {}", "duration: 600"));
   const pid_t process = program_.start({"segment", "long.yaml", "--output", "labels"});
-  for (int i = 0; i < 2000 && !fs::exists(program_.path("labels/0.033333.png")); ++i)
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  program_.wait_until(process, [&] { return fs::exists(program_.path("labels/0.033333.png")); });
   kill(process, SIGINT);
   const Outcome outcome = program_.finish(process);
   EXPECT_EQ(outcome.exit_code, 130);

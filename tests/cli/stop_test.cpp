@@ -53,14 +53,14 @@ TEST_F(StopTest, LeavesAReadableFolder) {
   const int count = wanted == nullptr ? 6 : std::atoi(wanted);
   Random random(static_cast<std::uint64_t>(count));
   for (int i = 0; i < count; ++i) {
-    // Every second one from its start on, the others once there is something to lose.
-    const bool waits = i % 2 == 1;
+    // The first and every second one once there is something to lose, the others from the start on.
+    const bool waits = i % 2 == 0;
     const int moment = static_cast<int>(random.below(waits ? 1000 : 2500)), signal = i % 3 == 2 ? SIGTERM : SIGINT;
     SCOPED_TRACE("signal " + std::to_string(signal) + " after " + std::to_string(moment) + " ms" +
                  (waits ? " from the first pose on" : ""));
     fs::remove_all(program_.path("out"));
     const pid_t process = program_.start({"run", "room.yaml", "--output", "out", "--quiet"});
-    if (waits) program_.wait_for_pose(process, "out");
+    if (waits) program_.wait_for_poses(process, "out");
     std::this_thread::sleep_for(std::chrono::milliseconds(moment));
     kill(process, signal);
     const test::Outcome outcome = program_.finish(process);

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include <csignal>
-#include <thread>
 
 #include "cli/program.hpp"
 
@@ -81,8 +80,7 @@ TEST_F(PythonProgram, StopsAtCtrlC) {
     fs::remove(program_.path("calls.txt"));
     const pid_t process = program_.start({"run", "run.yaml", "--set", "run.mode=" + mode, "--set",
                                           "source.simulated.duration=600", "--output", mode, "--quiet"});
-    for (int i = 0; i < 3000 && !fs::exists(program_.path("started")); ++i)
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    program_.wait_until(process, [&] { return fs::exists(program_.path("started")); });
     kill(process, SIGINT);
     const Outcome outcome = program_.finish(process);
     EXPECT_EQ(outcome.exit_code, 130) << mode << ": " << outcome.errors;

@@ -28,12 +28,20 @@ struct Agreement {
   double iou() const { return both / static_cast<double>(found + real - both); }
 };
 
+/// Where the truth shows people: 255, elsewhere 0.
+cv::Mat real_people(const SensorFrame& frame, const std::vector<std::string>& names) {
+  const auto person = std::find(names.begin(), names.end(), "person") - names.begin();
+  return frame.truth->class_labels == person;
+}
+
+Agreement compare(Segmenter& segmenter, const SensorFrame& frame, const cv::Mat& real) {
+  const cv::Mat found = segmenter.segment(frame).labels == 1;
+  return {cv::countNonZero(found & real), cv::countNonZero(found), cv::countNonZero(real)};
+}
+
 Agreement compare(Segmenter& segmenter, simulation::Simulator& simulator, std::uint64_t index) {
   const SensorFrame frame = simulator.frame(index);
-  const std::vector<std::string>& names = simulator.class_names();
-  const auto person = std::find(names.begin(), names.end(), "person") - names.begin();
-  const cv::Mat found = segmenter.segment(frame).labels == 1, real = frame.truth->class_labels == person;
-  return {cv::countNonZero(found & real), cv::countNonZero(found), cv::countNonZero(real)};
+  return compare(segmenter, frame, real_people(frame, simulator.class_names()));
 }
 
 simulation::Simulator room_with(const std::string& people) {
@@ -107,21 +115,14 @@ TEST(UnetSegmenter, ASecondLookFindsMoreOfPeopleWhoAreFarAway) {
   // The view of a person fills a quarter of the image of an empty room: there the person has half the size.
   simulation::Simulator room = room_with("{ at: [2.0, 4.5] }");
   const SensorFrame near = room.frame(0);
-  const std::vector<std::string>& names = room.class_names();
-  const auto person = std::find(names.begin(), names.end(), "person") - names.begin();
   const cv::Rect part(100, 300, 640, 480);
   SensorFrame frame = room_with("").frame(0);
   cv::resize(frame.colour, frame.colour, cv::Size(), 2.0, 2.0, cv::INTER_LINEAR);
   near.colour.copyTo(frame.colour(part));
   cv::Mat real = cv::Mat::zeros(frame.colour.size(), CV_8UC1);
-  real(part).setTo(1, near.truth->class_labels == person);
-  const auto iou = [&](Segmenter& segmenter) {
-    const cv::Mat found = segmenter.segment(frame).labels == 1, both = found & (real == 1);
-    const int all = cv::countNonZero(found) + cv::countNonZero(real) - cv::countNonZero(both);
-    return cv::countNonZero(both) / static_cast<double>(all);
-  };
+  real_people(near, room.class_names()).copyTo(real(part));
   const auto once = make({{"size", "small"}}), twice = make({{"size", "small"}, {"second_look", true}});
-  EXPECT_GT(iou(*twice), iou(*once) + 0.1);
+  EXPECT_GT(compare(*twice, frame, real).iou(), compare(*once, frame, real).iou() + 0.1);
   // An image that the first look shows in full has no second one.
   SensorFrame small = room.frame(0);
   cv::resize(small.colour, small.colour, cv::Size(224, 192), 0, 0, cv::INTER_AREA);

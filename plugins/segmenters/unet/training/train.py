@@ -249,7 +249,10 @@ class Shares(argparse.Action):
 
 
 def size_of(text):
-    width, height = (int(part) for part in text.split("x"))
+    try:
+        width, height = (int(part) for part in text.split("x"))
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(f"'{text}' is no size; expected WIDTHxHEIGHT, such as 160x128") from error
     return width, height
 
 
