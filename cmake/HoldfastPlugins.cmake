@@ -2,6 +2,7 @@
 # The plugins of this repository. Each has an option HOLDFAST_PLUGIN_<NAME>, so that a program which embeds Holdfast can
 # leave out a plugin and the libraries that only this plugin needs. The name is that of the module that it registers.
 include_guard()
+include(HoldfastOptional)
 
 # Kind of the modules, name, folder below plugins/.
 set(HOLDFAST_PLUGIN_TABLE
@@ -41,34 +42,34 @@ set(HOLDFAST_PLUGIN_TABLE
   "segmenter       unet                  segmenters/unet"
 )
 
-# Plugins that are built where their libraries are; ours to look for early, because their options depend on them.
-# holdfast_optional_plugin(NAME WHAT PACKAGES VARIABLE ...): what is needed, and the variables of where it was found.
-set(HOLDFAST_OPTIONAL_PLUGINS "")
-function(holdfast_optional_plugin name what packages)
-  set(HOLDFAST_PLUGIN_DEFAULT_${name} ON)
+# Plugins that need a library, which are looked for early, because their options depend on them. Where it is missing,
+# and the option AUTO, a plugin is still linked in: it knows its parameters, so that the reference is the same in every
+# build, and says what is missing where it is asked for.
+# holdfast_plugin_needs(NAME MISSING PACKAGES VARIABLE ...): the variables say where it was found.
+function(holdfast_plugin_needs name missing packages)
+  set(found ON)
   foreach(variable IN LISTS ARGN)
     mark_as_advanced(${variable})
     if(NOT ${variable})
-      set(HOLDFAST_PLUGIN_DEFAULT_${name} OFF)
+      set(found OFF)
     endif()
   endforeach()
-  list(APPEND HOLDFAST_OPTIONAL_PLUGINS ${name})
-  set(HOLDFAST_OPTIONAL_PLUGINS ${HOLDFAST_OPTIONAL_PLUGINS} PARENT_SCOPE)
-  set(HOLDFAST_PLUGIN_DEFAULT_${name} ${HOLDFAST_PLUGIN_DEFAULT_${name}} PARENT_SCOPE)
-  set(HOLDFAST_PLUGIN_WHAT_${name} "${what}" PARENT_SCOPE)
+  set(HOLDFAST_PLUGIN_FOUND_${name} ${found} PARENT_SCOPE)
+  set(HOLDFAST_PLUGIN_MISSING_${name} "${missing}" PARENT_SCOPE)
   set(HOLDFAST_PLUGIN_PACKAGES_${name} "${packages}" PARENT_SCOPE)
 endfunction()
 
 find_path(HOLDFAST_BOOST_INCLUDE_DIR boost/beast/version.hpp)
-holdfast_optional_plugin(viewer "Boost.Beast" libboost-dev HOLDFAST_BOOST_INCLUDE_DIR)
+holdfast_plugin_needs(viewer "Boost.Beast was not found" libboost-dev HOLDFAST_BOOST_INCLUDE_DIR)
 find_path(HOLDFAST_LZ4_INCLUDE_DIR lz4frame.h)
+find_library(HOLDFAST_LZ4_LIBRARY lz4)
 find_path(HOLDFAST_BZ2_INCLUDE_DIR bzlib.h)
 find_library(HOLDFAST_BZ2_LIBRARY bz2)
-holdfast_optional_plugin(rosbag "lz4 or bzip2" "liblz4-dev libbz2-dev"
-  HOLDFAST_LZ4_INCLUDE_DIR HOLDFAST_BZ2_INCLUDE_DIR HOLDFAST_BZ2_LIBRARY)
+holdfast_plugin_needs(rosbag "lz4 or bzip2 was not found" "liblz4-dev libbz2-dev"
+  HOLDFAST_LZ4_INCLUDE_DIR HOLDFAST_LZ4_LIBRARY HOLDFAST_BZ2_INCLUDE_DIR HOLDFAST_BZ2_LIBRARY)
 find_path(HOLDFAST_OPENNI2_INCLUDE_DIR OpenNI.h PATH_SUFFIXES openni2)
 find_library(HOLDFAST_OPENNI2_LIBRARY OpenNI2)
-holdfast_optional_plugin(openni2 "OpenNI 2" libopenni2-dev HOLDFAST_OPENNI2_INCLUDE_DIR HOLDFAST_OPENNI2_LIBRARY)
+holdfast_plugin_needs(openni2 "OpenNI 2 was not found" libopenni2-dev HOLDFAST_OPENNI2_INCLUDE_DIR HOLDFAST_OPENNI2_LIBRARY)
 
 set(HOLDFAST_PLUGIN_FOLDERS "")       # of the plugins that are built
 set(HOLDFAST_SETTINGS_INCLUDES "")    # of their settings, as C++
@@ -79,11 +80,18 @@ foreach(row IN LISTS HOLDFAST_PLUGIN_TABLE)
   string(REGEX MATCHALL "[^ ]+" row "${row}")
   list(POP_FRONT row kind name folder)
   string(TOUPPER HOLDFAST_PLUGIN_${name} option)
-  set(default ON)
-  if(DEFINED HOLDFAST_PLUGIN_DEFAULT_${name})
-    set(default ${HOLDFAST_PLUGIN_DEFAULT_${name}})
+  set(help "Build the plugin `${name}` (${kind})")
+  set(without "")
+  if(DEFINED HOLDFAST_PLUGIN_FOUND_${name})
+    holdfast_optional(${option} "${help}" "the plugin `${name}`" ${HOLDFAST_PLUGIN_FOUND_${name}}
+                      "${HOLDFAST_PLUGIN_MISSING_${name}}" "${HOLDFAST_PLUGIN_PACKAGES_${name}}")
+    if(holdfast_optional_value STREQUAL "AUTO" AND NOT ${option})
+      set(without "${HOLDFAST_PLUGIN_MISSING_${name}} when Holdfast was configured; install it (Debian: ")
+      string(APPEND without "${HOLDFAST_PLUGIN_PACKAGES_${name}}), configure and build again")
+    endif()
+  else()
+    option(${option} "${help}" ON)
   endif()
-  option(${option} "Build the plugin `${name}` (${kind})" ${default})
   set(settings holdfast/settings/${name}.hpp)
   if(${option})
     list(APPEND HOLDFAST_PLUGIN_FOLDERS ${folder})
@@ -91,27 +99,21 @@ foreach(row IN LISTS HOLDFAST_PLUGIN_TABLE)
       string(APPEND HOLDFAST_SETTINGS_INCLUDES "#include \"${settings}\"\n")
     endif()
   else()
-    list(APPEND HOLDFAST_LEFT_OUT ${option})
-    string(APPEND HOLDFAST_LEFT_OUT_CALLS "  registry.add_left_out(\"${kind}\", \"${name}\", \"${option}\");\n")
+    if(without)
+      list(APPEND HOLDFAST_PLUGIN_FOLDERS ${folder})
+      string(APPEND HOLDFAST_LEFT_OUT_CALLS "  registry.add_unusable(\"${kind}\", \"${name}\", \"${without}\");\n")
+    else()
+      string(APPEND HOLDFAST_LEFT_OUT_CALLS "  registry.add_left_out(\"${kind}\", \"${name}\", \"${option}\");\n")
+    endif()
+    # The tests of a plugin that needs a library are left out with it.
+    if(NOT DEFINED HOLDFAST_PLUGIN_FOUND_${name})
+      list(APPEND HOLDFAST_LEFT_OUT ${option})
+    endif()
     list(APPEND HOLDFAST_LEFT_OUT_SETTINGS ${settings})
     if(name STREQUAL "viewer")
       list(APPEND HOLDFAST_LEFT_OUT_SETTINGS holdfast/viewer/viewer.hpp)
     endif()
   endif()
-endforeach()
-foreach(name IN LISTS HOLDFAST_OPTIONAL_PLUGINS)
-  string(TOUPPER HOLDFAST_PLUGIN_${name} option)
-  set(what ${HOLDFAST_PLUGIN_WHAT_${name}})
-  set(packages ${HOLDFAST_PLUGIN_PACKAGES_${name}})
-  if(${option} AND NOT HOLDFAST_PLUGIN_DEFAULT_${name})
-    message(FATAL_ERROR "${option} is ON, but ${what} was not found: install it (Debian: ${packages}), or build without "
-            "the plugin `${name}`: -D${option}=OFF")
-  elseif(NOT HOLDFAST_PLUGIN_DEFAULT_${name})
-    message(STATUS "Holdfast: the plugin `${name}` is not built: ${what} was not found (Debian: ${packages}; then "
-            "configure with -D${option}=ON)")
-  endif()
-  # Its tests are left out with it.
-  list(REMOVE_ITEM HOLDFAST_LEFT_OUT ${option})
 endforeach()
 if(HOLDFAST_LEFT_OUT AND (HOLDFAST_BUILD_TESTS OR HOLDFAST_BUILD_EXAMPLES OR HOLDFAST_BUILD_BENCHMARKS))
   list(JOIN HOLDFAST_LEFT_OUT ", " options)

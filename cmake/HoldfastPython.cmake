@@ -31,6 +31,7 @@ else()
   if(NOT missing)
     set(HOLDFAST_HAS_PYTHON TRUE)
   elseif(HOLDFAST_PYTHON STREQUAL "AUTO")
+    set_property(GLOBAL APPEND PROPERTY HOLDFAST_WITHOUT "the segmenter `python`: ${reason} was not found")
     string(APPEND reason " not found; `sh cmake/install_dependencies.sh --python` installs what is needed")
   else()
     message(FATAL_ERROR "HOLDFAST_PYTHON is ${HOLDFAST_PYTHON}, but ${reason} was not found: "

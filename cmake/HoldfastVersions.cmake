@@ -62,7 +62,7 @@ function(holdfast_report_versions)
   get_property(problems GLOBAL PROPERTY HOLDFAST_VERSION_PROBLEMS)
   if(problems)
     message(FATAL_ERROR "Holdfast cannot be built with what is installed here:\n${problems}"
-                        "On Debian 12 `sh cmake/install_dependencies.sh` installs what is needed; docs/install.md "
+                        "On Debian `sh cmake/install_dependencies.sh` installs what is needed; docs/install.md "
                         "says how to get it on other systems.")
   endif()
 endfunction()

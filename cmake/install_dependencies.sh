@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs what Holdfast is built from, on Debian 12 and its relatives. Quick when everything is there already.
+# Installs what Holdfast is built from, on Debian 12, Debian 13 and their relatives. Quick when everything is there already.
 #
 #   sh cmake/install_dependencies.sh                  install what is missing (as root, or through sudo without a
 #                                                     password)
@@ -40,7 +40,7 @@ for argument in "$@"; do
       ;;
     --bench-tests) packages="$packages chromium munge parallel slurm-client slurmctld slurmd" ;;
     --cameras) packages="$packages libopenni2-dev" ;;
-    --clang) packages="$packages clang libclang-rt-14-dev llvm" ;;
+    --clang) packages="$packages clang libclang-rt-dev llvm" ;;
     --clean-root) packages="$packages mmdebstrap" ;;
     --dry-run) dry_run=yes ;;
     -h | --help) sed -n '3,18s/^# \{0,1\}//p' "$0"; exit 0 ;;

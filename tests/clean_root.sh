@@ -1,12 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# The proof that a Debian 12 with nothing on it suffices: clean roots are made by mmdebstrap, the README's two commands
-# run in one, and the Debian packages are installed by dpkg in others, where a program is built on them and Python
-# imports them, with static and with shared libraries. By hand and in the nightly run, because it takes hours.
+# The proof that a Debian with nothing on it suffices: clean roots are made by mmdebstrap, the README's two commands run
+# in one, in both orders, and the Debian packages are installed by dpkg in others, where a program is built on them and
+# Python imports them, with static and with shared libraries. By hand and in the nightly run, because it takes hours.
 #
-#   sh tests/clean_root.sh                            all of it
-#   sh tests/clean_root.sh readme                     the README's two commands, on what is committed
-#   sh tests/clean_root.sh packages BUILD_FOLDER...   the packages of trees that are built here (Debian 12)
+#   sh tests/clean_root.sh [--suite SUITE]            all of it; SUITE: bookworm (Debian 12, the default) or trixie (13)
+#   sh tests/clean_root.sh [--suite SUITE] readme     the README's two commands in both orders, on what is committed
+#   sh tests/clean_root.sh packages BUILD_FOLDER...   the packages of trees that are built here, on this machine's Debian
 #
 # Runs as root. `sh cmake/install_dependencies.sh --clean-root` installs mmdebstrap. Variables:
 #   HOLDFAST_MIRROR      http://deb.debian.org/debian by default
@@ -18,6 +18,13 @@ set -eu
 cd "$(dirname "$0")/.."
 source=$PWD
 suite=bookworm
+if [ "${1:-}" = --suite ]; then
+  suite=${2:-}
+  case "$suite" in
+    bookworm | trixie) shift 2 ;;
+    *) echo "clean_root: unknown suite '$suite'; expected bookworm or trixie" >&2; exit 2 ;;
+  esac
+fi
 mirror=${HOLDFAST_MIRROR:-http://deb.debian.org/debian}
 say() { printf 'clean_root: %s\n' "$*"; }
 fail() { say "$@" >&2; exit 1; }
@@ -28,9 +35,10 @@ case "${1:-all}" in
     part=packages
     shift
     [ $# -gt 0 ] || fail "packages of which build folder? expected sh tests/clean_root.sh packages BUILD_FOLDER..."
+    suite=$(. /etc/os-release && echo "$VERSION_CODENAME")
     ;;
-  -h | --help) sed -n '3,17s/^# \{0,1\}//p' "$0"; exit 0 ;;
-  *) fail "unknown argument '$1'; expected readme, packages BUILD_FOLDER..., or nothing" ;;
+  -h | --help) sed -n '3,18s/^# \{0,1\}//p' "$0"; exit 0 ;;
+  *) fail "unknown argument '$1'; expected [--suite SUITE], then readme, packages BUILD_FOLDER..., or nothing" ;;
 esac
 [ "$(id -u)" -eq 0 ] || fail "needs root: roots have owners, and chroot is root's"
 command -v mmdebstrap > /dev/null ||
@@ -58,15 +66,15 @@ trap clean_up EXIT
 
 # make_root NAME: a root with the packages that Debian calls required, and apt.
 make_root() {
-  if [ ! -f "$roots/base.tar" ]; then
+  if [ ! -f "$roots/base-$suite.tar" ]; then
     say "asking $mirror for a clean $suite"
-    mmdebstrap --quiet --format=tar --variant=minbase --include=ca-certificates "$suite" "$roots/base.tar.part" "$mirror"
-    mv "$roots/base.tar.part" "$roots/base.tar"
+    mmdebstrap --quiet --format=tar --variant=minbase --include=ca-certificates "$suite" "$roots/base-$suite.tar.part" "$mirror"
+    mv "$roots/base-$suite.tar.part" "$roots/base-$suite.tar"
   fi
   release "$roots/$1"
   rm -rf --one-file-system "${roots:?}/$1"
   mkdir "$roots/$1"
-  tar -xf "$roots/base.tar" -C "$roots/$1"
+  tar -xf "$roots/base-$suite.tar" -C "$roots/$1"
   cp /etc/resolv.conf "$roots/$1/etc/resolv.conf"
   mount -t proc proc "$roots/$1/proc"
   mkdir -p "$roots/$1/dev/shm" "$roots/$1/dev/pts"
@@ -86,15 +94,19 @@ inside() {
     PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin chroot "$roots/$1" /bin/sh -euc "$2"
 }
 
-# The README's two commands on a clone of what is committed; then, for `all`, its packages and those of a shared build.
+# The README's two commands on a clone of what is committed, one after the other; then again in the other order, in a
+# root and a clone of their own. The second root is left for the packages.
 try_readme() {
-  make_root readme
-  git clone --quiet "$source" "$roots/readme/root/holdfast"
-  say "sh cmake/demo.sh"
-  inside readme "cd /root/holdfast && sh cmake/demo.sh && test -s out/demo/report.html"
-  say "sh cmake/test.sh"
-  inside readme "cd /root/holdfast && sh cmake/test.sh"
-  say "the README's two commands work in a clean root"
+  for order in "demo test" "test demo"; do
+    make_root readme
+    git clone --quiet "$source" "$roots/readme/root/holdfast"
+    for command in $order; do
+      say "$suite: sh cmake/$command.sh"
+      inside readme "cd /root/holdfast && sh cmake/$command.sh"
+      [ "$command" != demo ] || inside readme "test -s /root/holdfast/out/demo/report.html"
+    done
+  done
+  say "$suite: the README's two commands work in a clean root, in both orders"
 }
 
 # pack NAME BUILD_FOLDER: the packages of a tree into $roots/NAME.

@@ -10,10 +10,10 @@
 
 namespace holdfast {
 
-/// The markers of a board and how they are found; the only place that knows OpenCV's module aruco.
+/// The markers of a board and how they are found; the only place that knows OpenCV's markers.
 class BoardMarkers {
  public:
-  /// Throws Error in a build without the module, and for a board with more white squares than the dictionary has
+  /// Throws Error in a build without them, and for a board with more white squares than the dictionary has
   /// markers.
   explicit BoardMarkers(const CalibrationBoard& board);
   ~BoardMarkers();

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "built_without.hpp"
 #include "holdfast/config/reference.hpp"
 #include "holdfast/pipeline/configured_pipeline.hpp"
 #include "holdfast/plugin/loader.hpp"
@@ -38,6 +39,8 @@ int print_modules(const ModulesArguments& arguments, const ProgramHost& host) {
   for (SectionDescription& section : simulation::scene_sections()) sections.push_back(std::move(section));
   try {
     std::fputs(reference(registry, sections, arguments.name, format).c_str(), stdout);
+    if (format == ReferenceFormat::text && arguments.name.empty())
+      for (const std::string& part : built_without()) std::printf("This build is without %s.\n", part.c_str());
   } catch (const Error& error) {
     print_error(error.what());
     constexpr int usage_error = 2;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/core/utility.hpp>
 
+#include "built_without.hpp"
 #include "holdfast/core/simd.hpp"
 #include "holdfast/core/version.hpp"
 #include "holdfast/run/results.hpp"
@@ -34,7 +35,9 @@ std::string version_text() {
   text += "libraries  Eigen " + dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION) + ", OpenCV " +
           cv::getVersionString() + HOLDFAST_LIBRARY_VERSIONS ", nlohmann-json " +
           dotted(NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH) + "\n";
-  return text + "SIMD       " + to_string(simd_level());
+  text += std::string("SIMD       ") + to_string(simd_level());
+  for (const std::string& part : built_without()) text += "\nwithout    " + part;
+  return text;
 }
 
 }  // namespace holdfast

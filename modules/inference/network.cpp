@@ -78,7 +78,6 @@ struct Network::Parts {
 
   NetworkOptions options;
   cv::Size size;
-  std::string output;
   OnnxNet net;
   cv::Mat resized, input;
   std::vector<cv::Mat> scores;
@@ -115,8 +114,8 @@ struct Network::Parts {
   }
 
   cv::Mat forward() {
-    net.set_input(input);
-    net.run({output}, scores, "expected a network for such an image; check width, height and layout");
+    net.set_input(input, net.signature().inputs.front().name);
+    net.run(scores);
     return scores.front();
   }
 };
@@ -126,7 +125,7 @@ Network::Network(const NetworkOptions& options) {
   parts_ = std::make_unique<Parts>(options);
   const OnnxSignature& signature = parts_->net.signature();
   parts_->size = input_size(options, parts_->net);
-  parts_->output = chosen_output(options, signature);
+  const std::string output = chosen_output(options, signature);
   for (std::size_t channel = 0; channel < 3; ++channel)
     for (std::size_t value = 0; value < 256; ++value)
       parts_->value[channel][value] = static_cast<float>(
@@ -134,7 +133,11 @@ Network::Network(const NetworkOptions& options) {
   if (options.engine != NetworkEngine::onednn && options.threads > 0) cv::setNumThreads(options.threads);
   const int h = parts_->size.height, w = parts_->size.width;
   const int channels_first[] = {1, 3, h, w}, channels_last[] = {1, h, w, 3};
-  parts_->input.create(4, options.channels_last ? channels_last : channels_first, CV_32F);
+  cv::Mat& input = parts_->input;
+  input.create(4, options.channels_last ? channels_last : channels_first, CV_32F);
+  parts_->net.load({.inputs = {{signature.inputs.front().name, {input.size.p, input.size.p + input.dims}}},
+                    .outputs = {output},
+                    .advice = "expected a network for such an image; check width, height and layout"});
 }
 
 Network::~Network() = default;
@@ -149,6 +152,8 @@ cv::Mat Network::run_mirrored() {
   parts_->mirror_input();
   return parts_->forward();
 }
+
+void Network::finish_loading() { parts_->net.finish_loading(); }
 
 int Network::width() const { return parts_->size.width; }
 int Network::height() const { return parts_->size.height; }

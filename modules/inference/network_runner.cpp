@@ -6,12 +6,10 @@
 
 namespace holdfast {
 
-std::string shapes_of(const NetworkRunner::Inputs& inputs) {
+std::string cannot_run(const std::string& engine, const OnnxNet::Use& use, const std::string& reason) {
   std::string shapes;
-  for (const auto& [name, input] : inputs)
-    shapes +=
-        (shapes.empty() ? "" : ", ") + shape_text(std::vector<std::int64_t>(input.size.p, input.size.p + input.dims));
-  return shapes;
+  for (const auto& [name, shape] : use.inputs) shapes += (shapes.empty() ? "" : ", ") + shape_text(shape);
+  return "cannot be run by " + engine + " on an input of " + shapes + " (" + reason + "); " + use.advice;
 }
 
 void require_engine(NetworkEngine engine, NetworkPrecision precision) {

@@ -19,7 +19,10 @@ NetworkSegmenter::NetworkSegmenter(const NetworkOptions& options, OutputForm for
   form_.classes = static_cast<int>(classes_.size());
   const auto unknown = std::find(classes_.begin(), classes_.end(), "unknown");
   if (unknown != classes_.end()) unknown_label_ = static_cast<int>(unknown - classes_.begin());
-  if (is_loaded_in_background_) return;
+  if (!is_loaded_in_background_) NetworkSegmenter::finish_loading();
+}
+
+void NetworkSegmenter::finish_loading() {
   SensorFrame trial;
   trial.colour = cv::Mat::zeros(network_.height(), network_.width(), CV_8UC3);
   NetworkSegmenter::segment(trial);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "holdfast/core/check.hpp"
+#include "onednn_interface.hpp"
 
 namespace holdfast {
 
@@ -13,11 +14,14 @@ namespace {
 using dnnl::memory;
 
 constexpr auto float32 = memory::data_type::f32;
-constexpr auto inference = dnnl::prop_kind::forward_inference;
 
 memory::dims dims(const PlaneShape& shape) { return {shape.begin(), shape.end()}; }
 memory::dims pair(const std::array<std::int64_t, 2>& values) { return {values.begin(), values.end()}; }
 memory::dims less_one(const std::array<std::int64_t, 2>& values) { return {values[0] - 1, values[1] - 1}; }
+onednn::Window window_of(const PlannedLayer& layer) {
+  const LayerWindow& window = layer.window;
+  return {pair(window.size), pair(window.stride), less_one(window.dilation), pair(window.before), pair(window.after)};
+}
 
 memory::desc planes(const PlaneShape& shape) { return {dims(shape), float32, memory::format_tag::nchw}; }
 
@@ -49,11 +53,7 @@ bool makes_blocks(const PlannedLayer& layer) {
          window.before == none && window.after == none;
 }
 
-struct Elementwise {
-  dnnl::algorithm algorithm;
-  float alpha = 0.0F, beta = 0.0F;
-};
-Elementwise elementwise(const PlannedLayer& layer) {
+onednn::Elementwise function_of(const PlannedLayer& layer) {
   switch (layer.activation) {
     case Activation::leaky_relu:
       return {dnnl::algorithm::eltwise_relu, layer.first_parameter};
@@ -66,19 +66,6 @@ Elementwise elementwise(const PlannedLayer& layer) {
       break;
   }
   return {dnnl::algorithm::eltwise_relu};
-}
-
-/// The primitive of oneDNN's favourite implementation that can be made. `chosen` becomes the description of that one:
-/// some that say they can do a layer then cannot compile it.
-template <class Primitive>
-Primitive make_primitive(typename Primitive::primitive_desc& chosen) {
-  while (true) {
-    try {
-      return Primitive(chosen);
-    } catch (const dnnl::error&) {
-      if (!chosen.next_impl()) throw;
-    }
-  }
 }
 
 }  // namespace
@@ -166,25 +153,18 @@ memory::desc OnednnProgram::any_layout(const NetworkPlan& plan, std::size_t tens
 void OnednnProgram::add_convolution(const PlannedLayer& layer, const NetworkPlan& plan, std::size_t index) {
   const memory::desc from_any(dims(plan.tensors[layer.inputs[0]]), precision_, memory::format_tag::any);
   const memory::desc stored = weights_in_file(layer);
-  const memory::desc weights_any(stored.dims(), precision_, memory::format_tag::any);
+  const memory::desc weights_any(onednn::dims(stored), precision_, memory::format_tag::any);
   memory::desc bias_layout;
   if (layer.bias != nullptr) bias_layout = {{layer.bias->shape[0]}, float32, memory::format_tag::x};
   // A sum is made in place, so that the result has the layout of the tensor to be added.
   memory::desc to_any = any_layout(plan, layer.output);
-  if (layer.added && tensors_[*layer.added].memory.get_desc().data_type() == type_of(layer.output))
+  if (layer.added && onednn::data_type(tensors_[*layer.added].memory.get_desc()) == type_of(layer.output))
     to_any = tensors_[*layer.added].memory.get_desc();
-  const memory::dims dilation = less_one(layer.window.dilation);
   const auto build = [&](auto kind, dnnl::algorithm algorithm) {
     using Primitive = decltype(kind);
-    const typename Primitive::desc description =
-        layer.bias != nullptr
-            ? typename Primitive::desc(inference, algorithm, from_any, weights_any, bias_layout, to_any,
-                                       pair(layer.window.stride), dilation, pair(layer.window.before),
-                                       pair(layer.window.after))
-            : typename Primitive::desc(inference, algorithm, from_any, weights_any, to_any, pair(layer.window.stride),
-                                       dilation, pair(layer.window.before), pair(layer.window.after));
-    typename Primitive::primitive_desc chosen(description, attributes(layer), engine_);
-    const Primitive primitive = make_primitive<Primitive>(chosen);
+    const auto [chosen, primitive] = onednn::convolution<Primitive>(engine_, algorithm, from_any, weights_any,
+                                                                    layer.bias != nullptr ? &bias_layout : nullptr,
+                                                                    to_any, window_of(layer), attributes(layer));
     Arguments arguments = {
         {DNNL_ARG_SRC, in_layout(layer.inputs[0], chosen.src_desc())},
         {DNNL_ARG_WEIGHTS, weights_in_layout(stored, layer.weights->numbers, chosen.weights_desc())}};
@@ -232,11 +212,10 @@ void OnednnProgram::add_blocks(const PlannedLayer& layer, const NetworkPlan& pla
   const memory::desc stored({area * outputs, inputs, 1, 1}, float32, memory::format_tag::oihw);
   const memory::desc bias_layout({area * outputs}, float32, memory::format_tag::x);
   const memory::desc spread({from[0], area * outputs, from[2], from[3]}, precision_, memory::format_tag::nhwc);
-  const dnnl::convolution_forward::desc description(
-      inference, dnnl::algorithm::convolution_direct, {dims(from), precision_, memory::format_tag::any},
-      {stored.dims(), precision_, memory::format_tag::any}, bias_layout, spread, {1, 1}, {0, 0}, {0, 0});
-  dnnl::convolution_forward::primitive_desc chosen(description, attributes(layer), engine_);
-  const auto primitive = make_primitive<dnnl::convolution_forward>(chosen);
+  const auto [chosen, primitive] = onednn::convolution<dnnl::convolution_forward>(
+      engine_, dnnl::algorithm::convolution_direct, {dims(from), precision_, memory::format_tag::any},
+      {onednn::dims(stored), precision_, memory::format_tag::any}, &bias_layout, spread,
+      {{1, 1}, {1, 1}, {0, 0}, {0, 0}, {0, 0}}, attributes(layer));
   const std::size_t buffer = acquire(spread.get_size());
   copies_.push_back(buffer);
   add_step(primitive, chosen.scratchpad_desc(),
@@ -258,11 +237,8 @@ void OnednnProgram::add_pool(const PlannedLayer& layer, const NetworkPlan& plan)
   const dnnl::algorithm algorithm = layer.kind == LayerKind::max_pool ? dnnl::algorithm::pooling_max
                                     : layer.counts_padding            ? dnnl::algorithm::pooling_avg_include_padding
                                                                       : dnnl::algorithm::pooling_avg_exclude_padding;
-  memory::desc to(dims(plan.tensors[layer.output]), from.get_desc().data_type(), memory::format_tag::any);
-  const dnnl::pooling_forward::desc description(inference, algorithm, from.get_desc(), to, pair(layer.window.stride),
-                                                pair(layer.window.size), pair(layer.window.before),
-                                                pair(layer.window.after));
-  const dnnl::pooling_forward::primitive_desc chosen(description, attributes(layer), engine_);
+  const memory::desc to(dims(plan.tensors[layer.output]), onednn::data_type(from.get_desc()), memory::format_tag::any);
+  const auto chosen = onednn::pooling(engine_, algorithm, from.get_desc(), to, window_of(layer), attributes(layer));
   place(layer.output, chosen.dst_desc());
   add_step(dnnl::pooling_forward(chosen), chosen.scratchpad_desc(),
            {{DNNL_ARG_SRC, from}, {DNNL_ARG_DST, tensors_[layer.output].memory}});
@@ -275,10 +251,10 @@ void OnednnProgram::add_concatenation(const PlannedLayer& layer, const NetworkPl
     const memory::desc& here = tensors_[input].memory.get_desc();
     const memory::desc wanted(dims(plan.tensors[input]), precision_, memory::format_tag::nhwc);
     arguments[DNNL_ARG_MULTIPLE_SRC + static_cast<int>(layouts.size())] =
-        here.data_type() == precision_ ? tensors_[input].memory : in_layout(input, wanted);
-    layouts.push_back(here.data_type() == precision_ ? here : wanted);
+        onednn::data_type(here) == precision_ ? tensors_[input].memory : in_layout(input, wanted);
+    layouts.push_back(onednn::data_type(here) == precision_ ? here : wanted);
   }
-  const dnnl::concat::primitive_desc chosen(layer.axis, layouts, engine_, attributes(layer));
+  const auto chosen = onednn::concatenation(engine_, layer.axis, layouts, attributes(layer));
   place(layer.output, chosen.dst_desc());
   arguments[DNNL_ARG_DST] = tensors_[layer.output].memory;
   add_step(dnnl::concat(chosen), chosen.scratchpad_desc(), std::move(arguments));
@@ -286,8 +262,7 @@ void OnednnProgram::add_concatenation(const PlannedLayer& layer, const NetworkPl
 
 void OnednnProgram::add_sum(const PlannedLayer& layer) {
   const memory::desc layout = tensors_[layer.inputs[0]].memory.get_desc();
-  const dnnl::binary::desc description(dnnl::algorithm::binary_add, layout, layout, layout);
-  const dnnl::binary::primitive_desc chosen(description, attributes(layer), engine_);
+  const auto chosen = onednn::sum(engine_, layout, attributes(layer));
   const memory other = in_layout(layer.inputs[1], layout);
   place(layer.output, layout);
   add_step(dnnl::binary(chosen), chosen.scratchpad_desc(),
@@ -299,9 +274,8 @@ void OnednnProgram::add_sum(const PlannedLayer& layer) {
 void OnednnProgram::add_softmax(const PlannedLayer& layer) {
   // In full precision, because it is what the user sees.
   const memory::desc here = tensors_[layer.inputs[0]].memory.get_desc();
-  const memory::desc layout(here.dims(), float32, memory::format_tag::nchw);
-  const dnnl::softmax_forward::desc description(inference, layout, layer.axis);
-  const dnnl::softmax_forward::primitive_desc chosen(description, attributes(layer), engine_);
+  const memory::desc layout(onednn::dims(here), float32, memory::format_tag::nchw);
+  const auto chosen = onednn::softmax(engine_, layout, layer.axis, attributes(layer));
   const memory from = in_layout(layer.inputs[0], layout);
   place(layer.output, layout);
   add_step(dnnl::softmax_forward(chosen), chosen.scratchpad_desc(),
@@ -310,10 +284,7 @@ void OnednnProgram::add_softmax(const PlannedLayer& layer) {
 
 void OnednnProgram::add_activation(const PlannedLayer& layer) {
   const memory from = tensors_[layer.inputs[0]].memory;
-  const Elementwise function = elementwise(layer);
-  const dnnl::eltwise_forward::desc description(inference, function.algorithm, from.get_desc(), function.alpha,
-                                                function.beta);
-  const dnnl::eltwise_forward::primitive_desc chosen(description, attributes({}), engine_);
+  const auto chosen = onednn::elementwise(engine_, function_of(layer), from.get_desc(), attributes({}));
   place(layer.output, from.get_desc());
   add_step(dnnl::eltwise_forward(chosen), chosen.scratchpad_desc(),
            {{DNNL_ARG_SRC, from}, {DNNL_ARG_DST, tensors_[layer.output].memory}});
@@ -326,10 +297,7 @@ dnnl::primitive_attr OnednnProgram::attributes(const PlannedLayer& layer) const 
   if (layer.kind != LayerKind::convolution && layer.kind != LayerKind::transposed_convolution) return result;
   dnnl::post_ops operations;
   if (layer.added) operations.append_sum();
-  if (layer.activation != Activation::none) {
-    const Elementwise function = elementwise(layer);
-    operations.append_eltwise(1.0F, function.algorithm, function.alpha, function.beta);
-  }
+  if (layer.activation != Activation::none) onednn::append(operations, function_of(layer));
   result.set_post_ops(operations);
   return result;
 }

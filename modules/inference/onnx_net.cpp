@@ -45,49 +45,63 @@ std::string names(const std::vector<OnnxTensor>& tensors) {
 }
 
 struct OnnxNet::Loaded {
+  Use use;
   std::unique_ptr<NetworkRunner> runner;
   std::future<std::unique_ptr<NetworkRunner>> loading;  ///< valid while the network is loaded in the background
   NetworkRunner::Inputs inputs;
 };
 
-OnnxNet::OnnxNet(const File& file) : model_(file.model), loaded_(std::make_unique<Loaded>()) {
-  HOLDFAST_CHECK(!file.in_background || !file.bytes.empty(), "a file is not loaded in the background");
-  require_engine(file.engine, file.precision);
-  const std::vector<std::uint8_t> content = file.bytes.empty() ? read_bytes(model_) : std::vector<std::uint8_t>();
-  const std::span<const std::uint8_t> bytes = file.bytes.empty() ? std::span(content) : file.bytes;
-  signature_ = read_onnx_signature(bytes, model_);
+OnnxNet::OnnxNet(File file) : file_(std::move(file)), loaded_(std::make_unique<Loaded>()) {
+  HOLDFAST_CHECK(!file_.in_background || !file_.bytes.empty(), "a file is not loaded in the background");
+  require_engine(file_.engine, file_.precision);
+  if (file_.bytes.empty()) {
+    content_ = read_bytes(file_.model);
+    file_.bytes = content_;
+  }
+  signature_ = read_onnx_signature(file_.bytes, file_.model);
   if (signature_.has_half_precision)
-    throw InputError({model_.string()},
+    throw InputError({file_.model.string()},
                      "has float16 numbers, which no engine here can read; expected float32; export the network without "
                      "half precision");
-  const auto load = [model = model_, engine = file.engine, precision = file.precision, threads = file.threads, bytes] {
-    return engine == NetworkEngine::onednn ? load_with_onednn(model, bytes, precision, threads)
-                                           : load_with_opencv(model, bytes);
-  };
-  if (file.in_background)
-    loaded_->loading = std::async(std::launch::async, load);
-  else
-    loaded_->runner = load();
 }
 
 OnnxNet::~OnnxNet() = default;
 
+void OnnxNet::load(const Use& use) {
+  HOLDFAST_CHECK(!loaded_->runner && !loaded_->loading.valid(), "a network is loaded once");
+  loaded_->use = use;
+  const auto load = [file = file_, use] {
+    return file.engine == NetworkEngine::onednn
+               ? load_with_onednn(file.model, file.bytes, use, file.precision, file.threads)
+               : load_with_opencv(file.model, file.bytes, use);
+  };
+  if (file_.in_background)
+    loaded_->loading = std::async(std::launch::async, load);
+  else
+    loaded_->runner = load();
+  content_ = {};
+}
+
+void OnnxNet::finish_loading() {
+  if (loaded_->loading.valid()) loaded_->runner = loaded_->loading.get();
+}
+
 const OnnxTensor& OnnxNet::output(const std::string& name, const std::string& setting) const {
-  return find(signature_.outputs, name, "output", setting, model_);
+  return find(signature_.outputs, name, "output", setting, file_.model);
 }
 const OnnxTensor& OnnxNet::input(const std::string& name, const std::string& setting) const {
-  return find(signature_.inputs, name, "input", setting, model_);
+  return find(signature_.inputs, name, "input", setting, file_.model);
 }
 
 int OnnxNet::agreed_size(const OnnxTensor& input, int configured, std::int64_t declared,
                          const std::string& setting) const {
   if (configured == 0 && declared == -1)
-    throw InputError({model_.string()},
+    throw InputError({file_.model.string()},
                      "has an input of " + input.shape_text() + ", of any " + setting + "; set `" + setting + "`");
   if (configured != 0 && declared != -1 && configured != declared)
-    throw InputError({model_.string()}, "has an input of " + input.shape_text() + ", but `" + setting + "` is " +
-                                            std::to_string(configured) + "; expected " + std::to_string(declared) +
-                                            ", or leave `" + setting + "` out");
+    throw InputError({file_.model.string()}, "has an input of " + input.shape_text() + ", but `" + setting + "` is " +
+                                                 std::to_string(configured) + "; expected " + std::to_string(declared) +
+                                                 ", or leave `" + setting + "` out");
   return configured != 0 ? configured : static_cast<int>(declared);
 }
 
@@ -100,10 +114,10 @@ void OnnxNet::set_input(const cv::Mat& values, const std::string& name) {
   loaded_->inputs.emplace_back(name, values);
 }
 
-void OnnxNet::run(const std::vector<std::string>& outputs, std::vector<cv::Mat>& results, const std::string& advice) {
-  Loaded& loaded = *loaded_;
-  if (loaded.loading.valid()) loaded.runner = loaded.loading.get();
-  loaded.runner->run(loaded.inputs, outputs, results, advice);
+void OnnxNet::run(std::vector<cv::Mat>& results) {
+  finish_loading();
+  HOLDFAST_CHECK(loaded_->runner, "a network is loaded before its first run");
+  loaded_->runner->run(loaded_->inputs, results);
 }
 
 }  // namespace holdfast

@@ -8,6 +8,7 @@
 
 #include "holdfast/core/error.hpp"
 #include "network_runner.hpp"
+#include "onnx_shapes.hpp"
 
 namespace holdfast {
 
@@ -39,8 +40,9 @@ std::string one_line(std::string text) {
   return text;
 }
 
-cv::dnn::Net load(const std::filesystem::path& model, std::span<const std::uint8_t> bytes) {
+cv::dnn::Net load(const std::filesystem::path& model, std::span<const std::uint8_t> given, const OnnxNet::Use& use) {
   const QuietLibrary quiet;
+  const std::vector<std::uint8_t> bytes = with_input_shapes(given, {use.inputs.begin(), use.inputs.end()});
   try {
     cv::dnn::Net net = cv::dnn::readNetFromONNX(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
@@ -49,42 +51,43 @@ cv::dnn::Net load(const std::filesystem::path& model, std::span<const std::uint8
   } catch (const cv::Exception& error) {
     throw InputError({model.string()}, "cannot be loaded by OpenCV " CV_VERSION " (" + one_line(error.err) +
                                            "); expected layers that it knows; export with a lower opset, or simplify "
-                                           "the network");
+                                           "the network; or " +
+                                           use.advice);
   }
 }
 
 class OpencvRunner final : public NetworkRunner {
  public:
-  OpencvRunner(std::filesystem::path model, cv::dnn::Net net) : model_(std::move(model)), net_(std::move(net)) {}
+  OpencvRunner(std::filesystem::path model, OnnxNet::Use use, cv::dnn::Net net)
+      : model_(std::move(model)), use_(std::move(use)), net_(std::move(net)) {}
 
-  void run(const Inputs& inputs, const std::vector<std::string>& outputs, std::vector<cv::Mat>& results,
-           const std::string& advice) override {
+  void run(const Inputs& inputs, std::vector<cv::Mat>& results) override {
     std::optional<QuietLibrary> quiet;
     if (!has_run_) quiet.emplace();  // what does not fit shows in the first run
     try {
       for (const auto& [name, input] : inputs) net_.setInput(input, name);
-      std::vector<cv::String> wanted(outputs.begin(), outputs.end());
+      std::vector<cv::String> wanted(use_.outputs.begin(), use_.outputs.end());
       net_.forward(results, wanted);
       for (cv::Mat& result : results)
         if (result.depth() != CV_32F) result.convertTo(result, CV_32F);
       has_run_ = true;
     } catch (const cv::Exception& error) {
-      throw InputError({model_.string()}, "cannot be run on an input of " + shapes_of(inputs) + " (" +
-                                              one_line(error.err) + "); " + advice);
+      throw InputError({model_.string()}, cannot_run("OpenCV " CV_VERSION, use_, one_line(error.err)));
     }
   }
 
  private:
   std::filesystem::path model_;
+  OnnxNet::Use use_;
   cv::dnn::Net net_;
   bool has_run_ = false;
 };
 
 }  // namespace
 
-std::unique_ptr<NetworkRunner> load_with_opencv(const std::filesystem::path& model,
-                                                std::span<const std::uint8_t> bytes) {
-  return std::make_unique<OpencvRunner>(model, load(model, bytes));
+std::unique_ptr<NetworkRunner> load_with_opencv(const std::filesystem::path& model, std::span<const std::uint8_t> bytes,
+                                                const OnnxNet::Use& use) {
+  return std::make_unique<OpencvRunner>(model, use, load(model, bytes, use));
 }
 
 }  // namespace holdfast

@@ -16,7 +16,7 @@ void require_onednn(NetworkPrecision) {
 }
 
 std::unique_ptr<NetworkRunner> load_with_onednn(const std::filesystem::path&, std::span<const std::uint8_t>,
-                                                NetworkPrecision, int) {
+                                                const OnnxNet::Use&, NetworkPrecision, int) {
   HOLDFAST_CHECK(false, "this build has no oneDNN");
   return nullptr;
 }

@@ -443,6 +443,8 @@ Pipeline::~Pipeline() {
 Pipeline::Pipeline(Pipeline&&) noexcept = default;
 Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
 
+void Pipeline::finish_loading() { state_->parts.segmenter->finish_loading(); }
+
 FrameResult Pipeline::feed(const SensorFrame& given) {
   State& s = *state_;
   SensorFrame other;

@@ -59,3 +59,28 @@ foreach(expected IN ITEMS "OpenCV 4.2.0 is too old; expected 4.5 or later and be
     message(FATAL_ERROR "expected '${expected}', found ${result}:\n${output}")
   endif()
 endforeach()
+
+# Options of what is optional: AUTO looks anew each time, so that what was missing once is found when it is there; what
+# a user typed stays.
+set(folder ${WORK_FOLDER}/optional)
+file(REMOVE_RECURSE ${folder})
+file(WRITE ${folder}/CMakeLists.txt "cmake_minimum_required(VERSION 3.25)\nproject(optional NONE)\n"
+  "include(${HOLDFAST_FOLDER}/cmake/HoldfastOptional.cmake)\n"
+  "holdfast_optional(HOLDFAST_PART \"Build a part\" \"the part\" \${FOUND} \"its library was not found\" libpart-dev)\n"
+  "holdfast_report_optional()\nmessage(STATUS \"part: \${HOLDFAST_PART}\")\n")
+# expect_part(EXPECTED ARGUMENTS ...): what configuring says, in the same build folder as before.
+function(expect_part expected)
+  execute_process(COMMAND ${CMAKE_COMMAND} -S ${folder} -B ${folder}/build ${ARGN}
+                  OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  string(REGEX REPLACE "[ \n]+" " " text "${output}")
+  string(FIND "${text}" "${expected}" position)
+  if(position EQUAL -1)
+    message(FATAL_ERROR "expected '${expected}' with ${ARGN}, found:\n${output}")
+  endif()
+endfunction()
+expect_part("built without the part: its library was not found (Debian: libpart-dev) -- part: OFF" -DFOUND=OFF)
+expect_part("part: ON" -DFOUND=ON)
+expect_part("part: OFF" -DFOUND=OFF)
+expect_part("HOLDFAST_PART is ON, but its library was not found: install it (Debian: libpart-dev)" -DHOLDFAST_PART=ON)
+expect_part("part: OFF" -DHOLDFAST_PART=OFF -DFOUND=ON)
+expect_part("HOLDFAST_PART is 'maybe'; expected AUTO, ON or OFF" -DHOLDFAST_PART=maybe)

@@ -10,6 +10,7 @@
 #include <iterator>
 
 #include "holdfast/core/error.hpp"
+#include "onnx_shapes.hpp"
 
 namespace holdfast {
 namespace {
@@ -35,6 +36,22 @@ TEST(OnnxSignature, TellsInputsAndOutputs) {
   EXPECT_FALSE(fixed.has_half_precision);
   EXPECT_EQ(read_onnx_signature(bytes_of("any_size"), "m").inputs[0].shape_text(), "1x3x?x?");
   EXPECT_TRUE(read_onnx_signature(bytes_of("half"), "m").has_half_precision);
+}
+
+TEST(OnnxSignature, ShapesOfInputsCanBeWrittenInPlaceOfTheirOwn) {
+  const std::vector<std::uint8_t> bytes = bytes_of("any_size");
+  const OnnxSignature before = read_onnx_signature(bytes, "m");
+  const std::string name = before.inputs[0].name;
+  const std::vector<std::uint8_t> written = with_input_shapes(bytes, {{name, {1, 3, 20, 300}}, {"absent", {7}}});
+  const OnnxSignature after = read_onnx_signature(written, "m");
+  ASSERT_EQ(after.inputs.size(), 1U);
+  EXPECT_EQ(after.inputs[0].name, name);
+  EXPECT_EQ(after.inputs[0].element_type, before.inputs[0].element_type);
+  EXPECT_THAT(after.inputs[0].shape, ElementsAre(1, 3, 20, 300));
+  EXPECT_EQ(after.outputs[0].shape, before.outputs[0].shape);
+  // What is written once more is the same, and so is a model of which nothing is changed.
+  EXPECT_EQ(with_input_shapes(written, {{name, {1, 3, 20, 300}}}), written);
+  EXPECT_EQ(with_input_shapes(bytes, {}), bytes);
 }
 
 std::string error_of(const std::vector<std::uint8_t>& bytes) {

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Holds whole sequential runs to stored results, byte for byte: SHA-256 of the poses in trajectory.txt and of map.hfm
 # for four configurations on three simulated scenes and on 200 frames of a recording. A change that is not meant to
-# change results passes it; a change that is meant to rewrites values.txt, so that it shows as lines of the commit.
+# change results passes it; a change that is meant to rewrites the values, so that it shows as lines of the commit.
 #
 #   sh tests/oracle/oracle.sh PROGRAM                        runs every case and compares
 #   sh tests/oracle/oracle.sh PROGRAM CONFIGURATION SCENE    runs one case, such as: full walking_xyz
@@ -13,15 +13,16 @@
 # beside it), so that no network takes part. The recording is $HOLDFAST_DATA/tum_fr1_xyz; without HOLDFAST_DATA its
 # cases are skipped, and --write keeps their values.
 #
-# The values belong to Debian 12 on amd64 with AVX2 and FMA: another version of Eigen, Ceres or OpenCV, or another C
-# library, may round differently. Elsewhere every case is skipped. Processors of other makers may round differently too:
-# a case that differs on a processor other than that named in values.txt is skipped, and says so. Exit status: 0 all
-# compared cases are equal, 1 some differ, 2 wrong call, 77 skipped.
+# The values belong to one version of Debian on amd64 with AVX2 and FMA, each with a file of its own: another version of
+# Ceres or OpenCV, or another C library, may round differently. Elsewhere every case is skipped. Processors of other
+# makers may round differently too: a case that differs on a processor other than that named in the file is skipped, and
+# says so. Exit status: 0 all compared cases are equal, 1 some differ, 2 wrong call, 77 skipped.
 set -eu
 
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
-values=$here/values.txt
+debian=$(. /etc/os-release 2>/dev/null && [ "${ID:-}" = debian ] && echo "$VERSION_ID" || true)
+values=$here/values_debian_$debian.txt
 configurations="rgbd geometric full paper"
 scenes="walking_xyz sitting_halfsphere loop tum_fr1_xyz"
 
@@ -36,10 +37,11 @@ program=$1
 if [ $# -eq 3 ]; then configurations=$2; scenes=$3; fi
 
 on_reference_system() {
-  [ "$(uname -m)" = x86_64 ] && grep -q 'VERSION_ID="12"' /etc/os-release 2>/dev/null &&
-    grep -q '^ID=debian' /etc/os-release && grep -q -m 1 '^flags.* fma .*avx2' /proc/cpuinfo
+  [ "$(uname -m)" = x86_64 ] && [ -f "$values" ] && grep -q -m 1 '^flags.* fma .*avx2' /proc/cpuinfo
 }
-[ "$writes" = yes ] || on_reference_system || skip "the stored values belong to Debian 12 on amd64 with AVX2 and FMA"
+[ "$writes" = yes ] || on_reference_system ||
+  skip "the stored values belong to Debian 12 and 13 on amd64 with AVX2 and FMA"
+[ -n "$debian" ] || fail "values are written on Debian"
 
 # Maker, family and model of the processor, such as "AuthenticAMD 25 17".
 processor() {
@@ -85,7 +87,7 @@ run_case() {
   rm -rf "$result"
 }
 
-# Replaces the line of a case in values.txt, in its place, or appends it.
+# Replaces the line of a case in the values, in its place, or appends it.
 store() {
   awk -v case="$1 $2 " -v line="$3" '
     index($0, case) == 1 { $0 = line; found = 1 } { print } END { if (!found) print line }' "$values" >"$values.new"
@@ -111,7 +113,7 @@ for scene in $scenes; do
     if [ "$writes" = yes ]; then
       store "$configuration" "$scene" "$found"
     elif [ -z "$stored" ]; then
-      fail "values.txt holds no case '$configuration $scene'"
+      fail "$values holds no case '$configuration $scene'"
     elif [ "$found" != "$stored" ] && ! grep -q "^# processor: $(processor)\$" "$values"; then
       elsewhere=$((elsewhere + 1))
       echo "oracle: $configuration $scene differs, on $(processor); the values are of another processor"

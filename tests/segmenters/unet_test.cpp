@@ -163,6 +163,9 @@ TEST(UnetSegmenter, OnlyTheBuiltInWeightsAreLoadedInTheBackground) {
   EXPECT_TRUE(make()->first_call_waits());
   EXPECT_TRUE(make({{"size", std::string("small")}})->first_call_waits());
   EXPECT_FALSE(make({{"width", 64}, {"height", 64}})->first_call_waits());
+  for (const char* engine : {"opencv", "auto"})
+    for (const char* size : {"small", "base", "large"})
+      make({{"engine", std::string(engine)}, {"size", std::string(size)}})->finish_loading();
 }
 
 TEST(UnetSegmenter, AWrongSideSaysWhichOnesFit) {

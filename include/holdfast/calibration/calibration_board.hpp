@@ -37,7 +37,7 @@ struct CalibrationBoard {
 /// Names of the dictionaries of markers: "4x4" to "7x7", the number of cells of a marker.
 const std::vector<std::string>& marker_dictionaries();
 
-/// Whether this build finds boards with markers; they need OpenCV's module aruco in version 4.5 or 4.6.
+/// Whether this build finds boards with markers; they need OpenCV's module aruco, or objdetect from version 4.7 on.
 bool has_charuco();
 
 /// The board as an SVG picture in millimetres, with a white margin and a line that says what it is and how to check its

@@ -20,8 +20,8 @@ struct NetworkOptions {
   /// The model in memory; if it is not empty, `model` only names it in messages. It is read during construction only,
   /// or, with in_background, until the first run.
   std::span<const std::uint8_t> bytes = {};
-  /// Load `bytes` in another thread, for which the first run waits. For models that are known to be good: layers that
-  /// the engine cannot load are then an error of the first run.
+  /// Load `bytes` in another thread, for which finish_loading() or the first run waits. For models that are known to be
+  /// good: layers that the engine cannot load are then errors of these.
   bool in_background = false;
   int width = 0;  ///< of the input [px]; 0 = as declared by the model
   int height = 0;
@@ -46,7 +46,7 @@ class Network {
  public:
   /// Loads the model, or begins to with in_background. Throws InputError, which states what was found and what was
   /// expected, for a missing file, a file that is not an ONNX model, float16 weights, an input that is not one image
-  /// with three channels, a size other than the declared one, an unknown output name, and layers that OpenCV cannot
+  /// with three channels, a size other than the declared one, an unknown output name, and layers that the engine cannot
   /// load. Throws ConfigurationError for an engine or a precision that is not there.
   explicit Network(const NetworkOptions& options);
   ~Network();
@@ -59,6 +59,9 @@ class Network {
   /// Computes the output for the mirror image of the last run() without preprocessing it again. It may be called once
   /// after each run(), because the prepared image is mirrored in place.
   cv::Mat run_mirrored();
+
+  /// Waits for a model that is loaded in the background. Throws InputError for layers that the engine cannot load.
+  void finish_loading();
 
   int width() const;
   int height() const;

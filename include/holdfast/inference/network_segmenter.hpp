@@ -15,7 +15,7 @@ namespace holdfast {
 class NetworkSegmenter : public Segmenter {
  public:
   /// Loads the network and runs it once, so that errors are reported before the first frame; with
-  /// NetworkOptions::in_background it begins to load, and the first frame waits. `classes` are the names by
+  /// NetworkOptions::in_background it begins to load, and finish_loading() or the first frame waits. `classes` are the names by
   /// channel or label; the name 'unknown' denotes unlabelled pixels. `form.classes` is set from them. Throws the
   /// exceptions of Network and decode_segmentation().
   NetworkSegmenter(const NetworkOptions& options, OutputForm form, std::vector<std::string> classes,
@@ -24,6 +24,8 @@ class NetworkSegmenter : public Segmenter {
   const std::vector<std::string>& classes() const override { return classes_; }
   std::vector<std::string> movable() const override { return movable_; }
   bool first_call_waits() const override { return is_loaded_in_background_; }
+  /// Waits for the network and runs it once, with the errors of the constructor.
+  void finish_loading() override;
   Segmentation segment(const SensorFrame& frame) override;
 
  protected:

@@ -7,6 +7,7 @@
 #include <opencv2/core/mat.hpp>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "holdfast/inference/onnx_signature.hpp"
@@ -22,27 +23,33 @@ class OnnxNet {
   /// Where the network comes from.
   struct File {
     std::filesystem::path model;
-    /// The model in memory; if it is not empty, `model` only names it in messages. It is read during construction only,
-    /// or, with in_background, until the first run.
+    /// The model in memory; if it is not empty, `model` only names it in messages. It is read until load() returns, or,
+    /// with in_background, until the first run.
     std::span<const std::uint8_t> bytes = {};
-    /// Load `bytes` in another thread, for which the first run waits. For models that are known to be good: layers that
-    /// the engine cannot load are then an error of the first run.
+    /// load() loads `bytes` in another thread, for which finish_loading() or the first run waits. For models that are
+    /// known to be good: layers that the engine cannot load are then errors of these.
     bool in_background = false;
     NetworkEngine engine = NetworkEngine::opencv;
     NetworkPrecision precision = NetworkPrecision::fp32;
     int threads = 1;  ///< of oneDNN for this network; OpenCV has one number for the whole process
   };
 
-  /// Reads the signature and loads the model, or begins to. Throws InputError, which states what was found and what was
-  /// expected, for a missing file, a file that is not an ONNX model, float16 weights, and layers that OpenCV cannot
-  /// load; those that oneDNN cannot run are errors of the first run. Throws ConfigurationError for an engine that this
-  /// build has not, and a precision that the engine or the processor has not.
-  explicit OnnxNet(const File& file);
+  /// What every run computes.
+  struct Use {
+    std::vector<std::pair<std::string, std::vector<std::int64_t>>> inputs;  ///< shapes by name
+    std::vector<std::string> outputs;
+    std::string advice;  ///< for the error of a network that cannot be run: what the user should check
+  };
+
+  /// Reads the signature. Throws InputError, which states what was found and what was expected, for a missing file, a
+  /// file that is not an ONNX model, and float16 weights. Throws ConfigurationError for an engine that this build has
+  /// not, and a precision that the engine or the processor has not.
+  explicit OnnxNet(File file);
   ~OnnxNet();
   OnnxNet(const OnnxNet&) = delete;
   OnnxNet& operator=(const OnnxNet&) = delete;
 
-  const std::filesystem::path& model() const { return model_; }
+  const std::filesystem::path& model() const { return file_.model; }
   const OnnxSignature& signature() const { return signature_; }
   /// The declared output of this name. Throws InputError, which names the nearest, when there is none; `setting` is the
   /// parameter that says the name.
@@ -53,16 +60,24 @@ class OnnxNet {
   /// which must agree; throws InputError otherwise. `setting` is the parameter that says the configured one.
   int agreed_size(const OnnxTensor& input, int configured, std::int64_t declared, const std::string& setting) const;
 
-  /// Sets an input, 32F of any dimensions, for the next run. Its data must stay as they are until then.
-  void set_input(const cv::Mat& values, const std::string& name = "");
-  /// Computes outputs: 32F with the dimensions of the network, valid until the next run. Throws InputError if the
-  /// network cannot be run; `advice` says what the user should check.
-  void run(const std::vector<std::string>& outputs, std::vector<cv::Mat>& results, const std::string& advice);
+  /// Loads the model into the engine for inputs of these shapes, which take the place of those that it declares, or
+  /// begins to with in_background. Called once, before the first run. Throws InputError for layers that the engine
+  /// cannot load at these shapes.
+  void load(const Use& use);
+  /// Waits for a model that is loaded in the background. Throws as load().
+  void finish_loading();
+  /// Sets an input, 32F of the shape that was given to load(), for the next run. Its data must stay as they are until
+  /// then.
+  void set_input(const cv::Mat& values, const std::string& name);
+  /// Computes the outputs that were given to load(): 32F with the dimensions of the network, valid until the next run.
+  /// Throws InputError if the network cannot be run.
+  void run(std::vector<cv::Mat>& results);
 
  private:
   struct Loaded;
 
-  std::filesystem::path model_;
+  File file_;
+  std::vector<std::uint8_t> content_;  ///< of the file, until it is loaded
   OnnxSignature signature_;
   std::unique_ptr<Loaded> loaded_;
 };

@@ -33,6 +33,8 @@ class Segmenter : public Module {
   /// as loading weights. Sequential mode then makes this call in another thread, which does not change results.
   /// Constant after construction.
   virtual bool first_call_waits() const { return false; }
+  /// Waits for that work. Throws what the first call of segment() would throw because of it. Not while segment() runs.
+  virtual void finish_loading() {}
   /// Segments a frame. An empty result means that there is no segmentation for this frame, which is not an error.
   /// Throws InputError for a frame that it cannot use. The frame is not written to, and later calls do not modify an
   /// earlier result. The same frames in the same order give the same results.

@@ -29,6 +29,9 @@ OnnxFeatures::OnnxFeatures(const OnnxFeaturesSettings& settings, const CreationC
   }
   const int shape[] = {1, channels_, height_, width_};
   input_.create(4, shape, CV_32F);
+  net_.load({.inputs = {{net_.signature().inputs.front().name, {1, channels_, height_, width_}}},
+             .outputs = output_names_,
+             .advice = advice});
 }
 
 void OnnxFeatures::fail(const std::string& message) const { throw InputError({settings_.model.string()}, message); }
@@ -144,8 +147,8 @@ void OnnxFeatures::extract(const cv::Mat& grey, const cv::Mat& ignore, Features&
   out.resize(0, type_);
   if (grey.cols < 2 || grey.rows < 2) return;
   fill_input(grey);
-  net_.set_input(input_);
-  net_.run(output_names_, outputs_, advice);
+  net_.set_input(input_, net_.signature().inputs.front().name);
+  net_.run(outputs_);
   const bool is_map = settings_.keypoints.empty();
   if (is_map && (outputs_[1].dims != 4 || outputs_[1].size[1] != static_cast<int>(type_.length)))
     fail("gives descriptors of another shape than it declares; correct `descriptors`");

@@ -22,6 +22,13 @@ OnnxMatcher::OnnxMatcher(const OnnxMatcherSettings& settings, const CreationCont
     half->keypoints.create(3, of_keypoints, CV_32F);
     half->descriptors.create(3, of_descriptors, CV_32F);
   }
+  const std::vector<std::int64_t> keypoints = {1, count_, 2}, descriptors = {1, count_, length_};
+  net_.load({.inputs = {{settings.keypoints0, keypoints},
+                        {settings.descriptors0, descriptors},
+                        {settings.keypoints1, keypoints},
+                        {settings.descriptors1, descriptors}},
+             .outputs = {settings.scores},
+             .advice = "expected a network with inputs of a fixed size; check `count`"});
 }
 
 void OnnxMatcher::fail(const std::string& message) const { throw InputError({settings_.model.string()}, message); }
@@ -94,7 +101,7 @@ void OnnxMatcher::match(const MatchSide& queries, const MatchSide& references, c
     net_.set_input(half->keypoints, half->keypoints_name);
     net_.set_input(half->descriptors, half->descriptors_name);
   }
-  net_.run({settings_.scores}, outputs_, "expected a network with inputs of a fixed size; check `count`");
+  net_.run(outputs_);
   const cv::Mat& output = outputs_.front();
   const int rows = output.dims == 3 ? output.size[1] : 0, columns = output.dims == 3 ? output.size[2] : 0;
   if ((rows != count_ && rows != count_ + 1) || columns != rows)
