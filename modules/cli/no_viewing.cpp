@@ -8,8 +8,8 @@ namespace holdfast {
 namespace {
 
 constexpr const char* reason =
-    "this build has no viewer; install Boost's headers (Debian: libboost-dev) and configure Holdfast with "
-    "-DHOLDFAST_PLUGIN_VIEWER=ON";
+    "this build has no viewer; install Boost's headers (Debian: libboost-dev), configure Holdfast and "
+    "build again";
 
 }  // namespace
 

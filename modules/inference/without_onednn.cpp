@@ -11,7 +11,7 @@ bool has_onednn() { return false; }
 
 void require_onednn(NetworkPrecision) {
   throw ConfigurationError(SourceLocation{},
-                           "engine: found onednn, but this build has no oneDNN; expected opencv; or install oneDNN 2 "
+                           "engine: found onednn, but this build has no oneDNN; expected opencv; or install oneDNN "
                            "(Debian: libdnnl-dev), configure with -DHOLDFAST_ONEDNN=ON and build again");
 }
 
