@@ -135,7 +135,7 @@ void Camera::undistorted_bounds(Eigen::Vector2d& minimum, Eigen::Vector2d& maxim
 
 namespace {
 /// Of the colour camera of a Kinect [s], as estimated while tracking freiburg1_xyz and freiburg1_rpy
-/// (docs/rotation.md). The Xtion of tum_fr3 and bonn has the same design, and estimation begins with the same time
+/// (benchmarks/findings/rotation.md). The Xtion of tum_fr3 and bonn has the same design, and estimation begins with the same time
 /// there.
 constexpr double kinect_readout = 0.026;
 
