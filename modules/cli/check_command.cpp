@@ -30,7 +30,11 @@ void check(const CheckArguments& arguments, const ProgramHost& host) {
   const Configuration configuration = load_configuration(arguments.configuration, arguments.overrides, registry);
   print_warnings(configuration.warnings);
   // Makes every module and looks at the data as `run` does before the first frame; nothing is written.
-  if (!arguments.without_data) build_pipeline(configuration, registry).pipeline.finish_loading();
+  if (!arguments.without_data) {
+    BuiltPipeline built = build_pipeline(configuration, registry);
+    built.pipeline.finish_loading();
+    print_warnings(built.warnings());
+  }
   if (arguments.print) {
     std::fputs(to_yaml(configuration).c_str(), stdout);
     return;

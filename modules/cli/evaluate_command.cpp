@@ -103,6 +103,7 @@ void run(EvaluateArguments arguments) {
   std::optional<std::vector<double>> frames;
   if (!arguments.frames.empty()) frames = read_frame_stamps(arguments.frames);
   const Evaluation evaluation = evaluate(truth, estimate, arguments.options, frames);
+  print_warnings(evaluation.warnings);
   if (arguments.json != "-" && arguments.csv != "-") {
     std::cout << printable(to_text(evaluation));
     if (!frames) std::cout << "Coverage needs --frames LIST.\n";

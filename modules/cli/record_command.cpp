@@ -42,6 +42,7 @@ int record(const RecordArguments& arguments, const ProgramHost& host) {
   const Configuration configuration = load_configuration(arguments.configuration, arguments.overrides, registry);
   print_warnings(configuration.warnings);
   const std::unique_ptr<FrameSource> source = build_source(configuration, registry);
+  print_warnings(source->warnings());
   Recorder recorder(configuration, registry, source->describe(), arguments.output, arguments.overwrite);
   std::string failure;
   try {

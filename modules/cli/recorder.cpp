@@ -69,6 +69,7 @@ class RecordedSource final : public FrameSource {
   }
   Trajectory truth() const override { return source_->truth(); }
   std::vector<SkippedFrame> skipped() const override { return source_->skipped(); }
+  Warnings warnings() const override { return source_->warnings(); }
 
  private:
   std::unique_ptr<FrameSource> source_;

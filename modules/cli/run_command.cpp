@@ -60,6 +60,7 @@ struct Running {
   std::optional<Recorder> recorder;
   Trajectory truth;                              ///< of what is recorded
   std::vector<std::shared_ptr<Viewer>> viewers;  ///< kept, so that they outlive the pipeline
+  std::size_t warnings_printed = 0;              ///< of RunRecord::warnings, which begin with those of the configuration
 };
 
 /// Takes the folder; a run that was killed there is named, so that nobody takes its results for whole ones.
@@ -74,6 +75,12 @@ FolderLock prepare_folder(const RunArguments& arguments) {
                          counted(static_cast<std::size_t>(poses), "pose") +
                          " in trajectory.txt; name another one, or add --overwrite to replace it");
   }
+}
+
+/// Prints what is new since the last call.
+void print_new_warnings(const Warnings& warnings, Running& running) {
+  for (; running.warnings_printed < warnings.size(); ++running.warnings_printed)
+    print_warning(warnings[running.warnings_printed].to_string());
 }
 
 /// Shows the progress of a run, prepares its folder, keeps its poses as they come and asks for its end after a signal.
@@ -96,6 +103,7 @@ RunOptions options_of(const RunArguments& arguments, const Registry& registry, c
     running.journal.emplace(arguments.output);
     running.viewers = running_viewers_of_program();
     print_addresses(running.viewers);
+    print_new_warnings(record.warnings, running);
     running.progress.emplace(record.source.frame_count, arguments.quiet);
   };
   options.on_frame = [&](const RunProgress& run) {
@@ -139,12 +147,13 @@ int run_configuration(const RunArguments& arguments, const ProgramHost& host) {
   Registry registry = host.modules();
   Configuration configuration = load_configuration(arguments.configuration, arguments.overrides, registry);
   if (arguments.view) add_viewer(configuration, registry);
-  print_warnings(configuration.warnings);
   Running running;
+  print_new_warnings(configuration.warnings, running);
   const RunRecord record =
       run(configuration, registry, options_of(arguments, registry, configuration, since_start, running));
   running.progress.reset();
   running.journal.reset();
+  print_new_warnings(record.warnings, running);
   try {
     write_results(record, arguments.output);
   } catch (const InputError&) {

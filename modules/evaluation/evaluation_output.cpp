@@ -196,6 +196,8 @@ std::string to_json(const Evaluation& evaluation) {
     json["coverage"] = {{"ratio", coverage->ratio()},    {"frames", coverage->frames},
                         {"poses", coverage->poses},      {"poses_of_no_frame", coverage->poses_of_no_frame},
                         {"gaps", coverage->gaps.size()}, {"longest_gap_frames", coverage->longest_gap()}};
+  Json& warnings = json["warnings"] = Json::array();
+  for (const Diagnostic& warning : evaluation.warnings) warnings.push_back(warning.to_string());
   // A file name need not be UTF-8; its odd bytes must not cost the figures.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }

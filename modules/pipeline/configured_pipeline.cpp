@@ -147,6 +147,12 @@ BuiltPipeline build_pipeline(const Configuration& configuration, const Registry&
   return {std::move(source), builder.build()};
 }
 
+Warnings BuiltPipeline::warnings() const {
+  Warnings warnings = source->warnings();
+  add_warnings(warnings, pipeline.warnings());
+  return warnings;
+}
+
 std::unique_ptr<FrameSource> build_source(const Configuration& configuration, const Registry& registry) {
   auto source = make_source(configuration, registry, context_of_source(configuration));
   if (configuration.unknown_camera && !configuration.camera && !source->describe().camera)

@@ -34,6 +34,15 @@ PipelineParts checked(PipelineParts parts) {
   return parts;
 }
 
+/// All modules of a pipeline, in the order of a configuration.
+std::vector<const Module*> modules_of(const PipelineParts& parts) {
+  std::vector<const Module*> modules = {parts.features.get(), parts.matcher.get(), parts.segmenter.get()};
+  for (const auto& [name, filter] : parts.filters) modules.push_back(filter.get());
+  modules.insert(modules.end(), {parts.optimizer.get(), parts.loop_detector.get()});
+  for (const auto& observer : parts.observers) modules.push_back(observer.get());
+  return modules;
+}
+
 bool has_segmenter(const PipelineParts& parts) {
   return dynamic_cast<const NullSegmenter*>(parts.segmenter.get()) == nullptr;
 }
@@ -79,6 +88,7 @@ struct Pipeline::State {
 
   explicit State(PipelineParts given)
       : parts(std::move(given)),
+        modules(modules_of(parts)),
         map(std::move(parts.map)),
         moving_world(moving_world_parts(parts), map),
         detector(*parts.loop_detector),
@@ -168,6 +178,7 @@ struct Pipeline::State {
   }
 
   PipelineParts parts;
+  std::vector<const Module*> modules;  // see modules_of(); filters move from the parts into the chain
   Map map;
   MapMutex map_mutex;
   std::mutex surgery;  // see SharedMap
@@ -569,6 +580,11 @@ const MappingCounts& Pipeline::mapping_counts() const { return state_->mapper.co
 LoopRecord Pipeline::loop_record() const {
   const std::lock_guard lock(state_->record_mutex);
   return state_->loop_record;
+}
+Warnings Pipeline::warnings() const {
+  Warnings warnings = state_->parts.warnings;
+  for (const Module* module : state_->modules) add_warnings(warnings, module->warnings());
+  return warnings;
 }
 LossRecord Pipeline::loss_record() const {
   const TrackingLock lock(state_->map_mutex);

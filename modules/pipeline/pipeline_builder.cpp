@@ -144,6 +144,10 @@ void PipelineBuilder::complain(const SourceLocation& place, std::string message)
   diagnostics_.push_back({place.file.empty() ? place_ : place, std::move(message)});
 }
 
+void PipelineBuilder::suspect(const SourceLocation& place, std::string message) {
+  add_warning(parts_.warnings, {place.file.empty() ? place_ : place, std::move(message)});
+}
+
 template <class Interface>
 std::unique_ptr<Interface> PipelineBuilder::make(ModuleOf<Interface>& module) {
   if (module.object) return std::move(module.object);

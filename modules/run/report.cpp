@@ -103,6 +103,15 @@ ReportSection summary_section(const RunRecord& record) {
   return summary;
 }
 
+ReportSection warning_section(const Warnings& warnings) {
+  ReportSection result = section("Warnings");
+  for (const Diagnostic& warning : warnings) {
+    const std::string place = warning.location.to_string();
+    result.values.emplace_back(place.empty() ? "run" : place, warning.message);
+  }
+  return result;
+}
+
 /// How many frames have no pose, and what most of them suffered from; empty if all have one.
 std::string missing_poses_text(const RunSummary& summary) {
   const std::uint64_t missing = summary.lost() + summary.count(TrackingStatus::waiting);
@@ -200,6 +209,7 @@ std::string report_html(const RunRecord& record, const std::vector<std::string>&
                     ", version " HOLDFAST_VERSION ", commit " + build_commit() + "; " + machine_text();
   report.highlights = highlights(record);
   report.sections.push_back(summary_section(record));
+  if (!record.warnings.empty()) report.sections.push_back(warning_section(record.warnings));
   if (!pictures.empty()) report.sections.push_back(picture_section(record, pictures));
   if (record.evaluation) report.sections.push_back(error_section(*record.evaluation, record.summary));
   report.sections.push_back(section("Stages"));

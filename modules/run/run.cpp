@@ -9,6 +9,7 @@
 #include "frame_loop.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/dense_map/static_scene.hpp"
+#include "run_warnings.hpp"
 
 namespace holdfast {
 
@@ -76,6 +77,8 @@ RunRecord run(BuiltPipeline& built, const Configuration& configuration, const Ru
   record.camera = built.pipeline.camera();
   record.sensor = built.pipeline.sensor();
   record.localised_only = options.pipeline.localise_only;
+  record.warnings = configuration.warnings;
+  add_warnings(record.warnings, built.warnings());
   if (options.on_start) options.on_start(record);
   feed_frames(built, options, record);
 
@@ -83,6 +86,9 @@ RunRecord run(BuiltPipeline& built, const Configuration& configuration, const Ru
                                                      : record.frame_stamps.size() + record.skipped.size();
   record_pipeline(built.pipeline, record);
   evaluate_run(*built.source, record);
+  add_warnings(record.warnings, built.warnings());
+  if (record.evaluation) add_warnings(record.warnings, record.evaluation->warnings);
+  add_warnings(record.warnings, find_warnings(record));
   record.total_seconds = options.since_start.seconds();
   record.peak_memory = peak_memory();
   return record;

@@ -168,7 +168,7 @@ std::string run_json(const RunRecord& record) {
                {"interrupted", record.was_interrupted}};
   json["failure"] = record.failure.empty() ? Json(nullptr) : Json(record.failure);
   Json& warnings = json["warnings"] = Json::array();
-  for (const Diagnostic& warning : record.configuration.warnings) warnings.push_back(warning.to_string());
+  for (const Diagnostic& warning : record.warnings) warnings.push_back(warning.to_string());
   if (const std::string warning = coverage_warning(record); !warning.empty()) warnings.push_back(warning);
   json["perturbation"] = perturbation_json(record.configuration);
   json["frames"] = frames_json(record);

@@ -38,6 +38,12 @@ class PointSource final : public FrameSource {
     for (std::uint64_t i = 0; i < frame_count; ++i) truth.push_back({time_of(i), path_pose(time_of(i))});
     return truth;
   }
+  /// What is known before the first frame, and what the frames show.
+  Warnings warnings() const override {
+    Warnings warnings = {{{"points.txt", 3}, "holds few points"}};
+    if (index_ > 0) warnings.push_back({{}, "all frames look alike"});
+    return warnings;
+  }
 
  private:
   static double time_of(std::uint64_t index) { return static_cast<double>(index) / 30.0; }

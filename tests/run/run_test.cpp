@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "holdfast/run/results.hpp"
 #include "run/point_run.hpp"
 
 namespace holdfast {
@@ -73,6 +74,45 @@ TEST(Run, AFailureKeepsTheResultsBeforeIt) {
   RunOptions options;
   options.on_frame = [](const RunProgress&) { throw Error("the disk is full"); };
   EXPECT_EQ(run(*others.built, others.configuration, options).failure, "the disk is full");
+}
+
+/// A module that suspects something from the start.
+class Doubtful final : public Observer {
+ public:
+  Warnings warnings() const override { return {{{}, "two modules say this"}}; }
+};
+
+std::vector<std::string> texts_of(const Warnings& warnings) {
+  std::vector<std::string> texts;
+  for (const Diagnostic& warning : warnings) texts.push_back(warning.to_string());
+  return texts;
+}
+
+TEST(Run, WarningsOfConfigurationSourceAndModulesAreInEveryResult) {
+  test::PointRun points;
+  auto source = std::make_unique<test::PointSource>(points.world);
+  Registry registry;
+  holdfast_register_plugin_ceres(registry);
+  PipelineBuilder builder(std::move(registry));
+  builder.source(source->describe())
+      .features(std::make_unique<test::PointExtractor>(points.world, 0.3))
+      .optimizer(CeresSettings{})
+      .observer(std::make_unique<Doubtful>())
+      .observer(std::make_unique<Doubtful>());
+  points.built = std::make_unique<BuiltPipeline>(BuiltPipeline{std::move(source), builder.build()});
+  points.configuration.warnings = {{{"points.yaml", 2, 1}, "is of another folder"}};
+  const std::vector<std::string> before = {"points.yaml:2:1: is of another folder", "points.txt:3: holds few points",
+                                           "two modules say this"};
+  RunOptions options;
+  options.on_start = [&](const RunRecord& record) { EXPECT_EQ(texts_of(record.warnings), before); };
+  const RunRecord record = run(*points.built, points.configuration, options);
+  std::vector<std::string> after = before;
+  after.emplace_back("all frames look alike");
+  EXPECT_EQ(texts_of(record.warnings), after);
+  for (const std::string& text : after) EXPECT_NE(run_json(record).find('"' + text + '"'), std::string::npos) << text;
+  const std::string report = report_html(record);
+  for (const char* part : {"points.txt:3", "holds few points", "all frames look alike"})
+    EXPECT_NE(report.find(part), std::string::npos) << part;
 }
 
 TEST(Run, TheLateShareCountsDelaysAboveAFrameInterval) {

@@ -11,6 +11,7 @@
 #include "holdfast/config/run_settings.hpp"
 #include "holdfast/core/camera.hpp"
 #include "holdfast/core/sensor.hpp"
+#include "holdfast/core/warning.hpp"
 #include "holdfast/plugin/registry.hpp"
 
 namespace holdfast {
@@ -66,7 +67,7 @@ struct Configuration {
   std::optional<Diagnostic> unknown_camera;
   std::optional<Sensor> sensor;  ///< empty: all that the source has
   /// What is no mistake and may still be unintended, with its place: a folder that is named after another camera.
-  std::vector<Diagnostic> warnings;
+  Warnings warnings;
   RunSettings run;
   std::map<std::string, ParameterValues> sections;  ///< values of the plain sections, by name
   std::vector<std::string> plugins;                 ///< absolute paths of the plugin files

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "holdfast/core/camera.hpp"
+#include "holdfast/core/warning.hpp"
 
 namespace holdfast {
 
@@ -16,6 +17,10 @@ class Module {
   virtual ~Module() = default;
   Module(const Module&) = delete;
   Module& operator=(const Module&) = delete;
+
+  /// Suspicions about what the module was given: its files after construction, its frames after the last one. Called
+  /// before the first frame and after the last one, while no other thread uses the module. See core/warning.hpp.
+  virtual Warnings warnings() const { return {}; }
 
  protected:
   Module() = default;

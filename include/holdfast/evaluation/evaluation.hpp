@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "holdfast/core/trajectory.hpp"
+#include "holdfast/core/warning.hpp"
 #include "holdfast/evaluation/alignment.hpp"
 #include "holdfast/evaluation/coverage.hpp"
 #include "holdfast/evaluation/statistics.hpp"
@@ -109,6 +110,8 @@ struct Evaluation {
   /// Mean over the compared true poses of the direction that is up in the image (-y of the camera), in the frame of the
   /// truth. Near 1 in length for a camera that is carried upright: then it is opposite to gravity.
   Eigen::Vector3d mean_up = Eigen::Vector3d::Zero();
+  /// Suspicions about the trajectories, such as a wrong unit; see core/warning.hpp.
+  Warnings warnings;
 };
 
 /// Compares an estimate with the ground truth. Stamps need not be sorted; of several poses with the same stamp the last

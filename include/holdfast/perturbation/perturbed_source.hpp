@@ -27,6 +27,7 @@ class PerturbedSource final : public FrameSource {
   std::optional<SensorFrame> next() override;
   Trajectory truth() const override { return source_->truth(); }
   std::vector<SkippedFrame> skipped() const override { return source_->skipped(); }
+  Warnings warnings() const override { return source_->warnings(); }
 
  private:
   struct Rectangle {

@@ -46,6 +46,10 @@ struct PipelineOptions {
 struct BuiltPipeline {
   std::unique_ptr<FrameSource> source;
   Pipeline pipeline;
+
+  /// Suspicions of the source and of the pipeline: before the first frame those about files and settings, after
+  /// Pipeline::finish() those about the frames as well.
+  Warnings warnings() const;
 };
 
 /// Makes every module that a configuration selects, by a PipelineBuilder, which checks that they fit together. Throws

@@ -55,6 +55,7 @@ struct PipelineParts {
   RunSettings run;
   Map map;                     ///< map to continue; empty = begin a new map
   bool localise_only = false;  ///< find poses in the map and leave it unchanged
+  Warnings warnings;           ///< about parts that fit together badly
 };
 
 /// A loop that was closed, with the stamps of both its ends [s].
@@ -121,6 +122,10 @@ class Pipeline {
   Sensor sensor() const;
   /// The readout time by which features are corrected now, estimated if the settings say so [s]; 0 = not corrected.
   double readout() const;
+
+  /// Suspicions about the parts, and of the modules about what they were given (core/warning.hpp). Before the first
+  /// frame or after finish().
+  Warnings warnings() const;
 
   /// What became of frames around losses; complete after finish().
   LossRecord loss_record() const;

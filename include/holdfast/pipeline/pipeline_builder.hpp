@@ -140,6 +140,8 @@ class PipelineBuilder {
   void check_map() const;
   void check_places() const;
   void complain(const SourceLocation& place, std::string message);
+  /// Adds a warning (core/warning.hpp) to those of the pipeline.
+  void suspect(const SourceLocation& place, std::string message);
 
   Registry registry_;
   PipelineParts parts_;

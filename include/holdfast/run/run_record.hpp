@@ -57,6 +57,9 @@ struct RunRecord {
 
   std::optional<Evaluation> evaluation;  ///< where the source has a true trajectory
   std::string no_evaluation;             ///< the reason why there is no evaluation
+  /// Suspicions of the configuration, the modules, the evaluation and about the figures of the run, in this order; a
+  /// low coverage is said by coverage_warning(). See core/warning.hpp.
+  Warnings warnings;
 
   double start_seconds = 0.0;    ///< time from the start of the run to the first pose [s]
   double total_seconds = 0.0;    ///< duration of the run, evaluation included and dense map excluded [s]
