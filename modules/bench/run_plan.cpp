@@ -15,8 +15,9 @@ namespace {
 class Planner {
  public:
   Planner(Matrix matrix, Registry& registry, const std::vector<SectionDescription>& sections,
-          std::vector<Diagnostic>& diagnostics, const std::string& only)
-      : registry_(registry), diagnostics_(diagnostics), only_(only) {
+          std::vector<Diagnostic>& diagnostics, const std::string& only,
+          const std::function<void(const Configuration&)>& try_out)
+      : registry_(registry), diagnostics_(diagnostics), only_(only), try_out_(try_out) {
     plan_.matrix = std::move(matrix);
     for (const SectionDescription& section : sections)
       if (section.name == perturbation_axis)
@@ -299,7 +300,10 @@ class Planner {
     check_overridden_modules();
     if (!configuration) return;
     check_camera(on, *configuration);
-    if (const auto missing = missing_data(on, *configuration, registry_)) plan_.missing.push_back(*missing);
+    if (const auto missing = missing_data(on, *configuration, registry_))
+      plan_.missing.push_back(*missing);
+    else
+      try_out(*configuration);
     for (const std::uint64_t seed : matrix().seeds)
       for (int repeat = 1; repeat <= matrix().repeats; ++repeat) {
         PlannedRun run = run_of(variant, sequence, "seed" + std::to_string(seed) + "-repeat" + std::to_string(repeat));
@@ -309,6 +313,26 @@ class Planner {
         run.request = to_yaml(*configuration);
         plan_.runs.push_back(std::move(run));
       }
+  }
+
+  /// Makes the modules once for each segmenter with its filters.
+  void try_out(const Configuration& configuration) {
+    if (!try_out_ || !only_.empty() || configuration.filters.empty() || configuration.segmenter.name == "none") return;
+    std::vector<ModuleChoice> modules = configuration.filters;
+    modules.push_back(configuration.segmenter);
+    const auto are_same = [](const ModuleChoice& a, const ModuleChoice& b) {
+      return a.name == b.name && a.values == b.values;
+    };
+    for (const std::vector<ModuleChoice>& others : tried_out_)
+      if (std::equal(modules.begin(), modules.end(), others.begin(), others.end(), are_same)) return;
+    tried_out_.push_back(std::move(modules));
+    try {
+      try_out_(configuration);
+    } catch (const ConfigurationError& error) {
+      found_.insert(found_.end(), error.diagnostics().begin(), error.diagnostics().end());
+    } catch (const Error& error) {
+      plan_.missing.push_back({{}, error.what()});
+    }
   }
 
   /// Asked after a configuration was built: its plugins may have brought the module.
@@ -438,6 +462,8 @@ class Planner {
   Registry& registry_;
   std::vector<Diagnostic>& diagnostics_;
   const std::string& only_;
+  const std::function<void(const Configuration&)>& try_out_;
+  std::vector<std::vector<ModuleChoice>> tried_out_;
   std::vector<Diagnostic> found_;
   RunPlan plan_;
   std::optional<CellConfigurations> configurations_;
@@ -447,8 +473,9 @@ class Planner {
 }  // namespace
 
 RunPlan make_run_plan(Matrix matrix, Registry& registry, const std::vector<SectionDescription>& sections,
-                      std::vector<Diagnostic>& diagnostics, const std::string& only) {
-  return Planner(std::move(matrix), registry, sections, diagnostics, only).plan();
+                      std::vector<Diagnostic>& diagnostics, const std::string& only,
+                      const std::function<void(const Configuration&)>& try_out) {
+  return Planner(std::move(matrix), registry, sections, diagnostics, only, try_out).plan();
 }
 
 std::string plan_text(const RunPlan& plan) {

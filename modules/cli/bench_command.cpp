@@ -161,7 +161,9 @@ void bench(const BenchArguments& arguments, const ProgramHost& host, int& exit_c
   Registry registry = host.modules();
   BenchOptions options;
   choose_executor(arguments, matrix, options, diagnostics);
-  const RunPlan plan = make_run_plan(std::move(matrix), registry, pipeline_sections(), diagnostics, arguments.run);
+  const RunPlan plan =
+      make_run_plan(std::move(matrix), registry, pipeline_sections(), diagnostics, arguments.run,
+                    [&](const Configuration& configuration) { build_pipeline(configuration, registry); });
   if (!arguments.dry_run) diagnostics.insert(diagnostics.end(), plan.missing.begin(), plan.missing.end());
   sort_diagnostics(diagnostics);
   if (!diagnostics.empty()) throw ConfigurationError(std::move(diagnostics));

@@ -45,6 +45,7 @@ namespace {
 CreationContext context_of_source(const Configuration& configuration) {
   CreationContext context;
   if (configuration.camera) context.camera = *configuration.camera;
+  context.sensor = configuration.sensor;
   context.seed = configuration.run.seed;
   context.sequential = !configuration.run.threaded();
   return context;

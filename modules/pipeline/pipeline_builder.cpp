@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/pipeline/pipeline_builder.hpp"
 
+#include <algorithm>
+
 #include "camera_numbers.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/plugin/did_you_mean.hpp"
@@ -51,6 +53,7 @@ PipelineBuilder& PipelineBuilder::source(const SourceDescription& description) {
   has_right_ = description.has_right;
   has_global_shutter_ = description.has_global_shutter;
   context_.class_names = description.class_names;
+  context_.frame_timestamps = description.frame_timestamps;
   return *this;
 }
 
@@ -175,6 +178,7 @@ void PipelineBuilder::check(const Settings& settings, const char* section) {
 void PipelineBuilder::check_camera() {
   const Sensor offered = has_depth_ ? Sensor::rgbd : has_right_ ? Sensor::stereo : Sensor::mono;
   parts_.sensor = sensor_.value_or(offered);
+  context_.sensor = parts_.sensor;
   // The baseline of a real pair is the source's; that of the configured camera is of a virtual one.
   if (source_camera_ && parts_.sensor != Sensor::rgbd) parts_.camera.baseline = source_camera_->baseline;
   if (source_camera_ && has_camera_ && !unknown_camera_ && have_other_numbers(*source_camera_, parts_.camera))
@@ -220,6 +224,17 @@ void PipelineBuilder::check_filter(const ModuleOf<DynamicFilter>& module, const 
   if (needs.segmentation && is_absent(segmenter_))
     complain(module.place,
              "the filter '" + module.name + "' needs a segmentation, but the segmenter is 'none'; choose a segmenter");
+}
+
+void PipelineBuilder::check_classes(const ModuleOf<DynamicFilter>& module, const DynamicFilter& filter) {
+  if (is_absent(segmenter_) || !parts_.segmenter) return;
+  const std::vector<std::string>& known = parts_.segmenter->classes();
+  for (const std::string& name : filter.movable_classes(parts_.segmenter->movable()))
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      complain(module.place, "the filter '" + module.name + "' counts the class '" + name +
+                                 "' as movable, and the segmenter '" + segmenter_->name +
+                                 "' has no such class; expected one of its classes in `classes` of the filter; " +
+                                 did_you_mean(name, known));
 }
 
 /// A map can only be continued by the camera that made it, because bundle adjustment knows one camera, and by the
@@ -318,7 +333,10 @@ void PipelineBuilder::make_modules() {
   parts_.loop_detector = make_if_any(loop_detector_);
   for (ModuleOf<DynamicFilter>& module : filters_) {
     std::unique_ptr<DynamicFilter> filter = make(module);
-    if (filter) check_filter(module, filter->needs());
+    if (filter) {
+      check_filter(module, filter->needs());
+      check_classes(module, *filter);
+    }
     parts_.filters.emplace_back(module.name, std::move(filter));
   }
   for (ModuleOf<Observer>& module : observers_) parts_.observers.push_back(make(module));

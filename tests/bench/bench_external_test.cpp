@@ -364,6 +364,21 @@ TEST_F(BenchExternalTest, FindsTheMatricesOfTheProjectSound) {
   }
 }
 
+TEST_F(BenchExternalTest, ModulesThatDoNotFitAreFoundBeforeAnythingRuns) {
+  program_.write(
+      "masked.yaml",
+      "features: orb\noptimizer: schur\nsegmenter: truth\nfilters:\n  - semantic_mask: { classes: [cat] }\n");
+  program_.write("matrix.yaml",
+                 "base: masked.yaml\nsequences: { room: { source: { simulated: { duration: 0.1 } } } }\n");
+  for (const char* option : {"--dry-run", "--output=out"}) {
+    const Outcome outcome = program_.run({"bench", "matrix.yaml", option});
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.errors, AllOf(HasSubstr("masked.yaml:5:5: the filter 'semantic_mask' counts the class 'cat'"),
+                                      HasSubstr("the segmenter 'truth' has no such class"), HasSubstr("person")));
+  }
+  EXPECT_FALSE(std::filesystem::exists(program_.path("out")));
+}
+
 TEST_F(BenchExternalTest, ListsRunsAndWhatIsMissing) {
   program_.write("matrix.yaml",
                  "systems: { theirs: { command: [/no/such/program] } }\n"

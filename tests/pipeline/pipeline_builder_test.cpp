@@ -84,6 +84,47 @@ class MaskReader final : public DynamicFilter {
   void apply(const FilterContext&, StaticEvidence&) override {}
 };
 
+/// Uses classes of the segmenter, or all that it calls movable.
+class ClassReader final : public DynamicFilter {
+ public:
+  explicit ClassReader(std::vector<std::string> classes) : classes_(std::move(classes)) {}
+  Needs needs() const override { return {.segmentation = true}; }
+  std::vector<std::string> movable_classes(const std::vector<std::string>& specified) const override {
+    return classes_.empty() ? specified : classes_;
+  }
+  void apply(const FilterContext&, StaticEvidence&) override {}
+
+ private:
+  std::vector<std::string> classes_;
+};
+
+class TwoClasses final : public Segmenter {
+ public:
+  const std::vector<std::string>& classes() const override { return classes_; }
+  std::vector<std::string> movable() const override { return {"person"}; }
+  Segmentation segment(const SensorFrame&) override { return {}; }
+
+ private:
+  std::vector<std::string> classes_{"background", "person"};
+};
+
+TEST(PipelineBuilder, ClassesOfFiltersAreThoseOfTheSegmenter) {
+  test::PointWorld world(Camera{});
+  const auto complaints_with = [&](std::vector<std::string> classes) {
+    PipelineBuilder builder = builder_for(world);
+    builder.segmenter({std::make_unique<TwoClasses>(), "two"})
+        .filter({std::make_unique<ClassReader>(std::move(classes)), "reader"});
+    return complaints(builder);
+  };
+  EXPECT_EQ(complaints_with({"person"}), "");
+  EXPECT_EQ(complaints_with({"background", "person"}), "");
+  EXPECT_EQ(complaints_with({}), "");
+  EXPECT_THAT(complaints_with({"person", "cat"}),
+              HasSubstr("the filter 'reader' counts the class 'cat' as movable, and the segmenter 'two' has no such "
+                        "class; expected one of its classes in `classes` of the filter; known are background, person"));
+  EXPECT_THAT(complaints_with({"persn"}), HasSubstr("did you mean 'person'?"));
+}
+
 TEST(PipelineBuilder, TypedSettingsNamesAndObjectsAreOneThing) {
   const auto trajectory = [](ModuleOf<Optimizer> optimizer) {
     test::PointWorld world(find_camera("tum_fr1").value());

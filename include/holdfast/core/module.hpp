@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "holdfast/core/camera.hpp"
+#include "holdfast/core/sensor.hpp"
 #include "holdfast/core/warning.hpp"
 
 namespace holdfast {
@@ -35,6 +37,10 @@ struct CreationContext {
   /// Class names of the source's FrameTruth::class_labels, by index; empty if the source has none, and for the source
   /// itself.
   std::vector<std::string> class_names = {};
+  /// What is used of the frames, if the run says it; empty for all that the source has.
+  std::optional<Sensor> sensor = {};
+  /// SourceDescription::frame_timestamps of the source; empty for the source itself.
+  std::vector<double> frame_timestamps = {};
 };
 
 }  // namespace holdfast

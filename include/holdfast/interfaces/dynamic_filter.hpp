@@ -129,6 +129,10 @@ class DynamicFilter : public Module {
   static constexpr const char* kind = "filters";
 
   virtual Needs needs() const = 0;
+  /// The classes of the segmenter whose pixels count as movable, by name; `specified` is Segmenter::movable(). Names
+  /// that the segmenter does not have are an error before the first frame, and the run counts masks in which these
+  /// classes cover most of the image. Empty for a filter that uses no classes. Constant after construction.
+  virtual std::vector<std::string> movable_classes(const std::vector<std::string>& /*specified*/) const { return {}; }
   /// Adds evidence about the features of context.frame in finite numbers; adds nothing where it cannot decide. The same
   /// contexts in the same order give the same evidence. Throws InputError for a context that it cannot use, for example
   /// when the segmenter lacks a class that its settings name.

@@ -32,6 +32,8 @@ struct SourceDescription {
   std::string truth_frame = "raw";           ///< of FrameSource::truth(): "raw" as recorded, or "transformed"
   std::vector<std::string> class_names;      ///< class names of FrameTruth::class_labels, by index
   std::optional<std::uint64_t> frame_count;  ///< empty if the source is endless
+  /// Time stamps of all frames in their order [s], if they are known before the first frame; otherwise empty.
+  std::vector<double> frame_timestamps;
   std::optional<Camera> camera;  ///< calibration known to the source; another one in the configuration is an error
 };
 

@@ -137,6 +137,7 @@ class PipelineBuilder {
   void throw_complaints();
   void choose_sensor();
   void check_filter(const ModuleOf<DynamicFilter>& module, const Needs& needs);
+  void check_classes(const ModuleOf<DynamicFilter>& module, const DynamicFilter& filter);
   void check_map() const;
   void check_places() const;
   void complain(const SourceLocation& place, std::string message);

@@ -46,6 +46,10 @@ class SemanticMask final : public DynamicFilter {
   }
 
   Needs needs() const override { return {.segmentation = true}; }
+  std::vector<std::string> movable_classes(const std::vector<std::string>& specified) const override {
+    if (!settings_.classes.empty()) return settings_.classes;
+    return specified.empty() ? std::vector<std::string>{"person"} : specified;
+  }
 
   void apply(const FilterContext& context, StaticEvidence& evidence) override {
     if (context.classes == nullptr) return;
@@ -60,13 +64,9 @@ class SemanticMask final : public DynamicFilter {
  private:
   /// Throws InputError for a class that the segmenter does not have.
   void find_movable(const std::vector<std::string>& classes, const std::vector<std::string>* said_by_segmenter) {
-    static const std::vector<std::string> otherwise{"person"};
-    const bool segmenter_says = said_by_segmenter != nullptr && !said_by_segmenter->empty();
-    const std::vector<std::string>& names = !settings_.classes.empty() ? settings_.classes
-                                            : segmenter_says           ? *said_by_segmenter
-                                                                       : otherwise;
     movable_.fill(0);
-    for (const std::string& name : names) {
+    for (const std::string& name :
+         movable_classes(said_by_segmenter != nullptr ? *said_by_segmenter : std::vector<std::string>())) {
       const auto found = std::find(classes.begin(), classes.end(), name);
       if (found == classes.end())
         throw InputError({"filters: semantic_mask: classes"},

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -65,8 +66,13 @@ inline constexpr const char* external_request_file = "request.json";
 /// each once; what is only missing on this machine goes to RunPlan::missing. Plugins that configurations name are
 /// loaded into `registry`. With the id of a run in `only`, the other cells are left out of RunPlan::runs, and are not
 /// checked.
+///
+/// `try_out` makes the modules of a configuration and throws what does not fit, such as a filter with a class that the
+/// segmenter does not have. It is called once for each segmenter with its filters, where nothing is missing; a
+/// ConfigurationError is appended to `diagnostics`, any other Error to RunPlan::missing.
 RunPlan make_run_plan(Matrix matrix, Registry& registry, const std::vector<SectionDescription>& sections,
-                      std::vector<Diagnostic>& diagnostics, const std::string& only = "");
+                      std::vector<Diagnostic>& diagnostics, const std::string& only = "",
+                      const std::function<void(const Configuration&)>& try_out = {});
 
 /// What `--dry-run` prints: every run, their count, remarks, and what is missing.
 std::string plan_text(const RunPlan& plan);
