@@ -78,6 +78,7 @@ struct Network::Parts {
 
   NetworkOptions options;
   cv::Size size;
+  OnnxTensor output;  // that run() computes
   OnnxNet net;
   cv::Mat resized, input;
   std::vector<cv::Mat> scores;
@@ -125,7 +126,7 @@ Network::Network(const NetworkOptions& options) {
   parts_ = std::make_unique<Parts>(options);
   const OnnxSignature& signature = parts_->net.signature();
   parts_->size = input_size(options, parts_->net);
-  const std::string output = chosen_output(options, signature);
+  parts_->output = parts_->net.output(chosen_output(options, signature), "output_name");
   for (std::size_t channel = 0; channel < 3; ++channel)
     for (std::size_t value = 0; value < 256; ++value)
       parts_->value[channel][value] = static_cast<float>(
@@ -136,7 +137,7 @@ Network::Network(const NetworkOptions& options) {
   cv::Mat& input = parts_->input;
   input.create(4, options.channels_last ? channels_last : channels_first, CV_32F);
   parts_->net.load({.inputs = {{signature.inputs.front().name, {input.size.p, input.size.p + input.dims}}},
-                    .outputs = {output},
+                    .outputs = {parts_->output.name},
                     .advice = "expected a network for such an image; check width, height and layout"});
 }
 
@@ -157,6 +158,8 @@ void Network::finish_loading() { parts_->net.finish_loading(); }
 
 int Network::width() const { return parts_->size.width; }
 int Network::height() const { return parts_->size.height; }
+
+const OnnxTensor& Network::output() const { return parts_->output; }
 
 std::string Network::input_text() const { return parts_->input_text(); }
 

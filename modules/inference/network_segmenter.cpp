@@ -17,6 +17,8 @@ NetworkSegmenter::NetworkSegmenter(const NetworkOptions& options, OutputForm for
       is_loaded_in_background_(options.in_background),
       network_(options) {
   form_.classes = static_cast<int>(classes_.size());
+  form_.input_width = network_.width(), form_.input_height = network_.height();
+  check_output_kind(network_.output(), form_);
   const auto unknown = std::find(classes_.begin(), classes_.end(), "unknown");
   if (unknown != classes_.end()) unknown_label_ = static_cast<int>(unknown - classes_.begin());
   if (!is_loaded_in_background_) NetworkSegmenter::finish_loading();

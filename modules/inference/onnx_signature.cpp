@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 #include <utility>
@@ -177,6 +178,40 @@ void check_layers(const std::vector<Bytes>& layers, std::set<std::string>& provi
   }
 }
 
+/// Where the values of a tensor come from: an operator, and its first input.
+struct Producer {
+  std::string kind, input;
+};
+
+/// The operator that computes the values of the tensor `name`, behind those that keep them.
+std::string computing_operator(const std::map<std::string, Producer>& producers, std::string name) {
+  static const std::set<std::string> keeps_values = {"Cast",  "Flatten", "Identity",  "Reshape",   "Resize",
+                                                     "Slice", "Squeeze", "Transpose", "Unsqueeze", "Upsample"};
+  for (std::size_t step = 0; step <= producers.size(); ++step) {
+    const auto producer = producers.find(name);
+    if (producer == producers.end()) break;
+    if (!keeps_values.contains(producer->second.kind)) return producer->second.kind;
+    name = producer->second.input;
+  }
+  return "";
+}
+
+std::map<std::string, Producer> producers_of(const std::vector<Bytes>& layers) {
+  std::map<std::string, Producer> producers;
+  for (const Bytes layer : layers) {
+    Producer producer;
+    std::vector<std::string> outputs;
+    bool has_input = false;
+    each_field(layer, [&](const Field& f) {
+      if (f.number == field::node_operator) producer.kind = text(f.content);
+      if (f.number == field::node_output) outputs.push_back(text(f.content));
+      if (f.number == field::node_input && !std::exchange(has_input, true)) producer.input = text(f.content);
+    });
+    for (const std::string& output : outputs) producers[output] = producer;
+  }
+  return producers;
+}
+
 OnnxSignature read_graph(Bytes bytes) {
   OnnxSignature signature;
   std::set<std::string> weights;
@@ -206,6 +241,8 @@ OnnxSignature read_graph(Bytes bytes) {
   for (const OnnxTensor& output : signature.outputs)
     if (provided.count(output.name) == 0)
       throw Unusable{"declares an output '" + output.name + "', which no layer provides; export it again"};
+  const std::map<std::string, Producer> producers = producers_of(layers);
+  for (OnnxTensor& output : signature.outputs) output.computed_by = computing_operator(producers, output.name);
   std::erase_if(signature.inputs, [&](const OnnxTensor& input) { return weights.count(input.name) > 0; });
   const auto is_half = [](const OnnxTensor& tensor) {
     return tensor.element_type == static_cast<int>(type::half_precision);

@@ -22,6 +22,9 @@ struct Scores {
   const float* row(int channel, int y) const { return data + channel * channel_step + y * row_step; }
 };
 
+/// A network with a larger input does not give one pixel for all of it.
+constexpr int max_pixels_of_one = 32 * 32;
+
 [[noreturn]] void fail(const OutputForm& form, const std::string& message) {
   throw InputError({form.model.string()}, message);
 }
@@ -30,6 +33,41 @@ std::string expected_shape(const OutputForm& form) {
   std::string channels = form.kind == OutputKind::labels ? "1" : std::to_string(form.classes);
   if (form.kind != OutputKind::labels && form.classes == 2) channels += " (or 1)";
   return form.channels_last ? "1 x height x width x " + channels : "1 x " + channels + " x height x width";
+}
+
+/// Whether height and width can be those of an image of the network's input, up to padding and rounding: their ratio
+/// differs by a factor of two at most. A single pixel is none.
+bool can_be_image(int height, int width, const OutputForm& form) {
+  if (form.input_width < 1 || form.input_height < 1) return true;
+  if (height == 1 && width == 1) return form.input_width * form.input_height <= max_pixels_of_one;
+  const double expected = static_cast<double>(form.input_height) / form.input_width;
+  const double least = (height - 0.5) / (width + 0.5), most = (height + 0.5) / (width - 0.5);
+  return most >= 0.5 * expected && least <= 2.0 * expected;
+}
+
+/// What a tensor that is no image looks like.
+std::string resemblance(const std::vector<std::int64_t>& shape) {
+  std::vector<std::int64_t> sizes;
+  for (const std::int64_t size : shape)
+    if (size != 1) sizes.push_back(size);
+  if (sizes.size() <= 1)
+    return ": it looks like a classifier's scores of the whole image, " + std::to_string(sizes.empty() ? 1 : sizes[0]);
+  if (sizes.size() > 2) return "";
+  const auto [few, many] = std::minmax(sizes[0], sizes[1]);
+  constexpr std::int64_t numbers_of_box = 4, least_with_scores = 8;
+  if (few < numbers_of_box) return "";
+  return ": it looks like the boxes of a detector, " + std::to_string(many) + " with " + std::to_string(few) +
+         " numbers each" +
+         (few < least_with_scores ? "" : " (position, size and scores, with masks their coefficients)");
+}
+
+[[noreturn]] void refuse_tensor(const std::vector<std::int64_t>& shape, const OutputForm& form) {
+  fail(form, "gives an output of " + shape_text(shape) + ", which is no image of its input of " +
+                 std::to_string(form.input_width) + "x" + std::to_string(form.input_height) + " pixels" +
+                 resemblance(shape) + "; expected a network for semantic segmentation, with an output of " +
+                 expected_shape(form) +
+                 "; correct `output_name` or `layout`, choose another network, or run this one elsewhere and read its "
+                 "masks with the segmenter `precomputed`");
 }
 
 Scores read_shape(const cv::Mat& output, const OutputForm& form) {
@@ -56,14 +94,43 @@ Scores read_shape(const cv::Mat& output, const OutputForm& form) {
   scores.pixel_step = form.channels_last ? scores.channels : 1;
   scores.row_step = scores.width * scores.pixel_step;
   scores.channel_step = form.channels_last ? 1 : scores.height * scores.row_step;
+  const bool is_image = can_be_image(scores.height, scores.width, form);
+  // With channels as well, another layout or number of classes is the likelier mistake.
+  const bool has_channels = std::count_if(shape.begin(), shape.end(), [](std::int64_t size) { return size > 1; }) > 2;
+  if (!is_image && !has_channels) refuse_tensor(shape, form);
   const bool fits = form.kind == OutputKind::labels
                         ? scores.channels == 1
                         : scores.channels == form.classes || (scores.channels == 1 && form.classes == 2);
   if (!fits || scores.height < 1 || scores.width < 1) refuse();
+  if (!is_image) refuse_tensor(shape, form);
   return scores;
 }
 
-void check_values(const cv::Mat& output, const OutputForm& form) {
+/// Whether all numbers are whole and not negative, and one of them is more than `least`: no network computes such
+/// scores of its own accord, so that many of them are labels. Ends at the first number that is not.
+bool are_labels(const float* value, std::size_t count, float least) {
+  constexpr std::size_t enough = 100;
+  float highest = 0.0F;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!(value[i] >= 0.0F && value[i] <= 255.0F && value[i] == std::floor(value[i]))) return false;
+    highest = std::max(highest, value[i]);
+  }
+  return count >= enough && highest > least;
+}
+
+[[noreturn]] void refuse_labels(const OutputForm& form, const std::string& found) {
+  fail(form,
+       found + "; expected " +
+           (form.kind == OutputKind::logits ? "scores for `output: logits`" : "numbers for `output: probabilities`") +
+           "; set `output: labels`, and name all classes of the network in `classes`");
+}
+
+/// By TensorProto.DataType: all but float, string, float16, double, complex and bfloat16.
+bool is_whole_number(int element_type) {
+  return (element_type >= 2 && element_type <= 7) || element_type == 9 || element_type == 12 || element_type == 13;
+}
+
+void check_values(const cv::Mat& output, std::size_t pixels, const OutputForm& form) {
   const auto* value = output.ptr<float>();
   const std::size_t count = output.total();
   float lowest = value[0], highest = value[0];
@@ -74,6 +141,11 @@ void check_values(const cv::Mat& output, const OutputForm& form) {
     highest = std::max(highest, value[i]);
   }
   if (!finite) fail(form, "gives numbers that are not finite; expected scores; check `scale`, `mean` and the weights");
+  const bool has_one_channel = output.total() == pixels;
+  if (form.kind != OutputKind::labels && has_one_channel &&
+      are_labels(value, count, form.kind == OutputKind::logits ? 0.0F : 1.0F))
+    refuse_labels(form, "gives whole numbers from 0 to " + std::to_string(std::lround(highest)) +
+                            ", which are labels and no scores");
   constexpr float slack = 1e-3F;
   if (form.kind == OutputKind::probabilities && (lowest < -slack || highest > 1.0F + slack))
     fail(form, "gives numbers from " + std::to_string(lowest) + " to " + std::to_string(highest) +
@@ -247,9 +319,23 @@ void decode_labels(const Scores& scores, const OutputForm& form, cv::Mat& labels
 
 }  // namespace
 
+void check_output_kind(const OnnxTensor& output, const OutputForm& form) {
+  if (form.kind == OutputKind::labels) return;
+  const std::string& last = output.computed_by;
+  const std::string name = "gives in its output '" + output.name + "' ";
+  const bool is_choice = last == "ArgMax" || last == "ArgMin" || last == "Greater" || last == "GreaterOrEqual" ||
+                         last == "Less" || last == "LessOrEqual";
+  if (is_choice) refuse_labels(form, name + "labels, which its layer " + last + " has chosen");
+  if (is_whole_number(output.element_type)) refuse_labels(form, name + "whole numbers, which are labels and no scores");
+  if (form.kind == OutputKind::logits && (last == "Sigmoid" || last == "Softmax"))
+    fail(form, name + "probabilities, because " + last +
+                   " is the last layer that computes; expected scores before it "
+                   "for `output: logits`; set `output: probabilities`");
+}
+
 Segmentation decode_segmentation(const cv::Mat& output, const OutputForm& form, int width, int height) {
   const Scores scores = read_shape(output, form);
-  check_values(output, form);
+  check_values(output, static_cast<std::size_t>(scores.width) * static_cast<std::size_t>(scores.height), form);
   Segmentation result;
   result.labels.create(height, width, CV_8UC1);
   if (form.kind == OutputKind::labels) {

@@ -134,6 +134,38 @@ std::string problem(const cv::Mat& output, const OutputForm& form) {
   return "no error";
 }
 
+TEST(SegmentationOutput, LabelsInPlaceOfScoresAreRecognised) {
+  Output output(1, 12, 10, false);
+  for (int x = 0; x < 10; ++x) output.at(0, 3, x) = 7.0F;
+  EXPECT_THAT(problem(output.data, form_of(output, OutputKind::logits, 2)),
+              HasSubstr("gives whole numbers from 0 to 7, which are labels and no scores; expected scores for `output: "
+                        "logits`; set `output: labels`"));
+  EXPECT_THAT(problem(output.data, form_of(output, OutputKind::probabilities, 2)), HasSubstr("set `output: labels`"));
+  output.at(0, 11, 9) = 0.25F;
+  EXPECT_EQ(problem(output.data, form_of(output, OutputKind::logits, 2)), "no error");
+  output.at(0, 11, 9) = -1.0F;
+  EXPECT_EQ(problem(output.data, form_of(output, OutputKind::logits, 2)), "no error");
+}
+
+TEST(SegmentationOutput, ShapesOfImages) {
+  const auto problem_of = [](std::vector<int> sizes, int width, int height, int classes = 2) {
+    const cv::Mat data(static_cast<int>(sizes.size()), sizes.data(), CV_32F, cv::Scalar(0));
+    return problem(data, {OutputKind::logits, false, classes, "net.onnx", width, height});
+  };
+  // Strides with and without padding, U-Nets without padding, a portrait input.
+  EXPECT_EQ(problem_of({1, 2, 65, 65}, 513, 513), "no error");
+  EXPECT_EQ(problem_of({1, 1, 388, 228}, 412, 572), "no error");
+  EXPECT_EQ(problem_of({1, 15, 20}, 640, 480), "no error");
+  EXPECT_EQ(problem_of({1, 2, 1, 2}, 64, 48), "no error");
+  EXPECT_EQ(problem_of({1, 2, 40, 12}, 384, 1248), "no error");
+  for (const std::vector<int>& boxes :
+       std::vector<std::vector<int>>{{1, 84, 8400}, {1, 116, 8400}, {1, 25200, 85}, {1, 300, 6}, {1, 1, 200, 7}})
+    EXPECT_THAT(problem_of(boxes, 640, 640), HasSubstr("boxes of a detector"));
+  EXPECT_THAT(problem_of({1, 1000}, 224, 224), HasSubstr("scores of the whole image, 1000"));
+  EXPECT_THAT(problem_of({1, 2, 1, 1}, 224, 224), HasSubstr("scores of the whole image, 2"));
+  EXPECT_THAT(problem_of({1, 480, 640, 3}, 640, 480, 3), HasSubstr("correct `classes`, `output`, `output_name` or"));
+}
+
 TEST(SegmentationOutput, SaysWhatWasFoundAndExpected) {
   Output output(3, 4, 5, false);
   EXPECT_EQ(problem(output.data, form_of(output, OutputKind::logits, 21)),

@@ -85,7 +85,7 @@ TEST(OnnxSegmenter, WrongModelsSayWhatWasFoundAndExpected) {
   EXPECT_THAT(error("none"), AllOf(StartsWith(HOLDFAST_TEST_MODELS "/none.onnx: is missing"), HasSubstr("`model`")));
   EXPECT_THAT(error("logits", {{"classes", std::vector<std::string>{"background", "person"}}}),
               HasSubstr("logits.onnx: gives an output of 1x3x12x16; expected 1 x 2 (or 1) x height x width"));
-  EXPECT_THAT(error("flat"), HasSubstr("gives an output of 1x576; expected 1 x 3 x height x width"));
+  EXPECT_THAT(error("flat"), HasSubstr("gives an output of 1x576, which is no image of its input of 16x12 pixels"));
   EXPECT_THAT(error("logits", {{"width", std::int64_t{640}}}),
               HasSubstr("has an input of 1x3x12x16, but `width` is 640; expected 16"));
   EXPECT_THAT(error("any_size"), HasSubstr("has an input of 1x3x?x?, of any height; set `height`"));
@@ -102,6 +102,47 @@ TEST(OnnxSegmenter, WrongModelsSayWhatWasFoundAndExpected) {
               HasSubstr("expected probabilities, 0 to 1; is it `output: logits`?"));
   EXPECT_THAT(error("../make_models.py"), HasSubstr("is missing"));
   EXPECT_THAT(error("logits", {{"mean", std::vector<double>{1.0}}}), HasSubstr("mean: found 1 number; expected 3"));
+}
+
+const ParameterValues two_classes = {{"classes", std::vector<std::string>{"background", "person"}}};
+
+TEST(OnnxSegmenter, TensorsThatAreNoImageAreNamed) {
+  const auto error = [](const std::string& model, ParameterValues values) {
+    return error_of([&] { make(model, std::move(values)); });
+  };
+  EXPECT_THAT(error("boxes", two_classes),
+              AllOf(HasSubstr("gives an output of 1x8x72, which is no image of its input of 16x12 pixels: it looks "
+                              "like the boxes of a detector, 72 with 8 numbers each"),
+                    HasSubstr("expected a network for semantic segmentation, with an output of 1 x 2 (or 1) x height "
+                              "x width"),
+                    HasSubstr("`precomputed`")));
+  EXPECT_THAT(error("flat", two_classes), HasSubstr("like a classifier's scores of the whole image, 576"));
+  EXPECT_THAT(error("whole_image", {}), HasSubstr("like a classifier's scores of the whole image, 3"));
+}
+
+TEST(OnnxSegmenter, WhatTheLastLayerComputesIsCompared) {
+  const auto error = [](const std::string& model, ParameterValues values) {
+    return error_of([&] { make(model, std::move(values)); });
+  };
+  for (const char* model : {"labels", "cast_labels"}) {
+    EXPECT_THAT(error(model, two_classes),
+                AllOf(HasSubstr("labels, which its layer ArgMax has chosen"), HasSubstr("set `output: labels`")));
+    ParameterValues probabilities = two_classes;
+    probabilities["output"] = "probabilities";
+    EXPECT_THAT(error(model, probabilities), HasSubstr("ArgMax"));
+    expect_stripes(*make(model, {{"output", "labels"}}));
+  }
+  EXPECT_THAT(error("probabilities", {}), AllOf(HasSubstr("probabilities, because Softmax is the last layer"),
+                                                HasSubstr("set `output: probabilities`")));
+  EXPECT_THAT(error("sigmoid", two_classes), HasSubstr("probabilities, because Sigmoid is the last layer"));
+  ParameterValues probabilities = two_classes;
+  probabilities["output"] = "probabilities";
+  expect_stripes(*make("sigmoid", probabilities), 1, 0);
+}
+
+TEST(OnnxSegmenter, FreeDimensionsAreThoseOfTheSettings) {
+  expect_stripes(*make("resized", {{"width", std::int64_t{32}}, {"height", std::int64_t{24}}}));
+  EXPECT_THAT(error_of([] { make("resized", {{"height", std::int64_t{24}}}); }), HasSubstr("set `width`"));
 }
 
 TEST(OnnxSegmenter, WrongNamesAreToldAtOnce) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "holdfast/inference/onnx_signature.hpp"
 #include "holdfast/settings/network_engine.hpp"
 
 namespace holdfast {
@@ -65,6 +66,8 @@ class Network {
 
   int width() const;
   int height() const;
+  /// The output that run() computes, as its file declares it.
+  const OnnxTensor& output() const;
   /// Shape of the input, such as "1x3x480x640".
   std::string input_text() const;
 

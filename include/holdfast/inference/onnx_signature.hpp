@@ -14,6 +14,9 @@ struct OnnxTensor {
   std::string name;
   int element_type = 0;             ///< TensorProto.DataType: 1 = float, 7 = int64, 10 = float16, ...
   std::vector<std::int64_t> shape;  ///< -1 for a free dimension; empty if nothing is declared
+  /// Of an output: the operator that computes its values ("Conv", "ArgMax"). Operators behind it that only move, resize
+  /// or convert them are skipped.
+  std::string computed_by = {};
 
   /// Shape as text, such as "1x3x480x640", with '?' for a free dimension.
   std::string shape_text() const;

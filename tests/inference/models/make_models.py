@@ -37,7 +37,7 @@ def value_info(name, shape, element=FLOAT):
 
 
 def tensor(name, shape, values, element=FLOAT):
-    form = {FLOAT: "f", FLOAT16: "e"}[element]
+    form = {FLOAT: "f", FLOAT16: "e", INT64: "q"}[element]
     raw = struct.pack(f"<{len(values)}{form}", *values)
     return b"".join(number(1, s) for s in shape) + number(2, element) + content(8, name) + content(9, raw)
 
@@ -52,6 +52,10 @@ def integers(name, values):
 
 def real(name, value):
     return content(5, content(1, name) + varint(2 << 3 | 5) + struct.pack("<f", value) + number(20, 1))
+
+
+def text(name, value):
+    return content(5, content(1, name) + content(4, value) + number(20, 3))
 
 
 def node(kind, inputs, output, *attributes):
@@ -160,6 +164,29 @@ def main():
     half, half_weights = convolution(SCORES, "image", "scores", element=FLOAT16)
     write("half", model([half], [value_info("image", [1, 3] + plane, FLOAT16)],
                         [value_info("scores", [1, 3] + plane, FLOAT16)], half_weights))
+
+    boxes = node("Reshape", ["scores", "box_shape"], "boxes")
+    box_shape = tensor("box_shape", [3], [1, 8, 72], INT64)
+    write("boxes", model([conv, boxes], [image], [value_info("boxes", [1, 8, 72])], weights + [box_shape]))
+    mean = node("GlobalAveragePool", ["scores"], "means")
+    write("whole_image", model([conv, mean], [value_info("image", [1, 3, 96, 128])],
+                               [value_info("means", [1, 3, 1, 1])], weights))
+
+    cast = node("Cast", ["labels"], "numbers", integer("to", FLOAT))
+    numbers = value_info("numbers", [1, 1] + plane)
+    write("cast_labels", model([conv, best, cast], [image], [numbers], weights))
+    sigmoid = node("Sigmoid", ["score"], "share")
+    write("sigmoid", model([one, sigmoid], [image], [value_info("share", [1, 1] + plane)], one_weights))
+
+    # As PyTorch exports an interpolation to the size of the input, with every dimension of it free but the channels.
+    parts = [coarse, node("Shape", ["image"], "image_shape"), node("Shape", ["scores"], "scores_shape"),
+             node("Gather", ["image_shape", "plane"], "size"), node("Gather", ["scores_shape", "leading"], "count"),
+             node("Concat", ["count", "size"], "full_shape", integer("axis", 0)),
+             node("Resize", ["scores", "", "", "full_shape"], "full", text("mode", "linear"),
+                  text("coordinate_transformation_mode", "half_pixel"))]
+    indices = [tensor("plane", [2], [2, 3], INT64), tensor("leading", [2], [0, 1], INT64)]
+    write("resized", model(parts, [value_info("image", ["batch", 3, "height", "width"])],
+                           [value_info("full", ["batch", 3, "height", "width"])], coarse_weights + indices, opset=11))
 
     write("every_layer", every_layer())
 
