@@ -45,10 +45,12 @@ std::string text_of(const ParameterValues& values, const std::string& name) {
 }
 
 /// A recording in TUM layout that lacks one of its lists.
-std::optional<std::string> missing_list(const fs::path& folder, const std::string& associations) {
+std::optional<std::string> missing_list(const fs::path& folder, const std::string& associations,
+                                        bool needs_depth = true) {
   if (!is_there(folder)) return "the folder '" + folder.string() + "' is missing";
   for (const char* list : {"rgb.txt", "depth.txt", "groundtruth.txt"}) {
     if (!associations.empty() && std::string(list) != "groundtruth.txt") continue;
+    if (!needs_depth && std::string(list) == "depth.txt") continue;
     if (!is_there(folder / list))
       return "'" + (folder / list).string() + "' is missing" +
              (std::string(list) == "groundtruth.txt" ? ", and without truth there is nothing to measure" : "");
@@ -66,7 +68,8 @@ std::optional<Diagnostic> missing_data(const MatrixSequence& sequence, const Con
       configuration.source.name == "icl_nuim" && is_there(list.parent_path()) && !is_there(list))
     return missing(sequence, "'" + list.string() + "' is missing");
   if (configuration.source.name == "tum")
-    if (const auto list = missing_list(text_of(source, "path"), text_of(source, "associations")))
+    if (const auto list = missing_list(text_of(source, "path"), text_of(source, "associations"),
+                                       configuration.sensor != Sensor::mono))
       return missing(sequence, *list);
   for (const ModuleChoice* choice : {&configuration.source, &configuration.segmenter, &configuration.features,
                                      &configuration.matcher, &configuration.loop_detector}) {

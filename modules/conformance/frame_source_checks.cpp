@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "check.hpp"
@@ -96,6 +97,7 @@ void description_stays(const Maker& maker) {
   EXPECT_EQ(before.has_depth, after.has_depth);
   EXPECT_EQ(before.has_right, after.has_right);
   EXPECT_EQ(before.frame_count, after.frame_count);
+  EXPECT_EQ(before.frame_timestamps, after.frame_timestamps);
   EXPECT_EQ(before.class_names, after.class_names);
   EXPECT_EQ(before.camera.has_value(), after.camera.has_value());
 }
@@ -107,6 +109,13 @@ void ends_for_good(const Maker& maker) {
   if (!count || *count > most) GTEST_SKIP() << "the source is endless or long";
   const std::vector<SensorFrame> frames = first_frames(*source, static_cast<int>(most) + 1);
   EXPECT_EQ(frames.size() + source->skipped().size(), *count) << "frames and skipped frames, and frame_count";
+  const std::vector<double> stamps = source->describe().frame_timestamps;
+  if (!stamps.empty()) {
+    EXPECT_EQ(stamps.size(), *count) << "frame_timestamps and frame_count";
+    for (const SensorFrame& frame : frames)
+      EXPECT_TRUE(std::binary_search(stamps.begin(), stamps.end(), frame.timestamp))
+          << "frame_timestamps does not have the stamp " << frame.timestamp << " of frame " << frame.index;
+  }
   for (int again = 0; again < 3; ++again) EXPECT_FALSE(source->next()) << "a frame after the end";
 }
 

@@ -93,6 +93,13 @@ std::optional<SensorFrame> ImageSequence::next() {
       skipped_.push_back({index, files_[index].timestamp, error.what()});
     }
   }
+std::vector<double> ImageSequence::timestamps() const {
+  std::vector<double> stamps;
+  stamps.reserve(files_.size());
+  for (const ImageFiles& files : files_) stamps.push_back(files.timestamp);
+  return stamps;
+}
+
   if (!files_.empty() && skipped_.size() == files_.size())
     throw InputError({}, "none of the " + std::to_string(files_.size()) +
                              " frames can be used; the first: " + skipped_.front().reason);

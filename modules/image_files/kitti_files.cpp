@@ -71,14 +71,14 @@ void check_projection(const SourceLocation& place, const KittiProjection& p) {
 
 }  // namespace
 
-std::vector<KittiProjection> read_kitti_calibration(const std::filesystem::path& file) {
+std::vector<KittiProjection> read_kitti_calibration(const std::filesystem::path& file, std::size_t least) {
   std::vector<KittiProjection> projections;
   read_lines(file, "a 3x4 projection matrix, row by row", [&](const SourceLocation& place, const NumberedLine& line) {
     if (!line.name.empty() && line.name.front() != 'P') return;  // Tr, the laser scanner's
     check_projection(place, line.matrix);
     projections.push_back(line.matrix);
   });
-  if (projections.size() < 2)
+  if (projections.size() < least)
     throw InputError({file.string()}, "has " + std::to_string(projections.size()) +
                                           " projection matrices; expected one for each camera, left before right");
   return projections;

@@ -20,18 +20,20 @@ struct Pair {
 constexpr std::array<Pair, 3> pairs = {
     {{"colour", "image_2", "image_3", 2}, {"grey", "image_0", "image_1", 0}, {"pair", "left", "right", 0}}};
 
-Pair find_pair(const KittiOptions& options) {
+/// The cameras that are read, and whether the right one is among them.
+std::pair<Pair, bool> find_pair(const KittiOptions& options) {
   require_recording_folder(options.path, "the folder of a KITTI sequence", "source.kitti.path");
   std::error_code error;
+  const auto has = [&](const char* folder) { return std::filesystem::is_directory(options.path / folder, error); };
   for (const Pair& pair : pairs) {
-    if (options.cameras == pair.name) return pair;
-    if (options.cameras == "auto" && std::filesystem::is_directory(options.path / pair.left, error) &&
-        std::filesystem::is_directory(options.path / pair.right, error))
-      return pair;
+    if (options.cameras == pair.name) return {pair, has(pair.right) || !options.left_is_enough};
+    if (options.cameras == "auto" && has(pair.left) && has(pair.right)) return {pair, true};
   }
+  for (const Pair& pair : pairs)
+    if (has(pair.left)) return {pair, false};
   throw InputError({options.path.string()},
-                   "has no stereo pair; expected the folders image_2 and image_3, image_0 and image_1, or left and "
-                   "right");
+                   "has neither a stereo pair nor a left camera; expected the folders image_2 and image_3, image_0 and "
+                   "image_1, left and right, or the first of two");
 }
 
 /// The truth of the reference camera.
@@ -56,37 +58,42 @@ Trajectory read_truth(const KittiOptions& options, const std::vector<ImageFiles>
 }
 
 /// The left camera of the pair, and its position in the frame of the reference camera.
-std::pair<Camera, Eigen::Vector3d> read_camera(const KittiOptions& options, const Pair& pair, const cv::Size& size) {
+std::pair<Camera, Eigen::Vector3d> read_camera(const KittiOptions& options, const Pair& pair, bool has_right,
+                                               const cv::Size& size) {
   const std::filesystem::path file = options.path / "calib.txt";
-  const std::vector<KittiProjection> projections = read_kitti_calibration(file);
-  if (projections.size() < pair.left_matrix + 2)
+  const std::vector<KittiProjection> projections = read_kitti_calibration(file, has_right ? 2 : 1);
+  if (projections.size() < pair.left_matrix + (has_right ? 2 : 1))
     throw InputError({file.string()}, "has " + std::to_string(projections.size()) +
                                           " projection matrices; expected P2 and P3 for the colour cameras");
   const KittiProjection& left = projections[pair.left_matrix];
+  Camera camera;
+  camera.width = size.width, camera.height = size.height;
+  camera.fx = left(0, 0), camera.fy = left(1, 1), camera.cx = left(0, 2), camera.cy = left(1, 2);
+  const Eigen::Vector3d position(-left(0, 3) / camera.fx, 0.0, 0.0);
+  if (!has_right) return {camera, position};
   const KittiProjection& right = projections[pair.left_matrix + 1];
-  const double fx = left(0, 0), baseline = (left(0, 3) - right(0, 3)) / fx;
-  if (left.leftCols<3>() != right.leftCols<3>() || !(baseline > 0.0))
+  camera.baseline = (left(0, 3) - right(0, 3)) / camera.fx;
+  if (left.leftCols<3>() != right.leftCols<3>() || !(camera.baseline > 0.0))
     throw InputError({file.string()},
                      "does not have the matrices of a rectified pair, left before right; expected equal intrinsics "
                      "and a right camera further right");
-  Camera camera;
-  camera.width = size.width, camera.height = size.height;
-  camera.fx = fx, camera.fy = left(1, 1), camera.cx = left(0, 2), camera.cy = left(1, 2);
-  camera.baseline = baseline;
-  return {camera, {-left(0, 3) / fx, 0.0, 0.0}};
+  return {camera, position};
 }
 
 }  // namespace
 
 CalibratedRecording read_kitti_recording(const KittiOptions& options) {
-  const Pair pair = find_pair(options);
+  const auto [pair, has_right] = find_pair(options);
   CalibratedRecording recording;
-  recording.has_right = true;
+  recording.has_right = has_right;
   std::vector<ImageFiles>& files = recording.files;
   const std::vector<NumberedFile> left = find_numbered_files(options.path / pair.left);
-  const std::vector<std::filesystem::path> right = find_partners(left, options.path / pair.right);
   files.resize(left.size());
-  for (std::size_t i = 0; i < files.size(); ++i) files[i].colour = left[i].path, files[i].right = right[i];
+  for (std::size_t i = 0; i < files.size(); ++i) files[i].colour = left[i].path;
+  if (has_right) {
+    const std::vector<std::filesystem::path> right = find_partners(left, options.path / pair.right);
+    for (std::size_t i = 0; i < files.size(); ++i) files[i].right = right[i];
+  }
   std::error_code error;
   const std::filesystem::path times = options.path / "times.txt";
   set_stamps(files, std::filesystem::exists(times, error) ? times : std::filesystem::path(), options.frame_rate);
@@ -97,7 +104,7 @@ CalibratedRecording read_kitti_recording(const KittiOptions& options) {
   ImageDecoder().read_grey(files.front().colour, [&](const cv::Size& of_image) { size = of_image; });
   recording.left_size = recording.right_size = size;
   Eigen::Vector3d position;
-  std::tie(recording.camera, position) = read_camera(options, pair, size);
+  std::tie(recording.camera, position) = read_camera(options, pair, has_right, size);
   // The poses are those of the reference camera, beside which this camera stands.
   for (TimedPose& pose : recording.truth) pose.T_world_camera = pose.T_world_camera * Eigen::Translation3d(position);
   if (files.size() > 1)

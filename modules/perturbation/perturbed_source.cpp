@@ -66,6 +66,12 @@ SourceDescription PerturbedSource::describe() const {
     for (std::uint64_t i = 0; i < *description.frame_count; ++i) kept += is_dropped(i) ? 0 : 1;
     description.frame_count = kept;
   }
+  std::vector<double>& stamps = description.frame_timestamps;
+  if (settings_.late > 0.0) stamps.clear();
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < stamps.size(); ++i)
+    if (!is_dropped(i)) stamps[kept++] = stamps[i];
+  stamps.resize(kept);
   return description;
 }
 

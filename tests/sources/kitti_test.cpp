@@ -116,7 +116,27 @@ TEST_F(KittiTest, SaysWhatIsWrong) {
   EXPECT_THAT(test::input_error([&] { test::read_all(*open()); }), HasSubstr("image_1/000001.png"));
   EXPECT_EQ(test::read_all(*open({{"on_bad_frame", std::string("skip")}})).size(), 2U);
   std::filesystem::remove_all(folder_.path() / "sequences/07/image_1");
-  EXPECT_THAT(test::input_error([&] { open(); }), HasSubstr("has no stereo pair"));
+  EXPECT_THAT(test::input_error([&] { open({{"cameras", std::string("grey")}}); }), HasSubstr("image_1"));
+  std::filesystem::remove_all(folder_.path() / "sequences/07/image_0");
+  EXPECT_THAT(test::input_error([&] { open(); }), HasSubstr("has neither a stereo pair nor a left camera"));
+}
+
+TEST_F(KittiTest, TheLeftCameraAlone) {
+  std::filesystem::remove_all(folder_.path() / "sequences/07/image_1");
+  folder_.write("sequences/07/calib.txt", "P0: 50 0 32 0 0 50 24 0 0 0 1 0\n");
+  const ParameterValues grey = {{"path", (folder_.path() / "sequences/07").string()}, {"cameras", std::string("grey")}};
+  std::unique_ptr<FrameSource> sources[] = {open(), test::make_mono_source("kitti", grey)};
+  for (const auto& source : sources) {
+    const SourceDescription description = source->describe();
+    EXPECT_FALSE(description.has_right);
+    EXPECT_FALSE(description.has_depth);
+    EXPECT_EQ(description.camera->cx, 32.0);
+    EXPECT_EQ(description.frame_timestamps, (std::vector<double>{0.0, 0.1, 0.21}));
+    const std::vector<SensorFrame> frames = test::read_all(*source);
+    ASSERT_EQ(frames.size(), 3U);
+    EXPECT_TRUE(frames[2].right.empty());
+    EXPECT_EQ(source->truth()[2].T_world_camera.translation(), Eigen::Vector3d(0, 0, 2));
+  }
 }
 
 }  // namespace

@@ -96,8 +96,12 @@ void write_tum_recording(const TemporaryFolder& folder, int count) {
   folder.write("depth.txt", depth);
 }
 
-std::unique_ptr<FrameSource> make_source(const std::string& name, const ParameterValues& values, int width,
-                                         int height) {
+std::unique_ptr<FrameSource> make_mono_source(const std::string& name, const ParameterValues& values) {
+  return make_source(name, values, recording_width, recording_height, Sensor::mono);
+}
+
+std::unique_ptr<FrameSource> make_source(const std::string& name, const ParameterValues& values, int width, int height,
+                                         const std::optional<Sensor>& sensor) {
   Registry registry;
   holdfast_register_plugin_tum(registry);
   holdfast_register_plugin_folder(registry);
@@ -113,6 +117,7 @@ std::unique_ptr<FrameSource> make_source(const std::string& name, const Paramete
   CreationContext context;
   context.camera.width = width;
   context.camera.height = height;
+  context.sensor = sensor;
   return registry.create<FrameSource>(name, values, context);
 }
 

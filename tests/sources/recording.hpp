@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,9 +48,11 @@ void write_tum_recording(const TemporaryFolder& folder, int count);
 std::string colour_name(int i);
 std::string depth_name(int i);
 
-/// The source `name`, with its settings and a camera of the size of these recordings.
+/// The source `name`, with its settings and a camera of the size of these recordings, in a run with that sensor.
 std::unique_ptr<FrameSource> make_source(const std::string& name, const ParameterValues& values,
-                                         int width = recording_width, int height = recording_height);
+                                         int width = recording_width, int height = recording_height,
+                                         const std::optional<Sensor>& sensor = {});
+std::unique_ptr<FrameSource> make_mono_source(const std::string& name, const ParameterValues& values);
 
 std::vector<SensorFrame> read_all(FrameSource& source);
 

@@ -35,11 +35,13 @@ struct FrameRange {
 struct KittiOptions {
   std::filesystem::path path;  ///< folder of the sequence
   /// colour: image_2 and image_3; grey: image_0 and image_1; pair: left and right; auto: the first of these that
-  /// exists.
+  /// exists, or the first left camera if there is no pair.
   std::string cameras = "auto";
   std::filesystem::path poses;  ///< truth; empty: where the data set has it, if anywhere
   double frame_rate = 10.0;     ///< without times.txt [1/s]
   FrameRange range;
+  bool left_is_enough =
+      false;  ///< of named cameras: the left one alone will do if the folder of the right one is missing
 };
 
 /// Finds the frames of a sequence in the layout of the KITTI odometry data (Geiger et al. 2012), with camera and truth.

@@ -57,6 +57,8 @@ class ImageSequence {
 
  private:
   SensorFrame decode(const ImageFiles& files);
+  /// Of all frames [s].
+  std::vector<double> timestamps() const;
 
   std::vector<ImageFiles> files_;
   ImageSequenceOptions options_;
@@ -84,6 +86,7 @@ class ImageSequenceSource : public FrameSource {
 
   SourceDescription description_;
   Trajectory truth_;
+    description_.frame_timestamps = sequence_.timestamps();
 
  private:
   ImageSequence sequence_;

@@ -103,7 +103,8 @@ class FolderSource final : public FrameSource {
   FolderSource(const FolderSettings& settings, const CreationContext& context)
       : description_(describe(settings, context.camera)), sequence_(open(settings, context.camera)) {
     description_.frame_count = sequence_.size();
-    if (!settings.truth.empty()) truth_ = read_trajectory(settings.truth);
+    description_.frame_timestamps = sequence_.timestamps();
+    if (!settings.truth.empty()) truth_ = read_frame_poses(settings.truth, frames_.numbered, frames_.image_count);
     if (rectification_ == nullptr) return;
     for (TimedPose& pose : truth_) pose.T_world_camera = pose.T_world_camera * rectification_->T_left_rectified();
     if (!truth_.empty()) description_.truth_frame = "transformed";

@@ -19,12 +19,12 @@ struct KittiSettings {
     table
         .add("path", &KittiSettings::path,
              "folder of a sequence, with calib.txt and the folders of a rectified stereo pair: image_2 and image_3, "
-             "image_0 and image_1, or left and right")
+             "image_0 and image_1, or left and right; or of the left camera alone")
         .required();
     table
         .add("cameras", &KittiSettings::cameras,
              "colour: image_2 and image_3; grey: image_0 and image_1; pair: left and right; auto: the first of these "
-             "that exists")
+             "that exists, or the left camera alone")
         .one_of({"auto", "colour", "grey", "pair"});
     table.add("poses", &KittiSettings::poses,
               "ground truth in KITTI's format; empty = poses.txt in the folder, or poses/NAME.txt beside its parent, "
@@ -41,12 +41,14 @@ struct KittiSettings {
   }
 };
 
-/// A sequence of the KITTI odometry data (Geiger et al. 2012): rectified stereo pairs.
+/// A sequence of the KITTI odometry data (Geiger et al. 2012): rectified stereo pairs, or one camera.
 class KittiSource final : public CalibratedSource {
  public:
-  KittiSource(const KittiSettings& s, const CreationContext&)
-      : CalibratedSource(read_kitti_recording({s.path, s.cameras, s.poses, s.frame_rate, {s.start, s.frames}}), s.path,
-                         s.on_bad_frame == "skip") {}
+  KittiSource(const KittiSettings& s, const CreationContext& context)
+      : CalibratedSource(
+            read_kitti_recording(
+                {s.path, s.cameras, s.poses, s.frame_rate, {s.start, s.frames}, context.sensor == Sensor::mono}),
+            s.path, s.on_bad_frame == "skip") {}
 };
 
 }  // namespace
@@ -54,7 +56,7 @@ class KittiSource final : public CalibratedSource {
 HOLDFAST_PLUGIN(kitti, registry) {
   registry.add<FrameSource, KittiSource, KittiSettings>(
       {.name = "kitti",
-       .summary = "A sequence in the layout of the KITTI odometry data: rectified stereo pairs.",
+       .summary = "A sequence in the layout of the KITTI odometry data: rectified stereo pairs, or one camera.",
        .paper = "Geiger, Lenz, Urtasun: Are we ready for Autonomous Driving? The KITTI Vision Benchmark Suite. CVPR "
                 "2012"});
 }

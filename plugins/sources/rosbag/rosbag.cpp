@@ -129,6 +129,7 @@ class RosbagSource final : public FrameSource {
     description_.has_depth = !topics_.depth.name.empty();
     description_.can_read_ahead = true;
     description_.frame_count = frames_.size();
+    for (const BagFrame& frame : frames_) description_.frame_timestamps.push_back(frame.colour.stamp);
     const bool camera_is_given = !(context.camera == Camera());
     if (!topics_.camera_info.name.empty() && !(settings.camera_info.empty() && camera_is_given)) {
       description_.camera = read_camera();

@@ -62,6 +62,8 @@ class SimulatedSource final : public FrameSource {
     description.can_read_ahead = true;
     description.class_names = simulator_.class_names();
     description.frame_count = simulator_.frame_count();
+    for (std::uint64_t i = 0; i < simulator_.frame_count(); ++i)
+      description.frame_timestamps.push_back(simulator_.timestamp(i));
     description.camera = simulator_.camera();
     if (is_stereo()) description.camera->baseline = stereo_baseline_;
     return description;

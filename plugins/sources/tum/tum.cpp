@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fstream>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -26,7 +27,10 @@ struct TumSettings {
   std::int64_t frames = 0;
 
   static void describe(ParameterTable<TumSettings>& table) {
-    table.add("path", &TumSettings::path, "folder of the recording, with rgb.txt and depth.txt").required();
+    table
+        .add("path", &TumSettings::path,
+             "folder of the recording, with rgb.txt and depth.txt; with `sensor: mono`, rgb.txt alone will do")
+        .required();
     table
         .add("max_time_difference", &TumSettings::max_time_difference,
              "upper bound of the time difference between a colour image and its depth image")
@@ -51,9 +55,32 @@ struct TumSettings {
   }
 };
 
-std::vector<ImageFiles> find_pairs(const TumSettings& settings) {
+/// The colour images of a recording without depth.txt, for one camera.
+std::vector<ImageFiles> find_colour_images(const TumSettings& settings) {
+  const std::filesystem::path list = settings.path / "rgb.txt";
+  std::vector<ImageFiles> images;
+  for (const ListedImage& image : read_image_list(list)) {
+    ImageFiles& files = images.emplace_back();
+    files.timestamp = image.timestamp;
+    files.colour = settings.path / image.name;
+    files.colour_listed_at = {list.string(), image.line};
+  }
+  select_range(images, settings.start, settings.frames, settings.path, "colour images");
+  return images;
+}
+
+std::vector<ImageFiles> find_frames(const TumSettings& settings, const std::optional<Sensor>& sensor) {
   require_recording_folder(settings.path, "the folder of a TUM recording, with rgb.txt and depth.txt",
                            "source.tum.path");
+  std::error_code error;
+  const std::filesystem::path depth_list = settings.path / "depth.txt";
+  if (settings.associations.empty() && !std::filesystem::exists(depth_list, error)) {
+    if (sensor == Sensor::mono) return find_colour_images(settings);
+    if (std::filesystem::exists(settings.path / "rgb.txt", error))
+      throw InputError({depth_list.string()},
+                       "is missing; expected a list with lines 'timestamp filename'; complete the recording, or set "
+                       "`sensor: mono` to use its colour images alone");
+  }
   const auto listed_in = [&](const char* list) {
     return (settings.associations.empty() ? settings.path / list : settings.associations).string();
   };
@@ -86,10 +113,14 @@ bool has_global_shutter(const std::filesystem::path& folder) {
 class TumSource final : public ImageSequenceSource {
  public:
   TumSource(const TumSettings& settings, const CreationContext& context)
-      : ImageSequenceSource(find_pairs(settings), {settings.depth_factor, context.camera.width, context.camera.height,
-                                                   settings.on_bad_frame == "skip"}) {
+      : TumSource(find_frames(settings, context.sensor), settings, context) {}
+
+ private:
+  TumSource(std::vector<ImageFiles> frames, const TumSettings& settings, const CreationContext& context)
+      : ImageSequenceSource(frames, {settings.depth_factor, context.camera.width, context.camera.height,
+                                     settings.on_bad_frame == "skip"}) {
     description_.name = folder_name(settings.path);
-    description_.has_depth = true;
+    description_.has_depth = !frames.front().depth.empty();
     description_.has_global_shutter = has_global_shutter(settings.path);
     const TruthTransform transform = make_truth_transform(settings.truth_left, settings.truth_right, "source.tum");
     description_.truth_frame = transform.frame();
