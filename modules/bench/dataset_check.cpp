@@ -248,7 +248,7 @@ class Checker {
   }
 
   void check_colour_and_depth(const std::vector<ListedImage>& colour, const std::vector<ListedImage>& depth) {
-    check_images(colour, [&](const fs::path& file) { decoder_.read_colour(file); });
+    check_images(colour, [&](const fs::path& file) { decoder_.read_widened(file); });
     check_images(depth, [&](const fs::path& file) { decoder_.read_depth(file, 5000.0); });
   }
 

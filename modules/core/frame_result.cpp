@@ -67,6 +67,8 @@ const char* to_string(TrackingTrouble trouble) {
       return "no mask yet";
     case TrackingTrouble::weak_start:
       return "weak start";
+    case TrackingTrouble::exchanged_pair:
+      return "left and right exchanged";
   }
   return "?";
 }

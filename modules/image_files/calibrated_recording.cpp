@@ -14,7 +14,7 @@ ImageSequenceOptions options_of(const CalibratedRecording& recording, bool skip_
   options.width = recording.left_size.width;
   options.height = recording.left_size.height;
   options.skip_bad_frames = skip_bad_frames;
-  options.colour_may_be_grey = true;
+  options.grey_may_have_16_bits = true;
   options.rectification = recording.rectification;
   return options;
 }

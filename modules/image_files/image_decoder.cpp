@@ -91,6 +91,18 @@ cv::Mat metres(const cv::Mat& stored, Number number, double depth_factor) {
   return depth;
 }
 
+/// The upper 8 of the 16 bits of stored grey values.
+template <class Number>
+cv::Mat upper_bytes(const cv::Mat& stored, Number number) {
+  cv::Mat grey(stored.size(), CV_8UC1);
+  for (int y = 0; y < grey.rows; ++y) {
+    const auto* from = stored.ptr<std::uint8_t>(y);
+    auto* to = grey.ptr<std::uint8_t>(y);
+    for (int x = 0; x < grey.cols; ++x) to[x] = static_cast<std::uint8_t>(number(from + 2 * x) >> 8);
+  }
+  return grey;
+}
+
 }  // namespace
 
 ImageDecoder::ImageDecoder() : png_(std::make_unique<PngRows>()) {}
@@ -134,11 +146,18 @@ cv::Mat ImageDecoder::read_colour(const std::filesystem::path& file, const SizeC
 cv::Mat ImageDecoder::decode_grey_or_colour(const std::filesystem::path& file, const SizeCheck& check_size) {
   const ImageStructure image = examine_image(bytes_);
   require_decodable(file, image);
-  if ((image.channels != 1 && image.channels != 3) || image.bits != 8)
+  const bool has_16_bits =
+      image.format == ImageStructure::Format::png && image.channels == 1 && image.bits == 16 && accepts_16_bits_;
+  if ((image.channels != 1 && image.channels != 3) || (image.bits != 8 && !has_16_bits))
     throw InputError({file.string()}, "is an image of " + image.to_string() +
-                                          "; expected a grey or colour image, 1 or 3 channels of 8 bits; convert it");
+                                          "; expected a grey or colour image, 1 or 3 channels of 8 bits" +
+                                          (accepts_16_bits_ ? ", or 1 channel of 16 bits" : "") + "; convert it");
   if (check_size) check_size({image.width, image.height});
   cv::Mat decoded;
+  if (has_16_bits) {
+    if (png_->decode(bytes_)) return upper_bytes(as_image(*png_, CV_8UC2), BigEndian());
+    return upper_bytes(decode_png(file, bytes_, cv::IMREAD_UNCHANGED, decoded), Native());
+  }
   if (image.format == ImageStructure::Format::jpeg) {
     // A grey JPEG comes in three equal channels.
     if (!decode_jpeg(bytes_, {image.width, image.height}, decoded)) throw_damaged(file);

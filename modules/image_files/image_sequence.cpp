@@ -6,6 +6,7 @@
 
 #include "holdfast/core/size_text.hpp"
 #include "holdfast/image_files/image_list.hpp"
+#include "holdfast/image_files/image_structure.hpp"
 
 namespace holdfast {
 
@@ -22,13 +23,46 @@ cv::Mat read_at(const SourceLocation& listed_at, Read&& read) {
   }
 }
 
+/// Nothing for a file that is no complete image.
+std::optional<ImageStructure> structure_of(const std::filesystem::path& file) {
+  try {
+    const ImageStructure image = examine_image_ends(file);
+    return image.problem.empty() ? std::optional(image) : std::nullopt;
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+/// Throws InputError if the colour image has the form of a depth image, and the depth image that of a colour image.
+void require_order(const ImageFiles& files) {
+  if (files.depth.empty()) return;
+  const std::optional<ImageStructure> colour = structure_of(files.colour), depth = structure_of(files.depth);
+  if (!colour || !depth || colour->bits != 16 || colour->channels != 1 || depth->bits != 8) return;
+  throw InputError(
+      {files.colour.string()},
+      "is a depth image, 1 channel of 16 bits, and '" + files.depth.string() +
+          "', which should be the depth image of this frame, has 8 bits: colour and depth are exchanged; " +
+          (files.colour_listed_at.file.empty() ? "exchange the names of their folders in the configuration"
+           : files.colour_listed_at.file == files.depth_listed_at.file
+               ? "exchange the columns of the associations: colour before depth"
+               : "exchange the names of the two lists"));
+}
+
 }  // namespace
 
 ImageSequence::ImageSequence(std::vector<ImageFiles> files, const ImageSequenceOptions& options)
     : files_(std::move(files)), options_(options) {
+  decoder_.accept_16_bits(options.grey_may_have_16_bits);
   for (std::size_t i = 1; i < files_.size(); ++i)
     HOLDFAST_CHECK(files_[i - 1].timestamp < files_[i].timestamp,
                    files_[i - 1].timestamp << " before " << files_[i].timestamp);
+}
+
+std::vector<double> ImageSequence::timestamps() const {
+  std::vector<double> stamps;
+  stamps.reserve(files_.size());
+  for (const ImageFiles& files : files_) stamps.push_back(files.timestamp);
+  return stamps;
 }
 
 SensorFrame ImageSequence::decode(const ImageFiles& files) {
@@ -53,8 +87,12 @@ SensorFrame ImageSequence::decode(const ImageFiles& files) {
     right_size = {pair.right.width, pair.right.height};
   }
   frame.colour = read_at(files.colour_listed_at, [&] {
-    return options_.colour_may_be_grey ? decoder_.read_widened(files.colour, of_camera_size(files.colour, left_size))
-                                       : decoder_.read_colour(files.colour, of_camera_size(files.colour, left_size));
+    try {
+      return decoder_.read_widened(files.colour, of_camera_size(files.colour, left_size));
+    } catch (const InputError&) {
+      require_order(files);
+      throw;
+    }
   });
   if (!files.right.empty())
     frame.right = read_at(files.right_listed_at,
@@ -93,13 +131,6 @@ std::optional<SensorFrame> ImageSequence::next() {
       skipped_.push_back({index, files_[index].timestamp, error.what()});
     }
   }
-std::vector<double> ImageSequence::timestamps() const {
-  std::vector<double> stamps;
-  stamps.reserve(files_.size());
-  for (const ImageFiles& files : files_) stamps.push_back(files.timestamp);
-  return stamps;
-}
-
   if (!files_.empty() && skipped_.size() == files_.size())
     throw InputError({}, "none of the " + std::to_string(files_.size()) +
                              " frames can be used; the first: " + skipped_.front().reason);

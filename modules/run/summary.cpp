@@ -31,6 +31,10 @@ const char* advice(TrackingTrouble trouble) {
       return "Check that the segmenter gives results.";
     case TrackingTrouble::weak_start:
       return "One camera needs a start with texture at several depths, and masks that cover the people in view.";
+    case TrackingTrouble::exchanged_pair:
+      return "The matches of the pairs lie on the wrong side: exchange the left and right images in the settings of "
+             "the "
+             "source (the folders `colour` and `right`, or those of the recording).";
     case TrackingTrouble::none:
       break;
   }

@@ -68,4 +68,21 @@ void StereoDepth::extract(const cv::Mat& left, const cv::Mat& right, const cv::M
   other.get();
 }
 
+bool StereoDepth::is_exchanged(const cv::Mat& left, const cv::Mat& right, const Frame& frame) {
+  constexpr std::size_t least_features = 30, least_ratio = 3;
+  const auto with_depth = [](const Frame& any) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < any.size(); ++i) count += any.has_depth(i) ? 1 : 0;
+    return count;
+  };
+  Frame other;
+  other.camera = frame.camera;
+  other.pyramid = frame.pyramid;
+  other.features = right_features_;
+  other.x = right_features_.x, other.y = right_features_.y;
+  matcher_.match(right, left, frame.features, other);
+  const std::size_t count = with_depth(other);
+  return count >= least_features && count >= least_ratio * with_depth(frame);
+}
+
 }  // namespace holdfast

@@ -224,6 +224,10 @@ Eigen::Isometry3d Tracker::coasting_pose(double timestamp) const {
 }
 
 bool Tracker::start_map(const Eigen::Isometry3d& T_camera_world, FrameResult& result) {
+  if (builder_.is_pair_exchanged(current_)) {
+    result.trouble = TrackingTrouble::exchanged_pair;
+    return false;
+  }
   int with_depth = 0;
   for (std::size_t i = 0; i < current_.size(); ++i) with_depth += current_.has_depth(i) ? 1 : 0;
   if (with_depth < settings_.minimum_start_points) {

@@ -112,6 +112,23 @@ TEST_F(EurocTest, OneCameraIsGivenAsItIs) {
   EXPECT_FALSE(open()->describe().has_right) << "auto";
 }
 
+TEST_F(EurocTest, GreyImagesMayHave16Bits) {
+  const auto deep = [](int number) {  // below the value of an upper byte, and at its end
+    cv::Mat image(48, 64, CV_16UC1, cv::Scalar(256 * (40 + number)));
+    image(cv::Rect(0, 0, 32, 48)).setTo(256 * (40 + number) + 255);
+    return image;
+  };
+  for (int i = 0; i < 3; ++i) {
+    folder_.write_image("V9/mav0/cam0/data/" + stamp(i) + ".png", deep(i));
+    folder_.write_image("V9/mav0/cam1/data/r" + std::to_string(i) + ".png", deep(i));
+  }
+  const std::vector<SensorFrame> frames = test::read_all(*open({{"cameras", std::string("left")}}));
+  ASSERT_EQ(frames.size(), 3U);
+  EXPECT_EQ(frames[1].colour.type(), CV_8UC3);
+  for (const int x : {3, 60}) EXPECT_EQ(frames[1].colour.at<cv::Vec3b>(5, x), cv::Vec3b::all(41));
+  EXPECT_EQ(test::read_all(*open())[0].right.at<std::uint8_t>(24, 32), 40);
+}
+
 TEST_F(EurocTest, AFisheyeLensIsEquidistant) {
   folder_.write(left("sensor.yaml"), sensor(0.0, "equidistant"));
   const Distortion distortion = open({{"cameras", std::string("left")}})->describe().camera->distortion;

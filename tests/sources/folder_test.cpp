@@ -136,6 +136,18 @@ TEST_F(FolderSourceTest, StampsTruthAndRange) {
   EXPECT_THAT(error({{"truth", full("none.txt")}}), StartsWith(full("none.txt")));
 }
 
+TEST_F(FolderSourceTest, GreyImagesMayHaveDepthAndExchangedFoldersAreNamed) {
+  folder_.write_image("colour/1.png", cv::Mat(48, 64, CV_8UC1, cv::Scalar(9)));
+  folder_.write_image("depth/1.png", test::depth_image(1));
+  const auto source = open({{"depth", std::string("depth")}});
+  const std::optional<SensorFrame> frame = source->next();
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->colour.at<cv::Vec3b>(5, 7), cv::Vec3b::all(9));
+  EXPECT_GT(frame->depth.at<float>(5, 7), 0.0F);
+  EXPECT_THAT(error({{"colour", std::string("depth")}, {"depth", std::string("colour")}}),
+              HasSubstr("colour and depth are exchanged; exchange the names of their folders"));
+}
+
 TEST_F(FolderSourceTest, BadImagesNameTheFile) {
   write_colour("colour/1.png", 1);
   write_colour("colour/2.jpg", 2);

@@ -254,7 +254,38 @@ TEST_F(TumSourceTest, EightBitDepth) {
 
 TEST_F(TumSourceTest, GreyColour) {
   folder_.write_image(colour_name(2), cv::Mat(48, 64, CV_8UC1, cv::Scalar(9)));
-  expect_bad_frame("rgb.txt", colour_name(2), "is an image of 64x48, 1 channel of 8 bits; expected a colour image");
+  const std::vector<SensorFrame> frames = read_all(*open());
+  ASSERT_EQ(frames.size(), 5u);
+  EXPECT_EQ(frames[2].colour.at<cv::Vec3b>(5, 7), cv::Vec3b::all(9));
+  EXPECT_FALSE(frames[2].depth.empty());
+}
+
+TEST_F(TumSourceTest, DeepColour) {
+  folder_.write_image(colour_name(2), cv::Mat(48, 64, CV_16UC1, cv::Scalar(9)));
+  expect_bad_frame("rgb.txt", colour_name(2),
+                   "is an image of 64x48, 1 channel of 16 bits; expected a grey or colour image");
+}
+
+TEST_F(TumSourceTest, ExchangedColourAndDepthAreNamed) {
+  const std::string pairs = folder_.write("pairs.txt", "7.0 " + depth_name(2) + " 9.0 " + colour_name(2) + "\n");
+  EXPECT_THAT(error({{"associations", pairs}}),
+              AllOf(StartsWith(pairs + ":1: "), HasSubstr("is a depth image, 1 channel of 16 bits"),
+                    HasSubstr("colour and depth are exchanged; exchange the columns of the associations")));
+  const std::string colour = folder_.read("rgb.txt");
+  folder_.write("rgb.txt", folder_.read("depth.txt"));
+  folder_.write("depth.txt", colour);
+  EXPECT_THAT(error(), HasSubstr("are exchanged; exchange the names of the two lists"));
+}
+
+TEST_F(TumSourceTest, OneCameraNeedsNoDepth) {
+  std::filesystem::remove(folder_.path() / "depth.txt");
+  EXPECT_THAT(error(), AllOf(StartsWith(full("depth.txt") + ": is missing"), HasSubstr("set `sensor: mono`")));
+  const auto source = test::make_mono_source("tum", {{"path", folder_.path().string()}, {"start", std::int64_t{1}}});
+  EXPECT_FALSE(source->describe().has_depth);
+  const std::vector<SensorFrame> frames = read_all(*source);
+  ASSERT_EQ(frames.size(), 4u);
+  EXPECT_DOUBLE_EQ(frames[0].timestamp, 100.1);
+  EXPECT_TRUE(frames[0].depth.empty());
 }
 
 TEST_F(TumSourceTest, DoesNotAdviseToLeaveOutAllFrames) {

@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "holdfast/core/random.hpp"
+#include "holdfast/tracking/stereo_depth.hpp"
 
 namespace holdfast {
 namespace {
@@ -148,6 +149,38 @@ TEST_F(StereoMatcherTest, DepthsOutsideTheRangeAreLeftOut) {
     if (frame_.has_depth(i)) {
       EXPECT_GE(frame_.x[i] - frame_.right_x[i], 12.0F);
     }
+  }
+}
+
+/// Gives the features of each image of the pair.
+class PairExtractor final : public FeatureExtractor {
+ public:
+  PairExtractor(const cv::Mat& left, const Features& of_left, const Features& of_right)
+      : left_(left), of_left_(of_left), of_right_(of_right) {}
+  void extract(const cv::Mat& image, const cv::Mat&, Features& out) override {
+    out = image.data == left_.data ? of_left_ : of_right_;
+  }
+  const ScalePyramid& pyramid() const override { return pyramid_; }
+
+ private:
+  const cv::Mat& left_;
+  const Features &of_left_, &of_right_;
+  ScalePyramid pyramid_;
+};
+
+TEST_F(StereoMatcherTest, AnExchangedPairIsRecognised) {
+  for (const float disparity : {3.0F, 12.0F}) {
+    show(disparity, 0);
+    PairExtractor extractor(left_, frame_.features, right_features_);
+    StereoDepth stereo(*frame_.camera, {});
+    Frame right_order = frame_, exchanged = frame_;
+    stereo.extract(left_, right_, {}, extractor, right_order);
+    stereo.depth(left_, right_, right_order);
+    EXPECT_FALSE(stereo.is_exchanged(left_, right_, right_order)) << disparity;
+    stereo.extract(right_, left_, {}, extractor, exchanged);
+    exchanged.x = exchanged.features.x, exchanged.y = exchanged.features.y;
+    stereo.depth(right_, left_, exchanged);
+    EXPECT_TRUE(stereo.is_exchanged(right_, left_, exchanged)) << disparity;
   }
 }
 

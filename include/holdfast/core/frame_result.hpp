@@ -48,6 +48,7 @@ enum class TrackingTrouble {
   little_parallax,  ///< one camera has not moved enough to begin a map
   no_mask,          ///< the map of one camera begins when the first mask says where people are
   weak_start,       ///< the map of one camera did not grow after its start and was given up; another one begins
+  exchanged_pair,   ///< the left image of a stereo pair is that of the right camera, and the right one of the left
 };
 
 const char* to_string(TrackingStatus status);

@@ -25,6 +25,10 @@ class ImageDecoder {
   ImageDecoder(ImageDecoder&&) noexcept;
   ImageDecoder& operator=(ImageDecoder&&) noexcept;
 
+  /// Whether read_grey() and read_widened() take grey PNG images of 16 bits, of which the upper 8 are used. Depth
+  /// images have this form too: false by default, so that they are not taken for grey ones.
+  void accept_16_bits(bool accept) { accepts_16_bits_ = accept; }
+
   /// Gets the size of an image before it is decoded, and throws if it is not the expected one: a small file can hold an
   /// image that takes gigabytes.
   using SizeCheck = std::function<void(const cv::Size&)>;
@@ -56,6 +60,7 @@ class ImageDecoder {
   cv::Mat decode_depth(const std::filesystem::path& file, double depth_factor, const SizeCheck& check_size);
   void load(const std::filesystem::path& file);
 
+  bool accepts_16_bits_ = false;
   std::vector<std::uint8_t> bytes_;
   cv::Mat raw_depth_;
   std::unique_ptr<PngRows> png_;

@@ -35,8 +35,9 @@ struct ImageSequenceOptions {
   double depth_factor = 5000.0;  ///< value of one metre in a depth image
   int width = 0;                 ///< of every image [px]
   int height = 0;
-  bool skip_bad_frames = false;     ///< skip and count bad frames instead of throwing InputError
-  bool colour_may_be_grey = false;  ///< grey images are widened to three equal channels
+  bool skip_bad_frames = false;  ///< skip and count bad frames instead of throwing InputError
+  /// Grey images, which are widened to three equal channels, may have 16 bits, of which the upper 8 are used.
+  bool grey_may_have_16_bits = false;
   /// Rectifies both images of pairs that are not; their sizes are those of its cameras. nullptr: they are rectified.
   std::shared_ptr<const StereoRectification> rectification = nullptr;
 };
@@ -53,12 +54,12 @@ class ImageSequence {
   std::optional<SensorFrame> next();
 
   std::uint64_t size() const { return files_.size(); }
+  /// Of all frames [s].
+  std::vector<double> timestamps() const;
   const std::vector<SkippedFrame>& skipped() const { return skipped_; }
 
  private:
   SensorFrame decode(const ImageFiles& files);
-  /// Of all frames [s].
-  std::vector<double> timestamps() const;
 
   std::vector<ImageFiles> files_;
   ImageSequenceOptions options_;
@@ -82,11 +83,11 @@ class ImageSequenceSource : public FrameSource {
       : sequence_(std::move(files), options) {
     description_.can_read_ahead = true;
     description_.frame_count = sequence_.size();
+    description_.frame_timestamps = sequence_.timestamps();
   }
 
   SourceDescription description_;
   Trajectory truth_;
-    description_.frame_timestamps = sequence_.timestamps();
 
  private:
   ImageSequence sequence_;

@@ -50,6 +50,10 @@ class FrameBuilder {
   void place_features(const SensorFrame& sensor_frame, const FrameMotion& motion, bool aligns_depth,
                       const RollingShutter& shutter, const Map& map, Frame& frame, StageTimes& times) const;
 
+  /// Whether the images of the last frame that was built are a stereo pair whose left and right images are exchanged,
+  /// as far as matches show it.
+  bool is_pair_exchanged(const Frame& frame) { return stereo_ && stereo_->is_exchanged(grey_, grey_right_, frame); }
+
   /// From the next frame on, find_features() extracts `factor` times as many features (FeatureExtractor::set_budget).
   void set_budget(double factor);
 

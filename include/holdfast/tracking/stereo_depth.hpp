@@ -44,6 +44,8 @@ class StereoDepth {
   void depth(const cv::Mat& left, const cv::Mat& right, Frame& frame) {
     matcher_.match(left, right, right_features_, frame);
   }
+  /// Whether far more features have a depth if the images of the pair of the last call of depth() are exchanged.
+  bool is_exchanged(const cv::Mat& left, const cv::Mat& right, const Frame& frame);
 
  private:
   StereoParts parts_;

@@ -145,7 +145,6 @@ class FolderSource final : public FrameSource {
   ImageSequence open(const FolderSettings& settings, const Camera& configured) const {
     const Camera& camera = description_.camera ? *description_.camera : configured;
     ImageSequenceOptions options{settings.depth_factor, camera.width, camera.height, settings.on_bad_frame == "skip"};
-    options.colour_may_be_grey = settings.depth.empty();
     options.rectification = rectification_;
     return {find_frames(settings), options};
   }
