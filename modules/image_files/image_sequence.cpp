@@ -2,6 +2,7 @@
 #include "holdfast/image_files/image_sequence.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "holdfast/core/size_text.hpp"
@@ -46,6 +47,40 @@ void require_order(const ImageFiles& files) {
            : files.colour_listed_at.file == files.depth_listed_at.file
                ? "exchange the columns of the associations: colour before depth"
                : "exchange the names of the two lists"));
+}
+
+/// Whether images of these sizes can show the same view: their sides have the same ratio to 1 %.
+bool have_same_ratio(const cv::Size& a, const cv::Size& b) {
+  constexpr double tolerance = 0.01;
+  return std::abs(static_cast<double>(a.width) * b.height - static_cast<double>(a.height) * b.width) <=
+         tolerance * a.width * b.height;
+}
+
+const char* advice_on_size(const cv::Size& depth, const cv::Size& colour) {
+  return have_same_ratio(depth, colour) ? ", or the source `folder` with `scale_depth: true` if both show the same view"
+                                        : "";
+}
+
+void require_same_view(const ImageFiles& files, const cv::Size& depth, const cv::Size& colour) {
+  if (have_same_ratio(depth, colour)) return;
+  throw InputError({files.depth.string()},
+                   "is " + size_text(depth.width, depth.height) + " pixels, and its colour image '" +
+                       files.colour.string() + "' is " + size_text(colour.width, colour.height) +
+                       ": they do not show the same view, so that depth cannot be scaled; expected depth registered to "
+                       "the colour image");
+}
+
+cv::Mat scaled_depth(const cv::Mat& depth, const cv::Size& size) {
+  cv::Mat result(size, CV_32FC1);
+  std::vector<int> column(static_cast<std::size_t>(size.width));
+  for (int x = 0; x < size.width; ++x)
+    column[static_cast<std::size_t>(x)] = static_cast<int>((2LL * x + 1) * depth.cols / (2LL * size.width));
+  for (int y = 0; y < size.height; ++y) {
+    const auto* from = depth.ptr<float>(static_cast<int>((2LL * y + 1) * depth.rows / (2LL * size.height)));
+    auto* to = result.ptr<float>(y);
+    for (int x = 0; x < size.width; ++x) to[x] = from[column[static_cast<std::size_t>(x)]];
+  }
+  return result;
 }
 
 }  // namespace
@@ -105,13 +140,19 @@ SensorFrame ImageSequence::decode(const ImageFiles& files) {
   frame.depth = read_at(files.depth_listed_at, [&] {
     return decoder_.read_depth(files.depth, options_.depth_factor, [&](const cv::Size& size) {
       is_of_other_size_ = size != frame.colour.size();
+      if (is_of_other_size_ && options_.scales_depth) {
+        require_same_view(files, size, frame.colour.size());
+        is_of_other_size_ = false;
+      }
       if (is_of_other_size_)
         throw InputError({files.depth.string()}, "is " + size_text(size.width, size.height) +
                                                      " pixels, but its colour image '" + files.colour.string() +
                                                      "' is " + size_text(frame.colour.cols, frame.colour.rows) +
-                                                     "; expected depth registered to the colour image, pixel by pixel");
+                                                     "; expected depth registered to the colour image, pixel by pixel" +
+                                                     advice_on_size(size, frame.colour.size()));
     });
   });
+  if (frame.depth.size() != frame.colour.size()) frame.depth = scaled_depth(frame.depth, frame.colour.size());
   return frame;
 }
 

@@ -19,17 +19,6 @@ std::string without_leading_zeros(std::string_view digits) {
   return first == std::string_view::npos ? "0" : std::string(digits.substr(first));
 }
 
-FileNumbers numbers_of(const std::string& name) {
-  FileNumbers numbers;
-  for (std::size_t i = 0; i < name.size();) {
-    std::size_t end = i;
-    while (end < name.size() && is_digit(name[end])) ++end;
-    if (end > i) numbers.push_back(without_leading_zeros(std::string_view(name).substr(i, end - i)));
-    i = end + 1;
-  }
-  return numbers;
-}
-
 bool is_image_name(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -54,6 +43,17 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder)
 }
 
 }  // namespace
+
+FileNumbers numbers_of(const std::string& name) {
+  FileNumbers numbers;
+  for (std::size_t i = 0; i < name.size();) {
+    std::size_t end = i;
+    while (end < name.size() && is_digit(name[end])) ++end;
+    if (end > i) numbers.push_back(without_leading_zeros(std::string_view(name).substr(i, end - i)));
+    i = end + 1;
+  }
+  return numbers;
+}
 
 NumberPattern::NumberPattern(const std::filesystem::path& folder, const std::string& pattern)
     : whole_(folder / pattern), folder_(whole_.parent_path()) {
@@ -109,25 +109,43 @@ std::vector<NumberedFile> NumberPattern::find() const {
   return files;
 }
 
-std::vector<NumberedFile> find_numbered_files(const std::filesystem::path& folder) {
+namespace {
+
+/// Files of a folder by their numbers; `thing` and `expected` name them in messages.
+template <class IsWanted>
+std::vector<NumberedFile> find_files(const std::filesystem::path& folder, const std::string& thing,
+                                     const std::string& expected, IsWanted&& is_wanted) {
   std::vector<NumberedFile> files;
   for (const std::filesystem::path& path : files_in(folder)) {
-    if (!is_image_name(path)) continue;
+    if (!is_wanted(path)) continue;
     FileNumbers numbers = numbers_of(path.stem().string());
     if (numbers.empty())
-      throw InputError({path.string()}, "has no number in its name; expected numbered images; move it elsewhere");
+      throw InputError({path.string()},
+                       "has no number in its name; expected numbered " + thing + "s; move it elsewhere");
     files.push_back({std::move(numbers), path});
   }
   if (files.empty())
-    throw InputError({folder.string()}, "holds no image; expected numbered PNG or JPEG files; correct the path");
+    throw InputError({folder.string()}, "holds no " + thing + "; expected numbered " + expected + "; correct the path");
   std::stable_sort(files.begin(), files.end(), [](const NumberedFile& left, const NumberedFile& right) {
     return comes_before(left.numbers, right.numbers);
   });
   for (std::size_t i = 1; i < files.size(); ++i)
     if (files[i - 1].numbers == files[i].numbers)
       throw InputError({files[i].path.string()}, "has the same number as '" + files[i - 1].path.string() +
-                                                     "'; expected one image for each number; move one elsewhere");
+                                                     "'; expected one " + thing +
+                                                     " for each number; move one elsewhere");
   return files;
+}
+
+}  // namespace
+
+std::vector<NumberedFile> find_numbered_files(const std::filesystem::path& folder) {
+  return find_files(folder, "image", "PNG or JPEG files", is_image_name);
+}
+
+std::vector<NumberedFile> find_numbered_files(const std::filesystem::path& folder, const std::string& extension) {
+  return find_files(folder, "file", extension + " files",
+                    [&](const std::filesystem::path& path) { return path.extension() == extension; });
 }
 
 std::vector<std::filesystem::path> find_partners(const std::vector<NumberedFile>& files,

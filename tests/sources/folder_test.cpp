@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
+#include <Eigen/Geometry>
 #include <opencv2/core.hpp>
+#include <sstream>
 
 #include "sources/recording.hpp"
 
@@ -232,6 +234,150 @@ TEST_F(FolderSourceTest, APairThatIsNotRectifiedIsRectified) {
   EXPECT_THAT(wrong("p1: 0.1, T_left_right: [1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]"),
               HasSubstr("k1, k2, k3 and k4 alone"));
   EXPECT_THAT(wrong("k1: 0", ", lens: fishey"), HasSubstr("did you mean 'fisheye'?"));
+}
+
+/// A pose of frame i, and its matrix of three or four rows as text, its numbers separated by `between`.
+Eigen::Isometry3d pose_at(int i) {
+  Eigen::Isometry3d pose(Eigen::AngleAxisd(0.2 * i, Eigen::Vector3d(0.0, 0.6, 0.8)));
+  pose.translation() = Eigen::Vector3d(0.1 * i, -0.2, 1.0);
+  return pose;
+}
+std::string matrix_text(const Eigen::Isometry3d& pose, int rows, const char* after_row, const char* between = " ") {
+  std::ostringstream text;
+  text.precision(12);
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < 4; ++column)
+      text << pose.matrix()(row, column) << (column < 3 ? between : row + 1 < rows ? after_row : "");
+  return text.str();
+}
+/// An array of NumPy with n x 4 x 4 numbers.
+template <class Number>
+std::string array_text(const std::vector<Eigen::Isometry3d>& poses, const std::string& type) {
+  std::string header =
+      "{'descr': '" + type + "', 'fortran_order': False, 'shape': (" + std::to_string(poses.size()) + ", 4, 4), }";
+  header.resize(117, ' ');
+  std::string text =
+      std::string("\x93NUMPY\x01", 7) + std::string(1, '\0') + "v" + std::string(1, '\0') + header + "\n";
+  for (const Eigen::Isometry3d& pose : poses)
+    for (int row = 0; row < 4; ++row)
+      for (int column = 0; column < 4; ++column) {
+        const auto number = static_cast<Number>(pose.matrix()(row, column));
+        text.append(reinterpret_cast<const char*>(&number), sizeof(number));
+      }
+  return text;
+}
+
+class FolderPosesTest : public FolderSourceTest {
+ protected:
+  FolderPosesTest() {
+    for (int i = 0; i < 3; ++i) {
+      write_colour("colour/frame-00000" + std::to_string(i) + ".color.png", i);
+      poses_.push_back(pose_at(i));
+      all_ += matrix_text(pose_at(i), 4, " ") + "\n";
+    }
+  }
+  Trajectory truth(const std::string& name, ParameterValues values = {}) const {
+    values["truth"] = full(name);
+    return open(values)->truth();
+  }
+  static void expect_poses(const Trajectory& truth, std::vector<int> frames = {0, 1, 2}) {
+    ASSERT_EQ(truth.size(), frames.size());
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      EXPECT_DOUBLE_EQ(truth[i].timestamp, frames[i] / 30.0);
+      EXPECT_TRUE(truth[i].T_world_camera.isApprox(pose_at(frames[i]), 1e-5)) << i;
+    }
+  }
+  std::string truth_error(const std::string& name) const {
+    return input_error([&] { truth(name); });
+  }
+
+  std::vector<Eigen::Isometry3d> poses_;
+  std::string all_;  // a 4 x 4 matrix a line
+};
+
+TEST_F(FolderPosesTest, MatricesOfEveryLayoutAreTheTruth) {
+  folder_.write("traj.txt", "# one line an image\n" + all_);
+  expect_poses(truth("traj.txt"));
+  expect_poses(truth("traj.txt", {{"start", std::int64_t{1}}, {"frames", std::int64_t{1}}}), {1});
+  std::string rows;
+  for (int i = 0; i < 3; ++i) {
+    rows += matrix_text(pose_at(i), 3, " ") + "\n";
+    folder_.write("pose/" + std::to_string(i) + ".txt", matrix_text(pose_at(i), 4, "\n") + "\n");
+    folder_.write("colour/frame-00000" + std::to_string(i) + ".pose.txt", matrix_text(pose_at(i), 4, "\t\n", "\t "));
+  }
+  folder_.write("kitti.txt", rows);
+  expect_poses(truth("kitti.txt"));
+  expect_poses(truth("pose"));
+  expect_poses(truth("colour/frame-%06d.pose.txt"));
+  folder_.write("pose/1.txt", "-inf -inf -inf -inf\n-inf -inf -inf -inf\n-inf -inf -inf -inf\n-inf -inf -inf -inf\n");
+  expect_poses(truth("pose"), {0, 2});
+  folder_.write("poses.npy", array_text<double>(poses_, "<f8"));
+  expect_poses(truth("poses.npy"));
+  folder_.write("poses.npy", array_text<float>(poses_, "<f4"));
+  expect_poses(truth("poses.npy"));
+  folder_.write("truth.txt", "# timestamp tx ty tz qx qy qz qw\n5 1 2 3 0 0 0 1\n");
+  EXPECT_EQ(truth("truth.txt")[0].timestamp, 5.0);
+}
+
+TEST_F(FolderPosesTest, CamerasOfOpenGlAreTurned) {
+  std::string frames, quaternions;
+  for (int i = 2; i >= 0; --i) {  // by their names, not in order
+    Eigen::Isometry3d pose = pose_at(i);
+    pose.linear() = pose.linear() * Eigen::Vector3d(1, -1, -1).asDiagonal();
+    frames += std::string(i < 2 ? "," : "") + "{\"file_path\": \"images/frame_" + std::to_string(i) +
+              ".jpg\", \"transform_matrix\": [[" + matrix_text(pose, 4, "],[", ",") + "]]}";
+    const Eigen::Quaterniond q(pose.linear());
+    std::ostringstream text;
+    text.precision(12);
+    text << "[" << q.x() << "," << q.y() << "," << q.z() << "," << q.w() << "," << pose.translation().x() << ","
+         << pose.translation().y() << "," << pose.translation().z() << "]" << (i < 2 ? "," : "");
+    quaternions = text.str() + quaternions;
+  }
+  folder_.write("transforms.json", "{\"fl_x\": 500, \"frames\": [" + frames + "]}");
+  expect_poses(truth("transforms.json"));
+  folder_.write("metadata.json", "{\"w\": 64, \"poses\": [" + quaternions + "]}");
+  expect_poses(truth("metadata.json"));
+}
+
+TEST_F(FolderPosesTest, SayWhatIsWrong) {
+  folder_.write("traj.txt", all_ + matrix_text(pose_at(3), 4, " ") + "\n");
+  EXPECT_THAT(truth_error("traj.txt"), HasSubstr("traj.txt: has 4 poses, but there are 3 images"));
+  folder_.write("traj.txt", "2 0 0 0 0 2 0 0 0 0 2 0 0 0 0 1\n");
+  EXPECT_THAT(truth_error("traj.txt"),
+              HasSubstr("traj.txt:1: is not a pose: its 3 x 3 part is not a rotation, or a scaled"));
+  folder_.write("traj.txt", "1 0 0 0 0 1 0 0 0 0 -1 0 0 0 0 1\n");
+  EXPECT_THAT(truth_error("traj.txt"), HasSubstr("traj.txt:1: is not a pose: its 3 x 3 part is a reflection"));
+  folder_.write("traj.txt", all_ + "1 2 3\n");
+  EXPECT_THAT(truth_error("traj.txt"), HasSubstr("traj.txt:4: has 3 numbers; expected 16 or 12"));
+  folder_.write("pose/7.txt", "1 0 0 0\n0 1 0 0\n0 0 1 0\n");
+  EXPECT_THAT(truth_error("pose"), HasSubstr("pose: has a pose for none of the 3 images"));
+  folder_.write("pose/0.txt", "1 0 0 0\n0 1 0 0\n");
+  EXPECT_THAT(truth_error("pose"), HasSubstr("0.txt: has 8 numbers"));
+  folder_.write("poses.npy", array_text<double>(poses_, "<i8"));
+  EXPECT_THAT(truth_error("poses.npy"), HasSubstr("has numbers of type '<i8'"));
+  folder_.write("poses.npy", array_text<double>(poses_, "<f8").substr(0, 400));
+  EXPECT_THAT(truth_error("poses.npy"), HasSubstr("ends after 2 poses"));
+  folder_.write("poses.npy", "abc");
+  EXPECT_THAT(truth_error("poses.npy"), HasSubstr("no .npy file"));
+  folder_.write("poses.json", "{\"cameras\": []}");
+  EXPECT_THAT(truth_error("poses.json"), HasSubstr("has neither \"frames\" with"));
+}
+
+TEST_F(FolderSourceTest, DepthOfAnotherSizeIsScaledWhereItIsAllowed) {
+  write_colour("colour/1.png", 1);
+  folder_.write_image("depth/1.png", test::depth_image(1, 32, 24));
+  const ParameterValues plain = {{"depth", std::string("depth")}};
+  EXPECT_THAT(error(plain), HasSubstr("`scale_depth: true` if both show the same view"));
+  ParameterValues scaled = plain;
+  scaled["scale_depth"] = true;
+  const std::optional<SensorFrame> frame = open(scaled)->next();
+  ASSERT_TRUE(frame);
+  ASSERT_EQ(frame->depth.size(), frame->colour.size());
+  const cv::Mat stored = test::depth_image(1, 32, 24);
+  for (const auto& [x, y] : {std::pair(2, 2), {3, 3}, {63, 47}, {10, 31}})
+    EXPECT_EQ(frame->depth.at<float>(y, x), static_cast<float>(stored.at<std::uint16_t>(y / 2, x / 2) / 5000.0));
+  folder_.write_image("depth/1.png", test::depth_image(1, 32, 30));
+  EXPECT_THAT(error(scaled), HasSubstr("they do not show the same view"));
 }
 
 TEST_F(FolderSourceTest, BadIntrinsicsNameThePlace) {

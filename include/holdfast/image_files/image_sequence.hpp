@@ -38,6 +38,9 @@ struct ImageSequenceOptions {
   bool skip_bad_frames = false;  ///< skip and count bad frames instead of throwing InputError
   /// Grey images, which are widened to three equal channels, may have 16 bits, of which the upper 8 are used.
   bool grey_may_have_16_bits = false;
+  /// Depth images of another size than the colour images are scaled to it: each pixel of the result has the value of
+  /// the depth pixel that covers its centre. For cameras whose images show the same view.
+  bool scales_depth = false;
   /// Rectifies both images of pairs that are not; their sizes are those of its cameras. nullptr: they are rectified.
   std::shared_ptr<const StereoRectification> rectification = nullptr;
 };

@@ -41,6 +41,11 @@ class NumberPattern {
 /// left alone. Throws InputError for a folder that is missing or has no image, a name without a number, and two names
 /// with the same numbers.
 std::vector<NumberedFile> find_numbered_files(const std::filesystem::path& folder);
+/// The same for files with that extension (".txt") in place of images.
+std::vector<NumberedFile> find_numbered_files(const std::filesystem::path& folder, const std::string& extension);
+
+/// The numbers in a file name without its extension.
+FileNumbers numbers_of(const std::string& name);
 
 /// For each of `files`, the image of the same numbers in another folder, as of a second camera. One that is not there
 /// gets the name that it should have, that of the file with the ending `extension` (empty: the file's own), so that its

@@ -5,6 +5,7 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/folder_name.hpp"
 #include "holdfast/image_files/camera_file.hpp"
+#include "holdfast/image_files/frame_poses.hpp"
 #include "holdfast/image_files/image_sequence.hpp"
 #include "holdfast/image_files/numbered_files.hpp"
 #include "holdfast/interfaces/frame_source.hpp"
@@ -20,6 +21,7 @@ struct FolderSettings {
   std::string depth;
   std::string right;
   double depth_factor = 5000.0;
+  bool scale_depth = false;
   double frame_rate = 30.0;
   std::filesystem::path stamps;
   std::filesystem::path truth;
@@ -41,12 +43,16 @@ struct FolderSettings {
         "the left ones: a folder, or a pattern where colour is one; empty = one camera. Rectified, or with the key "
         "'right' of the intrinsics");
     table.add("depth_factor", &FolderSettings::depth_factor, "value of one metre in a depth image").range(1.0, 65535.0);
+    table.add("scale_depth", &FolderSettings::scale_depth,
+              "scale depth images to the size of the colour images, for cameras that show the same view");
     table.add("frame_rate", &FolderSettings::frame_rate, "frame rate, if no time stamps are given")
         .range(0.001, 100000.0)
         .unit("Hz");
     table.add("stamps", &FolderSettings::stamps,
               "file with one time stamp per line for each colour image, instead of frame_rate");
-    table.add("truth", &FolderSettings::truth, "ground-truth trajectory in TUM format");
+    table.add("truth", &FolderSettings::truth,
+              "ground truth: a trajectory in TUM format, or poses of the images: lines of 4 x 4 or 3 x 4 matrices, a "
+              "folder or a pattern of files with one matrix each, .npy, or .json of Nerfstudio or Record3D");
     table.add(
         "intrinsics", &FolderSettings::intrinsics,
         "YAML or JSON file with fx, fy, cx, cy, width, height and, for a lens with distortion, k1 to k6, p1, p2, lens; "
@@ -78,7 +84,14 @@ std::vector<std::filesystem::path> find_others(const FolderSettings& settings, c
   return files;
 }
 
-std::vector<ImageFiles> find_frames(const FolderSettings& settings) {
+/// The images of a recording, and their numbers for the poses.
+struct FolderFrames {
+  std::vector<ImageFiles> files;
+  std::vector<NumberedFrame> numbered;  ///< one for each of `files`
+  std::size_t image_count = 0;          ///< before the range was selected
+};
+
+FolderFrames find_frames(const FolderSettings& settings) {
   require_recording_folder(settings.path, "the folder of a recording", "source.folder.path");
   const bool is_pattern = NumberPattern::is_pattern(settings.colour);
   const std::vector<NumberedFile> colour = is_pattern ? NumberPattern(settings.path, settings.colour).find()
@@ -93,15 +106,22 @@ std::vector<ImageFiles> find_frames(const FolderSettings& settings) {
   add(settings.depth, ".png", &ImageFiles::depth);
   add(settings.right, "", &ImageFiles::right);
   set_stamps(files, settings.stamps, settings.frame_rate);
+  FolderFrames frames;
+  frames.image_count = files.size();
+  for (std::size_t i = 0; i < files.size(); ++i) frames.numbered.push_back({files[i].timestamp, i, colour[i].numbers});
   select_range(files, settings.start, settings.frames, settings.path, "frames");
-  return files;
+  select_range(frames.numbered, settings.start, settings.frames, settings.path, "frames");
+  frames.files = std::move(files);
+  return frames;
 }
 
 /// Numbered images in folders.
 class FolderSource final : public FrameSource {
  public:
   FolderSource(const FolderSettings& settings, const CreationContext& context)
-      : description_(describe(settings, context.camera)), sequence_(open(settings, context.camera)) {
+      : description_(describe(settings, context.camera)),
+        frames_(find_frames(settings)),
+        sequence_(open(settings, context.camera)) {
     description_.frame_count = sequence_.size();
     description_.frame_timestamps = sequence_.timestamps();
     if (!settings.truth.empty()) truth_ = read_frame_poses(settings.truth, frames_.numbered, frames_.image_count);
@@ -146,11 +166,13 @@ class FolderSource final : public FrameSource {
     const Camera& camera = description_.camera ? *description_.camera : configured;
     ImageSequenceOptions options{settings.depth_factor, camera.width, camera.height, settings.on_bad_frame == "skip"};
     options.rectification = rectification_;
-    return {find_frames(settings), options};
+    options.scales_depth = settings.scale_depth;
+    return {frames_.files, options};
   }
 
   std::shared_ptr<const StereoRectification> rectification_;  // first: the description needs it
   SourceDescription description_;                             // then: the sequence needs its camera
+  FolderFrames frames_;
   ImageSequence sequence_;
   Trajectory truth_;
 };
