@@ -18,6 +18,13 @@ bool FilterChain::has(FilterStage stage) const {
   return std::any_of(filters_.begin(), filters_.end(), [&](const auto& filter) { return stage_of(*filter) == stage; });
 }
 
+std::vector<std::string> FilterChain::movable_classes(const std::vector<std::string>& specified) const {
+  std::vector<std::string> classes;
+  for (const auto& filter : filters_)
+    for (std::string& name : filter->movable_classes(specified)) classes.push_back(std::move(name));
+  return classes;
+}
+
 void FilterChain::apply(std::size_t filter, const FilterContext& context) {
   has_new_cells_ = true;
   evidence_.begin_stage(names_[filter]);

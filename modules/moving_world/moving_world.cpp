@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/moving_world/moving_world.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace holdfast {
@@ -10,6 +11,9 @@ MovingWorld::MovingWorld(MovingWorldParts parts, Map& map)
   if (parts.segmenter == nullptr) return;
   classes_ = parts.segmenter->classes();
   movable_ = parts.segmenter->movable();
+  const std::vector<std::string> movable = filters_.movable_classes(movable_);
+  for (std::size_t label = 0; label < std::min(classes_.size(), is_movable_.size()); ++label)
+    is_movable_[label] = std::find(movable.begin(), movable.end(), classes_[label]) != movable.end();
   propagator_.emplace(parts.camera, sampler_, parts.segmentation.memory, parts.has_depth);
   queue_.emplace(*parts.segmenter, parts.segmentation, parts.threaded);
 }
@@ -117,8 +121,22 @@ std::optional<ArrivedMask> MovingWorld::take_mask(StageTimes& times) {
                       .mask = {}};
   arrived.mask = sample_mask(sampler_, arrived.segmentation);
   propagator_->apply(arrived.frame.index, arrived.mask);
-  mask_latencies_.push_back(timestamp_ - arrived.frame.timestamp);
+  count_mask(arrived.mask);
+  if (!arrived.mask.empty()) mask_latencies_.push_back(timestamp_ - arrived.frame.timestamp);
   return arrived;
+}
+
+void MovingWorld::count_mask(const CellMask& mask) {
+  ++mask_counts_.segmented;
+  if (mask.empty()) return;
+  ++mask_counts_.found;
+  std::size_t known = 0, movable = 0;
+  for (const std::uint8_t label : mask.labels) {
+    if (label == CellMask::unknown) continue;
+    ++known;
+    movable += is_movable_[label] ? 1 : 0;
+  }
+  if (2 * movable > known) ++mask_counts_.mostly_movable;
 }
 
 void MovingWorld::evaluate_keyframe(const ArrivedMask& arrived, StageTimes& times) {

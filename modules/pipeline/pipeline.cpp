@@ -545,6 +545,8 @@ std::vector<StageTimes> Pipeline::take_background_times() {
   return times;
 }
 
+const MaskCounts& Pipeline::mask_counts() const { return state_->moving_world.mask_counts(); }
+
 const std::vector<double>& Pipeline::mask_latencies() const { return state_->moving_world.mask_latencies(); }
 
 std::uint64_t Pipeline::keyframes_deferred() const { return state_->keyframes_deferred; }

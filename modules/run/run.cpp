@@ -64,6 +64,7 @@ void record_pipeline(const Pipeline& pipeline, RunRecord& record) {
   record.mapping = pipeline.mapping_counts();
   record.loops = pipeline.loop_record();
   record.losses = pipeline.loss_record();
+  record.masks = pipeline.mask_counts();
   record.mask_ages = pipeline.mask_latencies();
   record.readout = pipeline.readout();
 }

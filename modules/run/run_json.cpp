@@ -140,8 +140,8 @@ Json perturbation_json(const Configuration& configuration) {
   return json;
 }
 
-Json masks_json(const std::vector<double>& ages) {
-  Json json = {{"count", ages.size()}};
+Json masks_json(const MaskCounts& masks, const std::vector<double>& ages) {
+  Json json = {{"count", masks.found}, {"segmented", masks.segmented}, {"mostly_movable", masks.mostly_movable}};
   if (ages.empty()) return json;
   json["median_age_s"] = median(ages);
   json["p95_age_s"] = percentile(ages, 95.0);
@@ -179,7 +179,7 @@ std::string run_json(const RunRecord& record) {
     skipped.push_back({{"index", frame.index}, {"timestamp", frame.timestamp}, {"reason", frame.reason}});
   json["map"] = map_json(record);
   json["loops"] = loops_json(record.loops);
-  json["masks"] = masks_json(record.mask_ages);
+  json["masks"] = masks_json(record.masks, record.mask_ages);
   json["mean_inliers"] = s.mean_inliers();
   json["readout_s"] = record.readout;
   json["evaluation"] = record.evaluation ? Json::parse(to_json(*record.evaluation)) : Json(nullptr);

@@ -41,6 +41,14 @@ const char* advice(TrackingTrouble trouble) {
   return "";
 }
 
+std::string masks_text(const MaskCounts& masks, const std::vector<double>& ages) {
+  std::string text = std::to_string(masks.found);
+  if (masks.found < masks.segmented) text += " of " + std::to_string(masks.segmented) + " frames that were segmented";
+  if (ages.empty()) return text;
+  return text + ", " + fixed_text(median(ages) * 1e3, 0) + " ms old when they came (median), " +
+         fixed_text(percentile(ages, 95.0) * 1e3, 0) + " ms (p95)";
+}
+
 }  // namespace
 
 std::string percent_text(double share) { return fixed_text(share * 100.0, 2) + " %"; }
@@ -90,10 +98,7 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& r
   const StageRow tracking = s.tracking();
   rows.emplace_back("tracking", fixed_text(tracking.median * 1e3, 2) + " ms a frame (median), " +
                                     fixed_text(tracking.p95 * 1e3, 2) + " ms (p95)");
-  if (!record.mask_ages.empty())
-    rows.emplace_back("masks", std::to_string(record.mask_ages.size()) + ", " +
-                                   fixed_text(median(record.mask_ages) * 1e3, 0) + " ms old when they came (median), " +
-                                   fixed_text(percentile(record.mask_ages, 95.0) * 1e3, 0) + " ms (p95)");
+  if (record.masks.segmented > 0) rows.emplace_back("masks", masks_text(record.masks, record.mask_ages));
   if (record.threads) {
     const ThreadRecord& threads = *record.threads;
     rows.emplace_back("frame to result", fixed_text(median(threads.delays) * 1e3, 2) + " ms (median), " +

@@ -44,10 +44,12 @@ class ExactSegmenter final : public Segmenter {
     for (int row = 0; row < labels.rows; ++row)
       for (int column = 0; column < labels.cols; ++column)
         labels.at<std::uint8_t>(row, column) = world.look(at(0.0), column, row).label;
+    if (inverts) labels = labels == 0;
+    if (inverts) labels /= 255;
     return {labels, {}};
   }
 
-  bool finds_nothing = false;
+  bool finds_nothing = false, inverts = false;
 
  private:
   std::vector<std::string> classes_{"background", "person"};
@@ -58,6 +60,9 @@ class MaskFilter final : public DynamicFilter {
  public:
   explicit MaskFilter(Needs needs = {}, int* calls = nullptr) : needs_(needs), calls_(calls) {}
   Needs needs() const override { return needs_; }
+  std::vector<std::string> movable_classes(const std::vector<std::string>& specified) const override {
+    return specified;
+  }
   void apply(const FilterContext& context, StaticEvidence& evidence) override {
     if (calls_ != nullptr) ++*calls_;
     EXPECT_EQ(context.T_camera_world != nullptr,
@@ -163,6 +168,29 @@ TEST_F(MovingWorldTest, AMaskIsAppliedAfterItsLatencyAndPropagatedFromThere) {
     EXPECT_EQ(frame.static_probability[i] < 0.5F, shows_person) << frame.x[i] << " " << frame.y[i];
   }
   EXPECT_GE(on_person, 50);
+}
+
+TEST_F(MovingWorldTest, MasksAreCountedByWhatTheyShow) {
+  MovingWorld world = world_with(0);
+  const auto segment = [&](std::uint64_t index) {
+    track(world, index);
+    world.request_mask(sensor_frame(index), KeyFrameId{static_cast<std::uint32_t>(index), 1}, times);
+    EXPECT_TRUE(world.take_mask(times));
+  };
+  segment(0);
+  EXPECT_EQ(world.mask_counts().segmented, 1U);
+  EXPECT_EQ(world.mask_counts().found, 1U);
+  EXPECT_EQ(world.mask_counts().mostly_movable, 0U);
+  segmenter.finds_nothing = true;
+  segment(1);
+  EXPECT_EQ(world.mask_counts().segmented, 2U);
+  EXPECT_EQ(world.mask_counts().found, 1U);
+  EXPECT_EQ(world.mask_latencies().size(), 1U);
+  segmenter.finds_nothing = false;
+  segmenter.inverts = true;
+  segment(2);
+  EXPECT_EQ(world.mask_counts().found, 2U);
+  EXPECT_EQ(world.mask_counts().mostly_movable, 1U);
 }
 
 TEST_F(MovingWorldTest, FeaturesAreNotExtractedOnObjectsThatMove) {

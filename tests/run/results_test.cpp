@@ -211,5 +211,77 @@ TEST_F(ResultsTest, TheReportShowsWhatTheRunHas) {
   EXPECT_THAT(summary_text(record_), HasSubstr("\naccuracy             unknown, the source has no truth\n"));
 }
 
+/// Marks the left columns of an image as a person, or has no mask at all.
+class ColumnSegmenter final : public Segmenter {
+ public:
+  explicit ColumnSegmenter(double share) : share_(share) {}
+  const std::vector<std::string>& classes() const override { return classes_; }
+  Segmentation segment(const SensorFrame& frame) override {
+    if (share_ < 0.0) return {};
+    cv::Mat labels = cv::Mat::zeros(frame.colour.size(), CV_8UC1);
+    labels.colRange(0, static_cast<int>(share_ * labels.cols)).setTo(1);
+    return {labels, {}};
+  }
+
+ private:
+  double share_;
+  std::vector<std::string> classes_{"background", "person"};
+};
+
+class PersonFilter final : public DynamicFilter {
+ public:
+  Needs needs() const override { return {.segmentation = true}; }
+  std::vector<std::string> movable_classes(const std::vector<std::string>&) const override { return {"person"}; }
+  void apply(const FilterContext&, StaticEvidence&) override {}
+};
+
+RunRecord run_with_masks(double share) {
+  test::PointRun points;
+  auto source = std::make_unique<test::PointSource>(points.world);
+  Registry registry;
+  holdfast_register_plugin_ceres(registry);
+  PipelineBuilder builder(std::move(registry));
+  builder.source(source->describe())
+      .features(std::make_unique<test::PointExtractor>(points.world, 0.3))
+      .optimizer(CeresSettings{})
+      .segmenter({std::make_unique<ColumnSegmenter>(share), "columns"})
+      .segmentation({.on = SegmentedFrames::every_n, .every = 5})
+      .filter(std::make_unique<PersonFilter>());
+  points.configuration.segmenter.name = "columns";
+  points.built = std::make_unique<BuiltPipeline>(BuiltPipeline{std::move(source), builder.build()});
+  return run(*points.built, points.configuration);
+}
+
+/// The warnings about the segmenter.
+std::vector<std::string> mask_warnings(const RunRecord& record) {
+  std::vector<std::string> texts;
+  for (const Diagnostic& warning : record.warnings)
+    if (warning.message.find("the segmenter 'columns'") != std::string::npos) texts.push_back(warning.to_string());
+  return texts;
+}
+
+TEST(MaskWarnings, MasksThatAreMissingOrCoverMostOfTheImageAreSuspected) {
+  const RunRecord usual = run_with_masks(0.4);
+  EXPECT_GE(usual.masks.found, 6U);
+  EXPECT_EQ(usual.masks.found, usual.masks.segmented);
+  EXPECT_TRUE(mask_warnings(usual).empty());
+
+  const RunRecord inverted = run_with_masks(0.9);
+  ASSERT_EQ(mask_warnings(inverted).size(), 1U);
+  EXPECT_THAT(mask_warnings(inverted)[0],
+              AllOf(HasSubstr("masks of the segmenter 'columns' cover more than half of the image with classes that "
+                              "can move: are they inverted"),
+                    HasSubstr("overlay")));
+  EXPECT_THAT(run_json(inverted), HasSubstr("cover more than half"));
+  EXPECT_THAT(report_html(inverted), HasSubstr("cover more than half"));
+
+  const RunRecord missing = run_with_masks(-1.0);
+  EXPECT_EQ(missing.masks.found, 0U);
+  EXPECT_GE(missing.masks.segmented, 6U);
+  ASSERT_EQ(mask_warnings(missing).size(), 1U);
+  EXPECT_THAT(mask_warnings(missing)[0], HasSubstr("the segmenter 'columns' had no mask for any of the "));
+  EXPECT_THAT(summary_text(missing), HasSubstr("masks                0 of "));
+}
+
 }  // namespace
 }  // namespace holdfast

@@ -54,12 +54,34 @@ class PrecomputedTest : public testing::Test {
     image(cv::Rect(2, 1, 3, 2)).setTo(cv::Scalar::all(value));
     ASSERT_TRUE(cv::imwrite((folder_ / name).string(), image));
   }
-  std::unique_ptr<Segmenter> make(const TextMap& labels, double tolerance = 0.0, const std::string& list = "") const {
+  std::unique_ptr<Segmenter> make(const TextMap& labels, double tolerance = 0.0, const std::string& list = "",
+                                  const std::vector<double>& frames = {}) const {
+    CreationContext context;
+    context.frame_timestamps = frames;
     return test::make_segmenter(holdfast_register_plugin_precomputed, "precomputed",
                                 {{"path", folder_.string()},
                                  {"list", list.empty() ? "" : (folder_ / list).string()},
                                  {"tolerance", tolerance},
-                                 {"labels", labels}});
+                                 {"labels", labels}},
+                                context);
+  }
+  /// Writes one label image for each stamp.
+  void write_labels(const std::vector<double>& stamps) const {
+    for (const double stamp : stamps) write(std::to_string(stamp) + ".png", 1);
+  }
+  /// The error or the warning about the label images of a recording of ten frames, 30 a second.
+  std::string about_times(double tolerance = 0.0, const std::vector<double>& stamps = frames()) const {
+    try {
+      const auto segmenter = make({{"1", "person"}}, tolerance, "", stamps);
+      return segmenter->warnings().empty() ? "" : segmenter->warnings().front().to_string();
+    } catch (const InputError& error) {
+      return std::string("error: ") + error.what();
+    }
+  }
+  static std::vector<double> frames(double shift = 0.0, int step = 1, int count = 10) {
+    std::vector<double> stamps;
+    for (int i = 0; i < count; i += step) stamps.push_back(1305031102.0 + shift + i / 30.0);
+    return stamps;
   }
   /// The label where the image has its value, or -1 when there is no image; the rest must be background.
   static int label_at(Segmenter& segmenter, double timestamp) {
@@ -121,6 +143,63 @@ TEST_F(PrecomputedTest, AListNamesTheFiles) {
   std::ofstream(folder_ / "mask.txt") << "10.5 mask/none.png\n";
   const auto missing = make({{"1", "first"}}, 0.0, "mask.txt");
   EXPECT_THAT(error_of([&] { label_at(*missing, 10.5); }), HasSubstr("none.png: is missing"));
+}
+
+TEST_F(PrecomputedTest, LabelImagesOfEveryFrameOrMostOfThemNeedNoWord) {
+  write_labels(frames());
+  EXPECT_EQ(about_times(), "");
+  EXPECT_EQ(about_times(0.02), "");
+  fs::remove_all(folder_);
+  write_labels(frames(0.0, 2));
+  EXPECT_EQ(about_times(), "");
+  fs::remove_all(folder_);
+  write_labels(frames(0.0, 5));
+  EXPECT_EQ(about_times(0.1), "");
+  fs::remove_all(folder_);
+  write_labels(frames(0.0, 1, 40));  // of a longer part of the recording
+  EXPECT_EQ(about_times(), "");
+  fs::remove_all(folder_);
+  write_labels(frames(0.001));
+  EXPECT_EQ(about_times(0.005), "");
+}
+
+TEST_F(PrecomputedTest, LabelImagesOfNoFrameAreAnError) {
+  write_labels({0, 1, 2, 3, 4, 5, 6, 7, 8, 9});
+  for (int i = 0; i < 10; ++i)
+    fs::rename(folder_ / (std::to_string(i) + ".000000.png"), folder_ / (std::to_string(i) + ".png"));
+  EXPECT_THAT(about_times(), AllOf(StartsWith("error: " + folder_.string() + ": none of 10 frames have a label image"),
+                                   HasSubstr("numbers of frames? Name each image by the time stamp of its frame")));
+  std::vector<double> from_zero;
+  for (int i = 0; i < 100; ++i) from_zero.push_back(i / 30.0);
+  EXPECT_THAT(about_times(0.0, from_zero), AllOf(HasSubstr("only 4 of 100 frames"), HasSubstr("numbers of frames?")));
+  fs::remove_all(folder_);
+  write_labels(frames(3600.0, 1, 7));
+  EXPECT_THAT(about_times(), AllOf(StartsWith("error: "), HasSubstr("are they of this recording?")));
+  fs::remove_all(folder_);
+  write_labels(frames(0.007, 1, 9));
+  EXPECT_THAT(about_times(), AllOf(StartsWith("error: "), HasSubstr("to the nearest label image it is 0.007000 s"),
+                                   HasSubstr("`segmenter.precomputed.tolerance`")));
+  EXPECT_EQ(about_times(0.01), "");
+}
+
+TEST_F(PrecomputedTest, LabelImagesOfFewFramesOrWithAShiftAreSuspected) {
+  write_labels(frames(0.0, 5));
+  EXPECT_THAT(about_times(),
+              AllOf(StartsWith(folder_.string() + ": only 2 of 10 frames have a label image"), HasSubstr("tolerance")));
+  fs::remove_all(folder_);
+  write_labels(frames(0.1));
+  EXPECT_THAT(about_times(0.01), AllOf(StartsWith(folder_.string() + ": 7 of 10 frames have a label image"),
+                                       HasSubstr("every label image is 0.100000 s later than the frame of the same "
+                                                 "number; correct their time stamps")));
+  fs::remove_all(folder_);
+  write_labels(frames(-20.0));
+  EXPECT_THAT(about_times(), AllOf(StartsWith("error: "), HasSubstr("every label image is 20.000000 s earlier")));
+}
+
+TEST_F(PrecomputedTest, FewFramesMayLieBetweenTwoLabelImages) {
+  write_labels(frames(0.0, 9));
+  EXPECT_THAT(about_times(0.0, frames(1.0 / 30.0, 1, 4)),
+              StartsWith(folder_.string() + ": none of 4 frames have a label image"));
 }
 
 TEST_F(PrecomputedTest, AnUnmappedValueNamesFileValueAndPixel) {

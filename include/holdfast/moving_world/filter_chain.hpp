@@ -37,6 +37,8 @@ class FilterChain {
   std::size_t size() const { return filters_.size(); }
   const std::string& name(std::size_t i) const { return names_[i]; }
   const DynamicFilter& filter(std::size_t i) const { return *filters_[i]; }
+  /// DynamicFilter::movable_classes() of all filters.
+  std::vector<std::string> movable_classes(const std::vector<std::string>& specified) const;
 
   void begin(const Frame& frame) {
     evidence_.reset(frame.size(), frame.coarse.depth.size());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 #include <opencv2/core/mat.hpp>
 #include <optional>
@@ -17,6 +18,7 @@
 #include "holdfast/interfaces/segmenter.hpp"
 #include "holdfast/moving_world/depth_agreement.hpp"
 #include "holdfast/moving_world/filter_chain.hpp"
+#include "holdfast/moving_world/mask_counts.hpp"
 #include "holdfast/moving_world/mask_propagator.hpp"
 #include "holdfast/moving_world/segmentation_queue.hpp"
 #include "holdfast/moving_world/segmentation_settings.hpp"
@@ -135,8 +137,9 @@ class MovingWorld {
   /// Throws what the segmenter threw in its thread.
   void rethrow();
 
-  /// From the stamp of each segmented frame to that of the first frame to which its mask was applied, or of the last
-  /// frame of the run [s].
+  const MaskCounts& mask_counts() const { return mask_counts_; }
+  /// From the stamp of each frame with a segmentation to that of the first frame to which its mask was applied, or of
+  /// the last frame of the run [s].
   const std::vector<double>& mask_latencies() const { return mask_latencies_; }
   /// Of the segmentation thread, since the last call.
   std::vector<StageTimes> take_times();
@@ -144,6 +147,7 @@ class MovingWorld {
 
  private:
   FilterContext context(const SensorFrame& sensor_frame, const Frame& frame) const;
+  void count_mask(const CellMask& mask);
 
   Map& map_;
   FilterChain filters_;
@@ -151,6 +155,8 @@ class MovingWorld {
   DepthAgreement depth_agreement_;
   CoarseSampler sampler_;
   std::vector<std::string> classes_, movable_;
+  std::array<bool, 256> is_movable_{};  // by label, of the filters
+  MaskCounts mask_counts_;
   std::optional<MaskPropagator> propagator_;
   std::uint64_t next_frame_number_ = 0;
   double timestamp_ = 0.0;  // of the current frame [s]

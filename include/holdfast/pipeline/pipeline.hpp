@@ -23,6 +23,7 @@
 #include "holdfast/mapping/mapping_counts.hpp"
 #include "holdfast/mapping/mapping_settings.hpp"
 #include "holdfast/moving_world/evidence_settings.hpp"
+#include "holdfast/moving_world/mask_counts.hpp"
 #include "holdfast/moving_world/segmentation_settings.hpp"
 #include "holdfast/tracking/loss_record.hpp"
 #include "holdfast/tracking/stereo_settings.hpp"
@@ -132,8 +133,10 @@ class Pipeline {
 
   /// Stage times of background work done since the last call; in sequential mode they are in each FrameResult.
   std::vector<StageTimes> take_background_times();
-  /// From the stamp of each segmented frame to that of the first frame for which its mask counted, or of the last frame
-  /// of the run [s].
+  /// Of the frames whose segmentation has arrived; complete after finish().
+  const MaskCounts& mask_counts() const;
+  /// From the stamp of each frame with a segmentation to that of the first frame for which its mask counted, or of the
+  /// last frame of the run [s].
   const std::vector<double>& mask_latencies() const;
   /// Keyframes that were due but found the mapping thread too busy.
   std::uint64_t keyframes_deferred() const;

@@ -37,7 +37,7 @@ struct RunRecord {
   Camera camera;
   Sensor sensor = Sensor::rgbd;
   double readout = 0.0;  ///< Pipeline::readout() at the end [s]
-  RunSummary summary;  ///< counts and stage times over all frames
+  RunSummary summary;    ///< counts and stage times over all frames
   std::vector<SkippedFrame> skipped;
   std::vector<double> frame_stamps;  ///< time stamps of all frames of the source, skipped ones included, sorted [s]
   std::size_t frames_expected = 0;   ///< number of frames that the source announced, else the number of frame_stamps
@@ -52,6 +52,7 @@ struct RunRecord {
   MappingCounts mapping;
   LoopRecord loops;
   LossRecord losses;
+  MaskCounts masks;                     ///< of the frames that were segmented
   std::vector<double> mask_ages;        ///< age of each segmentation mask when it was first used [s]
   std::optional<ThreadRecord> threads;  ///< in threaded mode
 

@@ -12,6 +12,7 @@
 #include "holdfast/plugin/plugin.hpp"
 #include "holdfast/settings/precomputed.hpp"
 #include "label_files.hpp"
+#include "label_fit.hpp"
 
 namespace holdfast {
 
@@ -45,12 +46,16 @@ constexpr double min_tolerance = 1e-6;
 /// Label images that were made before.
 class PrecomputedSegmenter final : public Segmenter {
  public:
-  PrecomputedSegmenter(const PrecomputedSettings& settings, const CreationContext&)
+  PrecomputedSegmenter(const PrecomputedSettings& settings, const CreationContext& context)
       : labels_(settings.labels, "segmenter.precomputed.labels"),
         files_(settings.list.empty() ? find_label_files(settings.path)
                                      : listed_label_files(settings.path, settings.list)),
-        tolerance_(std::max(settings.tolerance, min_tolerance)) {}
+        tolerance_(std::max(settings.tolerance, min_tolerance)) {
+    if (!context.frame_timestamps.empty())
+      check_times(settings.list.empty() ? settings.path : settings.list, context.frame_timestamps);
+  }
 
+  Warnings warnings() const override { return warnings_; }
   const std::vector<std::string>& classes() const override { return labels_.classes(); }
 
   Segmentation segment(const SensorFrame& frame) override {
@@ -67,9 +72,23 @@ class PrecomputedSegmenter final : public Segmenter {
   }
 
  private:
+  /// Throws InputError if no frame has a label image, and warns if few have, or if there are few frames, which may lie
+  /// between two label images.
+  void check_times(const std::filesystem::path& place, const std::vector<double>& frames) {
+    const LabelFit fit = fit_labels(files_, frames, tolerance_);
+    constexpr std::size_t few_frames = 10;
+    if (fit.found == 0 && fit.frames >= few_frames)
+      throw InputError({place.string()}, fit.found_text + ": " + fit.advice);
+    if (2 * fit.found < fit.frames || fit.shift != 0.0)
+      add_warning(
+          warnings_,
+          {{place.string()}, (fit.shift != 0.0 || fit.found == 0 ? "" : "only ") + fit.found_text + "; " + fit.advice});
+  }
+
   LabelMap labels_;
   std::vector<LabelFile> files_;
   double tolerance_;
+  Warnings warnings_;
   ImageDecoder decoder_;
 };
 

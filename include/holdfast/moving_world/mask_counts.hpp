@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+
+namespace holdfast {
+
+/// Numbers of segmented frames so far.
+struct MaskCounts {
+  std::size_t segmented = 0;       ///< frames that the segmenter was given and whose result has arrived
+  std::size_t found = 0;           ///< those for which it had a segmentation
+  std::size_t mostly_movable = 0;  ///< those in which movable classes cover more than half of what has a class
+};
+
+}  // namespace holdfast
