@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <string_view>
 
 #include "holdfast/core/text_file.hpp"
@@ -147,10 +146,10 @@ SalvagedTrajectory salvage_trajectory(const std::filesystem::path& file) {
   SalvagedTrajectory result;
   std::error_code ignored;
   result.exists = std::filesystem::is_regular_file(file, ignored);
-  std::ifstream stream(file);
-  skip_byte_order_mark(stream);
+  if (!result.exists) return result;
+  LineReader lines(file, "a trajectory");
   TimedPose pose;
-  for (std::string line; std::getline(stream, line);) {
+  for (std::string line; lines.next(line);) {
     switch (read_line(line, pose)) {
       case Line::blank:
         break;

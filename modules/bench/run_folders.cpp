@@ -3,8 +3,7 @@
 
 #include <unistd.h>
 
-#include <fstream>
-#include <iterator>
+#include "holdfast/core/input_file.hpp"
 
 namespace holdfast {
 
@@ -16,8 +15,9 @@ std::filesystem::path incomplete_folder(const std::filesystem::path& folder) {
 }
 
 std::string content_of(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) return "";
+  return file_content(file, largest_file::text, "a file of the bench");
 }
 
 }  // namespace holdfast

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/bench/run_result.hpp"
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "error_keys.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/input_file.hpp"
 #include "holdfast/evaluation/number_text.hpp"
 
 namespace holdfast {
@@ -20,10 +20,9 @@ constexpr std::array statuses = {RunStatus::finished, RunStatus::failed, RunStat
 double number(const Json& json) { return json.is_number() ? json.get<double>() : Statistics::none; }
 
 Json read_json(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream) throw InputError({file.string()}, "cannot be read; expected a result of the bench");
+  const std::string text = file_content(file, largest_file::json, "a result of the bench");
   try {
-    return Json::parse(stream);
+    return Json::parse(text);
   } catch (const Json::exception& error) {
     throw InputError({file.string()},
                      std::string("is no result of the bench: ") + error.what() + "; remove its folder");

@@ -11,6 +11,7 @@
 #include "active_run.hpp"
 #include "holdfast/bench/executor.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/system_reason.hpp"
 #include "recorded_copies.hpp"
 #include "run_folders.hpp"
 
@@ -25,7 +26,7 @@ class FolderLock {
  public:
   explicit FolderLock(const fs::path& folder)
       : file_(open((folder / ".lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)) {
-    if (file_ < 0) throw InputError({folder.string()}, "cannot be written to");
+    if (file_ < 0) throw InputError({folder.string()}, "cannot be written to: " + system_reason(errno));
     if (flock(file_, LOCK_EX | LOCK_NB) != 0) {
       close(file_);
       throw InputError({folder.string()}, "another bench is at work in this folder; wait for it, or name another one");

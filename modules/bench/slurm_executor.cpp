@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <fstream>
 #include <iterator>
 #include <map>
 #include <set>
@@ -9,6 +8,7 @@
 #include "active_run.hpp"
 #include "holdfast/bench/executor.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/text_file.hpp"
 #include "slurm_commands.hpp"
 
 namespace holdfast {
@@ -98,9 +98,9 @@ class SlurmExecutor final : public Executor {
 
   void read_batches() {
     for (std::size_t batch = 0; fs::exists(batch_folder(batch) / "runs.txt"); ++batch) {
-      std::ifstream stream(batch_folder(batch) / "runs.txt");
+      LineReader lines(batch_folder(batch) / "runs.txt", "the runs of a job, one a line");
       std::vector<std::string>& ids = batches_.emplace_back();
-      for (std::string id; std::getline(stream, id);) ids.push_back(id);
+      for (std::string id; lines.next(id);) ids.push_back(id);
     }
   }
   fs::path batch_folder(std::size_t batch) const { return folder_ / ("batch-" + std::to_string(batch)); }

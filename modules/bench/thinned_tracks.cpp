@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "holdfast/bench/report_page.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/input_file.hpp"
 #include "holdfast/evaluation/statistics.hpp"
 
 namespace holdfast {
@@ -37,10 +37,11 @@ TrackRows rows_of_json(const Json& json, const char* key, std::size_t columns, c
 }
 
 std::optional<Tracks> read_tracks(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) return std::nullopt;
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) return std::nullopt;
+  const std::string text = file_content(file, largest_file::json, "a file of tracks");
   try {
-    const Json json = Json::parse(stream);
+    const Json json = Json::parse(text);
     return Tracks{rows_of_json(json, "truth", 4, file), rows_of_json(json, "estimate", 4, file),
                   rows_of_json(json, "error", 2, file)};
   } catch (const Json::exception& error) {

@@ -7,8 +7,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <string>
 #include <tuple>
@@ -24,6 +22,7 @@
 #include "holdfast/bench/run_scheduler.hpp"
 #include "holdfast/bench/slurm_options.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/input_file.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/evaluation/number_text.hpp"
 #include "holdfast/pipeline/configured_pipeline.hpp"
@@ -191,9 +190,8 @@ void bench(const BenchArguments& arguments, const ProgramHost& host, int& exit_c
       [&](const PlannedRun& run, const RunResult& result, const RunCost& cost, const BenchProgress& progress) {
         if (!arguments.quiet) print_end(run, result, cost, progress);
       });
-  std::ifstream text(arguments.matrix, std::ios::binary);
   write_file_atomically(arguments.output / "matrix.yaml",
-                        {std::istreambuf_iterator<char>(text), std::istreambuf_iterator<char>()});
+                        file_content(arguments.matrix, largest_file::configuration, "a matrix"));
   write_bench_reports(arguments.output, plan, results, published);
   if (results.was_stopped) {
     const auto done = std::count_if(results.results.begin(), results.results.end(),

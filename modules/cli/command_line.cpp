@@ -18,6 +18,7 @@
 #include "evaluate_command.hpp"
 #include "evaluate_segmentation_command.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/system_reason.hpp"
 #include "manual_command.hpp"
 #include "map_command.hpp"
 #include "modules_command.hpp"
@@ -50,9 +51,11 @@ What a configuration can say:
 
 /// What was printed may not have arrived, as on a full disk: then the exit code says so.
 int after_output(int exit_code) {
+  errno = 0;
   std::cout.flush();
   if (exit_code != 0 || (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout)) return exit_code;
-  print_error("standard output could not be written; is the disk full?");
+  print_error("standard output could not be written" +
+              (errno != 0 ? ": " + system_reason(errno) : "; is the disk full?"));
   return 1;
 }
 

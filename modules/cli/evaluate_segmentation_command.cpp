@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <opencv2/core/utility.hpp>
@@ -72,11 +71,9 @@ Examples
 
 /// The names that a list gives, one a line; '#' begins a comment line.
 std::vector<std::string> read_names(const fs::path& file) {
-  std::ifstream stream(file);
-  if (!stream) throw InputError({file.string()}, "cannot be read; expected a file with one image name a line");
-  skip_byte_order_mark(stream);
+  LineReader lines(file, "a file with one image name a line");
   std::vector<std::string> names;
-  for (std::string line; std::getline(stream, line);)
+  for (std::string line; lines.next(line);)
     if (!line.empty() && line.front() != '#') names.push_back(line);
   if (names.empty()) throw InputError({file.string()}, "names no image; expected one name a line");
   return names;

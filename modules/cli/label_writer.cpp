@@ -73,7 +73,10 @@ void LabelWriter::write(double timestamp, const cv::Mat& labels) {
   stamps_.push_back(timestamp);
 }
 
-void LabelWriter::finish() { write_file_atomically(folder_ / list_name, list_); }
+void LabelWriter::finish() {
+  sync_file_system(folder_);
+  write_file_atomically(folder_ / list_name, list_);
+}
 
 std::string LabelWriter::configuration(bool every_frame) const {
   std::string text = "segmenter:\n  precomputed:\n    path: " +

@@ -35,11 +35,12 @@ double depth_stamp(const SensorFrame& frame) { return frame.timestamp + frame.de
 
 }  // namespace
 
-void write_image_atomically(const fs::path& file, const cv::Mat& image, const std::vector<int>& parameters) {
+void write_image_atomically(const fs::path& file, const cv::Mat& image, const std::vector<int>& parameters,
+                            Durability durability) {
   std::vector<std::uint8_t> bytes;
   if (!cv::haveImageWriter(file.string()) || !cv::imencode(file.extension().string(), image, bytes, parameters))
     throw InputError({file.string()}, "the image cannot be encoded; expected a name that ends with .png or .jpg");
-  write_file_atomically(file, std::string(bytes.begin(), bytes.end()));
+  write_file_atomically(file, std::string(bytes.begin(), bytes.end()), durability);
 }
 
 const std::vector<std::string>& RecordingWriter::entries() {
@@ -86,10 +87,10 @@ std::string RecordingWriter::stamp_name(double timestamp) const {
 
 void RecordingWriter::encode(const Job& job) const {
   if (options_.colour_format == "png")
-    write_file_atomically(job.colour_file, encode_png(job.colour));
+    write_file_atomically(job.colour_file, encode_png(job.colour), Durability::later);
   else
     write_image_atomically(job.colour_file, job.colour, {cv::IMWRITE_JPEG_QUALITY, 95});
-  write_file_atomically(job.depth_file, encode_png(to_depth_units(job.depth, job.depth_factor)));
+  write_file_atomically(job.depth_file, encode_png(to_depth_units(job.depth, job.depth_factor)), Durability::later);
 }
 
 void RecordingWriter::add(const SensorFrame& frame) {
@@ -116,6 +117,7 @@ void RecordingWriter::finish(const Trajectory& truth) {
   for (const auto& encoder : encoders_) encoder->rethrow();
   if (has_failed_)
     throw InputError({folder_.string()}, "an image could not be written, so that the recording has no lists");
+  sync_file_system(folder_);
   if (!truth.empty()) write_trajectory(folder_ / "groundtruth.txt", truth);
   if (options_.has_global_shutter) write_file_atomically(folder_ / "shutter.txt", "global\n");
   write_file_atomically(folder_ / "associations.txt", associations_);

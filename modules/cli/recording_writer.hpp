@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "holdfast/core/atomic_file.hpp"
 #include "holdfast/core/sensor_frame.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/core/worker.hpp"
@@ -18,7 +19,7 @@ namespace holdfast {
 
 /// Encodes by the file's extension, writes in one step. Throws InputError.
 void write_image_atomically(const std::filesystem::path& file, const cv::Mat& image,
-                            const std::vector<int>& parameters = {});
+                            const std::vector<int>& parameters = {}, Durability durability = Durability::later);
 
 /// Writes a recording in the layout of the TUM RGB-D benchmark: rgb/, depth/ (16 bit, 0 = no value), their lists
 /// rgb.txt and depth.txt, associations.txt and groundtruth.txt; beside them shutter.txt, with the word "global", where
@@ -28,7 +29,8 @@ void write_image_atomically(const std::filesystem::path& file, const cv::Mat& im
 /// the unit of the benchmark, and what lies beyond 13.1 m has no value then.
 ///
 /// Two threads encode, so that a camera of 30 frames per second loses none; add() waits for them when four frames wait.
-/// Every image is written in one step, lists last, so that no list names a missing image. Used by one thread.
+/// Every image is written in one step, lists last, when all images have reached the disk, so that no list names a
+/// missing image. Used by one thread.
 class RecordingWriter {
  public:
   static constexpr double depth_units_per_metre = 5000.0;  // of the TUM benchmark

@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <utility>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/input_file.hpp"
 #include "holdfast/core/version.hpp"
 
 namespace holdfast {
@@ -56,8 +55,7 @@ std::string quoted(const std::string& text) { return Json(text).dump(-1, ' ', fa
 
 /// So that the sequence can be made again; "" where there is no file.
 std::string content_of(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  return file.empty() ? "" : file_content(file, largest_file::configuration, "a scene");
 }
 
 }  // namespace

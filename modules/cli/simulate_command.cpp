@@ -72,7 +72,7 @@ int simulate(const SimulateArguments& arguments) {
   if (scene.seed == 0) scene.seed = 1;
   simulation::Simulator simulator(scene, *camera);
   if (!arguments.preview.empty()) {
-    write_image_atomically(arguments.preview, scene_preview(simulator));
+    write_image_atomically(arguments.preview, scene_preview(simulator), {}, Durability::now);
     if (arguments.output.empty()) return 0;
   }
   const FolderLock lock = prepare_output_folder(arguments.output, arguments.overwrite, SequenceWriter::entries());

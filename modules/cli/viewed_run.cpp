@@ -2,12 +2,12 @@
 #include "viewed_run.hpp"
 
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/input_file.hpp"
 #include "holdfast/evaluation/alignment.hpp"
 #include "holdfast/evaluation/number_text.hpp"
 #include "holdfast/map_io/cloud_ply.hpp"
@@ -39,9 +39,8 @@ std::vector<float> errors_of(const Trajectory& path, const std::vector<std::pair
 }
 
 Json read_json(const fs::path& file) {
-  std::ifstream stream(file);
-  const Json json = Json::parse(stream, nullptr, false);
-  if (!stream || json.is_discarded() || !json.is_object())
+  const Json json = Json::parse(file_content(file, largest_file::json, "JSON that a run has written"), nullptr, false);
+  if (json.is_discarded() || !json.is_object())
     throw InputError({file.string()}, "is no JSON that a run has written; run it again, or remove the file");
   return json;
 }

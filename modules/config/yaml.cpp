@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <yaml-cpp/exceptions.h>
 
-#include <fstream>
-#include <iterator>
 #include <map>
 
 #include "holdfast/config/configuration_node.hpp"
 #include "holdfast/config/missing_file.hpp"
-#include "holdfast/core/text_file.hpp"
+#include "holdfast/core/input_file.hpp"
 #include "yaml_tree.hpp"
 
 namespace holdfast {
@@ -144,19 +142,13 @@ ConfigurationNode parse_yaml(const std::string& text, const std::string& file_na
 }
 
 ConfigurationNode read_yaml(const std::filesystem::path& file) {
-  if (is_named_pipe(file))
-    throw ConfigurationError(SourceLocation{file.string()},
-                             "is a named pipe, which may never end; expected a configuration in YAML");
+  const std::string expected = "a configuration in YAML";
   std::error_code trouble;  // a name that is too long, or below a folder that may not be read, is no file either
-  const bool is_folder = std::filesystem::is_directory(file, trouble);
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream || is_folder)
-    throw ConfigurationError(SourceLocation{file.string()},
-                             (!std::filesystem::exists(file, trouble) ? missing_file_text(file, "file")
-                              : is_folder                             ? "is a folder;"
-                                                                      : "cannot be read;") +
-                                 std::string(" expected a configuration in YAML"));
-  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  if (!std::filesystem::exists(file, trouble))
+    throw ConfigurationError(SourceLocation{file.string()}, missing_file_text(file, "file") + " expected " + expected);
+  if (const std::string problem = why_unreadable(file, largest_file::configuration); !problem.empty())
+    throw ConfigurationError(SourceLocation{file.string()}, problem + "; expected " + expected);
+  const std::string text = file_content(file, largest_file::configuration, expected);
   // What comes through the system's /dev/stdin lies in no folder: paths in it count from the current one.
   const bool is_file = !file.string().starts_with("/dev/");
   return parse_yaml(text, file.string(),

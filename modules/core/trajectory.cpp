@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <string_view>
 #include <utility>
 
@@ -115,7 +114,7 @@ void append_fixed(std::string& text, double value, int decimals) {
   text += number;
 }
 
-constexpr const char* expected_format = "expected a trajectory in TUM format (t tx ty tz qx qy qz qw)";
+constexpr const char* expected_format = "a trajectory in TUM format (t tx ty tz qx qy qz qw)";
 
 }  // namespace
 
@@ -161,16 +160,7 @@ std::optional<TrajectoryFormat> find_trajectory_format(const std::string& name) 
 }
 
 TrajectoryFile read_trajectory_file(const std::filesystem::path& file, const TrajectoryReading& reading) {
-  std::error_code status;
-  if (!std::filesystem::exists(file, status))
-    throw InputError({file.string()}, std::string("no such file; ") + expected_format);
-  if (std::filesystem::is_directory(file, status))
-    throw InputError({file.string()}, std::string("found a folder; ") + expected_format);
-  if (is_named_pipe(file))
-    throw InputError({file.string()}, std::string("found a named pipe, which may never end; ") + expected_format);
-  std::ifstream stream(file);
-  if (!stream) throw InputError({file.string()}, std::string("cannot be opened for reading; ") + expected_format);
-  skip_byte_order_mark(stream);
+  LineReader lines(file, expected_format);
   TrajectoryFile result;
   Trajectory trajectory;
   std::string line;
@@ -180,7 +170,7 @@ TrajectoryFile read_trajectory_file(const std::filesystem::path& file, const Tra
   constexpr double kitti_interval = 0.1;  // s
   std::size_t pose_number = 0;
   bool in_nanoseconds = reading.format == TrajectoryFormat::euroc, real_part_first = in_nanoseconds;
-  for (int line_number = 1; std::getline(stream, line); ++line_number) {
+  while (lines.next(line)) {
     // The header of EuRoC's files; stamps that begin at 0 look like seconds.
     if (line.starts_with('#') && line.find("[ns]") != std::string::npos) in_nanoseconds = true;
     if (line.starts_with('#') && names_real_part_first(line)) real_part_first = true;
@@ -190,15 +180,15 @@ TrajectoryFile read_trajectory_file(const std::filesystem::path& file, const Tra
     const std::optional<TrajectoryFormat> found = parsed ? looks_like(numbers, in_nanoseconds) : std::nullopt;
     if (!format) format = found;
     if (!found || found != format)
-      throw InputError({file.string(), line_number},
-                       "found " + counted(words.size(), "column") + ", '" + line.substr(0, 60) + "'" +
-                           (found ? std::string("; it looks like ") + description(*found) : "") + "; expected " +
-                           description(format.value_or(TrajectoryFormat::tum)) + "; convert the file");
+      throw InputError(lines.location(), "found " + counted(words.size(), "column") + ", '" + line.substr(0, 60) + "'" +
+                                             (found ? std::string("; it looks like ") + description(*found) : "") +
+                                             "; expected " + description(format.value_or(TrajectoryFormat::tum)) +
+                                             "; convert the file");
     const std::string_view content = std::string_view(line).substr(0, line.find('#'));
     if (const std::string reason = doubt(*format, content.find(',') != std::string_view::npos, real_part_first);
         !reason.empty())
-      throw InputError({file.string(), line_number}, "found '" + line.substr(0, 60) + "': " + reason + "; expected " +
-                                                         description(*format) + "; convert the file");
+      throw InputError(lines.location(), "found '" + line.substr(0, 60) + "': " + reason + "; expected " +
+                                             description(*format) + "; convert the file");
     result.format = *format;
     const auto [position, rotation] = pose_of(numbers, *format);
     const std::size_t number = pose_number++;
@@ -211,9 +201,8 @@ TrajectoryFile read_trajectory_file(const std::filesystem::path& file, const Tra
     if (format == TrajectoryFormat::euroc) pose.timestamp = numbers[0] * 1e-9;
     if (format == TrajectoryFormat::kitti) {
       if (!reading.stamps.empty() && number >= reading.stamps.size())
-        throw InputError({file.string(), line_number}, "found more poses than the " +
-                                                           std::to_string(reading.stamps.size()) +
-                                                           " time stamps; expected one stamp for each pose");
+        throw InputError(lines.location(), "found more poses than the " + std::to_string(reading.stamps.size()) +
+                                               " time stamps; expected one stamp for each pose");
       pose.timestamp = reading.stamps.empty() ? kitti_interval * static_cast<double>(number) : reading.stamps[number];
     }
     pose.T_world_camera = Eigen::Translation3d(position) * rotation.normalized();
@@ -223,7 +212,6 @@ TrajectoryFile read_trajectory_file(const std::filesystem::path& file, const Tra
     }
     trajectory.push_back(pose);
   }
-  if (stream.bad()) throw InputError({file.string()}, "reading stopped before the end; is the disk in order?");
   if (result.format == TrajectoryFormat::kitti && !reading.stamps.empty() && pose_number != reading.stamps.size())
     throw InputError({file.string()}, "found " + counted(pose_number, "pose") + " for " +
                                           std::to_string(reading.stamps.size()) +
@@ -282,29 +270,6 @@ std::string trajectory_text(const Trajectory& trajectory, TrajectoryFormat forma
 
 void write_trajectory(const std::filesystem::path& file, const Trajectory& trajectory, TrajectoryFormat format) {
   write_file_atomically(file, trajectory_text(trajectory, format));
-}
-
-void write_file_atomically(const std::filesystem::path& file, const std::string& content) {
-  std::filesystem::path temporary = file;
-  temporary += ".tmp";
-  {
-    std::ofstream stream(temporary, std::ios::binary);
-    stream.write(content.data(), static_cast<std::streamsize>(content.size()));
-    stream.flush();
-    if (!stream) {
-      stream.close();
-      std::error_code ignored;
-      std::filesystem::remove(temporary, ignored);
-      throw InputError({file.string()}, "cannot be written; is the folder there, writable and not full?");
-    }
-  }
-  std::error_code error;
-  std::filesystem::rename(temporary, file, error);
-  if (error) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    throw InputError({file.string()}, "cannot be replaced: " + error.message());
-  }
 }
 
 }  // namespace holdfast

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <string>
 #include <string_view>
 
@@ -20,13 +19,10 @@ constexpr double frame_tolerance = 0.001;        // [s]
 constexpr double colour_depth_tolerance = 0.02;  // [s]
 
 std::vector<double> read_stamp_list(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  if (!stream)
-    throw InputError({file.string()}, "cannot be read; expected a list of frames, each line beginning with a stamp");
-  skip_byte_order_mark(stream);
+  LineReader lines(file, "a list of frames, each line beginning with a stamp");
   std::vector<double> stamps;
   std::string line;
-  for (int line_number = 1; std::getline(stream, line); ++line_number) {
+  while (lines.next(line)) {
     const std::string_view content = std::string_view(line).substr(0, line.find('#'));
     const std::size_t begin = content.find_first_not_of(" \t\r,");
     if (begin == std::string_view::npos) continue;
@@ -34,7 +30,7 @@ std::vector<double> read_stamp_list(const std::filesystem::path& file) {
     double stamp = 0.0;
     const auto [stop, error] = std::from_chars(content.data() + begin, content.data() + end, stamp);
     if (error != std::errc() || stop != content.data() + end || !std::isfinite(stamp))
-      throw InputError({file.string(), line_number},
+      throw InputError(lines.location(),
                        "found '" + line.substr(0, 60) + "'; expected a line that begins with a stamp in seconds");
     stamps.push_back(stamp);
   }
@@ -74,10 +70,6 @@ std::vector<double> read_frame_stamps(const std::filesystem::path& source) {
   if (!std::filesystem::exists(source, status))
     throw InputError({source.string()},
                      "no such file or folder; expected a list of frames or the folder of a TUM sequence");
-  if (is_named_pipe(source))
-    throw InputError(
-        {source.string()},
-        "found a named pipe, which may never end; expected a list of frames or the folder of a TUM sequence");
   if (!std::filesystem::is_directory(source, status)) return read_stamp_list(source);
   const std::vector<double> colour = read_stamp_list(source / "rgb.txt");
   const std::vector<double> depth = read_stamp_list(source / "depth.txt");

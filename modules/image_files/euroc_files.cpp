@@ -2,7 +2,6 @@
 #include "holdfast/image_files/euroc_files.hpp"
 
 #include <charconv>
-#include <fstream>
 #include <string>
 
 #include "holdfast/core/text_file.hpp"
@@ -94,19 +93,14 @@ EurocCamera read_euroc_camera(const std::filesystem::path& file) {
 
 std::vector<ListedImage> read_euroc_image_list(const std::filesystem::path& file) {
   constexpr const char* form = "expected lines 'time stamp [ns],file name'";
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error))
-    throw InputError({file.string()}, std::string("is missing or not a file; ") + form);
-  std::ifstream stream(file);
-  if (!stream) throw InputError({file.string()}, "cannot be read; check its permissions");
-  skip_byte_order_mark(stream);
+  LineReader lines(file, "lines 'time stamp [ns],file name'");
   std::vector<ListedImage> images;
   std::string line;
   constexpr const char* blanks = " \t\r";
-  for (int number = 1; std::getline(stream, line); ++number) {
+  while (lines.next(line)) {
     const std::size_t begin = line.find_first_not_of(blanks);
     if (begin == std::string::npos || line[begin] == '#') continue;
-    const SourceLocation place{file.string(), number};
+    const SourceLocation place = lines.location();
     const std::size_t comma = line.find(',');
     std::int64_t nanoseconds = 0;
     const char* first = line.data() + begin;
@@ -119,7 +113,7 @@ std::vector<ListedImage> read_euroc_image_list(const std::filesystem::path& file
     if (name == std::string::npos || name >= end)
       throw InputError(place, std::string("names no file; ") + form + "; correct the line or take it out");
     // As of read_trajectory_file(), so that images and truth of one stamp have the same time.
-    const ListedImage image{static_cast<double>(nanoseconds) * 1e-9, line.substr(name, end - name), number};
+    const ListedImage image{static_cast<double>(nanoseconds) * 1e-9, line.substr(name, end - name), lines.number()};
     if (!images.empty() && !(images.back().timestamp < image.timestamp))
       throw InputError(place, "has a time stamp that is not later than that of line " +
                                   std::to_string(images.back().line) + "; expected stamps that rise from line to line");

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/image_files/image_decoder.hpp"
 
-#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <memory>
@@ -10,6 +9,7 @@
 #include <optional>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/input_file.hpp"
 #include "holdfast/core/size_text.hpp"
 #include "holdfast/image_files/image_structure.hpp"
 #include "jpeg_pixels.hpp"
@@ -115,14 +115,7 @@ void ImageDecoder::load(const std::filesystem::path& file) {
   const std::filesystem::file_status status = std::filesystem::status(file, error);
   if (status.type() == std::filesystem::file_type::not_found)
     throw InputError({file.string()}, "is missing; expected a PNG or JPEG image; complete the recording");
-  if (!std::filesystem::is_regular_file(status))
-    throw InputError({file.string()}, "is not a file; expected a PNG or JPEG image");
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), &std::fclose);
-  const std::uintmax_t size = std::filesystem::file_size(file, error);
-  if (!stream || error) throw InputError({file.string()}, "cannot be read; check its permissions");
-  bytes_.resize(size);
-  if (std::fread(bytes_.data(), 1, size, stream.get()) != size)
-    throw InputError({file.string()}, "cannot be read to its end; check the disk, or copy the file again");
+  InputFile(file, largest_file::image, "a PNG or JPEG image").read_rest(bytes_);
 }
 
 cv::Mat ImageDecoder::read_colour(const std::filesystem::path& file, const SizeCheck& check_size) {

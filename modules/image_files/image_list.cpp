@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <functional>
 #include <string_view>
 
@@ -89,15 +88,12 @@ void read_lines(const std::filesystem::path& file, const char* form,
   if (!std::filesystem::exists(file, error))
     throw InputError({file.string()}, std::string("is missing; expected a list with lines '") + form +
                                           "'; does the path name the folder of the recording?");
-  std::ifstream stream(file);
-  if (!stream || std::filesystem::is_directory(file, error))
-    throw InputError({file.string()}, std::string("cannot be read; expected a list with lines '") + form + "'");
-  skip_byte_order_mark(stream);
+  LineReader reader(file, std::string("a list with lines '") + form + "'");
   ListedImage previous;
   std::string text;
   int lines = 0;
-  for (int number = 1; std::getline(stream, text); ++number) {
-    const ListLine line(file, number, text, form);
+  while (reader.next(text)) {
+    const ListLine line(file, reader.number(), text, form);
     if (line.is_blank()) continue;
     const ListedImage current = read(line);
     if (lines++ > 0) require_rising(file, previous, current);

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
-#include <fstream>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/input_file.hpp"
 #include "holdfast/core/size_text.hpp"
 
 namespace holdfast {
@@ -190,12 +190,10 @@ ImageStructure examine_image(std::span<const std::uint8_t> bytes) {
 namespace {
 
 /// Up to `count` bytes of a file from `begin` on.
-std::vector<std::uint8_t> bytes_of(std::ifstream& stream, const std::filesystem::path& file, std::uintmax_t begin,
-                                   std::uintmax_t count) {
+std::vector<std::uint8_t> bytes_of(InputFile& file, std::uint64_t begin, std::uint64_t count) {
   std::vector<std::uint8_t> bytes(static_cast<std::size_t>(count));
-  stream.seekg(static_cast<std::streamoff>(begin));
-  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(count));
-  if (!stream) throw InputError({file.string()}, "cannot be read to its end; check the disk, or copy the file again");
+  file.seek(begin);
+  bytes.resize(file.read(bytes.data(), bytes.size()));
   return bytes;
 }
 
@@ -211,19 +209,17 @@ bool is_end(ImageStructure::Format format, const std::vector<std::uint8_t>& last
 }  // namespace
 
 ImageStructure examine_image_ends(const std::filesystem::path& file) {
-  constexpr std::uintmax_t begin_size = 1 << 14, end_size = 12;
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(file, error);
-  std::ifstream stream(file, std::ios::binary);
-  if (error || !stream) throw InputError({file.string()}, "cannot be read; check its permissions");
+  constexpr std::uint64_t begin_size = 1 << 14, end_size = 12;
+  InputFile stream(file, largest_file::image, "a PNG or JPEG image");
+  const std::uint64_t size = stream.size();
   if (size > begin_size) {
-    ImageStructure image = examine_image(bytes_of(stream, file, 0, begin_size));
-    if (image.width > 0 && is_end(image.format, bytes_of(stream, file, size - end_size, end_size))) {
+    ImageStructure image = examine_image(bytes_of(stream, 0, begin_size));
+    if (image.width > 0 && is_end(image.format, bytes_of(stream, size - end_size, end_size))) {
       image.problem.clear();
       return image;
     }
   }
-  return examine_image(bytes_of(stream, file, 0, size));
+  return examine_image(bytes_of(stream, 0, size));
 }
 
 void drop_png_annotations(std::vector<std::uint8_t>& bytes) {

@@ -4,7 +4,6 @@
 #include <Eigen/SVD>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <optional>
 #include <string>
 
@@ -49,15 +48,10 @@ std::optional<NumberedLine> parse_line(const SourceLocation& place, std::string 
 /// Calls use(place, line) for every line that is not empty.
 template <class Use>
 void read_lines(const std::filesystem::path& file, const char* content, Use&& use) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error))
-    throw InputError({file.string()}, std::string("is missing or not a file; expected lines of ") + content);
-  std::ifstream stream(file);
-  if (!stream) throw InputError({file.string()}, "cannot be read; check its permissions");
-  skip_byte_order_mark(stream);
+  LineReader lines(file, std::string("lines of ") + content);
   std::string text;
-  for (int number = 1; std::getline(stream, text); ++number) {
-    const SourceLocation place{file.string(), number};
+  while (lines.next(text)) {
+    const SourceLocation place = lines.location();
     if (const auto line = parse_line(place, text, content)) use(place, *line);
   }
 }

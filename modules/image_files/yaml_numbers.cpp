@@ -4,10 +4,9 @@
 #include <Eigen/SVD>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
 #include "holdfast/core/counted.hpp"
+#include "holdfast/core/input_file.hpp"
 
 namespace holdfast::yaml_numbers {
 
@@ -16,12 +15,7 @@ SourceLocation location(const std::filesystem::path& file, const YAML::Mark& mar
 }
 
 YAML::Node load(const std::filesystem::path& file, const std::string& expected) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error))
-    throw InputError({file.string()}, "is missing or not a file; expected " + expected);
-  std::ifstream stream(file);
-  std::string content((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  if (!stream) throw InputError({file.string()}, "cannot be read; check its permissions");
+  std::string content = file_content(file, largest_file::configuration, expected);
   if (content.starts_with("%YAML:")) content[0] = '#';
   try {
     return YAML::Load(content);

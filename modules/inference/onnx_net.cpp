@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/inference/onnx_net.hpp"
 
-#include <fstream>
 #include <future>
-#include <iterator>
 #include <utility>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/input_file.hpp"
 #include "holdfast/plugin/did_you_mean.hpp"
 #include "network_runner.hpp"
 
@@ -15,14 +14,9 @@ namespace holdfast {
 namespace {
 
 std::vector<std::uint8_t> read_bytes(const std::filesystem::path& file) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error))
-    throw InputError({file.string()},
-                     std::string(std::filesystem::exists(file, error) ? "is not a file" : "is missing") +
-                         "; expected a network in ONNX format; correct `model`");
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError({file.string()}, "cannot be read; check its permissions");
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  std::vector<std::uint8_t> bytes;
+  InputFile(file, largest_file::network, "a network in ONNX format; correct `model`").read_rest(bytes);
+  return bytes;
 }
 
 const OnnxTensor& find(const std::vector<OnnxTensor>& tensors, const std::string& name, const char* kind,

@@ -3,11 +3,10 @@
 
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 
 #include "bytes.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/input_file.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/core/version.hpp"
 
@@ -46,9 +45,7 @@ void write_cloud_ply(const std::filesystem::path& file, std::span<const CloudPoi
 }
 
 std::optional<std::vector<CloudPoint>> read_cloud_ply(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-  if (!stream.is_open() || stream.bad()) throw InputError({file.string()}, "cannot be read; is it there?");
+  const std::string bytes = file_content(file, largest_file::cloud, "a cloud as a run has written it");
   const std::string_view text(bytes);
   if (!text.starts_with("ply\n")) refuse(file, "is no PLY file");
   const std::size_t end = text.find(header_end);

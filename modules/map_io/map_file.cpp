@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/map_io/map_file.hpp"
 
-#include <fstream>
 #include <utility>
 
 #include "container.hpp"
 #include "content_reader.hpp"
+#include "holdfast/core/atomic_file.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/version.hpp"
 #include "records.hpp"
@@ -22,15 +22,15 @@ std::uint64_t observation_count(const Map& map) {
   return count;
 }
 
-void write_section(std::ostream& stream, const char* type, const std::string& payload,
+void write_section(AtomicFile& file, const char* type, const std::string& payload,
                    std::uint32_t flags = section_required) {
   const std::string header = encode_section_header(type, payload, flags);
-  stream.write(header.data(), static_cast<std::streamsize>(header.size()));
-  stream.write(payload.data(), static_cast<std::streamsize>(payload.size()));
+  file.write(header);
+  file.write(payload);
 }
 
 /// Features, by far the most, go out keyframe by keyframe; all sizes are known before, for the header comes first.
-void write_content(std::ostream& stream, const Map& map) {
+void write_content(AtomicFile& file, const Map& map) {
   const DenseIndex index(map);
   const SharedTables shared = tables_of(map, index);
   const MapFeatures& map_features = map.features();
@@ -62,51 +62,30 @@ void write_content(std::ostream& stream, const Map& map) {
   for (const KeyFrameId id : index.keyframes())
     header.file_size += features_size(map.keyframe(id).frame.size(), map_features.descriptors);
 
-  const std::string start = encode(header);
-  stream.write(start.data(), static_cast<std::streamsize>(start.size()));
-  write_section(stream, camera_section, tables.bytes());
-  if (has_lenses) write_section(stream, lens_section, lenses.bytes());
-  if (has_descriptor_section) write_section(stream, descriptor_section, descriptors.bytes());
-  write_section(stream, keyframe_section, keyframes.bytes());
+  file.write(encode(header));
+  write_section(file, camera_section, tables.bytes());
+  if (has_lenses) write_section(file, lens_section, lenses.bytes());
+  if (has_descriptor_section) write_section(file, descriptor_section, descriptors.bytes());
+  write_section(file, keyframe_section, keyframes.bytes());
   ByteWriter features;
   for (std::uint32_t i = 0; i < index.keyframes().size(); ++i) {
     features.clear();
     write_features(map.keyframe(index.keyframes()[i]).frame, i, index, features);
-    write_section(stream, feature_section, features.bytes());
+    write_section(file, feature_section, features.bytes());
   }
-  write_section(stream, point_section, points.bytes());
-  if (has_places) write_section(stream, place_section, places.bytes());
-  if (has_classes) write_section(stream, class_section, classes.bytes(), 0);
+  write_section(file, point_section, points.bytes());
+  if (has_places) write_section(file, place_section, places.bytes());
+  if (has_classes) write_section(file, class_section, classes.bytes(), 0);
 }
-
-/// Removes a file at the end of the scope unless keep() was called.
-struct TemporaryFile {
-  std::filesystem::path path;
-  bool keep = false;
-  ~TemporaryFile() {
-    std::error_code ignored;
-    if (!keep) std::filesystem::remove(path, ignored);
-  }
-};
 
 }  // namespace
 
 void write_map(const std::filesystem::path& file, const Map& map) {
   if (std::error_code ignored; std::filesystem::is_directory(file, ignored))
     throw InputError({file.string()}, "found a folder; expected the name of the map file to write");
-  std::filesystem::path temporary_name = file;
-  temporary_name += ".tmp";
-  std::ofstream stream(temporary_name, std::ios::binary | std::ios::trunc);
-  const char* cannot = "cannot be written; is the folder there, writable and not full?";
-  if (!stream) throw InputError({file.string()}, cannot);
-  TemporaryFile temporary{temporary_name};
-  write_content(stream, map);
-  stream.close();
-  if (!stream) throw InputError({file.string()}, cannot);
-  std::error_code error;
-  std::filesystem::rename(temporary_name, file, error);
-  if (error) throw InputError({file.string()}, "cannot be replaced: " + error.message());
-  temporary.keep = true;
+  AtomicFile written(file);
+  write_content(written, map);
+  written.commit();
 }
 
 void read_map(const std::filesystem::path& file, Map& map) {

@@ -4,6 +4,8 @@
 #include <string>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/system_reason.hpp"
+#include "holdfast/core/text_file.hpp"
 
 namespace holdfast {
 
@@ -17,8 +19,7 @@ constexpr const char* mark =
 
 TrajectoryJournal::TrajectoryJournal(const std::filesystem::path& folder) : stream_(folder / file_name) {
   stream_ << mark << '\n' << trajectory_header << std::flush;
-  if (!stream_)
-    throw InputError({(folder / file_name).string()}, "cannot be written; is the folder there, writable and not full?");
+  if (!stream_) throw InputError({(folder / file_name).string()}, "cannot be written: " + system_reason(errno));
 }
 
 void TrajectoryJournal::add(const TimedPose& pose) {
@@ -29,11 +30,13 @@ void TrajectoryJournal::add(const TimedPose& pose) {
 }
 
 int poses_of_killed_run(const std::filesystem::path& folder) {
-  std::ifstream stream(folder / file_name);
+  std::error_code error;
+  if (!std::filesystem::exists(folder / file_name, error)) return -1;
+  LineReader lines(folder / file_name, "a trajectory");
   std::string line;
-  if (!std::getline(stream, line) || line != mark) return -1;
+  if (!lines.next(line) || line != mark) return -1;
   int poses = 0;
-  while (std::getline(stream, line)) poses += !line.empty() && line.front() != '#' ? 1 : 0;
+  while (lines.next(line)) poses += !line.empty() && line.front() != '#' ? 1 : 0;
   return poses;
 }
 

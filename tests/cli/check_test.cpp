@@ -129,7 +129,33 @@ TEST_F(CheckTest, RefusesANamedPipe) {
   ASSERT_EQ(mkfifo(program_.path("pipe").c_str(), 0600), 0);
   const Outcome outcome = program_.run({"check", "pipe"});
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_EQ(outcome.errors, "error: pipe: is a named pipe, which may never end; expected a configuration in YAML\n");
+  EXPECT_EQ(outcome.errors, "error: pipe: found a named pipe, which may never end; expected a configuration in YAML\n");
+}
+
+TEST_F(CheckTest, RefusesWhatIsNoFileInARecording) {
+  namespace fs = std::filesystem;
+  for (const char* folder : {"rec", "rec/mav0/cam0/data", "sequence/image_0"})
+    fs::create_directories(program_.path(folder));
+  program_.write("rec/rgb.txt", "1.0 a.png\n");
+  program_.write("rec/depth.txt", "1.0 a.png\n");
+  program_.write("rec.yaml", "source: { tum: { path: rec } }\ncamera: tum_fr1\nfeatures: orb\noptimizer: ceres\n");
+  for (const char* name : {"rgb.txt", "depth.txt", "groundtruth.txt", "shutter.txt"}) {
+    const fs::path file = program_.path(std::string("rec/") + name), kept = program_.path("kept");
+    if (fs::exists(file)) fs::rename(file, kept);
+    fs::create_symlink("/dev/zero", file);
+    EXPECT_THAT(program_.run({"check", "rec.yaml"}).errors, HasSubstr(std::string(name) + ": found a device"));
+    fs::remove(file);
+    ASSERT_EQ(mkfifo(file.c_str(), 0600), 0);
+    EXPECT_THAT(program_.run({"check", "rec.yaml"}).errors, HasSubstr(std::string(name) + ": found a named pipe"));
+    fs::remove(file);
+    if (fs::exists(kept)) fs::rename(kept, file);
+  }
+  program_.write("euroc.yaml", "source: { euroc: { path: rec } }\nfeatures: orb\noptimizer: ceres\n");
+  fs::create_symlink("/dev/zero", program_.path("rec/mav0/cam0/sensor.yaml"));
+  EXPECT_THAT(program_.run({"check", "euroc.yaml"}).errors, HasSubstr("sensor.yaml: found a device"));
+  program_.write("kitti.yaml", "source: { kitti: { path: sequence } }\nfeatures: orb\noptimizer: ceres\n");
+  ASSERT_EQ(mkfifo(program_.path("sequence/calib.txt").c_str(), 0600), 0);
+  EXPECT_THAT(program_.run({"check", "kitti.yaml"}).errors, HasSubstr("calib.txt: found a named pipe"));
 }
 
 TEST_F(CheckTest, TheDemoIsBuiltWithPython) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A disk that refuses one write or rename: the command says so, and every file is whole or absent. Each command meets
-// a sample of the faults; HOLDFAST_WRITE_FAULTS sets how many of them, and `all` tries every one.
+// A disk that refuses one write, rename, sync or close: the command says so, and every file is whole or absent. Each
+// command meets a sample of the faults; HOLDFAST_WRITE_FAULTS sets how many of them, and `all` tries every one. And a
+// disk that refuses a read, which is not the end of the file.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -85,6 +86,18 @@ class WriteFaultsTest : public ::testing::Test {
     outcome_ = program_.finish(process);
     const std::string text = program_.text("count");
     return text.empty() ? -1 : std::stol(text);
+  }
+
+  /// Runs the command with the n-th read failing of every file whose path below the folder begins so.
+  void run_with_broken_file(const std::vector<std::string>& arguments, const std::string& file, int fail_at) {
+    setenv("LD_PRELOAD", HOLDFAST_FAILING_FILES, 1);
+    setenv("HOLDFAST_FAIL_FOLDER", program_.path(file).c_str(), 1);
+    setenv("HOLDFAST_FAIL_READ_AT", std::to_string(fail_at).c_str(), 1);
+    setenv("HOLDFAST_FAIL_PARENT", std::to_string(getpid()).c_str(), 1);
+    const pid_t process = program_.start(arguments);
+    for (const char* name : {"LD_PRELOAD", "HOLDFAST_FAIL_FOLDER", "HOLDFAST_FAIL_READ_AT", "HOLDFAST_FAIL_PARENT"})
+      unsetenv(name);
+    outcome_ = program_.finish(process);
   }
 
   /// How many faults a command meets: `usual`, or what the environment asks for.
@@ -173,10 +186,46 @@ TEST_F(WriteFaultsTest, WhatWasWholeStaysWhenItCannotBeReplaced) {
   run(command, 0);
   const std::string before = program_.text("out/a.ply");
   ASSERT_EQ(outcome_.exit_code, 0) << outcome_.errors;
-  for (const long n : {1, 2}) {
+  for (const long n : {1, 2, 3, 4}) {  // to write, to sync, to close, to rename
     run(command, n);
+    EXPECT_EQ(outcome_.exit_code, 1);
+    EXPECT_THAT(outcome_.errors, ::testing::HasSubstr("No space left on device"));
     EXPECT_TRUE(program_.text("out/a.ply") == before);
     EXPECT_EQ(files_below(program_.path("out")).size(), 1U);
+  }
+}
+
+TEST_F(WriteFaultsTest, AReadThatFailsIsNotTheEndOfAList) {
+  ASSERT_EQ(program_.run({"simulate", "--output", "rec", "--duration", "0.2", "--camera", "tum_fr1"}).exit_code, 0);
+  program_.write("rec.yaml",
+                 "source: { tum: { path: rec } }\ncamera: tum_fr1\nfeatures: orb\noptimizer: ceres\n"
+                 "run: { mode: sequential }\n");
+  // What stands before the failure is a list of frames, or a trajectory, by itself.
+  for (const char* name : {"rec/rgb.txt", "rec/groundtruth.txt"}) {
+    const std::string text = program_.text(name);
+    program_.write(name, text + "#" + std::string(200'000, ' ') + "\n");
+  }
+  const std::string labels = program_.text("rec/labels.txt");
+  const std::string name = labels.substr(labels.rfind('/') + 1);
+  program_.write("names.txt", name.substr(0, name.rfind('.')) + "\n#" + std::string(200'000, ' ') + "\n");
+  const std::vector<std::pair<const char*, std::vector<std::string>>> commands = {
+      {"rec/rgb.txt", {"check", "rec.yaml"}},
+      {"rec/rgb.txt", {"run", "rec.yaml", "--output", "out"}},
+      {"rec/rgb.txt", {"evaluate", "rec/groundtruth.txt", "rec/groundtruth.txt", "--frames", "rec"}},
+      {"rec/groundtruth.txt", {"check", "rec.yaml"}},
+      {"rec/groundtruth.txt", {"evaluate", "rec/groundtruth.txt", "rec/groundtruth.txt"}},
+      {"names.txt",
+       {"evaluate-segmentation", "--labels", "rec/labels", "--label-map", "{0-254: person}", "--predictions",
+        "rec/labels", "--prediction-map", "{0-254: person}", "--list", "names.txt"}},
+      {"rec.yaml", {"check", "rec.yaml"}},
+  };
+  for (const auto& [file, command] : commands) {
+    SCOPED_TRACE(command.front() + ", " + file);
+    run_with_broken_file(command, file, std::string(file) == "rec.yaml" ? 1 : 2);
+    EXPECT_EQ(outcome_.exit_code, 1) << outcome_.output;
+    EXPECT_THAT(outcome_.errors,
+                ::testing::AllOf(::testing::HasSubstr(file), ::testing::HasSubstr("Input/output error")));
+    fs::remove_all(program_.path("out"));
   }
 }
 

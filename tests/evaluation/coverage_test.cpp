@@ -108,7 +108,7 @@ TEST_F(FrameList, NamesTheLineOfAnError) {
 TEST_F(FrameList, NamesWhatIsMissing) {
   EXPECT_THAT(error_of(folder_ / "absent"), HasSubstr("no such file or folder"));
   write("rgb.txt", "1.0 rgb/a\n");
-  EXPECT_THAT(error_of(folder_), HasSubstr("depth.txt: cannot be read"));
+  EXPECT_THAT(error_of(folder_), HasSubstr("depth.txt: no such file"));
   write("depth.txt", "1.5 depth/a\n");
   EXPECT_THAT(error_of(folder_), HasSubstr("no colour frame of rgb.txt has a depth frame"));
 }

@@ -82,7 +82,7 @@ TEST(OnnxSegmenter, WrongModelsSayWhatWasFoundAndExpected) {
   const auto error = [](const std::string& model, const ParameterValues& values = {}) {
     return error_of([&] { make(model, values); });
   };
-  EXPECT_THAT(error("none"), AllOf(StartsWith(HOLDFAST_TEST_MODELS "/none.onnx: is missing"), HasSubstr("`model`")));
+  EXPECT_THAT(error("none"), AllOf(StartsWith(HOLDFAST_TEST_MODELS "/none.onnx: no such file"), HasSubstr("`model`")));
   EXPECT_THAT(error("logits", {{"classes", std::vector<std::string>{"background", "person"}}}),
               HasSubstr("logits.onnx: gives an output of 1x3x12x16; expected 1 x 2 (or 1) x height x width"));
   EXPECT_THAT(error("flat"), HasSubstr("gives an output of 1x576, which is no image of its input of 16x12 pixels"));
@@ -100,7 +100,7 @@ TEST(OnnxSegmenter, WrongModelsSayWhatWasFoundAndExpected) {
   EXPECT_THAT(error("one_channel",
                     {{"classes", std::vector<std::string>{"background", "person"}}, {"output", "probabilities"}}),
               HasSubstr("expected probabilities, 0 to 1; is it `output: logits`?"));
-  EXPECT_THAT(error("../make_models.py"), HasSubstr("is missing"));
+  EXPECT_THAT(error("../make_models.py"), HasSubstr("no such file"));
   EXPECT_THAT(error("logits", {{"mean", std::vector<double>{1.0}}}), HasSubstr("mean: found 1 number; expected 3"));
 }
 

@@ -396,7 +396,7 @@ TEST_F(FolderSourceTest, BadIntrinsicsNameThePlace) {
   EXPECT_THAT(error_of("fx: 30\nwidth: 64.5\n"), AllOf(StartsWith(file + ":2:8: "), HasSubstr("whole number")));
   EXPECT_THAT(error_of("fx: [30\n"), StartsWith(file + ":"));
   EXPECT_THAT(error_of("- 1\n"), HasSubstr("holds no keys"));
-  EXPECT_THAT(error({{"intrinsics", full("none.yaml")}}), StartsWith(full("none.yaml") + ": is missing"));
+  EXPECT_THAT(error({{"intrinsics", full("none.yaml")}}), StartsWith(full("none.yaml") + ": no such file"));
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ TEST_F(ImageDecoderTest, AnImageIsNotOverwrittenByTheNext) {
 TEST_F(ImageDecoderTest, MissingAndUnreadableFiles) {
   EXPECT_THAT(colour_error("none.png"), AllOf(StartsWith(file("none.png").string()), HasSubstr("is missing")));
   std::filesystem::create_directory(file("folder.png"));
-  EXPECT_THAT(colour_error("folder.png"), HasSubstr("is not a file"));
+  EXPECT_THAT(colour_error("folder.png"), HasSubstr("found a folder"));
   folder_.write("empty.png", "");
   EXPECT_THAT(colour_error("empty.png"), HasSubstr("is empty (0 bytes)"));
   folder_.write("text.png", "<html>404 not found</html>");

@@ -77,7 +77,7 @@ TEST_F(ImageListTest, EmptyAndMissingLists) {
   EXPECT_THAT(error_of(""), HasSubstr("list.txt: is an empty list"));
   EXPECT_THAT(error_of("# only\n\n# comments\n"), HasSubstr("list.txt: is an empty list"));
   EXPECT_THAT(input_error([&] { read_image_list(folder_.path() / "no.txt"); }), HasSubstr("no.txt: is missing"));
-  EXPECT_THAT(input_error([&] { read_image_list(folder_.path()); }), HasSubstr("cannot be read"));
+  EXPECT_THAT(input_error([&] { read_image_list(folder_.path()); }), HasSubstr("found a folder"));
 }
 
 TEST_F(ImageListTest, AssociationsHaveFourColumns) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A library for LD_PRELOAD that makes one operation on files fail: the n-th write, rename or fsync below a folder, as
-// if the disk were full at that moment. It knows four variables of the environment:
-//   HOLDFAST_FAIL_FOLDER   the folder; without it nothing fails
+// A library for LD_PRELOAD that makes one operation on files fail: the n-th write, rename or fsync below a folder, or
+// close of a file that was written there, as if the disk were full at that moment; or the n-th read, as if the disk
+// were broken there. It knows five variables of the environment:
+//   HOLDFAST_FAIL_FOLDER   the folder, or the beginning of the names of files; without it nothing fails
 //   HOLDFAST_FAIL_AT       n, counted from 1 over all threads; 0 fails nothing
+//   HOLDFAST_FAIL_READ_AT  the same for reads, which are counted apart
 //   HOLDFAST_FAIL_PARENT   a process: only its children are concerned, and not what they start
 //   HOLDFAST_FAIL_COUNT    a file outside of the folder that gets the number of operations at the end of the process
 #include <dlfcn.h>
@@ -19,7 +21,7 @@
 
 namespace {
 
-std::atomic<long> operations = 0;
+std::atomic<long> operations = 0, reads = 0;
 
 template <class Function>
 Function original(const char* name) {
@@ -60,6 +62,14 @@ bool fails() {
   return true;
 }
 
+/// The same for reads.
+bool read_fails() {
+  const char* at = std::getenv("HOLDFAST_FAIL_READ_AT");
+  if (at == nullptr || ++reads != std::atol(at)) return false;
+  errno = EIO;
+  return true;
+}
+
 const struct Report {
   ~Report() {
     const char* file = std::getenv("HOLDFAST_FAIL_COUNT");
@@ -96,6 +106,25 @@ size_t fwrite(const void* data, size_t size, size_t count, FILE* stream) {
 int rename(const char* from, const char* to) {
   static const auto next = original<int (*)(const char*, const char*)>("rename");
   return is_below(to) && fails() ? -1 : next(from, to);
+}
+
+ssize_t read(int descriptor, void* data, size_t size) {
+  static const auto next = original<ssize_t (*)(int, void*, size_t)>("read");
+  return is_below(descriptor) && read_fails() ? -1 : next(descriptor, data, size);
+}
+
+int close(int descriptor) {
+  static const auto next = original<int (*)(int)>("close");
+  const int mode = fcntl(descriptor, F_GETFL);
+  const bool fails_late = mode >= 0 && (mode & O_ACCMODE) != O_RDONLY && is_below(descriptor) && fails();
+  const int error = errno, result = next(descriptor);
+  if (fails_late) errno = error;
+  return fails_late ? -1 : result;
+}
+
+int syncfs(int descriptor) {
+  static const auto next = original<int (*)(int)>("syncfs");
+  return is_below(descriptor) && fails() ? -1 : next(descriptor);
 }
 
 int fsync(int descriptor) {

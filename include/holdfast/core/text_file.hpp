@@ -1,30 +1,40 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <filesystem>
-#include <istream>
+#include <string>
+#include <vector>
+
+#include "holdfast/core/error.hpp"
+#include "holdfast/core/input_file.hpp"
 
 namespace holdfast {
 
-/// True for a named pipe: nobody may ever write into it, and reading it would wait for ever. What the system offers
-/// below /dev, such as /dev/stdin or a shell's <(command), is open already and does not count.
-inline bool is_named_pipe(const std::filesystem::path& file) {
-  std::error_code ignored;
-  return std::filesystem::is_fifo(file, ignored) && !file.string().starts_with("/dev/");
-}
+/// Reads a text file line by line; a UTF-8 byte-order mark at its beginning, which some editors write, is left out. All
+/// readers of lists use it, so that a file that can be read only in part is an error everywhere. Used by one thread.
+class LineReader {
+ public:
+  static constexpr std::size_t longest_line = 1 << 20;  ///< [bytes]
 
-/// Skips the UTF-8 byte-order mark that some editors write at the beginning of a text. To be called before anything is
-/// read from a file.
-inline void skip_byte_order_mark(std::istream& stream) {
-  if (stream.peek() != 0xef) {
-    stream.clear();  // peek() has met the end of an empty file, which the caller is to meet itself
-    return;
-  }
-  char mark[3] = {};
-  stream.read(mark, 3);
-  if (stream.gcount() == 3 && mark[1] == '\xbb' && mark[2] == '\xbf') return;
-  stream.clear();
-  stream.seekg(0);
-}
+  /// Opens the file. Throws as InputFile does.
+  LineReader(const std::filesystem::path& file, const std::string& expected,
+             std::uint64_t most_bytes = largest_file::text);
+
+  /// Gives the next line without its line feed; false after the last one. Throws InputError for a read that fails and
+  /// for a line longer than longest_line.
+  bool next(std::string& line);
+  /// Of the line given last, from 1.
+  int number() const { return number_; }
+  /// Where that line stands, for errors.
+  SourceLocation location() const { return {file_.path().string(), number_}; }
+
+ private:
+  bool fill();
+
+  InputFile file_;
+  std::string expected_;
+  std::vector<char> buffer_;
+  std::size_t begin_ = 0, end_ = 0;  // what of the buffer was not given yet
+  int number_ = 0;
+};
 
 }  // namespace holdfast

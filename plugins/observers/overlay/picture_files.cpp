@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "holdfast/core/atomic_file.hpp"
 #include "holdfast/core/error.hpp"
-#include "holdfast/core/trajectory.hpp"
 
 namespace holdfast::overlay_plugin {
 
@@ -52,6 +52,7 @@ void PictureFiles::write(std::uint64_t index, const cv::Mat& picture) {
   if (error) throw InputError({settings_.folder.string()}, "the folder cannot be made: " + error.message());
   if (settings_.format == PictureFormat::avi || settings_.format == PictureFormat::mp4) {
     if (!video_) open_video(picture.size());
+    has_pictures_ = true;
     video_->write(picture);
     return;
   }
@@ -66,11 +67,18 @@ void PictureFiles::write(std::uint64_t index, const cv::Mat& picture) {
   std::vector<std::uint8_t> bytes;
   if (!cv::imencode(std::string(".") + choice_name(settings_.format), picture, bytes, options))
     throw InputError({(settings_.folder / name).string()}, "this OpenCV cannot write the format");
-  write_file_atomically(settings_.folder / name, std::string(bytes.begin(), bytes.end()));
+  write_file_atomically(settings_.folder / name, std::string(bytes.begin(), bytes.end()), Durability::later);
+  has_pictures_ = true;
 }
 
 void PictureFiles::close() {
-  if (!video_) return;
+  if (!has_pictures_) return;
+  if (video_) close_video();
+  has_pictures_ = false;
+  sync_file_system(settings_.folder);
+}
+
+void PictureFiles::close_video() {
   video_->release();
   video_.reset();
   std::error_code error;

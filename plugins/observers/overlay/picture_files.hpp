@@ -31,14 +31,16 @@ class PictureFiles {
   /// All pictures must have the same size. Throws InputError with the file if it cannot be written, or if OpenCV was
   /// built without the format of the video.
   void write(std::uint64_t index, const cv::Mat& picture);
-  /// Completes the video, if there is one; no picture may be written afterwards.
+  /// Completes the video, if there is one, and brings all pictures to the disk; no picture may be written afterwards.
   void close();
 
  private:
   void open_video(cv::Size size);
+  void close_video();
   std::filesystem::path video_file(bool partial) const;
 
   Settings settings_;
+  bool has_pictures_ = false;  // that may not have reached the disk
   std::unique_ptr<cv::VideoWriter> video_;
 };
 

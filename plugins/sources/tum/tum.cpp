@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fstream>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "holdfast/core/folder_name.hpp"
+#include "holdfast/core/input_file.hpp"
 #include "holdfast/image_files/image_list.hpp"
 #include "holdfast/image_files/image_sequence.hpp"
 #include "holdfast/image_files/recording_pairs.hpp"
@@ -101,12 +101,13 @@ std::vector<ImageFiles> find_frames(const TumSettings& settings, const std::opti
 /// What shutter.txt says, which Holdfast writes beside its own recordings; without the file, the camera knows.
 bool has_global_shutter(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "shutter.txt";
-  std::ifstream stream(file);
-  if (!stream) return false;
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) return false;
+  const std::string expected = "'global' (all rows of an image are exposed at once) or 'rolling'";
+  std::istringstream text(file_content(file, largest_file::configuration, expected));
   std::string word;
-  stream >> word;
-  if (word != "global" && word != "rolling")
-    throw InputError({file.string(), 1}, "expected 'global' (all rows of an image are exposed at once) or 'rolling'");
+  text >> word;
+  if (word != "global" && word != "rolling") throw InputError({file.string(), 1}, "expected " + expected);
   return word == "global";
 }
 

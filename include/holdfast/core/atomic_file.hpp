@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace holdfast {
+
+/// When a file has to be on the disk itself, so that it outlives a loss of power.
+enum class Durability {
+  now,    ///< when the call returns
+  later,  ///< after sync_file_system(); for pictures, of which many are written in a second
+};
+
+/// Replaces the content of a file atomically: a file that is there is the earlier one or the new one, and whole. Bytes
+/// go to a temporary file FILE.tmp in the same folder; commit() brings them to the disk, closes the file, and renames
+/// it. Every step is checked: quotas and network file systems report a full disk as late as that. Without commit() the
+/// temporary file is removed. What cannot be renamed over, such as /dev/null, /dev/stdout or a named pipe, is written
+/// directly. All methods throw InputError with the system's reason. Used by one thread.
+class AtomicFile {
+ public:
+  explicit AtomicFile(std::filesystem::path file, Durability durability = Durability::now);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  void write(std::string_view bytes);
+  void commit();
+
+ private:
+  [[noreturn]] void fail(int error) const;
+  void close();
+
+  std::filesystem::path file_, written_;  // written_: the temporary file, or file_ where it is written directly
+  Durability durability_;
+  int descriptor_ = -1;
+  bool is_temporary_there_ = false;
+};
+
+/// Replaces the content of a file as AtomicFile does. trajectory.hpp declares the same function for Durability::now.
+void write_file_atomically(const std::filesystem::path& file, const std::string& content, Durability durability);
+
+/// Brings all that was written to the file system of this folder to the disk. Throws InputError with the system's
+/// reason if some of it could not be written.
+void sync_file_system(const std::filesystem::path& folder);
+
+}  // namespace holdfast
