@@ -36,6 +36,8 @@ constexpr std::size_t longest_request = 8192;  // with its headers [bytes]
 constexpr std::size_t longest_command = 64;    // [bytes]
 constexpr int most_connections = 64;
 constexpr auto request_time = std::chrono::seconds(10);
+/// Until the next attempt to accept a connection, after the system has refused to, as without a free descriptor.
+constexpr auto accept_pause = std::chrono::milliseconds(200);
 /// A browser that has not answered for so long is gone.
 constexpr auto idle_time = std::chrono::seconds(20);
 constexpr auto tick_watched = std::chrono::milliseconds(33);
@@ -65,6 +67,7 @@ std::optional<double> asked_rate(std::string_view text) {
 }  // namespace
 
 class SocketSession;
+class RequestSession;
 
 struct Server::State {
   State(std::string secret, std::string page_text, Handlers given)
@@ -73,6 +76,8 @@ struct Server::State {
   void listen(const std::string& at, int port);
   void run();
   void accept();
+  void accept_later();
+  bool close_oldest_silent();
   void tick();
   void add(const std::shared_ptr<SocketSession>& session);
   void remove(const SocketSession* session);
@@ -80,11 +85,13 @@ struct Server::State {
 
   std::string token, page, address;
   Handlers handlers;
+  // Before the context, whose end takes the last requests with it.
+  std::vector<RequestSession*> silent;  // those that have not shown a token yet, the oldest first
+  int connections = 0;
   asio::io_context io{1};
   tcp::acceptor acceptor{io};
-  asio::steady_timer timer{io};
+  asio::steady_timer timer{io}, accept_timer{io};
   std::vector<std::shared_ptr<SocketSession>> sessions;
-  int connections = 0;
   std::thread thread;
 };
 
@@ -160,8 +167,6 @@ class SocketSession : public std::enable_shared_from_this<SocketSession> {
   bool is_sending_ = false, is_closed_ = false;
 };
 
-namespace {
-
 /// One request, which is answered, or becomes a SocketSession.
 class RequestSession : public std::enable_shared_from_this<RequestSession> {
  public:
@@ -171,21 +176,30 @@ class RequestSession : public std::enable_shared_from_this<RequestSession> {
     parser_->header_limit(longest_request);
     parser_->body_limit(0);
   }
-  ~RequestSession() { --server_.connections; }
+  ~RequestSession() {
+    leave_silent();
+    --server_.connections;
+  }
   RequestSession(const RequestSession&) = delete;
   RequestSession& operator=(const RequestSession&) = delete;
 
   void read() {
+    server_.silent.push_back(this);
     stream_.expires_after(request_time);
     http::async_read(stream_, buffer_, *parser_, [self = shared_from_this()](beast::error_code error, std::size_t) {
+      self->leave_silent();
       if (!error)
         self->answer();
-      else if (error != http::error::end_of_stream && error != beast::error::timeout)
+      else if (self->stream_.socket().is_open() && error != http::error::end_of_stream &&
+               error != beast::error::timeout)
         self->refuse(http::status::bad_request, "not a request that is understood");
     });
   }
+  /// Frees the descriptor of a request that has not come yet.
+  void close() { stream_.close(); }
 
  private:
+  void leave_silent() { std::erase(server_.silent, this); }
   void answer() {
     const http::request<http::empty_body>& request = parser_->get();
     const std::string_view target(request.target().data(), request.target().size());
@@ -235,6 +249,8 @@ class RequestSession : public std::enable_shared_from_this<RequestSession> {
   http::response<http::string_body> response_;
 };
 
+namespace {
+
 std::string host_of(const tcp::endpoint& endpoint) {
   if (endpoint.address().is_unspecified()) {
     std::array<char, 256> name{};
@@ -268,10 +284,29 @@ void Server::State::listen(const std::string& at, int port) {
   address = "http://" + host_of(bound) + ":" + std::to_string(bound.port()) + "/?token=" + token;
 }
 
+/// Makes room for a connection, at the cost of one that has shown no token: browsers send theirs at once. False if
+/// there is none.
+bool Server::State::close_oldest_silent() {
+  if (silent.empty()) return false;
+  RequestSession* const oldest = silent.front();
+  silent.erase(silent.begin());
+  oldest->close();
+  return true;
+}
+
+void Server::State::accept_later() {
+  accept_timer.expires_after(accept_pause);
+  accept_timer.async_wait([this](beast::error_code error) {
+    if (!error) accept();
+  });
+}
+
 void Server::State::accept() {
   acceptor.async_accept([this](beast::error_code error, tcp::socket socket) {
     if (error == asio::error::operation_aborted) return;
-    if (!error && connections < most_connections) {
+    // Where there is no descriptor for it, the connection waits, and the system says so again and again.
+    if (error && error != asio::error::connection_aborted && !close_oldest_silent()) return accept_later();
+    if (!error && (connections < most_connections || close_oldest_silent())) {
       beast::error_code ignored;
       socket.set_option(tcp::no_delay(true), ignored);
       fcntl(socket.native_handle(), F_SETFD, FD_CLOEXEC);

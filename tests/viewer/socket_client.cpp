@@ -39,6 +39,26 @@ std::string answer_to_get(const ViewerAddress& address, const std::string& targe
   return answer_to(address, "GET " + target + " HTTP/1.1\r\nHost: " + address.host + "\r\n\r\n");
 }
 
+struct SilentClient::State {
+  asio::io_context io;
+  tcp::socket socket{io};
+};
+
+SilentClient::SilentClient(const ViewerAddress& address) : state_(std::make_unique<State>()) {
+  state_->socket = connected(state_->io, address);
+}
+
+SilentClient::~SilentClient() = default;
+SilentClient::SilentClient(SilentClient&&) noexcept = default;
+
+bool SilentClient::is_closed() {
+  state_->socket.non_blocking(true);
+  char byte = 0;
+  beast::error_code error;
+  state_->socket.read_some(asio::buffer(&byte, 1), error);
+  return error && error != asio::error::would_block;
+}
+
 struct SocketClient::State {
   asio::io_context io;
   beast::websocket::stream<tcp::socket> stream{io};

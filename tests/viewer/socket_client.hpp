@@ -51,6 +51,21 @@ std::string answer_to(const ViewerAddress& address, const std::string& request);
 /// The same for a GET.
 std::string answer_to_get(const ViewerAddress& address, const std::string& target);
 
+/// A connection that sends nothing.
+class SilentClient {
+ public:
+  explicit SilentClient(const ViewerAddress& address);
+  ~SilentClient();
+  SilentClient(SilentClient&&) noexcept;
+
+  /// Whether the server has closed it by now.
+  bool is_closed();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
 /// A browser without a screen.
 class SocketClient {
  public:

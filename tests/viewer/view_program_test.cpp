@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 
 #include <csignal>
 
@@ -79,6 +80,27 @@ TEST_F(ViewProgramTest, ShowsARunUntilItIsStoppedAndItsResultsLater) {
     kill(view, SIGTERM);
     EXPECT_EQ(program_.finish(view).exit_code, 0);
   }
+}
+
+TEST_F(ViewProgramTest, ServesBrowsersWhereSilentConnectionsTakeAllDescriptors) {
+  ASSERT_EQ(program_.run({"run", "run.yaml", "--output", "out", "--set", "source.simulated.duration=0.2"}).exit_code,
+            0);
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+  const rlimit few{32, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &few), 0);
+  const pid_t view = start({"view", "out"});
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
+  {
+    std::vector<test::SilentClient> silent;
+    for (int i = 0; i < 64; ++i) silent.emplace_back(address());
+    test::SocketClient client(address());
+    client.receive_until(is_finished);
+    EXPECT_TRUE(silent.front().is_closed());
+    EXPECT_FALSE(silent.back().is_closed()) << "nobody had to wait for the end of their time";
+  }
+  kill(view, SIGTERM);
+  EXPECT_EQ(program_.finish(view).exit_code, 0);
 }
 
 TEST_F(ViewProgramTest, ShowsTheDenseCloudOfARunAndOfItsResults) {

@@ -366,6 +366,19 @@ TEST_F(ViewerTest, RefusesMoreBrowsersThanItServes) {
   EXPECT_TRUE(next);
 }
 
+TEST_F(ViewerTest, ConnectionsWithoutATokenGiveWayToBrowsers) {
+  SocketClient watching(address_);
+  watching.receive();
+  std::vector<test::SilentClient> silent;
+  for (int i = 0; i < 200; ++i) silent.emplace_back(address_);
+  EXPECT_THAT(test::answer_to_get(address_, "/?token=" + address_.token), StartsWith("HTTP/1.1 200 OK\r\n"));
+  SocketClient another(address_);
+  another.receive();
+  EXPECT_TRUE(silent.front().is_closed()) << "the oldest goes first";
+  EXPECT_FALSE(silent.back().is_closed());
+  pause(watching);
+}
+
 TEST_F(ViewerTest, WantsPicturesAndMapsOnlyAsOftenAsTheyAreOfUse) {
   EXPECT_FALSE(viewer_->wants_picture()) << "nobody looks";
   EXPECT_TRUE(viewer_->wants_map()) << "for whoever comes";
