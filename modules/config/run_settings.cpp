@@ -16,7 +16,7 @@ void RunSettings::describe(ParameterTable<RunSettings>& table) {
       "threaded mode; none: frames as fast as they can be read and tracked; timestamps: as fast as they were taken");
   table.add("late_frames", &S::late_frames,
             "threaded mode, paced; queue: a frame that tracking has no time for waits, and the camera waits with it; "
-            "drop: the oldest one that waits is left out");
+            "drop: the oldest one that waits is left out, and those that reading is late for");
   table
       .add(
           "prefetch", &S::prefetch,

@@ -178,6 +178,13 @@ std::optional<SensorFrame> ImageSequence::next() {
   return std::nullopt;
 }
 
+std::vector<double> ImageSequence::pass_over(double timestamp) {
+  std::vector<double> stamps;
+  for (; position_ + 1 < files_.size() && files_[position_ + 1].timestamp <= timestamp; ++position_)
+    stamps.push_back(files_[position_].timestamp);
+  return stamps;
+}
+
 void require_recording_folder(const std::filesystem::path& folder, const std::string& expected,
                               const std::string& setting) {
   std::error_code error;

@@ -9,6 +9,14 @@
 
 namespace holdfast {
 
+namespace {
+
+/// Of a frame when it was read, above which those that are due already are dropped [s]: three frames at 30 Hz, so that
+/// a short pause costs none.
+constexpr double longest_lateness = 0.1;
+
+}  // namespace
+
 FrameFeeder::FrameFeeder(FrameSource& source, const RunSettings& settings)
     : source_(source),
       settings_(settings),
@@ -29,11 +37,18 @@ void FrameFeeder::stop() {
   queue_.close(true);
 }
 
-std::optional<FedFrame> FrameFeeder::next() {
-  if (std::optional<FedFrame> frame = queue_.pop()) return frame;
+std::optional<FedFrame> FrameFeeder::next(const std::function<bool()>& stop) {
+  if (std::optional<FedFrame> frame = stop ? queue_.pop_while([&] { return !stop(); }) : queue_.pop()) return frame;
   const std::lock_guard lock(mutex_);
   if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
   return std::nullopt;
+}
+
+QueueCounts FrameFeeder::counts() const {
+  QueueCounts counts = queue_.counts();
+  const std::lock_guard lock(mutex_);
+  counts.dropped += passed_over_;
+  return counts;
 }
 
 std::vector<double> FrameFeeder::stamps() const {
@@ -58,19 +73,31 @@ bool FrameFeeder::wait_until_due(double timestamp, Stopwatch& since_due) {
     since_first_.restart();
   }
   const double wait = timestamp - *first_timestamp_ - since_first_.seconds();
+  lateness_ = std::max(-wait, 0.0);
   if (wait < 0.0) {
     ++late_;
     latest_ = std::max(latest_, -wait);
   }
   stopped_changed_.wait_for(lock, std::chrono::duration<double>(std::max(wait, 0.0)), [this] { return stopped_; });
-  since_due.restart(std::max(-wait, 0.0));
+  since_due.restart(lateness_);
   return !stopped_;
+}
+
+/// A reader that is slower than the clock is later with every frame, however short the queue is.
+void FrameFeeder::pass_over_late_frames() {
+  const std::unique_lock lock(mutex_);
+  if (!first_timestamp_ || lateness_ < longest_lateness) return;
+  const std::vector<double> stamps = source_.pass_over(*first_timestamp_ + since_first_.seconds());
+  stamps_.insert(stamps_.end(), stamps.begin(), stamps.end());
+  passed_over_ += stamps.size();
 }
 
 void FrameFeeder::read() {
   name_this_thread("frame source");
+  const bool drop = settings_.paced() && settings_.late_frames == LateFrames::drop;
   try {
     while (true) {
+      if (drop) pass_over_late_frames();
       const Stopwatch decoding;
       std::optional<SensorFrame> frame = source_.next();
       if (!frame) break;
@@ -80,7 +107,6 @@ void FrameFeeder::read() {
       }
       FedFrame fed{std::move(*frame), decoding.seconds(), Stopwatch()};
       if (settings_.paced() && !wait_until_due(fed.frame.timestamp, fed.since_due)) break;
-      const bool drop = settings_.paced() && settings_.late_frames == LateFrames::drop;
       if (!(drop ? queue_.push_newest(std::move(fed)) : queue_.push(std::move(fed)))) break;
     }
   } catch (...) {

@@ -23,7 +23,10 @@ class FrameLoop {
   bool feed_next(const Read& read) {
     source_has_more_ = false;
     const std::optional<FedFrame> fed = read();
-    if (!fed) return false;
+    if (!fed) {
+      source_has_more_ = stopped();
+      return false;
+    }
     source_has_more_ = true;
     if (!record_.threads) record_.frame_stamps.push_back(fed->frame.timestamp);  // else the reader keeps them
     last_index_ = fed->frame.index;
@@ -77,11 +80,12 @@ void start_reader(FrameSource& source, const RunRecord& record, std::optional<Fr
 }
 
 /// Feeds frames and finishes the pipeline. No thread reads the source afterwards.
-void feed_all(BuiltPipeline& built, FrameLoop& loop, RunRecord& record) {
+void feed_all(BuiltPipeline& built, const RunOptions& options, FrameLoop& loop, RunRecord& record) {
   std::optional<FrameFeeder> feeder;
   start_reader(*built.source, record, feeder);
   try {
-    while (!loop.stopped() && loop.feed_next([&] { return feeder ? feeder->next() : read_now(*built.source); })) {
+    while (!loop.stopped() &&
+           loop.feed_next([&] { return feeder ? feeder->next(options.stop) : read_now(*built.source); })) {
     }
   } catch (const std::exception& error) {  // the results until here are kept
     record.failure = error.what();
@@ -109,7 +113,7 @@ void feed_all(BuiltPipeline& built, FrameLoop& loop, RunRecord& record) {
 void feed_frames(BuiltPipeline& built, const RunOptions& options, RunRecord& record) {
   if (record.configuration.run.threaded()) record.threads.emplace();
   FrameLoop loop(built.pipeline, options, record);
-  feed_all(built, loop, record);
+  feed_all(built, options, loop, record);
   for (SkippedFrame& skipped : built.source->skipped())
     if (record.threads || loop.has_reached(skipped)) record.skipped.push_back(std::move(skipped));
 }

@@ -69,13 +69,16 @@ class Program {
   Outcome run(const std::vector<std::string>& arguments) const { return finish(start(arguments)); }
 
   /// Waits until the condition holds or the program has ended. How long that takes on a busy machine is not known
-  /// beforehand, so that no fixed time will do.
+  /// beforehand, so that no fixed time will do. False if neither has come about after two minutes.
   template <class Condition>
-  void wait_until(pid_t process, const Condition& holds) const {
+  bool wait_until(pid_t process, const Condition& holds) const {
     constexpr auto longest = std::chrono::seconds(120);
     const auto started = std::chrono::steady_clock::now();
-    while (!holds() && !has_ended(process) && std::chrono::steady_clock::now() < started + longest)
+    while (!holds() && !has_ended(process)) {
+      if (std::chrono::steady_clock::now() > started + longest) return false;
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    return true;
   }
   /// Waits until a run has written so many poses to its folder.
   void wait_for_poses(pid_t process, const std::string& folder, int count = 1) const {

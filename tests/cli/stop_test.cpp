@@ -74,5 +74,29 @@ TEST_F(StopTest, LeavesAReadableFolder) {
   }
 }
 
+TEST_F(StopTest, IsAnsweredWhileAPacedRunWaitsForItsNextFrame) {
+  ASSERT_EQ(program_.run({"simulate", "--output", "rec", "--duration", "0.3", "--camera", "tum_fr1"}).exit_code, 0);
+  program_.write("paced.yaml",
+                 "source: { tum: { path: rec } }\ncamera: tum_fr1\nfeatures: orb\noptimizer: ceres\n"
+                 "run: { mode: threaded, pace: timestamps }\n");
+  // The last frame comes an hour later.
+  for (const char* list : {"rec/rgb.txt", "rec/depth.txt"}) {
+    std::string text = program_.text(list);
+    const std::size_t last = text.rfind('\n', text.size() - 2) + 1;
+    program_.write(list, text.insert(last, "360"));
+  }
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const pid_t process = program_.start({"run", "paced.yaml", "--output", "out", "--quiet", "--overwrite"});
+    program_.wait_until(process, [&] { return fs::exists(program_.path("out/trajectory.txt")); });
+    std::this_thread::sleep_for(std::chrono::milliseconds(1500));  // of which the other frames need 300
+    kill(process, signal);
+    const bool has_ended = program_.wait_until(process, [] { return false; });
+    EXPECT_TRUE(has_ended) << "after signal " << signal;
+    if (!has_ended) kill(process, SIGKILL);
+    EXPECT_EQ(program_.finish(process).exit_code, 128 + signal);
+    EXPECT_TRUE(fs::exists(program_.path("out/run.json")));
+  }
+}
+
 }  // namespace
 }  // namespace holdfast

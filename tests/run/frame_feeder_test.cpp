@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <future>
 #include <thread>
@@ -77,18 +78,82 @@ TEST(FrameFeeder, ASlowTrackerCostsFramesOrTime) {
   EXPECT_EQ(taken(LateFrames::queue), 20U);
 }
 
-TEST(FrameFeeder, StopEndsAWaitForAFarFrame) {
-  class Far final : public FrameSource {
-   public:
-    SourceDescription describe() const override { return {}; }
-    std::optional<SensorFrame> next() override {
-      SensorFrame frame;
-      frame.timestamp = 3600.0 * static_cast<double>(index_);
-      frame.index = index_++;
-      return frame;
+/// Takes three times as long for a frame as there is, and knows the stamps of those to come.
+class SlowSource final : public FrameSource {
+ public:
+  static constexpr std::uint64_t count = 60;
+  explicit SlowSource(bool knows_stamps) : knows_stamps_(knows_stamps) {}
+  SourceDescription describe() const override { return {}; }
+  std::optional<SensorFrame> next() override {
+    if (index_ == count) return std::nullopt;
+    std::this_thread::sleep_for(30ms);
+    SensorFrame frame;
+    frame.timestamp = stamp(index_);
+    frame.index = index_++;
+    return frame;
+  }
+  std::vector<double> pass_over(double timestamp) override {
+    std::vector<double> stamps;
+    if (!knows_stamps_) return stamps;
+    for (; index_ + 1 < count && stamp(index_ + 1) <= timestamp; ++index_) stamps.push_back(stamp(index_));
+    return stamps;
+  }
+
+ private:
+  static double stamp(std::uint64_t index) { return 0.01 * static_cast<double>(index); }
+  bool knows_stamps_;
+  std::uint64_t index_ = 0;
+};
+
+TEST(FrameFeeder, ASlowReaderCostsFramesWhereTheyMayBeDropped) {
+  const auto dropped = [](LateFrames late, bool knows_stamps) {
+    SlowSource source(knows_stamps);
+    FrameFeeder feeder(source, {.pace = Pace::timestamps, .late_frames = late});
+    std::uint64_t count = 0, last = 0;
+    while (const auto fed = feeder.next()) {
+      EXPECT_TRUE(count == 0 || fed->frame.index > last);
+      ++count;
+      last = fed->frame.index;
     }
-    std::uint64_t index_ = 0;
-  } source;
+    EXPECT_EQ(last, SlowSource::count - 1) << "the newest is never dropped";
+    const std::vector<double> stamps = feeder.stamps();
+    EXPECT_EQ(stamps.size(), SlowSource::count);
+    EXPECT_TRUE(std::is_sorted(stamps.begin(), stamps.end()));
+    EXPECT_EQ(count + feeder.counts().dropped, SlowSource::count);
+    return feeder.counts().dropped;
+  };
+  EXPECT_GE(dropped(LateFrames::drop, true), SlowSource::count / 3);
+  EXPECT_EQ(dropped(LateFrames::queue, true), 0U);
+  dropped(LateFrames::drop, false);
+}
+
+/// A frame an hour.
+class FarSource final : public FrameSource {
+ public:
+  SourceDescription describe() const override { return {}; }
+  std::optional<SensorFrame> next() override {
+    SensorFrame frame;
+    frame.timestamp = 3600.0 * static_cast<double>(index_);
+    frame.index = index_++;
+    return frame;
+  }
+
+ private:
+  std::uint64_t index_ = 0;
+};
+
+TEST(FrameFeeder, WhoeverWaitsForAFarFrameIsAskedWhetherToStop) {
+  FarSource source;
+  FrameFeeder feeder(source, {.pace = Pace::timestamps});
+  int asked = 0;
+  const auto stop = [&] { return ++asked == 3; };
+  EXPECT_TRUE(feeder.next([] { return false; }));
+  EXPECT_FALSE(feeder.next(stop));
+  EXPECT_EQ(asked, 3);
+}
+
+TEST(FrameFeeder, StopEndsAWaitForAFarFrame) {
+  FarSource source;
   FrameFeeder feeder(source, {.pace = Pace::timestamps});
   EXPECT_TRUE(feeder.next());
   auto next = std::async(std::launch::async, [&] { return feeder.next().has_value(); });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
@@ -40,16 +41,18 @@ class BoundedQueue {
   std::optional<T> pop() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return closed_ || !entries_.empty(); });
-    if (entries_.empty()) return std::nullopt;
-    Entry entry = std::move(entries_.front());
-    entries_.pop_front();
-    const double waited = entry.since.seconds();
-    ++counts_.taken;
-    counts_.wait_total += waited;
-    counts_.wait_longest = std::max(counts_.wait_longest, waited);
-    lock.unlock();
-    changed_.notify_all();
-    return std::move(entry.value);
+    return take(lock);
+  }
+  /// Waits as pop() does, and asks ten times a second whether to go on with that; nothing as well when it is not to.
+  template <class WaitsOn>
+  std::optional<T> pop_while(const WaitsOn& waits_on) {
+    std::unique_lock lock(mutex_);
+    while (!changed_.wait_for(lock, std::chrono::milliseconds(100), [this] { return closed_ || !entries_.empty(); })) {
+      lock.unlock();
+      if (!waits_on()) return std::nullopt;
+      lock.lock();
+    }
+    return take(lock);
   }
 
   bool has_room() const {
@@ -81,6 +84,19 @@ class BoundedQueue {
     Stopwatch since;
   };
   bool has_room_unlocked() const { return entries_.size() < counts_.capacity; }
+  /// Gives the oldest value, if there is one, and the lock back.
+  std::optional<T> take(std::unique_lock<std::mutex>& lock) {
+    if (entries_.empty()) return std::nullopt;
+    Entry entry = std::move(entries_.front());
+    entries_.pop_front();
+    const double waited = entry.since.seconds();
+    ++counts_.taken;
+    counts_.wait_total += waited;
+    counts_.wait_longest = std::max(counts_.wait_longest, waited);
+    lock.unlock();
+    changed_.notify_all();
+    return std::move(entry.value);
+  }
   bool add(T value) {
     if (closed_) return false;
     entries_.push_back({std::move(value), Stopwatch()});

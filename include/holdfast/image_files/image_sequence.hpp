@@ -55,6 +55,8 @@ class ImageSequence {
   /// Returns the next valid frame, or nothing at the end. Throws InputError with the image and its line in the list for
   /// a bad frame, unless bad frames are skipped; in this case it throws at the end if no frame was valid.
   std::optional<SensorFrame> next();
+  /// See FrameSource::pass_over().
+  std::vector<double> pass_over(double timestamp);
 
   std::uint64_t size() const { return files_.size(); }
   /// Of all frames [s].
@@ -78,6 +80,7 @@ class ImageSequenceSource : public FrameSource {
  public:
   SourceDescription describe() const override { return description_; }
   std::optional<SensorFrame> next() override { return sequence_.next(); }
+  std::vector<double> pass_over(double timestamp) override { return sequence_.pass_over(timestamp); }
   Trajectory truth() const override { return truth_; }
   std::vector<SkippedFrame> skipped() const override { return sequence_.skipped(); }
 

@@ -47,6 +47,11 @@ class FrameSource : public Module {
   /// Returns the next frame, or nothing at the end. Throws InputError that names the file for a frame that cannot be
   /// used, unless the source is configured to skip and count such frames.
   virtual std::optional<SensorFrame> next() = 0;
+  /// Passes over frames without reading them, as far as another one follows whose time stamp is at most `timestamp`
+  /// [s], so that next() returns the last of these. Returns the time stamps of the frames passed over, which are no
+  /// longer given. Called in paced runs whose reader is late (`late_frames: drop`). A source that does not know the
+  /// stamps beforehand, such as a camera, passes over none.
+  virtual std::vector<double> pass_over([[maybe_unused]] double timestamp) { return {}; }
   /// Ground-truth poses, sorted by time stamp; the stamps may differ from those of the frames. Empty if unknown.
   virtual Trajectory truth() const { return {}; }
   /// Frames skipped so far.

@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -25,7 +26,9 @@ struct FedFrame {
 };
 
 /// Reads a source in a separate thread, so that decoding and tracking overlap. Of the settings it uses pace,
-/// late_frames and frame_queue. Images are not copied.
+/// late_frames and frame_queue. Images are not copied. With late_frames `drop`, frames are dropped where tracking has
+/// no time for them, and by the clock: where reading itself is late by more than a tenth of a second, frames that are
+/// due already are passed over (FrameSource::pass_over()), but for the newest.
 class FrameFeeder {
  public:
   /// Starts reading. The source must outlive the feeder, and no other code may use it during that time.
@@ -34,12 +37,14 @@ class FrameFeeder {
   ~FrameFeeder();
 
   /// Waits for the next frame; empty at the end of the source. An exception of the source is thrown here, after the
-  /// frames before it.
-  std::optional<FedFrame> next();
+  /// frames before it. `stop` is asked ten times a second while a frame is awaited; the result is empty once it is
+  /// true.
+  std::optional<FedFrame> next(const std::function<bool()>& stop = {});
   /// Ends the reading; next() returns empty from now on. Any thread may call it.
   void stop();
 
-  QueueCounts counts() const { return queue_.counts(); }
+  /// Frames passed over are counted as dropped.
+  QueueCounts counts() const;
   /// Time stamps of all frames read so far, dropped ones included [s].
   std::vector<double> stamps() const;
   /// Paced: number of frames that the source gave after they were due.
@@ -50,6 +55,7 @@ class FrameFeeder {
  private:
   void read();
   bool wait_until_due(double timestamp, Stopwatch& since_due);
+  void pass_over_late_frames();
 
   FrameSource& source_;
   RunSettings settings_;
@@ -61,6 +67,8 @@ class FrameFeeder {
   std::vector<double> stamps_;
   std::uint64_t late_ = 0;
   double latest_ = 0.0;
+  double lateness_ = 0.0;  // of the frame read last [s]
+  std::uint64_t passed_over_ = 0;
   std::optional<double> first_timestamp_;
   Stopwatch since_first_;
   std::thread thread_;  // last, because it uses the members above

@@ -35,7 +35,7 @@ struct RunOptions {
   /// Called once, after all modules have been made and before the first frame is read.
   std::function<void(const RunRecord& record)> on_start;
   std::function<void(const RunProgress& progress)> on_frame;
-  /// Returns true when the run shall end early. Called before each frame.
+  /// Returns true when the run shall end early. Called before each frame, and ten times a second while one is awaited.
   std::function<bool()> stop;
   /// Start of the time measurement of RunRecord::start_seconds and total_seconds. A program gives a stopwatch that it
   /// started itself, so that loading the configuration counts.

@@ -156,6 +156,12 @@ class RosbagSource final : public FrameSource {
                                                       " frames can be used; the first: " + skipped_.front().reason);
     return std::nullopt;
   }
+  std::vector<double> pass_over(double timestamp) override {
+    std::vector<double> stamps;
+    for (; position_ + 1 < frames_.size() && frames_[position_ + 1].colour.stamp <= timestamp; ++position_)
+      stamps.push_back(frames_[position_].colour.stamp);
+    return stamps;
+  }
   Trajectory truth() const override { return truth_; }
   std::vector<SkippedFrame> skipped() const override { return skipped_; }
 

@@ -75,6 +75,13 @@ class SimulatedSource final : public FrameSource {
     return is_stereo() ? simulator_.stereo_frame(index, stereo_baseline_) : simulator_.frame(index);
   }
 
+  std::vector<double> pass_over(double timestamp) override {
+    std::vector<double> stamps;
+    for (; next_ + 1 < simulator_.frame_count() && simulator_.timestamp(next_ + 1) <= timestamp; ++next_)
+      stamps.push_back(simulator_.timestamp(next_));
+    return stamps;
+  }
+
   Trajectory truth() const override { return simulator_.truth(); }
 
  private:
