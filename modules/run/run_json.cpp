@@ -187,7 +187,7 @@ std::string run_json(const RunRecord& record) {
   Json& stages = json["stages"] = Json::array();
   for (const StageRow& row : s.stages()) stages.push_back(stage_json(row));
   json["threads"] = record.threads ? threads_json(*record.threads) : Json(nullptr);
-  json["start_to_first_pose_s"] = record.start_seconds;
+  json["start_to_first_pose_s"] = record.start_seconds > 0.0 ? Json(record.start_seconds) : Json(nullptr);
   json["total_s"] = record.total_seconds;
   json["peak_memory_bytes"] = record.peak_memory;
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

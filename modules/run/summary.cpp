@@ -107,7 +107,8 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& r
                                              std::to_string(threads.frames.dropped) + " dropped, " +
                                              counted(threads.keyframes_deferred, "keyframe") + " put off");
   }
-  rows.emplace_back("start to first pose", fixed_text(record.start_seconds, 3) + " s");
+  rows.emplace_back("start to first pose",
+                    record.start_seconds > 0.0 ? fixed_text(record.start_seconds, 3) + " s" : "no frame got a pose");
   rows.emplace_back("whole run", fixed_text(record.total_seconds, 1) + " s, peak memory " +
                                      fixed_text(static_cast<double>(record.peak_memory) / 1e6, 0) + " MB");
   return rows;

@@ -4,6 +4,7 @@
 // disk that refuses a read, which is not the end of the file.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -193,6 +194,21 @@ TEST_F(WriteFaultsTest, WhatWasWholeStaysWhenItCannotBeReplaced) {
     EXPECT_TRUE(program_.text("out/a.ply") == before);
     EXPECT_EQ(files_below(program_.path("out")).size(), 1U);
   }
+}
+
+TEST_F(WriteFaultsTest, ALimitOfTheSizeOfFilesIsAnErrorAndLeavesNoTemporaryFile) {
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit lower{20'000, before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &lower), 0);
+  const pid_t process = program_.start({"run", "room.yaml", "--output", "out"});
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+  outcome_ = program_.finish(process);
+  EXPECT_EQ(outcome_.exit_code, 1);
+  EXPECT_THAT(outcome_.errors, ::testing::HasSubstr("map.hfm: cannot be written: File too large; raise the limit"));
+  const Files left = files_below(program_.path("out"));
+  EXPECT_EQ(left.count("run.json"), 1U) << "the others are whole";
+  for (const auto& [name, content] : left) EXPECT_FALSE(ends_with(name, ".tmp")) << name;
 }
 
 TEST_F(WriteFaultsTest, AReadThatFailsIsNotTheEndOfAList) {

@@ -109,6 +109,15 @@ TEST_F(ResultsTest, RunJsonHoldsTheFigures) {
   EXPECT_EQ(failed.at("threads").at("frame_to_result").at("share_above_33_ms"), 0.5);
 }
 
+TEST_F(ResultsTest, TheTimeOfTheFirstPoseIsUnknownWhereThereWasNone) {
+  record_.start_seconds = 1.25;
+  EXPECT_EQ(nlohmann::json::parse(run_json(record_)).at("start_to_first_pose_s"), 1.25);
+  EXPECT_THAT(summary_text(record_), HasSubstr("\nstart to first pose  1.250 s\n"));
+  record_.start_seconds = 0.0;
+  EXPECT_TRUE(nlohmann::json::parse(run_json(record_)).at("start_to_first_pose_s").is_null());
+  EXPECT_THAT(summary_text(record_), HasSubstr("\nstart to first pose  no frame got a pose\n"));
+}
+
 TEST_F(ResultsTest, BytesThatAreNotUtf8AreReplaced) {
   record_.configuration.file = "caf\xe9.yaml";
   record_.source.name = "\xff";

@@ -62,7 +62,7 @@ struct RunRecord {
   /// low coverage is said by coverage_warning(). See core/warning.hpp.
   Warnings warnings;
 
-  double start_seconds = 0.0;    ///< time from the start of the run to the first pose [s]
+  double start_seconds = 0.0;    ///< time from the start of the run to the first pose; 0 if there was none [s]
   double total_seconds = 0.0;    ///< duration of the run, evaluation included and dense map excluded [s]
   std::size_t peak_memory = 0;   ///< largest resident memory of the process so far [bytes]
   bool was_interrupted = false;  ///< RunOptions::stop asked for the end
