@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "holdfast/core/thread_name.hpp"
+#include "repeated_images.hpp"
 
 namespace holdfast {
 
@@ -105,7 +106,9 @@ void FrameFeeder::read() {
         const std::lock_guard lock(mutex_);
         stamps_.push_back(frame->timestamp);
       }
-      FedFrame fed{std::move(*frame), decoding.seconds(), Stopwatch()};
+      const double decode_seconds = decoding.seconds();
+      const std::uint64_t fingerprint = image_fingerprint(frame->colour);
+      FedFrame fed{std::move(*frame), decode_seconds, fingerprint, Stopwatch()};
       if (settings_.paced() && !wait_until_due(fed.frame.timestamp, fed.since_due)) break;
       if (!(drop ? queue_.push_newest(std::move(fed)) : queue_.push(std::move(fed)))) break;
     }

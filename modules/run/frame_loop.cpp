@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "holdfast/run/frame_feeder.hpp"
+#include "repeated_images.hpp"
 
 namespace holdfast {
 
@@ -30,6 +31,8 @@ class FrameLoop {
     source_has_more_ = true;
     if (!record_.threads) record_.frame_stamps.push_back(fed->frame.timestamp);  // else the reader keeps them
     last_index_ = fed->frame.index;
+    repeats_.add(fed->frame.timestamp, fed->fingerprint);
+    record_.repeated_images = repeats_.found();
     feed(fed->frame, fed->decode_seconds);
     if (record_.threads) record_.threads->delays.push_back(fed->since_due.seconds());
     return true;
@@ -59,13 +62,16 @@ class FrameLoop {
   std::uint64_t done_ = 0;
   bool source_has_more_ = true;
   std::optional<std::uint64_t> last_index_;
+  RepeatFinder repeats_;
 };
 
 std::optional<FedFrame> read_now(FrameSource& source) {
   const Stopwatch decoding;
   std::optional<SensorFrame> frame = source.next();
   if (!frame) return std::nullopt;
-  return FedFrame{std::move(*frame), decoding.seconds(), Stopwatch()};
+  const double decode_seconds = decoding.seconds();
+  const std::uint64_t fingerprint = image_fingerprint(frame->colour);
+  return FedFrame{std::move(*frame), decode_seconds, fingerprint, Stopwatch()};
 }
 
 /// Starts the thread that reads the source: always in threaded mode, otherwise where reading ahead cannot change the

@@ -177,6 +177,9 @@ std::string run_json(const RunRecord& record) {
   Json& skipped = json["skipped_frames"] = Json::array();
   for (const SkippedFrame& frame : record.skipped)
     skipped.push_back({{"index", frame.index}, {"timestamp", frame.timestamp}, {"reason", frame.reason}});
+  json["repeated_images"] = {{"frames", record.repeated_images.frames},
+                             {"longest_s", record.repeated_images.longest},
+                             {"longest_from", record.repeated_images.begin}};
   json["map"] = map_json(record);
   json["loops"] = loops_json(record.loops);
   json["masks"] = masks_json(record.masks, record.mask_ages);

@@ -2,8 +2,10 @@
 #include "run_warnings.hpp"
 
 #include <string>
+#include <utility>
 
 #include "holdfast/core/counted.hpp"
+#include "repeated_images.hpp"
 
 namespace holdfast {
 
@@ -32,6 +34,8 @@ void find_mask_warnings(const RunRecord& record, Warnings& warnings) {
 Warnings find_warnings(const RunRecord& record) {
   Warnings warnings;
   find_mask_warnings(record, warnings);
+  if (std::string text = repetition_warning(record.repeated_images, record.frame_stamps.size()); !text.empty())
+    add_warning(warnings, {{}, std::move(text)});
   return warnings;
 }
 

@@ -61,6 +61,9 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& r
   rows.emplace_back("frames",
                     std::to_string(s.frames()) + " of " + std::to_string(record.frames_expected) +
                         (record.skipped.empty() ? "" : ", " + std::to_string(record.skipped.size()) + " skipped"));
+  if (const RepeatedImages& repeated = record.repeated_images; repeated.frames > 0)
+    rows.emplace_back("repeated images",
+                      counted(repeated.frames, "frame") + ", for up to " + fixed_text(repeated.longest, 2) + " s");
   rows.emplace_back("coverage",
                     percent_text(record.coverage()) + " (" + counted(record.trajectory.size(), "pose") + ")");
   rows.emplace_back("lost", counted(s.lost(), "frame") + ", recovered " + counted(s.recovered(), "time") +

@@ -43,6 +43,33 @@ TEST(FrameFeeder, GivesEveryFrameInOrder) {
   EXPECT_EQ(feeder.counts().dropped, 0U);
 }
 
+TEST(FrameFeeder, FingerprintsTellRepeatedImages) {
+  class Images final : public FrameSource {
+   public:
+    SourceDescription describe() const override { return {}; }
+    std::optional<SensorFrame> next() override {
+      if (index_ == 4) return std::nullopt;
+      SensorFrame frame;
+      frame.timestamp = static_cast<double>(index_);
+      frame.colour = cv::Mat(6, 8, CV_8UC3, cv::Scalar::all(7));
+      if (index_ < 3) frame.colour.at<cv::Vec3b>(5, 7)[2] = index_ < 2 ? 1 : 2;
+      frame.index = index_++;
+      return frame;
+    }
+
+   private:
+    std::uint64_t index_ = 0;
+  } source;
+  FrameFeeder feeder(source, {});
+  std::vector<std::uint64_t> fingerprints;
+  while (const auto fed = feeder.next()) fingerprints.push_back(fed->fingerprint);
+  ASSERT_EQ(fingerprints.size(), 4U);
+  EXPECT_NE(fingerprints[0], 0U);
+  EXPECT_EQ(fingerprints[1], fingerprints[0]);
+  EXPECT_NE(fingerprints[2], fingerprints[0]);
+  EXPECT_EQ(fingerprints[3], 0U) << "an image without any content is like no other";
+}
+
 TEST(FrameFeeder, AnErrorOfTheSourceComesAfterTheFramesBeforeIt) {
   CountingSource source(10, 3);
   FrameFeeder feeder(source, {});

@@ -115,6 +115,50 @@ TEST(Run, WarningsOfConfigurationSourceAndModulesAreInEveryResult) {
     EXPECT_NE(report.find(part), std::string::npos) << part;
 }
 
+/// Repeats the colour image of frame `first` until before frame `end`; other images differ in a pixel.
+class FrozenSource final : public FrameSource {
+ public:
+  FrozenSource(std::unique_ptr<FrameSource> source, std::uint64_t first, std::uint64_t end)
+      : source_(std::move(source)), first_(first), end_(end) {}
+  SourceDescription describe() const override { return source_->describe(); }
+  std::optional<SensorFrame> next() override {
+    std::optional<SensorFrame> frame = source_->next();
+    if (!frame) return frame;
+    const bool is_frozen = frame->index >= first_ && frame->index < end_;
+    frame->colour.at<cv::Vec3b>(100, 100)[1] = static_cast<std::uint8_t>(1 + (is_frozen ? first_ : frame->index));
+    return frame;
+  }
+  Trajectory truth() const override { return source_->truth(); }
+
+ private:
+  std::unique_ptr<FrameSource> source_;
+  std::uint64_t first_, end_;
+};
+
+RunRecord run_of_frozen_frames(std::uint64_t first, std::uint64_t end) {
+  test::PointRun points;
+  points.built->source = std::make_unique<FrozenSource>(std::move(points.built->source), first, end);
+  return run(*points.built, points.configuration);
+}
+
+TEST(Run, RepeatedImagesAreCountedAndNamed) {
+  const RunRecord record = run_of_frozen_frames(10, 20);
+  EXPECT_EQ(record.repeated_images.frames, 9U);
+  EXPECT_NEAR(record.repeated_images.longest, 0.3, 1e-9);
+  EXPECT_NEAR(record.repeated_images.begin, 10.0 / 30.0, 1e-9);
+  ASSERT_EQ(record.warnings.size(), 1U);
+  EXPECT_EQ(record.warnings[0].to_string().find("9 frames have the same colour image as the frame before"), 0U);
+  EXPECT_NE(summary_text(record).find("\nrepeated images      9 frames, for up to 0.30 s\n"), std::string::npos);
+}
+
+TEST(Run, AFewRepeatedImagesAreCountedWithoutAWarning) {
+  EXPECT_EQ(run_of_frozen_frames(10, 12).repeated_images.frames, 1U);
+  EXPECT_TRUE(run_of_frozen_frames(10, 12).warnings.empty());
+  EXPECT_EQ(run_of_frozen_frames(10, 11).repeated_images.frames, 0U);
+  test::PointRun black;
+  EXPECT_EQ(run(*black.built, black.configuration).repeated_images.frames, 0U) << "a covered lens repeats nothing";
+}
+
 TEST(Run, TheLateShareCountsDelaysAboveAFrameInterval) {
   ThreadRecord threads;
   EXPECT_EQ(threads.late_share(), 0.0);

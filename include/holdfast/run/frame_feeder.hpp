@@ -22,6 +22,7 @@ namespace holdfast {
 struct FedFrame {
   SensorFrame frame;
   double decode_seconds = 0.0;
+  std::uint64_t fingerprint = 0;  ///< image_fingerprint() of the colour image
   Stopwatch since_due;  ///< time since the frame was due: paced, its time stamp; otherwise the moment of reading
 };
 

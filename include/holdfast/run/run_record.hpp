@@ -30,6 +30,14 @@ struct ThreadRecord {
   double late_share() const;
 };
 
+/// Frames whose colour image is that of the frame before, byte by byte: a driver or a copy has repeated an image, since
+/// no sensor gives the same noise twice.
+struct RepeatedImages {
+  std::size_t frames = 0;
+  double longest = 0.0;  ///< longest time during which the image stayed the same [s]
+  double begin = 0.0;    ///< time stamp of the frame with which it began [s]
+};
+
 /// Everything that is known at the end of a run. The record owns its content and refers to no pipeline.
 struct RunRecord {
   Configuration configuration;
@@ -38,6 +46,7 @@ struct RunRecord {
   Sensor sensor = Sensor::rgbd;
   double readout = 0.0;  ///< Pipeline::readout() at the end [s]
   RunSummary summary;    ///< counts and stage times over all frames
+  RepeatedImages repeated_images;
   std::vector<SkippedFrame> skipped;
   std::vector<double> frame_stamps;  ///< time stamps of all frames of the source, skipped ones included, sorted [s]
   std::size_t frames_expected = 0;   ///< number of frames that the source announced, else the number of frame_stamps
