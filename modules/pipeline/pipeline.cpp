@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdio>
 #include <deque>
 #include <mutex>
@@ -120,7 +121,7 @@ struct Pipeline::State {
   }
 
   void start_threads();
-  void check_stamp(const SensorFrame& frame);
+  void check_stamp(const SensorFrame& frame) const;
   /// The frame as given, or in `other` what the sensor of this pipeline has of it, in colour where a part needs that.
   const SensorFrame& used_images(const SensorFrame& given, SensorFrame& other) const;
   /// Removes the whole map, which began wrong, from every part that knows of it.
@@ -232,15 +233,16 @@ void Pipeline::State::rethrow_failures() {
   moving_world.rethrow();
 }
 
-void Pipeline::State::check_stamp(const SensorFrame& frame) {
+void Pipeline::State::check_stamp(const SensorFrame& frame) const {
+  if (!std::isfinite(frame.timestamp))
+    throw InputError({"frame " + std::to_string(frame.index)},
+                     "its time stamp is not a finite number; expected seconds that rise from frame to frame");
   if (has_frame && !(frame.timestamp > last_timestamp)) {
     char text[128];
     std::snprintf(text, sizeof(text), "time stamp %.6f does not follow %.6f; stamps must rise strictly",
                   frame.timestamp, last_timestamp);
     throw InputError({"frame " + std::to_string(frame.index)}, text);
   }
-  has_frame = true;
-  last_timestamp = frame.timestamp;
 }
 
 const SensorFrame& Pipeline::State::used_images(const SensorFrame& given, SensorFrame& other) const {
@@ -460,7 +462,11 @@ FrameResult Pipeline::feed(const SensorFrame& given) {
   State& s = *state_;
   SensorFrame other;
   const SensorFrame& frame = s.used_images(given, other);
+  // A frame that is refused leaves no trace: the next one may have its stamp.
   s.check_stamp(frame);
+  s.tracker.check_images(frame);
+  s.has_frame = true;
+  s.last_timestamp = frame.timestamp;
   s.rethrow_failures();
   if (s.mapping && !s.parts.run.paced()) s.mapping->queue().wait_for_room();
 

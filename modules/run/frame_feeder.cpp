@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 #include "holdfast/core/thread_name.hpp"
@@ -69,6 +70,7 @@ double FrameFeeder::latest() const {
 
 bool FrameFeeder::wait_until_due(double timestamp, Stopwatch& since_due) {
   std::unique_lock lock(mutex_);
+  if (!std::isfinite(timestamp)) return !stopped_;  // never due; Pipeline::feed() refuses it
   if (!first_timestamp_) {
     first_timestamp_ = timestamp;
     since_first_.restart();

@@ -44,10 +44,10 @@ FrameBuilder::FrameBuilder(const Camera& camera, FeatureExtractor& extractor, do
   camera.undistorted_bounds(minimum_, maximum_);
 }
 
-void FrameBuilder::begin(const SensorFrame& sensor_frame, Frame& frame, StageTimes& times) {
+void FrameBuilder::check_images(const SensorFrame& sensor_frame) const {
   const cv::Mat& colour = sensor_frame.colour;
-  const bool is_grey = colour.type() == CV_8UC1;
-  if ((!is_grey && colour.type() != CV_8UC3) || colour.cols != camera_->width || colour.rows != camera_->height)
+  if ((colour.type() != CV_8UC1 && colour.type() != CV_8UC3) || colour.cols != camera_->width ||
+      colour.rows != camera_->height)
     throw InputError({"frame " + std::to_string(sensor_frame.index)},
                      "the colour image is " + size_text(colour.cols, colour.rows) + " with " +
                          std::to_string(colour.channels()) + " channels; expected " +
@@ -65,6 +65,14 @@ void FrameBuilder::begin(const SensorFrame& sensor_frame, Frame& frame, StageTim
                                    : "the right image is " + size_text(right.cols, right.rows) + " with " +
                                          std::to_string(right.channels()) +
                                          " channels; expected 1 or 3 channels of 8 bit, of the left image's size");
+}
+
+void FrameBuilder::begin(const SensorFrame& sensor_frame, Frame& frame, StageTimes& times) {
+  check_images(sensor_frame);
+  const cv::Mat& colour = sensor_frame.colour;
+  const cv::Mat& depth = sensor_frame.depth;
+  const cv::Mat& right = sensor_frame.right;
+  const bool is_grey = colour.type() == CV_8UC1;
   const StageTimer timer(times, "frame");
   frame.index = sensor_frame.index;
   frame.timestamp = sensor_frame.timestamp;

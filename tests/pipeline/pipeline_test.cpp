@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <future>
+#include <limits>
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/plugin/registry.hpp"
@@ -49,6 +50,39 @@ TEST(Pipeline, FollowsACameraThroughAWorldOfPoints) {
   EXPECT_LT(largest_error(pipeline.trajectory()), 0.004);
   EXPECT_GE(pipeline.map().keyframes().size(), 2U);
   EXPECT_EQ(pipeline.keyframe_trajectory().size(), pipeline.map().keyframes().size());
+}
+
+TEST(Pipeline, ARefusedFrameLeavesNoTrace) {
+  const auto run = [](bool with_refused_frames) {
+    test::PointWorld world(find_camera("tum_fr1").value());
+    Pipeline pipeline(parts_for(world, 0.5));
+    const auto expect_refused = [&](const SensorFrame& frame) {
+      EXPECT_THROW(pipeline.feed(frame), InputError) << frame.index;
+    };
+    for (int i = 0; i < 30; ++i) {
+      const double time = i / 30.0;
+      const SensorFrame frame = world.frame(static_cast<std::uint64_t>(i), time, test::path_pose(time));
+      if (with_refused_frames && i % 10 == 0) {
+        SensorFrame refused = frame;
+        refused.timestamp = std::numeric_limits<double>::quiet_NaN();
+        expect_refused(refused);
+        refused.timestamp = std::numeric_limits<double>::infinity();
+        expect_refused(refused);
+        refused = frame;
+        refused.colour = frame.colour.colRange(0, 8);
+        expect_refused(refused);  // and its stamp is free for the same frame with its image
+        refused.colour = cv::Mat();
+        expect_refused(refused);
+      }
+      pipeline.feed(frame);
+      if (with_refused_frames && i % 10 == 5) expect_refused(frame);  // its stamp has been used
+    }
+    return pipeline.trajectory();
+  };
+  const Trajectory clean = run(false), disturbed = run(true);
+  ASSERT_EQ(disturbed.size(), clean.size());
+  for (std::size_t i = 0; i < clean.size(); ++i)
+    EXPECT_EQ(disturbed[i].T_world_camera.matrix(), clean[i].T_world_camera.matrix()) << i;
 }
 
 TEST(Pipeline, TwoRunsGiveTheSameBits) {

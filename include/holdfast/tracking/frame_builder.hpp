@@ -28,6 +28,9 @@ class FrameBuilder {
   /// From now on the right image gives depth in place of the depth image. The camera must have no distortion.
   void use_stereo(const StereoParts& parts) { stereo_.emplace(*camera_, parts); }
 
+  /// Throws InputError, with the number of the frame, for images of another type or size than the camera's.
+  void check_images(const SensorFrame& sensor_frame) const;
+
   /// Replaces the content of `frame`; poses and map points are reset. The images must have the camera's size
   /// (InputError otherwise). Adds the stages "features" and "frame".
   void build(const SensorFrame& sensor_frame, Frame& frame, StageTimes& times) {

@@ -61,6 +61,8 @@ class Tracker {
   /// From now on no frame becomes a keyframe.
   void localise_only() { localises_only_ = true; }
 
+  /// Throws InputError for images that begin() would refuse.
+  void check_images(const SensorFrame& sensor_frame) const { builder_.check_images(sensor_frame); }
   /// First half of a frame: propagates the mask and extracts features. It does not read the map.
   void begin(const SensorFrame& sensor_frame, FrameResult& result);
   /// Second half: estimates the pose; the caller holds the lock of the map. When the result says is_keyframe, hand
