@@ -7,7 +7,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <iterator>
 #include <map>
 #include <optional>
@@ -30,7 +29,7 @@ namespace fs = std::filesystem;
 using OptionalPose = std::optional<Eigen::Isometry3d>;
 
 constexpr const char* layouts =
-    "expected a trajectory in TUM format, lines of 12 or 16 numbers, a folder or a pattern of files with one matrix "
+    "a trajectory in TUM format, lines of 12 or 16 numbers, a folder or a pattern of files with one matrix "
     "each, .npy or .json";
 
 /// The pose of a matrix of three or four rows, row by row; nothing if a number is not finite.
@@ -63,14 +62,8 @@ OptionalPose from_opengl(OptionalPose pose) {
 /// Calls use(place, numbers) for every line with numbers; '#' begins a comment.
 template <class Use>
 void each_line(const fs::path& file, Use&& use) {
-  std::error_code error;
-  if (!fs::is_regular_file(file, error))
-    throw InputError({file.string()}, std::string("is missing or not a file; ") + layouts);
-  std::ifstream stream(file);
-  if (!stream) throw InputError({file.string()}, "cannot be read; check its permissions");
-  skip_byte_order_mark(stream);
-  std::string text;
-  for (int number = 1; std::getline(stream, text); ++number) {
+  LineReader lines(file, layouts);
+  for (std::string text; lines.next(text);) {
     std::string_view rest = std::string_view(text).substr(0, text.find('#'));
     std::vector<double> numbers;
     for (;;) {
@@ -82,12 +75,11 @@ void each_line(const fs::path& file, Use&& use) {
       double value = 0.0;
       const auto [stop, problem] = std::from_chars(word.data(), word.data() + word.size(), value);
       if (problem != std::errc() || stop != word.data() + word.size())
-        throw InputError({file.string(), number}, "found '" + std::string(word) + "'; expected a number");
+        throw InputError(lines.location(), "found '" + std::string(word) + "'; expected a number");
       numbers.push_back(value);
     }
-    if (!numbers.empty()) use(SourceLocation{file.string(), number}, numbers);
+    if (!numbers.empty()) use(lines.location(), numbers);
   }
-  if (stream.bad()) throw InputError({file.string()}, "cannot be read to its end; check the disk");
 }
 
 OptionalPose read_matrix_file(const fs::path& file) {
@@ -147,9 +139,8 @@ Trajectory of_images(const std::vector<OptionalPose>& poses, const std::vector<N
 
 /// Whether the first line that is no comment has as many words as a matrix has numbers.
 bool begins_with_matrix(const fs::path& file) {
-  std::ifstream stream(file);
-  skip_byte_order_mark(stream);
-  for (std::string text; std::getline(stream, text);) {
+  LineReader lines(file, layouts);
+  for (std::string text; lines.next(text);) {
     std::istringstream line(text.substr(0, text.find('#')));
     const auto words = std::distance(std::istream_iterator<std::string>(line), {});
     if (words > 0) return words == 12 || words == 16;
@@ -196,19 +187,19 @@ std::uint64_t little_endian(const char* bytes, std::size_t count) {
 }
 
 /// The text of the header of NumPy's format, versions 1 to 3 (NEP 1).
-std::string read_array_header(std::istream& stream, const fs::path& file) {
+std::string read_array_header(InputFile& input) {
+  const fs::path& file = input.path();
   std::array<char, 8> magic{};
-  stream.read(magic.data(), magic.size());
-  if (!stream || std::string_view(magic.data(), 6) != "\x93NUMPY") refuse_array(file, "is missing or no .npy file");
+  const bool has_magic = input.read(magic.data(), magic.size()) == magic.size();
+  if (!has_magic || std::string_view(magic.data(), 6) != "\x93NUMPY") refuse_array(file, "is no .npy file");
   std::array<char, 4> size{};
   const std::size_t size_bytes = magic[6] == 1 ? 2 : 4;
-  stream.read(size.data(), static_cast<std::streamsize>(size_bytes));
+  const bool has_size = input.read(size.data(), size_bytes) == size_bytes;
   const std::uint64_t length = little_endian(size.data(), size_bytes);
   constexpr std::uint64_t longest = 1 << 16;
-  if (!stream || length > longest) refuse_array(file, "has no header that can be read");
+  if (!has_size || length > longest) refuse_array(file, "has no header that can be read");
   std::string header(length, ' ');
-  stream.read(header.data(), static_cast<std::streamsize>(length));
-  if (!stream) refuse_array(file, "has no header that can be read");
+  if (input.read(header.data(), length) != length) refuse_array(file, "has no header that can be read");
   return header;
 }
 
@@ -234,13 +225,13 @@ ArrayForm form_of(const std::string& header, const fs::path& file) {
 }
 
 Trajectory read_array(const fs::path& file, const std::vector<NumberedFrame>& frames, std::size_t image_count) {
-  std::ifstream stream(file, std::ios::binary);
-  const ArrayForm form = form_of(read_array_header(stream, file), file);
+  InputFile input(file, largest_file::cloud, "an array of NumPy");
+  const ArrayForm form = form_of(read_array_header(input), file);
   const std::size_t number_bytes = form.is_double ? 8 : 4;
   std::vector<char> bytes(form.numbers * number_bytes);
   std::vector<double> row(form.numbers);
   std::vector<OptionalPose> poses;
-  while (poses.size() < form.matrices && stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) {
+  while (poses.size() < form.matrices && input.read(bytes.data(), bytes.size()) == bytes.size()) {
     for (std::size_t i = 0; i < row.size(); ++i) {
       const std::uint64_t bits = little_endian(bytes.data() + i * number_bytes, number_bytes);
       row[i] = form.is_double ? std::bit_cast<double>(bits)
@@ -285,8 +276,8 @@ Trajectory read_json(const fs::path& file, const std::vector<NumberedFrame>& fra
     return of_images(found, frames, image_count, file);
   }
   if (!listed || !listed.IsSequence())
-    throw InputError({file.string()},
-                     "has neither \"frames\" with \"transform_matrix\" nor \"poses\"; " + std::string(layouts));
+    throw InputError({file.string()}, "has neither \"frames\" with \"transform_matrix\" nor \"poses\"; expected " +
+                                          std::string(layouts));
   std::map<FileNumbers, OptionalPose> by_number;
   for (const YAML::Node& frame : listed) {
     const YAML::Node matrix = frame.IsMap() ? frame["transform_matrix"] : YAML::Node();
