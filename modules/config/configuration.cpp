@@ -11,6 +11,7 @@
 #include "holdfast/plugin/loader.hpp"
 #include "holdfast/plugin/module_check.hpp"
 #include "moved_keys.hpp"
+#include "parameter_places.hpp"
 
 namespace holdfast {
 
@@ -76,7 +77,8 @@ Camera make_camera(const CameraSettings& s) {
   return {s.name, s.width, s.height, s.fx, s.fy, s.cx, s.cy, distortion, s.baseline, s.frame_rate, s.readout};
 }
 
-std::optional<Camera> read_camera(const ConfigurationNode& node, std::vector<Diagnostic>& diagnostics) {
+std::optional<Camera> read_camera(const ConfigurationNode& node, std::vector<Diagnostic>& diagnostics,
+                                  const FindParameter& elsewhere) {
   if (node.kind == ConfigurationNode::Kind::scalar) {
     const std::optional<Camera> camera = find_camera(node.text);
     if (!camera)
@@ -104,7 +106,7 @@ std::optional<Camera> read_camera(const ConfigurationNode& node, std::vector<Dia
     }
   }
   const std::size_t before = diagnostics.size();
-  const ParameterValues values = read_parameters(node, parameters, "section 'camera'", diagnostics);
+  const ParameterValues values = read_parameters(node, parameters, "section 'camera'", diagnostics, elsewhere);
   if (diagnostics.size() != before) return std::nullopt;
   Camera camera = make_camera(table.settings(values));
   if (const std::string trouble = camera.distortion.trouble(); !trouble.empty()) {
@@ -143,7 +145,9 @@ class Resolver {
  public:
   Resolver(const ConfigurationNode& root, std::string file, Registry& registry,
            const std::vector<SectionDescription>& sections)
-      : root_(root), file_(std::move(file)), registry_(registry), sections_(sections) {}
+      : root_(root), file_(std::move(file)), registry_(registry), sections_(sections) {
+    elsewhere_ = [this](const std::string& name) { return ParameterPlaces(root_, registry_, sections_).find(name); };
+  }
 
   Configuration resolve() {
     result_.file = file_;
@@ -216,7 +220,8 @@ class Resolver {
     for (const SectionDescription& section : sections_) known.push_back(section.name);
     for (const ConfigurationNode::Entry& entry : root_.entries)
       if (std::find(known.begin(), known.end(), entry.key) == known.end())
-        complain(entry.location, "there is no section '" + entry.key + "'; " + did_you_mean(entry.key, known));
+        complain(entry.location,
+                 "there is no section '" + entry.key + "'; " + suggest_parameter(entry.key, known, elsewhere_));
   }
 
   ModuleChoice module(const std::string& kind, const std::string& name, const SourceLocation& location,
@@ -226,7 +231,7 @@ class Resolver {
     if (entry == nullptr) return choice;
     ConfigurationNode given = parameters;
     if (given.location.file.empty()) given.location = location;
-    choice.values = read_parameters(given, entry->parameters, kind + " '" + name + "'", diagnostics_);
+    choice.values = read_parameters(given, entry->parameters, kind + " '" + name + "'", diagnostics_, elsewhere_);
     return choice;
   }
 
@@ -303,7 +308,7 @@ class Resolver {
                                         "' does not know its own" + known_by_name + "; expected a name or numbers"};
       return;
     }
-    result_.camera = holdfast::read_camera(node, diagnostics_);
+    result_.camera = holdfast::read_camera(node, diagnostics_, elsewhere_);
     if (named && result_.camera && result_.camera->name != *named && find_camera(result_.camera->name))
       result_.warnings.push_back({node.location, "found the camera '" + result_.camera->name + "' for the folder '" +
                                                      folder + "'; expected '" + *named +
@@ -336,7 +341,7 @@ class Resolver {
   void read_run() {
     const ParameterTable<RunSettings> table;
     const ConfigurationNode& node = at("run");
-    result_.run = table.settings(read_parameters(node, table.parameters(), "section 'run'", diagnostics_));
+    result_.run = table.settings(read_parameters(node, table.parameters(), "section 'run'", diagnostics_, elsewhere_));
     if (const auto reason = result_.run.contradiction()) complain(node.find("pace")->location, *reason);
   }
 
@@ -344,13 +349,14 @@ class Resolver {
     ConfigurationNode node = at(section.name);
     reject_moved_keys(section.name, node, diagnostics_);
     result_.sections[section.name] =
-        read_parameters(node, section.parameters, "section '" + section.name + "'", diagnostics_);
+        read_parameters(node, section.parameters, "section '" + section.name + "'", diagnostics_, elsewhere_);
   }
 
   const ConfigurationNode& root_;
   std::string file_;
   Registry& registry_;
   const std::vector<SectionDescription>& sections_;
+  FindParameter elsewhere_;
   std::vector<Diagnostic> diagnostics_;
   Configuration result_;
 };

@@ -102,8 +102,18 @@ std::optional<ParameterValue> as_type(const ConfigurationNode& node, ParameterTy
 
 }  // namespace
 
+std::string suggest_parameter(const std::string& name, const std::vector<std::string>& known,
+                              const FindParameter& elsewhere) {
+  const std::vector<std::string> keys = elsewhere ? elsewhere(name) : std::vector<std::string>{};
+  if (keys.empty()) return did_you_mean(name, known);
+  std::string text = "it is ";
+  for (std::size_t i = 0; i < keys.size(); ++i) text += (i == 0 ? "`" : " or `") + keys[i] + "`";
+  return nearest_name(name, known) ? text + "; or " + did_you_mean(name, known) : text;
+}
+
 ParameterValues read_parameters(const ConfigurationNode& node, const std::vector<Parameter>& table,
-                                const std::string& owner, std::vector<Diagnostic>& diagnostics) {
+                                const std::string& owner, std::vector<Diagnostic>& diagnostics,
+                                const FindParameter& elsewhere) {
   ParameterValues values;
   if (node.kind != Kind::map && node.kind != Kind::nothing) {
     diagnostics.push_back({node.location, "found " + node.found() + "; expected the parameters of " + owner +
@@ -116,8 +126,8 @@ ParameterValues read_parameters(const ConfigurationNode& node, const std::vector
     const auto parameter =
         std::find_if(table.begin(), table.end(), [&](const Parameter& p) { return p.name == entry.key; });
     if (parameter == table.end()) {
-      diagnostics.push_back(
-          {entry.location, owner + " has no parameter '" + entry.key + "'; " + did_you_mean(entry.key, names)});
+      diagnostics.push_back({entry.location, owner + " has no parameter '" + entry.key + "'; " +
+                                                 suggest_parameter(entry.key, names, elsewhere)});
       continue;
     }
     const std::string name = "'" + entry.key + "' of " + owner;

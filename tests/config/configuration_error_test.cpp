@@ -11,6 +11,7 @@ using test::problems;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::EndsWith;
+using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
 
@@ -36,6 +37,16 @@ TEST(ConfigurationErrors, UnknownModule) {
 TEST(ConfigurationErrors, UnknownParameter) {
   EXPECT_THAT(problems(with_features("{ orb: { cuont: 500 } }")),
               ElementsAre("c.yaml:3:20: features 'orb' has no parameter 'cuont'; did you mean 'count'?"));
+}
+
+/// A user who finds a parameter in the reference may write it in the wrong section.
+TEST(ConfigurationErrors, AParameterOfAnotherSectionIsAnsweredWithIt) {
+  const std::string window = "c.yaml:3:20: features 'orb' has no parameter 'window'; it is `tracking.window`";
+  EXPECT_THAT(problems(with_features("{ orb: { window: 5 } }")), ElementsAre(window));
+  EXPECT_THAT(problems(test::good, {"camera={name: tum_fr1, count: 500}"}),
+              ElementsAre(HasSubstr("section 'camera' has no parameter 'count'; it is `features.orb.count`")));
+  EXPECT_THAT(problems(test::good + "count: 500\n"),
+              ElementsAre("c.yaml:5:1: there is no section 'count'; it is `features.orb.count`"));
 }
 
 TEST(ConfigurationErrors, AMovedKeyNamesItsNewPlace) {

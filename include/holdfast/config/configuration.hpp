@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "holdfast/config/configuration_node.hpp"
+#include "holdfast/config/parameter_reader.hpp"
 #include "holdfast/config/run_settings.hpp"
 #include "holdfast/core/camera.hpp"
 #include "holdfast/core/sensor.hpp"
@@ -43,8 +44,9 @@ CameraSettings camera_settings(const Camera& camera);
 Camera make_camera(const CameraSettings& settings);
 
 /// Reads a `camera` section, which is a known name or a map of numbers. Problems are appended to `diagnostics`, and the
-/// result is empty then.
-std::optional<Camera> read_camera(const ConfigurationNode& node, std::vector<Diagnostic>& diagnostics);
+/// result is empty then. `elsewhere`: see read_parameters().
+std::optional<Camera> read_camera(const ConfigurationNode& node, std::vector<Diagnostic>& diagnostics,
+                                  const FindParameter& elsewhere = {});
 
 /// A module that a configuration selects, with the values of all its parameters, defaults included.
 struct ModuleChoice {
