@@ -51,6 +51,7 @@ Line read_line(std::string_view line, TimedPose& pose) {
   const Eigen::Quaterniond rotation(numbers[7], numbers[4], numbers[5], numbers[6]);
   const bool is_finite = std::all_of(numbers, numbers + 8, [](double value) { return std::isfinite(value); });
   if (!is_finite || rotation.norm() == 0.0) return Line::not_finite;
+  if (std::abs(rotation.norm() - 1.0) > 0.02) return Line::malformed;  // as read_trajectory() says
   pose.timestamp = numbers[0];
   pose.T_world_camera = Eigen::Translation3d(numbers[1], numbers[2], numbers[3]) * rotation.normalized();
   return Line::pose;

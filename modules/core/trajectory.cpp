@@ -9,6 +9,7 @@
 
 #include "holdfast/core/counted.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/stamp_unit.hpp"
 #include "holdfast/core/text_file.hpp"
 
 namespace holdfast {
@@ -46,6 +47,7 @@ bool parse_numbers(const std::vector<std::string_view>& words, std::vector<doubl
 
 /// No clock has counted so many seconds.
 bool is_in_nanoseconds(double stamp) { return std::isfinite(stamp) && stamp >= 1e14; }
+constexpr double least_nanoseconds_since_1970 = 1e17;  // in 1973
 
 /// Whether a comment names the columns of a pose with the quaternion's real part before the others ("qw qx qy qz",
 /// "q_w [],q_x []", "q_RS_w").
@@ -61,12 +63,14 @@ bool names_real_part_first(std::string_view comment) {
 
 /// Why eight numbers may be no pose in the format whose stamps they have, although they can be read as one: the place
 /// of the quaternion's real part is a matter of the format, and a wrong one is not seen in the numbers.
-std::string doubt(TrajectoryFormat format, bool has_commas, bool real_part_first) {
+std::string doubt(TrajectoryFormat format, double stamp, bool has_commas, bool real_part_first) {
   if (format == TrajectoryFormat::tum && has_commas)
     return "numbers are separated by commas, as in EuRoC's format, where the quaternion begins with qw, but its stamps "
            "are in nanoseconds; where it ends with qw, replace the commas by blanks";
   if (format == TrajectoryFormat::tum && real_part_first)
     return "a comment above says that the quaternion begins with qw";
+  if (format == TrajectoryFormat::euroc && !has_commas && !real_part_first && stamp < least_nanoseconds_since_1970)
+    return "stamps " + stamp_magnitude_suspicion(stamp) + ", or by 1e9 where they are nanoseconds of another clock";
   if (format == TrajectoryFormat::euroc && !has_commas && !real_part_first)
     return "stamps are in nanoseconds, as in EuRoC's format, but without its commas; ORB-SLAM3 writes such files, with "
            "qw at the end: divide their stamps by 1e9";
@@ -95,13 +99,14 @@ const char* description(TrajectoryFormat format) {
   return "TUM format (t tx ty tz qx qy qz qw, t in seconds, separated by blanks)";
 }
 
-/// The pose that the numbers of a line say; the stamp of KITTI's is the caller's. Its rotation may be zero.
-std::pair<Eigen::Vector3d, Eigen::Quaterniond> pose_of(const std::vector<double>& n, TrajectoryFormat format) {
-  if (format == TrajectoryFormat::tum) return {{n[1], n[2], n[3]}, {n[7], n[4], n[5], n[6]}};
-  if (format == TrajectoryFormat::euroc) return {{n[1], n[2], n[3]}, {n[4], n[5], n[6], n[7]}};
-  Eigen::Matrix3d rotation;
-  rotation << n[0], n[1], n[2], n[4], n[5], n[6], n[8], n[9], n[10];
-  return {{n[3], n[7], n[11]}, Eigen::Quaterniond(rotation)};
+/// The same for a line that is of another format than expected.
+std::string description_of_line(TrajectoryFormat format, const std::string& line, const std::vector<double>& numbers) {
+  const bool may_be_tum =
+      format == TrajectoryFormat::euroc && numbers.size() == 8 && line.find(',') == std::string::npos;
+  if (may_be_tum && numbers.front() < least_nanoseconds_since_1970)
+    if (const std::string unit = stamp_magnitude_suspicion(numbers.front()); !unit.empty())
+      return "TUM format, but the time stamps " + unit;
+  return description(format);
 }
 
 /// Appends a number with a fixed number of decimals and a decimal point, independent of the locale. A number that is
@@ -112,6 +117,53 @@ void append_fixed(std::string& text, double value, int decimals) {
   std::string_view number(buffer, error == std::errc() ? static_cast<std::size_t>(end - buffer) : 0);
   if (number.starts_with('-') && number.find_first_not_of("-0.") == std::string_view::npos) number.remove_prefix(1);
   text += number;
+}
+
+/// The rotation matrix of a line in KITTI's format.
+Eigen::Matrix3d rotation_matrix_of(const std::vector<double>& n) {
+  Eigen::Matrix3d rotation;
+  rotation << n[0], n[1], n[2], n[4], n[5], n[6], n[8], n[9], n[10];
+  return rotation;
+}
+
+/// The pose that the numbers of a line say; the stamp of KITTI's is the caller's. Its rotation may be zero.
+std::pair<Eigen::Vector3d, Eigen::Quaterniond> pose_of(const std::vector<double>& n, TrajectoryFormat format) {
+  if (format == TrajectoryFormat::tum) return {{n[1], n[2], n[3]}, {n[7], n[4], n[5], n[6]}};
+  if (format == TrajectoryFormat::euroc) return {{n[1], n[2], n[3]}, {n[4], n[5], n[6], n[7]}};
+  const Eigen::Matrix3d rotation = rotation_matrix_of(n);
+  if (rotation.isZero(0.0)) return {{n[3], n[7], n[11]}, {0.0, 0.0, 0.0, 0.0}};
+  return {{n[3], n[7], n[11]}, Eigen::Quaterniond(rotation)};
+}
+
+/// Why the numbers of a line are no rotation, and what they may be instead; empty for one that is printed with two
+/// decimals or more, and for values that are not finite.
+std::string rotation_trouble(const std::vector<double>& n, TrajectoryFormat format,
+                             const Eigen::Quaterniond& quaternion) {
+  constexpr double rounding = 0.02;
+  if (format != TrajectoryFormat::kitti) {
+    const double length = quaternion.norm();
+    if (!std::isfinite(length) || std::abs(length - 1.0) <= rounding) return {};
+    std::string text;
+    append_fixed(text, length, length < 0.1 ? 6 : 3);
+    return "four numbers of length " + text +
+           " where a unit quaternion should be; are they Euler angles, a rotation vector, or other columns?";
+  }
+  const Eigen::Matrix3d rotation = rotation_matrix_of(n);
+  if (!rotation.allFinite()) return {};
+  const Eigen::Matrix3d product = rotation.transpose() * rotation;
+  std::string text;
+  if (const double error = (product - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff(); error > 2.0 * rounding) {
+    append_fixed(text, std::sqrt(product.trace() / 3.0), 6);
+    const bool is_scaled = (product - product.trace() / 3.0 * Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() <
+                           2.0 * rounding * product.trace() / 3.0;
+    return is_scaled ? "a rotation matrix that is scaled by " + text + "; divide its nine numbers by that"
+                     : std::string(
+                           "a 3 x 3 matrix that is no rotation; are the 12 numbers the upper rows of a 4 x 4 "
+                           "matrix, row by row?");
+  }
+  if (rotation.determinant() < 0.0)
+    return "a matrix that mirrors (determinant -1), as in a left-handed frame; change the sign of one axis";
+  return {};
 }
 
 constexpr const char* expected_format = "a trajectory in TUM format (t tx ty tz qx qy qz qw)";
@@ -180,12 +232,13 @@ TrajectoryFile read_trajectory_file(const std::filesystem::path& file, const Tra
     const std::optional<TrajectoryFormat> found = parsed ? looks_like(numbers, in_nanoseconds) : std::nullopt;
     if (!format) format = found;
     if (!found || found != format)
-      throw InputError(lines.location(), "found " + counted(words.size(), "column") + ", '" + line.substr(0, 60) + "'" +
-                                             (found ? std::string("; it looks like ") + description(*found) : "") +
-                                             "; expected " + description(format.value_or(TrajectoryFormat::tum)) +
-                                             "; convert the file");
+      throw InputError(lines.location(),
+                       "found " + counted(words.size(), "column") + ", '" + line.substr(0, 60) + "'" +
+                           (found ? "; it looks like " + description_of_line(*found, line, numbers) : "") +
+                           "; expected " + description(format.value_or(TrajectoryFormat::tum)) + "; convert the file");
     const std::string_view content = std::string_view(line).substr(0, line.find('#'));
-    if (const std::string reason = doubt(*format, content.find(',') != std::string_view::npos, real_part_first);
+    if (const std::string reason =
+            doubt(*format, numbers.front(), content.find(',') != std::string_view::npos, real_part_first);
         !reason.empty())
       throw InputError(lines.location(), "found '" + line.substr(0, 60) + "': " + reason + "; expected " +
                                              description(*format) + "; convert the file");
@@ -196,6 +249,9 @@ TrajectoryFile read_trajectory_file(const std::filesystem::path& file, const Tra
       ++result.zero_quaternions;
       continue;
     }
+    if (const std::string trouble = rotation_trouble(numbers, *format, rotation); !trouble.empty())
+      throw InputError(lines.location(),
+                       "found " + trouble + " Found '" + line.substr(0, 160) + "'; expected " + description(*format));
     TimedPose pose;
     pose.timestamp = numbers[0];
     if (format == TrajectoryFormat::euroc) pose.timestamp = numbers[0] * 1e-9;

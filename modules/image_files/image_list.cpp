@@ -9,6 +9,7 @@
 
 #include "holdfast/core/counted.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/stamp_unit.hpp"
 #include "holdfast/core/text_file.hpp"
 
 namespace holdfast {
@@ -50,11 +51,9 @@ class ListLine {
     if (error != std::errc() || stop != word.data() + word.size())
       fail("found '" + std::string(word) + "' where a time stamp should be");
     if (!std::isfinite(result.timestamp)) fail("found the time stamp '" + std::string(word) + "', which is not finite");
-    constexpr double no_clock_has_counted = 1e14;  // seconds
-    if (result.timestamp >= no_clock_has_counted)
-      throw InputError({file_.string(), number_}, "found the time stamp '" + std::string(word) +
-                                                      "', which looks like nanoseconds; expected seconds: divide the "
-                                                      "stamps by 1e9");
+    if (const std::string unit = stamp_magnitude_suspicion(result.timestamp); !unit.empty())
+      throw InputError({file_.string(), number_},
+                       "found the time stamp '" + std::string(word) + "', but time stamps are seconds; they " + unit);
     if (has_name) result.name = words_[first_word + 1];
     result.line = number_;
     return result;

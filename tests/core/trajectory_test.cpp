@@ -10,6 +10,7 @@
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/random.hpp"
+#include "holdfast/core/stamp_unit.hpp"
 
 namespace holdfast {
 namespace {
@@ -51,7 +52,7 @@ class TrajectoryTest : public ::testing::Test {
 TEST_F(TrajectoryTest, ReadsBlanksTabsCommentsAndWindowsLineEnds) {
   const Trajectory trajectory =
       read_trajectory(write("# timestamp tx ty tz qx qy qz qw\r\n"
-                            "1.5 1 2 3 0 0 0 2\r\n"
+                            "1.5 1 2 3 0 0 0 1\r\n"
                             "\n"
                             "2.5 +4 -5  6e-1 0 0 1 0 # a comment, of words\n"
                             "3.5\t7 8 9 1 0 0 0"));
@@ -102,10 +103,77 @@ TEST_F(TrajectoryTest, CountsWhatItLeavesOut) {
 }
 
 TEST_F(TrajectoryTest, NormalisesQuaternions) {
-  const Trajectory trajectory = read_trajectory(write("1 0 0 0 0 0 3 3\n"));
+  const Trajectory trajectory = read_trajectory(write("1 0 0 0 0 0 0.71 0.71\n"));
   ASSERT_EQ(trajectory.size(), 1u);
   const Eigen::Vector3d turned = trajectory[0].T_world_camera.linear() * Eigen::Vector3d::UnitX();
   EXPECT_NEAR((turned - Eigen::Vector3d::UnitY()).norm(), 0.0, 1e-15);
+}
+
+TEST_F(TrajectoryTest, RefusesColumnsThatAreNoRotation) {
+  const auto tum = [&](const char* quaternion) {
+    return error_of(write(std::string("1 0 0 0 0 0 0 1\n2 1 2 3 ") + quaternion + "\n"));
+  };
+  const auto refused = [](const char* length) {
+    return AllOf(HasSubstr("trajectory.txt:2: found four numbers of length " + std::string(length)),
+                 HasSubstr("unit quaternion"), HasSubstr("Euler angles"), HasSubstr("expected TUM format"));
+  };
+  EXPECT_THAT(tum("1.2 1.3 1.4 1.3"), refused("2.604"));
+  EXPECT_THAT(tum("0 0 90 1"), refused("90.006"));
+  EXPECT_THAT(tum("0.1 0.2 0.3 0"), refused("0.374"));
+  EXPECT_THAT(tum("0 0 0 1.03"), refused("1.030"));
+  EXPECT_THAT(tum("0 0 0 -0.001"), refused("0.001000"));
+  // As printed with two decimals, as sums of many rotations drift, with either sign, and without a rotation.
+  for (const char* right : {"0.27 0.53 0.80 0.05", "0 0 0 1.001", "0 0 0 -1", "0 0 0 0", "nan 0 0 1", "0.71 0 0 0.71"})
+    EXPECT_EQ(tum(right), "no error") << right;
+
+  const auto kitti = [&](const char* matrix) -> std::string {
+    try {
+      const auto file = write(std::string("1 0 0 4 0 1 0 5 0 0 1 6\n") + matrix + "\n");
+      return std::to_string(read_trajectory_file(file, {.format = std::nullopt, .stamps = {}}).poses.size());
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  EXPECT_THAT(
+      kitti("1000 0 0 4 0 1000 0 5 0 0 1000 6"),
+      AllOf(HasSubstr("trajectory.txt:2: found a rotation matrix that is scaled by 1000"), HasSubstr("divide")));
+  EXPECT_THAT(kitti("1 0 0 4 0 -1 0 5 0 0 1 6"), AllOf(HasSubstr("mirrors"), HasSubstr("left-handed")));
+  EXPECT_THAT(kitti("1 0 0 4 0 1 0 5 0 0.5 1 6"), HasSubstr("no rotation"));
+  EXPECT_THAT(kitti("1 0 0 0 1 0 0 0 1 4 5 6"), HasSubstr("no rotation"));
+  EXPECT_EQ(kitti("0.99 -0.12 0.03 4 0.12 0.99 0 5 -0.03 0 1 6"), "2");
+  EXPECT_EQ(kitti("0 0 0 4 0 0 0 5 0 0 0 6"), "1") << "a pose without a rotation is left out";
+}
+
+TEST_F(TrajectoryTest, NamesStampsInMicroseconds) {
+  // They have as many digits as no clock in seconds, but must not be taken for nanoseconds.
+  for (const char* line : {"1403636580838555.0 1 2 3 0 0 0 1\n", "1403636580838555 1 2 3 0 0 0 1\n"})
+    EXPECT_THAT(error_of(write(line)),
+                AllOf(HasSubstr("trajectory.txt:1"), HasSubstr("stamps look like microseconds: divide them by 1e6")));
+}
+
+TEST(StampUnit, IsRecognisedByTheIntervalOrTheMagnitude) {
+  const auto suspicion = [](double begin, double interval) {
+    std::vector<double> stamps;
+    for (int i = 0; i < 20; ++i) stamps.push_back(begin + interval * i + (i % 3 == 0 ? 0.01 * interval : 0.0));
+    return stamp_unit_suspicion(stamps);
+  };
+  // Cameras, IMUs, motion capture, a truth at 1 Hz and a time-lapse, with clocks that began now or in 1970.
+  for (const double begin : {0.0, 12.5, 1305031102.175304})
+    for (const double interval : {0.0005, 0.01, 1.0 / 30.0, 0.1, 1.0, 4.5}) EXPECT_EQ(suspicion(begin, interval), "");
+  EXPECT_THAT(suspicion(0.0, 33.4), HasSubstr("look like milliseconds (33.4"));
+  EXPECT_THAT(suspicion(0.0, 33.4), HasSubstr("divide them by 1000"));
+  EXPECT_THAT(suspicion(7.0, 33333.3), HasSubstr("microseconds"));
+  EXPECT_THAT(suspicion(7.0, 3000.0), HasSubstr("ticks of 90 kHz"));
+  EXPECT_THAT(suspicion(7.0, 333333.0), HasSubstr("ticks of 100 ns"));
+  EXPECT_THAT(suspicion(7.0, 3.3e7), HasSubstr("nanoseconds"));
+  EXPECT_THAT(suspicion(1305031102175.0, 33.0), HasSubstr("milliseconds: divide them by 1000"));
+  EXPECT_THAT(suspicion(1305031102175304.0, 33e3), HasSubstr("microseconds: divide them by 1e6"));
+  EXPECT_THAT(suspicion(1305031102175304000.0, 33e6), HasSubstr("nanoseconds: divide them by 1e9"));
+  EXPECT_THAT(suspicion(1305031.1, 33e-6), HasSubstr("rise too slowly for seconds"));
+  EXPECT_THAT(stamp_unit_suspicion(std::vector<double>{0, 1, 2, 3, 4, 6}), HasSubstr("frame numbers"));
+  EXPECT_THAT(stamp_unit_suspicion(std::vector<double>{0, 33, 66, 100}), HasSubstr("milliseconds or frame numbers"));
+  EXPECT_EQ(stamp_unit_suspicion(std::vector<double>{1305031102, 1305031103, 1305031104}), "");
+  EXPECT_EQ(stamp_unit_suspicion(std::vector<double>{0, 33}), "");
 }
 
 TEST_F(TrajectoryTest, NamesTheLineOfAnError) {

@@ -67,10 +67,12 @@ TEST_F(ImageListTest, StampsThatAreNotFiniteNameTheirLine) {
   EXPECT_THAT(error_of("1e999 a\n"), StartsWith(place(1)));
 }
 
-TEST_F(ImageListTest, StampsInNanosecondsNameTheirLine) {
-  EXPECT_THAT(
-      error_of("1403636579763555584 a\n"),
-      AllOf(StartsWith(place(1)), HasSubstr("looks like nanoseconds; expected seconds: divide the stamps by 1e9")));
+TEST_F(ImageListTest, StampsOfAnotherUnitNameTheirLine) {
+  EXPECT_THAT(error_of("1403636579763555584 a\n"),
+              AllOf(StartsWith(place(1)), HasSubstr("look like nanoseconds: divide them by 1e9")));
+  EXPECT_THAT(error_of("1403636579763555 a\n"), HasSubstr("look like microseconds: divide them by 1e6"));
+  EXPECT_THAT(error_of("1403636579763 a\n"), HasSubstr("look like milliseconds: divide them by 1000"));
+  EXPECT_EQ(error_of("1403636579.763 a\n"), "no error");
 }
 
 TEST_F(ImageListTest, EmptyAndMissingLists) {

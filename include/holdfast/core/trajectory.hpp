@@ -23,10 +23,10 @@ using Trajectory = std::vector<TimedPose>;
 Trajectory sort_and_clean(Trajectory trajectory);
 
 /// Reads a trajectory in TUM format: lines "timestamp tx ty tz qx qy qz qw", where '#' begins a comment. The result is
-/// sorted and cleaned as by sort_and_clean(). Quaternions are normalised; lines with a zero quaternion are skipped.
-/// Throws InputError (file and line) for a file that cannot be read or a line that is not a pose of exactly 8 numbers
-/// separated by blanks; the message names the format of another data set that it looks like. Numbers do not show where
-/// the quaternion's real part is, so that commas, and a comment that names it first, are errors as well.
+/// sorted and cleaned as by sort_and_clean(). Quaternions are normalised, zero ones skipped. Throws InputError (file,
+/// line) for a file that cannot be read, a line that is not a pose of 8 numbers separated by blanks (the message names
+/// the format that it looks like), and a quaternion whose length differs from 1 by more than 0.02. Numbers do not
+/// show where the quaternion's real part is, so that commas, and a comment that names it first, are errors as well.
 Trajectory read_trajectory(const std::filesystem::path& file);
 
 /// How the lines of a trajectory file say a pose.
@@ -61,7 +61,7 @@ struct TrajectoryFile {
 };
 
 /// Reads a trajectory as read_trajectory() does, which says nothing about what it leaves out, in any of the formats.
-/// Throws InputError as well for a file in KITTI's format that does not have one pose for each stamp.
+/// Throws InputError as well for KITTI's format with more or fewer poses than stamps, or a matrix that is no rotation.
 TrajectoryFile read_trajectory_file(const std::filesystem::path& file, const TrajectoryReading& reading = {});
 
 /// The comment line that begins every trajectory that is written: the columns and their units.
