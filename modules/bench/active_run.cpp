@@ -177,7 +177,7 @@ void ActiveRun::complete() {
     evaluate_external();
   else
     read_own_run(folder_, result_, cost_);
-  if (cost_.machine.empty()) cost_.machine = machine_name();
+  cost_.machine = machine_name();
   // Here too, should the run have ended before it wrote its own.
   if (!plan_.variants[run_.variant].is_external()) write_file_atomically(folder_ / configuration_file, run_.request);
   write_file_atomically(folder_ / cost_file, to_json(cost_));

@@ -134,16 +134,19 @@ std::string by_machine(const RunPlan& plan, const BenchResults& results, const s
 
 std::string cost_report(const RunPlan& plan, const BenchResults& results, const Analysis& analysis,
                         const PublishedResults& published) {
-  std::set<std::string> machines, versions;
+  std::set<std::string> machines, versions, levels;
   for (const auto& cost : results.costs) {
     if (!cost) continue;
     if (!cost->machine.empty()) machines.insert(cost->machine);
     if (!cost->version.empty()) versions.insert(cost->version);
+    if (!cost->simd.empty()) levels.insert(cost->simd);
   }
   std::string text = "# " + markdown_text(plan.matrix.title) + ": time and memory\n\n";
   if (!machines.empty()) text += "Machine: " + listed(machines) + ".\n";
   if (!versions.empty()) text += "Holdfast: " + listed(versions) + ".\n";
+  if (!levels.empty()) text += "SIMD level of Holdfast: " + listed(levels) + ".\n";
   if (versions.size() > 1) text += "**Runs of several versions stand side by side**: begin a new folder.\n";
+  if (levels.size() > 1) text += "**Runs of Holdfast used several SIMD levels**: their times differ.\n";
   if (machines.size() > 1)
     text += "**Runs were executed on " + std::to_string(machines.size()) +
             " kinds of machine**: times are compared within one only.\n";

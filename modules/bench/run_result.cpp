@@ -170,7 +170,8 @@ std::string to_json(const RunCost& cost) {
                {"other_processors", cost.other_processors},
                {"tracking_median_s", cost.tracking},
                {"version", cost.version},
-               {"machine", cost.machine}};
+               {"machine", cost.machine},
+               {"simd", cost.simd}};
   Json& stages = json["stages"] = Json::array();
   for (const StageCost& stage : cost.stages)
     stages.push_back({{"stage", stage.name}, {"median_s", stage.median}, {"total_s", stage.total}});
@@ -210,6 +211,7 @@ RunCost read_run_cost(const std::filesystem::path& file) {
     cost.tracking = number(json.at("tracking_median_s"));
     cost.version = json.at("version");
     cost.machine = json.at("machine");
+    cost.simd = json.value("simd", "");
     for (const Json& stage : json.at("stages"))
       cost.stages.push_back({stage.at("stage"), number(stage.at("median_s")), number(stage.at("total_s"))});
     return cost;
@@ -235,9 +237,7 @@ void read_own_run(const std::filesystem::path& folder, RunResult& result, RunCos
     result.poses = count(json.at("frames"), "poses");
     cost.tracking = number(json.at("tracking").at("median_s"));
     cost.version = json.at("holdfast").get<std::string>() + " (" + json.at("commit").get<std::string>() + ")";
-    const Json& machine = json.at("machine");
-    cost.machine = machine.at("processor").get<std::string>() + ", " + std::to_string(machine.at("cores").get<int>()) +
-                   " cores, " + machine.at("simd").get<std::string>();
+    cost.simd = json.at("machine").at("simd").get<std::string>();
     for (const Json& stage : json.at("stages"))
       cost.stages.push_back({stage.at("stage"), number(stage.at("median_s")), number(stage.at("total_s"))});
     const Json& evaluation = json.at("evaluation");

@@ -241,6 +241,9 @@ TEST_F(BenchExternalTest, SystemsGetCopiesOfPerturbedFramesAndOfOtherSources) {
   EXPECT_THAT(program_.text("out/tables/robustness.csv"), HasSubstr("\ndropped,,good,0.5,2,2,"));
   EXPECT_THAT(program_.text("out/results.json"), HasSubstr("\"perturbation\": \"dropped-0.5\""));
 
+  // Runs of Holdfast say their SIMD level, others do not: it is no other kind of machine.
+  EXPECT_THAT(program_.text("out/cost.md"),
+              AllOf(HasSubstr("SIMD level of Holdfast: "), Not(HasSubstr("kinds of machine"))));
   // Nothing is recorded twice, and at the end the copies go.
   const auto time = std::filesystem::last_write_time(program_.path("out/copies/room/none/rgb.txt"));
   std::filesystem::remove_all(program_.path("out/runs/good"));

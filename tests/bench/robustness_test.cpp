@@ -136,6 +136,11 @@ TEST(CostReportTest, SaysWhichRunsWereNotAlone) {
   EXPECT_THAT(report(), AllOf(HasSubstr("**1 run of 2 had other runs of this bench beside them**"),
                               HasSubstr("2 kinds of machine**: times are compared within one only"),
                               HasSubstr("### another\n"), HasSubstr("### one processor, 2 cores\n")));
+  EXPECT_THAT(report(), Not(HasSubstr("SIMD")));
+  results.costs[0]->simd = "avx512";
+  EXPECT_THAT(report(), AllOf(HasSubstr("SIMD level of Holdfast: avx512.\n"), Not(HasSubstr("several SIMD levels"))));
+  results.costs[1]->simd = "sse4";
+  EXPECT_THAT(report(), HasSubstr("**Runs of Holdfast used several SIMD levels**"));
 }
 
 }  // namespace

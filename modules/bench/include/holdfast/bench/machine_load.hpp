@@ -16,7 +16,7 @@ MachineLoad machine_load();
 /// The same from the texts of /proc/loadavg and /proc/stat, with ticks per second.
 MachineLoad parse_machine_load(const std::string& loadavg, const std::string& stat, double ticks_per_second);
 
-/// Processor and number of cores, as in run.json without the SIMD level.
+/// Processor and number of cores: the kind of machine, by which the costs of all systems are grouped.
 std::string machine_name();
 
 }  // namespace holdfast

@@ -78,7 +78,8 @@ struct RunCost {
   double other_processors = std::numeric_limits<double>::quiet_NaN();
   double tracking = std::numeric_limits<double>::quiet_NaN();  ///< median per frame [s]; NaN: not said
   std::string version;                                         ///< of Holdfast, with its commit; "" of others
-  std::string machine;                                         ///< processor and cores
+  std::string machine;                                         ///< processor and cores, see machine_name()
+  std::string simd;                                            ///< SIMD level of Holdfast's kernels; "" of others
   std::vector<StageCost> stages;
 
   /// User and system time / wall time: mean number of processors that the run kept busy.
