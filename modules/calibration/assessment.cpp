@@ -89,6 +89,8 @@ std::string find_trouble(const Calibration& calibration, const CalibrationAssess
     return "the focal length is uncertain by " +
            (std::isfinite(uncertainty) ? fixed_text(100.0 * uncertainty, 1) + " %" : std::string("any amount")) +
            "; expected less than 2 %" + remedy + ", also near the edges of the image";
+  if (const std::string trouble = calibration.camera.trouble(); !trouble.empty())
+    return trouble + "; photograph the board in the corners of the image as well, or estimate fewer coefficients";
   return "";
 }
 

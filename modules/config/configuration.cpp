@@ -109,7 +109,7 @@ std::optional<Camera> read_camera(const ConfigurationNode& node, std::vector<Dia
   const ParameterValues values = read_parameters(node, parameters, "section 'camera'", diagnostics, elsewhere);
   if (diagnostics.size() != before) return std::nullopt;
   Camera camera = make_camera(table.settings(values));
-  if (const std::string trouble = camera.distortion.trouble(); !trouble.empty()) {
+  if (const std::string trouble = camera.trouble(); !trouble.empty()) {
     const ConfigurationNode* lens = node.find("lens");
     diagnostics.push_back({lens != nullptr ? lens->location : node.location, trouble});
     return std::nullopt;
@@ -309,6 +309,9 @@ class Resolver {
       return;
     }
     result_.camera = holdfast::read_camera(node, diagnostics_, elsewhere_);
+    if (result_.camera && node.kind == Kind::map)
+      for (const std::string& suspicion : result_.camera->suspicions(true))
+        add_warning(result_.warnings, {node.location, suspicion});
     if (named && result_.camera && result_.camera->name != *named && find_camera(result_.camera->name))
       result_.warnings.push_back({node.location, "found the camera '" + result_.camera->name + "' for the folder '" +
                                                      folder + "'; expected '" + *named +

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "lens_inverse.hpp"
+
 namespace holdfast {
 
 namespace {
@@ -12,12 +14,6 @@ namespace {
 /// Where the undistorted image of a fisheye lens ends: beyond Camera::usable_angle, so that tables that are
 /// interpolated are exact up to there.
 constexpr double largest_angle = 65.0 / 180.0 * 3.14159265358979323846;
-
-/// Distance from the principal point, in focal lengths, of a ray at an angle to the optical axis.
-double fisheye_radius(const Distortion& d, double angle) {
-  const double a2 = angle * angle;
-  return angle * (1.0 + a2 * (d.k1 + a2 * (d.k2 + a2 * (d.k3 + a2 * d.k4))));
-}
 
 /// The angle of a distance, at most `limit`: the first at which the polynomial reaches the distance. Newton steps that
 /// leave the interval of the solution are replaced by bisection, so that polynomials that turn back end at the limit.
@@ -28,9 +24,7 @@ double fisheye_angle(const Distortion& d, double radius, double limit) {
   for (int i = 0; i < most_iterations; ++i) {
     const double error = fisheye_radius(d, angle) - radius;
     (error > 0.0 ? high : low) = angle;
-    const double a2 = angle * angle;
-    const double slope = 1.0 + a2 * (3.0 * d.k1 + a2 * (5.0 * d.k2 + a2 * (7.0 * d.k3 + a2 * 9.0 * d.k4)));
-    double next = angle - error / slope;
+    double next = angle - error / fisheye_slope(d, angle);
     if (!(next > low && next < high)) next = 0.5 * (low + high);
     const double change = std::abs(next - angle);
     angle = next;
@@ -94,7 +88,7 @@ Eigen::Vector2d Camera::undistort(const Eigen::Vector2d& raw) const {
     const double scale = radius > 1e-12 ? std::tan(fisheye_angle(d, radius, largest_angle)) / radius : 1.0;
     return {fx * raw_x * scale + cx, fy * raw_y * scale + cy};
   }
-  double x = raw_x, y = raw_y;
+  double x = raw_x, y = raw_y, change = 0.0;
   constexpr int most_iterations = 40;
   for (int i = 0; i < most_iterations; ++i) {
     const double r2 = x * x + y * y;
@@ -102,11 +96,15 @@ Eigen::Vector2d Camera::undistort(const Eigen::Vector2d& raw) const {
         (1.0 + r2 * (d.k4 + r2 * (d.k5 + r2 * d.k6))) / (1.0 + r2 * (d.k1 + r2 * (d.k2 + r2 * d.k3)));
     const double next_x = (raw_x - 2.0 * d.p1 * x * y - d.p2 * (r2 + 2.0 * x * x)) * inverse_radial;
     const double next_y = (raw_y - d.p1 * (r2 + 2.0 * y * y) - 2.0 * d.p2 * x * y) * inverse_radial;
-    const double change = std::max(std::abs(next_x - x), std::abs(next_y - y));
+    change = std::max(std::abs(next_x - x), std::abs(next_y - y));
     x = next_x, y = next_y;
     if (change < 1e-9) break;
   }
-  return {fx * x + cx, fy * y + cy};
+  const Eigen::Vector2d undistorted(fx * x + cx, fy * y + cy);
+  constexpr double accepted = 1e-3;  // px
+  if (change < 1e-9 || (distort(undistorted) - raw).norm() < accepted) return undistorted;
+  const Eigen::Vector2d point = invert_distortion(d, {raw_x, raw_y}).point;
+  return {fx * point.x() + cx, fy * point.y() + cy};
 }
 
 bool Camera::is_usable(const Eigen::Vector2d& raw) const {

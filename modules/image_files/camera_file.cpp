@@ -66,8 +66,8 @@ class CameraReader {
     if (!missing.empty())
       throw InputError(is_right_ ? location(file_, node_.Mark()) : SourceLocation{file_.string()},
                        "lacks " + missing + "; expected " + keys());
-    if (const std::string trouble = camera_.distortion.trouble(); !trouble.empty())
-      throw InputError(location(file_, node_["lens"].Mark()), trouble);
+    if (const std::string trouble = camera_.trouble(); !trouble.empty())
+      throw InputError(location(file_, node_[seen.contains("lens") ? "lens" : "k1"].Mark()), trouble);
     return camera_;
   }
 

@@ -57,8 +57,6 @@ Distortion read_distortion(const std::filesystem::path& file, const YAML::Node& 
     distortion.k1 = k[0], distortion.k2 = k[1], distortion.p1 = k[2], distortion.p2 = k[3];
     if (k.size() == 5) distortion.k3 = k[4];
   }
-  if (const std::string trouble = distortion.trouble(); !trouble.empty())
-    throw InputError(location(file, list.Mark()), trouble);
   return distortion;
 }
 
@@ -87,6 +85,8 @@ EurocCamera read_euroc_camera(const std::filesystem::path& file) {
   camera.cx = yaml_numbers::number(file, intrinsics[2], "cu");
   camera.cy = yaml_numbers::number(file, intrinsics[3], "cv");
   camera.distortion = read_distortion(file, root);
+  if (const std::string trouble = camera.trouble(); !trouble.empty())
+    throw InputError(location(file, required(file, root, "distortion_coefficients").Mark()), trouble);
   camera.frame_rate = yaml_numbers::number(file, required(file, root, "rate_hz"), "rate_hz", true);
   return result;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <string>
+#include <utility>
 
 #include "holdfast/core/error.hpp"
 
@@ -43,6 +44,9 @@ std::string text(const Eigen::Vector3d& v) {
 }  // namespace
 
 StereoRectification::StereoRectification(const StereoCalibration& calibration) : calibration_(calibration) {
+  for (const auto& [name, camera] : {std::pair("left", &calibration.left), std::pair("right", &calibration.right)})
+    if (const std::string trouble = camera->trouble(); !trouble.empty())
+      throw Error("the " + std::string(name) + " camera cannot be rectified: " + trouble);
   const Eigen::Matrix3d R_left_right = calibration.T_left_right.linear();
   const Eigen::Vector3d position = calibration.T_left_right.translation();
   if (!(position.x() > std::abs(position.y()) && position.x() > std::abs(position.z())))

@@ -39,7 +39,7 @@ std::string trouble_of(const Camera& camera) {
   const Distortion& d = camera.distortion;
   for (const double value : {d.k1, d.k2, d.p1, d.p2, d.k3, d.k4, d.k5, d.k6})
     if (!within(value, -1e6, 1e6)) return wrong("distortion", value, "-1e6 to 1e6");
-  if (const std::string trouble = d.trouble(); !trouble.empty()) return trouble;
+  if (const std::string trouble = camera.trouble(); !trouble.empty()) return trouble;
   if (!within(camera.baseline, 0, 1e6)) return wrong("baseline", camera.baseline, "0 to 1e6 m");
   if (!within(camera.frame_rate, 0, 1e6)) return wrong("frame rate", camera.frame_rate, "0 to 1e6 per second");
   if (camera.name.size() > 255) return wrong("length of the name", static_cast<double>(camera.name.size()), "0 to 255");

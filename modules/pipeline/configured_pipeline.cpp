@@ -75,6 +75,7 @@ class ConfigurationReader {
       : configuration_(configuration), builder_(registry) {
     builder_.place_ = {configuration.file};
     builder_.unknown_camera_ = configuration.unknown_camera;
+    builder_.is_camera_judged_ = true;
   }
 
   PipelineBuilder read(const SourceDescription& source) {

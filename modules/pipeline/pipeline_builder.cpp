@@ -201,7 +201,20 @@ void PipelineBuilder::check_camera() {
         source_name_.empty() ? "" : ", and the source '" + source_name_ + "' does not know its own";
     complain(place_, "the camera is missing" + source + "; expected 'camera' with a name (" + known + ") or numbers");
   }
+  judge_camera();
   context_.camera = parts_.camera;
+}
+
+void PipelineBuilder::judge_camera() {
+  const SourceLocation& place = source_camera_ ? source_place_ : place_;
+  const std::string whose = source_camera_ ? "of the camera that the source '" + source_name_ + "' gives, " : "";
+  if (const std::string trouble = parts_.camera.trouble(); !trouble.empty()) {
+    complain(place, whose + trouble);
+    return;
+  }
+  if (!source_camera_ && is_camera_judged_) return;
+  for (const std::string& suspicion : parts_.camera.suspicions(parts_.sensor != Sensor::mono))
+    suspect(place, whose + suspicion);
 }
 
 void PipelineBuilder::check_settings() {

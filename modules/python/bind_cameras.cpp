@@ -35,16 +35,13 @@ void bind_cameras(py::module_& module) {
       .def(py::init([](int width, int height, double fx, double fy, double cx, double cy, double k1, double k2,
                        double p1, double p2, double k3, double baseline, double frame_rate, const std::string& name,
                        double k4, double k5, double k6, const std::string& lens, double readout) {
-             if (width < 1 || height < 1 || !(fx > 0.0) || !(fy > 0.0))
-               throw InputError({"camera"},
-                                "has no area or no focal length; expected width, height, fx and fy above 0");
              const std::optional<Lens> known = find_lens(lens);
              if (!known)
                throw InputError({"camera"}, "there is no lens '" + lens + "'; " + did_you_mean(lens, lens_names()));
              const Distortion distortion{k1, k2, p1, p2, k3, k4, k5, k6, *known};
-             if (const std::string trouble = distortion.trouble(); !trouble.empty())
-               throw InputError({"camera"}, trouble);
-             return Camera{name, width, height, fx, fy, cx, cy, distortion, baseline, frame_rate, readout};
+             const Camera camera{name, width, height, fx, fy, cx, cy, distortion, baseline, frame_rate, readout};
+             if (const std::string trouble = camera.trouble(); !trouble.empty()) throw InputError({"camera"}, trouble);
+             return camera;
            }),
            py::kw_only(), py::arg("width"), py::arg("height"), py::arg("fx"), py::arg("fy"), py::arg("cx"),
            py::arg("cy"), py::arg("k1") = 0.0, py::arg("k2") = 0.0, py::arg("p1") = 0.0, py::arg("p2") = 0.0,

@@ -17,7 +17,9 @@ DepthReader::DepthReader(std::shared_ptr<const Camera> camera, double edge_ratio
 /// The depth at a raw pixel; 0 without a measurement, outside the image, or at a depth edge. Elsewhere it is the mean
 /// of the pixel and of opposite pairs of neighbours, which has less noise and, on a slanted plane, the same value.
 float DepthReader::depth_at(const cv::Mat& depth, float x, float y) const {
-  if (!(x > -0.5F) || !(y > -0.5F)) return 0.0F;
+  // A position far outside the image does not fit an integer.
+  if (!(x > -0.5F) || !(y > -0.5F) || !(x < static_cast<float>(depth.cols)) || !(y < static_cast<float>(depth.rows)))
+    return 0.0F;
   const int column = static_cast<int>(x + 0.5F), row = static_cast<int>(y + 0.5F);
   if (column >= depth.cols || row >= depth.rows) return 0.0F;
   const float value = depth.at<float>(row, column);

@@ -88,6 +88,36 @@ TEST(Configuration, CameraByNumbers) {
   EXPECT_EQ(c.camera->frame_rate, 30);
 }
 
+/// The examples of the lens itself are in camera_test.
+TEST(Configuration, ALensWithoutInverseIsAnErrorAtTheCamera) {
+  const auto text = [](const std::string& camera) {
+    return "source: { tum: { path: x } }\nfeatures: orb\noptimizer: ceres\ncamera: " + camera + "\n";
+  };
+  for (const char* camera : {"{ width: 640, height: 480, fx: 400, fy: 400, cx: 318.6, cy: 255.3, k1: -0.4 }",
+                             "{ name: tum_fr1, k3: 0.002628, p2: 1.163314 }",
+                             "{ name: tum_fr3, fx: 200, fy: 200, k1: -0.4, lens: fisheye }"})
+    try {
+      resolve(text(camera));
+      ADD_FAILURE() << camera;
+    } catch (const ConfigurationError& error) {
+      EXPECT_THAT(error.what(), testing::AllOf(testing::StartsWith("c.yaml:4:"), testing::HasSubstr("no inverse"),
+                                               testing::HasSubstr("px from the principal point")));
+    }
+}
+
+TEST(Configuration, SuspiciousNumbersOfACameraAreWarnings) {
+  const auto warnings = [](const std::string& camera) {
+    std::string all;
+    for (const Diagnostic& warning : resolve(test::good, {"camera={name: tum_fr1, " + camera + "}"}).warnings)
+      all += warning.to_string() + "\n";
+    return all;
+  };
+  EXPECT_EQ(warnings("fx: 520"), "");
+  EXPECT_THAT(warnings("cx: 958.6"), testing::HasSubstr("optical axis"));
+  EXPECT_THAT(warnings("baseline: 80"), testing::HasSubstr("millimetres"));
+  EXPECT_THAT(warnings("cx: 958.6"), testing::StartsWith("--set"));
+}
+
 TEST(Configuration, LensesOfCameras) {
   const std::string numbers = "width: 320, height: 240, fx: 260, fy: 261, cx: 160, cy: 120, ";
   const auto camera_of = [&](const std::string& lens) {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/core/camera.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <functional>
 #include <opencv2/calib3d.hpp>
 
 namespace holdfast {
@@ -39,6 +42,12 @@ TEST_P(KnownCamera, BoundsHoldTheWholeImage) {
       ASSERT_GE(pixel.y(), minimum.y() - 0.1);
       ASSERT_LE(pixel.y(), maximum.y() + 0.1);
     }
+}
+
+TEST_P(KnownCamera, HasNoTroubleAndIsNotSuspicious) {
+  const Camera camera = find_camera(GetParam()).value();
+  EXPECT_EQ(camera.trouble(), "");
+  EXPECT_EQ(camera.suspicions(true), std::vector<std::string>{});
 }
 
 INSTANTIATE_TEST_SUITE_P(All, KnownCamera, testing::ValuesIn(camera_names()));
@@ -139,7 +148,145 @@ TEST_P(AnyLens, BoundsHoldWhatIsUsable) {
   EXPECT_LT((maximum - minimum).maxCoeff(), 2.0 * 2.2 * camera.fx + camera.width);
 }
 
+TEST_P(AnyLens, HasNoTrouble) {
+  EXPECT_EQ(GetParam().trouble(), "");
+  EXPECT_EQ(GetParam().suspicions(true), std::vector<std::string>{});
+}
+
 INSTANTIATE_TEST_SUITE_P(Lenses, AnyLens, testing::ValuesIn(lenses()));
+
+/// A camera of 640x480 images.
+Camera camera_of(double focal_length, const Distortion& distortion) {
+  Camera camera;
+  camera.fx = camera.fy = focal_length;
+  camera.distortion = distortion;
+  return camera;
+}
+
+/// A distortion without an inverse in the image, and about how far from the principal point it ends [px].
+struct Fold {
+  const char* cause;
+  Camera camera;
+  double radius;
+};
+
+std::vector<Fold> folds() {
+  const double turn = std::sqrt(1.0 / 1.2);  // where 1 - 3 * 0.4 r^2 is 0
+  Camera exchanged = find_camera("tum_fr1").value();
+  std::swap(exchanged.distortion.k3, exchanged.distortion.p2);
+  Camera fisheye_without_its_line = lenses()[0];  // k4 becomes a coefficient of the denominator
+  fisheye_without_its_line.distortion.lens = Lens::radial_tangential;
+  Camera folded_fisheye = camera_of(200, {.k1 = -0.4});
+  folded_fisheye.distortion.lens = Lens::fisheye;
+  return {{"strong barrel", camera_of(400, {.k1 = -0.4}), 400 * turn * (1.0 - 0.4 * turn * turn)},
+          {"k3 and p2 exchanged", exchanged, 38},
+          {"fisheye without its line", fisheye_without_its_line, 342},
+          {"a wide lens, calibrated in the middle", camera_of(287, {.k1 = -0.26, .k2 = 0.08, .k3 = -0.012}), 306},
+          {"a denominator of zero", camera_of(300, {.k4 = -0.2}), 1e9},
+          {"k4 to k6 lost", camera_of(500, {.k1 = 0.515, .k2 = -2.61, .k3 = 1.505}), 281},
+          {"fisheye that turns back", folded_fisheye, 200 * turn * (1.0 - 0.4 * turn * turn)}};
+}
+
+TEST(LensWithoutInverse, IsToldWithTheRadiusFromWhichItIsMissing) {
+  for (const auto& [cause, camera, radius] : folds()) {
+    if (radius > 1e6) continue;
+    const std::string trouble = camera.trouble();
+    const std::size_t end = trouble.find(" px from the principal point");
+    ASSERT_NE(end, std::string::npos) << cause << ": " << trouble;
+    EXPECT_NEAR(std::stod(trouble.substr(trouble.rfind(' ', end - 1))), radius, 1.5) << cause << ": " << trouble;
+    EXPECT_NE(trouble.find("Usual causes"), std::string::npos) << trouble;
+  }
+}
+
+/// Whatever the numbers are, the undistorted image is bounded, so that no table or grid over it is without end.
+TEST(LensWithoutInverse, UndistortsIntoABoundedRegion) {
+  for (const auto& [cause, camera, radius] : folds())
+    for (int row = -8; row <= camera.height + 8; row += 12)
+      for (int column = -8; column <= camera.width + 8; column += 12) {
+        const Eigen::Vector2d pixel = camera.undistort({column, row});
+        ASSERT_LT((pixel - Eigen::Vector2d(camera.cx, camera.cy)).norm(), 6.0 * camera.fx)
+            << cause << " " << column << " " << row;
+      }
+}
+
+/// The coefficients fit as long as the image ends before the radius turns back.
+TEST(LensWithoutInverse, IsOneOnlyWhereTheImageReachesIt) {
+  for (Fold fold : folds()) {
+    if (fold.radius > 1e6) continue;
+    Camera& camera = fold.camera;
+    camera.width = camera.height = static_cast<int>(1.3 * fold.radius);  // half the diagonal: 0.92 of the radius
+    camera.cx = camera.cy = 0.5 * (camera.width - 1);
+    EXPECT_EQ(camera.trouble(), "") << fold.cause;
+    for (int row = 0; row < camera.height; row += 5)
+      for (int column = 0; column < camera.width; column += 5) {
+        const Eigen::Vector2d raw(column, row);
+        if (!camera.is_usable(raw)) continue;
+        ASSERT_LT((camera.distort(camera.undistort(raw)) - raw).norm(), 1e-3) << fold.cause << raw.transpose();
+      }
+  }
+}
+
+/// A pincushion so strong that the fixed-point iteration oscillates.
+TEST(Camera, UndistortsWhereTheFixedPointIterationDiverges) {
+  const Camera camera = camera_of(200, {.k1 = 0.3, .k2 = 1.0});
+  ASSERT_EQ(camera.trouble(), "");
+  for (int row = 0; row < camera.height; row += 7)
+    for (int column = 0; column < camera.width; column += 7) {
+      const Eigen::Vector2d raw(column, row);
+      ASSERT_LT((camera.distort(camera.undistort(raw)) - raw).norm(), 1e-3) << raw.transpose();
+    }
+}
+
+TEST(Camera, NumbersThatCannotBeAreTrouble) {
+  EXPECT_EQ(Camera{}.trouble(), "");
+  Camera camera;
+  camera.fx = 0;
+  EXPECT_NE(camera.trouble().find("expected width, height, fx and fy above 0"), std::string::npos);
+  camera = Camera{};
+  camera.distortion.k2 = std::nan("");
+  EXPECT_NE(camera.trouble().find("no number"), std::string::npos);
+  EXPECT_NE(camera_of(50, {.k1 = -1e-4}).trouble().find("80 degrees"), std::string::npos);
+}
+
+/// Suspicions of tum_fr1's camera, or another one, after a mistake.
+std::string suspicion_of(const std::function<void(Camera&)>& mistake, const std::string& name = "tum_fr1") {
+  Camera camera = find_camera(name).value();
+  mistake(camera);
+  std::string text;
+  for (const std::string& suspicion : camera.suspicions(true)) text += suspicion + "\n";
+  return text;
+}
+
+TEST(SuspiciousCamera, OfAnotherResolution) {
+  const auto scaled = [](double factor) {
+    return [factor](Camera& c) { c.fx *= factor, c.fy *= factor, c.cx *= factor, c.cy *= factor; };
+  };
+  EXPECT_THAT(suspicion_of(scaled(2.0)), testing::HasSubstr("multiply fx, fy, cx and cy by 0.48"));
+  EXPECT_THAT(suspicion_of(scaled(0.5)), testing::HasSubstr("of about 330x248"));
+  EXPECT_EQ(suspicion_of([](Camera& c) { c.height = 360, c.cy -= 60; }), "") << "cut out around the middle";
+}
+
+TEST(SuspiciousCamera, WhoseAxisIsOutsideTheImage) {
+  EXPECT_THAT(suspicion_of([](Camera& c) { c.cx += 640; }), testing::HasSubstr("axis is at pixel (959, 255)"));
+  EXPECT_THAT(suspicion_of([](Camera& c) { std::swap(c.cx, c.cy), c.cx = 0; }), testing::HasSubstr("check cx and cy"));
+}
+
+TEST(SuspiciousCamera, WhoseFocalLengthIsNotInPixels) {
+  EXPECT_THAT(suspicion_of([](Camera& c) { c.fx = c.fy = 3.6; }), testing::HasSubstr("is it in millimetres"));
+  EXPECT_THAT(suspicion_of([](Camera& c) { c.fx = c.fy = 5173; }), testing::HasSubstr("show 7 degrees"));
+  EXPECT_THAT(suspicion_of([](Camera& c) { c.fy = 387; }), testing::HasSubstr("differ by a factor of 1.33"));
+}
+
+TEST(SuspiciousCamera, WhoseBaselineIsNotInMetres) {
+  const auto baseline = [](double metres) { return suspicion_of([&](Camera& c) { c.baseline = metres; }, "kitti_00"); };
+  EXPECT_THAT(baseline(537.1657), testing::HasSubstr("is it in millimetres, that is, 0.5372 m?"));
+  EXPECT_THAT(baseline(53.7), testing::HasSubstr("in centimetres, that is, 0.537 m, or millimetres"));
+  EXPECT_THAT(baseline(5e-4), testing::HasSubstr("the baseline is 0.0005 m"));
+  for (const double metres : {0.0075, 0.05, 0.11, 0.54, 1.2, 2.5}) EXPECT_EQ(baseline(metres), "") << metres;
+  Camera camera;
+  camera.baseline = 537;
+  EXPECT_TRUE(camera.suspicions(false).empty());
+}
 
 TEST(FisheyeLens, IsUsableUpToItsAngle) {
   const Camera camera = lenses()[0];

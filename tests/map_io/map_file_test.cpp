@@ -229,6 +229,21 @@ TEST_F(MapFile, HoldsEveryLens) {
   EXPECT_THAT(refusal(8, 9), ::testing::HasSubstr("found number 9; expected less than 2"));
 }
 
+TEST_F(MapFile, ALensWithoutInverseIsRefused) {
+  Map map = random_map(6, 20, 9);
+  Camera camera = *find_camera("tum_fr3");
+  camera.distortion = {.k1 = -0.8};
+  for (const KeyFrameId id : map.keyframes().ids())
+    map.keyframe(id).frame.camera = std::make_shared<const Camera>(camera);
+  write("map.hfm", bytes_of(map));
+  try {
+    read_map(path("map.hfm"));
+    ADD_FAILURE() << "the map was read";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("the distortion of the lens has no inverse in the image"));
+  }
+}
+
 TEST_F(MapFile, HoldsDescriptionsOfImages) {
   Map map = random_map(8, 30, 11);
   EXPECT_EQ(bytes_of(map).find("PLAC"), std::string::npos) << "maps of other detectors stay as they were";

@@ -200,6 +200,32 @@ TEST(PipelineBuilder, CameraAndMapMustFit) {
   EXPECT_THROW(other.build(), InputError);
 }
 
+TEST(PipelineBuilder, JudgesTheCameraOfTheSource) {
+  test::PointWorld world(find_camera("tum_fr1").value());
+  const auto builder_with = [&](const Camera& camera) {
+    SourceDescription source;
+    source.name = "robot";
+    source.has_depth = true;
+    source.camera = camera;
+    PipelineBuilder builder(registry());
+    builder.source(source).features(std::make_unique<test::PointExtractor>(world)).optimizer("ceres");
+    return builder;
+  };
+  Camera camera = find_camera("tum_fr1").value();
+  EXPECT_TRUE(builder_with(camera).build().warnings().empty());
+  camera.baseline = 80;
+  camera.cx = 958.6;
+  const Warnings warnings = builder_with(camera).build().warnings();
+  ASSERT_EQ(warnings.size(), 2U);
+  EXPECT_THAT(warnings[0].message, testing::AllOf(testing::StartsWith("of the camera that the source 'robot' gives, "),
+                                                  HasSubstr("optical axis")));
+  EXPECT_THAT(warnings[1].message, HasSubstr("the baseline is 80 m"));
+  camera = find_camera("tum_fr1").value();
+  camera.distortion = {.k1 = -0.9};
+  PipelineBuilder folded = builder_with(camera);
+  EXPECT_THAT(complaints(folded), HasSubstr("has no inverse in the image"));
+}
+
 TEST(PipelineBuilder, AMapIsContinuedByItsOwnExtractorOnly) {
   test::PointWorld world(find_camera("tum_fr1").value());
   const auto new_map = [&] {

@@ -238,6 +238,8 @@ def test_cameras_have_lenses():
         holdfast.Camera(**numbers, lens="fishy")
     with pytest.raises(holdfast.InputError, match="k1, k2, k3 and k4 alone"):
         holdfast.Camera(**numbers, lens="fisheye", p1=0.1)
+    with pytest.raises(holdfast.InputError, match="no inverse in the image: from pixel"):
+        holdfast.Camera(**numbers, k1=-0.4)
 
 
 def test_camera_can_be_given(frames):

@@ -164,6 +164,7 @@ TEST_F(EurocTest, SaysWhatIsWrong) {
   EXPECT_THAT(changed("[50, 51", "[51"), AllOf(StartsWith(camera + ":15:13: "), HasSubstr("found 3 numbers")));
   EXPECT_THAT(changed("pinhole", "omni"), AllOf(StartsWith(camera + ":14:15: "), HasSubstr("expected pinhole")));
   EXPECT_THAT(changed("radial-tangential", "fov"), HasSubstr("expected radial-tangential, equidistant or none"));
+  EXPECT_THAT(changed("[-0.02,", "[-2.0,"), AllOf(StartsWith(camera + ":"), HasSubstr("no inverse in the image")));
   EXPECT_THAT(changed("0.0002, ", ""),
               HasSubstr("found 3 numbers for distortion_coefficients; expected a list of 4 or 5"));
   EXPECT_THAT(changed("0.0, 0.0, 1.0, 0.5", "0.0, 0.0, 2.0, 0.5"), HasSubstr("not a rigid motion"));

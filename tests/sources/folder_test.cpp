@@ -234,6 +234,8 @@ TEST_F(FolderSourceTest, APairThatIsNotRectifiedIsRectified) {
   EXPECT_THAT(wrong("p1: 0.1, T_left_right: [1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]"),
               HasSubstr("k1, k2, k3 and k4 alone"));
   EXPECT_THAT(wrong("k1: 0", ", lens: fishey"), HasSubstr("did you mean 'fisheye'?"));
+  EXPECT_THAT(wrong("k1: -2, T_left_right: [1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]"),
+              AllOf(StartsWith(full("camera.yaml") + ":1:"), HasSubstr("has no inverse in the image")));
 }
 
 /// A pose of frame i, and its matrix of three or four rows as text, its numbers separated by `between`.

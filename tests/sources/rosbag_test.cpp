@@ -198,8 +198,10 @@ TEST_F(RosbagTest, ReadsTheCameraOfCameraInfo) {
 
   const std::vector<double> k = {52, 0, 32, 0, 53, 24, 0, 0, 1};
   EXPECT_TRUE(camera(camera_info_message(1, 64, 48, "", {}, k))->distortion.is_zero());
-  EXPECT_EQ(camera(camera_info_message(1, 64, 48, "rational_polynomial", {1, 2, 3, 4, 5, 6, 7, 8}, k))->distortion.k6,
-            8.0);
+  EXPECT_EQ(
+      camera(camera_info_message(1, 64, 48, "rational_polynomial", {0.1, 0.2, 0.003, 0.004, 0.05, 0.06, 0.07, 0.08}, k))
+          ->distortion.k6,
+      0.08);
   const Distortion fisheye = camera(camera_info_message(1, 64, 48, "equidistant", {0.1, 0.2, 0.3, 0.4}, k))->distortion;
   EXPECT_EQ(fisheye, (Distortion{.k1 = 0.1, .k2 = 0.2, .k3 = 0.3, .k4 = 0.4, .lens = Lens::fisheye}));
 

@@ -28,6 +28,7 @@ struct CalibrationAssessment {
 
 /// A result is of no use when the focal length is uncertain by more than 2 %, or when every view shows the board within
 /// 8 degrees of parallel to the image: a board of another size or distance would look the same through another lens.
+/// Nor when the distortion has no inverse in the image (Camera::trouble).
 CalibrationAssessment assess(const Calibration& calibration);
 
 }  // namespace holdfast

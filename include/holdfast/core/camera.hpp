@@ -43,7 +43,8 @@ struct Distortion {
   bool is_rational() const { return lens == Lens::radial_tangential && (k4 != 0 || k5 != 0 || k6 != 0); }
   /// As OpenCV takes them: k1 k2 p1 p2 k3, followed by k4 k5 k6 where these are used; k1 k2 k3 k4 of a fisheye lens.
   std::vector<double> coefficients() const;
-  /// What is wrong with the numbers, such as a coefficient that its lens does not have; empty if nothing is.
+  /// What is wrong with the numbers, such as a coefficient that its lens does not have; empty if nothing is. Whether
+  /// they fit an image is said by Camera::trouble().
   std::string trouble() const;
   friend bool operator==(const Distortion&, const Distortion&) = default;
 };
@@ -88,13 +89,25 @@ struct Camera {
 
   /// Raw image position of an undistorted pixel.
   Eigen::Vector2d distort(const Eigen::Vector2d& pixel) const;
-  /// Undistorted pixel of a raw image position, by fixed-point iteration; the error is below 1e-4 px for the cameras of
-  /// find_camera(). Beyond 65 degrees from the axis of a fisheye lens, the pixel at 65 degrees in the same direction.
+  /// Undistorted pixel of a raw image position, by fixed-point iteration and, where that does not converge, by Newton
+  /// steps from the principal point; the error is below 1e-3 px for a camera without trouble(). Beyond 65 degrees from
+  /// the axis of a fisheye lens, the pixel at 65 degrees in the same direction.
   Eigen::Vector2d undistort(const Eigen::Vector2d& raw) const;
   /// False for a raw image position of a fisheye lens that lies beyond usable_angle; true otherwise.
   bool is_usable(const Eigen::Vector2d& raw) const;
 
   friend bool operator==(const Camera&, const Camera&) = default;
+
+  /// Why the camera cannot be used: numbers that cannot be, a coefficient that its lens does not have, or a distortion
+  /// without an inverse in the image. Empty if nothing is wrong. The inverse is followed from the principal point to
+  /// the border of the image, where the Jacobian of the distortion must be positive, so that the radius grows, and the
+  /// angle to the optical axis less than 80 degrees; the radius of a fisheye lens must grow up to the corners or to
+  /// usable_angle. Takes less than a millisecond.
+  std::string trouble() const;
+  /// What is suspicious about numbers that may be intended: an optical axis far from the centre of the image, a field
+  /// of view or an aspect of the pixels that few cameras have and, if it counts, a baseline of no usual stereo pair.
+  /// Each text names the likely mistake and its remedy; see core/warning.hpp.
+  std::vector<std::string> suspicions(bool with_baseline) const;
 
   /// Bounding rectangle [minimum, maximum] of the undistorted pixels of the whole image.
   void undistorted_bounds(Eigen::Vector2d& minimum, Eigen::Vector2d& maximum) const;

@@ -26,7 +26,8 @@ struct StereoCalibration {
 /// thread.
 class StereoRectification {
  public:
-  /// Throws Error if the right camera is not to the right of the left one, or if they look at different places.
+  /// Throws Error if one of the cameras has trouble (Camera::trouble), if the right camera is not to the right of the
+  /// left one, or if they look at different places.
   explicit StereoRectification(const StereoCalibration& calibration);
 
   const StereoCalibration& calibration() const { return calibration_; }

@@ -131,6 +131,7 @@ class PipelineBuilder {
   template <class Settings>
   void check(const Settings& settings, const char* section);
   void check_camera();
+  void judge_camera();
   void check_settings();
   void make_modules();
   std::unique_ptr<Segmenter> build_segmenter();
@@ -150,6 +151,7 @@ class PipelineBuilder {
   std::optional<Camera> source_camera_;
   std::optional<Diagnostic> unknown_camera_;  // Configuration::unknown_camera
   bool has_camera_ = false;
+  bool is_camera_judged_ = false;  // the configuration has the warnings about it
   bool has_global_shutter_ = false;
   bool has_depth_ = true;
   bool has_right_ = false;

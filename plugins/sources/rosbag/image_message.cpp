@@ -258,7 +258,7 @@ Camera read_camera_info(Bytes message, bool is_rectified, const std::string& pla
           ? Distortion{.k1 = d[0], .k2 = d[1], .k3 = d[2], .k4 = d[3]}
           : Distortion{.k1 = d[0], .k2 = d[1], .p1 = d[2], .p2 = d[3], .k3 = d[4], .k4 = d[5], .k5 = d[6], .k6 = d[7]};
   if (is_fisheye && !is_without) camera.distortion.lens = Lens::fisheye;
-  if (const std::string trouble = camera.distortion.trouble(); !trouble.empty())
+  if (const std::string trouble = camera.trouble(); !trouble.empty())
     refuse(place, trouble + "; give the camera under `camera:` and `camera_info: none`");
   return camera;
 }
