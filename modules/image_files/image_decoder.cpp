@@ -74,20 +74,23 @@ struct Native {
 /// Converts stored 16-bit depth to metres, each the float nearest to the true quotient, hence a division and no
 /// multiplication by an inverse. Float arithmetic is exact in this sense where the factor is a float.
 template <class Number>
-cv::Mat metres(const cv::Mat& stored, Number number, double depth_factor) {
+cv::Mat metres(const cv::Mat& stored, Number number, const DepthEncoding& encoding) {
   cv::Mat depth(stored.size(), CV_32FC1);
+  const int no_value = encoding.no_value;
   const auto convert = [&](auto factor) {
     for (int y = 0; y < depth.rows; ++y) {
       const auto* from = stored.ptr<std::uint8_t>(y);
       auto* to = depth.ptr<float>(y);
-      for (int x = 0; x < depth.cols; ++x)
-        to[x] = static_cast<float>(static_cast<decltype(factor)>(number(from + 2 * x)) / factor);
+      for (int x = 0; x < depth.cols; ++x) {
+        const int value = number(from + 2 * x);
+        to[x] = static_cast<float>(static_cast<decltype(factor)>(value == no_value ? 0 : value) / factor);
+      }
     }
   };
-  if (const auto factor = static_cast<float>(depth_factor); factor == depth_factor)
+  if (const auto factor = static_cast<float>(encoding.factor); factor == encoding.factor)
     convert(factor);
   else
-    convert(depth_factor);
+    convert(encoding.factor);
   return depth;
 }
 
@@ -191,18 +194,19 @@ cv::Mat ImageDecoder::decode_widened(const std::filesystem::path& file, const Si
   return colour;
 }
 
-cv::Mat ImageDecoder::read_depth(const std::filesystem::path& file, double depth_factor, const SizeCheck& check_size) {
+cv::Mat ImageDecoder::read_depth(const std::filesystem::path& file, const DepthEncoding& encoding,
+                                 const SizeCheck& check_size) {
   load(file);
-  return decode_depth(file, depth_factor, check_size);
+  return decode_depth(file, encoding, check_size);
 }
 
-cv::Mat ImageDecoder::decode_depth(std::span<const std::uint8_t> bytes, const std::string& name, double depth_factor,
-                                   const SizeCheck& check_size) {
+cv::Mat ImageDecoder::decode_depth(std::span<const std::uint8_t> bytes, const std::string& name,
+                                   const DepthEncoding& encoding, const SizeCheck& check_size) {
   bytes_.assign(bytes.begin(), bytes.end());
-  return decode_depth(std::filesystem::path(name), depth_factor, check_size);
+  return decode_depth(std::filesystem::path(name), encoding, check_size);
 }
 
-cv::Mat ImageDecoder::decode_depth(const std::filesystem::path& file, double depth_factor,
+cv::Mat ImageDecoder::decode_depth(const std::filesystem::path& file, const DepthEncoding& encoding,
                                    const SizeCheck& check_size) {
   const ImageStructure image = examine_image(bytes_);
   require_decodable(file, image);
@@ -213,9 +217,9 @@ cv::Mat ImageDecoder::decode_depth(const std::filesystem::path& file, double dep
                                           "; expected a depth image, a PNG of 1 channel of 16 bits; export the depth "
                                           "without conversion");
   if (check_size) check_size({image.width, image.height});
-  if (png_->decode(bytes_)) return metres(as_image(*png_, CV_8UC2), BigEndian(), depth_factor);
+  if (png_->decode(bytes_)) return metres(as_image(*png_, CV_8UC2), BigEndian(), encoding);
   raw_depth_ = decode_png(file, bytes_, cv::IMREAD_UNCHANGED, raw_depth_);
-  return metres(raw_depth_, Native(), depth_factor);
+  return metres(raw_depth_, Native(), encoding);
 }
 
 cv::Mat ImageDecoder::read_labels(const std::filesystem::path& file, const SizeCheck& check_size) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "holdfast/core/size_text.hpp"
@@ -138,7 +139,7 @@ SensorFrame ImageSequence::decode(const ImageFiles& files) {
   }
   if (files.depth.empty()) return frame;
   frame.depth = read_at(files.depth_listed_at, [&] {
-    return decoder_.read_depth(files.depth, options_.depth_factor, [&](const cv::Size& size) {
+    return decoder_.read_depth(files.depth, options_.depth, [&](const cv::Size& size) {
       is_of_other_size_ = size != frame.colour.size();
       if (is_of_other_size_ && options_.scales_depth) {
         require_same_view(files, size, frame.colour.size());
@@ -154,6 +155,32 @@ SensorFrame ImageSequence::decode(const ImageFiles& files) {
   });
   if (frame.depth.size() != frame.colour.size()) frame.depth = scaled_depth(frame.depth, frame.colour.size());
   return frame;
+}
+
+Warnings ImageSequence::warnings() const {
+  if (warnings_) return *warnings_;
+  warnings_.emplace();
+  if (options_.invalid_depth_key.empty() || files_.empty() || files_.front().depth.empty()) return {};
+  constexpr std::size_t most = 4;
+  const std::size_t step = (files_.size() + most - 1) / most;
+  ImageDecoder decoder;
+  std::vector<cv::Mat> depths;
+  for (std::size_t i = 0; i < files_.size(); i += step) {
+    try {
+      depths.push_back(decoder.read_depth(files_[i].depth, options_.depth));
+    } catch (const InputError&) {  // told when its turn comes
+    }
+  }
+  if (const std::optional<float> depth = find_no_value(depths)) {
+    const std::string stored = std::to_string(std::lround(*depth * options_.depth.factor));
+    const std::string metres = std::to_string(*depth);
+    add_warning(*warnings_, {{files_.front().depth.string()},
+                             "the largest depth " + metres.substr(0, metres.find('.') + 3) + " m (stored as " + stored +
+                                 ") fills a part of the image far behind everything else, in images all over the "
+                                 "recording: it looks like 'no value'; set `" +
+                                 options_.invalid_depth_key + ": " + stored + "` then"});
+  }
+  return *warnings_;
 }
 
 std::optional<SensorFrame> ImageSequence::next() {
@@ -183,6 +210,48 @@ std::vector<double> ImageSequence::pass_over(double timestamp) {
   for (; position_ + 1 < files_.size() && files_[position_ + 1].timestamp <= timestamp; ++position_)
     stamps.push_back(files_[position_].timestamp);
   return stamps;
+}
+
+namespace {
+
+/// The largest depth of an image, if it stands out; 0 otherwise, and nothing without a measurement.
+std::optional<float> outstanding_depth(const cv::Mat& depth) {
+  float largest = 0.0F, second = 0.0F;
+  std::size_t count = 0;
+  std::set<float> others;  // a picture of few depths is drawn, and its background may be far
+  constexpr std::size_t enough_others = 32;
+  for (int y = 0; y < depth.rows; ++y) {
+    const auto* row = depth.ptr<float>(y);
+    for (int x = 0; x < depth.cols; ++x) {
+      if (row[x] > largest) {
+        second = largest;
+        largest = row[x];
+        count = 0;
+      } else if (row[x] > second && row[x] < largest) {
+        second = row[x];
+      }
+      count += row[x] == largest && largest > 0.0F ? 1 : 0;
+      if (others.size() < enough_others) others.insert(row[x]);
+    }
+  }
+  if (largest == 0.0F) return std::nullopt;
+  constexpr float gap = 1.25F;
+  constexpr std::size_t least_share = 100;  // 1 / share
+  const bool stands_out =
+      largest > gap * second && count * least_share >= depth.total() && others.size() >= enough_others;
+  return stands_out ? largest : 0.0F;
+}
+
+}  // namespace
+
+std::optional<float> find_no_value(const std::vector<cv::Mat>& depths) {
+  std::vector<float> values;
+  for (const cv::Mat& depth : depths)
+    if (const std::optional<float> value = outstanding_depth(depth)) values.push_back(*value);
+  constexpr std::size_t fewest = 3;
+  const bool is_common = values.size() >= fewest && values.front() > 0.0F &&
+                         std::all_of(values.begin(), values.end(), [&](float v) { return v == values.front(); });
+  return is_common ? std::optional(values.front()) : std::nullopt;
 }
 
 void require_recording_folder(const std::filesystem::path& folder, const std::string& expected,

@@ -87,6 +87,58 @@ TEST_F(TumSourceTest, DepthFactorStartAndFrames) {
   EXPECT_THAT(error({{"start", std::int64_t{5}}}), HasSubstr("has 5 colour and depth pairs, but `start` is 5"));
 }
 
+/// Depth images whose right part has the value `no_value`.
+class DepthWithoutValue : public TumSourceTest {
+ protected:
+  void write_depth(int no_value) const {
+    for (int i = 0; i < 5; ++i) {
+      cv::Mat depth = test::depth_image(i);
+      depth.colRange(50, depth.cols).setTo(no_value);
+      folder_.write_image(depth_name(i), depth);
+    }
+  }
+  float depth_of(const ParameterValues& values) const { return open(values)->next()->depth.at<float>(20, 55); }
+};
+
+TEST_F(DepthWithoutValue, TheEndOfTheRangeIsNoDistance) {
+  write_depth(65535);
+  EXPECT_EQ(depth_of({}), 0.0F);
+  EXPECT_EQ(open()->next()->depth.at<float>(20, 30), static_cast<float>((64 * 20 + 30) / 5000.0)) << "beside it";
+  EXPECT_EQ(depth_of({{"depth_factor", 5000.1}}), 0.0F) << "a factor that is no float";
+  EXPECT_EQ(depth_of({{"invalid_depth", std::int64_t{0}}}), 13.107F);
+  EXPECT_TRUE(open()->warnings().empty());
+}
+
+TEST_F(DepthWithoutValue, AnotherOneIsSuspectedAndCanBeSet) {
+  EXPECT_TRUE(open()->warnings().empty());
+  write_depth(20000);
+  const Warnings warnings = open()->warnings();
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_THAT(warnings[0].to_string(),
+              AllOf(StartsWith(full(depth_name(0)) + ": the largest depth 4.00 m (stored as 20000)"),
+                    HasSubstr("`source.tum.invalid_depth: 20000`")));
+  const ParameterValues set = {{"invalid_depth", std::int64_t{20000}}};
+  EXPECT_TRUE(open(set)->warnings().empty());
+  EXPECT_EQ(depth_of(set), 0.0F);
+}
+
+/// Depth that ends with the room: not far above the rest, not the same in every image, or of a drawn scene.
+TEST_F(DepthWithoutValue, ARoomIsNotSuspected) {
+  write_depth(3600);
+  EXPECT_TRUE(open()->warnings().empty());
+  write_depth(20000);
+  cv::Mat other = test::depth_image(0);
+  other.colRange(50, other.cols).setTo(21000);
+  folder_.write_image(depth_name(0), other);
+  EXPECT_TRUE(open()->warnings().empty());
+  for (int i = 0; i < 5; ++i) {
+    cv::Mat drawn(test::recording_height, test::recording_width, CV_16UC1, cv::Scalar(5000));
+    drawn.colRange(30, drawn.cols).setTo(15000);
+    folder_.write_image(depth_name(i), drawn);
+  }
+  EXPECT_TRUE(open()->warnings().empty());
+}
+
 TEST_F(TumSourceTest, AColourImageWithoutDepthNearbyMakesNoPair) {
   folder_.write("depth.txt", "100.001 " + depth_name(0) + "\n100.119 " + depth_name(1) + "\n100.225 " + depth_name(2) +
                                  "\n100.315 " + depth_name(3) + "\n");

@@ -14,6 +14,16 @@ namespace holdfast {
 
 class PngRows;
 
+/// How the stored numbers of a 16-bit depth image are meant.
+struct DepthEncoding {
+  DepthEncoding(double factor_given = 5000.0, int no_value_given = largest)  // NOLINT(google-explicit-constructor)
+      : factor(factor_given), no_value(no_value_given) {}
+
+  static constexpr int largest = 65535;  ///< the end of the range: what is as far or farther, never a distance
+  double factor;                         ///< stored value of one metre
+  int no_value;                          ///< stored value without a measurement, besides 0
+};
+
 /// Decodes PNG and JPEG files strictly: an image that the decoding library would repair or convert silently (a
 /// truncated file, a grey image instead of colour, 8-bit depth) is an InputError that states the file, what was found,
 /// what was expected and how to correct it. Common PNG files are decoded by libdeflate in a build with it, with the
@@ -41,13 +51,14 @@ class ImageDecoder {
   cv::Mat read_grey(const std::filesystem::path& file, const SizeCheck& check_size = {});
   /// The same for an image with one or three channels to 8UC3; the three channels of a grey image are equal.
   cv::Mat read_widened(const std::filesystem::path& file, const SizeCheck& check_size = {});
-  /// Decodes a 16-bit PNG with one channel to 32FC1 [m]: value / depth_factor, 0 = no value.
-  cv::Mat read_depth(const std::filesystem::path& file, double depth_factor, const SizeCheck& check_size = {});
+  /// Decodes a 16-bit PNG with one channel to 32FC1 [m]: value / factor, 0 = no value.
+  cv::Mat read_depth(const std::filesystem::path& file, const DepthEncoding& encoding,
+                     const SizeCheck& check_size = {});
   /// As read_widened() and read_depth(), of the bytes of such a file, which a message may hold; `name` stands for the
   /// file in errors.
   cv::Mat decode_widened(std::span<const std::uint8_t> bytes, const std::string& name,
                          const SizeCheck& check_size = {});
-  cv::Mat decode_depth(std::span<const std::uint8_t> bytes, const std::string& name, double depth_factor,
+  cv::Mat decode_depth(std::span<const std::uint8_t> bytes, const std::string& name, const DepthEncoding& encoding,
                        const SizeCheck& check_size = {});
   /// Decodes a PNG of labels to the stored type, 8UC1 or 16UC1. For a PNG with a palette (8 bits, such as those of
   /// Pascal VOC) the result contains the indices and not the colours.
@@ -57,7 +68,7 @@ class ImageDecoder {
   // Of bytes_.
   cv::Mat decode_grey_or_colour(const std::filesystem::path& file, const SizeCheck& check_size);
   cv::Mat decode_widened(const std::filesystem::path& file, const SizeCheck& check_size);
-  cv::Mat decode_depth(const std::filesystem::path& file, double depth_factor, const SizeCheck& check_size);
+  cv::Mat decode_depth(const std::filesystem::path& file, const DepthEncoding& encoding, const SizeCheck& check_size);
   void load(const std::filesystem::path& file);
 
   bool accepts_16_bits_ = false;

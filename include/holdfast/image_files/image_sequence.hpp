@@ -32,8 +32,8 @@ struct ImageFiles {
 
 /// How the images of a sequence are read.
 struct ImageSequenceOptions {
-  double depth_factor = 5000.0;  ///< value of one metre in a depth image
-  int width = 0;                 ///< of every image [px]
+  DepthEncoding depth;  ///< of the depth images
+  int width = 0;        ///< of every image [px]
   int height = 0;
   bool skip_bad_frames = false;  ///< skip and count bad frames instead of throwing InputError
   /// Grey images, which are widened to three equal channels, may have 16 bits, of which the upper 8 are used.
@@ -43,6 +43,8 @@ struct ImageSequenceOptions {
   bool scales_depth = false;
   /// Rectifies both images of pairs that are not; their sizes are those of its cameras. nullptr: they are rectified.
   std::shared_ptr<const StereoRectification> rectification = nullptr;
+  /// The key that sets DepthEncoding::no_value, such as "source.tum.invalid_depth", for ImageSequence::warnings().
+  std::string invalid_depth_key = {};
 };
 
 /// Decodes the frames of a recording one by one; the common part of all sources that read image files. Used by one
@@ -63,6 +65,10 @@ class ImageSequence {
   std::vector<double> timestamps() const;
   const std::vector<SkippedFrame>& skipped() const { return skipped_; }
 
+  /// The suspicion that a value of the depth images means that there is no measurement (find_no_value()). The first
+  /// call reads some images; none without ImageSequenceOptions::invalid_depth_key.
+  Warnings warnings() const;
+
  private:
   SensorFrame decode(const ImageFiles& files);
 
@@ -71,7 +77,8 @@ class ImageSequence {
   std::size_t position_ = 0;
   ImageDecoder decoder_;
   std::vector<SkippedFrame> skipped_;
-  bool is_of_other_size_ = false;  ///< the image read last
+  bool is_of_other_size_ = false;             ///< the image read last
+  mutable std::optional<Warnings> warnings_;  ///< once they were asked for
 };
 
 /// A source whose frames are those of an ImageSequence. Derived classes complete the description, in which the number
@@ -83,6 +90,7 @@ class ImageSequenceSource : public FrameSource {
   std::vector<double> pass_over(double timestamp) override { return sequence_.pass_over(timestamp); }
   Trajectory truth() const override { return truth_; }
   std::vector<SkippedFrame> skipped() const override { return sequence_.skipped(); }
+  Warnings warnings() const override { return sequence_.warnings(); }
 
  protected:
   ImageSequenceSource(std::vector<ImageFiles> files, const ImageSequenceOptions& options)
@@ -98,6 +106,11 @@ class ImageSequenceSource : public FrameSource {
  private:
   ImageSequence sequence_;
 };
+
+/// The depth [m] that stands for "no measurement" in the given depth images (32FC1), if one seems to: the largest one
+/// of each, which is the same in at least three images, a hundredth of the pixels or more, and a quarter above all
+/// others.
+std::optional<float> find_no_value(const std::vector<cv::Mat>& depths);
 
 /// Throws InputError unless `folder` is a folder: "is missing; expected EXPECTED; set `SETTING`".
 void require_recording_folder(const std::filesystem::path& folder, const std::string& expected,

@@ -22,6 +22,7 @@ struct FolderSettings {
   std::string right;
   double depth_factor = 5000.0;
   bool scale_depth = false;
+  int invalid_depth = DepthEncoding::largest;
   double frame_rate = 30.0;
   std::filesystem::path stamps;
   std::filesystem::path truth;
@@ -45,6 +46,10 @@ struct FolderSettings {
     table.add("depth_factor", &FolderSettings::depth_factor, "value of one metre in a depth image").range(1.0, 65535.0);
     table.add("scale_depth", &FolderSettings::scale_depth,
               "scale depth images to the size of the colour images, for cameras that show the same view");
+    table
+        .add("invalid_depth", &FolderSettings::invalid_depth,
+             "value of pixels without a measurement in a depth image, besides 0")
+        .range(0, 65535);
     table.add("frame_rate", &FolderSettings::frame_rate, "frame rate, if no time stamps are given")
         .range(0.001, 100000.0)
         .unit("Hz");
@@ -134,6 +139,7 @@ class FolderSource final : public FrameSource {
   std::optional<SensorFrame> next() override { return sequence_.next(); }
   Trajectory truth() const override { return truth_; }
   std::vector<SkippedFrame> skipped() const override { return sequence_.skipped(); }
+  Warnings warnings() const override { return sequence_.warnings(); }
 
  private:
   SourceDescription describe(const FolderSettings& settings, const Camera& camera) {
@@ -164,7 +170,9 @@ class FolderSource final : public FrameSource {
 
   ImageSequence open(const FolderSettings& settings, const Camera& configured) const {
     const Camera& camera = description_.camera ? *description_.camera : configured;
-    ImageSequenceOptions options{settings.depth_factor, camera.width, camera.height, settings.on_bad_frame == "skip"};
+    ImageSequenceOptions options{
+        {settings.depth_factor, settings.invalid_depth}, camera.width, camera.height, settings.on_bad_frame == "skip"};
+    options.invalid_depth_key = "source.folder.invalid_depth";
     options.rectification = rectification_;
     options.scales_depth = settings.scale_depth;
     return {frames_.files, options};

@@ -166,8 +166,8 @@ cv::Mat ImageMessages::colour(Bytes message, const std::string& type, const std:
                     "; choose another topic with `colour`, or convert it with image_proc");
 }
 
-cv::Mat ImageMessages::depth(Bytes message, const std::string& type, const std::string& place, double depth_factor,
-                             const ImageDecoder::SizeCheck& check_size) {
+cv::Mat ImageMessages::depth(Bytes message, const std::string& type, const std::string& place,
+                             const DepthEncoding& encoding, const ImageDecoder::SizeCheck& check_size) {
   if (type == compressed_image_type) {
     CompressedImage image = read_compressed(message, place);
     constexpr std::size_t settings = 12;  // bytes that compressed_depth_image_transport writes before the PNG
@@ -179,7 +179,7 @@ cv::Mat ImageMessages::depth(Bytes message, const std::string& type, const std::
       if (image.bytes.size() < settings) refuse(place, "is cut short: it has no image; the message is damaged");
       image.bytes = image.bytes.subspan(settings);
     }
-    return decoder_.decode_depth(image.bytes, place, depth_factor, check_size);
+    return decoder_.decode_depth(image.bytes, place, encoding, check_size);
   }
   const RawImage image = read_image(message, place);
   if (!is_depth_encoding(image.encoding))
@@ -192,11 +192,13 @@ cv::Mat ImageMessages::depth(Bytes message, const std::string& type, const std::
   check_size(image.size);
   if (image.encoding == "32FC1") return convert_depth<float>(image, place, metres_of);
   // As the depth of files: the float nearest to the quotient.
-  if (const auto factor = static_cast<float>(depth_factor); factor == depth_factor)
-    return convert_depth<std::uint16_t>(image, place,
-                                        [factor](std::uint16_t v) { return static_cast<float>(v) / factor; });
-  return convert_depth<std::uint16_t>(image, place,
-                                      [depth_factor](std::uint16_t v) { return static_cast<float>(v / depth_factor); });
+  const int no_value = encoding.no_value;
+  if (const auto factor = static_cast<float>(encoding.factor); factor == encoding.factor)
+    return convert_depth<std::uint16_t>(
+        image, place, [=](std::uint16_t v) { return v == no_value ? 0.0F : static_cast<float>(v) / factor; });
+  return convert_depth<std::uint16_t>(image, place, [=, factor = encoding.factor](std::uint16_t v) {
+    return v == no_value ? 0.0F : static_cast<float>(v / factor);
+  });
 }
 
 Camera read_camera_info(Bytes message, bool is_rectified, const std::string& place) {

@@ -33,9 +33,9 @@ class ImageMessages {
   /// 8UC3, blue green red. Image: rgb8, bgr8, 8UC3 (as bgr8), rgba8, bgra8, mono8, 8UC1. CompressedImage: JPEG or PNG.
   cv::Mat colour(Bytes message, const std::string& type, const std::string& place,
                  const ImageDecoder::SizeCheck& check_size);
-  /// 32FC1 [m]. Image: 32FC1 in metres (what is not finite or not positive becomes 0), 16UC1 and mono16 in units of
-  /// 1 / `depth_factor` metres. CompressedImage: PNG of 16 bits, with or without the header of compressed_depth.
-  cv::Mat depth(Bytes message, const std::string& type, const std::string& place, double depth_factor,
+  /// 32FC1 [m]. Image: 32FC1 in metres (what is not finite or not positive becomes 0), 16UC1 and mono16 as `encoding`
+  /// says. CompressedImage: PNG of 16 bits, with or without the header of compressed_depth.
+  cv::Mat depth(Bytes message, const std::string& type, const std::string& place, const DepthEncoding& encoding,
                 const ImageDecoder::SizeCheck& check_size);
 
  private:

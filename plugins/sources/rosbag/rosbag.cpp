@@ -24,6 +24,7 @@ struct RosbagSettings {
   std::string colour, depth, camera_info;
   double max_time_difference = 0.02;
   double depth_factor = 1000.0;
+  int invalid_depth = DepthEncoding::largest;
   std::filesystem::path truth;
   std::string on_bad_frame = "fail";
   std::int64_t start = 0;
@@ -48,6 +49,10 @@ struct RosbagSettings {
         .unit("s");
     table.add("depth_factor", &S::depth_factor, "value of one metre in depth images of whole numbers (16UC1)")
         .range(1.0, 65535.0);
+    table
+        .add("invalid_depth", &S::invalid_depth,
+             "value of pixels without a measurement in depth images of whole numbers, besides 0")
+        .range(0, 65535);
     table.add("truth", &S::truth, "ground-truth trajectory in TUM format");
     table
         .add("on_bad_frame", &S::on_bad_frame,
@@ -184,8 +189,8 @@ class RosbagSource final : public FrameSource {
     if (!source.depth) return frame;
     frame.depth_delay = source.depth->stamp - source.colour.stamp;
     place = bag_.place_of(source.depth->message);
-    frame.depth = images_.depth(bag_.content(source.depth->message), topics_.depth.type, place, settings_.depth_factor,
-                                [&](const cv::Size& size) {
+    frame.depth = images_.depth(bag_.content(source.depth->message), topics_.depth.type, place,
+                                {settings_.depth_factor, settings_.invalid_depth}, [&](const cv::Size& size) {
                                   if (size != size_)
                                     throw InputError({place}, "is " + size_text(size.width, size.height) +
                                                                   " pixels, but its colour image is " +

@@ -20,6 +20,7 @@ struct TumSettings {
   std::filesystem::path path;
   double max_time_difference = 0.02;
   double depth_factor = 5000.0;
+  int invalid_depth = DepthEncoding::largest;
   std::filesystem::path associations;
   std::string on_bad_frame = "fail";
   RealTable truth_left, truth_right;
@@ -37,6 +38,10 @@ struct TumSettings {
         .range(1e-6, 1.0)
         .unit("s");
     table.add("depth_factor", &TumSettings::depth_factor, "value of one metre in a depth image").range(1.0, 65535.0);
+    table
+        .add("invalid_depth", &TumSettings::invalid_depth,
+             "value of pixels without a measurement in a depth image, besides 0")
+        .range(0, 65535);
     table.add("associations", &TumSettings::associations,
               "file of associated pairs, lines 'colour_timestamp colour_file depth_timestamp depth_file', used instead "
               "of rgb.txt and depth.txt; image names are relative to path");
@@ -96,8 +101,6 @@ std::vector<ImageFiles> find_frames(const TumSettings& settings, const std::opti
   return pairs;
 }
 
-/// A recording in the layout of the TUM RGB-D benchmark (Sturm et al., IROS 2012), which the Bonn RGB-D Dynamic dataset
-/// shares. A colour image without a depth image near enough in time makes no frame.
 /// What shutter.txt says, which Holdfast writes beside its own recordings; without the file, the camera knows.
 bool has_global_shutter(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "shutter.txt";
@@ -111,6 +114,15 @@ bool has_global_shutter(const std::filesystem::path& folder) {
   return word == "global";
 }
 
+ImageSequenceOptions options_of(const TumSettings& settings, const Camera& camera) {
+  ImageSequenceOptions options{
+      {settings.depth_factor, settings.invalid_depth}, camera.width, camera.height, settings.on_bad_frame == "skip"};
+  options.invalid_depth_key = "source.tum.invalid_depth";
+  return options;
+}
+
+/// A recording in the layout of the TUM RGB-D benchmark (Sturm et al., IROS 2012), which the Bonn RGB-D Dynamic dataset
+/// shares. A colour image without a depth image near enough in time makes no frame.
 class TumSource final : public ImageSequenceSource {
  public:
   TumSource(const TumSettings& settings, const CreationContext& context)
@@ -118,8 +130,7 @@ class TumSource final : public ImageSequenceSource {
 
  private:
   TumSource(std::vector<ImageFiles> frames, const TumSettings& settings, const CreationContext& context)
-      : ImageSequenceSource(frames, {settings.depth_factor, context.camera.width, context.camera.height,
-                                     settings.on_bad_frame == "skip"}) {
+      : ImageSequenceSource(frames, options_of(settings, context.camera)) {
     description_.name = folder_name(settings.path);
     description_.has_depth = !frames.front().depth.empty();
     description_.has_global_shutter = has_global_shutter(settings.path);
