@@ -3,12 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "holdfast/core/association.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/stamp_unit.hpp"
 #include "holdfast/evaluation/number_text.hpp"
 #include "relative_error.hpp"
 #include "scale_drift.hpp"
+#include "suspicions.hpp"
 
 namespace holdfast {
 
@@ -24,6 +27,8 @@ void check_options(const EvaluationOptions& options) {
   check("the largest time difference of a pair [s]", options.max_time_difference);
   check("the time step of the relative error [s]", options.time_step);
   check("the path step of the relative error [m]", options.path_step);
+  if (!std::isfinite(options.time_offset))
+    throw Error("the time offset [s] is " + shortest_text(options.time_offset) + "; expected a finite number");
 }
 
 std::string describe(const std::string& name, const std::vector<double>& stamps) {
@@ -32,20 +37,10 @@ std::string describe(const std::string& name, const std::vector<double>& stamps)
          fixed_text(stamps.front(), 6) + " to " + fixed_text(stamps.back(), 6) + " s";
 }
 
-/// The remedy for stamps that are no seconds, which the other trajectory shows; empty where both may be.
-std::string unit_advice(const std::string& name, double stamp, double other_stamp) {
-  struct Unit {
-    double per_second;
-    const char* name;
-  };
-  constexpr double within = 10.0;  // the same clock within a factor
-  for (const Unit& unit : {Unit{1e3, "milliseconds"}, Unit{1e6, "microseconds"}, Unit{1e9, "nanoseconds"}}) {
-    const double ratio = stamp / (other_stamp * unit.per_second);
-    if (other_stamp > 1e6 && ratio > 1.0 / within && ratio < within)
-      return "The stamps of " + name + " look like " + unit.name + ": divide them by " +
-             shortest_text(unit.per_second) + ".";
-  }
-  return "";
+/// The remedy for stamps that are not seconds; empty where they may be.
+std::string unit_advice(const std::string& name, const std::vector<double>& stamps) {
+  const std::string suspicion = stamp_unit_suspicion(stamps);
+  return suspicion.empty() ? "" : "The stamps of " + name + " " + suspicion + ". ";
 }
 
 [[noreturn]] void throw_too_few_pairs(const EvaluationOptions& options, std::size_t pairs,
@@ -56,12 +51,16 @@ std::string unit_advice(const std::string& name, double stamp, double other_stam
                         describe(options.estimate_name, estimate) + ". ";
   if (truth.size() < fewest_pairs || estimate.size() < fewest_pairs)
     message += "Give trajectories of at least 3 poses.";
-  else if (const std::string unit = unit_advice(options.truth_name, truth.front(), estimate.front()) +
-                                    unit_advice(options.estimate_name, estimate.front(), truth.front());
+  else if (const std::string unit =
+               unit_advice(options.truth_name, truth) + unit_advice(options.estimate_name, estimate);
            !unit.empty())
-    message += unit;
+    message += unit.substr(0, unit.size() - 1);
   else if (truth.back() < estimate.front() || estimate.back() < truth.front())
-    message += "They do not overlap in time: are both of the same sequence, in seconds of the same clock?";
+    message +=
+        "They do not overlap in time: are both of the same sequence, in seconds of the same clock? "
+        "If only the clocks differ, give `holdfast evaluate --time-offset " +
+        fixed_text(options.time_offset + truth.front() - estimate.front(), 3) +
+        "`, the difference of the first stamps.";
   else
     message += "They overlap in time: allow a larger difference of stamps if the truth was recorded less often.";
   throw Error(message);
@@ -89,7 +88,9 @@ Evaluation evaluate(const Trajectory& truth_as_given, const Trajectory& estimate
                     const EvaluationOptions& options, const std::optional<std::vector<double>>& frame_stamps) {
   check_options(options);
   const Trajectory truth = sort_and_clean(truth_as_given);
-  const Trajectory estimate = sort_and_clean(estimate_as_given);
+  Trajectory estimate = sort_and_clean(estimate_as_given);
+  const std::vector<double> stamps_as_given = stamps_of(estimate);
+  for (TimedPose& pose : estimate) pose.timestamp += options.time_offset;
   const std::vector<double> truth_stamps = stamps_of(truth);
   const std::vector<double> estimate_stamps = stamps_of(estimate);
   const auto pairs = associate_stamps(truth_stamps, estimate_stamps, options.max_time_difference);
@@ -110,7 +111,7 @@ Evaluation evaluate(const Trajectory& truth_as_given, const Trajectory& estimate
   std::vector<double> errors;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     EvaluatedPose pose;
-    pose.timestamp = estimate_stamps[pairs[k].second];
+    pose.timestamp = stamps_as_given[pairs[k].second];
     pose.truth_timestamp = truth_stamps[pairs[k].first];
     pose.truth = true_positions.col(static_cast<Eigen::Index>(k));
     pose.estimate = result.alignment.apply(estimated_positions.col(static_cast<Eigen::Index>(k)));
@@ -123,9 +124,10 @@ Evaluation evaluate(const Trajectory& truth_as_given, const Trajectory& estimate
   result.duration = result.poses.back().timestamp - result.poses.front().timestamp;
   result.absolute_error = statistics_of(errors);
   const double scale = result.alignment.scale;
-  result.error_per_time = relative_error_per_time(truth, estimate, options.time_step, scale);
-  result.error_per_way = relative_error_per_way(truth, estimate, options.path_step, scale);
-  result.segment_error = segment_error(truth, estimate, scale);
+  const NearestTruth nearest(truth_stamps, estimate_stamps, options.max_time_difference);
+  result.error_per_time = relative_error_per_time(truth, estimate, nearest, options.time_step, scale);
+  result.error_per_way = relative_error_per_way(truth, estimate, nearest, options.path_step, scale);
+  result.segment_error = segment_error(truth, estimate, nearest, scale);
   if (options.alignment == AlignmentKind::sim3) result.scale_drift = scale_drift(result.poses);
 
   if (frame_stamps) {
@@ -134,11 +136,13 @@ Evaluation evaluate(const Trajectory& truth_as_given, const Trajectory& estimate
     std::sort(frames.begin(), frames.end());
     frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
     if (frames.empty()) throw Error("the list of frames is empty; expected the stamps of the sequence's frames");
-    result.coverage = measure_coverage(frames, estimate_stamps);
+    result.coverage = measure_coverage(frames, stamps_as_given);
   }
 
   result.truth_track = track_between(truth, estimate_stamps.front(), estimate_stamps.back());
   for (const TimedPose& pose : estimate) result.estimate_track.push_back(aligned(pose, result.alignment));
+  for (std::size_t i = 0; i < stamps_as_given.size(); ++i) result.estimate_track[i].timestamp = stamps_as_given[i];
+  for (std::string& text : suspicions(truth, estimate, pairs, result)) result.warnings.push_back({{}, std::move(text)});
   return result;
 }
 

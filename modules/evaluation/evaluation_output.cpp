@@ -84,6 +84,8 @@ std::string to_text(const Evaluation& evaluation) {
   text += "pairing    one-to-one, nearest stamps first, closer than " + shortest_text(options.max_time_difference) +
           " s: " + counted(evaluation.poses.size(), "pair") + " over " + fixed_text(evaluation.duration, 2) +
           " s and " + fixed_text(evaluation.path_length, 3) + " m of true path\n";
+  if (options.time_offset != 0.0)
+    text += "clocks     " + fixed_text(options.time_offset, 4) + " s added to the stamps of the estimate\n";
   text += "alignment  " + describe(options.alignment, evaluation.alignment.scale) + '\n';
   text += "coverage   ";
   if (evaluation.coverage) {
@@ -124,7 +126,7 @@ std::string to_text(const Evaluation& evaluation) {
             " %, largest to smallest " + fixed_text(100.0 * drift->spread, 2) + " %\n";
   }
   if (evaluation.error_per_time.pairs == 0)
-    text += "No pair of poses is " + shortest_text(options.time_step) + " s apart.\n";
+    text += "No pair of poses is " + shortest_text(options.time_step) + " s apart and near a true pose.\n";
   if (evaluation.error_per_way.pairs == 0)
     text += "No pair of poses is " + shortest_text(options.path_step) + " m of true path apart.\n";
   if (evaluation.error_per_time.uneven_pairs > 0)
@@ -149,6 +151,7 @@ std::string to_json(const Evaluation& evaluation) {
   json["estimate"] = {{"name", options.estimate_name}, {"poses", evaluation.estimate_poses}};
   json["pairing"] = {{"method", "one-to-one, nearest stamps first"},
                      {"max_time_difference_s", options.max_time_difference},
+                     {"time_offset_s", options.time_offset},
                      {"pairs", evaluation.poses.size()},
                      {"duration_s", evaluation.duration},
                      {"true_path_m", evaluation.path_length}};
@@ -246,6 +249,7 @@ std::string to_csv(const Evaluation& evaluation) {
   rows.add("truth", "frame", options.truth_frame, "");
   rows.add("estimate", "poses", evaluation.estimate_poses);
   rows.add("pairing", "max_time_difference", shortest_text(options.max_time_difference), "s");
+  rows.add("pairing", "time_offset", shortest_text(options.time_offset), "s");
   rows.add("pairing", "pairs", evaluation.poses.size());
   rows.add("pairing", "duration", shortest_text(evaluation.duration), "s");
   rows.add("pairing", "true_path", shortest_text(evaluation.path_length), "m");
@@ -279,6 +283,7 @@ std::string to_csv(const Evaluation& evaluation) {
   } else {
     rows.add("coverage", "ratio", "unknown", "");
   }
+  rows.add("warnings", "count", evaluation.warnings.size());
   return rows.text();
 }
 

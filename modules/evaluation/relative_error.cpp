@@ -20,27 +20,6 @@ std::size_t nearest_stamp(const std::vector<double>& sorted, double time) {
   return std::abs(sorted[index - 1] - time) <= std::abs(sorted[index] - time) ? index - 1 : index;
 }
 
-/// For every pose of the estimate its nearest truth, where that is near enough.
-class NearestTruth {
- public:
-  NearestTruth(const std::vector<double>& truth_stamps, const std::vector<double>& estimate_stamps) {
-    std::vector<double> intervals;
-    for (std::size_t i = 1; i < truth_stamps.size(); ++i) intervals.push_back(truth_stamps[i] - truth_stamps[i - 1]);
-    const double tolerance = 2.0 * median(intervals);
-    for (const double stamp : estimate_stamps) {
-      const std::size_t nearest = nearest_stamp(truth_stamps, stamp);
-      index_.push_back(nearest);
-      near_.push_back(std::abs(truth_stamps[nearest] - stamp) <= tolerance);
-    }
-  }
-  bool is_near(std::size_t estimate_index) const { return near_[estimate_index]; }
-  std::size_t operator[](std::size_t estimate_index) const { return index_[estimate_index]; }
-
- private:
-  std::vector<std::size_t> index_;
-  std::vector<char> near_;
-};
-
 /// The length of the path to each pose [m].
 std::vector<double> way_to_each(const Trajectory& trajectory) {
   std::vector<double> way(trajectory.size(), 0.0);
@@ -84,6 +63,20 @@ class Collector {
 
 }  // namespace
 
+NearestTruth::NearestTruth(const std::vector<double>& truth_stamps, const std::vector<double>& estimate_stamps,
+                           double max_time_difference) {
+  constexpr double slow_truth = 1.0 / 16.0;  // s
+  std::vector<double> intervals;
+  for (std::size_t i = 1; i < truth_stamps.size(); ++i) intervals.push_back(truth_stamps[i] - truth_stamps[i - 1]);
+  const double interval = median(intervals);
+  const double tolerance = interval > slow_truth ? max_time_difference : 2.0 * interval;
+  for (const double stamp : estimate_stamps) {
+    const std::size_t nearest = nearest_stamp(truth_stamps, stamp);
+    index_.push_back(nearest);
+    near_.push_back(std::abs(truth_stamps[nearest] - stamp) <= tolerance);
+  }
+}
+
 std::vector<double> stamps_of(const Trajectory& trajectory) {
   std::vector<double> stamps;
   stamps.reserve(trajectory.size());
@@ -91,15 +84,14 @@ std::vector<double> stamps_of(const Trajectory& trajectory) {
   return stamps;
 }
 
-RelativeError relative_error_per_time(const Trajectory& truth, const Trajectory& estimate, double time_step,
-                                      double scale) {
+RelativeError relative_error_per_time(const Trajectory& truth, const Trajectory& estimate, const NearestTruth& nearest,
+                                      double time_step, double scale) {
   const std::vector<double> stamps = stamps_of(estimate);
-  const NearestTruth nearest(stamps_of(truth), stamps);
   Collector collector(truth, estimate, scale);
   RelativeError result;
   for (std::size_t i = 0; i < stamps.size(); ++i) {
     const std::size_t j = nearest_stamp(stamps, stamps[i] + time_step);
-    if (j + 1 == stamps.size() || !nearest.is_near(i) || !nearest.is_near(j)) continue;
+    if (j == i || j + 1 == stamps.size() || !nearest.is_near(i) || !nearest.is_near(j)) continue;
     collector.add(i, j, nearest[i], nearest[j]);
     if (std::abs(stamps[j] - stamps[i] - time_step) > uneven_share * time_step) ++result.uneven_pairs;
   }
@@ -107,9 +99,8 @@ RelativeError relative_error_per_time(const Trajectory& truth, const Trajectory&
   return result;
 }
 
-RelativeError relative_error_per_way(const Trajectory& truth, const Trajectory& estimate, double path_step,
-                                     double scale) {
-  const NearestTruth nearest(stamps_of(truth), stamps_of(estimate));
+RelativeError relative_error_per_way(const Trajectory& truth, const Trajectory& estimate, const NearestTruth& nearest,
+                                     double path_step, double scale) {
   const std::vector<double> way = way_to_each(truth);
   Collector collector(truth, estimate, scale);
   RelativeError result;
@@ -128,10 +119,10 @@ RelativeError relative_error_per_way(const Trajectory& truth, const Trajectory& 
   return result;
 }
 
-SegmentError segment_error(const Trajectory& truth, const Trajectory& estimate, double scale) {
+SegmentError segment_error(const Trajectory& truth, const Trajectory& estimate, const NearestTruth& nearest,
+                           double scale) {
   constexpr double shortest = 100.0, longest = 800.0;  // m; in steps of the shortest
   constexpr std::size_t stride = 10;
-  const NearestTruth nearest(stamps_of(truth), stamps_of(estimate));
   const std::vector<double> way = way_to_each(truth);
   SegmentError result;
   for (double length = shortest; length <= longest; length += shortest) {

@@ -256,8 +256,8 @@ TEST(EvaluationPlots, LookAlongGravity) {
 TEST(Evaluation, NamesStampsThatAreNoSeconds) {
   const Trajectory truth = wavy_trajectory(100, 30.0, 1.3e9);
   for (const auto& [factor, unit] : {std::pair{1e3, "milliseconds: divide them by 1000."},
-                                     {1e6, "microseconds: divide them by 1e+06."},
-                                     {1e9, "nanoseconds: divide them by 1e+09."}}) {
+                                     {1e6, "microseconds: divide them by 1e6."},
+                                     {1e9, "nanoseconds: divide them by 1e9."}}) {
     Trajectory estimate = truth;
     for (TimedPose& pose : estimate) pose.timestamp *= factor;
     try {

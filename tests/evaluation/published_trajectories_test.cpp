@@ -48,6 +48,7 @@ TEST_P(PublishedTrajectory, HasTheBenchmarksFigures) {
   EXPECT_NEAR(evaluation.absolute_error.maximum, expected.maximum, last_digit);
   EXPECT_NEAR(evaluation.error_per_time.translation.rmse, expected.relative_translation, last_digit);
   EXPECT_NEAR(evaluation.error_per_time.rotation.rmse, expected.relative_rotation, last_digit);
+  EXPECT_TRUE(evaluation.warnings.empty()) << evaluation.warnings.front().message;
   ASSERT_TRUE(evaluation.coverage.has_value());
   EXPECT_EQ(evaluation.coverage->poses, evaluation.estimate_poses) << "every pose has the stamp of a frame";
   EXPECT_EQ(evaluation.coverage->ratio() < 1.0, std::string(expected.estimate) == "walking_xyz_orbslam2");

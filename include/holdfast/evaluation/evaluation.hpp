@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "holdfast/core/error.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/core/warning.hpp"
 #include "holdfast/evaluation/alignment.hpp"
@@ -21,6 +22,7 @@ struct EvaluationOptions {
   double time_step = 1.0;             ///< interval of the relative error per time [s]
   double path_step = 1.0;             ///< path length of the relative error per distance [m]
   std::string truth_name = "truth";   ///< for messages, tables and plots
+  double time_offset = 0.0;           ///< added to the stamps of the estimate, for association and RPE [s]
   std::string truth_frame = "raw";    ///< "raw" as recorded, or "transformed" to the camera; for the results alone
   std::string estimate_name = "estimate";
 };
@@ -39,14 +41,15 @@ struct EvaluatedPose {
 /// error = E inv(G) with E = inv(T_i) T_j of the estimate (translations multiplied by the scale of the alignment, which
 /// is 1 except for sim3) and G = inv(T_i) T_j of the ground truth at the nearest stamps. This is the order of the
 /// benchmark's tool, not that of its paper. A pose is ignored if its nearest ground truth is farther than twice the
-/// median interval of the ground truth.
+/// median interval of the ground truth; for a ground truth with fewer than 16 poses per second, which that tool does
+/// not expect, farther than max_time_difference.
 ///
 /// Per time: for every i, j is the pose nearest to t_i + time_step; pairs whose j is the last pose are excluded. Both
 /// rules are those of the benchmark's tool; at a gap of the estimate a pair may therefore span more or less than
-/// time_step. Per distance: the true path length is the sum of the distances between all consecutive poses of the
-/// ground truth, so that it does not depend on the estimate. For every i, j is the first later pose at which the true
-/// path length since i is at least path_step. Pairs that exceed path_step by more than a tenth (across a gap of the
-/// estimate) are excluded, so that all pairs have a comparable length.
+/// time_step. A pose is never compared with itself. Per distance: the true path length is the sum of the distances
+/// between all consecutive poses of the ground truth, so that it does not depend on the estimate. For every i, j is the
+/// first later pose at which the true path length since i is at least path_step. Pairs that exceed path_step by more
+/// than a tenth (across a gap of the estimate) are excluded, so that all pairs have a comparable length.
 struct RelativeError {
   Statistics translation;         ///< norm of the error's translation [m]
   Statistics rotation;            ///< angle of the error's rotation [deg]
@@ -110,13 +113,16 @@ struct Evaluation {
   /// Mean over the compared true poses of the direction that is up in the image (-y of the camera), in the frame of the
   /// truth. Near 1 in length for a camera that is carried upright: then it is opposite to gravity.
   Eigen::Vector3d mean_up = Eigen::Vector3d::Zero();
-  /// Suspicions about the trajectories, such as a wrong unit; see core/warning.hpp.
+  /// Suspicions that errors have another cause than the estimate, each a clause with its remedy (core/warning.hpp): the
+  /// unit of stamps or lengths, a late clock, inverted, mirrored or unmoved poses, a truth of another body, poses without
+  /// a truth.
   Warnings warnings;
 };
 
 /// Compares an estimate with the ground truth. Stamps need not be sorted; of several poses with the same stamp the last
 /// one is used, and poses that are not finite are ignored. Pairs are associated by associate_stamps() within
-/// max_time_difference. Throws Error if an option is out of range, if there are fewer than 3 pairs (the message states
+/// max_time_difference, after time_offset has been added to those of the estimate; results have the stamps as given.
+/// Throws Error if an option is out of range, if there are fewer than 3 pairs (the message states
 /// the reason), or if the list of frames is empty.
 Evaluation evaluate(const Trajectory& truth, const Trajectory& estimate, const EvaluationOptions& options = {},
                     const std::optional<std::vector<double>>& frame_stamps = std::nullopt);
