@@ -2,6 +2,7 @@
 #include "holdfast/run/trajectory_journal.hpp"
 
 #include <string>
+#include <system_error>
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/system_reason.hpp"
@@ -27,6 +28,14 @@ void TrajectoryJournal::add(const TimedPose& pose) {
   if (since_flush_.seconds() < 1.0) return;
   stream_.flush();
   since_flush_.restart();
+}
+
+bool is_trajectory_journal(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return false;
+  std::ifstream stream(file);
+  std::string line;
+  return std::getline(stream, line) && line == mark;
 }
 
 int poses_of_killed_run(const std::filesystem::path& folder) {

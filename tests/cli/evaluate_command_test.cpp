@@ -9,6 +9,7 @@
 
 #include "cli/command.hpp"
 #include "evaluation/synthetic_trajectory.hpp"
+#include "holdfast/run/trajectory_journal.hpp"
 
 namespace holdfast {
 namespace {
@@ -109,6 +110,99 @@ TEST_F(EvaluateCommand, TakesAndWritesOtherFormats) {
   EXPECT_NEAR(rmse(tum), rmse(kitti), 1e-6);
   const Outcome without = run({path("matrices.txt"), path("matrices.txt"), "--json", "-"});
   EXPECT_THAT(without.errors, HasSubstr("ten poses a second are assumed"));
+}
+
+TEST_F(EvaluateCommand, ComparesSeveralEstimates) {
+  write_trajectory(path("good.txt"), test::moved(test::wavy_trajectory(120, 30.0), test::some_transform()));
+  write_trajectory(path("later.txt"), test::wavy_trajectory(50, 30.0, 900.0));
+  const std::vector<std::string> two = {path("truth.txt"), path("estimate.txt"), path("good.txt"), "--frames",
+                                        path("frames.txt")};
+  const auto with = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = two;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  };
+  const Outcome table = with({});
+  EXPECT_EQ(table.exit_code, 0) << table.errors;
+  EXPECT_THAT(table.errors, IsEmpty());
+  EXPECT_THAT(table.output, ::testing::ContainsRegex("estimate.txt +90 +90 +75.00 +0.000000"));
+  EXPECT_THAT(table.output, ::testing::ContainsRegex("good.txt +120 +120 +100.00 +0.000000"));
+  const auto json = nlohmann::json::parse(with({"--json", "-"}).output);
+  ASSERT_EQ(json.size(), 2U);
+  EXPECT_EQ(json[1]["estimate"]["name"], path("good.txt"));
+  EXPECT_EQ(json[0]["coverage"]["poses"], 90);
+  const std::string csv = with({"--csv", "-"}).output;
+  EXPECT_THAT(csv,
+              StartsWith("estimate,quantity,statistic,value,unit\n" + path("estimate.txt") + ",alignment,kind,se3,"));
+  EXPECT_THAT(csv, HasSubstr(path("good.txt") + ",pairing,pairs,120,"));
+
+  // One that fails does not take the others with it.
+  const Outcome partly = with({path("later.txt"), path("absent.txt"), "--json", path("figures.json")});
+  EXPECT_EQ(partly.exit_code, 1);
+  EXPECT_THAT(partly.errors, AllOf(HasSubstr("later.txt holds 50 poses"), HasSubstr("absent.txt: no such file")));
+  EXPECT_THAT(partly.output, AllOf(::testing::ContainsRegex("good.txt +120"), HasSubstr("later.txt")));
+  EXPECT_THAT(nlohmann::json::parse(content("figures.json"))[2].at("error"), HasSubstr("found 0 pairs"));
+  EXPECT_THAT(with({"--plots", path("plots")}).errors, HasSubstr("--plots and --write are of one estimate"));
+}
+
+TEST_F(EvaluateCommand, NamesTheJournalOfAKilledRun) {
+  {
+    TrajectoryJournal journal(folder_);
+    for (const TimedPose& pose : read_trajectory(path("estimate.txt"))) journal.add(pose);
+  }
+  const Outcome outcome = run({path("truth.txt"), path("trajectory.txt"), "--json", "-"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.errors, HasSubstr("trajectory.txt: is of a run that has not come to its end: 90 poses"));
+}
+
+TEST_F(EvaluateCommand, WarnsAndTheOptionItNamesMends) {
+  const Trajectory truth = test::wavy_trajectory(3000, 100.0);
+  const Trajectory estimate = test::moved(test::wavy_trajectory(900, 30.0), test::some_transform());
+  write_trajectory(path("moved.txt"), estimate);
+  const auto expect_mended = [&](const Trajectory& given_truth, const std::string& suspicion,
+                                 const std::vector<std::string>& options) {
+    write_trajectory(path("given.txt"), given_truth);
+    const Outcome wrong = run({path("given.txt"), path("moved.txt"), "--json", "-"});
+    EXPECT_EQ(wrong.exit_code, 0);
+    EXPECT_THAT(wrong.errors, HasSubstr(suspicion));
+    for (const std::string& option : options) EXPECT_THAT(wrong.errors, HasSubstr(option));
+    std::vector<std::string> arguments = {path("given.txt"), path("moved.txt"), "--json", "-"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const Outcome mended = run(arguments);
+    EXPECT_THAT(mended.errors, IsEmpty()) << suspicion;
+    const auto json = nlohmann::json::parse(mended.output);
+    EXPECT_LT(json["ate_m"]["rmse"].get<double>(), 0.005) << suspicion;
+    EXPECT_LT(json["rpe_per_time"]["rotation_deg"]["rmse"].get<double>(), 0.3) << suspicion;
+  };
+  const auto changed = [&](const auto& change) {
+    Trajectory result = truth;
+    for (TimedPose& pose : result) change(pose);
+    return result;
+  };
+  expect_mended(changed([](TimedPose& pose) { pose.timestamp += 0.15; }), "given.txt is late", {"--time-offset", "0.150"});
+  expect_mended(changed([](TimedPose& pose) { pose.T_world_camera.translation() *= 1000.0; }), "millimetres",
+                {"--truth-unit", "mm"});
+  expect_mended(
+      changed([](TimedPose& pose) { pose.T_world_camera = Eigen::Isometry3d(pose.T_world_camera.inverse()); }),
+      "inverted", {"--invert", "truth"});
+  expect_mended(changed([](TimedPose& pose) {
+                  const Eigen::DiagonalMatrix<double, 3> mirror(1.0, -1.0, 1.0);
+                  pose.T_world_camera.linear() = (mirror * pose.T_world_camera.linear() * mirror).eval();
+                  pose.T_world_camera.translation().y() *= -1.0;
+                }),
+                "left-handed", {"--mirror", "y"});
+
+  write_trajectory(path("given.txt"), changed([](TimedPose& pose) { pose.timestamp += 3.2; }));
+  const Outcome found = run({path("given.txt"), path("moved.txt"), "--time-offset", "estimate"});
+  EXPECT_THAT(found.errors, IsEmpty());
+  EXPECT_THAT(found.output, HasSubstr("clocks     3.2000 s added to the stamps of the estimate"));
+  const Outcome apart = run({path("given.txt"), path("moved.txt"), "--time-offset", "900"});
+  EXPECT_EQ(apart.exit_code, 1);
+  write_trajectory(path("short.txt"), test::wavy_trajectory(12, 30.0, 105.0));
+  const Outcome none = run({path("given.txt"), path("short.txt"), "--time-offset", "estimate"});
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_THAT(none.errors, HasSubstr("no time offset of"));
+  EXPECT_EQ(run({path("given.txt"), path("moved.txt"), "--time-offset", "soon"}).exit_code, 2);
 }
 
 TEST_F(EvaluateCommand, ExplainsFailureAndReturnsNonZero) {
