@@ -94,7 +94,7 @@ class AccuracyReport {
     for (std::size_t s = 0; s < plan_.matrix.sequences.size(); ++s)
       if (has_transformed_truth(s)) names += (names.empty() ? "" : ", ") + sequence(s);
     if (names.empty()) return "Truth: raw, as recorded.";
-    return "Truth: transformed from markers to the camera (`source.tum.truth_left`, `truth_right`) on " + names +
+    return "Truth: transformed from markers to the camera (`source.tum.truth_frame`, `truth_left`, `truth_right`) on " + names +
            "; elsewhere raw, as recorded. Published ATE is against the raw truth.";
   }
 

@@ -155,8 +155,11 @@ std::optional<RecordedSequence> recorded_sequence(const MatrixSequence& sequence
     return std::nullopt;
   }
   try {
-    recorded.truth = make_truth_transform(std::get<RealTable>(values.at("truth_left")),
-                                          std::get<RealTable>(values.at("truth_right")), "source.tum");
+    recorded.truth = choose_truth_transform({.is_raw = text_of(values, "truth_frame") == "raw",
+                                             .left = std::get<RealTable>(values.at("truth_left")),
+                                             .right = std::get<RealTable>(values.at("truth_right")),
+                                             .place = "source.tum"},
+                                            recorded.folder / "groundtruth.txt", recorded.camera);
     recorded.frames =
         recording_pairs(recorded.folder, associations, std::get<double>(values.at("max_time_difference")));
     select_range(recorded.frames, std::get<std::int64_t>(values.at("start")),

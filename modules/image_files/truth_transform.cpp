@@ -3,8 +3,10 @@
 
 #include <Eigen/SVD>
 #include <algorithm>
+#include <fstream>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/folder_name.hpp"
 
 namespace holdfast {
 
@@ -48,6 +50,30 @@ bool TruthTransform::is_identity() const {
 
 TruthTransform make_truth_transform(const RealTable& left, const RealTable& right, const std::string& place) {
   return {rigid_motion(left, {place + ".truth_left"}), rigid_motion(right, {place + ".truth_right"})};
+}
+
+std::optional<TruthTransform> known_truth_transform(const std::string& folder, const Camera& camera) {
+  const Camera bonn = find_camera("bonn").value();
+  const bool is_bonn_camera =
+      camera.fx == bonn.fx && camera.fy == bonn.fy && camera.cx == bonn.cx && camera.cy == bonn.cy;
+  if (!folder.starts_with("rgbd_bonn_") && !is_bonn_camera) return std::nullopt;
+  // https://www.ipb.uni-bonn.de/data/rgbd-dynamic-dataset: T_world_camera = T_ROS T T_ROS T_m.
+  static const RealTable left = {{-1, 0, 0, 0}, {0, 0, 1, 0}, {0, 1, 0, 0}, {0, 0, 0, 1}};
+  static const RealTable right = {{-1.0157, -0.1828, 0.2389, -0.0113},
+                                  {-0.3009, 0.6147, -0.8085, 0.0111},
+                                  {0.0009, -0.8431, -0.6413, -0.0098},
+                                  {0, 0, 0, 1}};
+  return make_truth_transform(left, right, "Bonn RGB-D Dynamic");
+}
+
+TruthTransform choose_truth_transform(const TruthChoice& choice, const std::filesystem::path& truth,
+                                      const Camera& camera) {
+  if (choice.is_raw) return {};
+  const TruthTransform given = make_truth_transform(choice.left, choice.right, choice.place);
+  if (!choice.left.empty() || !choice.right.empty()) return given;
+  std::string line;
+  if (std::ifstream stream(truth); std::getline(stream, line) && line + '\n' == trajectory_header) return {};
+  return known_truth_transform(folder_name(truth.parent_path()), camera).value_or(TruthTransform());
 }
 
 Trajectory transformed(const TruthTransform& transform, Trajectory truth) {

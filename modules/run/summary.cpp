@@ -91,7 +91,8 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& r
     const Evaluation& e = *record.evaluation;
     rows.emplace_back(
         "ATE RMSE", fixed_text(e.absolute_error.rmse, 6) + " m (" + std::string(to_string(e.options.alignment)) + ", " +
-                        counted(e.poses.size(), "pair") + ", path " + fixed_text(e.path_length, 2) + " m)");
+                        counted(e.poses.size(), "pair") + ", path " + fixed_text(e.path_length, 2) + " m" +
+                        (e.options.truth_frame == "raw" ? "" : ", truth transformed to the camera") + ")");
     if (e.error_per_time.pairs > 0)
       rows.emplace_back("RPE per second", fixed_text(e.error_per_time.translation.rmse, 6) + " m, " +
                                               fixed_text(e.error_per_time.rotation.rmse, 4) + " deg");

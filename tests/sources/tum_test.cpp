@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
+#include <filesystem>
+#include <fstream>
+
+#include "holdfast/image_files/truth_transform.hpp"
 #include "sources/recording.hpp"
 
 namespace holdfast {
@@ -218,6 +222,41 @@ TEST_F(TumSourceTest, TruthOfMarkersBecomesThatOfTheCamera) {
   }
   EXPECT_EQ(open()->describe().truth_frame, "raw");
   EXPECT_TRUE(open()->truth()[2].T_world_camera.isApprox(recorded[2].T_world_camera, 1e-7));
+}
+
+TEST_F(TumSourceTest, TheTransformOfAKnownDatasetIsTheDefault) {
+  const auto given =
+      make_truth_transform(rows_of(bonn_ros()), rows_of(bonn_ros() * bonn_markers()), "the page of the dataset");
+  const Trajectory recorded = {{100.0, Eigen::Isometry3d(Eigen::Translation3d(1, 2, 3))},
+                               {100.1, Eigen::Isometry3d(Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitY()))}};
+  std::string lines = trajectory_text(recorded);
+  lines.erase(0, lines.find('\n') + 1);
+  folder_.write("groundtruth.txt", lines);
+  const auto folder = folder_.path().parent_path() / "rgbd_bonn_crowd";
+  std::filesystem::remove_all(folder);
+  std::filesystem::copy(folder_.path(), folder, std::filesystem::copy_options::recursive);
+  const auto open_bonn = [&](ParameterValues values) {
+    values["path"] = folder.string();
+    return test::make_source("tum", values, test::recording_width, test::recording_height);
+  };
+  const auto source = open_bonn({});
+  EXPECT_EQ(source->describe().truth_frame, "transformed");
+  ASSERT_EQ(source->truth().size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i)
+    EXPECT_TRUE(
+        source->truth()[i].T_world_camera.isApprox(given.left * recorded[i].T_world_camera * given.right, 1e-7));
+  EXPECT_EQ(open_bonn({{"truth_frame", std::string("raw")}})->describe().truth_frame, "raw");
+  EXPECT_TRUE(open_bonn({{"truth_left", rows_of(Eigen::Matrix4d::Identity())}})
+                  ->truth()[0]
+                  .T_world_camera.isApprox(recorded[0].T_world_camera, 1e-7));
+  EXPECT_EQ(open()->describe().truth_frame, "raw") << "a folder of another name";
+  // What Holdfast recorded from such a folder has the truth of the camera.
+  std::ofstream(folder / "groundtruth.txt") << trajectory_text(recorded);
+  EXPECT_EQ(open_bonn({})->describe().truth_frame, "raw");
+  std::filesystem::remove_all(folder);
+
+  EXPECT_TRUE(known_truth_transform("crowd", find_camera("bonn").value()).has_value());
+  EXPECT_FALSE(known_truth_transform("crowd", find_camera("tum_fr3").value()).has_value());
 }
 
 TEST_F(TumSourceTest, RefusesATransformThatIsNoRigidMotion) {

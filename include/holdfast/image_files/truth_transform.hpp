@@ -2,7 +2,11 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <filesystem>
+#include <optional>
+#include <string>
 
+#include "holdfast/core/camera.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/plugin/parameter.hpp"
 
@@ -24,6 +28,22 @@ struct TruthTransform {
 /// InputError that names `place` for a table of another shape, a last row other than 0 0 0 1, and a matrix that is no
 /// rotation (a reflection, or stretched by more than a quarter).
 TruthTransform make_truth_transform(const RealTable& left, const RealTable& right, const std::string& place);
+
+/// The transform that the page of a dataset gives for the truth of its recordings: of Bonn RGB-D Dynamic, whose motion
+/// capture tracks markers. Recognised by the name of the folder (rgbd_bonn_*) or the numbers of the camera bonn.
+std::optional<TruthTransform> known_truth_transform(const std::string& folder, const Camera& camera);
+
+/// What turns the recorded truth of a sequence in TUM layout into that of the camera.
+struct TruthChoice {
+  bool is_raw = false;    ///< the truth as recorded is wanted
+  RealTable left, right;  ///< tables of make_truth_transform(), for a transform that the user gives
+  std::string place;      ///< of the settings, for errors: "source.tum"
+};
+/// The identity for `is_raw`; else the given transform; else the known one of the dataset, unless the file `truth` has
+/// the header that Holdfast writes (trajectory_header), because its poses are those of the camera already. Throws as
+/// make_truth_transform().
+TruthTransform choose_truth_transform(const TruthChoice& choice, const std::filesystem::path& truth,
+                                      const Camera& camera);
 
 /// Applies the transform to each pose.
 Trajectory transformed(const TruthTransform& transform, Trajectory truth);

@@ -23,6 +23,7 @@ struct TumSettings {
   int invalid_depth = DepthEncoding::largest;
   std::filesystem::path associations;
   std::string on_bad_frame = "fail";
+  std::string truth_frame = "camera";
   RealTable truth_left, truth_right;
   std::int64_t start = 0;
   std::int64_t frames = 0;
@@ -49,6 +50,13 @@ struct TumSettings {
         .add("on_bad_frame", &TumSettings::on_bad_frame,
              "reaction to a missing, damaged or unsuitable image: stop with an error, or skip and count the frame")
         .one_of({"fail", "skip"});
+    table
+        .add(
+            "truth_frame", &TumSettings::truth_frame,
+            "camera: the truth of the camera, by truth_left and truth_right or, if both are empty, by the transform "
+            "that is known of a dataset (rgbd_bonn_* and the camera bonn); raw: as recorded, to which published errors "
+            "may refer")
+        .one_of({"camera", "raw"});
     table
         .add("truth_left", &TumSettings::truth_left,
              "rigid motion before each pose of groundtruth.txt, the four rows of a matrix; empty = none. The true pose "
@@ -134,10 +142,14 @@ class TumSource final : public ImageSequenceSource {
     description_.name = folder_name(settings.path);
     description_.has_depth = !frames.front().depth.empty();
     description_.has_global_shutter = has_global_shutter(settings.path);
-    const TruthTransform transform = make_truth_transform(settings.truth_left, settings.truth_right, "source.tum");
+    const std::filesystem::path truth_file = settings.path / "groundtruth.txt";
+    const TruthTransform transform = choose_truth_transform({.is_raw = settings.truth_frame == "raw",
+                                                             .left = settings.truth_left,
+                                                             .right = settings.truth_right,
+                                                             .place = "source.tum"},
+                                                            truth_file, context.camera);
     description_.truth_frame = transform.frame();
-    if (const auto truth_file = settings.path / "groundtruth.txt"; std::filesystem::exists(truth_file))
-      truth_ = transformed(transform, read_trajectory(truth_file));
+    if (std::filesystem::exists(truth_file)) truth_ = transformed(transform, read_trajectory(truth_file));
   }
 };
 
