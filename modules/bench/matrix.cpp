@@ -165,9 +165,11 @@ class MatrixReader {
   void read_analysis() {
     const ConfigurationNode* node = map_.find("analysis");
     if (node == nullptr) return;
-    StrictMap analysis(*node, "'analysis'", {"tables", "decimals"}, diagnostics_);
+    StrictMap analysis(*node, "'analysis'", {"tables", "decimals", "statistics", "columns"}, diagnostics_);
     matrix_.analysis.decimals =
         static_cast<int>(analysis.integer("decimals", 1, 12).value_or(matrix_.analysis.decimals));
+    read_table_rows(analysis);
+    read_table_columns(analysis);
     const ConfigurationNode* tables = analysis.find("tables");
     if (tables == nullptr) return;
     if (tables->kind != Kind::list) analysis.mismatch(*tables, "tables", "a list, such as [paper2, paper3]");
@@ -177,6 +179,27 @@ class MatrixReader {
         analysis.complain(item.location, "there is no table '" + item.text + "'; " + did_you_mean(item.text, known));
       else
         add_paper_table(item.text, matrix_.analysis);
+    }
+  }
+
+  void read_table_rows(StrictMap& analysis) {
+    const ConfigurationNode* statistics = analysis.find("statistics");
+    if (statistics == nullptr) return;
+    if (statistics->kind != Kind::list)
+      analysis.mismatch(*statistics, "statistics", "a list, such as [rmse, standard_deviation]");
+    for (const ConfigurationNode& item : statistics->items)
+      add_table_statistic({item.text, item.location}, matrix_.analysis, diagnostics_);
+  }
+  void read_table_columns(StrictMap& analysis) {
+    const ConfigurationNode* columns = analysis.find("columns");
+    if (columns == nullptr) return;
+    if (columns->kind != Kind::map)
+      analysis.mismatch(*columns, "columns", "a map of names of variants, such as { full: Ours }");
+    for (const ConfigurationNode::Entry& entry : columns->entries) {
+      if (entry.value.kind == Kind::scalar)
+        matrix_.analysis.columns.emplace_back(PlacedText{entry.key, entry.location}, entry.value.text);
+      else
+        analysis.mismatch(entry.value, entry.key, "a text");
     }
   }
 

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "error_keys.hpp"
 #include "holdfast/bench/error_text.hpp"
 #include "holdfast/bench/tables.hpp"
+#include "holdfast/plugin/did_you_mean.hpp"
 
 namespace holdfast {
 
@@ -32,6 +34,11 @@ class PaperTableMaker {
       if (std::any_of(analysis.cells.begin(), analysis.cells.end(),
                       [&](const Cell& cell) { return cell.variant == variant; }))
         variants_.push_back(variant);
+    for (const std::size_t statistic : printed_order) {
+      const std::vector<std::size_t>& chosen = plan.matrix.analysis.statistics;
+      if (chosen.empty() || std::find(chosen.begin(), chosen.end(), statistic) != chosen.end())
+        statistics_.push_back(statistic);
+    }
     for (const PublishedResult& result : published.results)
       if (is_of_these_sequences(result)) published_.push_back(&result);
   }
@@ -39,22 +46,26 @@ class PaperTableMaker {
   PaperTable errors(const std::string& label, Quantity quantity) {
     PaperTable table;
     table.name = label;
-    table.caption = std::string(to_string(quantity)) + " [" + unit_of(quantity) + "]" + count_text();
-    table.header = {"Sequence", "Statistic"};
+    table.caption = std::string(to_string(quantity)) +
+                    (has_one_statistic() ? " " + statistic_name(statistics_[0]) : "") + " [" + unit_of(quantity) + "]" +
+                    count_text();
+    table.header = {"Sequence"};
+    if (!has_one_statistic()) table.header.emplace_back("Statistic");
+    table.text_columns = table.header.size();
     for (const std::size_t variant : variants_) {
-      table.header.push_back(plan_.variants[variant].name);
+      table.header.push_back(column_name(variant));
       if (plan_.variants[variant].baseline)
-        table.header.push_back("over " + plan_.variants[*plan_.variants[variant].baseline].name);
+        table.header.push_back("over " + column_name(*plan_.variants[variant].baseline));
     }
     const std::vector<const PublishedResult*> printed = printed_columns(quantity);
     for (const PublishedResult* result : printed) table.header.push_back(result->marked_system() + ", as printed");
     for (std::size_t sequence = 0; sequence < plan_.matrix.sequences.size(); ++sequence) {
       bool is_first = true;
-      for (const std::size_t statistic : printed_order) {
+      for (const std::size_t statistic : statistics_) {
         if (!has_cell(sequence)) break;
         PaperTable::Row row = error_row(quantity, sequence, statistic);
         for (const PublishedResult* result : printed) row.cells.push_back(printed_cell(*result, sequence, statistic));
-        row.begins_group = is_first;
+        row.begins_group = is_first && !has_one_statistic();
         if (is_first) row.cells[0].text = plan_.matrix.sequences[sequence].name;
         is_first = false;
         table.rows.push_back(std::move(row));
@@ -88,7 +99,7 @@ class PaperTableMaker {
       table.rows.push_back(std::move(row));
     }
     for (const std::size_t variant : variants_) {
-      PaperTable::Row row{{{plan_.variants[variant].name + " (here)"}}, variant == variants_.front()};
+      PaperTable::Row row{{{column_name(variant) + " (here)"}}, variant == variants_.front()};
       for (std::size_t s = 0; s < plan_.matrix.sequences.size(); ++s) {
         const Cell* cell = analysis_.find(variant, s);
         row.cells.push_back(cell == nullptr ? PaperTable::Cell{no_figure} : value_cell(*cell, Quantity::ate, 0));
@@ -104,6 +115,15 @@ class PaperTableMaker {
   }
 
  private:
+  bool has_one_statistic() const { return statistics_.size() == 1; }
+  static std::string statistic_name(std::size_t statistic) { return printed_names[statistic]; }
+  /// What the tables call a variant.
+  std::string column_name(std::size_t variant) const {
+    const std::string& name = plan_.variants[variant].name;
+    for (const auto& [of_variant, column] : plan_.matrix.analysis.columns)
+      if (of_variant.text == name) return column;
+    return name;
+  }
   bool has_cell(std::size_t sequence) const {
     return std::any_of(analysis_.cells.begin(), analysis_.cells.end(),
                        [&](const Cell& cell) { return cell.sequence == sequence; });
@@ -155,7 +175,8 @@ class PaperTableMaker {
   }
 
   PaperTable::Row error_row(Quantity quantity, std::size_t sequence, std::size_t statistic) const {
-    PaperTable::Row row{{{""}, {printed_names[statistic]}}, false};
+    PaperTable::Row row{{{""}}, false};
+    if (!has_one_statistic()) row.cells.push_back({statistic_name(statistic)});
     double best = Statistics::none;
     std::size_t candidates = 0;
     for (const std::size_t variant : variants_) {
@@ -186,6 +207,7 @@ class PaperTableMaker {
   const Analysis& analysis_;
   int decimals_;
   std::vector<std::size_t> variants_;
+  std::vector<std::size_t> statistics_;  ///< rows of a sequence
   std::vector<const PublishedResult*> published_;
 };
 
@@ -199,6 +221,21 @@ const std::vector<std::string>& paper_table_names() {
 void add_paper_table(const std::string& name, MatrixAnalysis& analysis) {
   if (std::find(analysis.tables.begin(), analysis.tables.end(), name) == analysis.tables.end())
     analysis.tables.push_back(name);
+}
+
+std::vector<std::string> table_statistic_names() {
+  std::vector<std::string> names;
+  for (const std::size_t statistic : printed_order) names.emplace_back(statistic_keys[statistic]);
+  return names;
+}
+
+void add_table_statistic(const PlacedText& name, MatrixAnalysis& analysis, std::vector<Diagnostic>& diagnostics) {
+  const auto found = std::find(statistic_keys.begin(), statistic_keys.end(), name.text);
+  if (found == statistic_keys.end())
+    diagnostics.push_back({name.location, "there is no statistic '" + name.text + "'; " +
+                                              did_you_mean(name.text, table_statistic_names())});
+  else
+    analysis.statistics.push_back(static_cast<std::size_t>(found - statistic_keys.begin()));
 }
 
 std::vector<PaperTable> paper_tables(const std::string& name, const RunPlan& plan, const Analysis& analysis,

@@ -230,6 +230,7 @@ class Planner {
       else if (first && second)
         plan_.comparisons.emplace_back(*first, *second);
     }
+    for (const auto& [variant, column] : matrix().analysis.columns) index_of(variant);
   }
 
   /// `baseline: { axis: value }`: a variant is measured against the one with these values and otherwise its own.

@@ -41,7 +41,7 @@ struct BenchArguments {
   fs::path output;
   int jobs = 1;
   bool resume = false, attach = false, dry_run = false, timing = false, keep_copies = false, quiet = false;
-  std::vector<std::string> data, tables, slurm;
+  std::vector<std::string> data, tables, statistics, columns, slurm;
   std::string executor, run;
 };
 
@@ -54,6 +54,23 @@ Variables variables_of(const std::vector<std::string>& data) {
     variables[each.substr(0, equals)] = each.substr(equals + 1);
   }
   return variables;
+}
+
+/// The rows and names of columns that options give take the place of the matrix's.
+void read_table_options(const BenchArguments& arguments, MatrixAnalysis& analysis,
+                        std::vector<Diagnostic>& diagnostics) {
+  for (const std::string& name : arguments.tables) add_paper_table(name, analysis);
+  if (!arguments.statistics.empty()) analysis.statistics.clear();
+  for (const std::string& name : arguments.statistics)
+    add_table_statistic({name, {"--statistic " + name}}, analysis, diagnostics);
+  for (const std::string& each : arguments.columns) {
+    const SourceLocation location{"--column " + each};
+    const std::size_t equals = each.find('=');
+    if (equals == std::string::npos || equals == 0)
+      diagnostics.push_back({location, "expected VARIANT=TEXT, such as full=Ours"});
+    else
+      analysis.columns.insert(analysis.columns.begin(), {{each.substr(0, equals), location}, each.substr(equals + 1)});
+  }
 }
 
 /// File by file, from top to bottom; what has no line comes last.
@@ -109,6 +126,8 @@ std::string command_to_resume(const BenchArguments& arguments, const ProgramHost
   if (arguments.timing) text += " --timing";
   if (arguments.keep_copies) text += " --keep-copies";
   for (const std::string& each : arguments.tables) text += " --table " + each;
+  for (const std::string& each : arguments.statistics) text += " --statistic " + each;
+  for (const std::string& each : arguments.columns) text += " --column '" + each + "'";
   for (const std::string& each : arguments.data) text += " --data " + each;
   return text;
 }
@@ -154,7 +173,7 @@ void bench(const BenchArguments& arguments, const ProgramHost& host, int& exit_c
   std::vector<Diagnostic> diagnostics;
   Matrix matrix = read_matrix(arguments.matrix, variables_of(arguments.data), diagnostics);
   matrix.timing = matrix.timing || arguments.timing;
-  for (const std::string& name : arguments.tables) add_paper_table(name, matrix.analysis);
+  read_table_options(arguments, matrix.analysis, diagnostics);
   PublishedResults published;
   if (matrix.published) published = read_published(matrix.published->text, diagnostics);
   Registry registry = host.modules();
@@ -267,6 +286,17 @@ void add_bench_command(CLI::App& app, int& exit_code, const ProgramHost& host) {
       ->type_name("NAME")
       ->allow_extra_args(false)
       ->check(CLI::IsMember(paper_table_names()));
+  command
+      ->add_option("--statistic", arguments->statistics,
+                   "Row of these tables, such as rmse; may be repeated; without it all six, as papers print them")
+      ->type_name("NAME")
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember(table_statistic_names()));
+  command
+      ->add_option("--column", arguments->columns,
+                   "VARIANT=TEXT: what these tables call a variant, such as full=Ours; may be repeated")
+      ->type_name("VARIANT=TEXT")
+      ->allow_extra_args(false);
   command->add_option("--data", arguments->data, "NAME=VALUE: of ${NAME} in the matrix; else the environment's")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);

@@ -301,6 +301,12 @@ TEST_F(BenchExternalTest, SaysWhatIsWrongWithExecutors) {
   EXPECT_THAT(errors({"--attach"}), HasSubstr("the executor is local, whose runs end with it"));
   EXPECT_THAT(errors({"--run", "good/little/repeat9"}), HasSubstr("the matrix has no run 'good/little/repeat9'"));
   EXPECT_THAT(errors({"--table", "paper4"}), HasSubstr("paper4"));
+  EXPECT_THAT(errors({"--statistic", "sigma"}), HasSubstr("sigma"));
+  EXPECT_THAT(errors({"--column", "Ours"}), HasSubstr("--column Ours: expected VARIANT=TEXT, such as full=Ours"));
+  EXPECT_THAT(errors({"--column", "goood=Ours"}), HasSubstr("there is no variant 'goood'; did you mean 'good'"));
+  program_.write("matrix.yaml", "analysis: { statistics: [rsme], columns: { god: Ours } }\n" + matrix({"good"}));
+  EXPECT_THAT(errors({}), AllOf(HasSubstr("matrix.yaml:1:26: there is no statistic 'rsme'; did you mean 'rmse'"),
+                                HasSubstr("matrix.yaml:1:44: there is no variant 'god'; did you mean 'good'")));
   program_.write("matrix.yaml", "executor: cloud\n" + matrix({"good"}));
   EXPECT_THAT(errors({}), HasSubstr("matrix.yaml:1:11: found 'cloud' for 'executor'"));
 }

@@ -53,6 +53,27 @@ TEST_F(PaperTablesTest, GivesMeansOfRunsAndImprovements) {
                     HasSubstr("RPE rotation,deg/s,s0,RMSE,plain,3,1,0.3"), Not(HasSubstr("ATE"))));
 }
 
+TEST_F(PaperTablesTest, HasTheRmseAloneAndColumnsOfOtherNames) {
+  plan_.matrix.analysis.statistics = {0};
+  plan_.matrix.analysis.columns = {{PlacedText{"better", {}}, "Ours"}, {PlacedText{"plain", {}}, "ORB"}};
+  for (const std::size_t sequence : {0, 1}) {
+    add(0, sequence, 0.2);
+    add(1, sequence, 0.1);
+  }
+  const PaperTable table = tables("paper2").front();
+  EXPECT_EQ(table.caption, "ATE RMSE [m], mean of 1 run");
+  EXPECT_THAT(table.header, ElementsAre("Sequence", "ORB", "Ours", "over ORB"));
+  ASSERT_EQ(table.rows.size(), 2U);
+  EXPECT_THAT(texts(table.rows[1]), ElementsAre("s1", "0.2000", "0.1000", "50.00 %"));
+  EXPECT_THAT(to_latex(table), AllOf(HasSubstr("\\begin{tabular}{lrrr}"),
+                                     HasSubstr("s0 & 0.2000 & \\textbf{0.1000} & 50.00 \\% \\\\\ns1 & ")));
+  // Programs read the same names and all statistics.
+  EXPECT_THAT(to_csv(paper_figures("paper2", plan_, analyse(plan_, results_))), HasSubstr("ATE,m,s0,S.D.,better,"));
+  plan_.matrix.analysis.statistics = {3, 0};
+  EXPECT_THAT(texts(tables("paper2").front().rows[0]), ElementsAre("s0", "RMSE", "0.2000", "0.1000", "50.00 %"));
+  EXPECT_THAT(texts(tables("paper2").front().rows[1]), ElementsAre("", "S.D.", "0.1000", "0.0500", "50.00 %"));
+}
+
 TEST_F(PaperTablesTest, WritesLatexByteForByte) {
   plan_.variants[0].name = "a_b";
   plan_.matrix.analysis.decimals = 2;

@@ -95,6 +95,10 @@ struct Exclusion {
 struct MatrixAnalysis {
   std::vector<std::string> tables;  ///< of paper_table_names(), each once
   int decimals = 4;                 ///< of errors in these tables
+  std::vector<std::size_t>
+      statistics;  ///< rows of these tables: places in statistic_keys; empty = all, as papers print them
+  std::vector<std::pair<PlacedText, std::string>>
+      columns;  ///< names of variants, and what the tables call them instead
 };
 
 /// Where runs are executed, as the key `executor` says.

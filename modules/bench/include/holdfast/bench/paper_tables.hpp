@@ -16,6 +16,10 @@ namespace holdfast {
 const std::vector<std::string>& paper_table_names();
 /// Adds a name that is not yet in the list.
 void add_paper_table(const std::string& name, MatrixAnalysis& analysis);
+/// Names of the statistics that the rows of these tables may be: rmse, standard_deviation, max, min, mean, median.
+std::vector<std::string> table_statistic_names();
+/// Adds a statistic, by such a name, to the rows of the tables. An unknown name is a diagnostic.
+void add_table_statistic(const PlacedText& name, MatrixAnalysis& analysis, std::vector<Diagnostic>& diagnostics);
 
 /// A table to print.
 struct PaperTable {
@@ -37,8 +41,9 @@ struct PaperTable {
 };
 
 /// The tables of a name of paper_table_names(). A figure is the mean over the counted runs of a cell, rounded to the
-/// decimals of the matrix. Published systems with more than the RMSE are further columns; paper2 has a second table of
-/// the published RMSE if the matrix names published figures of its sequences.
+/// decimals of the matrix. A single statistic stands in the caption, and its rows have no column for it. Published
+/// systems with more than the RMSE are further columns; paper2 has a second table of the published RMSE if the matrix
+/// names published figures of its sequences.
 std::vector<PaperTable> paper_tables(const std::string& name, const RunPlan& plan, const Analysis& analysis,
                                      const PublishedResults& published);
 
