@@ -129,14 +129,9 @@ Json map_json(const RunRecord& record) {
           {"observations_removed", record.mapping.observations_removed}};
 }
 
-/// What was made worse about the frames, and how much; the seed is part of the configuration.
 Json perturbation_json(const Configuration& configuration) {
   Json json = Json::object();
-  const auto section = configuration.sections.find("perturbation");
-  if (section == configuration.sections.end()) return json;
-  for (const auto& [name, value] : section->second)
-    if (const auto* strength = std::get_if<double>(&value); strength != nullptr && *strength != 0.0)
-      json[name] = *strength;
+  for (const auto& [name, strength] : perturbation_strengths(configuration)) json[name] = strength;
   return json;
 }
 

@@ -6,6 +6,8 @@
 #include "holdfast/evaluation/number_text.hpp"
 #include "holdfast/evaluation/report.hpp"
 #include "holdfast/evaluation/statistics.hpp"
+#include "holdfast/perturbation/perturbation_settings.hpp"
+#include "holdfast/plugin/parameter_table.hpp"
 #include "holdfast/run/results.hpp"
 
 namespace holdfast {
@@ -49,7 +51,25 @@ std::string masks_text(const MaskCounts& masks, const std::vector<double>& ages)
          fixed_text(percentile(ages, 95.0) * 1e3, 0) + " ms (p95)";
 }
 
+/// "noise 20 grey levels, dropped 0.5"; empty without perturbation.
+std::string perturbation_text(const Configuration& configuration) {
+  std::string text;
+  const std::vector<Parameter> parameters = ParameterTable<PerturbationSettings>().parameters();
+  for (const auto& [name, strength] : perturbation_strengths(configuration)) {
+    text += (text.empty() ? "" : ", ") + name + " " + shortest_text(strength);
+    for (const Parameter& parameter : parameters)
+      if (parameter.name == name && !parameter.unit_name.empty()) text += " " + parameter.unit_name;
+  }
+  return text;
+}
+
 }  // namespace
+
+std::vector<std::pair<std::string, double>> perturbation_strengths(const Configuration& configuration) {
+  const auto section = configuration.sections.find("perturbation");
+  if (section == configuration.sections.end()) return {};
+  return ParameterTable<PerturbationSettings>().settings(section->second).strengths();
+}
 
 std::string percent_text(double share) { return fixed_text(share * 100.0, 2) + " %"; }
 
@@ -64,6 +84,8 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& r
   if (const RepeatedImages& repeated = record.repeated_images; repeated.frames > 0)
     rows.emplace_back("repeated images",
                       counted(repeated.frames, "frame") + ", for up to " + fixed_text(repeated.longest, 2) + " s");
+  if (const std::string perturbation = perturbation_text(record.configuration); !perturbation.empty())
+    rows.emplace_back("perturbation", perturbation);
   rows.emplace_back("coverage",
                     percent_text(record.coverage()) + " (" + counted(record.trajectory.size(), "pose") + ")");
   rows.emplace_back("lost", counted(s.lost(), "frame") + ", recovered " + counted(s.recovered(), "time") +

@@ -200,6 +200,14 @@ TEST_F(ResultsTest, TheReportShowsPositionAndRotationOverTime) {
   EXPECT_THAT(report_html(record_), ::testing::Not(HasSubstr("roll over time")));
 }
 
+TEST_F(ResultsTest, TheSummaryNamesThePerturbation) {
+  EXPECT_THAT(summary_text(record_), ::testing::Not(HasSubstr("perturbation")));
+  record_.configuration.sections["perturbation"] = {{"noise", 20.0}, {"dropped", 0.5}, {"late", 0.0}};
+  EXPECT_THAT(summary_text(record_), HasSubstr("\nperturbation         noise 20 grey levels, dropped 0.5\n"));
+  EXPECT_THAT(report_html(record_), HasSubstr("noise 20 grey levels, dropped 0.5"));
+  EXPECT_EQ(nlohmann::json::parse(run_json(record_)).at("perturbation").dump(), R"({"dropped":0.5,"noise":20.0})");
+}
+
 TEST_F(ResultsTest, CountsHaveTheirPlural) {
   record_.map_keyframes = 1;
   record_.trajectory.resize(1);
