@@ -109,6 +109,32 @@ TEST_F(ReportClipBrowserTest, AMissingPictureIsNamed) {
   EXPECT_TRUE(comes("document.querySelector('output').textContent === 'frame 40, 5 of 5'")) << shown();
 }
 
+/// A shadow lies behind a plot, which must let it through, and is painted only where the page is narrower than the
+/// plot.
+TEST_F(ReportClipBrowserTest, AWidePlotSaysThatItScrolls) {
+  Report report;
+  report.title = "A run";
+  report.sections.emplace_back();
+  report.sections.back().figures.push_back(
+      {"<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"640\" height=\"200\" viewBox=\"0 0 640 200\"><rect "
+       "width=\"640\" "
+       "height=\"200\" fill=\"#ffffff\"/></svg>",
+       "A plot"});
+  std::ofstream(folder_ / "plot.html") << to_html(report);
+  const std::string figure = "document.querySelector('figure')";
+  const auto style = [&](const std::string& element, const std::string& property) {
+    return text("getComputedStyle(" + element + ")." + property);
+  };
+  browser_->open_page("file://" + (folder_ / "plot.html").string());
+  browser_->show_at(400, 800, false);
+  EXPECT_EQ(browser_->evaluate(figure + ".scrollWidth > " + figure + ".clientWidth"), true);
+  EXPECT_THAT(style(figure, "backgroundImage"), HasSubstr("linear-gradient"));
+  EXPECT_EQ(style("document.querySelector('figure svg')", "backgroundColor"), "rgba(0, 0, 0, 0)");
+  EXPECT_EQ(style("document.querySelector('figure rect')", "fill"), "none");
+  browser_->show_at(1280, 800, false);
+  EXPECT_EQ(browser_->evaluate(figure + ".scrollWidth > " + figure + ".clientWidth"), false);
+}
+
 TEST_F(ReportClipBrowserTest, IsAPlainPictureWithoutItsScript) {
   std::string html;
   {
