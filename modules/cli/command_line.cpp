@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "command_line.hpp"
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <iostream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -41,13 +44,17 @@ constexpr int usage_exit_code = 2;
 constexpr const char* description = R"(Visual SLAM for rooms where people move.
 
 A first look:
-  holdfast run examples/configs/demo.yaml --output out
-Your own recording (TUM layout):
-  holdfast run examples/configs/rgbd.yaml --set source.tum.path=RECORDING --output out
+  holdfast run demo --output out
+Your own recording (TUM layout), of a room with people:
+  holdfast run full --set source.tum.path=RECORDING --output out
 What a configuration can say:
   holdfast modules
   holdfast modules orb
 )";
+
+constexpr const char* where_to_read_on =
+    "`holdfast COMMAND --help` explains a command, `man holdfast` all of them; where the manual page is not\n"
+    "installed: `holdfast manual | man -l -`.";
 
 /// What was printed may not have arrived, as on a full disk: then the exit code says so.
 int after_output(int exit_code) {
@@ -61,7 +68,12 @@ int after_output(int exit_code) {
 
 /// Help and version go to standard output; what is wrong with the arguments to standard error, with where to look.
 int answer_parse_error(const CLI::App& app, const CLI::ParseError& error) {
-  if (error.get_exit_code() == 0) return after_output(app.exit(error));
+  if (error.get_exit_code() == 0) {
+    std::ostringstream text;
+    const int exit_code = app.exit(error, text, text);
+    std::fputs(bold_labels(text.str(), STDOUT_FILENO).c_str(), stdout);
+    return after_output(exit_code);
+  }
   print_error(std::string(error.what()) + "; see `" + name_of_parsed_command(app) + " --help`");
   return usage_exit_code;
 }
@@ -77,6 +89,7 @@ void rewrite_help(std::vector<std::string>& words) {
 
 void add_commands(CLI::App& app, int& exit_code, const ProgramHost& host) {
   app.description(description);
+  app.footer(where_to_read_on);
   app.set_version_flag("-V,--version", version_text(), "Print version, commit, libraries and SIMD level");
   app.require_subcommand(1);
   add_run_command(app, exit_code, host);
@@ -93,7 +106,7 @@ void add_commands(CLI::App& app, int& exit_code, const ProgramHost& host) {
   add_segment_command(app, exit_code, host);
   add_check_command(app, exit_code, host);
   add_modules_command(app, exit_code, host);
-  add_completion_command(app, exit_code);
+  add_completion_command(app, exit_code, host);
   add_manual_command(app, exit_code);
   app.add_subcommand("help", "Print the help of a command, as COMMAND --help does");
 }

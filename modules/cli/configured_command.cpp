@@ -3,14 +3,16 @@
 
 #include <CLI/CLI.hpp>
 
-#include "output_file.hpp"
+#include "installed_files.hpp"
 
 namespace holdfast {
 
 void add_configuration_options(CLI::App& command, std::string& configuration, std::vector<std::string>& overrides) {
-  command.add_option("CONFIG", configuration, "Configuration in YAML; '-': standard input")
+  command
+      .add_option("CONFIG", configuration,
+                  "Configuration in YAML, or the name of an installed one, such as demo; '-': standard input")
       ->required()
-      ->transform([](const std::string& given) { return input_name(given); });
+      ->transform([](const std::string& given) { return find_file(given, InstalledFolder::configurations); });
   command.add_option("--set", overrides, "key.path=value: as if the file said so; may be repeated")
       ->allow_extra_args(false);
 }

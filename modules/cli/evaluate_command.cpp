@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluate_command.hpp"
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
@@ -220,8 +222,10 @@ int run(EvaluateArguments arguments) {
                                   : compare_one_of_several(arguments, reference, file));
   const Evaluation* only = is_single ? &*estimates.front().evaluation : nullptr;
   if (arguments.json != "-" && arguments.csv != "-") {
-    std::cout << printable(only != nullptr ? to_text(*only) : comparison_text(estimates));
-    if (!reference.frames) std::cout << "Coverage needs --frames LIST.\n";
+    std::cout << (only != nullptr ? bold_labels(printable(to_text(*only)), STDOUT_FILENO)
+                                  : printable(comparison_text(estimates)));
+    if (!reference.frames) std::cout << "Coverage needs --frames LIST.
+";
     std::cout << std::flush;
   }
   if (!arguments.json.empty())

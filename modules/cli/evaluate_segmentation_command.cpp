@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "evaluate_segmentation_command.hpp"
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdint>
@@ -20,6 +22,7 @@
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/evaluation/segmentation_evaluation.hpp"
 #include "holdfast/pipeline/configured_pipeline.hpp"
+#include "installed_files.hpp"
 #include "label_folder.hpp"
 #include "output_file.hpp"
 #include "program_host.hpp"
@@ -222,7 +225,7 @@ int run(const EvaluateSegmentationArguments& arguments, const ProgramHost& host)
   require_new_files({arguments.json}, arguments.overwrite);
   const Outcome outcome = evaluate_by(arguments, host);
   if (outcome.evaluation.images == 0) throw Error("no image was compared");
-  if (arguments.json != "-") std::cout << to_text(outcome.evaluation);
+  if (arguments.json != "-") std::cout << bold_labels(to_text(outcome.evaluation), STDOUT_FILENO);
   if (arguments.json != "-" && outcome.seconds_per_image)
     std::cout << "segmented at " << static_cast<int>(1e4 * *outcome.seconds_per_image + 0.5) / 10.0
               << " ms an image, reading not included\n";
@@ -237,7 +240,8 @@ void add_evaluate_segmentation_command(CLI::App& app, int& exit_code, const Prog
   CLI::App* command =
       app.add_subcommand("evaluate-segmentation", "Compare label images, or a segmenter, with the truth");
   command->footer(evaluate_segmentation_explanation);
-  command->add_option("CONFIG", arguments->configuration, "Configuration in YAML, whose segmenter is measured");
+  command->add_option("CONFIG", arguments->configuration, "Configuration in YAML, whose segmenter is measured")
+      ->transform([](const std::string& given) { return find_file(given, InstalledFolder::configurations); });
   command->add_option("--labels", arguments->labels, "Folder of true label images (PNG)")->type_name("DIR");
   command->add_option("--predictions", arguments->predictions, "Folder of label images to compare with them")
       ->type_name("DIR");

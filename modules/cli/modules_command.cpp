@@ -38,7 +38,8 @@ int print_modules(const ModulesArguments& arguments, const ProgramHost& host) {
   std::vector<SectionDescription> sections = pipeline_sections();
   for (SectionDescription& section : simulation::scene_sections()) sections.push_back(std::move(section));
   try {
-    std::fputs(reference(registry, sections, arguments.name, format).c_str(), stdout);
+    const std::string text = reference(registry, sections, arguments.name, format);
+    std::fputs((format == ReferenceFormat::text ? bold_labels(text, STDOUT_FILENO) : text).c_str(), stdout);
     if (format == ReferenceFormat::text && arguments.name.empty())
       for (const std::string& part : built_without()) std::printf("This build is without %s.\n", part.c_str());
   } catch (const Error& error) {

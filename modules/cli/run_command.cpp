@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run_command.hpp"
 
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
@@ -114,7 +116,8 @@ RunOptions options_of(const RunArguments& arguments, const Registry& registry, c
 }
 
 int print_end(const RunArguments& arguments, const RunRecord& record) {
-  if (!arguments.quiet && record.summary.frames() > 0) std::fputs(printable(summary_text(record)).c_str(), stdout);
+  if (!arguments.quiet && record.summary.frames() > 0)
+    std::fputs(bold_labels(printable(summary_text(record)), STDOUT_FILENO).c_str(), stdout);
   const std::string warning = coverage_warning(record);
   if (!record.failure.empty())
     print_error(record.failure);
@@ -135,7 +138,8 @@ int print_end(const RunArguments& arguments, const RunRecord& record) {
 /// The last line: where to look.
 void print_report(const RunArguments& arguments) {
   if (!arguments.quiet)
-    std::printf("%-20s %s\n", "report", printable((arguments.output / "report.html").string()).c_str());
+    std::printf("%s               %s\n", bold("report", STDOUT_FILENO).c_str(),
+                printable((arguments.output / "report.html").string()).c_str());
 }
 
 int run_configuration(const RunArguments& arguments, const ProgramHost& host) {
@@ -187,10 +191,13 @@ void add_run_command(CLI::App& app, int& exit_code, const ProgramHost& host) {
       "run.minimum_coverage have a pose, 130 on Ctrl-C, 143 on SIGTERM and SIGHUP (what was done is kept), 2 when the\n"
       "configuration is wrong, 1 for anything else.\n\n"
       "Examples\n"
-      "  holdfast run examples/configs/demo.yaml --output out/demo\n"
-      "  holdfast run examples/configs/rgbd.yaml --set source.tum.path=rgbd_dataset_freiburg1_xyz --output out/xyz\n"
+      "  holdfast run demo --output out/demo\n"
+      "  holdfast run full --set source.tum.path=rgbd_dataset_freiburg3_walking_xyz --set camera=auto --output "
+      "out/xyz\n"
+      "  holdfast run rgbd --set source.tum.path=rgbd_dataset_freiburg1_xyz --output out/empty   nobody there: no "
+      "masks\n"
       "  holdfast run rgbd.yaml --set features.opencv_orb.count=1500 --set run.seed=2 --output out/swap\n"
-      "  holdfast run examples/configs/demo.yaml --output out/demo --view          watch it in a browser\n"
+      "  holdfast run demo --output out/demo --view          watch it in a browser\n"
       "  holdfast run rgbd.yaml --map out/xyz/map.hfm --output out/more              continue that map\n"
       "  holdfast run rgbd.yaml --map out/xyz/map.hfm --localise --output out/where  find the camera in it");
   add_configured_options(*command, *arguments);

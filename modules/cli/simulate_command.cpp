@@ -14,7 +14,7 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/simulation/scene_file.hpp"
 #include "holdfast/simulation/simulator.hpp"
-#include "output_file.hpp"
+#include "installed_files.hpp"
 #include "output_folder.hpp"
 #include "positive_number.hpp"
 #include "scene_preview.hpp"
@@ -68,7 +68,8 @@ int simulate(const SimulateArguments& arguments) {
     for (const std::string& name : camera_names()) known += (known.empty() ? "" : ", ") + name;
     throw UsageError("camera '" + arguments.camera + "' is not known; expected one of: " + known);
   }
-  simulation::Scene scene = simulation::read_scene(input_name(arguments.scene.string()), all_overrides(arguments));
+  simulation::Scene scene =
+      simulation::read_scene(find_file(arguments.scene.string(), InstalledFolder::scenes), all_overrides(arguments));
   if (scene.seed == 0) scene.seed = 1;
   simulation::Simulator simulator(scene, *camera);
   if (!arguments.preview.empty()) {
@@ -107,7 +108,8 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
       "  holdfast simulate examples/scenes/crowd.yaml --seed 7 --camera tum_fr3 --output out/crowd\n"
       "  holdfast simulate examples/scenes/walking_xyz.yaml --set people.0.do.0.walk.speed=0.6 --output out/slow\n"
       "  holdfast simulate --path halfsphere --duration 10 --no-sensor-effects --output out/empty");
-  command->add_option("SCENE", arguments->scene, "scene file (YAML); '-': standard input");
+  command->add_option("SCENE", arguments->scene,
+                      "scene file (YAML), or the name of an installed one, such as crowd; '-': standard input");
   command->add_option("-o,--output", arguments->output, "folder to write to");
   command->add_option("--preview", arguments->preview,
                       "image file (PNG) with frames of the scene and its floor plan; without --output nothing else");

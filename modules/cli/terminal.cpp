@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -12,8 +13,13 @@ namespace holdfast {
 
 namespace {
 
+bool shows_colours(int stream) {
+  const char* no_colour = std::getenv("NO_COLOR");
+  return obeys_control_characters(stream) && (no_colour == nullptr || *no_colour == '\0');
+}
+
 std::string coloured(const std::string& text, const char* code, int stream) {
-  if (!obeys_control_characters(stream) || std::getenv("NO_COLOR") != nullptr) return text;
+  if (!shows_colours(stream)) return text;
   return std::string("\033[") + code + "m" + text + "\033[0m";
 }
 
@@ -38,6 +44,26 @@ bool obeys_control_characters(int stream) {
 std::string bold(const std::string& text, int stream) { return coloured(text, "1", stream); }
 std::string red(const std::string& text, int stream) { return coloured(text, "31", stream); }
 std::string green(const std::string& text, int stream) { return coloured(text, "32", stream); }
+std::string yellow(const std::string& text, int stream) { return coloured(text, "33", stream); }
+
+std::string bold_labels(const std::string& text, int stream) {
+  if (!shows_colours(stream)) return text;
+  std::string result;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string line = text.substr(begin, end - begin);
+    const std::size_t label = line.find_first_not_of(' ');
+    std::size_t label_end = label == std::string::npos ? label : line.find("  ", label);
+    if (label_end == std::string::npos && line.ends_with(':')) label_end = line.size();
+    if (label == std::string::npos || label_end == std::string::npos)
+      result += line;
+    else
+      result += line.substr(0, label) + bold(line.substr(label, label_end - label), stream) + line.substr(label_end);
+    if (end < text.size()) result += '\n';
+    begin = end + 1;
+  }
+  return result;
+}
 
 std::string printable(const std::string& text) {
   constexpr const char* digits = "0123456789abcdef";
@@ -61,7 +87,7 @@ void print_error(const std::string& message) {
 }
 
 void print_warning(const std::string& message) {
-  std::fprintf(stderr, "%s %s\n", bold("warning:", STDERR_FILENO).c_str(), printable(message).c_str());
+  std::fprintf(stderr, "%s %s\n", yellow("warning:", STDERR_FILENO).c_str(), printable(message).c_str());
 }
 
 void print_warnings(const std::vector<Diagnostic>& warnings) {

@@ -14,10 +14,15 @@ namespace holdfast {
 /// True when the stream (STDOUT_FILENO, STDERR_FILENO) is a terminal that obeys control characters: TERM is not "dumb".
 bool obeys_control_characters(int stream);
 
-/// Text in bold, red or green when the stream obeys control characters and NO_COLOR is not set; plain otherwise.
+/// Text in bold or a colour when the stream obeys control characters and NO_COLOR is unset or empty; plain otherwise.
 std::string bold(const std::string& text, int stream);
 std::string red(const std::string& text, int stream);
 std::string green(const std::string& text, int stream);
+std::string yellow(const std::string& text, int stream);
+
+/// Text of several lines with the label of each in bold: what stands before two blanks or more, or a whole line that
+/// ends with a colon. Indentation stays.
+std::string bold_labels(const std::string& text, int stream);
 
 /// Text with control characters written out, such as \x1b, so that a name from a file cannot command the terminal; line
 /// feeds and tabs stay.

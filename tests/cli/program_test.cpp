@@ -31,6 +31,7 @@ TEST_F(ProgramTest, HelpAndVersion) {
                               "simulate", "segment", "check", "modules"})
     EXPECT_THAT(help.output, HasSubstr(std::string("\n  ") + command + " "));
   EXPECT_EQ(help.errors, "");
+  EXPECT_THAT(help.output, AllOf(HasSubstr("man holdfast"), HasSubstr("holdfast manual | man -l -")));
   const Outcome version = program_.run({"--version"});
   EXPECT_EQ(version.exit_code, 0);
   EXPECT_THAT(version.output,
@@ -121,6 +122,27 @@ TEST_F(ProgramTest, TheExamplesAreRight) {
     const Outcome outcome = program_.run({"check", entry.path().string(), "--without-data"});
     EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   }
+}
+
+/// A file of the name comes first; a folder cannot be meant.
+TEST_F(ProgramTest, InstalledConfigurationsAreNamedWithoutTheirPath) {
+  for (const char* name : {"demo", "demo.yaml"}) {
+    const Outcome outcome = program_.run({"check", name, "--without-data"});
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+    EXPECT_THAT(outcome.output, HasSubstr("configs/demo.yaml: simulated -> orb -> unet"));
+  }
+  program_.write("demo", program_.text("good.yaml"));
+  EXPECT_EQ(program_.run({"check", "demo"}).output, "ok demo: simulated -> orb -> ceres\n");
+  std::filesystem::create_directories(program_.path("full"));
+  EXPECT_THAT(program_.run({"check", "full", "--without-data"}).output, HasSubstr("configs/full.yaml: tum -> orb"));
+  const Outcome unknown = program_.run({"run", "fulll", "--output", "out"});
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_EQ(
+      unknown.errors,
+      "error: fulll: there is no such file, and no configuration of this name is installed; did you mean 'full'?\n");
+  EXPECT_THAT(program_.run({"check", "./demoo"}).errors,
+              HasSubstr("./demoo: there is no such file; did you mean 'demo'? expected"));
+  EXPECT_THAT(program_.run({"simulate", "emty", "--preview", "empty.png"}).errors, HasSubstr("did you mean 'empty'?"));
 }
 
 TEST_F(ProgramTest, CheckWarnsOfAnotherCamera) {

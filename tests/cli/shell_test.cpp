@@ -47,6 +47,46 @@ TEST_F(ShellTest, BashCompletesCommandsOptionsValuesAndFiles) {
   EXPECT_EQ(completed("holdfast --ver"), "<--version>");
 }
 
+/// Bash passes "run.mode=thr" as three words, unless "=" is no separator.
+TEST_F(ShellTest, BashCompletesSettingsModulesAndInstalledConfigurations) {
+  if (!has("bash")) GTEST_SKIP() << "no bash";
+  program_.write("completion.bash", program_.run({"completion", "bash"}).output);
+  std::filesystem::create_directories(program_.path("demo_folder"));
+  const auto completed = [&](const std::string& words) {
+    program_.write("ask.bash", "source completion.bash\nCOMP_WORDS=('" HOLDFAST_PROGRAM "' " + words +
+                                   ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_holdfast\nprintf '<%s>' "
+                                   "\"${COMPREPLY[@]}\"\n");
+    return output_of("bash ask.bash");
+  };
+  EXPECT_EQ(completed("modules multi_v"), "<multi_view_depth>");
+  EXPECT_EQ(completed("run --set featu"), "<features.><features=>");
+  EXPECT_EQ(completed("run --set features.or"), "<features.orb.>");
+  EXPECT_EQ(completed("run --set features.orb.cou"), "<features.orb.count=>");
+  EXPECT_EQ(completed("run a.yaml --set run.mode ="), "<sequential><threaded>");
+  EXPECT_EQ(completed("run a.yaml --set segmenter = une"), "<unet>");
+  EXPECT_EQ(completed("run a.yaml --set segmenter=une"), "<segmenter=unet>");
+  EXPECT_EQ(completed("check --set dense_map.enabled = ''"), "<false><true>");
+  EXPECT_EQ(completed("run dem"), "<demo><demo_folder>");
+  EXPECT_EQ(completed("simulate crow"), "<crowd>");
+}
+
+/// As the shells ask for them; the scripts are checked by their own shells where these are installed.
+TEST_F(ShellTest, WordsAreThoseOfTheProgram) {
+  const Outcome settings = program_.run({"completion", "--words", "settings"});
+  EXPECT_EQ(settings.exit_code, 0);
+  EXPECT_THAT(settings.output, AllOf(HasSubstr("\ncamera=tum_fr1\n"), HasSubstr("\nfeatures.orb.count=\n"),
+                                     HasSubstr("\nsegmenter=unet\n"), HasSubstr("\ntracking.minimum_inliers=\n"),
+                                     HasSubstr("\nrun.late_frames=drop\n")));
+  EXPECT_THAT(program_.run({"completion", "--words", "configurations"}).output, HasSubstr("\nfull\n"));
+  EXPECT_EQ(program_.run({"completion"}).exit_code, 2);
+  if (has("fish")) {
+    program_.write("holdfast.fish", program_.run({"completion", "fish"}).output);
+    EXPECT_THAT(
+        output_of("fish --no-config -c \"source holdfast.fish; complete -C '" HOLDFAST_PROGRAM " run --set run.mo'\""),
+        HasSubstr("run.mode=sequential"));
+  }
+}
+
 TEST_F(ShellTest, ScriptsNameEveryCommandAndOption) {
   for (const std::string shell : {"bash", "zsh", "fish"}) {
     const Outcome outcome = program_.run({"completion", shell});

@@ -46,6 +46,25 @@ TEST(Terminal, ADumbOneGetsNoControlCharacters) {
   before != nullptr ? setenv("TERM", kept.c_str(), 1) : unsetenv("TERM");
 }
 
+/// https://no-color.org: set and not empty.
+TEST(Terminal, ColoursAreForTerminalsThatAreNotAskedToDoWithout) {
+  const PseudoTerminal terminal;
+  if (terminal.stream() < 0) GTEST_SKIP() << "this system gives no pseudo terminals";
+  const char* before = std::getenv("TERM");
+  const std::string kept = before != nullptr ? before : "";
+  setenv("TERM", "xterm", 1);
+  setenv("NO_COLOR", "1", 1);
+  EXPECT_EQ(yellow("text", terminal.stream()), "text");
+  EXPECT_EQ(bold_labels("a  b\n", terminal.stream()), "a  b\n");
+  setenv("NO_COLOR", "", 1);
+  EXPECT_EQ(yellow("text", terminal.stream()), "\033[33mtext\033[0m");
+  EXPECT_EQ(bold_labels("ATE RMSE   0.1 m\n  orb  Features  of FAST\nkinds:\n\nplain text\nno end", terminal.stream()),
+            "\033[1mATE RMSE\033[0m   0.1 m\n  \033[1morb\033[0m  Features  of FAST\n\033[1mkinds:\033[0m\n\nplain "
+            "text\nno end");
+  unsetenv("NO_COLOR");
+  before != nullptr ? setenv("TERM", kept.c_str(), 1) : unsetenv("TERM");
+}
+
 TEST(Terminal, AFileIsNone) {
   const int file = open("/dev/null", O_WRONLY);
   EXPECT_FALSE(obeys_control_characters(file));
