@@ -2,12 +2,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The checkers of the pages find what they should: on made-up pages, with mistakes and without."""
 import pathlib
+import sys
 import tempfile
 import unittest
 
 import check_links
 import markdown
 import shell
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "docs"))
+import renew_figures
 
 
 class Links(unittest.TestCase):
@@ -89,6 +93,55 @@ class Commands(unittest.TestCase):
             file.flush()
             with self.assertRaises(ValueError):
                 shell.read_rules(pathlib.Path(file.name))
+
+
+class Figures(unittest.TestCase):
+    VALUES = {"a": {"ate": 0.12345, "coverage": 97.5}, "b": {"ate": 0.5}}
+
+    def renewed(self, page: str, text: str) -> tuple[str, list[str]]:
+        return renew_figures.renewed(page, renew_figures.Figure("page.md", text), self.VALUES)
+
+    def test_the_same_figure(self):
+        page = "An error of 0.1235 m\nwith 98 % of the frames.\n"
+        text = "error of <a.ate:.4f> m with <a.coverage:.0f> % of"
+        self.assertEqual(self.renewed(page, text), (page, []))
+
+    def test_another_figure_is_named_and_replaced(self):
+        page = "# A\n\n| x | `y` | 0.2 | 0.5000 |\n"
+        after, changes = self.renewed(page, "| x | ... | <a.ate:.4f> | <b.ate:.1f> |")
+        self.assertEqual(after, "# A\n\n| x | `y` | 0.1235 | 0.5 |\n")
+        self.assertEqual(changes, ["page.md:3: a.ate is 0.2, measured 0.1235", "page.md:3: b.ate is 0.5000, measured 0.5"])
+
+    def test_a_text_stands_once_in_its_page(self):
+        for page in ("", "x 1\nx 1\n"):
+            with self.assertRaises(renew_figures.PageError):
+                self.renewed(page, "x <a.ate:.0f>")
+
+    def test_quotations(self):
+        quotation = renew_figures.Quotation("page.md", "a", "report.md", "`x` against `y`: ")
+        quote = lambda page, source: renew_figures.requoted(page, quotation, source)
+        page = "Text:\n\n> `x` against `y`: smaller\n> by 0.1.\n>\n> More.\n"
+        self.assertEqual(quote(page, "`x` against `y`: smaller by 0.1.\n\nMore.\n"), (page, []))
+        after, changes = quote(page, "`x` against `y`: larger by 0.2.\n\nMore.\n")
+        self.assertEqual(after, "Text:\n\n> `x` against `y`: larger by 0.2.\n>\n> More.\n")
+        self.assertEqual(len(changes), 1)
+        item = "- `x` against `z`: no.\n- `x` against `y`: smaller by 0.1.\n- More.\n"
+        self.assertEqual(quote(page, item), (page, []))
+        table = renew_figures.Quotation("page.md", "a", "report.md", "| a |", after="## B")
+        source = "| a |\n|--|\n| 3 |\n\n## B\n\n| a |\n|--|\n| 2 |\n"
+        self.assertEqual(renew_figures.requoted("| a |\n|--|\n| 1 |\n\nx\n", table, source)[0],
+                         "| a |\n|--|\n| 2 |\n\nx\n")
+
+    def test_lists_stand_for_their_elements(self):
+        entries = renew_figures.expanded([{"name": "s_{each}", "each": ["a", "b"]}, {"name": "c"}])
+        self.assertEqual([entry["name"] for entry in entries], ["s_a", "s_b", "c"])
+
+    def test_a_figure_needs_its_run(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".toml") as file:
+            file.write('[[figure]]\npage = "README.md"\ntext = "<none.ate:.4f>"\n')
+            file.flush()
+            with self.assertRaises(renew_figures.PageError):
+                renew_figures.read_list(pathlib.Path(file.name))
 
 
 if __name__ == "__main__":
