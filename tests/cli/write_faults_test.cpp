@@ -183,7 +183,7 @@ TEST_F(WriteFaultsTest, MapExport) {
 TEST_F(WriteFaultsTest, WhatWasWholeStaysWhenItCannotBeReplaced) {
   ASSERT_EQ(program_.run({"run", "room.yaml", "--output", "made"}).exit_code, 0);
   fs::create_directory(program_.path("out"));
-  const std::vector<std::string> command = {"map", "export", "made/map.hfm", "--points", "out/a.ply"};
+  const std::vector<std::string> command = {"map", "export", "made/map.hfm", "--points", "out/a.ply", "--overwrite"};
   run(command, 0);
   const std::string before = program_.text("out/a.ply");
   ASSERT_EQ(outcome_.exit_code, 0) << outcome_.errors;

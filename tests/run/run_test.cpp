@@ -64,6 +64,37 @@ TEST(Run, StopEndsItAndUnreadFramesCountAsMissing) {
   EXPECT_EQ(record.evaluation->coverage->gaps.back().frames, 18U);
 }
 
+/// Gives one frame, and another one an hour later.
+class RareSource final : public FrameSource {
+ public:
+  explicit RareSource(std::unique_ptr<FrameSource> source) : source_(std::move(source)) {}
+  SourceDescription describe() const override { return source_->describe(); }
+  std::optional<SensorFrame> next() override {
+    if (!frame_) return frame_ = source_->next();
+    frame_->timestamp += 3600.0;
+    ++frame_->index;
+    return frame_;
+  }
+
+ private:
+  std::unique_ptr<FrameSource> source_;
+  std::optional<SensorFrame> frame_;
+};
+
+TEST(Run, StopIsAskedWhileAPacedRunWaitsForAFrame) {
+  test::PointRun points;
+  points.configuration.run.mode = RunMode::threaded;
+  points.configuration.run.pace = Pace::timestamps;
+  points.built->source = std::make_unique<RareSource>(std::move(points.built->source));
+  RunOptions options;
+  int asked = 0;
+  options.stop = [&] { return ++asked > 4; };
+  const RunRecord record = run(*points.built, points.configuration, options);
+  EXPECT_TRUE(record.was_interrupted);
+  EXPECT_EQ(record.failure, "");
+  EXPECT_EQ(record.summary.frames(), 1U);
+}
+
 TEST(Run, AFailureKeepsTheResultsBeforeIt) {
   test::PointRun points(9);
   const RunRecord record = run(*points.built, points.configuration);
