@@ -71,12 +71,13 @@ void BackwardTracker::track_kept(int most) {
     Frame frame = std::move(frames_.back());
     frames_.pop_back();
     if (!find_pose(frame)) {
-      if (++failures_ == patience) return clear();
-      continue;
+      check_earlier_pose(frame);
+      if (++failures_ < patience) continue;
+      for (auto earlier = frames_.rbegin(); earlier != frames_.rend(); ++earlier) check_earlier_pose(*earlier);
+      return clear();
     }
     failures_ = 0;
-    ++tracked_;
-    parts_.history.add_past(frame, reference_, parts_.map);
+    add_pose(frame);
     const Eigen::Isometry3d step = frame.T_camera_world * anchor_->T_world_camera();
     motion_ = FrameMotion{geometry::log_se3(step), anchor_->timestamp - frame.timestamp};
     anchor_ = std::move(frame);
@@ -84,9 +85,30 @@ void BackwardTracker::track_kept(int most) {
   if (frames_.empty()) clear();
 }
 
+Eigen::Isometry3d BackwardTracker::predicted_pose(double timestamp) const {
+  if (!motion_) return anchor_->T_camera_world;
+  return motion_->during(anchor_->timestamp - timestamp) * anchor_->T_camera_world;
+}
+
+void BackwardTracker::add_pose(const Frame& frame) {
+  const auto earlier = parts_.history.past_pose(frame.timestamp, parts_.map);
+  // A keyframe's pose has been adjusted together with its points.
+  const bool keeps = earlier && earlier->is_keyframe &&
+                     !contradicts_inertia(frame.T_camera_world * earlier->T_camera_world.inverse(), 0.0, settings_);
+  if (!keeps && parts_.history.add_past(frame, reference_, parts_.map)) ++tracked_;
+}
+
+void BackwardTracker::check_earlier_pose(const Frame& frame) {
+  const auto earlier = parts_.history.past_pose(frame.timestamp, parts_.map);
+  if (!earlier || !motion_) return;
+  const Eigen::Isometry3d change = earlier->T_camera_world * predicted_pose(frame.timestamp).inverse();
+  if (!contradicts_inertia(change, anchor_->timestamp - frame.timestamp, settings_)) return;
+  parts_.history.withdraw(frame.timestamp);
+  ++withdrawn_;
+}
+
 bool BackwardTracker::find_pose(Frame& frame) {
-  Eigen::Isometry3d predicted = anchor_->T_camera_world;
-  if (motion_) predicted = motion_->during(anchor_->timestamp - frame.timestamp) * predicted;
+  const Eigen::Isometry3d predicted = predicted_pose(frame.timestamp);
   const auto match = [&](double radius) {
     frame.T_camera_world = predicted;
     const int matches = parts_.matcher.match_previous_features(*anchor_, static_cast<float>(radius), frame, odometry_);

@@ -26,11 +26,36 @@ void FrameHistory::add(const Frame& frame, KeyFrameId reference, const Map& map)
   records_.push_back(record_of(frame.timestamp, reference, last_.T_camera_reference, last_.reference_scale));
 }
 
-void FrameHistory::add_past(const Frame& frame, KeyFrameId reference, const Map& map) {
+bool FrameHistory::add_past(const Frame& frame, KeyFrameId reference, const Map& map) {
   const Eigen::Isometry3d T_camera_reference = frame.T_camera_world * map.pose_of(reference).inverse();
-  const auto later = std::upper_bound(records_.begin(), records_.end(), frame.timestamp,
-                                      [](double time, const Record& other) { return time < other.timestamp; });
-  records_.insert(later, record_of(frame.timestamp, reference, T_camera_reference, map.scale_of(reference)));
+  const Record record = record_of(frame.timestamp, reference, T_camera_reference, map.scale_of(reference));
+  const auto found = records_.begin() + (record_from(frame.timestamp) - records_.cbegin());
+  if (found != records_.end() && found->timestamp == frame.timestamp) {
+    *found = record;
+    return false;
+  }
+  records_.insert(found, record);
+  return true;
+}
+
+std::optional<FrameHistory::PastPose> FrameHistory::past_pose(double timestamp, const Map& map) const {
+  const auto found = record_from(timestamp);
+  if (found == records_.end() || found->timestamp != timestamp || !map.piece_of(found->reference)) return std::nullopt;
+  const KeyFrame* keyframe = map.find_keyframe(found->reference);
+  return PastPose{pose_of(*found, map), keyframe != nullptr && keyframe->frame.timestamp == timestamp};
+}
+
+void FrameHistory::withdraw(double timestamp) { records_.erase(record_from(timestamp)); }
+
+std::vector<FrameHistory::Record>::const_iterator FrameHistory::record_from(double timestamp) const {
+  return std::lower_bound(records_.begin(), records_.end(), timestamp,
+                          [](const Record& other, double time) { return other.timestamp < time; });
+}
+
+Eigen::Isometry3d FrameHistory::pose_of(const Record& record, const Map& map) {
+  Eigen::Isometry3d T_camera_reference(record.R_camera_reference);
+  T_camera_reference.translation() = record.t_camera_reference * map.scale_of(record.reference);
+  return T_camera_reference * map.pose_of(record.reference);
 }
 
 FrameHistory::Mark FrameHistory::mark() const {
@@ -104,9 +129,7 @@ Trajectory FrameHistory::trajectory(const Map& map) const {
   const std::uint32_t piece = main_piece(map);
   for (const Record& record : records_) {
     if (map.piece_of(record.reference) != piece) continue;
-    Eigen::Isometry3d T_camera_reference(record.R_camera_reference);
-    T_camera_reference.translation() = record.t_camera_reference * map.scale_of(record.reference);
-    trajectory.push_back({record.timestamp, (T_camera_reference * map.pose_of(record.reference)).inverse()});
+    trajectory.push_back({record.timestamp, pose_of(record, map).inverse()});
   }
   return trajectory;
 }

@@ -17,6 +17,9 @@ namespace {
 /// Times minimum_inliers: so many features that agree with a pose need no other support.
 constexpr int sure_inliers = 4;
 
+/// How long the map of one camera takes to settle after its start, which is judged then [s].
+constexpr double settling_time = 0.5;
+
 }  // namespace
 
 Tracker::Tracker(const TrackingSettings& settings, const TrackerParts& parts)
@@ -200,7 +203,7 @@ bool Tracker::should_begin_piece() {
 
 LossRecord Tracker::loss_record() const {
   return {.tracked_backwards = backwards_.tracked(),
-          .withdrawn = withdrawn_,
+          .withdrawn = withdrawn_ + backwards_.withdrawn(),
           .pieces = pieces_,
           .left_out = history_.frames_left_out(map_)};
 }
@@ -294,7 +297,7 @@ void Tracker::start_with_two_views(const SensorFrame& sensor_frame, FrameResult&
 }
 
 bool Tracker::is_weak_start(const FrameResult& result) {
-  constexpr double first_age = 0.3, last_age = 0.5;  // s; before, a right map is small too
+  constexpr double first_age = 0.3, last_age = settling_time;  // s; before, a right map is small too
   const double age = current_.timestamp - map_start_time_;
   if (age >= first_age && age <= last_age && result.matches > 0) {
     // How many of the static features are in the map, times how many of those agree with the pose.
@@ -617,6 +620,12 @@ void Tracker::keyframe_added(KeyFrameId keyframe) {
   history_.became_keyframe(keyframe, current_.timestamp);
 }
 
+bool Tracker::is_of_mono_start(const FrameResult& result) const {
+  if (!mono_) return false;
+  if (state_ == State::waiting) return result.trouble != TrackingTrouble::no_mask;  // no features are weighted yet
+  return state_ == State::tracking && current_.timestamp - map_start_time_ <= settling_time;
+}
+
 void Tracker::end_frame(FrameResult& result) {
   pieces_ += begins_piece_ ? 1U : 0U;
   const bool has_pose = result.status == TrackingStatus::initialised || result.status == TrackingStatus::tracked;
@@ -624,9 +633,10 @@ void Tracker::end_frame(FrameResult& result) {
   // Until the first mask arrives, the map may have begun on people.
   const bool is_provisional = !start_is_judged_ && moving_world_.expects_masks() && !moving_world_.has_mask();
   constexpr int start_frames = 30;  // as long as a mask may take
+  const bool belongs_to_start = is_of_mono_start(result);
   if (is_provisional)
     backwards_.keep(current_, start_frames, result.times);
-  else if (!has_pose && !mono_)
+  else if (belongs_to_start || (!has_pose && !mono_))
     backwards_.keep(current_, settings_.backward_frames, result.times);
   if (!has_pose) {
     history_.interrupt();
@@ -635,7 +645,7 @@ void Tracker::end_frame(FrameResult& result) {
   result.T_world_camera = current_.T_world_camera();
   if (reference_keyframe_.valid()) result.keyframe = reference_keyframe_;
   history_.add(current_, reference_keyframe_, map_);
-  if (result.status == TrackingStatus::tracked && !is_provisional && !unconfirmed_)
+  if (result.status == TrackingStatus::tracked && !is_provisional && !belongs_to_start && !unconfirmed_)
     backwards_.track(current_, result.times);
 }
 

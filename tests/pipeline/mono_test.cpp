@@ -65,6 +65,7 @@ TEST_F(MonoTest, AMapThatIsLostSoonAfterItsStartBeginsAnew) {
       TrackingSettings tracking;
       tracking.young_map_time = young_map_time;
       tracking.recovery_keyframes = 0;  // nothing else finds the camera
+      tracking.backward_frames = 0;     // earlier frames would get poses in the second map
       Pipeline pipeline = make(simulator_.camera(), tracking, threaded);
       std::uint64_t index = 0;
       while (index < 120 && feed(pipeline, index++).status != TrackingStatus::initialised) {
@@ -108,6 +109,7 @@ TEST_F(MonoTest, AMapThatGrowsLessThanRequiredIsGivenUp) {
       truth_.clear();
       TrackingSettings tracking;
       tracking.start_support = start_support;  // more than any map reaches; each further start needs half as much
+      tracking.backward_frames = 0;            // earlier frames would get poses in the next map
       Pipeline pipeline = make(simulator_.camera(), tracking, threaded);
       int given_up = 0, tracked_afterwards = 0;
       double given_up_at = 0.0;
@@ -150,6 +152,38 @@ TEST_F(MonoTest, ThreadsTrackAsOneThreadDoes) {
   std::size_t poses = 0;
   EXPECT_LT(error(pipeline.trajectory(), 0.0, poses), 0.01);
   EXPECT_GT(poses, 100U);
+}
+
+/// The frames between the two views that begin the map, those before them, and those that were tracked while the map
+/// was young: all have poses, as good as later ones, that follow the true motion from frame to frame.
+TEST_F(MonoTest, FramesOfTheStartAgreeWithTheirNeighbours) {
+  TrackingSettings tracking;
+  tracking.backward_frames = 100;  // all until the map has settled
+  Pipeline pipeline = make(simulator_.camera(), tracking, false);
+  std::uint64_t index = 0;
+  while (index < 80 && feed(pipeline, index++).status != TrackingStatus::initialised) {
+  }
+  const auto before_the_start = static_cast<std::size_t>(index - 1);
+  ASSERT_GT(before_the_start, 5U) << "frames between the two views";
+  for (int i = 0; i < 60; ++i) ASSERT_EQ(feed(pipeline, index++).status, TrackingStatus::tracked);
+  pipeline.finish();
+  const Trajectory trajectory = pipeline.trajectory();
+  ASSERT_EQ(trajectory.size(), truth_.size()) << "every frame has a pose";
+  EXPECT_EQ(pipeline.loss_record().tracked_backwards + 1, before_the_start) << "all but the first view";
+  EXPECT_EQ(pipeline.loss_record().withdrawn, 0U);
+  EvaluationOptions options;
+  options.alignment = AlignmentKind::sim3;
+  const Evaluation evaluation = evaluate(truth_, trajectory, options);
+  ASSERT_EQ(evaluation.poses.size(), trajectory.size());
+  for (std::size_t i = 0; i < trajectory.size(); ++i) {
+    EXPECT_LT(evaluation.poses[i].error, 0.02) << i;
+    if (i == 0) continue;
+    const auto turn = [i](const Trajectory& poses) {
+      return Eigen::Matrix3d((poses[i - 1].T_world_camera.inverse() * poses[i].T_world_camera).linear());
+    };
+    const Eigen::AngleAxisd difference(Eigen::Matrix3d(turn(trajectory).transpose() * turn(truth_)));
+    EXPECT_LT(difference.angle() * 180.0 / M_PI, 0.5) << i;
+  }
 }
 
 TEST_F(MonoTest, GreyImagesServeAsColourOnesDo) {

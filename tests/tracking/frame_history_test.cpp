@@ -87,5 +87,24 @@ TEST(FrameHistory, AKeyframeIsItsOwnReference) {
   EXPECT_EQ(tracked.history.last_pose(tracked.map).matrix(), tracked.map.keyframe(later).frame.T_camera_world.matrix());
 }
 
+TEST(FrameHistory, APastPoseIsReplacedOrWithdrawn) {
+  Tracked tracked;
+  EXPECT_TRUE(tracked.history.past_pose(0.0, tracked.map)->is_keyframe);
+  EXPECT_FALSE(tracked.history.past_pose(1.0, tracked.map)->is_keyframe);
+  EXPECT_LT((tracked.history.past_pose(1.0, tracked.map)->T_camera_world.matrix() - tracked.poses[0].matrix()).norm(),
+            1e-14);
+  EXPECT_FALSE(tracked.history.past_pose(1.5, tracked.map));
+  const Eigen::Isometry3d other = pose(0.2, {7.0, 8.0, 9.0});
+  EXPECT_FALSE(tracked.history.add_past(frame_at(1.0, other), tracked.reference, tracked.map)) << "it had a pose";
+  EXPECT_TRUE(tracked.history.add_past(frame_at(1.5, other), tracked.reference, tracked.map));
+  const Trajectory trajectory = tracked.history.trajectory(tracked.map);
+  ASSERT_EQ(trajectory.size(), 5U);
+  for (const std::size_t i : {1U, 2U})
+    EXPECT_LT((trajectory[i].T_world_camera.matrix() - other.inverse().matrix()).norm(), 1e-13) << i;
+  tracked.history.withdraw(1.0);
+  EXPECT_EQ(tracked.history.trajectory(tracked.map)[1].timestamp, 1.5);
+  EXPECT_FALSE(tracked.history.past_pose(1.0, tracked.map));
+}
+
 }  // namespace
 }  // namespace holdfast

@@ -25,6 +25,11 @@ namespace holdfast {
 /// static features with depth of the frame after it, for TrackingSettings::odometry_time at most. Every pose must hold
 /// as firmly as one after a loss. One thread; functions that track are called while the caller holds the lock of the
 /// map.
+///
+/// The frames around the start of a map of one camera are kept as well, those before its second view and those that
+/// were tracked while bundle adjustment still changed the shape of the map: the pose that a frame gets backwards
+/// replaces the one that it had, unless the frame is a keyframe. A frame that gets none keeps the one that it had,
+/// unless that contradicts inertia.
 class BackwardTracker {
  public:
   /// What it works with; all of it must outlive the object.
@@ -51,14 +56,22 @@ class BackwardTracker {
   /// the history. Adds the stage "backwards" where it tracks.
   void track(const Frame& located, StageTimes& times);
 
-  /// How many frames have got a pose.
+  /// How many frames without a pose have got one.
   std::size_t tracked() const { return tracked_; }
+  /// How many frames have lost the pose that they had.
+  std::size_t withdrawn() const { return withdrawn_; }
 
  private:
   /// Sets the frame to begin from, if it is time; `now`: even if points of the keyframe may still come.
   bool begin(bool now);
   void track_kept(int most);
   bool find_pose(Frame& frame);
+  /// T_camera_world at an earlier time [s] by constant velocity from the anchor.
+  Eigen::Isometry3d predicted_pose(double timestamp) const;
+  /// The kept frame has got a pose: adds it to the history.
+  void add_pose(const Frame& frame);
+  /// The kept frame has got no pose: withdraws the one that it had if that contradicts inertia.
+  void check_earlier_pose(const Frame& frame);
   /// The pose that was last adjusted is not determined well enough by its inliers, or contradicts the depth of
   /// keyframes or inertia.
   bool is_refuted(const Frame& frame, const Eigen::Isometry3d& predicted, int inliers);
@@ -77,7 +90,7 @@ class BackwardTracker {
   std::optional<FrameMotion> motion_;
   std::vector<OdometryMatch> odometry_;
   int failures_ = 0;  // in a row
-  std::size_t tracked_ = 0;
+  std::size_t tracked_ = 0, withdrawn_ = 0;
 };
 
 }  // namespace holdfast

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <optional>
 #include <vector>
 
 #include "holdfast/core/frame.hpp"
@@ -26,11 +27,22 @@ class FrameHistory {
 
   /// Adds a keyframe that was taken before the last tracked frame, but after all others.
   void add_before_last(KeyFrameId keyframe, double timestamp) {
-    records_.insert(records_.end() - (records_.empty() ? 0 : 1), {timestamp, keyframe, {}});
+    records_.insert(records_.end() - (records_.empty() ? 0 : 1), {timestamp, keyframe});
   }
 
-  /// Adds a frame that was taken before the last tracked one and has got its pose later.
-  void add_past(const Frame& frame, KeyFrameId reference, const Map& map);
+  /// Adds a frame that was taken before the last tracked one and has got its pose later; replaces the pose that it had.
+  /// Returns whether it had none.
+  bool add_past(const Frame& frame, KeyFrameId reference, const Map& map);
+
+  /// Pose of a tracked frame by the map as it is now.
+  struct PastPose {
+    Eigen::Isometry3d T_camera_world;
+    bool is_keyframe;  ///< the frame is a keyframe in the map
+  };
+  /// The pose of the frame with this time stamp; empty if it has none in the map.
+  std::optional<PastPose> past_pose(double timestamp, const Map& map) const;
+  /// Removes the pose of the frame with this time stamp, which has one and is not the last tracked frame.
+  void withdraw(double timestamp);
 
   /// What the last tracked frames say, to return to.
   class Mark;
@@ -73,6 +85,9 @@ class FrameHistory {
   static_assert(sizeof(Record) == 72, "one is kept of every frame");
   static Record record_of(double timestamp, KeyFrameId reference, const Eigen::Isometry3d& T_camera_reference,
                           double reference_scale);
+  static Eigen::Isometry3d pose_of(const Record& record, const Map& map);
+  /// The first record at or after this time.
+  std::vector<Record>::const_iterator record_from(double timestamp) const;
 
   /// Of the last tracked frames, beside their records.
   struct Last {

@@ -191,6 +191,9 @@ class Tracker {
   void evaluate_with_pose(const TrackedView& view, FrameResult& result);
   bool track_local_map(const TrackedView& view, FrameResult& result);
   bool needs_keyframe(const FrameResult& result);
+  /// Whether one camera waits for the second view of its map, or the map has begun a moment ago. Such a frame is
+  /// tracked backwards once the map has settled.
+  bool is_of_mono_start(const FrameResult& result) const;
   void end_frame(FrameResult& result);
 
   const TrackingSettings settings_;
