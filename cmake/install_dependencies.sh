@@ -14,6 +14,7 @@
 #                                                     bench
 #   sh cmake/install_dependencies.sh --cameras        also what the source `openni2` (Kinect, Xtion, Astra) is built of
 #   sh cmake/install_dependencies.sh --clang          also clang, for the fuzz targets and the quick sanitizer build
+#   sh cmake/install_dependencies.sh --valgrind       also valgrind, for tests/valgrind
 #   sh cmake/install_dependencies.sh --clean-root     also mmdebstrap, for tests/clean_root.sh
 #   sh cmake/install_dependencies.sh --dry-run        say what would be installed, change nothing
 set -eu
@@ -41,10 +42,11 @@ for argument in "$@"; do
     --bench-tests) packages="$packages chromium munge parallel slurm-client slurmctld slurmd" ;;
     --cameras) packages="$packages libopenni2-dev" ;;
     --clang) packages="$packages clang libclang-rt-dev llvm" ;;
+    --valgrind) packages="$packages valgrind" ;;
     --clean-root) packages="$packages mmdebstrap" ;;
     --dry-run) dry_run=yes ;;
-    -h | --help) sed -n '3,18s/^# \{0,1\}//p' "$0"; exit 0 ;;
-    *) fail "unknown argument '$argument'; known are --training, --documentation, --benchmarks, --python, --python-tests, --bench-tests, --cameras, --clang, --clean-root, --dry-run and --help" ;;
+    -h | --help) sed -n '3,19s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) fail "unknown argument '$argument'; known are --training, --documentation, --benchmarks, --python, --python-tests, --bench-tests, --cameras, --clang, --valgrind, --clean-root, --dry-run and --help" ;;
   esac
 done
 
