@@ -63,6 +63,44 @@ std::string perturbation_text(const Configuration& configuration) {
   return text;
 }
 
+double tracking_restart_time(const Configuration& configuration) {
+  const auto section = configuration.sections.find("tracking");
+  if (section == configuration.sections.end()) return TrackingSettings().restart_time;
+  const auto value = section->second.find("restart_time");
+  if (value == section->second.end()) return TrackingSettings().restart_time;
+  const auto* seconds = std::get_if<double>(&value->second);
+  return seconds != nullptr ? *seconds : TrackingSettings().restart_time;
+}
+
+/// Advice for a camera with depth that was lost once, to the end of the run, although it saw features: the recording
+/// may go on in another place. Empty if nothing suggests that.
+std::string advice_to_restart(const RunRecord& record) {
+  constexpr double suggested = 2.0;         // s, of tracking.restart_time
+  constexpr double share_of_missing = 0.8;  // of all frames without a pose, those after the last one with a pose
+  if (record.sensor == Sensor::mono || record.localised_only || record.trajectory.empty() ||
+      record.frame_stamps.empty() || tracking_restart_time(record.configuration) > 0.0)
+    return "";
+  const auto& troubles = record.summary.troubles();
+  const auto count_of = [&](TrackingTrouble trouble) {
+    const auto found = troubles.find(trouble);
+    return found == troubles.end() ? std::uint64_t{0} : found->second;
+  };
+  const double last_pose = record.trajectory.back().timestamp;
+  const double lost_for = *std::max_element(record.frame_stamps.begin(), record.frame_stamps.end()) - last_pose;
+  const auto lost = static_cast<double>(std::count_if(record.frame_stamps.begin(), record.frame_stamps.end(),
+                                                      [&](double stamp) { return stamp > last_pose; }));
+  const auto missing = static_cast<double>(record.frame_stamps.size() - record.trajectory.size());
+  const auto unmatched =
+      static_cast<double>(count_of(TrackingTrouble::few_matches) + count_of(TrackingTrouble::few_inliers));
+  if (lost_for <= suggested || lost < share_of_missing * missing || unmatched < share_of_missing * lost) return "";
+  return " The camera was lost " + fixed_text(last_pose - record.frame_stamps.front(), 1) +
+         " s after the first frame, and not found again in the " + fixed_text(lost_for, 1) +
+         " s that followed. If these show another place, `--set tracking.restart_time=" + fixed_text(suggested, 0) +
+         "` helps: a camera that is lost for so many seconds begins a new piece of the map there, and the piece with "
+         "most "
+         "frames is the result.";
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, double>> perturbation_strengths(const Configuration& configuration) {
@@ -159,6 +197,7 @@ std::string coverage_warning(const RunRecord& record) {
     return text + " The commonest trouble: " + counted(record.skipped.size(), "frame") +
            " skipped. Check the images; run.json says why each was skipped.";
   if (frames == 0) return text + " Check the camera and the depth factor.";
+  text += advice_to_restart(record);
   return text + " The commonest trouble: " + to_string(commonest) + " (" + counted(frames, "frame") + "). " +
          advice(commonest);
 }

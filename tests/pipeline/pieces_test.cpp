@@ -74,10 +74,11 @@ class PiecesTest : public testing::Test {
   }
   /// Two seconds of each: the first half, darkness of half a second, in which the camera goes elsewhere, the second
   /// half, and both if `comes_back`. `until_joined`: both are shown until the pieces are joined, for half a minute at
-  /// most, because few frames of two seconds become keyframes where threads share a busy machine.
-  void drive(Pipeline& pipeline, bool comes_back, bool until_joined = false) {
+  /// most, because few frames of two seconds become keyframes where threads share a busy machine. `begin`: the first
+  /// frame.
+  void drive(Pipeline& pipeline, bool comes_back, bool until_joined = false, int begin = 0) {
     const int frames = comes_back ? 180 : 120;
-    for (int i = 0; i < frames || (until_joined && i < 1000 && !has_joined(pipeline)); ++i) {
+    for (int i = begin; i < frames || (until_joined && i < 1000 && !has_joined(pipeline)); ++i) {
       const double time = i / 30.0;
       const bool is_dark = i >= 60 && i < 75;
       half = i < 60 ? Half::first : i < 120 ? Half::second : Half::both;
@@ -85,7 +86,7 @@ class PiecesTest : public testing::Test {
       if (i >= 60) pose = Eigen::Translation3d(0.3, 0.0, 0.1) * pose;
       truth.emplace(time, pose);
       const FrameResult result = pipeline.feed(world.frame(static_cast<std::uint64_t>(i), time, pose, !is_dark));
-      began += i > 0 && result.status == TrackingStatus::initialised ? 1 : 0;
+      began += i > begin && result.status == TrackingStatus::initialised ? 1 : 0;
     }
     pipeline.finish();
   }
@@ -135,6 +136,20 @@ TEST_F(PiecesTest, APieceThatNothingJoinsIsLeftOut) {
     EXPECT_LT(keyframe.frame.timestamp, 2.0);
     EXPECT_EQ(keyframe.piece, 0U);
   });
+}
+
+/// A recording that begins with a glimpse of another place.
+TEST_F(PiecesTest, TheLargerPieceIsTheResult) {
+  const auto pipeline = make(0.3, false);
+  drive(*pipeline, false, false, 25);  // for longer than young_map_time
+  EXPECT_EQ(began, 1);
+  const Trajectory trajectory = pipeline->trajectory();
+  EXPECT_EQ(trajectory.front().timestamp, 2.5)
+      << "as soon as it is light, because the camera has been lost for so long";
+  EXPECT_EQ(trajectory.size(), 45U);
+  EXPECT_EQ(pipeline->loss_record().left_out, 35U);
+  pipeline->map().keyframes().for_each(
+      [](KeyFrameId, const KeyFrame& keyframe) { EXPECT_GE(keyframe.frame.timestamp, 2.5); });
 }
 
 }  // namespace

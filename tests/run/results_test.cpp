@@ -176,6 +176,42 @@ TEST_F(ResultsTest, LowCoverageIsAWarningWithItsCommonestTrouble) {
   EXPECT_EQ(coverage_warning(record_), "") << "frames that were not read say nothing";
 }
 
+/// A recording that begins with a second of another place.
+TEST_F(ResultsTest, ACameraThatIsLostToTheEndIsAdvisedToBeginAnew) {
+  record_.frames_expected = 300;
+  for (int i = 30; i < 300; ++i) {
+    record_.frame_stamps.push_back(i / 30.0);
+    FrameResult result;
+    result.status = TrackingStatus::lost;
+    result.trouble = i % 2 == 0 ? TrackingTrouble::few_matches : TrackingTrouble::few_inliers;
+    record_.summary.add(result, 0.0);
+  }
+  const auto expect_advice = [&](bool expected, const char* reason) {
+    EXPECT_EQ(coverage_warning(record_).find("tracking.restart_time") != std::string::npos, expected) << reason;
+    EXPECT_NE(coverage_warning(record_), "") << reason;
+  };
+  EXPECT_THAT(coverage_warning(record_),
+              AllOf(HasSubstr("The camera was lost 1.0 s after the first frame, and not found again in the 9.0 s"),
+                    HasSubstr("`--set tracking.restart_time=2` helps"), HasSubstr("The commonest trouble: too few")));
+  expect_advice(true, "another place");
+  record_.sensor = Sensor::mono;
+  expect_advice(false, "one camera has one piece");
+  record_.sensor = Sensor::rgbd;
+  record_.localised_only = true;
+  expect_advice(false, "a given map gets no pieces");
+  record_.localised_only = false;
+  record_.configuration.sections["tracking"]["restart_time"] = 2.0;
+  expect_advice(false, "it does so already");
+  record_.configuration.sections["tracking"]["restart_time"] = 0.0;
+  expect_advice(true, "it does not");
+  record_.trajectory.push_back({8.5, Eigen::Isometry3d::Identity()});
+  expect_advice(false, "it was found again");
+  record_.trajectory.pop_back();
+  record_.summary = {};
+  for (int i = 30; i < 300; ++i) record_.summary.add(FrameResult{.trouble = TrackingTrouble::few_features}, 0.0);
+  expect_advice(false, "it saw nothing to begin with");
+}
+
 /// The files that an observer `overlay` leaves, and others, which are none of its pictures.
 TEST_F(ResultsTest, TheReportPlaysThePicturesOfTheOverlay) {
   EXPECT_TRUE(overlay_pictures(folder_).empty());
