@@ -17,6 +17,28 @@ if(EXISTS ${BUILD_FOLDER}/bin/holdfast)
   check_libraries(${WORK_FOLDER}/moved/bin/holdfast)
 endif()
 
+# Flags that change the layout of the types in our headers: the linker refuses the program and states its layout, unless
+# the program fixes the alignment. What needs headers alone takes any flag.
+function(build_with_flags flags targets)
+  configure(${CMAKE_CURRENT_LIST_DIR}/installed ${build}_flags -DCMAKE_PREFIX_PATH=${WORK_FOLDER}/moved
+            -DCMAKE_CXX_FLAGS=${flags})
+  run(COMMAND ${CMAKE_COMMAND} --build ${build}_flags --target ${targets})
+endfunction()
+set(other_flags -DEIGEN_MAX_STATIC_ALIGN_BYTES=0)
+cmake_host_system_information(RESULT processor QUERY OS_PLATFORM)
+if(processor MATCHES "x86_64|AMD64")
+  list(APPEND other_flags "-mavx2 -mfma")
+  build_with_flags("-mavx2 -DEIGEN_MAX_ALIGN_BYTES=16" consumer)
+endif()
+foreach(flags IN LISTS other_flags)
+  build_with_flags("${flags}" geometry_consumer)
+  execute_process(COMMAND ${CMAKE_COMMAND} --build ${build}_flags --target consumer
+                  RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(result EQUAL 0 OR NOT output MATCHES "BuildLayout<.*EigenAlignmentInStructs.*is_that_of_the_library")
+    message(FATAL_ERROR "a program with ${flags} gave ${result}:\n${output}")
+  endif()
+endforeach()
+
 # Shared libraries, where there are any.
 file(GLOB_RECURSE libraries ${WORK_FOLDER}/moved/libholdfast*.so)
 foreach(library IN LISTS libraries)

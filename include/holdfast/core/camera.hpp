@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "holdfast/core/build_layout.hpp"
+
 namespace holdfast {
 
 /// How the coefficients of a Distortion are meant.

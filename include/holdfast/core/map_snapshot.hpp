@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "holdfast/core/build_layout.hpp"
 #include "holdfast/core/id.hpp"
 
 namespace holdfast {

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <string>
 
+#include "holdfast/core/build_layout.hpp"
+
 namespace holdfast {
 
 /// A rigid object that moves or has moved, as tracked over frames. World frame, metres.

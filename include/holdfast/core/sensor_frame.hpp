@@ -9,6 +9,8 @@
 #include <optional>
 #include <vector>
 
+#include "holdfast/core/build_layout.hpp"
+
 namespace holdfast {
 
 /// Ground truth of one frame, as far as the source has it; used by exact segmenters, evaluation and tests.

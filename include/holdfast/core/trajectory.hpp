@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "holdfast/core/build_layout.hpp"
+
 namespace holdfast {
 
 /// The camera pose at one time. T_world_camera maps points from the camera frame to the world frame.
