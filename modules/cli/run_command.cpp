@@ -62,7 +62,7 @@ struct Running {
   std::optional<Recorder> recorder;
   Trajectory truth;                              ///< of what is recorded
   std::vector<std::shared_ptr<Viewer>> viewers;  ///< kept, so that they outlive the pipeline
-  std::size_t warnings_printed = 0;              ///< of RunRecord::warnings, which begin with those of the configuration
+  std::size_t warnings_printed = 0;  ///< of RunRecord::warnings, which begin with those of the configuration
 };
 
 /// Takes the folder; a run that was killed there is named, so that nobody takes its results for whole ones.
@@ -79,10 +79,10 @@ FolderLock prepare_folder(const RunArguments& arguments) {
   }
 }
 
-/// Prints what is new since the last call.
-void print_new_warnings(const Warnings& warnings, Running& running) {
+/// Prints what is new since the last call, but for what is printed as an error.
+void print_new_warnings(const Warnings& warnings, Running& running, const std::string& error = {}) {
   for (; running.warnings_printed < warnings.size(); ++running.warnings_printed)
-    print_warning(warnings[running.warnings_printed].to_string());
+    if (const std::string text = warnings[running.warnings_printed].to_string(); text != error) print_warning(text);
 }
 
 /// Shows the progress of a run, prepares its folder, keeps its poses as they come and asks for its end after a signal.
@@ -126,12 +126,14 @@ int print_end(const RunArguments& arguments, const RunRecord& record) {
   else if (record.trajectory.empty())
     print_error("no frame got a pose" +
                 (warning.empty() ? std::string("; is there depth, and enough to see?") : ": " + warning));
+  else if (const std::string unsupported = unsupported_poses(record); !unsupported.empty())
+    print_error(unsupported);
   else if (arguments.strict && !warning.empty())
     print_error(warning);
   else if (!warning.empty())
     print_warning(warning);
   if (record.was_interrupted) return interrupted_exit_code();
-  if (!record.failure.empty() || record.trajectory.empty()) return 1;
+  if (!record.failure.empty() || record.trajectory.empty() || !unsupported_poses(record).empty()) return 1;
   return arguments.strict && !warning.empty() ? low_coverage_exit_code : 0;
 }
 
@@ -157,7 +159,7 @@ int run_configuration(const RunArguments& arguments, const ProgramHost& host) {
       run(configuration, registry, options_of(arguments, registry, configuration, since_start, running));
   running.progress.reset();
   running.journal.reset();
-  print_new_warnings(record.warnings, running);
+  print_new_warnings(record.warnings, running, unsupported_poses(record));
   try {
     write_results(record, arguments.output);
   } catch (const InputError&) {
@@ -187,9 +189,10 @@ void add_run_command(CLI::App& app, int& exit_code, const ProgramHost& host) {
       "  map.hfm         the map, for --map and `holdfast map`    static_map.ply  its points, or with\n"
       "                                                           dense_map.enabled a dense cloud\n"
       "While it runs, trajectory.txt holds the poses so far; of a run that is killed they are what is left.\n"
-      "Exits 0 when the run reached its end with a trajectory, 3 with --strict when fewer frames than\n"
-      "run.minimum_coverage have a pose, 130 on Ctrl-C, 143 on SIGTERM and SIGHUP (what was done is kept), 2 when the\n"
-      "configuration is wrong, 1 for anything else.\n\n"
+      "Exits 0 when the run reached its end with a trajectory that its map supports, 3 with --strict when fewer\n"
+      "frames than run.minimum_coverage have a pose, 130 on Ctrl-C, 143 on SIGTERM and SIGHUP (what was done is "
+      "kept),\n"
+      "2 when the configuration is wrong, 1 for anything else.\n\n"
       "Examples\n"
       "  holdfast run demo --output out/demo\n"
       "  holdfast run full --set source.tum.path=rgbd_dataset_freiburg3_walking_xyz --set camera=auto --output "

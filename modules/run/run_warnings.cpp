@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "holdfast/core/counted.hpp"
+#include "holdfast/evaluation/number_text.hpp"
+#include "holdfast/run/results.hpp"
 #include "repeated_images.hpp"
 
 namespace holdfast {
@@ -29,10 +31,32 @@ void find_mask_warnings(const RunRecord& record, Warnings& warnings) {
                      "correct the names of its labels or classes, or `classes` of the filter"});
 }
 
+/// The lengths on which the scale of a map depends.
+std::string scale_advice(Sensor sensor) {
+  switch (sensor) {
+    case Sensor::stereo:
+      return "Check the baseline of the pair (in metres), the order of its images and `camera`.";
+    case Sensor::rgbd:
+      return "Check the depth factor of the source, that the depth images belong to the colour images, and `camera`.";
+    case Sensor::mono:
+      return "Check `camera`, and that the images are of one camera in the order of their time stamps.";
+  }
+  return "";
+}
+
 }  // namespace
+
+std::string unsupported_poses(const RunRecord& record) {
+  constexpr std::size_t fewest_starts = 3;  // a recording of one or two frames is one, too
+  const std::size_t starts = record.summary.count(TrackingStatus::initialised);
+  if (record.summary.count(TrackingStatus::tracked) > 0 || starts < fewest_starts) return "";
+  return "no pose is supported by the map: each of the " + counted(record.trajectory.size(), "pose") +
+         " is where a map was begun anew, because the next frame found nothing of it. " + scale_advice(record.sensor);
+}
 
 Warnings find_warnings(const RunRecord& record) {
   Warnings warnings;
+  if (std::string text = unsupported_poses(record); !text.empty()) add_warning(warnings, {{}, std::move(text)});
   find_mask_warnings(record, warnings);
   if (std::string text = repetition_warning(record.repeated_images, record.frame_stamps.size()); !text.empty())
     add_warning(warnings, {{}, std::move(text)});

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "cli/program.hpp"
@@ -29,6 +30,31 @@ TEST(StereoRun, DrivesAlongARealStreetAndTwiceTheSame) {
   EXPECT_LE(summary.at("evaluation").at("ate_m").at("rmse"), 0.25);  // of a way of 60 m
   run_stereo(program, "b", street);
   EXPECT_EQ(program.text("a/trajectory.txt"), program.text("b/trajectory.txt"));
+}
+
+/// The map is a thousand times too large, and no frame is tracked in it.
+TEST(StereoRun, ABaselineInMillimetresIsToldAndTheRunIsNoSuccess) {
+  const char* data = std::getenv("HOLDFAST_DATA");
+  if (data == nullptr) GTEST_SKIP() << "HOLDFAST_DATA does not name the folder with kitti_stereo_51";
+  const test::Program program;
+  const std::filesystem::path street = std::filesystem::path(data) / "kitti_stereo_51";
+  for (const char* folder : {"left", "right"})
+    std::filesystem::create_directory_symlink(street / folder, program.path(folder));
+  program.write("calib.txt",
+                "707.0912 0 601.8873 0 0 707.0912 183.1104 0 0 0 1 0\n"
+                "707.0912 0 601.8873 -379814.5 0 707.0912 183.1104 0 0 0 1 0\n");
+  const std::vector<std::string> arguments{std::string(HOLDFAST_EXAMPLE_CONFIGURATIONS) + "/stereo.yaml", "--set",
+                                           "source={kitti: {path: " + program.path(".").string() + ", frames: 8}}"};
+  const auto outcome_of = [&](std::vector<std::string> words) {
+    words.insert(words.begin() + 1, arguments.begin(), arguments.end());
+    return program.run(words);
+  };
+  const test::Outcome check = outcome_of({"check"}), run = outcome_of({"run", "--output", "out", "--quiet"});
+  for (const test::Outcome& outcome : {check, run})
+    EXPECT_NE(outcome.errors.find("the baseline is 537.2 m; expected"), std::string::npos) << outcome.errors;
+  EXPECT_EQ(check.exit_code, 0);
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_NE(run.errors.find("error: no pose is supported by the map"), std::string::npos) << run.errors;
 }
 
 TEST(StereoRun, ASimulatedPairIsTrackedToAMillimetre) {

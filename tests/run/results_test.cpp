@@ -212,6 +212,23 @@ TEST_F(ResultsTest, ACameraThatIsLostToTheEndIsAdvisedToBeginAnew) {
   expect_advice(false, "it saw nothing to begin with");
 }
 
+/// A stereo pair whose baseline is in millimetres: no frame finds anything of the map that the last one began.
+TEST_F(ResultsTest, PosesThatOnlyBeginMapsAreNoResult) {
+  EXPECT_EQ(unsupported_poses(record_), "");
+  record_.summary = RunSummary();
+  record_.sensor = Sensor::stereo;
+  FrameResult start;
+  start.status = TrackingStatus::initialised;
+  for (int i = 0; i < 2; ++i) record_.summary.add(start, 0.0);
+  EXPECT_EQ(unsupported_poses(record_), "") << "a recording of two frames";
+  for (int i = 0; i < 10; ++i) record_.summary.add(start, 0.0);
+  EXPECT_THAT(unsupported_poses(record_), AllOf(HasSubstr("no pose is supported by the map"), HasSubstr("baseline")));
+  FrameResult tracked;
+  tracked.status = TrackingStatus::tracked;
+  record_.summary.add(tracked, 0.0);
+  EXPECT_EQ(unsupported_poses(record_), "");
+}
+
 /// The files that an observer `overlay` leaves, and others, which are none of its pictures.
 TEST_F(ResultsTest, TheReportPlaysThePicturesOfTheOverlay) {
   EXPECT_TRUE(overlay_pictures(folder_).empty());

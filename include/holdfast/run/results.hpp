@@ -26,6 +26,10 @@ bool has_low_coverage(const RunRecord& record);
 /// runs, and for one that was interrupted or failed, whose unread frames say nothing.
 std::string coverage_warning(const RunRecord& record);
 
+/// Why the poses of a run are no result, and what to check; in whole sentences. That is the case if every pose begins a
+/// map (TrackingStatus::initialised), several times, and none was tracked in one. Empty for other runs.
+std::string unsupported_poses(const RunRecord& record);
+
 /// The commit that this library was built from, with "-dirty" for changes that were not committed; "unknown" outside a
 /// checkout.
 const char* build_commit();
