@@ -251,7 +251,8 @@ const SensorFrame& Pipeline::State::used_images(const SensorFrame& given, Sensor
   // Tracking and mapping need grey alone.
   const bool shows_colour =
       moving_world.expects_masks() || moving_world.weights_features() || !parts.observers.empty() || scene.has_value();
-  const bool gets_channels = shows_colour && given.colour.type() == CV_8UC1;
+  // An image without pixels has the type of a grey one; tracking refuses it.
+  const bool gets_channels = shows_colour && !given.colour.empty() && given.colour.type() == CV_8UC1;
   if (!drops_depth && !drops_right && !gets_channels) return given;
   other = given;
   if (drops_depth) other.depth.release();

@@ -308,5 +308,26 @@ TEST(Pipeline, TellsItsObservers) {
   EXPECT_EQ(counts.finished, 1);
 }
 
+/// Parts that look at colour see the images before tracking does.
+TEST(Pipeline, RefusesAnEmptyColourImageWhateverPartsLookAtIt) {
+  test::PointWorld world(Camera{});
+  for (const bool has_observer : {false, true}) {
+    PipelineParts parts = parts_for(world, 0.0);
+    Counter::Counts counts;
+    if (has_observer) parts.observers.push_back(std::make_unique<Counter>(counts));
+    Pipeline pipeline(std::move(parts));
+    SensorFrame frame = world.frame(0, 0.0, Eigen::Isometry3d::Identity());
+    frame.colour.release();
+    try {
+      pipeline.feed(frame);
+      ADD_FAILURE() << has_observer;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("the colour image is 0x0"), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(counts.frames, 0);
+    EXPECT_EQ(pipeline.feed(world.frame(1, 0.1, Eigen::Isometry3d::Identity())).status, TrackingStatus::initialised);
+  }
+}
+
 }  // namespace
 }  // namespace holdfast
