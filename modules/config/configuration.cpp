@@ -170,6 +170,7 @@ class Resolver {
     read_sensor();
     read_run();
     for (const SectionDescription& section : sections_) read_section(section);
+    warn_of_unused_masks();
     // As a reader goes through the file; what has no line comes last.
     std::stable_sort(diagnostics_.begin(), diagnostics_.end(), [](const Diagnostic& a, const Diagnostic& b) {
       const auto key = [](const SourceLocation& l) { return std::tuple(l.line == 0, l.line, l.column); };
@@ -346,6 +347,40 @@ class Resolver {
     const ConfigurationNode& node = at("run");
     result_.run = table.settings(read_parameters(node, table.parameters(), "section 'run'", diagnostics_, elsewhere_));
     if (const auto reason = result_.run.contradiction()) complain(node.find("pace")->location, *reason);
+    warn_of_run_settings(node);
+  }
+
+  /// Settings that the mode or the pace leaves unused. Defaults are those of a resolved configuration and ask for
+  /// nothing.
+  void warn_of_run_settings(const ConfigurationNode& node) {
+    const RunSettings &run = result_.run, defaults;
+    const auto warn = [&](const char* name, const std::string& reason) {
+      const ConfigurationNode* found = node.find(name);
+      result_.warnings.push_back({found != nullptr ? found->location : node.location,
+                                  "'" + std::string(name) + "' of section 'run' has no effect " + reason});
+    };
+    if (run.late_frames == LateFrames::drop && !run.paced())
+      warn("late_frames",
+           "as 'drop', because frames are late only at the pace of their time stamps; add 'mode: threaded' and 'pace: "
+           "timestamps', or remove it");
+    const std::string in_mode =
+        "in " + std::string(run.threaded() ? "threaded" : "sequential") + " mode; change 'mode', or remove it";
+    if (!run.threaded() && run.frame_queue != defaults.frame_queue) warn("frame_queue", in_mode);
+    if (!run.threaded() && run.keyframe_queue != defaults.keyframe_queue) warn("keyframe_queue", in_mode);
+    if (run.threaded() && run.prefetch != defaults.prefetch) warn("prefetch", in_mode);
+  }
+
+  /// Masks reach poses by filters alone. A dense map leaves out what they mark without any.
+  void warn_of_unused_masks() {
+    if (!diagnostics_.empty()) return;  // values that were not read are missing
+    const auto dense_map = result_.sections.find("dense_map");
+    const bool has_dense_map = dense_map != result_.sections.end() && std::get<bool>(dense_map->second.at("enabled"));
+    if (result_.segmenter.name == "none" || !result_.filters.empty() || has_dense_map) return;
+    result_.warnings.push_back(
+        {result_.segmenter.location,
+         "no filter uses the masks of the segmenter '" + result_.segmenter.name +
+             "', so that poses are estimated from features on people as from all others; add 'semantic_mask' to "
+             "'filters', or remove the segmenter to save its time"});
   }
 
   void read_section(const SectionDescription& section) {

@@ -69,6 +69,43 @@ TEST(Configuration, WarnsOfAFolderNamedAfterAnotherCamera) {
   EXPECT_TRUE(resolve(test::good, {numbers, "source.tum.path=/data/rgbd_bonn_crowd"}).warnings.empty());
 }
 
+TEST(Configuration, WarnsOfRunSettingsWithoutEffect) {
+  const auto warnings = [](const std::string& run) {
+    std::string text;
+    for (const Diagnostic& each : resolve(std::string(test::good) + "run: { " + run + " }\n").warnings)
+      text += each.to_string() + "\n";
+    return text;
+  };
+  using testing::AllOf, testing::HasSubstr;
+  EXPECT_THAT(warnings("late_frames: drop"),
+              AllOf(HasSubstr("c.yaml:"), HasSubstr("'late_frames' of section 'run' has no "
+                                                    "effect as 'drop'")));
+  EXPECT_THAT(warnings("mode: threaded, late_frames: drop"), HasSubstr("'late_frames' of section 'run' has no effect"));
+  EXPECT_THAT(warnings("frame_queue: 8, keyframe_queue: 2"),
+              AllOf(HasSubstr("'frame_queue' of section 'run' has no effect in sequential mode"),
+                    HasSubstr("'keyframe_queue' of section 'run' has no effect in sequential mode")));
+  EXPECT_THAT(warnings("mode: threaded, prefetch: 5"),
+              HasSubstr("'prefetch' of section 'run' has no effect in threaded"));
+  EXPECT_EQ(warnings("mode: threaded, pace: timestamps, late_frames: drop, frame_queue: 8"), "");
+  EXPECT_EQ(warnings("prefetch: 5"), "");
+  // As a resolved configuration has them.
+  EXPECT_EQ(warnings("late_frames: queue, frame_queue: 4, keyframe_queue: 4, prefetch: 2"), "");
+}
+
+TEST(Configuration, WarnsOfASegmenterWithoutAFilter) {
+  const auto warnings = [](const std::string& more) {
+    Registry registry = test::test_registry();
+    test::add<Segmenter, NoSettings>(registry, "network");
+    const ConfigurationNode root = parse_yaml(std::string(test::good) + more, "c.yaml", "/data");
+    return resolve_configuration(root, "c.yaml", registry, test::test_sections()).warnings;
+  };
+  ASSERT_EQ(warnings("segmenter: network\n").size(), 1U);
+  EXPECT_THAT(warnings("segmenter: network\n")[0].to_string(),
+              testing::StartsWith("c.yaml:5:12: no filter uses the masks of the segmenter 'network'"));
+  EXPECT_TRUE(warnings("segmenter: network\nfilters: [semantic_mask]\n").empty());
+  EXPECT_TRUE(warnings("segmenter: none\n").empty());
+}
+
 TEST(Configuration, PathsStartFromTheFileThatSaysThem) {
   EXPECT_EQ(resolve(test::good).source.values.at("path"), ParameterValue(std::string("/data/fr1")));
   EXPECT_EQ(resolve(test::good, {"source.tum.path=../fr2"}).source.values.at("path"),
