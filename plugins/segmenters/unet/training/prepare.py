@@ -7,7 +7,9 @@ Reads, as far as they are named:
   --room DIR        a sequence in TUM layout with labels_pseudo/: 0 nobody, 15 person, 255 unsure
   --simulated DIR   sequences that `holdfast simulate` wrote; DIR itself, or folders in it
   --composed DIR    folders of sequences that benchmarks/tools/compose_people.py wrote from frames of --room
-and writes one .npz.  Entries that --validation lists (or that its rule chooses, see validation.txt) are marked: they are
+  --further DIR     with images/SOURCE_*.jpg, classes/SOURCE_*.png (pictures without it are for the teacher of
+                    train_gpu.py) and depth/SOURCE_*.png (8 bits for 10 m); its sources replace those of more/
+and writes one .npz, or several parts of it.  Entries that --validation lists (or that its rule chooses, see validation.txt) are marked: they are
 never trained on.
 """
 import argparse
@@ -19,7 +21,7 @@ import sys
 import cv2
 import numpy as np
 
-from classes import IGNORED, NOT_PERSON, PERSON, SIMULATED, VOC, relabelled
+from classes import IGNORED, NOT_PERSON, PERSON, SIMULATED, UNLABELLED, VOC, relabelled
 from pack import PackError, PackWriter
 
 HERE = pathlib.Path(__file__).parent
@@ -75,6 +77,15 @@ def more_people(folder, source):
         yield path.stem, colour(folder / "images" / f"{path.stem}.jpg"), labels
 
 
+def further(folder, source):
+    """Labels as in classes.py, or none, and depth, if there is any: (name, picture, labels, depth or None)."""
+    for path in sorted((folder / "images").glob(f"{source}_*.jpg")):
+        picture = colour(path)
+        classes, depth = folder / "classes" / f"{path.stem}.png", folder / "depth" / f"{path.stem}.png"
+        labels = grey(classes) if classes.exists() else np.full(picture.shape[:2], UNLABELLED, np.uint8)
+        yield path.stem, picture, labels, grey(depth) if depth.exists() else None
+
+
 def furniture(labels):
     """Where large things stand that are no part of a person, among the pixels that are unsure."""
     unsure = cv2.erode((labels == IGNORED).astype(np.uint8), np.ones((7, 7), np.uint8))
@@ -119,27 +130,38 @@ def walking(folder, room_folder):
         yield f"{path.parent.parent.name}/{path.stem}", colour(picture), labels
 
 
+def sources_in(folder):
+    return sorted({path.name.split("_")[0] for path in folder.glob("*.*")})
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--people", type=pathlib.Path)
     parser.add_argument("--room", type=pathlib.Path)
     parser.add_argument("--simulated", type=pathlib.Path)
     parser.add_argument("--composed", type=pathlib.Path)
+    parser.add_argument("--further", type=pathlib.Path)
     parser.add_argument("--validation", type=pathlib.Path, default=HERE / "validation.txt",
                         help="names of entries to hold out, one a line (default: validation.txt beside this program)")
     parser.add_argument("--long-side", type=int, default=384, help="pictures are shrunk to it [px] (default: 384)")
+    parser.add_argument("--quality", type=int, default=90, help="of the JPEG pictures in the pack (default: 90)")
+    parser.add_argument("--parts", type=int, default=1,
+                        help="splits the pack into as many files, OUTPUT.0.npz and so on (default: 1, OUTPUT itself)")
     parser.add_argument("--output", type=pathlib.Path, required=True, help="the pack, .npz")
     arguments = parser.parse_args()
 
     held_out = {line for line in arguments.validation.read_text().split("\n") if line and not line.startswith("#")}
     readers = []
+    further_sources = sources_in(arguments.further / "images") if arguments.further else []
     if arguments.people:
         for reader in (voc_person, penn_fudan, human_290):
             readers.append((reader.__name__, reader, arguments.people / reader.__name__))
         more = arguments.people / "more"
-        sources = sorted({path.name.split("_")[0] for path in (more / "labels").glob("*.png")})
-        for source in sources:
-            readers.append((source, functools.partial(more_people, source=source), more))
+        for source in sources_in(more / "labels"):
+            if source not in further_sources:
+                readers.append((source, functools.partial(more_people, source=source), more))
+    for source in further_sources:
+        readers.append((source, functools.partial(further, source=source), arguments.further))
     if arguments.room:
         readers.append(("room", room, arguments.room))
     if arguments.simulated:
@@ -149,22 +171,24 @@ def main():
             parser.error("--composed needs --room, the recording that people were composed into")
         readers.append(("walking", lambda folder: walking(folder, arguments.room), arguments.composed))
     if not readers:
-        parser.error("nothing to pack; name --people, --room or --simulated")
+        parser.error("nothing to pack; name --people, --room, --simulated or --further")
 
-    writer = PackWriter(arguments.long_side)
+    writer = PackWriter(arguments.long_side, arguments.quality)
     for source, reader, folder in readers:
         if not folder.is_dir():
             raise PackError(f"{folder}: is no folder; expected the data of '{source}'")
         before = len(writer.names)
-        for name, picture, labels in reader(folder):
+        for name, picture, labels, *depth in reader(folder):
             full_name = f"{source}/{name}"
-            writer.add(full_name, picture, labels, full_name in held_out)
+            writer.add(full_name, picture, labels, full_name in held_out, *depth)
         print(f"{source}: {len(writer.names) - before} pictures, "
               f"{sum(writer.validation[before:])} of them held out")
     if not writer.names:
         raise PackError("no pictures found; expected the layouts that --help names")
-    writer.write(arguments.output)
-    print(f"{arguments.output}: {arguments.output.stat().st_size / 2**20:.1f} MiB")
+    for part in range(arguments.parts):
+        path = arguments.output.with_suffix(f".{part}.npz") if arguments.parts > 1 else arguments.output
+        writer.write(path, part, arguments.parts)
+        print(f"{path}: {path.stat().st_size / 2**20:.1f} MiB")
 
 
 if __name__ == "__main__":

@@ -104,6 +104,9 @@ def main():
             "--height", 64, "--steps", 2)
         run("export.py", folder / "weights.npz", folder / "unet.onnx")
     check_kept_blocks(arguments.output, pack)
+    run("train_gpu.py", pack, "--output", arguments.output / "gpu", "--device", "cpu", "--batch", 2, "--steps", 2, "--sizes", "64x64",
+        "--start-from", arguments.output / "mobile" / "weights.npz")
+    load_weights(arguments.output / "gpu" / "weights.npz")
     picture = read_pack(pack)[0][0].picture
     cv2.imwrite(str(arguments.output / "picture.png"), picture)
     cv2.imwrite(str(arguments.output / "labels.png"), found_labels(model, picture, input_size).astype(np.uint8))
