@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "holdfast/core/size_text.hpp"
+#include "holdfast/core/stamp_unit.hpp"
 #include "holdfast/image_files/image_list.hpp"
 #include "holdfast/image_files/image_structure.hpp"
 
@@ -157,10 +158,8 @@ SensorFrame ImageSequence::decode(const ImageFiles& files) {
   return frame;
 }
 
-Warnings ImageSequence::warnings() const {
-  if (warnings_) return *warnings_;
-  warnings_.emplace();
-  if (options_.invalid_depth_key.empty() || files_.empty() || files_.front().depth.empty()) return {};
+std::optional<Diagnostic> ImageSequence::suspected_no_value() const {
+  if (options_.invalid_depth_key.empty() || files_.empty() || files_.front().depth.empty()) return std::nullopt;
   constexpr std::size_t most = 4;
   const std::size_t step = (files_.size() + most - 1) / most;
   ImageDecoder decoder;
@@ -171,15 +170,35 @@ Warnings ImageSequence::warnings() const {
     } catch (const InputError&) {  // told when its turn comes
     }
   }
-  if (const std::optional<float> depth = find_no_value(depths)) {
-    const std::string stored = std::to_string(std::lround(*depth * options_.depth.factor));
-    const std::string metres = std::to_string(*depth);
-    add_warning(*warnings_, {{files_.front().depth.string()},
-                             "the largest depth " + metres.substr(0, metres.find('.') + 3) + " m (stored as " + stored +
-                                 ") fills a part of the image far behind everything else, in images all over the "
-                                 "recording: it looks like 'no value'; set `" +
-                                 options_.invalid_depth_key + ": " + stored + "` then"});
-  }
+  const std::optional<float> depth = find_no_value(depths);
+  if (!depth) return std::nullopt;
+  const std::string stored = std::to_string(std::lround(*depth * options_.depth.factor));
+  const std::string metres = std::to_string(*depth);
+  return Diagnostic{{files_.front().depth.string()},
+                    "the largest depth " + metres.substr(0, metres.find('.') + 3) + " m (stored as " + stored +
+                        ") fills a part of the image far behind everything else, in images all over the recording: it "
+                        "looks like 'no value'; set `" +
+                        options_.invalid_depth_key + ": " + stored + "` then"};
+}
+
+std::optional<Diagnostic> ImageSequence::suspected_stamp_unit() const {
+  if (!options_.stamps_are_read) return std::nullopt;
+  std::vector<double> stamps;
+  for (const ImageFiles& files : files_) stamps.push_back(files.timestamp);
+  const std::string unit = stamp_unit_suspicion(stamps);
+  if (unit.empty()) return std::nullopt;
+  Diagnostic warning;
+  warning.location.file = files_.front().colour_listed_at.file;  // images in numbered folders have no list
+  warning.message = "the time stamps of the frames " + unit +
+                    "; expected seconds: the motion between frames, and how long a camera may be lost, depend on them";
+  return warning;
+}
+
+Warnings ImageSequence::warnings() const {
+  if (warnings_) return *warnings_;
+  warnings_.emplace();
+  for (std::optional<Diagnostic> suspicion : {suspected_stamp_unit(), suspected_no_value()})
+    if (suspicion) add_warning(*warnings_, std::move(*suspicion));
   return *warnings_;
 }
 

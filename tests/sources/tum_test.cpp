@@ -194,6 +194,22 @@ RealTable rows_of(const Eigen::Matrix4d& matrix) {
   return rows;
 }
 
+TEST_F(TumSourceTest, TimeStampsThatAreNotSecondsAreSuspected) {
+  EXPECT_TRUE(open()->warnings().empty());
+  std::string colour, depth;
+  for (int i = 0; i < 5; ++i) {
+    colour += std::to_string(100 * i) + " " + colour_name(i) + "\n";
+    depth += std::to_string(100 * i) + " " + depth_name(i) + "\n";
+  }
+  folder_.write("rgb.txt", colour);
+  folder_.write("depth.txt", depth);
+  const Warnings warnings = open()->warnings();
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_EQ(warnings[0].location.file, full("rgb.txt"));
+  EXPECT_THAT(warnings[0].message,
+              AllOf(HasSubstr("look like milliseconds or frame numbers (100"), HasSubstr("divide them by 1000")));
+}
+
 TEST_F(TumSourceTest, TruthOfMarkersBecomesThatOfTheCamera) {
   // The nearest rotation by another way than the source: Newton's iteration for the polar decomposition.
   Eigen::Isometry3d T_m = Eigen::Isometry3d::Identity();

@@ -12,6 +12,7 @@
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/sensor_frame.hpp"
+#include "holdfast/core/warning.hpp"
 #include "holdfast/image_files/image_decoder.hpp"
 #include "holdfast/image_files/stereo_rectification.hpp"
 #include "holdfast/interfaces/frame_source.hpp"
@@ -41,6 +42,7 @@ struct ImageSequenceOptions {
   /// Depth images of another size than the colour images are scaled to it: each pixel of the result has the value of
   /// the depth pixel that covers its centre. For cameras whose images show the same view.
   bool scales_depth = false;
+  bool stamps_are_read = true;  ///< from a list; otherwise they follow from a frame rate, and are seconds
   /// Rectifies both images of pairs that are not; their sizes are those of its cameras. nullptr: they are rectified.
   std::shared_ptr<const StereoRectification> rectification = nullptr;
   /// The key that sets DepthEncoding::no_value, such as "source.tum.invalid_depth", for ImageSequence::warnings().
@@ -64,13 +66,15 @@ class ImageSequence {
   /// Of all frames [s].
   std::vector<double> timestamps() const;
   const std::vector<SkippedFrame>& skipped() const { return skipped_; }
-
-  /// The suspicion that a value of the depth images means that there is no measurement (find_no_value()). The first
-  /// call reads some images; none without ImageSequenceOptions::invalid_depth_key.
+  /// The suspicions that the time stamps are not seconds (core/stamp_unit.hpp), and that a value of the depth images
+  /// means that there is no measurement (find_no_value()). The first call reads some images; none without
+  /// ImageSequenceOptions::invalid_depth_key.
   Warnings warnings() const;
 
  private:
   SensorFrame decode(const ImageFiles& files);
+  std::optional<Diagnostic> suspected_stamp_unit() const;
+  std::optional<Diagnostic> suspected_no_value() const;
 
   std::vector<ImageFiles> files_;
   ImageSequenceOptions options_;

@@ -175,6 +175,7 @@ class FolderSource final : public FrameSource {
     options.invalid_depth_key = "source.folder.invalid_depth";
     options.rectification = rectification_;
     options.scales_depth = settings.scale_depth;
+    options.stamps_are_read = !settings.stamps.empty();
     return {frames_.files, options};
   }
 
