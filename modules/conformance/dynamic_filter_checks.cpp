@@ -85,7 +85,8 @@ void needs_stay(const Maker& maker) {
     for (const auto& [name, needed] : {std::pair{" depth", n.depth},
                                        {" segmentation", n.segmentation},
                                        {" pose_prior", n.pose_prior},
-                                       {" matches", n.matches}})
+                                       {" matches", n.matches},
+                                       {" evidence", n.evidence}})
       if (needed) result += name;
     return result;
   };

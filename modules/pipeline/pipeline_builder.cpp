@@ -371,6 +371,7 @@ Pipeline PipelineBuilder::build() {
              "a camera in a loaded map finds its place by place recognition, but the loop detector is 'none'; choose "
              "one, such as 'loop_detector: { flann: {} }'");
   throw_complaints();
+  check_effects();
   if (has_map_) check_map();
   return Pipeline(std::move(parts_));
 }

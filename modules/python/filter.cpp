@@ -10,7 +10,8 @@ namespace py = pybind11;
 namespace {
 
 constexpr const char* needs_expected =
-    "a list of 'depth', 'segmentation', 'pose_prior' and 'matches', empty for a filter that needs none of them";
+    "a list of 'depth', 'segmentation', 'pose_prior', 'matches' and 'evidence', empty for a filter that needs none of "
+    "them";
 
 Needs read_needs(const Instance& instance) {
   if (!instance.has("needs")) return {};
@@ -28,6 +29,8 @@ Needs read_needs(const Instance& instance) {
       needs.pose_prior = true;
     else if (text == "matches")
       needs.matches = true;
+    else if (text == "evidence")
+      needs.evidence = true;
     else
       instance.refuse("needs", "names '" + text + "'", needs_expected);
   }

@@ -110,6 +110,11 @@ class ConfiguredPipeline : public ::testing::Test {
     options.output_directory = "/out";
     return build_pipeline(resolve_configuration(root, "c.yaml", registry_, pipeline_sections()), registry_, options);
   }
+  std::string warnings(const std::string& more) {
+    std::string text;
+    for (const Diagnostic& warning : build(more).pipeline.warnings()) text += warning.to_string() + "\n";
+    return text;
+  }
   std::string complaints(const std::string& more) {
     try {
       build(more);
@@ -200,6 +205,22 @@ TEST_F(ConfiguredPipeline, FiltersGetWhatTheyNeed) {
   EXPECT_THAT(complaints(filter),
               HasSubstr("c.yaml:5:12: the filter 'filter' needs a segmentation, but the segmenter is 'none'"));
   EXPECT_EQ(complaints(filter + "segmenter: fake\n"), "");
+}
+
+TEST_F(ConfiguredPipeline, FiltersThatMissEvidenceAndMasksThatMissAFilterAreNamed) {
+  const std::string camera = "camera: tum_fr1\n";
+  EXPECT_THAT(warnings(camera + "segmenter: fake\nfilters: [ filter ]\n"),
+              HasSubstr("c.yaml:5:12: no filter needs the masks of the segmenter 'fake'"));
+  world_.needs = {.segmentation = true};
+  EXPECT_EQ(warnings(camera + "segmenter: fake\nfilters: [ filter ]\n"), "");
+  world_.needs = {.matches = true, .evidence = true};
+  EXPECT_THAT(warnings(camera + "filters: [ filter ]\n"),
+              HasSubstr("c.yaml:5:12: the filter 'filter' starts from the evidence of filters that run before it"));
+  const std::string two = warnings(camera + "filters: [ filter, filter ]\n");
+  EXPECT_EQ(std::count(two.begin(), two.end(), '\n'), 1) << "the second one follows the first\n" << two;
+  // A filter of an earlier stage runs before it, wherever it is in the list.
+  add<DynamicFilter>(registry_, "early", [](const CreationContext&) { return std::make_unique<FakeFilter>(Needs{}); });
+  EXPECT_EQ(warnings(camera + "filters: [ filter, early ]\n"), "");
 }
 
 TEST_F(ConfiguredPipeline, TheSensorNeedsItsImages) {

@@ -226,6 +226,22 @@ TEST(PipelineBuilder, JudgesTheCameraOfTheSource) {
   EXPECT_THAT(complaints(folded), HasSubstr("has no inverse in the image"));
 }
 
+TEST(PipelineBuilder, ADenseMapWhileLocalisingIsNamed) {
+  test::PointWorld world(find_camera("tum_fr1").value());
+  const auto warnings_of = [&](bool localise) {
+    PipelineBuilder first = builder_for(world);
+    Pipeline pipeline = first.build();
+    run(pipeline, world, 10);
+    PipelineBuilder second = builder_for(world);
+    second.dense_map({.enabled = true}).loop_detector(std::make_unique<test::BruteForceDetector>());
+    localise ? second.localise_in(pipeline.take_map()) : second.map(pipeline.take_map());
+    return second.build().warnings();
+  };
+  ASSERT_EQ(warnings_of(true).size(), 1U);
+  EXPECT_THAT(warnings_of(true)[0].message, HasSubstr("'dense_map' has no effect where the camera is only localised"));
+  EXPECT_TRUE(warnings_of(false).empty());
+}
+
 TEST(PipelineBuilder, AMapIsContinuedByItsOwnExtractorOnly) {
   test::PointWorld world(find_camera("tum_fr1").value());
   const auto new_map = [&] {

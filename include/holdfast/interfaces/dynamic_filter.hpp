@@ -28,6 +28,7 @@ struct Needs {
   bool segmentation = false;  ///< a segmenter other than `none`
   bool pose_prior = false;    ///< FilterContext::T_camera_world
   bool matches = false;       ///< features matched with the local map, and the pose estimated from them
+  bool evidence = false;      ///< evidence of a filter that runs before it; without one it finds nothing, a warning
 };
 
 /// The inputs of one call of a filter. References are valid during apply() only.

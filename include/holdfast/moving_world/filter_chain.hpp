@@ -34,6 +34,8 @@ class FilterChain {
   }
   bool empty() const { return filters_.empty(); }
   bool has(FilterStage stage) const;
+  /// The stage in which a filter runs, by its needs.
+  static FilterStage stage_of(const DynamicFilter& filter);
   std::size_t size() const { return filters_.size(); }
   const std::string& name(std::size_t i) const { return names_[i]; }
   const DynamicFilter& filter(std::size_t i) const { return *filters_[i]; }
@@ -67,7 +69,6 @@ class FilterChain {
   const EvidenceSettings& settings() const { return settings_; }
 
  private:
-  static FilterStage stage_of(const DynamicFilter& filter);
   void apply(std::size_t filter, const FilterContext& context);
   float probability(float log_odds) const;
   float prior(std::size_t feature) const;

@@ -139,6 +139,8 @@ class PipelineBuilder {
   void choose_sensor();
   void check_filter(const ModuleOf<DynamicFilter>& module, const Needs& needs);
   void check_classes(const ModuleOf<DynamicFilter>& module, const DynamicFilter& filter);
+  void check_effects();
+  bool follows_another_filter(std::size_t index) const;
   void check_map() const;
   void check_places() const;
   void complain(const SourceLocation& place, std::string message);

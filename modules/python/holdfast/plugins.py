@@ -115,8 +115,8 @@ class Segmenter(Module):
 class DynamicFilter(Module):
     """Adds evidence about which features belong to the static world.
 
-    `needs` lists the inputs without which it cannot work: "depth", "segmentation", "pose_prior", "matches". In a
-    single frame one may be missing all the same.
+    `needs` lists the inputs without which it cannot work: "depth", "segmentation", "pose_prior", "matches", and
+    "evidence" of filters that run before it. In a single frame one may be missing all the same.
     """
 
     _kind = "filters"

@@ -29,7 +29,7 @@ class MotionObjects final : public DynamicFilter {
  public:
   MotionObjects(const MotionObjectsSettings& settings, const CreationContext& context);
 
-  Needs needs() const override { return {.depth = true, .pose_prior = true, .matches = true}; }
+  Needs needs() const override { return {.depth = true, .pose_prior = true, .matches = true, .evidence = true}; }
   void apply(const FilterContext& context, StaticEvidence& evidence) override;
 
   /// Objects and candidates in the order of their first observation.
