@@ -38,7 +38,7 @@ TextMap text_map(const ConfigurationNode& node, const std::string& where) {
 }
 
 /// What the option says, or else what lies in the folder.
-LabelMap read_map(const fs::path& folder, const std::string& map, const std::string& option) {
+LabelMap labels_of_map(const fs::path& folder, const std::string& map, const std::string& option) {
   if (!map.empty()) return {text_map(parse_yaml(map, option, folder), option), option};
   const fs::path file = folder / "classes.yaml";
   if (!fs::exists(file))
@@ -75,7 +75,7 @@ std::map<std::string, fs::path> files_by_stem(const fs::path& folder, const std:
 }
 
 LabelFolder::LabelFolder(const fs::path& folder, const std::string& map, const std::string& option)
-    : files_(files_by_stem(folder, {".png"})), map_(read_map(folder, map, option)) {}
+    : files_(files_by_stem(folder, {".png"})), map_(labels_of_map(folder, map, option)) {}
 
 cv::Mat LabelFolder::read(const fs::path& file) { return map_.apply(decoder_.read_labels(file), file); }
 
