@@ -224,8 +224,7 @@ int run(EvaluateArguments arguments) {
   if (arguments.json != "-" && arguments.csv != "-") {
     std::cout << (only != nullptr ? bold_labels(printable(to_text(*only)), STDOUT_FILENO)
                                   : printable(comparison_text(estimates)));
-    if (!reference.frames) std::cout << "Coverage needs --frames LIST.
-";
+    if (!reference.frames) std::cout << "Coverage needs --frames LIST.\n";
     std::cout << std::flush;
   }
   if (!arguments.json.empty())
