@@ -28,7 +28,7 @@ bool within(double value, double minimum, double maximum) { return value >= mini
 
 }  // namespace
 
-std::string trouble_of(const Camera& camera) {
+std::string trouble_of_numbers(const Camera& camera) {
   const std::string size_text = "1 to " + number(largest_image) + " px";
   if (!within(camera.width, 1, largest_image)) return wrong("width", camera.width, size_text);
   if (!within(camera.height, 1, largest_image)) return wrong("height", camera.height, size_text);
@@ -39,12 +39,17 @@ std::string trouble_of(const Camera& camera) {
   const Distortion& d = camera.distortion;
   for (const double value : {d.k1, d.k2, d.p1, d.p2, d.k3, d.k4, d.k5, d.k6})
     if (!within(value, -1e6, 1e6)) return wrong("distortion", value, "-1e6 to 1e6");
-  if (const std::string trouble = camera.trouble(); !trouble.empty()) return trouble;
   if (!within(camera.baseline, 0, 1e6)) return wrong("baseline", camera.baseline, "0 to 1e6 m");
   if (!within(camera.frame_rate, 0, 1e6)) return wrong("frame rate", camera.frame_rate, "0 to 1e6 per second");
   if (camera.name.size() > 255) return wrong("length of the name", static_cast<double>(camera.name.size()), "0 to 255");
   for (const char letter : camera.name)
     if (static_cast<unsigned char>(letter) < 0x20 || letter == 0x7F) return "the name holds a control character";
+  return "";
+}
+
+std::string trouble_of(const Camera& camera) {
+  if (std::string trouble = trouble_of_numbers(camera); !trouble.empty()) return trouble;
+  if (std::string trouble = camera.trouble(); !trouble.empty()) return trouble;
   // The feature grid has the size of the undistorted image.
   Eigen::Vector2d minimum, maximum;
   camera.undistorted_bounds(minimum, maximum);

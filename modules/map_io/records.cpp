@@ -225,7 +225,7 @@ void read_lenses(ByteReader reader, SharedTables& tables) {
     Distortion& d = camera.distortion;
     d.lens = static_cast<Lens>(lens);
     for (double* value : {&d.k4, &d.k5, &d.k6}) *value = reader.get<double>();
-    refuse(reader, "camera", position, trouble_of(camera));
+    refuse(reader, "camera", position, trouble_of_numbers(camera));
     tables.cameras[position] = std::make_shared<const Camera>(std::move(camera));
   }
   reader.expect_end();
@@ -243,7 +243,7 @@ SharedTables read_tables(ByteReader reader) {
     for (double* value : {&camera.fx, &camera.fy, &camera.cx, &camera.cy, &d.k1, &d.k2, &d.p1, &d.p2, &d.k3,
                           &camera.baseline, &camera.frame_rate})
       *value = reader.get<double>();
-    refuse(reader, "camera", i, trouble_of(camera));
+    refuse(reader, "camera", i, trouble_of_numbers(camera));  // the lens may follow in a section of its own
     tables.cameras.push_back(std::make_shared<const Camera>(std::move(camera)));
   }
   const std::uint32_t pyramids = reader.get_count(bytes_per_pyramid, "pyramids");
@@ -291,6 +291,7 @@ void write_keyframes(const Map& map, const DenseIndex& index, const SharedTables
 
 std::vector<KeyFrame> read_keyframes(ByteReader reader, const SharedTables& tables,
                                      std::vector<std::uint32_t>& feature_counts) {
+  for (std::size_t i = 0; i < tables.cameras.size(); ++i) refuse(reader, "camera", i, trouble_of(*tables.cameras[i]));
   const std::uint32_t count = reader.get_count(bytes_per_keyframe, "keyframes");
   std::vector<KeyFrame> keyframes;
   keyframes.reserve(count);

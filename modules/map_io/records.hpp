@@ -49,6 +49,7 @@ inline constexpr std::uint32_t no_index = 0xFFFFFFFFU;
 
 /// What a map file cannot hold in an entry, such as a number that is not finite; "" when all is well.
 std::string trouble_of(const Camera& camera);
+std::string trouble_of_numbers(const Camera& camera);  ///< each by itself
 std::string trouble_of(const ScalePyramid& pyramid);
 std::string trouble_of(const KeyFrame& keyframe);  ///< without its features
 std::string trouble_of_features(const Frame& frame);
@@ -72,7 +73,7 @@ void write_classes(const Map& map, const DenseIndex& index, ByteWriter& writer);
 
 /// Reading throws InputError.
 SharedTables read_tables(ByteReader reader);
-/// Completes the cameras of read_tables().
+/// Completes the cameras of read_tables(), whose lenses are checked by read_keyframes().
 void read_lenses(ByteReader reader, SharedTables& tables);
 /// All of the keyframes but their features. `feature_counts`: of each keyframe.
 std::vector<KeyFrame> read_keyframes(ByteReader reader, const SharedTables& tables,

@@ -317,7 +317,7 @@ TEST(Pipeline, RefusesAnEmptyColourImageWhateverPartsLookAtIt) {
     if (has_observer) parts.observers.push_back(std::make_unique<Counter>(counts));
     Pipeline pipeline(std::move(parts));
     SensorFrame frame = world.frame(0, 0.0, Eigen::Isometry3d::Identity());
-    frame.colour.release();
+    frame.colour = cv::Mat();
     try {
       pipeline.feed(frame);
       ADD_FAILURE() << has_observer;

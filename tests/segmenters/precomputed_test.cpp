@@ -69,19 +69,19 @@ class PrecomputedTest : public testing::Test {
   void write_labels(const std::vector<double>& stamps) const {
     for (const double stamp : stamps) write(std::to_string(stamp) + ".png", 1);
   }
-  /// The error or the warning about the label images of a recording of ten frames, 30 a second.
-  std::string about_times(double tolerance = 0.0, const std::vector<double>& stamps = frames()) const {
-    try {
-      const auto segmenter = make({{"1", "person"}}, tolerance, "", stamps);
-      return segmenter->warnings().empty() ? "" : segmenter->warnings().front().to_string();
-    } catch (const InputError& error) {
-      return std::string("error: ") + error.what();
-    }
-  }
   static std::vector<double> frames(double shift = 0.0, int step = 1, int count = 10) {
     std::vector<double> stamps;
     for (int i = 0; i < count; i += step) stamps.push_back(1305031102.0 + shift + i / 30.0);
     return stamps;
+  }
+  /// The error or the warning about the label images of a recording of ten frames, 30 a second.
+  std::string about_times(double tolerance = 0.0, const std::vector<double>& stamps = {}) const {
+    try {
+      const auto segmenter = make({{"1", "person"}}, tolerance, "", stamps.empty() ? frames() : stamps);
+      return segmenter->warnings().empty() ? "" : segmenter->warnings().front().to_string();
+    } catch (const InputError& error) {
+      return std::string("error: ") + error.what();
+    }
   }
   /// The label where the image has its value, or -1 when there is no image; the rest must be background.
   static int label_at(Segmenter& segmenter, double timestamp) {

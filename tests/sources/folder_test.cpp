@@ -176,9 +176,9 @@ TEST_F(FolderSourceTest, IntrinsicsComeThroughTheDescription) {
   EXPECT_EQ(camera->name, "camera.yaml");
   EXPECT_EQ(read_all(*source).size(), 1u);  // the size is that of this camera, not of the configuration's
 
-  const std::string json =
-      folder_.write("camera.json", R"({"fx": 1, "fy": 2, "cx": 3, "cy": 4, "width": 32, "height": 24, "p2": -0.5})");
-  EXPECT_EQ(open({{"intrinsics", json}})->describe().camera->distortion.p2, -0.5);
+  const std::string json = folder_.write(
+      "camera.json", R"({"fx": 30, "fy": 32, "cx": 15, "cy": 11, "width": 32, "height": 24, "p2": -0.05})");
+  EXPECT_EQ(open({{"intrinsics", json}})->describe().camera->distortion.p2, -0.05);
 }
 
 TEST_F(FolderSourceTest, StereoPairsPairByNumberAndMayBeGrey) {
@@ -234,7 +234,7 @@ TEST_F(FolderSourceTest, APairThatIsNotRectifiedIsRectified) {
   EXPECT_THAT(wrong("p1: 0.1, T_left_right: [1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]"),
               HasSubstr("k1, k2, k3 and k4 alone"));
   EXPECT_THAT(wrong("k1: 0", ", lens: fishey"), HasSubstr("did you mean 'fisheye'?"));
-  EXPECT_THAT(wrong("k1: -2, T_left_right: [1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]"),
+  EXPECT_THAT(wrong("k1: -0.45, T_left_right: [1, 0, 0, 1, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]"),
               AllOf(StartsWith(full("camera.yaml") + ":1:"), HasSubstr("has no inverse in the image")));
 }
 

@@ -180,11 +180,12 @@ def main():
 
     # As PyTorch exports an interpolation to the size of the input, with every dimension of it free but the channels.
     parts = [coarse, node("Shape", ["image"], "image_shape"), node("Shape", ["scores"], "scores_shape"),
-             node("Gather", ["image_shape", "plane"], "size"), node("Gather", ["scores_shape", "leading"], "count"),
+             node("Slice", ["image_shape", "two", "four", "zero"], "size"),
+             node("Slice", ["scores_shape", "zero", "two", "zero"], "count"),
              node("Concat", ["count", "size"], "full_shape", integer("axis", 0)),
              node("Resize", ["scores", "", "", "full_shape"], "full", text("mode", "linear"),
                   text("coordinate_transformation_mode", "half_pixel"))]
-    indices = [tensor("plane", [2], [2, 3], INT64), tensor("leading", [2], [0, 1], INT64)]
+    indices = [tensor(name, [1], [value], INT64) for name, value in [("zero", 0), ("two", 2), ("four", 4)]]
     write("resized", model(parts, [value_info("image", ["batch", 3, "height", "width"])],
                            [value_info("full", ["batch", 3, "height", "width"])], coarse_weights + indices, opset=11))
 
