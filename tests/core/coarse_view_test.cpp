@@ -12,6 +12,7 @@
 #include "holdfast/core/coarse_cells.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/random.hpp"
+#include "holdfast/core/sensor_frame.hpp"
 
 namespace holdfast {
 namespace {
@@ -29,6 +30,13 @@ cv::Mat ramp_image(const Camera& camera) {
   for (int row = 0; row < camera.height; ++row)
     for (int column = 0; column < camera.width; ++column) image.at<float>(row, column) = ramp(column, row);
   return image;
+}
+
+TEST(MeasuredDepth, IsWhatASensorCanHaveMeasured) {
+  for (const float depth : {1e-3F, 0.5F, 655.0F, 1e5F}) EXPECT_TRUE(is_measured_depth(depth)) << depth;
+  for (const float depth : {0.0F, -1.0F, 1e10F, std::numeric_limits<float>::infinity(),
+                            std::numeric_limits<float>::quiet_NaN()})
+    EXPECT_FALSE(is_measured_depth(depth)) << depth;
 }
 
 TEST(CoarseGrid, ACellHoldsItsCentreAndNothingBeyondItsBorder) {

@@ -3,7 +3,6 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <opencv2/core/mat.hpp>
 #include <optional>
@@ -23,8 +22,12 @@ struct FrameTruth {
   std::vector<std::uint8_t> moving_objects;
 };
 
-/// Whether a pixel of a depth image holds a measurement: a positive, finite number.
-inline bool is_measured_depth(float depth) { return depth > 0.0F && depth <= std::numeric_limits<float>::max(); }
+/// The largest depth that counts as a measurement [m]: farther than any sensor sees, and near enough that maps can hold
+/// the points (map files: 1e9 m from the origin).
+constexpr float largest_measured_depth = 1e6F;
+
+/// Whether a pixel of a depth image holds a measurement: a positive number that a sensor can have measured.
+inline bool is_measured_depth(float depth) { return depth > 0.0F && depth <= largest_measured_depth; }
 
 /// What a camera, or a stereo pair of cameras, took at one moment. The images are shared, not copied, and must not be
 /// written to.
