@@ -106,7 +106,9 @@ def main():
     check_kept_blocks(arguments.output, pack)
     run("train_gpu.py", pack, "--output", arguments.output / "gpu", "--device", "cpu", "--batch", 2, "--steps", 2, "--sizes", "64x64",
         "--start-from", arguments.output / "mobile" / "weights.npz")
-    load_weights(arguments.output / "gpu" / "weights.npz")
+    run("average.py", arguments.output / "mobile" / "unet.onnx", arguments.output / "gpu" / "weights.npz", pack, "--output",
+        arguments.output / "average.npz", "--pictures", 4, "--width", 64, "--height", 64)
+    load_weights(arguments.output / "average.npz")
     picture = read_pack(pack)[0][0].picture
     cv2.imwrite(str(arguments.output / "picture.png"), picture)
     cv2.imwrite(str(arguments.output / "labels.png"), found_labels(model, picture, input_size).astype(np.uint8))
