@@ -3,10 +3,10 @@
 
 #include <Eigen/SVD>
 #include <algorithm>
-#include <fstream>
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/folder_name.hpp"
+#include "holdfast/core/text_file.hpp"
 
 namespace holdfast {
 
@@ -71,9 +71,13 @@ TruthTransform choose_truth_transform(const TruthChoice& choice, const std::file
   if (choice.is_raw) return {};
   const TruthTransform given = make_truth_transform(choice.left, choice.right, choice.place);
   if (!choice.left.empty() || !choice.right.empty()) return given;
-  std::string line;
-  if (std::ifstream stream(truth); std::getline(stream, line) && line + '\n' == trajectory_header) return {};
-  return known_truth_transform(folder_name(truth.parent_path()), camera).value_or(TruthTransform());
+  const std::optional<TruthTransform> known = known_truth_transform(folder_name(truth.parent_path()), camera);
+  if (!known || !why_unreadable(truth, largest_file::text).empty()) return {};
+  // What Holdfast wrote is the truth of the camera already.
+  LineReader lines(truth, "a trajectory in TUM format");
+  std::string first;
+  const bool is_ours = lines.next(first) && first + '\n' == trajectory_header;
+  return is_ours ? TruthTransform() : *known;
 }
 
 Trajectory transformed(const TruthTransform& transform, Trajectory truth) {

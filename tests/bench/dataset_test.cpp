@@ -261,7 +261,7 @@ TEST_F(DatasetCheckTest, LooksAtStereoPairs) {
                                 HasSubstr("expected 64x48 of the right camera"))));
   fs::remove(program_.path("04/calib.txt"));
   EXPECT_THAT(check_dataset(program_.path("04"), find_recipe("kitti_04")).problems,
-              ElementsAre(HasSubstr("calib.txt: is missing")));
+              ElementsAre(HasSubstr("calib.txt: no such file")));
 }
 
 TEST_F(DatasetCheckTest, IsACommand) {

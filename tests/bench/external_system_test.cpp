@@ -51,8 +51,8 @@ TEST(ExternalSystemTest, SalvagesWhatAProgramLeft) {
   const std::string file =
       (std::filesystem::temp_directory_path() / ("holdfast_salvage_" + std::to_string(getpid()))).string();
   EXPECT_FALSE(salvage_trajectory(file).exists);
-  std::ofstream(file) << "# stamps\n2.0 0 0 0 0 0 0 1\n1.0 0 0 1 0 0 0 2\n3.0 nan 0 0 0 0 0 1\n4.0 0 0 0 0 0 0 0\n"
-                         "5.0 0 0 -inf 0 0 0 1\nlost\n6.0 0 0 0 0 0 0 1 7\n7.0 0 0 0.1";
+  std::ofstream(file) << "# stamps\n2.0 0 0 0 0 0 0 1\n1.0 0 0 1 0 0 0 1\n3.0 nan 0 0 0 0 0 1\n4.0 0 0 0 0 0 0 0\n"
+                         "5.0 0 0 -inf 0 0 0 1\nlost\n5.5 0 0 1 0 0 0 2\n6.0 0 0 0 0 0 0 1 7\n7.0 0 0 0.1";
   const SalvagedTrajectory salvaged = salvage_trajectory(file);
   std::filesystem::remove(file);
   EXPECT_TRUE(salvaged.exists);
@@ -60,7 +60,7 @@ TEST(ExternalSystemTest, SalvagesWhatAProgramLeft) {
   EXPECT_EQ(salvaged.poses[0].timestamp, 1.0);
   EXPECT_EQ(salvaged.poses[2].timestamp, 6.0);
   EXPECT_EQ(salvaged.not_finite, 3U);
-  EXPECT_EQ(salvaged.malformed, 2U);
+  EXPECT_EQ(salvaged.malformed, 3U);
 }
 
 }  // namespace

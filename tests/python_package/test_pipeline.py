@@ -225,7 +225,7 @@ def test_cameras_have_lenses():
     numbers = {"width": 640, "height": 480, "fx": 300, "fy": 300, "cx": 320, "cy": 240}
     without = {key: value for key, value in PIPELINE.items() if key != "camera"}
     for coefficients, length in (
-        ({"k1": -0.1}, 5),
+        ({"k1": -0.05}, 5),
         ({"k1": 0.5, "k2": -2.6, "p1": 0.001, "k3": 1.5, "k4": 0.4, "k5": -2.4, "k6": 1.4}, 8),
         ({"lens": "fisheye", "k1": 0.01, "k4": -0.002}, 4),
     ):

@@ -54,7 +54,8 @@ TEST_F(ImageDecoderTest, DepthIsTheQuotientExactly) {
   for (const double factor : {5000.0, 1000.0, 4999.5, 5000.1}) {
     const cv::Mat depth = decoder_.read_depth(file("d.png"), factor);
     ASSERT_EQ(depth.type(), CV_32FC1);
-    for (int value = 0; value < 65536; ++value)
+    EXPECT_EQ(depth.at<float>(255, 255), 0.0F) << "65535 is no measurement";
+    for (int value = 0; value < 65535; ++value)
       ASSERT_EQ(depth.at<float>(value / 256, value % 256), static_cast<float>(value / factor)) << value;
   }
 }
