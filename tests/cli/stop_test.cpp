@@ -21,7 +21,8 @@ class StopTest : public ::testing::Test {
  protected:
   StopTest() {
     program_.write("room.yaml",
-                   "source: { simulated: { duration: 2 } }\n"
+                   "source: { simulated: { scene: " HOLDFAST_SOURCE_FOLDER
+                   "/examples/scenes/walking_xyz.yaml, duration: 2 } }\n"
                    "camera: { width: 160, height: 120, fx: 135, fy: 135, cx: 79.5, cy: 59.5 }\n"
                    "features: { orb: { count: 300 } }\noptimizer: ceres\nloop_detector: flann\nsegmenter: truth\n"
                    "filters: [semantic_mask, multi_view_depth]\n"
