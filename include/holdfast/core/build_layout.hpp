@@ -18,9 +18,10 @@ enum class EigenIndexBytes : int {};          ///< EIGEN_DEFAULT_DENSE_INDEX_TYP
 enum class EigenRowMajor : bool {};           ///< EIGEN_DEFAULT_TO_ROW_MAJOR
 enum class GlibcxxDebug : bool {};            ///< _GLIBCXX_DEBUG: layout of the standard containers
 
+/// A layout; its arguments are what it depends on, as the linker's message prints them.
 template <EigenMaxAlignBytes, EigenAlignmentInStructs, EigenIndexBytes, EigenRowMajor, GlibcxxDebug>
 struct BuildLayout {
-  static const char is_that_of_the_library;
+  static const char is_that_of_the_library;  ///< defined for the library's layout alone
 };
 
 constexpr GlibcxxDebug compiled_glibcxx_debug() {
