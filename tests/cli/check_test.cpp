@@ -154,6 +154,7 @@ TEST_F(CheckTest, RefusesWhatIsNoFileInARecording) {
   fs::create_symlink("/dev/zero", program_.path("rec/mav0/cam0/sensor.yaml"));
   EXPECT_THAT(program_.run({"check", "euroc.yaml"}).errors, HasSubstr("sensor.yaml: found a device"));
   program_.write("kitti.yaml", "source: { kitti: { path: sequence } }\nfeatures: orb\noptimizer: ceres\n");
+  cv::imwrite(program_.path("sequence/image_0/000000.png").string(), cv::Mat::zeros(48, 64, CV_8UC1));
   ASSERT_EQ(mkfifo(program_.path("sequence/calib.txt").c_str(), 0600), 0);
   EXPECT_THAT(program_.run({"check", "kitti.yaml"}).errors, HasSubstr("calib.txt: found a named pipe"));
 }
