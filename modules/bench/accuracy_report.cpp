@@ -94,8 +94,8 @@ class AccuracyReport {
     for (std::size_t s = 0; s < plan_.matrix.sequences.size(); ++s)
       if (has_transformed_truth(s)) names += (names.empty() ? "" : ", ") + sequence(s);
     if (names.empty()) return "Truth: raw, as recorded.";
-    return "Truth: transformed from markers to the camera (`source.tum.truth_frame`, `truth_left`, `truth_right`) on " + names +
-           "; elsewhere raw, as recorded. Published ATE is against the raw truth.";
+    return "Truth: transformed from markers to the camera (`source.tum.truth_frame`, `truth_left`, `truth_right`) on " +
+           names + "; elsewhere raw, as recorded. Published ATE is against the raw truth.";
   }
 
   void add_variants() {

@@ -141,8 +141,9 @@ TEST_F(TablesTest, SaysWhichTruthTheErrorsReferTo) {
   EXPECT_THAT(report(), Not(HasSubstr("transformed")));
   for (std::size_t i = 0; i < plan_.runs.size(); ++i)
     if (plan_.runs[i].sequence == 1) results_.results[i]->truth_frame = "transformed";
-  EXPECT_THAT(report(), AllOf(HasSubstr("| s1 (transformed truth) |"), HasSubstr("| s0 |"),
-                              HasSubstr("to the camera (`source.tum.truth_frame`, `truth_left`, `truth_right`) on s1;")));
+  EXPECT_THAT(report(),
+              AllOf(HasSubstr("| s1 (transformed truth) |"), HasSubstr("| s0 |"),
+                    HasSubstr("to the camera (`source.tum.truth_frame`, `truth_left`, `truth_right`) on s1;")));
   EXPECT_THAT(to_csv(runs_table(plan_, results_)), AllOf(HasSubstr(",0,0,raw,0.2"), HasSubstr(",0,0,transformed,0.2")));
 }
 

@@ -34,8 +34,8 @@ cv::Mat ramp_image(const Camera& camera) {
 
 TEST(MeasuredDepth, IsWhatASensorCanHaveMeasured) {
   for (const float depth : {1e-3F, 0.5F, 655.0F, 1e5F}) EXPECT_TRUE(is_measured_depth(depth)) << depth;
-  for (const float depth : {0.0F, -1.0F, 1e10F, std::numeric_limits<float>::infinity(),
-                            std::numeric_limits<float>::quiet_NaN()})
+  for (const float depth :
+       {0.0F, -1.0F, 1e10F, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN()})
     EXPECT_FALSE(is_measured_depth(depth)) << depth;
 }
 

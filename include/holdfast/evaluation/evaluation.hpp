@@ -114,8 +114,8 @@ struct Evaluation {
   /// truth. Near 1 in length for a camera that is carried upright: then it is opposite to gravity.
   Eigen::Vector3d mean_up = Eigen::Vector3d::Zero();
   /// Suspicions that errors have another cause than the estimate, each a clause with its remedy (core/warning.hpp): the
-  /// unit of stamps or lengths, a late clock, inverted, mirrored or unmoved poses, a truth of another body, poses without
-  /// a truth.
+  /// unit of stamps or lengths, a late clock, inverted, mirrored or unmoved poses, a truth of another body, poses
+  /// without a truth.
   Warnings warnings;
 };
 

@@ -15,9 +15,9 @@ namespace holdfast {
 class NetworkSegmenter : public Segmenter {
  public:
   /// Loads the network and runs it once, so that errors are reported before the first frame; with
-  /// NetworkOptions::in_background it begins to load, and finish_loading() or the first frame waits. `classes` are the names by
-  /// channel or label; the name 'unknown' denotes unlabelled pixels. `form.classes` is set from them. Throws the
-  /// exceptions of Network and decode_segmentation().
+  /// NetworkOptions::in_background it begins to load, and finish_loading() or the first frame waits. `classes` are the
+  /// names by channel or label; the name 'unknown' denotes unlabelled pixels. `form.classes` is set from them. Throws
+  /// the exceptions of Network and decode_segmentation().
   NetworkSegmenter(const NetworkOptions& options, OutputForm form, std::vector<std::string> classes,
                    std::vector<std::string> movable);
 

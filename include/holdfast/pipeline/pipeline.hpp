@@ -89,8 +89,8 @@ class Pipeline {
   Pipeline(Pipeline&&) noexcept;
   Pipeline& operator=(Pipeline&&) noexcept;
 
-  /// Waits for what modules load in the background, such as the weights of a network, so that its errors are thrown here
-  /// and not by a later feed(). Optional, before the first feed().
+  /// Waits for what modules load in the background, such as the weights of a network, so that its errors are thrown
+  /// here and not by a later feed(). Optional, before the first feed().
   void finish_loading();
   /// Processes one frame; time stamps must rise strictly (InputError otherwise). Trouble with the frame is a typed
   /// result. Throws what a thread of the pipeline threw.

@@ -58,7 +58,8 @@ struct SalvagedTrajectory {
   bool exists = false;
   Trajectory poses;            ///< sorted and cleaned
   std::size_t not_finite = 0;  ///< lines with a value that is not finite, or a quaternion of no length; left out
-  std::size_t malformed = 0;   ///< other lines that are no pose, such as one cut short or without a unit quaternion; left out
+  std::size_t malformed =
+      0;  ///< other lines that are no pose, such as one cut short or without a unit quaternion; left out
 };
 
 /// Reads a trajectory in TUM format without trusting it.
