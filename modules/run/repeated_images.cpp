@@ -46,8 +46,7 @@ std::string repetition_warning(const RepeatedImages& repeated, std::size_t frame
          " the same colour image as the frame before, byte by byte, for up to " + fixed_text(repeated.longest, 2) +
          " s (from " + fixed_text(repeated.begin, 6) +
          " on): did a driver or a copy repeat images? Their poses are those of an earlier time. Take the repeated "
-         "images "
-         "out of the recording, or mend the driver";
+         "images out of the recording, or mend the driver";
 }
 
 }  // namespace holdfast

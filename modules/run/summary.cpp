@@ -35,8 +35,7 @@ const char* advice(TrackingTrouble trouble) {
       return "One camera needs a start with texture at several depths, and masks that cover the people in view.";
     case TrackingTrouble::exchanged_pair:
       return "The matches of the pairs lie on the wrong side: exchange the left and right images in the settings of "
-             "the "
-             "source (the folders `colour` and `right`, or those of the recording).";
+             "the source (the folders `colour` and `right`, or those of the recording).";
     case TrackingTrouble::none:
       break;
   }
@@ -97,8 +96,7 @@ std::string advice_to_restart(const RunRecord& record) {
          " s after the first frame, and not found again in the " + fixed_text(lost_for, 1) +
          " s that followed. If these show another place, `--set tracking.restart_time=" + fixed_text(suggested, 0) +
          "` helps: a camera that is lost for so many seconds begins a new piece of the map there, and the piece with "
-         "most "
-         "frames is the result.";
+         "most frames is the result.";
 }
 
 }  // namespace
