@@ -42,7 +42,7 @@ KeyFrameId LocalMapper::begin(const Frame& frame, std::span<const std::pair<Eige
 }
 
 void LocalMapper::link(KeyFrameId keyframe) {
-  map_.update_covisibility(keyframe, settings_.covisibility_minimum);
+  map_.update_covisibility(keyframe);
   if (map_.keyframe(keyframe).parent.valid()) return;
   // Where the map ended, the motion model or odometry goes on from the last keyframe.
   const std::vector<KeyFrameId> by_age = map_.keyframes_by_age();

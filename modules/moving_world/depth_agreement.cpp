@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "holdfast/core/coarse_cells.hpp"
+#include "holdfast/core/depth_noise.hpp"
 #include "holdfast/geometry/se3.hpp"
 #include "holdfast/geometry/warp.hpp"
 
@@ -82,8 +83,8 @@ DepthAgreement::Counts DepthAgreement::count(const Frame& frame, const Eigen::Is
         if (is_evaluated && known[cell] < 0.0F) continue;
         if (seen[cell] == 0.0F) continue;
         ++counts.compared;
-        counts.agreeing += std::abs(seen[cell] - expected) < 0.01F + 0.01F * expected ? 1 : 0;
-        counts.farther += expected - seen[cell] > 0.05F + 0.03F * expected ? 1 : 0;
+        counts.agreeing += std::abs(seen[cell] - expected) < depth_noise::agreement(expected) ? 1 : 0;
+        counts.farther += expected - seen[cell] > depth_noise::farther(expected) ? 1 : 0;
       }
     }
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "holdfast/core/map_defaults.hpp"
+
 namespace holdfast {
 
 template <class Settings>
@@ -16,12 +18,12 @@ enum class Removal {
 /// accumulate them, and when dense depth overrules a pose.
 struct EvidenceSettings {
   Removal removal = Removal::soft;
-  double static_log_odds = 2.0;  ///< prior of every feature; 2 is a probability of 0.88
-  double threshold = 0.5;        ///< probability, for hard removal
-  double ignore_below = 0.2;     ///< probability, for soft removal
-  double carried_share = 0.95;   ///< share of a point's log-odds that lasts until its next observation
-  double measured_share = 0.3;   ///< share of a frame's measurement that is added to its points
-  double limit = 4.0;            ///< bound of a point's log-odds, so that a point can change its mind within seconds
+  double static_log_odds = 2.0;           ///< prior of every feature; 2 is a probability of 0.88
+  double threshold = 0.5;                 ///< probability, for hard removal
+  double ignore_below = 0.2;              ///< probability, for soft removal
+  double carried_share = 0.95;            ///< share of a point's log-odds that lasts until its next observation
+  double measured_share = 0.3;            ///< share of a frame's measurement that is added to its points
+  double limit = default_evidence_limit;  ///< bound of a point's log-odds
   bool skip_moving = true;
   /// Share of compared cells by which the motion model's prediction must agree better with keyframes than the pose from
   /// matches. The lead keeps noise of depth from deciding.

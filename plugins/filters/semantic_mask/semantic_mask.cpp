@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "holdfast/core/cell_mask.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/interfaces/dynamic_filter.hpp"
 #include "holdfast/plugin/did_you_mean.hpp"
@@ -139,7 +140,7 @@ class SemanticMask final : public DynamicFilter {
           movable = true;
           certainty = sure(column, row);
         }
-      if (movable || label != unknown) add_evidence(evidence, i, movable, certainty);
+      if (movable || label != CellMask::unknown) add_evidence(evidence, i, movable, certainty);
     }
   }
 
@@ -192,7 +193,7 @@ class SemanticMask final : public DynamicFilter {
           movable = true;
           certainty = mask.confidence[other];
         }
-      if (movable || mask.labels[cell] != unknown) add_evidence(evidence, i, movable, certainty);
+      if (movable || mask.labels[cell] != CellMask::unknown) add_evidence(evidence, i, movable, certainty);
     }
   }
 
@@ -205,7 +206,6 @@ class SemanticMask final : public DynamicFilter {
     return depth > 0.0F && mask_depth > 0.0F && depth > mask_depth + static_cast<float>(settings_.depth_margin);
   }
 
-  static constexpr std::uint8_t unknown = 255;
   static constexpr int tile = 16;  // pixels
   SemanticMaskSettings settings_;
   std::array<std::uint8_t, 256> movable_{};
