@@ -6,8 +6,8 @@
 #include <mutex>
 
 #include "bundle_adjustment.hpp"
+#include "holdfast/interfaces/pose_adjustment_settings.hpp"
 #include "holdfast/plugin/plugin.hpp"
-#include "holdfast/settings/pose_adjustment.hpp"
 #include "pose_graph.hpp"
 
 namespace holdfast::ceres_plugin {

@@ -3,8 +3,8 @@
 
 #include <utility>
 
+#include "holdfast/interfaces/pose_adjustment_settings.hpp"
 #include "holdfast/plugin/plugin.hpp"
-#include "holdfast/settings/pose_adjustment.hpp"
 #include "pose_graph.hpp"
 
 namespace holdfast::schur_plugin {

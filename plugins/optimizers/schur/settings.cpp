@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/settings/schur.hpp"
 
-#include "holdfast/settings/pose_adjustment.hpp"
+#include "holdfast/interfaces/pose_adjustment_settings.hpp"
 
 namespace holdfast {
 
