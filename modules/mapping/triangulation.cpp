@@ -42,7 +42,7 @@ double depth_cosine(const Frame& frame, std::uint32_t feature) {
 
 /// The point in the camera frame of the keyframe, by whichever is better: parallax or measured depth.
 std::optional<Eigen::Vector3d> locate(const TwoKeyframes& views, const FeaturePair& pair) {
-  constexpr double max_parallax_cosine = 0.9998;  // 1.15 degrees; with less parallax the depth is a guess
+  constexpr double max_parallax_cosine = geometry::TriangulationOptions{}.max_parallax_cosine;
   const Eigen::Vector3d ray = ray_of(views.frame, pair.in_frame);
   const Eigen::Vector3d other_ray = ray_of(views.neighbour, pair.in_neighbour);
   const double cosine = ray.normalized().dot((views.T_frame_neighbour.linear() * other_ray).normalized());
