@@ -122,7 +122,7 @@ std::vector<MapPointId> LocalMapper::drop_moving_features(KeyFrameId id) {
 }
 
 void LocalMapper::drop_weak_point(MapPointId point) {
-  if (map_.sensor() != Sensor::mono) return;
+  if (features_have_depth(map_.sensor())) return;
   // Where a view contradicts a point, two others alone do not confirm it, and one does not even locate it.
   constexpr std::size_t required = 3;
   const MapPoint* left = map_.find_point(point);
@@ -144,8 +144,8 @@ void LocalMapper::remove_weak_points(KeyFrameId id) {
   const std::uint64_t now = map_.keyframe(id).sequence;
   // A triangulated point begins with two observations; one that no third keyframe confirms was a wrong match, or moved
   // (Mur-Artal et al. 2015, section VI-B). Depth confirms a point as well as another view does.
-  const bool is_mono = map_.sensor() == Sensor::mono;
-  const std::size_t required = is_mono ? 3 : 2;
+  const bool has_depth = features_have_depth(map_.sensor());
+  const std::size_t required = has_depth ? 2 : 3;
   const bool can_be_confirmed = map_.keyframes().size() >= required;
   std::erase_if(recent_points_, [&](MapPointId point_id) {
     const MapPoint* point = map_.find_point(point_id);
@@ -153,10 +153,10 @@ void LocalMapper::remove_weak_points(KeyFrameId id) {
     // Later keyframes may have made points while this one waited. Where it waited for its mask, they made them by an
     // older mask, which may show people where they were: only a second view has confirmed that such points stand still.
     const bool is_later = point->created_at > now;
-    if (is_later && (is_mono || !expects_masks_)) return false;
+    if (is_later && (!has_depth || !expects_masks_)) return false;
     const std::uint64_t age = now - std::min(now, point->created_at);
     const bool rarely_found = point->found_ratio() < static_cast<float>(settings_.weak_found_ratio);
-    const bool is_due = is_later || age >= (is_mono ? 1U : 2U);
+    const bool is_due = is_later || age >= (has_depth ? 2U : 1U);
     const bool unconfirmed = can_be_confirmed && is_due && point->observations.size() < required;
     if (rarely_found || unconfirmed) {
       map_.remove_point(point_id);
@@ -207,7 +207,7 @@ std::vector<KeyFrameId> LocalMapper::remove_redundant_keyframes(KeyFrameId id) {
   if (settings_.redundant_share >= 1.0) return removed;
   const std::vector<CovisibilityEdge> neighbours = map_.keyframe(id).covisible;
   const std::uint64_t sequence = map_.keyframe(id).sequence;
-  const bool has_depth = map_.sensor() != Sensor::mono;
+  const bool has_depth = features_have_depth(map_.sensor());
   for (const CovisibilityEdge& edge : neighbours) {
     const KeyFrame& keyframe = map_.keyframe(edge.keyframe);
     if (!keyframe.parent.valid() || !keyframe.loop_edges.empty()) continue;

@@ -92,7 +92,7 @@ std::optional<Eigen::Vector3d> triangulate(const TwoKeyframes& views, const Feat
 /// A shorter way between two keyframes gives too little parallax: the baseline of the stereo pair, or, for one camera,
 /// a hundredth of the median depth of the points that the neighbour sees (Mur-Artal et al. 2015, section VI-D).
 double shortest_baseline(const Map& map, const Frame& neighbour) {
-  if (map.sensor() != Sensor::mono) return neighbour.camera->baseline;
+  if (features_have_depth(map.sensor())) return neighbour.camera->baseline;
   constexpr double share = 0.01;
   std::vector<double> depths;
   for (const MapPointId id : neighbour.map_points)
