@@ -35,12 +35,21 @@ struct EvidenceSettings {
   /// The same two for a pose that was found after a loss: it is the best of many hypotheses, so chance has more tries.
   int depth_check_inliers_lost = 60;
   double depth_check_share_lost = 0.08;
+  /// Maximum number of keyframes whose depth is compared; each costs as much as the first.
+  int depth_check_keyframes = 3;
+  /// Age from which keyframes are preferred for the comparison [s]: people who walk have left their place by then.
+  double depth_check_age = 0.7;
+  /// Minimum number of cells (16 pixels apart) for a share of them to be significant.
+  int depth_check_cells = 50;
   /// Whether a frame that its static features do not determine is tracked by masked features, then by dense depth. Off:
   /// where people are near, it saves frames at the cost of accuracy (docs/moving_world.md).
   bool fallback = false;
   double fallback_log_odds = -1.5;  ///< most that class priors then cost a feature; 2 - 1.5 is a probability of 0.62
   /// Share of the cells that must agree with keyframes among those that agree or contradict them.
   double fallback_share = 0.7;
+  /// Share of the compared cells that must agree, too: a pose from which everything seems to be nearer than the known
+  /// surfaces is wrong.
+  double fallback_agreement = 0.2;
 
   static void describe(ParameterTable<EvidenceSettings>& table);
 };

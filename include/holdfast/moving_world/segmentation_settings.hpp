@@ -15,9 +15,9 @@ enum class SegmentedFrames {
 /// The `segmentation` section of a configuration: which frames the segmenter sees, and when its answer is applied.
 struct SegmentationSettings {
   SegmentedFrames on = SegmentedFrames::keyframes;
-  int every = 5;        ///< with every_n, the n [frames]
-  /// In sequential mode, frames after which a mask is applied. Threaded, at 30 frames/s on two cores, the masks of `unet`
-  /// are one frame old in the median and at most two in 95 %; with the engine `opencv` two in the median.
+  int every = 5;  ///< with every_n, the n [frames]
+  /// In sequential mode, frames after which a mask is applied. Threaded, at 30 frames/s on two cores, the masks of
+  /// `unet` are one frame old in the median and at most two in 95 %; with the engine `opencv` two in the median.
   int latency = 3;
   double memory = 1.0;  ///< time after which the confidence of a propagated mask has halved [s]
   /// The points of a keyframe wait for its mask unless less than this share of its static features shows map points: a
