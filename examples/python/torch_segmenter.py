@@ -8,6 +8,7 @@
 The network takes float32 (1, 3, rows, columns), red green blue from 0 to 1, and gives scores (1, classes, rows,
 columns). A file *.pt or *.pth is TorchScript, *.onnx runs by ONNX Runtime.
 """
+import importlib
 import pathlib
 from typing import Annotated, Any, Callable, List, Tuple
 
@@ -24,7 +25,8 @@ def torch_network(file: pathlib.Path) -> Callable[[Images], Images]:
     import torch
 
     device = "cuda" if torch.cuda.is_available() else "cpu"
-    network: Any = torch.jit.load(str(file), map_location=device).eval()  # type: ignore[attr-defined]
+    jit: Any = torch.jit
+    network = jit.load(str(file), map_location=device).eval()
 
     def infer(image: Images) -> Images:
         with torch.no_grad():
@@ -36,7 +38,7 @@ def torch_network(file: pathlib.Path) -> Callable[[Images], Images]:
 
 def onnx_network(file: pathlib.Path) -> Callable[[Images], Images]:
     """A network by ONNX Runtime with the providers that it has."""
-    import onnxruntime  # type: ignore[import]
+    onnxruntime = importlib.import_module("onnxruntime")
 
     session = onnxruntime.InferenceSession(str(file), providers=onnxruntime.get_available_providers())
     name = session.get_inputs()[0].name

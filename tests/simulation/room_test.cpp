@@ -7,6 +7,8 @@
 #include <map>
 #include <opencv2/core.hpp>
 #include <set>
+#include <string>
+#include <string_view>
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/simulation/camera_path.hpp"
@@ -26,10 +28,10 @@ const Room& room(RoomKind kind) {
 
 std::vector<RoomKind> all_rooms() { return {RoomKind::office, RoomKind::hall, RoomKind::corridor}; }
 
-const Object& object(const World& world, const std::string& name) {
+const Object& object(const World& world, std::string_view name) {
   const auto found = std::find_if(world.objects.begin(), world.objects.end(),
                                   [&](const Object& candidate) { return candidate.name == name; });
-  if (found == world.objects.end()) throw Error("no object '" + name + "'");
+  if (found == world.objects.end()) throw Error("no object '" + std::string(name) + "'");
   return *found;
 }
 

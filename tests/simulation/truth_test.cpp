@@ -7,6 +7,8 @@
 #include <cmath>
 #include <memory>
 #include <opencv2/core.hpp>
+#include <string>
+#include <string_view>
 
 #include "holdfast/simulation/simulator.hpp"
 
@@ -90,8 +92,8 @@ const NumberedObject& numbered(const Simulator& simulator, const std::string& na
                        [&](const NumberedObject& candidate) { return simulator.object(candidate).name == name; });
 }
 
-const Object& object(const Simulator& simulator, const std::string& name) {
-  return simulator.object(numbered(simulator, name));
+const Object& object(const Simulator& simulator, std::string_view name) {
+  return simulator.object(numbered(simulator, std::string(name)));
 }
 
 std::uint64_t at(double time) { return static_cast<std::uint64_t>(std::lround(30.0 * time)); }

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import importlib
 from typing import TYPE_CHECKING, Any, Optional
 
 if TYPE_CHECKING:
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
 def _axes(axes: Optional[Any]) -> Any:
     if axes is None:
         try:
-            from matplotlib import pyplot  # type: ignore[import]
+            pyplot = importlib.import_module("matplotlib.pyplot")
         except ImportError as error:
             raise ImportError(
                 "plots need matplotlib, which is not installed; install python3-matplotlib (Debian) or matplotlib (pip)"

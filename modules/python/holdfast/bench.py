@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import csv
+import importlib
 import os
 from pathlib import Path
 from typing import Any, Dict, List, Union
@@ -70,7 +71,7 @@ class BenchResults:
     def frame(self, name: str = "cells") -> Any:
         """A table as pandas.DataFrame. Raises ImportError without pandas."""
         try:
-            import pandas  # type: ignore[import]
+            pandas = importlib.import_module("pandas")
         except ImportError as error:
             raise ImportError(
                 "data frames need pandas, which is not installed; install python3-pandas (Debian) or "

@@ -96,7 +96,7 @@ def evaluate(
     """
     stamps: Optional[List[float]] = None
     if frame_stamps is not None:
-        stamps = np.asarray(frame_stamps, dtype=np.float64).tolist()
+        stamps = list(map(float, np.asarray(frame_stamps, dtype=np.float64)))
     return Evaluation(
         _core.evaluate(
             _trajectory(truth)._arrays(),

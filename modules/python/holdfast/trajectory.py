@@ -99,7 +99,7 @@ class Trajectory:
 
     def __iter__(self) -> Iterator[Tuple[float, Array]]:
         """(timestamp, pose) in order."""
-        return zip(self.timestamps.tolist(), self.poses)
+        return zip(map(float, self.timestamps), self.poses)
 
     def __getitem__(self, index: slice) -> "Trajectory":
         if not isinstance(index, slice):
