@@ -32,7 +32,7 @@ fail() { say "$@" >&2; exit 1; }
 dry_run=no
 for argument in "$@"; do
   case "$argument" in
-    --training) packages="$packages python3 python3-numpy python3-opencv python3-torch" ;;
+    --training) packages="$packages python3 python3-numpy python3-onnx python3-opencv python3-torch" ;;
     --documentation) packages="$packages python3 doxygen" ;;
     --benchmarks) packages="$packages libbenchmark-dev" ;;
     --python | --python-tests)
