@@ -2,9 +2,11 @@
 """Weights as .npz, which every version of PyTorch can read, and without batch normalisation for export."""
 import zipfile
 
-import cv2
 import numpy as np
+import onnx
+import onnx.numpy_helper
 import torch
+from google.protobuf.message import DecodeError
 from torch import nn
 
 from model import SIZES, make_model, multiple
@@ -38,10 +40,12 @@ def load_weights(path):
 def load_onnx(path):
     """The model in a file of export.py, for evaluation; its coarse heads know nothing."""
     try:
-        net = cv2.dnn.readNetFromONNX(str(path))
-    except cv2.error as error:
-        raise PackError(f"{path}: cannot be read ({error.err}); expected unet.onnx as export.py writes it") from error
-    blobs = [layer.blobs for layer in map(net.getLayer, net.getLayerNames()) if len(layer.blobs) == 2]
+        graph = onnx.load(str(path)).graph
+        values = {tensor.name: onnx.numpy_helper.to_array(tensor) for tensor in graph.initializer}
+        blobs = [(values[node.input[1]].astype(np.float32), values[node.input[2]].astype(np.float32))
+                 for node in graph.node if node.op_type in ("Conv", "ConvTranspose")]
+    except (OSError, IndexError, KeyError, DecodeError) as error:
+        raise PackError(f"{path}: cannot be read ({error}); expected unet.onnx as export.py writes it") from error
     for size in SIZES:
         model = make_model(size).eval()
         layers = in_order(model)
