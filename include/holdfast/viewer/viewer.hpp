@@ -79,7 +79,7 @@ struct ViewedRun {
 /// what has changed. The page needs no other file and no network.
 ///
 /// Every request has to name the token of address(), 128 random bits; others get 403. What is served is the page and
-/// the socket, no file. Of browsers only the messages of docs/viewer.md are accepted; any other message ends its
+/// the socket, no file. Of browsers only the messages of modules/viewer/README.md are accepted; any other message ends its
 /// connection.
 ///
 /// No method waits for a browser except take_turn() and wait_for_browser(): what is given is kept until the thread of
