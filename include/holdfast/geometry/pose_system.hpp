@@ -41,7 +41,7 @@ struct PoseSystem {
   double cost = 0.0;  ///< half the weighted sum of (robust) squared residuals
 };
 
-/// Camera and pose as the kernels read them.
+/// Camera and pose in the layout of the kernels.
 struct PoseView {
   PoseView(const Pinhole& camera, const Eigen::Isometry3d& T_camera_world)
       : fx(camera.fx), fy(camera.fy), cx(camera.cx), cy(camera.cy), fx_baseline(camera.fx * camera.baseline) {
@@ -55,8 +55,8 @@ struct PoseView {
   double fx, fy, cx, cy, fx_baseline;
 };
 
-/// Cost of a point behind the camera, in units of its limit: more than any residual that matters, so that a step which
-/// pushes points through the camera is refused.
+/// Cost of a point behind the camera, in units of its limit: larger than relevant residuals, so that a step that moves
+/// points behind the camera is rejected.
 inline constexpr double behind_cost = 100.0;
 
 /// Sums over all observations of the blocks of the Hessian (t: translation, r: rotation), of the gradient and of the
