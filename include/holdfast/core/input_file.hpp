@@ -31,7 +31,7 @@ std::string why_unreadable(const std::filesystem::path& file, std::uint64_t most
 /// the end of the file. Used by one thread.
 class InputFile {
  public:
-  /// Opens the file. Throws InputError: what is wrong, as why_unreadable() says it, then "; expected EXPECTED".
+  /// Opens the file. Throws InputError with the text of why_unreadable() and "; expected EXPECTED".
   InputFile(std::filesystem::path file, std::uint64_t most_bytes, std::string expected);
   ~InputFile();
   InputFile(const InputFile&) = delete;

@@ -57,7 +57,7 @@ struct TrajectoryFile {
   TrajectoryFormat format = TrajectoryFormat::tum;
   std::size_t not_finite = 0;
   std::size_t zero_quaternions = 0;
-  std::size_t repeated_stamps = 0;  ///< poses whose stamp another pose has, which stands later in the file
+  std::size_t repeated_stamps = 0;  ///< poses replaced by a later pose with the same stamp
 
   /// Ignored lines, as "2 poses that are not finite, 1 pose with a zero quaternion"; empty without any.
   std::string omissions() const;

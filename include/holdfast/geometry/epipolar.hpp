@@ -15,8 +15,8 @@ inline Eigen::Matrix3d essential_matrix(const Eigen::Isometry3d& T_a_world, cons
   return hat(T_b_a.translation()) * T_b_a.linear();
 }
 
-/// Fundamental matrix: pixel_b^T * F * pixel_a = 0 for undistorted pixels (x, y, 1) (equation 9.2). The camera is any
-/// that CameraTraits knows.
+/// Fundamental matrix: pixel_b^T * F * pixel_a = 0 for undistorted pixels (x, y, 1) (equation 9.2). Any camera type
+/// with CameraTraits.
 template <class Camera>
 Eigen::Matrix3d fundamental_matrix(const Camera& camera_model, const Eigen::Isometry3d& T_a_world,
                                    const Eigen::Isometry3d& T_b_world) {

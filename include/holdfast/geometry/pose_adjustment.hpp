@@ -32,7 +32,7 @@ bool is_finite(const Problem& problem, std::size_t i) {
 struct RoundLimits {
   int iterations;   ///< at most
   double relative;  ///< it ends when the predicted decrease is below this times the cost and below `absolute`
-  double absolute;  ///< the decrease is half the squared number of standard deviations that the pose still has to go
+  double absolute;  ///< half the squared Mahalanobis distance from the pose to the predicted minimum
 };
 
 /// The state of adjust_pose(): observations in batches, the current pose and its normal equations. A class template, so

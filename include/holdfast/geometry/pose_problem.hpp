@@ -35,8 +35,8 @@ inline constexpr double minimum_depth = 1e-3;
 ///   Eigen::Vector3d point(const Problem&, std::size_t i)   point that observation i shows, in the world frame [m]
 ///   Eigen::Vector2d pixel(const Problem&, std::size_t i)   where it was observed [px], without lens distortion
 ///   Eigen::Isometry3d pose(const Problem&)                 T_camera_world, the first guess
-///   void set_pose(Problem&, const Eigen::Isometry3d&)      takes the result
-///   void set_inlier(Problem&, std::size_t i, bool)         takes whether observation i fits the result
+///   void set_pose(Problem&, const Eigen::Isometry3d&)      receives the result
+///   void set_inlier(Problem&, std::size_t i, bool)         receives whether observation i is an inlier
 ///
 /// and, where the default does not serve:
 ///
@@ -92,7 +92,7 @@ struct PnpOptions {
 
 /// Motion-only bundle adjustment (Mur-Artal and Tardos 2017, equation 3): the pose of one camera against fixed points
 /// by Levenberg-Marquardt on a left perturbation of T_camera_world. The residuals are the pixel's, weighted by its
-/// information, and that of the disparity x - right_x, whose noise is a setting of its own.
+/// information, and that of the disparity x - right_x, with separate noise.
 ///
 /// After each round every observation is tested anew: it is an outlier if its squared residual times its information
 /// (x, y and right_x) exceeds the chi-square limit, or if its point lies behind the camera. Outliers do not count in the next round.

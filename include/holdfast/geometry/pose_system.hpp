@@ -16,7 +16,7 @@
 /// processor has it. Needs the vector extensions of GCC or Clang.
 namespace holdfast::geometry::detail {
 
-/// Four observations side by side. The width is fixed, so that sums have the same order whatever the processor offers.
+/// Four observations side by side. The width is fixed, so that sums have the same order on every processor.
 using Batch = double __attribute__((vector_size(32)));
 inline constexpr std::size_t batch_size = 4;
 

@@ -71,8 +71,8 @@ struct PointView {
 };
 
 /// Triangulation of a map point from two views of the same camera, with checks of parallax, positive depth and
-/// reprojection error (chi-square) in both views (Mur-Artal et al. 2015, section VI-D). The camera is any that
-/// CameraTraits knows.
+/// reprojection error (chi-square) in both views (Mur-Artal et al. 2015, section VI-D). Any camera type with
+/// CameraTraits.
 template <class Camera>
 TriangulatedPoint triangulate(const Camera& camera_model, const PointView& a, const PointView& b,
                               const TriangulationOptions& options = {}) {

@@ -40,7 +40,7 @@ struct TwoViewOptions {
 /// Relative pose of two views and the triangulated points.
 struct TwoViewMotion {
   Eigen::Isometry3d T_b_a = Eigen::Isometry3d::Identity();  ///< its translation has unit length
-  bool is_planar = false;                                   ///< it comes from the homography
+  bool is_planar = false;                                   ///< whether the homography was chosen
   std::vector<Eigen::Vector3d> points;                      ///< one for each pair, in camera a
   std::vector<std::uint8_t> good;                           ///< whether the point can be used
   int good_points = 0;
@@ -130,7 +130,7 @@ inline TwoViewHypothesis explain(const Pinhole& camera, std::span<const PixelPai
 /// estimated from the same samples, the better scored one is chosen, and of the motions that it allows the one that
 /// puts clearly more points in front of both cameras. Empty if there are too few pairs, too little parallax, or a
 /// second motion that explains nearly as many points, as often for a planar scene. The same input and seed give the
-/// same result. The camera is any that CameraTraits knows.
+/// same result. Any camera type with CameraTraits.
 template <class Camera>
 std::optional<TwoViewMotion> find_two_view_motion(const Camera& camera_model, std::span<const PixelPair> pairs,
                                                   const TwoViewOptions& options = {}) {

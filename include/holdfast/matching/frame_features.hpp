@@ -48,7 +48,7 @@ extern template class ViewProjection<Frame>;
 using FrameSearch = matching::GuidedSearch<Frame>;
 using FrameProjection = matching::ViewProjection<Frame>;
 
-/// Prepares the projection of points into a frame from a pose, which need not be the frame's own.
+/// Prepares the projection of points into a frame from any pose.
 FrameProjection projection_into(const Frame& frame, const Eigen::Isometry3d& T_camera_world);
 
 /// Whether a feature with this static probability is more likely static than moving.

@@ -29,7 +29,7 @@ class DepthAgreement {
   /// that depth does not determine.
   Eigen::Isometry3d align(const Frame& frame, const Eigen::Isometry3d& T_view_world) const;
   /// Estimates the colour-depth time offset as a pose on the inter-frame motion: T_view_camera. `step` is the motion
-  /// T_frame_previous; `share_there` is share(frame, T_camera_world), which the caller knows.
+  /// T_frame_previous; `share_there` is share(frame, T_camera_world), already computed by the caller.
   Eigen::Isometry3d find_view(const Frame& frame, const Eigen::Isometry3d& T_camera_world, double share_there,
                               const Eigen::Isometry3d& step) const;
 

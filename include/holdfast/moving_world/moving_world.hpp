@@ -31,7 +31,7 @@ struct MovingWorldParts {
   FilterChain filters = FilterChain();
   Segmenter* segmenter = nullptr;  ///< nullptr = none; must outlive the MovingWorld
   SegmentationSettings segmentation = {};
-  bool threaded = false;  ///< the segmenter has a thread of its own
+  bool threaded = false;  ///< the segmenter runs in a separate thread
   bool has_depth = true;  ///< false for one camera: no pose is compared with dense depth then
 };
 
@@ -126,8 +126,8 @@ class MovingWorld {
   void next_frame(double timestamp);
   /// The next mask that has arrived, if any. It is already applied to the current frame. Adds the stage "masks".
   std::optional<ArrivedMask> take_mask(StageTimes& times);
-  /// * Evaluates the features of the keyframe again by its own mask; does nothing when the keyframe is gone or the mask
-  /// is empty. Adds the stage "masks".
+  /// * Evaluates the features of the keyframe again by its own mask; has no effect if the keyframe was removed or the
+  /// mask is empty. Adds the stage "masks".
   void evaluate_keyframe(const ArrivedMask& arrived, StageTimes& times);
   /// Requests the mask of the frame last tracked, which became `keyframe` or, when that is invalid, none. False when
   /// the frame is not to be segmented or the queue has no room; `is_needed`: a frame that is no keyframe is segmented

@@ -54,7 +54,7 @@ class SegmentationQueue {
   bool is_full() const { return keyframes_inside_ >= 2 || !has_room(); }
   /// Stage times of the segmentation thread since the last call.
   std::vector<StageTimes> take_times();
-  /// Throws what the segmenter threw in its thread.
+  /// Rethrows exceptions of the segmenter's thread.
   void rethrow() {
     if (worker_) worker_->rethrow();
   }
