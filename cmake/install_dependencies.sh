@@ -13,7 +13,8 @@
 #   sh cmake/install_dependencies.sh --bench-tests    also a browser, Slurm's daemons and GNU parallel for tests of the
 #                                                     bench
 #   sh cmake/install_dependencies.sh --cameras        also what the source `openni2` (Kinect, Xtion, Astra) is built of
-#   sh cmake/install_dependencies.sh --clang          also clang, for the fuzz targets and the quick sanitizer build
+#   sh cmake/install_dependencies.sh --clang          also clang, for tests of the headers and of the format, the fuzz targets and the
+#                                                     quick sanitizer build
 #   sh cmake/install_dependencies.sh --valgrind       also valgrind, for tests/valgrind
 #   sh cmake/install_dependencies.sh --clean-root     also mmdebstrap, for tests/clean_root.sh
 #   sh cmake/install_dependencies.sh --dry-run        say what would be installed, change nothing
@@ -41,11 +42,11 @@ for argument in "$@"; do
       ;;
     --bench-tests) packages="$packages chromium munge parallel slurm-client slurmctld slurmd" ;;
     --cameras) packages="$packages libopenni2-dev" ;;
-    --clang) packages="$packages clang libclang-rt-dev llvm" ;;
+    --clang) packages="$packages clang clang-format libclang-rt-dev llvm" ;;
     --valgrind) packages="$packages valgrind" ;;
     --clean-root) packages="$packages mmdebstrap" ;;
     --dry-run) dry_run=yes ;;
-    -h | --help) sed -n '3,19s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    -h | --help) sed -n '3,20s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) fail "unknown argument '$argument'; known are --training, --documentation, --benchmarks, --python, --python-tests, --bench-tests, --cameras, --clang, --valgrind, --clean-root, --dry-run and --help" ;;
   esac
 done

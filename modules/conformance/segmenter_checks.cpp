@@ -6,6 +6,7 @@
 #include <set>
 
 #include "check.hpp"
+#include "holdfast/core/cell_mask.hpp"
 #include "holdfast/core/size_text.hpp"
 #include "holdfast/interfaces/segmenter.hpp"
 #include "scene.hpp"
@@ -15,7 +16,6 @@ namespace holdfast::conformance {
 namespace {
 
 const char* const header = "holdfast/interfaces/segmenter.hpp";
-constexpr std::uint8_t unknown = 255;
 
 std::vector<SensorFrame> frames() {
   const Scene scene(standard_camera());
@@ -39,8 +39,9 @@ void expect_sound(Segmenter& segmenter, const SensorFrame& frame, const Segmenta
   for (int y = 0; y < result.labels.rows; ++y)
     for (int x = 0; x < result.labels.cols; ++x) {
       const std::uint8_t label = result.labels.at<std::uint8_t>(y, x);
-      ASSERT_TRUE(label < classes || label == unknown) << "label " << static_cast<int>(label) << " at column " << x
-                                                       << ", row " << y << " of " << classes << " classes";
+      ASSERT_TRUE(label < classes || label == CellMask::unknown)
+          << "label " << static_cast<int>(label) << " at column " << x << ", row " << y << " of " << classes
+          << " classes";
     }
   if (result.confidence.empty()) return;
   ASSERT_EQ(result.confidence.type(), CV_8UC1) << "the confidence's type; 0 is 8UC1";

@@ -19,7 +19,7 @@ void Map::erase_edge(KeyFrame& keyframe, KeyFrameId neighbour) {
   std::erase_if(keyframe.covisible, [&](const CovisibilityEdge& edge) { return edge.keyframe == neighbour; });
 }
 
-void Map::update_covisibility(KeyFrameId id, int minimum_weight) {
+void Map::update_covisibility(KeyFrameId id) {
   KeyFrame& keyframe = keyframes_.at(id);
   std::map<std::uint64_t, std::pair<KeyFrameId, int>> shared;  // by sequence, that is, in temporal order
   for (const MapPointId point_id : keyframe.frame.map_points) {
@@ -41,7 +41,7 @@ void Map::update_covisibility(KeyFrameId id, int minimum_weight) {
       shared.begin(), shared.end(), [](const auto& a, const auto& b) { return a.second.second < b.second.second; });
   for (const auto& [sequence, entry] : shared) {
     const auto [neighbour, weight] = entry;
-    if (weight < minimum_weight && sequence != strongest->first) continue;
+    if (weight < covisibility_minimum_ && sequence != strongest->first) continue;
     set_edge(keyframe, neighbour, weight);
     set_edge(keyframes_.at(neighbour), id, weight);
   }

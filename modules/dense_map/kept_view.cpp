@@ -5,14 +5,13 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "holdfast/core/cell_mask.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/sensor_frame.hpp"
 
 namespace holdfast {
 
 namespace {
-
-constexpr std::uint8_t unknown_label = 255;
 
 std::uint16_t to_units(float depth) {
   if (!is_measured_depth(depth)) return 0;
@@ -21,7 +20,7 @@ std::uint16_t to_units(float depth) {
 }
 
 bool is_left_out(std::uint8_t label, const std::vector<bool>& left_out) {
-  return label == unknown_label || (label < left_out.size() && left_out[label]);
+  return label == CellMask::unknown || (label < left_out.size() && left_out[label]);
 }
 
 }  // namespace

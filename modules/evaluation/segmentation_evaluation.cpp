@@ -6,13 +6,13 @@
 #include <limits>
 #include <utility>
 
+#include "holdfast/core/cell_mask.hpp"
 #include "holdfast/core/error.hpp"
 
 namespace holdfast {
 
 namespace {
 
-constexpr std::uint8_t unknown = 255;
 constexpr double share_of_diagonal = 0.02;
 constexpr double detection_threshold = 0.5;
 
@@ -27,7 +27,7 @@ cv::Mat region(const cv::Mat& image, const cv::Mat& labels, std::uint8_t label) 
     const auto* value = image.ptr<std::uint8_t>(y);
     const auto* truth = labels.ptr<std::uint8_t>(y);
     auto* to = mask.ptr<std::uint8_t>(y);
-    for (int x = 0; x < image.cols; ++x) to[x] = truth[x] != unknown && value[x] == label;
+    for (int x = 0; x < image.cols; ++x) to[x] = truth[x] != CellMask::unknown && value[x] == label;
   }
   return mask;
 }
@@ -77,7 +77,7 @@ void add_confidence(const cv::Mat& labels, const cv::Mat& predictions, const cv:
     const auto* prediction = predictions.ptr<std::uint8_t>(y);
     const auto* certainty = confidence.ptr<std::uint8_t>(y);
     for (int x = 0; x < labels.cols; ++x) {
-      if (label[x] == unknown || prediction[x] == unknown) continue;
+      if (label[x] == CellMask::unknown || prediction[x] == CellMask::unknown) continue;
       ConfidenceBin& bin = classes[prediction[x]].confidence_bins[certainty[x] * confidence_bin_count / 256];
       ++bin.pixels;
       bin.correct += label[x] == prediction[x];
@@ -145,12 +145,12 @@ void SegmentationEvaluator::add(const cv::Mat& labels, const cv::Mat& prediction
   for (std::size_t label = 0; label < 256; ++label)
     for (std::size_t prediction = 0; prediction < 256; ++prediction) {
       const std::uint64_t pixels = pairs[256 * label + prediction];
-      if (pixels == 0 || label == unknown) continue;
-      HOLDFAST_CHECK(label < count && (prediction < count || prediction == unknown),
+      if (pixels == 0 || label == CellMask::unknown) continue;
+      HOLDFAST_CHECK(label < count && (prediction < count || prediction == CellMask::unknown),
                      "label " << label << " prediction " << prediction << " classes " << count);
       result_.known_pixels += pixels;
       here[label].true_pixels += pixels;
-      if (prediction != unknown) here[prediction].found_pixels += pixels;
+      if (prediction != CellMask::unknown) here[prediction].found_pixels += pixels;
       if (prediction == label) here[label].both += pixels;
     }
   for (std::size_t label = 0; label < count; ++label) {

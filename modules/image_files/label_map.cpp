@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "holdfast/core/cell_mask.hpp"
 #include "holdfast/core/error.hpp"
 
 namespace holdfast {
@@ -14,7 +15,6 @@ namespace holdfast {
 namespace {
 
 constexpr std::uint16_t no_label = 256;
-constexpr std::uint16_t unknown_label = 255;
 constexpr std::size_t most_values = 65536;
 
 std::optional<std::size_t> value_of(std::string_view text) {
@@ -83,7 +83,7 @@ LabelMap::LabelMap(const TextMap& labels, const std::string& where)
       problem("'" + key + "' has no class name; expected one, such as person, background or unknown");
       continue;
     }
-    std::size_t label = unknown_label;
+    std::size_t label = CellMask::unknown;
     if (name != "unknown") {
       label = static_cast<std::size_t>(std::find(classes_.begin(), classes_.end(), name) - classes_.begin());
       if (label == classes_.size()) classes_.push_back(name);
@@ -98,7 +98,7 @@ LabelMap::LabelMap(const TextMap& labels, const std::string& where)
       label_of_value_[value] = static_cast<std::uint16_t>(label);
     }
   }
-  if (classes_.size() > unknown_label)
+  if (classes_.size() > CellMask::unknown)
     problem("names " + std::to_string(classes_.size() - 1) + " classes; expected at most 254");
   if (!diagnostics.empty()) throw ConfigurationError(std::move(diagnostics));
   if (label_of_value_[0] == no_label) label_of_value_[0] = 0;

@@ -144,7 +144,8 @@ std::optional<LoopMeasurement> LoopCloser::check(LoopTrial& trial) {
   const bool scale_is_plausible = std::abs(std::log(checked.scale)) <= std::log(settings_.largest_scale_drift);
   if (trial.joins_pieces)
     trial.verdict = LoopVerdict::closed;  // the pose of one submap relative to the other was a guess
-  else if (trial.correction.metres > believed.metres || trial.correction.degrees > believed.degrees || !scale_is_plausible)
+  else if (trial.correction.metres > believed.metres || trial.correction.degrees > believed.degrees ||
+           !scale_is_plausible)
     trial.verdict = LoopVerdict::implausible_correction;
   else if (present_pose_is_confirmed(settings_, matcher_, optimizer_, *frame, old_points, checked.T_camera_world))
     trial.verdict = LoopVerdict::pose_confirmed;

@@ -61,7 +61,7 @@ double scale_of_place(const SolidFeatures& solid, const PlacePoints& place, cons
 
 SolidFeatures solid_features(const Frame& frame, const Map& map) {
   SolidFeatures solid;
-  solid.with_scale = map.sensor() == Sensor::mono;
+  solid.with_scale = !scale_is_known(map.sensor());
   solid.in_camera.assign(frame.size(), Eigen::Vector3d::Zero());
   for (std::uint32_t i = 0; i < frame.size(); ++i) {
     if (!is_static(frame, i)) continue;

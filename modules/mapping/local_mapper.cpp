@@ -42,13 +42,13 @@ KeyFrameId LocalMapper::begin(const Frame& frame, std::span<const std::pair<Eige
 }
 
 void LocalMapper::link(KeyFrameId keyframe) {
-  map_.update_covisibility(keyframe, settings_.covisibility_minimum);
+  map_.update_covisibility(keyframe);
   if (map_.keyframe(keyframe).parent.valid()) return;
   // A keyframe without covisible neighbours (pose from odometry) becomes a child of the latest keyframe of its submap.
   const std::vector<KeyFrameId> by_age = map_.keyframes_by_age();
   const std::uint32_t piece = map_.keyframe(keyframe).piece;
-  const auto last = std::find_if(by_age.rbegin() + 1, by_age.rend(),
-                                 [&](KeyFrameId id) { return map_.keyframe(id).piece == piece; });
+  const auto last =
+      std::find_if(by_age.rbegin() + 1, by_age.rend(), [&](KeyFrameId id) { return map_.keyframe(id).piece == piece; });
   if (last != by_age.rend()) map_.hang_on(keyframe, *last);
 }
 
@@ -122,7 +122,7 @@ std::vector<MapPointId> LocalMapper::drop_moving_features(KeyFrameId id) {
 }
 
 void LocalMapper::drop_weak_point(MapPointId point) {
-  if (map_.sensor() != Sensor::mono) return;
+  if (features_have_depth(map_.sensor())) return;
   // After a contradicting view, two other observations do not confirm a point, and one does not determine it.
   constexpr std::size_t required = 3;
   const MapPoint* left = map_.find_point(point);
@@ -144,8 +144,8 @@ void LocalMapper::remove_weak_points(KeyFrameId id) {
   const std::uint64_t now = map_.keyframe(id).sequence;
   // A triangulated point begins with two observations; one that no third keyframe confirms was a wrong match, or moved
   // (Mur-Artal et al. 2015, section VI-B). Depth counts as another view.
-  const bool is_mono = map_.sensor() == Sensor::mono;
-  const std::size_t required = is_mono ? 3 : 2;
+  const bool has_depth = features_have_depth(map_.sensor());
+  const std::size_t required = has_depth ? 2 : 3;
   const bool can_be_confirmed = map_.keyframes().size() >= required;
   std::erase_if(recent_points_, [&](MapPointId point_id) {
     const MapPoint* point = map_.find_point(point_id);
@@ -153,10 +153,10 @@ void LocalMapper::remove_weak_points(KeyFrameId id) {
     // Later keyframes may have created points while this one waited for its mask, by an older mask that shows people at
     // an earlier position: such points need a second observation as evidence that they are static.
     const bool is_later = point->created_at > now;
-    if (is_later && (is_mono || !expects_masks_)) return false;
+    if (is_later && (!has_depth || !expects_masks_)) return false;
     const std::uint64_t age = now - std::min(now, point->created_at);
     const bool rarely_found = point->found_ratio() < static_cast<float>(settings_.weak_found_ratio);
-    const bool is_due = is_later || age >= (is_mono ? 1U : 2U);
+    const bool is_due = is_later || age >= (has_depth ? 2U : 1U);
     const bool unconfirmed = can_be_confirmed && is_due && point->observations.size() < required;
     if (rarely_found || unconfirmed) {
       map_.remove_point(point_id);
@@ -207,7 +207,7 @@ std::vector<KeyFrameId> LocalMapper::remove_redundant_keyframes(KeyFrameId id) {
   if (settings_.redundant_share >= 1.0) return removed;
   const std::vector<CovisibilityEdge> neighbours = map_.keyframe(id).covisible;
   const std::uint64_t sequence = map_.keyframe(id).sequence;
-  const bool has_depth = map_.sensor() != Sensor::mono;
+  const bool has_depth = features_have_depth(map_.sensor());
   for (const CovisibilityEdge& edge : neighbours) {
     const KeyFrame& keyframe = map_.keyframe(edge.keyframe);
     if (!keyframe.parent.valid() || !keyframe.loop_edges.empty()) continue;

@@ -53,7 +53,7 @@ void LocalMapper::fuse_with_neighbours(KeyFrameId id) {
   fuse_into(id, points_seen_by(map_, targets), buffers);
   for (const MapPointId point : map_.keyframe(id).frame.map_points)
     if (point.valid()) map_.update_point(point);
-  map_.update_covisibility(id, settings_.covisibility_minimum);
+  map_.update_covisibility(id);
 }
 
 void LocalMapper::fuse_into(KeyFrameId target, const std::vector<MapPointId>& points, FusionBuffers& buffers) {

@@ -42,7 +42,7 @@ double depth_cosine(const Frame& frame, std::uint32_t feature) {
 
 /// The point in the camera frame of the keyframe, by triangulation or by measured depth, whichever has more parallax.
 std::optional<Eigen::Vector3d> locate(const TwoKeyframes& views, const FeaturePair& pair) {
-  constexpr double max_parallax_cosine = 0.9998;  // 1.15 degrees; with less parallax the depth is undetermined
+  constexpr double max_parallax_cosine = geometry::TriangulationOptions{}.max_parallax_cosine;
   const Eigen::Vector3d ray = ray_of(views.frame, pair.in_frame);
   const Eigen::Vector3d other_ray = ray_of(views.neighbour, pair.in_neighbour);
   const double cosine = ray.normalized().dot((views.T_frame_neighbour.linear() * other_ray).normalized());
@@ -93,7 +93,7 @@ std::optional<Eigen::Vector3d> triangulate(const TwoKeyframes& views, const Feat
 /// Minimum baseline of two keyframes for sufficient parallax: that of the stereo pair, or, for one camera, a hundredth
 /// of the median depth of the points that the neighbour observes (Mur-Artal et al. 2015, section VI-D).
 double shortest_baseline(const Map& map, const Frame& neighbour) {
-  if (map.sensor() != Sensor::mono) return neighbour.camera->baseline;
+  if (features_have_depth(map.sensor())) return neighbour.camera->baseline;
   constexpr double share = 0.01;
   std::vector<double> depths;
   for (const MapPointId id : neighbour.map_points)

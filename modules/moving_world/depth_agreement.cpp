@@ -5,32 +5,28 @@
 #include <cmath>
 
 #include "holdfast/core/coarse_cells.hpp"
+#include "holdfast/core/depth_noise.hpp"
 #include "holdfast/geometry/se3.hpp"
 #include "holdfast/geometry/warp.hpp"
 
 namespace holdfast {
-namespace {
-
-constexpr int enough_cells = 50;  // minimum number for a meaningful share
-
-}  // namespace
 
 bool DepthAgreement::choose(const Map& map, KeyFrameId reference, double timestamp) {
-  constexpr std::size_t most = 3;
-  constexpr int neighbours = 20;
-  constexpr double old = 0.7;  // s
+  constexpr int neighbours = 20;  // in which keyframes are looked for; the strongest of those old enough are taken
+  const auto max_count = static_cast<std::size_t>(settings_.keyframes);
   keyframes_.clear();
   const KeyFrame* first = map.find_keyframe(reference);
   if (first == nullptr) return false;
   const auto take = [&](const Frame& frame) {
-    if (keyframes_.size() < most && !frame.coarse.empty()) keyframes_.push_back(&frame);
+    if (keyframes_.size() < max_count && !frame.coarse.empty()) keyframes_.push_back(&frame);
   };
   const std::vector<KeyFrameId> covisible = map.best_covisible(reference, neighbours);
   for (const bool want_old : {true, false}) {
     if (!keyframes_.empty()) break;
-    if (timestamp - first->frame.timestamp >= old || !want_old) take(first->frame);
+    if (timestamp - first->frame.timestamp >= settings_.age || !want_old) take(first->frame);
     for (const KeyFrameId id : covisible)
-      if (const Frame& frame = map.keyframe(id).frame; timestamp - frame.timestamp >= old || !want_old) take(frame);
+      if (const Frame& frame = map.keyframe(id).frame; timestamp - frame.timestamp >= settings_.age || !want_old)
+        take(frame);
   }
   return !keyframes_.empty();
 }
@@ -83,8 +79,8 @@ DepthAgreement::Counts DepthAgreement::count(const Frame& frame, const Eigen::Is
         if (is_evaluated && known[cell] < 0.0F) continue;
         if (seen[cell] == 0.0F) continue;
         ++counts.compared;
-        counts.agreeing += std::abs(seen[cell] - expected) < 0.01F + 0.01F * expected ? 1 : 0;
-        counts.farther += expected - seen[cell] > 0.05F + 0.03F * expected ? 1 : 0;
+        counts.agreeing += std::abs(seen[cell] - expected) < depth_noise::agreement(expected) ? 1 : 0;
+        counts.farther += expected - seen[cell] > depth_noise::farther(expected) ? 1 : 0;
       }
     }
   }
@@ -93,19 +89,18 @@ DepthAgreement::Counts DepthAgreement::count(const Frame& frame, const Eigen::Is
 
 double DepthAgreement::share(const Frame& frame, const Eigen::Isometry3d& T_view_world) const {
   const Counts counts = count(frame, T_view_world);
-  return counts.compared < enough_cells ? 0.0 : static_cast<double>(counts.agreeing) / counts.compared;
+  return counts.compared < settings_.cells ? 0.0 : static_cast<double>(counts.agreeing) / counts.compared;
 }
 
 bool DepthAgreement::disagrees(const Frame& frame, const Eigen::Isometry3d& T_view_world, double least_share) const {
   const Counts counts = count(frame, T_view_world);
-  return counts.compared >= enough_cells && static_cast<double>(counts.agreeing) / counts.compared < least_share;
+  return counts.compared >= settings_.cells && static_cast<double>(counts.agreeing) / counts.compared < least_share;
 }
 
 double DepthAgreement::support(const Frame& frame, const Eigen::Isometry3d& T_view_world) const {
   // A pose for which nearly all cells are nearer than the known surfaces is wrong, too.
-  constexpr double least_share = 0.2;
   const Counts counts = count(frame, T_view_world);
-  if (counts.agreeing < enough_cells || counts.agreeing < least_share * counts.compared) return 0.0;
+  if (counts.agreeing < settings_.cells || counts.agreeing < settings_.share * counts.compared) return 0.0;
   return static_cast<double>(counts.agreeing) / (counts.agreeing + counts.farther);
 }
 

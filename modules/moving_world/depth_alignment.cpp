@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "holdfast/core/depth_noise.hpp"
 #include "holdfast/geometry/se3.hpp"
 #include "holdfast/geometry/warp.hpp"
 #include "holdfast/moving_world/depth_agreement.hpp"
@@ -31,7 +32,7 @@ class SurfaceReader {
     if (!view_.static_log_odds.empty() && view_.static_log_odds[cell] < 0.0F) return std::nullopt;
     const float depth = view_.depth[cell];
     if (depth == 0.0F) return std::nullopt;
-    const float limit = 0.03F + 0.03F * depth;
+    const float limit = depth_noise::continues_normal(depth);
     for (const auto& [c, r] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}})
       if (!(std::abs(depth_at(column + c, row + r) - depth) < limit)) return std::nullopt;
     const Eigen::Vector3f across = point_at(column + 1, row) - point_at(column - 1, row);
@@ -93,8 +94,8 @@ Eigen::Isometry3d DepthAgreement::align(const Frame& frame, const Eigen::Isometr
           if (!surface) continue;
           const float residual = surface->normal.dot(warped->point - surface->point);
           if (std::abs(residual) > gate || std::abs(warped->point.z() - surface->point.z()) > 2.0F * gate) continue;
-          // Noise of the depth [m], and errors that neighbouring cells share; Huber's cost beyond two deviations.
-          const float sigma = 0.02F + 0.01F * depth * depth;
+          // Huber's cost beyond two deviations.
+          const float sigma = depth_noise::alignment_deviation(depth);
           const float weight = std::min(1.0F, 2.0F * sigma / std::max(std::abs(residual), 1e-6F)) / (sigma * sigma);
           const Eigen::Vector3f point = depth * Eigen::Vector3f(ray_x, ray_y, 1.0F);
           const Eigen::Vector3f direction = R_view_keyframe * surface->normal;

@@ -46,6 +46,19 @@ void EvidenceSettings::describe(ParameterTable<EvidenceSettings>& table) {
       .add("depth_check_share_lost", &S::depth_check_share_lost,
            "like depth_check_share, for a pose that was found after a loss")
       .range(0, 1);
+  table
+      .add("depth_check_keyframes", &S::depth_check_keyframes,
+           "maximum number of keyframes whose depth is compared with that of the view")
+      .range(1, 20);
+  table
+      .add("depth_check_age", &S::depth_check_age,
+           "age from which keyframes are preferred for this comparison, because people have walked on since")
+      .range(0, 60)
+      .unit("s");
+  table
+      .add("depth_check_cells", &S::depth_check_cells,
+           "minimum number of compared cells, one of 16 x 16 pixels each, for a share of them to be significant")
+      .range(1, 100000);
   table.add("fallback", &S::fallback,
             "whether a frame that its static features do not determine is tracked by masked features as well, and if "
             "these do not suffice by aligning its depth with keyframes; depth has to confirm the pose");
@@ -56,6 +69,10 @@ void EvidenceSettings::describe(ParameterTable<EvidenceSettings>& table) {
   table
       .add("fallback_share", &S::fallback_share,
            "share of the view, without what people may occlude, whose depth must agree with keyframes in such a frame")
+      .range(0, 1);
+  table
+      .add("fallback_agreement", &S::fallback_agreement,
+           "share of the whole compared view whose depth must agree with keyframes in such a frame")
       .range(0, 1);
 }
 

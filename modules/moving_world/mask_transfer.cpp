@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "holdfast/core/coarse_cells.hpp"
+#include "holdfast/core/depth_noise.hpp"
 #include "holdfast/geometry/warp.hpp"
 
 namespace holdfast {
@@ -13,15 +14,6 @@ namespace holdfast {
 namespace {
 
 constexpr int reach = 3;  // radius in which a followed point gives the motion of its object [blocks]
-
-/// Depths of a static surface, seen from two poses, differ by less [m].
-float same_place(float depth) { return 0.01F + 0.012F * depth; }
-/// Depths of a surface that moved differ by less, when its motion is known [m].
-float same_surface(float depth) { return 0.015F + 0.02F * depth; }
-/// Depths of two surfaces of which one occludes the other differ by more [m].
-float apart(float depth) { return 0.02F + 0.03F * depth; }
-/// Depths of neighbouring cells of one surface differ by less [m].
-float continues_surface(float depth) { return 0.02F + 0.015F * depth; }
 
 /// Whether a neighbouring cell has no label.
 bool is_outline(const std::vector<std::uint8_t>& labels, const CoarseGrid& grid, int column, int row) {
@@ -183,14 +175,14 @@ void MaskTransfer::take_row_by_ego_motion(const Job& job, int row) {
       const bool has_source = job.warp.is_visible(z[column]) && sources[column] >= 0;
       const std::size_t source = has_source ? static_cast<std::size_t>(sources[column]) : 0;
       const float before = has_source ? depth_before[source] : 0.0F;
-      const float change = std::abs(before - z[column]), limit = apart(z[column]);
+      const float change = std::abs(before - z[column]), limit = depth_noise::occlusion(z[column]);
       if (before == 0.0F) {
         state[column] = CellState::unobserved;
       } else if (change < limit) {
         state[column] = CellState::same_surface;
         job.take(begin + column, source);
         // At almost the same position, the surface may still be an object that has just arrived.
-        is_open = labels[source] == 0 && !(change < same_place(z[column]));
+        is_open = labels[source] == 0 && !(change < depth_noise::same_place(z[column]));
       } else if (before > z[column] + limit) {
         state[column] = CellState::free_space;
       }
@@ -211,7 +203,8 @@ void MaskTransfer::take_by_object_motion(const Job& job, int column, int row) {
     const std::size_t source = static_cast<std::size_t>(source_row * grid.columns + source_column);
     if (!CellMask::is_object(job.from.labels[source])) continue;
     const float before = job.from_view.depth[source];
-    if (depth > 0.0F && (before == 0.0F || std::abs(before - depth - mover.depth_change) > same_surface(depth)))
+    if (depth > 0.0F &&
+        (before == 0.0F || std::abs(before - depth - mover.depth_change) > depth_noise::same_surface(depth)))
       continue;
     job.take(cell, source);
     return;
@@ -266,7 +259,7 @@ void MaskTransfer::grow(const CoarseView& to_view, CellMask& to) {
         const std::size_t other = static_cast<std::size_t>(r * grid.columns + c);
         if (to.labels[other] != 0) continue;
         const float there = to_view.depth[other];
-        if (there == 0.0F || std::abs(there - depth) > continues_surface(depth)) continue;
+        if (there == 0.0F || std::abs(there - depth) > depth_noise::continues(depth)) continue;
         const float start = start_depth_[static_cast<std::size_t>(cell)];
         const bool may_be_object = previous_state_[other] == CellState::free_space ||
                                    (previous_state_[other] == CellState::unobserved && step < max_unobserved_steps &&

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "holdfast/core/depth_noise.hpp"
+
 namespace holdfast {
 
 namespace {
@@ -45,7 +47,7 @@ void PointFollower::advance(const cv::Mat& grey, const Frame& frame) {
     undistort(frame, flow_.to_x[i], flow_.to_y[i], points_.x[i], points_.y[i]);
     const float depth = depth_at(frame, points_.x[i], points_.y[i]);
     // A point whose depth jumps has slipped off its object.
-    if (depth > 0.0F && points_.depth[i] > 0.0F && std::abs(depth - points_.depth[i]) > 0.1F + 0.05F * depth)
+    if (depth > 0.0F && points_.depth[i] > 0.0F && std::abs(depth - points_.depth[i]) > depth_noise::slid_off(depth))
       flow_.found[i] = 0;
     if (depth > 0.0F) points_.depth[i] = depth;
   }

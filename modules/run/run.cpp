@@ -43,7 +43,7 @@ void evaluate_run(const FrameSource& source, RunRecord& record) {
   std::sort(record.frame_stamps.begin(), record.frame_stamps.end());
   EvaluationOptions options;
   // The unit of one camera's map is arbitrary.
-  options.alignment = record.sensor == Sensor::mono ? AlignmentKind::sim3 : AlignmentKind::se3;
+  options.alignment = scale_is_known(record.sensor) ? AlignmentKind::se3 : AlignmentKind::sim3;
   options.truth_name = "truth";
   options.truth_frame = record.source.truth_frame;
   options.estimate_name = "trajectory.txt";

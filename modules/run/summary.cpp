@@ -76,7 +76,7 @@ double tracking_restart_time(const Configuration& configuration) {
 std::string advice_to_restart(const RunRecord& record) {
   constexpr double suggested = 2.0;         // s, of tracking.restart_time
   constexpr double share_of_missing = 0.8;  // of all frames without a pose, those after the last one with a pose
-  if (record.sensor == Sensor::mono || record.localised_only || record.trajectory.empty() ||
+  if (!features_have_depth(record.sensor) || record.localised_only || record.trajectory.empty() ||
       record.frame_stamps.empty() || tracking_restart_time(record.configuration) > 0.0)
     return "";
   const auto& troubles = record.summary.troubles();

@@ -66,7 +66,8 @@ int FrameMatcher::match_keyframe(const Frame& keyframe_frame, Frame& frame) {
   // Mutual nearest neighbours with a clear lead over the second: no prediction narrows the search here.
   const float strict = distance_limit(settings_.strict_distance, frame.features.descriptors.type().strict_distance);
   matcher_.match(side_of(keyframe_frame, known), side_of(frame, all),
-                 {.max_distance = strict, .ratio = 0.8F, .mutual = true}, matches_);
+                 {.max_distance = strict, .ratio = static_cast<float>(settings_.descriptor_ratio), .mutual = true},
+                 matches_);
   for (const FeatureMatch& match : matches_) frame.map_points[match.feature] = keyframe_frame.map_points[match.source];
   return static_cast<int>(matches_.size());
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "holdfast/core/cell_mask.hpp"
+
 namespace holdfast::viewer {
 
 namespace {
@@ -66,7 +68,7 @@ void ShownMap::update_points(const MapSnapshot& map, std::uint64_t version) {
         std::abs(given.static_log_odds - point.evidence) < smallest_evidence)
       continue;
     const Class known = given.id.slot < classes_.size() ? classes_[given.id.slot] : Class();
-    const std::uint8_t label = known.generation == given.id.generation ? known.label : unknown_class;
+    const std::uint8_t label = known.generation == given.id.generation ? known.label : CellMask::unknown;
     point = {position, given.static_log_odds, given.id.generation, true, label, version};
   }
   remove_missing(points_, is_listed, version);

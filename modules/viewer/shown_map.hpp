@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "holdfast/core/cell_mask.hpp"
 #include "holdfast/core/map_snapshot.hpp"
 #include "holdfast/viewer/viewer.hpp"
 #include "message.hpp"
@@ -20,7 +21,6 @@ class ShownMap {
  public:
   /// Moves of points and keyframes below this [m] are not worth a message.
   static constexpr double smallest_move = 1e-3;
-  static constexpr std::uint8_t unknown_class = 255;
 
   /// Takes over a snapshot as `version`, which is larger than every one before.
   void update(const MapSnapshot& map, std::uint64_t version);
@@ -47,12 +47,12 @@ class ShownMap {
     float evidence = 0.0F;
     std::uint32_t generation = 0;
     bool exists = false;
-    std::uint8_t label = unknown_class;
+    std::uint8_t label = CellMask::unknown;
     std::uint64_t version = 0;
   };
   struct Class {
     std::uint32_t generation = 0;  // of the point
-    std::uint8_t label = unknown_class;
+    std::uint8_t label = CellMask::unknown;
   };
   struct KeyFrame {
     Eigen::Isometry3d T_world_camera;

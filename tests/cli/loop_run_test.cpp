@@ -27,17 +27,15 @@ class LoopRunTest : public ::testing::Test {
   test::Program program_;
 };
 
-TEST_F(LoopRunTest, TheHallIsClosedAndTwiceTheSame) {
-  const nlohmann::json closed = run("loop.yaml", "a");
+// That a run with a loop is the same to the byte on repeat is held by tests/oracle.
+TEST_F(LoopRunTest, TheHallIsClosed) {
+  const nlohmann::json closed = run("loop.yaml", "closed");
   EXPECT_GE(closed.at("loops").at("closed").size(), 1U);
   EXPECT_EQ(closed.at("frames").at("coverage"), 1.0);
   const double error = closed.at("evaluation").at("ate_m").at("rmse");
   EXPECT_LE(error, 0.03);
   const nlohmann::json open = run("loop.yaml", "open", {"--set", "loop_detector=none"});
   EXPECT_LE(error, 0.6 * open.at("evaluation").at("ate_m").at("rmse").get<double>());
-  run("loop.yaml", "b");
-  EXPECT_EQ(program_.text("a/trajectory.txt"), program_.text("b/trajectory.txt"));
-  EXPECT_EQ(program_.text("a/map.hfm"), program_.text("b/map.hfm"));
 }
 
 TEST_F(LoopRunTest, TheHallIsClosedByImagesAsAWhole) {

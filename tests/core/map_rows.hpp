@@ -87,7 +87,8 @@ inline std::vector<KeyFrameId> build_row(Map& map, int keyframes, std::size_t fe
       points.push_back(point);
     }
     for (const MapPointId point : map.keyframe(id).frame.map_points) map.update_point(point);
-    map.update_covisibility(id, 5);
+    map.set_covisibility_minimum(5);
+    map.update_covisibility(id);
     ids.push_back(id);
   }
   return ids;

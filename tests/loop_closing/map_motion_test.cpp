@@ -43,7 +43,8 @@ class MapMotionTest : public testing::Test {
       if (!common_.valid()) common_ = map_.add_point({0, 0, 3}, 0);
       map_.add_observation(common_, ids_.back(), points_per_keyframe);
       map_.update_point(common_);
-      map_.update_covisibility(ids_.back(), 1);
+      map_.set_covisibility_minimum(1);
+      map_.update_covisibility(ids_.back());
     }
   }
 

@@ -70,7 +70,8 @@ TEST_F(MapDamage, RandomChangesNeverCrash) {
     try {
       Map map = read_map(path("read.hfm"));
       for (const MapPointId point : map.points().ids()) map.update_point(point);
-      for (const KeyFrameId keyframe : map.keyframes().ids()) map.update_covisibility(keyframe, 3);
+      map.set_covisibility_minimum(3);
+      for (const KeyFrameId keyframe : map.keyframes().ids()) map.update_covisibility(keyframe);
       ++taken;
     } catch (const InputError&) {
       ++refused;

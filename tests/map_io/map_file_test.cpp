@@ -193,7 +193,8 @@ TEST_F(MapFile, AMapThatWasReadGoesOn) {
   }
   Frame frame = map.keyframe(ids.back()).frame;
   const KeyFrameId added = map.add_keyframe(frame);
-  map.update_covisibility(added, 3);
+  map.set_covisibility_minimum(3);
+  map.update_covisibility(added);
   EXPECT_GT(map.keyframe(added).covisible.size(), 0U);
   EXPECT_TRUE(map.keyframe(added).parent.valid());
   map.remove_keyframe(added);

@@ -72,7 +72,8 @@ inline Map random_map(int keyframes, std::size_t features, std::uint64_t seed, c
     }
     for (const MapPointId point : map.keyframe(id).frame.map_points)
       if (point.valid()) map.update_point(point);
-    map.update_covisibility(id, 3);
+    map.set_covisibility_minimum(3);
+    map.update_covisibility(id);
     ids.push_back(id);
     // Gone again, so that later ones reuse the slots.
     if (k > 3 && k % 3 == 0 && map.keyframe(ids[static_cast<std::size_t>(k - 2)]).parent.valid())

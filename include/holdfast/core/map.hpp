@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "holdfast/core/keyframe.hpp"
+#include "holdfast/core/map_defaults.hpp"
 #include "holdfast/core/map_features.hpp"
 #include "holdfast/core/map_point.hpp"
 #include "holdfast/core/sensor.hpp"
@@ -73,9 +74,9 @@ class Map {
   void remove_point(MapPointId point);
 
   /// Recounts the points that a keyframe shares with others and updates the covisibility edges on both sides. An edge
-  /// needs at least `minimum_weight` shared points; the strongest neighbour is always kept. Sets the spanning-tree
-  /// parent of a new keyframe.
-  void update_covisibility(KeyFrameId keyframe, int minimum_weight = 15);
+  /// needs at least the minimum of set_covisibility_minimum() in shared points; the strongest neighbour is always kept.
+  /// Sets the spanning-tree parent of a new keyframe.
+  void update_covisibility(KeyFrameId keyframe);
   /// Sets the spanning-tree parent of a keyframe that is not covisible with any older one, because its pose was
   /// estimated without the map.
   void hang_on(KeyFrameId keyframe, KeyFrameId older);
@@ -114,6 +115,10 @@ class Map {
   /// belongs to the run, not to the content: files do not keep it, and clear() and restore() leave it as it is.
   void set_evidence_limit(float log_odds) { evidence_limit_ = log_odds; }
   float evidence_limit() const { return evidence_limit_; }
+
+  /// Minimum number of shared points of a covisibility edge (MappingSettings::covisibility_minimum). It belongs to the
+  /// run, like the evidence limit.
+  void set_covisibility_minimum(int points) { covisibility_minimum_ = points; }
 
   /// Sequence number of the next keyframe.
   std::uint64_t next_sequence() const { return next_sequence_; }
@@ -169,7 +174,8 @@ class Map {
   MapFeatures features_;
   std::vector<std::string> classes_;
   std::uint64_t version_ = 0;
-  float evidence_limit_ = 4.0F;  // the default of EvidenceSettings::limit
+  float evidence_limit_ = static_cast<float>(default_evidence_limit);
+  int covisibility_minimum_ = default_covisibility_minimum;
 };
 
 }  // namespace holdfast

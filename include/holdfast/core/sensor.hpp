@@ -14,6 +14,16 @@ enum class Sensor {
   mono,    ///< colour alone; the unit of the map is arbitrary (TrackingSettings::start_depth)
 };
 
+/// Facts of a sensor. Code asks these, not which sensor it is, so that a sensor is added in one place.
+/// @{
+/// Features have a measured depth, by a depth image or by the disparity of a pair.
+constexpr bool features_have_depth(Sensor sensor) { return sensor != Sensor::mono; }
+/// The unit of the map is the metre, and its scale does not drift. An inertial sensor would give one camera this, too.
+constexpr bool scale_is_known(Sensor sensor) { return sensor != Sensor::mono; }
+/// Frames have a depth image.
+constexpr bool has_dense_depth(Sensor sensor) { return sensor == Sensor::rgbd; }
+/// @}
+
 /// rgbd, stereo or mono.
 const char* sensor_name(Sensor sensor);
 /// The sensor of that name, or nothing.

@@ -95,10 +95,10 @@ struct PnpOptions {
 /// information, and that of the disparity x - right_x, with separate noise.
 ///
 /// After each round every observation is tested anew: it is an outlier if its squared residual times its information
-/// (x, y and right_x) exceeds the chi-square limit, or if its point lies behind the camera. Outliers do not count in the next round.
-/// Huber's threshold is the square root of the limit. The weight scales an observation's cost but not its chi-square
-/// test; weight 0 excludes it from the pose and from the count of inliers, while set_inlier still tells whether it
-/// fits. An observation with a number that is not finite is never an inlier.
+/// (x, y and right_x) exceeds the chi-square limit, or if its point lies behind the camera. Outliers do not count in
+/// the next round. Huber's threshold is the square root of the limit. The weight scales an observation's cost but not
+/// its chi-square test; weight 0 excludes it from the pose and from the count of inliers, while set_inlier still tells
+/// whether it fits. An observation with a number that is not finite is never an inlier.
 ///
 /// The result is not usable, the pose unchanged and no observation an inlier, if fewer than three observations count,
 /// if the points do not determine the pose, or if fewer than three inliers remain.

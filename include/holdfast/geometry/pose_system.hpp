@@ -99,8 +99,7 @@ template <bool robust>
     const Batch disparity_ratio = wrong_depth ? disparity_limit / chi_disparity : one;
     Batch disparity_scale;
     for (std::size_t k = 0; k < batch_size; ++k) disparity_scale[k] = std::sqrt(disparity_ratio[k]);
-    const Batch disparity_cost =
-        wrong_depth ? 2.0 * chi_disparity * disparity_scale - disparity_limit : chi_disparity;
+    const Batch disparity_cost = wrong_depth ? 2.0 * chi_disparity * disparity_scale - disparity_limit : chi_disparity;
     const Batch chi = o.information * (error_x * error_x + error_y * error_y) + disparity_cost;
     Batch weight = in_front ? o.weight : Batch{};
     Batch cost = chi;

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "holdfast/core/frame.hpp"
+#include "holdfast/core/map_defaults.hpp"
 #include "holdfast/interfaces/optimizer.hpp"
 
 /// Observations of an optimizer's problems from the features of a frame. Each is weighted by the probability that its
@@ -13,7 +14,7 @@ namespace holdfast {
 
 /// Fewer points that another keyframe sees as well hardly determine the pose of a keyframe in a bundle adjustment: it
 /// would leave its place for a slightly lower cost.
-inline constexpr int least_shared_points = 15;
+inline constexpr int least_shared_points = default_covisibility_minimum;
 
 /// Adds to the pose problem of `frame` that its feature number `feature` shows `point` (world [m]).
 inline void add_observation(PoseProblem& problem, const Frame& frame, std::size_t feature,

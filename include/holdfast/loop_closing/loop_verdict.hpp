@@ -37,15 +37,15 @@ struct LoopTrial {
   KeyFrameId keyframe;
   KeyFrameId candidate;
   LoopVerdict verdict = LoopVerdict::few_matches;
-  int matches = 0;        ///< descriptor matches
-  int aligned = 0;        ///< inliers of the rigid alignment among them
-  int inliers = 0;        ///< points of the candidate that are matched in the keyframe
-  int expected = 0;       ///< points of the candidate that are predicted to be visible in the keyframe
-  int cells = 0;          ///< number of 16 cells over the image with at least two inliers
+  int matches = 0;            ///< descriptor matches
+  int aligned = 0;            ///< inliers of the rigid alignment among them
+  int inliers = 0;            ///< points of the candidate that are matched in the keyframe
+  int expected = 0;           ///< points of the candidate that are predicted to be visible in the keyframe
+  int cells = 0;              ///< number of 16 cells over the image with at least two inliers
   bool joins_pieces = false;  ///< the two are in different submaps
   double way = 0.0;           ///< length of the path between the two in the map [m], with one metre per radian
-  PoseChange correction;  ///< correction that the loop requires
-  double scale = 1.0;     ///< scale of the Sim(3) from keyframe to candidate; 1 if depth is measured
+  PoseChange correction;      ///< correction that the loop requires
+  double scale = 1.0;         ///< scale of the Sim(3) from keyframe to candidate; 1 if depth is measured
 };
 
 /// Cumulative loop-closing statistics.

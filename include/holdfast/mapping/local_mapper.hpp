@@ -35,7 +35,9 @@ class LocalMapper {
         map_(map),
         mutex_(mutex),
         optimizer_(optimizer),
-        matcher_(matcher) {}
+        matcher_(matcher) {
+    map_.set_covisibility_minimum(settings.covisibility_minimum);
+  }
 
   /// Inserts a tracked frame into the map as a keyframe and creates points from its depth; with `points_wait`, refine()
   /// creates them later. Only features that are more likely static than moving create points. The keyframe belongs to

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "holdfast/core/map_defaults.hpp"
+
 namespace holdfast {
 
 template <class Settings>
@@ -24,8 +26,8 @@ struct MappingSettings {
   int bundle_keyframes = 20;         ///< maximum number of free keyframes of a local bundle adjustment; bounds its time
   int bundle_robust_iterations = 5;  ///< iterations with the robust cost; 5 as in ORB-SLAM2
   int bundle_final_iterations = 10;  ///< iterations after the removal of outliers; 10 as in ORB-SLAM2
-  /// Minimum number of shared points of a covisibility edge; 15 as in ORB-SLAM (section III-D).
-  int covisibility_minimum = 15;
+  /// Minimum number of shared points of a covisibility edge, in local mapping and loop closing alike (Map).
+  int covisibility_minimum = default_covisibility_minimum;
 
   static void describe(ParameterTable<MappingSettings>& table);
 };

@@ -9,10 +9,20 @@
 
 namespace holdfast {
 
+/// Selection of keyframes and thresholds of the comparison; the defaults are those of EvidenceSettings.
+struct DepthAgreementSettings {
+  int keyframes = 3;   ///< maximum number of keyframes to compare with
+  double age = 0.7;    ///< age from which a keyframe is preferred, because people have moved since [s]
+  int cells = 50;      ///< minimum number of cells for a share of them to be significant
+  double share = 0.2;  ///< minimum share of the compared cells that agree for a pose to be supported
+};
+
 /// Evaluates poses of a frame by dense depth: the share of its cells whose depth agrees with that of keyframes. Moving
 /// people can bias feature matches, but hardly this share. Keeps its buffers; one thread.
 class DepthAgreement {
  public:
+  explicit DepthAgreement(const DepthAgreementSettings& settings = {}) : settings_(settings) {}
+
   /// Selects keyframes around `reference` for the comparison, preferably old ones, because moving people have hardly
   /// moved since recent ones. False when there are none. The selection is valid until the map changes.
   bool choose(const Map& map, KeyFrameId reference, double timestamp);
@@ -21,8 +31,8 @@ class DepthAgreement {
   /// True if enough cells can be compared and less than `least_share` of them agree.
   bool disagrees(const Frame& frame, const Eigen::Isometry3d& T_view_world, double least_share) const;
   /// Share of agreeing cells among those that agree or see through a surface of a keyframe (measure more depth). Cells
-  /// nearer than the surface of the keyframe are ignored as possible occlusions. 0 when too few cells agree, or less
-  /// than a fifth of those compared.
+  /// nearer than the surface of the keyframe are ignored as possible occlusions. 0 when too few cells agree, or a
+  /// smaller share of those compared than required.
   double support(const Frame& frame, const Eigen::Isometry3d& T_view_world) const;
   /// Projective point-to-plane ICP (Chen and Medioni 1992; Newcombe et al. 2011, equations 16 to 24) of the frame's
   /// coarse depth image with those of the keyframes, with the predicted pose as initial value and prior in directions
@@ -42,6 +52,7 @@ class DepthAgreement {
   };
   Counts count(const Frame& frame, const Eigen::Isometry3d& T_view_world) const;
 
+  DepthAgreementSettings settings_;
   std::vector<const Frame*> keyframes_;
 };
 

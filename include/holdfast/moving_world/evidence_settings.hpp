@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "holdfast/core/map_defaults.hpp"
+
 namespace holdfast {
 
 template <class Settings>
@@ -16,12 +18,12 @@ enum class Removal {
 /// points, and thresholds of the pose check by dense depth.
 struct EvidenceSettings {
   Removal removal = Removal::soft;
-  double static_log_odds = 2.0;  ///< prior of every feature; 2 is a probability of 0.88
-  double threshold = 0.5;        ///< probability, for hard removal
-  double ignore_below = 0.2;     ///< probability, for soft removal
-  double carried_share = 0.95;   ///< share of a point's log-odds that is kept until its next observation
-  double measured_share = 0.3;   ///< share of a frame's measurement that is added to its points
-  double limit = 4.0;            ///< bound of a point's log-odds, so that it can change sign within seconds
+  double static_log_odds = 2.0;           ///< prior of every feature; 2 is a probability of 0.88
+  double threshold = 0.5;                 ///< probability, for hard removal
+  double ignore_below = 0.2;              ///< probability, for soft removal
+  double carried_share = 0.95;            ///< share of a point's log-odds that is kept until its next observation
+  double measured_share = 0.3;            ///< share of a frame's measurement that is added to its points
+  double limit = default_evidence_limit;  ///< bound of a point's log-odds
   bool skip_moving = true;
   /// Share of compared cells by which the predicted pose must agree better with keyframes than the pose from matches to
   /// replace it; above the noise of depth.
@@ -34,12 +36,21 @@ struct EvidenceSettings {
   /// likely.
   int depth_check_inliers_lost = 60;
   double depth_check_share_lost = 0.08;
+  /// Maximum number of keyframes whose depth is compared; the time is proportional to it.
+  int depth_check_keyframes = 3;
+  /// Age from which keyframes are preferred for the comparison [s], because walking people have moved since.
+  double depth_check_age = 0.7;
+  /// Minimum number of cells (16 pixels apart) for a share of them to be significant.
+  int depth_check_cells = 50;
   /// Whether a frame whose static features do not determine its pose is tracked by masked features, then by dense
   /// depth. Off: it tracks more frames among near people, with lower accuracy (docs/moving_world.md).
   bool fallback = false;
   double fallback_log_odds = -1.5;  ///< minimum class prior in this fallback; 2 - 1.5 is a probability of 0.62
   /// Minimum share of agreeing cells among those that agree or see through surfaces of keyframes.
   double fallback_share = 0.7;
+  /// Minimum share of agreeing cells among all compared ones: a pose for which nearly all cells are nearer than the
+  /// known surfaces is wrong.
+  double fallback_agreement = 0.2;
 
   static void describe(ParameterTable<EvidenceSettings>& table);
 };

@@ -79,8 +79,8 @@ struct ViewedRun {
 /// what has changed. The page needs no other file and no network.
 ///
 /// Every request has to name the token of address(), 128 random bits; others get 403. What is served is the page and
-/// the socket, no file. Of browsers only the messages of modules/viewer/README.md are accepted; any other message ends its
-/// connection.
+/// the socket, no file. Of browsers only the messages of modules/viewer/README.md are accepted; any other message ends
+/// its connection.
 ///
 /// No method waits for a browser except take_turn() and wait_for_browser(): what is given is kept until the thread of
 /// the server takes it, and a browser that is slower than the run gets fewer and larger changes. Any thread may call
@@ -105,8 +105,8 @@ class Viewer {
   /// browsers ask for.
   bool wants_picture() const;
   void set_picture(ViewedPicture picture);
-  /// True when it is time for another snapshot: five times a second, or less often if browsers ask for that or taking one
-  /// has cost more than a fiftieth of the time; without a browser every two seconds, or a thousandth.
+  /// True when it is time for another snapshot: five times a second, or less often if browsers ask for that or taking
+  /// one has cost more than a fiftieth of the time; without a browser every two seconds, or a thousandth.
   bool wants_map() const;
   /// `seconds`: what making the snapshot took.
   void set_map(MapSnapshot map, double seconds);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "holdfast/core/depth_noise.hpp"
 #include "holdfast/geometry/so3.hpp"
 
 namespace holdfast::motion_objects_plugin {
@@ -98,7 +99,7 @@ std::uint32_t MotionObjects::track_before(const Eigen::Vector3f& in_view, std::u
   std::uint32_t best = BlockHint::unknown;
   float min_difference = 1e3F;
   for (const Prediction& prediction : predictions_) {
-    if (label != 255 && prediction.label >= 0 && prediction.label != label) continue;
+    if (label != CellMask::unknown && prediction.label >= 0 && prediction.label != label) continue;
     const Eigen::Vector3f p = stood + prediction.back;
     if (p.z() < 0.1F || (p - prediction.centre).squaredNorm() > prediction.radius * prediction.radius) continue;
     const float x = grid.column_of(grid.fx * p.x() / p.z() + grid.cx) + 0.5F;
@@ -109,7 +110,7 @@ std::uint32_t MotionObjects::track_before(const Eigen::Vector3f& in_view, std::u
     const std::size_t there = static_cast<std::size_t>(row * grid.columns + column);
     if (last.owner[there] != prediction.name) continue;
     const float difference = std::abs(last.image.depth[there] - p.z());
-    if (difference < Regions::continuity(p.z()) && difference < min_difference)
+    if (difference < depth_noise::continues_region(p.z()) && difference < min_difference)
       min_difference = difference, best = prediction.name;
   }
   return best;
@@ -173,7 +174,7 @@ bool MotionObjects::resembles(const ObjectTrack& track, const Region& region) co
   const int label = track.label();
   for (const int block : regions_.blocks(region)) {
     const std::uint8_t other = hints_[static_cast<std::size_t>(block)].label;
-    named += other != 255 ? 1 : 0;
+    named += other != CellMask::unknown ? 1 : 0;
     same += other == label ? 1 : 0;
   }
   return label < 0 || 2 * named < region.size || 2 * same >= named;
@@ -329,7 +330,7 @@ void MotionObjects::follow(const Part& part) {
     for (const int block : regions_.blocks(region)) {
       now.owner[static_cast<std::size_t>(block)] = track.name();
       const std::uint8_t label = hints_[static_cast<std::size_t>(block)].label;
-      if (label == 255) continue;
+      if (label == CellMask::unknown) continue;
       if (label >= label_counts_.size()) label_counts_.resize(label + 1U, 0);
       ++label_counts_[label];
     }

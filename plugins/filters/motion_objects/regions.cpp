@@ -62,7 +62,7 @@ void Regions::measure(const BlockGrid& grid, const std::vector<float>& depth, Re
       }
       ends[axis] += 1.0F;
       const float there = inside ? depth[static_cast<std::size_t>(other)] : 0.0F;
-      if (!inside || (there > 0.0F && there < z - continuity(z))) cut[axis] += 1.0F;
+      if (!inside || (there > 0.0F && there < z - depth_noise::continues_region(z))) cut[axis] += 1.0F;
     };
     look(0, column > 0, block - 1);
     look(0, column + 1 < grid.columns, block + 1);

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "holdfast/core/cell_mask.hpp"
+#include "holdfast/core/depth_noise.hpp"
 #include "holdfast/depth_blocks/depth_view.hpp"
 
 namespace holdfast::motion_objects_plugin {
@@ -17,8 +19,8 @@ struct BlockHint {
   static constexpr std::uint32_t background = 0xFFFFFFFF;  ///< not a motion hypothesis
   static constexpr std::uint32_t unknown = 0;              ///< a motion hypothesis without a track
 
-  std::uint32_t track = background;  ///< background, unknown, or the track that was here before
-  std::uint8_t label = 255;          ///< of the mask, 255 = unknown
+  std::uint32_t track = background;        ///< background, unknown, or the track that was here before
+  std::uint8_t label = CellMask::unknown;  ///< of the mask
 };
 
 /// A region of the frame that is connected in depth.
@@ -37,9 +39,6 @@ struct Region {
 /// (Co-Fusion, Ruenz and Agapito 2017, section IV-A: connected moving components become models). Reuses its buffers.
 class Regions {
  public:
-  /// Upper bound of the depth difference between adjacent blocks of one surface [m].
-  static float continuity(float depth) { return 0.04F + 0.02F * depth; }
-
   /// Unknown blocks first join an adjacent track, in up to `growth` steps and if `may_join(block, track)`; the first
   /// step ignores the mask, because its outline is inexact. Regions are then the connected blocks of one track, or of
   /// no track and one mask label. Regions are ordered by their first block.
@@ -70,14 +69,14 @@ class Regions {
 
  private:
   static bool agree(const BlockHint& a, const BlockHint& b) {
-    return a.label == b.label || a.label == 255 || b.label == 255;
+    return a.label == b.label || a.label == CellMask::unknown || b.label == CellMask::unknown;
   }
   template <class Visit>
   static void for_each_beside(const BlockGrid& grid, const std::vector<float>& depth, int block, const Visit& visit) {
     const int column = block % grid.columns, row = block / grid.columns;
     const float here = depth[static_cast<std::size_t>(block)];
     const auto offer = [&](int other) {
-      if (std::abs(depth[static_cast<std::size_t>(other)] - here) < continuity(here)) visit(other);
+      if (std::abs(depth[static_cast<std::size_t>(other)] - here) < depth_noise::continues_region(here)) visit(other);
     };
     if (column > 0) offer(block - 1);
     if (column + 1 < grid.columns) offer(block + 1);

@@ -6,19 +6,11 @@
 #include <cmath>
 
 #include "holdfast/core/coarse_cells.hpp"
+#include "holdfast/core/depth_noise.hpp"
 #include "holdfast/geometry/warp.hpp"
 #include "holdfast/plugin/plugin.hpp"
 
 namespace holdfast::multi_view_depth_plugin {
-
-namespace {
-
-/// Maximum depth difference of one surface [m]: sensor noise, and the error of a predicted pose.
-float noise(float depth) { return 0.02F + 0.02F * depth; }
-/// Upper bound of the depth difference between adjacent blocks of one surface [m].
-float continuity(float depth) { return 0.03F + 0.02F * depth; }
-
-}  // namespace
 
 MultiViewDepth::MultiViewDepth(const MultiViewDepthSettings& settings, const CreationContext&) : settings_(settings) {}
 
@@ -103,7 +95,7 @@ void MultiViewDepth::compare(const FilterContext& context) {
         const std::size_t cell = static_cast<std::size_t>(cells_[static_cast<std::size_t>(column)]);
         const float seen = there[cell];
         if (seen == 0.0F) continue;
-        if (std::abs(seen - z) < noise(z)) {
+        if (std::abs(seen - z) < depth_noise::same_in_view(z)) {
           if (known.empty() || known[cell] >= 0.0F) same_[block] += other.same;
           continue;
         }
@@ -144,7 +136,7 @@ void MultiViewDepth::grow() {
         const std::size_t other = static_cast<std::size_t>(r * columns_ + c);
         if (moving_[other] != 0 || depth_[other] == 0.0F) continue;
         if (score_[other] >= static_cast<float>(settings_.confirmed_score)) continue;
-        if (std::abs(depth_[other] - depth) > continuity(depth)) continue;
+        if (std::abs(depth_[other] - depth) > depth_noise::continues_block(depth)) continue;
         moving_[other] = 1;
         next_front_.push_back(r * columns_ + c);
       }
@@ -172,11 +164,12 @@ void MultiViewDepth::evaluate_features(const FilterContext& context, StaticEvide
     // The block with the depth of the feature, for features at a depth edge.
     int best = row * columns_ + column;
     if (frame.has_depth(i)) {
-      float min_difference = std::abs(depth_[static_cast<std::size_t>(best)] - frame.depth[i]) - noise(frame.depth[i]);
+      float min_difference =
+          std::abs(depth_[static_cast<std::size_t>(best)] - frame.depth[i]) - depth_noise::same_in_view(frame.depth[i]);
       for (int r = std::max(0, row - 1); r <= std::min(rows_ - 1, row + 1) && min_difference > 0.0F; ++r)
         for (int c = std::max(0, column - 1); c <= std::min(columns_ - 1, column + 1); ++c) {
-          const float difference =
-              std::abs(depth_[static_cast<std::size_t>(r * columns_ + c)] - frame.depth[i]) - noise(frame.depth[i]);
+          const float difference = std::abs(depth_[static_cast<std::size_t>(r * columns_ + c)] - frame.depth[i]) -
+                                   depth_noise::same_in_view(frame.depth[i]);
           if (difference < min_difference) min_difference = difference, best = r * columns_ + c;
         }
     }

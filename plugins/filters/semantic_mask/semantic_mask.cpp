@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "holdfast/core/cell_mask.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/interfaces/dynamic_filter.hpp"
 #include "holdfast/plugin/did_you_mean.hpp"
@@ -35,6 +36,40 @@ void SemanticMaskSettings::describe(ParameterTable<SemanticMaskSettings>& table)
 }
 
 namespace {
+
+/// A segmentation as a raster of pixels; without confidences labels are certain, and without depth nothing is known of
+/// it.
+struct PixelLabels {
+  const cv::Mat& labels;
+  const cv::Mat& confidences;
+  const cv::Mat& depths;
+  int columns, rows;
+
+  std::uint8_t label(int column, int row) const { return labels.at<std::uint8_t>(row, column); }
+  std::uint8_t confidence(int column, int row) const {
+    return confidences.empty() ? std::uint8_t{255} : confidences.at<std::uint8_t>(row, column);
+  }
+  float depth(int column, int row) const { return depths.empty() ? 0.0F : depths.at<float>(row, column); }
+};
+
+/// A propagated mask as a raster of cells.
+struct CellLabels {
+  const CoarseView& view;
+  int columns, rows;
+
+  std::size_t index(int column, int row) const { return static_cast<std::size_t>(row * columns + column); }
+  std::uint8_t label(int column, int row) const { return view.mask.labels[index(column, row)]; }
+  std::uint8_t confidence(int column, int row) const { return view.mask.confidence[index(column, row)]; }
+  float depth(int column, int row) const { return view.depth[index(column, row)]; }
+};
+
+/// Where labels count for a feature, in steps of the raster.
+struct Neighbourhood {
+  int reach;                ///< columns and rows on each side
+  int edge;                 ///< as far, depth is not asked
+  int stride;               ///< between the labels that are looked at
+  bool has_movable = true;  ///< false: it is known that none of them is movable
+};
 
 /// Adds a negative prior to features on masks of movable classes.
 class SemanticMask final : public DynamicFilter {
@@ -111,35 +146,39 @@ class SemanticMask final : public DynamicFilter {
     return false;
   }
 
+  /// Gives a feature at a position of a raster of labels, pixels or cells, the prior of its class. It is movable if a
+  /// movable label within `reach` is not in front of it; within `edge`, depth is not asked. Raster has columns, rows,
+  /// and label(), confidence() and depth() of a column and a row.
+  template <class Raster>
+  void judge(const Raster& raster, int x, int y, const Neighbourhood& near, float depth, std::size_t feature,
+             StaticEvidence& evidence) const {
+    const std::uint8_t label = raster.label(x, y);
+    bool movable = movable_[label] != 0;
+    std::uint8_t certainty = raster.confidence(x, y);
+    for (int dy = -near.reach; dy <= near.reach && !movable && near.has_movable; dy += near.stride)
+      for (int dx = -near.reach; dx <= near.reach && !movable; dx += near.stride) {
+        const int column = x + dx, row = y + dy;
+        if (column < 0 || row < 0 || column >= raster.columns || row >= raster.rows) continue;
+        if (movable_[raster.label(column, row)] == 0) continue;
+        if (std::max(std::abs(dx), std::abs(dy)) > near.edge && lies_behind(depth, raster.depth(column, row))) continue;
+        movable = true;
+        certainty = raster.confidence(column, row);
+      }
+    if (movable || label != CellMask::unknown) add_evidence(evidence, feature, movable, certainty);
+  }
+
   void apply_exact(const FilterContext& context, StaticEvidence& evidence) {
-    const cv::Mat& labels = context.segmentation->labels;
-    mark_movable_tiles(labels);
-    const cv::Mat& confidence = context.segmentation->confidence;
-    const cv::Mat& depth = context.sensor_frame.depth;
+    const PixelLabels raster{context.segmentation->labels, context.segmentation->confidence, context.sensor_frame.depth,
+                             context.segmentation->labels.cols, context.segmentation->labels.rows};
+    mark_movable_tiles(raster.labels);
     const Frame& frame = context.frame;
-    constexpr int stride = 2;
     for (std::size_t i = 0; i < frame.size(); ++i) {
       const int x = static_cast<int>(std::lround(frame.features.x[i]));
       const int y = static_cast<int>(std::lround(frame.features.y[i]));
-      if (x < 0 || y < 0 || x >= labels.cols || y >= labels.rows) continue;
-      const auto sure = [&](int column, int row) {
-        return confidence.empty() ? std::uint8_t{255} : confidence.at<std::uint8_t>(row, column);
-      };
-      std::uint8_t label = labels.at<std::uint8_t>(y, x);
-      bool movable = movable_[label] != 0;
-      std::uint8_t certainty = sure(x, y);
-      const bool is_far = !movable && !is_near_movable_tile(labels, x, y, settings_.dilate);
-      for (int dy = -settings_.dilate; dy <= settings_.dilate && !movable && !is_far; dy += stride)
-        for (int dx = -settings_.dilate; dx <= settings_.dilate && !movable; dx += stride) {
-          const int column = x + dx, row = y + dy;
-          if (column < 0 || row < 0 || column >= labels.cols || row >= labels.rows) continue;
-          if (movable_[labels.at<std::uint8_t>(row, column)] == 0) continue;
-          const float there = depth.empty() ? 0.0F : depth.at<float>(row, column);
-          if (std::max(std::abs(dx), std::abs(dy)) > settings_.edge && lies_behind(frame.depth[i], there)) continue;
-          movable = true;
-          certainty = sure(column, row);
-        }
-      if (movable || label != unknown) add_evidence(evidence, i, movable, certainty);
+      if (x < 0 || y < 0 || x >= raster.columns || y >= raster.rows) continue;
+      const Neighbourhood near{settings_.dilate, settings_.edge, 2,
+                               is_near_movable_tile(raster.labels, x, y, settings_.dilate)};
+      judge(raster, x, y, near, frame.depth[i], i, evidence);
     }
   }
 
@@ -170,29 +209,16 @@ class SemanticMask final : public DynamicFilter {
   }
 
   void apply_propagated(const Frame& frame, StaticEvidence& evidence) {
-    const CellMask& mask = frame.coarse.mask;
+    const CellLabels raster{frame.coarse, frame.coarse.grid.columns, frame.coarse.grid.rows};
     const CoarseGrid& grid = frame.coarse.grid;
     const auto cells = [](int pixels) { return (pixels + CoarseGrid::step / 2) / CoarseGrid::step; };
-    const int reach = cells(settings_.dilate), edge = cells(settings_.edge);
-    mark_near_movable(mask, grid, reach);
+    Neighbourhood near{cells(settings_.dilate), cells(settings_.edge), 1};
+    mark_near_movable(frame.coarse.mask, grid, near.reach);
     for (std::size_t i = 0; i < frame.size(); ++i) {
       const int column = grid.column_of(frame.x[i]), row = grid.row_of(frame.y[i]);
       if (column < 0 || row < 0 || column >= grid.columns || row >= grid.rows) continue;
-      const std::size_t cell = static_cast<std::size_t>(row * grid.columns + column);
-      bool movable = movable_[mask.labels[cell]] != 0;
-      std::uint8_t certainty = mask.confidence[cell];
-      for (int dr = -reach; dr <= reach && !movable && near_movable_[cell] != 0; ++dr)
-        for (int dc = -reach; dc <= reach && !movable; ++dc) {
-          const int c = column + dc, r = row + dr;
-          if (c < 0 || r < 0 || c >= grid.columns || r >= grid.rows) continue;
-          const std::size_t other = static_cast<std::size_t>(r * grid.columns + c);
-          if (movable_[mask.labels[other]] == 0) continue;
-          if (std::max(std::abs(dc), std::abs(dr)) > edge && lies_behind(frame.depth[i], frame.coarse.depth[other]))
-            continue;
-          movable = true;
-          certainty = mask.confidence[other];
-        }
-      if (movable || mask.labels[cell] != unknown) add_evidence(evidence, i, movable, certainty);
+      near.has_movable = near_movable_[raster.index(column, row)] != 0;
+      judge(raster, column, row, near, frame.depth[i], i, evidence);
     }
   }
 
@@ -205,7 +231,6 @@ class SemanticMask final : public DynamicFilter {
     return depth > 0.0F && mask_depth > 0.0F && depth > mask_depth + static_cast<float>(settings_.depth_margin);
   }
 
-  static constexpr std::uint8_t unknown = 255;
   static constexpr int tile = 16;  // pixels
   SemanticMaskSettings settings_;
   std::array<std::uint8_t, 256> movable_{};

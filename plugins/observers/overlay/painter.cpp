@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <opencv2/imgproc.hpp>
 
+#include "holdfast/core/cell_mask.hpp"
 #include "holdfast/core/error.hpp"
 
 namespace holdfast::overlay_plugin {
@@ -18,7 +19,6 @@ using Tint = std::array<int, 3>;  // blue, green, red
 constexpr std::array<Tint, 5> class_tints{
     {{255, 120, 0}, {200, 0, 200}, {200, 200, 0}, {0, 140, 255}, {120, 220, 120}}};
 constexpr Tint moving_tint{0, 0, 255};
-constexpr std::uint8_t unknown_label = 255;
 /// A tint's share in 256ths at full strength.
 constexpr int strongest = 130;
 /// Log-odds from which on the red tint has its full strength.
@@ -84,7 +84,7 @@ void Painter::tint(const cv::Mat& colour, const CoarseView& coarse, cv::Mat& out
     for (int x = 0; x < out.cols; ++x, pixel += 3, ++cell) {
       if (*cell < 0) continue;
       const CellTint& tint = tints[static_cast<std::size_t>(*cell)];
-      if (tint.label == unknown_label)
+      if (tint.label == CellMask::unknown)
         blend(pixel, {0, 0, 0}, 80);
       else if (tint.label != 0)
         blend(pixel, class_tints[(tint.label - 1U) % class_tints.size()], strongest);

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "holdfast/geometry/pose_problem.hpp"
+#include "holdfast/interfaces/pose_adjustment_settings.hpp"
 #include "holdfast/plugin/plugin.hpp"
 #include "pose_graph.hpp"
 
@@ -12,15 +12,7 @@ namespace holdfast::schur_plugin {
 SchurOptimizer::SchurOptimizer(const SchurSettings& settings, const CreationContext&) : settings_(settings) {}
 
 PoseSummary SchurOptimizer::optimize_pose(PoseProblem& problem) {
-  geometry::PoseAdjustmentOptions options;
-  options.robust_rounds = settings_.pose_rounds / 2;
-  options.final_rounds = settings_.pose_rounds - options.robust_rounds;
-  options.iterations = settings_.pose_iterations;
-  options.limit_two = settings_.chi_square_two;
-  options.limit_three = settings_.chi_square_three;
-  options.disparity_sigma = settings_.disparity_sigma;
-  options.disparity_threshold = settings_.disparity_threshold;
-  return geometry::adjust_pose(problem, options);
+  return geometry::adjust_pose(problem, pose_adjustment_options(settings_));
 }
 
 BundleSummary SchurOptimizer::optimize_bundle(BundleProblem& problem, const std::atomic<bool>& stop) {

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <string>
 
+#include "holdfast/core/cell_mask.hpp"
 #include "holdfast/core/error.hpp"
 
 namespace holdfast::python_plugin {
@@ -13,8 +14,6 @@ namespace holdfast::python_plugin {
 namespace py = pybind11;
 
 namespace {
-
-constexpr std::uint8_t unknown = 255;
 
 std::string text_of(const py::handle& object) { return py::str(object); }
 
@@ -48,7 +47,7 @@ void check_labels(const cv::Mat& labels, std::size_t classes, const std::string&
   for (int y = 0; y < labels.rows; ++y)
     for (int x = 0; x < labels.cols; ++x) {
       const std::uint8_t label = labels.at<std::uint8_t>(y, x);
-      if (label < classes || label == unknown) continue;
+      if (label < classes || label == CellMask::unknown) continue;
       throw InputError({file.string()}, owner + ".segment returned the label " + std::to_string(label) + " at row " +
                                             std::to_string(y) + ", column " + std::to_string(x) +
                                             "; expected an index into `classes`, 0 to " + std::to_string(classes - 1) +

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "holdfast/core/cell_mask.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/interfaces/segmenter.hpp"
 #include "holdfast/plugin/did_you_mean.hpp"
@@ -41,9 +42,9 @@ class TruthSegmenter final : public Segmenter {
                                "segmenter.truth.classes: the source has no class '" + name + "'; " +
                                    did_you_mean(name, {known.begin() + 1, known.end()})});
     if (!diagnostics.empty()) throw ConfigurationError(std::move(diagnostics));
-    label_of_.fill(unknown);
+    label_of_.fill(CellMask::unknown);
     label_of_[0] = 0;
-    for (std::size_t i = 1; i < std::min<std::size_t>(known.size(), unknown); ++i) {
+    for (std::size_t i = 1; i < std::min<std::size_t>(known.size(), CellMask::unknown); ++i) {
       const bool wanted = settings.classes.empty() || std::find(settings.classes.begin(), settings.classes.end(),
                                                                 known[i]) != settings.classes.end();
       label_of_[i] = static_cast<std::uint8_t>(wanted ? classes_.size() : 0);
@@ -67,8 +68,6 @@ class TruthSegmenter final : public Segmenter {
   }
 
  private:
-  static constexpr std::uint8_t unknown = 255;
-
   std::vector<std::string> classes_;
   std::array<std::uint8_t, 256> label_of_{};  // by the source's label
 };

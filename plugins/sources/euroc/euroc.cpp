@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/image_files/calibrated_recording.hpp"
+#include "holdfast/image_files/recorded_frames.hpp"
 #include "holdfast/plugin/plugin.hpp"
 
 namespace holdfast {
 
 namespace {
 
-struct EurocSettings {
+struct EurocSettings : RecordedFrames {
   std::filesystem::path path;
   std::string cameras = "auto";
   double max_time_difference = 0.002;
-  std::string on_bad_frame = "fail";
-  std::int64_t start = 0;
-  std::int64_t frames = 0;
 
   static void describe(ParameterTable<EurocSettings>& table) {
     table.add("path", &EurocSettings::path, "folder of a sequence, which contains mav0, or mav0 itself").required();
@@ -25,12 +23,7 @@ struct EurocSettings {
              "upper bound of the time difference between the two images of a pair")
         .range(1e-6, 1.0)
         .unit("s");
-    table
-        .add("on_bad_frame", &EurocSettings::on_bad_frame,
-             "reaction to a missing, damaged or unsuitable image: stop with an error, or skip and count the frame")
-        .one_of({"fail", "skip"});
-    table.add("start", &EurocSettings::start, "index of the first frame, from 0").at_least(0);
-    table.add("frames", &EurocSettings::frames, "number of frames, 0 = all").at_least(0);
+    add_rows(table, "frame");
   }
 };
 
@@ -39,7 +32,7 @@ class EurocSource final : public CalibratedSource {
  public:
   EurocSource(const EurocSettings& s, const CreationContext&)
       : CalibratedSource(read_euroc_recording({s.path, s.cameras, s.max_time_difference, {s.start, s.frames}}), s.path,
-                         s.on_bad_frame == "skip") {}
+                         s.skips_bad_frames()) {}
 };
 
 }  // namespace

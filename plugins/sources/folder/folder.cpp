@@ -8,6 +8,7 @@
 #include "holdfast/image_files/frame_poses.hpp"
 #include "holdfast/image_files/image_sequence.hpp"
 #include "holdfast/image_files/numbered_files.hpp"
+#include "holdfast/image_files/recorded_frames.hpp"
 #include "holdfast/interfaces/frame_source.hpp"
 #include "holdfast/plugin/plugin.hpp"
 
@@ -15,7 +16,7 @@ namespace holdfast {
 
 namespace {
 
-struct FolderSettings {
+struct FolderSettings : RecordedFrames {
   std::filesystem::path path;
   std::string colour = "colour";
   std::string depth;
@@ -27,9 +28,6 @@ struct FolderSettings {
   std::filesystem::path stamps;
   std::filesystem::path truth;
   std::filesystem::path intrinsics;
-  std::string on_bad_frame = "fail";
-  std::int64_t start = 0;
-  std::int64_t frames = 0;
 
   static void describe(ParameterTable<FolderSettings>& table) {
     table.add("path", &FolderSettings::path, "folder of the recording").required();
@@ -63,12 +61,7 @@ struct FolderSettings {
         "YAML or JSON file with fx, fy, cx, cy, width, height and, for a lens with distortion, k1 to k6, p1, p2, lens; "
         "'right' is the right camera of a pair that is not rectified. If the configuration has a camera too, both must "
         "agree");
-    table
-        .add("on_bad_frame", &FolderSettings::on_bad_frame,
-             "reaction to a missing, damaged or unsuitable image: stop with an error, or skip and count the frame")
-        .one_of({"fail", "skip"});
-    table.add("start", &FolderSettings::start, "index of the first frame, from 0").at_least(0);
-    table.add("frames", &FolderSettings::frames, "number of frames, 0 = all").at_least(0);
+    add_rows(table, "frame");
   }
 };
 
@@ -171,7 +164,7 @@ class FolderSource final : public FrameSource {
   ImageSequence open(const FolderSettings& settings, const Camera& configured) const {
     const Camera& camera = description_.camera ? *description_.camera : configured;
     ImageSequenceOptions options{
-        {settings.depth_factor, settings.invalid_depth}, camera.width, camera.height, settings.on_bad_frame == "skip"};
+        {settings.depth_factor, settings.invalid_depth}, camera.width, camera.height, settings.skips_bad_frames()};
     options.invalid_depth_key = "source.folder.invalid_depth";
     options.rectification = rectification_;
     options.scales_depth = settings.scale_depth;

@@ -2,6 +2,7 @@
 #include "holdfast/core/folder_name.hpp"
 #include "holdfast/image_files/icl_nuim_files.hpp"
 #include "holdfast/image_files/image_sequence.hpp"
+#include "holdfast/image_files/recorded_frames.hpp"
 #include "holdfast/interfaces/frame_source.hpp"
 #include "holdfast/plugin/plugin.hpp"
 
@@ -9,13 +10,10 @@ namespace holdfast {
 
 namespace {
 
-struct IclNuimSettings {
+struct IclNuimSettings : RecordedFrames {
   std::filesystem::path path;
   std::filesystem::path truth;
   double frame_rate = 30.0;
-  std::string on_bad_frame = "fail";
-  std::int64_t start = 0;
-  std::int64_t frames = 0;
 
   static void describe(ParameterTable<IclNuimSettings>& table) {
     table
@@ -27,12 +25,7 @@ struct IclNuimSettings {
     table.add("frame_rate", &IclNuimSettings::frame_rate, "frame rate; frame i has the time stamp i / frame_rate")
         .range(0.001, 100000.0)
         .unit("Hz");
-    table
-        .add("on_bad_frame", &IclNuimSettings::on_bad_frame,
-             "reaction to a missing, damaged or unsuitable image: stop with an error, or skip and count the frame")
-        .one_of({"fail", "skip"});
-    table.add("start", &IclNuimSettings::start, "index of the first pair, from 0").at_least(0);
-    table.add("frames", &IclNuimSettings::frames, "number of pairs, 0 = all").at_least(0);
+    add_rows(table, "pair");
   }
 };
 
@@ -59,8 +52,8 @@ std::vector<ImageFiles> find_pairs(const IclNuimSettings& settings) {
 class IclNuimSource final : public ImageSequenceSource {
  public:
   IclNuimSource(const IclNuimSettings& settings, const CreationContext& context)
-      : ImageSequenceSource(find_pairs(settings), {depth_factor, context.camera.width, context.camera.height,
-                                                   settings.on_bad_frame == "skip"}) {
+      : ImageSequenceSource(find_pairs(settings),
+                            {depth_factor, context.camera.width, context.camera.height, settings.skips_bad_frames()}) {
     truth_ = read_icl_nuim_truth(settings.truth.empty() ? icl_nuim_truth_file(settings.path) : settings.truth,
                                  settings.frame_rate);
     description_.name = folder_name(settings.path);

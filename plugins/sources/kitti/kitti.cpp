@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/image_files/calibrated_recording.hpp"
+#include "holdfast/image_files/recorded_frames.hpp"
 #include "holdfast/plugin/plugin.hpp"
 
 namespace holdfast {
 
 namespace {
 
-struct KittiSettings {
+struct KittiSettings : RecordedFrames {
   std::filesystem::path path;
   std::string cameras = "auto";
   std::filesystem::path poses;
   double frame_rate = 10.0;
-  std::string on_bad_frame = "fail";
-  std::int64_t start = 0;
-  std::int64_t frames = 0;
 
   static void describe(ParameterTable<KittiSettings>& table) {
     table
@@ -32,12 +30,7 @@ struct KittiSettings {
     table.add("frame_rate", &KittiSettings::frame_rate, "frame rate, if the folder has no times.txt")
         .range(0.001, 100000.0)
         .unit("Hz");
-    table
-        .add("on_bad_frame", &KittiSettings::on_bad_frame,
-             "reaction to a missing, damaged or unsuitable image: stop with an error, or skip and count the frame")
-        .one_of({"fail", "skip"});
-    table.add("start", &KittiSettings::start, "index of the first frame, from 0").at_least(0);
-    table.add("frames", &KittiSettings::frames, "number of frames, 0 = all").at_least(0);
+    add_rows(table, "frame");
   }
 };
 
@@ -48,7 +41,7 @@ class KittiSource final : public CalibratedSource {
       : CalibratedSource(
             read_kitti_recording(
                 {s.path, s.cameras, s.poses, s.frame_rate, {s.start, s.frames}, context.sensor == Sensor::mono}),
-            s.path, s.on_bad_frame == "skip") {}
+            s.path, s.skips_bad_frames()) {}
 };
 
 }  // namespace

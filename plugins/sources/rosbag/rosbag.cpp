@@ -10,6 +10,7 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/size_text.hpp"
 #include "holdfast/image_files/image_sequence.hpp"
+#include "holdfast/image_files/recorded_frames.hpp"
 #include "holdfast/interfaces/frame_source.hpp"
 #include "holdfast/plugin/plugin.hpp"
 #include "image_message.hpp"
@@ -19,16 +20,13 @@ namespace holdfast {
 
 namespace {
 
-struct RosbagSettings {
+struct RosbagSettings : RecordedFrames {
   std::filesystem::path path;
   std::string colour, depth, camera_info;
   double max_time_difference = 0.02;
   double depth_factor = 1000.0;
   int invalid_depth = DepthEncoding::largest;
   std::filesystem::path truth;
-  std::string on_bad_frame = "fail";
-  std::int64_t start = 0;
-  std::int64_t frames = 0;
 
   static void describe(ParameterTable<RosbagSettings>& table) {
     using S = RosbagSettings;
@@ -54,12 +52,7 @@ struct RosbagSettings {
              "value of pixels without a measurement in depth images of whole numbers, besides 0")
         .range(0, 65535);
     table.add("truth", &S::truth, "ground-truth trajectory in TUM format");
-    table
-        .add("on_bad_frame", &S::on_bad_frame,
-             "reaction to a damaged or unsuitable image: stop with an error, or skip and count the frame")
-        .one_of({"fail", "skip"});
-    table.add("start", &S::start, "index of the first frame, from 0").at_least(0);
-    table.add("frames", &S::frames, "number of frames, 0 = all").at_least(0);
+    add_rows(table, "frame");
   }
 };
 
@@ -152,7 +145,7 @@ class RosbagSource final : public FrameSource {
         frame.index = index;
         return frame;
       } catch (const InputError& error) {
-        if (settings_.on_bad_frame == "fail") throw;
+        if (!settings_.skips_bad_frames()) throw;
         skipped_.push_back({index, frames_[index].colour.stamp, error.what()});
       }
     }

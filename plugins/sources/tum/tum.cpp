@@ -7,6 +7,7 @@
 #include "holdfast/core/input_file.hpp"
 #include "holdfast/image_files/image_list.hpp"
 #include "holdfast/image_files/image_sequence.hpp"
+#include "holdfast/image_files/recorded_frames.hpp"
 #include "holdfast/image_files/recording_pairs.hpp"
 #include "holdfast/image_files/truth_transform.hpp"
 #include "holdfast/interfaces/frame_source.hpp"
@@ -16,17 +17,14 @@ namespace holdfast {
 
 namespace {
 
-struct TumSettings {
+struct TumSettings : RecordedFrames {
   std::filesystem::path path;
   double max_time_difference = 0.02;
   double depth_factor = 5000.0;
   int invalid_depth = DepthEncoding::largest;
   std::filesystem::path associations;
-  std::string on_bad_frame = "fail";
   std::string truth_frame = "camera";
   RealTable truth_left, truth_right;
-  std::int64_t start = 0;
-  std::int64_t frames = 0;
 
   static void describe(ParameterTable<TumSettings>& table) {
     table
@@ -47,10 +45,6 @@ struct TumSettings {
               "file of associated pairs, lines 'colour_timestamp colour_file depth_timestamp depth_file', used instead "
               "of rgb.txt and depth.txt; image names are relative to path");
     table
-        .add("on_bad_frame", &TumSettings::on_bad_frame,
-             "reaction to a missing, damaged or unsuitable image: stop with an error, or skip and count the frame")
-        .one_of({"fail", "skip"});
-    table
         .add(
             "truth_frame", &TumSettings::truth_frame,
             "camera: the truth of the camera, by truth_left and truth_right or, if both are empty, by the transform "
@@ -63,8 +57,7 @@ struct TumSettings {
              "of the camera is truth_left * pose * truth_right, for motion capture that tracks markers")
         .unit("m");
     table.add("truth_right", &TumSettings::truth_right, "the same after each pose").unit("m");
-    table.add("start", &TumSettings::start, "index of the first pair, from 0").at_least(0);
-    table.add("frames", &TumSettings::frames, "number of pairs, 0 = all").at_least(0);
+    add_rows(table, "pair");
   }
 };
 
@@ -124,7 +117,7 @@ bool has_global_shutter(const std::filesystem::path& folder) {
 
 ImageSequenceOptions options_of(const TumSettings& settings, const Camera& camera) {
   ImageSequenceOptions options{
-      {settings.depth_factor, settings.invalid_depth}, camera.width, camera.height, settings.on_bad_frame == "skip"};
+      {settings.depth_factor, settings.invalid_depth}, camera.width, camera.height, settings.skips_bad_frames()};
   options.invalid_depth_key = "source.tum.invalid_depth";
   return options;
 }
