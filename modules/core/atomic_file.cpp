@@ -37,7 +37,7 @@ const char* remedy(int error) {
   }
 }
 
-/// Whether a file is to be written itself, because renaming would put another file in the place of a device or pipe.
+/// Whether a file must be written directly, because renaming would replace a device or pipe by a file.
 bool is_written_directly(const fs::path& file) {
   const std::string name = file.string();
   if (name == "/dev/stdout" || name == "/dev/stderr" || name.starts_with("/dev/fd/") ||
@@ -47,8 +47,7 @@ bool is_written_directly(const fs::path& file) {
   return stat(file.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
 }
 
-/// False where the system could not bring a file or folder to the disk. Some file systems have nothing to do, and say
-/// that they cannot.
+/// False if the system could not synchronise a file or folder. Some file systems report that they do not support it.
 bool reaches_disk(int descriptor) {
   return fsync(descriptor) == 0 || errno == EINVAL || errno == ENOTSUP || errno == ENOSYS || errno == EROFS;
 }
@@ -57,8 +56,8 @@ int open_folder(const fs::path& folder) {
   return open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
 }
 
-/// Brings the entries of a folder to the disk, so that a file renamed in it keeps its name. A folder that may be
-/// written to and not read cannot be opened for that.
+/// Synchronises the entries of a folder, so that a renamed file keeps its name. A folder without read permission cannot
+/// be opened for that.
 void sync_folder(const fs::path& folder) {
   const int descriptor = open_folder(folder);
   if (descriptor < 0) return;
@@ -101,7 +100,7 @@ void AtomicFile::write(std::string_view bytes) {
 }
 
 void AtomicFile::close() {
-  // The descriptor is gone whatever close() says; interrupted, nothing is known to be lost.
+  // close() releases the descriptor in any case; an interrupted one is no known loss of data.
   if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) fail(errno);
 }
 

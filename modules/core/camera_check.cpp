@@ -97,7 +97,7 @@ std::string trouble_of_radial_tangential(const Camera& camera) {
          " degrees from the optical axis; expected a narrower lens, or one with `lens: fisheye`" + causes(camera);
 }
 
-/// The radius must grow with the angle up to the corners, or as far as the image is used.
+/// The radius must grow with the angle up to the corners, or up to the usable angle.
 std::string trouble_of_fisheye(const Camera& camera) {
   double farthest = 0.0;
   for (const Eigen::Vector2d& raw : border_of(camera))

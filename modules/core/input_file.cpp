@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What the system has opened for this program and gives a name; opening it does not wait for anybody.
+/// Named descriptors that the system has opened for this program; opening them does not block.
 bool is_passed_by_system(const fs::path& file) {
   const std::string name = file.string();
   return name == "/dev/stdin" || name.starts_with("/dev/fd/") || name.starts_with("/proc/self/fd/");
@@ -34,7 +34,7 @@ std::string too_large_text(std::uint64_t most_bytes) {
   return "found more than " + binary_size_text(most_bytes) + ", the most that is read of such a file";
 }
 
-/// As why_unreadable(), of a file that exists.
+/// why_unreadable() of an existing file.
 std::string problem_of(const struct stat& status, bool is_passed, std::uint64_t most_bytes) {
   if (S_ISDIR(status.st_mode)) return "found a folder";
   if (S_ISREG(status.st_mode))

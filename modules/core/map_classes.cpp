@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t most_classes = CellMask::unknown;
 
-/// Label of a keyframe's mask at one of its features, unknown without a mask.
+/// Label of a keyframe's mask at one of its features; unknown without a mask.
 std::uint8_t label_at(const Frame& frame, std::uint32_t feature) {
   const CoarseView& coarse = frame.coarse;
   if (coarse.mask.labels.size() != static_cast<std::size_t>(coarse.grid.size())) return CellMask::unknown;

@@ -45,7 +45,7 @@ bool parse_numbers(const std::vector<std::string_view>& words, std::vector<doubl
   return true;
 }
 
-/// No clock has counted so many seconds.
+/// Upper bound of plausible seconds.
 bool is_in_nanoseconds(double stamp) { return std::isfinite(stamp) && stamp >= 1e14; }
 constexpr double least_nanoseconds_since_1970 = 1e17;  // in 1973
 
@@ -61,8 +61,8 @@ bool names_real_part_first(std::string_view comment) {
   return real != std::string_view::npos && imaginary != std::string_view::npos && real < imaginary;
 }
 
-/// Why eight numbers may be no pose in the format whose stamps they have, although they can be read as one: the place
-/// of the quaternion's real part is a matter of the format, and a wrong one is not seen in the numbers.
+/// Describes why eight numbers may not be a pose in the format of their time stamps, although they can be read as one:
+/// the position of the quaternion's real part depends on the format and cannot be recognised by its value.
 std::string doubt(TrajectoryFormat format, double stamp, bool has_commas, bool real_part_first) {
   if (format == TrajectoryFormat::tum && has_commas)
     return "numbers are separated by commas, as in EuRoC's format, where the quaternion begins with qw, but its stamps "
@@ -77,8 +77,7 @@ std::string doubt(TrajectoryFormat format, double stamp, bool has_commas, bool r
   return {};
 }
 
-/// The format that a line looks like; nothing for none that is known.
-/// `in_nanoseconds`: a comment of the file says so.
+/// Probable format of a line; nothing if it is unknown. `in_nanoseconds`: a comment of the file says so.
 std::optional<TrajectoryFormat> looks_like(const std::vector<double>& numbers, bool in_nanoseconds) {
   if (in_nanoseconds && numbers.size() >= 8) return TrajectoryFormat::euroc;
   if (numbers.size() == 12) return TrajectoryFormat::kitti;
@@ -126,7 +125,7 @@ Eigen::Matrix3d rotation_matrix_of(const std::vector<double>& n) {
   return rotation;
 }
 
-/// The pose that the numbers of a line say; the stamp of KITTI's is the caller's. Its rotation may be zero.
+/// Pose of the numbers of a line; for KITTI the caller sets the stamp. Its quaternion may be zero.
 std::pair<Eigen::Vector3d, Eigen::Quaterniond> pose_of(const std::vector<double>& n, TrajectoryFormat format) {
   if (format == TrajectoryFormat::tum) return {{n[1], n[2], n[3]}, {n[7], n[4], n[5], n[6]}};
   if (format == TrajectoryFormat::euroc) return {{n[1], n[2], n[3]}, {n[4], n[5], n[6], n[7]}};
@@ -135,7 +134,7 @@ std::pair<Eigen::Vector3d, Eigen::Quaterniond> pose_of(const std::vector<double>
   return {{n[3], n[7], n[11]}, Eigen::Quaterniond(rotation)};
 }
 
-/// Why the numbers of a line are no rotation, and what they may be instead; empty for one that is printed with two
+/// Describes why the numbers of a line are no rotation, and their probable meaning; empty for a rotation with two
 /// decimals or more, and for values that are not finite.
 std::string rotation_trouble(const std::vector<double>& n, TrajectoryFormat format,
                              const Eigen::Quaterniond& quaternion) {

@@ -17,7 +17,7 @@ std::int64_t now_in_nanoseconds() {
   return duration_cast<nanoseconds>(steady_clock::now().time_since_epoch()).count();
 }
 
-/// By keyframe slot, how many of its points another keyframe sees as well.
+/// By keyframe slot, number of points that another keyframe observes.
 std::vector<int> count_shared_points(const Map& map) {
   std::vector<int> shared(map.keyframes().slot_count(), 0);
   map.points().for_each([&](MapPointId, const MapPoint& point) {
@@ -27,7 +27,8 @@ std::vector<int> count_shared_points(const Map& map) {
   return shared;
 }
 
-/// The keyframes that an adjustment can place, oldest first; the first of every piece holds it and is always there.
+/// The keyframes with enough observations to be adjusted, oldest first; the first one of every submap fixes its gauge
+/// and is always included.
 std::vector<KeyFrameId> placeable_keyframes(const Map& map) {
   const std::vector<int> shared = count_shared_points(map);
   std::vector<KeyFrameId> keyframes = map.keyframes_by_age();
@@ -39,7 +40,7 @@ std::vector<KeyFrameId> placeable_keyframes(const Map& map) {
   return keyframes;
 }
 
-/// Calls function(index) for 0 ... count - 1 and lets go of the map's lock after every 1000 of them.
+/// Calls function(index) for 0 ... count - 1 and releases the map's lock after every 1000 calls.
 template <class Function>
 void in_portions(MapMutex& mutex, std::size_t count, Function&& function) {
   constexpr std::size_t portion = 1000;
@@ -65,12 +66,12 @@ void FullAdjustment::request_stop() {
 }
 
 void FullAdjustment::cancel() {
-  cancelled_ = true;  // first: prepare() clears the request, and then looks here
+  cancelled_ = true;  // first, because prepare() clears the request and then reads this flag
   request_stop();
 }
 
 void FullAdjustment::prepare() {
-  const std::lock_guard surgeon(surgery_);  // no correction is half done, and no request is for one to come
+  const std::lock_guard surgeon(surgery_);  // no correction is in progress
   stop_ = false;
   stop_time_ = 0;
   if (cancelled_) request_stop();
@@ -125,7 +126,7 @@ FullAdjustmentSummary FullAdjustment::apply() {
     summary_.stop_requested = stop_;
     if (summary_.bundle.usable && !summary_.stop_requested) change_map();
   }
-  // The next one may be far away, or never come.
+  // Frees the copy, because the next adjustment may be far away.
   problem_ = BundleProblem();
   keyframes_ = std::vector<KeyFrameId>();
   points_ = std::vector<MapPointId>();
@@ -148,9 +149,9 @@ void FullAdjustment::move_map() {
   std::vector<Eigen::Isometry3d> poses;
   for (const BundleProblem::Pose& pose : problem_.poses) poses.push_back(pose.T_camera_world);
 
-  // Poses and points in one go: nobody may see the one without the other.
+  // Update poses and points under one lock so that readers never see a mixed state.
   const std::lock_guard lock(map_mutex_);
-  // Points may lie so badly that more of them do not hold a pose either.
+  // In a degenerate configuration, more points than the minimum constrain a pose weakly as well.
   constexpr int few_points = 4 * least_shared_points;
   const std::vector<int> shared = count_shared_points(map_);
   std::vector<std::uint8_t> is_weak;
@@ -160,7 +161,7 @@ void FullAdjustment::move_map() {
   std::vector<std::uint8_t> is_placed(map_.points().slot_count(), 0);
   for (std::size_t i = 0; i < points_.size(); ++i) {
     MapPoint* point = map_.find_point(points_[i]);
-    // A point that the solver left out moves with its reference keyframe, like the new ones.
+    // A point without a solution moves with its reference keyframe, like new points.
     if (point == nullptr || problem_.points[i] == before_[i]) continue;
     point->position = problem_.points[i];
     is_placed[points_[i].slot] = 1;

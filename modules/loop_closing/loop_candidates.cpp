@@ -24,7 +24,7 @@ std::vector<KeyFrameId> LoopCandidates::choose(const Map& map, KeyFrameId keyfra
                                                std::span<const PlaceMatch> matches) {
   const KeyFrame& keyframe = map.keyframe(keyframe_id);
   const std::vector<std::uint8_t> near = neighbourhood_of(map, keyframe_id);
-  double least_neighbour = 0.0;  // matches come best first: the last neighbour is the least alike
+  double least_neighbour = 0.0;  // matches are sorted by decreasing score: the last neighbour has the lowest one
   for (const PlaceMatch& match : matches)
     for (const CovisibilityEdge& edge : keyframe.covisible)
       if (edge.keyframe == match.keyframe) least_neighbour = match.score;
@@ -60,7 +60,7 @@ std::vector<KeyFrameId> LoopCandidates::choose(const Map& map, KeyFrameId keyfra
 std::vector<LoopCandidates::Group> LoopCandidates::group(const Map& map, std::span<const PlaceMatch> candidates) const {
   std::vector<Group> groups;
   for (const PlaceMatch& match : candidates) {
-    // Candidates come best first, so whoever is a neighbour of a better one belongs to it.
+    // Candidates are sorted by decreasing score, so a neighbour of a better candidate belongs to its group.
     const auto home = std::find_if(groups.begin(), groups.end(), [&](const Group& g) {
       return std::binary_search(g.keyframes.begin(), g.keyframes.end(), match.keyframe);
     });

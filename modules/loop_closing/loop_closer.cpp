@@ -102,7 +102,7 @@ std::vector<KeyFrameId> LoopCloser::find_candidates(KeyFrameId id) {
 }
 
 std::optional<LoopMeasurement> LoopCloser::check(LoopTrial& trial) {
-  // The surgery mutex is held: keyframes stay, and so do the poses and features that are read without the map's lock.
+  // The surgery mutex is held: keyframes, poses and features may be read without the map's lock.
   const Frame* frame = nullptr;
   PlacePoints place;
   SolidFeatures solid;
@@ -143,8 +143,9 @@ std::optional<LoopMeasurement> LoopCloser::check(LoopTrial& trial) {
   const PoseChange believed = believed_drift(settings_, trial.way, solid.with_scale);
   const bool scale_is_plausible = std::abs(std::log(checked.scale)) <= std::log(settings_.largest_scale_drift);
   if (trial.joins_pieces)
-    trial.verdict = LoopVerdict::closed;  // the pose of one piece relative to the other was a guess
-  else if (trial.correction.metres > believed.metres || trial.correction.degrees > believed.degrees || !scale_is_plausible)
+    trial.verdict = LoopVerdict::closed;  // the pose of one submap relative to the other was a guess
+  else if (trial.correction.metres > believed.metres || trial.correction.degrees > believed.degrees ||
+           !scale_is_plausible)
     trial.verdict = LoopVerdict::implausible_correction;
   else if (present_pose_is_confirmed(settings_, matcher_, optimizer_, *frame, old_points, checked.T_camera_world))
     trial.verdict = LoopVerdict::pose_confirmed;

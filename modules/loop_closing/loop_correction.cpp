@@ -39,7 +39,7 @@ bool LoopCorrection::run() {
     move_map();
     map_.join_pieces(keyframe_piece_, place_piece_);
     fuse_matches();
-    // Tracking may have added keyframes around this one while the graph was solved; they see the same points.
+    // Tracking may have added neighbouring keyframes while the graph was solved; they observe the same points.
     current_side_ = with_neighbours(map_, loop_.keyframe, 2 * settings_.neighbours);
   }
   for (const KeyFrameId target : current_side_) {
@@ -65,7 +65,7 @@ void LoopCorrection::build_graph() {
   }
   graph_.iterations = settings_.graph_iterations;
 
-  // Edges keep what the poses say now; each pair once, from the younger keyframe to the older one.
+  // Relative pose measurements from the current poses; each pair once, from the younger keyframe to the older one.
   std::vector<std::uint32_t> linked;
   for (std::uint32_t i = 0; i < nodes_.size(); ++i) {
     const KeyFrame& keyframe = map_.keyframe(nodes_[i]);
@@ -84,8 +84,8 @@ void LoopCorrection::build_graph() {
 }
 
 void LoopCorrection::add_loop_edges() {
-  // The surroundings of the keyframe move with it, as rigidly as they hang together. An edge to each of them, and from
-  // the keyframe to each of the place, holds the loop against the many edges along the way.
+  // Edges from the keyframe to its neighbours, which move with it rigidly, and to the candidate and its neighbours
+  // weight the loop against the many edges along the path.
   const auto node = [&](KeyFrameId id) { return node_of_slot_[id.slot]; };
   const auto pose = [&](KeyFrameId id) -> const Eigen::Isometry3d& { return graph_.nodes[node(id)].T_camera_world; };
   const Eigen::Isometry3d motion = loop_.T_camera_world.inverse() * pose(loop_.keyframe);  // new world from old
@@ -94,7 +94,7 @@ void LoopCorrection::add_loop_edges() {
     if (is_same || current == place) return;
     Eigen::Isometry3d T_place_current = pose(place) * motion * pose(current).inverse();
     if (loop_.with_scale) {
-      // The centre of the camera, by the similarity that takes the keyframe's surroundings to the place.
+      // Camera centre, transformed by the similarity between the neighbourhoods of keyframe and candidate.
       const Eigen::Vector3d centre = pose(current).inverse().translation();
       T_place_current.translation() =
           pose(place) * (loop_.T_camera_world.inverse() * (loop_.scale * (pose(loop_.keyframe) * centre)));
@@ -133,7 +133,7 @@ void LoopCorrection::move_map() {
   motion.move_keyframes(map_);
   for (const MapPointId id : map_.points().ids()) {
     motion.move_point(map_.point(id));
-    if (loop_.with_scale) map_.update_point_geometry(id);  // the distances from which it can be matched have changed
+    if (loop_.with_scale) map_.update_point_geometry(id);  // its distance range has changed
   }
 }
 

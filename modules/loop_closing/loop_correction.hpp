@@ -12,14 +12,14 @@
 
 namespace holdfast {
 
-/// A place seen again, checked.
+/// A verified loop.
 struct LoopMeasurement {
   KeyFrameId keyframe;
   KeyFrameId candidate;
-  Eigen::Isometry3d T_camera_world;                          ///< of the keyframe, where the candidate's points are
-  std::vector<std::pair<MapPointId, std::uint32_t>> points;  ///< of the place, and features of the keyframe
-  bool with_scale = false;                                   ///< of one camera, whose scale drifts
-  double scale = 1.0;                                        ///< length at the place that is 1 around the keyframe
+  Eigen::Isometry3d T_camera_world;                          ///< of the keyframe, relative to the candidate's points
+  std::vector<std::pair<MapPointId, std::uint32_t>> points;  ///< of the candidate, and features of the keyframe
+  bool with_scale = false;                                   ///< monocular: the scale is estimated as well
+  double scale = 1.0;                                        ///< of the Sim(3) from keyframe to candidate
 };
 
 /// Closes a loop in the map (Mur-Artal et al. 2015, sections VII-C and VII-D). The caller holds the surgery mutex, not
@@ -30,16 +30,16 @@ class LoopCorrection {
                  const FeatureMatcher& matcher, const LoopMeasurement& loop)
       : settings_(settings), map_(map), map_mutex_(map_mutex), optimizer_(optimizer), matcher_(matcher), loop_(loop) {}
 
-  /// False when the pose graph could not be solved; the map is as before then.
+  /// False if the pose graph could not be solved; then the map is unchanged.
   bool run();
   int points_fused() const { return points_fused_; }
 
  private:
   void build_graph();
   void add_loop_edges();
-  /// Holds the first keyframe of every piece but the younger one of those that the loop joins.
+  /// Fixes the gauge: the first keyframe of every submap, except the younger one of two joined submaps.
   void fix_pieces();
-  /// Where the loop joins two pieces, moves the younger one as a whole: the solver needs a start nearby.
+  /// If the loop joins two submaps, transforms the younger one rigidly as initial value of the solver.
   void bring_pieces_together();
   void move_map();
   void fuse_matches();

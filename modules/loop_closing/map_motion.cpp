@@ -17,7 +17,7 @@ MapMotion::MapMotion(const Map& map, std::span<const KeyFrameId> keyframes, std:
     if (!is_weak.empty()) may_flee[keyframes[i].slot] = is_weak[i];
   }
 
-  // Parents are older than their children, so their motion is known when the children's turn comes.
+  // Parents are older than their children, so their motion is computed before.
   Eigen::Isometry3d before = Eigen::Isometry3d::Identity();
   double scale_before = 1.0;
   for (const KeyFrameId id : map.keyframes_by_age()) {

@@ -10,20 +10,19 @@
 
 namespace holdfast {
 
-/// New poses for some keyframes of a map, and what they mean for the rest: a keyframe without one of its own moves with
-/// its parent (or with the keyframe before it, should it have none), as rigidly as if bolted to it, and a point moves
-/// with its reference keyframe. With one camera, the world around a keyframe changes its scale as well. The caller
-/// holds the map's lock.
+/// Propagates new poses of some keyframes to the rest of the map. A keyframe without a new pose keeps its pose relative
+/// to its parent (or to the keyframe before it, if it has no parent), a point relative to its reference keyframe. With
+/// one camera, the scale around a keyframe changes as well (similarity). The caller holds the map's lock.
 class MapMotion {
  public:
-  /// `poses[i]` is the new T_camera_world of `keyframes[i]`; those that left the map are passed over.
-  /// `scales[i]`, where there are any, is what lengths around that keyframe are multiplied by. `is_weak[i]`, where there
-  /// are any, says that few points hold the keyframe: if its new pose is more than 0.2 m or 0.2 rad from where it would
-  /// go with its parent, it fled, and goes with its parent.
+  /// `poses[i]` is the new T_camera_world of `keyframes[i]`; removed keyframes are skipped. `scales` (may be empty) are
+  /// scale factors of the lengths around the keyframes. `is_weak` (may be empty) marks keyframes with few shared
+  /// points: if the optimised pose differs by more than 0.2 m or 0.2 rad from that relative to the parent, it is
+  /// rejected as diverged and the keyframe follows its parent.
   MapMotion(const Map& map, std::span<const KeyFrameId> keyframes, std::span<const Eigen::Isometry3d> poses,
             std::span<const double> scales = {}, std::span<const std::uint8_t> is_weak = {});
 
-  /// Sets the poses of all keyframes; returns how many were carried along.
+  /// Sets the poses of all keyframes; returns the number of those that followed their parents.
   int move_keyframes(Map& map) const;
   /// Moves a point and its viewing direction with its reference keyframe.
   void move_point(MapPoint& point) const;
@@ -36,7 +35,7 @@ class MapMotion {
     double scale = 1.0;
   };
   std::vector<Pose> poses_;  // of all keyframes
-  // By slot, the motion of the world around a keyframe, new from old: a point is scaled, turned and moved.
+  // By slot, transformation of the points around a keyframe from old to new: scale, then rigid motion.
   std::vector<Eigen::Isometry3d> motion_;
   std::vector<double> scale_;
 };

@@ -7,10 +7,10 @@
 
 namespace holdfast {
 
-/// Some of the pieces of a map (KeyFrame::piece), of which there are few.
+/// A small set of submaps (KeyFrame::piece).
 class PieceSet {
  public:
-  /// Adds a piece; false if it was there.
+  /// Adds a submap; false if it is contained already.
   bool add(std::uint32_t piece) {
     if (std::find(pieces_.begin(), pieces_.end(), piece) != pieces_.end()) return false;
     pieces_.push_back(piece);

@@ -12,9 +12,9 @@
 namespace holdfast {
 namespace {
 
-/// Nearest point of the place for each feature; each point keeps its nearest feature. Only a point elsewhere is a rival
-/// in the ratio test: a place that was mapped twice is no reason to doubt a match. Match::source is the feature of the
-/// frame, Match::feature the point.
+/// Descriptor matching: nearest point of the candidate for each feature; each point keeps its nearest feature. The
+/// ratio test ignores points within 0.1 m of the nearest one, which are duplicates of a place that was mapped twice.
+/// Match::source is the feature of the frame, Match::feature the point.
 std::vector<FeatureMatch> match_descriptors(const LoopClosingSettings& settings, const FeatureMatcher& matcher,
                                             const Frame& frame, const SolidFeatures& solid, const PlacePoints& place) {
   constexpr double same_spot = 0.1;  // m
@@ -32,7 +32,7 @@ std::vector<FeatureMatch> match_descriptors(const LoopClosingSettings& settings,
   return matches;
 }
 
-/// How many cells of a 4 by 4 grid over the image hold at least two of the features.
+/// Number of cells of a 4 by 4 grid over the image with at least two of the features.
 int filled_cells(const Frame& frame, std::span<const FeatureMatch> matches) {
   constexpr int side = 4;
   std::array<int, side * side> cells{};
@@ -45,7 +45,7 @@ int filled_cells(const Frame& frame, std::span<const FeatureMatch> matches) {
   return static_cast<int>(std::count_if(cells.begin(), cells.end(), [](int n) { return n >= 2; }));
 }
 
-/// Length at the place that is 1 around the keyframe: the median over the matches of the ratio of depths.
+/// Scale of the Sim(3) from keyframe to candidate: the median ratio of depths over the matches.
 double scale_of_place(const SolidFeatures& solid, const PlacePoints& place, const CheckedPlace& checked) {
   std::vector<double> ratios;
   for (const FeatureMatch& match : checked.inliers) {
@@ -102,7 +102,7 @@ CheckedPlace check_place(const LoopClosingSettings& settings, const FeatureMatch
   result.T_camera_world = aligned->similarity.motion().inverse();
   result.scale = aligned->similarity.scale;
 
-  // The alignment is as good as depth is; the second search starts from a pose adjusted to pixels.
+  // The alignment is limited by the noise of depth; the second search starts from a pose adjusted to pixels.
   result.verdict = LoopVerdict::few_inliers;
   PointSearch search;
   for (const double radius : {2.0 * settings.search_radius, settings.search_radius}) {

@@ -11,32 +11,31 @@
 
 namespace holdfast {
 
-/// What the check of a candidate found.
+/// Result of the geometric verification of a candidate.
 struct CheckedPlace {
   LoopVerdict verdict = LoopVerdict::few_matches;
-  Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();  ///< of the keyframe, seen from the place's points
-  std::vector<matching::FeatureMatch> inliers;                       ///< points of the place, features of the keyframe
+  Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();  ///< of the keyframe, from the candidate's points
+  std::vector<matching::FeatureMatch> inliers;                       ///< candidate's points, keyframe's features
   int matches = 0, aligned = 0, expected = 0, cells = 0;             ///< as in LoopTrial
-  double scale = 1.0;  ///< length at the place that is 1 around the keyframe; 1 where depth is measured
+  double scale = 1.0;  ///< scale of the Sim(3) from keyframe to candidate; 1 if depth is measured
 };
 
-/// Static features of a keyframe whose position is known.
+/// Static features of a keyframe with a known 3-D position.
 struct SolidFeatures {
   std::vector<std::uint32_t> features;
   std::vector<Eigen::Vector3d> in_camera;  ///< by index of the frame's features; of others, 0
-  bool with_scale = false;                 ///< positions are those of map points, whose scale may have drifted since
+  bool with_scale = false;                 ///< positions are those of map points, whose scale may have drifted
 };
 
-/// Features with depth; with one camera, features that show a point of the map. The caller holds the map's lock.
+/// Features with depth; with one camera, features with a map point. The caller holds the map's lock.
 SolidFeatures solid_features(const Frame& frame, const Map& map);
 
-/// Whether a keyframe sees the points of a place, and from where (Mur-Artal et al. 2015, section VII-B, with the rigid
-/// motion that depth allows, Mur-Artal and Tardos 2017, section III-D, or the similarity of one camera): descriptors
-/// matched without a guess, rigid 3D-3D alignment by RANSAC with the given seed, guided matching of all points of the
-/// place, the pose adjusted to them with outliers set aside. Enough inliers, a share of what should be seen, and spread
-/// over the image: accepted.
+/// Geometric verification of a loop candidate (Mur-Artal et al. 2015, section VII-B; with depth an SE(3) alignment,
+/// Mur-Artal and Tardos 2017, section III-D; with one camera a Sim(3)): descriptor matching, 3D-3D alignment by RANSAC
+/// with the given seed, guided search for all points of the candidate, and motion-only adjustment. Accepted with enough
+/// inliers, a minimum share of the points predicted to be visible, and coverage of the image.
 ///
-/// Needs no lock while nobody changes the keyframe: it reads the frame's features and the copied points.
+/// Needs no lock while the keyframe is not changed: it reads the frame's features and the copied points.
 CheckedPlace check_place(const LoopClosingSettings& settings, const FeatureMatcher& matcher, Optimizer& optimizer,
                          const Frame& frame, const SolidFeatures& solid, const PlacePoints& place, std::uint64_t seed);
 

@@ -18,7 +18,7 @@ float match_distance(double configured, const DescriptorType& type) {
 
 PointSearch find_points(const FeatureMatcher& matcher, const PointBlock& points, const Frame& frame,
                         const Eigen::Isometry3d& T_camera_world, double radius, double max_distance) {
-  // The scale of a place that was mapped from elsewhere is less certain than that of the local map.
+  // The octave of points that were mapped from other viewpoints is less certain than in the local map.
   const matching::WindowSettings settings{
       .radius = static_cast<float>(radius), .frontal_radius = static_cast<float>(radius), .coarser_octaves = 1};
   PointSearch result;

@@ -28,19 +28,19 @@ struct PlacePoints {
 /// Copies every point that the keyframes observe, in the order of points_seen_by().
 PlacePoints copy_points_seen_by(const Map& map, std::span<const KeyFrameId> keyframes);
 
-/// Points of a place found in a frame.
+/// Result of the guided search for the points of a candidate in a frame.
 struct PointSearch {
   std::vector<matching::FeatureMatch> matches;  ///< by feature; each feature and each point at most once
-  int expected = 0;                             ///< points that the frame should show
+  int expected = 0;                             ///< points predicted to be visible in the frame
 };
 
 /// Guided search: projects the points with T_camera_world and looks for the nearest descriptor within `radius` pixels
 /// (times the scale of the expected octave), at most `max_distance` away; 0 = as LoopClosingSettings::match_distance.
-/// Reads of the frame only what does not change once it is a keyframe.
+/// Reads only data of the frame that are constant after it became a keyframe.
 PointSearch find_points(const FeatureMatcher& matcher, const PointBlock& points, const Frame& frame,
                         const Eigen::Isometry3d& T_camera_world, double radius, double max_distance);
 
-/// LoopClosingSettings::match_distance, or what it means for these descriptors where it is 0.
+/// LoopClosingSettings::match_distance, or its default for these descriptors if it is 0.
 float match_distance(double configured, const DescriptorType& type);
 
 /// The pose problem of matched points and features.

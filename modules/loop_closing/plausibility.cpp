@@ -57,7 +57,7 @@ PoseChange pose_change(const Eigen::Isometry3d& before, const Eigen::Isometry3d&
 }
 
 PoseChange believed_drift(const LoopClosingSettings& settings, double way, bool with_scale) {
-  // The scale of one camera drifts, and with it the length of the way.
+  // The scale of one camera drifts, and with it the length of the path.
   const double per_metre = with_scale ? settings.drift_per_metre_mono : settings.drift_per_metre;
   return {settings.drift_constant + per_metre * way, settings.turn_constant + settings.turn_per_metre * way};
 }
@@ -89,7 +89,7 @@ PlacePoints old_points_in_view(const LoopClosingSettings& settings, const Map& m
 bool present_pose_is_confirmed(const LoopClosingSettings& settings, const FeatureMatcher& matcher, Optimizer& optimizer,
                                const Frame& frame, const PlacePoints& old_points,
                                const Eigen::Isometry3d& T_camera_world_loop) {
-  // Where the loop moves the keyframe by little, its points and the old points in view are the same.
+  // If the loop moves the keyframe by little, its points and the old points in view are the same.
   constexpr double agreeing_metres = 0.05, agreeing_degrees = 2.0;
   Eigen::Isometry3d T_camera_world = frame.T_camera_world;
   int inliers = 0;
@@ -102,7 +102,7 @@ bool present_pose_is_confirmed(const LoopClosingSettings& settings, const Featur
     T_camera_world = problem.T_camera_world;
     inliers = summary.inliers;
   }
-  // No share is asked for: most of what lies in view from afar may be hidden behind something nearer.
+  // No minimum share is required: most distant points in view may be occluded.
   if (inliers < settings.minimum_inliers) return false;
   const PoseChange difference = pose_change(T_camera_world, T_camera_world_loop);
   return difference.metres > agreeing_metres || difference.degrees > agreeing_degrees;

@@ -7,24 +7,24 @@
 
 namespace holdfast {
 
-/// The way between two keyframes [m]: the shortest one through the graph of covisibility, spanning tree and loop edges,
-/// each edge as long as its cameras are apart plus a metre for each radian between them (turning drifts, too). Shortest
-/// and not as travelled: a camera that hovers does not drift, and who walks back along known places is held by them.
-/// Infinite when nothing leads there.
+/// Length of the shortest path between two keyframes [m] in the graph of covisibility, spanning tree and loop edges.
+/// The length of an edge is the distance of its cameras plus one metre per radian between them, because rotation
+/// drifts, too. The shortest path and not the travelled one bounds the drift, because revisited places constrain the
+/// pose. Infinite without a path.
 double way_between(const Map& map, KeyFrameId from, KeyFrameId to);
 
-/// How far a camera moves and turns from one pose to another.
+/// Translation and rotation between two poses of a camera.
 PoseChange pose_change(const Eigen::Isometry3d& T_camera_world_before, const Eigen::Isometry3d& T_camera_world_after);
 
-/// What odometry may have drifted on a way.
+/// Upper bound of the drift accumulated over a path of this length.
 PoseChange believed_drift(const LoopClosingSettings& settings, double way, bool with_scale);
 
-/// Points of the map that the keyframe should see from its present pose, and that neither it nor its neighbourhood nor
-/// any keyframe younger than `minimum_gap` has seen.
+/// Map points predicted to be visible from the current pose of the keyframe that are observed neither by it nor by its
+/// neighbourhood nor by any keyframe younger than `minimum_gap`.
 PlacePoints old_points_in_view(const LoopClosingSettings& settings, const Map& map, KeyFrameId keyframe);
 
-/// Whether such points are found where the present pose expects them, and say something else than the loop does.
-/// Found: as many as make a place, after adjusting the pose to them.
+/// Tests the current pose as the competing hypothesis: whether enough of these points are matched at their predictions
+/// to verify a place, after motion-only adjustment, and disagree with the loop.
 bool present_pose_is_confirmed(const LoopClosingSettings& settings, const FeatureMatcher& matcher, Optimizer& optimizer,
                                const Frame& frame, const PlacePoints& old_points,
                                const Eigen::Isometry3d& T_camera_world_loop);

@@ -20,8 +20,8 @@ void LocalMapper::adjust_bundle(KeyFrameId id) {
 }
 
 void LocalMapper::build_bundle_problem(KeyFrameId id) {
-  // The keyframe and its strongest neighbours move, with all points that they see; other keyframes that see these
-  // points hold them in place.
+  // Free are the keyframe, its strongest neighbours and all points that they observe; other keyframes that observe
+  // these points are fixed.
   std::vector<KeyFrameId>& keyframes = problem_keyframes_;
   keyframes = {id};
   for (const KeyFrameId neighbour : map_.best_covisible(id, settings_.bundle_keyframes - 1))
@@ -62,7 +62,7 @@ void LocalMapper::build_bundle_problem(KeyFrameId id) {
     const KeyFrame& keyframe = map_.keyframe(keyframes[i]);
     problem_.poses.push_back({keyframe.frame.T_camera_world, i >= moving || keyframe.sequence == 0});
   }
-  // Something must hold the map in place: without a fixed keyframe, the oldest one does.
+  // Fix the gauge: if no keyframe is fixed, fix the oldest.
   if (std::none_of(problem_.poses.begin(), problem_.poses.end(), [](const auto& pose) { return pose.fixed; })) {
     std::size_t oldest = 0;
     for (std::size_t i = 1; i < keyframes.size(); ++i)
@@ -72,7 +72,7 @@ void LocalMapper::build_bundle_problem(KeyFrameId id) {
 }
 
 void LocalMapper::apply_bundle() {
-  // Everything is still there: others only add while this thread refines.
+  // Ids stay valid: the surgery mutex is held, other threads may only add.
   for (std::size_t i = 0; i < problem_keyframes_.size(); ++i) {
     if (problem_.poses[i].fixed) continue;
     Eigen::Isometry3d& pose = map_.keyframe(problem_keyframes_[i]).frame.T_camera_world;

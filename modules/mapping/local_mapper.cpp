@@ -44,11 +44,11 @@ KeyFrameId LocalMapper::begin(const Frame& frame, std::span<const std::pair<Eige
 void LocalMapper::link(KeyFrameId keyframe) {
   map_.update_covisibility(keyframe);
   if (map_.keyframe(keyframe).parent.valid()) return;
-  // Where the map ended, the motion model or odometry goes on from the last keyframe.
+  // A keyframe without covisible neighbours (pose from odometry) becomes a child of the latest keyframe of its submap.
   const std::vector<KeyFrameId> by_age = map_.keyframes_by_age();
   const std::uint32_t piece = map_.keyframe(keyframe).piece;
-  const auto last = std::find_if(by_age.rbegin() + 1, by_age.rend(),
-                                 [&](KeyFrameId id) { return map_.keyframe(id).piece == piece; });
+  const auto last =
+      std::find_if(by_age.rbegin() + 1, by_age.rend(), [&](KeyFrameId id) { return map_.keyframe(id).piece == piece; });
   if (last != by_age.rend()) map_.hang_on(keyframe, *last);
 }
 
@@ -59,7 +59,7 @@ std::vector<KeyFrameId> LocalMapper::refine(KeyFrameId keyframe, StageTimes& tim
     {
       const std::lock_guard lock(mutex_);
       if (map_.find_keyframe(keyframe) == nullptr) return {};
-      // Its mask may have come since it was inserted.
+      // Its mask may have arrived since it was inserted.
       for (const MapPointId point : drop_moving_features(keyframe)) drop_weak_point(point);
       make_points_from_depth(keyframe);
       remove_moving_points();
@@ -123,7 +123,7 @@ std::vector<MapPointId> LocalMapper::drop_moving_features(KeyFrameId id) {
 
 void LocalMapper::drop_weak_point(MapPointId point) {
   if (features_have_depth(map_.sensor())) return;
-  // Where a view contradicts a point, two others alone do not confirm it, and one does not even locate it.
+  // After a contradicting view, two other observations do not confirm a point, and one does not determine it.
   constexpr std::size_t required = 3;
   const MapPoint* left = map_.find_point(point);
   if (left == nullptr || left->observations.size() >= required) return;
@@ -143,15 +143,15 @@ void LocalMapper::remove_moving_points() {
 void LocalMapper::remove_weak_points(KeyFrameId id) {
   const std::uint64_t now = map_.keyframe(id).sequence;
   // A triangulated point begins with two observations; one that no third keyframe confirms was a wrong match, or moved
-  // (Mur-Artal et al. 2015, section VI-B). Depth confirms a point as well as another view does.
+  // (Mur-Artal et al. 2015, section VI-B). Depth counts as another view.
   const bool has_depth = features_have_depth(map_.sensor());
   const std::size_t required = has_depth ? 2 : 3;
   const bool can_be_confirmed = map_.keyframes().size() >= required;
   std::erase_if(recent_points_, [&](MapPointId point_id) {
     const MapPoint* point = map_.find_point(point_id);
     if (point == nullptr) return true;
-    // Later keyframes may have made points while this one waited. Where it waited for its mask, they made them by an
-    // older mask, which may show people where they were: only a second view has confirmed that such points stand still.
+    // Later keyframes may have created points while this one waited for its mask, by an older mask that shows people at
+    // an earlier position: such points need a second observation as evidence that they are static.
     const bool is_later = point->created_at > now;
     if (is_later && (!has_depth || !expects_masks_)) return false;
     const std::uint64_t age = now - std::min(now, point->created_at);
@@ -169,8 +169,8 @@ void LocalMapper::remove_weak_points(KeyFrameId id) {
 
 namespace {
 
-/// The points that a keyframe sees, and those of them that three others see at the same or a finer scale. With a
-/// `limit` [m], only features with depth up to it count.
+/// Number of points that a keyframe observes, and of those that three others observe at the same or a finer scale. With
+/// a `limit` [m], only features with depth up to it count.
 struct SeenPoints {
   int all = 0, redundant = 0;
 };
@@ -199,9 +199,9 @@ SeenPoints seen_points(const Map& map, KeyFrameId id, std::optional<float> limit
 }  // namespace
 
 std::vector<KeyFrameId> LocalMapper::remove_redundant_keyframes(KeyFrameId id) {
-  // Close points decide (Mur-Artal and Tardos 2017, section III-D). A keyframe that sees few of them, because people
-  // stand before a far wall, would stay for ever, and many of them with it. Filters compare the depth of recent ones;
-  // once it is not among these, all its points decide.
+  // Redundancy is measured by close points (Mur-Artal and Tardos 2017, section III-D). A keyframe with few of them,
+  // such as people before a far wall, would never be redundant; therefore all its points count once it is not among the
+  // recent keyframes, whose depth the filters compare.
   constexpr std::uint64_t recent = 200;
   std::vector<KeyFrameId> removed;
   if (settings_.redundant_share >= 1.0) return removed;
@@ -211,7 +211,7 @@ std::vector<KeyFrameId> LocalMapper::remove_redundant_keyframes(KeyFrameId id) {
   for (const CovisibilityEdge& edge : neighbours) {
     const KeyFrame& keyframe = map_.keyframe(edge.keyframe);
     if (!keyframe.parent.valid() || !keyframe.loop_edges.empty()) continue;
-    if (keyframe.sequence > sequence) continue;  // waits to be refined itself
+    if (keyframe.sequence > sequence) continue;  // not refined yet
     std::optional<float> close;
     if (has_depth) close = static_cast<float>(close_depth_factor_ * keyframe.frame.camera->baseline);
     SeenPoints seen = seen_points(map_, edge.keyframe, close);

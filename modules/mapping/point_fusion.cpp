@@ -7,7 +7,7 @@
 namespace holdfast {
 
 namespace {
-// The poses of keyframes are adjusted, so that a point must lie where it is predicted.
+// Keyframe poses are bundle-adjusted, so a 3 px window suffices.
 constexpr matching::WindowSettings fusion_windows{.radius = 3.0F, .frontal_radius = 3.0F};
 }  // namespace
 

@@ -16,14 +16,14 @@ namespace holdfast {
 
 namespace {
 
-/// A keyframe and a neighbour that sees the same scene from elsewhere.
+/// A keyframe and a covisible neighbour.
 struct TwoKeyframes {
   const Frame& frame;
   const Frame& neighbour;
   Eigen::Isometry3d T_frame_neighbour, T_neighbour_frame;
 };
 
-/// A feature of each, matched.
+/// A match between their features.
 struct FeaturePair {
   std::uint32_t in_frame = 0, in_neighbour = 0;
 };
@@ -33,14 +33,14 @@ Eigen::Vector3d ray_of(const Frame& frame, std::uint32_t feature) {
   return frame.camera->back_project(frame.x[feature], frame.y[feature], 1.0);
 }
 
-/// Cosine of the parallax that measured depth is worth: the angle between the two eyes of the stereo pair, seen from
-/// the point. Above 1 without depth, so that any parallax is better.
+/// Cosine of the stereo parallax of a feature with depth: the angle subtended by the baseline at the point. Above 1
+/// without depth, so that any parallax is larger.
 double depth_cosine(const Frame& frame, std::uint32_t feature) {
   if (!frame.has_depth(feature)) return 2.0;
   return std::cos(2.0 * std::atan2(0.5 * frame.camera->baseline, static_cast<double>(frame.depth[feature])));
 }
 
-/// The point in the camera frame of the keyframe, by whichever is better: parallax or measured depth.
+/// The point in the camera frame of the keyframe, by triangulation or by measured depth, whichever has more parallax.
 std::optional<Eigen::Vector3d> locate(const TwoKeyframes& views, const FeaturePair& pair) {
   constexpr double max_parallax_cosine = geometry::TriangulationOptions{}.max_parallax_cosine;
   const Eigen::Vector3d ray = ray_of(views.frame, pair.in_frame);
@@ -67,7 +67,7 @@ bool projects_onto(const Frame& frame, std::uint32_t feature, const Eigen::Vecto
                                           frame.camera->right_x(pixel.x(), in_camera.z()));
 }
 
-/// Whether the octaves of the two features fit the distances from which they see the point.
+/// Scale consistency: whether the ratio of the octaves agrees with that of the distances to the point.
 bool sizes_agree(const TwoKeyframes& views, const FeaturePair& pair, double distance_ratio) {
   const ScalePyramid &pyramid = *views.frame.pyramid, &other_pyramid = *views.neighbour.pyramid;
   const double octave_ratio =
@@ -77,7 +77,8 @@ bool sizes_agree(const TwoKeyframes& views, const FeaturePair& pair, double dist
   return distance_ratio * tolerance >= octave_ratio && distance_ratio <= octave_ratio * tolerance;
 }
 
-/// The point that two matched features show, in the camera frame of the keyframe, where it explains both.
+/// The point of two matched features, in the camera frame of the keyframe; nothing if its reprojection does not fit
+/// both.
 std::optional<Eigen::Vector3d> triangulate(const TwoKeyframes& views, const FeaturePair& pair) {
   const std::optional<Eigen::Vector3d> in_frame = locate(views, pair);
   if (!in_frame) return std::nullopt;
@@ -89,8 +90,8 @@ std::optional<Eigen::Vector3d> triangulate(const TwoKeyframes& views, const Feat
   return in_frame;
 }
 
-/// A shorter way between two keyframes gives too little parallax: the baseline of the stereo pair, or, for one camera,
-/// a hundredth of the median depth of the points that the neighbour sees (Mur-Artal et al. 2015, section VI-D).
+/// Minimum baseline of two keyframes for sufficient parallax: that of the stereo pair, or, for one camera, a hundredth
+/// of the median depth of the points that the neighbour observes (Mur-Artal et al. 2015, section VI-D).
 double shortest_baseline(const Map& map, const Frame& neighbour) {
   if (features_have_depth(map.sensor())) return neighbour.camera->baseline;
   constexpr double share = 0.01;
@@ -101,7 +102,7 @@ double shortest_baseline(const Map& map, const Frame& neighbour) {
   return share * upper_median(depths);
 }
 
-/// Static features that show no map point yet.
+/// Static features without a map point.
 std::vector<std::uint32_t> free_features(const Frame& frame) {
   std::vector<std::uint32_t> free;
   for (std::uint32_t i = 0; i < frame.size(); ++i)

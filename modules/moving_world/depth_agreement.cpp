@@ -33,7 +33,8 @@ bool DepthAgreement::choose(const Map& map, KeyFrameId reference, double timesta
 
 Eigen::Isometry3d DepthAgreement::find_view(const Frame& frame, const Eigen::Isometry3d& T_camera_world,
                                             double share_there, const Eigen::Isometry3d& step) const {
-  // On the motion from the last frame to the next: the best of five poses, then of two between it and its neighbours.
+  // One-dimensional search on the motion from the previous to the next frame: the best of five poses, then of two
+  // between it and its neighbours.
   const auto motion = geometry::log_se3(step);
   const auto view_at = [&](double steps) { return geometry::exp_se3(steps * motion); };
   double best_steps = 0.0, best_share = share_there;
@@ -97,7 +98,7 @@ bool DepthAgreement::disagrees(const Frame& frame, const Eigen::Isometry3d& T_vi
 }
 
 double DepthAgreement::support(const Frame& frame, const Eigen::Isometry3d& T_view_world) const {
-  // A pose from which everything seems to stand before the known surfaces is wrong, too.
+  // A pose for which nearly all cells are nearer than the known surfaces is wrong, too.
   const Counts counts = count(frame, T_view_world);
   if (counts.agreeing < settings_.cells || counts.agreeing < settings_.share * counts.compared) return 0.0;
   return static_cast<double>(counts.agreeing) / (counts.agreeing + counts.farther);

@@ -24,7 +24,7 @@ class SurfaceReader {
  public:
   SurfaceReader(const CoarseView& view, const geometry::Warp& rays) : view_(view), rays_(rays) {}
 
-  /// The surface in a cell; nothing at the border, without depth, on what moves, and at depth edges.
+  /// Surface element of a cell; nothing at the border, without depth, on moving cells, and at depth edges.
   std::optional<Surface> at(int column, int row) const {
     const CoarseGrid& grid = view_.grid;
     if (column < 1 || row < 1 || column + 1 >= grid.columns || row + 1 >= grid.rows) return std::nullopt;
@@ -60,7 +60,7 @@ class SurfaceReader {
 
 Eigen::Isometry3d DepthAgreement::align(const Frame& frame, const Eigen::Isometry3d& T_view_world) const {
   constexpr int iterations = 8, stride = 3;  // cells
-  // Standard deviations of the predicted pose: one frame of constant velocity is about that wrong in rapid motion.
+  // Standard deviations of the predicted pose: errors of constant velocity over one frame in rapid motion.
   constexpr double sigma_metres = 0.03, sigma_radians = 0.03;
   const CoarseGrid& grid = frame.coarse.grid;
   const geometry::Pinhole camera = geometry::pinhole_of(*frame.camera);

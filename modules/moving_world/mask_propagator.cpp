@@ -9,7 +9,7 @@ namespace holdfast {
 
 namespace {
 
-constexpr int bucket = 6;  // cells: one followed point in each, where there is a corner
+constexpr int bucket = 6;  // cells: one followed point per bucket with a corner
 
 }  // namespace
 
@@ -57,7 +57,7 @@ void MaskPropagator::take_points(View& view) const {
 }
 
 void MaskPropagator::pair_with(const View& view, const std::vector<std::uint8_t>& labels_there) {
-  // Points on an object there, but not at its border, where a point may follow the background.
+  // Points on an object of that view, but not at its border, where a point may follow the background.
   pairs_.clear();
   const PointFollower::Points& points = follower_.points();
   const CoarseGrid& grid = view.coarse.grid;
@@ -92,7 +92,7 @@ void MaskPropagator::set_pose(const std::optional<Eigen::Isometry3d>& T_camera_w
 template <class IsWanted>
 int MaskPropagator::strongest_corner(const CoarseGrid& grid, int first_column, int first_row,
                                      const IsWanted& is_wanted) const {
-  int strongest = 200;  // of Scharr derivatives: less is no corner
+  int strongest = 200;  // corner threshold, of Scharr derivatives
   int best = -1;
   for (int row = first_row; row < std::min(first_row + bucket, grid.rows); ++row)
     for (int column = first_column; column < std::min(first_column + bucket, grid.columns); ++column) {
@@ -108,7 +108,7 @@ int MaskPropagator::strongest_corner(const CoarseGrid& grid, int first_column, i
 }
 
 void MaskPropagator::renew_points(const Frame& frame) {
-  // While no segmentation is awaited, only points on objects are followed; every part of an object has one.
+  // Unless a segmentation is pending, only points on objects are followed, one per bucket.
   const CoarseGrid& grid = frame.coarse.grid;
   const PointFollower::Points& points = follower_.points();
   const int columns = (grid.columns + bucket - 1) / bucket, rows = (grid.rows + bucket - 1) / bucket;

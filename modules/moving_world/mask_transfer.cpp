@@ -13,9 +13,9 @@ namespace holdfast {
 
 namespace {
 
-constexpr int reach = 3;  // blocks in which a followed point tells how its object moves
+constexpr int reach = 3;  // radius in which a followed point gives the motion of its object [blocks]
 
-/// Whether a cell beside this one has no label.
+/// Whether a neighbouring cell has no label.
 bool is_outline(const std::vector<std::uint8_t>& labels, const CoarseGrid& grid, int column, int row) {
   const std::uint8_t* const label = &labels[static_cast<std::size_t>(row * grid.columns + column)];
   return (column > 0 && label[-1] == 0) || (column + 1 < grid.columns && label[1] == 0) ||
@@ -114,7 +114,7 @@ void MaskTransfer::transfer(const CoarseView& from_view, const CellMask& from, c
 
 void MaskTransfer::transfer_by_points_alone(const Job& job, const FollowedPairs& pairs) {
   const CoarseGrid& grid = job.to_view.grid;
-  // Blocks near which points were followed: what was there moved with them, and nothing of it stays behind.
+  // Blocks with followed points in the previous view: their labels moved with the points and do not remain.
   std::vector<std::uint8_t> is_followed(mover_count_.size(), 0);
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const int column = grid.column_of(pairs.from_x[i]) / block, row = grid.row_of(pairs.from_y[i]) / block;
@@ -122,7 +122,7 @@ void MaskTransfer::transfer_by_points_alone(const Job& job, const FollowedPairs&
       for (int c = std::max(0, column - reach); c <= std::min(block_columns_ - 1, column + reach); ++c)
         is_followed[static_cast<std::size_t>(r * block_columns_ + c)] = 1;
   }
-  // The nearest cell of the grid: what lies at its border continues beyond it.
+  // The nearest cell of the grid extrapolates labels beyond its border.
   const auto cell_at = [&](int column, int row) {
     return static_cast<std::size_t>(std::clamp(row, 0, grid.rows - 1) * grid.columns +
                                     std::clamp(column, 0, grid.columns - 1));
@@ -181,7 +181,7 @@ void MaskTransfer::take_row_by_ego_motion(const Job& job, int row) {
       } else if (change < limit) {
         state[column] = CellState::same_surface;
         job.take(begin + column, source);
-        // At almost the same place, the surface may still be an object that has just arrived there.
+        // At almost the same position, the surface may still be an object that has just arrived.
         is_open = labels[source] == 0 && !(change < depth_noise::same_place(z[column]));
       } else if (before > z[column] + limit) {
         state[column] = CellState::free_space;
@@ -212,8 +212,8 @@ void MaskTransfer::take_by_object_motion(const Job& job, int column, int row) {
 }
 
 void MaskTransfer::take_without_depth(const Job& job, int column, int row) {
-  // A surface too near for the depth sensor, such as a person right in front of the camera, shows the camera's rotation
-  // only. Cells at the border of an object are left out: depth is missing there for other reasons.
+  // A surface too near for the depth sensor, such as a person right in front of the camera, is transferred by the
+  // camera's rotation only. Cells at the border of an object are left out: depth is missing there for other reasons.
   const CoarseGrid& grid = job.to_view.grid;
   const auto warped = job.warp.project_direction(job.warp.ray_x(grid.x_of(column)), job.warp.ray_y(grid.y_of(row)));
   if (!warped) return;
@@ -232,8 +232,8 @@ void MaskTransfer::take_without_depth(const Job& job, int column, int row) {
 }
 
 void MaskTransfer::grow(const CoarseView& to_view, CellMask& to) {
-  // Surface where there was free space belongs to the object that arrived there. Unobserved surface may be anything, so
-  // the object grows over a little of it only. Surface that was occluded is what the object uncovered.
+  // Surface in former free space belongs to the object that arrived there. Over unobserved surface an object grows a
+  // little only. Formerly occluded surface was uncovered by the object.
   const CoarseGrid& grid = to_view.grid;
   constexpr int max_unobserved_steps = 15, max_steps = 60;
   constexpr float max_depth_change = 0.1F;  // m, over unobserved surface
@@ -277,7 +277,7 @@ void MaskTransfer::grow(const CoarseView& to_view, CellMask& to) {
 }
 
 void MaskTransfer::fill_holes(const CoarseView& to_view, CellMask& to) {
-  // Cells without depth amid an object belong to it.
+  // Fill holes: cells without depth inside an object belong to it.
   const CoarseGrid& grid = to_view.grid;
   const std::size_t width = static_cast<std::size_t>(grid.columns);
   std::uint8_t* const labels = to.labels.data();

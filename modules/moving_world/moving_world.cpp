@@ -99,7 +99,7 @@ std::optional<Eigen::Isometry3d> MovingWorld::align_depth(const Frame& frame, co
 
 void MovingWorld::end_frame(const Frame& frame, bool has_pose) {
   if (!propagator_) return;
-  // An object moves when evidence overcomes the prior by a factor of e: one filter that suspects it is enough.
+  // Threshold of motion: evidence exceeds the prior by a factor of e, so that one filter suffices.
   const float moving = -static_cast<float>(filters_.settings().static_log_odds) - 1.0F;
   propagator_->set_pose(has_pose ? std::optional(frame.T_camera_world) : std::nullopt, frame.coarse, moving);
 }

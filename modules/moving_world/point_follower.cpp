@@ -46,7 +46,7 @@ void PointFollower::advance(const cv::Mat& grey, const Frame& frame) {
     points_.raw_x[i] = flow_.to_x[i], points_.raw_y[i] = flow_.to_y[i];
     undistort(frame, flow_.to_x[i], flow_.to_y[i], points_.x[i], points_.y[i]);
     const float depth = depth_at(frame, points_.x[i], points_.y[i]);
-    // A point that jumps in depth slid off its object.
+    // A point whose depth jumps has slipped off its object.
     if (depth > 0.0F && points_.depth[i] > 0.0F && std::abs(depth - points_.depth[i]) > depth_noise::slid_off(depth))
       flow_.found[i] = 0;
     if (depth > 0.0F) points_.depth[i] = depth;

@@ -19,8 +19,8 @@ struct BoardView {
 };
 
 /// Finds a board in images, to a fraction of a pixel. A chessboard is found as a whole or not at all; of a board with
-/// markers, the corners next to them. A chessboard that looks the same when turned may be numbered from another end,
-/// which calibration does not mind. Used by one thread.
+/// markers, the corners next to them are found. A rotationally symmetric chessboard may be numbered from another end,
+/// which does not affect calibration. Used by one thread.
 class BoardDetector {
  public:
   /// Throws Error for a board with markers in a build that has none, and for one with more of them than the dictionary.

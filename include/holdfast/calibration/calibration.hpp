@@ -11,28 +11,28 @@
 
 namespace holdfast {
 
-/// What a calibration estimates.
+/// Options of a calibration.
 struct CalibrationOptions {
   Lens lens = Lens::radial_tangential;
   /// Distortion coefficients of a radial_tangential lens: 4 (k1, k2, p1, p2), 5 (and k3) or 8 (and k4, k5, k6). A
   /// fisheye lens always has 4 (k1 to k4).
   int coefficients = 5;
-  /// Use views whose corners are much farther from where the others expect them, too.
+  /// Also use outlier views.
   bool keep_all_views = false;
 };
 
-/// A number of the camera that was estimated.
+/// An estimated parameter of the camera.
 struct CalibratedNumber {
   std::string name;  ///< as in the section `camera` of a configuration: "fx"
   double value = 0.0;
-  /// As it follows from the scatter of the corners; infinite where the views say nothing about the number.
+  /// Standard deviation from the scatter of the corners; infinite if the views do not determine the parameter.
   double standard_deviation = 0.0;
 };
 
-/// A view, and how well it agrees with the result.
+/// A view and its residuals.
 struct CalibratedView {
   BoardView view;
-  bool is_used = true;  ///< false: it was left out, because it disagrees with the others
+  bool is_used = true;  ///< false: excluded as an outlier
   Eigen::Isometry3d T_camera_board = Eigen::Isometry3d::Identity();
   std::vector<Eigen::Vector2d> residuals;  ///< found minus expected position of each corner [px]
   double rms = 0.0;                        ///< root mean square of their lengths [px]
@@ -40,7 +40,7 @@ struct CalibratedView {
   double tilt = 0.0;
 };
 
-/// A calibrated camera, with what is needed to judge it.
+/// A calibrated camera, with data for its assessment.
 struct Calibration {
   Camera camera;
   std::vector<CalibratedNumber> numbers;
@@ -56,7 +56,7 @@ struct Calibration {
 /// the pose of the board in each view (Zhang 2000), by Levenberg and Marquardt's method from several focal lengths.
 /// Views are left out that disagree with the others: with more than three times the median error and more than half a
 /// pixel, at most a quarter of all. Standard deviations are those of the linearised problem. Needs at least three views
-/// of six corners; throws Error where there are fewer, or where no camera explains them.
+/// of six corners; throws Error for fewer, or if no camera fits them.
 Calibration calibrate(const std::vector<BoardView>& views, const CalibrationBoard& board, int width, int height,
                       const CalibrationOptions& options);
 

@@ -8,7 +8,7 @@
 
 namespace holdfast {
 
-/// What is printed on a board.
+/// Pattern of a board.
 enum class BoardPattern {
   chessboard,  ///< black and white squares; the whole board must be in the picture
   charuco,     ///< with a marker in each white square (Garrido-Jurado et al. 2014), so that a part of it is enough
@@ -40,9 +40,8 @@ const std::vector<std::string>& marker_dictionaries();
 /// Whether this build finds boards with markers; they need OpenCV's module aruco, or objdetect from version 4.7 on.
 bool has_charuco();
 
-/// The board as an SVG picture in millimetres, with a white margin and a line that says what it is and how to check its
-/// size. Throws Error for a board with markers in a build that has none, and for one with more of them than the
-/// dictionary.
+/// The board as an SVG picture in millimetres, with a white margin and a line with its description and dimensions.
+/// Throws Error for a board with markers in a build that has none, and for one with more of them than the dictionary.
 std::string board_svg(const CalibrationBoard& board);
 
 }  // namespace holdfast

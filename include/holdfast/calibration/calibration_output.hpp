@@ -9,9 +9,9 @@
 
 namespace holdfast {
 
-/// The section `camera` of a configuration, with a comment that says how it came about.
+/// The section `camera` of a configuration, with a comment on its origin.
 std::string camera_yaml(const Calibration& calibration, const CalibrationBoard& board);
-/// What a person wants to know: errors, numbers with standard deviations, coverage, views, advice.
+/// Text report: errors, parameters with standard deviations, coverage, views, advice.
 std::string to_text(const Calibration& calibration, const CalibrationAssessment& assessment);
 /// The same for programs.
 std::string to_json(const Calibration& calibration, const CalibrationAssessment& assessment,

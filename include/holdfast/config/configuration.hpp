@@ -64,11 +64,11 @@ struct Configuration {
   std::vector<ModuleChoice> filters;  ///< a chain
   std::vector<ModuleChoice> observers;
   std::optional<Camera> camera;  ///< empty: the source must know it
-  /// Set by `camera: auto`: the source's own camera precedes `camera`, which the name of its folder says, and this is
-  /// the complaint where there is neither.
+  /// Set by `camera: auto`: the source's own camera takes precedence over `camera`, which follows from the name of its
+  /// folder; this is the error if there is neither.
   std::optional<Diagnostic> unknown_camera;
   std::optional<Sensor> sensor;  ///< empty: all that the source has
-  /// What is no mistake and may still be unintended, with its place: a folder that is named after another camera.
+  /// Warnings with their locations, such as a folder that is named after another camera.
   Warnings warnings;
   RunSettings run;
   std::map<std::string, ParameterValues> sections;  ///< values of the plain sections, by name

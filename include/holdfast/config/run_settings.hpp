@@ -17,8 +17,8 @@ class ParameterTable;
 enum class RunMode { sequential, threaded };
 /// When frames reach tracking. none: as fast as they can be read and tracked. timestamps: at their time stamps.
 enum class Pace { none, timestamps };
-/// What a paced run does with a frame that finds the frame queue full. queue: the source waits for room. drop: the
-/// oldest frame of the queue is discarded.
+/// Handling of a frame in a paced run if the frame queue is full. queue: the source waits for room. drop: the oldest
+/// frame of the queue is discarded.
 enum class LateFrames { queue, drop };
 
 template <>

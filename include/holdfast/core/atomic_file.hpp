@@ -7,17 +7,17 @@
 
 namespace holdfast {
 
-/// When a file has to be on the disk itself, so that it outlives a loss of power.
+/// When a file must be on the disk, so that it survives a loss of power.
 enum class Durability {
   now,    ///< when the call returns
   later,  ///< after sync_file_system(); for pictures, of which many are written in a second
 };
 
-/// Replaces the content of a file atomically: a file that is there is the earlier one or the new one, and whole. Bytes
-/// go to a temporary file FILE.tmp in the same folder; commit() brings them to the disk, closes the file, and renames
-/// it. Every step is checked: quotas and network file systems report a full disk as late as that. Without commit() the
-/// temporary file is removed. What cannot be renamed over, such as /dev/null, /dev/stdout or a named pipe, is written
-/// directly. All methods throw InputError with the system's reason. Used by one thread.
+/// Replaces the content of a file atomically: the file always has its earlier or its complete new content. Bytes are
+/// written to a temporary file FILE.tmp in the same folder; commit() synchronises, closes and renames it. Every step is
+/// checked, because quotas and network file systems report a full disk late. Without commit() the temporary file is
+/// removed. Files that cannot be replaced, such as /dev/null, /dev/stdout or a named pipe, are written directly. All
+/// methods throw InputError with the system's reason. Used by one thread.
 class AtomicFile {
  public:
   explicit AtomicFile(std::filesystem::path file, Durability durability = Durability::now);
@@ -41,8 +41,8 @@ class AtomicFile {
 /// Replaces the content of a file as AtomicFile does. trajectory.hpp declares the same function for Durability::now.
 void write_file_atomically(const std::filesystem::path& file, const std::string& content, Durability durability);
 
-/// Brings all that was written to the file system of this folder to the disk. Throws InputError with the system's
-/// reason if some of it could not be written.
+/// Synchronises the file system of this folder with the disk. Throws InputError with the system's reason if a write
+/// failed.
 void sync_file_system(const std::filesystem::path& folder);
 
 }  // namespace holdfast

@@ -15,13 +15,13 @@
 
 namespace holdfast {
 
-/// First in, first out, between threads, and never longer than its capacity. Waits without spinning.
+/// First-in, first-out queue between threads with a bounded length. Waits without spinning.
 template <class T>
 class BoundedQueue {
  public:
   explicit BoundedQueue(std::size_t capacity) { counts_.capacity = std::max<std::size_t>(capacity, 1); }
 
-  /// Waits for room. False, and the value is gone, when the queue is closed.
+  /// Waits for room. Returns false and discards the value when the queue is closed.
   bool push(T value) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return closed_ || has_room_unlocked(); });
@@ -43,7 +43,7 @@ class BoundedQueue {
     changed_.wait(lock, [this] { return closed_ || !entries_.empty(); });
     return take(lock);
   }
-  /// Waits as pop() does, and asks ten times a second whether to go on with that; nothing as well when it is not to.
+  /// Waits like pop(), and calls waits_on() ten times a second; returns nothing when that returns false.
   template <class WaitsOn>
   std::optional<T> pop_while(const WaitsOn& waits_on) {
     std::unique_lock lock(mutex_);
@@ -64,7 +64,7 @@ class BoundedQueue {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return closed_ || has_room_unlocked(); });
   }
-  /// Takes nothing more; what waits can still be popped unless `abandon`. Wakes everybody.
+  /// Accepts no more values; queued ones can still be popped unless `abandon`. Wakes all waiting threads.
   void close(bool abandon = false) {
     {
       const std::lock_guard lock(mutex_);
@@ -84,7 +84,7 @@ class BoundedQueue {
     Stopwatch since;
   };
   bool has_room_unlocked() const { return entries_.size() < counts_.capacity; }
-  /// Gives the oldest value, if there is one, and the lock back.
+  /// Returns the oldest value, if there is one, and releases the lock.
   std::optional<T> take(std::unique_lock<std::mutex>& lock) {
     if (entries_.empty()) return std::nullopt;
     Entry entry = std::move(entries_.front());

@@ -18,7 +18,7 @@ enum class EigenIndexBytes : int {};          ///< EIGEN_DEFAULT_DENSE_INDEX_TYP
 enum class EigenRowMajor : bool {};           ///< EIGEN_DEFAULT_TO_ROW_MAJOR
 enum class GlibcxxDebug : bool {};            ///< _GLIBCXX_DEBUG: layout of the standard containers
 
-/// A layout; its arguments are what it depends on, as the linker's message prints them.
+/// A layout; its arguments determine it and appear in the linker's message.
 template <EigenMaxAlignBytes, EigenAlignmentInStructs, EigenIndexBytes, EigenRowMajor, GlibcxxDebug>
 struct BuildLayout {
   static const char is_that_of_the_library;  ///< defined for the library's layout alone

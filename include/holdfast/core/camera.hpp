@@ -10,7 +10,7 @@
 
 namespace holdfast {
 
-/// How the coefficients of a Distortion are meant.
+/// Lens model of the coefficients of a Distortion.
 enum class Lens {
   /// Radial and tangential distortion in the image plane (Brown 1971), with a rational radial factor where k4, k5 or k6
   /// is not zero (Claus and Fitzgibbon 2005): cv::undistortPoints with 5 or 8 coefficients.
@@ -38,15 +38,15 @@ struct Distortion {
   double k4 = 0, k5 = 0, k6 = 0;
   Lens lens = Lens::radial_tangential;
 
-  /// Whether the image is that of a pinhole; a fisheye lens never gives one.
+  /// Whether there is no distortion; never true for a fisheye lens.
   bool is_zero() const {
     return lens == Lens::radial_tangential && k1 == 0 && k2 == 0 && p1 == 0 && p2 == 0 && k3 == 0 && !is_rational();
   }
   bool is_rational() const { return lens == Lens::radial_tangential && (k4 != 0 || k5 != 0 || k6 != 0); }
-  /// As OpenCV takes them: k1 k2 p1 p2 k3, followed by k4 k5 k6 where these are used; k1 k2 k3 k4 of a fisheye lens.
+  /// In OpenCV's order: k1 k2 p1 p2 k3, followed by k4 k5 k6 where these are used; k1 k2 k3 k4 of a fisheye lens.
   std::vector<double> coefficients() const;
-  /// What is wrong with the numbers, such as a coefficient that its lens does not have; empty if nothing is. Whether
-  /// they fit an image is said by Camera::trouble().
+  /// Describes an invalid coefficient, such as one that the lens model does not have; empty if all are valid.
+  /// Camera::trouble() also checks the distortion over the image.
   std::string trouble() const;
   friend bool operator==(const Distortion&, const Distortion&) = default;
 };
@@ -55,8 +55,8 @@ struct Distortion {
 /// coordinates. "Pixel" without a qualifier means an undistorted pixel, that is, the projection by a camera with the
 /// same intrinsics and no distortion.
 ///
-/// The image plane of a pinhole ends at 90 degrees from the optical axis, and stretches more and more towards it. Of a
-/// fisheye lens, what is more than Camera::usable_angle from the axis has no place in it and is not used.
+/// Fisheye pixels more than Camera::usable_angle from the optical axis cannot be represented by the pinhole model,
+/// whose image plane ends at 90 degrees, and are ignored.
 struct Camera {
   std::string name;   ///< empty for a camera that is given by its intrinsics
   int width = 640;    ///< [px]
@@ -68,8 +68,8 @@ struct Camera {
   Distortion distortion;
   double baseline = 0.08;    ///< of the virtual (or real) stereo pair [m]; about 0.08 m for a Kinect
   double frame_rate = 30.0;  ///< [1/s]
-  /// From the exposure of the first row to that of the last (rolling shutter) [s]; 0 = all rows at once, below 0 = the
-  /// last row first. The time stamp of an image is that of its middle row.
+  /// Readout time of a rolling shutter [s], from the exposure of the first row to that of the last; 0 = all rows at
+  /// once, below 0 = the last row first. The time stamp of an image is that of its middle row.
   double readout = 0.0;
 
   /// Undistorted pixel of a point in the camera frame; z must be positive.
@@ -100,15 +100,15 @@ struct Camera {
 
   friend bool operator==(const Camera&, const Camera&) = default;
 
-  /// Why the camera cannot be used: numbers that cannot be, a coefficient that its lens does not have, or a distortion
-  /// without an inverse in the image. Empty if nothing is wrong. The inverse is followed from the principal point to
-  /// the border of the image, where the Jacobian of the distortion must be positive, so that the radius grows, and the
-  /// angle to the optical axis less than 80 degrees; the radius of a fisheye lens must grow up to the corners or to
-  /// usable_angle. Takes less than a millisecond.
+  /// Describes why the camera cannot be used: invalid intrinsics, a coefficient that the lens model does not have, or a
+  /// distortion without an inverse in the image. Empty if the camera is valid. The inverse is continued from the
+  /// principal point to the border of the image, where the Jacobian of the distortion must be positive, so that the
+  /// radius grows, and the angle to the optical axis less than 80 degrees; the radius of a fisheye lens must grow up to
+  /// the corners or to usable_angle. Takes less than a millisecond.
   std::string trouble() const;
-  /// What is suspicious about numbers that may be intended: an optical axis far from the centre of the image, a field
-  /// of view or an aspect of the pixels that few cameras have and, if it counts, a baseline of no usual stereo pair.
-  /// Each text names the likely mistake and its remedy; see core/warning.hpp.
+  /// Warnings about unusual intrinsics that may be intended: a principal point far from the centre of the image, an
+  /// unusual field of view or aspect ratio of the pixels and, `with_baseline`, an unusual baseline. Each text names the
+  /// likely mistake and its remedy; see core/warning.hpp.
   std::vector<std::string> suspicions(bool with_baseline) const;
 
   /// Bounding rectangle [minimum, maximum] of the undistorted pixels of the whole image.

@@ -13,7 +13,7 @@
 
 namespace holdfast {
 
-/// Where the cells of a coarse view lie: squares of `step` undistorted pixels that cover all that the camera sees.
+/// Grid of a coarse view: square cells of `step` undistorted pixels that cover the field of view of the camera.
 struct CoarseGrid {
   static constexpr int step = 4;  ///< [px]
 
@@ -40,8 +40,8 @@ struct CoarseGrid {
   }
 };
 
-/// The depth image of a frame on a coarse grid of undistorted pixels, with what is known of each cell. Dense
-/// comparisons between views work on it. Cell (column, row) is entry row * columns + column of each array.
+/// Depth image of a frame on a coarse grid of undistorted pixels, with mask and static log-odds of each cell, for dense
+/// comparisons between views. Cell (column, row) is entry row * columns + column of each array.
 struct CoarseView {
   CoarseGrid grid;
   /// Pose of the depth image relative to the camera's pose: sensors expose colour and depth some milliseconds apart.
@@ -75,7 +75,7 @@ class CoarseSampler {
   std::int32_t raw_pixel(int cell) const { return raw_[static_cast<std::size_t>(cell)]; }
 
  private:
-  /// The depth of a neighbour of a pixel without one, 0 if they have none either.
+  /// Depth of a neighbour of a pixel without depth; 0 if no neighbour has depth.
   float measured_beside(const float* depth, std::int32_t pixel) const;
 
   int width_, height_;

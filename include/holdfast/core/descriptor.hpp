@@ -11,7 +11,7 @@
 
 namespace holdfast {
 
-/// What a descriptor consists of.
+/// Type of the elements of a descriptor.
 enum class DescriptorKind : std::uint8_t {
   binary,   ///< bits
   float32,  ///< finite numbers in single precision
@@ -41,18 +41,18 @@ struct DescriptorType {
   }
   /// Length of a descriptor in bytes, without padding.
   std::size_t bytes() const;
-  /// A distance that is this share of the way from the strict to the loose one.
+  /// Interpolates between the strict (share 0) and the loose (share 1) distance.
   float distance_between(float share) const { return strict_distance + share * (loose_distance - strict_distance); }
 };
 
-/// What makes a type impossible, such as a length of 0; "" if it is possible.
+/// Describes why a type is invalid, such as a length of 0; "" if it is valid.
 std::string trouble_of(const DescriptorType& type);
 /// For messages: "256 bits (hamming)", "128 float32 (euclidean)".
 std::string to_string(const DescriptorType& type);
 const char* to_string(DescriptorKind kind);
 const char* to_string(DescriptorMetric metric);
 
-/// A limit that is configured, or the recommended one where the configuration says 0.
+/// The configured limit, or the recommended one if the configuration has 0.
 inline float distance_limit(double configured, float recommended) {
   return configured > 0.0 ? static_cast<float>(configured) : recommended;
 }
@@ -72,7 +72,7 @@ inline int hamming_distance(const Descriptor256& a, const Descriptor256& b) {
   return distance;
 }
 
-/// Reads descriptors of one type that lie one after the other in the memory of somebody else.
+/// Non-owning view of contiguous descriptors of one type.
 class DescriptorView {
  public:
   DescriptorView() = default;
@@ -117,7 +117,8 @@ class DescriptorBlock {
   /// `count` descriptors of zeros.
   explicit DescriptorBlock(const DescriptorType& type, std::size_t count = 0) { reset(type, count); }
 
-  /// Becomes `count` descriptors of a type, all zeros unless the type stays. Throws CheckError for an impossible type.
+  /// Sets type and number of the descriptors; all are zeros unless the type is unchanged. Throws CheckError for an
+  /// invalid type.
   void reset(const DescriptorType& type, std::size_t count);
   /// Changes the number; new descriptors are zeros.
   void resize(std::size_t count) { rows_.resize(count * units_); }

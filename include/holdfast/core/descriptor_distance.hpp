@@ -13,7 +13,7 @@ namespace holdfast {
 /// values are the same at every SIMD level: sums of floating-point numbers are formed in one fixed order.
 class DescriptorDistances {
  public:
-  /// `type` must be possible; see trouble_of().
+  /// `type` must be valid; see trouble_of().
   explicit DescriptorDistances(const DescriptorType& type);
 
   /// The distance of two descriptors, given by their first units of memory.

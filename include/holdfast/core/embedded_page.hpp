@@ -19,8 +19,8 @@ inline std::string_view embedded_part(std::span<const EmbeddedFile> files, std::
   return {};
 }
 
-/// Makes one page of the file `name`: each {{KEY}} in it stands for the text of that key, or else for the embedded file
-/// of that name. What is filled in is not searched for more of them.
+/// Expands the file `name`: each {{KEY}} is replaced by the text of that key, or else by the embedded file of that
+/// name. Replacements are not expanded again.
 inline std::string embedded_page(std::span<const EmbeddedFile> files, std::string_view name,
                                  const std::map<std::string, std::string, std::less<>>& texts = {}) {
   std::string page;

@@ -18,13 +18,12 @@ namespace holdfast {
 /// The features of one image and the state of tracking for each, as a structure of arrays: entry i of every array
 /// belongs to feature i. All positions are of the left (or only) colour image.
 ///
-/// Who writes what, in this order: FrameBuilder fills everything up to `right_x`, the grid and coarse.depth, and resets
-/// the rest. MovingWorld writes coarse.mask before features are extracted; then static_probability, measured_log_odds,
+/// Writers, in this order: FrameBuilder fills everything up to `right_x`, the grid and coarse.depth, and resets the
+/// rest. MovingWorld writes coarse.mask before features are extracted; then static_probability, measured_log_odds,
 /// coarse.static_log_odds and coarse.T_view_camera while the frame is tracked. The tracker writes map_points and
 /// T_camera_world. When the frame becomes a keyframe, Map stores a copy, and from then on Map and the local mapper
 /// change map_points and T_camera_world of the copy; its mask and static_probability are written once more when its own
-/// segmentation arrives. `place` is written by whoever needs it first: tracking for a lost frame, loop closing for a
-/// keyframe.
+/// segmentation arrives. `place` is written by tracking for a lost frame, and by loop closing for a keyframe.
 struct Frame {
   std::uint64_t index = 0;  ///< SensorFrame::index
   double timestamp = 0.0;   ///< of the colour image [s]
@@ -43,15 +42,14 @@ struct Frame {
   std::vector<float> measured_log_odds;
   FeatureGrid grid;   ///< of the undistorted positions
   CoarseView coarse;  ///< the depth image on a coarse grid, its mask and its evidence
-  /// Descriptors of the whole image, if the loop detector describes images; empty until it did.
+  /// Global image descriptor for place recognition, if the loop detector uses one; empty until it was computed.
   DescriptorBlock place;
 
   Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();
 
   std::size_t size() const { return features.size(); }
   Eigen::Isometry3d T_world_camera() const;
-  /// Pose of the depth image, which may have been taken at another moment than the colour image. Comparisons of depth
-  /// between frames and keyframes use this pose.
+  /// Pose of the camera at the exposure of the depth image, for comparisons of depth between frames and keyframes.
   Eigen::Isometry3d T_view_world() const;
   bool has_depth(std::size_t feature) const { return depth[feature] > 0.0F; }
   /// Position of the feature in the camera frame [m]; it must have depth.

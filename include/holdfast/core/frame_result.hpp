@@ -30,7 +30,7 @@ enum class TrackingMethod {
   flow,                ///< map points of an earlier frame, followed from its image by optical flow
 };
 
-/// What a pose is based on when the static features of a frame did not determine it.
+/// Fallback method of a pose that the static features of the frame did not determine.
 enum class TrackingFallback {
   none,
   odometry,         ///< static features of the previous frame, with their depth; too little of the map is in view
@@ -45,10 +45,10 @@ enum class TrackingTrouble {
   few_features,
   few_matches,
   few_inliers,
-  little_parallax,  ///< one camera has not moved enough to begin a map
-  no_mask,          ///< the map of one camera begins when the first mask says where people are
-  weak_start,       ///< the map of one camera did not grow after its start and was given up; another one begins
-  exchanged_pair,   ///< the left image of a stereo pair is that of the right camera, and the right one of the left
+  little_parallax,  ///< the parallax is too small to initialise the map of one camera
+  no_mask,          ///< monocular initialisation waits for the first mask
+  weak_start,       ///< the map of one camera did not grow after its initialisation and was discarded
+  exchanged_pair,   ///< the left and the right image of the stereo pair are swapped
 };
 
 const char* to_string(TrackingStatus status);

@@ -10,8 +10,7 @@
 
 namespace holdfast {
 
-/// The largest file of each kind that is read [bytes]: far more than any such file needs, and less than the memory of
-/// the machines that read it.
+/// Maximum size of a file of each kind [bytes]: far more than any such file needs, and less than the usual memory.
 namespace largest_file {
 inline constexpr std::uint64_t configuration = std::uint64_t{16} << 20;  ///< YAML: configurations, scenes, cameras
 inline constexpr std::uint64_t json = std::uint64_t{512} << 20;
@@ -22,31 +21,31 @@ inline constexpr std::uint64_t cloud = std::uint64_t{4} << 30;
 inline constexpr std::uint64_t unbounded = std::numeric_limits<std::uint64_t>::max();
 }  // namespace largest_file
 
-/// Why a file cannot be read, such as "no such file", "found a folder", "found a device, which may never end"
-/// or "found more than 16 MiB, the most that is read of such a file"; empty if nothing is known against it. Only
-/// regular files are read: a device or named pipe in the place of a recording's file may never end, or never begin.
-/// What a system passes to a program, /dev/stdin and a shell's <(command), is open already and is read as well.
+/// Describes why a file cannot be read, such as "no such file", "found a folder", "found a device, which may never end"
+/// or "found more than 16 MiB, the most that is read of such a file"; empty if it seems readable. Only regular files
+/// are read, because a device or named pipe may block or never end; descriptors that are open already, /dev/stdin and a
+/// shell's <(command), are read as well.
 std::string why_unreadable(const std::filesystem::path& file, std::uint64_t most_bytes);
 
 /// A file that is read from its beginning, unbuffered. A read that fails is an error with the system's reason, never
 /// the end of the file. Used by one thread.
 class InputFile {
  public:
-  /// Opens the file. Throws InputError: what is wrong, as why_unreadable() says it, then "; expected EXPECTED".
+  /// Opens the file. Throws InputError with the text of why_unreadable() and "; expected EXPECTED".
   InputFile(std::filesystem::path file, std::uint64_t most_bytes, std::string expected);
   ~InputFile();
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  /// Of a regular file as it was opened [bytes], 0 of others.
+  /// Size of a regular file when it was opened [bytes]; 0 for other files.
   std::uint64_t size() const { return size_; }
   /// Reads `count` bytes; fewer only at the end of the file. Throws InputError for a read that fails, and for a file
   /// that has more than `most_bytes`.
   std::size_t read(void* into, std::size_t count);
   /// Continues at a position of a regular file. Throws InputError if the system refuses it.
   void seek(std::uint64_t position);
-  /// Reads all that follows into a std::string or a std::vector of bytes, whose memory is used again.
+  /// Reads the rest of the file into a std::string or a std::vector of bytes, and reuses its memory.
   template <class Bytes>
   void read_rest(Bytes& bytes) {
     constexpr std::uint64_t least = 1 << 16;

@@ -19,14 +19,14 @@ struct CovisibilityEdge {
 struct KeyFrame {
   std::uint64_t sequence = 0;  ///< 0 for the first keyframe of the map, then increasing; never reused
   Frame frame;                 ///< frame.T_camera_world is the keyframe's pose, frame.map_points its observations
-  /// Which piece of the map it belongs to. A lost camera may begin a new piece, whose pose relative to the others is a
-  /// guess until a place seen in both joins them; files keep one piece.
+  /// Submap (as an Atlas map of ORB-SLAM3). A new submap may begin after a loss; its pose relative to the others is a
+  /// guess until a loop joins them. Files keep one submap.
   std::uint32_t piece = 0;
   std::vector<CovisibilityEdge> covisible;  ///< by decreasing weight, equal weights by increasing sequence
-  KeyFrameId parent;                        ///< in the spanning tree; invalid for the first keyframe of a piece
+  KeyFrameId parent;                        ///< in the spanning tree; invalid for the first keyframe of a submap
   std::vector<KeyFrameId> children;         ///< in the spanning tree, in order of insertion
-  /// What lengths around this keyframe have been multiplied by since it was made: 1 but for one camera whose loops were
-  /// closed. A pose that was stored relative to this keyframe follows by it; files do not keep it.
+  /// Accumulated scale correction of this keyframe by monocular loop closures (1 otherwise). It applies to poses that
+  /// are stored relative to this keyframe; files do not keep it.
   double scale = 1.0;
   std::vector<KeyFrameId> loop_edges;  ///< other ends of closed loops; a keyframe with one is never culled
 };

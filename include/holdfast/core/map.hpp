@@ -74,27 +74,27 @@ class Map {
   void remove_point(MapPointId point);
 
   /// Recounts the points that a keyframe shares with others and updates the covisibility edges on both sides. An edge
-  /// needs at least the minimum of set_covisibility_minimum() in shared points; the strongest neighbour is always kept. Sets the spanning-tree
-  /// parent of a new keyframe.
+  /// needs at least the minimum of set_covisibility_minimum() in shared points; the strongest neighbour is always kept.
+  /// Sets the spanning-tree parent of a new keyframe.
   void update_covisibility(KeyFrameId keyframe);
-  /// Makes `older` the spanning-tree parent of a keyframe that has none, because it shares no point with an older one:
-  /// its pose was estimated without the map.
+  /// Sets the spanning-tree parent of a keyframe that is not covisible with any older one, because its pose was
+  /// estimated without the map.
   void hang_on(KeyFrameId keyframe, KeyFrameId older);
   /// Removes a keyframe with its observations, covisibility edges and loop edges. Its children in the spanning tree get
   /// new parents among their neighbours. Its pose stays available relative to its parent; see pose_of().
   void remove_keyframe(KeyFrameId keyframe);
 
-  /// Number for a new piece of the map (KeyFrame::piece).
+  /// Number of a new submap (KeyFrame::piece).
   std::uint32_t new_piece() { return ++last_piece_; }
-  /// The piece of a keyframe; that of a removed one is its parent's. Nothing for a keyframe of a removed piece.
+  /// Submap of a keyframe; a removed one belongs to that of its parent. Nothing for a keyframe of a removed submap.
   std::optional<std::uint32_t> piece_of(KeyFrameId keyframe) const;
-  /// Makes two pieces one, which keeps the lower number: their keyframes are in the right place now.
+  /// Merges two submaps under the lower number, after their relative pose was corrected.
   void join_pieces(std::uint32_t first, std::uint32_t second);
-  /// The keyframes of all pieces but one, oldest first.
+  /// Keyframes of all other submaps, oldest first.
   std::vector<KeyFrameId> keyframes_outside(std::uint32_t piece) const;
-  /// How many keyframes a piece has.
+  /// Number of keyframes of a submap.
   std::size_t keyframes_in(std::uint32_t piece) const;
-  /// Removes the keyframes of all pieces but one, and their points. pose_of() knows them no longer.
+  /// Removes the keyframes and points of all other submaps; pose_of() has no pose of these keyframes any more.
   void keep_piece(std::uint32_t piece);
 
   /// Adds a loop edge between two keyframes, on both sides. Adding it again has no effect.
@@ -108,7 +108,7 @@ class Map {
   /// T_camera_world of a keyframe. For a removed keyframe, it is composed from the current pose of its parent and the
   /// relative pose at the time of removal.
   Eigen::Isometry3d pose_of(KeyFrameId keyframe) const;
-  /// KeyFrame::scale of a keyframe; that of a removed one goes on with its parent's.
+  /// KeyFrame::scale of a keyframe; a removed one follows the scale of its parent.
   double scale_of(KeyFrameId keyframe) const;
 
   /// Bound on the magnitude of the static log-odds that fuse_points() leaves on a point (EvidenceSettings::limit). It
@@ -126,7 +126,7 @@ class Map {
   /// The sensor that made the map.
   Sensor sensor() const { return sensor_; }
   void set_sensor(Sensor sensor) { sensor_ = sensor; }
-  /// Which features the keyframes have.
+  /// Type of the features of the keyframes.
   const MapFeatures& features() const { return features_; }
   void set_features(MapFeatures features) { features_ = std::move(features); }
   /// Names of the classes that points can have, by MapPoint::label; empty = points have no classes.
@@ -134,8 +134,8 @@ class Map {
   /// Replaces the names; those beyond the 255th, which no label refers to, are dropped. Points keep their class by its
   /// name: the label follows it, and becomes unknown if the name is gone.
   void set_classes(std::vector<std::string> names);
-  /// Gives each point the class that most of the masks of the keyframes that observe it show at its place; of equally
-  /// many the one with the lower label. A point that no mask shows keeps its class.
+  /// Sets the class of each point to the most frequent label among the masks of the keyframes that observe it; of equal
+  /// counts the lower label. A point without a label in any mask keeps its class.
   void classify_points();
 
   /// Incremented by touch(); a holder of copied map data compares versions to detect that the copy is outdated.
@@ -144,8 +144,8 @@ class Map {
   void touch() { ++version_; }
 
   void clear();
-  /// Removes all keyframes and points, as if the map had not begun: the next keyframe is the first. Unlike after
-  /// clear(), ids of what was removed stay unknown to the map and are not given again.
+  /// Removes all keyframes and points; the next keyframe is the first one. Unlike after clear(), removed ids are never
+  /// reused.
   void remove_all();
 
   /// Replaces the whole map by `content`, whose positions become the ids, and rebuilds the feature grids. The content

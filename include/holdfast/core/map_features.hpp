@@ -7,7 +7,7 @@
 
 namespace holdfast {
 
-/// Which features a map consists of. Those of another extractor show other corners and cannot be compared.
+/// Type of the features of a map. Features of different extractors cannot be compared.
 struct MapFeatures {
   std::string extractor = "orb";  ///< name of the module; empty if an object without a name extracted them
   DescriptorType descriptors;

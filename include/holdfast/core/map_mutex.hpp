@@ -54,11 +54,10 @@ class TrackingLock {
   MapMutex& mutex_;
 };
 
-/// A map that several threads work on, and its two locks, which are always taken in this order:
+/// A map shared by several threads, and its two locks, which are always acquired in this order:
 ///
-/// 1. `surgery`: the surgery mutex, held by whoever moves or removes keyframes and points (refining a keyframe,
-/// correcting
-///    a loop, applying a full adjustment). While it is held, what its holder has copied from the map stays valid.
+/// 1. `surgery`: the surgery mutex, held while keyframes and points are moved or removed (refining a keyframe,
+///    correcting a loop, applying a full adjustment). Ids that its holder copied from the map stay valid.
 /// 2. `mutex`: the map's own lock, held for a few milliseconds and never while solving.
 ///
 /// All three must outlive the user of the struct.

@@ -9,8 +9,8 @@
 
 namespace holdfast {
 
-/// The value in the middle of the sorted values, of an even number the upper one of the two: a robust mean that needs
-/// no sorting. Reorders the values, of which there must be at least one.
+/// Upper median: the central value, or the larger one of two central values. Reorders the values, of which there must
+/// be at least one.
 template <class Value>
 Value upper_median(std::vector<Value>& values) {
   HOLDFAST_CHECK(!values.empty(), "a median of no values");

@@ -20,8 +20,8 @@ class Module {
   Module(const Module&) = delete;
   Module& operator=(const Module&) = delete;
 
-  /// Suspicions about what the module was given: its files after construction, its frames after the last one. Called
-  /// before the first frame and after the last one, while no other thread uses the module. See core/warning.hpp.
+  /// Warnings about the module's input: its files after construction, its frames after the last one. Called before the
+  /// first frame and after the last one, while no other thread uses the module. See core/warning.hpp.
   virtual Warnings warnings() const { return {}; }
 
  protected:
@@ -37,7 +37,7 @@ struct CreationContext {
   /// Class names of the source's FrameTruth::class_labels, by index; empty if the source has none, and for the source
   /// itself.
   std::vector<std::string> class_names = {};
-  /// What is used of the frames, if the run says it; empty for all that the source has.
+  /// Sensor mode of the run, if it is configured; empty = all images of the source are used.
   std::optional<Sensor> sensor = {};
   /// SourceDescription::frame_timestamps of the source; empty for the source itself.
   std::vector<double> frame_timestamps = {};

@@ -9,7 +9,7 @@ namespace holdfast {
 
 /// A small random number generator whose results are the same on every machine and with every standard library
 /// (SplitMix64; Steele, Lea and Flood 2014). The distributions are implemented here for the same reason: the standard
-/// does not specify the algorithms of its own.
+/// does not specify the algorithms of the library's distributions.
 class Random {
  public:
   explicit Random(std::uint64_t seed = 1) : state_(seed) {}

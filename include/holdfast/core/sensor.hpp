@@ -7,7 +7,7 @@
 
 namespace holdfast {
 
-/// What a pipeline uses of a frame, and with it what a map is measured in.
+/// Sensor mode: the images of a frame that a pipeline uses, which determine the unit of the map.
 enum class Sensor {
   rgbd,    ///< colour and depth; the map is in metres
   stereo,  ///< a rectified pair; the map is in metres

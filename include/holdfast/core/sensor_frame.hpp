@@ -22,15 +22,13 @@ struct FrameTruth {
   std::vector<std::uint8_t> moving_objects;
 };
 
-/// The largest depth that counts as a measurement [m]: farther than any sensor sees, and near enough that maps can hold
-/// the points (map files: 1e9 m from the origin).
+/// Maximum valid depth [m]: beyond the range of any sensor, and within that of map files (1e9 m from the origin).
 constexpr float largest_measured_depth = 1e6F;
 
-/// Whether a pixel of a depth image holds a measurement: a positive number that a sensor can have measured.
+/// Whether a pixel of a depth image holds a valid measurement: a positive number up to the maximum depth.
 inline bool is_measured_depth(float depth) { return depth > 0.0F && depth <= largest_measured_depth; }
 
-/// What a camera, or a stereo pair of cameras, took at one moment. The images are shared, not copied, and must not be
-/// written to.
+/// Images of a camera or of a stereo pair at one time. The images are shared, not copied, and must not be written to.
 struct SensorFrame {
   std::uint64_t index = 0;  ///< number of the frame in its source, from 0; skipped frames are counted
   double timestamp = 0.0;   ///< time stamp of the colour image [s]

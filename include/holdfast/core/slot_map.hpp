@@ -15,7 +15,7 @@ namespace holdfast {
 
 /// A container of values that are referred to by stable ids instead of pointers. Insertion, look-up and removal take
 /// constant time. Iteration is in slot order, which depends on the sequence of calls only and never on addresses.
-/// References stay valid until the value is removed. Not synchronised; the owner locks.
+/// References stay valid until the value is removed. Not synchronised.
 template <class T, class Tag>
 class SlotMap {
  public:

@@ -45,7 +45,7 @@ class StageTimes {
   std::vector<Entry> entries_;
 };
 
-/// Adds the duration of its own lifetime to a stage.
+/// Adds the duration of its lifetime to a stage.
 class StageTimer {
  public:
   StageTimer(StageTimes& times, std::string_view stage) : times_(times), stage_(stage) {}

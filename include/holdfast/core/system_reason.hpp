@@ -7,7 +7,7 @@
 
 namespace holdfast {
 
-/// What the system says about one of its error numbers (errno), such as "No space left on device".
+/// The system's message for an error number (errno), such as "No space left on device".
 inline std::string system_reason(int error) { return std::generic_category().message(error); }
 
 }  // namespace holdfast

@@ -19,12 +19,12 @@ class LineReader {
   LineReader(const std::filesystem::path& file, const std::string& expected,
              std::uint64_t most_bytes = largest_file::text);
 
-  /// Gives the next line without its line feed; false after the last one. Throws InputError for a read that fails and
+  /// Reads the next line without its line feed; false after the last one. Throws InputError for a read that fails and
   /// for a line longer than longest_line.
   bool next(std::string& line);
-  /// Of the line given last, from 1.
+  /// Number of the last line, from 1.
   int number() const { return number_; }
-  /// Where that line stands, for errors.
+  /// Location of that line, for errors.
   SourceLocation location() const { return {file_.path().string(), number_}; }
 
  private:
@@ -33,7 +33,7 @@ class LineReader {
   InputFile file_;
   std::string expected_;
   std::vector<char> buffer_;
-  std::size_t begin_ = 0, end_ = 0;  // what of the buffer was not given yet
+  std::size_t begin_ = 0, end_ = 0;  // unread part of the buffer
   int number_ = 0;
 };
 

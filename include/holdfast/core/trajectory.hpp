@@ -27,11 +27,12 @@ Trajectory sort_and_clean(Trajectory trajectory);
 /// Reads a trajectory in TUM format: lines "timestamp tx ty tz qx qy qz qw", where '#' begins a comment. The result is
 /// sorted and cleaned as by sort_and_clean(). Quaternions are normalised, zero ones skipped. Throws InputError (file,
 /// line) for a file that cannot be read, a line that is not a pose of 8 numbers separated by blanks (the message names
-/// the format that it looks like), and a quaternion whose length differs from 1 by more than 0.02. Numbers do not
-/// show where the quaternion's real part is, so that commas, and a comment that names it first, are errors as well.
+/// the format that it looks like), and a quaternion whose length differs from 1 by more than 0.02. The position of the
+/// quaternion's real part cannot be recognised by its values, so that commas, and a comment that names it first, are
+/// errors as well.
 Trajectory read_trajectory(const std::filesystem::path& file);
 
-/// How the lines of a trajectory file say a pose.
+/// Format of the lines of a trajectory file.
 enum class TrajectoryFormat {
   tum,    ///< "t tx ty tz qx qy qz qw", t in seconds
   kitti,  ///< 12 numbers: the upper three rows of T_world_camera, row by row; no stamp
@@ -44,26 +45,26 @@ const char* trajectory_format_name(TrajectoryFormat format);
 /// The format of that name, or nothing.
 std::optional<TrajectoryFormat> find_trajectory_format(const std::string& name);
 
-/// How read_trajectory_file() reads.
+/// Options of read_trajectory_file().
 struct TrajectoryReading {
   std::optional<TrajectoryFormat> format = TrajectoryFormat::tum;  ///< empty: recognised by the first pose of the file
   std::vector<double> stamps;  ///< of the poses of a file in KITTI's format [s]; empty: ten poses a second, from 0
 };
 
-/// The content of a trajectory file, and how many of its lines are left out.
+/// Content of a trajectory file, and numbers of ignored lines.
 struct TrajectoryFile {
   Trajectory poses;  ///< as of read_trajectory()
   TrajectoryFormat format = TrajectoryFormat::tum;
   std::size_t not_finite = 0;
   std::size_t zero_quaternions = 0;
-  std::size_t repeated_stamps = 0;  ///< poses whose stamp another pose has, which stands later in the file
+  std::size_t repeated_stamps = 0;  ///< poses replaced by a later pose with the same stamp
 
-  /// What is left out, as "2 poses that are not finite, 1 pose with a zero quaternion"; empty if nothing is.
+  /// Ignored lines, as "2 poses that are not finite, 1 pose with a zero quaternion"; empty without any.
   std::string omissions() const;
 };
 
-/// Reads a trajectory as read_trajectory() does, which says nothing about what it leaves out, in any of the formats.
-/// Throws InputError as well for KITTI's format with more or fewer poses than stamps, or a matrix that is no rotation.
+/// Reads a trajectory in any of the formats as read_trajectory() does, and reports ignored lines. Throws InputError as
+/// well for KITTI's format with more or fewer poses than stamps, or an invalid rotation matrix.
 TrajectoryFile read_trajectory_file(const std::filesystem::path& file, const TrajectoryReading& reading = {});
 
 /// The comment line that begins every trajectory that is written: the columns and their units.

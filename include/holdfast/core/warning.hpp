@@ -9,22 +9,22 @@
 
 namespace holdfast {
 
-/// Suspicions: input or results that are plausible mistakes and may still be intended. What is certainly wrong is an
-/// error (core/error.hpp). The message of a warning states what was found, what it may be and how to correct it; the
-/// location is the file that has to be changed, and is empty for what no file says.
+/// Warnings: input or results that are probably mistakes, but may be intended. Certain mistakes are errors
+/// (core/error.hpp). The message states the finding, its probable cause and the remedy; the location is the file to
+/// change, or empty.
 ///
 /// A warning is shown by `holdfast check` if it is known before the first frame, and by `holdfast run` in the terminal,
 /// in `warnings` of run.json, in report.html and in RunRecord::warnings. To add one, choose the place that has the
-/// knowledge; nothing else is needed:
+/// information; nothing else is needed:
 ///
 /// - configuration: `result_.warnings` of the resolver (modules/config/configuration.cpp);
 /// - recording, calibration file, network, masks: override Module::warnings() of the source, segmenter, filter or
-///   observer. What its constructor finds is shown by `check`, what its frames show at the end of the run;
-/// - parts that fit together badly: PipelineBuilder::suspect();
+///   observer. Findings of its constructor are shown by `check`, those of frames at the end of the run;
+/// - modules that do not fit together: PipelineBuilder::suspect();
 /// - figures of a whole run, such as inliers: find_warnings() of modules/run/run_warnings.cpp;
 /// - trajectories: Evaluation::warnings, which `holdfast evaluate` shows, too.
 ///
-/// The text is constant once it was given: text with counts that grow with the frames is given at the end only.
+/// The text must not change between calls: counts that grow with the frames are reported at the end only.
 using Warnings = std::vector<Diagnostic>;
 
 /// Appends a warning, unless the same text is there.

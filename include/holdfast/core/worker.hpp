@@ -13,14 +13,14 @@
 
 namespace holdfast {
 
-/// A thread that does jobs one after the other, in the order in which they come. An exception ends it: what waits is
-/// abandoned, and the exception comes back from rethrow(). Debuggers and `top -H` show the thread by its name.
+/// A thread that executes jobs in their order of arrival. An exception ends it: waiting jobs are discarded, and
+/// rethrow() throws the exception. Debuggers and `top -H` show the name of the thread.
 template <class Job>
 class Worker {
  public:
   Worker(std::string name, std::size_t capacity, std::function<void(Job&)> work)
       : name_(std::move(name)), work_(std::move(work)), queue_(capacity), thread_([this] { run(); }) {}
-  /// Abandons what waits and waits for the job in progress.
+  /// Discards waiting jobs and waits for the job in progress.
   ~Worker() {
     queue_.close(true);
     if (thread_.joinable()) thread_.join();
@@ -30,12 +30,12 @@ class Worker {
 
   BoundedQueue<Job>& queue() { return queue_; }
   const BoundedQueue<Job>& queue() const { return queue_; }
-  /// Does what waits, then ends.
+  /// Executes the waiting jobs, then ends.
   void finish() {
     queue_.close();
     if (thread_.joinable()) thread_.join();
   }
-  /// Throws what a job threw, once.
+  /// Rethrows the exception of a job, once.
   void rethrow() {
     const std::lock_guard lock(mutex_);
     if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));

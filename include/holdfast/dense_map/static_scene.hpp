@@ -22,7 +22,7 @@ class StaticScene {
   const KeptView& add(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse, const cv::Mat& labels,
                       const std::vector<bool>& left_out);
 
-  /// Forgets the views of keyframes that were removed with their piece of the map, and have no pose any more.
+  /// Removes the views of keyframes that were removed with their submap and have no pose any more.
   void forget_removed(const Map& map);
 
   const DenseMapSettings& settings() const { return settings_; }

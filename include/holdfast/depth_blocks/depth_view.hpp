@@ -27,7 +27,7 @@ struct BlockGrid {
 
   /// Takes blocks of one view to another view of the same camera.
   geometry::Warp warp(const Eigen::Isometry3d& T_other_this) const { return {T_other_this, {fx, fy, cx, cy, 0.0}}; }
-  /// Where the warp sees the surface of a block with a depth [m].
+  /// Projection of the surface of a block with a depth [m].
   std::optional<geometry::WarpedPoint> warped(const geometry::Warp& warp, int column, int row, float depth) const {
     return warp(ray_x[static_cast<std::size_t>(column)], ray_y[static_cast<std::size_t>(row)], depth);
   }

@@ -76,11 +76,11 @@ struct SegmentError {
   double rotation = 0.0;          ///< the same [deg/m]
 };
 
-/// How the scale of an estimate of unknown scale changes along the path, for the alignment sim3. The pairs are divided
-/// into ten windows of equal length of true path; each is aligned by itself with a scale, whose ratio to the scale of
-/// the alignment of the whole is the window's: above 1 where the estimate is too small. A window with fewer than ten
-/// pairs, or without motion, is left out. An estimate whose error is not small compared with the motion in a window has
-/// scales below their true values there.
+/// Scale drift of an estimate along the path, for the alignment sim3. The pairs are divided into ten windows of equal
+/// length of true path; each is aligned by itself with a scale, whose ratio to the scale of the alignment of the whole
+/// is the window's: above 1 where the estimate is too small. A window with fewer than ten pairs, or without motion, is
+/// left out. An estimate whose error is not small compared with the motion in a window has scales below their true
+/// values there.
 struct ScaleDrift {
   /// A tenth of the true path.
   struct Window {
@@ -88,7 +88,7 @@ struct ScaleDrift {
     std::size_t pairs = 0;
     double scale = 1.0;  ///< relative to the whole
   };
-  std::vector<Window> windows;  ///< in temporal order; fewer than two: nothing can be said
+  std::vector<Window> windows;  ///< in temporal order; with fewer than two the drift is undefined
   double drift = 0.0;           ///< scale of the last window / scale of the first - 1
   double spread = 0.0;          ///< largest scale / smallest - 1
 };
@@ -106,14 +106,14 @@ struct Evaluation {
   RelativeError error_per_time;
   RelativeError error_per_way;
   SegmentError segment_error;
-  std::optional<ScaleDrift> scale_drift;  ///< empty unless the alignment is sim3, and where nothing can be said
+  std::optional<ScaleDrift> scale_drift;  ///< empty unless the alignment is sim3 and the drift is defined
   std::optional<Coverage> coverage;       ///< empty if the frames were not given
   Trajectory truth_track;                 ///< ground truth between the first and the last pose of the estimate
   Trajectory estimate_track;              ///< all poses of the estimate, aligned: in the world frame of the truth
   /// Mean over the compared true poses of the direction that is up in the image (-y of the camera), in the frame of the
   /// truth. Near 1 in length for a camera that is carried upright: then it is opposite to gravity.
   Eigen::Vector3d mean_up = Eigen::Vector3d::Zero();
-  /// Suspicions that errors have another cause than the estimate, each a clause with its remedy (core/warning.hpp): the
+  /// Warnings about causes of errors other than the estimate, each a clause with its remedy (core/warning.hpp): the
   /// unit of stamps or lengths, a late clock, inverted, mirrored or unmoved poses, a truth of another body, poses
   /// without a truth.
   Warnings warnings;

@@ -36,7 +36,7 @@ struct Similarity {
 
 namespace detail {
 
-/// Marks the points within the threshold; returns their number. What is not finite is never within.
+/// Marks the points within the threshold and returns their number; points that are not finite are outliers.
 inline int mark_inliers(std::span<const Eigen::Vector3d> source, std::span<const Eigen::Vector3d> target,
                         const Similarity& similarity, double threshold, std::vector<std::uint8_t>& inlier) {
   int count = 0;
@@ -49,10 +49,10 @@ inline int mark_inliers(std::span<const Eigen::Vector3d> source, std::span<const
 
 }  // namespace detail
 
-/// The motion (or, `with_scale`, the similarity) that takes source points to target points with the least squared
-/// distance, in closed form (Umeyama, "Least-squares estimation of transformation parameters between two point
-/// patterns", PAMI 13(4), 1991, equations 40 to 42). Empty for fewer than three points, points on one line, or numbers
-/// that are not finite; different sizes throw CheckError.
+/// Least-squares rigid motion (or, `with_scale`, similarity) from source to target points, in closed form (Umeyama,
+/// "Least-squares estimation of transformation parameters between two point patterns", PAMI 13(4), 1991, equations 40
+/// to 42). Empty for fewer than three points, points on one line, or numbers that are not finite; different sizes throw
+/// CheckError.
 inline std::optional<Similarity> align_points(std::span<const Eigen::Vector3d> source,
                                               std::span<const Eigen::Vector3d> target, bool with_scale = false) {
   HOLDFAST_CHECK(source.size() == target.size(), "source " << source.size() << " target " << target.size());
@@ -93,15 +93,15 @@ struct AlignmentRansacOptions {
   std::uint64_t seed = 1;
 };
 
-/// The best alignment, and which pairs agree with it.
+/// The best alignment and its inliers.
 struct AlignmentRansacResult {
   Similarity similarity;
   std::vector<std::uint8_t> inlier;
   int inliers = 0;
 };
 
-/// align_points from random samples of three, then from all inliers of the best sample (Fischler and Bolles 1981). The
-/// same input and seed give the same result. Empty when fewer than minimum_inliers agree; different sizes throw
+/// RANSAC (Fischler and Bolles 1981): align_points on random samples of three, then on all inliers of the best sample.
+/// The same input and seed give the same result. Empty when fewer than minimum_inliers agree; different sizes throw
 /// CheckError.
 inline std::optional<AlignmentRansacResult> align_points_ransac(std::span<const Eigen::Vector3d> source,
                                                                 std::span<const Eigen::Vector3d> target,

@@ -18,8 +18,8 @@ namespace holdfast::geometry {
 
 namespace detail {
 
-/// The matrix that moves pixels to a mean of 0 and a mean distance of sqrt(2) from it (section 4.4.4); empty for pixels
-/// that coincide or are not finite.
+/// Isotropic normalisation (section 4.4.4): the matrix that moves pixels to mean 0 and mean distance sqrt(2); empty for
+/// pixels that coincide or are not finite.
 inline std::optional<Eigen::Matrix3d> normalising_transform(std::span<const Eigen::Vector2d> pixels) {
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (const Eigen::Vector2d& pixel : pixels) mean += pixel;
@@ -34,7 +34,8 @@ inline std::optional<Eigen::Matrix3d> normalising_transform(std::span<const Eige
   return transform;
 }
 
-/// The vector of unit length that the squared equations, summed in `normal`, make smallest, as a matrix by rows.
+/// Homogeneous least squares: the unit vector that minimises the equations whose squares are summed in `normal`, as a
+/// matrix by rows.
 inline Eigen::Matrix3d least_squares_matrix(const Eigen::Matrix<double, 9, 9>& normal) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver(normal);
   const Eigen::Matrix<double, 9, 1> solution = solver.eigenvectors().col(0);

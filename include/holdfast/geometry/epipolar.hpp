@@ -15,8 +15,8 @@ inline Eigen::Matrix3d essential_matrix(const Eigen::Isometry3d& T_a_world, cons
   return hat(T_b_a.translation()) * T_b_a.linear();
 }
 
-/// Fundamental matrix: pixel_b^T * F * pixel_a = 0 for undistorted pixels (x, y, 1) (equation 9.2). The camera is any
-/// that CameraTraits knows.
+/// Fundamental matrix: pixel_b^T * F * pixel_a = 0 for undistorted pixels (x, y, 1) (equation 9.2). Any camera type
+/// with CameraTraits.
 template <class Camera>
 Eigen::Matrix3d fundamental_matrix(const Camera& camera_model, const Eigen::Isometry3d& T_a_world,
                                    const Eigen::Isometry3d& T_b_world) {
@@ -26,7 +26,7 @@ Eigen::Matrix3d fundamental_matrix(const Camera& camera_model, const Eigen::Isom
   return to_ray.transpose() * essential_matrix(T_a_world, T_b_world) * to_ray;
 }
 
-/// The line in image b on which the point behind a pixel of image a is seen: a * x + b * y + c = 0.
+/// Epipolar line in image b of a pixel in image a: a * x + b * y + c = 0.
 struct EpipolarLine {
   double a = 0.0, b = 0.0, c = 0.0;
 
@@ -36,8 +36,8 @@ struct EpipolarLine {
     const double norm2 = a * a + b * b, value = a * x + b * y + c;
     return norm2 > 0.0 ? value * value / norm2 : std::numeric_limits<double>::infinity();
   }
-  /// Whether the squared distance is at most `limit` variances of a pixel coordinate; `inverse_sigma2` [1/px^2]. Needs
-  /// no division, for searches through many pixels. Never where there is no line.
+  /// Whether the squared distance is at most `limit` variances of a pixel coordinate; `inverse_sigma2` [1/px^2].
+  /// Without division, for searches through many pixels. False if there is no line.
   bool is_near(double x, double y, double inverse_sigma2, double limit = 3.841) const {
     const double norm2 = a * a + b * b, value = a * x + b * y + c;
     return norm2 > 0.0 && value * value * inverse_sigma2 <= limit * norm2;

@@ -37,7 +37,7 @@ struct CameraTraits {
   }
 };
 
-/// The intrinsics of any camera that CameraTraits knows.
+/// Intrinsics of any camera type with CameraTraits.
 template <class Camera>
 Pinhole pinhole_of(const Camera& camera) {
   return CameraTraits<Camera>::pinhole(camera);

@@ -18,7 +18,7 @@ namespace holdfast::geometry {
 
 namespace detail {
 
-/// Whether every number of an observation can be used; a missing right_x (NaN) can.
+/// Whether all numbers of an observation are finite; right_x may be missing (NaN).
 template <class Problem>
 bool is_finite(const Problem& problem, std::size_t i) {
   using Traits = PoseProblemTraits<Problem>;
@@ -28,15 +28,15 @@ bool is_finite(const Problem& problem, std::size_t i) {
          inverse_variance > 0.0;
 }
 
-/// When a round of Levenberg-Marquardt ends.
+/// Stopping criteria of a round of Levenberg-Marquardt.
 struct RoundLimits {
   int iterations;   ///< at most
   double relative;  ///< it ends when the predicted decrease is below this times the cost and below `absolute`
-  double absolute;  ///< the decrease is half the squared number of standard deviations that the pose still has to go
+  double absolute;  ///< half the squared Mahalanobis distance from the pose to the predicted minimum
 };
 
 /// The state of adjust_pose(): observations in batches, the current pose and its normal equations. A class template, so
-/// that only who calls adjust_pose() compiles the decompositions of Eigen.
+/// that only callers of adjust_pose() compile the decompositions of Eigen.
 template <class Problem>
 class PoseAdjustment {
  public:

@@ -9,7 +9,7 @@
 
 #include "holdfast/geometry/pinhole.hpp"
 
-/// The pose of one camera from pixels of points that are known in the world: the problem, its solvers' settings and
+/// Pose of one camera from 2D-3D correspondences (PnP, motion-only adjustment): the problem, its solvers' settings and
 /// their result. The solvers are templates over the caller's own type of problem, which PoseProblemTraits describes;
 /// they are declared here, so that a library can instantiate them once, and defined in pose_adjustment.hpp and pnp.hpp.
 namespace holdfast::geometry {
@@ -18,25 +18,25 @@ namespace holdfast::geometry {
 inline constexpr double chi_square_two = 5.991;
 inline constexpr double chi_square_three = 7.815;
 
-/// The noise of a depth sensor such as the Kinect, as a disparity of the stereo pair that its depth stands for: the same
-/// at every distance, and independent of the noise of the pixel (Khoshelham and Elberink 2012, equation 13, with the
-/// errors that neighbouring pixels share). Its cost is linear beyond `disparity_threshold` deviations, because a wrong
-/// depth says nothing against the pixel.
+/// Disparity noise of a depth sensor such as the Kinect, in the equivalent stereo pair: the same at every distance, and
+/// independent of the noise of the pixel (Khoshelham and Elberink 2012, equation 13, with the errors that neighbouring
+/// pixels share). Its cost is linear beyond `disparity_threshold` deviations, because a wrong depth does not make the
+/// pixel an outlier.
 inline constexpr double disparity_sigma = 0.7;  ///< [px]
 inline constexpr double disparity_threshold = 1.5;
 
 /// Points nearer to the image plane than this, or behind it, are outliers [m].
 inline constexpr double minimum_depth = 1e-3;
 
-/// Tells the solvers how to read and write a caller's problem. Specialise it; all members are static functions:
+/// Access of the solvers to a caller's problem. Specialise it; all members are static functions:
 ///
 ///   Pinhole pinhole(const Problem&)                        the camera
 ///   std::size_t size(const Problem&)                       number of observations
 ///   Eigen::Vector3d point(const Problem&, std::size_t i)   point that observation i shows, in the world frame [m]
 ///   Eigen::Vector2d pixel(const Problem&, std::size_t i)   where it was observed [px], without lens distortion
 ///   Eigen::Isometry3d pose(const Problem&)                 T_camera_world, the first guess
-///   void set_pose(Problem&, const Eigen::Isometry3d&)      takes the result
-///   void set_inlier(Problem&, std::size_t i, bool)         takes whether observation i fits the result
+///   void set_pose(Problem&, const Eigen::Isometry3d&)      receives the result
+///   void set_inlier(Problem&, std::size_t i, bool)         receives whether observation i is an inlier
 ///
 /// and, where the default does not serve:
 ///
@@ -92,13 +92,13 @@ struct PnpOptions {
 
 /// Motion-only bundle adjustment (Mur-Artal and Tardos 2017, equation 3): the pose of one camera against fixed points
 /// by Levenberg-Marquardt on a left perturbation of T_camera_world. The residuals are the pixel's, weighted by its
-/// information, and that of the disparity x - right_x, whose noise is a setting of its own.
+/// information, and that of the disparity x - right_x, with separate noise.
 ///
 /// After each round every observation is tested anew: it is an outlier if its squared residual times its information
-/// (x, y and right_x) exceeds the chi-square limit, or if its point lies behind the camera. Outliers do not count in the next round.
-/// Huber's threshold is the square root of the limit. The weight scales an observation's cost but not its chi-square
-/// test; weight 0 excludes it from the pose and from the count of inliers, while set_inlier still tells whether it
-/// fits. An observation with a number that is not finite is never an inlier.
+/// (x, y and right_x) exceeds the chi-square limit, or if its point lies behind the camera. Outliers do not count in
+/// the next round. Huber's threshold is the square root of the limit. The weight scales an observation's cost but not
+/// its chi-square test; weight 0 excludes it from the pose and from the count of inliers, while set_inlier still tells
+/// whether it fits. An observation with a number that is not finite is never an inlier.
 ///
 /// The result is not usable, the pose unchanged and no observation an inlier, if fewer than three observations count,
 /// if the points do not determine the pose, or if fewer than three inliers remain.
@@ -109,10 +109,10 @@ struct PnpOptions {
 template <PoseProblemType Problem>
 PoseSummary adjust_pose(Problem& problem, const PoseAdjustmentOptions& options = {});
 
-/// The pose of a camera without a first guess: solve_p3p on random samples of three, evaluated by the chi-square test
-/// of every observation (Fischler and Bolles 1981), then adjust_pose from the best sample. The first guess in the
-/// problem is ignored. The same input and seed give the same result. The result is not usable, and the pose unchanged,
-/// if fewer than minimum_inliers agree.
+/// PnP by RANSAC (Fischler and Bolles 1981), without an initial guess: solve_p3p on random samples of three, evaluated
+/// by the chi-square test of every observation, then adjust_pose from the best sample. The first guess in the problem
+/// is ignored. The same input and seed give the same result. The result is not usable, and the pose unchanged, if fewer
+/// than minimum_inliers agree.
 template <PoseProblemType Problem>
 PoseSummary find_pose(Problem& problem, const PnpOptions& options = {});
 
@@ -142,7 +142,7 @@ double weight(const Problem& problem, std::size_t i) {
     return 1.0;
 }
 
-/// Lets the traits prepare the problem, and leaves no observation an inlier.
+/// Lets the traits prepare the problem, and marks all observations as outliers.
 template <class Problem>
 void begin(Problem& problem) {
   using Traits = PoseProblemTraits<Problem>;

@@ -16,7 +16,7 @@
 /// processor has it. Needs the vector extensions of GCC or Clang.
 namespace holdfast::geometry::detail {
 
-/// Four observations side by side. The width is fixed, so that sums have the same order whatever the processor offers.
+/// Four observations side by side. The width is fixed, so that sums have the same order on every processor.
 using Batch = double __attribute__((vector_size(32)));
 inline constexpr std::size_t batch_size = 4;
 
@@ -41,7 +41,7 @@ struct PoseSystem {
   double cost = 0.0;  ///< half the weighted sum of (robust) squared residuals
 };
 
-/// Camera and pose as the kernels read them.
+/// Camera and pose in the layout of the kernels.
 struct PoseView {
   PoseView(const Pinhole& camera, const Eigen::Isometry3d& T_camera_world)
       : fx(camera.fx), fy(camera.fy), cx(camera.cx), cy(camera.cy), fx_baseline(camera.fx * camera.baseline) {
@@ -55,8 +55,8 @@ struct PoseView {
   double fx, fy, cx, cy, fx_baseline;
 };
 
-/// Cost of a point behind the camera, in units of its limit: more than any residual that matters, so that a step which
-/// pushes points through the camera is refused.
+/// Cost of a point behind the camera, in units of its limit: larger than relevant residuals, so that a step that moves
+/// points behind the camera is rejected.
 inline constexpr double behind_cost = 100.0;
 
 /// Sums over all observations of the blocks of the Hessian (t: translation, r: rotation), of the gradient and of the
@@ -99,8 +99,7 @@ template <bool robust>
     const Batch disparity_ratio = wrong_depth ? disparity_limit / chi_disparity : one;
     Batch disparity_scale;
     for (std::size_t k = 0; k < batch_size; ++k) disparity_scale[k] = std::sqrt(disparity_ratio[k]);
-    const Batch disparity_cost =
-        wrong_depth ? 2.0 * chi_disparity * disparity_scale - disparity_limit : chi_disparity;
+    const Batch disparity_cost = wrong_depth ? 2.0 * chi_disparity * disparity_scale - disparity_limit : chi_disparity;
     const Batch chi = o.information * (error_x * error_x + error_y * error_y) + disparity_cost;
     Batch weight = in_front ? o.weight : Batch{};
     Batch cost = chi;

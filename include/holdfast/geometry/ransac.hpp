@@ -9,7 +9,8 @@
 
 namespace holdfast::geometry {
 
-/// `size` different numbers below `count`, in the order in which they are drawn; count must be at least size.
+/// Random sample without repetition: `size` numbers below `count`, in the order of drawing; count must be at least
+/// size.
 template <std::size_t size>
 std::array<std::uint32_t, size> sample_without_repeat(Random& random, std::uint32_t count) {
   std::array<std::uint32_t, size> result{};

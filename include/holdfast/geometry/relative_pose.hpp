@@ -5,7 +5,7 @@
 
 namespace holdfast::geometry {
 
-/// Residual of a measured relative pose in a pose graph, and its derivatives.
+/// Residual of a relative pose measurement in a pose graph, and its Jacobians.
 struct RelativePoseError {
   Vector6d residual;  ///< log(T_to_from^-1 * T_to_world * T_from_world^-1): translation [m], rotation [rad]
   Matrix6d by_from;   ///< derivative by a left perturbation of T_from_world

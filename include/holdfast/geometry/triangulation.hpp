@@ -11,9 +11,8 @@
 
 namespace holdfast::geometry {
 
-/// The point nearest to two rays in the least-squares sense: the midpoint of their shortest connection (Hartley and
-/// Sturm 1997, section 5.3). Rays start at the camera centres [m, world]; directions need not be of unit length. Empty
-/// for parallel rays.
+/// Midpoint method (Hartley and Sturm 1997, section 5.3): the midpoint of the shortest connection of two rays. Rays
+/// start at the camera centres [m, world]; directions need not be of unit length. Empty for parallel rays.
 inline std::optional<Eigen::Vector3d> triangulate_midpoint(const Eigen::Vector3d& centre_a,
                                                            const Eigen::Vector3d& direction_a,
                                                            const Eigen::Vector3d& centre_b,
@@ -28,9 +27,8 @@ inline std::optional<Eigen::Vector3d> triangulate_midpoint(const Eigen::Vector3d
   return 0.5 * (centre_a + along_a * direction_a + centre_b + along_b * direction_b);
 }
 
-/// The point that solves the four projection equations of two views in the algebraic least-squares sense (Hartley and
-/// Sturm 1997, section 5.1, homogeneous). `ray_a`, `ray_b`: (x, y, 1) in the camera frames. Empty for a point at
-/// infinity.
+/// Linear triangulation (Hartley and Sturm 1997, section 5.1, homogeneous): algebraic least squares of the four
+/// projection equations of two views. `ray_a`, `ray_b`: (x, y, 1) in the camera frames. Empty for a point at infinity.
 inline std::optional<Eigen::Vector3d> triangulate_linear(const Eigen::Isometry3d& T_a_world,
                                                          const Eigen::Vector3d& ray_a,
                                                          const Eigen::Isometry3d& T_b_world,
@@ -49,32 +47,32 @@ inline std::optional<Eigen::Vector3d> triangulate_linear(const Eigen::Isometry3d
   return solution.head<3>() / solution.w();
 }
 
-/// Conditions that triangulate() sets a point.
+/// Conditions of triangulate().
 struct TriangulationOptions {
   double max_parallax_cosine = 0.9998;  ///< 0.9998 is 1.15 degrees
   double limit = 5.991;                 ///< chi-square of the reprojection in each view
 };
 
-/// Whether a triangulated point is good, or why not.
+/// Status of a triangulated point.
 enum class TriangulationStatus { good, little_parallax, behind_camera, large_error };
 
-/// A point from two views, and whether it can be used.
+/// A triangulated point and its status.
 struct TriangulatedPoint {
   TriangulationStatus status = TriangulationStatus::little_parallax;
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< world [m]; valid only with status good
   double parallax_cosine = 1.0;                     ///< of the angle between the two rays
 };
 
-/// A point as one camera observed it.
+/// Observation of a point by one camera.
 struct PointView {
   Eigen::Isometry3d T_camera_world;
   Eigen::Vector2d pixel;  ///< without lens distortion [px]
   double sigma2 = 1.0;    ///< variance of a pixel coordinate [px^2]
 };
 
-/// A map point from two views by the same camera, checked: enough parallax, in front of both cameras, and reprojected
-/// within the chi-square limit in both (Mur-Artal et al. 2015, section VI-D). The camera is any that CameraTraits
-/// knows.
+/// Triangulation of a map point from two views of the same camera, with checks of parallax, positive depth and
+/// reprojection error (chi-square) in both views (Mur-Artal et al. 2015, section VI-D). Any camera type with
+/// CameraTraits.
 template <class Camera>
 TriangulatedPoint triangulate(const Camera& camera_model, const PointView& a, const PointView& b,
                               const TriangulationOptions& options = {}) {

@@ -18,8 +18,8 @@ namespace holdfast::geometry {
 /// minimises the Sampson distances of the pairs (Hartley and Zisserman, section 11.4.3), so that the unknown depth of
 /// every point is accounted for. It is large where the pairs cover a small part of the image, since rotation and
 /// translation move them alike, and where parallax is small. Infinite for fewer than five pairs or where the direction
-/// is undetermined. `T_b_a` maps points of camera a to camera b; the length of its translation does not matter. The
-/// camera is any that CameraTraits knows.
+/// is undetermined. `T_b_a` maps points of camera a to camera b; the length of its translation does not matter. Any
+/// camera type with CameraTraits.
 template <class Camera>
 double direction_deviation(const Camera& camera_model, std::span<const PixelPair> pairs,
                            const Eigen::Isometry3d& T_b_a) {

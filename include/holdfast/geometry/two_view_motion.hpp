@@ -18,29 +18,29 @@
 
 namespace holdfast::geometry {
 
-/// A feature that two views show, without lens distortion.
+/// A feature matched in two views, without lens distortion.
 struct PixelPair {
   Eigen::Vector2d a, b;   ///< [px]
   double sigma2_a = 1.0;  ///< variance of a pixel coordinate in a [px^2]
   double sigma2_b = 1.0;  ///< in b [px^2]
 };
 
-/// Conditions that find_two_view_motion() sets.
+/// Conditions of find_two_view_motion().
 struct TwoViewOptions {
   int iterations = 200;            ///< samples of eight pairs, for both models
   double homography_share = 0.45;  ///< of both scores; above it the scene is taken for planar (equation 5)
   int minimum_points = 50;         ///< triangulated with enough parallax, in front of both cameras
-  double minimum_inliers = 0.5;    ///< share of the pairs that the model must explain; the others move, or are wrong
+  double minimum_inliers = 0.5;    ///< minimum share of inliers of the model; other pairs move or are mismatches
   double minimum_share = 0.75;     ///< of the model's inliers that must be in front of both cameras and reproject well
   double rival_share = 0.75;       ///< a second motion that explains more than this share makes the result ambiguous
   double max_parallax_cosine = 0.99985;  ///< 1 degree
   std::uint64_t seed = 1;
 };
 
-/// The motion between two views and the points that both show.
+/// Relative pose of two views and the triangulated points.
 struct TwoViewMotion {
   Eigen::Isometry3d T_b_a = Eigen::Isometry3d::Identity();  ///< its translation has unit length
-  bool is_planar = false;                                   ///< it comes from the homography
+  bool is_planar = false;                                   ///< whether the homography was chosen
   std::vector<Eigen::Vector3d> points;                      ///< one for each pair, in camera a
   std::vector<std::uint8_t> good;                           ///< whether the point can be used
   int good_points = 0;
@@ -95,7 +95,7 @@ inline void score_homography(std::span<const PixelPair> pairs, const Eigen::Matr
   });
 }
 
-/// What a motion makes of the inliers of a model.
+/// Evaluation of a motion by the inliers of a model.
 struct TwoViewHypothesis {
   TwoViewMotion motion;
   int explained = 0;  // points in front of both cameras that project onto their pixels, whatever their parallax
@@ -126,11 +126,11 @@ inline TwoViewHypothesis explain(const Pinhole& camera, std::span<const PixelPai
 
 }  // namespace detail
 
-/// The motion of one camera between two views of a scene whose depth is unknown (Mur-Artal et al. 2015, section IV): a
-/// homography and a fundamental matrix are estimated from the same samples, the better scored one is chosen, and of the
-/// motions that it allows the one that puts clearly more points in front of both cameras. Empty when pairs are few,
-/// when parallax is small, or when a second motion explains nearly as much, as it often does before one plane. The same
-/// input and seed give the same result. The camera is any that CameraTraits knows.
+/// Two-view initialisation of one camera (Mur-Artal et al. 2015, section IV): a homography and a fundamental matrix are
+/// estimated from the same samples, the better scored one is chosen, and of the motions that it allows the one that
+/// puts clearly more points in front of both cameras. Empty if there are too few pairs, too little parallax, or a
+/// second motion that explains nearly as many points, as often for a planar scene. The same input and seed give the
+/// same result. Any camera type with CameraTraits.
 template <class Camera>
 std::optional<TwoViewMotion> find_two_view_motion(const Camera& camera_model, std::span<const PixelPair> pairs,
                                                   const TwoViewOptions& options = {}) {

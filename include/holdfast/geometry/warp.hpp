@@ -8,23 +8,23 @@
 
 #include "holdfast/geometry/pinhole.hpp"
 
-/// Comparison of the depth images of two views: where a measured point lies in the other view, and whether the other
-/// view sees through it. In single precision, which suffices for depth images.
+/// Warping of depth images between two views: projection of measured points into the other view, and test for free
+/// space. In single precision, which suffices for depth images.
 namespace holdfast::geometry {
 
-/// A point as another view would see it.
+/// Projection of a point into another view.
 struct WarpedPoint {
   Eigen::Vector3f point;  ///< in the camera frame of the other view [m]; its z is the expected depth
   float x, y;             ///< pixel in the other view, perhaps outside its image [px]
 };
 
-/// The pixels of a row of one view as another view would see them: entry i of each array belongs to pixel i.
+/// Projections of the pixels of a row into another view: entry i of each array belongs to pixel i.
 struct WarpedRow {
   Eigen::ArrayXf z;     ///< depth in the other view [m]
   Eigen::ArrayXf x, y;  ///< pixel in the other view [px]
 };
 
-/// Takes pixels with depth from one view to another:
+/// Warps pixels with depth from one view to another:
 ///
 ///   point = depth * R * (ray_x, ray_y, 1) + t,  x = fx * point.x / point.z + cx,  y = fy * point.y / point.z + cy
 ///
@@ -54,20 +54,19 @@ class Warp {
   float ray_x(float x) const { return (x - from_.cx) / from_.fx; }
   float ray_y(float y) const { return (y - from_.cy) / from_.fy; }
 
-  /// Where the second view sees the point that the first one measured along a ray at a depth [m] along its optical
-  /// axis.
+  /// Projection into the second view of a point on a ray of the first view at a depth [m] along its optical axis.
   std::optional<WarpedPoint> operator()(float ray_x, float ray_y, float depth) const {
     return project(
         {coordinate(0, ray_x, ray_y, depth), coordinate(1, ray_x, ray_y, depth), coordinate(2, ray_x, ray_y, depth)});
   }
-  /// Where the second view sees a point that is given in its camera frame [m].
+  /// Projection into the second view of a point in its camera frame [m].
   std::optional<WarpedPoint> project(const Eigen::Vector3f& point) const {
     if (!is_visible(point.z())) return std::nullopt;
     const float inverse = 1.0F / point.z();
     return WarpedPoint{point, to_.fx * point.x() * inverse + to_.cx, to_.fy * point.y() * inverse + to_.cy};
   }
   /// The same for a row of pixels, with the same bits and vectorised: `rays_x` and `depth` have an entry for each of
-  /// them. x and y mean nothing where !is_visible(z), and nothing does where depth is not positive.
+  /// them. x and y are invalid where !is_visible(z); all values are invalid where depth is not positive.
   void row(const Eigen::Ref<const Eigen::ArrayXf>& rays_x, float ray_y, const Eigen::Ref<const Eigen::ArrayXf>& depth,
            WarpedRow& to) const {
     to.z = coordinate(2, rays_x, ray_y, depth);
@@ -76,8 +75,7 @@ class Warp {
   }
   /// Whether a point at depth z [m] in the second view has a pixel there, perhaps outside its image.
   bool is_visible(float z) const { return z >= minimum_depth_; }
-  /// Where the second view sees a point at infinite distance along a ray of the first view: the effect of rotation
-  /// alone.
+  /// Projection into the second view of a point at infinity on a ray of the first view (rotation only).
   std::optional<WarpedPoint> project_direction(float ray_x, float ray_y) const {
     return project(R_ * Eigen::Vector3f(ray_x, ray_y, 1.0F));
   }
@@ -98,10 +96,9 @@ class Warp {
   float minimum_depth_;
 };
 
-/// Whether a depth image shows that the space up to `limit` [m] is free at a cell: of the 3 x 3 cells around it at
-/// least six measured a depth of `limit` or more, and none a smaller one, because near a depth edge a small error of
-/// the pose would have the same effect as free space. `depth`: row by row, 0 = no measurement; the cell must not lie on
-/// the border.
+/// Free-space test (see-through): whether at least six of the 3 x 3 cells around a cell measured a depth of `limit` [m]
+/// or more, and none a smaller one, because near a depth edge a small pose error would look like free space. `depth`:
+/// row by row, 0 = no measurement; the cell must not lie on the border.
 inline bool is_seen_through(std::span<const float> depth, int columns, int cell, float limit) {
   constexpr int enough = 6;
   int farther = 0;

@@ -6,8 +6,8 @@
 
 #include "holdfast/interfaces/optimizer.hpp"
 
-/// Which observations, points and poses a bundle adjustment uses, and which observations are outliers at its end. All
-/// optimizers decide this in the same way.
+/// Selection of the observations, points and poses of a bundle adjustment, and outlier classification at its end;
+/// shared by all optimizers.
 namespace holdfast {
 
 /// Outlier thresholds of the squared residual over its variance, without (two) and with (three) a column in the right
@@ -19,7 +19,7 @@ struct ChiSquareLimits {
   double of(const BundleProblem::Observation& observation) const;
 };
 
-/// Squared residual of an observation over its variance, its weight left out; infinite behind the camera, NaN for
+/// Squared residual of an observation over its variance, without its weight; infinite behind the camera, NaN for
 /// numbers that are not finite.
 double chi_square(const Camera& camera, const Eigen::Isometry3d& T_camera_world, const Eigen::Vector3d& point,
                   const BundleProblem::Observation& observation);
@@ -28,9 +28,9 @@ double chi_square(const Camera& camera, const Eigen::Isometry3d& T_camera_world,
 bool is_outlier(const Camera& camera, const Eigen::Isometry3d& T_camera_world, const Eigen::Vector3d& point,
                 const BundleProblem::Observation& observation, const ChiSquareLimits& limits);
 
-/// The part of a bundle problem that takes part in its adjustment. An observation counts if its numbers are finite, its
-/// weight is positive, its point lies in front of the camera, and its point counts. A point counts if a free pose
-/// observes it, and if its observations have at least three residuals.
+/// The selected part of a bundle problem. An observation counts if its numbers are finite, its weight is positive, its
+/// point lies in front of the camera, and its point counts. A point counts if a free pose observes it, and if its
+/// observations have at least three residuals.
 struct BundleSelection {
   std::vector<std::uint8_t> observation_counts;
   std::vector<std::uint8_t> point_counts;

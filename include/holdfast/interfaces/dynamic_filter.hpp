@@ -28,7 +28,7 @@ struct Needs {
   bool segmentation = false;  ///< a segmenter other than `none`
   bool pose_prior = false;    ///< FilterContext::T_camera_world
   bool matches = false;       ///< features matched with the local map, and the pose estimated from them
-  bool evidence = false;      ///< evidence of a filter that runs before it; without one it finds nothing, a warning
+  bool evidence = false;      ///< evidence of an earlier filter; a warning if there is none
 };
 
 /// The inputs of one call of a filter. References are valid during apply() only.
@@ -37,8 +37,7 @@ struct FilterContext {
   const Frame& frame;               ///< features, coarse view with its mask, and map points where they are matched
   const Frame* previous = nullptr;  ///< the previous frame with its pose; nullptr when it has none
   const Map& map;
-  /// The piece of the map that the frame is tracked in: poses of keyframes of others say nothing about it
-  /// (KeyFrame::piece).
+  /// Submap in which the frame is tracked (KeyFrame::piece): poses of keyframes of other submaps are not comparable.
   std::uint32_t piece = 0;
   /// The current estimate of the frame's pose; nullptr when there is none.
   const Eigen::Isometry3d* T_camera_world = nullptr;
@@ -68,7 +67,7 @@ class StaticEvidence {
     std::uint16_t stage;  ///< index into stages()
     Kind kind;
   };
-  /// Log-odds that a stage measured for a map point, whether or not the frame shows the point.
+  /// Log-odds that a stage measured for a map point, matched or not.
   struct PointContribution {
     MapPointId point;
     float log_odds;

@@ -19,9 +19,9 @@ class FeatureExtractor : public Module {
   /// pixels of the feature's octave. Neither image is written to. `out` is replaced. The same image gives the same
   /// features in the same order, on every call and at every SIMD level.
   virtual void extract(const cv::Mat& grey, const cv::Mat& ignore, Features& out) = 0;
-  /// From the next image on, extracts up to `factor` (at least 1) times as many features as the settings say: where
-  /// people cover much of an image, what they leave has to do. An extractor without such a number ignores it. The same
-  /// image with the same budget gives the same features.
+  /// Multiplies the configured number of features by `factor` (at least 1) from the next image on, to compensate for
+  /// features on moving people. An extractor without such a number ignores it. The same image with the same budget
+  /// gives the same features.
   virtual void set_budget(double factor) { static_cast<void>(factor); }
   /// The scale pyramid to which Features::octave refers; constant after construction. An extractor without octaves has
   /// a pyramid of one level.

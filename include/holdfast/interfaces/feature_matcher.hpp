@@ -31,29 +31,28 @@ struct MatchSide {
 /// Features of a frame as one side. The frame and the selection must outlive it.
 MatchSide side_of(const Frame& frame, std::span<const std::uint32_t> selection);
 
-/// What the caller of a comparison accepts. A matcher may accept less, or judge by other means.
+/// Acceptance criteria of the caller. A matcher may be stricter or use other criteria.
 struct MatchLimits {
   float max_distance = 50.0F;  ///< of the descriptors
-  /// Largest quotient of the smallest distance and that of any rival (Lowe 2004, section 7.1). 1 = no such test.
+  /// Ratio test (Lowe 2004, section 7.1): maximum ratio of the smallest distance to that of any rival. 1 = no test.
   float ratio = 0.8F;
-  /// The query must be the nearest of all queries to its reference, too.
+  /// Mutual nearest neighbours: the query must also be the nearest of all queries to its reference.
   bool mutual = false;
-  /// Whether reference `other` is a rival of the nearest one; empty means all are. A place that was mapped twice is no
-  /// reason to refuse a match.
+  /// Whether reference `other` is a rival of the nearest one in the ratio test, for instance to exclude duplicates of a
+  /// place that was mapped twice; empty = all are.
   std::function<bool(std::uint32_t nearest, std::uint32_t other)> is_rival = {};
 };
 
 /// Decides which features show the same point. Tracking, local mapping and loop closing call it from several threads at
 /// once. The same arguments give the same matches.
 ///
-/// The matching of new points along epipolar lines is not a matcher's: it compares few candidates per feature, and
-/// checks the result by triangulation.
+/// Epipolar matching of new points does not use a matcher: it compares few candidates per feature, and checks the
+/// result by triangulation.
 class FeatureMatcher : public Module {
  public:
   static constexpr const char* kind = "matcher";
 
-  /// Why this matcher cannot match descriptors of a type, for the message that refuses it before the first frame; ""
-  /// when it can.
+  /// Describes why this matcher cannot match descriptors of a type, for the error before the first frame; "" if it can.
   virtual std::string trouble_with(const DescriptorType& /*type*/) const { return {}; }
   /// Matches queries with references without any prediction: FeatureMatch::source is a query, FeatureMatch::feature a
   /// reference, each of the selections and at most once; ordered by reference. Replaces `matches`. Both sides are of
@@ -74,7 +73,7 @@ class NearestMatcher : public FeatureMatcher {
              std::vector<FeatureMatch>& matches) const override;
 };
 
-/// A NearestMatcher that lives as long as the program, for parts that are given no matcher.
+/// A NearestMatcher with static lifetime, the default of parts without a configured matcher.
 const FeatureMatcher& nearest_matcher();
 
 }  // namespace holdfast

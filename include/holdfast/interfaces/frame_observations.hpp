@@ -12,8 +12,8 @@
 /// feature belongs to the static world.
 namespace holdfast {
 
-/// Fewer points that another keyframe sees as well hardly determine the pose of a keyframe in a bundle adjustment: it
-/// would leave its place for a slightly lower cost.
+/// Minimum number of shared points of a keyframe in a bundle adjustment: with fewer, its pose is weakly constrained and
+/// may diverge for a slightly lower cost.
 inline constexpr int least_shared_points = default_covisibility_minimum;
 
 /// Adds to the pose problem of `frame` that its feature number `feature` shows `point` (world [m]).

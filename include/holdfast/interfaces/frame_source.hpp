@@ -24,7 +24,7 @@ struct SourceDescription {
   std::string name;  ///< name of the sequence, for titles
   bool has_depth = false;
   bool has_right = false;  ///< frames have a right image; see SensorFrame::right
-  /// All rows of an image are known to be exposed at once, whatever Camera::readout says.
+  /// Global shutter: all rows of an image are exposed at once, for any Camera::readout.
   bool has_global_shutter = false;
   /// Frames do not depend on what happens between two calls of next(), as those of a recording, so that a sequential
   /// run may read ahead in another thread. False for a source that other code influences during a run.
@@ -47,10 +47,9 @@ class FrameSource : public Module {
   /// Returns the next frame, or nothing at the end. Throws InputError that names the file for a frame that cannot be
   /// used, unless the source is configured to skip and count such frames.
   virtual std::optional<SensorFrame> next() = 0;
-  /// Passes over frames without reading them, as far as another one follows whose time stamp is at most `timestamp`
-  /// [s], so that next() returns the last of these. Returns the time stamps of the frames passed over, which are no
-  /// longer given. Called in paced runs whose reader is late (`late_frames: drop`). A source that does not know the
-  /// stamps beforehand, such as a camera, passes over none.
+  /// Skips frames without reading them, so that next() returns the last frame whose time stamp is at most `timestamp`
+  /// [s]. Returns the time stamps of the skipped frames. Called in paced runs whose reader is late (`late_frames:
+  /// drop`). A source without known stamps, such as a camera, skips none.
   virtual std::vector<double> pass_over([[maybe_unused]] double timestamp) { return {}; }
   /// Ground-truth poses, sorted by time stamp; the stamps may differ from those of the frames. Empty if unknown.
   virtual Trajectory truth() const { return {}; }

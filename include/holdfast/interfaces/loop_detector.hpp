@@ -18,10 +18,10 @@ struct PlaceMatch {
   double score = 0.0;
 };
 
-/// Place recognition by the descriptors of keyframes: those of their features, or those by which the detector itself
-/// describes a whole image. Callers pass those of static features, and describe images without what moves, so that a
-/// place is not recognised by the people in it (Zeng et al. 2023, section 3.3). Used by one thread at a time, but for
-/// describe().
+/// Place recognition by the descriptors of keyframes: local descriptors of their features, or global descriptors that
+/// the detector computes from whole images. Callers pass those of static features, and mask moving pixels of images, so
+/// that a place is not recognised by the people in it (Zeng et al. 2023, section 3.3). Used by one thread at a time,
+/// but for describe().
 class LoopDetector : public Module {
  public:
   static constexpr const char* kind = "loop_detector";

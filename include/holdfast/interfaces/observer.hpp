@@ -18,9 +18,8 @@
 
 namespace holdfast {
 
-/// The map of a run in progress, as observers may see it: a snapshot that is copied when it is asked for first, and
-/// shared by all observers of one event. An event whose observers ask for no snapshot costs nothing. Valid during the
-/// call that it is an argument of, in the thread of that call.
+/// Access of observers to the map of a run in progress: a snapshot that is copied on first use and shared by all
+/// observers of one event. Valid during the call of the observer, in its thread.
 class ObservedMap {
  public:
   /// `copy` makes the snapshot and takes the lock of the map if there is one.
@@ -37,14 +36,13 @@ class ObservedMap {
   mutable std::optional<MapSnapshot> snapshot_;
 };
 
-/// What a keyframe sees of the static scene, as the dense map keeps it. Valid during the call that it is an argument
-/// of.
+/// The static scene as observed by a keyframe of the dense map. Valid during the call of the observer.
 struct ObservedView {
   KeyFrameId keyframe = {};
   double timestamp = 0.0;                                            ///< of the keyframe [s]
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< pose of the keyframe at the time of the call
-  /// Coloured points of static surfaces in the frame of the camera [m]: at most so many, evenly over the image. The
-  /// cost is proportional to the number, about 0.02 ms for 5000.
+  /// Coloured points of static surfaces in the frame of the camera [m]: at most `most`, evenly over the image. The cost
+  /// is proportional to the number, about 0.02 ms for 5000.
   std::function<std::vector<CloudPoint>(std::size_t most)> points = {};
 };
 

@@ -32,10 +32,10 @@ struct PoseProblem {
   std::size_t size() const { return points.size(); }
 };
 
-/// The result of an adjustment of a single pose.
+/// Result of motion-only adjustment.
 using geometry::PoseSummary;
 
-/// Lets geometry::adjust_pose and geometry::find_pose solve a PoseProblem. Without a camera, or with arrays of
+/// Makes PoseProblem a problem of geometry::adjust_pose and geometry::find_pose. Without a camera, or with arrays of
 /// different lengths, they throw CheckError.
 template <>
 struct geometry::PoseProblemTraits<PoseProblem> {
@@ -83,7 +83,7 @@ struct BundleProblem {
   std::vector<Observation> observations;
   int robust_iterations = 5;  ///< with Huber's cost, then outliers are set aside
   int final_iterations = 10;  ///< without it, on what is left; 0 = skip
-  /// Both end when an iteration lowers the cost by less than this share; 0 = as the optimizer thinks fit.
+  /// Both end when the relative decrease of the cost is below this tolerance; 0 = the optimizer's default.
   double function_tolerance = 0.0;
 };
 
@@ -104,15 +104,15 @@ struct PoseGraphProblem {
   struct Node {
     Eigen::Isometry3d T_camera_world;  ///< in and out
     bool fixed = false;
-    double scale = 1.0;  ///< out, of optimize_similarity_graph(): what a length around this node is multiplied by
+    double scale = 1.0;  ///< out, of optimize_similarity_graph(): scale factor of lengths around this node
   };
-  /// A measured relative pose of two nodes, which `from` and `to` name by their index.
+  /// Relative pose measurement between the nodes with indices `from` and `to`.
   struct Edge {
     std::uint32_t from = 0;
     std::uint32_t to = 0;
     Eigen::Isometry3d T_to_from;  ///< measured: maps camera `from` to camera `to`, in the unit of lengths around `to`
     double weight = 1.0;
-    double scale = 1.0;  ///< measured: length around `to` that is 1 around `from`; optimize_similarity_graph() alone
+    double scale = 1.0;  ///< measured scale of the Sim(3) from `from` to `to`; optimize_similarity_graph() only
   };
   std::vector<Node> nodes;
   std::vector<Edge> edges;
@@ -141,10 +141,10 @@ class Optimizer : public Module {
   /// `stop` is read between iterations.
   virtual BundleSummary optimize_bundle(BundleProblem& problem, const std::atomic<bool>& stop) = 0;
   virtual GraphSummary optimize_pose_graph(PoseGraphProblem& problem) = 0;
-  /// The pose graph of one camera, whose scale drifts along the way (Strasdat, Montiel and Davison, "Scale drift-aware
-  /// large scale monocular SLAM", RSS 2010): poses and scales together. The default finds the scales first, which are
-  /// linear in their logarithms, and then, in the units that follow, the poses by optimize_pose_graph(). Nodes keep
-  /// scale 1 when the summary is not usable.
+  /// Pose graph over Sim(3) for one camera, whose scale drifts (Strasdat, Montiel and Davison, "Scale drift-aware large
+  /// scale monocular SLAM", RSS 2010): poses and scales together. The default optimizes the scales first (a linear
+  /// problem in their logarithms), and then the poses in the scaled units by optimize_pose_graph(). Nodes keep scale 1
+  /// when the summary is not usable.
   virtual GraphSummary optimize_similarity_graph(PoseGraphProblem& problem);
 };
 

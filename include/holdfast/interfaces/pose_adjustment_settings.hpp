@@ -42,7 +42,7 @@ void describe_pose_adjustment(ParameterTable<Settings>& table) {
   table.add("pose_iterations", &Settings::pose_iterations, "maximum iterations of each round").range(1, 100);
 }
 
-/// What they say to the solver.
+/// Conversion to the options of the solver.
 template <class Settings>
 geometry::PoseAdjustmentOptions pose_adjustment_options(const Settings& settings) {
   geometry::PoseAdjustmentOptions options;

@@ -8,12 +8,12 @@
 
 #include "holdfast/core/features.hpp"
 
-/// What the extractors that OpenCV implements share.
+/// Shared code of the extractors that OpenCV implements.
 namespace holdfast::keypoints {
 
 /// Detects and describes by an extractor of OpenCV, outside `ignore` (8UC1, not 0 = ignored, or empty). Returns false,
-/// with nothing found, for images smaller than 32 pixels, in which OpenCV's scale spaces have no room. Throws
-/// CheckError for images of another type or size. `mask` is a buffer.
+/// with nothing found, for images smaller than 32 pixels, which OpenCV's scale spaces do not support. Throws CheckError
+/// for images of another type or size. `mask` is a buffer.
 bool find_keypoints(cv::Feature2D& extractor, const cv::Mat& grey, const cv::Mat& ignore, cv::Mat& mask,
                     std::vector<cv::KeyPoint>& keypoints, cv::Mat& descriptors);
 

@@ -12,13 +12,13 @@ namespace holdfast {
 struct ClosedLoop {
   KeyFrameId keyframe;   ///< keyframe at the end of the loop
   KeyFrameId candidate;  ///< keyframe of the revisited place
-  int inliers = 0;       ///< points of the place that are matched in the keyframe
+  int inliers = 0;       ///< map points of the candidate that are matched in the keyframe
   int points_fused = 0;
-  /// Whether the two were in different pieces of the map (KeyFrame::piece), which this loop joins.
+  /// Whether the loop joins two submaps (KeyFrame::piece).
   bool joins_pieces = false;
-  double way = 0.0;       ///< length of the shortest path between the two before the correction [m]; 0 between pieces
+  double way = 0.0;       ///< length of the shortest path between the two before the correction [m]; 0 between submaps
   PoseChange correction;  ///< measured correction of the keyframe
-  double scale = 1.0;     ///< length at the place that was 1 around the keyframe; 1 where depth is measured
+  double scale = 1.0;     ///< scale of the Sim(3) from keyframe to candidate; 1 if depth is measured
   /// Measured relative pose, which maps points of the candidate's camera frame to the keyframe's.
   Eigen::Isometry3d T_keyframe_candidate = Eigen::Isometry3d::Identity();
   double seconds = 0.0;  ///< duration of the correction

@@ -14,18 +14,17 @@
 
 namespace holdfast {
 
-/// Bundle adjustment of the whole map after a loop (Mur-Artal and Tardos 2017, section III-E), beside tracking and
-/// mapping: prepare() copies the map under the surgery mutex and its lock, solve() works on the copy without any lock,
-/// apply() brings the result into the map under the surgery mutex and the map's lock. Keyframes inserted meanwhile are
-/// moved with their parents, points with their reference keyframes; removed ones are skipped. The oldest keyframe is
-/// fixed.
+/// Bundle adjustment of the whole map after a loop (Mur-Artal and Tardos 2017, section III-E), concurrent with tracking
+/// and mapping: prepare() copies the map under the surgery mutex and its lock, solve() works on the copy without any
+/// lock, apply() writes the result to the map under the surgery mutex and the map's lock. Keyframes inserted meanwhile
+/// are moved with their parents, points with their reference keyframes; removed ones are skipped. The oldest keyframe
+/// is fixed.
 ///
-/// An adjustment that was requested to stop is never applied: either a new loop has moved the map since, or the run
-/// ends.
+/// A stopped adjustment is never applied, because a new loop has moved the map or the run ends.
 ///
 /// Threads: prepare, solve and apply are called in this order by one thread at a time, request_stop by any thread. A
-/// request is effective from prepare() to the end of apply(); prepare() clears earlier requests, but those of cancel().
-/// With one thread, the same map gives bit-identical results.
+/// request is effective from prepare() to the end of apply(); prepare() clears earlier requests, except that of
+/// cancel(). With one thread, the same map gives bit-identical results.
 class FullAdjustment {
  public:
   /// All references must outlive this object.
@@ -47,8 +46,7 @@ class FullAdjustment {
 
   /// Requests solve() to end within one iteration and apply() to have no effect.
   void request_stop();
-  /// Requests the same of this adjustment and of all later ones, which end before their first iteration. From any
-  /// thread.
+  /// Stops this adjustment and all later ones, which end before their first iteration. From any thread.
   void cancel();
 
  private:

@@ -13,11 +13,11 @@ namespace holdfast {
 /// Selects loop candidates among the keyframes similar to the current one (Mur-Artal et al. 2015, section VII-A).
 ///
 /// Excluded are keyframes of the neighbourhood (up to two steps in the covisibility graph, because tracking already
-/// uses their points), keyframes that are too recent, and keyframes that are less similar to the current one than its
-/// least similar neighbour. The others are grouped by covisibility, and a group must be consistent over several
-/// consecutive keyframes, which is rare for a wrong place. Keyframes of another piece of the map are candidates however
-/// recent and similar they are, and at once: the camera may see both pieces for a moment only, and geometry decides.
-/// Reads the map; the caller holds its lock. Used by one thread.
+/// uses their points), recent keyframes, and keyframes that are less similar to the current one than its least similar
+/// neighbour. The others are grouped by covisibility, and a group must be consistent over several consecutive
+/// keyframes, which is rare for a wrong place. Keyframes of another submap are exempt from these conditions, because
+/// both submaps may be in view for a moment only; the geometric check decides. Reads the map; the caller holds its
+/// lock. Used by one thread.
 class LoopCandidates {
  public:
   explicit LoopCandidates(const LoopClosingSettings& settings) : settings_(settings) {}

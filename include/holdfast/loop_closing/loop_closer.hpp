@@ -27,16 +27,16 @@ struct LoopMeasurement;
 ///
 /// 1. Candidates by place recognition, see LoopCandidates.
 /// 2. Geometric check: matched descriptors, rigid alignment by RANSAC, guided search, motion-only adjustment.
-/// 3. Plausibility. Two similar desks pass steps 1 and 2; only the path between them distinguishes them. The correction
-///    must be explicable by drift: correction <= drift_constant + drift_per_metre * path length, and likewise for the
-///    rotation, where the path is the shortest one in the graph of keyframes. A keyframe that shares points with old
-///    keyframes near its current pose therefore has a short path and stays there. In addition, the current pose is
-///    tested as the competing hypothesis: if enough old points visible from it are matched in the keyframe and disagree
-///    with the loop, the pose is confirmed and the loop rejected. In case of doubt no loop is closed, because a missed
-///    loop is detected again later, whereas a wrong loop is permanent.
+/// 3. Plausibility. Two similar places pass steps 1 and 2; only the path between them distinguishes them. The
+///    correction must be within the possible drift: correction <= drift_constant + drift_per_metre * path length, and
+///    likewise for the rotation, where the path is the shortest one in the graph of keyframes. A keyframe that shares
+///    points with old keyframes near its current pose therefore has a short path and is not moved far. In addition, the
+///    current pose is tested as the competing hypothesis: if enough old points visible from it are matched in the
+///    keyframe and disagree with the loop, the pose is confirmed and the loop rejected. In case of doubt the loop is
+///    rejected: a missed loop is detected again later, a wrong one is permanent.
 /// 4. Correction: pose graph over the essential graph (spanning tree, strong covisibility edges, loop edges) with the
-///    oldest keyframe fixed; points are moved with their reference keyframes; duplicate points of the place and of the
-///    keyframe's neighbourhood are fused; covisibility is updated; a loop edge is added.
+///    oldest keyframe fixed; points are moved with their reference keyframes; duplicate points of the candidate's and
+///    of the keyframe's neighbourhood are fused; covisibility is updated; a loop edge is added.
 ///
 /// Threads: process() and forget() are called by one thread. Steps 2 to 4 hold the surgery mutex, and the map's lock
 /// within it for a few milliseconds at a time and never during an optimization. Keyframes inserted meanwhile are moved
@@ -51,11 +51,11 @@ class LoopCloser {
   /// Sets the full adjustment that a new loop invalidates; it is requested to stop before the map is corrected.
   void set_full_adjustment(FullAdjustment* adjustment) { adjustment_ = adjustment; }
 
-  /// Searches for a loop at a keyframe, closes it, and adds the keyframe to the detector. Query and database use
-  /// the descriptors of static features only, as static_probability says at this call: the keyframe's own mask must
-  /// have been applied before. For a detector that describes images they use Frame::place, which must have been set. It
-  /// must be called once for each keyframe by increasing sequence, after local mapping has processed it; a removed
-  /// keyframe is skipped. Adds stages "loops: ...".
+  /// Searches for a loop at a keyframe, closes it, and adds the keyframe to the detector. Query and database use the
+  /// descriptors of static features only (static_probability), so that the keyframe's own mask must have been applied
+  /// before. For a detector with global descriptors they use Frame::place, which must have been set. It must be called
+  /// once for each keyframe by increasing sequence, after local mapping has processed it; a removed keyframe is
+  /// skipped. Adds stages "loops: ...".
   std::optional<ClosedLoop> process(KeyFrameId keyframe, StageTimes& times);
 
   /// Removes a keyframe from the detector after it was removed from the map; has no effect if it was never added.

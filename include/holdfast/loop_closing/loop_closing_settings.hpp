@@ -19,16 +19,16 @@ struct LoopClosingSettings {
   int consistent_keyframes = 3;
   /// Number of covisible keyframes of a candidate whose points take part in the geometric check.
   int neighbours = 10;
-  /// Maximum distance between the descriptors of feature and point; 0 = a fifth of the way from the extractor's strict
-  /// to its loose distance, 60 bits for ORB.
+  /// Maximum distance between the descriptors of feature and point; 0 = the extractor's strict distance plus a fifth of
+  /// the difference to its loose distance, 60 bits for ORB.
   double match_distance = 0.0;
   /// Maximum ratio of nearest to second-nearest distance of the first matches; adjacent points count as one.
   double match_ratio = 0.8;
   double alignment_threshold = 0.08;  ///< inlier threshold of the rigid alignment [m]
   int alignment_iterations = 300;     ///< maximum number of RANSAC samples of the rigid alignment; 300 as in ORB-SLAM2
   int minimum_aligned = 15;           ///< minimum number of inliers of the rigid alignment
-  double search_radius = 8.0;  ///< radius of the guided search for the points of the place, at the finest level [px]
-  /// Minimum number of points of the place that are matched in the keyframe; 40 as in ORB-SLAM2.
+  double search_radius = 8.0;  ///< radius of the guided search for the candidate's points, at the finest level [px]
+  /// Minimum number of the candidate's points that are matched in the keyframe; 40 as in ORB-SLAM2.
   int minimum_inliers = 40;
   double minimum_share = 0.12;  ///< minimum fraction that these matches have of the points predicted to be visible
   int minimum_cells = 5;  ///< minimum number of cells of a 4 x 4 grid over the image with at least two matches each

@@ -14,10 +14,10 @@ enum class LoopVerdict {
   closed,
   few_matches,             ///< too few descriptor matches
   no_alignment,            ///< no rigid motion fits enough matched points
-  few_inliers,             ///< too few points of the place are matched by the guided search
+  few_inliers,             ///< too few points of the candidate are matched by the guided search
   small_share,             ///< too small a fraction of the points predicted to be visible is matched
-  one_corner,              ///< the matches cover too small a part of the view
-  implausible_correction,  ///< the correction exceeds the plausible drift on the path between the places
+  one_corner,              ///< the matches cover too small a part of the image
+  implausible_correction,  ///< the correction exceeds the bound of the drift over the path
   pose_confirmed,          ///< old points confirm the current pose, which is the competing hypothesis
   not_solved,              ///< the pose graph has no solution; the map is unchanged
 };
@@ -37,15 +37,15 @@ struct LoopTrial {
   KeyFrameId keyframe;
   KeyFrameId candidate;
   LoopVerdict verdict = LoopVerdict::few_matches;
-  int matches = 0;        ///< descriptor matches
-  int aligned = 0;        ///< inliers of the rigid alignment among them
-  int inliers = 0;        ///< points of the place that are matched in the keyframe
-  int expected = 0;       ///< points of the place that are predicted to be visible in the keyframe
-  int cells = 0;          ///< number of 16 cells over the image with at least two inliers
-  bool joins_pieces = false;  ///< the two are in different pieces of the map
+  int matches = 0;            ///< descriptor matches
+  int aligned = 0;            ///< inliers of the rigid alignment among them
+  int inliers = 0;            ///< points of the candidate that are matched in the keyframe
+  int expected = 0;           ///< points of the candidate that are predicted to be visible in the keyframe
+  int cells = 0;              ///< number of 16 cells over the image with at least two inliers
+  bool joins_pieces = false;  ///< the two are in different submaps
   double way = 0.0;           ///< length of the path between the two in the map [m], with one metre per radian
-  PoseChange correction;  ///< correction that the loop requires
-  double scale = 1.0;     ///< length at the place that is 1 around the keyframe; 1 where depth is measured
+  PoseChange correction;      ///< correction that the loop requires
+  double scale = 1.0;         ///< scale of the Sim(3) from keyframe to candidate; 1 if depth is measured
 };
 
 /// Cumulative loop-closing statistics.

@@ -17,8 +17,8 @@ std::string cloud_ply(std::span<const CloudPoint> cloud);
 void write_cloud_ply(const std::filesystem::path& file, std::span<const CloudPoint> cloud);
 
 /// Reads a file of write_cloud_ply(), in world coordinates [m]; std::nullopt for a PLY file whose vertices have other
-/// properties, such as the points of a map. Throws InputError for a file that cannot be read, is no PLY file, has not
-/// the length that its header states, or contains a position that is not finite.
+/// properties, such as the points of a map. Throws InputError for a file that cannot be read, is no PLY file, differs
+/// in length from its header, or contains a position that is not finite.
 std::optional<std::vector<CloudPoint>> read_cloud_ply(const std::filesystem::path& file);
 
 }  // namespace holdfast

@@ -26,8 +26,8 @@ namespace holdfast {
 /// move or remove keyframes or points while refine() runs; reading under the lock is allowed.
 class LocalMapper {
  public:
-  /// Depth up to `close_depth_factor` baselines makes a map point at once; farther points are triangulated
-  /// (TrackingSettings::close_depth_factor). Map, mutex, optimizer and matcher must outlive the mapper.
+  /// A feature with depth up to `close_depth_factor` baselines creates a map point at once; farther points are
+  /// triangulated (TrackingSettings::close_depth_factor). Map, mutex, optimizer and matcher must outlive the mapper.
   LocalMapper(const MappingSettings& settings, double close_depth_factor, Map& map, MapMutex& mutex,
               Optimizer& optimizer, const FeatureMatcher& matcher = nearest_matcher())
       : settings_(settings),
@@ -41,18 +41,18 @@ class LocalMapper {
 
   /// Inserts a tracked frame into the map as a keyframe and creates points from its depth; with `points_wait`, refine()
   /// creates them later. Only features that are more likely static than moving create points. The keyframe belongs to
-  /// `piece` of the map. Takes little time; the caller holds the lock of the map. Adds the stage "mapping: insertion".
+  /// the submap `piece`. Fast; the caller holds the lock of the map. Adds the stage "mapping: insertion".
   KeyFrameId insert(const Frame& frame, bool points_wait, StageTimes& times, std::uint32_t piece = 0);
 
-  /// Begins a map without depth: inserts the first keyframe with points that the next one shows as well. `points` lists
-  /// each position [world] and the feature of the keyframe that shows it; the ids of the points are written to `ids`,
-  /// in the same order, and insert() of the next keyframe, whose frame names them, must follow. The caller holds the
+  /// Initialises a map from two views without depth: inserts the first keyframe with the triangulated points. `points`
+  /// lists each position [world] and its feature in the keyframe; the ids of the points are written to `ids`, in the
+  /// same order, and insert() of the second keyframe, whose frame refers to them, must follow. The caller holds the
   /// lock of the map. Adds the stage "mapping: insertion".
   KeyFrameId begin(const Frame& frame, std::span<const std::pair<Eigen::Vector3d, std::uint32_t>> points,
                    std::vector<MapPointId>& ids, StageTimes& times);
 
-  /// Keyframes are refined when their masks have come, which is after later ones were inserted: points that these made
-  /// in the meantime, by an older mask, need a second view. Call it before the first insert().
+  /// Declares that keyframes are refined after their masks have arrived, when later keyframes may have created points
+  /// by an older mask: such points need a second observation. Call it before the first insert().
   void expect_masks() { expects_masks_ = true; }
 
   /// Refines the map around an inserted keyframe and returns the removed keyframes. Acquires the lock of the map for
@@ -60,7 +60,7 @@ class LocalMapper {
   /// ...".
   std::vector<KeyFrameId> refine(KeyFrameId keyframe, StageTimes& times);
 
-  /// As if no keyframe had been inserted, but for counts(). The map is empty; no other thread refines.
+  /// Resets the mapper after the map was cleared, except counts(). No other thread may refine.
   void forget_map() { recent_points_.clear(); }
 
   /// Requests a running bundle adjustment to end after its current iteration; may be called by any thread.
@@ -71,16 +71,17 @@ class LocalMapper {
 
  private:
   void make_points_from_depth(KeyFrameId keyframe);
-  /// Removes the observations of a keyframe that are probably on something that moves, and returns their points.
+  /// Removes the observations of a keyframe whose features are more likely moving than static, and returns their
+  /// points.
   std::vector<MapPointId> drop_moving_features(KeyFrameId keyframe);
-  /// With one camera, removes a point that has lost a view and is left with fewer than three (as in ORB-SLAM). For the
-  /// thread of refine(), which counts on points to stay meanwhile.
+  /// With one camera, removes a point that has lost an observation and has fewer than three left (as in ORB-SLAM).
+  /// Called by the thread of refine() only, which relies on existing points.
   void drop_weak_point(MapPointId point);
   void remove_moving_points();
   void remove_weak_points(KeyFrameId keyframe);
   void triangulate_points(KeyFrameId keyframe);
   void triangulate_with(KeyFrameId keyframe, KeyFrameId neighbour);
-  /// Updates the covisibility of a new keyframe, which gets a parent unless it is the first of its piece.
+  /// Updates the covisibility of a new keyframe, and sets its parent unless it is the first of its submap.
   void link(KeyFrameId keyframe);
   std::vector<KeyFrameId> fusion_targets(KeyFrameId keyframe) const;
   void fuse_with_neighbours(KeyFrameId keyframe);
@@ -102,7 +103,7 @@ class LocalMapper {
   std::vector<MapPointId> recent_points_;
   MappingCounts counts_;
 
-  // Of each free keyframe of the bundle problem, how many of its points another keyframe sees as well.
+  // For each free keyframe of the bundle problem, the number of its points that another keyframe observes.
   std::vector<int> problem_shared_points_;
   // Keyframes, points and observations of the bundle problem.
   BundleProblem problem_;

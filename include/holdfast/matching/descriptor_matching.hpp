@@ -15,10 +15,10 @@ namespace holdfast::matching {
 /// Settings of descriptor matching.
 struct DescriptorMatchingSettings {
   float max_distance = 50.0F;  ///< of the descriptors, in their unit (bits for binary ones)
-  /// Largest quotient of the smallest distance and that of any rival (Lowe 2004, section 7.1). 1 = no such test.
+  /// Ratio test (Lowe 2004, section 7.1): maximum ratio of the smallest distance to that of any rival. 1 = no test.
   float ratio = 0.8F;
-  /// The query must be the nearest of all queries to its reference, too. Otherwise a reference keeps the nearest of the
-  /// queries that chose it, the first of equal ones.
+  /// Mutual nearest neighbours: the query must also be the nearest of all queries to its reference. Otherwise a
+  /// reference keeps the nearest of the queries that chose it, the first of equal ones.
   bool mutual = false;
 };
 
@@ -41,9 +41,8 @@ class DescriptorMatcher {
   };
 
   /// Matches queries (Match::source) with references (Match::feature), each of either at most once. The matches are
-  /// ordered by reference and valid until the next call. `is_rival(nearest, other)` limits the ratio test: a reference
-  /// that shows the same as the nearest one, for instance because a place was mapped twice, is no reason to refuse a
-  /// match.
+  /// ordered by reference and valid until the next call. `is_rival(nearest, other)` restricts the ratio test, for
+  /// instance to exclude duplicates of the nearest reference in a place that was mapped twice.
   template <class IsRival = EveryReference>
   const std::vector<FoundMatch>& match(const Selection& queries, const Selection& references,
                                        const DescriptorMatchingSettings& settings, IsRival&& is_rival = {}) {

@@ -16,8 +16,8 @@ namespace holdfast::matching {
 /// Settings of an epipolar search.
 struct EpipolarSearchSettings {
   float max_distance = 50.0F;  ///< of the descriptors, in their unit (bits for binary ones)
-  /// Largest quotient of the smallest and the second smallest distance near the line: a patch that repeats along the
-  /// line is no evidence. 1 = no such test.
+  /// Ratio test: maximum ratio of the smallest to the second smallest distance near the line, because repeated texture
+  /// is ambiguous. 1 = no test.
   float ratio = 0.8F;
   /// Largest squared distance from the line in variances of the feature's position: chi-square at 95 %, one residual.
   double chi_square = 3.841;

@@ -12,7 +12,7 @@ namespace holdfast::matching {
 
 /// Conditions under which a view should show a point (Mur-Artal et al. 2015, section V-D).
 struct VisibilityGates {
-  float min_depth = 0.05F;    ///< along the optical axis [m]; nearer, nothing is in focus and the division is unsafe
+  float min_depth = 0.05F;    ///< along the optical axis [m]; nearer points are out of focus and the division is unsafe
   float min_distance = 0.8F;  ///< times the smallest distance from which the point was recognisable
   float max_distance = 1.2F;  ///< times the largest one
   float min_cosine = 0.5F;    ///< of the angle to the mean viewing direction: 60 degrees, where patches look different
@@ -59,8 +59,8 @@ class ViewProjection {
     return PredictedPixel{x, y, x - fx_baseline_ * inverse_z};
   }
 
-  /// Returns nothing also for a point at a distance from which its descriptor is not recognised, or seen too far off
-  /// its mean viewing direction. Distances are those of PointTraits [m].
+  /// Returns nothing also for a point outside its distance range, or seen at too large an angle to its mean viewing
+  /// direction. Distances are those of PointTraits [m].
   std::optional<ExpectedView> expect(const Eigen::Vector3f& position, const Eigen::Vector3f& direction,
                                      float min_distance, float max_distance) const {
     const std::optional<PredictedPixel> pixel = project(position);

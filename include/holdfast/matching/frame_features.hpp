@@ -48,21 +48,21 @@ extern template class ViewProjection<Frame>;
 using FrameSearch = matching::GuidedSearch<Frame>;
 using FrameProjection = matching::ViewProjection<Frame>;
 
-/// Prepares the projection of points into a frame from a pose, which need not be the frame's own.
+/// Prepares the projection of points into a frame from any pose.
 FrameProjection projection_into(const Frame& frame, const Eigen::Isometry3d& T_camera_world);
 
-/// Returns whether a static probability says that a feature is more likely static than moving.
+/// Whether a feature with this static probability is more likely static than moving.
 inline bool is_static(float static_probability) { return static_probability >= 0.5F; }
-/// Returns the same for a feature of a frame. The map takes no others.
+/// The same for a feature of a frame. Only static features create map points.
 inline bool is_static(const Frame& frame, std::size_t feature) { return is_static(frame.static_probability[feature]); }
 
 /// Sets `usable` to 1 for each static feature and to 0 for the others.
 void mark_static(const Frame& frame, std::vector<std::uint8_t>& usable);
 /// Copies the descriptors of the static features, in the order of the features. Place recognition uses no others (Zeng
-/// et al. 2023, section 3.3); entry i is not that of feature i when a feature before it moves.
+/// et al. 2023, section 3.3); entry i does not belong to feature i if an earlier feature is not static.
 DescriptorBlock static_descriptors(const Frame& frame);
-/// What place recognition compares frames by: Frame::place for a detector that describes images, and otherwise the
-/// static descriptors.
+/// Descriptors for place recognition: Frame::place for a detector with global descriptors, otherwise the static
+/// descriptors.
 inline DescriptorBlock place_descriptors(const Frame& frame, bool of_image) {
   return of_image ? frame.place : static_descriptors(frame);
 }

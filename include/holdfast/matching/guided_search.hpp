@@ -15,10 +15,10 @@
 
 namespace holdfast::matching {
 
-/// Selects how near to its prediction a feature must lie.
+/// Test of the distance between a feature and its predicted position.
 enum class PositionGate {
   window,     ///< within the window in the image, and in the right image where both columns are known
-  chi_square  ///< within the window, and within the 95 % ellipse of the feature's noise; for poses that are accurate
+  chi_square  ///< within the window, and within the 95 % ellipse of the feature's noise; for accurate poses
 };
 
 /// Selects which of several points that match one feature are returned.
@@ -30,8 +30,8 @@ enum class FeatureAssignment {
 /// Settings of a guided search.
 struct GuidedSearchSettings {
   float max_distance = 100.0F;  ///< of the descriptors, in their unit (bits for binary ones)
-  /// Largest quotient of the smallest and the second smallest distance, when both features lie on the same octave: a
-  /// patch that repeats is no evidence. 1 = no such test.
+  /// Ratio test: maximum ratio of the smallest to the second smallest distance, if both features lie on the same
+  /// octave, because repeated texture is ambiguous. 1 = no test.
   float ratio = 1.0F;
   PositionGate position = PositionGate::window;
   FeatureAssignment assignment = FeatureAssignment::nearest_point;

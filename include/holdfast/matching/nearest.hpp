@@ -10,7 +10,7 @@
 
 namespace holdfast::matching {
 
-/// A query (a point or a feature) matched with a reference, both as the caller counts them.
+/// Match of a query (a point or a feature) with a reference, by the caller's indices.
 template <class Distance>
 struct Match {
   std::uint32_t source = 0;   ///< index of the point or query

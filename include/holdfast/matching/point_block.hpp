@@ -12,13 +12,13 @@
 
 namespace holdfast {
 
-/// Holds what a guided search needs of map points in flat arrays, so that thousands of points are projected in one pass
-/// over memory and matched without the lock of the map. Entry i of each array belongs to point i.
+/// Map points for a guided search as flat arrays, so that thousands of points are projected in one pass over memory and
+/// matched without the lock of the map. Entry i of each array belongs to point i.
 struct PointBlock {
   std::vector<MapPointId> ids;
   std::vector<float> x, y, z;                                ///< world [m]
   std::vector<float> direction_x, direction_y, direction_z;  ///< unit mean viewing direction, world
-  std::vector<float> min_distance, max_distance;             ///< from which the descriptor can be found again [m]
+  std::vector<float> min_distance, max_distance;             ///< distance range of descriptor matching [m]
   DescriptorBlock descriptors;
 
   std::size_t size() const { return ids.size(); }

@@ -7,21 +7,21 @@
 
 namespace holdfast {
 
-/// Selects which of two map points is kept when both are the same point.
+/// Selects which of two duplicate map points is kept.
 enum class FusionSurvivor {
   more_observed,  ///< the one with more observations; of equal ones the point that was searched for
-  searched_point  ///< the point that was searched for, because its position is the more trustworthy one
+  searched_point  ///< the point that was searched for, because its position is more accurate
 };
 
 /// Result of add_or_fuse().
 enum class FusionOutcome {
   nothing,            ///< the point is gone, or the keyframe observes it already
   observation_added,  ///< the feature was free and observes the point now
-  points_fused        ///< the feature observed another point, and the two are one now
+  points_fused        ///< the feature observed another point, and the two were fused
 };
 
-/// Records that a keyframe's feature shows a map point that was searched for: adds an observation, or fuses the point
-/// with the one that the feature shows already. The caller holds the lock of the map.
+/// Adds an observation of a map point by a keyframe's feature, or fuses the point with the one that the feature
+/// observes already. The caller holds the lock of the map.
 FusionOutcome add_or_fuse(Map& map, MapPointId point, KeyFrameId keyframe, std::uint32_t feature,
                           FusionSurvivor survivor);
 

@@ -9,9 +9,9 @@
 
 namespace holdfast::matching {
 
-/// Whether a feature lies where a point is predicted, by the chi-square test at 95 %: two residuals (column and row),
-/// or three when the feature has a column in the right image (Mur-Artal and Tardos 2017, section III). Columns and row
-/// are undistorted pixels.
+/// Chi-square test (95 %) of the reprojection error of a feature: two residuals (column and row), or three when the
+/// feature has a column in the right image (Mur-Artal and Tardos 2017, section III). Columns and row are undistorted
+/// pixels.
 template <FeatureView View>
 bool agrees_with_prediction(const View& view, std::uint32_t feature, double x, double y, double right_x) {
   using Traits = ViewTraits<View>;

@@ -11,7 +11,7 @@ namespace holdfast::matching {
 
 /// Removes matches whose rotation in the image is not among the three most frequent of 30 bins, because all features
 /// turn alike when the camera turns (Mur-Artal et al. 2015, section V-C). A second or third bin counts only with at
-/// least a tenth of the matches of the first; less is chance. Of bins with equally many matches the lower one is kept.
+/// least a tenth of the matches of the first. Of bins with equally many matches the lower one is kept.
 /// `rotation(match)`: angle of the feature less that of its partner [rad, any multiple of 2 pi].
 template <class AnyMatch, class Rotation>
 void keep_consistent_rotations(std::vector<AnyMatch>& matches, Rotation&& rotation) {

@@ -10,9 +10,9 @@
 
 #include "holdfast/geometry/pinhole.hpp"
 
-/// Traits by which the searches of this folder read a caller's types. Whoever owns a type specialises them beside it;
-/// nothing is copied or converted. Holdfast's own are in matching/frame_features.hpp and matching/point_block.hpp, a
-/// stranger's in examples/geometry_alone.cpp. The searches need Eigen alone.
+/// Traits by which the searches of this folder read a caller's types. Specialise them beside the type; nothing is
+/// copied or converted. Those of Holdfast are in matching/frame_features.hpp and matching/point_block.hpp, an example
+/// for other types is examples/geometry_alone.cpp. The searches need Eigen alone.
 namespace holdfast::matching {
 
 using geometry::Pinhole;

@@ -9,43 +9,42 @@
 
 namespace holdfast {
 
-/// Which keyframes depth is compared with, and when a comparison counts; the defaults are those of EvidenceSettings.
+/// Selection of keyframes and thresholds of the comparison; the defaults are those of EvidenceSettings.
 struct DepthAgreementSettings {
   int keyframes = 3;   ///< maximum number of keyframes to compare with
-  double age = 0.7;    ///< age from which a keyframe is preferred, because people have walked on since [s]
+  double age = 0.7;    ///< age from which a keyframe is preferred, because people have moved since [s]
   int cells = 50;      ///< minimum number of cells for a share of them to be significant
   double share = 0.2;  ///< minimum share of the compared cells that agree for a pose to be supported
 };
 
-/// Compares poses of a frame by dense depth: under the right pose, most of what the frame observes agrees with the
-/// depth of keyframes. Moving people can bias the matches of features, but not the depth of the room. Keeps its
-/// buffers; one thread.
+/// Evaluates poses of a frame by dense depth: the share of its cells whose depth agrees with that of keyframes. Moving
+/// people can bias feature matches, but hardly this share. Keeps its buffers; one thread.
 class DepthAgreement {
  public:
   explicit DepthAgreement(const DepthAgreementSettings& settings = {}) : settings_(settings) {}
 
-  /// Selects keyframes around `reference` to compare with: old ones rather than recent ones, in which people who walk
-  /// are still at nearly the same place. False when there are none. The selection is valid until the map changes.
+  /// Selects keyframes around `reference` for the comparison, preferably old ones, because moving people have hardly
+  /// moved since recent ones. False when there are none. The selection is valid until the map changes.
   bool choose(const Map& map, KeyFrameId reference, double timestamp);
   /// Share of the compared cells whose depth agrees with a keyframe's, 0 to 1; 0 when too few can be compared.
   double share(const Frame& frame, const Eigen::Isometry3d& T_view_world) const;
-  /// Whether cells enough can be compared, and a smaller share than `least_share` of them agrees.
+  /// True if enough cells can be compared and less than `least_share` of them agree.
   bool disagrees(const Frame& frame, const Eigen::Isometry3d& T_view_world, double least_share) const;
-  /// Share of the cells that agree among those that agree or contradict a keyframe: they measure more depth than a
-  /// static surface allows. Cells that are nearer than the keyframe's surface are not counted, because a person may
-  /// stand there. 0 when too few cells agree, or a smaller share of those compared than required.
+  /// Share of agreeing cells among those that agree or see through a surface of a keyframe (measure more depth). Cells
+  /// nearer than the surface of the keyframe are ignored as possible occlusions. 0 when too few cells agree, or a
+  /// smaller share of those compared than required.
   double support(const Frame& frame, const Eigen::Isometry3d& T_view_world) const;
-  /// Aligns the depth image of the frame with those of the keyframes, beginning at a predicted pose, which remains
-  /// the estimate in directions that depth does not determine. Projective point-to-plane ICP (Chen and Medioni 1992;
-  /// Newcombe et al. 2011, equations 16 to 24) on coarse views.
+  /// Projective point-to-plane ICP (Chen and Medioni 1992; Newcombe et al. 2011, equations 16 to 24) of the frame's
+  /// coarse depth image with those of the keyframes, with the predicted pose as initial value and prior in directions
+  /// that depth does not determine.
   Eigen::Isometry3d align(const Frame& frame, const Eigen::Isometry3d& T_view_world) const;
   /// Estimates the colour-depth time offset as a pose on the inter-frame motion: T_view_camera. `step` is the motion
-  /// T_frame_previous; `share_there` is share(frame, T_camera_world), which the caller knows.
+  /// T_frame_previous; `share_there` is share(frame, T_camera_world), already computed by the caller.
   Eigen::Isometry3d find_view(const Frame& frame, const Eigen::Isometry3d& T_camera_world, double share_there,
                               const Eigen::Isometry3d& step) const;
 
  private:
-  /// Numbers of cells of the frame by what the keyframes measured there.
+  /// Numbers of cells of the frame by their comparison with the keyframes.
   struct Counts {
     int compared = 0;
     int agreeing = 0;

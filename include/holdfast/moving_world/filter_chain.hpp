@@ -13,9 +13,9 @@
 
 namespace holdfast {
 
-/// When a filter runs. Filters that need neither pose_prior nor matches run before matching, so that features that they
-/// suspect cannot bias the pose; those that need a pose run after the first estimate; those that need matches run after
-/// the local map was matched.
+/// Stage in which a filter runs: before matching if it needs neither pose_prior nor matches, so that suspect features
+/// do not bias the pose; after the first pose estimate if it needs a pose; after the local map was matched if it needs
+/// matches.
 enum class FilterStage { before_matching, with_pose, after_matching };
 
 /// The dynamic filters of a run in their order, and the conversion of their evidence into weights. For each frame:
@@ -51,17 +51,17 @@ class FilterChain {
   }
   /// Runs the filters of a stage in their order, once per frame; a second call has no effect.
   void evaluate(FilterStage stage, const FilterContext& context);
-  /// From now on, until the next frame, class priors lower the log-odds of a feature by no more than
-  /// `fallback_log_odds`. False if that changes no feature, or if the settings exclude it.
+  /// Bounds class priors from below by `fallback_log_odds` until the next frame. False if that changes no feature, or
+  /// if the settings exclude it.
   bool discount_priors();
   bool discounts_priors() const { return discounts_priors_; }
   /// Sets static_probability, measured_log_odds and the log-odds of the coarse cells of the frame that was begun.
   void weight_features(const Map& map, Frame& frame);
-  /// Adds the frame's measurements to the map points that it shows, and to those that filters measured themselves.
+  /// Adds the frame's measurements to its matched map points, and to points that filters measured directly.
   void accumulate(const Frame& frame, Map& map) const;
   /// Evaluates a keyframe again by its own segmentation (context.segmentation and the mask in `frame`): the class
-  /// priors of its features are replaced, measurements are kept; cells of its coarse view become more suspect, never
-  /// less.
+  /// priors of its features are replaced, measurements are kept; the log-odds of cells of its coarse view can only
+  /// decrease.
   void evaluate_keyframe(const FilterContext& context, Frame& frame);
 
   /// Evidence of the most recently evaluated frame, including re-evaluated keyframes.

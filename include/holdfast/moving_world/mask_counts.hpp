@@ -7,9 +7,9 @@ namespace holdfast {
 
 /// Numbers of segmented frames so far.
 struct MaskCounts {
-  std::size_t segmented = 0;       ///< frames that the segmenter was given and whose result has arrived
-  std::size_t found = 0;           ///< those for which it had a segmentation
-  std::size_t mostly_movable = 0;  ///< those in which movable classes cover more than half of what has a class
+  std::size_t segmented = 0;       ///< segmented frames whose result has arrived
+  std::size_t found = 0;           ///< those with a segmentation
+  std::size_t mostly_movable = 0;  ///< those in which movable classes cover more than half of the labelled area
 };
 
 }  // namespace holdfast

@@ -19,7 +19,8 @@ namespace holdfast {
 /// Samples a segmentation at the centres of the cells; background outside the image. Empty for an empty segmentation.
 CellMask sample_mask(const CoarseSampler& sampler, const Segmentation& segmentation);
 
-/// Provides a mask for every frame although few frames are segmented, and their masks arrive late. For each frame:
+/// Propagates the masks of few segmented frames, which arrive late, to every frame by optical flow and ego-motion. For
+/// each frame:
 ///
 ///     advance(...)          moves the followed points and the mask to the frame
 ///     set_pose(...)         once its pose is estimated
@@ -37,11 +38,11 @@ class MaskPropagator {
   /// `T_frame_previous` is the predicted motion of the camera since the last frame. The frame needs its coarse depth,
   /// but no features, and must stay valid until the next call.
   void advance(const cv::Mat& grey, const Frame& frame, const Eigen::Isometry3d& T_frame_previous);
-  /// Sets the pose of the frame, and what filters found in its cells: an object moves in the cells whose
-  /// evaluated.static_log_odds are below `moving`.
+  /// Sets the pose of the frame and marks as moving the cells whose evaluated.static_log_odds are below `moving`.
   void set_pose(const std::optional<Eigen::Isometry3d>& T_camera_world, const CoarseView& evaluated, float moving);
   void remember();
-  /// Forgets that frame and older ones; an empty mask changes nothing else. mask.moving is not read.
+  /// Applies the mask of a remembered frame, and forgets that frame and older ones; an empty mask has no other effect.
+  /// mask.moving is not read.
   void apply(std::uint64_t frame_index, const CellMask& mask);
 
   /// The mask of the last frame, `moving` left out; empty before the first segmentation.
@@ -52,7 +53,7 @@ class MaskPropagator {
   cv::Mat moving_pixels() const { return sampler_.pixels_of(labels_.moving); }
 
  private:
-  /// The part of a frame from which its labels can be transferred to a later one.
+  /// Data of a frame that are required to transfer its labels to a later one.
   struct View {
     std::uint64_t frame_index = 0;
     double timestamp = 0.0;
@@ -71,7 +72,8 @@ class MaskPropagator {
     const std::int32_t raw = sampler_.raw_pixel(cell);
     return {raw % camera_.width, raw / camera_.width};
   }
-  /// The wanted cell of a bucket, given by its first column and row, with most of a corner; -1 if none has enough.
+  /// Wanted cell with the largest corner strength in a bucket, given by its first column and row; -1 if all are below
+  /// the threshold.
   template <class IsWanted>
   int strongest_corner(const CoarseGrid& grid, int first_column, int first_row, const IsWanted& is_wanted) const;
   void publish();

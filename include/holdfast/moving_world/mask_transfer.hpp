@@ -22,17 +22,17 @@ struct FollowedPairs {
   void clear() { from_x.clear(), from_y.clear(), from_depth.clear(), to_x.clear(), to_y.clear(), to_depth.clear(); }
 };
 
-/// Transfers the labels of one frame to another on their coarse views. A cell takes the label of the cell from which
-/// ego-motion moves it, if the same surface was observed there, or else of the cell from which the followed points of
-/// an object moved here, if depth agrees. Then objects grow over neighbouring surface that continues theirs in depth
-/// where there was free space in the previous view: parts that come into view are labelled, and a person does not flow
-/// into the floor. After the idea of NGD-SLAM (Zhang et al. 2024, section III-B: points of the last mask are followed
-/// by optical flow and the mask is rebuilt by depth), with the background as a second source of motion. Keeps its
-/// buffers; one thread.
+/// Transfers the labels of one frame to another on their coarse views. A cell takes the label at its
+/// ego-motion-compensated position if the same surface was observed there, or else the label at its position
+/// compensated by the motion of followed points of an object, if depth agrees. Then objects grow over neighbouring
+/// cells of continuous depth that were free space in the previous view, which labels parts that come into view without
+/// spreading over the floor. After the idea of NGD-SLAM (Zhang et al. 2024, section III-B: points of the last mask are
+/// followed by optical flow and the mask is rebuilt by depth), with the background as a second source of motion. Keeps
+/// its buffers; one thread.
 ///
-/// One camera without depth has the followed points alone: a cell is labelled if at least half of the points near it
-/// say that an object moved here. An object continues beyond the border of the image, so that the parts that come into
-/// view are labelled as well. Where no point is followed, the camera's rotation alone moves the labels.
+/// Without depth, a cell is labelled if at least half of the followed points near it moved here from a labelled cell.
+/// Labels at the image border are extrapolated beyond it, so that parts that come into view are labelled. Without
+/// followed points, labels are transferred by the rotation of the camera.
 class MaskTransfer {
  public:
   /// `has_depth`: whether views may have depth; without it, their depths are not read.
@@ -56,7 +56,7 @@ class MaskTransfer {
   static void insert_by_distance(const Neighbour& added, Neighbour* nearest, std::uint8_t& count);
   /// All cells of a view without depth.
   void transfer_by_points_alone(const Job& job, const FollowedPairs& pairs);
-  /// Copies a row from where ego-motion moves its cells from; sets open_columns_.
+  /// Copies the labels of a row from their ego-motion-compensated positions; sets open_columns_.
   void take_row_by_ego_motion(const Job& job, int row);
   void take_by_object_motion(const Job& job, int column, int row);
   void take_without_depth(const Job& job, int column, int row);

@@ -31,7 +31,7 @@ struct MovingWorldParts {
   FilterChain filters = FilterChain();
   Segmenter* segmenter = nullptr;  ///< nullptr = none; must outlive the MovingWorld
   SegmentationSettings segmentation = {};
-  bool threaded = false;  ///< the segmenter has a thread of its own
+  bool threaded = false;  ///< the segmenter runs in a separate thread
   bool has_depth = true;  ///< false for one camera: no pose is compared with dense depth then
 };
 
@@ -40,7 +40,7 @@ struct TrackedView {
   const SensorFrame& sensor_frame;
   const Frame* previous;  ///< the previous frame with its pose; nullptr when it has none
   Frame& frame;
-  std::uint32_t piece = 0;  ///< of the map, in which the frame is tracked
+  std::uint32_t piece = 0;  ///< submap in which the frame is tracked
 };
 
 /// A pose of the current frame from the motion model.
@@ -57,10 +57,9 @@ struct ArrivedMask {
   CellMask mask;              ///< the segmentation on the cells of the frame's coarse view
 };
 
-/// What to trust: decides which features, map points and poses belong to the static world. It owns all that happens to
-/// a mask (segmentation queue, propagation to every frame), the filters with their evidence, and the check of poses
-/// against dense depth. The tracker asks, the pipeline feeds; neither knows how a mask arrives. One thread, except the
-/// segmenter's own.
+/// Facade for dynamic scenes: static probability of features and map points, and checks of poses against dense depth.
+/// It owns the masks (segmentation queue, propagation to every frame) and the filters with their evidence, and hides
+/// them from tracker and pipeline. One thread, except the segmenter's own.
 ///
 /// Functions that read or write the map (marked with *) are called while the caller holds the map's lock.
 class MovingWorld {
@@ -82,28 +81,28 @@ class MovingWorld {
   bool has(FilterStage stage) const { return filters_.has(stage); }
   /// * Sets the weights of the frame's features from the evidence so far.
   void weight_features(Frame& frame) { filters_.weight_features(map_, frame); }
-  /// Whether weights differ: inliers among features that are probably moving then do not count for a pose.
+  /// Whether features have different weights; then inliers that are more likely moving do not count.
   bool weights_features() const { return !filters_.empty(); }
-  /// * If matches on moving objects biased the pose, replaces it by the motion model's prediction: the one whose depth
-  /// agrees better with keyframes around `reference`. Then estimates coarse.T_view_camera. Adds the stage "filters".
+  /// * Replaces the pose by the motion model's prediction if the latter agrees clearly better with the depth of
+  /// keyframes around `reference`: then matches on moving objects biased the pose. Then estimates coarse.T_view_camera.
+  /// Adds the stage "filters".
   void check_pose(const PosePrediction& prediction, KeyFrameId reference, Frame& frame, StageTimes& times);
   /// * Whether a pose with this number of inliers contradicts the depth of the keyframes around `reference`. The limits
   /// are stricter after a loss, see EvidenceSettings.
   bool contradicts_depth(const Frame& frame, int inliers, bool was_lost, KeyFrameId reference);
-  /// * Whether keyframes around `reference` know the depth of the frame's view, and next to nothing of it is seen from
-  /// the frame's pose: something that was not there fills the view, and features that agree with each other may be on
-  /// it. False where the keyframes know nothing.
+  /// * True if keyframes around `reference` predict depth for this view but almost none of it is observed: something
+  /// large occludes the static scene, and the inliers may lie on it. False if the keyframes predict no depth.
   bool is_view_filled(const Frame& frame, KeyFrameId reference);
-  /// Lets features on masks count as well, for another attempt at this frame, if that changes anything. From then on
-  /// contradicts_depth() requires the support of dense depth whatever the number of inliers.
+  /// Gives features on masks a weight for another attempt at this frame; false if that changes no feature. From then on
+  /// contradicts_depth() requires the support of dense depth for any number of inliers.
   bool discount_priors() { return has_depth_ && filters_.discount_priors(); }
-  /// * The pose of the frame by dense depth alone, T_camera_world, beginning at a predicted one; nothing if its depth
-  /// contradicts keyframes around `reference`. Adds the stage "depth alignment".
+  /// * Dense depth alignment: T_camera_world by ICP with keyframes around `reference`, from a predicted pose; nothing
+  /// if its depth contradicts them. Adds the stage "depth alignment".
   std::optional<Eigen::Isometry3d> align_depth(const Frame& frame, const Eigen::Isometry3d& predicted,
                                                KeyFrameId reference, StageTimes& times);
   /// * Adds the frame's measurements to its map points.
   void accumulate(const Frame& frame) { filters_.accumulate(frame, map_); }
-  /// Ends a frame: the mask takes over its pose, if it has one, and which objects move.
+  /// Ends a frame: passes its pose, if it has one, and the moving cells to the mask propagation.
   void end_frame(const Frame& frame, bool has_pose);
 
   /// Objects that filters track in this frame.
@@ -112,10 +111,12 @@ class MovingWorld {
   bool has_mask() const { return propagator_ && !propagator_->mask().empty(); }
   /// Age of the propagated mask [s]; 0 without a mask.
   double mask_age() const { return propagator_ ? propagator_->mask().age : 0.0; }
-  /// Whether so many keyframes wait for their masks that only a frame that is about to be lost should become another.
+  /// Whether so many keyframes wait for their masks that a further one is justified only if tracking would otherwise be
+  /// lost.
   bool holds_keyframes() const { return queue_ && queue_->is_full(); }
 
-  /// Raw pixels (8UC1, not 0) of what is more likely moving than static in a view; empty if nothing is. Any thread.
+  /// Raw pixels (8UC1, not 0) of the cells of a view that are more likely moving than static; empty if there are none.
+  /// Any thread.
   cv::Mat moving_pixels(const CoarseView& view) const;
 
   // Fed by the pipeline.
@@ -125,23 +126,23 @@ class MovingWorld {
   void next_frame(double timestamp);
   /// The next mask that has arrived, if any. It is already applied to the current frame. Adds the stage "masks".
   std::optional<ArrivedMask> take_mask(StageTimes& times);
-  /// * Evaluates the features of the keyframe again by its own mask; does nothing when the keyframe is gone or the mask
-  /// is empty. Adds the stage "masks".
+  /// * Evaluates the features of the keyframe again by its own mask; has no effect if the keyframe was removed or the
+  /// mask is empty. Adds the stage "masks".
   void evaluate_keyframe(const ArrivedMask& arrived, StageTimes& times);
   /// Requests the mask of the frame last tracked, which became `keyframe` or, when that is invalid, none. False when
   /// the frame is not to be segmented or the queue has no room; `is_needed`: a frame that is no keyframe is segmented
   /// nevertheless. In sequential mode this adds the stage "segmentation".
   bool request_mask(const SensorFrame& sensor_frame, KeyFrameId keyframe, StageTimes& times, bool is_needed = false);
-  /// Waits until every requested mask can be taken. Throws what the segmenter threw.
+  /// Waits until every requested mask can be taken. Rethrows exceptions of the segmenter.
   void finish();
-  /// Throws what the segmenter threw in its thread.
+  /// Rethrows exceptions of the segmenter's thread.
   void rethrow();
 
   const MaskCounts& mask_counts() const { return mask_counts_; }
-  /// From the stamp of each frame with a segmentation to that of the first frame to which its mask was applied, or of
+  /// Latency of each mask: from the time stamp of its frame to that of the first frame to which it was applied, or of
   /// the last frame of the run [s].
   const std::vector<double>& mask_latencies() const { return mask_latencies_; }
-  /// Of the segmentation thread, since the last call.
+  /// Stage times of the segmentation thread since the last call.
   std::vector<StageTimes> take_times();
   std::optional<WorkerCounts> worker_counts() const;
 

@@ -11,8 +11,8 @@
 
 namespace holdfast {
 
-/// Image points followed from frame to frame by follow_points(), each from where its last step would bring it. Points
-/// are added where the caller wants them and keep rising ids; those that are lost disappear. One thread.
+/// Image points tracked from frame to frame by optical flow (follow_points()), predicted with constant image velocity.
+/// Points are added by the caller and get increasing ids; lost points are removed. One thread.
 class PointFollower {
  public:
   /// Entry i of each array belongs to point i; ordered by id.
@@ -28,11 +28,11 @@ class PointFollower {
 
   /// Moves the points to a new image (8UC1) of `camera`; `frame` gives the depth.
   void advance(const cv::Mat& grey, const Frame& frame);
-  /// How much of a corner the last image has at a raw pixel; 0 = nothing to follow.
+  /// Corner strength of the last image at a raw pixel; 0 = no texture.
   int corner_strength(int raw_x, int raw_y) const { return holdfast::corner_strength(image_, raw_x / 2, raw_y / 2); }
   /// Adds a point at a raw pixel of the last image.
   void add(const Frame& frame, float raw_x, float raw_y, std::uint8_t label);
-  /// Keeps the points for which `keep` says so.
+  /// Keeps the points for which `keep` returns true.
   template <class Keep>
   void filter(const Keep& keep);
 

@@ -26,10 +26,10 @@ struct SegmentedFrame {
 };
 
 /// Frames that wait for their segmentation, and results that wait to be applied. Sequential mode: push() segments at
-/// once, and pop() returns the result after the configured number of frames, so that results are those of a slow
-/// network and always the same; the first frame is segmented in a thread if the segmenter may still be loading.
-/// Threaded mode: a thread segments, at most one frame waits for it, and pop() returns a result as soon as it exists.
-/// First in, first out. One thread uses it.
+/// once, and pop() returns the result after the configured number of frames, which simulates a slow network
+/// deterministically; the first frame is segmented in a thread if the segmenter may still be loading. Threaded mode: a
+/// thread segments, at most one frame waits for it, and pop() returns a result as soon as it exists. First in, first
+/// out. One thread uses it.
 class SegmentationQueue {
  public:
   /// The segmenter must outlive the queue.
@@ -40,21 +40,21 @@ class SegmentationQueue {
   bool has_room() const { return !worker_ || worker_->queue().has_room(); }
   /// Waits for the result that is due at this frame, if any, so that pop() does not have to.
   void wait_for_due(std::uint64_t frame_number);
-  /// Adds a frame; there must be room. Sequential mode throws what the segmenter throws here, for the first frame of a
-  /// loading segmenter in the next call of push() or when its result is due. `times` gets the stage "segmentation" in
-  /// sequential mode.
+  /// Adds a frame; there must be room. Sequential mode throws exceptions of the segmenter here; those of the first
+  /// frame of a loading segmenter are thrown by the next push() or when its result is due. `times` gets the stage
+  /// "segmentation" in sequential mode.
   void push(const SensorFrame& frame, KeyFrameId keyframe, StageTimes& times);
   /// The next result that is available at this frame, if any. Call it at least once per frame.
   std::optional<SegmentedFrame> pop(std::uint64_t frame_number);
   /// Waits until every frame is segmented; the next calls of pop() return all results.
   void finish();
 
-  /// Whether no more keyframes should be made: there is no room, or the results of two keyframes, one in work and one
-  /// that waits, are outstanding, and the mask of a third would come too late to be useful.
+  /// True if no further keyframe should be created: the queue is full, or one keyframe is being segmented and another
+  /// one waits, so that the mask of a third would arrive too late.
   bool is_full() const { return keyframes_inside_ >= 2 || !has_room(); }
   /// Stage times of the segmentation thread since the last call.
   std::vector<StageTimes> take_times();
-  /// Throws what the segmenter threw in its thread.
+  /// Rethrows exceptions of the segmenter's thread.
   void rethrow() {
     if (worker_) worker_->rethrow();
   }
@@ -70,7 +70,7 @@ class SegmentationQueue {
   void segment(Job& job, StageTimes& times);
   void segment_in_background(Job& job);
   bool is_due(std::uint64_t frame_number) const { return all_due_ || jobs_.front()->due <= frame_number; }
-  /// Waits for the first frame and throws what the segmenter threw.
+  /// Waits for the first frame and rethrows exceptions of the segmenter.
   void finish_first() {
     if (first_.valid()) first_.get();
   }

@@ -12,7 +12,7 @@ enum class SegmentedFrames {
   every_n,    ///< keyframes and every n-th frame, for comparison
 };
 
-/// The `segmentation` section of a configuration: which frames the segmenter sees, and when its answer is applied.
+/// The `segmentation` section of a configuration: selection of the segmented frames, and latency of their masks.
 struct SegmentationSettings {
   SegmentedFrames on = SegmentedFrames::keyframes;
   int every = 5;  ///< with every_n, the n [frames]
@@ -20,8 +20,8 @@ struct SegmentationSettings {
   /// `unet` are one frame old in the median and at most two in 95 %; with the engine `opencv` two in the median.
   int latency = 3;
   double memory = 1.0;  ///< time after which the confidence of a propagated mask has halved [s]
-  /// The points of a keyframe wait for its mask unless less than this share of its static features shows map points: a
-  /// camera that turns to a new view would be lost before the mask arrives.
+  /// Share of static features with map points below which a keyframe creates its points at once instead of waiting for
+  /// its mask, because tracking of an unmapped view would be lost before the mask arrives.
   double new_view_share = 0.3;
 
   static void describe(ParameterTable<SegmentationSettings>& table);

@@ -8,9 +8,9 @@
 
 namespace holdfast {
 
-/// An image at a half of its resolution and less, in grey, for follow_points(). Each pixel of the first level is the
-/// mean of four of the image: x of the image is 0.5 * x - 0.25 there, with integers at the centres of pixels. Each
-/// further level is every second pixel of the one before, smoothed: x is 0.5 * x there. Keeps its buffers. One thread.
+/// Grey image pyramid from half the resolution, for follow_points(). Each pixel of the first level is the mean of four
+/// of the image: x of the image is 0.5 * x - 0.25 there, with integers at the centres of pixels. Each further level is
+/// every second pixel of the one before, smoothed: x is 0.5 * x there. Keeps its buffers. One thread.
 class ImagePyramid {
  public:
   static constexpr int levels = 3;
@@ -33,8 +33,8 @@ class ImagePyramid {
   std::array<cv::Mat, levels> padded_, levels_;  // the second are windows into the first
 };
 
-/// How much of a corner an image has at a pixel of its first level: the smaller one of the magnitudes of both
-/// derivatives by Scharr's filter (32 times grey levels per pixel). 0 outside the image.
+/// Corner strength at a pixel of the first level: the smaller magnitude of the two derivatives by Scharr's filter (32
+/// times grey levels per pixel). 0 outside the image.
 int corner_strength(const ImagePyramid& pyramid, int x, int y);
 
 }  // namespace holdfast

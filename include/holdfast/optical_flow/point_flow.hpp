@@ -20,18 +20,18 @@ struct PointFlow {
   void resize(std::size_t count);
 };
 
-/// When follow_points() ends and what it takes for found.
+/// Stopping and acceptance criteria of follow_points().
 struct PointFlowSettings {
   int iterations = 10;               ///< at most, per level of the pyramid
   float precision = 0.05F;           ///< a step shorter than this ends the iteration [px of the level]
   float largest_difference = 25.0F;  ///< mean of the grey levels' differences in the window above which a point is lost
 };
 
-/// Finds points of one image in another by the pyramidal Lucas-Kanade method (Bouguet, "Pyramidal implementation of the
-/// Lucas Kanade feature tracker", 2000): from the coarsest level to the finest, a window of 8 x 8 pixels is moved until
-/// the sum of its squared differences is least. A point is lost where its window has no texture in two directions,
-/// where it leaves the image, and where the windows differ too much. The images must have the same size. Points are
-/// independent of each other; results have the same bits on every processor.
+/// Pyramidal Lucas-Kanade optical flow of points (Bouguet, "Pyramidal implementation of the Lucas Kanade feature
+/// tracker", 2000): from the coarsest level to the finest, a window of 8 x 8 pixels is moved to the minimum of the sum
+/// of squared differences. A point is lost if its window lacks texture in a direction, leaves the image, or differs too
+/// much. The images must have the same size. Points are independent of each other; results have the same bits on every
+/// processor.
 void follow_points(const ImagePyramid& from, const ImagePyramid& to, const PointFlowSettings& settings, PointFlow& flow,
                    SimdLevel simd = simd_level());
 

@@ -10,7 +10,7 @@
 
 namespace holdfast {
 
-/// What is made worse about the frames of a source, each with a strength in its own unit; 0 leaves it as it is.
+/// Perturbations of the frames of a source, each with its strength and unit; 0 = off.
 struct PerturbationSettings {
   double motion_blur = 0.0;
   double noise = 0.0;
@@ -66,7 +66,7 @@ struct PerturbationSettings {
 
   bool is_nothing() const { return strengths().empty(); }
 
-  /// Name and strength of everything that is not 0, in the order of the table.
+  /// Name and strength of every perturbation that is not 0, in the order of the table.
   std::vector<std::pair<std::string, double>> strengths() const;
 };
 

@@ -12,17 +12,18 @@
 
 namespace holdfast {
 
-/// Wraps a source and makes its frames worse. What is drawn for a frame depends on the seed and on SensorFrame::index
-/// alone, not on which frames came before; only repeated and late frames depend on the frame before. Images of the wrapped source are never written to. The truth stays that of the source:
-/// pose and masks of a frame are those of the images that it shows, and the occluder is a moving object (255) without a
-/// class. Used by one thread.
+/// Wraps a source and perturbs its frames. The random numbers of a frame depend on the seed and SensorFrame::index
+/// alone; only repeated and late frames depend on the previous frame. Images of the wrapped source are never written
+/// to. Ground truth is that of the source: pose and masks of a frame belong to its images, and the occluder is a moving
+/// object (255) without a class. Used by one thread.
 class PerturbedSource final : public FrameSource {
  public:
-  /// `camera`: the true camera of the source, for the place of the occluder in a right image.
+  /// `camera`: the true camera of the source, for the position of the occluder in the right image.
   PerturbedSource(std::unique_ptr<FrameSource> source, const PerturbationSettings& settings, const Camera& camera,
                   std::uint64_t seed_of_run);
 
-  /// That of the wrapped source, with the camera of perturbed_camera() and the number of frames that are not dropped.
+  /// Description of the wrapped source, with the camera of perturbed_camera() and the number of frames that are not
+  /// dropped.
   SourceDescription describe() const override;
   std::optional<SensorFrame> next() override;
   Trajectory truth() const override { return source_->truth(); }
@@ -52,7 +53,7 @@ class PerturbedSource final : public FrameSource {
   std::optional<SensorFrame> last_;
 };
 
-/// The wrong calibration that `calibration` asks for.
+/// Camera with the calibration error of the setting `calibration`.
 Camera perturbed_camera(Camera camera, const PerturbationSettings& settings, std::uint64_t seed_of_run);
 
 }  // namespace holdfast

@@ -27,9 +27,9 @@ struct FedFrame {
 };
 
 /// Reads a source in a separate thread, so that decoding and tracking overlap. Of the settings it uses pace,
-/// late_frames and frame_queue. Images are not copied. With late_frames `drop`, frames are dropped where tracking has
-/// no time for them, and by the clock: where reading itself is late by more than a tenth of a second, frames that are
-/// due already are passed over (FrameSource::pass_over()), but for the newest.
+/// late_frames and frame_queue. Images are not copied. With late_frames `drop`, frames are dropped if tracking is too
+/// slow, and if reading is late by more than a tenth of a second: then overdue frames except the newest are skipped
+/// (FrameSource::pass_over()).
 class FrameFeeder {
  public:
   /// Starts reading. The source must outlive the feeder, and no other code may use it during that time.

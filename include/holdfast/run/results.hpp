@@ -16,18 +16,18 @@ const std::vector<std::string>& result_names();
 /// Writes the results of a run into an existing or new folder: trajectory.txt, keyframes.txt, run.json, report.html and
 /// config.yaml; where there is a true trajectory, evaluation.json, tracks.json, trajectory.svg and error.svg; where the
 /// run has made or changed a map, map.hfm and static_map.ply (the dense map where there is one, else the map points).
-/// Each file is replaced in one step, in the order of their worth: trajectory, map, run.json, then the others. When
-/// some cannot be written, the others are, and then InputError names those that were not.
+/// Each file is replaced atomically, the most important ones first: trajectory, map, run.json, then the others. If some
+/// cannot be written, the others are, and then InputError names the missing ones.
 void write_results(const RunRecord& record, const std::filesystem::path& folder);
 
 /// Whether the run found poses for a smaller share of its frames than run.minimum_coverage.
 bool has_low_coverage(const RunRecord& record);
-/// What a run with low coverage most often suffered from, and what to check; in whole sentences. Empty for other
-/// runs, and for one that was interrupted or failed, whose unread frames say nothing.
+/// Most frequent tracking failure of a run with low coverage, and what to check, in whole sentences. Empty for other
+/// runs, and for interrupted or failed ones.
 std::string coverage_warning(const RunRecord& record);
 
-/// Why the poses of a run are no result, and what to check; in whole sentences. That is the case if every pose begins a
-/// map (TrackingStatus::initialised), several times, and none was tracked in one. Empty for other runs.
+/// Describes why the poses of a run are unusable, and what to check, in whole sentences: every pose initialised a map
+/// (TrackingStatus::initialised), several times, and none was tracked. Empty for other runs.
 std::string unsupported_poses(const RunRecord& record);
 
 /// The commit that this library was built from, with "-dirty" for changes that were not committed; "unknown" outside a

@@ -24,13 +24,13 @@ struct RunProgress {
   const FrameResult& result;                 ///< of this frame; valid during the call only
 };
 
-/// How a run is done, besides its configuration. All callbacks are called in the thread that called run(), and an empty
+/// Options of a run besides its configuration. All callbacks are called in the thread that called run(), and an empty
 /// callback is not called. on_start may throw: run() passes the exception on. An exception of on_frame ends the run and
 /// is recorded as its failure. stop must not throw.
 struct RunOptions {
   PipelineOptions pipeline;
-  /// Called once with the source, as it was made; the run reads what is returned, such as a source that records what it
-  /// reads from the first. Not called for a pipeline that the caller has built.
+  /// Called once with the constructed source; the run reads the returned source, for instance one that records the
+  /// frames of the first. Not called for a pipeline that the caller has built.
   std::function<std::unique_ptr<FrameSource>(std::unique_ptr<FrameSource>)> wrap_source;
   /// Called once, after all modules have been made and before the first frame is read.
   std::function<void(const RunRecord& record)> on_start;

@@ -30,8 +30,8 @@ struct ThreadRecord {
   double late_share() const;
 };
 
-/// Frames whose colour image is that of the frame before, byte by byte: a driver or a copy has repeated an image, since
-/// no sensor gives the same noise twice.
+/// Frames whose colour image equals that of the previous frame, byte by byte: repeated by a driver or a copy, because
+/// sensor noise never repeats.
 struct RepeatedImages {
   std::size_t frames = 0;
   double longest = 0.0;  ///< longest time during which the image stayed the same [s]
@@ -67,8 +67,8 @@ struct RunRecord {
 
   std::optional<Evaluation> evaluation;  ///< where the source has a true trajectory
   std::string no_evaluation;             ///< the reason why there is no evaluation
-  /// Suspicions of the configuration, the modules, the evaluation and about the figures of the run, in this order; a
-  /// low coverage is said by coverage_warning(). See core/warning.hpp.
+  /// Warnings of the configuration, the modules, the evaluation and the figures of the run, in this order;
+  /// coverage_warning() reports a low coverage. See core/warning.hpp.
   Warnings warnings;
 
   double start_seconds = 0.0;    ///< time from the start of the run to the first pose; 0 if there was none [s]

@@ -9,15 +9,15 @@
 
 namespace holdfast {
 
-/// Writes poses while a run goes, so that a run that is killed leaves them: trajectory.txt in TUM format, one line a
-/// pose, flushed each second. A comment at its head says that the run has not come to its end; write_results() replaces
-/// the file by the corrected trajectory. Used by one thread.
+/// Writes the poses during a run, so that they survive if it is killed: trajectory.txt in TUM format, one line a pose,
+/// flushed each second. A comment at its head marks the run as unfinished; write_results() replaces the file by the
+/// corrected trajectory. Used by one thread.
 class TrajectoryJournal {
  public:
   /// Begins `folder`/trajectory.txt. Throws InputError if the file cannot be written.
   explicit TrajectoryJournal(const std::filesystem::path& folder);
-  /// Adds a pose as it was estimated. What can no longer be written, as on a full disk, is dropped: the run goes on,
-  /// and write_results() reports the disk.
+  /// Adds an estimated pose. Poses that cannot be written, as on a full disk, are dropped without ending the run;
+  /// write_results() reports the error.
   void add(const TimedPose& pose);
 
  private:

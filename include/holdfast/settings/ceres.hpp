@@ -15,7 +15,7 @@ struct CeresSettings {
   /// Outlier threshold of the squared normalised residual without depth: chi-square 95 %, two degrees of freedom.
   double chi_square_two = 5.991;
   double chi_square_three = 7.815;   ///< the same with depth: chi-square 95 %, three degrees of freedom
-  double disparity_sigma = 0.7;      ///< standard deviation of the disparity that a depth stands for [px]
+  double disparity_sigma = 0.7;      ///< standard deviation of the disparity equivalent to a depth [px]
   double disparity_threshold = 1.5;  ///< of the Huber cost of the disparity [standard deviations]
   /// Rounds of motion-only adjustment with outlier re-classification, as in ORB-SLAM2; the first half robust.
   int pose_rounds = 4;

@@ -29,7 +29,7 @@ struct ViewerOptions {
   Camera camera = {};                ///< for the frustum, and for the size of the pictures
 };
 
-/// The colour image of a frame with what is drawn over it. Pixels are raw.
+/// Colour image of a frame and its overlay. Pixels are raw.
 struct ViewedPicture {
   /// A feature that is drawn, in pixels of the picture.
   struct Feature {
@@ -41,7 +41,7 @@ struct ViewedPicture {
   cv::Mat colour;           ///< 8UC3 or 8UC1; owned, nobody else writes to it
   std::vector<Feature> features;
   std::vector<MapPointId> points;                ///< map points that the frame observes
-  std::vector<Eigen::Vector3f> moving_features;  ///< places of features that are believed to move, world frame [m]
+  std::vector<Eigen::Vector3f> moving_features;  ///< positions of features that are probably moving, world frame [m]
   /// Cells of a grid over the image, row by row: in the lower three bits the class (0 = none, 1 to 6, 7 = unknown), in
   /// the upper four how certainly it moves (0 to 15). Empty = no mask.
   std::vector<std::uint8_t> mask;
@@ -54,7 +54,7 @@ struct ViewedClass {
   std::uint8_t label = 0;  ///< index into the names of Viewer::set_classes()
 };
 
-/// Surfaces that a keyframe sees. They follow the keyframe when the map is corrected.
+/// Surfaces observed by a keyframe; they move with the keyframe when the map is corrected.
 struct ViewedSurface {
   KeyFrameId keyframe;
   double timestamp = 0.0;  ///< of the keyframe [s]
@@ -62,7 +62,7 @@ struct ViewedSurface {
   std::vector<CloudPoint> points;  ///< in the frame of the keyframe's camera
 };
 
-/// A run that has ended, as far as it is known. The path is in the world frame of the map.
+/// Result of a run that has ended. The path is in the world frame of the map.
 struct ViewedRun {
   std::string title;
   Camera camera;
@@ -71,20 +71,19 @@ struct ViewedRun {
   /// True positions, in the world frame of the map by the alignment of the evaluation; empty = unknown.
   std::vector<std::pair<double, Eigen::Vector3d>> truth;
   std::vector<std::pair<std::string, std::string>> figures;  ///< name and value, for the summary beside the map
-  /// The dense cloud, in the world frame of the map; empty = there is none, and surfaces that were given stay.
+  /// Dense cloud in the world frame of the map; empty = none, and earlier surfaces stay.
   std::vector<CloudPoint> cloud;
 };
 
-/// Shows a run in browsers: a server of HTTP and WebSocket in a thread of its own, which serves one page and sends it
-/// what has changed. The page needs no other file and no network.
+/// Shows a run in browsers: an HTTP and WebSocket server in a separate thread, which serves one self-contained page and
+/// sends changes to it.
 ///
-/// Every request has to name the token of address(), 128 random bits; others get 403. What is served is the page and
-/// the socket, no file. Of browsers only the messages of docs/viewer.md are accepted; any other message ends its
-/// connection.
+/// Every request needs the token of address(), 128 random bits; others get 403. Only the page and the socket are
+/// served, no file. Only the messages of modules/viewer/README.md are accepted from browsers; any other message ends
+/// the connection.
 ///
-/// No method waits for a browser except take_turn() and wait_for_browser(): what is given is kept until the thread of
-/// the server takes it, and a browser that is slower than the run gets fewer and larger changes. Any thread may call
-/// any method.
+/// No method waits for a browser except take_turn() and wait_for_browser(): data are kept until the server thread takes
+/// them, and a slow browser gets fewer and larger changes. Any thread may call any method.
 class Viewer {
  public:
   /// Starts serving. Throws InputError when the address cannot be listened at.
@@ -101,16 +100,16 @@ class Viewer {
 
   /// The result of the next frame.
   void add_frame(const FrameResult& result);
-  /// True when a browser would show another picture now: not more often than ViewerOptions::picture_rate, and than the
-  /// browsers ask for.
+  /// True when a browser can show another picture now, limited by ViewerOptions::picture_rate and the rates of the
+  /// browsers.
   bool wants_picture() const;
   void set_picture(ViewedPicture picture);
-  /// True when it is time for another snapshot: five times a second, or less often if browsers ask for that or taking one
-  /// has cost more than a fiftieth of the time; without a browser every two seconds, or a thousandth.
+  /// True when another snapshot is due: at most five times a second, at the rate of the browsers, and for at most a
+  /// fiftieth of the time; without a browser every two seconds and for a thousandth of the time.
   bool wants_map() const;
-  /// `seconds`: what making the snapshot took.
+  /// `seconds`: duration of making the snapshot.
   void set_map(MapSnapshot map, double seconds);
-  /// Names of classes by label; label 0 is the background. Empty = nothing is known of classes.
+  /// Names of classes by label; label 0 is the background. Empty = no classes.
   void set_classes(std::vector<std::string> names);
   /// Map points whose class is new or has changed; they need not be in a snapshot yet.
   void add_point_classes(std::vector<ViewedClass> classes);
@@ -122,8 +121,8 @@ class Viewer {
   void set_run(ViewedRun run);
 
   /// Waits while a browser has paused the run, and for the time stamp of a frame at the chosen speed [s]. Returns at
-  /// once without a browser, when the last one leaves, and when the thread handles a signal: whoever stops a program
-  /// by a signal need not know of the viewer.
+  /// once without a browser, when the last one leaves, and when the thread handles a signal, so that signals stop a
+  /// program as without the viewer.
   void take_turn(double timestamp);
   /// Waits for the first browser, or until the thread handles a signal.
   void wait_for_browser();
@@ -134,8 +133,8 @@ class Viewer {
   std::unique_ptr<State> state_;
 };
 
-/// The viewers of this process, oldest first. A program asks it for the addresses to show, and may keep a viewer that
-/// an observer has started beyond the end of the run.
+/// The viewers of this process, oldest first, for instance to print their addresses, or to keep a viewer of an observer
+/// beyond the end of the run.
 std::vector<std::shared_ptr<Viewer>> running_viewers();
 
 }  // namespace holdfast

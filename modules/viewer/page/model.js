@@ -1,4 +1,4 @@
-// What the page knows of the run: everything that messages have said so far. docs/viewer.md describes them.
+// What the page knows of the run: everything that messages have said so far. modules/viewer/README.md describes them.
 
 const arrayTypes = {u8: Uint8Array, u16: Uint16Array, u32: Uint32Array, f32: Float32Array, f64: Float64Array};
 

@@ -2,7 +2,7 @@
 
 /// Of one core, for a page that is only looked at.
 const calmShare = 0.05;
-/// What a browser offers the program; see docs/viewer.md.
+/// What a browser offers the program; see modules/viewer/README.md.
 const messageRates = [0, 1, 2, 5, 10, 30];
 
 class Pace {

@@ -9,16 +9,15 @@
 
 namespace holdfast::schur_plugin {
 
-/// The part of a bundle problem that takes part in its adjustment, in the order that the kernels need. Free poses have
-/// the first numbers, in the order of the problem, then the fixed ones; points keep their order. Keeps its memory
-/// between problems.
+/// The selected part of a bundle problem, in the order of the kernels. Free poses have the first numbers, in the order
+/// of the problem, then the fixed ones; points keep their order. Keeps its memory between problems.
 class BundleArrays {
  public:
   static constexpr std::uint32_t none = static_cast<std::uint32_t>(-1);
 
-  /// Takes what the selection says of the problem, and the state.
+  /// Copies the selected observations and the state of the problem.
   void build(const BundleProblem& problem, const BundleSelection& selection);
-  /// Takes the observations alone anew, those of the selection without those of `outliers`, one flag per entry.
+  /// Copies the selected observations again, without those marked in `outliers`, one flag per entry.
   void leave_out(const BundleProblem& problem, const std::vector<std::uint8_t>& outliers);
 
   std::size_t free_count() const { return free_count_; }

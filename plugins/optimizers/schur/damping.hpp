@@ -5,15 +5,15 @@
 
 namespace holdfast::schur_plugin {
 
-/// Damping of Levenberg-Marquardt, relative to the diagonal of the Hessian: it falls with the agreement between the
-/// linearised and the true decrease of the cost, and rises faster with each refusal (Madsen, Nielsen and Tingleff,
-/// "Methods for non-linear least squares problems", 2004, section 3.2).
+/// Damping of Levenberg-Marquardt, relative to the diagonal of the Hessian: it falls with the gain ratio (actual over
+/// predicted decrease of the cost), and rises faster with each rejected step (Madsen, Nielsen and Tingleff, "Methods
+/// for non-linear least squares problems", 2004, section 3.2).
 class Damping {
  public:
   double value() const { return value_; }
   bool is_hopeless() const { return value_ > 1e16; }
 
-  /// A step was accepted; `gain` is the true decrease of the cost over the predicted one.
+  /// A step was accepted; `gain` is the gain ratio.
   void accept(double gain) {
     const double shape = 2.0 * gain - 1.0;
     value_ = std::max(1e-16, value_ * std::max(1.0 / 3.0, 1.0 - shape * shape * shape));
@@ -29,7 +29,7 @@ class Damping {
   double growth_ = 2.0;
 };
 
-/// Least gain of an accepted step.
+/// Minimum gain ratio of an accepted step.
 inline constexpr double minimum_gain = 1e-3;
 
 }  // namespace holdfast::schur_plugin

@@ -9,8 +9,8 @@ namespace holdfast::schur_plugin {
 /// Pose graph optimisation on SE(3). Residual of an edge: log(T_to_from^-1 * T_to_world * T_world_from) times the
 /// square root of its weight, translation [m] before rotation [rad]; Levenberg-Marquardt with a sparse Cholesky factor.
 ///
-/// Not usable (nothing changed): no free node with an edge, no fixed node to hold the gauge, numbers that are not
-/// finite. Nodes that no chain of edges ties to a fixed node are held only by the damping. Indices out of range throw
+/// Not usable (nothing changed): no free node with an edge, no fixed node for the gauge, numbers that are not finite.
+/// Nodes that no chain of edges ties to a fixed node are held only by the damping. Indices out of range throw
 /// CheckError.
 GraphSummary adjust_pose_graph(PoseGraphProblem& problem, const SchurSettings& settings);
 
