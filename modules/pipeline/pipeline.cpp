@@ -124,10 +124,13 @@ struct Pipeline::State {
   void check_stamp(const SensorFrame& frame) const;
   /// The frame as given, or in `other` what the sensor of this pipeline has of it, in colour where a part needs that.
   const SensorFrame& used_images(const SensorFrame& given, SensorFrame& other) const;
+  /// Inserts the frame just located, and the first view of one camera's map before it, which is returned; the caller
+  /// holds the map's lock.
+  KeyFrameId insert_keyframe(const MapRequest& request, FrameResult& result);
   /// Removes the whole map, which began wrong, from every part that knows of it.
   void give_map_up(StageTimes& times);
   /// Inserts the first of the two keyframes with which the map of one camera begins; the caller holds the map's lock.
-  KeyFrameId begin_map(const TwoViewStart& start, StageTimes& times);
+  KeyFrameId begin_map(const TwoViewMap& start, StageTimes& times);
   /// Removes the pieces of the map that nothing joined with the main one; the threads have ended.
   void drop_loose_pieces();
   LoopJob refine(const MappingJob& job, StageTimes& times);
@@ -143,7 +146,7 @@ struct Pipeline::State {
   double take_masks(StageTimes& times);
   /// Requests the mask of the frame last tracked, if it should have one. A keyframe that cannot be segmented now goes
   /// on without a mask.
-  void request_mask(const SensorFrame& frame, const FrameResult& result, StageTimes& times);
+  void request_mask(const SensorFrame& frame, bool is_needed, const FrameResult& result, StageTimes& times);
   /// `coarse` and `labels` (may be empty) are the final evidence of motion in the keyframe. Returns what was kept until
   /// the next call, nullptr without a dense map.
   const KeptView* keep_view(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse,
@@ -162,9 +165,9 @@ struct Pipeline::State {
     background_times.push_back(std::move(times));
   }
   void rethrow_failures();
-  bool begins_on_people() {
+  bool is_start_refuted() {
     const TrackingLock lock(map_mutex);
-    return tracker.is_start_refuted();
+    return tracker.judge_start();
   }
   bool has_keyframe(KeyFrameId keyframe) {
     const std::lock_guard lock(map_mutex);
@@ -264,13 +267,27 @@ const SensorFrame& Pipeline::State::used_images(const SensorFrame& given, Sensor
   return other;
 }
 
-KeyFrameId Pipeline::State::begin_map(const TwoViewStart& start, StageTimes& times) {
+KeyFrameId Pipeline::State::begin_map(const TwoViewMap& start, StageTimes& times) {
   std::vector<std::pair<Eigen::Vector3d, std::uint32_t>> points;
-  for (const TwoViewStart::Point& point : start.points) points.emplace_back(point.position, point.in_reference);
+  for (const TwoViewMap::Point& point : start.points) points.emplace_back(point.position, point.in_reference);
   std::vector<MapPointId> ids;
   const KeyFrameId first = mapper.begin(start.reference, points, ids, times);
   tracker.map_begun(first, ids);
   return first;
+}
+
+KeyFrameId Pipeline::State::insert_keyframe(const MapRequest& request, FrameResult& result) {
+  // Without a map, or with little of it in view, there is nothing to track by until the mask comes, which takes the
+  // points on people back. Right after a loss, people are what hides the map, and tracking would follow them.
+  const bool shows_little = result.inliers < parts.segmentation.new_view_share * result.static_features;
+  const bool is_new_view = result.status == TrackingStatus::initialised || (shows_little && !request.follows_loss);
+  const bool wait_for_mask = moving_world.expects_masks() && !is_new_view;
+  KeyFrameId first_keyframe;
+  if (request.two_views != nullptr) first_keyframe = begin_map(*request.two_views, result.times);
+  const std::uint32_t submap = request.kind == MapRequest::Kind::new_submap ? map.new_piece() : request.submap;
+  result.keyframe = mapper.insert(tracker.frame(), wait_for_mask, result.times, submap);
+  if (mapping || moving_world.expects_masks()) tracker.keyframe_added(result.keyframe);
+  return first_keyframe;
 }
 
 void Pipeline::State::give_map_up(StageTimes& times) {
@@ -295,7 +312,7 @@ void Pipeline::State::give_map_up(StageTimes& times) {
 
 void Pipeline::State::drop_loose_pieces() {
   const std::lock_guard lock(map_mutex);
-  const std::uint32_t main = tracker.main_piece();
+  const std::uint32_t main = tracker.main_submap();
   if (map.keyframes_outside(main).empty()) return;
   map.keep_piece(main);
   if (scene) scene->forget_removed(map);
@@ -433,11 +450,9 @@ double Pipeline::State::take_masks(StageTimes& times) {
   }
 }
 
-void Pipeline::State::request_mask(const SensorFrame& frame, const FrameResult& result, StageTimes& times) {
+void Pipeline::State::request_mask(const SensorFrame& frame, bool is_needed, const FrameResult& result,
+                                   StageTimes& times) {
   const KeyFrameId keyframe = result.is_keyframe ? result.keyframe : KeyFrameId();
-  // One camera looks for its first two views by masks that are as fresh as they can be.
-  const bool is_needed =
-      (parts.sensor == Sensor::mono && result.status == TrackingStatus::waiting) || tracker.needs_mask();
   const bool is_requested = moving_world.request_mask(frame, keyframe, times, is_needed);
   if (!result.is_keyframe) return;
   if (is_requested) {
@@ -475,36 +490,26 @@ FrameResult Pipeline::feed(const SensorFrame& given) {
   s.moving_world.next_frame(frame.timestamp);
   s.hand_on_kept_keyframes();
   const double mask_seconds = s.take_masks(result.times);
-  if (s.begins_on_people()) s.give_map_up(result.times);
+  if (s.is_start_refuted()) s.give_map_up(result.times);
   KeyFrameId first_keyframe;
+  MapRequest request;
   const Stopwatch watch;
   s.tracker.begin(frame, result);
   {
     const TrackingLock lock(s.map_mutex);
-    s.tracker.locate(frame, result);
+    request = s.tracker.locate(frame, result);
     result.tracking_seconds = mask_seconds + watch.seconds();
     // The two views that begin a map are needed: without them there is nothing to track by.
-    if (result.is_keyframe && s.tracker.two_view_start() == nullptr && s.mapping &&
+    if (result.is_keyframe && request.two_views == nullptr && s.mapping &&
         (!s.keyframes_kept.empty() || !s.mapping->queue().has_room())) {
       result.is_keyframe = false;
       ++s.keyframes_deferred;
     }
-    if (result.is_keyframe) {
-      // Without a map, or with little of it in view, there is nothing to track by until the mask comes, which takes the
-      // points on people back. Right after a loss, people are what hides the map, and tracking would follow them.
-      const bool shows_little = result.inliers < s.parts.segmentation.new_view_share * result.static_features;
-      const bool is_new_view =
-          result.status == TrackingStatus::initialised || (shows_little && !s.tracker.was_just_found());
-      const bool wait_for_mask = s.moving_world.expects_masks() && !is_new_view;
-      if (const TwoViewStart* start = s.tracker.two_view_start()) first_keyframe = s.begin_map(*start, result.times);
-      const std::uint32_t piece = s.tracker.begins_piece() ? s.map.new_piece() : s.tracker.piece();
-      result.keyframe = s.mapper.insert(s.tracker.frame(), wait_for_mask, result.times, piece);
-      if (s.mapping || s.moving_world.expects_masks()) s.tracker.keyframe_added(result.keyframe);
-    }
+    if (result.is_keyframe) first_keyframe = s.insert_keyframe(request, result);
   }
-  if (s.tracker.gave_map_up()) s.give_map_up(result.times);
+  if (request.kind == MapRequest::Kind::give_up) s.give_map_up(result.times);
   if (first_keyframe.valid()) s.hand_to_mapping({first_keyframe}, result.times);
-  s.request_mask(frame, result, result.times);
+  s.request_mask(frame, request.wants_mask, result, result.times);
   if (result.is_keyframe) {
     if (!s.mapping && !s.moving_world.expects_masks()) s.tracker.keyframe_added(result.keyframe);
     result.T_world_camera = s.tracker.frame().T_world_camera();
