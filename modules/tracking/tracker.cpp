@@ -13,7 +13,7 @@ Tracker::Tracker(const TrackingSettings& settings, const TrackerParts& parts, Fi
       recovery_(context_, frame_tracker_.local_map()),
       state_(parts.map.keyframes().empty() ? TrackerState::waiting : TrackerState::lost) {}
 
-bool Tracker::judge_start() {
+bool Tracker::judge_start(const MapAccess&) {
   const StartVerdict verdict = start_->judge_by_mask();
   if (verdict == StartVerdict::confirmed) recovery_.forget_frames();
   return verdict == StartVerdict::refuted;
@@ -25,7 +25,7 @@ void Tracker::begin(const SensorFrame& sensor_frame, FrameResult& result) {
   frame_tracker_.begin(sensor_frame, state_, result);
 }
 
-MapRequest Tracker::locate(const SensorFrame& sensor_frame, FrameResult& result) {
+MapRequest Tracker::locate(const MapAccess&, const SensorFrame& sensor_frame, FrameResult& result) {
   MapRequest request = state_ == TrackerState::waiting ? begin_map(sensor_frame, result) : track(sensor_frame, result);
   end_frame(result);
   request.submap = context_.submap();
@@ -133,8 +133,8 @@ void Tracker::end_frame(FrameResult& result) {
     recovery_.track_backwards(result.times);
 }
 
-void Tracker::keyframe_added(KeyFrameId keyframe) {
-  const Frame& stored = context_.map.keyframe(keyframe).frame;
+void Tracker::keyframe_added(const MapAccess& map, KeyFrameId keyframe) {
+  const Frame& stored = map->keyframe(keyframe).frame;
   context_.current.map_points = stored.map_points;
   context_.current.T_camera_world = stored.T_camera_world;
   context_.reference_keyframe = context_.last_keyframe = keyframe;
@@ -143,7 +143,7 @@ void Tracker::keyframe_added(KeyFrameId keyframe) {
   context_.history.became_keyframe(keyframe, context_.current.timestamp);
 }
 
-void Tracker::forget_map() {
+void Tracker::forget_map(const MapAccess&) {
   context_.forget_map();
   keyframes_.forget_map();
   frame_tracker_.forget_map();

@@ -90,7 +90,7 @@ class Bench {
     FrameResult result;
     moving_world.next_frame(frame.timestamp);
     tracker.begin(frame, result);
-    request = tracker.locate(frame, result);
+    request = tracker.locate(access, frame, result);
     EXPECT_EQ(result.is_keyframe, request.kind != MapRequest::Kind::none);
     if (result.is_keyframe) add_keyframe();
     return result;
@@ -109,7 +109,7 @@ class Bench {
     map.update_covisibility(id);
     map.touch();
     detector.add(id, frame.features.descriptors);
-    tracker.keyframe_added(id);
+    tracker.keyframe_added(access, id);
   }
   /// Feeds frames along x at 0.5 m/s from `from` to `to` [s]; the last result.
   FrameResult walk(double from, double to) {
@@ -126,7 +126,8 @@ class Bench {
   Map map;
   MovingWorld moving_world;
   Tracker tracker;
-  MapRequest request;  // of the last frame
+  MapRequest request;           // of the last frame
+  const MapAccess access{map};  // no other thread uses the map
   std::uint64_t next_index = 0;
   bool mask_covers = false;
 
@@ -240,7 +241,7 @@ TEST(Tracker, ItsStatesFollowTheDiagram) {
   bench.feed(0.63, at(0.25));
   EXPECT_EQ(bench.tracker.state(), TrackerState::tracking) << "many do";
   bench.map.remove_all();
-  bench.tracker.forget_map();
+  bench.tracker.forget_map(bench.access);
   EXPECT_EQ(bench.tracker.state(), TrackerState::waiting);
   bench.feed(0.66, at(0.25));
   EXPECT_EQ(bench.request.kind, MapRequest::Kind::first_keyframe);
@@ -312,10 +313,10 @@ TEST(Tracker, FramesOfALossAreTrackedBackwardsOnceTheCameraIsFound) {
     }
     ASSERT_GT(lost, 10U);
     ASSERT_LT(lost, 30U);
-    EXPECT_EQ(bench.tracker.loss_record().tracked_backwards,
+    EXPECT_EQ(bench.tracker.loss_record(bench.access).tracked_backwards,
               std::min<std::size_t>(lost, static_cast<std::size_t>(kept)));
-    const Trajectory trajectory = bench.tracker.trajectory();
-    EXPECT_EQ(trajectory.size(), 75 - dark - lost + bench.tracker.loss_record().tracked_backwards);
+    const Trajectory trajectory = bench.tracker.trajectory(bench.access);
+    EXPECT_EQ(trajectory.size(), 75 - dark - lost + bench.tracker.loss_record(bench.access).tracked_backwards);
     for (std::size_t i = 0; i < trajectory.size(); ++i) {
       const double time = trajectory[i].timestamp;
       if (i > 0) {
@@ -391,7 +392,7 @@ TEST(Tracker, AWeakRecoveryIsWithdrawnUnlessItIsConfirmed) {
     bench.walk(0.0, 0.5);
     bench.extractor.every = bench.world.seen().size() / 90;
     bench.feed(0.5, at(0.25), false);
-    const std::size_t before = bench.tracker.trajectory().size();
+    const std::size_t before = bench.tracker.trajectory(bench.access).size();
     const int first = 18;  // of 30 a second
     for (int i = first; i < first + frames; ++i) {
       const FrameResult result = bench.feed(i / 30.0, at(0.25));
@@ -404,8 +405,8 @@ TEST(Tracker, AWeakRecoveryIsWithdrawnUnlessItIsConfirmed) {
     bench.feed((first + frames) / 30.0, at(0.25), false);
     const bool is_confirmed = frames > 8;
     const auto found = static_cast<std::size_t>(frames);
-    EXPECT_EQ(bench.tracker.trajectory().size(), before + (is_confirmed ? found : 0));
-    EXPECT_EQ(bench.tracker.loss_record().withdrawn, is_confirmed ? 0U : found);
+    EXPECT_EQ(bench.tracker.trajectory(bench.access).size(), before + (is_confirmed ? found : 0));
+    EXPECT_EQ(bench.tracker.loss_record(bench.access).withdrawn, is_confirmed ? 0U : found);
   }
 }
 
@@ -441,12 +442,13 @@ TEST(Tracker, OneCameraIsNotCarriedByAMapThatExplainsNextToNothing) {
     Bench bench(settings, false, std::move(maker.map));
     Tracker tracker(settings, {bench.world.camera(), bench.extractor, bench.optimizer, bench.detector,
                                bench.moving_world, bench.map, 1, std::nullopt, false});
+    const MapAccess access(bench.map);
     SensorFrame frame = bench.world.frame(0, 0.0, at(0.02, 0.01));
     frame.depth.release();
     FrameResult result;
     bench.moving_world.next_frame(frame.timestamp);
     tracker.begin(frame, result);
-    tracker.locate(frame, result);
+    tracker.locate(access, frame, result);
     EXPECT_GE(result.inliers, 2 * settings.minimum_inliers);
     EXPECT_EQ(result.status, every < 10 ? TrackingStatus::tracked : TrackingStatus::lost);
   }
@@ -751,13 +753,13 @@ TEST(Tracker, KeyframesAreMadeWhenThePolicySaysSo) {
 TEST(Tracker, TheTrajectoryFollowsCorrectionsOfKeyframes) {
   Bench bench;
   bench.walk(0.0, 0.5);
-  const Trajectory before = bench.tracker.trajectory();
+  const Trajectory before = bench.tracker.trajectory(bench.access);
   ASSERT_EQ(before.size(), 15U);
   bench.map.keyframes().for_each([&](KeyFrameId id, const KeyFrame&) {
     Frame& frame = bench.map.keyframe(id).frame;
     frame.T_camera_world = frame.T_camera_world * at(0.0, 1.0).inverse();
   });
-  const Trajectory after = bench.tracker.trajectory();
+  const Trajectory after = bench.tracker.trajectory(bench.access);
   for (std::size_t i = 0; i < after.size(); ++i)
     EXPECT_LT(
         ((after[i].T_world_camera.translation() - before[i].T_world_camera.translation()) - Vector3d(0, 1, 0)).norm(),
@@ -775,7 +777,7 @@ TEST(Tracker, WaitsForAFrameWithDepth) {
   result = bench.feed(0.1, at(0.0), false);
   EXPECT_EQ(result.trouble, TrackingTrouble::few_features);
   EXPECT_EQ(bench.feed(0.2, at(0.0)).status, TrackingStatus::initialised);
-  EXPECT_TRUE(bench.tracker.trajectory().size() == 1U);
+  EXPECT_TRUE(bench.tracker.trajectory(bench.access).size() == 1U);
 }
 
 }  // namespace
