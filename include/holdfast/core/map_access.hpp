@@ -5,9 +5,9 @@ namespace holdfast {
 
 class Map;
 
-/// Shows that the caller may use a map that other threads use as well: functions that need the map's lock take one.
-/// Where threads share the map, only an object that holds the lock is one (LockedMap of the pipeline). A MapAccess made
-/// of the map itself is for a map that no other thread uses.
+/// Shows that the caller may use a map that other threads use as well: functions that need the map's lock take one, and
+/// what they call works within it. Where threads share the map, it is an object that holds the lock (LockedMap of the
+/// pipeline); a MapAccess made of the map itself is for a map that no other thread uses.
 class MapAccess {
  public:
   explicit MapAccess(Map& map) : map_(map) {}

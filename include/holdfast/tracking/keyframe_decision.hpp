@@ -8,8 +8,8 @@
 namespace holdfast {
 
 /// Measures whether the frame being tracked should become a keyframe and asks KeyframePolicy. Tracker asks once a
-/// frame; FlowTracker asks as well, because a keyframe needs features of its own. One thread, which holds the lock of
-/// the map.
+/// frame; FlowTracker asks as well, because a keyframe needs features of its own. One thread, within
+/// the MapAccess of Tracker::locate().
 class KeyframeDecision {
  public:
   /// The context must outlive the object.

@@ -10,7 +10,7 @@ namespace holdfast {
 
 /// Second step of tracking a frame (Mur-Artal et al. 2015, section V-D): takes a first pose to the final one by
 /// matching the local map, with filters that need a pose before it. FrameTracker calls it for every first pose. Keeps
-/// no state. One thread, which holds the lock of the map.
+/// no state. One thread, within the MapAccess of Tracker::locate().
 class LocalMapRefinement {
  public:
   /// The context must outlive the object.

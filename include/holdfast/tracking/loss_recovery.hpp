@@ -17,7 +17,7 @@ namespace holdfast {
 
 /// Decides what follows a loss: poses on which few inliers agree stay unconfirmed and may be withdrawn; a camera that
 /// is lost for long begins a new submap and returns from it; frames without a pose are tracked backwards. Tracker calls
-/// it for every frame with a map; its thread holds the lock of the map.
+/// it for every frame with a map, in its thread and within its MapAccess.
 class LossRecovery {
  public:
   /// Both must outlive the object.

@@ -25,8 +25,8 @@ enum class StartVerdict {
 };
 
 /// Begins maps, judges how they began, and forgets them. DepthStart needs one frame with depth, TwoViewStart two views
-/// of one camera. Tracker calls it while there is no map, after losses, and to judge the start; its thread holds the
-/// lock of the map.
+/// of one camera. Tracker calls it while there is no map, after losses, and to judge the start, in its
+/// thread and within its MapAccess.
 class MapStart {
  public:
   /// The context must outlive the object.

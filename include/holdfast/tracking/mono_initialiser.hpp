@@ -14,8 +14,8 @@
 
 namespace holdfast {
 
-/// The first points of one camera's map, with the earlier of the two views that show them. The world frame is the reference's camera, unless the start was
-/// placed in another one; its unit is such that the median depth of the points is TrackingSettings::start_depth.
+/// The first points of one camera's map, and the earlier of the two views that show them, whose camera is the world
+/// frame. The median depth of the points is TrackingSettings::start_depth.
 struct TwoViewMap {
   /// A point that both views show.
   struct Point {

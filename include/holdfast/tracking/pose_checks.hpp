@@ -15,7 +15,7 @@ struct PoseSituation {
 
 /// Acceptance tests of an adjusted pose: number of inliers, inertia, covariance of the position, agreement with the
 /// dense depth of keyframes. FrameTracker and the first-pose methods ask for each frame. Keeps no state. One thread,
-/// which holds the lock of the map.
+/// within the MapAccess of Tracker::locate().
 class PoseChecks {
  public:
   /// The context must outlive the object.

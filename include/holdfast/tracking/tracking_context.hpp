@@ -36,8 +36,8 @@ struct TrackerParts {
 };
 
 /// The frame being tracked, the one before it, and the tools that estimate poses. Tracker owns it; its rooms
-/// (FrameTracker with the first-pose methods, MapStart, LossRecovery) share it. One thread, which holds the lock of the
-/// map except during Tracker::begin().
+/// (FrameTracker with the first-pose methods, MapStart, LossRecovery) share it within the MapAccess that Tracker was
+/// given; only Tracker::begin() has none. One thread.
 struct TrackingContext {
   TrackingContext(const TrackingSettings& settings, const TrackerParts& parts);
   TrackingContext(const TrackingContext&) = delete;
