@@ -73,6 +73,8 @@ test_quick() {
   # Without line numbers it compiles faster; the full mode tells them. Calls that a library calls deprecated are errors:
   # its next version may not have them.
   flags="-O1 -DNDEBUG -Werror=deprecated-declarations"
+  # Which lock guards what (core/thread_annotations.hpp) is clang's to check.
+  case "$CXX" in *clang*) flags="$flags -Werror=thread-safety" ;; esac
   # Without the program and the bench, which are half of what there is to compile.
   borders="configuration image_header image_lists map_file onnx_signature override plugin_record scene trajectory"
   build asan pipeline_test config_test map_io_test sources_test holdfast_example_run_and_report \

@@ -94,7 +94,7 @@ bool MonoInitialiser::is_certain(const std::vector<geometry::PixelPair>& pairs, 
   if (settings_.start_deviation == 0.0) return true;
   std::vector<geometry::PixelPair> used;
   std::size_t match = 0;  // the points of the start are in the order of their matches
-  for (const TwoViewStart::Point& point : start_.points) {
+  for (const TwoViewMap::Point& point : start_.points) {
     while (matches_[match].source != point.in_reference || matches_[match].feature != point.in_frame) ++match;
     used.push_back(pairs[match]);
   }
@@ -119,7 +119,7 @@ bool MonoInitialiser::adjust(const geometry::TwoViewMotion& motion, Frame& frame
   const std::atomic<bool> stop{false};
   if (!optimizer_.optimize_bundle(problem, stop).usable) return false;
 
-  std::vector<TwoViewStart::Point> kept;
+  std::vector<TwoViewMap::Point> kept;
   std::vector<double> depths;
   for (std::size_t i = 0; i < start_.points.size(); ++i) {
     const Eigen::Vector3d& position = problem.points[i];
@@ -132,7 +132,7 @@ bool MonoInitialiser::adjust(const geometry::TwoViewMotion& motion, Frame& frame
   }
   if (static_cast<int>(kept.size()) < settings_.minimum_start_points / 2) return false;
   const double unit = settings_.start_depth / upper_median(depths);
-  for (TwoViewStart::Point& point : kept) point.position *= unit;
+  for (TwoViewMap::Point& point : kept) point.position *= unit;
   frame.T_camera_world = problem.poses[1].T_camera_world;
   frame.T_camera_world.translation() *= unit;
   start_.points = std::move(kept);

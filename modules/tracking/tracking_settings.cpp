@@ -9,7 +9,7 @@ namespace {
 
 using S = TrackingSettings;
 
-void describe_poses(ParameterTable<S>& table) {
+void describe_start(ParameterTable<S>& table) {
   table
       .add("minimum_start_points", &S::minimum_start_points,
            "points with depth that the first frame must have; with one camera, matches of the first two keyframes")
@@ -37,6 +37,9 @@ void describe_poses(ParameterTable<S>& table) {
       .add("close_depth_factor", &S::close_depth_factor,
            "depth up to this many baselines is trusted alone; farther points are triangulated")
       .range(1, 10000);
+}
+
+void describe_matching(ParameterTable<S>& table) {
   table.add("motion_window", &S::motion_window, "search radius around a predicted feature, at level 0")
       .range(1, 200)
       .unit("px");
@@ -64,6 +67,9 @@ void describe_poses(ParameterTable<S>& table) {
            "distance up to which a point agrees with a rigid alignment to a keyframe")
       .range(0.001, 10)
       .unit("m");
+}
+
+void describe_extraction(ParameterTable<S>& table) {
   table.add(
       "between_keyframes", &S::between_keyframes,
       "features: every frame is tracked by features of its own; flow: frames that do not become keyframes are "
@@ -83,6 +89,9 @@ void describe_poses(ParameterTable<S>& table) {
            "share of the previous frame's features that were static, below which there are more of them: so many that "
            "the number of static ones stays at this share of the extractor's")
       .range(0, 1);
+}
+
+void describe_acceptance(ParameterTable<S>& table) {
   table.add("minimum_inliers", &S::minimum_inliers, "map points that must agree with a pose for it to be accepted")
       .range(6, 10000);
   table
@@ -144,6 +153,9 @@ void describe_keyframes(ParameterTable<S>& table) {
       .range(0, 100000);
   table.add("keyframe_close_possible", &S::keyframe_close_possible, "... more than this many new ones could be made")
       .range(0, 100000);
+}
+
+void describe_corrections(ParameterTable<S>& table) {
   table
       .add("depth_edge_ratio", &S::depth_edge_ratio,
            "depth is not trusted where it varies around a feature by more than this share of itself; 0 = trust all")
@@ -157,7 +169,7 @@ void describe_keyframes(ParameterTable<S>& table) {
       "fixed = by the readout time of the camera; estimated = the same, and the time is estimated while tracking");
 }
 
-void describe_relocalisation(ParameterTable<S>& table) {
+void describe_losses(ParameterTable<S>& table) {
   table
       .add("young_map_time", &S::young_map_time,
            "a camera that is lost so soon after its map began, for longer than half of the time tracked until then, "
@@ -182,6 +194,9 @@ void describe_relocalisation(ParameterTable<S>& table) {
            "when the first mask shows that less than this share of the first keyframe's features is static, the map "
            "began on what moves and begins anew; 0 = never (always so with one camera, which waits for the mask)")
       .range(0, 1);
+}
+
+void describe_relocalisation(ParameterTable<S>& table) {
   table.add("coasting_time", &S::coasting_time, "a lost camera is searched for along its last velocity for this long")
       .range(0, 100)
       .unit("s");
@@ -223,8 +238,13 @@ void describe_relocalisation(ParameterTable<S>& table) {
 }  // namespace
 
 void TrackingSettings::describe(ParameterTable<TrackingSettings>& table) {
-  describe_poses(table);
+  describe_start(table);
+  describe_matching(table);
+  describe_extraction(table);
+  describe_acceptance(table);
   describe_keyframes(table);
+  describe_corrections(table);
+  describe_losses(table);
   describe_relocalisation(table);
 }
 

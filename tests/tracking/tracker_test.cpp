@@ -71,11 +71,13 @@ Isometry3d at(double x, double y = 0.0, double z = 0.0) {
 class Bench {
  public:
   explicit Bench(const TrackingSettings& settings = {}, bool with_filter = false, Map known = {},
-                 std::uint64_t seed = 5, const EvidenceSettings& evidence = {})
+                 std::uint64_t seed = 5, const EvidenceSettings& evidence = {},
+                 FirstPoses first_poses = default_first_poses())
       : world(find_camera("tum_fr1").value(), 1500, seed),
         map(std::move(known)),
         moving_world({.camera = world.camera(), .filters = chain(with_filter, evidence)}, map),
-        tracker(of_patches(settings), {world.camera(), extractor, optimizer, detector, moving_world, map}) {
+        tracker(of_patches(settings), {world.camera(), extractor, optimizer, detector, moving_world, map},
+                std::move(first_poses)) {
     map.keyframes().for_each(
         [&](KeyFrameId id, const KeyFrame& keyframe) { detector.add(id, keyframe.frame.features.descriptors); });
   }
@@ -88,7 +90,8 @@ class Bench {
     FrameResult result;
     moving_world.next_frame(frame.timestamp);
     tracker.begin(frame, result);
-    tracker.locate(frame, result);
+    request = tracker.locate(access, frame, result);
+    EXPECT_EQ(result.is_keyframe, request.kind != MapRequest::Kind::none);
     if (result.is_keyframe) add_keyframe();
     return result;
   }
@@ -106,7 +109,7 @@ class Bench {
     map.update_covisibility(id);
     map.touch();
     detector.add(id, frame.features.descriptors);
-    tracker.keyframe_added(id);
+    tracker.keyframe_added(access, id);
   }
   /// Feeds frames along x at 0.5 m/s from `from` to `to` [s]; the last result.
   FrameResult walk(double from, double to) {
@@ -123,6 +126,8 @@ class Bench {
   Map map;
   MovingWorld moving_world;
   Tracker tracker;
+  MapRequest request;           // of the last frame
+  const MapAccess access{map};  // no other thread uses the map
   std::uint64_t next_index = 0;
   bool mask_covers = false;
 
@@ -181,6 +186,65 @@ TEST(Tracker, AJumpIsTrackedByTheReferenceKeyframe) {
   EXPECT_EQ(result.status, TrackingStatus::tracked);
   EXPECT_EQ(result.method, TrackingMethod::reference_keyframe);
   EXPECT_LT(error(result, jumped), 0.01);
+}
+
+/// A pose from elsewhere, such as a robot's odometry: one more method is this class, and one line of the list.
+class GivenPose final : public FirstPose {
+ public:
+  explicit GivenPose(const Isometry3d& T_world_camera) : T_world_camera_(T_world_camera) {}
+  FirstPoseOutcome find(PoseSearch& search) override {
+    search.context.current.T_camera_world = T_world_camera_.inverse();
+    search.context.drop_matches();
+    search.context.matcher.match_local_map(3.0F, search.context.current);
+    search.context.estimator.adjust(search.context.current);
+    search.result.method = TrackingMethod::motion_model;
+    return FirstPoseOutcome::first_pose;
+  }
+
+ private:
+  Isometry3d T_world_camera_;
+};
+
+TEST(Tracker, AMethodForFirstPosesIsAddedToTheList) {
+  const Isometry3d elsewhere = at(-0.1, 0.2, 0.1);
+  for (const bool is_added : {true, false}) {
+    FirstPoses poses = default_first_poses();
+    if (is_added) poses.push_back(std::make_unique<GivenPose>(elsewhere));
+    Bench bench(without_relocalisation(), false, {}, 5, {}, std::move(poses));
+    bench.walk(0.0, 0.5);
+    bench.feed(0.5, at(0.25), false);
+    const FrameResult result = bench.feed(0.6, elsewhere);
+    EXPECT_EQ(result.status, is_added ? TrackingStatus::tracked : TrackingStatus::lost);
+    if (is_added) {
+      EXPECT_LT(error(result, elsewhere), 0.01);
+    }
+  }
+}
+
+TEST(Tracker, ItsStatesFollowTheDiagram) {
+  TrackingSettings settings = without_relocalisation();
+  settings.recovery_keyframes = 5;
+  Bench bench(settings);
+  EXPECT_EQ(bench.tracker.state(), TrackerState::waiting);
+  bench.feed(0.0, at(0.0));
+  EXPECT_EQ(bench.tracker.state(), TrackerState::tracking) << "no mask is expected that could refute the start";
+  EXPECT_EQ(bench.request.kind, MapRequest::Kind::first_keyframe);
+  bench.walk(1.0 / 30.0, 0.5);
+  EXPECT_EQ(bench.tracker.state(), TrackerState::tracking);
+  bench.extractor.every = bench.world.seen().size() / 90;
+  bench.feed(0.5, at(0.25), false);
+  EXPECT_EQ(bench.tracker.state(), TrackerState::lost);
+  bench.feed(0.6, at(0.25));
+  EXPECT_EQ(bench.tracker.state(), TrackerState::unconfirmed) << "few features agree";
+  EXPECT_TRUE(bench.request.wants_mask);
+  bench.extractor.every = 1;
+  bench.feed(0.63, at(0.25));
+  EXPECT_EQ(bench.tracker.state(), TrackerState::tracking) << "many do";
+  bench.map.remove_all();
+  bench.tracker.forget_map(bench.access);
+  EXPECT_EQ(bench.tracker.state(), TrackerState::waiting);
+  bench.feed(0.66, at(0.25));
+  EXPECT_EQ(bench.request.kind, MapRequest::Kind::first_keyframe);
 }
 
 TEST(Tracker, AShortLossIsFoundAlongTheLastVelocity) {
@@ -249,10 +313,10 @@ TEST(Tracker, FramesOfALossAreTrackedBackwardsOnceTheCameraIsFound) {
     }
     ASSERT_GT(lost, 10U);
     ASSERT_LT(lost, 30U);
-    EXPECT_EQ(bench.tracker.loss_record().tracked_backwards,
+    EXPECT_EQ(bench.tracker.loss_record(bench.access).tracked_backwards,
               std::min<std::size_t>(lost, static_cast<std::size_t>(kept)));
-    const Trajectory trajectory = bench.tracker.trajectory();
-    EXPECT_EQ(trajectory.size(), 75 - dark - lost + bench.tracker.loss_record().tracked_backwards);
+    const Trajectory trajectory = bench.tracker.trajectory(bench.access);
+    EXPECT_EQ(trajectory.size(), 75 - dark - lost + bench.tracker.loss_record(bench.access).tracked_backwards);
     for (std::size_t i = 0; i < trajectory.size(); ++i) {
       const double time = trajectory[i].timestamp;
       if (i > 0) {
@@ -274,7 +338,7 @@ TEST(Tracker, ACameraThatIsLostForLongBeginsAPiece) {
     for (int i = 15; i < 45 && !began; ++i) {
       const double now = i / 30.0;
       const FrameResult result = bench.feed(now, at(0.25, 1.0, 0.3), i > 17);
-      began = bench.tracker.begins_piece();
+      began = bench.request.kind == MapRequest::Kind::new_submap;
       EXPECT_EQ(result.status, began ? TrackingStatus::initialised : TrackingStatus::lost);
       if (began) {
         EXPECT_NEAR(now - 14.0 / 30.0, 0.3, 0.07);
@@ -328,7 +392,7 @@ TEST(Tracker, AWeakRecoveryIsWithdrawnUnlessItIsConfirmed) {
     bench.walk(0.0, 0.5);
     bench.extractor.every = bench.world.seen().size() / 90;
     bench.feed(0.5, at(0.25), false);
-    const std::size_t before = bench.tracker.trajectory().size();
+    const std::size_t before = bench.tracker.trajectory(bench.access).size();
     const int first = 18;  // of 30 a second
     for (int i = first; i < first + frames; ++i) {
       const FrameResult result = bench.feed(i / 30.0, at(0.25));
@@ -341,8 +405,8 @@ TEST(Tracker, AWeakRecoveryIsWithdrawnUnlessItIsConfirmed) {
     bench.feed((first + frames) / 30.0, at(0.25), false);
     const bool is_confirmed = frames > 8;
     const auto found = static_cast<std::size_t>(frames);
-    EXPECT_EQ(bench.tracker.trajectory().size(), before + (is_confirmed ? found : 0));
-    EXPECT_EQ(bench.tracker.loss_record().withdrawn, is_confirmed ? 0U : found);
+    EXPECT_EQ(bench.tracker.trajectory(bench.access).size(), before + (is_confirmed ? found : 0));
+    EXPECT_EQ(bench.tracker.loss_record(bench.access).withdrawn, is_confirmed ? 0U : found);
   }
 }
 
@@ -378,12 +442,13 @@ TEST(Tracker, OneCameraIsNotCarriedByAMapThatExplainsNextToNothing) {
     Bench bench(settings, false, std::move(maker.map));
     Tracker tracker(settings, {bench.world.camera(), bench.extractor, bench.optimizer, bench.detector,
                                bench.moving_world, bench.map, 1, std::nullopt, false});
+    const MapAccess access(bench.map);
     SensorFrame frame = bench.world.frame(0, 0.0, at(0.02, 0.01));
     frame.depth.release();
     FrameResult result;
     bench.moving_world.next_frame(frame.timestamp);
     tracker.begin(frame, result);
-    tracker.locate(frame, result);
+    tracker.locate(access, frame, result);
     EXPECT_GE(result.inliers, 2 * settings.minimum_inliers);
     EXPECT_EQ(result.status, every < 10 ? TrackingStatus::tracked : TrackingStatus::lost);
   }
@@ -647,14 +712,14 @@ TEST(Tracker, WithoutTheMapNoNumberOfFeaturesMakesTheCameraJump) {
 TEST(Tracker, RightAfterALossItSaysSo) {
   Bench bench;
   bench.walk(0.0, 0.5);
-  EXPECT_FALSE(bench.tracker.was_just_found());
+  EXPECT_FALSE(bench.request.follows_loss);
   for (int i = 15; i < 18; ++i) bench.feed(i / 30.0, at(Bench::speed * i / 30.0), false);
-  EXPECT_TRUE(bench.tracker.needs_mask()) << "to find the camera by what is static";
+  EXPECT_TRUE(bench.request.wants_mask) << "to find the camera by what is static";
   ASSERT_EQ(bench.feed(0.6, at(Bench::speed * 0.6)).status, TrackingStatus::tracked);
-  EXPECT_FALSE(bench.tracker.needs_mask());
-  EXPECT_TRUE(bench.tracker.was_just_found());
+  EXPECT_FALSE(bench.request.wants_mask);
+  EXPECT_TRUE(bench.request.follows_loss);
   bench.walk(0.6 + 1.0 / 30.0, 1.2);
-  EXPECT_FALSE(bench.tracker.was_just_found());
+  EXPECT_FALSE(bench.request.follows_loss);
 }
 
 TEST(Tracker, KeyframesAreMadeWhenThePolicySaysSo) {
@@ -688,13 +753,13 @@ TEST(Tracker, KeyframesAreMadeWhenThePolicySaysSo) {
 TEST(Tracker, TheTrajectoryFollowsCorrectionsOfKeyframes) {
   Bench bench;
   bench.walk(0.0, 0.5);
-  const Trajectory before = bench.tracker.trajectory();
+  const Trajectory before = bench.tracker.trajectory(bench.access);
   ASSERT_EQ(before.size(), 15U);
   bench.map.keyframes().for_each([&](KeyFrameId id, const KeyFrame&) {
     Frame& frame = bench.map.keyframe(id).frame;
     frame.T_camera_world = frame.T_camera_world * at(0.0, 1.0).inverse();
   });
-  const Trajectory after = bench.tracker.trajectory();
+  const Trajectory after = bench.tracker.trajectory(bench.access);
   for (std::size_t i = 0; i < after.size(); ++i)
     EXPECT_LT(
         ((after[i].T_world_camera.translation() - before[i].T_world_camera.translation()) - Vector3d(0, 1, 0)).norm(),
@@ -712,7 +777,7 @@ TEST(Tracker, WaitsForAFrameWithDepth) {
   result = bench.feed(0.1, at(0.0), false);
   EXPECT_EQ(result.trouble, TrackingTrouble::few_features);
   EXPECT_EQ(bench.feed(0.2, at(0.0)).status, TrackingStatus::initialised);
-  EXPECT_TRUE(bench.tracker.trajectory().size() == 1U);
+  EXPECT_TRUE(bench.tracker.trajectory(bench.access).size() == 1U);
 }
 
 }  // namespace

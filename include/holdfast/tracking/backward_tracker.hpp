@@ -23,8 +23,8 @@ namespace holdfast {
 /// The first of them is tracked from the keyframe that was made when the camera was found, after its mask has had time
 /// to arrive, because mapping then has made its points. Where the map does not suffice, a frame is tracked by all
 /// static features with depth of the frame after it, for TrackingSettings::odometry_time at most. Every pose must hold
-/// as firmly as one after a loss. One thread; functions that track are called while the caller holds the lock of the
-/// map.
+/// as firmly as one after a loss. One thread; LossRecovery calls it within a MapAccess for every frame,
+/// and at the end of the run.
 ///
 /// The frames around the start of a map of one camera are kept as well, those before its second view and those that
 /// were tracked while bundle adjustment still changed the shape of the map: the pose that a frame gets backwards

@@ -48,8 +48,8 @@ class FrameBuilder {
 
   /// Places the features again for a camera that moves: reads their depth where the depth image shows them, which was
   /// exposed before or after the colour image, if `aligns_depth`; and takes them from the exposures of their rows to
-  /// that of the middle row. Does nothing for a stereo pair. Adds to the stage "frame". The caller holds the lock of
-  /// the map if features have map points.
+  /// that of the middle row. Does nothing for a stereo pair. Adds to the stage "frame". Reads the map if
+  /// features have map points.
   void place_features(const SensorFrame& sensor_frame, const FrameMotion& motion, bool aligns_depth,
                       const RollingShutter& shutter, const Map& map, Frame& frame, StageTimes& times) const;
 

@@ -14,7 +14,7 @@ namespace holdfast {
 
 /// Poses of all tracked frames, and the motion model (constant velocity) that follows from the last two. Each pose is
 /// kept relative to the frame's reference keyframe, so that it follows later corrections of the map. Functions that
-/// take the map are called while the caller holds its lock. One thread.
+/// take the map read it. One thread.
 class FrameHistory {
  public:
   /// Adds a tracked frame. Its velocity is T_current_previous when the frame before was tracked, too.

@@ -20,7 +20,7 @@ struct OdometryMatch {
 
 /// Matches the features of a frame with map points, by each of the priors that tracking has: the previous frame, a
 /// keyframe's descriptors alone, or the local map. Results are written to frame.map_points. Keeps its buffers; one
-/// thread. The caller holds the map's lock.
+/// thread, within a MapAccess.
 class FrameMatcher {
  public:
   /// The map and the matcher of features must outlive the object.

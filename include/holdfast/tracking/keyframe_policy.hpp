@@ -38,7 +38,7 @@ class KeyframePolicy {
  public:
   explicit KeyframePolicy(const TrackingSettings& settings) : settings_(settings) {}
 
-  /// Counts points for a frame that was tracked against a reference keyframe; the caller holds the map's lock. Leaves
+  /// Counts points for a frame that was tracked against a reference keyframe of this map. Leaves
   /// since_last, mask_age and on_hold to the caller. A reference that was removed from the map has no points.
   KeyframeSituation measure(const Frame& frame, int inliers, KeyFrameId reference, const Map& map) const;
   /// The first reason that applies, in the order of KeyframeReason.

@@ -14,9 +14,9 @@
 
 namespace holdfast {
 
-/// Two views from which the map of one camera begins. The world frame is the reference's camera, unless the start was
-/// placed in another one; its unit is such that the median depth of the points is TrackingSettings::start_depth.
-struct TwoViewStart {
+/// The first points of one camera's map, and the earlier of the two views that show them, whose camera is the world
+/// frame. The median depth of the points is TrackingSettings::start_depth.
+struct TwoViewMap {
   /// A point that both views show.
   struct Point {
     Eigen::Vector3d position;  ///< world
@@ -41,7 +41,7 @@ class MonoInitialiser {
   TrackingTrouble add(Frame& frame);
 
   /// Valid after add() returned no trouble, until the next call.
-  const TwoViewStart& start() const { return start_; }
+  const TwoViewMap& start() const { return start_; }
   /// Gives the reference up: the next frame becomes one.
   void forget() { has_reference_ = false; }
 
@@ -60,7 +60,7 @@ class MonoInitialiser {
   const FeatureMatcher& matcher_;
   Random random_;
   bool has_reference_ = false;
-  TwoViewStart start_;
+  TwoViewMap start_;
   std::vector<FeatureMatch> matches_;  // source: of the reference, feature: of the frame
 };
 

@@ -13,7 +13,7 @@
 namespace holdfast {
 
 /// Estimates the pose of a frame from its matches with map points, weighted by the probability that each feature is
-/// static. Keeps its buffers; one thread. The caller holds the map's lock.
+/// static. Keeps its buffers; one thread, within a MapAccess.
 ///
 /// With one camera among people, established points precede new ones: a part of a person that no mask shows gets map
 /// points, too, which agree with each other and, being near, determine the translation more than the room does. Where

@@ -45,11 +45,11 @@ class RollingShutter {
   double readout() const { return readout_; }
 
   /// Moves frame.x, y, depth and right_x, which are those of the rows' exposures; the grid is left as it is. Features
-  /// without depth have that of their map point by frame.T_camera_world, or a typical one. The caller holds the lock
-  /// of the map.
+  /// without depth have that of their map point by frame.T_camera_world, or a typical one: only
+  /// then is the map read.
   void correct(const FrameMotion& motion, const Map& map, Frame& frame) const;
   /// Improves the estimate by a frame with its final pose, whose map points agree with it, and whose features were
-  /// corrected for `motion`; does nothing unless the time is estimated. The caller holds the lock of the map.
+  /// corrected for `motion`; does nothing unless the time is estimated.
   void learn(const FrameMotion& motion, const Map& map, const Frame& frame);
 
  private:

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+
+#include "holdfast/core/frame.hpp"
+#include "holdfast/core/map.hpp"
+#include "holdfast/interfaces/feature_extractor.hpp"
+#include "holdfast/interfaces/loop_detector.hpp"
+#include "holdfast/interfaces/optimizer.hpp"
+#include "holdfast/moving_world/moving_world.hpp"
+#include "holdfast/tracking/frame_builder.hpp"
+#include "holdfast/tracking/frame_history.hpp"
+#include "holdfast/tracking/frame_matcher.hpp"
+#include "holdfast/tracking/pose_estimator.hpp"
+#include "holdfast/tracking/relocaliser.hpp"
+#include "holdfast/tracking/rolling_shutter.hpp"
+#include "holdfast/tracking/tracking_settings.hpp"
+
+namespace holdfast {
+
+/// The modules and data of a Tracker; all of them but the camera must outlive it.
+struct TrackerParts {
+  const Camera& camera;
+  FeatureExtractor& features;
+  Optimizer& optimizer;
+  LoopDetector& detector;
+  MovingWorld& moving_world;
+  Map& map;
+  std::uint64_t seed = 1;                  ///< of the random samples of relocalisation
+  std::optional<StereoParts> stereo = {};  ///< depth comes from a right image
+  bool features_have_depth = true;         ///< false for one camera; stereo pairs have depth
+  const FeatureMatcher& matcher = nearest_matcher();
+};
+
+/// The frame being tracked, the one before it, and the tools that estimate poses. Tracker owns it; its rooms
+/// (FrameTracker with the first-pose methods, MapStart, LossRecovery) share it within the MapAccess that Tracker was
+/// given; only Tracker::begin() has none. One thread.
+struct TrackingContext {
+  TrackingContext(const TrackingSettings& settings, const TrackerParts& parts);
+  TrackingContext(const TrackingContext&) = delete;
+  TrackingContext& operator=(const TrackingContext&) = delete;
+
+  /// T_camera_world of the current frame by constant velocity.
+  Eigen::Isometry3d predicted_pose() const {
+    return history.predicted_step(current.timestamp) * previous.T_camera_world;
+  }
+  /// T_current_previous by the poses of both frames.
+  Eigen::Isometry3d measured_step() const { return current.T_camera_world * previous.T_world_camera(); }
+  /// The motion T_current_previous = step since the last tracked frame; empty if that is older than 0.2 s, when
+  /// constant velocity is no longer a valid assumption.
+  std::optional<FrameMotion> motion_by(const Eigen::Isometry3d& step) const;
+  /// Corrects the features of the current frame for the motion `step` (FrameBuilder::place_features).
+  void place_features(const SensorFrame& sensor_frame, const Eigen::Isometry3d& step, StageTimes& times);
+  /// The submap in which the camera is tracked.
+  std::uint32_t submap() const { return map.piece_of(reference_keyframe).value_or(0); }
+  /// Removes all matches of the current frame with map points.
+  void drop_matches();
+  /// As if no frame had been tracked.
+  void forget_map();
+
+  const TrackingSettings settings;
+  MovingWorld& moving_world;
+  Map& map;
+  const bool features_have_depth;
+  bool localises_only = false;  ///< the map stays as it is
+
+  FrameBuilder builder;
+  FrameHistory history;
+  FrameMatcher matcher;
+  PoseEstimator estimator;
+  Relocaliser relocaliser;
+  RollingShutter shutter;
+
+  Frame current, previous;
+  KeyFrameId reference_keyframe;   ///< against which the current frame is tracked
+  KeyFrameId last_keyframe;        ///< added last
+  double last_feature_time = 0.0;  ///< [s], of the last pose that matches with the map determined
+};
+
+}  // namespace holdfast

@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "keyframe_flow.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "holdfast/map_io/map_export.hpp"
+#include "holdfast/matching/frame_features.hpp"
+
+namespace holdfast {
+
+KeyframeFlow::KeyframeFlow(PipelineParts& parts, GuardedMap& map, MovingWorld& moving_world,
+                           SharedLoopDetector& detector)
+    : parts_(parts),
+      map_(map),
+      moving_world_(moving_world),
+      detector_(detector),
+      describes_images_(detector.image_descriptor().has_value()),
+      is_mono_(parts.sensor == Sensor::mono),
+      mapper_(parts.mapping, parts.tracking.close_depth_factor, map.shared().map, map.shared().mutex, *parts.optimizer,
+              *parts.matcher),
+      closer_(parts.loop_closing, map.shared(), detector, *parts.optimizer, parts.run.seed, *parts.matcher),
+      adjustment_(parts.loop_closing, map.shared(), *parts.optimizer) {
+  if (moving_world.expects_masks()) mapper_.expect_masks();
+  closer_.set_full_adjustment(&adjustment_);
+  const Map& loaded = map.unshared();
+  for (const KeyFrameId keyframe : loaded.keyframes_by_age())
+    detector.add(keyframe, place_descriptors(loaded.keyframe(keyframe).frame, describes_images_));
+  if (parts.dense_map.enabled && !parts.localise_only) scene_.emplace(parts.camera, parts.dense_map);
+  const std::vector<std::string>& out = parts.dense_map.classes;
+  for (const std::string& name : parts.segmenter->classes())
+    left_out_.push_back(std::find(out.begin(), out.end(), name) != out.end());
+}
+
+void KeyframeFlow::start_threads() {
+  const auto capacity = static_cast<std::size_t>(parts_.run.keyframe_queue);
+  full_adjustment_.emplace("full adjustment", 1,
+                           [this](AdjustmentJob&) { in_background([&](StageTimes& times) { adjust_map(times); }); });
+  loop_closing_.emplace("loop closing", capacity, [this](LoopJob& job) {
+    bool closed = false;
+    in_background([&](StageTimes& times) { closed = close_loops(job, times); });
+    if (closed) full_adjustment_->queue().push_newest({});
+  });
+  mapping_.emplace("local mapping", capacity, [this](MappingJob& refined) {
+    LoopJob job;
+    in_background([&](StageTimes& times) { job = refine(refined, times); });
+    loop_closing_->queue().push(std::move(job));
+  });
+}
+
+void KeyframeFlow::rethrow_failures() {
+  if (mapping_) mapping_->rethrow();
+  if (loop_closing_) loop_closing_->rethrow();
+  if (full_adjustment_) full_adjustment_->rethrow();
+  moving_world_.rethrow();
+}
+
+void KeyframeFlow::wait_for_room() {
+  if (mapping_ && !parts_.run.paced()) mapping_->queue().wait_for_room();
+}
+
+void KeyframeFlow::hand_on_waiting_keyframes() {
+  while (!waiting_.empty() && mapping_->queue().has_room()) {
+    mapping_->queue().push(waiting_.front());
+    waiting_.pop_front();
+  }
+}
+
+bool KeyframeFlow::has_room_for_keyframe() {
+  if (!mapping_ || (waiting_.empty() && mapping_->queue().has_room())) return true;
+  ++keyframes_deferred_;
+  return false;
+}
+
+KeyFrameId KeyframeFlow::begin_map(const LockedMap&, const TwoViewMap& start, std::vector<MapPointId>& ids,
+                                   StageTimes& times) {
+  std::vector<std::pair<Eigen::Vector3d, std::uint32_t>> points;
+  for (const TwoViewMap::Point& point : start.points) points.emplace_back(point.position, point.in_reference);
+  return mapper_.begin(start.reference, points, ids, times);
+}
+
+KeyFrameId KeyframeFlow::insert(const LockedMap&, const Frame& frame, bool waits_for_mask, std::uint32_t submap,
+                                StageTimes& times) {
+  return mapper_.insert(frame, waits_for_mask, times, submap);
+}
+
+double KeyframeFlow::take_masks(StageTimes& times) {
+  double seconds = 0.0;
+  for (;;) {
+    const Stopwatch watch;
+    const std::optional<ArrivedMask> arrived = moving_world_.take_mask(times);
+    if (!arrived) return seconds;
+    seconds += watch.seconds();
+    if (!arrived->keyframe.valid()) continue;
+    show_view(apply_mask(*arrived, seconds, times));
+    hand_to_mapping({arrived->keyframe, true, image_to_describe(arrived->frame)}, times);
+  }
+}
+
+const KeptView* KeyframeFlow::apply_mask(const ArrivedMask& arrived, double& seconds, StageTimes& times) {
+  const Stopwatch watch;
+  const LockedMap map(map_, LockPriority::tracking);
+  moving_world_.evaluate_keyframe(arrived, times);
+  seconds += watch.seconds();
+  const KeyFrame* keyframe = map->find_keyframe(arrived.keyframe);
+  if (keyframe == nullptr) return nullptr;
+  return keep_view(arrived.keyframe, arrived.frame, keyframe->frame.coarse, arrived.segmentation.labels, times);
+}
+
+void KeyframeFlow::request_mask(const SensorFrame& sensor_frame, const Frame& frame, bool is_needed,
+                                const FrameResult& result, StageTimes& times) {
+  const KeyFrameId keyframe = result.is_keyframe ? result.keyframe : KeyFrameId();
+  const bool is_requested = moving_world_.request_mask(sensor_frame, keyframe, times, is_needed);
+  if (!result.is_keyframe) return;
+  if (is_requested) {
+    // One camera makes all its points by triangulation, and would be lost before the mask arrives: a propagated mask
+    // has to do until then.
+    if (is_mono_) hand_to_mapping({keyframe, false}, times);
+    return;
+  }
+  show_view(keep_view(keyframe, sensor_frame, frame.coarse, {}, times));
+  hand_to_mapping({keyframe, true, image_to_describe(sensor_frame)}, times);
+}
+
+void KeyframeFlow::remove_map(const std::function<void(const LockedMap&)>& forget, StageTimes& times) {
+  LoopJob job;
+  mapper_.request_stop();
+  {
+    const LockedStructure structure(map_);  // an adjustment that runs relies on its keyframes
+    const LockedMap map(map_, LockPriority::background);
+    job.removed = map->keyframes_by_age();
+    map->remove_all();
+    if (scene_) scene_->forget_removed(map.map());
+    mapper_.forget_map();
+    forget(map);
+  }
+  waiting_.clear();
+  // Queued jobs check that their keyframe still exists; only the loop detector must be told.
+  if (loop_closing_)
+    loop_closing_->queue().push(std::move(job));
+  else
+    close_loops(job, times);
+}
+
+void KeyframeFlow::keep_submap(const LockedMap& map, std::uint32_t submap) {
+  if (map->keyframes_outside(submap).empty()) return;
+  map->keep_piece(submap);
+  if (scene_) scene_->forget_removed(map.map());
+}
+
+void KeyframeFlow::hand_to_mapping(const MappingJob& job, StageTimes& times) {
+  if (!mapping_) {
+    if (close_loops(refine(job, times), times)) adjust_map(times);
+    return;
+  }
+  if (!parts_.run.paced()) {
+    mapping_->queue().push(job);
+    return;
+  }
+  // Tracking needs the points of this keyframe adjusted soon; an older adjustment has done most of its good.
+  mapper_.request_stop();
+  if (waiting_.empty() && mapping_->queue().has_room()) {
+    mapping_->queue().push(job);  // no other thread adds to the queue, so that this does not wait
+    return;
+  }
+  if (!job.is_final) return;  // its mask brings it again
+  waiting_.push_back(job);
+  ++keyframes_deferred_;
+}
+
+KeyframeFlow::LoopJob KeyframeFlow::refine(const MappingJob& given, StageTimes& times) {
+  LoopJob job{given.is_final ? given.keyframe : KeyFrameId(), {}, given.image};
+  {
+    const LockedStructure structure(map_);
+    job.removed = mapper_.refine(given.keyframe, times);
+  }
+  if (!given.is_final || parts_.observers.empty() || !has_keyframe(given.keyframe)) return job;
+  const ObservedMap observed = observed_map();
+  for (const auto& observer : parts_.observers) observer->on_keyframe(given.keyframe, observed);
+  return job;
+}
+
+void KeyframeFlow::describe_image(const LoopJob& job, StageTimes& times) {
+  CoarseView coarse;
+  {
+    const LockedMap map(map_, LockPriority::background);
+    const KeyFrame* keyframe = map->find_keyframe(job.keyframe);
+    if (keyframe == nullptr) return;
+    coarse.static_log_odds = keyframe->frame.coarse.static_log_odds;
+  }
+  const StageTimer timer(times, "loops: describe");
+  DescriptorBlock descriptor = detector_.describe(job.image, moving_world_.moving_pixels(coarse));
+  const LockedMap map(map_, LockPriority::background);
+  if (KeyFrame* keyframe = map->find_keyframe(job.keyframe)) keyframe->frame.place = std::move(descriptor);
+}
+
+bool KeyframeFlow::close_loops(const LoopJob& job, StageTimes& times) {
+  std::optional<ClosedLoop> loop;
+  if (job.keyframe.valid() && !job.image.empty()) describe_image(job, times);
+  if (job.keyframe.valid()) loop = closer_.process(job.keyframe, times);
+  for (const KeyFrameId id : job.removed) closer_.forget(id);
+  if (!loop) {
+    record_without_loop(job);
+    return false;
+  }
+  record_loop(*loop);
+  return parts_.loop_closing.full_adjustment;
+}
+
+void KeyframeFlow::record_without_loop(const LoopJob& job) {
+  const MutexLock lock(record_mutex_);
+  loop_record_.counts = closer_.counts();
+  if (job.keyframe.valid() && !loop_record_.loops.empty() && parts_.loop_closing.full_adjustment)
+    ++keyframes_since_adjustment_;
+}
+
+void KeyframeFlow::record_loop(const ClosedLoop& loop) {
+  LoopEvent event{.loop = loop};
+  {
+    const LockedMap map(map_, LockPriority::background);
+    const auto stamp_of = [&](KeyFrameId id) {
+      const KeyFrame* keyframe = map->find_keyframe(id);
+      return keyframe == nullptr ? 0.0 : keyframe->frame.timestamp;
+    };
+    event.timestamp = stamp_of(loop.keyframe);
+    event.candidate_timestamp = stamp_of(loop.candidate);
+  }
+  const ObservedMap observed = observed_map();
+  for (const auto& observer : parts_.observers) observer->on_loop(loop.keyframe, loop.candidate, observed);
+  const MutexLock lock(record_mutex_);
+  loop_record_.counts = closer_.counts();
+  loop_record_.loops.push_back(std::move(event));
+  keyframes_since_adjustment_ = 0;
+}
+
+void KeyframeFlow::adjust_map(StageTimes& times) {
+  const StageTimer timer(times, "loops: full adjustment");
+  const FullAdjustmentSummary summary = adjustment_.run();
+  const MutexLock lock(record_mutex_);
+  loop_record_.adjustments.push_back(summary);
+}
+
+const KeptView* KeyframeFlow::keep_view(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse,
+                                        const cv::Mat& labels, StageTimes& times) {
+  if (!scene_) return nullptr;
+  const StageTimer timer(times, "dense map: keep");
+  return &scene_->add(keyframe, frame, coarse, labels, left_out_);
+}
+
+void KeyframeFlow::show_view(const KeptView* view) {
+  if (view == nullptr || parts_.observers.empty()) return;
+  ObservedView observed{.keyframe = view->keyframe, .timestamp = view->timestamp};
+  observed.points = [this, view](std::size_t most) { return scene_->surface(*view, most); };
+  {
+    const LockedMap map(map_, LockPriority::tracking);
+    observed.T_world_camera = map->pose_of(view->keyframe).inverse();
+  }
+  for (const auto& observer : parts_.observers) observer->on_static_view(observed);
+}
+
+bool KeyframeFlow::has_keyframe(KeyFrameId keyframe) const {
+  const LockedMap map(map_, LockPriority::background);
+  return map->find_keyframe(keyframe) != nullptr;
+}
+
+void KeyframeFlow::finish() {
+  // In the order in which work is handed on, so that nothing is left behind.
+  if (moving_world_.expects_masks()) {
+    moving_world_.finish();
+    in_background([&](StageTimes& times) { take_masks(times); });
+  }
+  for (const MappingJob& job : std::exchange(waiting_, {})) mapping_->queue().push(job);
+  if (mapping_) mapping_->finish();
+  if (loop_closing_) loop_closing_->finish();
+  if (full_adjustment_) full_adjustment_->finish();
+}
+
+void KeyframeFlow::adjust_after_last_loop() {
+  {
+    const MutexLock lock(record_mutex_);
+    if (keyframes_since_adjustment_ == 0 || interrupted_) return;
+  }
+  in_background([&](StageTimes& times) { adjust_map(times); });
+}
+
+void KeyframeFlow::request_stop() {
+  interrupted_ = true;
+  mapper_.request_stop();
+  adjustment_.cancel();
+}
+
+std::vector<StageTimes> KeyframeFlow::take_background_times() {
+  const MutexLock lock(record_mutex_);
+  return std::exchange(background_times_, {});
+}
+
+LoopRecord KeyframeFlow::loop_record() const {
+  const MutexLock lock(record_mutex_);
+  return loop_record_;
+}
+
+std::vector<WorkerCounts> KeyframeFlow::worker_counts() const {
+  std::vector<WorkerCounts> counts;
+  if (mapping_) counts.push_back(mapping_->counts());
+  if (loop_closing_) counts.push_back(loop_closing_->counts());
+  if (full_adjustment_) counts.push_back(full_adjustment_->counts());
+  if (const auto segmentation = moving_world_.worker_counts()) counts.push_back(*segmentation);
+  return counts;
+}
+
+MapSnapshot KeyframeFlow::snapshot() const {
+  const LockedMap map(map_, LockPriority::background);
+  return make_snapshot(map.map());
+}
+
+}  // namespace holdfast

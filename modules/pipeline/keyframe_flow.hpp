@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <atomic>
+#include <deque>
+#include <functional>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <vector>
+
+#include "guarded_map.hpp"
+#include "holdfast/core/worker.hpp"
+#include "holdfast/dense_map/static_scene.hpp"
+#include "holdfast/loop_closing/full_adjustment.hpp"
+#include "holdfast/loop_closing/loop_closer.hpp"
+#include "holdfast/mapping/local_mapper.hpp"
+#include "holdfast/moving_world/moving_world.hpp"
+#include "holdfast/pipeline/pipeline.hpp"
+#include "holdfast/tracking/mono_initialiser.hpp"
+
+namespace holdfast {
+
+/// The stations of a keyframe behind tracking: its mask, the dense map, local mapping, loop closing, and full
+/// adjustment after a loop. In sequential mode the caller's thread does all of it within the call; in threaded mode
+/// local mapping, loop closing and full adjustment have a thread each, and keyframes wait for room in its queue.
+///
+/// The thread that calls Pipeline::feed() calls all public functions, request_stop() and loop_record() excepted, which
+/// any thread may call. It holds no lock, except for the functions that take a LockedMap.
+class KeyframeFlow {
+ public:
+  /// All must outlive the object.
+  KeyframeFlow(PipelineParts& parts, GuardedMap& map, MovingWorld& moving_world, SharedLoopDetector& detector);
+
+  void start_threads();
+  bool is_threaded() const { return mapping_.has_value(); }
+  /// Throws what a thread threw, the segmenter's included.
+  void rethrow_failures();
+  /// Waits until the queue of keyframes has room; does nothing with pacing.
+  void wait_for_room();
+  /// Hands keyframes on that had to wait for room.
+  void hand_on_waiting_keyframes();
+
+  /// Whether there is room for another keyframe; counts it as deferred otherwise.
+  bool has_room_for_keyframe();
+  /// Inserts the first of the two keyframes with which the map of one camera begins; the ids of its points are written
+  /// to `points`, in their order.
+  KeyFrameId begin_map(const LockedMap& map, const TwoViewMap& start, std::vector<MapPointId>& points,
+                       StageTimes& times);
+  /// Inserts a tracked frame as a keyframe; with `waits_for_mask` it gets its points when its mask arrives.
+  KeyFrameId insert(const LockedMap& map, const Frame& frame, bool waits_for_mask, std::uint32_t submap,
+                    StageTimes& times);
+  /// Hands a keyframe to local mapping that needs no mask.
+  void refine_without_mask(KeyFrameId keyframe, StageTimes& times) { hand_to_mapping({keyframe}, times); }
+
+  /// Applies the masks that have arrived and hands the keyframes that waited for them to mapping. Returns the seconds
+  /// that applying them took.
+  double take_masks(StageTimes& times);
+  /// Requests the mask of the frame last tracked, if it should have one. A keyframe that cannot be segmented now goes
+  /// on without a mask. `is_needed`: see MapRequest::wants_mask.
+  void request_mask(const SensorFrame& sensor_frame, const Frame& frame, bool is_needed, const FrameResult& result,
+                    StageTimes& times);
+
+  /// Removes the whole map, which began wrong, from all stations; `forget` is called meanwhile.
+  void remove_map(const std::function<void(const LockedMap&)>& forget, StageTimes& times);
+  /// Removes the submaps that nothing joined with this one; the threads have ended.
+  void keep_submap(const LockedMap& map, std::uint32_t submap);
+
+  /// Waits until every station has done what waits for it, and ends the threads.
+  void finish();
+  /// Runs one more full adjustment if keyframes were added since the last loop, which constrain it further.
+  void adjust_after_last_loop();
+  /// Makes long adjustments end after their current iteration.
+  void request_stop();
+
+  /// Does work that fills stage times, and keeps them for take_background_times().
+  template <class Work>
+  void in_background(const Work& work) {
+    StageTimes times;
+    work(times);
+    const MutexLock lock(record_mutex_);
+    background_times_.push_back(std::move(times));
+  }
+  std::vector<StageTimes> take_background_times();
+  LoopRecord loop_record() const;
+  std::uint64_t keyframes_deferred() const { return keyframes_deferred_; }
+  std::vector<WorkerCounts> worker_counts() const;
+  const MappingCounts& mapping_counts() const { return mapper_.counts(); }
+  const StaticScene* static_scene() const { return scene_ ? &*scene_ : nullptr; }
+  /// A copy of the map, from any thread.
+  MapSnapshot snapshot() const;
+
+ private:
+  /// A keyframe for local mapping. Without its mask yet it is not final: it comes again with the mask, and only then to
+  /// loop closing.
+  struct MappingJob {
+    KeyFrameId keyframe;
+    bool is_final = true;
+    cv::Mat image = {};  // see image_to_describe()
+  };
+  /// A keyframe for loop closing, and the keyframes that local mapping removed.
+  struct LoopJob {
+    KeyFrameId keyframe;
+    std::vector<KeyFrameId> removed;
+    cv::Mat image;
+  };
+  /// The whole map, for full adjustment.
+  struct AdjustmentJob {};
+
+  /// With pacing it never waits: a keyframe that finds no room waits until a later frame.
+  void hand_to_mapping(const MappingJob& job, StageTimes& times);
+  LoopJob refine(const MappingJob& job, StageTimes& times);
+  /// Closes a loop from the keyframe, if there is one; whether the whole map should be adjusted then.
+  bool close_loops(const LoopJob& job, StageTimes& times);
+  void record_without_loop(const LoopJob& job);
+  void record_loop(const ClosedLoop& loop);
+  /// Has the loop detector describe the image of a keyframe without what moves in it.
+  void describe_image(const LoopJob& job, StageTimes& times);
+  void adjust_map(StageTimes& times);
+  /// The colour image of a keyframe if the loop detector will describe it; otherwise none, so that none is kept.
+  cv::Mat image_to_describe(const SensorFrame& frame) const { return describes_images_ ? frame.colour : cv::Mat(); }
+  /// Evaluates a keyframe again by its own mask, which adds to `seconds`, and keeps its view for the dense map.
+  const KeptView* apply_mask(const ArrivedMask& arrived, double& seconds, StageTimes& times);
+  /// Keeps the view of a keyframe for the dense map, with the final evidence of motion in it; `labels` may be empty.
+  /// nullptr without a dense map; valid until the next call.
+  const KeptView* keep_view(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse,
+                            const cv::Mat& labels, StageTimes& times);
+  /// Tells the observers of a kept view, if there is one.
+  void show_view(const KeptView* view) HOLDFAST_EXCLUDES(map_);
+  bool has_keyframe(KeyFrameId keyframe) const HOLDFAST_EXCLUDES(map_);
+  ObservedMap observed_map() const {
+    return ObservedMap([this] { return snapshot(); });
+  }
+
+  PipelineParts& parts_;
+  GuardedMap& map_;
+  MovingWorld& moving_world_;
+  SharedLoopDetector& detector_;
+  const bool describes_images_;  // the detector, instead of using descriptors of features
+  const bool is_mono_;           // all points are made by triangulation
+  LocalMapper mapper_;
+  LoopCloser closer_;
+  FullAdjustment adjustment_;
+  std::optional<StaticScene> scene_;
+  std::vector<bool> left_out_;      // of the static scene, by label
+  std::deque<MappingJob> waiting_;  // they have their masks, but mapping had no room
+  std::uint64_t keyframes_deferred_ = 0;
+  std::atomic<bool> interrupted_ = false;
+
+  mutable Mutex record_mutex_;
+  std::vector<StageTimes> background_times_ HOLDFAST_GUARDED_BY(record_mutex_);
+  LoopRecord loop_record_ HOLDFAST_GUARDED_BY(record_mutex_);
+  /// Of the whole map; none before the first loop.
+  int keyframes_since_adjustment_ HOLDFAST_GUARDED_BY(record_mutex_) = 0;
+
+  // Threads last: they use everything above, and each hands its work on to the one before it here.
+  std::optional<Worker<AdjustmentJob>> full_adjustment_;
+  std::optional<Worker<LoopJob>> loop_closing_;
+  std::optional<Worker<MappingJob>> mapping_;
+};
+
+}  // namespace holdfast

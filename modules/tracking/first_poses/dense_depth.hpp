@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "holdfast/tracking/first_pose.hpp"
+
+namespace holdfast {
+
+/// Alignment of the depth image with those of keyframes, refined by features where they agree, for
+/// TrackingSettings::depth_only_time without them.
+class DenseDepth final : public FirstPose {
+ public:
+  FirstPoseOutcome find(PoseSearch& search) override {
+    TrackingContext& context = search.context;
+    if (search.situation.was_lost || !context.history.has_previous()) return FirstPoseOutcome::none;
+    FrameResult& result = search.result;
+    result.fallback = TrackingFallback::dense_depth;
+    const auto aligned = context.moving_world.align_depth(context.current, context.predicted_pose(),
+                                                          context.reference_keyframe, result.times);
+    if (!aligned) return FirstPoseOutcome::none;
+    result.method = TrackingMethod::motion_model;
+    const TrackingTrouble trouble = result.trouble;
+    // The aligned pose is better than a prediction, but not as good as features: a wide search finds them if there are.
+    context.current.T_camera_world = *aligned;
+    context.drop_matches();
+    const double window = context.settings.relocalisation_window * context.settings.local_map_window;
+    context.matcher.match_local_map(static_cast<float>(window), context.current);
+    context.estimator.adjust(context.current);
+    context.estimator.drop_outliers(context.current);
+    if (search.local_map.track_local_map(search.view, search.situation, result)) return FirstPoseOutcome::final_pose;
+    if (context.current.timestamp > context.last_feature_time + context.settings.depth_only_time)
+      return FirstPoseOutcome::none;
+    context.current.T_camera_world = *aligned;
+    context.drop_matches();
+    result.inliers = result.matches = 0;
+    result.trouble = trouble;
+    return FirstPoseOutcome::final_pose;
+  }
+};
+
+}  // namespace holdfast

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/tracking/pose_checks.hpp"
+
+#include "holdfast/tracking/inertia.hpp"
+
+namespace holdfast {
+
+bool PoseChecks::has_ample_inliers(int inliers) const {
+  constexpr int ample_inliers = 4;  // times minimum_inliers
+  return inliers >= ample_inliers * context_.settings.minimum_inliers;
+}
+
+bool PoseChecks::contradicts_motion(int inliers) const {
+  // Two groups of features move rigidly where a person fills much of the view, and the person's may be the larger one.
+  // A camera has inertia: from one frame to the next, its velocity changes by little.
+  return !has_ample_inliers(inliers) && exceeds_acceleration(1.0);
+}
+
+bool PoseChecks::exceeds_acceleration(double factor) const {
+  const FrameHistory& history = context_.history;
+  if (!history.has_previous() || !history.has_velocity()) return false;
+  constexpr double max_interval = 0.2;  // s; later, constant velocity is no longer a valid assumption
+  const double interval = context_.current.timestamp - history.last_timestamp();
+  if (interval > max_interval) return false;
+  return contradicts_inertia(context_.current.T_camera_world * context_.predicted_pose().inverse(), interval,
+                             context_.settings, factor);
+}
+
+/// Whether the map of one camera explains next to nothing of the static features, as where a person whom no mask shows
+/// fills the view. New points would fit any scale that such a pose goes on with.
+bool PoseChecks::lacks_support(const FrameResult& result, double map_age) const {
+  constexpr double first_age = 0.5;   // s; before, a right map of one camera is small too
+  constexpr double min_share = 0.06;  // without people, 0.12 and more; on a person who fills the view, 0.02 to 0.05
+  return !context_.features_have_depth && map_age > first_age && result.inliers < min_share * result.static_features;
+}
+
+bool PoseChecks::is_refuted(int inliers, bool was_lost) const {
+  return (!was_lost && contradicts_motion(inliers)) ||
+         context_.estimator.position_deviation() > context_.settings.maximum_deviation ||
+         context_.moving_world.contradicts_depth(context_.current, inliers, was_lost, context_.reference_keyframe);
+}
+
+bool PoseChecks::accepts(const FrameResult& result, const PoseSituation& situation) const {
+  const bool was_lost = result.method == TrackingMethod::recovered || result.method == TrackingMethod::relocalised;
+  // A wide search finds some agreement anywhere: twice as many have to agree.
+  const int required = (was_lost ? 2 : 1) * context_.settings.minimum_inliers;
+  if (result.inliers < required) return false;
+  // With few inliers the support may be a person, so a relocalised pose must be reachable from the last one.
+  const bool may_be_anywhere = has_ample_inliers(result.inliers) || situation.may_be_anywhere;
+  if (was_lost && !context_.relocaliser.is_beyond_chance(result.inliers)) return false;
+  if (was_lost && !may_be_anywhere && !context_.relocaliser.is_reachable(context_.current, 0.0)) return false;
+  return !lacks_support(result, situation.map_age) && !is_refuted(result.inliers, was_lost);
+}
+
+}  // namespace holdfast

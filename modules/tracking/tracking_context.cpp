@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/tracking/tracking_context.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "holdfast/geometry/se3.hpp"
+
+namespace holdfast {
+
+TrackingContext::TrackingContext(const TrackingSettings& given, const TrackerParts& parts)
+    : settings(given),
+      moving_world(parts.moving_world),
+      map(parts.map),
+      features_have_depth(parts.features_have_depth),
+      builder(parts.camera, parts.features, settings.depth_edge_ratio),
+      matcher(settings, map, parts.matcher),
+      estimator(parts.optimizer, moving_world, map),
+      relocaliser(settings, {parts.detector, moving_world, map, matcher, estimator, history}, parts.seed),
+      shutter(parts.stereo ? RollingShutterMode::off : settings.rolling_shutter, parts.camera.readout) {
+  if (parts.stereo) builder.use_stereo(*parts.stereo);
+}
+
+std::optional<FrameMotion> TrackingContext::motion_by(const Eigen::Isometry3d& step) const {
+  constexpr double max_interval = 0.2;  // s
+  const double interval = current.timestamp - history.last_timestamp();
+  if (interval > max_interval) return std::nullopt;
+  return FrameMotion{geometry::log_se3(step), interval};
+}
+
+void TrackingContext::place_features(const SensorFrame& sensor_frame, const Eigen::Isometry3d& step,
+                                     StageTimes& times) {
+  constexpr double min_delay = 1e-4;  // s
+  const bool aligns_depth = settings.depth_alignment && std::abs(sensor_frame.depth_delay) >= min_delay;
+  if (const std::optional<FrameMotion> motion = motion_by(step))
+    builder.place_features(sensor_frame, *motion, aligns_depth, shutter, map, current, times);
+}
+
+void TrackingContext::drop_matches() { std::fill(current.map_points.begin(), current.map_points.end(), MapPointId()); }
+
+void TrackingContext::forget_map() {
+  history.clear();
+  reference_keyframe = last_keyframe = KeyFrameId();
+  last_feature_time = 0.0;
+}
+
+}  // namespace holdfast
