@@ -120,6 +120,26 @@ if(HOLDFAST_LEFT_OUT AND (HOLDFAST_BUILD_TESTS OR HOLDFAST_BUILD_EXAMPLES OR HOL
   message(FATAL_ERROR "Tests, examples and benchmarks use every plugin, but ${options} is OFF: configure with "
           "-DHOLDFAST_BUILD_TESTS=OFF -DHOLDFAST_BUILD_EXAMPLES=OFF -DHOLDFAST_BUILD_BENCHMARKS=OFF, or with all plugins")
 endif()
+# Optional parts of the source `rosbag`.
+find_path(HOLDFAST_ZSTD_INCLUDE_DIR zstd.h)
+find_library(HOLDFAST_ZSTD_LIBRARY zstd)
+find_path(HOLDFAST_SQLITE_INCLUDE_DIR sqlite3.h)
+find_library(HOLDFAST_SQLITE_LIBRARY sqlite3)
+mark_as_advanced(HOLDFAST_ZSTD_INCLUDE_DIR HOLDFAST_ZSTD_LIBRARY HOLDFAST_SQLITE_INCLUDE_DIR HOLDFAST_SQLITE_LIBRARY)
+if(HOLDFAST_PLUGIN_ROSBAG)
+  set(found OFF)
+  if(HOLDFAST_ZSTD_INCLUDE_DIR AND HOLDFAST_ZSTD_LIBRARY)
+    set(found ON)
+  endif()
+  holdfast_optional(HOLDFAST_ZSTD "Decompress bags by zstd" "bags that zstd compressed" ${found} "zstd was not found"
+                    libzstd-dev)
+  set(found OFF)
+  if(HOLDFAST_SQLITE_INCLUDE_DIR AND HOLDFAST_SQLITE_LIBRARY)
+    set(found ON)
+  endif()
+  holdfast_optional(HOLDFAST_SQLITE "Read bags of ROS 2 in SQLite" "bags of ROS 2 in SQLite" ${found}
+                    "SQLite was not found" libsqlite3-dev)
+endif()
 configure_file(${CMAKE_CURRENT_LIST_DIR}/settings_all.hpp.in ${holdfast_BINARY_DIR}/include/holdfast/settings/all.hpp
                @ONLY)
 

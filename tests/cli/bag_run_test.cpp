@@ -16,8 +16,9 @@ std::uint64_t nanoseconds(const std::string& stamp) {
 }
 
 /// A recording in TUM layout as a bag of the TUM benchmark has it: depth in metres, 32 bits.
-std::string bag_of(const test::Program& program, const std::string& folder, const std::string& compression) {
-  test::BagWriter bag(compression, 4);
+template <class Writer, class ImageMessage>
+std::string bag_of(const test::Program& program, const std::string& folder, Writer bag, const std::string& type,
+                   const ImageMessage& image_message) {
   std::istringstream pairs(program.text(folder + "/associations.txt"));
   std::string colour_stamp, colour, depth_stamp, depth;
   while (pairs >> colour_stamp >> colour >> depth_stamp >> depth) {
@@ -28,11 +29,10 @@ std::string bag_of(const test::Program& program, const std::string& folder, cons
         const auto value = static_cast<float>(units.at<std::uint16_t>(y, x));
         metres.at<float>(y, x) = value == 0.0F ? std::nanf("") : value / 5000.0F;
       }
-    bag.add("/camera/depth/image", "sensor_msgs/Image", nanoseconds(depth_stamp),
-            test::image_message(nanoseconds(depth_stamp), "32FC1", metres));
-    bag.add("/camera/rgb/image_color", "sensor_msgs/Image", nanoseconds(colour_stamp) + 1'000'000,
-            test::image_message(nanoseconds(colour_stamp), "bgr8",
-                                cv::imread(program.path(folder + "/" + colour).string())));
+    bag.add("/camera/depth/image", type, nanoseconds(depth_stamp),
+            image_message(nanoseconds(depth_stamp), "32FC1", metres));
+    bag.add("/camera/rgb/image_color", type, nanoseconds(colour_stamp) + 1'000'000,
+            image_message(nanoseconds(colour_stamp), "bgr8", cv::imread(program.path(folder + "/" + colour).string())));
   }
   return bag.finish();
 }
@@ -44,7 +44,10 @@ TEST(BagRunTest, ARunOnABagIsTheRunOnTheFolder) {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
   };
   run({"simulate", "--duration", "1", "--output", "folder", "--quiet"});
-  program.write("recording.bag", bag_of(program, "folder", "lz4"));
+  const auto ros1 = [](auto... fields) { return test::image_message(fields...); };
+  program.write("recording.bag", bag_of(program, "folder", test::BagWriter("lz4", 4), "sensor_msgs/Image", ros1));
+  program.write("recording.mcap",
+                bag_of(program, "folder", test::McapWriter(), "sensor_msgs/msg/Image", &test::cdr_image_message));
   // The folder says that its rows are exposed at once, which a bag cannot.
   const std::string rest = "camera: tum_fr1\nfeatures: orb\noptimizer: schur\ntracking: { rolling_shutter: off }\n";
   program.write("folder.yaml", "source: { tum: { path: folder } }\n" + rest);
@@ -54,6 +57,9 @@ TEST(BagRunTest, ARunOnABagIsTheRunOnTheFolder) {
   EXPECT_FALSE(program.text("out_bag/trajectory.txt").empty());
   EXPECT_EQ(program.text("out_bag/trajectory.txt"), program.text("out_folder/trajectory.txt"));
   EXPECT_EQ(program.text("out_bag/map.hfm"), program.text("out_folder/map.hfm"));
+  run({"run", "bag.yaml", "--set", "source.rosbag.path=recording.mcap", "--output", "out_mcap", "--quiet"});
+  EXPECT_EQ(program.text("out_mcap/trajectory.txt"), program.text("out_folder/trajectory.txt"));
+  EXPECT_EQ(program.text("out_mcap/map.hfm"), program.text("out_folder/map.hfm"));
 
   // What is recorded of the bag is the folder again.
   run({"record", "bag.yaml", "--output", "again", "--quiet"});

@@ -40,6 +40,8 @@ TemporaryFolder::~TemporaryFolder() {
 
 std::string TemporaryFolder::write(const std::filesystem::path& name, const std::string& content) const {
   std::filesystem::create_directories((path_ / name).parent_path());
+  // A new file: ext4 waits for the disk when one is written over another.
+  std::filesystem::remove(path_ / name);
   std::ofstream(path_ / name, std::ios::binary) << content;
   return (path_ / name).string();
 }

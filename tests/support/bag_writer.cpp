@@ -92,6 +92,44 @@ std::string camera_info_message(std::uint64_t stamp, std::uint32_t width, std::u
   return text.number(std::uint8_t{0}).bytes;
 }
 
+std::string cdr_image_message(std::uint64_t stamp, const std::string& encoding, const cv::Mat& pixels) {
+  const auto width = static_cast<std::uint32_t>(pixels.cols), height = static_cast<std::uint32_t>(pixels.rows);
+  const std::size_t row = pixels.elemSize() * static_cast<std::size_t>(pixels.cols);
+  std::string bytes;
+  for (int y = 0; y < pixels.rows; ++y) bytes.append(reinterpret_cast<const char*>(pixels.ptr(y)), row);
+  ByteText text;  // numbers lie at multiples of their size
+  const auto align = [&] { text.bytes.resize((text.bytes.size() + 3) / 4 * 4); };
+  text.bytes = time_bytes(stamp);
+  text.text(std::string("camera", 7));
+  align();
+  text.number(height).number(width).text(encoding + '\0').number(std::uint8_t{0});
+  align();
+  return std::string("\0\x01\0\0", 4) + text.number(static_cast<std::uint32_t>(row)).text(bytes).bytes;
+}
+
+McapWriter::McapWriter() : bytes_("\x89MCAP0\r\n") { add_record(0x01, ByteText().text("ros2").text("test").bytes); }
+
+void McapWriter::add_record(std::uint8_t kind, const std::string& content) {
+  bytes_ += ByteText().number(kind).number(std::uint64_t{content.size()}).bytes + content;
+}
+
+void McapWriter::add(const std::string& topic, const std::string& type, std::uint64_t time,
+                     const std::string& message) {
+  const auto [channel, is_new] = channels_.try_emplace(topic, static_cast<std::uint16_t>(channels_.size() + 1));
+  if (is_new) {
+    add_record(0x03, ByteText().number(channel->second).text(type).text("ros2msg").text("").bytes);
+    add_record(0x04, ByteText().number(channel->second).number(channel->second).text(topic).text("cdr").text("").bytes);
+  }
+  add_record(0x05,
+             ByteText().number(channel->second).number(std::uint32_t{0}).number(time).number(time).bytes + message);
+}
+
+std::string McapWriter::finish() {
+  add_record(0x0F, ByteText().number(std::uint32_t{0}).bytes);
+  add_record(0x02, ByteText().number(std::uint64_t{0}).number(std::uint64_t{0}).number(std::uint32_t{0}).bytes);
+  return bytes_ + "\x89MCAP0\r\n";
+}
+
 std::string BagWriter::record(const std::map<std::string, std::string>& fields, const std::string& content) {
   ByteText header;
   for (const auto& [name, value] : fields) header.text(name + "=" + value);

@@ -35,6 +35,24 @@ std::string camera_info_message(std::uint64_t stamp, std::uint32_t width, std::u
                                 const std::string& model, const std::vector<double>& distortion,
                                 const std::vector<double>& k, const std::vector<double>& p = std::vector<double>(12));
 
+/// An image of ROS 2: sensor_msgs/msg/Image in CDR, little-endian.
+std::string cdr_image_message(std::uint64_t stamp, const std::string& encoding, const cv::Mat& pixels);
+
+/// Writes MCAP files of ROS 2 without chunks, index and checksum, in memory.
+class McapWriter {
+ public:
+  McapWriter();
+  void add(const std::string& topic, const std::string& type, std::uint64_t time, const std::string& message);
+  /// The whole file. The writer must not be used afterwards.
+  std::string finish();
+
+ private:
+  void add_record(std::uint8_t kind, const std::string& content);
+
+  std::string bytes_;
+  std::map<std::string, std::uint16_t> channels_;
+};
+
 /// Writes bags of ROS 1 in the format 2.0, in memory.
 class BagWriter {
  public:

@@ -16,7 +16,7 @@ namespace holdfast::rosbag_plugin {
 using Bytes = std::span<const std::uint8_t>;
 
 /// Reads numbers, texts and bytes one after the other, and never beyond the end. Numbers are little-endian, as in bags
-/// and messages of ROS on every machine that Holdfast is built for.
+/// of ROS 1, MCAP files and messages of ROS 1, on every machine that Holdfast is built for.
 class ByteReader {
  public:
   /// `place` names the file and what the bytes are, for errors.

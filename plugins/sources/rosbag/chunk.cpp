@@ -1,80 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "chunk.hpp"
 
-#include <bzlib.h>
-#include <lz4frame.h>
-
 #include <algorithm>
-#include <memory>
 
 namespace holdfast::rosbag_plugin {
 
-namespace {
-
-constexpr std::size_t step = std::size_t{1} << 20;
-
-[[noreturn]] void throw_damaged(const std::string& place) {
-  throw InputError({place}, "is damaged: it cannot be decompressed; copy the bag again");
-}
-
-/// Room for more bytes at the end of `bytes`, of which `used` are written; none beyond `size`.
 void make_room(std::vector<std::uint8_t>& bytes, std::size_t used, std::size_t size) {
+  constexpr std::size_t step = std::size_t{1} << 20;
   if (used == bytes.size()) bytes.resize(std::min(size, std::max(2 * bytes.size(), step)));
 }
 
-std::vector<std::uint8_t> decompress_lz4(Bytes compressed, std::size_t size, const std::string& place) {
-  LZ4F_dctx* context = nullptr;
-  if (LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION)) != 0) throw_damaged(place);
-  const std::unique_ptr<LZ4F_dctx, LZ4F_errorCode_t (*)(LZ4F_dctx*)> owner(context, &LZ4F_freeDecompressionContext);
-  std::vector<std::uint8_t> bytes;
-  std::size_t used = 0, wanted = 1;
-  while (wanted != 0 && used <= size) {
-    make_room(bytes, used, size);
-    std::size_t written = bytes.size() - used, read = compressed.size();
-    wanted = LZ4F_decompress(context, bytes.data() + used, &written, compressed.data(), &read, nullptr);
-    if (LZ4F_isError(wanted) != 0 || (written == 0 && read == 0 && wanted != 0)) throw_damaged(place);
-    used += written;
-    compressed = compressed.subspan(read);
+std::vector<std::uint8_t> decompress_chunk(std::span<const Compression> known, const std::string& compression,
+                                           Bytes compressed, std::size_t size, const std::string& place) {
+  std::string names;
+  for (const Compression& candidate : known) {
+    names += std::string(", ") + candidate.name;
+    if (compression != candidate.name) continue;
+    std::vector<std::uint8_t> bytes = candidate.decompress(compressed, size, place);
+    if (bytes.size() != size)
+      throw InputError({place}, "has " + std::to_string(bytes.size()) + " bytes where it says " + std::to_string(size) +
+                                    "; the bag is damaged, copy it again");
+    return bytes;
   }
-  bytes.resize(used);
-  return bytes;
-}
-
-std::vector<std::uint8_t> decompress_bz2(Bytes compressed, std::size_t size, const std::string& place) {
-  bz_stream stream{};
-  if (BZ2_bzDecompressInit(&stream, 0, 0) != BZ_OK) throw_damaged(place);
-  const std::unique_ptr<bz_stream, int (*)(bz_stream*)> owner(&stream, &BZ2_bzDecompressEnd);
-  stream.next_in = reinterpret_cast<char*>(const_cast<std::uint8_t*>(compressed.data()));
-  stream.avail_in = static_cast<unsigned>(compressed.size());
-  std::vector<std::uint8_t> bytes;
-  std::size_t used = 0;
-  for (int result = BZ_OK; result != BZ_STREAM_END;) {
-    make_room(bytes, used, size);
-    stream.next_out = reinterpret_cast<char*>(bytes.data() + used);
-    stream.avail_out = static_cast<unsigned>(bytes.size() - used);
-    const unsigned left = stream.avail_in;
-    result = BZ2_bzDecompress(&stream);
-    const std::size_t written = bytes.size() - used - stream.avail_out;
-    if ((result != BZ_OK && result != BZ_STREAM_END) || (result == BZ_OK && written == 0 && left == stream.avail_in))
-      throw_damaged(place);
-    used += written;
-  }
-  bytes.resize(used);
-  return bytes;
-}
-
-}  // namespace
-
-std::vector<std::uint8_t> decompress_chunk(Bytes compressed, const std::string& compression, std::size_t size,
-                                           const std::string& place) {
-  if (compression != "lz4" && compression != "bz2")
-    throw InputError({place}, "is compressed by '" + compression + "'; expected none, bz2 or lz4");
-  std::vector<std::uint8_t> bytes =
-      compression == "lz4" ? decompress_lz4(compressed, size, place) : decompress_bz2(compressed, size, place);
-  if (bytes.size() != size)
-    throw InputError({place}, "has " + std::to_string(bytes.size()) + " bytes where it says " + std::to_string(size) +
-                                  "; the bag is damaged, copy it again");
-  return bytes;
+  throw InputError({place}, "is compressed by '" + compression + "'; expected none" + names);
 }
 
 }  // namespace holdfast::rosbag_plugin

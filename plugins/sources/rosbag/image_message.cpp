@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <memory>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 
@@ -20,8 +21,8 @@ constexpr std::uint32_t largest_side = 1U << 15;  // as of image files
 [[noreturn]] void refuse(const std::string& place, const std::string& problem) { throw InputError({place}, problem); }
 
 /// std_msgs/Header.
-void read_message_header(ByteReader& reader) {
-  reader.bytes(stamp_bytes, "header");
+void read_message_header(MessageReader& reader) {
+  reader.stamp();
   reader.text("frame name");
 }
 
@@ -34,16 +35,17 @@ struct RawImage {
   Bytes pixels;
 };
 
-RawImage read_image(Bytes message, const std::string& place) {
-  ByteReader reader(message, place);
-  read_message_header(reader);
-  const auto height = reader.number<std::uint32_t>("height");
-  const auto width = reader.number<std::uint32_t>("width");
+RawImage read_image(const Message& message) {
+  const std::string& place = message.place;
+  const std::unique_ptr<MessageReader> reader = message.open();
+  read_message_header(*reader);
+  const auto height = reader->number<std::uint32_t>("height");
+  const auto width = reader->number<std::uint32_t>("width");
   RawImage image;
-  image.encoding = reader.text("encoding");
-  image.is_big_endian = reader.number<std::uint8_t>("byte order") != 0;
-  image.bytes_to_next_row = reader.number<std::uint32_t>("row length");
-  image.pixels = reader.counted_bytes("pixels");
+  image.encoding = reader->text("encoding");
+  image.is_big_endian = reader->number<std::uint8_t>("byte order") != 0;
+  image.bytes_to_next_row = reader->number<std::uint32_t>("row length");
+  image.pixels = reader->sequence("pixels");
   if (width < 1 || height < 1 || width > largest_side || height > largest_side)
     refuse(place, "is an image of " + std::to_string(width) + "x" + std::to_string(height) + "; expected 1 to " +
                       std::to_string(largest_side) + " pixels in width and height");
@@ -89,12 +91,12 @@ struct CompressedImage {
   Bytes bytes;
 };
 
-CompressedImage read_compressed(Bytes message, const std::string& place) {
-  ByteReader reader(message, place);
-  read_message_header(reader);
+CompressedImage read_compressed(const Message& message) {
+  const std::unique_ptr<MessageReader> reader = message.open();
+  read_message_header(*reader);
   CompressedImage image;
-  image.format = reader.text("format");
-  image.bytes = reader.counted_bytes("compressed image");
+  image.format = reader->text("format");
+  image.bytes = reader->sequence("compressed image");
   return image;
 }
 
@@ -119,14 +121,11 @@ cv::Mat convert_depth(const RawImage& image, const std::string& place, const Con
 
 }  // namespace
 
-double read_stamp(Bytes message, const std::string& place) {
-  ByteReader reader(message, place);
-  reader.number<std::uint32_t>("sequence number");
-  const auto seconds = reader.number<std::uint32_t>("time stamp");
-  const auto nanoseconds = reader.number<std::uint32_t>("time stamp");
+double read_stamp(const Message& message) {
+  const auto [seconds, nanoseconds] = message.open()->stamp();
   if (nanoseconds >= 1'000'000'000)
-    throw InputError({place}, "has a time stamp with " + std::to_string(nanoseconds) +
-                                  " nanoseconds; expected less than a second; the message is damaged");
+    throw InputError({message.place}, "has a time stamp with " + std::to_string(nanoseconds) +
+                                          " nanoseconds; expected less than a second; the message is damaged");
   // The number nearest to the decimal one, which is what a list of images gives.
   char text[32];
   const int length = std::snprintf(text, sizeof(text), "%u.%09u", seconds, nanoseconds);
@@ -135,9 +134,9 @@ double read_stamp(Bytes message, const std::string& place) {
   return stamp;
 }
 
-std::string encoding_of(Bytes message, const std::string& type, const std::string& place) {
-  if (type == compressed_image_type) return read_compressed(message, place).format;
-  return read_image(message, place).encoding;
+std::string encoding_of(const Message& message) {
+  if (message.type == compressed_image_type) return read_compressed(message).format;
+  return read_image(message).encoding;
 }
 
 bool is_depth_encoding(const std::string& encoding) {
@@ -145,11 +144,11 @@ bool is_depth_encoding(const std::string& encoding) {
          encoding.find("compressedDepth") != std::string::npos;
 }
 
-cv::Mat ImageMessages::colour(Bytes message, const std::string& type, const std::string& place,
-                              const ImageDecoder::SizeCheck& check_size) {
-  if (type == compressed_image_type)
-    return decoder_.decode_widened(read_compressed(message, place).bytes, place, check_size);
-  const RawImage image = read_image(message, place);
+cv::Mat ImageMessages::colour(const Message& message, const ImageDecoder::SizeCheck& check_size) {
+  const std::string& place = message.place;
+  if (message.type == compressed_image_type)
+    return decoder_.decode_widened(read_compressed(message).bytes, place, check_size);
+  const RawImage image = read_image(message);
   for (const ColourEncoding& encoding : colour_encodings) {
     if (image.encoding != encoding.name) continue;
     check_pixels(image, CV_ELEM_SIZE(encoding.type), place);
@@ -166,22 +165,27 @@ cv::Mat ImageMessages::colour(Bytes message, const std::string& type, const std:
                     "; choose another topic with `colour`, or convert it with image_proc");
 }
 
-cv::Mat ImageMessages::depth(Bytes message, const std::string& type, const std::string& place,
-                             const DepthEncoding& encoding, const ImageDecoder::SizeCheck& check_size) {
-  if (type == compressed_image_type) {
-    CompressedImage image = read_compressed(message, place);
+cv::Mat ImageMessages::depth(const Message& message, const DepthEncoding& encoding,
+                             const ImageDecoder::SizeCheck& check_size) {
+  const std::string& place = message.place;
+  if (message.type == compressed_image_type) {
+    CompressedImage image = read_compressed(message);
     constexpr std::size_t settings = 12;  // bytes that compressed_depth_image_transport writes before the PNG
     if (image.format.find("compressedDepth") != std::string::npos) {
       if (image.format.starts_with("32FC1"))
         refuse(place,
                "is depth of 32FC1 that was quantised by compressed_depth; expected 16UC1; choose another topic "
                "with `depth`, or republish it as `raw`");
+      if (image.format.find("rvl") != std::string::npos)
+        refuse(place,
+               "is depth that compressed_depth compressed by rvl; expected png; choose another topic with `depth`, or "
+               "republish it as `raw`");
       if (image.bytes.size() < settings) refuse(place, "is cut short: it has no image; the message is damaged");
       image.bytes = image.bytes.subspan(settings);
     }
     return decoder_.decode_depth(image.bytes, place, encoding, check_size);
   }
-  const RawImage image = read_image(message, place);
+  const RawImage image = read_image(message);
   if (!is_depth_encoding(image.encoding))
     refuse(place, "has the encoding '" + image.encoding +
                       "'; expected a depth image, 16UC1, mono16 or 32FC1; choose another topic with `depth`");
@@ -201,8 +205,10 @@ cv::Mat ImageMessages::depth(Bytes message, const std::string& type, const std::
   });
 }
 
-Camera read_camera_info(Bytes message, bool is_rectified, const std::string& place) {
-  ByteReader reader(message, place);
+Camera read_camera_info(const Message& message, bool is_rectified) {
+  const std::string& place = message.place;
+  const std::unique_ptr<MessageReader> owner = message.open();
+  MessageReader& reader = *owner;
   read_message_header(reader);
   const auto height = reader.number<std::uint32_t>("height");
   const auto width = reader.number<std::uint32_t>("width");

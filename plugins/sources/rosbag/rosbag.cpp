@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "bag_file.hpp"
+#include "bag.hpp"
 #include "holdfast/core/association.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/size_text.hpp"
@@ -30,7 +30,12 @@ struct RosbagSettings : RecordedFrames {
 
   static void describe(ParameterTable<RosbagSettings>& table) {
     using S = RosbagSettings;
-    table.add("path", &S::path, "bag of ROS 1, a file NAME.bag").required();
+    table
+        .add(
+            "path", &S::path,
+            "recording of ROS: a bag of ROS 1 (.bag), an MCAP file (.mcap), a database of rosbag2 (.db3), one of these "
+            "compressed (.zstd), or a folder of rosbag2")
+        .required();
     table.add("colour", &S::colour,
               "topic of the colour images; empty = found: the one of a usual name, such as /camera/rgb/image_color, or "
               "the only one");
@@ -65,10 +70,10 @@ struct StampedMessage {
 };
 
 /// The messages of a topic in the order of their stamps, which must differ.
-std::vector<StampedMessage> stamped_messages(BagFile& bag, const std::string& topic) {
+std::vector<StampedMessage> stamped_messages(Bag& bag, const std::string& topic) {
   std::vector<StampedMessage> messages;
   for (const BagMessage& message : bag.messages(topic))
-    messages.push_back({read_stamp(bag.head(message, stamp_bytes), bag.place_of(message)), message});
+    messages.push_back({read_stamp(bag.head(message, stamp_bytes)), message});
   std::stable_sort(messages.begin(), messages.end(),
                    [](const StampedMessage& a, const StampedMessage& b) { return a.stamp < b.stamp; });
   for (std::size_t i = 1; i < messages.size(); ++i)
@@ -85,7 +90,7 @@ struct BagFrame {
   std::optional<StampedMessage> depth;
 };
 
-std::vector<BagFrame> find_bag_frames(BagFile& bag, const ChosenTopics& topics, const RosbagSettings& settings) {
+std::vector<BagFrame> find_bag_frames(Bag& bag, const ChosenTopics& topics, const RosbagSettings& settings) {
   const std::vector<StampedMessage> colour = stamped_messages(bag, topics.colour.name);
   std::vector<BagFrame> frames;
   if (topics.depth.name.empty()) {
@@ -114,16 +119,23 @@ std::vector<BagFrame> find_bag_frames(BagFile& bag, const ChosenTopics& topics, 
   return frames;
 }
 
-/// Colour and depth images of a bag of ROS 1, associated as those of a recording in TUM layout.
+/// The name of a file without its endings, or of a folder.
+std::string name_of(std::filesystem::path path) {
+  if (path.filename() == "metadata.yaml" || path.filename().empty()) path = path.parent_path();
+  if (path.extension() == ".zstd") path = path.stem();
+  return path.stem().string();
+}
+
+/// Colour and depth images of a recording of ROS, associated as those of a recording in TUM layout.
 class RosbagSource final : public FrameSource {
  public:
   RosbagSource(const RosbagSettings& settings, const CreationContext& context)
       : settings_(settings),
-        bag_(settings.path),
-        topics_(choose_topics(bag_, {settings.colour, settings.depth, settings.camera_info})),
-        frames_(find_bag_frames(bag_, topics_, settings)),
+        bag_(open_bag(settings.path)),
+        topics_(choose_topics(*bag_, {settings.colour, settings.depth, settings.camera_info})),
+        frames_(find_bag_frames(*bag_, topics_, settings)),
         size_(context.camera.width, context.camera.height) {
-    description_.name = settings.path.stem().string();
+    description_.name = name_of(settings.path);
     description_.has_depth = !topics_.depth.name.empty();
     description_.can_read_ahead = true;
     description_.frame_count = frames_.size();
@@ -162,40 +174,38 @@ class RosbagSource final : public FrameSource {
   }
   Trajectory truth() const override { return truth_; }
   std::vector<SkippedFrame> skipped() const override { return skipped_; }
+  Warnings warnings() const override { return bag_->warnings(); }
 
  private:
   Camera read_camera() {
-    const BagMessage message = bag_.messages(topics_.camera_info.name).front();
-    return read_camera_info(bag_.content(message), is_rectified(topics_.colour.name), bag_.place_of(message));
+    const BagMessage message = bag_->messages(topics_.camera_info.name).front();
+    return read_camera_info(bag_->content(message), is_rectified(topics_.colour.name));
   }
   SensorFrame decode(const BagFrame& source) {
     SensorFrame frame;
     frame.timestamp = source.colour.stamp;
-    std::string place = bag_.place_of(source.colour.message);
-    frame.colour =
-        images_.colour(bag_.content(source.colour.message), topics_.colour.type, place, [&](const cv::Size& size) {
-          if (size != size_)
-            throw InputError({place}, "is " + size_text(size.width, size.height) + " pixels, but the camera is " +
-                                          size_text(size_.width, size_.height) +
-                                          "; give the camera of this recording under `camera:`");
-        });
+    const Message colour = bag_->content(source.colour.message);
+    frame.colour = images_.colour(colour, [&](const cv::Size& size) {
+      if (size != size_)
+        throw InputError({colour.place}, "is " + size_text(size.width, size.height) + " pixels, but the camera is " +
+                                             size_text(size_.width, size_.height) +
+                                             "; give the camera of this recording under `camera:`");
+    });
     if (!source.depth) return frame;
     frame.depth_delay = source.depth->stamp - source.colour.stamp;
-    place = bag_.place_of(source.depth->message);
-    frame.depth = images_.depth(bag_.content(source.depth->message), topics_.depth.type, place,
-                                {settings_.depth_factor, settings_.invalid_depth}, [&](const cv::Size& size) {
-                                  if (size != size_)
-                                    throw InputError({place}, "is " + size_text(size.width, size.height) +
-                                                                  " pixels, but its colour image is " +
-                                                                  size_text(size_.width, size_.height) +
-                                                                  "; expected depth registered to the colour image; "
-                                                                  "choose its topic with `source.rosbag.depth`");
-                                });
+    const Message depth = bag_->content(source.depth->message);
+    frame.depth = images_.depth(depth, {settings_.depth_factor, settings_.invalid_depth}, [&](const cv::Size& size) {
+      if (size != size_)
+        throw InputError({depth.place}, "is " + size_text(size.width, size.height) +
+                                            " pixels, but its colour image is " + size_text(size_.width, size_.height) +
+                                            "; expected depth registered to the colour image; choose its topic with "
+                                            "`source.rosbag.depth`");
+    });
     return frame;
   }
 
   RosbagSettings settings_;
-  BagFile bag_;
+  std::unique_ptr<Bag> bag_;
   ChosenTopics topics_;
   std::vector<BagFrame> frames_;
   cv::Size size_;
@@ -211,7 +221,8 @@ class RosbagSource final : public FrameSource {
 HOLDFAST_PLUGIN(rosbag, registry) {
   registry.add<FrameSource, RosbagSource, RosbagSettings>(
       {.name = "rosbag",
-       .summary = "Bags of ROS 1: colour, depth and calibration of their topics, named or found.",
+       .summary =
+           "Bags of ROS 1 and 2 (.bag, MCAP, SQLite): colour, depth and calibration of their topics, named or found.",
        .paper = ""});
 }
 

@@ -12,13 +12,18 @@ namespace holdfast::rosbag_plugin {
 
 namespace {
 
-// TUM, openni_launch, realsense2_camera, iai_kinect2, usb_cam. Depth only where it is registered to the colour image.
+// TUM, openni_launch, realsense2_camera (of ROS 1 and 2), iai_kinect2, Azure_Kinect_ROS_Driver, zed_wrapper, usb_cam.
+// Depth only where it is registered to the colour image.
 constexpr const char* usual_colour[] = {"/camera/rgb/image_color",
                                         "/camera/rgb/image_raw",
                                         "/camera/rgb/image_rect_color",
                                         "/camera/color/image_raw",
                                         "/camera/color/image_rect_color",
+                                        "/camera/camera/color/image_raw",
+                                        "/camera/camera/color/image_rect_color",
                                         "/kinect2/qhd/image_color_rect",
+                                        "/rgb/image_raw",
+                                        "/zed/zed_node/rgb/image_rect_color",
                                         "/usb_cam/image_raw",
                                         "/camera/image_raw"};
 constexpr const char* usual_depth[] = {"/camera/depth/image",
@@ -28,7 +33,10 @@ constexpr const char* usual_depth[] = {"/camera/depth/image",
                                        "/camera/depth_registered/hw_registered/image_rect",
                                        "/camera/depth_registered/hw_registered/image_rect_raw",
                                        "/camera/aligned_depth_to_color/image_raw",
-                                       "/kinect2/qhd/image_depth_rect"};
+                                       "/camera/camera/aligned_depth_to_color/image_raw",
+                                       "/kinect2/qhd/image_depth_rect",
+                                       "/depth_to_rgb/image_raw",
+                                       "/zed/zed_node/depth/depth_registered"};
 
 bool is_image(const BagTopic& topic) { return topic.type == image_type || topic.type == compressed_image_type; }
 
@@ -39,25 +47,29 @@ std::string base_of(const std::string& topic) {
   return topic;
 }
 
-std::string listed(const BagFile& bag) {
+std::string listed(const Bag& bag) {
   std::string text;
   for (const BagTopic& topic : bag.topics())
-    text += "\n  " + topic.name + "  " + topic.type + "  " + std::to_string(topic.messages) +
-            (topic.messages == 1 ? " message" : " messages");
+    text += "\n  " + topic.name + (topic.type.empty() ? "" : "  " + topic.type) + "  " +
+            std::to_string(topic.messages) + (topic.messages == 1 ? " message" : " messages") +
+            (topic.is_readable() ? "" : ", serialised as '" + topic.encoding_name + "'");
   return text.empty() ? "; it has no topics" : "; its topics are" + text;
 }
 
-[[noreturn]] void refuse(const BagFile& bag, const std::string& problem) {
+[[noreturn]] void refuse(const Bag& bag, const std::string& problem) {
   throw InputError({bag.path().string()}, problem + listed(bag));
 }
 
-BagTopic named_topic(const BagFile& bag, const std::string& name, const char* parameter, bool is_of_images) {
+BagTopic named_topic(const Bag& bag, const std::string& name, const char* parameter, bool is_of_images) {
   for (const BagTopic& topic : bag.topics()) {
     if (topic.name != name) continue;
     if (is_of_images ? !is_image(topic) : topic.type != camera_info_type)
       refuse(bag, "the topic '" + name + "' has messages of the type " + topic.type + "; expected " +
                       (is_of_images ? std::string(image_type) + " or " + compressed_image_type : camera_info_type) +
                       "; set `source.rosbag." + parameter + '`');
+    if (!topic.is_readable())
+      refuse(bag, "the topic '" + name + "' has messages that are serialised as '" + topic.encoding_name +
+                      "'; expected cdr (ROS 2) or ros1; set `source.rosbag." + parameter + '`');
     if (topic.messages == 0) refuse(bag, "the topic '" + name + "' has no messages");
     return topic;
   }
@@ -65,7 +77,7 @@ BagTopic named_topic(const BagFile& bag, const std::string& name, const char* pa
 }
 
 /// The topic of a usual name, or the only one. Of a topic that is there as it is and compressed, the first.
-BagTopic found_topic(const BagFile& bag, const std::vector<BagTopic>& candidates, std::span<const char* const> usual,
+BagTopic found_topic(const Bag& bag, const std::vector<BagTopic>& candidates, std::span<const char* const> usual,
                      const char* parameter, const char* kind) {
   std::vector<BagTopic> different;  // sorted by name, so that what is not compressed comes first
   for (const BagTopic& topic : candidates)
@@ -89,7 +101,7 @@ bool is_rectified(const std::string& colour_topic) {
   return base.substr(base.rfind('/') + 1).find("rect") != std::string::npos;
 }
 
-ChosenTopics choose_topics(BagFile& bag, const TopicNames& names) {
+ChosenTopics choose_topics(Bag& bag, const TopicNames& names) {
   const std::vector<BagTopic> topics = bag.topics();
   ChosenTopics chosen;
   if (!names.colour.empty()) chosen.colour = named_topic(bag, names.colour, "colour", true);
@@ -98,9 +110,8 @@ ChosenTopics choose_topics(BagFile& bag, const TopicNames& names) {
   if (names.colour.empty() || names.depth.empty()) {
     std::vector<BagTopic> colour, depth;
     for (const BagTopic& topic : topics) {
-      if (!is_image(topic) || topic.messages == 0) continue;
-      const BagMessage first = bag.messages(topic.name).front();
-      const std::string encoding = encoding_of(bag.content(first), topic.type, bag.place_of(first));
+      if (!is_image(topic) || !topic.is_readable() || topic.messages == 0) continue;
+      const std::string encoding = encoding_of(bag.content(bag.messages(topic.name).front()));
       (is_depth_encoding(encoding) ? depth : colour).push_back(topic);
     }
     if (names.colour.empty()) chosen.colour = found_topic(bag, colour, usual_colour, "colour", "colour");
@@ -116,7 +127,8 @@ ChosenTopics choose_topics(BagFile& bag, const TopicNames& names) {
   const std::string base = base_of(chosen.colour.name);
   const std::string beside = base.substr(0, base.rfind('/') + 1) + "camera_info";
   for (const BagTopic& topic : topics)
-    if (topic.name == beside && topic.type == camera_info_type && topic.messages > 0) chosen.camera_info = topic;
+    if (topic.name == beside && topic.type == camera_info_type && topic.is_readable() && topic.messages > 0)
+      chosen.camera_info = topic;
   return chosen;
 }
 

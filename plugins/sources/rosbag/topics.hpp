@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "bag_file.hpp"
+#include "bag.hpp"
 
 namespace holdfast::rosbag_plugin {
 
@@ -19,8 +19,8 @@ struct TopicNames {
 
 /// Finds the topics. Without a name, an image topic is that of a usual name whose images are colour or depth, or the
 /// only one; camera_info is the one beside the colour images, as ROS names it. Throws InputError that lists all topics
-/// if a topic is missing, of another type, without messages, or if there are several to choose from.
-ChosenTopics choose_topics(BagFile& bag, const TopicNames& names);
+/// if a topic is missing, of another type or encoding, without messages, or if there are several to choose from.
+ChosenTopics choose_topics(Bag& bag, const TopicNames& names);
 
 /// Whether a topic of colour images has rectified ones, by the names of image_proc.
 bool is_rectified(const std::string& colour_topic);

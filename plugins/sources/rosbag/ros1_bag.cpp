@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bag_file.hpp"
+#include "ros1_bag.hpp"
 
 #include <algorithm>
-#include <tuple>
-#include <utility>
-
-#include "chunk.hpp"
+#include <string_view>
 
 namespace holdfast::rosbag_plugin {
 
@@ -62,24 +59,12 @@ std::uint64_t read_time(ByteReader& reader) {
   return std::uint64_t{seconds} * 1'000'000'000 + reader.number<std::uint32_t>("time");
 }
 
-/// What the first bytes of a file that is no bag of ROS 1 say it is.
-std::string other_format(const std::string& begin) {
-  if (begin.starts_with("SQLite format 3")) return "is a database of ROS 2, not a bag of ROS 1";
-  if (begin.starts_with("\x89MCAP")) return "is an MCAP file of ROS 2, not a bag of ROS 1";
-  if (begin.starts_with("#ROSBAG V")) return "is a bag of an older format, '" + begin.substr(0, begin.find('\n')) + "'";
-  return "is not a bag";
-}
-
 }  // namespace
 
-void BagFile::fail(const std::string& problem) const { throw InputError({path_.string()}, problem); }
-
-BagFile::BagFile(std::filesystem::path path) : path_(std::move(path)) {
+Ros1Bag::Ros1Bag(const std::filesystem::path& file, const std::filesystem::path& shown)
+    : Bag(shown), stream_(file, std::ios::binary) {
   std::error_code error;
-  if (!std::filesystem::exists(path_, error)) fail("is missing; expected a bag of ROS 1; set `source.rosbag.path`");
-  if (!std::filesystem::is_regular_file(path_, error)) fail("is not a file; expected a bag of ROS 1");
-  stream_.open(path_, std::ios::binary);
-  size_ = std::filesystem::file_size(path_, error);
+  size_ = std::filesystem::file_size(file, error);
   if (!stream_ || error) fail("cannot be read; check its permissions");
 
   const std::uint64_t index = read_header();
@@ -94,29 +79,20 @@ BagFile::BagFile(std::filesystem::path path) : path_(std::move(path)) {
       infos.push_back(record);
   }
   for (const Record& info : infos) read_chunk_info(info);
-  for (auto& [connection, messages] : messages_)
-    std::sort(messages.begin(), messages.end(), [](const BagMessage& a, const BagMessage& b) {
-      return std::tie(a.time, a.chunk, a.offset) < std::tie(b.time, b.chunk, b.offset);
-    });
 }
 
-std::uint64_t BagFile::read_header() {
-  static const std::string magic = "#ROSBAG V2.0\n";
-  std::vector<std::uint8_t> begin;
-  read_bytes(0, std::min<std::uint64_t>(size_, 64), begin);
-  const std::string text(begin.begin(), begin.end());
-  if (!text.starts_with(magic)) fail(other_format(text) + "; expected a bag of ROS 1, format 2.0");
-  const Record header = read_record(magic.size(), size_, "its first record");
+std::uint64_t Ros1Bag::read_header() {
+  const Record header = read_record(std::string_view(ros1_magic).size(), size_, "its first record");
   if (!is_kind(header.fields, file_record))
     fail("does not begin with the record of a bag; it is damaged, copy it again");
   if (const auto encryptor = header.fields.find("encryptor");
       encryptor != header.fields.end() && !encryptor->second.empty())
     fail("is encrypted by '" + encryptor->second + "'; expected a bag without encryption");
-  const auto index = number_in<std::uint64_t>(header.fields, "index_pos", path_.string());
-  const auto connections = number_in<std::uint32_t>(header.fields, "conn_count", path_.string());
-  const auto chunks = number_in<std::uint32_t>(header.fields, "chunk_count", path_.string());
+  const auto index = number_in<std::uint64_t>(header.fields, "index_pos", path().string());
+  const auto connections = number_in<std::uint32_t>(header.fields, "conn_count", path().string());
+  const auto chunks = number_in<std::uint32_t>(header.fields, "chunk_count", path().string());
   if (index == 0)
-    fail("has no index, because its recording did not come to its end; `rosbag reindex " + path_.string() +
+    fail("has no index, because its recording did not come to its end; `rosbag reindex " + path().string() +
          "` writes the index");
   if (index > size_ || (index == size_ && connections > 0))
     fail("is truncated: it has " + std::to_string(size_) + " bytes, and its index begins at byte " +
@@ -125,7 +101,7 @@ std::uint64_t BagFile::read_header() {
   return index;
 }
 
-void BagFile::read_bytes(std::uint64_t position, std::uint64_t count, std::vector<std::uint8_t>& bytes) {
+void Ros1Bag::read_bytes(std::uint64_t position, std::uint64_t count, std::vector<std::uint8_t>& bytes) {
   if (position > size_ || count > size_ - position)
     fail("is truncated: " + std::to_string(count) + " bytes at byte " + std::to_string(position) +
          " are beyond its end; copy it again, or `rosbag reindex` what is left of it");
@@ -136,8 +112,8 @@ void BagFile::read_bytes(std::uint64_t position, std::uint64_t count, std::vecto
   if (static_cast<std::uint64_t>(stream_.gcount()) != count) fail("cannot be read to its end; check the disk");
 }
 
-BagFile::Record BagFile::read_record(std::uint64_t position, std::uint64_t end, const char* what) {
-  const std::string place = path_.string() + ": " + what + " at byte " + std::to_string(position);
+Ros1Bag::Record Ros1Bag::read_record(std::uint64_t position, std::uint64_t end, const char* what) {
+  const std::string place = path().string() + ": " + what + " at byte " + std::to_string(position);
   const auto length_at = [&](std::uint64_t at) {
     if (at > end || end - at < 4)
       throw InputError({place}, "is cut short; the bag is truncated or damaged, copy it again");
@@ -162,20 +138,18 @@ BagFile::Record BagFile::read_record(std::uint64_t position, std::uint64_t end, 
   return record;
 }
 
-void BagFile::read_connection(const Record& record) {
-  const std::string place = path_.string() + ": a connection";
+void Ros1Bag::read_connection(const Record& record) {
+  const std::string place = path().string() + ": a connection";
   const auto id = number_in<std::uint32_t>(record.fields, "conn", place);
   std::vector<std::uint8_t> bytes;
   read_bytes(record.content, record.size, bytes);
   const Fields fields = read_fields(bytes, place);
-  const Connection connection{text_in(record.fields, "topic", place), text_in(fields, "type", place)};
-  if (!connections_.emplace(id, connection).second)
+  if (!add_connection(id, {text_in(record.fields, "topic", place), text_in(fields, "type", place), "ros1", {}}))
     fail("has connection " + std::to_string(id) + " twice; it is damaged, copy it again");
-  messages_[id];
 }
 
-void BagFile::read_chunk_info(const Record& record) {
-  const std::string place = path_.string() + ": the index of a chunk";
+void Ros1Bag::read_chunk_info(const Record& record) {
+  const std::string place = path().string() + ": the index of a chunk";
   const auto position = number_in<std::uint64_t>(record.fields, "chunk_pos", place);
   const auto count = number_in<std::uint32_t>(record.fields, "count", place);
   const Record stored = read_record(position, size_, "a chunk");
@@ -201,13 +175,13 @@ void BagFile::read_chunk_info(const Record& record) {
   }
 }
 
-void BagFile::read_index(const Record& record, std::uint32_t chunk) {
-  const std::string place = path_.string() + ": the index of a chunk";
+void Ros1Bag::read_index(const Record& record, std::uint32_t chunk) {
+  const std::string place = path().string() + ": the index of a chunk";
   if (!is_kind(record.fields, index_record)) throw InputError({place}, "is missing; copy the bag again");
   const auto connection = number_in<std::uint32_t>(record.fields, "conn", place);
   const auto count = number_in<std::uint32_t>(record.fields, "count", place);
   constexpr std::uint64_t entry = 12;  // bytes: time and offset
-  if (record.size != count * entry || !connections_.contains(connection))
+  if (record.size != count * entry || !has_connection(connection))
     throw InputError({place}, "is damaged: " + std::to_string(record.size) + " bytes for " + std::to_string(count) +
                                   " messages of connection " + std::to_string(connection) + "; copy the bag again");
   // So that the same entries, named many times, do not fill the memory.
@@ -222,62 +196,28 @@ void BagFile::read_index(const Record& record, std::uint32_t chunk) {
     message.offset = reader.number<std::uint32_t>("offset");
     message.chunk = chunk;
     message.connection = connection;
-    messages_[connection].push_back(message);
+    add_message(message);
   }
 }
 
-std::vector<BagTopic> BagFile::topics() const {
-  std::map<std::string, BagTopic> topics;
-  for (const auto& [id, connection] : connections_) {
-    BagTopic& topic = topics[connection.topic];
-    topic.name = connection.topic;
-    topic.type = connection.type;
-    topic.messages += messages_.at(id).size();
-  }
-  std::vector<BagTopic> list;
-  for (auto& [name, topic] : topics) list.push_back(std::move(topic));
-  return list;
-}
-
-std::vector<BagMessage> BagFile::messages(const std::string& topic) const {
-  std::vector<BagMessage> list;
-  for (const auto& [id, connection] : connections_)
-    if (connection.topic == topic) list.insert(list.end(), messages_.at(id).begin(), messages_.at(id).end());
-  std::stable_sort(list.begin(), list.end(), [](const BagMessage& a, const BagMessage& b) { return a.time < b.time; });
-  return list;
-}
-
-std::string BagFile::place_of(const BagMessage& message) const {
-  std::string nanoseconds = std::to_string(message.time % 1'000'000'000);
-  nanoseconds.insert(0, 9 - nanoseconds.size(), '0');
-  return path_.string() + ": message of " + connections_.at(message.connection).topic + " at " +
-         std::to_string(message.time / 1'000'000'000) + '.' + nanoseconds + " s";
-}
-
-void BagFile::check_message(const Fields& fields, const BagMessage& message) const {
+void Ros1Bag::check_message(const Fields& fields, const BagMessage& message) const {
   const std::string place = place_of(message);
   if (!is_kind(fields, message_record) || number_in<std::uint32_t>(fields, "conn", place) != message.connection)
     throw InputError({place}, "is not where the index says; the bag is damaged, `rosbag reindex` may help");
 }
 
-const std::vector<std::uint8_t>& BagFile::decompressed(std::uint32_t chunk) {
-  for (Decompressed& cached : cache_)
-    if (cached.last_use != 0 && cached.chunk == chunk) {
-      cached.last_use = ++uses_;
-      return cached.bytes;
-    }
-  Decompressed& oldest = cache_[0].last_use <= cache_[1].last_use ? cache_[0] : cache_[1];
-  oldest.last_use = 0;
-  std::vector<std::uint8_t> stored;
-  read_bytes(chunks_[chunk].position, chunks_[chunk].stored_size, stored);
-  oldest.bytes = decompress_chunk(stored, chunks_[chunk].compression, chunks_[chunk].size,
-                                  path_.string() + ": chunk " + std::to_string(chunk));
-  oldest.chunk = chunk;
-  oldest.last_use = ++uses_;
-  return oldest.bytes;
+const std::vector<std::uint8_t>& Ros1Bag::decompressed(std::uint32_t number) {
+  static constexpr Compression known[] = {{"bz2", &decompress_bz2}, {"lz4", &decompress_lz4}};
+  return cache_.get(number, [&] {
+    const Chunk& chunk = chunks_[number];
+    std::vector<std::uint8_t> stored;
+    read_bytes(chunk.position, chunk.stored_size, stored);
+    return decompress_chunk(known, chunk.compression, stored, chunk.size,
+                            path().string() + ": chunk " + std::to_string(number));
+  });
 }
 
-Bytes BagFile::content_in(const BagMessage& message, std::uint64_t most) {
+Bytes Ros1Bag::read(const BagMessage& message, std::uint64_t most) {
   const Chunk& chunk = chunks_[message.chunk];
   const std::string place = place_of(message);
   if (message.offset >= chunk.size)
@@ -293,9 +233,5 @@ Bytes BagFile::content_in(const BagMessage& message, std::uint64_t most) {
   const Bytes content = reader.counted_bytes("content");
   return content.first(std::min<std::uint64_t>(content.size(), most));
 }
-
-Bytes BagFile::head(const BagMessage& message, std::size_t count) { return content_in(message, count); }
-
-Bytes BagFile::content(const BagMessage& message) { return content_in(message, ~std::uint64_t{0}); }
 
 }  // namespace holdfast::rosbag_plugin
