@@ -66,76 +66,61 @@ std::unique_ptr<FrameSource> make_source(const Configuration& configuration, con
   return std::make_unique<PerturbedSource>(std::move(source), perturbation, camera, configuration.run.seed);
 }
 
+template <class Interface>
+ModuleOf<Interface> module_of(const ModuleChoice& choice) {
+  ModuleOf<Interface> module(choice.name, choice.values);
+  module.place = choice.location;
+  return module;
+}
+
+template <class Settings>
+Settings section_of(const Configuration& configuration, const std::string& name) {
+  const auto found = configuration.sections.find(name);
+  return found == configuration.sections.end() ? Settings{} : ParameterTable<Settings>().settings(found->second);
+}
+
+void choose_modules(const Configuration& configuration, PipelineBuilder& builder) {
+  builder.features(module_of<FeatureExtractor>(configuration.features))
+      .segmenter(module_of<Segmenter>(configuration.segmenter))
+      .optimizer(module_of<Optimizer>(configuration.optimizer))
+      .loop_detector(module_of<LoopDetector>(configuration.loop_detector));
+  // The builder has this one, whether or not it is registered.
+  if (configuration.matcher.name != "nearest") builder.matcher(module_of<FeatureMatcher>(configuration.matcher));
+  for (const ModuleChoice& choice : configuration.filters) builder.filter(module_of<DynamicFilter>(choice));
+  for (const ModuleChoice& choice : configuration.observers) builder.observer(module_of<Observer>(choice));
+}
+
+void choose_settings(const Configuration& configuration, PipelineBuilder& builder) {
+  builder.tracking(section_of<TrackingSettings>(configuration, "tracking"))
+      .stereo(section_of<StereoSettings>(configuration, "stereo"))
+      .segmentation(section_of<SegmentationSettings>(configuration, "segmentation"))
+      .evidence(section_of<EvidenceSettings>(configuration, "evidence"))
+      .mapping(section_of<MappingSettings>(configuration, "mapping"))
+      .loop_closing(section_of<LoopClosingSettings>(configuration, "loop_closing"))
+      .dense_map(section_of<DenseMapSettings>(configuration, "dense_map"))
+      .run(configuration.run);
+}
+
+/// A builder with the choices of a configuration, each with its place in the file.
+PipelineBuilder builder_of(const Configuration& configuration, const Registry& registry,
+                           const SourceDescription& source, const std::string& map_file = {}) {
+  PipelineOrigin origin{.place = {configuration.file},
+                        .source_place = configuration.source.location,
+                        .source_name = configuration.source.name,
+                        .unknown_camera = configuration.unknown_camera,
+                        .is_camera_judged = true};
+  if (!map_file.empty()) origin.map_name = map_file;
+  PipelineBuilder builder(registry);
+  builder.source(source).origin(std::move(origin));
+  if (configuration.camera)
+    builder.camera(perturbed_camera(*configuration.camera, perturbation_of(configuration), configuration.run.seed));
+  if (configuration.sensor) builder.sensor(*configuration.sensor);
+  choose_modules(configuration, builder);
+  choose_settings(configuration, builder);
+  return builder;
+}
+
 }  // namespace
-
-/// Passes the choices of a configuration to a builder, each with its place in the file.
-class ConfigurationReader {
- public:
-  ConfigurationReader(const Configuration& configuration, const Registry& registry)
-      : configuration_(configuration), builder_(registry) {
-    builder_.place_ = {configuration.file};
-    builder_.unknown_camera_ = configuration.unknown_camera;
-    builder_.is_camera_judged_ = true;
-  }
-
-  PipelineBuilder read(const SourceDescription& source) {
-    builder_.source(source);
-    if (configuration_.camera)
-      builder_.camera(
-          perturbed_camera(*configuration_.camera, perturbation_of(configuration_), configuration_.run.seed));
-    if (configuration_.sensor) builder_.sensor(*configuration_.sensor);
-    builder_.source_name_ = configuration_.source.name;
-    builder_.source_place_ = configuration_.source.location;
-    choose_modules();
-    choose_settings();
-    return std::move(builder_);
-  }
-  static std::unique_ptr<Segmenter> build_segmenter(PipelineBuilder builder) { return builder.build_segmenter(); }
-  static void read_map_file(const std::filesystem::path& file, bool localise_only, PipelineBuilder& builder) {
-    builder.map_name_ = file.string();
-    if (localise_only)
-      builder.localise_in(read_map(file));
-    else
-      builder.map(read_map(file));
-  }
-
- private:
-  template <class Interface>
-  static ModuleOf<Interface> module(const ModuleChoice& choice) {
-    ModuleOf<Interface> module(choice.name, choice.values);
-    module.place = choice.location;
-    return module;
-  }
-  template <class Settings>
-  Settings section(const std::string& name) const {
-    const auto found = configuration_.sections.find(name);
-    return found == configuration_.sections.end() ? Settings{} : ParameterTable<Settings>().settings(found->second);
-  }
-
-  void choose_modules() {
-    builder_.features(module<FeatureExtractor>(configuration_.features))
-        .segmenter(module<Segmenter>(configuration_.segmenter))
-        .optimizer(module<Optimizer>(configuration_.optimizer))
-        .loop_detector(module<LoopDetector>(configuration_.loop_detector));
-    // The builder has this one, whether or not it is registered.
-    if (configuration_.matcher.name != "nearest") builder_.matcher(module<FeatureMatcher>(configuration_.matcher));
-    for (const ModuleChoice& choice : configuration_.filters) builder_.filter(module<DynamicFilter>(choice));
-    for (const ModuleChoice& choice : configuration_.observers) builder_.observer(module<Observer>(choice));
-  }
-  void choose_settings() {
-    builder_.tracking(section<TrackingSettings>("tracking"))
-        .stereo(section<StereoSettings>("stereo"))
-        .segmentation(section<SegmentationSettings>("segmentation"))
-        .evidence(section<EvidenceSettings>("evidence"))
-        .mapping(section<MappingSettings>("mapping"))
-        .loop_closing(section<LoopClosingSettings>("loop_closing"))
-        .dense_map(section<DenseMapSettings>("dense_map"))
-        .run(configuration_.run);
-  }
-
-  const Configuration& configuration_;
-  PipelineBuilder builder_;
-};
 
 BuiltPipeline build_pipeline(const Configuration& configuration, const Registry& registry,
                              const PipelineOptions& options) {
@@ -143,9 +128,12 @@ BuiltPipeline build_pipeline(const Configuration& configuration, const Registry&
   CreationContext context = context_of_source(configuration);
   context.output_directory = options.output_directory;
   auto source = make_source(configuration, registry, context);
-  PipelineBuilder builder = ConfigurationReader(configuration, registry).read(source->describe());
+  PipelineBuilder builder = builder_of(configuration, registry, source->describe(), options.map_file.string());
   builder.output_directory(options.output_directory);
-  if (!options.map_file.empty()) ConfigurationReader::read_map_file(options.map_file, options.localise_only, builder);
+  if (options.localise_only)
+    builder.localise_in(read_map(options.map_file));
+  else if (!options.map_file.empty())
+    builder.map(read_map(options.map_file));
   return {std::move(source), builder.build()};
 }
 
@@ -164,8 +152,8 @@ std::unique_ptr<FrameSource> build_source(const Configuration& configuration, co
 
 BuiltSegmenter build_segmenter(const Configuration& configuration, const Registry& registry) {
   std::unique_ptr<FrameSource> source = build_source(configuration, registry);
-  PipelineBuilder builder = ConfigurationReader(configuration, registry).read(source->describe());
-  return {std::move(source), ConfigurationReader::build_segmenter(std::move(builder))};
+  std::unique_ptr<Segmenter> segmenter = builder_of(configuration, registry, source->describe()).build_segmenter();
+  return {std::move(source), std::move(segmenter)};
 }
 
 }  // namespace holdfast

@@ -43,17 +43,22 @@ PipelineBuilder& PipelineBuilder::camera(const Camera& camera) {
 }
 PipelineBuilder& PipelineBuilder::camera(const std::string& name) {
   if (const std::optional<Camera> known = find_camera(name)) return camera(*known);
-  complain(place_, "camera '" + name + "' is unknown; " + did_you_mean(name, camera_names()));
+  complain(origin_.place, "camera '" + name + "' is unknown; " + did_you_mean(name, camera_names()));
   return camera(Camera{});
 }
 PipelineBuilder& PipelineBuilder::source(const SourceDescription& description) {
   source_camera_ = description.camera;
-  source_name_ = description.name;
+  origin_.source_name = description.name;
   has_depth_ = description.has_depth;
   has_right_ = description.has_right;
   has_global_shutter_ = description.has_global_shutter;
   context_.class_names = description.class_names;
   context_.frame_timestamps = description.frame_timestamps;
+  return *this;
+}
+
+PipelineBuilder& PipelineBuilder::origin(PipelineOrigin origin) {
+  origin_ = std::move(origin);
   return *this;
 }
 
@@ -144,17 +149,17 @@ PipelineBuilder& PipelineBuilder::localise_in(Map map) {
 }
 
 void PipelineBuilder::complain(const SourceLocation& place, std::string message) {
-  diagnostics_.push_back({place.file.empty() ? place_ : place, std::move(message)});
+  diagnostics_.push_back({place.file.empty() ? origin_.place : place, std::move(message)});
 }
 
 void PipelineBuilder::suspect(const SourceLocation& place, std::string message) {
-  add_warning(parts_.warnings, {place.file.empty() ? place_ : place, std::move(message)});
+  add_warning(parts_.warnings, {place.file.empty() ? origin_.place : place, std::move(message)});
 }
 
 template <class Interface>
 std::unique_ptr<Interface> PipelineBuilder::make(ModuleOf<Interface>& module) {
   if (module.object) return std::move(module.object);
-  const SourceLocation& place = module.place.file.empty() ? place_ : module.place;
+  const SourceLocation& place = module.place.file.empty() ? origin_.place : module.place;
   const ModuleEntry* entry = find_module(registry_, Interface::kind, module.name, place, diagnostics_);
   if (entry == nullptr) return nullptr;
   const std::size_t before = diagnostics_.size();
@@ -172,7 +177,7 @@ std::unique_ptr<Interface> PipelineBuilder::make_if_any(std::optional<ModuleOf<I
 template <class Settings>
 void PipelineBuilder::check(const Settings& settings, const char* section) {
   const ParameterTable<Settings> table;
-  check_parameters(table.values(settings), table.parameters(), section, place_, diagnostics_);
+  check_parameters(table.values(settings), table.parameters(), section, origin_.place, diagnostics_);
 }
 
 void PipelineBuilder::check_camera() {
@@ -181,10 +186,11 @@ void PipelineBuilder::check_camera() {
   context_.sensor = parts_.sensor;
   // The baseline of a real pair is the source's; that of the configured camera is of a virtual one.
   if (source_camera_ && parts_.sensor != Sensor::rgbd) parts_.camera.baseline = source_camera_->baseline;
-  if (source_camera_ && has_camera_ && !unknown_camera_ && have_other_numbers(*source_camera_, parts_.camera))
-    complain(source_place_, "the source '" + source_name_ +
-                                "' brings its own camera, and 'camera' names one with other numbers; remove one of "
-                                "them");
+  if (source_camera_ && has_camera_ && !origin_.unknown_camera && have_other_numbers(*source_camera_, parts_.camera))
+    complain(origin_.source_place,
+             "the source '" + origin_.source_name +
+                 "' brings its own camera, and 'camera' names one with other numbers; remove one of "
+                 "them");
   if (source_camera_) parts_.camera = *source_camera_;
   if (has_global_shutter_) {
     parts_.camera.readout = 0.0;
@@ -192,27 +198,28 @@ void PipelineBuilder::check_camera() {
   }
   // Without a pair, the baseline only says what counts as near, in the map's own unit.
   if (parts_.sensor == Sensor::mono) parts_.camera.baseline = Camera().baseline;
-  if (!source_camera_ && !has_camera_ && unknown_camera_)
-    complain(unknown_camera_->location, unknown_camera_->message);
+  if (!source_camera_ && !has_camera_ && origin_.unknown_camera)
+    complain(origin_.unknown_camera->location, origin_.unknown_camera->message);
   else if (!source_camera_ && !has_camera_) {
     std::string known;
     for (const std::string& name : camera_names()) known += (known.empty() ? "" : ", ") + name;
     const std::string source =
-        source_name_.empty() ? "" : ", and the source '" + source_name_ + "' does not know its own";
-    complain(place_, "the camera is missing" + source + "; expected 'camera' with a name (" + known + ") or numbers");
+        origin_.source_name.empty() ? "" : ", and the source '" + origin_.source_name + "' does not know its own";
+    complain(origin_.place,
+             "the camera is missing" + source + "; expected 'camera' with a name (" + known + ") or numbers");
   }
   judge_camera();
   context_.camera = parts_.camera;
 }
 
 void PipelineBuilder::judge_camera() {
-  const SourceLocation& place = source_camera_ ? source_place_ : place_;
-  const std::string whose = source_camera_ ? "of the camera that the source '" + source_name_ + "' gives, " : "";
+  const SourceLocation& place = source_camera_ ? origin_.source_place : origin_.place;
+  const std::string whose = source_camera_ ? "of the camera that the source '" + origin_.source_name + "' gives, " : "";
   if (const std::string trouble = parts_.camera.trouble(); !trouble.empty()) {
     complain(place, whose + trouble);
     return;
   }
-  if (!source_camera_ && is_camera_judged_) return;
+  if (!source_camera_ && origin_.is_camera_judged) return;
   for (const std::string& suspicion : parts_.camera.suspicions(parts_.sensor != Sensor::mono))
     suspect(place, whose + suspicion);
 }
@@ -226,7 +233,7 @@ void PipelineBuilder::check_settings() {
   check(parts_.loop_closing, "loop_closing");
   check(parts_.dense_map, "dense_map");
   check(parts_.run, "run");
-  if (const auto reason = parts_.run.contradiction()) complain(place_, *reason);
+  if (const auto reason = parts_.run.contradiction()) complain(origin_.place, *reason);
 }
 
 void PipelineBuilder::check_filter(const ModuleOf<DynamicFilter>& module, const Needs& needs) {
@@ -254,12 +261,13 @@ void PipelineBuilder::check_classes(const ModuleOf<DynamicFilter>& module, const
 /// extractor that made it, because others find other corners.
 void PipelineBuilder::check_map() const {
   if (parts_.map.keyframes().empty())
-    throw InputError({map_name_}, "is a map without keyframes; expected one that a run has saved");
+    throw InputError({origin_.map_name}, "is a map without keyframes; expected one that a run has saved");
   if (parts_.map.sensor() != parts_.sensor)
-    throw InputError({map_name_}, std::string("was made with the sensor '") + sensor_name(parts_.map.sensor()) +
-                                      "', and the run has '" + sensor_name(parts_.sensor) +
-                                      "'; expected the same sensor, because keyframes of another one fit neither its "
-                                      "scale nor its adjustment");
+    throw InputError({origin_.map_name},
+                     std::string("was made with the sensor '") + sensor_name(parts_.map.sensor()) +
+                         "', and the run has '" + sensor_name(parts_.sensor) +
+                         "'; expected the same sensor, because keyframes of another one fit neither its "
+                         "scale nor its adjustment");
   const MapFeatures& there = parts_.map.features();
   const DescriptorType here = parts_.features->descriptor_type();
   const bool has_other_name =
@@ -269,7 +277,7 @@ void PipelineBuilder::check_map() const {
       return "'" + (name.empty() ? std::string("an extractor without a name") : name) + "' with descriptors of " +
              to_string(type);
     };
-    throw InputError({map_name_},
+    throw InputError({origin_.map_name},
                      "was made with the features " + named(there.extractor, there.descriptors) + ", and the run has " +
                          named(parts_.features_name, here) +
                          "; expected the same extractor, because features of another one cannot be matched");
@@ -277,9 +285,9 @@ void PipelineBuilder::check_map() const {
   check_places();
   parts_.map.keyframes().for_each([&](KeyFrameId, const KeyFrame& keyframe) {
     if (have_other_numbers(*keyframe.frame.camera, parts_.camera))
-      throw InputError({map_name_}, "was made with the camera '" + keyframe.frame.camera->name +
-                                        "', and the run has '" + parts_.camera.name +
-                                        "' with other numbers; expected the same camera");
+      throw InputError({origin_.map_name}, "was made with the camera '" + keyframe.frame.camera->name +
+                                               "', and the run has '" + parts_.camera.name +
+                                               "' with other numbers; expected the same camera");
   });
 }
 
@@ -293,35 +301,37 @@ void PipelineBuilder::check_places() const {
     if (place.empty()) return;
     has_places = true;
     if (!place.type().is_comparable(*needed))
-      throw InputError({map_name_}, "holds descriptions of its keyframes' images by " + to_string(place.type()) +
-                                        ", and the loop detector '" + loop_detector_->name + "' makes " +
-                                        to_string(*needed) +
-                                        "; expected the loop detector with the network that made the map");
+      throw InputError({origin_.map_name}, "holds descriptions of its keyframes' images by " + to_string(place.type()) +
+                                               ", and the loop detector '" + loop_detector_->name + "' makes " +
+                                               to_string(*needed) +
+                                               "; expected the loop detector with the network that made the map");
   });
   if (!has_places)
-    throw InputError({map_name_}, "holds no descriptions of its keyframes' images, which the loop detector '" +
-                                      loop_detector_->name +
-                                      "' compares; expected a map that a run with this detector made, or another "
-                                      "detector, such as 'loop_detector: { flann: {} }'");
+    throw InputError({origin_.map_name},
+                     "holds no descriptions of its keyframes' images, which the loop detector '" +
+                         loop_detector_->name +
+                         "' compares; expected a map that a run with this detector made, or another "
+                         "detector, such as 'loop_detector: { flann: {} }'");
 }
 
 void PipelineBuilder::choose_sensor() {
   const bool lacks_depth = parts_.sensor == Sensor::rgbd && !has_depth_;
   const bool lacks_right = parts_.sensor == Sensor::stereo && !has_right_;
   if (lacks_depth || lacks_right)
-    complain(source_place_, "the sensor is '" + std::string(sensor_name(parts_.sensor)) + "', and the source '" +
-                                source_name_ + "' has no " + (lacks_depth ? "depth" : "right") +
-                                " images; expected another source, or another 'sensor'");
+    complain(origin_.source_place, "the sensor is '" + std::string(sensor_name(parts_.sensor)) + "', and the source '" +
+                                       origin_.source_name + "' has no " + (lacks_depth ? "depth" : "right") +
+                                       " images; expected another source, or another 'sensor'");
   if (parts_.dense_map.enabled && parts_.sensor != Sensor::rgbd)
-    complain(place_, "dense_map needs depth images, and the sensor is '" + std::string(sensor_name(parts_.sensor)) +
-                         "'; remove `dense_map`");
+    complain(origin_.place, "dense_map needs depth images, and the sensor is '" +
+                                std::string(sensor_name(parts_.sensor)) + "'; remove `dense_map`");
   if (parts_.sensor != Sensor::stereo) return;
   if (parts_.tracking.between_keyframes == BetweenKeyframes::flow)
-    complain(place_,
+    complain(origin_.place,
              "tracking.between_keyframes is 'flow', which does not follow features in the right image of a "
              "stereo pair; expected 'features'");
   if (!parts_.camera.distortion.is_zero())
-    complain(place_, "the camera of a stereo pair has distortion; expected rectified images, whose camera has none");
+    complain(origin_.place,
+             "the camera of a stereo pair has distortion; expected rectified images, whose camera has none");
   // An extractor that was given as an object exists once: it finds the features of one image after the other.
   if (!features_ || features_->object) return;
   ModuleOf<FeatureExtractor> right(features_->name, features_->values);
@@ -361,13 +371,13 @@ void PipelineBuilder::throw_complaints() {
 
 Pipeline PipelineBuilder::build() {
   check_camera();
-  if (!features_) complain(place_, "features() is missing; choose an extractor, such as 'orb'");
-  if (!optimizer_) complain(place_, "optimizer() is missing; choose one, such as 'ceres'");
+  if (!features_) complain(origin_.place, "features() is missing; choose an extractor, such as 'orb'");
+  if (!optimizer_) complain(origin_.place, "optimizer() is missing; choose one, such as 'ceres'");
   check_settings();
   choose_sensor();
   make_modules();
   if (has_map_ && is_absent(loop_detector_))
-    complain(loop_detector_ ? loop_detector_->place : place_,
+    complain(loop_detector_ ? loop_detector_->place : origin_.place,
              "a camera in a loaded map finds its place by place recognition, but the loop detector is 'none'; choose "
              "one, such as 'loop_detector: { flann: {} }'");
   throw_complaints();
@@ -379,7 +389,7 @@ Pipeline PipelineBuilder::build() {
 std::unique_ptr<Segmenter> PipelineBuilder::build_segmenter() {
   check_camera();
   if (is_absent(segmenter_))
-    complain(segmenter_ ? segmenter_->place : place_,
+    complain(segmenter_ ? segmenter_->place : origin_.place,
              "the segmenter is 'none', which finds nothing; choose one under 'segmenter:', such as 'onnx'");
   std::unique_ptr<Segmenter> segmenter = make_if_any(segmenter_);
   throw_complaints();

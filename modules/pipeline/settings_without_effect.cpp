@@ -7,7 +7,7 @@ namespace holdfast {
 
 void PipelineBuilder::check_effects() {
   if (parts_.localise_only && parts_.dense_map.enabled)
-    suspect(place_,
+    suspect(origin_.place,
             "'dense_map' has no effect where the camera is only localised in a map, which stays as it is; continue the "
             "map instead, or remove 'dense_map'");
   bool uses_masks = false;

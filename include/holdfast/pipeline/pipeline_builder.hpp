@@ -47,6 +47,16 @@ class ModuleOf {
   SourceLocation place;               ///< where a configuration selects the module, for messages
 };
 
+/// Names and places of the choices that a PipelineBuilder is given, for its messages. The default is a program.
+struct PipelineOrigin {
+  SourceLocation place{"PipelineBuilder"};   ///< of choices without a place of their own, such as a configuration file
+  SourceLocation source_place = place;       ///< of the source
+  std::string source_name;                   ///< empty: there is no source
+  std::string map_name = "the map";          ///< of the map to continue or to localise in
+  std::optional<Diagnostic> unknown_camera;  ///< Configuration::unknown_camera
+  bool is_camera_judged = false;             ///< the configuration has the warnings about its camera
+};
+
 /// Makes a pipeline without a configuration file:
 ///
 ///     Pipeline pipeline = PipelineBuilder()
@@ -83,8 +93,11 @@ class PipelineBuilder {
   /// the segmenter `truth`.
   PipelineBuilder& source(const SourceDescription& description);
 
-  /// What is used of the frames; without it, all that the source has: depth before a right image, and colour alone
-  /// when there is neither.
+  /// Tells the places of the choices, where a configuration makes them. Call it after source(), whose name it replaces.
+  PipelineBuilder& origin(PipelineOrigin origin);
+
+  /// Selects the sensor mode. Default: RGB-D if the source has depth, else stereo if it has a right image, else
+  /// monocular.
   PipelineBuilder& sensor(Sensor sensor);
 
   PipelineBuilder& features(ModuleOf<FeatureExtractor> module);
@@ -120,10 +133,10 @@ class PipelineBuilder {
   /// parameters, values out of range, parts that are missing or do not fit), InputError for a map of another camera,
   /// and any exception of a module's constructor. Call it once.
   Pipeline build();
+  /// Makes the segmenter alone, with the same checks of what it needs.
+  std::unique_ptr<Segmenter> build_segmenter();
 
  private:
-  friend class ConfigurationReader;  // gives each choice its place in the file
-
   template <class Interface>
   std::unique_ptr<Interface> make(ModuleOf<Interface>& module);
   template <class Interface>
@@ -134,7 +147,6 @@ class PipelineBuilder {
   void judge_camera();
   void check_settings();
   void make_modules();
-  std::unique_ptr<Segmenter> build_segmenter();
   void throw_complaints();
   void choose_sensor();
   void check_filter(const ModuleOf<DynamicFilter>& module, const Needs& needs);
@@ -151,17 +163,13 @@ class PipelineBuilder {
   PipelineParts parts_;
   CreationContext context_;
   std::optional<Camera> source_camera_;
-  std::optional<Diagnostic> unknown_camera_;  // Configuration::unknown_camera
   bool has_camera_ = false;
-  bool is_camera_judged_ = false;  // the configuration has the warnings about it
   bool has_global_shutter_ = false;
   bool has_depth_ = true;
   bool has_right_ = false;
   std::optional<Sensor> sensor_;
   bool has_map_ = false;
-  std::string map_name_ = "the map";
-  std::string source_name_;                                          // empty: source() was not called
-  SourceLocation place_{"PipelineBuilder"}, source_place_ = place_;  // of choices that a configuration does not name
+  PipelineOrigin origin_;
   std::vector<Diagnostic> diagnostics_;
   std::optional<ModuleOf<FeatureExtractor>> features_;
   std::optional<ModuleOf<Optimizer>> optimizer_;
