@@ -34,6 +34,9 @@ void check(const CheckArguments& arguments, const ProgramHost& host) {
     BuiltPipeline built = build_pipeline(configuration, registry);
     built.pipeline.finish_loading();
     print_warnings(built.warnings());
+    const std::string understood = built.pipeline.segmenter_description();
+    if (!arguments.print && !understood.empty())
+      std::printf("%s: %s\n", configuration.segmenter.name.c_str(), printable(understood).c_str());
   }
   if (arguments.print) {
     std::fputs(to_yaml(configuration).c_str(), stdout);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <opencv2/core.hpp>
 #include <set>
 
 #include "check.hpp"
@@ -24,11 +25,36 @@ std::vector<SensorFrame> frames() {
   return result;
 }
 
+/// Checks the contract of instances, which a result may have.
+void expect_sound_instances(const Segmentation& result, std::size_t classes) {
+  if (result.instances.empty()) {
+    EXPECT_TRUE(result.found.empty()) << "a table of instances without their image";
+    return;
+  }
+  ASSERT_EQ(result.instances.type(), CV_16UC1) << "the type of the image of instances; 2 is 16UC1";
+  ASSERT_EQ(result.instances.size(), result.labels.size()) << "the size of the image of instances";
+  double highest = 0.0;
+  cv::minMaxLoc(result.instances, nullptr, &highest);
+  EXPECT_LE(highest, static_cast<double>(result.found.size())) << "an instance that the table does not have";
+  const cv::Rect2f frame(0.0F, 0.0F, static_cast<float>(result.labels.cols), static_cast<float>(result.labels.rows));
+  for (const Instance& instance : result.found) {
+    EXPECT_LT(instance.label, classes) << "an instance of a class without a name";
+    EXPECT_TRUE(instance.score >= 0.0F && instance.score <= 1.0F) << "the score of an instance is " << instance.score;
+    constexpr float slack = 0.01F;
+    const cv::Rect2f& box = instance.box;
+    EXPECT_TRUE(box.x >= -slack && box.y >= -slack && box.x + box.width <= frame.width + slack &&
+                box.y + box.height <= frame.height + slack)
+        << "the box of an instance leaves the frame: from column " << box.x << ", row " << box.y << ", " << box.width
+        << "x" << box.height << " pixels";
+  }
+}
+
 /// Checks the contract of a result, which holds for every frame.
 void expect_sound(Segmenter& segmenter, const SensorFrame& frame, const Segmentation& result) {
   const std::size_t classes = segmenter.classes().size();
   if (result.labels.empty()) {
     EXPECT_TRUE(result.confidence.empty()) << "confidence without labels";
+    EXPECT_TRUE(result.instances.empty() && result.found.empty()) << "instances without labels";
     return;
   }
   ASSERT_NE(classes, 0U) << "labels from a segmenter without classes";
@@ -43,6 +69,7 @@ void expect_sound(Segmenter& segmenter, const SensorFrame& frame, const Segmenta
           << "label " << static_cast<int>(label) << " at column " << x << ", row " << y << " of " << classes
           << " classes";
     }
+  expect_sound_instances(result, classes);
   if (result.confidence.empty()) return;
   ASSERT_EQ(result.confidence.type(), CV_8UC1) << "the confidence's type; 0 is 8UC1";
   ASSERT_EQ(result.confidence.size(), frame.colour.size())
@@ -58,6 +85,12 @@ void survive(Segmenter& segmenter, const SensorFrame& frame) {
 void expect_same(const Segmentation& a, const Segmentation& b, const std::string& when) {
   EXPECT_EQ(digest(a.labels), digest(b.labels)) << when << ": other labels";
   EXPECT_EQ(digest(a.confidence), digest(b.confidence)) << when << ": another confidence";
+  EXPECT_EQ(digest(a.instances), digest(b.instances)) << when << ": other instances";
+  ASSERT_EQ(a.found.size(), b.found.size()) << when << ": another number of instances";
+  for (std::size_t i = 0; i < a.found.size(); ++i)
+    EXPECT_TRUE(a.found[i].label == b.found[i].label && a.found[i].score == b.found[i].score &&
+                a.found[i].box == b.found[i].box)
+        << when << ": another instance " << i + 1;
 }
 
 std::vector<Segmentation> segment_all(Segmenter& segmenter, const std::vector<SensorFrame>& images) {
@@ -160,7 +193,7 @@ void results_are_kept_apart(const Maker& maker) {
   const auto segmenter = maker.make<Segmenter>();
   const std::vector<SensorFrame> images = frames();
   const Segmentation first = segmenter->segment(images[0]);
-  const Segmentation copy{first.labels.clone(), first.confidence.clone()};
+  const Segmentation copy{first.labels.clone(), first.confidence.clone(), first.instances.clone(), first.found};
   for (const SensorFrame& frame : images) segmenter->segment(frame);
   SensorFrame flat = images[0];
   flat.colour = cv::Mat(flat.colour.size(), CV_8UC3, cv::Scalar::all(0));

@@ -9,6 +9,7 @@
 
 #include "holdfast/core/counted.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/inference/object_masks.hpp"
 #include "holdfast/inference/onnx_net.hpp"
 #include "holdfast/plugin/did_you_mean.hpp"
 
@@ -43,6 +44,7 @@ cv::Size input_size(const NetworkOptions& options, const OnnxNet& net) {
 std::string chosen_output(const NetworkOptions& options, const OnnxSignature& signature) {
   std::vector<std::string> known;
   for (const OnnxTensor& output : signature.outputs) known.push_back(output.name);
+  if (options.every_output) return known.front();
   if (options.output_name.empty()) {
     if (known.size() > 1)
       throw InputError({options.model.string()}, "has " + std::to_string(known.size()) + " outputs, " +
@@ -56,7 +58,7 @@ std::string chosen_output(const NetworkOptions& options, const OnnxSignature& si
   return options.output_name;
 }
 
-void require_three(const NetworkOptions& options) {
+void require_three(const InputPreparation& options) {
   const auto fail = [](const char* name, const std::string& message) {
     throw ConfigurationError(SourceLocation{}, std::string(name) + ": " + message);
   };
@@ -80,27 +82,55 @@ struct Network::Parts {
   cv::Size size;
   OnnxTensor output;  // that run() computes
   OnnxNet net;
+  InputPreparation preparation;
+  FramePlace place;  // of the last image
   cv::Mat resized, input;
   std::vector<cv::Mat> scores;
   std::array<std::array<float, 256>, 3> value;  ///< of a pixel's value, by channel of the network
 
+  void prepare(const InputPreparation& given) {
+    preparation = given;
+    place = {};
+    for (std::size_t channel = 0; channel < 3; ++channel)
+      for (std::size_t number = 0; number < 256; ++number)
+        value[channel][number] = static_cast<float>((static_cast<double>(number) * given.scale - given.mean[channel]) /
+                                                    given.standard_deviation[channel]);
+  }
+
   void fill_input(const cv::Mat& colour) {
+    if (place.frame != colour.size()) {
+      place = place_of_frame(colour.size(), size, preparation.letterbox);
+      fill_padding();
+    }
     const cv::Mat* image = &colour;
-    if (colour.size() != size) {
-      const bool shrinks = colour.cols >= size.width && colour.rows >= size.height;
-      cv::resize(colour, resized, size, 0, 0, shrinks ? cv::INTER_AREA : cv::INTER_LINEAR);
+    if (colour.size() != place.content.size()) {
+      const bool shrinks = colour.cols >= place.content.width && colour.rows >= place.content.height;
+      cv::resize(colour, resized, place.content.size(), 0, 0, shrinks ? cv::INTER_AREA : cv::INTER_LINEAR);
       image = &resized;
     }
-    const auto area = static_cast<std::ptrdiff_t>(size.area());
-    auto* to = input.ptr<float>();
-    const std::ptrdiff_t next_pixel = options.channels_last ? 3 : 1, next_channel = options.channels_last ? 1 : area;
+    const std::ptrdiff_t to_pixel = next_pixel(), to_channel = next_channel();
     for (int y = 0; y < image->rows; ++y) {
       const auto* from = image->ptr<std::uint8_t>(y);
-      for (int x = 0; x < image->cols; ++x, from += 3, to += next_pixel)
+      const std::ptrdiff_t first = (std::ptrdiff_t{place.content.y} + y) * size.width + place.content.x;
+      float* to = input.ptr<float>() + first * to_pixel;
+      for (int x = 0; x < image->cols; ++x, from += 3, to += to_pixel)
         for (std::size_t channel = 0; channel < 3; ++channel)
-          to[static_cast<std::ptrdiff_t>(channel) * next_channel] =
+          to[static_cast<std::ptrdiff_t>(channel) * to_channel] =
               value[channel][from[options.rgb ? 2 - channel : channel]];
     }
+  }
+
+  std::ptrdiff_t next_pixel() const { return options.channels_last ? 3 : 1; }
+  std::ptrdiff_t next_channel() const { return options.channels_last ? 1 : size.area(); }
+
+  /// Grey around a letterbox.
+  void fill_padding() {
+    constexpr std::size_t grey = 114;
+    if (place.content == cv::Rect({}, size)) return;
+    float* to = input.ptr<float>();
+    for (int i = 0; i < size.area(); ++i, to += next_pixel())
+      for (std::size_t channel = 0; channel < 3; ++channel)
+        to[static_cast<std::ptrdiff_t>(channel) * next_channel()] = value[channel][grey];
   }
 
   void mirror_input() {
@@ -122,22 +152,25 @@ struct Network::Parts {
 };
 
 Network::Network(const NetworkOptions& options) {
-  require_three(options);
+  const InputPreparation preparation{false, options.scale, options.mean, options.standard_deviation};
+  require_three(preparation);
   parts_ = std::make_unique<Parts>(options);
   const OnnxSignature& signature = parts_->net.signature();
   parts_->size = input_size(options, parts_->net);
   parts_->output = parts_->net.output(chosen_output(options, signature), "output_name");
-  for (std::size_t channel = 0; channel < 3; ++channel)
-    for (std::size_t value = 0; value < 256; ++value)
-      parts_->value[channel][value] = static_cast<float>(
-          (static_cast<double>(value) * options.scale - options.mean[channel]) / options.standard_deviation[channel]);
+  parts_->prepare(preparation);
   if (options.engine != NetworkEngine::onednn && options.threads > 0) cv::setNumThreads(options.threads);
   const int h = parts_->size.height, w = parts_->size.width;
   const int channels_first[] = {1, 3, h, w}, channels_last[] = {1, h, w, 3};
   cv::Mat& input = parts_->input;
   input.create(4, options.channels_last ? channels_last : channels_first, CV_32F);
+  std::vector<std::string> outputs = {parts_->output.name};
+  if (options.every_output) {
+    outputs.clear();
+    for (const OnnxTensor& output : signature.outputs) outputs.push_back(output.name);
+  }
   parts_->net.load({.inputs = {{signature.inputs.front().name, {input.size.p, input.size.p + input.dims}}},
-                    .outputs = {parts_->output.name},
+                    .outputs = std::move(outputs),
                     .advice = "expected a network for such an image; check width, height and layout"});
 }
 
@@ -148,6 +181,14 @@ cv::Mat Network::run(const cv::Mat& colour) {
   parts_->fill_input(colour);
   return parts_->forward();
 }
+
+void Network::set_preparation(const InputPreparation& preparation) {
+  require_three(preparation);
+  parts_->prepare(preparation);
+}
+
+const std::vector<cv::Mat>& Network::outputs() const { return parts_->scores; }
+const OnnxSignature& Network::signature() const { return parts_->net.signature(); }
 
 cv::Mat Network::run_mirrored() {
   parts_->mirror_input();

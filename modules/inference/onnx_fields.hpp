@@ -13,7 +13,8 @@ constexpr std::uint64_t float32 = 1, int64 = 7, half_precision = 10, float64 = 1
 
 /// Field numbers.
 namespace field {
-constexpr std::uint32_t model_graph = 7, model_operators = 8;
+constexpr std::uint32_t model_graph = 7, model_operators = 8, model_metadata = 14;
+constexpr std::uint32_t metadata_key = 1, metadata_value = 2;
 constexpr std::uint32_t operators_domain = 1, operators_version = 2;
 constexpr std::uint32_t graph_node = 1, graph_initializer = 5, graph_input = 11, graph_output = 12;
 constexpr std::uint32_t graph_sparse_initializer = 15, sparse_values = 1;

@@ -252,6 +252,16 @@ OnnxSignature read_graph(Bytes bytes) {
   return signature;
 }
 
+/// An entry of the metadata; the first of a key counts.
+void read_metadata(Bytes entry, std::map<std::string, std::string>& metadata) {
+  std::string key, value;
+  each_field(entry, [&](const Field& f) {
+    if (f.number == field::metadata_key) key = text(f.content);
+    if (f.number == field::metadata_value) value = text(f.content);
+  });
+  metadata.emplace(std::move(key), std::move(value));
+}
+
 }  // namespace
 
 std::string shape_text(std::span<const std::int64_t> shape) {
@@ -264,8 +274,10 @@ std::string OnnxTensor::shape_text() const { return holdfast::shape_text(shape);
 
 OnnxSignature read_onnx_signature(std::span<const std::uint8_t> bytes, const std::filesystem::path& file) {
   std::optional<OnnxSignature> signature;
+  std::map<std::string, std::string> metadata;
   try {
     protobuf::each_field(bytes, [&](const protobuf::Field& part) {
+      if (part.number == onnx::field::model_metadata) read_metadata(part.content, metadata);
       if (part.number != onnx::field::model_graph || part.content.empty()) return;
       if (signature) throw protobuf::Malformed();
       signature = read_graph(part.content);
@@ -278,6 +290,7 @@ OnnxSignature read_onnx_signature(std::span<const std::uint8_t> bytes, const std
   if (!signature || signature->inputs.empty() || signature->outputs.empty())
     throw InputError({file.string()}, "is not a whole ONNX model of " + std::to_string(bytes.size()) +
                                           " bytes; expected a network exported to ONNX; export or copy it again");
+  signature->metadata = std::move(metadata);
   return *signature;
 }
 

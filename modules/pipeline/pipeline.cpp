@@ -196,6 +196,8 @@ Pipeline::~Pipeline() {
 Pipeline::Pipeline(Pipeline&&) noexcept = default;
 Pipeline& Pipeline::operator=(Pipeline&&) noexcept = default;
 
+std::string Pipeline::segmenter_description() const { return state_->parts.segmenter->description(); }
+
 void Pipeline::finish_loading() { state_->parts.segmenter->finish_loading(); }
 
 FrameResult Pipeline::feed(const SensorFrame& given) {

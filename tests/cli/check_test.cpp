@@ -53,6 +53,17 @@ TEST_F(CheckTest, FindsWhatTheModulesOfARunMiss) {
   EXPECT_NE(outcome.exit_code, 0);
 }
 
+TEST_F(CheckTest, SaysWhatIsUnderstoodOfANetwork) {
+  const Outcome outcome =
+      program_.run({"check", "good.yaml", "--set",
+                    "segmenter={onnx: {model: " HOLDFAST_SOURCE_FOLDER "/tests/inference/models/yolov8n-seg.onnx}}",
+                    "--set", "filters=[semantic_mask]"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_THAT(outcome.output,
+              AllOf(StartsWith("onnx: yolov8n-seg.onnx is a network of the family yolo"), HasSubstr("movable: person"),
+                    HasSubstr("\nok good.yaml: simulated -> orb -> onnx")));
+}
+
 TEST_F(CheckTest, CameraAutoAsksTheSource) {
   const auto write_images = [&](const std::string& folder) {
     std::filesystem::create_directories(program_.path(folder));

@@ -97,6 +97,7 @@ TEST(BadModules, SegmentersAreFound) {
       "segmenter",
       {{"counts_calls", {"InstancesDoNotMeet", "MayChangeThreads", "SameFramesSameResults", "TakesImagesWithGaps"}},
        {"half_size", unsound},
+       {"lost_instance", unsound},
        {"movable_stranger", {"MovableAreClasses"}},
        {"new_class", {"ClassesStay"}},
        {"nothing", {"SegmentsFrames"}},

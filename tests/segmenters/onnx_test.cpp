@@ -110,12 +110,16 @@ TEST(OnnxSegmenter, TensorsThatAreNoImageAreNamed) {
   const auto error = [](const std::string& model, ParameterValues values) {
     return error_of([&] { make(model, std::move(values)); });
   };
-  EXPECT_THAT(error("boxes", two_classes),
+  ParameterValues logits = two_classes;
+  logits["output"] = "logits";
+  EXPECT_THAT(error("boxes", logits),
               AllOf(HasSubstr("gives an output of 1x8x72, which is no image of its input of 16x12 pixels: it looks "
                               "like the boxes of a detector, 72 with 8 numbers each"),
                     HasSubstr("expected a network for semantic segmentation, with an output of 1 x 2 (or 1) x height "
                               "x width"),
                     HasSubstr("`precomputed`")));
+  EXPECT_THAT(error("boxes", two_classes),
+              HasSubstr("gives 'boxes' (1x8x72), which are not the outputs of a known family for 1 class name"));
   EXPECT_THAT(error("flat", two_classes), HasSubstr("like a classifier's scores of the whole image, 576"));
   EXPECT_THAT(error("whole_image", {}), HasSubstr("like a classifier's scores of the whole image, 3"));
 }

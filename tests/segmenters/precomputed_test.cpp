@@ -262,5 +262,84 @@ TEST_F(PrecomputedTest, EveryWrongLabelIsToldAtOnce) {
   EXPECT_THROW(make({}), ConfigurationError);
 }
 
+/// An array as numpy.save() writes it.
+void write_array(const fs::path& file, const std::string& type, const std::string& shape, const std::string& values,
+                 const std::string& order = "False") {
+  std::string header = "{'descr': '" + type + "', 'fortran_order': " + order + ", 'shape': " + shape + ", }";
+  header.resize(117, ' ');
+  header += '\n';
+  std::ofstream(file, std::ios::binary) << std::string("\x93NUMPY\x01\x00", 8) << static_cast<char>(header.size())
+                                        << '\0' << header << values;
+}
+
+std::string plane(int column, char value, int bytes = 1) {
+  std::string values(static_cast<std::size_t>(width * height * bytes), '\0');
+  for (int y = 1; y < 3; ++y) values[static_cast<std::size_t>((y * width + column) * bytes)] = value;
+  return values;
+}
+
+TEST_F(PrecomputedTest, OneImageForEachInstance) {
+  write("1.5_0.png", 255);
+  write("1.5_person_1.png", 3);
+  write("2.5.png", 255);
+  const auto segmenter = make({{"255", "person"}, {"3", "chair"}});
+  const Segmentation both = segmenter->segment(frame_of(1.5, width, height));
+  ASSERT_EQ(both.found.size(), 2U);
+  EXPECT_EQ(segmenter->classes()[both.found[0].label], "person");
+  EXPECT_EQ(segmenter->classes()[both.found[1].label], "chair");
+  EXPECT_EQ(both.found[1].box, cv::Rect2f(2, 1, 3, 2));
+  EXPECT_EQ(both.instances.at<std::uint16_t>(2, 3), 2) << "a later one covers those before it";
+  EXPECT_EQ(both.instances.at<std::uint16_t>(0, 0), 0);
+  EXPECT_EQ(both.labels.at<std::uint8_t>(2, 3), both.found[1].label);
+  EXPECT_TRUE(segmenter->segment(frame_of(2.5, width, height)).instances.empty());
+  write("2.5_1.png", 255);
+  EXPECT_THAT(error_of([&] {
+                make({{"255", "person"}});
+              }),
+              AllOf(HasSubstr("has the same time stamp as"), HasSubstr("or one for each instance")));
+}
+
+TEST_F(PrecomputedTest, ArraysOfLabelsAndOfInstances) {
+  write_array(folder_ / "1.npy", "|u1", "(6, 8)", plane(2, 9));
+  write_array(folder_ / "2.npy", "<i8", "(6, 8)", plane(3, 9, 8));
+  write_array(folder_ / "3.npy", "|b1", "(2, 6, 8)", plane(1, 1) + plane(5, 1));
+  write_array(folder_ / "4.npy", "|b1", "(0, 6, 8)", "");
+  write_array(folder_ / "5.npy", "|b1", "(1, 6, 8)", plane(4, 1));
+  const auto segmenter = make({{"1", "person"}, {"9", "cat"}});
+  const auto at = [&](double stamp) { return segmenter->segment(frame_of(stamp, width, height)); };
+  EXPECT_EQ(at(1).labels.at<std::uint8_t>(2, 2), 2);
+  EXPECT_EQ(cv::countNonZero(at(1).labels), 2);
+  EXPECT_EQ(at(2).labels.at<std::uint8_t>(1, 3), 2);
+  EXPECT_TRUE(at(2).instances.empty());
+  const Segmentation two = at(3);
+  ASSERT_EQ(two.found.size(), 2U);
+  EXPECT_EQ(two.instances.at<std::uint16_t>(1, 1), 1);
+  EXPECT_EQ(two.instances.at<std::uint16_t>(2, 5), 2);
+  EXPECT_EQ(two.labels.at<std::uint8_t>(2, 5), 1);
+  EXPECT_EQ(two.found[1].box, cv::Rect2f(5, 1, 1, 2));
+  EXPECT_FALSE(at(4).empty());
+  EXPECT_EQ(cv::countNonZero(at(4).labels), 0);
+  EXPECT_EQ(at(5).found.size(), 1U);
+}
+
+TEST_F(PrecomputedTest, ArraysOfOtherKindsAreRefused) {
+  const auto error = [&](const std::string& type, const std::string& shape, const std::string& values,
+                         const std::string& order = "False") {
+    write_array(folder_ / "1.npy", type, shape, values, order);
+    return error_of([&] { make({{"1", "person"}})->segment(frame_of(1, width, height)); });
+  };
+  EXPECT_THAT(
+      error("<f4", "(6, 8)", plane(1, 1, 4)),
+      AllOf(HasSubstr("1.npy: has values of the type '<f4'; expected an array of NumPy"), HasSubstr("numpy.save()")));
+  EXPECT_THAT(error("|u1", "(6, 8)", plane(1, 1), "True"), HasSubstr("Fortran's order"));
+  EXPECT_THAT(error("|u1", "(48,)", plane(1, 1)), HasSubstr("is an array of 48;"));
+  EXPECT_THAT(error("|u1", "(6, 8)", "short"), HasSubstr("has 5 bytes of values for 6 x 8"));
+  EXPECT_THAT(error("|i1", "(6, 8)", plane(1, '\xff')), HasSubstr("a value outside 0 to 65535"));
+  EXPECT_THAT(error("|u1", "(8, 6)", plane(1, 1)), HasSubstr("is 6x8 pixels, but the frame is 8x6"));
+  EXPECT_THAT(error("|u1", "(6, 8)", plane(1, 2)), HasSubstr("1.npy"));
+  EXPECT_THAT(error("|u1", "(99999999999, 8)", ""), HasSubstr("too large"));
+  EXPECT_THAT(error("|u1", "6", ""), HasSubstr("no array that can be read"));
+}
+
 }  // namespace
 }  // namespace holdfast

@@ -14,8 +14,18 @@
 
 namespace holdfast {
 
-/// Model and preprocessing of a network. The input is the image, resized to width x height without preserving its
-/// aspect ratio, with every channel normalised as (value * scale - mean) / standard_deviation.
+/// How an image becomes the input of a network: every channel is normalised as (value * scale - mean) /
+/// standard_deviation.
+struct InputPreparation {
+  /// Scale the image by one factor, and pad it with grey on both sides (place_of_frame()), in place of stretching it.
+  bool letterbox = false;
+  double scale = 1.0 / 255.0;
+  std::vector<double> mean = {0.0, 0.0, 0.0};  ///< in the order of the channels
+  std::vector<double> standard_deviation = {1.0, 1.0, 1.0};
+};
+
+/// Model and preprocessing of a network. The input is the image, resized to width x height, in the first place without
+/// preserving its aspect ratio, with every channel normalised as InputPreparation says.
 struct NetworkOptions {
   std::filesystem::path model;  ///< ONNX, float32
   /// The model in memory; if it is not empty, `model` only names it in messages. It is read during construction only,
@@ -32,6 +42,7 @@ struct NetworkOptions {
   std::vector<double> standard_deviation = {1.0, 1.0, 1.0};
   bool channels_last = false;  ///< NHWC: input (and output) are 1 x height x width x channels
   std::string output_name;     ///< empty = the only output
+  bool every_output = false;   ///< compute all outputs, for Network::outputs()
   NetworkEngine engine = NetworkEngine::opencv;
   NetworkPrecision precision = NetworkPrecision::fp32;
   /// OpenCV: number of threads for the whole process, set on construction; 0 = unchanged. oneDNN: number of threads for
@@ -57,6 +68,11 @@ class Network {
   /// Computes the output for an image (8UC3, blue green red, any size): 32F with the dimensions of the network's
   /// output, valid until the next call. Throws InputError if the network cannot be run.
   cv::Mat run(const cv::Mat& colour);
+  /// Prepares later images in another way. Throws ConfigurationError as the constructor does.
+  void set_preparation(const InputPreparation& preparation);
+  /// The outputs of the last run(), valid until the next call: in the order of signature() with
+  /// NetworkOptions::every_output, otherwise the one that run() gives.
+  const std::vector<cv::Mat>& outputs() const;
   /// Computes the output for the mirror image of the last run() without preprocessing it again. It may be called once
   /// after each run(), because the prepared image is mirrored in place.
   cv::Mat run_mirrored();
@@ -68,6 +84,7 @@ class Network {
   int height() const;
   /// The output that run() computes, as its file declares it.
   const OnnxTensor& output() const;
+  const OnnxSignature& signature() const;
   /// Shape of the input, such as "1x3x480x640".
   std::string input_text() const;
 

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
+
 #include "holdfast/inference/network.hpp"
 #include "holdfast/plugin/parameter_table.hpp"
 
 namespace holdfast {
 
-/// Adds the parameters that say what a network takes: size, colours and normalisation of its image.
+/// Adds the parameters that say what a network takes: size, colours and normalisation of its image. The texts are
+/// appended to those of the mean and of the standard deviation.
 template <class Settings>
-void describe_network_input(ParameterTable<Settings>& table) {
+void describe_network_input(ParameterTable<Settings>& table, const std::string& of_mean = "",
+                            const std::string& of_deviation = "") {
   table.add("width", &Settings::width, "width of the network input; 0 = as declared by the model")
       .range(0, 8192)
       .unit("px");
@@ -17,16 +21,18 @@ void describe_network_input(ParameterTable<Settings>& table) {
       .unit("px");
   table.add("colour_order", &Settings::colour_order, "order of the input channels");
   table.add("scale", &Settings::scale, "input = (pixel * scale - mean) / standard_deviation, pixels from 0 to 255");
-  table.add("mean", &Settings::mean, "subtracted from each channel, in colour_order, after scale");
-  table.add("standard_deviation", &Settings::standard_deviation, "divides each channel, in colour_order");
+  table.add("mean", &Settings::mean, "subtracted from each channel, in colour_order, after scale" + of_mean);
+  table.add("standard_deviation", &Settings::standard_deviation,
+            "divides each channel, in colour_order" + of_deviation);
 }
 
 /// Adds the parameters that say what computes a network.
 template <class Settings>
 void describe_network_engine(ParameterTable<Settings>& table) {
-  table.add("engine", &Settings::engine,
-            "what computes the network: opencv; onednn, which is faster and knows fewer operators; auto = onednn for the "
-            "built-in network where this build has it, otherwise opencv");
+  table.add(
+      "engine", &Settings::engine,
+      "what computes the network: opencv; onednn, which is faster and knows fewer operators; auto = onednn for the "
+      "built-in network where this build has it, otherwise opencv");
   table.add("precision", &Settings::precision,
             "numbers that the network computes with; bf16 needs `engine: onednn` and a processor with AVX512_BF16");
   table

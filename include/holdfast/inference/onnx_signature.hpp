@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -27,6 +28,8 @@ struct OnnxSignature {
   std::vector<OnnxTensor> inputs;  ///< without weights, which older files also list as inputs
   std::vector<OnnxTensor> outputs;
   bool has_half_precision = false;  ///< a weight, an input or an output is float16
+  /// What the exporter noted about the model (metadata_props), by key.
+  std::map<std::string, std::string> metadata = {};
 };
 
 std::string shape_text(std::span<const std::int64_t> shape);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <opencv2/core/mat.hpp>
 #include <string>
 #include <vector>
@@ -10,10 +11,21 @@
 
 namespace holdfast {
 
-/// Per-pixel semantic segmentation of a colour image.
+/// One object that a segmenter found in an image, such as one of several people.
+struct Instance {
+  std::uint8_t label = 0;  ///< index into Segmenter::classes()
+  float score = 0.0F;      ///< the network's score, 0 to 1
+  cv::Rect2f box;          ///< bounding box [px], within the frame
+};
+
+/// Per-pixel semantic segmentation of a colour image, with instances if the segmenter separates them.
 struct Segmentation {
   cv::Mat labels;      ///< 8UC1 of the frame's size: index into Segmenter::classes(); 255 = unknown
   cv::Mat confidence;  ///< 8UC1 of the same size, 255 = certain; empty means certain everywhere
+  /// 16UC1 of the same size: 0 = no instance, k = found[k - 1]. Empty for a semantic segmentation. Where instances
+  /// overlap, a pixel belongs to one of them, so that an instance may have no pixel.
+  cv::Mat instances = {};
+  std::vector<Instance> found = {};  ///< by decreasing score; empty without `instances`
   bool empty() const { return labels.empty(); }
 };
 
@@ -29,6 +41,9 @@ class Segmenter : public Module {
   virtual const std::vector<std::string>& classes() const = 0;
   /// The subset of classes() whose members can move or be moved; empty if the segmenter does not specify it.
   virtual std::vector<std::string> movable() const { return {}; }
+  /// What the segmenter recognised in its files, for people: one or several sentences, such as the kind of network, its
+  /// input, its classes and its thresholds. `holdfast check` prints it. Empty if there is nothing to say.
+  virtual std::string description() const { return {}; }
   /// Whether the first call of segment() may have to wait for work that the constructor began in another thread, such
   /// as loading weights. Sequential mode then makes this call in another thread, which does not change results.
   /// Constant after construction.

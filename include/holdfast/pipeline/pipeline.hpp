@@ -92,6 +92,8 @@ class Pipeline {
   /// Waits for what modules load in the background, such as the weights of a network, so that its errors are thrown
   /// here and not by a later feed(). Optional, before the first feed().
   void finish_loading();
+  /// Segmenter::description() of the segmenter, for people; empty without one.
+  std::string segmenter_description() const;
   /// Processes one frame; time stamps must rise strictly (InputError otherwise). Trouble with the frame is a typed
   /// result. Throws what a thread of the pipeline threw.
   FrameResult feed(const SensorFrame& frame);

@@ -18,8 +18,15 @@ class ParameterTable;
 enum class ColourOrder { rgb, bgr };
 /// Layout of the network's input and output: channels first or channels last.
 enum class TensorLayout { nchw, nhwc };
-/// Output of a network for segmentation: scores before softmax, probabilities, or class indices.
-enum class NetworkOutput { logits, probabilities, labels };
+/// Output of a network for segmentation. Of a semantic network: scores before softmax, probabilities, or class indices.
+/// Of a network for objects: instances with masks (boxes, coefficients and prototypes), or boxes. automatic: objects if
+/// the model's metadata and outputs are those of a known family, otherwise logits.
+enum class NetworkOutput { automatic, logits, probabilities, labels, instances, boxes };
+/// How an image becomes a network's input of another aspect ratio: stretched, or scaled by one factor, centred and
+/// padded with grey. automatic: as the family is trained; semantic networks stretch.
+enum class InputFit { automatic, stretch, letterbox };
+/// Family of a network for objects: what its outputs mean and how its input is prepared (`holdfast modules onnx`).
+enum class ObjectFamily { automatic, yolo, yolov5, yolo_end_to_end, rtdetr, detr, ssd };
 
 template <>
 inline constexpr Choice<ColourOrder> choice_table<ColourOrder>[] = {{"rgb", ColourOrder::rgb},
@@ -28,9 +35,21 @@ template <>
 inline constexpr Choice<TensorLayout> choice_table<TensorLayout>[] = {{"nchw", TensorLayout::nchw},
                                                                       {"nhwc", TensorLayout::nhwc}};
 template <>
-inline constexpr Choice<NetworkOutput> choice_table<NetworkOutput>[] = {{"logits", NetworkOutput::logits},
+inline constexpr Choice<NetworkOutput> choice_table<NetworkOutput>[] = {{"auto", NetworkOutput::automatic},
+                                                                        {"logits", NetworkOutput::logits},
                                                                         {"probabilities", NetworkOutput::probabilities},
-                                                                        {"labels", NetworkOutput::labels}};
+                                                                        {"labels", NetworkOutput::labels},
+                                                                        {"instances", NetworkOutput::instances},
+                                                                        {"boxes", NetworkOutput::boxes}};
+template <>
+inline constexpr Choice<InputFit> choice_table<InputFit>[] = {
+    {"auto", InputFit::automatic}, {"stretch", InputFit::stretch}, {"letterbox", InputFit::letterbox}};
+template <>
+inline constexpr Choice<ObjectFamily> choice_table<ObjectFamily>[] = {
+    {"auto", ObjectFamily::automatic}, {"yolo", ObjectFamily::yolo},
+    {"yolov5", ObjectFamily::yolov5},  {"yolo_end_to_end", ObjectFamily::yolo_end_to_end},
+    {"rtdetr", ObjectFamily::rtdetr},  {"detr", ObjectFamily::detr},
+    {"ssd", ObjectFamily::ssd}};
 
 /// Settings of the segmenter `onnx`. Ranges and units: `holdfast modules onnx`.
 struct OnnxSettings {
@@ -43,14 +62,21 @@ struct OnnxSettings {
   ColourOrder colour_order = ColourOrder::rgb;  ///< of the input
   /// Input = (pixel * scale - mean) / standard_deviation with pixels from 0 to 255; 1/255 maps them to [0, 1].
   double scale = 1.0 / 255.0;
-  std::vector<double> mean = {0.0, 0.0, 0.0};                ///< per channel, in colour_order
-  std::vector<double> standard_deviation = {1.0, 1.0, 1.0};  ///< per channel, in colour_order
+  std::vector<double> mean;                ///< per channel, in colour_order; empty = of the family, otherwise 0
+  std::vector<double> standard_deviation;  ///< per channel, in colour_order; empty = of the family, otherwise 1
+  InputFit fit = InputFit::automatic;
   TensorLayout layout = TensorLayout::nchw;
-  NetworkOutput output = NetworkOutput::logits;
-  std::string output_name;  ///< name of the output; needed if the model has several
-  /// Class names by channel or label; the first is the background.
-  std::vector<std::string> classes = {"background", "person"};
-  std::vector<std::string> movable;                     ///< the subset of classes that can move; empty = not specified
+  NetworkOutput output = NetworkOutput::automatic;
+  ObjectFamily family = ObjectFamily::automatic;  ///< of a network for objects
+  double min_score = 0.0;                         ///< of an object; 0 = usual for the family
+  double max_overlap = 0.0;                       ///< IoU of two objects of a class; 0 = usual for the family
+  std::string output_name;                        ///< name of the output; needed if the model has several
+  /// Class names by channel or label; the first is the background. Empty = those of the model's metadata, which
+  /// networks for objects have, otherwise background and person.
+  std::vector<std::string> classes;
+  /// The subset of classes that can move; empty = person for a network for objects, otherwise not
+  /// specified.
+  std::vector<std::string> movable;
   NetworkEngine engine = NetworkEngine::opencv;         ///< what computes the network
   NetworkPrecision precision = NetworkPrecision::fp32;  ///< bf16: with onednn, where the processor has it
   /// OpenCV: for the whole process, 0 = unchanged; oneDNN: for this network, 0 = 1.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/image_files/image_list.hpp"
@@ -26,6 +27,33 @@ bool is_png(const std::filesystem::path& file) {
   return extension == ".png" || extension == ".PNG";
 }
 
+/// The file by the stamp in its name; nothing if there is none.
+std::optional<LabelFile> file_of(const std::filesystem::path& path) {
+  const std::string stem = path.stem().string();
+  const std::size_t end = stem.find('_');
+  const std::optional<double> stamp = stamp_of(stem.substr(0, end));
+  if (!stamp) return std::nullopt;
+  return LabelFile{*stamp, path, end != std::string::npos};
+}
+
+/// Joins the files of instances of a moment.
+std::vector<LabelFile> joined_instances(const std::vector<LabelFile>& files) {
+  std::vector<LabelFile> result;
+  for (const LabelFile& file : files) {
+    if (result.empty() || result.back().timestamp != file.timestamp) {
+      result.push_back(file);
+      continue;
+    }
+    LabelFile& first = result.back();
+    if (!file.is_of_instance || !first.is_of_instance)
+      throw InputError({file.path.string()}, "has the same time stamp as '" + first.path.string() +
+                                                 "'; expected one image for each, or one for each instance, such as "
+                                                 "STAMP_1.png and STAMP_2.png; move one elsewhere");
+    first.others.push_back(file.path);
+  }
+  return result;
+}
+
 void require_folder(const std::filesystem::path& folder) {
   std::error_code error;
   if (std::filesystem::is_directory(folder, error)) return;
@@ -36,6 +64,8 @@ void require_folder(const std::filesystem::path& folder) {
 
 }  // namespace
 
+bool is_array(const std::filesystem::path& file) { return file.extension() == ".npy"; }
+
 std::vector<LabelFile> find_label_files(const std::filesystem::path& folder) {
   require_folder(folder);
   std::vector<LabelFile> files;
@@ -43,26 +73,22 @@ std::vector<LabelFile> find_label_files(const std::filesystem::path& folder) {
   std::filesystem::directory_iterator entry(folder, error);
   for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error)) {
     const std::filesystem::path& path = entry->path();
-    if (!is_png(path)) continue;
-    const std::optional<double> stamp = stamp_of(path.stem().string());
-    if (!stamp)
+    if (!is_png(path) && !is_array(path)) continue;
+    std::optional<LabelFile> file = file_of(path);
+    if (!file)
       throw InputError({path.string()},
                        "has no time stamp as its name; expected names such as 1305031102.175304.png, or a file with "
                        "lines 'timestamp filename' in `segmenter.precomputed.list`");
-    files.push_back({*stamp, path});
+    files.push_back(std::move(*file));
   }
   if (error) throw InputError({folder.string()}, "cannot be read: " + error.message() + "; check its permissions");
   if (files.empty())
     throw InputError({folder.string()},
-                     "holds no label image; expected PNG files; correct `segmenter.precomputed.path`");
+                     "holds no label image; expected PNG or NPY files; correct `segmenter.precomputed.path`");
   std::sort(files.begin(), files.end(), [](const LabelFile& left, const LabelFile& right) {
     return left.timestamp != right.timestamp ? left.timestamp < right.timestamp : left.path < right.path;
   });
-  for (std::size_t i = 1; i < files.size(); ++i)
-    if (files[i - 1].timestamp == files[i].timestamp)
-      throw InputError({files[i].path.string()}, "has the same time stamp as '" + files[i - 1].path.string() +
-                                                     "'; expected one image for each; move one elsewhere");
-  return files;
+  return joined_instances(files);
 }
 
 std::vector<LabelFile> listed_label_files(const std::filesystem::path& folder, const std::filesystem::path& list) {

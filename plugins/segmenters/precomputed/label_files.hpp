@@ -6,15 +6,21 @@
 
 namespace holdfast::precomputed_plugin {
 
-/// A label image and the moment it belongs to.
+/// The labels of a moment.
 struct LabelFile {
-  double timestamp = 0.0;  ///< [s]
-  std::filesystem::path path;
+  double timestamp = 0.0;                          ///< [s]
+  std::filesystem::path path;                      ///< of the label image, or of the first instance
+  bool is_of_instance = false;                     ///< each file is the mask of one instance
+  std::vector<std::filesystem::path> others = {};  ///< of the other instances
 };
 
-/// The PNG files of a folder by the time stamps that their names are (1305031102.175304.png), sorted; other files are
-/// left alone. Throws InputError for a folder that is missing or holds none, a name that is no stamp, and two names of
-/// the same stamp.
+/// Whether the file is an array of NumPy (.npy) rather than a PNG.
+bool is_array(const std::filesystem::path& file);
+
+/// The PNG and NPY files of a folder by the time stamps that their names are (1305031102.175304.png), sorted, and those
+/// of instances, with anything behind an underscore (1305031102.175304_2.png), in the order of their names; other files
+/// are left alone. Throws InputError for a folder that is missing or holds none, a name that is no stamp, and two files
+/// of the same stamp that are not of instances.
 std::vector<LabelFile> find_label_files(const std::filesystem::path& folder);
 
 /// Those that a list names, lines "timestamp filename", names relative to the folder. Throws as read_image_list().

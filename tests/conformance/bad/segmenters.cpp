@@ -45,6 +45,7 @@ class FaultySegmenter final : public Segmenter {
     if (fault_ == "writes") const_cast<std::uint8_t*>(colour.data)[0] ^= 255;
     if (fault_ == "new_class") classes_.push_back("class " + std::to_string(classes_.size()));
     if (fault_ == "small_confidence") return {labels, cv::Mat(1, 1, CV_8UC1, cv::Scalar(9))};
+    if (fault_ == "lost_instance") return {labels, {}, cv::Mat(colour.size(), CV_16UC1, cv::Scalar(2)), {{}}};
     return {labels, {}};
   }
 
@@ -61,7 +62,7 @@ void add_segmenters(Registry& registry) {
   add_faults<Segmenter, FaultySegmenter>(
       registry,
       {"sound", "same_names", "movable_stranger", "throws_texts", "nothing", "one_thread", "needs_depth", "one_buffer",
-       "stranger", "counts_calls", "half_size", "wide", "writes", "new_class", "small_confidence"});
+       "stranger", "counts_calls", "half_size", "wide", "writes", "new_class", "small_confidence", "lost_instance"});
 }
 
 }  // namespace holdfast::bad

@@ -3,7 +3,9 @@
 """Writes the tiny networks of the tests, byte for byte the same every time. Needs nothing but Python.
 
 All of them score colours, pixel by pixel: class 0 "background" 1, class 1 "person" 8 * (red - 0.5),
-class 2 "chair" 8 * (green - 0.5), for inputs from 0 to 1 in the order red green blue.
+class 2 "chair" 8 * (green - 0.5), for inputs from 0 to 1 in the order red green blue. Those for objects have the inputs,
+outputs and metadata of real exports: they find a person in a fixed box if something is red, and a chair in another one
+if something is green; prototype 0 is positive where it is red, prototype 1 where it is green.
 """
 import pathlib
 import struct
@@ -63,10 +65,11 @@ def node(kind, inputs, output, *attributes):
     return content(1, ins + content(2, output) + content(3, output + "_node") + content(4, kind) + b"".join(attributes))
 
 
-def model(nodes, inputs, outputs, weights, opset=12):
+def model(nodes, inputs, outputs, weights, opset=12, metadata=None):
     graph = b"".join(nodes) + content(2, "colours") + b"".join(content(5, w) for w in weights)
     graph += b"".join(content(11, i) for i in inputs) + b"".join(content(12, o) for o in outputs)
-    return number(1, 7) + content(7, graph) + content(8, content(1, "") + number(2, opset))
+    notes = b"".join(content(14, content(1, key) + content(2, value)) for key, value in (metadata or {}).items())
+    return number(1, 7) + content(7, graph) + content(8, content(1, "") + number(2, opset)) + notes
 
 
 SCORES = [(0, 0, 0, 1.0), (8, 0, 0, -4.0), (0, 8, 0, -4.0)]  # weights of red green blue, and bias
@@ -122,6 +125,165 @@ def every_layer():
     conv("scores", last, 14, 3, 1)
     return model(nodes, [value_info("image", [1, 3, "height", "width"])],
                  [value_info("scores", [1, 3, "height", "width"])], weights, opset=10)
+
+
+COCO = """person bicycle car motorcycle airplane bus train truck boat traffic_light fire_hydrant stop_sign parking_meter
+bench bird cat dog horse sheep cow elephant bear zebra giraffe backpack umbrella handbag tie suitcase frisbee skis
+snowboard sports_ball kite baseball_bat baseball_glove skateboard surfboard tennis_racket bottle wine_glass cup fork
+knife spoon bowl banana apple sandwich orange broccoli carrot hot_dog pizza donut cake chair couch potted_plant bed
+dining_table toilet tv laptop mouse remote keyboard cell_phone microwave oven toaster sink refrigerator book clock vase
+scissors teddy_bear hair_drier toothbrush"""
+COCO = [name.replace("_", " ") for name in COCO.split()]
+PERSON, CHAIR = 0, COCO.index("chair")
+RED, GREEN, NOTHING = (1, 0, -1, 0), (0, 1, -1, 0), (0, 0, 0, 0)  # 0 for grey
+PERSON_BOX, CHAIR_BOX = (200, 320, 240, 320), (480, 240, 200, 200)  # centre and size in an input of 640x640
+
+
+def constant(value):
+    return (0, 0, 0, value)
+
+
+def ultralytics(title, task, size=(640, 640)):
+    names = "{" + ", ".join(f"{i}: {name!r}" for i, name in enumerate(COCO)) + "}"
+    return {"description": f"Ultralytics {title} model trained on coco.yaml", "author": "Ultralytics", "stride": "32",
+            "task": task, "batch": "1", "imgsz": str(list(size)), "names": names}
+
+
+class Objects:
+    """A network for objects of an image of any size, as it is built."""
+
+    def __init__(self):
+        self.nodes, self.weights, self.sizes = [], [], {}
+
+    def tensor(self, name, shape, values, element=FLOAT):
+        self.weights.append(tensor(name, shape, values, element))
+        return name
+
+    def colours(self, name, kernel, rows, image="image"):
+        """Rows of scores (red green blue, bias) of the mean colours of cells."""
+        pooled = name + "_mean"
+        self.nodes.append(node("AveragePool", [image], pooled, integers("kernel_shape", kernel), integers("strides", kernel)))
+        self.tensor(name + "_weight", [len(rows), 3, 1, 1], [w for row in rows for w in row[:3]])
+        self.tensor(name + "_bias", [len(rows)], [row[3] for row in rows])
+        self.nodes.append(node("Conv", [pooled, name + "_weight", name + "_bias"], name, integers("kernel_shape", [1, 1])))
+        return name
+
+    def cells(self, name, kernel, rows):
+        """The same as a list, 1 x rows x cells."""
+        image = self.colours(name + "_image", kernel, rows)
+        shape = self.tensor(name + "_shape", [3], [1, len(rows), -1], INT64)
+        self.nodes.append(node("Reshape", [image, shape], name))
+        return name
+
+    def joined(self, name, lists):
+        self.nodes.append(node("Concat", lists, name, integer("axis", 2)))
+        return name
+
+    def turned(self, name, source):
+        self.nodes.append(node("Transpose", [source], name, integers("perm", [0, 2, 1])))
+        return name
+
+    def write(self, image, outputs, metadata=None):
+        return model(self.nodes, [value_info("image", image)], [value_info(n, s) for n, s in outputs.items()],
+                     self.weights, metadata=metadata)
+
+
+def with_scores(box, count, scores, more=()):
+    """Numbers of a cell: constants of the box, scores by class, and more numbers."""
+    rows = [constant(v) for v in box] + [NOTHING] * count
+    for number_of_class, row in scores.items():
+        rows[len(box) + number_of_class] = row
+    return rows + [constant(v) for v in more]
+
+
+def coefficients(which, count=32):
+    return [1.0 if i == which else 0.0 for i in range(count)]
+
+
+def prototypes(net, name="output1"):
+    return net.colours(name, [4, 4], [(1, 0, 0, -0.5), (0, 1, 0, -0.5)] + [NOTHING] * 30)
+
+
+def yolo(name, title, masks, image=(1, 3, 640, 640), size=(640, 640), cells=8400, person=PERSON_BOX, chair=CHAIR_BOX):
+    """YOLOv8: person boxes in the cells of stride 8, chairs in those of stride 16."""
+    net = Objects()
+    more = (lambda which: coefficients(which)) if masks else (lambda which: [])
+    lists = [net.cells("fine", [8, 8], with_scores(person, 80, {PERSON: RED}, more(0))),
+             net.cells("middle", [16, 16], with_scores(chair, 80, {CHAIR: GREEN}, more(1))),
+             net.cells("coarse", [32, 32], with_scores((0, 0, 9, 9), 80, {}, more(2)))]
+    net.joined("output0", lists)
+    outputs = {"output0": [image[0], 116 if masks else 84, cells]}
+    if masks:
+        prototypes(net)
+        outputs["output1"] = [image[0], 32, 160 if image[2] == 640 else "h", 160 if image[3] == 640 else "w"]
+    return net.write(list(image), outputs, ultralytics(title, "segment" if masks else "detect", size))
+
+
+def yolov5():
+    """Three boxes for each cell, with objectness; no metadata of the task, as its exporter writes it."""
+    net = Objects()
+    fine = net.cells("fine", [8, 8], with_scores(PERSON_BOX + (1.0,), 80, {PERSON: RED}))
+    middle = net.cells("middle", [16, 16], with_scores(CHAIR_BOX + (0.5,), 80, {CHAIR: GREEN}))
+    coarse = net.cells("coarse", [32, 32], with_scores((0, 0, 9, 9, 0.0), 80, {PERSON: constant(1.0)}))
+    net.turned("output0", net.joined("columns", [fine] * 3 + [middle] * 3 + [coarse] * 3))
+    notes = ultralytics("", "")
+    return net.write([1, 3, 640, 640], {"output0": [1, 25200, 85]}, {k: notes[k] for k in ("stride", "names")})
+
+
+def corners(box):
+    x, y, width, height = box
+    return (x - width / 2, y - height / 2, x + width / 2, y + height / 2)
+
+
+def yolo_end_to_end():
+    """300 boxes with score and class, no suppression needed."""
+    net = Objects()
+    def rows(box, score, number_of_class, which):
+        return ([constant(v) for v in corners(box)] + [score, constant(number_of_class)] +
+                [constant(v) for v in coefficients(which)])
+    lists = [net.cells("people", [64, 64], rows(PERSON_BOX, RED, PERSON, 0)),
+             net.cells("chairs", [64, 64], rows(CHAIR_BOX, GREEN, CHAIR, 1)),
+             net.cells("rest", [64, 64], rows((0, 0, 9, 9), NOTHING, 0, 2))]
+    net.turned("output0", net.joined("columns", lists))
+    prototypes(net)
+    return net.write([1, 3, 640, 640], {"output0": [1, 300, 38], "output1": [1, 32, 160, 160]},
+                     ultralytics("YOLO26n-seg", "segment"))
+
+
+FRACTION_BOX = (0.3125, 0.5, 0.375, 0.5)  # centre and size in parts of the input
+
+
+def detr():
+    net = Objects()
+    logits = [constant(-10.0)] * 92
+    logits[1], logits[91] = (4, 0, 0, 0), NOTHING
+    net.turned("logits", net.cells("columns", [32, 32], logits))
+    net.turned("pred_boxes", net.cells("box_columns", [32, 32], [constant(v) for v in FRACTION_BOX]))
+    return net.write([1, 3, 320, 320], {"logits": [1, 100, 92], "pred_boxes": [1, 100, 4]})
+
+
+def rtdetr():
+    net = Objects()
+    logits = [constant(-10.0)] * 80
+    logits[PERSON] = (16, 0, 0, -8.0)
+    net.turned("logits", net.joined("columns", [net.cells("cells", [64, 64], logits)] * 3))
+    boxes = net.cells("box_cells", [64, 64], [constant(v) for v in FRACTION_BOX])
+    net.turned("pred_boxes", net.joined("box_columns", [boxes] * 3))
+    return net.write([1, 3, 640, 640], {"logits": [1, 300, 80], "pred_boxes": [1, 300, 4]})
+
+
+def ssd():
+    net = Objects()
+    logits = [NOTHING] * 21
+    logits[0], logits[15] = constant(4.0), (12, 0, 0, 0)
+    boxes = [constant(v) for v in corners(FRACTION_BOX)]
+    def all_cells(name, rows):
+        fine = net.cells(name + "_fine", [10, 10], rows)
+        coarse = net.cells(name + "_coarse", [15, 20], rows)
+        return net.turned(name + "_rows", net.joined(name + "_columns", [fine] * 3 + [coarse]))
+    net.nodes.append(node("Softmax", [all_cells("score", logits)], "scores", integer("axis", 2)))
+    net.nodes.append(node("Identity", [all_cells("box", boxes)], "boxes"))
+    return net.write([1, 3, 300, 300], {"scores": [1, 3000, 21], "boxes": [1, 3000, 4]})
 
 
 def main():
@@ -190,6 +352,16 @@ def main():
                            [value_info("full", ["batch", 3, "height", "width"])], coarse_weights + indices, opset=11))
 
     write("every_layer", every_layer())
+
+    write("yolov8n-seg", yolo("yolov8n-seg", "YOLOv8n-seg", masks=True))
+    write("yolov8n", yolo("yolov8n", "YOLOv8n", masks=False))
+    write("yolov8n-seg-dynamic", yolo("yolov8n-seg", "YOLOv8n-seg", masks=True, image=("batch", 3, "height", "width"),
+                                      size=(96, 160), cells="anchors", person=(60, 48, 80, 60), chair=(120, 48, 40, 40)))
+    write("yolov5s", yolov5())
+    write("yolo26n-seg", yolo_end_to_end())
+    write("detr", detr())
+    write("rtdetr", rtdetr())
+    write("ssd", ssd())
 
     total = node("Add", ["image", "other"], "sum")
     write("two_inputs", model([total], [image, value_info("other", [1, 3] + plane)],

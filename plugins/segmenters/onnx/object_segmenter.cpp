@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "object_segmenter.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <utility>
+
+#include "holdfast/core/counted.hpp"
+#include "holdfast/core/error.hpp"
+#include "holdfast/inference/object_masks.hpp"
+#include "holdfast/inference/onnx_net.hpp"
+
+namespace holdfast::onnx_plugin {
+
+namespace {
+
+/// The options with the size of the input that the metadata says, where neither the settings nor the model say one.
+NetworkOptions with_all_outputs(NetworkOptions options, const OnnxSettings& settings, const ModelMetadata& metadata) {
+  options.every_output = true;
+  const OnnxTensor& input = OnnxNet({.model = settings.model}).signature().inputs.front();
+  if (input.shape.size() != 4) return options;
+  const std::size_t row = options.channels_last ? 1 : 2;
+  if (options.height == 0 && input.shape[row] == -1) options.height = metadata.height;
+  if (options.width == 0 && input.shape[row + 1] == -1) options.width = metadata.width;
+  return options;
+}
+
+std::string number_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.4g", value);
+  return text;
+}
+
+}  // namespace
+
+ObjectSegmenter::ObjectSegmenter(const OnnxSettings& settings, const NetworkOptions& options,
+                                 const ModelMetadata& metadata)
+    : classes_(object_classes(settings, metadata)),
+      network_(with_all_outputs(options, settings, metadata)),
+      model_(settings.model) {
+  SensorFrame trial;
+  trial.colour = cv::Mat::zeros(network_.height(), network_.width(), CV_8UC3);
+  network_.run(trial.colour);
+  recognise(settings, metadata);
+  prepare(settings);
+  segment(trial);
+}
+
+void ObjectSegmenter::recognise(const OnnxSettings& settings, const ModelMetadata& metadata) {
+  ObjectQuestion question{.outputs = network_.signature().outputs,
+                          .input = input(),
+                          .task = metadata.task,
+                          .classes = classes_.count(),
+                          .family = settings.family,
+                          .wants_masks = settings.output != NetworkOutput::boxes,
+                          .model = model_};
+  for (std::size_t i = 0; i < question.outputs.size(); ++i) {
+    const cv::Mat& output = network_.outputs()[i];
+    question.outputs[i].shape.assign(output.size.p, output.size.p + output.dims);
+  }
+  layout_ = recognise_objects(question);
+  const auto fail = [&](const std::string& message) { throw InputError({model_.string()}, message); };
+  if (settings.output == NetworkOutput::instances && !layout_.prototypes)
+    fail("gives " + names(question.outputs) + ", the boxes of " + layout_.preset.title +
+         " without masks; expected prototypes, 1 x coefficients x height x width, for `output: instances`; set "
+         "`output: boxes`, or choose another network");
+  if (classes_.count() == 0)
+    fail("has no class names in its metadata (`names`); name its " +
+         (layout_.classes > 0 ? std::to_string(layout_.classes) + " classes" : std::string("classes")) +
+         " in `classes`, without a background");
+}
+
+void ObjectSegmenter::prepare(const OnnxSettings& settings) {
+  const ObjectPreset& preset = layout_.preset;
+  const InputFit fit = settings.fit == InputFit::automatic ? preset.fit : settings.fit;
+  const auto colours = [&](const std::vector<double>& given, const std::array<double, 3>& imagenet, double otherwise) {
+    if (!given.empty()) return given;
+    std::vector<double> result(3, otherwise);
+    if (preset.has_imagenet_colours) result.assign(imagenet.begin(), imagenet.end());
+    if (settings.colour_order == ColourOrder::bgr) std::reverse(result.begin(), result.end());
+    return result;
+  };
+  preparation_ = {fit == InputFit::letterbox, settings.scale, colours(settings.mean, imagenet_mean, 0.0),
+                  colours(settings.standard_deviation, imagenet_deviation, 1.0)};
+  network_.set_preparation(preparation_);
+  min_score_ = settings.min_score > 0.0 ? settings.min_score : preset.min_score;
+  max_overlap_ = settings.max_overlap > 0.0 ? settings.max_overlap : preset.max_overlap;
+  const auto range = [&](double value) {
+    std::string text;
+    for (std::size_t i = 0; i < 3; ++i)
+      text += (i == 0 ? "" : " ") +
+              number_text((value * preparation_.scale - preparation_.mean[i]) / preparation_.standard_deviation[i]);
+    return preparation_.mean == std::vector<double>(3, preparation_.mean[0]) &&
+                   preparation_.standard_deviation == std::vector<double>(3, preparation_.standard_deviation[0])
+               ? text.substr(0, text.find(' '))
+               : "(" + text + ")";
+  };
+  colours_ = std::string(choice_name(settings.colour_order)) + " from " + range(0.0) + " to " + range(255.0);
+}
+
+std::string ObjectSegmenter::description() const {
+  const ObjectPreset& preset = layout_.preset;
+  std::string text = model_.filename().string() + " is a network of the family " + choice_name(preset.family) + ", " +
+                     preset.title + ", that gives " +
+                     (layout_.prototypes ? "instances with masks" : "boxes, which become masks by depth") + ". Input " +
+                     std::to_string(network_.width()) + "x" + std::to_string(network_.height()) +
+                     (preparation_.letterbox ? " with a letterbox, " : ", stretched, ") + colours_ + ". " +
+                     class_text({classes_.names.begin() + 1, classes_.names.end()}) +
+                     (classes_.are_of_metadata ? " named by its metadata" : "") + ", movable: ";
+  for (const std::string& name : classes_.movable) text += (name == classes_.movable.front() ? "" : ", ") + name;
+  if (classes_.movable.empty()) text += "not said";
+  text += ". Scores of at least " + number_text(min_score_);
+  text += max_overlap_ < 1.0 ? ", duplicates overlap by more than " + number_text(max_overlap_) + "."
+                             : ", no suppression of duplicates.";
+  return text;
+}
+
+bool ObjectSegmenter::is_movable(std::size_t label) const {
+  return std::find(classes_.movable.begin(), classes_.movable.end(), classes_.names[label]) != classes_.movable.end();
+}
+
+Segmentation ObjectSegmenter::segment(const SensorFrame& frame) {
+  if (frame.colour.empty() || frame.colour.type() != CV_8UC3)
+    throw InputError({"frame " + std::to_string(frame.index)},
+                     "has no colour image for the network; expected 8 bit and three channels");
+  network_.run(frame.colour);
+  const std::vector<cv::Mat>& outputs = network_.outputs();
+  std::vector<Detection> detections = decode_objects(outputs, layout_, input(), min_score_, classes_.count(), model_);
+  suppress_duplicates(detections, max_overlap_);
+  const FramePlace place = place_of_frame(frame.colour.size(), input(), preparation_.letterbox);
+  std::vector<ObjectMask> objects;
+  for (const Detection& detection : detections) {
+    const auto label = static_cast<std::size_t>(detection.class_number) + 1;
+    ObjectMask object{{static_cast<std::uint8_t>(label), detection.score, place.box_in_frame(detection.box)}};
+    object.pixels = pixels_of(object.instance.box, frame.colour.size());
+    if (object.pixels.empty()) continue;
+    object.mask = layout_.prototypes
+                      ? prototype_mask(outputs[*layout_.prototypes], detection.mask_coefficients, place, object.pixels)
+                      : depth_mask(frame.depth, object.pixels);
+    object.is_movable = is_movable(label);
+    objects.push_back(std::move(object));
+  }
+  return join_objects(objects, frame.colour.size());
+}
+
+}  // namespace holdfast::onnx_plugin
