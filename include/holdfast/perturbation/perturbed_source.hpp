@@ -13,9 +13,9 @@
 namespace holdfast {
 
 /// Wraps a source and makes its frames worse. What is drawn for a frame depends on the seed and on SensorFrame::index
-/// alone, not on which frames came before; only repeated and late frames depend on the frame before. Images of the wrapped source are never written to. The truth stays that of the source:
-/// pose and masks of a frame are those of the images that it shows, and the occluder is a moving object (255) without a
-/// class. Used by one thread.
+/// alone, not on which frames came before; only repeated and late frames depend on the frame before. Images of the
+/// wrapped source are never written to. The truth stays that of the source: pose and masks of a frame are those of the
+/// images that it shows, and the occluder is a moving object (255) without a class. Used by one thread.
 class PerturbedSource final : public FrameSource {
  public:
   /// `camera`: the true camera of the source, for the place of the occluder in a right image.
@@ -25,6 +25,9 @@ class PerturbedSource final : public FrameSource {
   /// That of the wrapped source, with the camera of perturbed_camera() and the number of frames that are not dropped.
   SourceDescription describe() const override;
   std::optional<SensorFrame> next() override;
+  /// By the stamps after delays and without dropped frames; with one of these settings only if the wrapped source knows
+  /// SourceDescription::frame_timestamps.
+  std::vector<double> pass_over(double timestamp) override;
   Trajectory truth() const override { return source_->truth(); }
   std::vector<SkippedFrame> skipped() const override { return source_->skipped(); }
   Warnings warnings() const override { return source_->warnings(); }
@@ -42,7 +45,7 @@ class PerturbedSource final : public FrameSource {
   void shear(SensorFrame& frame) const;
   void spoil_depth(SensorFrame& frame) const;
   void spoil_images(SensorFrame& frame) const;
-  void delay(SensorFrame& frame);
+  double delayed(double timestamp, std::uint64_t index, const std::optional<double>& previous) const;
 
   std::unique_ptr<FrameSource> source_;
   PerturbationSettings settings_;
@@ -50,6 +53,9 @@ class PerturbedSource final : public FrameSource {
   std::uint64_t seed_;
   cv::Mat occluder_;  ///< texture, made with the first frame
   std::optional<SensorFrame> last_;
+  std::optional<double> last_timestamp_;       ///< of the frame given or passed over last, after its delay
+  std::uint64_t next_index_ = 0;               ///< of the wrapped source
+  std::optional<std::vector<double>> stamps_;  ///< of all frames of the wrapped source, once they were asked for
 };
 
 /// The wrong calibration that `calibration` asks for.
