@@ -10,6 +10,7 @@ set(HOLDFAST_PLUGIN_TABLE
   "source          folder                sources/folder"
   "source          icl_nuim              sources/icl_nuim"
   "source          kitti                 sources/kitti"
+  "source          openloris             sources/openloris"
   "source          openni2               sources/openni2"
   "source          rosbag                sources/rosbag"
   "source          simulated             sources/simulated"

@@ -39,10 +39,27 @@ struct Examples {
   std::string text() const { return first + (count > 3 ? " and " + std::to_string(count - 3) + " more" : ""); }
 };
 
+/// The recording as the source of its layout reads it.
+CalibratedRecording read_calibrated(const fs::path& folder, DatasetLayout layout) {
+  if (layout == DatasetLayout::kitti) {
+    KittiOptions options;
+    options.path = folder;
+    return read_kitti_recording(options);
+  }
+  if (layout == DatasetLayout::euroc) {
+    EurocOptions options;
+    options.path = folder;
+    return read_euroc_recording(options);
+  }
+  OpenLorisOptions options;
+  options.path = folder;
+  return read_openloris_recording(options);
+}
+
 class Checker {
  public:
   Checker(const fs::path& folder, const DatasetRecipe* recipe) : folder_(folder), recipe_(recipe) {
-    if (recipe_ == nullptr || is_stereo(recipe_->layout)) return;
+    if (recipe_ == nullptr || brings_camera(recipe_->layout)) return;
     size_ = {recipe_->camera.width, recipe_->camera.height};
     camera_ = "of the camera " + recipe_->camera.name;
   }
@@ -55,10 +72,10 @@ class Checker {
     }
     if (recipe_)
       fact(recipe_->name + ": " + recipe_->dataset +
-           (recipe_->camera.name.empty() || is_stereo(recipe_->layout) ? "" : ", camera " + recipe_->camera.name));
+           (recipe_->camera.name.empty() || brings_camera(recipe_->layout) ? "" : ", camera " + recipe_->camera.name));
     const DatasetLayout layout = recipe_ ? recipe_->layout : layout_of(folder_);
-    if (is_stereo(layout)) {
-      attempt([&] { check_stereo(layout); });
+    if (brings_camera(layout)) {
+      attempt([&] { check_calibrated(layout); });
       return check_;
     }
     if (layout == DatasetLayout::icl_nuim)
@@ -116,20 +133,11 @@ class Checker {
   }
 
   /// What the sources read, with every file.
-  void check_stereo(DatasetLayout layout) {
-    CalibratedRecording recording;
-    if (layout == DatasetLayout::kitti) {
-      KittiOptions options;
-      options.path = folder_;
-      recording = read_kitti_recording(options);
-    } else {
-      EurocOptions options;
-      options.path = folder_;
-      recording = read_euroc_recording(options);
-    }
+  void check_calibrated(DatasetLayout layout) {
+    const CalibratedRecording recording = read_calibrated(folder_, layout);
     const auto expected = recipe_ ? recipe_->pairs : std::nullopt;
     const std::size_t frames = recording.files.size();
-    const char* what = recording.has_right ? "stereo pair" : "image";
+    const char* what = recording.has_right ? "stereo pair" : recording.depth ? "colour-depth pair" : "image";
     fact(counted(frames, what) + (expected ? ", expected " + std::to_string(*expected) : ""));
     if (expected && frames + 2 + *expected / 100 < *expected)
       problem(counted(frames, what) + "; expected " + std::to_string(*expected) + ": the recording was cut");
@@ -138,7 +146,7 @@ class Checker {
          (recording.has_right ? ", baseline " + fixed_text(camera.baseline, 3) + " m" : "") +
          (recording.rectification ? ", to be rectified" : ""));
     const auto check_side = [&](const cv::Size& size, const char* side, fs::path ImageFiles::*member,
-                                SourceLocation ImageFiles::*listed_at) {
+                                SourceLocation ImageFiles::*listed_at, const auto& decode) {
       std::vector<ListedImage> images;
       for (const ImageFiles& files : recording.files)
         images.push_back(
@@ -148,11 +156,16 @@ class Checker {
       const std::string list = std::string("the ") + side + " camera";
       check_presence(list, images);
       check_ends(list, images);
-      check_images(images, [&](const fs::path& file) { decoder_.read_grey(file); });
+      check_images(images, decode);
     };
-    check_side(recording.left_size, "left", &ImageFiles::colour, &ImageFiles::colour_listed_at);
+    const auto grey = [&](const fs::path& file) { decoder_.read_grey(file); };
+    const char* first = recording.depth ? "colour" : "left";
+    check_side(recording.left_size, first, &ImageFiles::colour, &ImageFiles::colour_listed_at, grey);
     if (recording.has_right)
-      check_side(recording.right_size, "right", &ImageFiles::right, &ImageFiles::right_listed_at);
+      check_side(recording.right_size, "right", &ImageFiles::right, &ImageFiles::right_listed_at, grey);
+    if (recording.depth)
+      check_side(recording.left_size, "depth", &ImageFiles::depth, &ImageFiles::depth_listed_at,
+                 [&](const fs::path& file) { decoder_.read_depth(file, *recording.depth); });
     if (recording.truth.empty()) {
       fact("no true poses: there is nothing to measure an error by");
       return;
@@ -356,6 +369,7 @@ DatasetLayout layout_of(const fs::path& folder) {
   std::error_code ignored;
   if (fs::is_directory(folder / "mav0", ignored) || fs::is_directory(folder / "cam0", ignored))
     return DatasetLayout::euroc;
+  if (is_file(folder / "color.txt") && !is_file(folder / "rgb.txt")) return DatasetLayout::openloris;
   if (is_file(folder / "calib.txt") && !is_file(folder / "rgb.txt")) return DatasetLayout::kitti;
   // Lists that were made for a recording in TUM layout have the same name.
   if (is_file(folder / icl_list) && !is_file(folder / "rgb.txt")) return DatasetLayout::icl_nuim;
@@ -367,7 +381,9 @@ DatasetCheck check_dataset(const fs::path& folder, const DatasetRecipe* recipe) 
 }
 
 std::vector<ListedPair> dataset_pairs(const fs::path& folder, DatasetLayout layout, double max_difference) {
-  if (is_stereo(layout))
+  if (layout == DatasetLayout::openloris)
+    return associate_lists(folder / "color.txt", folder / "aligned_depth.txt", max_difference, "colour and depth");
+  if (brings_camera(layout))
     throw InputError({folder.string()}, std::string("holds stereo pairs in the layout '") + layout_name(layout) +
                                             "'; expected a recording with depth images, which can be associated with "
                                             "the colour images");

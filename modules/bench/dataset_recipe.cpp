@@ -21,8 +21,9 @@ using Kind = ConfigurationNode::Kind;
 const std::map<std::string, DatasetLayout> layouts = {{"euroc", DatasetLayout::euroc},
                                                       {"icl_nuim", DatasetLayout::icl_nuim},
                                                       {"kitti", DatasetLayout::kitti},
+                                                      {"openloris", DatasetLayout::openloris},
                                                       {"tum", DatasetLayout::tum}};
-constexpr const char* expected_layout = "tum, icl_nuim, kitti or euroc";
+constexpr const char* expected_layout = "tum, icl_nuim, kitti, euroc or openloris";
 
 /// A text that must be there.
 std::string required_text(StrictMap& map, const std::string& key, const std::string& expected) {
@@ -47,7 +48,7 @@ DatasetRecipe read_sequence(const ConfigurationNode::Entry& entry, DatasetRecipe
   recipe.truth = map.text("truth", recipe.truth);
   recipe.make = map.text("make", "");
   recipe.pairs = read_count(map, "pairs");
-  if (is_stereo(recipe.layout)) return recipe;
+  if (brings_camera(recipe.layout)) return recipe;
   recipe.colour = read_count(map, "colour");
   recipe.depth = read_count(map, "depth");
   if (const ConfigurationNode* camera = map.require("camera", "the name of a known camera")) {

@@ -114,7 +114,7 @@ void follow_recipe(const ConfigurationNode& node, StrictMap& map, MatrixSequence
     map.complain(node.location, no_such_recipe(node.text));
     return;
   }
-  if (path != nullptr && is_stereo(recipe->layout)) {  // they bring their cameras
+  if (path != nullptr && brings_camera(recipe->layout)) {  // they bring their cameras
     sequence.source = map_of(layout_name(recipe->layout), map_of("path", *path));
     sequence.brings_camera = true;
     sequence.about = recipe->how_to_get();

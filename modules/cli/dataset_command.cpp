@@ -66,6 +66,8 @@ std::string files_text(const DatasetRecipe& recipe) {
     return "calib.txt, times.txt, image_0/ and image_1/ (grey) or image_2/ and image_3/ (colour), ../../poses/" +
            recipe.folder + ".txt";
   if (recipe.layout == DatasetLayout::euroc) return "mav0/cam0/, mav0/cam1/, mav0/state_groundtruth_estimate0/";
+  if (recipe.layout == DatasetLayout::openloris)
+    return "color.txt, aligned_depth.txt, fisheye1.txt, fisheye2.txt, sensors.yaml, trans_matrix.yaml, groundtruth.txt";
   std::string text = recipe.layout == DatasetLayout::tum ? "rgb.txt, depth.txt" : "associations.txt";
   text += ", " + recipe.truth + ", rgb/, depth/";
   return recipe.has_masks ? text + ", mask.txt, mask/" : text;
@@ -82,7 +84,7 @@ void show_all() {
       dataset = &recipe.dataset;
     }
     std::printf("    %-42s %-9s %s\n", recipe.name.c_str(),
-                is_stereo(recipe.layout) ? "stereo" : recipe.camera.name.c_str(),
+                brings_camera(recipe.layout) ? "stereo" : recipe.camera.name.c_str(),
                 recipe.pairs ? (std::to_string(*recipe.pairs) + " pairs").c_str() : "unknown number of pairs");
   }
 }
@@ -94,9 +96,9 @@ void show(const DatasetRecipe& recipe) {
   };
   line("folder", recipe.folder);
   line("files", files_text(recipe));
-  if (is_stereo(recipe.layout)) {
+  if (brings_camera(recipe.layout)) {
     line("camera", "of its own files");
-    line("images", count_text(recipe.pairs) + " stereo pairs");
+    line("images", count_text(recipe.pairs) + (recipe.layout == DatasetLayout::openloris ? " pairs" : " stereo pairs"));
     line("source", layout_name(recipe.layout));
   } else {
     const bool is_numbered = recipe.layout == DatasetLayout::icl_nuim;

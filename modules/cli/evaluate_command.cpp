@@ -37,7 +37,7 @@ struct EvaluateArguments {
   std::vector<std::string> estimates;
   std::string time_offset = "0";
   std::string inverted;
-  std::string mirrored;
+  std::string mirrored, mirrored_estimate;
   std::string truth_unit = "m";
   std::string estimate_unit = "m";
   std::string alignment = "se3";
@@ -115,18 +115,21 @@ void warn_of_journal(const std::string& file, const Trajectory& poses) {
 
 double metres_of(const std::string& unit) { return unit == "mm" ? 1e-3 : unit == "cm" ? 1e-2 : 1.0; }
 
+/// "x" to "z" as 0 to 2.
+std::optional<int> axis_of(const std::string& name) {
+  return name.empty() ? std::nullopt : std::optional<int>(name.front() - 'x');
+}
+
 TrajectoryCorrection correction_of_truth(const EvaluateArguments& arguments) {
-  TrajectoryCorrection correction{.is_inverted = arguments.inverted == "truth" || arguments.inverted == "both",
-                                  .metres_per_unit = metres_of(arguments.truth_unit),
-                                  .mirrored_axis = {}};
-  if (!arguments.mirrored.empty()) correction.mirrored_axis = arguments.mirrored.front() - 'x';
-  return correction;
+  return {.is_inverted = arguments.inverted == "truth" || arguments.inverted == "both",
+          .metres_per_unit = metres_of(arguments.truth_unit),
+          .mirrored_axis = axis_of(arguments.mirrored)};
 }
 
 TrajectoryCorrection correction_of_estimate(const EvaluateArguments& arguments) {
   return {.is_inverted = arguments.inverted == "estimate" || arguments.inverted == "both",
           .metres_per_unit = metres_of(arguments.estimate_unit),
-          .mirrored_axis = {}};
+          .mirrored_axis = axis_of(arguments.mirrored_estimate)};
 }
 
 /// The offset that the user gives, or that fits best.
@@ -264,6 +267,9 @@ void add_correction_options(CLI::App& command, EvaluateArguments& arguments) {
   command
       .add_option("--mirror", arguments.mirrored,
                   "Axis of the world and the camera that is reversed in the truth, for a left-handed frame")
+      ->type_name("AXIS")
+      ->check(CLI::IsMember({"x", "y", "z"}));
+  command.add_option("--mirror-estimate", arguments.mirrored_estimate, "The same for the estimate")
       ->type_name("AXIS")
       ->check(CLI::IsMember({"x", "y", "z"}));
   const auto add_unit = [&](const char* option, std::string& unit, const char* explanation) {

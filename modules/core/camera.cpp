@@ -66,17 +66,13 @@ std::string Distortion::trouble() const {
 Eigen::Vector2d Camera::distort(const Eigen::Vector2d& pixel) const {
   const Distortion& d = distortion;
   const double x = (pixel.x() - cx) / fx, y = (pixel.y() - cy) / fy;
-  const double r2 = x * x + y * y;
   if (d.lens == Lens::fisheye) {
-    const double r = std::sqrt(r2);
+    const double r = std::sqrt(x * x + y * y);
     const double scale = r > 1e-12 ? fisheye_radius(d, std::atan(r)) / r : 1.0;
     return {fx * x * scale + cx, fy * y * scale + cy};
   }
-  // Without k4, k5 and k6 the denominator is exactly 1.
-  const double radial = (1.0 + r2 * (d.k1 + r2 * (d.k2 + r2 * d.k3))) / (1.0 + r2 * (d.k4 + r2 * (d.k5 + r2 * d.k6)));
-  const double distorted_x = x * radial + 2.0 * d.p1 * x * y + d.p2 * (r2 + 2.0 * x * x);
-  const double distorted_y = y * radial + d.p1 * (r2 + 2.0 * y * y) + 2.0 * d.p2 * x * y;
-  return {fx * distorted_x + cx, fy * distorted_y + cy};
+  const Eigen::Vector2d distorted = distort_radial_tangential(d, x, y);
+  return {fx * distorted.x() + cx, fy * distorted.y() + cy};
 }
 
 Eigen::Vector2d Camera::undistort(const Eigen::Vector2d& raw) const {
@@ -92,8 +88,7 @@ Eigen::Vector2d Camera::undistort(const Eigen::Vector2d& raw) const {
   constexpr int most_iterations = 40;
   for (int i = 0; i < most_iterations; ++i) {
     const double r2 = x * x + y * y;
-    const double inverse_radial =
-        (1.0 + r2 * (d.k4 + r2 * (d.k5 + r2 * d.k6))) / (1.0 + r2 * (d.k1 + r2 * (d.k2 + r2 * d.k3)));
+    const double inverse_radial = radial_denominator(d, r2) / radial_numerator(d, r2);
     const double next_x = (raw_x - 2.0 * d.p1 * x * y - d.p2 * (r2 + 2.0 * x * x)) * inverse_radial;
     const double next_y = (raw_y - d.p1 * (r2 + 2.0 * y * y) - 2.0 * d.p2 * x * y) * inverse_radial;
     change = std::max(std::abs(next_x - x), std::abs(next_y - y));
@@ -133,8 +128,8 @@ void Camera::undistorted_bounds(Eigen::Vector2d& minimum, Eigen::Vector2d& maxim
 
 namespace {
 /// Of the colour camera of a Kinect [s], as estimated while tracking freiburg1_xyz and freiburg1_rpy
-/// (benchmarks/findings/rotation.md). The Xtion of tum_fr3 and bonn has the same design, and estimation begins with the same time
-/// there.
+/// (benchmarks/findings/rotation.md). The Xtion of tum_fr3 and bonn has the same design, and estimation begins with the
+/// same time there.
 constexpr double kinect_readout = 0.026;
 
 const std::array<Camera, 10>& known_cameras() {

@@ -17,15 +17,13 @@ struct DistortedPoint {
 
 DistortedPoint distort_with_jacobian(const Distortion& d, const Eigen::Vector2d& point) {
   const double x = point.x(), y = point.y(), r2 = point.squaredNorm();
-  const double numerator = 1.0 + r2 * (d.k1 + r2 * (d.k2 + r2 * d.k3));
-  const double denominator = 1.0 + r2 * (d.k4 + r2 * (d.k5 + r2 * d.k6));
+  const double denominator = radial_denominator(d, r2);
   const double numerator_slope = d.k1 + r2 * (2.0 * d.k2 + r2 * 3.0 * d.k3);  // by r2
   const double denominator_slope = d.k4 + r2 * (2.0 * d.k5 + r2 * 3.0 * d.k6);
-  const double radial = numerator / denominator;
+  const double radial = radial_numerator(d, r2) / denominator;
   const double radial_slope = (numerator_slope - radial * denominator_slope) / denominator;
   DistortedPoint result;
-  result.position = {x * radial + 2.0 * d.p1 * x * y + d.p2 * (r2 + 2.0 * x * x),
-                     y * radial + d.p1 * (r2 + 2.0 * y * y) + 2.0 * d.p2 * x * y};
+  result.position = distort_radial_tangential(d, x, y);
   const double mixed = 2.0 * x * y * radial_slope + 2.0 * (d.p1 * x + d.p2 * y);
   result.jacobian << radial + 2.0 * x * x * radial_slope + 2.0 * d.p1 * y + 6.0 * d.p2 * x, mixed,  //
       mixed, radial + 2.0 * y * y * radial_slope + 6.0 * d.p1 * y + 2.0 * d.p2 * x;

@@ -158,7 +158,8 @@ std::string mirror_remedy(const PairedPoses& poses) {
     }
   }
   if (axis == '-') return "; their orientations agree: reverse the sign of one coordinate of the positions";
-  return std::string("; mend it, or give `holdfast evaluate --mirror ") + axis + "` if it is the truth";
+  return std::string("; mend it, or give `holdfast evaluate --mirror ") + axis +
+         "` if it is the truth, and `--mirror-estimate " + axis + "` if it is the estimate";
 }
 
 /// Poses that fit far better mirrored or inverted than as they are.

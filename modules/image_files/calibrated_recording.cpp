@@ -14,7 +14,9 @@ ImageSequenceOptions options_of(const CalibratedRecording& recording, bool skip_
   options.width = recording.left_size.width;
   options.height = recording.left_size.height;
   options.skip_bad_frames = skip_bad_frames;
-  options.grey_may_have_16_bits = true;
+  options.grey_may_have_16_bits = !recording.depth;  // depth images have this form too
+  if (recording.depth) options.depth = *recording.depth;
+  options.invalid_depth_key = recording.invalid_depth_key;
   options.rectification = recording.rectification;
   return options;
 }
@@ -26,7 +28,8 @@ CalibratedSource::CalibratedSource(CalibratedRecording recording, const std::fil
     : ImageSequenceSource(std::move(recording.files), options_of(recording, skip_bad_frames)) {
   description_.name = folder_name(folder);
   description_.has_right = recording.has_right;
-  description_.has_global_shutter = true;  // the cameras of KITTI and EuRoC
+  description_.has_depth = recording.depth.has_value();
+  description_.has_global_shutter = recording.has_global_shutter;
   description_.camera = recording.camera;
   description_.truth_frame = recording.truth_frame;
   truth_ = std::move(recording.truth);

@@ -98,15 +98,43 @@ std::optional<SensorFrame> PerturbedSource::next() {
     if (!frame->depth.empty()) spoil_depth(*frame);
     spoil_images(*frame);
   }
-  if (settings_.late > 0.0) delay(*frame);
+  frame->timestamp = delayed(frame->timestamp, frame->index, last_timestamp_);
+  last_timestamp_ = frame->timestamp;
+  next_index_ = frame->index + 1;
   last_ = frame;
   return frame;
 }
 
 /// A delay may not move a frame behind the next one's place: stamps still increase, by the least step if they must.
-void PerturbedSource::delay(SensorFrame& frame) {
-  frame.timestamp += settings_.late * draw(late_stream, frame.index);
-  if (last_) frame.timestamp = std::max(frame.timestamp, last_->timestamp + least_step);
+double PerturbedSource::delayed(double timestamp, std::uint64_t index, const std::optional<double>& previous) const {
+  if (settings_.late == 0.0) return timestamp;
+  timestamp += settings_.late * draw(late_stream, index);
+  return previous ? std::max(timestamp, *previous + least_step) : timestamp;
+}
+
+std::vector<double> PerturbedSource::pass_over(double timestamp) {
+  if (settings_.late == 0.0 && settings_.dropped == 0.0) return source_->pass_over(timestamp);
+  if (!stamps_) stamps_ = source_->describe().frame_timestamps;
+  struct DueFrame {
+    double source_stamp, stamp;
+  };
+  std::vector<DueFrame> due;
+  for (std::uint64_t i = next_index_; i < stamps_->size(); ++i) {
+    if (is_dropped(i)) continue;
+    const double stamp = delayed((*stamps_)[i], i, due.empty() ? last_timestamp_ : due.back().stamp);
+    if (stamp > timestamp) break;
+    due.push_back({(*stamps_)[i], stamp});
+  }
+  if (due.size() < 2) return {};  // the last one is given
+  const std::vector<double> passed = source_->pass_over(due.back().source_stamp);
+  std::vector<double> stamps;
+  for (const DueFrame& frame : due)
+    if (!passed.empty() && frame.source_stamp <= passed.back()) stamps.push_back(frame.stamp);
+  if (!passed.empty())
+    next_index_ = static_cast<std::uint64_t>(std::upper_bound(stamps_->begin(), stamps_->end(), passed.back()) -
+                                             stamps_->begin());
+  if (!stamps.empty()) last_timestamp_ = stamps.back();
+  return stamps;
 }
 
 double PerturbedSource::brightness(std::uint64_t index) const {

@@ -58,6 +58,9 @@ Warnings find_warnings(const RunRecord& record) {
   Warnings warnings;
   if (std::string text = unsupported_poses(record); !text.empty()) add_warning(warnings, {{}, std::move(text)});
   find_mask_warnings(record, warnings);
+  // Only a simulation knows the classes of its pixels; there, a camera that stands still without noise repeats images.
+  const bool is_simulated = !record.source.class_names.empty();
+  if (is_simulated) return warnings;
   if (std::string text = repetition_warning(record.repeated_images, record.frame_stamps.size()); !text.empty())
     add_warning(warnings, {{}, std::move(text)});
   return warnings;

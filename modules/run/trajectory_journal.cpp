@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/input_file.hpp"
 #include "holdfast/core/system_reason.hpp"
 #include "holdfast/core/text_file.hpp"
 
@@ -12,6 +13,7 @@ namespace holdfast {
 
 namespace {
 
+constexpr const char* expected = "a trajectory";
 constexpr const char* file_name = "trajectory.txt";
 constexpr const char* mark =
     "# The run has not come to its end: these are its poses as estimated, without later corrections.";
@@ -31,17 +33,16 @@ void TrajectoryJournal::add(const TimedPose& pose) {
 }
 
 bool is_trajectory_journal(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) return false;
-  std::ifstream stream(file);
+  if (!why_unreadable(file, largest_file::text).empty()) return false;
+  LineReader lines(file, expected);
   std::string line;
-  return std::getline(stream, line) && line == mark;
+  return lines.next(line) && line == mark;
 }
 
 int poses_of_killed_run(const std::filesystem::path& folder) {
   std::error_code error;
   if (!std::filesystem::exists(folder / file_name, error)) return -1;
-  LineReader lines(folder / file_name, "a trajectory");
+  LineReader lines(folder / file_name, expected);
   std::string line;
   if (!lines.next(line) || line != mark) return -1;
   int poses = 0;

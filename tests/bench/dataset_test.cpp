@@ -34,7 +34,7 @@ TEST(DatasetRecipeTest, EveryRecipeSaysWhatPeopleMustKnow) {
     EXPECT_TRUE(is_plain_name(recipe.name)) << recipe.name;
     EXPECT_FALSE(recipe.folder.empty() || recipe.licence.empty() || recipe.citation.empty()) << recipe.name;
     EXPECT_THAT(recipe.address, StartsWith("https://")) << recipe.name;
-    EXPECT_EQ(recipe.camera.name.empty(), is_stereo(recipe.layout)) << recipe.name;
+    EXPECT_EQ(recipe.camera.name.empty(), brings_camera(recipe.layout)) << recipe.name;
     EXPECT_EQ(recipe.has_masks, !recipe.make.empty()) << recipe.name;
     ++sequences[recipe.dataset];
   }
@@ -232,6 +232,38 @@ TEST_F(DatasetCheckTest, LooksAtARecordingOfIclNuim) {
   EXPECT_THAT(check_dataset(program_.path("rec"), nullptr).problems, IsEmpty());
   fs::remove(path("depth/1.png"));
   EXPECT_THAT(check().problems, ElementsAre(HasSubstr("associations.txt lists 1 image that is missing: depth/1.png")));
+}
+
+/// Two frames in the package format of OpenLORIS-Scene; the source's own tests look at its content.
+TEST_F(DatasetCheckTest, LooksAtOpenLoris) {
+  std::string colour, depth;
+  for (const char* folder : {"color", "aligned_depth"}) fs::create_directories(program_.path("cafe1-1") / folder);
+  for (int i = 0; i < 2; ++i) {
+    const std::string name = std::to_string(i) + ".png";
+    cv::imwrite(program_.path("cafe1-1/color/" + name).string(), cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(20 * i)));
+    cv::imwrite(program_.path("cafe1-1/aligned_depth/" + name).string(), cv::Mat(48, 64, CV_16UC1, cv::Scalar(900)));
+    colour += "10." + std::to_string(i) + " color/" + name + "\n";
+    depth += "10." + std::to_string(i) + " aligned_depth/" + name + "\n";
+  }
+  program_.write("cafe1-1/color.txt", colour);
+  program_.write("cafe1-1/aligned_depth.txt", depth);
+  program_.write("cafe1-1/groundtruth.txt", "#Time px py pz qx qy qz qw\n10.0 0 0 0 0 0 0 1\n10.1 1 0 0 0 0 0 1\n");
+  program_.write("cafe1-1/sensors.yaml",
+                 "%YAML:1.0\nd400_color_optical_frame:\n  { fps: 30, width: 64, height: 48, model: pinhole,\n"
+                 "    intrinsics: { data: [50, 32, 50, 24] }, distortion_model: none }\n");
+  program_.write("cafe1-1/trans_matrix.yaml",
+                 "trans_matrix:\n  - { parent_frame: base_link, child_frame: d400_color_optical_frame,\n"
+                 "      matrix: { data: [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 1] } }\n");
+  const fs::path folder = program_.path("cafe1-1");
+  EXPECT_EQ(layout_of(folder), DatasetLayout::openloris);
+  const auto check = [&] { return check_dataset(folder, nullptr); };
+  EXPECT_THAT(check().problems, IsEmpty());
+  EXPECT_THAT(check().facts, ElementsAre("2 colour-depth pairs", "camera of its own files: 64x48", "2 true poses"));
+  EXPECT_EQ(dataset_pairs(folder, DatasetLayout::openloris, 0.02).size(), 2U);
+  cv::imwrite((folder / "aligned_depth/1.png").string(), cv::Mat(24, 32, CV_16UC1, cv::Scalar(1)));
+  EXPECT_THAT(check().problems, ElementsAre(HasSubstr("the depth camera lists 1 image of another size")));
+  fs::remove(folder / "aligned_depth.txt");
+  EXPECT_THAT(check().problems, ElementsAre(HasSubstr("aligned_depth.txt: is missing")));
 }
 
 /// A sequence of three pairs in KITTI's layout; the source's own tests look at its content.

@@ -179,7 +179,8 @@ TEST_F(EvaluateCommand, WarnsAndTheOptionItNamesMends) {
     for (TimedPose& pose : result) change(pose);
     return result;
   };
-  expect_mended(changed([](TimedPose& pose) { pose.timestamp += 0.15; }), "given.txt is late", {"--time-offset", "0.150"});
+  expect_mended(changed([](TimedPose& pose) { pose.timestamp += 0.15; }), "given.txt is late",
+                {"--time-offset", "0.150"});
   expect_mended(changed([](TimedPose& pose) { pose.T_world_camera.translation() *= 1000.0; }), "millimetres",
                 {"--truth-unit", "mm"});
   expect_mended(
@@ -191,6 +192,20 @@ TEST_F(EvaluateCommand, WarnsAndTheOptionItNamesMends) {
                   pose.T_world_camera.translation().y() *= -1.0;
                 }),
                 "left-handed", {"--mirror", "y"});
+
+  // A mirrored estimate, which is given second.
+  Trajectory mirrored = read_trajectory(path("moved.txt"));
+  const Eigen::DiagonalMatrix<double, 3> mirror(1.0, 1.0, -1.0);
+  for (TimedPose& pose : mirrored) {
+    pose.T_world_camera.linear() = (mirror * pose.T_world_camera.linear() * mirror).eval();
+    pose.T_world_camera.translation().z() *= -1.0;
+  }
+  write_trajectory(path("mirrored.txt"), mirrored);
+  write_trajectory(path("given.txt"), truth);
+  EXPECT_THAT(run({path("given.txt"), path("mirrored.txt")}).errors, HasSubstr("`--mirror-estimate z`"));
+  const Outcome mended = run({path("given.txt"), path("mirrored.txt"), "--mirror-estimate", "z", "--json", "-"});
+  EXPECT_THAT(mended.errors, IsEmpty());
+  EXPECT_LT(nlohmann::json::parse(mended.output)["rpe_per_time"]["rotation_deg"]["rmse"].get<double>(), 0.3);
 
   write_trajectory(path("given.txt"), changed([](TimedPose& pose) { pose.timestamp += 3.2; }));
   const Outcome found = run({path("given.txt"), path("moved.txt"), "--time-offset", "estimate"});

@@ -5,6 +5,7 @@
 #include "fuzz.hpp"
 #include "holdfast/image_files/camera_file.hpp"
 #include "holdfast/image_files/euroc_files.hpp"
+#include "holdfast/image_files/openloris_files.hpp"
 
 using namespace holdfast;
 
@@ -39,6 +40,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     check(read.camera);
     check(read.T_body_camera);
   });
+  fuzz::accepts([&] { check(read_openloris_camera(file, "d400_color_optical_frame")); });
+  fuzz::accepts([&] { check(read_openloris_pose(file, "d400_color_optical_frame")); });
   fuzz::accepts([&] {
     const std::vector<ListedImage> images = read_euroc_image_list(file);
     fuzz::require(!images.empty(), "an accepted list is not empty");

@@ -21,16 +21,24 @@ class TexturedSource final : public FrameSource {
  public:
   explicit TexturedSource(std::uint64_t begin = 0) : next_(begin) {}
   SourceDescription describe() const override {
-    return {.name = "textured", .has_depth = true, .frame_count = frame_count, .camera = camera};
+    SourceDescription description{.name = "textured", .has_depth = true, .frame_count = frame_count, .camera = camera};
+    for (std::uint64_t i = 0; i < frame_count; ++i) description.frame_timestamps.push_back(stamp(i));
+    return description;
   }
   std::optional<SensorFrame> next() override {
     if (next_ == frame_count) return std::nullopt;
     return frame(next_++);
   }
+  std::vector<double> pass_over(double timestamp) override {
+    std::vector<double> stamps;
+    for (; next_ + 1 < frame_count && stamp(next_ + 1) <= timestamp; ++next_) stamps.push_back(stamp(next_));
+    return stamps;
+  }
+  static double stamp(std::uint64_t index) { return 100.0 + static_cast<double>(index) / 30.0; }
   static SensorFrame frame(std::uint64_t index) {
     SensorFrame frame;
     frame.index = index;
-    frame.timestamp = 100.0 + static_cast<double>(index) / 30.0;
+    frame.timestamp = stamp(index);
     frame.colour = block_texture(64, 48, 4, Random(index));
     frame.depth = cv::Mat(48, 64, CV_32FC1, cv::Scalar(2.0));
     auto truth = std::make_shared<FrameTruth>();
@@ -73,6 +81,30 @@ std::vector<std::pair<std::string, PerturbationSettings>> all_perturbations() {
           {"depth_offset", {.depth_offset = 6}},
           {"calibration", {.calibration = 0.02}},
           {"occluder", {.occluder = 0.3}}};
+}
+
+/// Frames that are given and passed over together are those without passing over, with the same stamps and content.
+TEST(PerturbedSourceTest, LateFramesArePassedOver) {
+  for (const PerturbationSettings& settings :
+       {PerturbationSettings{.noise = 20}, PerturbationSettings{.dropped = 0.3}, PerturbationSettings{.late = 0.2},
+        PerturbationSettings{.dropped = 0.3, .late = 0.2}}) {
+    const std::vector<SensorFrame> all = frames_of(settings);
+    PerturbedSource source(std::make_unique<TexturedSource>(), settings, camera, 1);
+    std::size_t position = 0, passed_over = 0;
+    double now = 99.0;
+    while (true) {
+      const std::vector<double> passed = source.pass_over(now);
+      passed_over += passed.size();
+      for (const double stamp : passed) EXPECT_EQ(stamp, all.at(position++).timestamp);
+      const std::optional<SensorFrame> frame = source.next();
+      if (!frame) break;
+      EXPECT_TRUE(are_equal(*frame, all.at(position++)));
+      EXPECT_TRUE(position == all.size() || all[position].timestamp > now) << "the newest that is due";
+      now = std::max(now, frame->timestamp) + 0.15;
+    }
+    EXPECT_EQ(position, all.size());
+    EXPECT_GT(passed_over, all.size() / 3);
+  }
 }
 
 TEST(PerturbedSourceTest, EveryKindHasATestAndChangesItsFrames) {

@@ -281,6 +281,38 @@ TEST_F(ResultsTest, TheReportShowsWhatTheRunHas) {
   EXPECT_THAT(summary_text(record_), HasSubstr("\naccuracy             unknown, the source has no truth\n"));
 }
 
+/// A camera that stands still, so that no parallax contradicts its depth, which is 1e10 m for ten frames but for a few
+/// points: too few for a map, which takes far ones where it has to.
+class FarDepthSource final : public FrameSource {
+ public:
+  explicit FarDepthSource(test::PointWorld& world) : world_(world) {}
+  SourceDescription describe() const override { return {}; }
+  std::optional<SensorFrame> next() override {
+    if (index_ == 20) return std::nullopt;
+    SensorFrame frame = world_.frame(index_, static_cast<double>(index_) / 30.0, Eigen::Isometry3d::Identity());
+    cv::Mat right = frame.depth.colRange(60, frame.depth.cols);
+    if (index_++ < 10) right.setTo(1e10F, right > 0.0F);
+    return frame;
+  }
+
+ private:
+  test::PointWorld& world_;
+  std::uint64_t index_ = 0;
+};
+
+TEST_F(ResultsTest, AMapAfterDepthBeyondAnySensorIsWrittenAndReadAgain) {
+  test::PointRun points;
+  points.built->source = std::make_unique<FarDepthSource>(points.world);
+  RunRecord record = run(*points.built, points.configuration);
+  record.map = points.built->pipeline.take_map();
+  EXPECT_TRUE(record.failure.empty()) << record.failure;
+  EXPECT_EQ(record.trajectory.size(), 20U);
+  write_results(record, folder_);
+  const Map map = read_map(folder_ / "map.hfm");
+  EXPECT_GT(map.points().size(), 100U);
+  map.points().for_each([&](MapPointId, const MapPoint& point) { EXPECT_LT(point.position.norm(), 10.0); });
+}
+
 /// Marks the left columns of an image as a person, or has no mask at all.
 class ColumnSegmenter final : public Segmenter {
  public:

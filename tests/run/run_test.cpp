@@ -149,9 +149,13 @@ TEST(Run, WarningsOfConfigurationSourceAndModulesAreInEveryResult) {
 /// Repeats the colour image of frame `first` until before frame `end`; other images differ in a pixel.
 class FrozenSource final : public FrameSource {
  public:
-  FrozenSource(std::unique_ptr<FrameSource> source, std::uint64_t first, std::uint64_t end)
-      : source_(std::move(source)), first_(first), end_(end) {}
-  SourceDescription describe() const override { return source_->describe(); }
+  FrozenSource(std::unique_ptr<FrameSource> source, std::uint64_t first, std::uint64_t end, bool is_simulated)
+      : source_(std::move(source)), first_(first), end_(end), is_simulated_(is_simulated) {}
+  SourceDescription describe() const override {
+    SourceDescription description = source_->describe();
+    if (is_simulated_) description.class_names = {"background", "person"};
+    return description;
+  }
   std::optional<SensorFrame> next() override {
     std::optional<SensorFrame> frame = source_->next();
     if (!frame) return frame;
@@ -164,11 +168,12 @@ class FrozenSource final : public FrameSource {
  private:
   std::unique_ptr<FrameSource> source_;
   std::uint64_t first_, end_;
+  bool is_simulated_;
 };
 
-RunRecord run_of_frozen_frames(std::uint64_t first, std::uint64_t end) {
+RunRecord run_of_frozen_frames(std::uint64_t first, std::uint64_t end, bool is_simulated = false) {
   test::PointRun points;
-  points.built->source = std::make_unique<FrozenSource>(std::move(points.built->source), first, end);
+  points.built->source = std::make_unique<FrozenSource>(std::move(points.built->source), first, end, is_simulated);
   return run(*points.built, points.configuration);
 }
 
@@ -188,6 +193,12 @@ TEST(Run, AFewRepeatedImagesAreCountedWithoutAWarning) {
   EXPECT_EQ(run_of_frozen_frames(10, 11).repeated_images.frames, 0U);
   test::PointRun black;
   EXPECT_EQ(run(*black.built, black.configuration).repeated_images.frames, 0U) << "a covered lens repeats nothing";
+}
+
+TEST(Run, ASimulatedCameraThatStandsStillIsNotSuspectedOfRepeatingImages) {
+  const RunRecord record = run_of_frozen_frames(10, 20, true);
+  EXPECT_EQ(record.repeated_images.frames, 9U);
+  EXPECT_TRUE(record.warnings.empty()) << record.warnings[0].to_string();
 }
 
 TEST(Run, TheLateShareCountsDelaysAboveAFrameInterval) {

@@ -48,6 +48,15 @@ TEST(TruthSegmenter, FindsOnlyTheClassesAskedFor) {
   EXPECT_THAT(std::vector<int>(labels.begin<std::uint8_t>(), labels.end<std::uint8_t>()), ElementsAre(0, 1, 0, 2));
 }
 
+TEST(TruthSegmenter, KnowsPeopleWhereThereAreNone) {
+  const auto segmenter = make({}, {"background", "chair"});
+  EXPECT_THAT(segmenter->classes(), ElementsAre("background", "chair", "person"));
+  const cv::Mat labels = segmenter->segment(frame_with_truth()).labels;
+  EXPECT_EQ(labels.at<std::uint8_t>(0, 1), 1);
+  EXPECT_THAT(make({"person"}, {"background"})->classes(), ElementsAre("background", "person"));
+  EXPECT_THAT(make({"chair"}, {"background", "chair"})->classes(), ElementsAre("background", "chair"));
+}
+
 TEST(TruthSegmenter, SaysWhatToChooseInstead) {
   EXPECT_THAT(error_of([] { make({}, {}); }), HasSubstr("choose a segmenter that needs no truth: 'precomputed'"));
   EXPECT_THAT(error_of([] { make({"persn"}, known); }),

@@ -37,6 +37,17 @@ class FolderSourceTest : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
+TEST_F(FolderSourceTest, PassesOverFramesThatAreDue) {
+  for (const int number : {1, 2, 3, 4}) write_colour("colour/" + std::to_string(number) + ".png", number);
+  const auto source = open({{"frame_rate", 10.0}});
+  EXPECT_EQ(number_of(*source->next()), 1);
+  EXPECT_TRUE(source->pass_over(0.15).empty()) << "the second one is the newest that is due";
+  EXPECT_EQ(source->pass_over(0.25), std::vector<double>{0.1});
+  EXPECT_EQ(number_of(*source->next()), 3);
+  EXPECT_TRUE(source->pass_over(9.0).empty()) << "the last one is never passed over";
+  EXPECT_EQ(number_of(*source->next()), 4);
+}
+
 TEST_F(FolderSourceTest, NaturalOrderAndStampsFromTheFrameRate) {
   for (const int number : {10, 9, 100, 2}) write_colour("colour/image" + std::to_string(number) + ".png", number);
   folder_.write("colour/notes.txt", "not an image");

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,9 @@ struct CalibratedRecording {
   Camera camera;                   ///< of the frames as a source gives them: rectified where that is needed
   cv::Size left_size, right_size;  ///< of the images in the files; the latter is that of the former without a pair
   bool has_right = false;
+  std::optional<DepthEncoding> depth;  ///< of the depth images; nothing for a recording without
+  std::string invalid_depth_key;       ///< see ImageSequenceOptions
+  bool has_global_shutter = true;      ///< as the cameras of KITTI, EuRoC and fisheye pairs have it
   std::shared_ptr<const StereoRectification> rectification;  ///< nullptr: the images need none
   Trajectory truth;                                          ///< of `camera`; empty if there is none
   std::string truth_frame = "raw";                           ///< see SourceDescription
@@ -59,6 +63,22 @@ struct EurocOptions {
 /// Finds the frames of a sequence in the ASL layout of the EuRoC MAV data (Burri et al. 2016), with camera and truth.
 /// An image without one of the other camera near enough in time makes no frame. Reads no image. Throws InputError.
 CalibratedRecording read_euroc_recording(const EurocOptions& options);
+
+/// What read_openloris_recording() is told.
+struct OpenLorisOptions {
+  std::filesystem::path path;  ///< folder of the sequence, with sensors.yaml
+  /// rgbd: color and aligned_depth of the D435i; stereo: fisheye1 and fisheye2 of the T265; left: fisheye1 alone.
+  std::string cameras = "rgbd";
+  double max_time_difference = 0.02;  ///< upper bound of the time between the two images of a frame [s]
+  DepthEncoding depth = {1000.0};
+  bool colour_is_enough = false;  ///< without aligned_depth.txt, the colour images alone will do
+  FrameRange range;
+};
+
+/// Finds the frames of a sequence in the package format of OpenLORIS-Scene (Shi et al., ICRA 2020), with camera and
+/// truth: the recorded poses of base_link, moved to the camera by trans_matrix.yaml. An image without a partner near
+/// enough in time makes no frame. Reads no image. Throws InputError.
+CalibratedRecording read_openloris_recording(const OpenLorisOptions& options);
 
 /// The frames of a CalibratedRecording; grey images are widened to three equal channels.
 class CalibratedSource : public ImageSequenceSource {

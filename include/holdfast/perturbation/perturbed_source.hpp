@@ -13,7 +13,7 @@
 namespace holdfast {
 
 /// Wraps a source and perturbs its frames. The random numbers of a frame depend on the seed and SensorFrame::index
-/// alone; only repeated and late frames depend on the previous frame. Images of the wrapped source are never written
+/// alone, not on which frames came before; only repeated and late frames depend on the previous frame. Images of the wrapped source are never written
 /// to. Ground truth is that of the source: pose and masks of a frame belong to its images, and the occluder is a moving
 /// object (255) without a class. Used by one thread.
 class PerturbedSource final : public FrameSource {
@@ -26,6 +26,9 @@ class PerturbedSource final : public FrameSource {
   /// dropped.
   SourceDescription describe() const override;
   std::optional<SensorFrame> next() override;
+  /// By the stamps after delays and without dropped frames; with one of these settings only if the wrapped source knows
+  /// SourceDescription::frame_timestamps.
+  std::vector<double> pass_over(double timestamp) override;
   Trajectory truth() const override { return source_->truth(); }
   std::vector<SkippedFrame> skipped() const override { return source_->skipped(); }
   Warnings warnings() const override { return source_->warnings(); }
@@ -43,7 +46,7 @@ class PerturbedSource final : public FrameSource {
   void shear(SensorFrame& frame) const;
   void spoil_depth(SensorFrame& frame) const;
   void spoil_images(SensorFrame& frame) const;
-  void delay(SensorFrame& frame);
+  double delayed(double timestamp, std::uint64_t index, const std::optional<double>& previous) const;
 
   std::unique_ptr<FrameSource> source_;
   PerturbationSettings settings_;
@@ -51,6 +54,9 @@ class PerturbedSource final : public FrameSource {
   std::uint64_t seed_;
   cv::Mat occluder_;  ///< texture, made with the first frame
   std::optional<SensorFrame> last_;
+  std::optional<double> last_timestamp_;       ///< of the frame given or passed over last, after its delay
+  std::uint64_t next_index_ = 0;               ///< of the wrapped source
+  std::optional<std::vector<double>> stamps_;  ///< of all frames of the wrapped source, once they were asked for
 };
 
 /// Camera with the calibration error of the setting `calibration`.

@@ -28,12 +28,15 @@ constexpr const char* remedy =
 class TruthSegmenter final : public Segmenter {
  public:
   TruthSegmenter(const TruthSettings& settings, const CreationContext& context) {
-    const std::vector<std::string>& known = context.class_names;
+    std::vector<std::string> known = context.class_names;
     if (known.empty())
       throw ConfigurationError(SourceLocation{},
                                std::string("segmenter.truth: the source does not know the classes of its pixels, only "
                                            "a simulation does; ") +
                                    remedy);
+    // The class that filters name, so that a room without people runs with the same configuration.
+    if (known.size() < unknown && std::find(known.begin(), known.end(), "person") == known.end())
+      known.emplace_back("person");
     classes_.push_back(known.front());
     std::vector<Diagnostic> diagnostics;
     for (const std::string& name : settings.classes)

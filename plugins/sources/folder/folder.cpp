@@ -130,6 +130,7 @@ class FolderSource final : public FrameSource {
 
   SourceDescription describe() const override { return description_; }
   std::optional<SensorFrame> next() override { return sequence_.next(); }
+  std::vector<double> pass_over(double timestamp) override { return sequence_.pass_over(timestamp); }
   Trajectory truth() const override { return truth_; }
   std::vector<SkippedFrame> skipped() const override { return sequence_.skipped(); }
   Warnings warnings() const override { return sequence_.warnings(); }

@@ -79,6 +79,12 @@ std::vector<ImageFiles> find_frames(const TumSettings& settings, const std::opti
   require_recording_folder(settings.path, "the folder of a TUM recording, with rgb.txt and depth.txt",
                            "source.tum.path");
   std::error_code error;
+  if (settings.associations.empty() && !std::filesystem::exists(settings.path / "rgb.txt", error) &&
+      std::filesystem::exists(settings.path / "color.txt", error))
+    throw InputError({settings.path.string()},
+                     "has a color.txt and no rgb.txt, as sequences of OpenLORIS-Scene do; expected rgb.txt and "
+                     "depth.txt; read such a sequence by `source: { openloris: { path: " +
+                         settings.path.string() + " } }`");
   const std::filesystem::path depth_list = settings.path / "depth.txt";
   if (settings.associations.empty() && !std::filesystem::exists(depth_list, error)) {
     if (sensor == Sensor::mono) return find_colour_images(settings);

@@ -14,17 +14,20 @@ namespace holdfast {
 
 /// How the files of a recording are arranged.
 enum class DatasetLayout {
-  tum,       ///< rgb.txt and depth.txt list the images with their stamps (Sturm et al., IROS 2012)
-  icl_nuim,  ///< associations.txt lists numbered pairs, the depth image first (Handa et al., ICRA 2014); what the
-             ///< source `icl_nuim` reads
-  kitti,     ///< stereo pairs of the KITTI odometry data (Geiger et al., CVPR 2012); what the source `kitti` reads
-  euroc,     ///< stereo pairs in the ASL layout (Burri et al., IJRR 2016); what the source `euroc` reads
+  tum,        ///< rgb.txt and depth.txt list the images with their stamps (Sturm et al., IROS 2012)
+  icl_nuim,   ///< associations.txt lists numbered pairs, the depth image first (Handa et al., ICRA 2014); what the
+              ///< source `icl_nuim` reads
+  kitti,      ///< stereo pairs of the KITTI odometry data (Geiger et al., CVPR 2012); what the source `kitti` reads
+  euroc,      ///< stereo pairs in the ASL layout (Burri et al., IJRR 2016); what the source `euroc` reads
+  openloris,  ///< the package format of OpenLORIS-Scene (Shi et al., ICRA 2020); what the source `openloris` reads
 };
 
-/// tum, icl_nuim, kitti or euroc.
+/// tum, icl_nuim, kitti, euroc or openloris.
 const char* layout_name(DatasetLayout layout);
-/// Stereo pairs with their own calibration; the others have colour and depth.
-inline bool is_stereo(DatasetLayout layout) { return layout == DatasetLayout::kitti || layout == DatasetLayout::euroc; }
+/// Whether the recording contains the calibration of its cameras, so that a recipe gives none.
+inline bool brings_camera(DatasetLayout layout) {
+  return layout == DatasetLayout::kitti || layout == DatasetLayout::euroc || layout == DatasetLayout::openloris;
+}
 
 /// What is known of a recording: enough to say where to get it and whether a folder holds it. Nothing is ever fetched.
 struct DatasetRecipe {
