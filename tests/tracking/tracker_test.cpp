@@ -72,10 +72,10 @@ class Bench {
  public:
   explicit Bench(const TrackingSettings& settings = {}, bool with_filter = false, Map known = {},
                  std::uint64_t seed = 5, const EvidenceSettings& evidence = {},
-                 FirstPoses first_poses = default_first_poses())
+                 FirstPoses first_poses = default_first_poses(), Segmenter* segmenter = nullptr)
       : world(find_camera("tum_fr1").value(), 1500, seed),
         map(std::move(known)),
-        moving_world({.camera = world.camera(), .filters = chain(with_filter, evidence)}, map),
+        moving_world({.camera = world.camera(), .filters = chain(with_filter, evidence), .segmenter = segmenter}, map),
         tracker(of_patches(settings), {world.camera(), extractor, optimizer, detector, moving_world, map},
                 std::move(first_poses)) {
     map.keyframes().for_each(
@@ -245,6 +245,30 @@ TEST(Tracker, ItsStatesFollowTheDiagram) {
   EXPECT_EQ(bench.tracker.state(), TrackerState::waiting);
   bench.feed(0.66, at(0.25));
   EXPECT_EQ(bench.request.kind, MapRequest::Kind::first_keyframe);
+}
+
+/// Masks are expected from it, and none comes.
+class SlowSegmenter final : public Segmenter {
+ public:
+  const std::vector<std::string>& classes() const override { return classes_; }
+  Segmentation segment(const SensorFrame&) override { return {}; }
+
+ private:
+  std::vector<std::string> classes_{"background", "person"};
+};
+
+TEST(Tracker, AStartBeforeTheFirstMaskIsProvisional) {
+  SlowSegmenter segmenter;
+  Bench bench({}, false, {}, 5, {}, default_first_poses(), &segmenter);
+  bench.feed(0.0, at(0.0));
+  EXPECT_EQ(bench.tracker.state(), TrackerState::provisional);
+  bench.walk(1.0 / 30.0, 0.5);
+  EXPECT_EQ(bench.tracker.state(), TrackerState::provisional);
+  EXPECT_FALSE(bench.tracker.judge_start(bench.access)) << "no mask, no judgement";
+  bench.feed(0.5, at(0.25), false);
+  EXPECT_EQ(bench.tracker.state(), TrackerState::lost);
+  bench.walk(0.5 + 1.0 / 30.0, 0.6);
+  EXPECT_EQ(bench.tracker.state(), TrackerState::provisional);
 }
 
 TEST(Tracker, AShortLossIsFoundAlongTheLastVelocity) {
