@@ -186,6 +186,23 @@ TEST_F(MonoTest, FramesOfTheStartAgreeWithTheirNeighbours) {
   }
 }
 
+/// A frame of the young map shows the room from a place that the camera cannot have reached: it is found there, and its
+/// pose is withdrawn when the neighbours have been tracked backwards.
+TEST_F(MonoTest, APoseOfTheStartThatContradictsItsNeighboursIsWithdrawn) {
+  Pipeline pipeline = make(simulator_.camera(), {}, false);
+  std::uint64_t index = 0;
+  while (index < 80 && feed(pipeline, index++).status != TrackingStatus::initialised) {
+  }
+  for (int i = 0; i < 6; ++i) ASSERT_EQ(feed(pipeline, index++).status, TrackingStatus::tracked);
+  const FrameResult jump = feed(pipeline, index++ + 20);
+  ASSERT_EQ(jump.status, TrackingStatus::tracked);
+  const double time_of_jump = truth_.back().timestamp;
+  for (int i = 0; i < 40; ++i) feed(pipeline, index++);
+  pipeline.finish();
+  EXPECT_EQ(pipeline.loss_record().withdrawn, 1U);
+  for (const TimedPose& pose : pipeline.trajectory()) EXPECT_NE(pose.timestamp, time_of_jump);
+}
+
 TEST_F(MonoTest, GreyImagesServeAsColourOnesDo) {
   // A segmenter gets three channels; without it, grey is all that is read.
   class ColourOnly final : public Segmenter {
