@@ -35,7 +35,7 @@ class TruthSegmenter final : public Segmenter {
                                            "a simulation does; ") +
                                    remedy);
     // The class that filters name, so that a room without people runs with the same configuration.
-    if (known.size() < unknown && std::find(known.begin(), known.end(), "person") == known.end())
+    if (known.size() < CellMask::unknown && std::find(known.begin(), known.end(), "person") == known.end())
       known.emplace_back("person");
     classes_.push_back(known.front());
     std::vector<Diagnostic> diagnostics;
