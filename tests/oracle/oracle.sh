@@ -15,9 +15,9 @@
 # beside it), so that no network takes part. The recording is $HOLDFAST_DATA/tum_fr1_xyz; without HOLDFAST_DATA its
 # cases are skipped, and --write keeps their values.
 #
-# The values belong to one version of Debian on amd64 with AVX2 and FMA, each with a file of its own: another version of
-# Ceres or OpenCV, or another C library, may round differently. Elsewhere every case is skipped. Processors of other
-# makers may round differently too: each value names the processors that gave it, and a case that differs on another one
+# The values (values.txt) belong to Debian 12 and 13, which give the same bytes, on amd64 with AVX2 and FMA: other
+# versions of Ceres or OpenCV, or another C library, may round differently. Elsewhere every case is skipped. Processors of
+# other makers may round differently too: each value names the processors that gave it, and a case that differs on another one
 # is skipped, and says so. --write adds this processor to a value that it finds equal, and replaces a value that differs.
 # HOLDFAST_ORACLE_VALUES names another file of values, such as one to compare two states of the code on any processor.
 # Exit status: 0 all compared cases are equal, 1 some differ, 2 wrong call, 77 skipped.
@@ -26,7 +26,7 @@ set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
 debian=$(. /etc/os-release 2>/dev/null && [ "${ID:-}" = debian ] && echo "$VERSION_ID" || true)
-values=${HOLDFAST_ORACLE_VALUES:-$here/values_debian_$debian.txt}
+values=${HOLDFAST_ORACLE_VALUES:-$here/values.txt}
 paths=$here/paths.txt
 cases=$(for scene in walking_xyz sitting_halfsphere loop tum_fr1_xyz; do
   for configuration in rgbd geometric full paper; do echo "$configuration $scene"; done
@@ -43,6 +43,7 @@ program=$1
 if [ $# -eq 3 ]; then cases="$2 $3"; fi
 
 on_reference_system() {
+  case "$debian" in 12 | 13) ;; *) return 1 ;; esac
   [ "$(uname -m)" = x86_64 ] && [ -f "$values" ] && grep -q -m 1 '^flags.* fma .*avx2' /proc/cpuinfo
 }
 [ "$writes" = yes ] || on_reference_system ||
