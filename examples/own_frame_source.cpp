@@ -15,7 +15,7 @@ class SlidingCamera final : public holdfast::FrameSource {
     holdfast::SourceDescription description;
     description.name = "a wall";
     description.has_depth = true;
-    description.can_read_ahead = true;  // frames do not depend on what happens between two calls of next()
+    description.can_read_ahead = true;        // frames do not depend on what happens between two calls of next()
     description.camera = holdfast::Camera{};  // 640 x 480 pixels, focal length 525 px
     return description;
   }

@@ -60,8 +60,9 @@ SensorFrame make_frame(double timestamp, const py::object& colour, const py::obj
   frame.depth = image_of_array(depth, ImageKind::depth, "depth");
   frame.right = image_of_array(right, ImageKind::colour_or_grey, "right");
   if (frame.colour.empty())
-    throw InputError({"colour"}, "is None; expected an image, a numpy array of uint8 with shape (rows, columns, 3) or "
-                                 "(rows, columns)");
+    throw InputError({"colour"},
+                     "is None; expected an image, a numpy array of uint8 with shape (rows, columns, 3) or "
+                     "(rows, columns)");
   check_size("depth", frame.depth, frame.colour);
   check_size("right", frame.right, frame.colour);
   return frame;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
 
-#include "support/browser.hpp"
 #include "bench/listed_recording.hpp"
 #include "cli/program.hpp"
+#include "support/browser.hpp"
 
 namespace holdfast {
 namespace {

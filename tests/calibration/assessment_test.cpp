@@ -65,9 +65,8 @@ TEST(CalibrationOutput, SaysTheSameToPeopleAndPrograms) {
   const Calibration calibration = calibrated(usual_poses(35.0 * test::degree), test::usual_camera());
   const CalibrationAssessment assessment = assess(calibration);
   const std::string text = to_text(calibration, assessment);
-  EXPECT_THAT(text,
-              AllOf(HasSubstr("18 views, 18 used; images 640x480, lens radial_tangential"),
-                    HasSubstr("reprojection error 0.1"), HasSubstr("  fx        51"), HasSubstr("view_17.png")));
+  EXPECT_THAT(text, AllOf(HasSubstr("18 views, 18 used; images 640x480, lens radial_tangential"),
+                          HasSubstr("reprojection error 0.1"), HasSubstr("  fx        51"), HasSubstr("view_17.png")));
   const auto json = nlohmann::json::parse(to_json(calibration, assessment, CalibrationBoard()));
   EXPECT_NEAR(json.at("camera").at("fx").get<double>(), 517.3, 1.0);
   EXPECT_EQ(json.at("camera").at("lens"), "radial_tangential");

@@ -20,8 +20,7 @@ double cost_at(const PoseProblem& problem, const Eigen::Isometry3d& T_camera_wor
   for (std::size_t i = 0; i < problem.size(); ++i) {
     const Eigen::Vector3d p = T_camera_world * problem.points[i];
     const Eigen::Vector2d pixel = camera.project(p);
-    double squared =
-        problem.inverse_sigma2[i] * (pixel - Eigen::Vector2d(problem.x[i], problem.y[i])).squaredNorm();
+    double squared = problem.inverse_sigma2[i] * (pixel - Eigen::Vector2d(problem.x[i], problem.y[i])).squaredNorm();
     if (!std::isnan(problem.right_x[i])) {
       const double measured = static_cast<double>(problem.x[i]) - problem.right_x[i];
       const double deviations = (camera.fx * camera.baseline / p.z() - measured) / disparity_sigma;

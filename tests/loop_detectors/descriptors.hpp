@@ -30,7 +30,7 @@ inline Descriptor256 disturbed(const Descriptor256& original, int flips, Random&
 
 /// A place seen again: a share of its descriptors with flipped bits, the rest of something new.
 inline std::vector<Descriptor256> seen_again(const std::vector<Descriptor256>& place, double share, int flips,
-                                          Random& random) {
+                                             Random& random) {
   std::vector<Descriptor256> view;
   for (const Descriptor256& descriptor : place)
     view.push_back(random.uniform() < share ? disturbed(descriptor, flips, random) : random_descriptor(random));

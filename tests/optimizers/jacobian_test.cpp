@@ -89,10 +89,8 @@ TEST(FixedPosesCost, IsTheSameAsRowByRow) {
     for (const int count : {1, 3}) {  // one observation without depth: singular
       std::vector<FixedObservation> observations;
       for (int i = 0; i < count; ++i)  // the second one is beyond the limit
-        observations.push_back({{pixel.x() + 1.0 + 9.0 * (i % 2), pixel.y() - 0.5, disparity + 0.3},
-                                &state,
-                                i ? 7.815 : 5.991,
-                                i != 0});
+        observations.push_back(
+            {{pixel.x() + 1.0 + 9.0 * (i % 2), pixel.y() - 0.5, disparity + 0.3}, &state, i ? 7.815 : 5.991, i != 0});
       const FixedPosesCost cost(camera, observations, is_robust);
       Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
       Eigen::Vector3d gradient = Eigen::Vector3d::Zero();

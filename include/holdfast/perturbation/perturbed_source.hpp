@@ -13,9 +13,9 @@
 namespace holdfast {
 
 /// Wraps a source and perturbs its frames. The random numbers of a frame depend on the seed and SensorFrame::index
-/// alone, not on which frames came before; only repeated and late frames depend on the previous frame. Images of the wrapped source are never written
-/// to. Ground truth is that of the source: pose and masks of a frame belong to its images, and the occluder is a moving
-/// object (255) without a class. Used by one thread.
+/// alone, not on which frames came before; only repeated and late frames depend on the previous frame. Images of the
+/// wrapped source are never written to. Ground truth is that of the source: pose and masks of a frame belong to its
+/// images, and the occluder is a moving object (255) without a class. Used by one thread.
 class PerturbedSource final : public FrameSource {
  public:
   /// `camera`: the true camera of the source, for the position of the occluder in the right image.

@@ -100,9 +100,9 @@ struct EvaluationOutput {
   double* point_jacobian = nullptr;
 };
 
-/// Scaled residual of a point seen from a pose, rows x, y and with rows = 3 the disparity, and its Jacobians. The square
-/// of the disparity's row is Huber's cost of it. A point behind the camera has a large residual that does not depend on anything, so that the solver refuses steps that push points
-/// there.
+/// Scaled residual of a point seen from a pose, rows x, y and with rows = 3 the disparity, and its Jacobians. The
+/// square of the disparity's row is Huber's cost of it. A point behind the camera has a large residual that does not
+/// depend on anything, so that the solver refuses steps that push points there.
 template <int rows>
 void evaluate_observation(const Camera& camera, const Measurement& measurement, const PoseState& pose,
                           const double* point, const EvaluationOutput& out) {

@@ -33,7 +33,7 @@ struct BundleView {
   double limit_two, limit_three;
   double disparity_scale;  ///< inverse of the standard deviation of a disparity [1/px]
   double disparity_limit;  ///< squared threshold of Huber's cost of the scaled disparity
-  bool is_robust;  ///< Huber's cost instead of plain squares
+  bool is_robust;          ///< Huber's cost instead of plain squares
 
   std::size_t point_count;
   const std::uint32_t* first_group;      ///< of each point; point_count + 1 entries

@@ -65,9 +65,12 @@ struct Look {
 
 Look look_of(const UnetSettings& settings) {
   switch (settings.size) {
-    case UnetSize::small: return {224, 192};
-    case UnetSize::base: break;
-    case UnetSize::large: return {512, 384};
+    case UnetSize::small:
+      return {224, 192};
+    case UnetSize::base:
+      break;
+    case UnetSize::large:
+      return {512, 384};
   }
   return {384, 288};
 }
