@@ -16,7 +16,7 @@ KeyframeFlow::KeyframeFlow(PipelineParts& parts, GuardedMap& map, MovingWorld& m
       moving_world_(moving_world),
       detector_(detector),
       describes_images_(detector.image_descriptor().has_value()),
-      is_mono_(parts.sensor == Sensor::mono),
+      points_need_parallax_(!features_have_depth(parts.sensor)),
       mapper_(parts.mapping, parts.tracking.close_depth_factor, map.shared().map, map.shared().mutex, *parts.optimizer,
               *parts.matcher),
       closer_(parts.loop_closing, map.shared(), detector, *parts.optimizer, parts.run.seed, *parts.matcher),
@@ -115,7 +115,7 @@ void KeyframeFlow::request_mask(const SensorFrame& sensor_frame, const Frame& fr
   if (is_requested) {
     // One camera makes all its points by triangulation, and would be lost before the mask arrives: a propagated mask
     // has to do until then.
-    if (is_mono_) hand_to_mapping({keyframe, false}, times);
+    if (points_need_parallax_) hand_to_mapping({keyframe, false}, times);
     return;
   }
   show_view(keep_view(keyframe, sensor_frame, frame.coarse, {}, times));

@@ -135,8 +135,8 @@ class KeyframeFlow {
   GuardedMap& map_;
   MovingWorld& moving_world_;
   SharedLoopDetector& detector_;
-  const bool describes_images_;  // the detector, instead of using descriptors of features
-  const bool is_mono_;           // all points are made by triangulation
+  const bool describes_images_;      // the detector, instead of using descriptors of features
+  const bool points_need_parallax_;  // all points are made by triangulation
   LocalMapper mapper_;
   LoopCloser closer_;
   FullAdjustment adjustment_;

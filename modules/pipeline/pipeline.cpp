@@ -49,7 +49,7 @@ MovingWorldParts moving_world_parts(PipelineParts& parts) {
           .segmenter = has_segmenter(parts) ? parts.segmenter.get() : nullptr,
           .segmentation = parts.segmentation,
           .threaded = parts.run.threaded(),
-          .has_depth = parts.sensor != Sensor::mono};
+          .has_depth = features_have_depth(parts.sensor)};
 }
 
 std::optional<StereoParts> stereo_parts(const PipelineParts& parts) {
@@ -71,7 +71,7 @@ struct Pipeline::State {
         detector(*parts.loop_detector),
         tracker(parts.tracking,
                 {parts.camera, *parts.features, *parts.optimizer, detector, moving_world, map.unshared(),
-                 parts.run.seed, stereo_parts(parts), parts.sensor != Sensor::mono, *parts.matcher}),
+                 parts.run.seed, stereo_parts(parts), features_have_depth(parts.sensor), *parts.matcher}),
         flow(parts, map, moving_world, detector) {
     Map& whole = map.unshared();
     whole.set_sensor(parts.sensor);

@@ -111,7 +111,7 @@ void PoseEstimator::reject_new_points(const Frame& frame) {
 
 int PoseEstimator::solve(Frame& frame) {
   rejected_.clear();
-  if (map_.sensor() == Sensor::mono && moving_world_.weights_features()) reject_new_points(frame);
+  if (!features_have_depth(map_.sensor()) && moving_world_.weights_features()) reject_new_points(frame);
   const PoseSummary summary = optimizer_.optimize_pose(problem_);
   position_deviation_ = summary.usable ? std::sqrt(summary.covariance.topLeftCorner<3, 3>().trace()) : 0.0;
   if (!summary.usable) {

@@ -63,7 +63,7 @@ bool Relocaliser::recover(KeyFrameId last_keyframe, KeyFrameId reference, Frame&
         !is_reachable(frame, settings_.relocalisation_tolerance))
       continue;
     // The depth of the features contradicts a wrong pose; with one camera, only points around it can.
-    if (parts_.map.sensor() == Sensor::mono && !fits_surroundings(frame, result)) continue;
+    if (!features_have_depth(parts_.map.sensor()) && !fits_surroundings(frame, result)) continue;
     result.method = TrackingMethod::recovered;
     return true;
   }
@@ -87,7 +87,7 @@ bool Relocaliser::align_with_keyframe(KeyFrameId keyframe, const std::optional<E
       in_camera.push_back(frame.camera_point(i));
     }
   frame.T_camera_world = start.value_or(found->frame.T_camera_world);
-  if (parts_.map.sensor() == Sensor::mono) {
+  if (!features_have_depth(parts_.map.sensor())) {
     // One camera has no depth: three points and their directions give a pose as well.
     parts_.estimator.build_problem(frame);
     if (geometry::find_pose(parts_.estimator.problem(), geometry::PnpOptions{.seed = random_.next()}).usable)
@@ -144,7 +144,7 @@ bool Relocaliser::fits_surroundings(Frame& frame, FrameResult& result) {
 }
 
 bool Relocaliser::is_beyond_chance(int inliers) const {
-  return parts_.map.sensor() != Sensor::mono || inliers >= chance_share * parts_.estimator.matches();
+  return features_have_depth(parts_.map.sensor()) || inliers >= chance_share * parts_.estimator.matches();
 }
 
 bool Relocaliser::is_reachable(const Frame& frame, double tolerance) const {
