@@ -111,12 +111,14 @@ class Recogniser {
   }
 
   ObjectLayout layout(ObjectFamily family, Form scores, const List& boxes, std::int64_t classes) const {
-    ObjectLayout result{preset_of(family, scores)};
-    result.boxes = boxes.output;
-    result.count = static_cast<int>(boxes.rows);
-    result.width = static_cast<int>(boxes.columns);
-    result.classes = static_cast<int>(classes);
-    return result;
+    return {.preset = preset_of(family, scores),
+            .boxes = boxes.output,
+            .scores = {},
+            .numbers = {},
+            .prototypes = {},
+            .count = static_cast<int>(boxes.rows),
+            .width = static_cast<int>(boxes.columns),
+            .classes = static_cast<int>(classes)};
   }
 
   ObjectLayout layout_of_one(ObjectFamily family, Form scores, const List& list, bool is_transposed,
