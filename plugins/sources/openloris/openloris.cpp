@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/image_files/calibrated_recording.hpp"
+#include "holdfast/image_files/recorded_frames.hpp"
 #include "holdfast/plugin/plugin.hpp"
 
 namespace holdfast {
 
 namespace {
 
-struct OpenLorisSettings {
+struct OpenLorisSettings : RecordedFrames {
   std::filesystem::path path;
   std::string cameras = "rgbd";
   double max_time_difference = 0.02;
   double depth_factor = 1000.0;
   int invalid_depth = DepthEncoding::largest;
-  std::string on_bad_frame = "fail";
-  std::int64_t start = 0;
-  std::int64_t frames = 0;
 
   static void describe(ParameterTable<OpenLorisSettings>& table) {
     table
@@ -37,12 +35,7 @@ struct OpenLorisSettings {
         .add("invalid_depth", &OpenLorisSettings::invalid_depth,
              "value of pixels without a measurement in a depth image, besides 0")
         .range(0, 65535);
-    table
-        .add("on_bad_frame", &OpenLorisSettings::on_bad_frame,
-             "reaction to a missing, damaged or unsuitable image: stop with an error, or skip and count the frame")
-        .one_of({"fail", "skip"});
-    table.add("start", &OpenLorisSettings::start, "index of the first frame, from 0").at_least(0);
-    table.add("frames", &OpenLorisSettings::frames, "number of frames, 0 = all").at_least(0);
+    add_rows(table, "frame");
   }
 };
 
@@ -62,7 +55,7 @@ class OpenLorisSource final : public CalibratedSource {
  public:
   OpenLorisSource(const OpenLorisSettings& settings, const CreationContext& context)
       : CalibratedSource(read_openloris_recording(options_of(settings, context)), settings.path,
-                         settings.on_bad_frame == "skip") {}
+                         settings.skips_bad_frames()) {}
 };
 
 }  // namespace
