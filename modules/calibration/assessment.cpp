@@ -13,10 +13,10 @@ namespace {
 
 constexpr double degree = 3.14159265358979323846 / 180.0;
 
-std::string joined(const std::vector<std::string>& names, std::size_t most) {
+std::string joined(const std::vector<std::string>& names, std::size_t max_count) {
   std::string text;
-  for (std::size_t i = 0; i < std::min(most, names.size()); ++i) text += (i == 0 ? "" : ", ") + names[i];
-  return names.size() > most ? text + " and " + std::to_string(names.size() - most) + " more" : text;
+  for (std::size_t i = 0; i < std::min(max_count, names.size()); ++i) text += (i == 0 ? "" : ", ") + names[i];
+  return names.size() > max_count ? text + " and " + std::to_string(names.size() - max_count) + " more" : text;
 }
 
 std::string degrees(double angle) { return fixed_text(angle / degree, 0) + " degrees"; }

@@ -33,7 +33,7 @@ void show_run(Observer& observer, FilterScene& scene, TrackingStatus status) {
     observer.on_frame(moment.sensor, moment.frame, result_of(moment, status));
     observer.on_keyframe(keyframes.back(), observed);
     ObservedView view{.keyframe = keyframes.back(), .timestamp = moment.frame.timestamp};
-    view.points = [](std::size_t most) { return std::vector<CloudPoint>(std::min<std::size_t>(most, 10)); };
+    view.points = [](std::size_t max_count) { return std::vector<CloudPoint>(std::min<std::size_t>(max_count, 10)); };
     observer.on_static_view(view);
   }
   observer.on_loop(keyframes.back(), keyframes.front(), observed);

@@ -49,25 +49,25 @@ const char* to_string(TrackingFallback fallback) {
   return "?";
 }
 
-const char* to_string(TrackingTrouble trouble) {
-  switch (trouble) {
-    case TrackingTrouble::none:
+const char* to_string(TrackingFailure failure) {
+  switch (failure) {
+    case TrackingFailure::none:
       return "none";
-    case TrackingTrouble::no_depth:
+    case TrackingFailure::no_depth:
       return "no depth";
-    case TrackingTrouble::few_features:
+    case TrackingFailure::few_features:
       return "too few features";
-    case TrackingTrouble::few_matches:
+    case TrackingFailure::few_matches:
       return "too few matches";
-    case TrackingTrouble::few_inliers:
+    case TrackingFailure::few_inliers:
       return "too few inliers";
-    case TrackingTrouble::little_parallax:
+    case TrackingFailure::little_parallax:
       return "too little parallax";
-    case TrackingTrouble::no_mask:
+    case TrackingFailure::no_mask:
       return "no mask yet";
-    case TrackingTrouble::weak_start:
+    case TrackingFailure::weak_start:
       return "weak start";
-    case TrackingTrouble::exchanged_pair:
+    case TrackingFailure::exchanged_pair:
       return "left and right exchanged";
   }
   return "?";

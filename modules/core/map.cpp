@@ -168,7 +168,7 @@ void Map::remove_all() {
   for (const KeyFrameId id : keyframes_.ids()) keyframes_.erase(id);
   removed_keyframes_.clear();
   next_sequence_ = 0;
-  last_piece_ = 0;
+  last_submap_ = 0;
   ++version_;
 }
 
@@ -177,7 +177,7 @@ void Map::clear() {
   points_.clear();
   removed_keyframes_.clear();
   next_sequence_ = 0;
-  last_piece_ = 0;
+  last_submap_ = 0;
   sensor_ = Sensor::rgbd;
   ++version_;
 }

@@ -50,12 +50,12 @@ void Map::update_covisibility(KeyFrameId id) {
   // The parent is the strongest neighbour that is older, so that the spanning tree has no cycle.
   for (const CovisibilityEdge& edge : keyframe.covisible) {
     if (keyframes_.at(edge.keyframe).sequence >= keyframe.sequence) continue;
-    hang_on(id, edge.keyframe);
+    set_parent(id, edge.keyframe);
     return;
   }
 }
 
-void Map::hang_on(KeyFrameId id, KeyFrameId older) {
+void Map::set_parent(KeyFrameId id, KeyFrameId older) {
   KeyFrame& keyframe = keyframes_.at(id);
   KeyFrame& parent = keyframes_.at(older);
   HOLDFAST_CHECK(!keyframe.parent.valid() && parent.sequence < keyframe.sequence,

@@ -6,38 +6,38 @@
 
 namespace holdfast {
 
-std::optional<std::uint32_t> Map::piece_of(KeyFrameId id) const {
+std::optional<std::uint32_t> Map::submap_of(KeyFrameId id) const {
   while (true) {
-    if (const KeyFrame* keyframe = keyframes_.find(id)) return keyframe->piece;
+    if (const KeyFrame* keyframe = keyframes_.find(id)) return keyframe->submap;
     const auto removed = removed_keyframes_.find(id);
     if (removed == removed_keyframes_.end()) return std::nullopt;
     id = removed->second.parent;
   }
 }
 
-void Map::join_pieces(std::uint32_t first, std::uint32_t second) {
+void Map::join_submaps(std::uint32_t first, std::uint32_t second) {
   const auto [kept, joined] = std::minmax(first, second);
   for (const KeyFrameId id : keyframes_.ids()) {
     KeyFrame& keyframe = keyframes_.at(id);
-    if (keyframe.piece == joined) keyframe.piece = kept;
+    if (keyframe.submap == joined) keyframe.submap = kept;
   }
 }
 
-std::vector<KeyFrameId> Map::keyframes_outside(std::uint32_t piece) const {
+std::vector<KeyFrameId> Map::keyframes_outside(std::uint32_t submap) const {
   std::vector<KeyFrameId> ids = keyframes_by_age();
-  std::erase_if(ids, [&](KeyFrameId id) { return keyframes_.at(id).piece == piece; });
+  std::erase_if(ids, [&](KeyFrameId id) { return keyframes_.at(id).submap == submap; });
   return ids;
 }
 
-std::size_t Map::keyframes_in(std::uint32_t piece) const {
-  if (last_piece_ == 0) return piece == 0 ? keyframes_.size() : 0;
+std::size_t Map::keyframes_in(std::uint32_t submap) const {
+  if (last_submap_ == 0) return submap == 0 ? keyframes_.size() : 0;
   std::size_t count = 0;
-  keyframes_.for_each([&](KeyFrameId, const KeyFrame& keyframe) { count += keyframe.piece == piece ? 1U : 0U; });
+  keyframes_.for_each([&](KeyFrameId, const KeyFrame& keyframe) { count += keyframe.submap == submap ? 1U : 0U; });
   return count;
 }
 
-void Map::keep_piece(std::uint32_t piece) {
-  for (const KeyFrameId id : keyframes_outside(piece)) {
+void Map::keep_submap(std::uint32_t submap) {
+  for (const KeyFrameId id : keyframes_outside(submap)) {
     const std::vector<MapPointId> points = keyframes_.at(id).frame.map_points;
     for (const MapPointId point : points)
       if (points_.contains(point)) remove_observation(point, id);
@@ -51,7 +51,7 @@ void Map::keep_piece(std::uint32_t piece) {
     std::erase_if(keyframe.loop_edges, is_gone);
     std::erase_if(keyframe.children, is_gone);
   }
-  touch();
+  invalidate_copies();
 }
 
 }  // namespace holdfast

@@ -22,11 +22,11 @@ const KeptView& StaticScene::add(KeyFrameId keyframe, const SensorFrame& frame, 
   return *views_.insert(next, sampler_.sample(keyframe, frame, coarse, labels, left_out));
 }
 
-std::vector<CloudPoint> StaticScene::surface(const KeptView& view, std::size_t most) const {
+std::vector<CloudPoint> StaticScene::surface(const KeptView& view, std::size_t max_count) const {
   const int width = view.depth.cols, height = view.depth.rows;
   const auto pixels = [](int length, int step) { return static_cast<std::size_t>((length + step / 2) / step); };
   int step = 1;
-  while (pixels(width, step) * pixels(height, step) > most && step < std::max(width, height)) ++step;
+  while (pixels(width, step) * pixels(height, step) > max_count && step < std::max(width, height)) ++step;
   std::vector<CloudPoint> points;
   for (int y = step / 2; y < height; y += step)
     for (int x = step / 2; x < width; x += step) {
@@ -51,7 +51,7 @@ void StaticScene::make_room() {
 }
 
 void StaticScene::forget_removed(const Map& map) {
-  std::erase_if(views_, [&](const KeptView& view) { return !map.piece_of(view.keyframe); });
+  std::erase_if(views_, [&](const KeptView& view) { return !map.submap_of(view.keyframe); });
 }
 
 std::vector<CloudPoint> StaticScene::cloud(const Map& map) const {

@@ -11,7 +11,7 @@ namespace holdfast {
 void RunSummary::add(const FrameResult& result, double decode_seconds) {
   ++frames_;
   ++statuses_[result.status];
-  if (result.status == TrackingStatus::lost || result.status == TrackingStatus::waiting) ++troubles_[result.trouble];
+  if (result.status == TrackingStatus::lost || result.status == TrackingStatus::waiting) ++failures_[result.failure];
   if (result.status == TrackingStatus::tracked) {
     inliers_ += static_cast<std::uint64_t>(result.inliers);
     ++fallbacks_[result.fallback];

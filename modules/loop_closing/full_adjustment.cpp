@@ -32,10 +32,10 @@ std::vector<int> count_shared_points(const Map& map) {
 std::vector<KeyFrameId> placeable_keyframes(const Map& map) {
   const std::vector<int> shared = count_shared_points(map);
   std::vector<KeyFrameId> keyframes = map.keyframes_by_age();
-  PieceSet pieces;
+  SubmapSet submaps;
   std::erase_if(keyframes, [&](KeyFrameId id) {
-    const bool is_first = pieces.add(map.keyframe(id).piece);
-    return !is_first && shared[id.slot] < least_shared_points;
+    const bool is_first = submaps.add(map.keyframe(id).submap);
+    return !is_first && shared[id.slot] < minimum_shared_points;
   });
   return keyframes;
 }
@@ -56,7 +56,7 @@ FullAdjustment::FullAdjustment(const LoopClosingSettings& settings, const Shared
     : settings_(settings),
       map_(shared.map),
       map_mutex_(shared.mutex),
-      surgery_(shared.surgery),
+      structure_mutex_(shared.structure_mutex),
       optimizer_(optimizer) {}
 
 void FullAdjustment::request_stop() {
@@ -71,7 +71,7 @@ void FullAdjustment::cancel() {
 }
 
 void FullAdjustment::prepare() {
-  const std::lock_guard surgeon(surgery_);  // no correction is in progress
+  const std::lock_guard structure_lock(structure_mutex_);  // no correction is in progress
   stop_ = false;
   stop_time_ = 0;
   if (cancelled_) request_stop();
@@ -86,13 +86,13 @@ void FullAdjustment::prepare() {
   keyframes_ = placeable_keyframes(map_);
   constexpr std::uint32_t left_out = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> pose_of_slot(map_.keyframes().slot_count(), left_out);
-  PieceSet pieces;
+  SubmapSet submaps;
   for (std::uint32_t i = 0; i < keyframes_.size(); ++i) {
     const KeyFrame& keyframe = map_.keyframe(keyframes_[i]);
     if (i == 0) problem_.camera = keyframe.frame.camera.get();
     pose_of_slot[keyframes_[i].slot] = i;
-    const bool holds_piece = pieces.add(keyframe.piece);
-    problem_.poses.push_back({keyframe.frame.T_camera_world, holds_piece});
+    const bool holds_submap = submaps.add(keyframe.submap);
+    problem_.poses.push_back({keyframe.frame.T_camera_world, holds_submap});
   }
   points_.reserve(map_.points().size());
   problem_.points.reserve(map_.points().size());
@@ -122,7 +122,7 @@ void FullAdjustment::solve() {
 
 FullAdjustmentSummary FullAdjustment::apply() {
   {
-    const std::lock_guard surgeon(surgery_);
+    const std::lock_guard structure_lock(structure_mutex_);
     summary_.stop_requested = stop_;
     if (summary_.bundle.usable && !summary_.stop_requested) change_map();
   }
@@ -141,7 +141,7 @@ void FullAdjustment::change_map() {
     if (map_.find_point(points_[i]) != nullptr) map_.update_point_geometry(points_[i]);
   });
   const std::lock_guard lock(map_mutex_);
-  map_.touch();
+  map_.invalidate_copies();
   summary_.applied = true;
 }
 
@@ -152,7 +152,7 @@ void FullAdjustment::move_map() {
   // Update poses and points under one lock so that readers never see a mixed state.
   const std::lock_guard lock(map_mutex_);
   // In a degenerate configuration, more points than the minimum constrain a pose weakly as well.
-  constexpr int few_points = 4 * least_shared_points;
+  constexpr int few_points = 4 * minimum_shared_points;
   const std::vector<int> shared = count_shared_points(map_);
   std::vector<std::uint8_t> is_weak;
   for (const KeyFrameId id : keyframes_) is_weak.push_back(shared[id.slot] < few_points ? 1 : 0);
@@ -171,7 +171,7 @@ void FullAdjustment::move_map() {
     motion.move_point(map_.point(id));
     ++summary_.points_carried;
   }
-  map_.touch();
+  map_.invalidate_copies();
 }
 
 void FullAdjustment::remove_outliers() {

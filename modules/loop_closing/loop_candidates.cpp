@@ -33,7 +33,7 @@ std::vector<KeyFrameId> LoopCandidates::choose(const Map& map, KeyFrameId keyfra
   for (const PlaceMatch& match : matches) {
     const KeyFrame* other = map.find_keyframe(match.keyframe);
     if (other == nullptr || near[match.keyframe.slot] != 0) continue;
-    if (other->piece == keyframe.piece) {
+    if (other->submap == keyframe.submap) {
       if (other->sequence + static_cast<std::uint64_t>(settings_.minimum_gap) > keyframe.sequence) continue;
       if (match.score < settings_.score_share * least_neighbour) continue;
     }
@@ -50,8 +50,8 @@ std::vector<KeyFrameId> LoopCandidates::choose(const Map& map, KeyFrameId keyfra
       });
       if (shared) now.times = std::max(now.times, before.times + 1);
     }
-    const bool may_join_pieces = map.keyframe(now.best).piece != keyframe.piece;
-    if (may_join_pieces || now.times >= settings_.consistent_keyframes) chosen.push_back(now.best);
+    const bool may_join_submaps = map.keyframe(now.best).submap != keyframe.submap;
+    if (may_join_submaps || now.times >= settings_.consistent_keyframes) chosen.push_back(now.best);
   }
   groups_ = std::move(groups);
   return chosen;

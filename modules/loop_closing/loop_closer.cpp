@@ -23,7 +23,7 @@ const char* loop_verdict_name(LoopVerdict verdict) {
       return "few inliers";
     case LoopVerdict::small_share:
       return "small share";
-    case LoopVerdict::one_corner:
+    case LoopVerdict::poor_coverage:
       return "one corner";
     case LoopVerdict::implausible_correction:
       return "implausible correction";
@@ -40,7 +40,7 @@ LoopCloser::LoopCloser(const LoopClosingSettings& settings, const SharedMap& sha
     : settings_(settings),
       map_(shared.map),
       map_mutex_(shared.mutex),
-      surgery_(shared.surgery),
+      structure_mutex_(shared.structure_mutex),
       detector_(detector),
       optimizer_(optimizer),
       matcher_(matcher),
@@ -55,10 +55,10 @@ std::optional<ClosedLoop> LoopCloser::process(KeyFrameId keyframe, StageTimes& t
   }
   if (chosen.empty()) return std::nullopt;
 
-  const std::lock_guard surgeon(surgery_);
+  const std::lock_guard structure_lock(structure_mutex_);
   std::optional<ClosedLoop> closed;
   for (const KeyFrameId candidate : chosen) {
-    LoopTrial trial;
+    CandidateReport trial;
     trial.keyframe = keyframe;
     trial.candidate = candidate;
     std::optional<LoopMeasurement> measurement;
@@ -101,11 +101,11 @@ std::vector<KeyFrameId> LoopCloser::find_candidates(KeyFrameId id) {
   return candidates_.choose(map_, id, matches);
 }
 
-std::optional<LoopMeasurement> LoopCloser::check(LoopTrial& trial) {
-  // The surgery mutex is held: keyframes, poses and features may be read without the map's lock.
+std::optional<LoopMeasurement> LoopCloser::check(CandidateReport& trial) {
+  // The structure mutex is held: keyframes, poses and features may be read without the map's lock.
   const Frame* frame = nullptr;
   PlacePoints place;
-  SolidFeatures solid;
+  LocatedFeatures located;
   std::uint64_t sequence = 0;
   {
     const std::lock_guard lock(map_mutex_);
@@ -113,14 +113,14 @@ std::optional<LoopMeasurement> LoopCloser::check(LoopTrial& trial) {
     if (keyframe == nullptr || map_.find_keyframe(trial.candidate) == nullptr) return std::nullopt;
     frame = &keyframe->frame;
     sequence = keyframe->sequence;
-    solid = solid_features(*frame, map_);
+    located = located_features(*frame, map_);
     std::vector<KeyFrameId> side = {trial.candidate};
     for (const KeyFrameId neighbour : map_.best_covisible(trial.candidate, settings_.neighbours))
       side.push_back(neighbour);
     place = copy_points_seen_by(map_, side);
   }
   const CheckedPlace checked =
-      check_place(settings_, matcher_, optimizer_, *frame, solid, place, Random(seed_).fork(sequence).next());
+      check_place(settings_, matcher_, optimizer_, *frame, located, place, Random(seed_).fork(sequence).next());
   trial.verdict = checked.verdict;
   trial.matches = checked.matches;
   trial.aligned = checked.aligned;
@@ -132,40 +132,39 @@ std::optional<LoopMeasurement> LoopCloser::check(LoopTrial& trial) {
   PlacePoints old_points;
   {
     const std::lock_guard lock(map_mutex_);
-    trial.joins_pieces = map_.keyframe(trial.keyframe).piece != map_.keyframe(trial.candidate).piece;
-    if (!trial.joins_pieces) {
-      trial.way = way_between(map_, trial.keyframe, trial.candidate);
+    trial.joins_submaps = map_.keyframe(trial.keyframe).submap != map_.keyframe(trial.candidate).submap;
+    if (!trial.joins_submaps) {
+      trial.path_length = path_length(map_, trial.keyframe, trial.candidate);
       old_points = old_points_in_view(settings_, map_, trial.keyframe);
     }
   }
   trial.correction = pose_change(frame->T_camera_world, checked.T_camera_world);
   trial.scale = checked.scale;
-  const PoseChange believed = believed_drift(settings_, trial.way, solid.with_scale);
+  const PoseChange bound = drift_bound(settings_, trial.path_length, located.scale_is_free);
   const bool scale_is_plausible = std::abs(std::log(checked.scale)) <= std::log(settings_.largest_scale_drift);
-  if (trial.joins_pieces)
+  if (trial.joins_submaps)
     trial.verdict = LoopVerdict::closed;  // the pose of one submap relative to the other was a guess
-  else if (trial.correction.metres > believed.metres || trial.correction.degrees > believed.degrees ||
-           !scale_is_plausible)
+  else if (trial.correction.metres > bound.metres || trial.correction.degrees > bound.degrees || !scale_is_plausible)
     trial.verdict = LoopVerdict::implausible_correction;
   else if (present_pose_is_confirmed(settings_, matcher_, optimizer_, *frame, old_points, checked.T_camera_world))
     trial.verdict = LoopVerdict::pose_confirmed;
   if (trial.verdict != LoopVerdict::closed) return std::nullopt;
 
-  LoopMeasurement measurement{trial.keyframe,   trial.candidate, checked.T_camera_world, {},
-                              solid.with_scale, checked.scale};
+  LoopMeasurement measurement{trial.keyframe,        trial.candidate, checked.T_camera_world, {},
+                              located.scale_is_free, checked.scale};
   for (const matching::FeatureMatch& match : checked.inliers)
     measurement.points.emplace_back(place.block.ids[match.source], match.feature);
   return measurement;
 }
 
-std::optional<ClosedLoop> LoopCloser::correct(LoopTrial& trial, const LoopMeasurement& measurement) {
+std::optional<ClosedLoop> LoopCloser::correct(CandidateReport& trial, const LoopMeasurement& measurement) {
   const Stopwatch watch;
   if (adjustment_ != nullptr) adjustment_->request_stop();
   ClosedLoop loop{.keyframe = trial.keyframe,
                   .candidate = trial.candidate,
                   .inliers = trial.inliers,
-                  .joins_pieces = trial.joins_pieces,
-                  .way = trial.way,
+                  .joins_submaps = trial.joins_submaps,
+                  .path_length = trial.path_length,
                   .correction = trial.correction,
                   .scale = trial.scale};
   {

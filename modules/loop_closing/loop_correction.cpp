@@ -11,9 +11,9 @@
 namespace holdfast {
 namespace {
 
-std::vector<KeyFrameId> with_neighbours(const Map& map, KeyFrameId keyframe, int most) {
+std::vector<KeyFrameId> with_neighbours(const Map& map, KeyFrameId keyframe, int max_count) {
   std::vector<KeyFrameId> side = {keyframe};
-  for (const KeyFrameId neighbour : map.best_covisible(keyframe, most)) side.push_back(neighbour);
+  for (const KeyFrameId neighbour : map.best_covisible(keyframe, max_count)) side.push_back(neighbour);
   return side;
 }
 
@@ -24,20 +24,20 @@ bool LoopCorrection::run() {
     const std::lock_guard lock(map_mutex_);
     current_side_ = with_neighbours(map_, loop_.keyframe, settings_.neighbours);
     place_side_ = with_neighbours(map_, loop_.candidate, settings_.neighbours);
-    keyframe_piece_ = map_.keyframe(loop_.keyframe).piece;
-    place_piece_ = map_.keyframe(loop_.candidate).piece;
+    keyframe_submap_ = map_.keyframe(loop_.keyframe).submap;
+    place_submap_ = map_.keyframe(loop_.candidate).submap;
     build_graph();
     add_loop_edges();
-    fix_pieces();
+    fix_submaps();
     bring_pieces_together();
   }
   const GraphSummary summary =
-      loop_.with_scale ? optimizer_.optimize_similarity_graph(graph_) : optimizer_.optimize_pose_graph(graph_);
+      loop_.scale_is_free ? optimizer_.optimize_similarity_graph(graph_) : optimizer_.optimize_pose_graph(graph_);
   if (!summary.usable) return false;
   {
     const std::lock_guard lock(map_mutex_);
     move_map();
-    map_.join_pieces(keyframe_piece_, place_piece_);
+    map_.join_submaps(keyframe_submap_, place_submap_);
     fuse_matches();
     // Tracking may have added neighbouring keyframes while the graph was solved; they observe the same points.
     current_side_ = with_neighbours(map_, loop_.keyframe, 2 * settings_.neighbours);
@@ -52,7 +52,7 @@ bool LoopCorrection::run() {
   }
   const std::lock_guard lock(map_mutex_);
   map_.add_loop_edge(loop_.keyframe, loop_.candidate);
-  map_.touch();
+  map_.invalidate_copies();
   return true;
 }
 
@@ -93,7 +93,7 @@ void LoopCorrection::add_loop_edges() {
     const bool is_same = std::find(current_side_.begin(), current_side_.end(), place) != current_side_.end();
     if (is_same || current == place) return;
     Eigen::Isometry3d T_place_current = pose(place) * motion * pose(current).inverse();
-    if (loop_.with_scale) {
+    if (loop_.scale_is_free) {
       // Camera centre, transformed by the similarity between the neighbourhoods of keyframe and candidate.
       const Eigen::Vector3d centre = pose(current).inverse().translation();
       T_place_current.translation() =
@@ -105,20 +105,20 @@ void LoopCorrection::add_loop_edges() {
   for (std::size_t i = 1; i < current_side_.size(); ++i) add(current_side_[i], loop_.candidate);
 }
 
-void LoopCorrection::fix_pieces() {
-  PieceSet done;
-  if (keyframe_piece_ != place_piece_) done.add(std::max(keyframe_piece_, place_piece_));
-  for (std::size_t i = 0; i < nodes_.size(); ++i) graph_.nodes[i].fixed = done.add(map_.keyframe(nodes_[i]).piece);
+void LoopCorrection::fix_submaps() {
+  SubmapSet done;
+  if (keyframe_submap_ != place_submap_) done.add(std::max(keyframe_submap_, place_submap_));
+  for (std::size_t i = 0; i < nodes_.size(); ++i) graph_.nodes[i].fixed = done.add(map_.keyframe(nodes_[i]).submap);
 }
 
 void LoopCorrection::bring_pieces_together() {
-  if (keyframe_piece_ == place_piece_) return;
+  if (keyframe_submap_ == place_submap_) return;
   const Eigen::Isometry3d& T_camera_old = graph_.nodes[node_of_slot_[loop_.keyframe.slot]].T_camera_world;
   Eigen::Isometry3d T_old_new = T_camera_old.inverse() * loop_.T_camera_world;
-  if (place_piece_ > keyframe_piece_) T_old_new = T_old_new.inverse();
-  const std::uint32_t moving = std::max(keyframe_piece_, place_piece_);
+  if (place_submap_ > keyframe_submap_) T_old_new = T_old_new.inverse();
+  const std::uint32_t moving = std::max(keyframe_submap_, place_submap_);
   for (std::size_t i = 0; i < nodes_.size(); ++i)
-    if (map_.keyframe(nodes_[i]).piece == moving)
+    if (map_.keyframe(nodes_[i]).submap == moving)
       graph_.nodes[i].T_camera_world = graph_.nodes[i].T_camera_world * T_old_new;
 }
 
@@ -133,7 +133,7 @@ void LoopCorrection::move_map() {
   motion.move_keyframes(map_);
   for (const MapPointId id : map_.points().ids()) {
     motion.move_point(map_.point(id));
-    if (loop_.with_scale) map_.update_point_geometry(id);  // its distance range has changed
+    if (loop_.scale_is_free) map_.update_point_geometry(id);  // its distance range has changed
   }
 }
 

@@ -18,12 +18,12 @@ struct LoopMeasurement {
   KeyFrameId candidate;
   Eigen::Isometry3d T_camera_world;                          ///< of the keyframe, relative to the candidate's points
   std::vector<std::pair<MapPointId, std::uint32_t>> points;  ///< of the candidate, and features of the keyframe
-  bool with_scale = false;                                   ///< monocular: the scale is estimated as well
+  bool scale_is_free = false;                                ///< monocular: the scale is estimated as well
   double scale = 1.0;                                        ///< of the Sim(3) from keyframe to candidate
 };
 
-/// Closes a loop in the map (Mur-Artal et al. 2015, sections VII-C and VII-D). The caller holds the surgery mutex, not
-/// the map's lock. One object, one loop.
+/// Closes a loop in the map (Mur-Artal et al. 2015, sections VII-C and VII-D). The caller holds the structure mutex,
+/// not the map's lock. One object, one loop.
 class LoopCorrection {
  public:
   LoopCorrection(const LoopClosingSettings& settings, Map& map, MapMutex& map_mutex, Optimizer& optimizer,
@@ -38,7 +38,7 @@ class LoopCorrection {
   void build_graph();
   void add_loop_edges();
   /// Fixes the gauge: the first keyframe of every submap, except the younger one of two joined submaps.
-  void fix_pieces();
+  void fix_submaps();
   /// If the loop joins two submaps, transforms the younger one rigidly as initial value of the solver.
   void bring_pieces_together();
   void move_map();
@@ -55,7 +55,7 @@ class LoopCorrection {
   std::vector<KeyFrameId> current_side_, place_side_;  // the keyframe and the candidate first
   std::vector<KeyFrameId> nodes_;
   std::vector<std::uint32_t> node_of_slot_;
-  std::uint32_t keyframe_piece_ = 0, place_piece_ = 0;
+  std::uint32_t keyframe_submap_ = 0, place_submap_ = 0;
   PoseGraphProblem graph_;
   int points_fused_ = 0;
 };

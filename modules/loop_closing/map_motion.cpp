@@ -9,12 +9,12 @@ MapMotion::MapMotion(const Map& map, std::span<const KeyFrameId> keyframes, std:
                      std::span<const double> scales, std::span<const std::uint8_t> is_weak)
     : motion_(map.keyframes().slot_count(), Eigen::Isometry3d::Identity()), scale_(motion_.size(), 1.0) {
   std::vector<const Eigen::Isometry3d*> given(motion_.size(), nullptr);
-  std::vector<std::uint8_t> may_flee(motion_.size(), 0);
+  std::vector<std::uint8_t> is_weakly_constrained(motion_.size(), 0);
   for (std::size_t i = 0; i < keyframes.size(); ++i) {
     if (map.find_keyframe(keyframes[i]) == nullptr) continue;
     given[keyframes[i].slot] = &poses[i];
     if (!scales.empty()) scale_[keyframes[i].slot] = scales[i];
-    if (!is_weak.empty()) may_flee[keyframes[i].slot] = is_weak[i];
+    if (!is_weak.empty()) is_weakly_constrained[keyframes[i].slot] = is_weak[i];
   }
 
   // Parents are older than their children, so their motion is computed before.
@@ -29,9 +29,10 @@ MapMotion::MapMotion(const Map& map, std::span<const KeyFrameId> keyframes, std:
     Eigen::Isometry3d scaled_pose = old_pose;
     const Eigen::Isometry3d& with_parent = keyframe.parent.valid() ? motion_[keyframe.parent.slot] : before;
     constexpr double far = 0.2, far_angle = 0.2;  // m, rad
-    const bool has_fled = given[id.slot] != nullptr && may_flee[id.slot] != 0 && keyframe.parent.valid() &&
-                          geometry::exceeds(*given[id.slot] * with_parent * old_pose.inverse(), far, far_angle);
-    if (given[id.slot] != nullptr && !has_fled) {
+    const bool has_diverged = given[id.slot] != nullptr && is_weakly_constrained[id.slot] != 0 &&
+                              keyframe.parent.valid() &&
+                              geometry::exceeds(*given[id.slot] * with_parent * old_pose.inverse(), far, far_angle);
+    if (given[id.slot] != nullptr && !has_diverged) {
       scaled_pose.translation() *= scale;
       poses_.push_back({id, *given[id.slot], false, scale});
       motion = geometry::orthonormalised(given[id.slot]->inverse() * scaled_pose);

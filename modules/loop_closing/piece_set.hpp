@@ -7,18 +7,18 @@
 
 namespace holdfast {
 
-/// A small set of submaps (KeyFrame::piece).
-class PieceSet {
+/// A small set of submaps (KeyFrame::submap).
+class SubmapSet {
  public:
   /// Adds a submap; false if it is contained already.
-  bool add(std::uint32_t piece) {
-    if (std::find(pieces_.begin(), pieces_.end(), piece) != pieces_.end()) return false;
-    pieces_.push_back(piece);
+  bool add(std::uint32_t submap) {
+    if (std::find(submaps_.begin(), submaps_.end(), submap) != submaps_.end()) return false;
+    submaps_.push_back(submap);
     return true;
   }
 
  private:
-  std::vector<std::uint32_t> pieces_;
+  std::vector<std::uint32_t> submaps_;
 };
 
 }  // namespace holdfast

@@ -16,7 +16,8 @@ namespace {
 /// ratio test ignores points within 0.1 m of the nearest one, which are duplicates of a place that was mapped twice.
 /// Match::source is the feature of the frame, Match::feature the point.
 std::vector<FeatureMatch> match_descriptors(const LoopClosingSettings& settings, const FeatureMatcher& matcher,
-                                            const Frame& frame, const SolidFeatures& solid, const PlacePoints& place) {
+                                            const Frame& frame, const LocatedFeatures& located,
+                                            const PlacePoints& place) {
   constexpr double same_spot = 0.1;  // m
   std::vector<std::uint32_t> all(place.size());
   std::iota(all.begin(), all.end(), 0U);
@@ -24,7 +25,7 @@ std::vector<FeatureMatch> match_descriptors(const LoopClosingSettings& settings,
     return (place.positions[other] - place.positions[nearest]).squaredNorm() > same_spot * same_spot;
   };
   std::vector<FeatureMatch> matches;
-  matcher.match(side_of(frame, solid.features), {.descriptors = place.block.descriptors, .selection = all},
+  matcher.match(side_of(frame, located.features), {.descriptors = place.block.descriptors, .selection = all},
                 {.max_distance = match_distance(settings.match_distance, place.block.descriptors.type()),
                  .ratio = static_cast<float>(settings.match_ratio),
                  .is_rival = is_elsewhere},
@@ -46,10 +47,10 @@ int filled_cells(const Frame& frame, std::span<const FeatureMatch> matches) {
 }
 
 /// Scale of the Sim(3) from keyframe to candidate: the median ratio of depths over the matches.
-double scale_of_place(const SolidFeatures& solid, const PlacePoints& place, const CheckedPlace& checked) {
+double scale_of_place(const LocatedFeatures& located, const PlacePoints& place, const CheckedPlace& checked) {
   std::vector<double> ratios;
   for (const FeatureMatch& match : checked.inliers) {
-    const double own = solid.in_camera[match.feature].z();
+    const double own = located.in_camera[match.feature].z();
     const double there = (checked.T_camera_world * place.positions[match.source]).z();
     if (own > 0.0 && there > 0.0) ratios.push_back(there / own);
   }
@@ -59,40 +60,41 @@ double scale_of_place(const SolidFeatures& solid, const PlacePoints& place, cons
 
 }  // namespace
 
-SolidFeatures solid_features(const Frame& frame, const Map& map) {
-  SolidFeatures solid;
-  solid.with_scale = !scale_is_known(map.sensor());
-  solid.in_camera.assign(frame.size(), Eigen::Vector3d::Zero());
+LocatedFeatures located_features(const Frame& frame, const Map& map) {
+  LocatedFeatures located;
+  located.scale_is_free = !scale_is_known(map.sensor());
+  located.in_camera.assign(frame.size(), Eigen::Vector3d::Zero());
   for (std::uint32_t i = 0; i < frame.size(); ++i) {
     if (!is_static(frame, i)) continue;
     if (frame.has_depth(i)) {
-      solid.in_camera[i] = frame.camera_point(i);
+      located.in_camera[i] = frame.camera_point(i);
     } else {
-      const MapPoint* point = solid.with_scale ? map.find_point(frame.map_points[i]) : nullptr;
+      const MapPoint* point = located.scale_is_free ? map.find_point(frame.map_points[i]) : nullptr;
       if (point == nullptr) continue;
-      solid.in_camera[i] = frame.T_camera_world * point->position;
+      located.in_camera[i] = frame.T_camera_world * point->position;
     }
-    solid.features.push_back(i);
+    located.features.push_back(i);
   }
-  return solid;
+  return located;
 }
 
 CheckedPlace check_place(const LoopClosingSettings& settings, const FeatureMatcher& matcher, Optimizer& optimizer,
-                         const Frame& frame, const SolidFeatures& solid, const PlacePoints& place, std::uint64_t seed) {
+                         const Frame& frame, const LocatedFeatures& located, const PlacePoints& place,
+                         std::uint64_t seed) {
   CheckedPlace result;
   if (place.size() == 0) return result;
-  const std::vector<FeatureMatch> matches = match_descriptors(settings, matcher, frame, solid, place);
+  const std::vector<FeatureMatch> matches = match_descriptors(settings, matcher, frame, located, place);
   result.matches = static_cast<int>(matches.size());
   if (result.matches < settings.minimum_aligned) return result;
 
   result.verdict = LoopVerdict::no_alignment;
   std::vector<Eigen::Vector3d> in_camera, in_world;
   for (const FeatureMatch& match : matches) {
-    in_camera.push_back(solid.in_camera[match.source]);
+    in_camera.push_back(located.in_camera[match.source]);
     in_world.push_back(place.positions[match.feature]);
   }
   const auto aligned = geometry::align_points_ransac(in_camera, in_world,
-                                                     {.with_scale = solid.with_scale,
+                                                     {.with_scale = located.scale_is_free,
                                                       .threshold = settings.alignment_threshold,
                                                       .iterations = settings.alignment_iterations,
                                                       .minimum_inliers = settings.minimum_aligned,
@@ -114,7 +116,7 @@ CheckedPlace check_place(const LoopClosingSettings& settings, const FeatureMatch
     for (std::size_t i = 0; i < search.matches.size(); ++i)
       if (problem.inlier[i] != 0) result.inliers.push_back(search.matches[i]);
   }
-  if (solid.with_scale) result.scale = scale_of_place(solid, place, result);
+  if (located.scale_is_free) result.scale = scale_of_place(located, place, result);
   result.expected = search.expected;
   result.cells = filled_cells(frame, result.inliers);
   const int inliers = static_cast<int>(result.inliers.size());
@@ -122,7 +124,7 @@ CheckedPlace check_place(const LoopClosingSettings& settings, const FeatureMatch
   if (inliers < settings.minimum_share * result.expected)
     result.verdict = LoopVerdict::small_share;
   else if (result.cells < settings.minimum_cells)
-    result.verdict = LoopVerdict::one_corner;
+    result.verdict = LoopVerdict::poor_coverage;
   else
     result.verdict = LoopVerdict::closed;
   return result;

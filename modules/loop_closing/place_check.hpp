@@ -16,19 +16,19 @@ struct CheckedPlace {
   LoopVerdict verdict = LoopVerdict::few_matches;
   Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();  ///< of the keyframe, from the candidate's points
   std::vector<matching::FeatureMatch> inliers;                       ///< candidate's points, keyframe's features
-  int matches = 0, aligned = 0, expected = 0, cells = 0;             ///< as in LoopTrial
+  int matches = 0, aligned = 0, expected = 0, cells = 0;             ///< as in CandidateReport
   double scale = 1.0;  ///< scale of the Sim(3) from keyframe to candidate; 1 if depth is measured
 };
 
 /// Static features of a keyframe with a known 3-D position.
-struct SolidFeatures {
+struct LocatedFeatures {
   std::vector<std::uint32_t> features;
   std::vector<Eigen::Vector3d> in_camera;  ///< by index of the frame's features; of others, 0
-  bool with_scale = false;                 ///< positions are those of map points, whose scale may have drifted
+  bool scale_is_free = false;              ///< positions are those of map points, whose scale may have drifted
 };
 
 /// Features with depth; with one camera, features with a map point. The caller holds the map's lock.
-SolidFeatures solid_features(const Frame& frame, const Map& map);
+LocatedFeatures located_features(const Frame& frame, const Map& map);
 
 /// Geometric verification of a loop candidate (Mur-Artal et al. 2015, section VII-B; with depth an SE(3) alignment,
 /// Mur-Artal and Tardos 2017, section III-D; with one camera a Sim(3)): descriptor matching, 3D-3D alignment by RANSAC
@@ -37,6 +37,7 @@ SolidFeatures solid_features(const Frame& frame, const Map& map);
 ///
 /// Needs no lock while the keyframe is not changed: it reads the frame's features and the copied points.
 CheckedPlace check_place(const LoopClosingSettings& settings, const FeatureMatcher& matcher, Optimizer& optimizer,
-                         const Frame& frame, const SolidFeatures& solid, const PlacePoints& place, std::uint64_t seed);
+                         const Frame& frame, const LocatedFeatures& located, const PlacePoints& place,
+                         std::uint64_t seed);
 
 }  // namespace holdfast

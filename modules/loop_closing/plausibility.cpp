@@ -21,27 +21,27 @@ Eigen::Vector3d centre_of(const Eigen::Isometry3d& T_camera_world) {
 }
 }  // namespace
 
-double way_between(const Map& map, KeyFrameId from, KeyFrameId to) {
+double path_length(const Map& map, KeyFrameId from, KeyFrameId to) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
-  std::vector<double> way(map.keyframes().slot_count(), infinite);
+  std::vector<double> lengths(map.keyframes().slot_count(), infinite);
   using Entry = std::pair<double, KeyFrameId>;  // ids break ties, so that the order is the same in every run
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  way[from.slot] = 0.0;
+  lengths[from.slot] = 0.0;
   queue.emplace(0.0, from);
   while (!queue.empty()) {
     const double length = queue.top().first;
     const KeyFrameId id = queue.top().second;
     queue.pop();
     if (id == to) return length;
-    if (length > way[id.slot]) continue;
+    if (length > lengths[id.slot]) continue;
     const KeyFrame& keyframe = map.keyframe(id);
     const Eigen::Isometry3d& pose = keyframe.frame.T_camera_world;
     const auto visit = [&](KeyFrameId next) {
       const Eigen::Isometry3d& other = map.keyframe(next).frame.T_camera_world;
       const double metres = (centre_of(pose) - centre_of(other)).norm();
       const double next_length = length + metres + turn_between(pose, other);
-      if (next_length >= way[next.slot]) return;
-      way[next.slot] = next_length;
+      if (next_length >= lengths[next.slot]) return;
+      lengths[next.slot] = next_length;
       queue.emplace(next_length, next);
     };
     for (const CovisibilityEdge& edge : keyframe.covisible) visit(edge.keyframe);
@@ -56,10 +56,11 @@ PoseChange pose_change(const Eigen::Isometry3d& before, const Eigen::Isometry3d&
   return {(centre_of(before) - centre_of(after)).norm(), turn_between(before, after) * degrees_per_radian};
 }
 
-PoseChange believed_drift(const LoopClosingSettings& settings, double way, bool with_scale) {
+PoseChange drift_bound(const LoopClosingSettings& settings, double path_length, bool scale_is_free) {
   // The scale of one camera drifts, and with it the length of the path.
-  const double per_metre = with_scale ? settings.drift_per_metre_mono : settings.drift_per_metre;
-  return {settings.drift_constant + per_metre * way, settings.turn_constant + settings.turn_per_metre * way};
+  const double per_metre = scale_is_free ? settings.drift_per_metre_mono : settings.drift_per_metre;
+  return {settings.drift_constant + per_metre * path_length,
+          settings.turn_constant + settings.turn_per_metre * path_length};
 }
 
 PlacePoints old_points_in_view(const LoopClosingSettings& settings, const Map& map, KeyFrameId id) {

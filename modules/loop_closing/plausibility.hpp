@@ -11,13 +11,13 @@ namespace holdfast {
 /// The length of an edge is the distance of its cameras plus one metre per radian between them, because rotation
 /// drifts, too. The shortest path and not the travelled one bounds the drift, because revisited places constrain the
 /// pose. Infinite without a path.
-double way_between(const Map& map, KeyFrameId from, KeyFrameId to);
+double path_length(const Map& map, KeyFrameId from, KeyFrameId to);
 
 /// Translation and rotation between two poses of a camera.
 PoseChange pose_change(const Eigen::Isometry3d& T_camera_world_before, const Eigen::Isometry3d& T_camera_world_after);
 
 /// Upper bound of the drift accumulated over a path of this length.
-PoseChange believed_drift(const LoopClosingSettings& settings, double way, bool with_scale);
+PoseChange drift_bound(const LoopClosingSettings& settings, double path_length, bool scale_is_free);
 
 /// Map points predicted to be visible from the current pose of the keyframe that are observed neither by it nor by its
 /// neighbourhood nor by any keyframe younger than `minimum_gap`.

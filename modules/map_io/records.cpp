@@ -360,13 +360,13 @@ MapFeatures read_map_features(ByteReader reader) {
 void write_places(const Map& map, const DenseIndex& index, ByteWriter& writer) {
   std::vector<std::uint32_t> described;
   for (std::uint32_t i = 0; i < index.keyframes().size(); ++i)
-    if (!map.keyframe(index.keyframes()[i]).frame.place.empty()) described.push_back(i);
+    if (!map.keyframe(index.keyframes()[i]).frame.image_descriptor.empty()) described.push_back(i);
   if (described.empty()) return;
-  const DescriptorType type = map.keyframe(index.keyframes()[described.front()]).frame.place.type();
+  const DescriptorType type = map.keyframe(index.keyframes()[described.front()]).frame.image_descriptor.type();
   put(type, writer);
   writer.put(static_cast<std::uint32_t>(described.size()));
   for (const std::uint32_t i : described) {
-    const DescriptorBlock& place = map.keyframe(index.keyframes()[i]).frame.place;
+    const DescriptorBlock& place = map.keyframe(index.keyframes()[i]).frame.image_descriptor;
     HOLDFAST_CHECK(place.type().is_comparable(type),
                    "descriptions of images by " << to_string(place.type()) << " and " << to_string(type));
     writer.put(i);
@@ -386,7 +386,7 @@ void read_places(ByteReader reader, std::vector<KeyFrame>& keyframes) {
                   " and less than " + std::to_string(keyframes.size()));
     next = position + 1;
     const std::uint32_t descriptors = reader.get_count(bytes_per_descriptor(type), "descriptors");
-    get_descriptors(reader, type, descriptors, keyframes[position].frame.place);
+    get_descriptors(reader, type, descriptors, keyframes[position].frame.image_descriptor);
   }
   reader.expect_end();
 }

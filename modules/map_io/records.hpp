@@ -66,7 +66,7 @@ void write_points(const Map& map, const DenseIndex& index, ByteWriter& writer);
 /// Length of the payload of write_features.
 std::uint64_t features_size(std::size_t features, const DescriptorType& type);
 void write_map_features(const MapFeatures& features, ByteWriter& writer);
-/// Frame::place of all keyframes that have one; writes nothing if there is none.
+/// Frame::image_descriptor of all keyframes that have one; writes nothing if there is none.
 void write_places(const Map& map, const DenseIndex& index, ByteWriter& writer);
 /// Names of classes and the labels of all points; writes nothing if there are no classes.
 void write_classes(const Map& map, const DenseIndex& index, ByteWriter& writer);
@@ -83,7 +83,7 @@ void read_features(ByteReader reader, std::uint32_t position, std::uint32_t coun
                    Frame& frame);
 std::vector<MapPoint> read_points(ByteReader reader, const DescriptorType& type);
 MapFeatures read_map_features(ByteReader reader);
-/// Fills Frame::place of the keyframes.
+/// Fills Frame::image_descriptor of the keyframes.
 void read_places(ByteReader reader, std::vector<KeyFrame>& keyframes);
 /// The names; fills MapPoint::label of the points.
 std::vector<std::string> read_classes(ByteReader reader, std::vector<MapPoint>& points);

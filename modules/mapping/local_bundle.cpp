@@ -72,14 +72,15 @@ void LocalMapper::build_bundle_problem(KeyFrameId id) {
 }
 
 void LocalMapper::apply_bundle() {
-  // Ids stay valid: the surgery mutex is held, other threads may only add.
+  // Ids stay valid: the structure mutex is held, other threads may only add.
   for (std::size_t i = 0; i < problem_keyframes_.size(); ++i) {
     if (problem_.poses[i].fixed) continue;
     Eigen::Isometry3d& pose = map_.keyframe(problem_keyframes_[i]).frame.T_camera_world;
     const Eigen::Isometry3d change = problem_.poses[i].T_camera_world * pose.inverse();
     constexpr double far = 0.5, far_angle = 0.5;  // m, rad
-    const bool has_fled = problem_shared_points_[i] < least_shared_points && geometry::exceeds(change, far, far_angle);
-    if (!has_fled) pose = problem_.poses[i].T_camera_world;
+    const bool has_diverged =
+        problem_shared_points_[i] < minimum_shared_points && geometry::exceeds(change, far, far_angle);
+    if (!has_diverged) pose = problem_.poses[i].T_camera_world;
   }
   for (std::size_t p = 0; p < problem_points_.size(); ++p) map_.point(problem_points_[p]).position = problem_.points[p];
   for (std::size_t o = 0; o < problem_.observations.size(); ++o) {
@@ -92,7 +93,7 @@ void LocalMapper::apply_bundle() {
   }
   for (const MapPointId point : problem_points_)
     if (map_.find_point(point) != nullptr) map_.update_point_geometry(point);
-  map_.touch();
+  map_.invalidate_copies();
 }
 
 }  // namespace holdfast

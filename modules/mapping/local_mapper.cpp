@@ -9,17 +9,17 @@
 
 namespace holdfast {
 
-KeyFrameId LocalMapper::insert(const Frame& frame, bool points_wait, StageTimes& times, std::uint32_t piece) {
+KeyFrameId LocalMapper::insert(const Frame& frame, bool points_wait, StageTimes& times, std::uint32_t submap) {
   const StageTimer timer(times, "mapping: insertion");
   const KeyFrameId keyframe = map_.add_keyframe(frame);
-  map_.keyframe(keyframe).piece = piece;
+  map_.keyframe(keyframe).submap = submap;
   ++counts_.keyframes_made;
   drop_moving_features(keyframe);
   if (!points_wait) make_points_from_depth(keyframe);
   for (const MapPointId point : map_.keyframe(keyframe).frame.map_points)
     if (point.valid()) map_.update_point(point);
   link(keyframe);
-  map_.touch();
+  map_.invalidate_copies();
   return keyframe;
 }
 
@@ -46,10 +46,10 @@ void LocalMapper::link(KeyFrameId keyframe) {
   if (map_.keyframe(keyframe).parent.valid()) return;
   // A keyframe without covisible neighbours (pose from odometry) becomes a child of the latest keyframe of its submap.
   const std::vector<KeyFrameId> by_age = map_.keyframes_by_age();
-  const std::uint32_t piece = map_.keyframe(keyframe).piece;
-  const auto last =
-      std::find_if(by_age.rbegin() + 1, by_age.rend(), [&](KeyFrameId id) { return map_.keyframe(id).piece == piece; });
-  if (last != by_age.rend()) map_.hang_on(keyframe, *last);
+  const std::uint32_t submap = map_.keyframe(keyframe).submap;
+  const auto last = std::find_if(by_age.rbegin() + 1, by_age.rend(),
+                                 [&](KeyFrameId id) { return map_.keyframe(id).submap == submap; });
+  if (last != by_age.rend()) map_.set_parent(keyframe, *last);
 }
 
 std::vector<KeyFrameId> LocalMapper::refine(KeyFrameId keyframe, StageTimes& times) {
@@ -82,7 +82,7 @@ std::vector<KeyFrameId> LocalMapper::refine(KeyFrameId keyframe, StageTimes& tim
   const StageTimer timer(times, "mapping: culling");
   const std::lock_guard lock(mutex_);
   std::vector<KeyFrameId> removed = remove_redundant_keyframes(keyframe);
-  map_.touch();
+  map_.invalidate_copies();
   return removed;
 }
 

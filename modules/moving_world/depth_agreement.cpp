@@ -39,7 +39,7 @@ Eigen::Isometry3d DepthAgreement::find_view(const Frame& frame, const Eigen::Iso
   const auto view_at = [&](double steps) { return geometry::exp_se3(steps * motion); };
   double best_steps = 0.0, best_share = share_there;
   const auto try_at = [&](double steps) {
-    const double there = share(frame, view_at(steps) * T_camera_world);
+    const double there = agreeing_share(frame, view_at(steps) * T_camera_world);
     if (there <= best_share) return;
     best_share = there;
     best_steps = steps;
@@ -87,7 +87,7 @@ DepthAgreement::Counts DepthAgreement::count(const Frame& frame, const Eigen::Is
   return counts;
 }
 
-double DepthAgreement::share(const Frame& frame, const Eigen::Isometry3d& T_view_world) const {
+double DepthAgreement::agreeing_share(const Frame& frame, const Eigen::Isometry3d& T_view_world) const {
   const Counts counts = count(frame, T_view_world);
   return counts.compared < settings_.cells ? 0.0 : static_cast<double>(counts.agreeing) / counts.compared;
 }
@@ -97,7 +97,7 @@ bool DepthAgreement::disagrees(const Frame& frame, const Eigen::Isometry3d& T_vi
   return counts.compared >= settings_.cells && static_cast<double>(counts.agreeing) / counts.compared < least_share;
 }
 
-double DepthAgreement::support(const Frame& frame, const Eigen::Isometry3d& T_view_world) const {
+double DepthAgreement::unoccluded_share(const Frame& frame, const Eigen::Isometry3d& T_view_world) const {
   // A pose for which nearly all cells are nearer than the known surfaces is wrong, too.
   const Counts counts = count(frame, T_view_world);
   if (counts.agreeing < settings_.cells || counts.agreeing < settings_.share * counts.compared) return 0.0;

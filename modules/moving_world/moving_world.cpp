@@ -49,7 +49,7 @@ bool MovingWorld::evaluate(FilterStage stage, const TrackedView& view, StageTime
   const StageTimer timer(times, "filters");
   FilterContext inputs = context(view.sensor_frame, view.frame);
   inputs.previous = view.previous;
-  inputs.piece = view.piece;
+  inputs.submap = view.submap;
   if (stage != FilterStage::before_matching) inputs.T_camera_world = &view.frame.T_camera_world;
   filters_.evaluate(stage, inputs);
   return true;
@@ -58,8 +58,8 @@ bool MovingWorld::evaluate(FilterStage stage, const TrackedView& view, StageTime
 void MovingWorld::check_pose(const PosePrediction& prediction, KeyFrameId reference, Frame& frame, StageTimes& times) {
   const StageTimer timer(times, "filters");
   if (!has_depth_ || !depth_agreement_.choose(map_, reference, frame.timestamp)) return;
-  double share = depth_agreement_.share(frame, frame.T_camera_world);
-  const double predicted_share = depth_agreement_.share(frame, prediction.T_camera_world);
+  double share = depth_agreement_.agreeing_share(frame, frame.T_camera_world);
+  const double predicted_share = depth_agreement_.agreeing_share(frame, prediction.T_camera_world);
   if (predicted_share > share + filters_.settings().prediction_lead) {
     frame.T_camera_world = prediction.T_camera_world;
     share = predicted_share;
@@ -73,11 +73,11 @@ bool MovingWorld::contradicts_depth(const Frame& frame, int inliers, bool was_lo
   if (!has_depth_) return false;
   if (filters_.discounts_priors())
     return !depth_agreement_.choose(map_, reference, frame.timestamp) ||
-           depth_agreement_.support(frame, frame.T_view_world()) < limits.fallback_share;
+           depth_agreement_.unoccluded_share(frame, frame.T_view_world()) < limits.fallback_share;
   if (filters_.empty() || inliers >= (was_lost ? limits.depth_check_inliers_lost : limits.depth_check_inliers))
     return false;
   if (!depth_agreement_.choose(map_, reference, frame.timestamp)) return false;
-  return depth_agreement_.share(frame, frame.T_view_world()) <
+  return depth_agreement_.agreeing_share(frame, frame.T_view_world()) <
          (was_lost ? limits.depth_check_share_lost : limits.depth_check_share);
 }
 
@@ -93,7 +93,7 @@ std::optional<Eigen::Isometry3d> MovingWorld::align_depth(const Frame& frame, co
   const StageTimer timer(times, "depth alignment");
   if (!depth_agreement_.choose(map_, reference, frame.timestamp)) return std::nullopt;
   const Eigen::Isometry3d aligned = depth_agreement_.align(frame, frame.coarse.T_view_world(predicted));
-  if (depth_agreement_.support(frame, aligned) < limits.fallback_share) return std::nullopt;
+  if (depth_agreement_.unoccluded_share(frame, aligned) < limits.fallback_share) return std::nullopt;
   return frame.coarse.T_view_camera.inverse() * aligned;
 }
 
@@ -152,7 +152,7 @@ void MovingWorld::evaluate_keyframe(const ArrivedMask& arrived, StageTimes& time
   const StageTimer timer(times, "masks");
   keyframe->frame.coarse.mask = arrived.mask;
   FilterContext inputs = context(arrived.frame, keyframe->frame);
-  inputs.piece = keyframe->piece;
+  inputs.submap = keyframe->submap;
   inputs.T_camera_world = &keyframe->frame.T_camera_world;
   inputs.segmentation = &arrived.segmentation;
   filters_.evaluate_keyframe(inputs, keyframe->frame);

@@ -32,7 +32,8 @@ void SegmentationQueue::segment_in_background(Job& job) {
 }
 
 bool SegmentationQueue::wants(std::uint64_t frame_number) const {
-  return settings_.on == SegmentedFrames::every_n && frame_number % static_cast<std::uint64_t>(settings_.every) == 0;
+  return settings_.frames == SegmentedFrames::every_n &&
+         frame_number % static_cast<std::uint64_t>(settings_.every) == 0;
 }
 
 void SegmentationQueue::push(const SensorFrame& frame, KeyFrameId keyframe, StageTimes& times) {

@@ -11,7 +11,7 @@ inline constexpr Choice<SegmentedFrames> choice_table<SegmentedFrames>[] = {{"ke
 
 void SegmentationSettings::describe(ParameterTable<SegmentationSettings>& table) {
   using S = SegmentationSettings;
-  table.add("on", &S::on,
+  table.add("on", &S::frames,
             "which frames are segmented: keyframes only (Zeng et al. 2023), or also every n-th frame, for comparison");
   table.add("every", &S::every, "with on: every_n, the n").range(1, 1000).unit("frames");
   table

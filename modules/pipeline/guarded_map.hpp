@@ -29,7 +29,7 @@ class HOLDFAST_CAPABILITY("map") GuardedMap {
 
   Map map_;
   MapMutex mutex_;
-  std::mutex structure_mutex_;  // SharedMap::surgery
+  std::mutex structure_mutex_;  // SharedMap::structure_mutex
 };
 
 /// Who waits for the lock of the map: tracking gets it first.

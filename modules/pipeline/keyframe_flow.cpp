@@ -144,7 +144,7 @@ void KeyframeFlow::remove_map(const std::function<void(const LockedMap&)>& forge
 
 void KeyframeFlow::keep_submap(const LockedMap& map, std::uint32_t submap) {
   if (map->keyframes_outside(submap).empty()) return;
-  map->keep_piece(submap);
+  map->keep_submap(submap);
   if (scene_) scene_->forget_removed(map.map());
 }
 
@@ -191,7 +191,7 @@ void KeyframeFlow::describe_image(const LoopJob& job, StageTimes& times) {
   const StageTimer timer(times, "loops: describe");
   DescriptorBlock descriptor = detector_.describe(job.image, moving_world_.moving_pixels(coarse));
   const LockedMap map(map_, LockPriority::background);
-  if (KeyFrame* keyframe = map->find_keyframe(job.keyframe)) keyframe->frame.place = std::move(descriptor);
+  if (KeyFrame* keyframe = map->find_keyframe(job.keyframe)) keyframe->frame.image_descriptor = std::move(descriptor);
 }
 
 bool KeyframeFlow::close_loops(const LoopJob& job, StageTimes& times) {
@@ -250,7 +250,7 @@ const KeptView* KeyframeFlow::keep_view(KeyFrameId keyframe, const SensorFrame& 
 void KeyframeFlow::show_view(const KeptView* view) {
   if (view == nullptr || parts_.observers.empty()) return;
   ObservedView observed{.keyframe = view->keyframe, .timestamp = view->timestamp};
-  observed.points = [this, view](std::size_t most) { return scene_->surface(*view, most); };
+  observed.points = [this, view](std::size_t max_count) { return scene_->surface(*view, max_count); };
   {
     const LockedMap map(map_, LockPriority::tracking);
     observed.T_world_camera = map->pose_of(view->keyframe).inverse();

@@ -183,7 +183,7 @@ KeyFrameId Pipeline::State::insert_keyframe(const LockedMap& locked, const MapRe
     first_keyframe = flow.begin_map(locked, *request.two_views, points, result.times);
     tracker.map_begun(locked, first_keyframe, points);
   }
-  const std::uint32_t submap = request.kind == MapRequest::Kind::new_submap ? locked->new_piece() : request.submap;
+  const std::uint32_t submap = request.kind == MapRequest::Kind::new_submap ? locked->new_submap() : request.submap;
   result.keyframe = flow.insert(locked, tracker.frame(), waits_for_mask, submap, result.times);
   if (is_refined_later()) tracker.keyframe_added(locked, result.keyframe);
   return first_keyframe;

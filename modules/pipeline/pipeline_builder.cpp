@@ -43,7 +43,7 @@ PipelineBuilder& PipelineBuilder::camera(const Camera& camera) {
 }
 PipelineBuilder& PipelineBuilder::camera(const std::string& name) {
   if (const std::optional<Camera> known = find_camera(name)) return camera(*known);
-  complain(origin_.place, "camera '" + name + "' is unknown; " + did_you_mean(name, camera_names()));
+  add_diagnostic(origin_.place, "camera '" + name + "' is unknown; " + did_you_mean(name, camera_names()));
   return camera(Camera{});
 }
 PipelineBuilder& PipelineBuilder::source(const SourceDescription& description) {
@@ -148,7 +148,7 @@ PipelineBuilder& PipelineBuilder::localise_in(Map map) {
   return this->map(std::move(map));
 }
 
-void PipelineBuilder::complain(const SourceLocation& place, std::string message) {
+void PipelineBuilder::add_diagnostic(const SourceLocation& place, std::string message) {
   diagnostics_.push_back({place.file.empty() ? origin_.place : place, std::move(message)});
 }
 
@@ -187,10 +187,10 @@ void PipelineBuilder::check_camera() {
   // The baseline of a real pair is the source's; that of the configured camera is of a virtual one.
   if (source_camera_ && parts_.sensor != Sensor::rgbd) parts_.camera.baseline = source_camera_->baseline;
   if (source_camera_ && has_camera_ && !origin_.unknown_camera && have_other_numbers(*source_camera_, parts_.camera))
-    complain(origin_.source_place,
-             "the source '" + origin_.source_name +
-                 "' brings its own camera, and 'camera' names one with other numbers; remove one of "
-                 "them");
+    add_diagnostic(origin_.source_place,
+                   "the source '" + origin_.source_name +
+                       "' brings its own camera, and 'camera' names one with other numbers; remove one of "
+                       "them");
   if (source_camera_) parts_.camera = *source_camera_;
   if (has_global_shutter_) {
     parts_.camera.readout = 0.0;
@@ -199,14 +199,14 @@ void PipelineBuilder::check_camera() {
   // Without a pair, the baseline only says what counts as near, in the map's own unit.
   if (parts_.sensor == Sensor::mono) parts_.camera.baseline = Camera().baseline;
   if (!source_camera_ && !has_camera_ && origin_.unknown_camera)
-    complain(origin_.unknown_camera->location, origin_.unknown_camera->message);
+    add_diagnostic(origin_.unknown_camera->location, origin_.unknown_camera->message);
   else if (!source_camera_ && !has_camera_) {
     std::string known;
     for (const std::string& name : camera_names()) known += (known.empty() ? "" : ", ") + name;
     const std::string source =
         origin_.source_name.empty() ? "" : ", and the source '" + origin_.source_name + "' does not know its own";
-    complain(origin_.place,
-             "the camera is missing" + source + "; expected 'camera' with a name (" + known + ") or numbers");
+    add_diagnostic(origin_.place,
+                   "the camera is missing" + source + "; expected 'camera' with a name (" + known + ") or numbers");
   }
   judge_camera();
   context_.camera = parts_.camera;
@@ -216,7 +216,7 @@ void PipelineBuilder::judge_camera() {
   const SourceLocation& place = source_camera_ ? origin_.source_place : origin_.place;
   const std::string whose = source_camera_ ? "of the camera that the source '" + origin_.source_name + "' gives, " : "";
   if (const std::string trouble = parts_.camera.trouble(); !trouble.empty()) {
-    complain(place, whose + trouble);
+    add_diagnostic(place, whose + trouble);
     return;
   }
   if (!source_camera_ && origin_.is_camera_judged) return;
@@ -233,17 +233,18 @@ void PipelineBuilder::check_settings() {
   check(parts_.loop_closing, "loop_closing");
   check(parts_.dense_map, "dense_map");
   check(parts_.run, "run");
-  if (const auto reason = parts_.run.contradiction()) complain(origin_.place, *reason);
+  if (const auto reason = parts_.run.contradiction()) add_diagnostic(origin_.place, *reason);
 }
 
 void PipelineBuilder::check_filter(const ModuleOf<DynamicFilter>& module, const Needs& needs) {
   if (needs.depth && parts_.sensor == Sensor::mono)
-    complain(module.place, "the filter '" + module.name +
-                               "' needs depth, and one camera has none; remove it, or choose one that does without, "
-                               "such as 'epipolar_consistency'");
+    add_diagnostic(module.place,
+                   "the filter '" + module.name +
+                       "' needs depth, and one camera has none; remove it, or choose one that does without, "
+                       "such as 'epipolar_consistency'");
   if (needs.segmentation && is_absent(segmenter_))
-    complain(module.place,
-             "the filter '" + module.name + "' needs a segmentation, but the segmenter is 'none'; choose a segmenter");
+    add_diagnostic(module.place, "the filter '" + module.name +
+                                     "' needs a segmentation, but the segmenter is 'none'; choose a segmenter");
 }
 
 void PipelineBuilder::check_classes(const ModuleOf<DynamicFilter>& module, const DynamicFilter& filter) {
@@ -251,10 +252,10 @@ void PipelineBuilder::check_classes(const ModuleOf<DynamicFilter>& module, const
   const std::vector<std::string>& known = parts_.segmenter->classes();
   for (const std::string& name : filter.movable_classes(parts_.segmenter->movable()))
     if (std::find(known.begin(), known.end(), name) == known.end())
-      complain(module.place, "the filter '" + module.name + "' counts the class '" + name +
-                                 "' as movable, and the segmenter '" + segmenter_->name +
-                                 "' has no such class; expected one of its classes in `classes` of the filter; " +
-                                 did_you_mean(name, known));
+      add_diagnostic(module.place, "the filter '" + module.name + "' counts the class '" + name +
+                                       "' as movable, and the segmenter '" + segmenter_->name +
+                                       "' has no such class; expected one of its classes in `classes` of the filter; " +
+                                       did_you_mean(name, known));
 }
 
 /// A map can only be continued by the camera that made it, because bundle adjustment knows one camera, and by the
@@ -297,7 +298,7 @@ void PipelineBuilder::check_places() const {
   if (!needed) return;
   bool has_places = false;
   parts_.map.keyframes().for_each([&](KeyFrameId, const KeyFrame& keyframe) {
-    const DescriptorBlock& place = keyframe.frame.place;
+    const DescriptorBlock& place = keyframe.frame.image_descriptor;
     if (place.empty()) return;
     has_places = true;
     if (!place.type().is_comparable(*needed))
@@ -318,20 +319,21 @@ void PipelineBuilder::choose_sensor() {
   const bool lacks_depth = parts_.sensor == Sensor::rgbd && !has_depth_;
   const bool lacks_right = parts_.sensor == Sensor::stereo && !has_right_;
   if (lacks_depth || lacks_right)
-    complain(origin_.source_place, "the sensor is '" + std::string(sensor_name(parts_.sensor)) + "', and the source '" +
-                                       origin_.source_name + "' has no " + (lacks_depth ? "depth" : "right") +
-                                       " images; expected another source, or another 'sensor'");
+    add_diagnostic(origin_.source_place, "the sensor is '" + std::string(sensor_name(parts_.sensor)) +
+                                             "', and the source '" + origin_.source_name + "' has no " +
+                                             (lacks_depth ? "depth" : "right") +
+                                             " images; expected another source, or another 'sensor'");
   if (parts_.dense_map.enabled && parts_.sensor != Sensor::rgbd)
-    complain(origin_.place, "dense_map needs depth images, and the sensor is '" +
-                                std::string(sensor_name(parts_.sensor)) + "'; remove `dense_map`");
+    add_diagnostic(origin_.place, "dense_map needs depth images, and the sensor is '" +
+                                      std::string(sensor_name(parts_.sensor)) + "'; remove `dense_map`");
   if (parts_.sensor != Sensor::stereo) return;
   if (parts_.tracking.between_keyframes == BetweenKeyframes::flow)
-    complain(origin_.place,
-             "tracking.between_keyframes is 'flow', which does not follow features in the right image of a "
-             "stereo pair; expected 'features'");
+    add_diagnostic(origin_.place,
+                   "tracking.between_keyframes is 'flow', which does not follow features in the right image of a "
+                   "stereo pair; expected 'features'");
   if (!parts_.camera.distortion.is_zero())
-    complain(origin_.place,
-             "the camera of a stereo pair has distortion; expected rectified images, whose camera has none");
+    add_diagnostic(origin_.place,
+                   "the camera of a stereo pair has distortion; expected rectified images, whose camera has none");
   // An extractor that was given as an object exists once: it finds the features of one image after the other.
   if (!features_ || features_->object) return;
   ModuleOf<FeatureExtractor> right(features_->name, features_->values);
@@ -344,12 +346,12 @@ void PipelineBuilder::make_modules() {
   parts_.features = make_if_any(features_);
   parts_.matcher = make_if_any(matcher_);
   if (parts_.features && parts_.matcher) {
-    const std::string trouble = parts_.matcher->trouble_with(parts_.features->descriptor_type());
+    const std::string trouble = parts_.matcher->incompatibility(parts_.features->descriptor_type());
     if (!trouble.empty())
-      complain(matcher_->place, "the matcher '" + matcher_->name + "'" + " " + trouble + ", and " + "the extractor '" +
-                                    parts_.features_name + "'" + " has " +
-                                    to_string(parts_.features->descriptor_type()) +
-                                    "; choose other features, or another matcher");
+      add_diagnostic(matcher_->place, "the matcher '" + matcher_->name + "'" + " " + trouble + ", and " +
+                                          "the extractor '" + parts_.features_name + "'" + " has " +
+                                          to_string(parts_.features->descriptor_type()) +
+                                          "; choose other features, or another matcher");
   }
   parts_.segmenter = make_if_any(segmenter_);
   parts_.optimizer = make_if_any(optimizer_);
@@ -365,22 +367,23 @@ void PipelineBuilder::make_modules() {
   for (ModuleOf<Observer>& module : observers_) parts_.observers.push_back(make(module));
 }
 
-void PipelineBuilder::throw_complaints() {
+void PipelineBuilder::throw_diagnostics() {
   if (!diagnostics_.empty()) throw ConfigurationError(std::move(diagnostics_));
 }
 
 Pipeline PipelineBuilder::build() {
   check_camera();
-  if (!features_) complain(origin_.place, "features() is missing; choose an extractor, such as 'orb'");
-  if (!optimizer_) complain(origin_.place, "optimizer() is missing; choose one, such as 'ceres'");
+  if (!features_) add_diagnostic(origin_.place, "features() is missing; choose an extractor, such as 'orb'");
+  if (!optimizer_) add_diagnostic(origin_.place, "optimizer() is missing; choose one, such as 'ceres'");
   check_settings();
   choose_sensor();
   make_modules();
   if (has_map_ && is_absent(loop_detector_))
-    complain(loop_detector_ ? loop_detector_->place : origin_.place,
-             "a camera in a loaded map finds its place by place recognition, but the loop detector is 'none'; choose "
-             "one, such as 'loop_detector: { flann: {} }'");
-  throw_complaints();
+    add_diagnostic(
+        loop_detector_ ? loop_detector_->place : origin_.place,
+        "a camera in a loaded map finds its place by place recognition, but the loop detector is 'none'; choose "
+        "one, such as 'loop_detector: { flann: {} }'");
+  throw_diagnostics();
   check_effects();
   if (has_map_) check_map();
   return Pipeline(std::move(parts_));
@@ -389,10 +392,10 @@ Pipeline PipelineBuilder::build() {
 std::unique_ptr<Segmenter> PipelineBuilder::build_segmenter() {
   check_camera();
   if (is_absent(segmenter_))
-    complain(segmenter_ ? segmenter_->place : origin_.place,
-             "the segmenter is 'none', which finds nothing; choose one under 'segmenter:', such as 'onnx'");
+    add_diagnostic(segmenter_ ? segmenter_->place : origin_.place,
+                   "the segmenter is 'none', which finds nothing; choose one under 'segmenter:', such as 'onnx'");
   std::unique_ptr<Segmenter> segmenter = make_if_any(segmenter_);
-  throw_complaints();
+  throw_diagnostics();
   return segmenter;
 }
 

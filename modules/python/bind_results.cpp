@@ -21,7 +21,7 @@ py::dict stage_times(const FrameResult& result) {
 
 std::string result_text(const FrameResult& result) {
   std::string text = "FrameResult(index=" + std::to_string(result.index) + ", " + to_string(result.status);
-  if (result.trouble != TrackingTrouble::none) text += std::string(", ") + to_string(result.trouble);
+  if (result.failure != TrackingFailure::none) text += std::string(", ") + to_string(result.failure);
   return text + ", " + std::to_string(result.inliers) + " inliers" + (result.is_keyframe ? ", keyframe)" : ")");
 }
 
@@ -54,7 +54,7 @@ void bind_results(py::module_& module) {
       .def_property_readonly("status", [](const FrameResult& r) { return to_string(r.status); })
       .def_property_readonly("method", [](const FrameResult& r) { return to_string(r.method); })
       .def_property_readonly("fallback", [](const FrameResult& r) { return to_string(r.fallback); })
-      .def_property_readonly("trouble", [](const FrameResult& r) { return to_string(r.trouble); })
+      .def_property_readonly("trouble", [](const FrameResult& r) { return to_string(r.failure); })
       .def_property_readonly("T_world_camera", [](const FrameResult& r) { return pose_array(r.T_world_camera); })
       .def_readonly("features", &FrameResult::features)
       .def_readonly("static_features", &FrameResult::static_features)

@@ -63,9 +63,9 @@ std::uint64_t FrameFeeder::late() const {
   return late_;
 }
 
-double FrameFeeder::latest() const {
+double FrameFeeder::largest_delay() const {
   const std::lock_guard lock(mutex_);
-  return latest_;
+  return largest_delay_;
 }
 
 bool FrameFeeder::wait_until_due(double timestamp, Stopwatch& since_due) {
@@ -79,7 +79,7 @@ bool FrameFeeder::wait_until_due(double timestamp, Stopwatch& since_due) {
   lateness_ = std::max(-wait, 0.0);
   if (wait < 0.0) {
     ++late_;
-    latest_ = std::max(latest_, -wait);
+    largest_delay_ = std::max(largest_delay_, -wait);
   }
   stopped_changed_.wait_for(lock, std::chrono::duration<double>(std::max(wait, 0.0)), [this] { return stopped_; });
   since_due.restart(lateness_);

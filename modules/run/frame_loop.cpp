@@ -109,7 +109,7 @@ void feed_all(BuiltPipeline& built, const RunOptions& options, FrameLoop& loop, 
   record.frame_stamps = feeder->stamps();
   record.threads->frames = feeder->counts();
   record.threads->late = feeder->late();
-  record.threads->latest = feeder->latest();
+  record.threads->largest_delay = feeder->largest_delay();
   record.threads->workers = built.pipeline.worker_counts();
   record.threads->keyframes_deferred = built.pipeline.keyframes_deferred();
 }

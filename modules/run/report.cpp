@@ -74,7 +74,7 @@ ReportTable loop_report(const LoopRecord& record) {
   for (const LoopEvent& event : record.loops)
     table.rows.push_back({fixed_text(event.timestamp, 2), fixed_text(event.candidate_timestamp, 2),
                           std::to_string(event.loop.inliers), std::to_string(event.loop.points_fused),
-                          fixed_text(event.loop.way, 2), fixed_text(event.loop.correction.metres, 4),
+                          fixed_text(event.loop.path_length, 2), fixed_text(event.loop.correction.metres, 4),
                           fixed_text(event.loop.correction.degrees, 2), fixed_text(event.loop.seconds * 1e3, 0)});
   return table;
 }
@@ -116,12 +116,12 @@ ReportSection warning_section(const Warnings& warnings) {
 std::string missing_poses_text(const RunSummary& summary) {
   const std::uint64_t missing = summary.lost() + summary.count(TrackingStatus::waiting);
   if (missing == 0) return "";
-  const std::vector<std::pair<TrackingTrouble, std::size_t>> troubles(summary.troubles().begin(),
-                                                                      summary.troubles().end());
-  const auto most = std::max_element(troubles.begin(), troubles.end(),
+  const std::vector<std::pair<TrackingFailure, std::size_t>> failures(summary.failures().begin(),
+                                                                      summary.failures().end());
+  const auto most = std::max_element(failures.begin(), failures.end(),
                                      [](const auto& a, const auto& b) { return a.second < b.second; });
   const std::string text = " Without a pose: " + counted(missing, "frame") + ", shaded red in the plots";
-  if (most == troubles.end() || most->second == 0) return text + ".";
+  if (most == failures.end() || most->second == 0) return text + ".";
   return text + "; the most frequent trouble is '" + to_string(most->first) + "' (" + counted(most->second, "frame") +
          ").";
 }
@@ -149,7 +149,8 @@ ReportSection error_section(const Evaluation& evaluation, const RunSummary& summ
 
 ReportSection thread_section(const ThreadRecord& record) {
   ReportSection threads = section("Threads");
-  threads.text = "Late frames: " + std::to_string(record.late) + ", at most by " + fixed_text(record.latest * 1e3, 1) +
+  threads.text = "Late frames: " + std::to_string(record.late) + ", at most by " +
+                 fixed_text(record.largest_delay * 1e3, 1) +
                  " ms; keyframes put off: " + std::to_string(record.keyframes_deferred) + ".";
   threads.tables = {thread_report(record)};
   return threads;

@@ -43,7 +43,7 @@ Json queue_json(const QueueCounts& queue) {
 Json threads_json(const ThreadRecord& threads) {
   Json json = {{"frames", queue_json(threads.frames)},
                {"late_frames", threads.late},
-               {"latest_s", threads.latest},
+               {"latest_s", threads.largest_delay},
                {"keyframes_deferred", threads.keyframes_deferred}};
   if (!threads.delays.empty())
     json["frame_to_result"] = {{"median_s", median(threads.delays)},
@@ -69,8 +69,8 @@ Json loops_json(const LoopRecord& record) {
                      {"candidate_timestamp", event.candidate_timestamp},
                      {"inliers", event.loop.inliers},
                      {"points_fused", event.loop.points_fused},
-                     {"joins_pieces", event.loop.joins_pieces},
-                     {"way_m", event.loop.way},
+                     {"joins_pieces", event.loop.joins_submaps},
+                     {"way_m", event.loop.path_length},
                      {"correction_m", event.loop.correction.metres},
                      {"correction_deg", event.loop.correction.degrees},
                      {"seconds", event.loop.seconds}});
@@ -119,7 +119,7 @@ Json frames_json(const RunRecord& record) {
 Json map_json(const RunRecord& record) {
   return {{"keyframes", record.map_keyframes},
           {"points", record.map_points},
-          {"pieces_begun", record.losses.pieces},
+          {"pieces_begun", record.losses.submaps},
           {"keyframes_made", record.mapping.keyframes_made},
           {"keyframes_removed", record.mapping.keyframes_removed},
           {"points_from_depth", record.mapping.points_from_depth},
@@ -167,8 +167,8 @@ std::string run_json(const RunRecord& record) {
   if (const std::string warning = coverage_warning(record); !warning.empty()) warnings.push_back(warning);
   json["perturbation"] = perturbation_json(record.configuration);
   json["frames"] = frames_json(record);
-  Json& troubles = json["troubles"] = Json::object();
-  for (const auto& [trouble, count] : s.troubles()) troubles[to_string(trouble)] = count;
+  Json& failures = json["troubles"] = Json::object();
+  for (const auto& [failure, count] : s.failures()) failures[to_string(failure)] = count;
   Json& skipped = json["skipped_frames"] = Json::array();
   for (const SkippedFrame& frame : record.skipped)
     skipped.push_back({{"index", frame.index}, {"timestamp", frame.timestamp}, {"reason", frame.reason}});

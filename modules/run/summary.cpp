@@ -14,29 +14,29 @@ namespace holdfast {
 
 namespace {
 
-const char* advice(TrackingTrouble trouble) {
-  switch (trouble) {
-    case TrackingTrouble::no_depth:
+const char* advice(TrackingFailure failure) {
+  switch (failure) {
+    case TrackingFailure::no_depth:
       return "Check the depth factor of the source, which gives the metres of a depth value, and that the depth images "
              "belong to the colour images.";
-    case TrackingTrouble::few_features:
+    case TrackingFailure::few_features:
       return "Check that the images are sharp and bright, `count` of the features, and that masks do not cover "
              "everything.";
-    case TrackingTrouble::few_matches:
-    case TrackingTrouble::few_inliers:
+    case TrackingFailure::few_matches:
+    case TrackingFailure::few_inliers:
       return "Check that `camera` is the camera of this recording and the depth factor of the source fits; then how "
              "fast the camera moves, and whether filters or masks leave enough of the static world.";
-    case TrackingTrouble::little_parallax:
+    case TrackingFailure::little_parallax:
       return "One camera begins its map when it has moved sideways or forward by some hundredths of the distance of "
              "what it sees; turning on the spot is not enough.";
-    case TrackingTrouble::no_mask:
+    case TrackingFailure::no_mask:
       return "Check that the segmenter gives results.";
-    case TrackingTrouble::weak_start:
+    case TrackingFailure::weak_start:
       return "One camera needs a start with texture at several depths, and masks that cover the people in view.";
-    case TrackingTrouble::exchanged_pair:
+    case TrackingFailure::exchanged_pair:
       return "The matches of the pairs lie on the wrong side: exchange the left and right images in the settings of "
              "the source (the folders `colour` and `right`, or those of the recording).";
-    case TrackingTrouble::none:
+    case TrackingFailure::none:
       break;
   }
   return "";
@@ -79,10 +79,10 @@ std::string advice_to_restart(const RunRecord& record) {
   if (!features_have_depth(record.sensor) || record.localised_only || record.trajectory.empty() ||
       record.frame_stamps.empty() || tracking_restart_time(record.configuration) > 0.0)
     return "";
-  const auto& troubles = record.summary.troubles();
-  const auto count_of = [&](TrackingTrouble trouble) {
-    const auto found = troubles.find(trouble);
-    return found == troubles.end() ? std::uint64_t{0} : found->second;
+  const auto& failures = record.summary.failures();
+  const auto count_of = [&](TrackingFailure failure) {
+    const auto found = failures.find(failure);
+    return found == failures.end() ? std::uint64_t{0} : found->second;
   };
   const double last_pose = record.trajectory.back().timestamp;
   const double lost_for = *std::max_element(record.frame_stamps.begin(), record.frame_stamps.end()) - last_pose;
@@ -90,12 +90,12 @@ std::string advice_to_restart(const RunRecord& record) {
                                                       [&](double stamp) { return stamp > last_pose; }));
   const auto missing = static_cast<double>(record.frame_stamps.size() - record.trajectory.size());
   const auto unmatched =
-      static_cast<double>(count_of(TrackingTrouble::few_matches) + count_of(TrackingTrouble::few_inliers));
+      static_cast<double>(count_of(TrackingFailure::few_matches) + count_of(TrackingFailure::few_inliers));
   if (lost_for <= suggested || lost < share_of_missing * missing || unmatched < share_of_missing * lost) return "";
   return " The camera was lost " + fixed_text(last_pose - record.frame_stamps.front(), 1) +
          " s after the first frame, and not found again in the " + fixed_text(lost_for, 1) +
          " s that followed. If these show another place, `--set tracking.restart_time=" + fixed_text(suggested, 0) +
-         "` helps: a camera that is lost for so many seconds begins a new piece of the map there, and the piece with "
+         "` helps: a camera that is lost for so many seconds begins a new submap there, and the submap with "
          "most frames is the result.";
 }
 
@@ -130,8 +130,8 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& r
   if (losses.tracked_backwards > 0)
     rows.back().second += ", " + counted(losses.tracked_backwards, "frame") + " tracked backwards";
   if (losses.withdrawn > 0) rows.back().second += ", " + counted(losses.withdrawn, "pose") + " withdrawn";
-  if (losses.pieces > 0)
-    rows.back().second += ", " + counted(losses.pieces, "new piece") + " of the map begun, " +
+  if (losses.submaps > 0)
+    rows.back().second += ", " + counted(losses.submaps, "new submap") + " begun, " +
                           counted(losses.left_out, "frame") + " left out with those that nothing joined";
   const std::uint64_t odometry = s.count(TrackingFallback::odometry);
   const std::uint64_t masked = s.count(TrackingFallback::masked_features);
@@ -184,11 +184,11 @@ std::string coverage_warning(const RunRecord& record) {
                      (record.trajectory.size() == 1 ? " has" : " have") + " a pose (" +
                      percent_text(record.coverage()) + "), less than run.minimum_coverage " +
                      percent_text(record.configuration.run.minimum_coverage) + ".";
-  TrackingTrouble commonest = TrackingTrouble::none;
+  TrackingFailure commonest = TrackingFailure::none;
   std::uint64_t frames = 0;
-  for (const auto& [trouble, count] : record.summary.troubles())
-    if (trouble != TrackingTrouble::none && count > frames) {
-      commonest = trouble;
+  for (const auto& [failure, count] : record.summary.failures())
+    if (failure != TrackingFailure::none && count > frames) {
+      commonest = failure;
       frames = count;
     }
   if (record.skipped.size() > frames)

@@ -9,10 +9,10 @@
 
 namespace holdfast {
 
-void BackwardTracker::keep(const Frame& frame, int most, StageTimes& times) {
-  if (most == 0) return;
+void BackwardTracker::keep(const Frame& frame, int max_count, StageTimes& times) {
+  if (max_count == 0) return;
   if (located_) finish(times);  // lost again, before the last loss was over
-  if (static_cast<int>(frames_.size()) >= most) frames_.pop_front();
+  if (static_cast<int>(frames_.size()) >= max_count) frames_.pop_front();
   frames_.push_back(frame);
 }
 
@@ -65,9 +65,9 @@ bool BackwardTracker::begin(bool now) {
   return true;
 }
 
-void BackwardTracker::track_kept(int most) {
+void BackwardTracker::track_kept(int max_count) {
   constexpr int patience = 3;  // frames in a row without a pose
-  for (int i = 0; i < most && !frames_.empty(); ++i) {
+  for (int i = 0; i < max_count && !frames_.empty(); ++i) {
     Frame frame = std::move(frames_.back());
     frames_.pop_back();
     if (!find_pose(frame)) {

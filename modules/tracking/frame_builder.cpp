@@ -79,7 +79,7 @@ void FrameBuilder::begin(const SensorFrame& sensor_frame, Frame& frame, StageTim
   frame.camera = camera_;
   frame.pyramid = pyramid_;
   frame.T_camera_world.setIdentity();
-  frame.place.clear();
+  frame.image_descriptor.clear();
   if (!is_grey) cv::cvtColor(colour, converted_, cv::COLOR_BGR2GRAY);
   grey_ = is_grey ? colour : converted_;
   if (!stereo_) {

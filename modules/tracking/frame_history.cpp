@@ -40,7 +40,7 @@ bool FrameHistory::add_past(const Frame& frame, KeyFrameId reference, const Map&
 
 std::optional<FrameHistory::PastPose> FrameHistory::past_pose(double timestamp, const Map& map) const {
   const auto found = record_from(timestamp);
-  if (found == records_.end() || found->timestamp != timestamp || !map.piece_of(found->reference)) return std::nullopt;
+  if (found == records_.end() || found->timestamp != timestamp || !map.submap_of(found->reference)) return std::nullopt;
   const KeyFrame* keyframe = map.find_keyframe(found->reference);
   return PastPose{pose_of(*found, map), keyframe != nullptr && keyframe->frame.timestamp == timestamp};
 }
@@ -108,27 +108,28 @@ Eigen::Isometry3d FrameHistory::extrapolate(double timestamp, double share) cons
   return geometry::exp_se3(share * steps * geometry::log_se3(last_.velocity));
 }
 
-std::uint32_t FrameHistory::main_piece(const Map& map) const {
+std::uint32_t FrameHistory::main_submap(const Map& map) const {
   std::map<std::uint32_t, std::size_t> frames;
   for (const Record& record : records_)
-    if (const std::optional<std::uint32_t> piece = map.piece_of(record.reference)) ++frames[*piece];
+    if (const std::optional<std::uint32_t> submap = map.submap_of(record.reference)) ++frames[*submap];
   const auto most =
       std::max_element(frames.begin(), frames.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   return most == frames.end() ? 0 : most->first;
 }
 
 std::size_t FrameHistory::frames_left_out(const Map& map) const {
-  const std::uint32_t piece = main_piece(map);
-  return static_cast<std::size_t>(std::count_if(
-      records_.begin(), records_.end(), [&](const Record& record) { return map.piece_of(record.reference) != piece; }));
+  const std::uint32_t submap = main_submap(map);
+  return static_cast<std::size_t>(std::count_if(records_.begin(), records_.end(), [&](const Record& record) {
+    return map.submap_of(record.reference) != submap;
+  }));
 }
 
 Trajectory FrameHistory::trajectory(const Map& map) const {
   Trajectory trajectory;
   trajectory.reserve(records_.size());
-  const std::uint32_t piece = main_piece(map);
+  const std::uint32_t submap = main_submap(map);
   for (const Record& record : records_) {
-    if (map.piece_of(record.reference) != piece) continue;
+    if (map.submap_of(record.reference) != submap) continue;
     trajectory.push_back({record.timestamp, pose_of(record, map).inverse()});
   }
   return trajectory;

@@ -35,7 +35,8 @@ double FrameTracker::feature_budget(bool has_map) const {
   const auto& probability = context_.previous.static_probability;
   const auto kept = std::count_if(probability.begin(), probability.end(), [](float p) { return is_static(p); });
   const double share = static_cast<double>(kept) / static_cast<double>(context_.previous.size());
-  return std::clamp(context_.settings.crowd_share / std::max(share, 1e-3), 1.0, context_.settings.crowd_features);
+  return std::clamp(context_.settings.feature_boost_below / std::max(share, 1e-3), 1.0,
+                    context_.settings.feature_boost);
 }
 
 bool FrameTracker::locate(TrackedView& view, const PoseSituation& situation, FrameResult& result) {

@@ -8,7 +8,7 @@ namespace holdfast {
 KeyframeSituation KeyframePolicy::measure(const Frame& frame, int inliers, KeyFrameId reference, const Map& map) const {
   const KeyFrame* const keyframe = map.find_keyframe(reference);
   KeyframeSituation situation{.inliers = inliers,
-                              .keyframes = map.keyframes_in(keyframe == nullptr ? 0 : keyframe->piece)};
+                              .keyframes = map.keyframes_in(keyframe == nullptr ? 0 : keyframe->submap)};
   // Established points were observed by another keyframe, too, as soon as there is another.
   const std::size_t enough_observations = situation.keyframes <= 2 ? 1 : 2;
   if (keyframe != nullptr)

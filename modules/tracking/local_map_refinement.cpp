@@ -30,7 +30,7 @@ bool LocalMapRefinement::track_local_map(const TrackedView& view, const PoseSitu
   context_.estimator.drop_outliers(frame);
   context_.matcher.local_map().count_found(frame);
   if (!checks_.accepts(result, situation)) {
-    result.trouble = TrackingTrouble::few_inliers;
+    result.failure = TrackingFailure::few_inliers;
     return false;
   }
   context_.moving_world.accumulate(frame);

@@ -49,7 +49,7 @@ void LossRecovery::submap_begun(bool may_return) {
 void LossRecovery::try_to_return(TrackedView& view, const PoseSituation& situation, FrameResult& result) {
   if (!may_return()) return;
   // A loop has joined the two, or the camera is back.
-  if (context_.map.piece_of(left_reference_).value_or(context_.submap()) == context_.submap()) {
+  if (context_.map.submap_of(left_reference_).value_or(context_.submap()) == context_.submap()) {
     left_keyframe_ = left_reference_ = KeyFrameId();
     return;
   }
@@ -113,7 +113,7 @@ void LossRecovery::finish(StageTimes& times) {
 LossRecord LossRecovery::record() const {
   return {.tracked_backwards = backwards_.tracked(),
           .withdrawn = withdrawn_ + backwards_.withdrawn(),
-          .pieces = submaps_,
+          .submaps = submaps_,
           .left_out = context_.history.frames_left_out(context_.map)};
 }
 

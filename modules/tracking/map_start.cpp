@@ -10,7 +10,7 @@ void MapStart::mark_begun(FrameResult& result) {
   time_ = context_.last_feature_time = context_.current.timestamp;
   result.status = TrackingStatus::initialised;
   result.method = TrackingMethod::none;
-  result.trouble = TrackingTrouble::none;
+  result.failure = TrackingFailure::none;
   result.is_keyframe = true;
   result.inliers = 0;
 }
@@ -28,7 +28,7 @@ bool DepthStart::begin(const SensorFrame& sensor_frame, FrameResult& result) {
     context_.moving_world.evaluate(FilterStage::before_matching, {sensor_frame, nullptr, context_.current},
                                    result.times);
     if (!has_static_depth()) {
-      result.trouble = TrackingTrouble::few_features;
+      result.failure = TrackingFailure::few_features;
       return false;
     }
   }
@@ -38,14 +38,14 @@ bool DepthStart::begin(const SensorFrame& sensor_frame, FrameResult& result) {
 bool DepthStart::begin_at(const Eigen::Isometry3d& T_camera_world, FrameResult& result) {
   Frame& frame = context_.current;
   if (context_.builder.is_pair_exchanged(frame)) {
-    result.trouble = TrackingTrouble::exchanged_pair;
+    result.failure = TrackingFailure::exchanged_pair;
     return false;
   }
   const int minimum = context_.settings.minimum_start_points;
   int with_depth = 0;
   for (std::size_t i = 0; i < frame.size(); ++i) with_depth += frame.has_depth(i) ? 1 : 0;
   if (with_depth < minimum) {
-    result.trouble = result.features < minimum ? TrackingTrouble::few_features : TrackingTrouble::no_depth;
+    result.failure = result.features < minimum ? TrackingFailure::few_features : TrackingFailure::no_depth;
     return false;
   }
   frame.T_camera_world = T_camera_world;
@@ -106,14 +106,14 @@ TwoViewStart::TwoViewStart(TrackingContext& context, const TrackerParts& parts)
 bool TwoViewStart::begin(const SensorFrame& sensor_frame, FrameResult& result) {
   MovingWorld& moving_world = context_.moving_world;
   if (moving_world.expects_masks() && !moving_world.has_mask()) {
-    result.trouble = TrackingTrouble::no_mask;
+    result.failure = TrackingFailure::no_mask;
     return false;
   }
   moving_world.evaluate(FilterStage::before_matching, {sensor_frame, nullptr, context_.current}, result.times);
   moving_world.weight_features(context_.current);
   const StageTimer timer(result.times, "initialisation");
-  result.trouble = initialiser_.add(context_.current);
-  if (result.trouble != TrackingTrouble::none) return false;
+  result.failure = initialiser_.add(context_.current);
+  if (result.failure != TrackingFailure::none) return false;
   support_ = 0.0;
   frames_ = 0;
   mark_begun(result);
@@ -144,7 +144,7 @@ bool TwoViewStart::is_provisional() const { return context_.current.timestamp - 
 
 std::optional<int> TwoViewStart::kept_frames(TrackerState state, const FrameResult& result) const {
   // Without a mask no features are weighted yet.
-  const bool waits = state == TrackerState::waiting && result.trouble != TrackingTrouble::no_mask;
+  const bool waits = state == TrackerState::waiting && result.failure != TrackingFailure::no_mask;
   if (waits || state == TrackerState::provisional) return context_.settings.backward_frames;
   return std::nullopt;
 }

@@ -57,20 +57,20 @@ void MonoInitialiser::match(const Frame& frame, const std::vector<std::uint32_t>
   });
 }
 
-TrackingTrouble MonoInitialiser::add(Frame& frame) {
+TrackingFailure MonoInitialiser::add(Frame& frame) {
   const std::vector<std::uint32_t> features = static_features(frame);
   if (static_cast<int>(features.size()) < settings_.minimum_start_points) {
     has_reference_ = false;
-    return TrackingTrouble::few_features;
+    return TrackingFailure::few_features;
   }
   if (!has_reference_) {
     take_reference(frame);
-    return TrackingTrouble::little_parallax;
+    return TrackingFailure::little_parallax;
   }
   match(frame, features);
   if (static_cast<int>(matches_.size()) < settings_.minimum_start_points) {
     take_reference(frame);
-    return TrackingTrouble::few_matches;
+    return TrackingFailure::few_matches;
   }
   std::vector<geometry::PixelPair> pairs;
   std::vector<double> displacements;
@@ -79,15 +79,15 @@ TrackingTrouble MonoInitialiser::add(Frame& frame) {
     displacements.push_back((pairs.back().a - pairs.back().b).norm());
   }
   constexpr double min_displacement = 0.01;  // of the width; a smaller one cannot be the parallax of many points
-  if (upper_median(displacements) < min_displacement * frame.camera->width) return TrackingTrouble::little_parallax;
+  if (upper_median(displacements) < min_displacement * frame.camera->width) return TrackingFailure::little_parallax;
   // Where more of the matches do not fit, people have been taken for the static world: another moment is better.
   constexpr double min_inliers = 0.8;
   const auto motion = geometry::find_two_view_motion(
       *frame.camera, pairs,
       {.minimum_points = settings_.minimum_start_points / 2, .minimum_inliers = min_inliers, .seed = random_.next()});
-  if (!motion || !adjust(*motion, frame) || !is_certain(pairs, frame)) return TrackingTrouble::little_parallax;
+  if (!motion || !adjust(*motion, frame) || !is_certain(pairs, frame)) return TrackingFailure::little_parallax;
   has_reference_ = false;
-  return TrackingTrouble::none;
+  return TrackingFailure::none;
 }
 
 bool MonoInitialiser::is_certain(const std::vector<geometry::PixelPair>& pairs, const Frame& frame) const {

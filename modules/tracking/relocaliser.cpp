@@ -42,7 +42,7 @@ bool Relocaliser::coast(Frame& frame, FrameResult& result) {
     result.method = TrackingMethod::recovered;
     return true;
   }
-  result.trouble = TrackingTrouble::few_inliers;
+  result.failure = TrackingFailure::few_inliers;
   return false;
 }
 
@@ -75,7 +75,7 @@ bool Relocaliser::align_with_keyframe(KeyFrameId keyframe, const std::optional<E
   const KeyFrame* found = parts_.map.find_keyframe(keyframe);
   if (found == nullptr) return false;
   if (parts_.matcher.match_keyframe(found->frame, frame) < settings_.minimum_matches / 2) {
-    result.trouble = TrackingTrouble::few_matches;
+    result.failure = TrackingFailure::few_matches;
     return false;
   }
   // Matches without prediction contain enough outliers to mislead an adjustment that starts far away: a rigid alignment
@@ -99,7 +99,7 @@ bool Relocaliser::align_with_keyframe(KeyFrameId keyframe, const std::optional<E
   const int inliers = parts_.estimator.adjust(frame);
   parts_.estimator.drop_outliers(frame);
   if (inliers < settings_.minimum_matches / 2) {
-    result.trouble = TrackingTrouble::few_inliers;
+    result.failure = TrackingFailure::few_inliers;
     return false;
   }
   result.method = TrackingMethod::reference_keyframe;
@@ -112,7 +112,8 @@ bool Relocaliser::find_place(const cv::Mat& image, Frame& frame, FrameResult& re
   std::fill(frame.map_points.begin(), frame.map_points.end(), MapPointId());
   parts_.estimator.build_problem(frame);
   const bool of_image = parts_.detector.image_descriptor().has_value();
-  if (of_image) frame.place = parts_.detector.describe(image, parts_.moving_world.moving_pixels(frame.coarse));
+  if (of_image)
+    frame.image_descriptor = parts_.detector.describe(image, parts_.moving_world.moving_pixels(frame.coarse));
   for (const PlaceMatch& place :
        parts_.detector.query(place_descriptors(frame, of_image), settings_.relocalisation_candidates)) {
     const KeyFrame* keyframe = parts_.map.find_keyframe(place.keyframe);
@@ -122,7 +123,7 @@ bool Relocaliser::find_place(const cv::Mat& image, Frame& frame, FrameResult& re
     parts_.estimator.build_problem(frame);
     const geometry::PnpOptions options{.seed = random_.next()};
     if (!geometry::find_pose(parts_.estimator.problem(), options).usable) {
-      result.trouble = TrackingTrouble::few_matches;
+      result.failure = TrackingFailure::few_matches;
       continue;
     }
     frame.T_camera_world = parts_.estimator.problem().T_camera_world;
@@ -139,7 +140,7 @@ bool Relocaliser::fits_surroundings(Frame& frame, FrameResult& result) {
   search_local_map(settings_.relocalisation_window * settings_.local_map_window, frame);
   const int inliers = search_local_map(settings_.local_map_window, frame);
   if (inliers >= settings_.relocalisation_inliers && is_beyond_chance(inliers)) return true;
-  result.trouble = TrackingTrouble::few_inliers;
+  result.failure = TrackingFailure::few_inliers;
   return false;
 }
 

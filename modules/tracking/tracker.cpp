@@ -54,7 +54,7 @@ MapRequest Tracker::track(const SensorFrame& sensor_frame, FrameResult& result) 
   MapRequest request;
   if (found && start_->is_weak(result)) {
     found = false;
-    result.trouble = TrackingTrouble::weak_start;
+    result.failure = TrackingFailure::weak_start;
     request.kind = MapRequest::Kind::give_up;
   } else if (!found) {
     request = answer_loss(result);
@@ -110,7 +110,7 @@ void Tracker::found_pose(FrameResult& result) {
                        frame_tracker_.has_own_features() &&
                        (on_map ? keyframes_.is_due(result) : frame_tracker_.extends_map());
   if (on_map || result.is_keyframe) context_.last_feature_time = context_.current.timestamp;
-  result.trouble = TrackingTrouble::none;
+  result.failure = TrackingFailure::none;
   result.objects = context_.moving_world.objects();
   if (result.is_keyframe) context_.matcher.local_map().write_counts(context_.map);  // mapping evaluates points by them
 }

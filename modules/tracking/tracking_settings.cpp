@@ -81,11 +81,11 @@ void describe_extraction(ParameterTable<S>& table) {
            "share of the followed map points that must agree with a pose by flow; otherwise the frame gets features")
       .range(0.1, 1);
   table
-      .add("crowd_features", &S::crowd_features,
+      .add("crowd_features", &S::feature_boost,
            "factor on the extractor's number of features, at most, where moving things leave few static ones; 1 = off")
       .range(1, 10);
   table
-      .add("crowd_share", &S::crowd_share,
+      .add("crowd_share", &S::feature_boost_below,
            "share of the previous frame's features that were static, below which there are more of them: so many that "
            "the number of static ones stays at this share of the extractor's")
       .range(0, 1);
@@ -179,8 +179,8 @@ void describe_losses(ParameterTable<S>& table) {
       .unit("s");
   table
       .add("restart_time", &S::restart_time,
-           "a camera that is lost for longer than this begins a new piece of the map where the motion model puts it; "
-           "the first place that is seen in both joins it with the rest, and frames of pieces that nothing joins have "
+           "a camera that is lost for longer than this begins a new submap where the motion model puts it; "
+           "the first place that is seen in both joins it with the rest, and frames of submaps that nothing joins have "
            "no pose in the end; 0 = never (always so with one camera)")
       .range(0, 1000)
       .unit("s");

@@ -175,7 +175,7 @@ void Scene::describe_state(Message& message) const {
   state["status_number"] = status_number(last_->status, last_->method);
   state["method"] = to_string(last_->method);
   state["fallback"] = to_string(last_->fallback);
-  state["trouble"] = to_string(last_->trouble);
+  state["trouble"] = to_string(last_->failure);
   state["features"] = last_->features;
   state["static_features"] = last_->static_features;
   state["matches"] = last_->matches;

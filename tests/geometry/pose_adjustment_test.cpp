@@ -62,7 +62,7 @@ TEST(AdjustPose, StopsWhereTheCostIsLeast) {
   synthetic::PoseCase c = synthetic::pose_case(camera, 200, 1.0, 0.0, 3);
   for (std::size_t i = 0; i < c.problem.size(); ++i) c.problem.weight[i] = 0.2f + 0.004f * static_cast<float>(i);
   PoseAdjustmentOptions everything;  // limits that no observation reaches: one plain least-squares problem
-  everything.limit_two = everything.limit_three = 1e6;
+  everything.chi_square_2d = everything.chi_square_3d = 1e6;
   everything.disparity_threshold = 1e3;
   const PoseSummary summary = adjust_pose(c.problem, everything);
   ASSERT_TRUE(summary.usable);

@@ -34,9 +34,9 @@ class FullAdjustmentTest : public testing::Test {
   test::RingWorld world;
   Map map;
   MapMutex map_mutex;
-  std::mutex surgery;
+  std::mutex structure_mutex;
   std::unique_ptr<Optimizer> optimizer = make_optimizer();
-  FullAdjustment adjustment{LoopClosingSettings{}, {map, map_mutex, surgery}, *optimizer};
+  FullAdjustment adjustment{LoopClosingSettings{}, {map, map_mutex, structure_mutex}, *optimizer};
   KeyFrameId last;
 };
 
@@ -92,7 +92,7 @@ TEST_F(FullAdjustmentTest, AKeyframeThatFewPointsHoldDoesNotFlee) {
   ASSERT_GT(points.size(), 70U);
   const KeyFrameId parent = map.keyframe(last).parent;
   Flight flight;
-  FullAdjustment fleeing{LoopClosingSettings{}, {map, map_mutex, surgery}, flight};
+  FullAdjustment fleeing{LoopClosingSettings{}, {map, map_mutex, structure_mutex}, flight};
   for (const std::size_t left : {70U, 40U}) {
     for (std::size_t i = left; i < points.size(); ++i) map.remove_observation(points[i], last);
     points.resize(left);

@@ -46,7 +46,8 @@ class LoopCloserTest : public testing::Test {
     make_closer();
   }
   void make_closer() {
-    closer = std::make_unique<LoopCloser>(settings, SharedMap{map, map_mutex, surgery}, detector, *optimizer, 1);
+    closer =
+        std::make_unique<LoopCloser>(settings, SharedMap{map, map_mutex, structure_mutex}, detector, *optimizer, 1);
   }
   /// Keyframes from one angle to another, each offered to the closer until it closes a loop.
   std::optional<ClosedLoop> walk(test::RingWorld& world, double from, double to, int keyframes) {
@@ -62,7 +63,7 @@ class LoopCloserTest : public testing::Test {
   LoopClosingSettings settings;
   Map map;
   MapMutex map_mutex;
-  std::mutex surgery;
+  std::mutex structure_mutex;
   test::BruteForceDetector detector;
   std::unique_ptr<Optimizer> ceres;
   std::unique_ptr<InterruptedOptimizer> optimizer;
@@ -111,7 +112,7 @@ TEST_F(LoopCloserTest, SameInputSameBits) {
   }
 }
 
-TEST_F(LoopCloserTest, APlaceSeenInTwoPiecesJoinsThem) {
+TEST_F(LoopCloserTest, APlaceSeenInTwoSubmapsJoinsThem) {
   // Lost for a while, the camera goes on where it believes to be: a metre and 40 degrees from where it is.
   test::RingWorld world(0.0);
   world.add_wall(0, round_trip, 2500);
@@ -119,29 +120,29 @@ TEST_F(LoopCloserTest, APlaceSeenInTwoPiecesJoinsThem) {
   Eigen::Isometry3d mistake = Eigen::Isometry3d::Identity();
   mistake.linear() = Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitY()).toRotationMatrix();
   mistake.translation() = Eigen::Vector3d(1.0, 0.1, 0.2);
-  world.begin_piece(map, mistake);
+  world.begin_submap(map, mistake);
   const auto loop = walk(world, 0.5 * round_trip, 1.2 * round_trip, 42);
   ASSERT_TRUE(loop);
-  EXPECT_TRUE(loop->joins_pieces);
+  EXPECT_TRUE(loop->joins_submaps);
   EXPECT_GT(error_before, 0.9);
   EXPECT_LT(world.largest_error(map), 0.05);  // of 24 keyframes, which moved as one
-  map.keyframes().for_each([](KeyFrameId, const KeyFrame& keyframe) { EXPECT_EQ(keyframe.piece, 0U); });
+  map.keyframes().for_each([](KeyFrameId, const KeyFrame& keyframe) { EXPECT_EQ(keyframe.submap, 0U); });
   test::expect_consistent(map);
 }
 
-TEST_F(LoopCloserTest, ALoopLeavesOtherPiecesWhereTheyAre) {
+TEST_F(LoopCloserTest, ALoopLeavesOtherSubmapsWhereTheyAre) {
   test::RingWorld world;
   world.add_wall(0, round_trip, 2500);
   walk(world, 0, 0.1 * round_trip, 6);
-  const KeyFrameId of_first_piece = map.keyframes().ids().front();
-  const Eigen::Matrix4d before = map.pose_of(of_first_piece).matrix();
-  world.begin_piece(map, Eigen::Isometry3d(Eigen::Translation3d(1.0, 0.0, 0.0)));
-  detector.clear();  // it recognises the second piece only
+  const KeyFrameId of_first_submap = map.keyframes().ids().front();
+  const Eigen::Matrix4d before = map.pose_of(of_first_submap).matrix();
+  world.begin_submap(map, Eigen::Isometry3d(Eigen::Translation3d(1.0, 0.0, 0.0)));
+  detector.clear();  // it recognises the second submap only
   const auto loop = walk(world, 0.2 * round_trip, 1.4 * round_trip, 72);
   ASSERT_TRUE(loop);
-  EXPECT_FALSE(loop->joins_pieces);
-  EXPECT_TRUE(map.pose_of(of_first_piece).matrix() == before);
-  EXPECT_EQ(map.keyframe(loop->keyframe).piece, 1U);
+  EXPECT_FALSE(loop->joins_submaps);
+  EXPECT_TRUE(map.pose_of(of_first_submap).matrix() == before);
+  EXPECT_EQ(map.keyframe(loop->keyframe).submap, 1U);
 }
 
 TEST_F(LoopCloserTest, LookAlikePlaceIsRefused) {
@@ -231,7 +232,7 @@ TEST_F(LoopCloserTest, UnsolvedGraphLeavesTheMapAlone) {
 }
 
 TEST_F(LoopCloserTest, NewLoopStopsAFullAdjustment) {
-  FullAdjustment adjustment(settings, {map, map_mutex, surgery}, *optimizer);
+  FullAdjustment adjustment(settings, {map, map_mutex, structure_mutex}, *optimizer);
   closer->set_full_adjustment(&adjustment);
   test::RingWorld world;
   world.add_wall(0, round_trip, 2500);

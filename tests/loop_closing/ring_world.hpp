@@ -83,7 +83,7 @@ class RingWorld {
       if (known->second.sequence + memory >= map.next_sequence()) frame.map_points[i] = known->second.point;
     }
     const KeyFrameId id = map.add_keyframe(frame);
-    map.keyframe(id).piece = piece_;
+    map.keyframe(id).submap = submap_;
     const KeyFrame& keyframe = map.keyframe(id);
     for (std::uint32_t i = 0; i < keyframe.frame.size(); ++i) {
       MapPointId point = keyframe.frame.map_points[i];
@@ -100,11 +100,11 @@ class RingWorld {
     return id;
   }
 
-  /// The next keyframe begins a new piece of the map, with a pose that is off by `mistake` and none of the points.
-  void begin_piece(Map& map, const Eigen::Isometry3d& mistake) {
+  /// The next keyframe begins a new submap, with a pose that is off by `mistake` and none of the points.
+  void begin_submap(Map& map, const Eigen::Isometry3d& mistake) {
     latest_.clear();
     mistake_ = mistake;
-    piece_ = map.new_piece();
+    submap_ = map.new_submap();
   }
 
   /// Largest distance of a keyframe from where it truly is.
@@ -173,7 +173,7 @@ class RingWorld {
   std::shared_ptr<const ScalePyramid> pyramid_;
   Eigen::Isometry3d drift_;
   Eigen::Isometry3d mistake_ = Eigen::Isometry3d::Identity();
-  std::uint32_t piece_ = 0;
+  std::uint32_t submap_ = 0;
   std::vector<Eigen::Vector3d> points_;
   std::vector<Descriptor256> descriptors_;
   std::vector<std::size_t> shown_;  // of the last frame

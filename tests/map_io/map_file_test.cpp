@@ -71,7 +71,7 @@ void expect_same_frame(const Frame& a, const Frame& b) {
   expect_same_bits(a.depth, b.depth);
   expect_same_bits(a.right_x, b.right_x);
   expect_same_bits(a.static_probability, b.static_probability);
-  EXPECT_TRUE(a.place.empty() ? b.place.empty() : a.place == b.place);
+  EXPECT_TRUE(a.image_descriptor.empty() ? b.image_descriptor.empty() : a.image_descriptor == b.image_descriptor);
 }
 
 void expect_same(const Map& a, const Map& b) {
@@ -258,7 +258,7 @@ TEST_F(MapFile, HoldsDescriptionsOfImages) {
     DescriptorBlock place(type, count++ % 3);
     for (std::size_t i = 0; i < place.size(); ++i)
       for (float& number : place.numbers(i)) number = value += 0.01F;
-    map.keyframe(id).frame.place = std::move(place);
+    map.keyframe(id).frame.image_descriptor = std::move(place);
   }
   const std::string bytes = bytes_of(map);
   write("map.hfm", bytes);

@@ -187,7 +187,7 @@ TEST_F(LocalMapperTest, KeyframesWithoutClosePointsAreRemovedOnceTheyAreOld) {
   ASSERT_EQ(map.keyframes().size(), 6U) << "the depth of recent ones is needed";
   for (int i = 0; i < 200; ++i) {
     const KeyFrameId other = map.add_keyframe(frame_at(beside(-50.0)));
-    map.hang_on(other, first);
+    map.set_parent(other, first);
     map.remove_keyframe(other);
   }
   const KeyFrameId last = add(0.006);

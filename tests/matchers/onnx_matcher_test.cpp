@@ -114,8 +114,8 @@ TEST(OnnxMatcher, WhatDoesNotFitIsNamed) {
   bits.features.descriptors.reset(DescriptorType(), 10);
   const auto all = every(1, bits);
   std::vector<FeatureMatch> matches;
-  EXPECT_NE(matcher.trouble_with(DescriptorType()).find("float32"), std::string::npos);
-  EXPECT_EQ(matcher.trouble_with(drawn_frame(1, 1).features.descriptors.type()), "");
+  EXPECT_NE(matcher.incompatibility(DescriptorType()).find("float32"), std::string::npos);
+  EXPECT_EQ(matcher.incompatibility(drawn_frame(1, 1).features.descriptors.type()), "");
   EXPECT_THROW(matcher.match(side_of(bits, all), side_of(bits, all), {}, matches), InputError);
 }
 

@@ -57,7 +57,7 @@ class DepthAgreementTest : public testing::Test {
 TEST_F(DepthAgreementTest, WithoutAKeyframeThereIsNothingToCompareWith) {
   EXPECT_FALSE(agreement.choose(map, KeyFrameId(), 1.0));
   const Frame frame = furnished_room().frame(origin, 1.0);
-  EXPECT_EQ(agreement.share(frame, origin), 0.0);
+  EXPECT_EQ(agreement.agreeing_share(frame, origin), 0.0);
   Frame blind = furnished_room().frame(origin, 0.0, 40);
   blind.coarse.depth.clear();
   EXPECT_FALSE(agreement.choose(map, map.add_keyframe(std::move(blind)), 1.0));
@@ -68,13 +68,13 @@ TEST_F(DepthAgreementTest, TheTruePoseAgreesBest) {
   for (const Isometry3d& T_world_camera : {origin, pose(6, {0.1, 0.0, 0.05}), pose(-5, {-0.15, 0.1, 0.2})}) {
     const Frame frame = furnished_room().frame(T_world_camera, 2.0);
     const Isometry3d truth = T_world_camera.inverse();
-    const double best = agreement.share(frame, truth);
+    const double best = agreement.agreeing_share(frame, truth);
     EXPECT_GE(best, 0.9);
     for (const double sign : {-1.0, 1.0}) {
       for (const Isometry3d& error : {pose(2 * sign, Vector3d::Zero()), pose(0, {0, 0, 0.05 * sign}),
                                       pose(0, {0.1 * sign, 0, 0}), pose(0, {0, 0.1 * sign, 0})})
-        EXPECT_LE(agreement.share(frame, error * truth), best - 0.02);
-      EXPECT_LE(agreement.share(frame, pose(0, {0, 0, 0.1 * sign}) * truth), 0.2);
+        EXPECT_LE(agreement.agreeing_share(frame, error * truth), best - 0.02);
+      EXPECT_LE(agreement.agreeing_share(frame, pose(0, {0, 0, 0.1 * sign}) * truth), 0.2);
     }
   }
 }
@@ -83,10 +83,10 @@ TEST_F(DepthAgreementTest, PeopleLeaveTheRoomToDecide) {
   ASSERT_TRUE(agreement.choose(map, keyframe(furnished_room(), 0.0), 2.0));
   const Isometry3d T_world_camera = pose(3, {0.1, 0, 0});
   const Frame frame = with_person(0.1).frame(T_world_camera, 2.0);
-  const double share = agreement.share(frame, T_world_camera.inverse());
+  const double share = agreement.agreeing_share(frame, T_world_camera.inverse());
   EXPECT_GE(share, 0.6);
   EXPECT_LE(share, 0.9);
-  EXPECT_GE(share, agreement.share(frame, pose(2, {0, 0, 0}) * T_world_camera.inverse()) + 0.02);
+  EXPECT_GE(share, agreement.agreeing_share(frame, pose(2, {0, 0, 0}) * T_world_camera.inverse()) + 0.02);
 }
 
 TEST_F(DepthAgreementTest, OldKeyframesAreBelievedRatherThanYoungOnes) {
@@ -94,37 +94,37 @@ TEST_F(DepthAgreementTest, OldKeyframesAreBelievedRatherThanYoungOnes) {
   const KeyFrameId young = keyframe(with_person(0.0), 1.8);
   const Frame frame = with_person(0.0).frame(origin, 2.0);
   ASSERT_TRUE(agreement.choose(map, young, 2.0));
-  EXPECT_GE(agreement.share(frame, origin), 0.99);  // there is no other
+  EXPECT_GE(agreement.agreeing_share(frame, origin), 0.99);  // there is no other
   const KeyFrameId old = keyframe(furnished_room(), 1.0);
   ASSERT_TRUE(agreement.choose(map, young, 2.0));
-  const double share = agreement.share(frame, origin);
+  const double share = agreement.agreeing_share(frame, origin);
   EXPECT_LE(share, 0.9);
   // The young one had no part in it.
   Map without;
   const KeyFrameId alone = without.add_keyframe(map.keyframe(old).frame);
   ASSERT_TRUE(agreement.choose(without, alone, 2.0));
-  EXPECT_EQ(agreement.share(frame, origin), share);
+  EXPECT_EQ(agreement.agreeing_share(frame, origin), share);
 }
 
 TEST_F(DepthAgreementTest, WhatMovedInAKeyframeDoesNotCount) {
   const KeyFrameId id = keyframe(with_person(0.0), 0.0);
   const Frame frame = furnished_room().frame(origin, 2.0);
   ASSERT_TRUE(agreement.choose(map, id, 2.0));
-  EXPECT_LE(agreement.share(frame, origin), 0.9);
+  EXPECT_LE(agreement.agreeing_share(frame, origin), 0.9);
   CoarseView& view = map.keyframe(id).frame.coarse;
   for (const float depth : view.depth) view.static_log_odds.push_back(depth < 1.6F ? -1.0F : 0.0F);
-  EXPECT_GE(agreement.share(frame, origin), 0.99);
+  EXPECT_GE(agreement.agreeing_share(frame, origin), 0.99);
 }
 
 TEST_F(DepthAgreementTest, TooLittleInCommonIsNoAgreement) {
   ASSERT_TRUE(agreement.choose(map, keyframe(furnished_room(), 0.0), 2.0));
   const Frame frame = furnished_room().frame(origin, 2.0);
-  EXPECT_EQ(agreement.share(frame, pose(120, Vector3d::Zero())), 0.0);
+  EXPECT_EQ(agreement.agreeing_share(frame, pose(120, Vector3d::Zero())), 0.0);
   const auto share_of_rows = [&](int rows) {
     Frame nearly_blind = frame;
     std::fill(nearly_blind.coarse.depth.begin() + rows * frame.coarse.grid.columns, nearly_blind.coarse.depth.end(),
               0.0F);
-    return agreement.share(nearly_blind, origin);
+    return agreement.agreeing_share(nearly_blind, origin);
   };
   EXPECT_EQ(share_of_rows(5), 0.0);
   EXPECT_GE(share_of_rows(12), 0.99);
@@ -137,7 +137,8 @@ TEST_F(DepthAgreementTest, FindsWhereOnTheWayTheDepthWasTaken) {
   for (const double steps : {0.0, 0.4, -0.6, 0.8}) {
     const Isometry3d T_view_camera = geometry::exp_se3(steps * geometry::log_se3(step));
     const Frame frame = furnished_room().frame((T_view_camera * T_camera_world).inverse(), 2.0);
-    const Isometry3d found = agreement.find_view(frame, T_camera_world, agreement.share(frame, T_camera_world), step);
+    const Isometry3d found =
+        agreement.find_view(frame, T_camera_world, agreement.agreeing_share(frame, T_camera_world), step);
     const double found_steps = geometry::log_se3(found).norm() / geometry::log_se3(step).norm();
     EXPECT_NEAR(found_steps, std::abs(steps), 0.05) << steps;
     EXPECT_LE((found.translation() - T_view_camera.translation()).norm(), 0.05 * step.translation().norm()) << steps;
@@ -147,13 +148,13 @@ TEST_F(DepthAgreementTest, FindsWhereOnTheWayTheDepthWasTaken) {
 TEST_F(DepthAgreementTest, ASupportedPoseMayBeOccludedButMustNotSeeThroughSurfaces) {
   ASSERT_TRUE(agreement.choose(map, keyframe(furnished_room(), 0.0), 2.0));
   const Frame frame = with_person(0.1).frame(origin, 2.0);
-  EXPECT_LE(agreement.share(frame, origin), 0.9);
-  EXPECT_GE(agreement.support(frame, origin), 0.98);
-  EXPECT_LE(agreement.support(frame, pose(0, {0, 0, 0.15})), 0.6);
-  EXPECT_LE(agreement.support(frame, pose(0, {0, 0, -0.15})), 0.6);
+  EXPECT_LE(agreement.agreeing_share(frame, origin), 0.9);
+  EXPECT_GE(agreement.unoccluded_share(frame, origin), 0.98);
+  EXPECT_LE(agreement.unoccluded_share(frame, pose(0, {0, 0, 0.15})), 0.6);
+  EXPECT_LE(agreement.unoccluded_share(frame, pose(0, {0, 0, -0.15})), 0.6);
   Frame blind = frame;
   std::fill(blind.coarse.depth.begin(), blind.coarse.depth.end(), 0.0F);
-  EXPECT_EQ(agreement.support(blind, origin), 0.0);
+  EXPECT_EQ(agreement.unoccluded_share(blind, origin), 0.0);
 }
 
 TEST_F(DepthAgreementTest, DepthAloneFindsThePose) {

@@ -93,7 +93,7 @@ class MovingWorldTest : public testing::Test {
     return MovingWorld({.camera = Camera(),
                         .filters = std::move(filters),
                         .segmenter = &segmenter,
-                        .segmentation = {.on = on, .every = 3, .latency = latency}},
+                        .segmentation = {.frames = on, .every = 3, .latency = latency}},
                        map);
   }
   /// Goes through a frame as tracker and pipeline do, up to the request of its mask.

@@ -154,8 +154,8 @@ TEST(SegmentationQueue, WhatALoadingSegmenterThrowsComesWhenItsResultIsNeeded) {
 
 TEST(SegmentationQueue, WantsEveryNthFrameOnlyWhenAsked) {
   Stamper segmenter;
-  const SegmentationQueue keyframes(segmenter, {.on = SegmentedFrames::keyframes, .every = 4}, false);
-  const SegmentationQueue every(segmenter, {.on = SegmentedFrames::every_n, .every = 4}, false);
+  const SegmentationQueue keyframes(segmenter, {.frames = SegmentedFrames::keyframes, .every = 4}, false);
+  const SegmentationQueue every(segmenter, {.frames = SegmentedFrames::every_n, .every = 4}, false);
   int wanted = 0;
   for (std::uint64_t i = 0; i < 40; ++i) {
     EXPECT_FALSE(keyframes.wants(i));

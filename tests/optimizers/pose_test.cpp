@@ -58,7 +58,7 @@ double disagreement(double outliers, double limit, bool is_robust, std::uint64_t
       {"function_tolerance", 1e-12}, {"chi_square_two", limit}, {"chi_square_three", limit}};
   EXPECT_TRUE(make(settings)->optimize_bundle(bundle, stop).usable);
   geometry::PoseAdjustmentOptions options;
-  options.limit_two = options.limit_three = limit;
+  options.chi_square_2d = options.chi_square_3d = limit;
   options.robust_rounds = is_robust ? 1 : 0;
   options.final_rounds = is_robust ? 0 : 1;
   options.iterations = 50;

@@ -48,7 +48,7 @@ struct Prepared {
     BundleView view = arrays.view();
     view.fx = camera.fx, view.fy = camera.fy, view.cx = camera.cx, view.cy = camera.cy;
     view.baseline = camera.baseline;
-    view.limit_two = geometry::chi_square_two, view.limit_three = geometry::chi_square_three;
+    view.chi_square_2d = geometry::chi_square_two, view.chi_square_3d = geometry::chi_square_three;
     view.disparity_scale = 1.0 / geometry::disparity_sigma;
     view.disparity_limit = geometry::disparity_threshold * geometry::disparity_threshold;
     view.is_robust = is_robust;

@@ -116,7 +116,7 @@ TEST_F(MonoTest, AMapThatGrowsLessThanRequiredIsGivenUp) {
       for (std::uint64_t index = 0; index < 240; ++index) {
         const FrameResult result = feed(pipeline, index);
         if (result.status == TrackingStatus::tracked) ++tracked_afterwards;
-        if (result.trouble != TrackingTrouble::weak_start) continue;
+        if (result.failure != TrackingFailure::weak_start) continue;
         ++given_up;
         EXPECT_EQ(result.status, TrackingStatus::lost);
         EXPECT_FALSE(result.T_world_camera);

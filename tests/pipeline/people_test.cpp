@@ -141,7 +141,7 @@ struct WholeRun {
     parts.segmentation.latency = options.latency;
     parts.tracking.start_share = options.start_share;
     parts.segmentation.new_view_share = options.new_view_share;
-    parts.segmentation.on = options.on;
+    parts.segmentation.frames = options.on;
     if (options.threaded) parts.run.mode = RunMode::threaded;
     if (!options.filters) return parts;
     parts.segmenter = std::make_unique<Noting>(registry.create<Segmenter>("truth", {}, context), segmented,

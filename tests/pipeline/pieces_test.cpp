@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A lost camera goes on in a new piece of the map.
+// A lost camera goes on in a new submap.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -45,7 +45,7 @@ class HalfExtractor final : public FeatureExtractor {
   const Half& shown_;
 };
 
-class PiecesTest : public testing::Test {
+class SubmapsTest : public testing::Test {
  protected:
   using Half = HalfExtractor::Half;
 
@@ -69,11 +69,11 @@ class PiecesTest : public testing::Test {
   static bool has_joined(const Pipeline& pipeline) {
     const std::vector<LoopEvent> loops = pipeline.loop_record().loops;
     return std::any_of(loops.begin(), loops.end(), [](const LoopEvent& event) {
-      return event.loop.joins_pieces && event.loop.correction.metres > 0.1;
+      return event.loop.joins_submaps && event.loop.correction.metres > 0.1;
     });
   }
   /// Two seconds of each: the first half, darkness of half a second, in which the camera goes elsewhere, the second
-  /// half, and both if `comes_back`. `until_joined`: both are shown until the pieces are joined, for half a minute at
+  /// half, and both if `comes_back`. `until_joined`: both are shown until the submaps are joined, for half a minute at
   /// most, because few frames of two seconds become keyframes where threads share a busy machine. `begin`: the first
   /// frame.
   void drive(Pipeline& pipeline, bool comes_back, bool until_joined = false, int begin = 0) {
@@ -103,7 +103,7 @@ class PiecesTest : public testing::Test {
   int began = 0;
 };
 
-TEST_F(PiecesTest, APlaceSeenInBothJoinsThem) {
+TEST_F(SubmapsTest, APlaceSeenInBothJoinsThem) {
   for (const bool threaded : {false, true}) {
     began = 0, truth.clear();
     const auto pipeline = make(0.3, threaded);
@@ -116,7 +116,7 @@ TEST_F(PiecesTest, APlaceSeenInBothJoinsThem) {
   }
 }
 
-TEST_F(PiecesTest, WithoutThemTheSecondPlaceIsLost) {
+TEST_F(SubmapsTest, WithoutThemTheSecondPlaceIsLost) {
   const auto pipeline = make(0.0, false);
   drive(*pipeline, true);
   EXPECT_EQ(began, 0);
@@ -125,7 +125,7 @@ TEST_F(PiecesTest, WithoutThemTheSecondPlaceIsLost) {
   EXPECT_LT(worst_error(trajectory), 0.03);
 }
 
-TEST_F(PiecesTest, APieceThatNothingJoinsIsLeftOut) {
+TEST_F(SubmapsTest, ASubmapThatNothingJoinsIsLeftOut) {
   const auto pipeline = make(0.3, false);
   drive(*pipeline, false);
   EXPECT_EQ(began, 1);
@@ -134,12 +134,12 @@ TEST_F(PiecesTest, APieceThatNothingJoinsIsLeftOut) {
   EXPECT_LT(worst_error(pipeline->trajectory()), 0.03);
   pipeline->map().keyframes().for_each([](KeyFrameId, const KeyFrame& keyframe) {
     EXPECT_LT(keyframe.frame.timestamp, 2.0);
-    EXPECT_EQ(keyframe.piece, 0U);
+    EXPECT_EQ(keyframe.submap, 0U);
   });
 }
 
 /// A recording that begins with a glimpse of another place.
-TEST_F(PiecesTest, TheLargerPieceIsTheResult) {
+TEST_F(SubmapsTest, TheLargerSubmapIsTheResult) {
   const auto pipeline = make(0.3, false);
   drive(*pipeline, false, false, 25);  // for longer than young_map_time
   EXPECT_EQ(began, 1);

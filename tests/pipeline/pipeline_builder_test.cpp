@@ -57,7 +57,7 @@ void expect_same(const Trajectory& first, const Trajectory& second) {
 /// Matches no bits, and says so before the first frame.
 class NumberMatcher final : public NearestMatcher {
  public:
-  std::string trouble_with(const DescriptorType& type) const override {
+  std::string incompatibility(const DescriptorType& type) const override {
     return type.kind == DescriptorKind::binary ? "takes descriptors of numbers" : "";
   }
 };
@@ -294,7 +294,7 @@ TEST(PipelineBuilder, AMapKeepsWhatTheDetectorSaysOfImages) {
   const Map described = new_map(std::make_unique<ImageDetector>(7));
   ASSERT_FALSE(described.keyframes().empty());
   described.keyframes().for_each(
-      [](KeyFrameId, const KeyFrame& keyframe) { EXPECT_EQ(keyframe.frame.place.size(), 1U); });
+      [](KeyFrameId, const KeyFrame& keyframe) { EXPECT_EQ(keyframe.frame.image_descriptor.size(), 1U); });
   const auto again = [&] { return new_map(std::make_unique<ImageDetector>(7)); };
   EXPECT_EQ(refusal(again(), std::make_unique<ImageDetector>(7)), "");
   EXPECT_EQ(refusal(again(), std::make_unique<test::BruteForceDetector>()), "");

@@ -110,7 +110,7 @@ TEST(Pipeline, LostInTheDarkIsAResultAndLightBringsItBack) {
         pipeline.feed(world.frame(static_cast<std::uint64_t>(i), time, test::path_pose(time), !dark));
     EXPECT_EQ(result.status == TrackingStatus::lost, dark) << i;
     EXPECT_EQ(result.T_world_camera.has_value(), !dark) << i;
-    EXPECT_EQ(result.trouble != TrackingTrouble::none, dark) << i;
+    EXPECT_EQ(result.failure != TrackingFailure::none, dark) << i;
     lost += result.status == TrackingStatus::lost ? 1 : 0;
     recovered += result.method == TrackingMethod::recovered && !dark ? 1 : 0;
   }
@@ -259,10 +259,10 @@ TEST(Pipeline, WaitsForAFrameWithDepth) {
   blind.depth.release();
   FrameResult result = pipeline.feed(blind);
   EXPECT_EQ(result.status, TrackingStatus::waiting);
-  EXPECT_EQ(result.trouble, TrackingTrouble::no_depth);
+  EXPECT_EQ(result.failure, TrackingFailure::no_depth);
   EXPECT_FALSE(result.T_world_camera);
   result = pipeline.feed(world.frame(1, 0.1, Eigen::Isometry3d::Identity(), false));
-  EXPECT_EQ(result.trouble, TrackingTrouble::few_features);
+  EXPECT_EQ(result.failure, TrackingFailure::few_features);
   result = pipeline.feed(world.frame(2, 0.2, Eigen::Isometry3d::Identity()));
   EXPECT_EQ(result.status, TrackingStatus::initialised);
 }

@@ -157,7 +157,7 @@ TEST_F(ResultsTest, LowCoverageIsAWarningWithItsCommonestTrouble) {
   record_.trajectory.resize(3);
   for (int i = 0; i < 25; ++i) {
     FrameResult result;
-    result.trouble = i < 20 ? TrackingTrouble::no_depth : TrackingTrouble::few_features;
+    result.failure = i < 20 ? TrackingFailure::no_depth : TrackingFailure::few_features;
     record_.summary.add(result, 0.0);
   }
   EXPECT_TRUE(has_low_coverage(record_));
@@ -183,7 +183,7 @@ TEST_F(ResultsTest, ACameraThatIsLostToTheEndIsAdvisedToBeginAnew) {
     record_.frame_stamps.push_back(i / 30.0);
     FrameResult result;
     result.status = TrackingStatus::lost;
-    result.trouble = i % 2 == 0 ? TrackingTrouble::few_matches : TrackingTrouble::few_inliers;
+    result.failure = i % 2 == 0 ? TrackingFailure::few_matches : TrackingFailure::few_inliers;
     record_.summary.add(result, 0.0);
   }
   const auto expect_advice = [&](bool expected, const char* reason) {
@@ -195,10 +195,10 @@ TEST_F(ResultsTest, ACameraThatIsLostToTheEndIsAdvisedToBeginAnew) {
                     HasSubstr("`--set tracking.restart_time=2` helps"), HasSubstr("The commonest trouble: too few")));
   expect_advice(true, "another place");
   record_.sensor = Sensor::mono;
-  expect_advice(false, "one camera has one piece");
+  expect_advice(false, "one camera has one submap");
   record_.sensor = Sensor::rgbd;
   record_.localised_only = true;
-  expect_advice(false, "a given map gets no pieces");
+  expect_advice(false, "a given map gets no submaps");
   record_.localised_only = false;
   record_.configuration.sections["tracking"]["restart_time"] = 2.0;
   expect_advice(false, "it does so already");
@@ -208,7 +208,7 @@ TEST_F(ResultsTest, ACameraThatIsLostToTheEndIsAdvisedToBeginAnew) {
   expect_advice(false, "it was found again");
   record_.trajectory.pop_back();
   record_.summary = {};
-  for (int i = 30; i < 300; ++i) record_.summary.add(FrameResult{.trouble = TrackingTrouble::few_features}, 0.0);
+  for (int i = 30; i < 300; ++i) record_.summary.add(FrameResult{.failure = TrackingFailure::few_features}, 0.0);
   expect_advice(false, "it saw nothing to begin with");
 }
 
@@ -347,7 +347,7 @@ RunRecord run_with_masks(double share) {
       .features(std::make_unique<test::PointExtractor>(points.world, 0.3))
       .optimizer(CeresSettings{})
       .segmenter({std::make_unique<ColumnSegmenter>(share), "columns"})
-      .segmentation({.on = SegmentedFrames::every_n, .every = 5})
+      .segmentation({.frames = SegmentedFrames::every_n, .every = 5})
       .filter(std::make_unique<PersonFilter>());
   points.configuration.segmenter.name = "columns";
   points.built = std::make_unique<BuiltPipeline>(BuiltPipeline{std::move(source), builder.build()});

@@ -127,15 +127,15 @@ TEST(KeyframePolicy, MeasuresClosePointsAndEstablishedPoints) {
   }
 }
 
-TEST(KeyframePolicy, TheFirstKeyframeOfALaterPieceIsLikeThatOfTheMap) {
+TEST(KeyframePolicy, TheFirstKeyframeOfALaterSubmapIsLikeThatOfTheMap) {
   Map map;
   for (int i = 0; i < 3; ++i) map.add_keyframe(frame_with({1.0F}));
   const KeyFrameId first = map.add_keyframe(frame_with({1.0F}));
-  map.keyframe(first).piece = map.new_piece();
+  map.keyframe(first).submap = map.new_submap();
   map.add_observation(map.add_point(Eigen::Vector3d::UnitZ(), 0), first, 0);
   const KeyframeSituation situation = KeyframePolicy(TrackingSettings()).measure(frame_with({1.0F}), 50, first, map);
   EXPECT_EQ(situation.keyframes, 1U);
-  EXPECT_EQ(situation.reference_points, 1) << "nothing else of its piece could have observed the point";
+  EXPECT_EQ(situation.reference_points, 1) << "nothing else of its submap could have observed the point";
 }
 
 TEST(KeyframePolicy, AReferenceThatWasRemovedHasNoPoints) {

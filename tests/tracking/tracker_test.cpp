@@ -107,7 +107,7 @@ class Bench {
       if (point.valid()) map.update_point(point);
     }
     map.update_covisibility(id);
-    map.touch();
+    map.invalidate_copies();
     detector.add(id, frame.features.descriptors);
     tracker.keyframe_added(access, id);
   }
@@ -352,7 +352,7 @@ TEST(Tracker, FramesOfALossAreTrackedBackwardsOnceTheCameraIsFound) {
   }
 }
 
-TEST(Tracker, ACameraThatIsLostForLongBeginsAPiece) {
+TEST(Tracker, ACameraThatIsLostForLongBeginsASubmap) {
   for (const double time : {0.3, 0.0}) {
     TrackingSettings settings = without_relocalisation();
     settings.restart_time = time;
@@ -484,7 +484,7 @@ TEST(Tracker, AnUnknownPlaceIsNotRelocalised) {
   Bench elsewhere(TrackingSettings{}, false, std::move(maker.map), 99);
   const FrameResult result = elsewhere.feed(0.0, at(0.1));
   EXPECT_EQ(result.status, TrackingStatus::lost);
-  EXPECT_EQ(result.trouble, TrackingTrouble::few_matches);
+  EXPECT_EQ(result.failure, TrackingFailure::few_matches);
 }
 
 /// The frame of a camera at `T_depth` in which few features, without depth, are seen as if from `T_features`: what a
@@ -521,7 +521,7 @@ TEST(Tracker, APoseThatContradictsDepthIsRefused) {
       EXPECT_GE(result.inliers, 30);
       EXPECT_LT(result.inliers, 50);
       if (refused) {
-        EXPECT_EQ(result.trouble, TrackingTrouble::few_inliers);
+        EXPECT_EQ(result.failure, TrackingFailure::few_inliers);
       } else {
         EXPECT_LT(error(result, moved), 0.02);
       }
@@ -551,7 +551,7 @@ TEST(Tracker, MaskedFeaturesCountWhereStaticOnesDoNotSuffice) {
 TEST(Tracker, WherePeopleLeaveFewFeaturesMoreAreAskedFor) {
   for (const double most : {2.0, 1.0}) {
     TrackingSettings settings;
-    settings.crowd_features = most;
+    settings.feature_boost = most;
     Bench bench(settings, true);
     bench.walk(0.0, 0.5);
     EXPECT_EQ(bench.extractor.budget, 1.0) << "nobody is there";
@@ -797,9 +797,9 @@ TEST(Tracker, WaitsForAFrameWithDepth) {
   blind.depth.release();
   FrameResult result = bench.feed(blind);
   EXPECT_EQ(result.status, TrackingStatus::waiting);
-  EXPECT_EQ(result.trouble, TrackingTrouble::no_depth);
+  EXPECT_EQ(result.failure, TrackingFailure::no_depth);
   result = bench.feed(0.1, at(0.0), false);
-  EXPECT_EQ(result.trouble, TrackingTrouble::few_features);
+  EXPECT_EQ(result.failure, TrackingFailure::few_features);
   EXPECT_EQ(bench.feed(0.2, at(0.0)).status, TrackingStatus::initialised);
   EXPECT_TRUE(bench.tracker.trajectory(bench.access).size() == 1U);
 }

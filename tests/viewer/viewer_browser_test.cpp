@@ -80,7 +80,7 @@ TEST_F(ViewerBrowserTest, ShowsWhatComesAndWhatALoopMoves) {
 
   FrameResult lost = test::row_frame(5);
   lost.status = TrackingStatus::lost;
-  lost.trouble = TrackingTrouble::few_features;
+  lost.failure = TrackingFailure::few_features;
   lost.T_world_camera.reset();
   viewer_->add_frame(lost);
   EXPECT_TRUE(becomes("document.getElementById('state').textContent.startsWith('lost')"));
@@ -363,7 +363,7 @@ TEST_F(ViewerBrowserTest, NothingIsTooWideWhateverItIsCalled) {
     frame.objects = {object};
     if (i > 290) {
       frame.status = TrackingStatus::lost;
-      frame.trouble = TrackingTrouble::few_features;
+      frame.failure = TrackingFailure::few_features;
       frame.T_world_camera.reset();
     }
     viewer->add_frame(frame);

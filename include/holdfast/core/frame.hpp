@@ -23,7 +23,8 @@ namespace holdfast {
 /// coarse.static_log_odds and coarse.T_view_camera while the frame is tracked. The tracker writes map_points and
 /// T_camera_world. When the frame becomes a keyframe, Map stores a copy, and from then on Map and the local mapper
 /// change map_points and T_camera_world of the copy; its mask and static_probability are written once more when its own
-/// segmentation arrives. `place` is written by tracking for a lost frame, and by loop closing for a keyframe.
+/// segmentation arrives. `image_descriptor` is written by tracking for a lost frame, and by loop closing for a
+/// keyframe.
 struct Frame {
   std::uint64_t index = 0;  ///< SensorFrame::index
   double timestamp = 0.0;   ///< of the colour image [s]
@@ -43,7 +44,7 @@ struct Frame {
   FeatureGrid grid;   ///< of the undistorted positions
   CoarseView coarse;  ///< the depth image on a coarse grid, its mask and its evidence
   /// Global image descriptor for place recognition, if the loop detector uses one; empty until it was computed.
-  DescriptorBlock place;
+  DescriptorBlock image_descriptor;
 
   Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();
 

@@ -39,7 +39,7 @@ enum class TrackingFallback {
 };
 
 /// Why a frame has no pose.
-enum class TrackingTrouble {
+enum class TrackingFailure {
   none,
   no_depth,
   few_features,
@@ -54,7 +54,7 @@ enum class TrackingTrouble {
 const char* to_string(TrackingStatus status);
 const char* to_string(TrackingMethod method);
 const char* to_string(TrackingFallback fallback);
-const char* to_string(TrackingTrouble trouble);
+const char* to_string(TrackingFailure failure);
 
 /// The result of one frame. A frame that cannot be tracked is reported here and never by an exception.
 struct FrameResult {
@@ -63,7 +63,7 @@ struct FrameResult {
   TrackingStatus status = TrackingStatus::waiting;
   TrackingMethod method = TrackingMethod::none;
   TrackingFallback fallback = TrackingFallback::none;
-  TrackingTrouble trouble = TrackingTrouble::none;
+  TrackingFailure failure = TrackingFailure::none;
   /// The pose as estimated when the frame was processed; empty without one. Later adjustments may correct it
   /// (Pipeline::trajectory).
   std::optional<Eigen::Isometry3d> T_world_camera;

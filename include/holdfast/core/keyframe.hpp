@@ -21,7 +21,7 @@ struct KeyFrame {
   Frame frame;                 ///< frame.T_camera_world is the keyframe's pose, frame.map_points its observations
   /// Submap (as an Atlas map of ORB-SLAM3). A new submap may begin after a loss; its pose relative to the others is a
   /// guess until a loop joins them. Files keep one submap.
-  std::uint32_t piece = 0;
+  std::uint32_t submap = 0;
   std::vector<CovisibilityEdge> covisible;  ///< by decreasing weight, equal weights by increasing sequence
   KeyFrameId parent;                        ///< in the spanning tree; invalid for the first keyframe of a submap
   std::vector<KeyFrameId> children;         ///< in the spanning tree, in order of insertion

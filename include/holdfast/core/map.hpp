@@ -79,23 +79,23 @@ class Map {
   void update_covisibility(KeyFrameId keyframe);
   /// Sets the spanning-tree parent of a keyframe that is not covisible with any older one, because its pose was
   /// estimated without the map.
-  void hang_on(KeyFrameId keyframe, KeyFrameId older);
+  void set_parent(KeyFrameId keyframe, KeyFrameId older);
   /// Removes a keyframe with its observations, covisibility edges and loop edges. Its children in the spanning tree get
   /// new parents among their neighbours. Its pose stays available relative to its parent; see pose_of().
   void remove_keyframe(KeyFrameId keyframe);
 
-  /// Number of a new submap (KeyFrame::piece).
-  std::uint32_t new_piece() { return ++last_piece_; }
+  /// Number of a new submap (KeyFrame::submap).
+  std::uint32_t new_submap() { return ++last_submap_; }
   /// Submap of a keyframe; a removed one belongs to that of its parent. Nothing for a keyframe of a removed submap.
-  std::optional<std::uint32_t> piece_of(KeyFrameId keyframe) const;
+  std::optional<std::uint32_t> submap_of(KeyFrameId keyframe) const;
   /// Merges two submaps under the lower number, after their relative pose was corrected.
-  void join_pieces(std::uint32_t first, std::uint32_t second);
+  void join_submaps(std::uint32_t first, std::uint32_t second);
   /// Keyframes of all other submaps, oldest first.
-  std::vector<KeyFrameId> keyframes_outside(std::uint32_t piece) const;
+  std::vector<KeyFrameId> keyframes_outside(std::uint32_t submap) const;
   /// Number of keyframes of a submap.
-  std::size_t keyframes_in(std::uint32_t piece) const;
+  std::size_t keyframes_in(std::uint32_t submap) const;
   /// Removes the keyframes and points of all other submaps; pose_of() has no pose of these keyframes any more.
-  void keep_piece(std::uint32_t piece);
+  void keep_submap(std::uint32_t submap);
 
   /// Adds a loop edge between two keyframes, on both sides. Adding it again has no effect.
   void add_loop_edge(KeyFrameId first, KeyFrameId second);
@@ -138,10 +138,11 @@ class Map {
   /// counts the lower label. A point without a label in any mask keeps its class.
   void classify_points();
 
-  /// Incremented by touch(); a holder of copied map data compares versions to detect that the copy is outdated.
+  /// Incremented by invalidate_copies(); a holder of copied map data compares versions to detect that the copy is
+  /// outdated.
   std::uint64_t version() const { return version_; }
   /// Must be called after a change that invalidates copies: new keyframes, moved poses or points.
-  void touch() { ++version_; }
+  void invalidate_copies() { ++version_; }
 
   void clear();
   /// Removes all keyframes and points; the next keyframe is the first one. Unlike after clear(), removed ids are never
@@ -169,7 +170,7 @@ class Map {
   MapPoints points_;
   std::map<KeyFrameId, Removed> removed_keyframes_;
   std::uint64_t next_sequence_ = 0;
-  std::uint32_t last_piece_ = 0;
+  std::uint32_t last_submap_ = 0;
   Sensor sensor_ = Sensor::rgbd;
   MapFeatures features_;
   std::vector<std::string> classes_;

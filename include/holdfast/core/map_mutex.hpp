@@ -56,7 +56,8 @@ class TrackingLock {
 
 /// A map shared by several threads, and its two locks, which are always acquired in this order:
 ///
-/// 1. `surgery`: the surgery mutex, held while keyframes and points are moved or removed (refining a keyframe,
+/// 1. `structure_mutex`: the structure mutex, held while keyframes and points are moved or removed (refining a
+/// keyframe,
 ///    correcting a loop, applying a full adjustment). Ids that its holder copied from the map stay valid.
 /// 2. `mutex`: the map's own lock, held for a few milliseconds and never while solving.
 ///
@@ -64,7 +65,7 @@ class TrackingLock {
 struct SharedMap {
   Map& map;
   MapMutex& mutex;
-  std::mutex& surgery;
+  std::mutex& structure_mutex;
 };
 
 }  // namespace holdfast

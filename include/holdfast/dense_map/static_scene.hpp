@@ -33,8 +33,8 @@ class StaticScene {
   std::size_t view_bytes() const;
 
   /// Static points of a kept view up to DenseMapSettings::maximum_depth, in the frame of its camera [m]: those of the
-  /// finest regular grid of pixels with at most `most` pixels.
-  std::vector<CloudPoint> surface(const KeptView& view, std::size_t most) const;
+  /// finest regular grid of pixels with at most `max_count` pixels.
+  std::vector<CloudPoint> surface(const KeptView& view, std::size_t max_count) const;
 
   /// The fused cloud in world coordinates: one point per occupied voxel, at the mean position and with the mean colour
   /// of its pixels, in voxel order. A voxel needs minimum_views views and must not be removed. The pose of a view is

@@ -42,7 +42,7 @@ class RunSummary {
   std::uint64_t count(TrackingStatus status) const;
   /// Number of tracked frames with this fallback.
   std::uint64_t count(TrackingFallback fallback) const;
-  const std::map<TrackingTrouble, std::uint64_t>& troubles() const { return troubles_; }
+  const std::map<TrackingFailure, std::uint64_t>& failures() const { return failures_; }
   double mean_inliers() const;
   /// Time from images to pose of every frame [s].
   const std::vector<double>& tracking_seconds() const { return tracking_seconds_; }
@@ -62,7 +62,7 @@ class RunSummary {
   std::uint64_t frames_ = 0, recovered_ = 0, relocalised_ = 0, by_flow_ = 0, inliers_ = 0;
   std::map<TrackingStatus, std::uint64_t> statuses_;
   std::map<TrackingFallback, std::uint64_t> fallbacks_;
-  std::map<TrackingTrouble, std::uint64_t> troubles_;
+  std::map<TrackingFailure, std::uint64_t> failures_;
   std::vector<Stage> stages_;
   std::vector<double> tracking_seconds_;
 };

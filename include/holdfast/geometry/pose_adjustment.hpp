@@ -59,7 +59,7 @@ class PoseAdjustment {
     for (std::size_t i = 0; i < size; ++i) {
       ObservationBatch& batch = batches_[i / batch_size];
       const std::size_t k = i % batch_size;
-      batch.limit[k] = options_.limit_two;
+      batch.limit[k] = options_.chi_square_2d;
       batch.point_z[k] = 1.0;
       if (!is_finite(problem, i)) continue;
       const Eigen::Vector3d point = Traits::point(problem, i);
@@ -74,7 +74,7 @@ class PoseAdjustment {
         batch.right_x[k] = right;
         batch.information_right[k] = batch.information[k];
         batch.information_disparity[k] = information_disparity;
-        batch.limit[k] = options_.limit_three;
+        batch.limit[k] = options_.chi_square_3d;
       }
       batch.full_weight[k] = batch.weight[k] = std::max(0.0, weight(problem, i));
       count += batch.weight[k] > 0.0;

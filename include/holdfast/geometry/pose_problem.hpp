@@ -72,12 +72,12 @@ struct PoseSummary {
 
 /// Rounds and limits of adjust_pose().
 struct PoseAdjustmentOptions {
-  int robust_rounds = 2;              ///< with Huber's cost
-  int final_rounds = 2;               ///< without it
-  bool trust_guess = false;           ///< the first guess already decides which observations count in the first round
-  int iterations = 10;                ///< at most, per round
-  double limit_two = chi_square_two;  ///< an observation with two residuals beyond this is an outlier
-  double limit_three = chi_square_three;  ///< an observation with three residuals beyond this is an outlier
+  int robust_rounds = 2;     ///< with Huber's cost
+  int final_rounds = 2;      ///< without it
+  bool trust_guess = false;  ///< the first guess already decides which observations count in the first round
+  int iterations = 10;       ///< at most, per round
+  double chi_square_2d = chi_square_two;    ///< an observation with two residuals beyond this is an outlier
+  double chi_square_3d = chi_square_three;  ///< an observation with three residuals beyond this is an outlier
   double disparity_sigma = geometry::disparity_sigma;          ///< standard deviation of x - right_x [px]
   double disparity_threshold = geometry::disparity_threshold;  ///< of Huber's cost of x - right_x [deviations]
 };

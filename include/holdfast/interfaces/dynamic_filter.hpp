@@ -37,8 +37,8 @@ struct FilterContext {
   const Frame& frame;               ///< features, coarse view with its mask, and map points where they are matched
   const Frame* previous = nullptr;  ///< the previous frame with its pose; nullptr when it has none
   const Map& map;
-  /// Submap in which the frame is tracked (KeyFrame::piece): poses of keyframes of other submaps are not comparable.
-  std::uint32_t piece = 0;
+  /// Submap in which the frame is tracked (KeyFrame::submap): poses of keyframes of other submaps are not comparable.
+  std::uint32_t submap = 0;
   /// The current estimate of the frame's pose; nullptr when there is none.
   const Eigen::Isometry3d* T_camera_world = nullptr;
   /// The segmentation of this very frame; set only when a keyframe is evaluated again because its mask has arrived.

@@ -53,7 +53,7 @@ class FeatureMatcher : public Module {
   static constexpr const char* kind = "matcher";
 
   /// Describes why this matcher cannot match descriptors of a type, for the error before the first frame; "" if it can.
-  virtual std::string trouble_with(const DescriptorType& /*type*/) const { return {}; }
+  virtual std::string incompatibility(const DescriptorType& /*type*/) const { return {}; }
   /// Matches queries with references without any prediction: FeatureMatch::source is a query, FeatureMatch::feature a
   /// reference, each of the selections and at most once; ordered by reference. Replaces `matches`. Both sides are of
   /// comparable descriptors.

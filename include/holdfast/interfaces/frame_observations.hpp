@@ -14,7 +14,7 @@ namespace holdfast {
 
 /// Minimum number of shared points of a keyframe in a bundle adjustment: with fewer, its pose is weakly constrained and
 /// may diverge for a slightly lower cost.
-inline constexpr int least_shared_points = default_covisibility_minimum;
+inline constexpr int minimum_shared_points = default_covisibility_minimum;
 
 /// Adds to the pose problem of `frame` that its feature number `feature` shows `point` (world [m]).
 inline void add_observation(PoseProblem& problem, const Frame& frame, std::size_t feature,

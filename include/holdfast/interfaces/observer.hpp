@@ -41,9 +41,9 @@ struct ObservedView {
   KeyFrameId keyframe = {};
   double timestamp = 0.0;                                            ///< of the keyframe [s]
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< pose of the keyframe at the time of the call
-  /// Coloured points of static surfaces in the frame of the camera [m]: at most `most`, evenly over the image. The cost
-  /// is proportional to the number, about 0.02 ms for 5000.
-  std::function<std::vector<CloudPoint>(std::size_t most)> points = {};
+  /// Coloured points of static surfaces in the frame of the camera [m]: at most `max_count`, evenly over the image. The
+  /// cost is proportional to the number, about 0.02 ms for 5000.
+  std::function<std::vector<CloudPoint>(std::size_t max_count)> points = {};
 };
 
 /// Observes a run. Every method does nothing unless overridden. In sequential mode the thread that feeds frames calls

@@ -49,8 +49,8 @@ geometry::PoseAdjustmentOptions pose_adjustment_options(const Settings& settings
   options.robust_rounds = settings.pose_rounds / 2;
   options.final_rounds = settings.pose_rounds - options.robust_rounds;
   options.iterations = settings.pose_iterations;
-  options.limit_two = settings.chi_square_two;
-  options.limit_three = settings.chi_square_three;
+  options.chi_square_2d = settings.chi_square_two;
+  options.chi_square_3d = settings.chi_square_three;
   options.disparity_sigma = settings.disparity_sigma;
   options.disparity_threshold = settings.disparity_threshold;
   return options;

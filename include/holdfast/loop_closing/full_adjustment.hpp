@@ -15,10 +15,10 @@
 namespace holdfast {
 
 /// Bundle adjustment of the whole map after a loop (Mur-Artal and Tardos 2017, section III-E), concurrent with tracking
-/// and mapping: prepare() copies the map under the surgery mutex and its lock, solve() works on the copy without any
-/// lock, apply() writes the result to the map under the surgery mutex and the map's lock. Keyframes inserted meanwhile
-/// are moved with their parents, points with their reference keyframes; removed ones are skipped. The oldest keyframe
-/// is fixed.
+/// and mapping: prepare() copies the map under the structure mutex and its lock, solve() works on the copy without any
+/// lock, apply() writes the result to the map under the structure mutex and the map's lock. Keyframes inserted
+/// meanwhile are moved with their parents, points with their reference keyframes; removed ones are skipped. The oldest
+/// keyframe is fixed.
 ///
 /// A stopped adjustment is never applied, because a new loop has moved the map or the run ends.
 ///
@@ -30,12 +30,12 @@ class FullAdjustment {
   /// All references must outlive this object.
   FullAdjustment(const LoopClosingSettings& settings, const SharedMap& shared, Optimizer& optimizer);
 
-  /// Copies the map. Acquires the surgery mutex and the map's lock.
+  /// Copies the map. Acquires the structure mutex and the map's lock.
   void prepare();
   /// Solves the problem without a lock; checks for a request to stop between iterations.
   void solve();
-  /// Applies the result, and frees the copy. Acquires the surgery mutex, and the map's lock for a few milliseconds at a
-  /// time.
+  /// Applies the result, and frees the copy. Acquires the structure mutex, and the map's lock for a few milliseconds at
+  /// a time.
   FullAdjustmentSummary apply();
   /// Calls the three functions in order; for sequential mode.
   FullAdjustmentSummary run() {
@@ -57,7 +57,7 @@ class FullAdjustment {
   LoopClosingSettings settings_;
   Map& map_;
   MapMutex& map_mutex_;
-  std::mutex& surgery_;
+  std::mutex& structure_mutex_;
   Optimizer& optimizer_;
   std::atomic<bool> stop_{false};
   std::atomic<bool> cancelled_{false};

@@ -38,9 +38,9 @@ struct LoopMeasurement;
 ///    oldest keyframe fixed; points are moved with their reference keyframes; duplicate points of the candidate's and
 ///    of the keyframe's neighbourhood are fused; covisibility is updated; a loop edge is added.
 ///
-/// Threads: process() and forget() are called by one thread. Steps 2 to 4 hold the surgery mutex, and the map's lock
+/// Threads: process() and forget() are called by one thread. Steps 2 to 4 hold the structure mutex, and the map's lock
 /// within it for a few milliseconds at a time and never during an optimization. Keyframes inserted meanwhile are moved
-/// with their parents. No other thread may move or remove keyframes or points without holding the surgery mutex.
+/// with their parents. No other thread may move or remove keyframes or points without holding the structure mutex.
 class LoopCloser {
  public:
   /// All references must outlive this object; detector, optimizer and matcher are used by process() and forget() only.
@@ -53,9 +53,9 @@ class LoopCloser {
 
   /// Searches for a loop at a keyframe, closes it, and adds the keyframe to the detector. Query and database use the
   /// descriptors of static features only (static_probability), so that the keyframe's own mask must have been applied
-  /// before. For a detector with global descriptors they use Frame::place, which must have been set. It must be called
-  /// once for each keyframe by increasing sequence, after local mapping has processed it; a removed keyframe is
-  /// skipped. Adds stages "loops: ...".
+  /// before. For a detector with global descriptors they use Frame::image_descriptor, which must have been set. It must
+  /// be called once for each keyframe by increasing sequence, after local mapping has processed it; a removed keyframe
+  /// is skipped. Adds stages "loops: ...".
   std::optional<ClosedLoop> process(KeyFrameId keyframe, StageTimes& times);
 
   /// Removes a keyframe from the detector after it was removed from the map; has no effect if it was never added.
@@ -65,13 +65,13 @@ class LoopCloser {
 
  private:
   std::vector<KeyFrameId> find_candidates(KeyFrameId keyframe);
-  std::optional<LoopMeasurement> check(LoopTrial& trial);
-  std::optional<ClosedLoop> correct(LoopTrial& trial, const LoopMeasurement& measurement);
+  std::optional<LoopMeasurement> check(CandidateReport& trial);
+  std::optional<ClosedLoop> correct(CandidateReport& trial, const LoopMeasurement& measurement);
 
   LoopClosingSettings settings_;
   Map& map_;
   MapMutex& map_mutex_;
-  std::mutex& surgery_;
+  std::mutex& structure_mutex_;
   LoopDetector& detector_;
   Optimizer& optimizer_;
   const FeatureMatcher& matcher_;

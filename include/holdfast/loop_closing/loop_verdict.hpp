@@ -16,7 +16,7 @@ enum class LoopVerdict {
   no_alignment,            ///< no rigid motion fits enough matched points
   few_inliers,             ///< too few points of the candidate are matched by the guided search
   small_share,             ///< too small a fraction of the points predicted to be visible is matched
-  one_corner,              ///< the matches cover too small a part of the image
+  poor_coverage,           ///< the matches cover too small a part of the image
   implausible_correction,  ///< the correction exceeds the bound of the drift over the path
   pose_confirmed,          ///< old points confirm the current pose, which is the competing hypothesis
   not_solved,              ///< the pose graph has no solution; the map is unchanged
@@ -33,19 +33,19 @@ struct PoseChange {
 const char* loop_verdict_name(LoopVerdict verdict);
 
 /// Measurements of the verification of a candidate; a value that its verdict did not require is zero.
-struct LoopTrial {
+struct CandidateReport {
   KeyFrameId keyframe;
   KeyFrameId candidate;
   LoopVerdict verdict = LoopVerdict::few_matches;
-  int matches = 0;            ///< descriptor matches
-  int aligned = 0;            ///< inliers of the rigid alignment among them
-  int inliers = 0;            ///< points of the candidate that are matched in the keyframe
-  int expected = 0;           ///< points of the candidate that are predicted to be visible in the keyframe
-  int cells = 0;              ///< number of 16 cells over the image with at least two inliers
-  bool joins_pieces = false;  ///< the two are in different submaps
-  double way = 0.0;           ///< length of the path between the two in the map [m], with one metre per radian
-  PoseChange correction;      ///< correction that the loop requires
-  double scale = 1.0;         ///< scale of the Sim(3) from keyframe to candidate; 1 if depth is measured
+  int matches = 0;             ///< descriptor matches
+  int aligned = 0;             ///< inliers of the rigid alignment among them
+  int inliers = 0;             ///< points of the candidate that are matched in the keyframe
+  int expected = 0;            ///< points of the candidate that are predicted to be visible in the keyframe
+  int cells = 0;               ///< number of 16 cells over the image with at least two inliers
+  bool joins_submaps = false;  ///< the two are in different submaps
+  double path_length = 0.0;    ///< length of the path between the two in the map [m], with one metre per radian
+  PoseChange correction;       ///< correction that the loop requires
+  double scale = 1.0;          ///< scale of the Sim(3) from keyframe to candidate; 1 if depth is measured
 };
 
 /// Cumulative loop-closing statistics.

@@ -41,8 +41,8 @@ class LocalMapper {
 
   /// Inserts a tracked frame into the map as a keyframe and creates points from its depth; with `points_wait`, refine()
   /// creates them later. Only features that are more likely static than moving create points. The keyframe belongs to
-  /// the submap `piece`. Fast; the caller holds the lock of the map. Adds the stage "mapping: insertion".
-  KeyFrameId insert(const Frame& frame, bool points_wait, StageTimes& times, std::uint32_t piece = 0);
+  /// the submap `submap`. Fast; the caller holds the lock of the map. Adds the stage "mapping: insertion".
+  KeyFrameId insert(const Frame& frame, bool points_wait, StageTimes& times, std::uint32_t submap = 0);
 
   /// Initialises a map from two views without depth: inserts the first keyframe with the triangulated points. `points`
   /// lists each position [world] and its feature in the keyframe; the ids of the points are written to `ids`, in the

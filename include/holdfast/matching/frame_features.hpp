@@ -61,10 +61,10 @@ void mark_static(const Frame& frame, std::vector<std::uint8_t>& usable);
 /// Copies the descriptors of the static features, in the order of the features. Place recognition uses no others (Zeng
 /// et al. 2023, section 3.3); entry i does not belong to feature i if an earlier feature is not static.
 DescriptorBlock static_descriptors(const Frame& frame);
-/// Descriptors for place recognition: Frame::place for a detector with global descriptors, otherwise the static
-/// descriptors.
+/// Descriptors for place recognition: Frame::image_descriptor for a detector with global descriptors, otherwise the
+/// static descriptors.
 inline DescriptorBlock place_descriptors(const Frame& frame, bool of_image) {
-  return of_image ? frame.place : static_descriptors(frame);
+  return of_image ? frame.image_descriptor : static_descriptors(frame);
 }
 /// Sets `usable` to 1 for each feature without a map point and to 0 for the others.
 void mark_unmatched(const Frame& frame, std::vector<std::uint8_t>& usable);

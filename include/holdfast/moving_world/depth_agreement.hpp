@@ -27,19 +27,19 @@ class DepthAgreement {
   /// moved since recent ones. False when there are none. The selection is valid until the map changes.
   bool choose(const Map& map, KeyFrameId reference, double timestamp);
   /// Share of the compared cells whose depth agrees with a keyframe's, 0 to 1; 0 when too few can be compared.
-  double share(const Frame& frame, const Eigen::Isometry3d& T_view_world) const;
+  double agreeing_share(const Frame& frame, const Eigen::Isometry3d& T_view_world) const;
   /// True if enough cells can be compared and less than `least_share` of them agree.
   bool disagrees(const Frame& frame, const Eigen::Isometry3d& T_view_world, double least_share) const;
   /// Share of agreeing cells among those that agree or see through a surface of a keyframe (measure more depth). Cells
   /// nearer than the surface of the keyframe are ignored as possible occlusions. 0 when too few cells agree, or a
   /// smaller share of those compared than required.
-  double support(const Frame& frame, const Eigen::Isometry3d& T_view_world) const;
+  double unoccluded_share(const Frame& frame, const Eigen::Isometry3d& T_view_world) const;
   /// Projective point-to-plane ICP (Chen and Medioni 1992; Newcombe et al. 2011, equations 16 to 24) of the frame's
   /// coarse depth image with those of the keyframes, with the predicted pose as initial value and prior in directions
   /// that depth does not determine.
   Eigen::Isometry3d align(const Frame& frame, const Eigen::Isometry3d& T_view_world) const;
   /// Estimates the colour-depth time offset as a pose on the inter-frame motion: T_view_camera. `step` is the motion
-  /// T_frame_previous; `share_there` is share(frame, T_camera_world), already computed by the caller.
+  /// T_frame_previous; `share_there` is agreeing_share(frame, T_camera_world), already computed by the caller.
   Eigen::Isometry3d find_view(const Frame& frame, const Eigen::Isometry3d& T_camera_world, double share_there,
                               const Eigen::Isometry3d& step) const;
 

@@ -14,7 +14,7 @@ enum class SegmentedFrames {
 
 /// The `segmentation` section of a configuration: selection of the segmented frames, and latency of their masks.
 struct SegmentationSettings {
-  SegmentedFrames on = SegmentedFrames::keyframes;
+  SegmentedFrames frames = SegmentedFrames::keyframes;
   int every = 5;  ///< with every_n, the n [frames]
   /// In sequential mode, frames after which a mask is applied. Threaded, at 30 frames/s on two cores, the masks of
   /// `unet` are one frame old in the median and at most two in 95 %; with the engine `opencv` two in the median.

@@ -104,8 +104,8 @@ class Pipeline {
   /// Makes long adjustments in progress end after their current iteration. From any thread.
   void interrupt();
 
-  /// Poses of all tracked frames, in order, as corrected by all that came later; where the map is in pieces, those of
-  /// the piece with most frames (TrackingSettings::restart_time). World frame: the first camera's, or
+  /// Poses of all tracked frames, in order, as corrected by all that came later; where the map is in submaps, those of
+  /// the submap with most frames (TrackingSettings::restart_time). World frame: the first camera's, or
   /// that of the map that was continued.
   Trajectory trajectory() const;
   /// Poses of the keyframes in the map, by time.

@@ -147,7 +147,7 @@ class PipelineBuilder {
   void judge_camera();
   void check_settings();
   void make_modules();
-  void throw_complaints();
+  void throw_diagnostics();
   void choose_sensor();
   void check_filter(const ModuleOf<DynamicFilter>& module, const Needs& needs);
   void check_classes(const ModuleOf<DynamicFilter>& module, const DynamicFilter& filter);
@@ -155,7 +155,7 @@ class PipelineBuilder {
   bool follows_another_filter(std::size_t index) const;
   void check_map() const;
   void check_places() const;
-  void complain(const SourceLocation& place, std::string message);
+  void add_diagnostic(const SourceLocation& place, std::string message);
   /// Adds a warning (core/warning.hpp) to those of the pipeline.
   void suspect(const SourceLocation& place, std::string message);
 

@@ -51,7 +51,7 @@ class FrameFeeder {
   /// Paced: number of frames that the source gave after they were due.
   std::uint64_t late() const;
   /// Paced: largest delay of such a frame [s].
-  double latest() const;
+  double largest_delay() const;
 
  private:
   void read();
@@ -67,7 +67,7 @@ class FrameFeeder {
   std::exception_ptr failure_;
   std::vector<double> stamps_;
   std::uint64_t late_ = 0;
-  double latest_ = 0.0;
+  double largest_delay_ = 0.0;
   double lateness_ = 0.0;  // of the frame read last [s]
   std::uint64_t passed_over_ = 0;
   std::optional<double> first_timestamp_;

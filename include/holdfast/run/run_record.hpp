@@ -21,7 +21,7 @@ namespace holdfast {
 struct ThreadRecord {
   QueueCounts frames;          ///< the queue between the source and tracking
   std::uint64_t late = 0;      ///< paced: frames that the source gave after they were due
-  double latest = 0.0;         ///< paced: largest delay of such a frame [s]
+  double largest_delay = 0.0;  ///< paced: largest delay of such a frame [s]
   std::vector<double> delays;  ///< per frame, time from when it was due (not paced: read) until its result [s]
   std::vector<WorkerCounts> workers;
   std::uint64_t keyframes_deferred = 0;  ///< keyframes that found the queue of local mapping full

@@ -42,9 +42,9 @@ class BackwardTracker {
   };
   BackwardTracker(const TrackingSettings& settings, const Parts& parts) : settings_(settings), parts_(parts) {}
 
-  /// Keeps a copy of a frame that follows all others; only the last `most` stay. The frames of an earlier loss that
-  /// still wait are tracked first. Adds the stage "backwards" where it tracks.
-  void keep(const Frame& frame, int most, StageTimes& times);
+  /// Keeps a copy of a frame that follows all others; only the last `max_count` stay. The frames of an earlier loss
+  /// that still wait are tracked first. Adds the stage "backwards" where it tracks.
+  void keep(const Frame& frame, int max_count, StageTimes& times);
   /// Tracks all kept frames, because no other frame follows.
   void finish(StageTimes& times);
   /// The frame that was located last became a keyframe.
@@ -64,7 +64,7 @@ class BackwardTracker {
  private:
   /// Sets the frame to begin from, if it is time; `now`: even if points of the keyframe may still come.
   bool begin(bool now);
-  void track_kept(int most);
+  void track_kept(int max_count);
   bool find_pose(Frame& frame);
   /// T_camera_world at an earlier time [s] by constant velocity from the anchor.
   Eigen::Isometry3d predicted_pose(double timestamp) const;

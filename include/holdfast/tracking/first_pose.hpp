@@ -31,7 +31,7 @@ enum class FirstPoseOutcome {
 
 /// A method that gives a frame its first pose, such as the motion model. FrameTracker tries its methods in the order
 /// of a list until one leads to a final pose. A method writes context.current (pose and matches), and the method,
-/// fallback or trouble of the result. One thread, within the MapAccess of Tracker::locate().
+/// fallback or failure of the result. One thread, within the MapAccess of Tracker::locate().
 class FirstPose {
  public:
   virtual ~FirstPose() = default;

@@ -67,11 +67,11 @@ class FrameHistory {
   /// Motion since the last tracked frame if the camera went on with `share` of its last velocity, also after a loss.
   Eigen::Isometry3d extrapolate(double timestamp, double share) const;
 
-  /// The piece of the map with most of the tracked frames; of equal ones the oldest.
-  std::uint32_t main_piece(const Map& map) const;
-  /// How many tracked frames are not in the main piece.
+  /// The submap with most of the tracked frames; of equal ones the oldest.
+  std::uint32_t main_submap(const Map& map) const;
+  /// How many tracked frames are not in the main submap.
   std::size_t frames_left_out(const Map& map) const;
-  /// Poses of the tracked frames of the main piece, by the map as it is now.
+  /// Poses of the tracked frames of the main submap, by the map as it is now.
   Trajectory trajectory(const Map& map) const;
 
  private:

@@ -16,7 +16,7 @@ struct KeyframeSituation {
   int reference_points = 0;   ///< established points of the reference keyframe
   int close_tracked = 0;      ///< features with trusted depth that show a map point
   int close_untracked = 0;    ///< features with trusted depth that could become new map points
-  std::size_t keyframes = 0;  ///< in the reference's piece of the map
+  std::size_t keyframes = 0;  ///< in the reference's submap
   double since_last = 0.0;    ///< time since the last keyframe [s]
   double mask_age = 0.0;      ///< of the propagated mask [s]; 0 without a mask
   bool on_hold = false;       ///< so many keyframes wait for their masks that no more should be made

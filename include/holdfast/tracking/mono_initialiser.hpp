@@ -37,10 +37,10 @@ class MonoInitialiser {
       : settings_(settings), optimizer_(optimizer), matcher_(matcher), random_(Random(seed).fork(2)) {}
 
   /// Tries to begin the map with a frame whose features are weighted (Frame::static_probability). On success, the
-  /// frame's pose is set, and start() holds the other view and the points; otherwise the trouble is returned.
-  TrackingTrouble add(Frame& frame);
+  /// frame's pose is set, and start() holds the other view and the points; otherwise the failure is returned.
+  TrackingFailure add(Frame& frame);
 
-  /// Valid after add() returned no trouble, until the next call.
+  /// Valid after add() returned no failure, until the next call.
   const TwoViewMap& start() const { return start_; }
   /// Gives the reference up: the next frame becomes one.
   void forget() { has_reference_ = false; }

@@ -30,7 +30,7 @@ struct RelocaliserParts {
 
 /// Finds the pose of a frame without the motion model's prediction: along the last velocity, from keyframes by
 /// descriptors, or at places that the loop detector recognises. Each function sets the frame's pose and matches and, in
-/// the result, the method when it succeeds or the trouble when it does not. Random samples come from the seed. One
+/// the result, the method when it succeeds or the failure when it does not. Random samples come from the seed. One
 /// thread, within a MapAccess.
 class Relocaliser {
  public:

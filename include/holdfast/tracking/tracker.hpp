@@ -68,7 +68,7 @@ class Tracker {
   /// The rolling-shutter correction with its estimated readout time.
   const RollingShutter& rolling_shutter() const { return context_.shutter; }
   /// The submap with most of the tracked frames.
-  std::uint32_t main_submap(const MapAccess& map) const { return context_.history.main_piece(map.map()); }
+  std::uint32_t main_submap(const MapAccess& map) const { return context_.history.main_submap(map.map()); }
   /// Every tracked frame's pose by the map as it is now. Frames follow the keyframes that they were tracked against.
   Trajectory trajectory(const MapAccess& map) const { return context_.history.trajectory(map.map()); }
 

@@ -55,7 +55,7 @@ struct TrackingContext {
   /// Corrects the features of the current frame for the motion `step` (FrameBuilder::place_features).
   void place_features(const SensorFrame& sensor_frame, const Eigen::Isometry3d& step, StageTimes& times);
   /// The submap in which the camera is tracked.
-  std::uint32_t submap() const { return map.piece_of(reference_keyframe).value_or(0); }
+  std::uint32_t submap() const { return map.submap_of(reference_keyframe).value_or(0); }
   /// Removes all matches of the current frame with map points.
   void drop_matches();
   /// As if no frame had been tracked.

@@ -56,15 +56,15 @@ struct TrackingSettings {
   double descriptor_ratio = 0.8;  ///< best to second best distance, after Lowe 2004
   double strict_distance = 0.0;   ///< of descriptors, of a match without any prediction; 0 = the extractor's
   double loose_distance = 0.0;    ///< of descriptors, of a match near its prediction; 0 = the extractor's
-  double crowd_features = 2.0;    ///< factor on the number of features where people leave few of them, at most; 1 = off
-  double crowd_share = 0.8;       ///< share of static features below which there are more of them
-  int minimum_inliers = 30;       ///< map points that must agree with a pose
-  double maximum_deviation = 0.02;  ///< standard deviation of the position [m]
-  double jump_distance = 0.06;      ///< [m] from constant velocity in 1/30 s: 54 m/s^2
-  double jump_angle = 3.0;          ///< [deg], the same
-  int local_keyframes = 80;         ///< whose points make the local map
-  double odometry_time = 0.3;       ///< how long poses can be based on the previous frame, without the map [s]
-  double depth_only_time = 1.0;     ///< how long poses can be based on dense depth alone [s]
+  double feature_boost = 2.0;     ///< factor on the number of features where people leave few of them, at most; 1 = off
+  double feature_boost_below = 0.8;  ///< share of static features below which there are more of them
+  int minimum_inliers = 30;          ///< map points that must agree with a pose
+  double maximum_deviation = 0.02;   ///< standard deviation of the position [m]
+  double jump_distance = 0.06;       ///< [m] from constant velocity in 1/30 s: 54 m/s^2
+  double jump_angle = 3.0;           ///< [deg], the same
+  int local_keyframes = 80;          ///< whose points make the local map
+  double odometry_time = 0.3;        ///< how long poses can be based on the previous frame, without the map [s]
+  double depth_only_time = 1.0;      ///< how long poses can be based on dense depth alone [s]
 
   // Optical flow.
   BetweenKeyframes between_keyframes = BetweenKeyframes::features;
@@ -82,7 +82,7 @@ struct TrackingSettings {
   int keyframe_close_possible = 70;   ///< features
 
   // Relocalisation.
-  double restart_time = 0.0;                              ///< [s]; a camera lost for longer begins a new piece of map
+  double restart_time = 0.0;                              ///< [s]; a camera lost for longer begins a new submap
   int backward_frames = 60;                               ///< kept, of those without a pose
   double start_share = 0.6;                               ///< of the first keyframe's features
   double young_map_time = 1.0;                            ///< [s]; a map lost so soon after its start begins anew

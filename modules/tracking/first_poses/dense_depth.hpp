@@ -18,7 +18,7 @@ class DenseDepth final : public FirstPose {
                                                           context.reference_keyframe, result.times);
     if (!aligned) return FirstPoseOutcome::none;
     result.method = TrackingMethod::motion_model;
-    const TrackingTrouble trouble = result.trouble;
+    const TrackingFailure failure = result.failure;
     // The aligned pose is better than a prediction, but not as good as features: a wide search finds them if there are.
     context.current.T_camera_world = *aligned;
     context.drop_matches();
@@ -32,7 +32,7 @@ class DenseDepth final : public FirstPose {
     context.current.T_camera_world = *aligned;
     context.drop_matches();
     result.inliers = result.matches = 0;
-    result.trouble = trouble;
+    result.failure = failure;
     return FirstPoseOutcome::final_pose;
   }
 };

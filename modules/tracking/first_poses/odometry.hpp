@@ -17,7 +17,7 @@ class Odometry final : public FirstPose {
         context.current.timestamp > context.last_feature_time + context.settings.odometry_time)
       return FirstPoseOutcome::none;
     const StageTimer timer(search.result.times, "odometry");
-    const TrackingTrouble trouble = search.result.trouble;
+    const TrackingFailure failure = search.result.failure;
     if (!match(search.context)) return FirstPoseOutcome::none;
     const int inliers = adjust(search);
     if (!is_accepted(search, inliers)) return FirstPoseOutcome::none;
@@ -28,7 +28,7 @@ class Odometry final : public FirstPose {
         inliers >= certain_inliers * context.settings.minimum_inliers &&
         context.estimator.position_deviation() <= certain_deviation * context.settings.maximum_deviation;
     write_result(context, search.result);
-    search.result.trouble = trouble;
+    search.result.failure = failure;
     context.moving_world.accumulate(context.current);
     return FirstPoseOutcome::final_pose;
   }

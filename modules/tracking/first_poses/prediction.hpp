@@ -22,7 +22,7 @@ inline bool predict_by_motion_model(PoseSearch& search) {
       return true;
     }
   }
-  search.result.trouble = TrackingTrouble::few_matches;
+  search.result.failure = TrackingFailure::few_matches;
   return false;
 }
 

@@ -76,7 +76,7 @@ void EvenSpread::divide(std::size_t wanted) {
   nodes_.insert(nodes_.end(), splittable_.begin(), splittable_.end());
 }
 
-void EvenSpread::take_strongest_of_squares(std::size_t most, const std::vector<Corner>& corners) {
+void EvenSpread::take_strongest_of_squares(std::size_t max_count, const std::vector<Corner>& corners) {
   const auto score = [&](std::uint32_t i) { return corners[sorted_[i].index].score; };
   best_.clear();
   for (const Node& node : nodes_) {
@@ -85,10 +85,10 @@ void EvenSpread::take_strongest_of_squares(std::size_t most, const std::vector<C
       if (score(i) > score(best)) best = i;
     best_.push_back(best);
   }
-  if (best_.size() > most) {  // the last split may have given up to three squares too many
+  if (best_.size() > max_count) {  // the last split may have given up to three squares too many
     std::sort(best_.begin(), best_.end(),
               [&](std::uint32_t a, std::uint32_t b) { return score(a) != score(b) ? score(a) > score(b) : a < b; });
-    best_.resize(most);
+    best_.resize(max_count);
   }
   for (const std::uint32_t i : best_) is_taken_[i] = 1;
 }

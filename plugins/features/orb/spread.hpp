@@ -31,7 +31,7 @@ class EvenSpread {
   void sort(const std::vector<Corner>& corners);
   void split(const Node& node);
   void divide(std::size_t wanted);
-  void take_strongest_of_squares(std::size_t most, const std::vector<Corner>& corners);
+  void take_strongest_of_squares(std::size_t max_count, const std::vector<Corner>& corners);
   void take_strongest_left(std::size_t count, const std::vector<Corner>& corners);
 
   std::vector<Item> sorted_, scratch_;

@@ -26,10 +26,10 @@ MotionObjects::MotionObjects(const MotionObjectsSettings& settings, const Creati
       noise_{depth_noise, depth_noise_growth},
       alignment_(maker_.grid(), noise_) {}
 
-ObjectTrack* MotionObjects::find(std::uint32_t name) {
-  const auto found = std::lower_bound(tracks_.begin(), tracks_.end(), name,
-                                      [](const ObjectTrack& track, std::uint32_t n) { return track.name() < n; });
-  return found != tracks_.end() && found->name() == name ? &*found : nullptr;
+ObjectTrack* MotionObjects::find(std::uint32_t track_id) {
+  const auto found = std::lower_bound(tracks_.begin(), tracks_.end(), track_id,
+                                      [](const ObjectTrack& track, std::uint32_t n) { return track.track_id() < n; });
+  return found != tracks_.end() && found->track_id() == track_id ? &*found : nullptr;
 }
 
 Eigen::Vector3f MotionObjects::point(int block) const {
@@ -108,10 +108,10 @@ std::uint32_t MotionObjects::track_before(const Eigen::Vector3f& in_view, std::u
     const int column = static_cast<int>(x), row = static_cast<int>(y);
     if (column >= grid.columns || row >= grid.rows) continue;
     const std::size_t there = static_cast<std::size_t>(row * grid.columns + column);
-    if (last.owner[there] != prediction.name) continue;
+    if (last.owner[there] != prediction.track_id) continue;
     const float difference = std::abs(last.image.depth[there] - p.z());
     if (difference < depth_noise::continues_region(p.z()) && difference < min_difference)
-      min_difference = difference, best = prediction.name;
+      min_difference = difference, best = prediction.track_id;
   }
   return best;
 }
@@ -139,8 +139,8 @@ void MotionObjects::give_hints(const FilterContext& context, const StaticEvidenc
     }
 }
 
-bool MotionObjects::may_join(int block, std::uint32_t name) const {
-  const ObjectTrack& track = *find(name);
+bool MotionObjects::may_join(int block, std::uint32_t track_id) const {
+  const ObjectTrack& track = *find(track_id);
   if (track.box().isEmpty()) return true;
   constexpr float margin = 0.15F;  // m
   const Eigen::Vector3d world = views_.back().T_view_world.inverse() * point(block).cast<double>();
@@ -183,7 +183,7 @@ bool MotionObjects::resembles(const ObjectTrack& track, const Region& region) co
 void MotionObjects::assign_regions() {
   const std::vector<Region>& regions = regions_.regions();
   const Eigen::Isometry3d T_world_view = views_.back().T_view_world.inverse();
-  // Large regions first: the largest part of a divided track keeps the name.
+  // Large regions first: the largest part of a divided track keeps the track id.
   order_.resize(regions.size());
   for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = i;
   std::stable_sort(order_.begin(), order_.end(),
@@ -226,7 +226,7 @@ void MotionObjects::assign_regions() {
     }
     if (nearest == known) {
       if (tracks_.size() >= max_tracks) continue;
-      tracks_.emplace_back(next_name_++, timestamp,
+      tracks_.emplace_back(next_track_id_++, timestamp,
                            ObjectObservation{centroid, Eigen::Vector3d::Ones(), T_world_view.linear()});
       claim(tracks_.size() - 1, i);
     } else {
@@ -247,7 +247,7 @@ const MotionObjects::View* MotionObjects::reference(const ObjectTrack& track, co
   for (std::size_t i = views_.size() - 1; i-- > 0;) {
     const View& view = views_[i];
     const auto observation = std::find_if(view.observations.begin(), view.observations.end(),
-                                          [&](const TrackObservation& each) { return each.track == track.name(); });
+                                          [&](const TrackObservation& each) { return each.track == track.track_id(); });
     if (observation == view.observations.end()) break;
     constexpr double max_angle = 0.05;  // rad
     if (best != nullptr && across * (current.image.timestamp - view.image.timestamp) > max_angle) break;
@@ -294,7 +294,7 @@ void MotionObjects::align(ObjectTrack& track, const Part& part, const TrackObser
   start.translation = track.is_object() || track.moving()
                           ? (R_then_world * (-interval * track.velocity())).cast<float>()
                           : prior.translation.cwiseMin(0.1F).cwiseMax(-0.1F).eval();
-  const AlignmentResult result = alignment_.align(points_, view->image, {view->owner, track.name()}, start, prior);
+  const AlignmentResult result = alignment_.align(points_, view->image, {view->owner, track.track_id()}, start, prior);
   constexpr float farthest = 0.6F;  // m
   if (!(result.motion.translation.norm() < farthest)) return;
   const Eigen::Matrix3d R_world_then = R_then_world.transpose();
@@ -314,7 +314,7 @@ void MotionObjects::follow(const Part& part) {
   ObjectTrack& track = tracks_[part.track];
   View& now = views_.back();
   const Eigen::Isometry3d T_world_view = now.T_view_world.inverse();
-  TrackObservation observation{track.name(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 0.0F};
+  TrackObservation observation{track.track_id(), Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 0.0F};
   Eigen::AlignedBox3f box;
   Eigen::Vector2f cut(0, 0);
   float size = 0.0F;
@@ -328,7 +328,7 @@ void MotionObjects::follow(const Part& part) {
     size += blocks;
     box.extend(region.box);
     for (const int block : regions_.blocks(region)) {
-      now.owner[static_cast<std::size_t>(block)] = track.name();
+      now.owner[static_cast<std::size_t>(block)] = track.track_id();
       const std::uint8_t label = hints_[static_cast<std::size_t>(block)].label;
       if (label == CellMask::unknown) continue;
       if (label >= label_counts_.size()) label_counts_.resize(label + 1U, 0);
@@ -348,7 +348,7 @@ void MotionObjects::follow(const Part& part) {
 
   const Eigen::Isometry3f T_object_view = (track.object().T_world_object.inverse() * T_world_view).cast<float>();
   track.measure_box(inner_box(part, T_object_view, static_cast<std::size_t>(size)));
-  track.classify({settings_.speed, settings_.moving_time}, interval_, next_id_);
+  track.classify({settings_.speed, settings_.moving_time}, interval_, next_object_id_);
   now.observations.push_back(observation);
 }
 
@@ -420,7 +420,7 @@ void MotionObjects::apply(const FilterContext& context, StaticEvidence& evidence
   give_hints(context, evidence);
   constexpr int growth = 3;  // blocks
   regions_.divide(maker_.grid(), views_.back().image.depth, hints_, growth,
-                  [&](int block, std::uint32_t name) { return may_join(block, name); });
+                  [&](int block, std::uint32_t track_id) { return may_join(block, track_id); });
   assign_regions();
   for (const Part& part : parts_) follow(part);
   forget();

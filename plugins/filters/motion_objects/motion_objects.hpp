@@ -46,7 +46,7 @@ class MotionObjects final : public DynamicFilter {
   struct View {
     depth_blocks::DepthView image;
     Eigen::Isometry3d T_view_world = Eigen::Isometry3d::Identity();
-    std::vector<std::uint32_t> owner;  // of each block: track name, 0 = none
+    std::vector<std::uint32_t> owner;  // of each block: track id, 0 = none
     std::vector<TrackObservation> observations;
   };
   /// All regions of a track in this frame.
@@ -58,7 +58,7 @@ class MotionObjects final : public DynamicFilter {
   bool keep_up(const FilterContext& context);
   void give_hints(const FilterContext& context, const StaticEvidence& evidence);
   std::uint32_t track_before(const Eigen::Vector3f& in_view, std::uint8_t label) const;
-  bool may_join(int block, std::uint32_t name) const;
+  bool may_join(int block, std::uint32_t track_id) const;
   void assign_regions();
   void claim(std::size_t track, std::size_t region);
   bool resembles(const ObjectTrack& track, const Region& region) const;
@@ -70,8 +70,8 @@ class MotionObjects final : public DynamicFilter {
   const View* reference(const ObjectTrack& track, const TrackObservation& now, const TrackObservation*& then) const;
   void forget();
   void add_evidence(const FilterContext& context, StaticEvidence& evidence);
-  ObjectTrack* find(std::uint32_t name);
-  const ObjectTrack* find(std::uint32_t name) const { return const_cast<MotionObjects*>(this)->find(name); }
+  ObjectTrack* find(std::uint32_t track_id);
+  const ObjectTrack* find(std::uint32_t track_id) const { return const_cast<MotionObjects*>(this)->find(track_id); }
   Eigen::Vector3f point(int block) const;
 
   MotionObjectsSettings settings_;
@@ -80,7 +80,7 @@ class MotionObjects final : public DynamicFilter {
   RigidAlignment alignment_;
   Regions regions_;
   std::vector<ObjectTrack> tracks_;
-  std::uint32_t next_name_ = 1, next_id_ = 1;
+  std::uint32_t next_track_id_ = 1, next_object_id_ = 1;
   std::deque<View> views_;  // oldest first, the last one is that of this frame
   double interval_ = 0.0;   // since the previous frame [s]
 
@@ -92,7 +92,7 @@ class MotionObjects final : public DynamicFilter {
   std::array<std::vector<float>, 3> along_;
   ObjectPoints points_;
   struct Prediction {
-    std::uint32_t name;
+    std::uint32_t track_id;
     Eigen::Vector3f back;  // displacement of its points from this view to the last view, in the frame of the last view
     Eigen::Vector3f centre;
     float radius;

@@ -30,8 +30,8 @@ void kalman_update(const Eigen::Vector3d& measured, const Eigen::Matrix3d& noise
 
 }  // namespace
 
-ObjectTrack::ObjectTrack(std::uint32_t name, double timestamp, const ObjectObservation& observation)
-    : name_(name),
+ObjectTrack::ObjectTrack(std::uint32_t track_id, double timestamp, const ObjectObservation& observation)
+    : track_id_(track_id),
       velocity_covariance_(unknown_speed * unknown_speed * Eigen::Matrix3d::Identity()),
       angular_covariance_(unknown_turning * unknown_turning * Eigen::Matrix3d::Identity()) {
   object_.T_world_object.translation() = observation.centroid;

@@ -33,7 +33,7 @@ struct ObjectObservation {
 /// standard deviations for long enough.
 class ObjectTrack {
  public:
-  ObjectTrack(std::uint32_t name, double timestamp, const ObjectObservation& observation);
+  ObjectTrack(std::uint32_t track_id, double timestamp, const ObjectObservation& observation);
 
   /// Predicts the state `interval` seconds later. The velocity of an occluded track decays.
   void predict(double interval);
@@ -59,7 +59,7 @@ class ObjectTrack {
   /// Transforms the track after a correction of the map.
   void transform(const Eigen::Isometry3d& T_new_old);
 
-  std::uint32_t name() const { return name_; }  ///< from 1, candidates included
+  std::uint32_t track_id() const { return track_id_; }  ///< from 1, candidates included
   bool is_object() const { return object_.id != 0; }
   bool moving() const { return object_.moving; }
   double resting_for() const { return resting_for_; }  ///< [s], 0 while it moves
@@ -73,7 +73,7 @@ class ObjectTrack {
   const MovingObject& object() const { return object_; }
 
  private:
-  std::uint32_t name_;
+  std::uint32_t track_id_;
   MovingObject object_;
   Eigen::Matrix3d velocity_covariance_, angular_covariance_;
   Eigen::Vector3d travelled_ = Eigen::Vector3d::Zero();  // since the start of the motion

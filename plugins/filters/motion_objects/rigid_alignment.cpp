@@ -35,7 +35,7 @@ RigidAlignment::NormalEquations RigidAlignment::linearise(const ObjectPoints& no
     if (!there.known || !there.smooth) continue;
     const std::size_t nearest =
         static_cast<std::size_t>(static_cast<int>(row + 0.5F) * grid_.columns + static_cast<int>(column + 0.5F));
-    if (owned.owner[nearest] != owned.name) continue;
+    if (owned.owner[nearest] != owned.track_id) continue;
     const float sigma = 0.5F * scale * noise_.at(q.z());
     const float residual = there.depth - q.z();
     const float r = residual / sigma;

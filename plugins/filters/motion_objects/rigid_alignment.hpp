@@ -49,10 +49,10 @@ class RigidAlignment {
 
   RigidAlignment(const BlockGrid& grid, const DepthNoise& noise) : grid_(grid), noise_(noise) {}
 
-  /// The blocks of an earlier view that belong to the track `name`; `owner` holds the track name of every block.
+  /// The blocks of an earlier view that belong to the track `track_id`; `owner` holds the track id of every block.
   struct OwnedBlocks {
     const std::vector<std::uint32_t>& owner;
-    std::uint32_t name;
+    std::uint32_t track_id;
   };
 
   /// Aligns with the blocks of `then` that are owned. The optimization starts at `start`. The result is the prior if no

@@ -32,7 +32,7 @@ void MultiViewDepth::choose_keyframes(const FilterContext& context) {
   candidates_.clear();
   context.map.keyframes().for_each([&](KeyFrameId id, const KeyFrame& keyframe) {
     const Frame& frame = keyframe.frame;
-    if (keyframe.piece != context.piece) return;
+    if (keyframe.submap != context.submap) return;
     if (frame.coarse.empty() || !(frame.coarse.grid == context.frame.coarse.grid)) return;
     const double cosine = direction.dot(frame.T_camera_world.linear().row(2));
     const double distance = (frame.T_world_camera().translation() - centre).norm();

@@ -80,7 +80,7 @@ void OnnxMatcher::fill(const MatchSide& side, Half& half) const {
   }
 }
 
-std::string OnnxMatcher::trouble_with(const DescriptorType& type) const {
+std::string OnnxMatcher::incompatibility(const DescriptorType& type) const {
   if (type.kind == DescriptorKind::float32 && static_cast<int>(type.length) == length_) return {};
   return "takes descriptors of " + std::to_string(length_) + " float32";
 }
@@ -89,7 +89,7 @@ void OnnxMatcher::match(const MatchSide& queries, const MatchSide& references, c
                         std::vector<FeatureMatch>& matches) const {
   const DescriptorType& type = queries.descriptors.type();
   if (queries.x.empty() || references.x.empty()) return NearestMatcher::match(queries, references, limits, matches);
-  if (const std::string trouble = trouble_with(type); !trouble.empty())
+  if (const std::string trouble = incompatibility(type); !trouble.empty())
     fail(trouble + ", and the features have " + to_string(type) +
          "; expected the features that the network was made for");
   matches.clear();

@@ -24,7 +24,7 @@ class OnnxMatcher final : public NearestMatcher {
   explicit OnnxMatcher(const OnnxMatcherSettings& settings, const CreationContext& context = {});
 
   /// Throws InputError for descriptors that do not fit the network.
-  std::string trouble_with(const DescriptorType& type) const override;
+  std::string incompatibility(const DescriptorType& type) const override;
   void match(const MatchSide& queries, const MatchSide& references, const MatchLimits& limits,
              std::vector<FeatureMatch>& matches) const override;
 

@@ -85,7 +85,7 @@ BundleView BundleAdjuster::view(bool is_robust) const {
   BundleView view = arrays_.view();
   view.fx = camera_->fx, view.fy = camera_->fy, view.cx = camera_->cx, view.cy = camera_->cy;
   view.baseline = camera_->baseline;
-  view.limit_two = settings_.chi_square_two, view.limit_three = settings_.chi_square_three;
+  view.chi_square_2d = settings_.chi_square_two, view.chi_square_3d = settings_.chi_square_three;
   view.disparity_scale = 1.0 / settings_.disparity_sigma;
   view.disparity_limit = settings_.disparity_threshold * settings_.disparity_threshold;
   view.is_robust = is_robust;

@@ -30,7 +30,7 @@ inline constexpr std::size_t elimination_size = 12;
 struct BundleView {
   double fx, fy, cx, cy;  ///< [px]
   double baseline;        ///< [m]
-  double limit_two, limit_three;
+  double chi_square_2d, chi_square_3d;
   double disparity_scale;  ///< inverse of the standard deviation of a disparity [1/px]
   double disparity_limit;  ///< squared threshold of Huber's cost of the scaled disparity
   bool is_robust;          ///< Huber's cost instead of plain squares

@@ -94,7 +94,7 @@ HOLDFAST_TARGET_INLINE Sight see(const BundleView& view, std::size_t entry, cons
 
   sight.weight = load(view.weight + entry);
   sight.scale2 = load(view.inverse_sigma2 + entry) * sight.weight;
-  sight.limit = choose(sight.has_right, fill(view.limit_three), fill(view.limit_two)) * sight.weight;
+  sight.limit = choose(sight.has_right, fill(view.chi_square_3d), fill(view.chi_square_2d)) * sight.weight;
   // Behind the camera the residual is large and constant, so that steps that push points there are refused.
   const Vector behind = choose(sight.has_right, fill(3.0 * 900.0), fill(2.0 * 900.0));
   const Vector squared = sight.residual[0] * sight.residual[0] + sight.residual[1] * sight.residual[1];
