@@ -4,10 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "holdfast/core/crc32.hpp"
+
 namespace holdfast::map_io {
 
-/// CRC-32C (Castagnoli et al. 1993: polynomial 0x1EDC6F41, reflected, start and end inverted), as RFC 3720 uses it;
-/// crc32c("123456789") is 0xE3069283. Finds every change of up to 32 neighbouring bits.
-std::uint32_t crc32c(const void* data, std::size_t size);
+/// The checksum of a block.
+inline std::uint32_t crc32c(const void* data, std::size_t size) {
+  return Crc32c().add({static_cast<const std::uint8_t*>(data), size}).value();
+}
 
 }  // namespace holdfast::map_io

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "crc32.hpp"
+#include "holdfast/core/crc32.hpp"
 #include "image_message.hpp"
 #include "mcap_file.hpp"
 #include "sources/recording.hpp"
@@ -347,8 +347,8 @@ TEST(Crc32Test, IsThatOfTheStandard) {
   const auto part = [&](std::size_t begin, std::size_t count) {
     return rosbag_plugin::Bytes(reinterpret_cast<const std::uint8_t*>(text.data()) + begin, count);
   };
-  EXPECT_EQ(rosbag_plugin::Crc32().add(part(0, 9)).value(), 0xCBF43926U);
-  EXPECT_EQ(rosbag_plugin::Crc32().add(part(0, 1)).add(part(1, 8)).value(), 0xCBF43926U);
+  EXPECT_EQ(Crc32().add(part(0, 9)).value(), 0xCBF43926U);
+  EXPECT_EQ(Crc32().add(part(0, 1)).add(part(1, 8)).value(), 0xCBF43926U);
 }
 
 }  // namespace

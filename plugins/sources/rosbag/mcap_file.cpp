@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "crc32.hpp"
+#include "holdfast/core/crc32.hpp"
 
 namespace holdfast::rosbag_plugin {
 
@@ -28,20 +28,15 @@ std::string hexadecimal(std::uint32_t value) {
 }  // namespace
 
 McapFile::McapFile(const std::filesystem::path& file, const std::filesystem::path& shown)
-    : Bag(shown), stream_(file, std::ios::binary) {
-  std::error_code error;
-  size_ = std::filesystem::file_size(file, error);
-  if (!stream_ || error) fail("cannot be read; check its permissions");
+    : Bag(shown), file_(file, largest_file::unbounded, "an MCAP file") {
   read_records();
 }
 
 Bytes McapFile::file_bytes(std::uint64_t position, std::uint64_t count) {
-  if (position > size_ || count > size_ - position) fail("is truncated or damaged; copy it again");
+  if (position > file_.size() || count > file_.size() - position) fail("is truncated or damaged; copy it again");
   buffer_.resize(count);
-  stream_.clear();
-  stream_.seekg(static_cast<std::streamoff>(position));
-  stream_.read(reinterpret_cast<char*>(buffer_.data()), static_cast<std::streamsize>(count));
-  if (static_cast<std::uint64_t>(stream_.gcount()) != count) fail("cannot be read to its end; check the disk");
+  file_.seek(position);
+  if (file_.read(buffer_.data(), count) != count) fail("became shorter while it was read; copy it again");
   return buffer_;
 }
 
@@ -68,8 +63,8 @@ std::optional<McapFile::Record> McapFile::record_at(const Region& region, std::u
 }
 
 void McapFile::read_records() {
-  const Region file = region_of_file(magic_bytes, size_, false, path().string());
-  std::uint64_t position = std::min(magic_bytes, size_);
+  const Region file = region_of_file(magic_bytes, file_.size(), false, path().string());
+  std::uint64_t position = std::min(magic_bytes, file_.size());
   std::optional<Record> data_end;
   for (auto record = record_at(file, position); record && record->kind != 0; record = record_at(file, position)) {
     if (position == magic_bytes && record->kind != header_kind)
@@ -90,14 +85,15 @@ void McapFile::read_records() {
 
 /// Tells a file that is cut off from a damaged one: behind `position` no record follows.
 void McapFile::end_at(std::uint64_t position, bool has_data_end) {
-  const std::uint64_t left = size_ - position;
+  const std::uint64_t left = file_.size() - position;
   const auto is_magic = [&](Bytes bytes) { return std::string(bytes.begin(), bytes.end()) == mcap_magic; };
-  const bool has_end = size_ >= 2 * magic_bytes && is_magic(file_bytes(size_ - magic_bytes, magic_bytes));
+  const bool has_end = file_.size() >= 2 * magic_bytes && is_magic(file_bytes(file_.size() - magic_bytes, magic_bytes));
   if (has_end && left == magic_bytes) return;
   bool is_empty = !has_end;  // a lost power supply leaves zeros
   if (left >= record_prefix && file_bytes(position, 1)[0] == 0)
-    for (std::uint64_t at = position; at < size_ && is_empty; at += piece)
-      for (const std::uint8_t byte : file_bytes(at, std::min(piece, size_ - at))) is_empty = is_empty && byte == 0;
+    for (std::uint64_t at = position; at < file_.size() && is_empty; at += piece)
+      for (const std::uint8_t byte : file_bytes(at, std::min(piece, file_.size() - at)))
+        is_empty = is_empty && byte == 0;
   const std::string where = "byte " + std::to_string(position);
   if (!is_empty) fail("has no record at " + where + ", where one must be; it is damaged, copy it again");
   if (has_data_end)
@@ -164,7 +160,7 @@ void McapFile::read_message(const Region& region, const Record& record) {
     throw InputError({place}, "is of channel " + std::to_string(message.connection) +
                                   ", which is not there; the bag is damaged, copy it again");
   // So that chunks of many small messages, compressed to little, do not fill the memory.
-  if (messages_.size() >= size_) fail("has more messages than bytes; it is damaged, copy it again");
+  if (messages_.size() >= file_.size()) fail("has more messages than bytes; it is damaged, copy it again");
   message.chunk = region.chunk;
   message.offset = messages_.size();
   messages_.push_back(stored);

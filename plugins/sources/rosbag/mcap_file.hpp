@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <map>
 #include <optional>
@@ -13,6 +12,7 @@
 
 #include "bag.hpp"
 #include "chunk.hpp"
+#include "holdfast/core/input_file.hpp"
 
 namespace holdfast::rosbag_plugin {
 
@@ -72,8 +72,7 @@ class McapFile final : public Bag {
   std::vector<std::uint8_t> decompress(const Chunk& chunk, const std::string& place);
   Bytes file_bytes(std::uint64_t position, std::uint64_t count);
 
-  std::ifstream stream_;
-  std::uint64_t size_ = 0;
+  InputFile file_;
   std::map<std::uint16_t, Schema> schemas_;
   std::vector<Chunk> chunks_;          // those that are compressed; BagMessage::chunk - 1
   std::vector<Place> messages_;        // BagMessage::offset

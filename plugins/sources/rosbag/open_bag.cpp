@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fstream>
-
 #include "bag.hpp"
+#include "holdfast/core/input_file.hpp"
 #include "mcap_file.hpp"
 #include "ros1_bag.hpp"
 #include "rosbag2_folder.hpp"
@@ -15,15 +14,11 @@ namespace {
 
 constexpr const char* expected_recordings =
     "; expected a recording of ROS: a bag of ROS 1 (format 2.0), an MCAP file, a database of rosbag2 (.db3), or a "
-    "folder "
-    "of rosbag2";
+    "folder of rosbag2";
 
 std::string first_bytes(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError({file.string()}, "cannot be read; check its permissions");
   std::string bytes(64, '\0');
-  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(stream.gcount()));
+  bytes.resize(InputFile(file, largest_file::unbounded, "a recording of ROS").read(bytes.data(), bytes.size()));
   return bytes;
 }
 

@@ -62,16 +62,12 @@ std::uint64_t read_time(ByteReader& reader) {
 }  // namespace
 
 Ros1Bag::Ros1Bag(const std::filesystem::path& file, const std::filesystem::path& shown)
-    : Bag(shown), stream_(file, std::ios::binary) {
-  std::error_code error;
-  size_ = std::filesystem::file_size(file, error);
-  if (!stream_ || error) fail("cannot be read; check its permissions");
-
+    : Bag(shown), file_(file, largest_file::unbounded, "a bag of ROS 1") {
   const std::uint64_t index = read_header();
   std::uint64_t position = index;
   std::vector<Record> infos;
-  while (position < size_) {
-    const Record record = read_record(position, size_, "a record of the index");
+  while (position < file_.size()) {
+    const Record record = read_record(position, file_.size(), "a record of the index");
     position = record.end();
     if (is_kind(record.fields, connection_record))
       read_connection(record);
@@ -82,7 +78,7 @@ Ros1Bag::Ros1Bag(const std::filesystem::path& file, const std::filesystem::path&
 }
 
 std::uint64_t Ros1Bag::read_header() {
-  const Record header = read_record(std::string_view(ros1_magic).size(), size_, "its first record");
+  const Record header = read_record(std::string_view(ros1_magic).size(), file_.size(), "its first record");
   if (!is_kind(header.fields, file_record))
     fail("does not begin with the record of a bag; it is damaged, copy it again");
   if (const auto encryptor = header.fields.find("encryptor");
@@ -94,22 +90,20 @@ std::uint64_t Ros1Bag::read_header() {
   if (index == 0)
     fail("has no index, because its recording did not come to its end; `rosbag reindex " + path().string() +
          "` writes the index");
-  if (index > size_ || (index == size_ && connections > 0))
-    fail("is truncated: it has " + std::to_string(size_) + " bytes, and its index begins at byte " +
+  if (index > file_.size() || (index == file_.size() && connections > 0))
+    fail("is truncated: it has " + std::to_string(file_.size()) + " bytes, and its index begins at byte " +
          std::to_string(index) + "; copy it again, or `rosbag reindex` what is left of it");
   if (chunks > most_chunks) fail("has " + std::to_string(chunks) + " chunks; it is damaged, copy it again");
   return index;
 }
 
 void Ros1Bag::read_bytes(std::uint64_t position, std::uint64_t count, std::vector<std::uint8_t>& bytes) {
-  if (position > size_ || count > size_ - position)
+  if (position > file_.size() || count > file_.size() - position)
     fail("is truncated: " + std::to_string(count) + " bytes at byte " + std::to_string(position) +
          " are beyond its end; copy it again, or `rosbag reindex` what is left of it");
   bytes.resize(count);
-  stream_.clear();
-  stream_.seekg(static_cast<std::streamoff>(position));
-  stream_.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(count));
-  if (static_cast<std::uint64_t>(stream_.gcount()) != count) fail("cannot be read to its end; check the disk");
+  file_.seek(position);
+  if (file_.read(bytes.data(), count) != count) fail("became shorter while it was read; copy it again");
 }
 
 Ros1Bag::Record Ros1Bag::read_record(std::uint64_t position, std::uint64_t end, const char* what) {
@@ -152,7 +146,7 @@ void Ros1Bag::read_chunk_info(const Record& record) {
   const std::string place = path().string() + ": the index of a chunk";
   const auto position = number_in<std::uint64_t>(record.fields, "chunk_pos", place);
   const auto count = number_in<std::uint32_t>(record.fields, "count", place);
-  const Record stored = read_record(position, size_, "a chunk");
+  const Record stored = read_record(position, file_.size(), "a chunk");
   if (!is_kind(stored.fields, chunk_record))
     fail("has no chunk at byte " + std::to_string(position) + ", where its index says; it is damaged, copy it again");
   Chunk chunk;
@@ -169,7 +163,7 @@ void Ros1Bag::read_chunk_info(const Record& record) {
   chunks_.push_back(chunk);
   std::uint64_t index = stored.end();
   for (std::uint32_t i = 0; i < count; ++i) {
-    const Record entries = read_record(index, size_, "the index of a chunk");
+    const Record entries = read_record(index, file_.size(), "the index of a chunk");
     read_index(entries, static_cast<std::uint32_t>(chunks_.size() - 1));
     index = entries.end();
   }
@@ -186,7 +180,7 @@ void Ros1Bag::read_index(const Record& record, std::uint32_t chunk) {
                                   " messages of connection " + std::to_string(connection) + "; copy the bag again");
   // So that the same entries, named many times, do not fill the memory.
   entries_ += count;
-  if (entries_ > size_ / entry) fail("has more messages in its index than bytes; it is damaged, copy it again");
+  if (entries_ > file_.size() / entry) fail("has more messages in its index than bytes; it is damaged, copy it again");
   std::vector<std::uint8_t> bytes;
   read_bytes(record.content, record.size, bytes);
   ByteReader reader(bytes, place);

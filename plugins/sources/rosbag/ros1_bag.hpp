@@ -3,13 +3,13 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "bag.hpp"
 #include "chunk.hpp"
+#include "holdfast/core/input_file.hpp"
 
 namespace holdfast::rosbag_plugin {
 
@@ -47,8 +47,8 @@ class Ros1Bag final : public Bag {
   void read_bytes(std::uint64_t position, std::uint64_t count, std::vector<std::uint8_t>& bytes);
   void check_message(const std::map<std::string, std::string>& fields, const BagMessage& message) const;
 
-  std::ifstream stream_;
-  std::uint64_t size_ = 0, entries_ = 0;  // bytes of the file, entries of its index
+  InputFile file_;
+  std::uint64_t entries_ = 0;  // of the index
   std::vector<Chunk> chunks_;
   std::vector<std::uint8_t> buffer_;
   ChunkCache cache_;

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
 #include <optional>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/input_file.hpp"
 #include "rosbag2_folder.hpp"
 
 namespace holdfast::rosbag_plugin {
@@ -94,16 +94,14 @@ Rosbag2Files files_of_metadata(const std::filesystem::path& folder, const std::f
   const auto refuse = [&](const std::string& problem) { throw InputError({metadata.string()}, problem); };
   Rosbag2Files found{{}, true};
   try {
-    std::ifstream stream(metadata);
-    if (!stream) refuse("cannot be read; check its permissions");
-    const YAML::Node root = YAML::Load(stream);
+    const YAML::Node root = YAML::Load(file_content(metadata, largest_file::configuration, "what rosbag2 writes"));
     const YAML::Node information = root.IsMap() ? root["rosbag2_bagfile_information"] : YAML::Node();
     if (!information.IsDefined() || !information.IsMap())
       refuse("has no rosbag2_bagfile_information; expected the description that rosbag2 writes");
     const std::string format = scalar_in(information, "compression_format");
     if (!format.empty() && format != "zstd")
       refuse("says that the recording is compressed by '" + format +
-             "'; expected zstd or none; write it anew by `ros2 " + "bag convert`");
+             "'; expected zstd or none; write it anew by `ros2 bag convert`");
     const YAML::Node list = information["relative_file_paths"];
     if (!list.IsDefined() || !list.IsSequence() || list.size() == 0)
       refuse("has no relative_file_paths; expected the list of the recording's files");

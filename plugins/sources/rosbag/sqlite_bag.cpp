@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <limits>
 
 #include "chunk.hpp"
+#include "holdfast/core/input_file.hpp"
 
 namespace holdfast::rosbag_plugin {
 
@@ -36,18 +36,16 @@ std::string database_address(const std::filesystem::path& file) {
 /// Whether a database has fewer bytes than its header says (sqlite.org/fileformat2.html, 1.3). SQLite reads the missing
 /// part of a last page as zeros.
 bool is_truncated(const std::filesystem::path& file) {
-  std::error_code error;
-  const std::uint64_t size = std::filesystem::file_size(file, error);
-  std::ifstream stream(file, std::ios::binary);
+  InputFile input(file, largest_file::unbounded, "a database of rosbag2");
   std::array<unsigned char, 100> header{};
-  if (error || !stream.read(reinterpret_cast<char*>(header.data()), header.size())) return true;
+  if (input.read(header.data(), header.size()) != header.size()) return true;
   const auto number = [&](std::size_t at) {
     return std::uint64_t{header[at]} << 24 | std::uint64_t{header[at + 1]} << 16 | std::uint64_t{header[at + 2]} << 8 |
            header[at + 3];
   };
   const std::uint64_t page = header[16] == 0 && header[17] == 1 ? 65536 : std::uint64_t{header[16]} << 8 | header[17];
   const bool has_count = number(24) == number(92);  // not in files of very old versions
-  return has_count && size < page * number(28);
+  return has_count && input.size() < page * number(28);
 }
 
 class SqliteBag final : public Bag {

@@ -4,12 +4,12 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <memory>
 #include <optional>
 #include <utility>
 
 #include "chunk.hpp"
+#include "holdfast/core/input_file.hpp"
 #include "zstd_file.hpp"
 
 namespace holdfast::rosbag_plugin {
@@ -102,25 +102,22 @@ std::vector<std::uint8_t> decompress_zstd(Bytes compressed, std::size_t size, co
 std::filesystem::path unpack_to_temporary_file(const std::filesystem::path& file) {
   const std::string place = file.string();
   const ZstdContext context(ZSTD_createDCtx(), &ZSTD_freeDCtx);
-  std::error_code error;
-  const std::uint64_t size = std::filesystem::file_size(file, error);
-  std::ifstream packed(file, std::ios::binary);
-  if (!context || error || !packed) throw InputError({place}, "cannot be read; check its permissions");
+  if (!context) throw_damaged_zstd(place);
+  InputFile packed(file, largest_file::unbounded, "a recording of ROS");
   UnpackedFile unpacked(file);
   std::vector<std::uint8_t> from(std::size_t{1} << 20), to(std::size_t{1} << 20);
   bool is_at_end = false;
-  while (packed.read(reinterpret_cast<char*>(from.data()), static_cast<std::streamsize>(from.size())),
-         packed.gcount() > 0) {
-    ZSTD_inBuffer input{from.data(), static_cast<std::size_t>(packed.gcount()), 0};
+  while (const std::size_t count = packed.read(from.data(), from.size())) {
+    ZSTD_inBuffer input{from.data(), count, 0};
     ZSTD_outBuffer output{to.data(), to.size(), to.size()};
     // A full output may be followed by more without more input.
     while (input.pos < input.size || (!is_at_end && output.pos == output.size)) {
       output.pos = 0;
       is_at_end = decompress_part(context, input, output, place);
       unpacked.write(to, output.pos);
-      if (unpacked.written() > largest_content(size))
+      if (unpacked.written() > largest_content(packed.size()))
         throw InputError({place},
-                         "has more than " + std::to_string(largest_content(size)) +
+                         "has more than " + std::to_string(largest_content(packed.size())) +
                              " bytes, decompressed, which no recording has; decompress it by `zstd -d` to see");
     }
   }
