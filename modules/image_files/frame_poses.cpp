@@ -2,7 +2,6 @@
 #include "holdfast/image_files/frame_poses.hpp"
 
 #include <Eigen/SVD>
-#include <array>
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -17,6 +16,7 @@
 #include "holdfast/core/counted.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/text_file.hpp"
+#include "holdfast/image_files/numpy_array.hpp"
 #include "yaml_numbers.hpp"
 
 namespace holdfast {
@@ -159,19 +159,11 @@ Trajectory read_lines(const fs::path& file, const std::vector<NumberedFrame>& fr
   return of_images(poses, frames, image_count, file);
 }
 
-/// The text of a key in the header of an array of NumPy: {'descr': '<f8', 'fortran_order': False, 'shape': (5, 4, 4), }
-std::string header_value(const std::string& header, const std::string& key, const char* end) {
-  const std::size_t begin = header.find("'" + key + "':");
-  if (begin == std::string::npos) return "";
-  const std::size_t first = header.find_first_not_of(" ", begin + key.size() + 3);
-  if (first == std::string::npos) return "";
-  return header.substr(first, header.find(end, first) - first);
-}
+constexpr const char* expected_array =
+    "; expected an array of NumPy, n x 4 x 4 or n x 3 x 4 of float32 or float64; write it with numpy.save()";
 
 [[noreturn]] void refuse_array(const fs::path& file, const std::string& found) {
-  throw InputError({file.string()}, found +
-                                        "; expected an array of NumPy, n x 4 x 4 or n x 3 x 4 of float32 or "
-                                        "float64; write it with numpy.save()");
+  throw InputError({file.string()}, found + expected_array);
 }
 
 /// The form of an array of matrices.
@@ -186,47 +178,22 @@ std::uint64_t little_endian(const char* bytes, std::size_t count) {
   return value;
 }
 
-/// The text of the header of NumPy's format, versions 1 to 3 (NEP 1).
-std::string read_array_header(InputFile& input) {
-  const fs::path& file = input.path();
-  std::array<char, 8> magic{};
-  const bool has_magic = input.read(magic.data(), magic.size()) == magic.size();
-  if (!has_magic || std::string_view(magic.data(), 6) != "\x93NUMPY") refuse_array(file, "is no .npy file");
-  std::array<char, 4> size{};
-  const std::size_t size_bytes = magic[6] == 1 ? 2 : 4;
-  const bool has_size = input.read(size.data(), size_bytes) == size_bytes;
-  const std::uint64_t length = little_endian(size.data(), size_bytes);
-  constexpr std::uint64_t longest = 1 << 16;
-  if (!has_size || length > longest) refuse_array(file, "has no header that can be read");
-  std::string header(length, ' ');
-  if (input.read(header.data(), length) != length) refuse_array(file, "has no header that can be read");
-  return header;
-}
-
-ArrayForm form_of(const std::string& header, const fs::path& file) {
+ArrayForm read_form(InputFile& input) {
+  const NumpyHeader header = read_numpy_header(input, expected_array);
   ArrayForm form;
-  const std::string type = header_value(header, "descr", ",");
-  form.is_double = type == "'<f8'";
-  if ((!form.is_double && type != "'<f4'") || !header_value(header, "fortran_order", ",").starts_with("False"))
-    refuse_array(file, "has numbers of type " + (type.empty() ? "?" : type) + ", or the order of Fortran");
-  const std::string shape = header_value(header, "shape", ")");
-  std::vector<std::size_t> sizes;
-  for (const char* at = shape.data(); at < shape.data() + shape.size();) {
-    std::size_t value = 0;
-    const auto [stop, error] = std::from_chars(at, shape.data() + shape.size(), value);
-    if (error == std::errc()) sizes.push_back(value);
-    at = error == std::errc() ? stop : at + 1;
-  }
-  form.numbers = sizes.size() < 2 ? 0 : 1;
-  for (std::size_t i = 1; i < sizes.size() && form.numbers <= 16; ++i) form.numbers *= sizes[i];
-  if (form.numbers != 12 && form.numbers != 16) refuse_array(file, "has the shape " + shape + ")");
-  form.matrices = sizes[0];
+  form.is_double = header.type == "<f8";
+  if ((!form.is_double && header.type != "<f4") || header.has_fortran_order)
+    refuse_array(input.path(), "has numbers of type '" + header.type + "', or the order of Fortran");
+  form.numbers = header.shape.size() < 2 ? 0 : 1;
+  for (std::size_t i = 1; i < header.shape.size() && form.numbers <= 16; ++i) form.numbers *= header.shape[i];
+  if (form.numbers != 12 && form.numbers != 16) refuse_array(input.path(), "has the shape " + shape_text(header));
+  form.matrices = header.shape[0];
   return form;
 }
 
 Trajectory read_array(const fs::path& file, const std::vector<NumberedFrame>& frames, std::size_t image_count) {
   InputFile input(file, largest_file::cloud, "an array of NumPy");
-  const ArrayForm form = form_of(read_array_header(input), file);
+  const ArrayForm form = read_form(input);
   const std::size_t number_bytes = form.is_double ? 8 : 4;
   std::vector<char> bytes(form.numbers * number_bytes);
   std::vector<double> row(form.numbers);

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <opencv2/core/mat.hpp>
-#include <span>
 #include <vector>
 
 namespace holdfast::precomputed_plugin {
@@ -17,10 +15,7 @@ struct LabelArray {
 
 /// Reads an array that numpy.save() wrote, of boolean or whole numbers from 0 to 65535; true = 1. Throws InputError,
 /// which states what was found and what was expected, for other files, types, orders and numbers of dimensions, and for
-/// values out of range. `file` names it in messages.
-LabelArray parse_label_array(std::span<const std::uint8_t> bytes, const std::filesystem::path& file);
-
-/// The same of a file (.npy).
+/// values out of range.
 LabelArray read_label_array(const std::filesystem::path& file);
 
 }  // namespace holdfast::precomputed_plugin
