@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "holdfast/core/error.hpp"
 #include "holdfast/core/folder_name.hpp"
 
 namespace holdfast {
@@ -22,6 +23,19 @@ ImageSequenceOptions options_of(const CalibratedRecording& recording, bool skip_
 }
 
 }  // namespace
+
+void rectify_pair(CalibratedRecording& recording, const Camera& right, const Eigen::Isometry3d& T_left_right,
+                  const std::filesystem::path& file) {
+  try {
+    recording.rectification =
+        std::make_shared<const StereoRectification>(StereoCalibration{recording.camera, right, T_left_right});
+  } catch (const Error& problem) {
+    throw InputError({file.string()}, problem.what());
+  }
+  recording.has_right = true;
+  recording.right_size = {right.width, right.height};
+  recording.camera = recording.rectification->camera();
+}
 
 CalibratedSource::CalibratedSource(CalibratedRecording recording, const std::filesystem::path& folder,
                                    bool skip_bad_frames)

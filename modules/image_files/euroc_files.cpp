@@ -42,22 +42,14 @@ Eigen::Isometry3d read_pose(const std::filesystem::path& file, const YAML::Node&
 Distortion read_distortion(const std::filesystem::path& file, const YAML::Node& root) {
   const YAML::Node model = required(file, root, "distortion_model");
   const std::string name = model.IsScalar() ? model.Scalar() : "";
-  Distortion distortion;
-  if (name == "none") return distortion;
+  if (name == "none") return {};
   const bool is_fisheye = name == "equidistant";
   if (!is_fisheye && name != "radial-tangential" && name != "radtan")
     yaml_numbers::reject(file, model, "distortion_model", "radial-tangential, equidistant or none");
   const YAML::Node list = required(file, root, "distortion_coefficients");
-  if (is_fisheye) {
-    const std::vector<double> k = yaml_numbers::numbers(file, list, "distortion_coefficients", {4});
-    distortion.lens = Lens::fisheye;
-    distortion.k1 = k[0], distortion.k2 = k[1], distortion.k3 = k[2], distortion.k4 = k[3];
-  } else {
-    const std::vector<double> k = yaml_numbers::numbers(file, list, "distortion_coefficients", {4, 5});
-    distortion.k1 = k[0], distortion.k2 = k[1], distortion.p1 = k[2], distortion.p2 = k[3];
-    if (k.size() == 5) distortion.k3 = k[4];
-  }
-  return distortion;
+  const std::vector<std::size_t> counts = is_fisheye ? std::vector<std::size_t>{4} : std::vector<std::size_t>{4, 5};
+  return yaml_numbers::distortion(is_fisheye ? Lens::fisheye : Lens::radial_tangential,
+                                  yaml_numbers::numbers(file, list, "distortion_coefficients", counts));
 }
 
 }  // namespace

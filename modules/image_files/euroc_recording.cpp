@@ -92,15 +92,7 @@ CalibratedRecording read_euroc_recording(const EurocOptions& options) {
   if (is_pair) {
     const fs::path file = body / "cam1" / "sensor.yaml";
     const EurocCamera right = read_euroc_camera(file);
-    try {
-      recording.rectification = std::make_shared<const StereoRectification>(
-          StereoCalibration{left.camera, right.camera, left.T_body_camera.inverse() * right.T_body_camera});
-    } catch (const Error& problem) {
-      throw InputError({file.string()}, problem.what());
-    }
-    recording.has_right = true;
-    recording.right_size = {right.camera.width, right.camera.height};
-    recording.camera = recording.rectification->camera();
+    rectify_pair(recording, right.camera, left.T_body_camera.inverse() * right.T_body_camera, file);
     T_body_camera = T_body_camera * recording.rectification->T_left_rectified();
   }
   recording.files = find_frames(body, is_pair, options.max_time_difference);

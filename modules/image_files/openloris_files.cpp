@@ -41,21 +41,14 @@ struct OpenLorisMap {
 };
 
 Distortion read_distortion_of(const OpenLorisMap& sensor) {
-  Distortion distortion;
   const std::string model = sensor.text("distortion_model");
-  if (model == "none" || model == "None") return distortion;
+  if (model == "none" || model == "None") return {};
   const std::vector<double> k = sensor.matrix("distortion_coefficients", {4, 5});
-  if (model == "Kannala-Brandt" || model == "equidistant") {
-    distortion.lens = Lens::fisheye;
-    distortion.k1 = k[0], distortion.k2 = k[1], distortion.k3 = k[2], distortion.k4 = k[3];
-  } else if (model == "radial-tangential") {
-    distortion.k1 = k[0], distortion.k2 = k[1], distortion.p1 = k[2], distortion.p2 = k[3];
-    if (k.size() == 5) distortion.k3 = k[4];
-  } else {
+  const bool is_fisheye = model == "Kannala-Brandt" || model == "equidistant";
+  if (!is_fisheye && model != "radial-tangential")
     yaml_numbers::reject(sensor.file, sensor.at("distortion_model"), "distortion_model",
                          "radial-tangential, Kannala-Brandt or none");
-  }
-  return distortion;
+  return yaml_numbers::distortion(is_fisheye ? Lens::fisheye : Lens::radial_tangential, k);
 }
 
 /// The pose of one frame in another.

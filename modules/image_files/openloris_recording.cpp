@@ -87,15 +87,7 @@ CalibratedRecording read_openloris_recording(const OpenLorisOptions& options) {
     const Camera right = read_openloris_camera(sensors, cameras.second_sensor);
     const Eigen::Isometry3d T_base_left = read_openloris_pose(poses, cameras.sensor);
     const Eigen::Isometry3d T_base_right = read_openloris_pose(poses, cameras.second_sensor);
-    try {
-      recording.rectification = std::make_shared<const StereoRectification>(
-          StereoCalibration{recording.camera, right, T_base_left.inverse() * T_base_right});
-    } catch (const Error& problem) {
-      throw InputError({sensors.string()}, problem.what());
-    }
-    recording.has_right = true;
-    recording.right_size = {right.width, right.height};
-    recording.camera = recording.rectification->camera();
+    rectify_pair(recording, right, T_base_left.inverse() * T_base_right, sensors);
     T_left_camera = recording.rectification->T_left_rectified();
   }
   recording.has_global_shutter = options.cameras != "rgbd";

@@ -67,6 +67,11 @@ std::vector<double> numbers(const std::filesystem::path& file, const YAML::Node&
                    "found " + counted(values.size(), "number") + " for " + key + "; expected " + expected);
 }
 
+Distortion distortion(Lens lens, const std::vector<double>& k) {
+  if (lens == Lens::fisheye) return {.k1 = k[0], .k2 = k[1], .k3 = k[2], .k4 = k[3], .lens = lens};
+  return {.k1 = k[0], .k2 = k[1], .p1 = k[2], .p2 = k[3], .k3 = k.size() < 5 ? 0.0 : k[4], .lens = lens};
+}
+
 std::optional<Eigen::Isometry3d> rigid_motion(const std::vector<double>& row_by_row) {
   HOLDFAST_CHECK(row_by_row.size() == 16, row_by_row.size());
   const Eigen::Matrix4d matrix = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(row_by_row.data());

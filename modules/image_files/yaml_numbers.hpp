@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "holdfast/core/camera.hpp"
 #include "holdfast/core/error.hpp"
 
 /// Strict reading of calibration files: every problem is an InputError with file, line and column.
@@ -31,6 +32,10 @@ int size(const std::filesystem::path& file, const YAML::Node& node, const std::s
 /// A list of numbers; `counts`: the lengths that it may have.
 std::vector<double> numbers(const std::filesystem::path& file, const YAML::Node& node, const std::string& key,
                             const std::vector<std::size_t>& counts);
+
+/// The distortion of coefficients in OpenCV's order: four of a fisheye lens, otherwise k1 k2 p1 p2 and, if there is
+/// one, k3.
+Distortion distortion(Lens lens, const std::vector<double>& coefficients);
 
 /// The rigid motion of the 16 numbers of a 4 x 4 matrix, row by row. The rotation is made orthonormal; nothing for a
 /// matrix that is far from a rigid motion.

@@ -29,6 +29,12 @@ struct CalibratedRecording {
   std::string truth_frame = "raw";                           ///< see SourceDescription
 };
 
+/// Makes a recording of one camera, the left one, that of a pair which has to be rectified. `T_left_right` maps points
+/// of the right camera to the left one. Throws InputError that names `file`, which has the calibration, for cameras
+/// that cannot be rectified.
+void rectify_pair(CalibratedRecording& recording, const Camera& right, const Eigen::Isometry3d& T_left_right,
+                  const std::filesystem::path& file);
+
 /// Which frames of a recording are read.
 struct FrameRange {
   std::int64_t start = 0;   ///< index of the first frame
