@@ -9,6 +9,12 @@
 
 namespace holdfast {
 
+void check_colour_image(const SensorFrame& frame) {
+  if (frame.colour.empty() || frame.colour.type() != CV_8UC3)
+    throw InputError({"frame " + std::to_string(frame.index)},
+                     "has no colour image for the network; expected 8 bit and three channels");
+}
+
 NetworkSegmenter::NetworkSegmenter(const NetworkOptions& options, OutputForm form, std::vector<std::string> classes,
                                    std::vector<std::string> movable)
     : classes_(std::move(classes)),
@@ -31,9 +37,7 @@ void NetworkSegmenter::finish_loading() {
 }
 
 Segmentation NetworkSegmenter::segment(const SensorFrame& frame) {
-  if (frame.colour.empty() || frame.colour.type() != CV_8UC3)
-    throw InputError({"frame " + std::to_string(frame.index)},
-                     "has no colour image for the network; expected 8 bit and three channels");
+  check_colour_image(frame);
   Segmentation result = decode_segmentation(scores(frame.colour), form_, frame.colour.cols, frame.colour.rows);
   if (unknown_label_ >= 0) result.labels.setTo(255, result.labels == unknown_label_);
   return result;

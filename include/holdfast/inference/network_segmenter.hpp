@@ -11,6 +11,9 @@
 
 namespace holdfast {
 
+/// Throws InputError for a frame whose colour image is not one of 8 bit and three channels, as networks take it.
+void check_colour_image(const SensorFrame& frame);
+
 /// A Segmenter that runs a semantic segmentation network and decodes its output to labels and confidence.
 class NetworkSegmenter : public Segmenter {
  public:

@@ -8,6 +8,7 @@
 
 #include "holdfast/core/counted.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/inference/network_segmenter.hpp"
 #include "holdfast/inference/object_masks.hpp"
 #include "holdfast/inference/onnx_net.hpp"
 
@@ -16,9 +17,9 @@ namespace holdfast::onnx_plugin {
 namespace {
 
 /// The options with the size of the input that the metadata says, where neither the settings nor the model say one.
-NetworkOptions with_all_outputs(NetworkOptions options, const OnnxSettings& settings, const ModelMetadata& metadata) {
+NetworkOptions with_all_outputs(NetworkOptions options, const OnnxSignature& signature, const ModelMetadata& metadata) {
   options.every_output = true;
-  const OnnxTensor& input = OnnxNet({.model = settings.model}).signature().inputs.front();
+  const OnnxTensor& input = signature.inputs.front();
   if (input.shape.size() != 4) return options;
   const std::size_t row = options.channels_last ? 1 : 2;
   if (options.height == 0 && input.shape[row] == -1) options.height = metadata.height;
@@ -35,9 +36,9 @@ std::string number_text(double value) {
 }  // namespace
 
 ObjectSegmenter::ObjectSegmenter(const OnnxSettings& settings, const NetworkOptions& options,
-                                 const ModelMetadata& metadata)
+                                 const OnnxSignature& signature, const ModelMetadata& metadata)
     : classes_(object_classes(settings, metadata)),
-      network_(with_all_outputs(options, settings, metadata)),
+      network_(with_all_outputs(options, signature, metadata)),
       model_(settings.model) {
   SensorFrame trial;
   trial.colour = cv::Mat::zeros(network_.height(), network_.width(), CV_8UC3);
@@ -121,9 +122,7 @@ bool ObjectSegmenter::is_movable(std::size_t label) const {
 }
 
 Segmentation ObjectSegmenter::segment(const SensorFrame& frame) {
-  if (frame.colour.empty() || frame.colour.type() != CV_8UC3)
-    throw InputError({"frame " + std::to_string(frame.index)},
-                     "has no colour image for the network; expected 8 bit and three channels");
+  check_colour_image(frame);
   network_.run(frame.colour);
   const std::vector<cv::Mat>& outputs = network_.outputs();
   std::vector<Detection> detections = decode_objects(outputs, layout_, input(), min_score_, classes_.count(), model_);

@@ -17,7 +17,8 @@ class ObjectSegmenter final : public Segmenter {
  public:
   /// Loads the network and runs it once, so that errors are reported before the first frame: those of Network,
   /// recognise_objects() and decode_objects().
-  ObjectSegmenter(const OnnxSettings& settings, const NetworkOptions& options, const ModelMetadata& metadata);
+  ObjectSegmenter(const OnnxSettings& settings, const NetworkOptions& options, const OnnxSignature& signature,
+                  const ModelMetadata& metadata);
 
   const std::vector<std::string>& classes() const override { return classes_.names; }
   std::vector<std::string> movable() const override { return classes_.movable; }

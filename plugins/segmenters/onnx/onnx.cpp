@@ -128,7 +128,7 @@ std::unique_ptr<Segmenter> make_segmenter(const OnnxSettings& settings) {
     if (is_for_objects(settings, signature, metadata)) {
       refuse_parameters({{"output_name", !settings.output_name.empty()}},
                         "all outputs of a network for objects are read; leave it out");
-      return std::make_unique<ObjectSegmenter>(settings, options_of(settings), metadata);
+      return std::make_unique<ObjectSegmenter>(settings, options_of(settings), signature, metadata);
     }
   }
   std::vector<std::string> classes = settings.classes;
