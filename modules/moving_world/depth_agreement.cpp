@@ -13,7 +13,7 @@ namespace holdfast {
 
 bool DepthAgreement::choose(const Map& map, KeyFrameId reference, double timestamp) {
   constexpr int neighbours = 20;  // in which keyframes are looked for; the strongest of those old enough are taken
-  const auto max_count = static_cast<std::size_t>(settings_.keyframes);
+  const auto max_count = static_cast<std::size_t>(settings_.depth_check_keyframes);
   keyframes_.clear();
   const KeyFrame* first = map.find_keyframe(reference);
   if (first == nullptr) return false;
@@ -23,9 +23,10 @@ bool DepthAgreement::choose(const Map& map, KeyFrameId reference, double timesta
   const std::vector<KeyFrameId> covisible = map.best_covisible(reference, neighbours);
   for (const bool want_old : {true, false}) {
     if (!keyframes_.empty()) break;
-    if (timestamp - first->frame.timestamp >= settings_.age || !want_old) take(first->frame);
+    if (timestamp - first->frame.timestamp >= settings_.depth_check_age || !want_old) take(first->frame);
     for (const KeyFrameId id : covisible)
-      if (const Frame& frame = map.keyframe(id).frame; timestamp - frame.timestamp >= settings_.age || !want_old)
+      if (const Frame& frame = map.keyframe(id).frame;
+          timestamp - frame.timestamp >= settings_.depth_check_age || !want_old)
         take(frame);
   }
   return !keyframes_.empty();
@@ -89,18 +90,20 @@ DepthAgreement::Counts DepthAgreement::count(const Frame& frame, const Eigen::Is
 
 double DepthAgreement::agreeing_share(const Frame& frame, const Eigen::Isometry3d& T_view_world) const {
   const Counts counts = count(frame, T_view_world);
-  return counts.compared < settings_.cells ? 0.0 : static_cast<double>(counts.agreeing) / counts.compared;
+  return counts.compared < settings_.depth_check_cells ? 0.0 : static_cast<double>(counts.agreeing) / counts.compared;
 }
 
 bool DepthAgreement::disagrees(const Frame& frame, const Eigen::Isometry3d& T_view_world, double least_share) const {
   const Counts counts = count(frame, T_view_world);
-  return counts.compared >= settings_.cells && static_cast<double>(counts.agreeing) / counts.compared < least_share;
+  return counts.compared >= settings_.depth_check_cells &&
+         static_cast<double>(counts.agreeing) / counts.compared < least_share;
 }
 
 double DepthAgreement::unoccluded_share(const Frame& frame, const Eigen::Isometry3d& T_view_world) const {
   // A pose for which nearly all cells are nearer than the known surfaces is wrong, too.
   const Counts counts = count(frame, T_view_world);
-  if (counts.agreeing < settings_.cells || counts.agreeing < settings_.share * counts.compared) return 0.0;
+  if (counts.agreeing < settings_.depth_check_cells || counts.agreeing < settings_.fallback_agreement * counts.compared)
+    return 0.0;
   return static_cast<double>(counts.agreeing) / (counts.agreeing + counts.farther);
 }
 

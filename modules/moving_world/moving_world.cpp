@@ -10,10 +10,7 @@ MovingWorld::MovingWorld(MovingWorldParts parts, Map& map)
     : map_(map),
       filters_(std::move(parts.filters)),
       has_depth_(parts.has_depth),
-      depth_agreement_({.keyframes = filters_.settings().depth_check_keyframes,
-                        .age = filters_.settings().depth_check_age,
-                        .cells = filters_.settings().depth_check_cells,
-                        .share = filters_.settings().fallback_agreement}),
+      depth_agreement_(filters_.settings()),
       sampler_(parts.camera) {
   if (parts.segmenter == nullptr) return;
   classes_ = parts.segmenter->classes();

@@ -19,11 +19,9 @@ bool PoseChecks::contradicts_motion(int inliers) const {
 bool PoseChecks::exceeds_acceleration(double factor) const {
   const FrameHistory& history = context_.history;
   if (!history.has_previous() || !history.has_velocity()) return false;
-  constexpr double max_interval = 0.2;  // s; later, constant velocity is no longer a valid assumption
-  const double interval = context_.current.timestamp - history.last_timestamp();
-  if (interval > max_interval) return false;
-  return contradicts_inertia(context_.current.T_camera_world * context_.predicted_pose().inverse(), interval,
-                             context_.settings, factor);
+  const std::optional<double> interval = context_.interval();
+  return interval && contradicts_inertia(context_.current.T_camera_world * context_.predicted_pose().inverse(),
+                                         *interval, context_.settings, factor);
 }
 
 /// Whether the map of one camera explains next to nothing of the static features, as where a person whom no mask shows

@@ -21,11 +21,16 @@ TrackingContext::TrackingContext(const TrackingSettings& given, const TrackerPar
   if (parts.stereo) builder.use_stereo(*parts.stereo);
 }
 
-std::optional<FrameMotion> TrackingContext::motion_by(const Eigen::Isometry3d& step) const {
+std::optional<double> TrackingContext::interval() const {
   constexpr double max_interval = 0.2;  // s
   const double interval = current.timestamp - history.last_timestamp();
-  if (interval > max_interval) return std::nullopt;
-  return FrameMotion{geometry::log_se3(step), interval};
+  return interval > max_interval ? std::nullopt : std::optional(interval);
+}
+
+std::optional<FrameMotion> TrackingContext::motion_by(const Eigen::Isometry3d& step) const {
+  const std::optional<double> since_previous = interval();
+  if (!since_previous) return std::nullopt;
+  return FrameMotion{geometry::log_se3(step), *since_previous};
 }
 
 void TrackingContext::place_features(const SensorFrame& sensor_frame, const Eigen::Isometry3d& step,

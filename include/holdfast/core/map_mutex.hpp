@@ -19,7 +19,7 @@ class MapMutex {
     changed_.wait(state, [this] { return !held_ && trackers_waiting_ == 0; });
     held_ = true;
   }
-  /// Locks with priority for tracking; used through TrackingLock.
+  /// Locks with priority for tracking; used through LockedMap of the pipeline.
   void lock_for_tracking() {
     std::unique_lock state(mutex_);
     ++trackers_waiting_;
@@ -42,23 +42,10 @@ class MapMutex {
   int trackers_waiting_ = 0;
 };
 
-/// Holds the lock with tracking's priority during its lifetime.
-class TrackingLock {
- public:
-  explicit TrackingLock(MapMutex& mutex) : mutex_(mutex) { mutex_.lock_for_tracking(); }
-  ~TrackingLock() { mutex_.unlock(); }
-  TrackingLock(const TrackingLock&) = delete;
-  TrackingLock& operator=(const TrackingLock&) = delete;
-
- private:
-  MapMutex& mutex_;
-};
-
 /// A map shared by several threads, and its two locks, which are always acquired in this order:
 ///
-/// 1. `structure_mutex`: the structure mutex, held while keyframes and points are moved or removed (refining a
-/// keyframe,
-///    correcting a loop, applying a full adjustment). Ids that its holder copied from the map stay valid.
+/// 1. `structure_mutex`: held while keyframes and points are moved or removed (refining a keyframe, correcting a loop,
+///    applying a full adjustment). Ids that its holder copied from the map stay valid.
 /// 2. `mutex`: the map's own lock, held for a few milliseconds and never while solving.
 ///
 /// All three must outlive the user of the struct.

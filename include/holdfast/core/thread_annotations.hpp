@@ -17,7 +17,6 @@
 #define HOLDFAST_EXCLUDES(...) HOLDFAST_THREAD_ANNOTATION(locks_excluded(__VA_ARGS__))
 #define HOLDFAST_ACQUIRE(...) HOLDFAST_THREAD_ANNOTATION(acquire_capability(__VA_ARGS__))
 #define HOLDFAST_RELEASE(...) HOLDFAST_THREAD_ANNOTATION(release_capability(__VA_ARGS__))
-#define HOLDFAST_UNCHECKED_THREADS HOLDFAST_THREAD_ANNOTATION(no_thread_safety_analysis)
 
 namespace holdfast {
 

@@ -16,8 +16,8 @@ struct ClosedLoop {
   int points_fused = 0;
   /// Whether the loop joins two submaps (KeyFrame::submap).
   bool joins_submaps = false;
-  double path_length =
-      0.0;                ///< length of the shortest path between the two before the correction [m]; 0 between submaps
+  /// Length of the shortest path between the two before the correction [m]; 0 between submaps.
+  double path_length = 0.0;
   PoseChange correction;  ///< measured correction of the keyframe
   double scale = 1.0;     ///< scale of the Sim(3) from keyframe to candidate; 1 if depth is measured
   /// Measured relative pose, which maps points of the candidate's camera frame to the keyframe's.

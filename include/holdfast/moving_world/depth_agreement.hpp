@@ -6,22 +6,15 @@
 
 #include "holdfast/core/frame.hpp"
 #include "holdfast/core/map.hpp"
+#include "holdfast/moving_world/evidence_settings.hpp"
 
 namespace holdfast {
-
-/// Selection of keyframes and thresholds of the comparison; the defaults are those of EvidenceSettings.
-struct DepthAgreementSettings {
-  int keyframes = 3;   ///< maximum number of keyframes to compare with
-  double age = 0.7;    ///< age from which a keyframe is preferred, because people have moved since [s]
-  int cells = 50;      ///< minimum number of cells for a share of them to be significant
-  double share = 0.2;  ///< minimum share of the compared cells that agree for a pose to be supported
-};
 
 /// Evaluates poses of a frame by dense depth: the share of its cells whose depth agrees with that of keyframes. Moving
 /// people can bias feature matches, but hardly this share. Keeps its buffers; one thread.
 class DepthAgreement {
  public:
-  explicit DepthAgreement(const DepthAgreementSettings& settings = {}) : settings_(settings) {}
+  explicit DepthAgreement(const EvidenceSettings& settings = {}) : settings_(settings) {}
 
   /// Selects keyframes around `reference` for the comparison, preferably old ones, because moving people have hardly
   /// moved since recent ones. False when there are none. The selection is valid until the map changes.
@@ -52,7 +45,7 @@ class DepthAgreement {
   };
   Counts count(const Frame& frame, const Eigen::Isometry3d& T_view_world) const;
 
-  DepthAgreementSettings settings_;
+  EvidenceSettings settings_;
   std::vector<const Frame*> keyframes_;
 };
 

@@ -49,8 +49,10 @@ struct TrackingContext {
   }
   /// T_current_previous by the poses of both frames.
   Eigen::Isometry3d measured_step() const { return current.T_camera_world * previous.T_world_camera(); }
-  /// The motion T_current_previous = step since the last tracked frame; empty if that is older than 0.2 s, when
-  /// constant velocity is no longer a valid assumption.
+  /// Time since the last tracked frame [s]; empty if it is more than 0.2 s, when constant velocity is no longer a valid
+  /// assumption.
+  std::optional<double> interval() const;
+  /// The motion T_current_previous = step since the last tracked frame; empty if interval() is.
   std::optional<FrameMotion> motion_by(const Eigen::Isometry3d& step) const;
   /// Corrects the features of the current frame for the motion `step` (FrameBuilder::place_features).
   void place_features(const SensorFrame& sensor_frame, const Eigen::Isometry3d& step, StageTimes& times);
