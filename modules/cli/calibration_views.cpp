@@ -9,6 +9,7 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/size_text.hpp"
 #include "holdfast/image_files/image_decoder.hpp"
+#include "source_interrupter.hpp"
 #include "terminal.hpp"
 
 namespace holdfast {
@@ -81,6 +82,7 @@ void CalibrationViews::add_video(const fs::path& file) {
 
 void CalibrationViews::add_source(FrameSource& source) {
   Progress progress(source.describe().frame_count, options_.quiet);
+  const SourceInterrupter interrupter(source);
   std::uint64_t done = 0;
   while (!interrupted()) {
     const std::optional<SensorFrame> frame = source.next();

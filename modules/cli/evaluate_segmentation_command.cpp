@@ -26,6 +26,7 @@
 #include "label_folder.hpp"
 #include "output_file.hpp"
 #include "program_host.hpp"
+#include "source_interrupter.hpp"
 #include "terminal.hpp"
 #include "usage_error.hpp"
 
@@ -185,6 +186,7 @@ Outcome segment_source(const EvaluateSegmentationArguments& arguments, const Con
     if (name != known.front() && std::find(known.begin(), known.end(), name) != known.end()) classes.push_back(name);
   SegmentationEvaluator evaluator(classes);
   Progress progress(description.frame_count, arguments.quiet);
+  const SourceInterrupter interrupter(*built.source);
   double seconds = 0.0;
   std::uint64_t done = 0;
   while (!interrupted()) {

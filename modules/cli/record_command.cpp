@@ -13,6 +13,7 @@
 #include "holdfast/evaluation/number_text.hpp"
 #include "holdfast/pipeline/configured_pipeline.hpp"
 #include "recorder.hpp"
+#include "source_interrupter.hpp"
 #include "terminal.hpp"
 
 namespace holdfast {
@@ -28,6 +29,7 @@ void record_frames(FrameSource& source, const RecordArguments& arguments, Record
   std::optional<std::uint64_t> total = source.describe().frame_count;
   if (arguments.frames > 0) total = std::min(total.value_or(arguments.frames), arguments.frames);
   Progress progress(total, arguments.quiet);
+  const SourceInterrupter interrupter(source);
   while (!interrupted() && (arguments.frames == 0 || recorder.frame_count() < arguments.frames)) {
     const std::optional<SensorFrame> frame = source.next();
     if (!frame) return;

@@ -70,6 +70,7 @@ class RecordedSource final : public FrameSource {
   Trajectory truth() const override { return source_->truth(); }
   std::vector<SkippedFrame> skipped() const override { return source_->skipped(); }
   Warnings warnings() const override { return source_->warnings(); }
+  void interrupt() override { source_->interrupt(); }
 
  private:
   std::unique_ptr<FrameSource> source_;

@@ -22,6 +22,7 @@
 #include "holdfast/pipeline/configured_pipeline.hpp"
 #include "label_writer.hpp"
 #include "program_host.hpp"
+#include "source_interrupter.hpp"
 #include "terminal.hpp"
 
 namespace holdfast {
@@ -40,6 +41,7 @@ struct Counts {
 /// Until the source ends, a signal comes or something throws.
 void segment_frames(BuiltSegmenter& built, const SegmentArguments& arguments, LabelWriter& writer, Counts& counts) {
   Progress progress(built.source->describe().frame_count, arguments.quiet);
+  const SourceInterrupter interrupter(*built.source);
   std::uint64_t done = 0;
   while (!interrupted()) {
     const std::optional<SensorFrame> frame = built.source->next();

@@ -36,6 +36,7 @@ void FrameFeeder::stop() {
     stopped_ = true;
   }
   stopped_changed_.notify_all();
+  source_.interrupt();
   queue_.close(true);
 }
 

@@ -43,6 +43,20 @@ TEST(FrameFeeder, GivesEveryFrameInOrder) {
   EXPECT_EQ(feeder.counts().dropped, 0U);
 }
 
+TEST(FrameFeeder, AStopEndsASourceThatWaitsForItsCamera) {
+  class WaitingSource final : public FrameSource {
+   public:
+    SourceDescription describe() const override { return {}; }
+    std::optional<SensorFrame> next() override {
+      while (!is_interrupted()) std::this_thread::sleep_for(1ms);
+      return std::nullopt;
+    }
+  } source;
+  FrameFeeder feeder(source, {});
+  feeder.stop();
+  EXPECT_FALSE(feeder.next()) << "a feeder whose source never ends would wait for it when it is destroyed";
+}
+
 TEST(FrameFeeder, FingerprintsTellRepeatedImages) {
   class Images final : public FrameSource {
    public:

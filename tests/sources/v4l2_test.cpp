@@ -3,9 +3,11 @@
 
 #include <gmock/gmock.h>
 
+#include <chrono>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
+#include <thread>
 
 #include "sources/recording.hpp"
 
@@ -56,6 +58,37 @@ TEST(V4l2SourceTest, ACameraThatIsUnpluggedSaysSoAfterItsFrames) {
   EXPECT_THAT(input_error([&] { source->next(); }),
               AllOf(StartsWith("/dev/video0: the camera gave no more frames after 3"), HasSubstr("unplugged")));
   EXPECT_FALSE(source->next().has_value());
+}
+
+/// A camera whose driver gives a frame, then waits for ever, as one behind a hub that hangs.
+class HangingCamera final : public VideoInput {
+ public:
+  bool wait(double seconds) override {
+    if (!has_given_) return true;
+    std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+    return false;
+  }
+  bool grab() override {
+    EXPECT_FALSE(has_given_) << "would never return";
+    return has_given_ = true;
+  }
+  cv::Mat decode() override { return test::colour_image(0); }
+  double time() const override { return 1.0; }
+
+ private:
+  bool has_given_ = false;
+};
+
+TEST(V4l2SourceTest, AnInterruptEndsTheWaitForACameraThatHangs) {
+  V4l2Source source({}, cv::Size(64, 48), std::make_unique<HangingCamera>(), true);
+  EXPECT_TRUE(source.next().has_value());
+  std::thread other([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    source.interrupt();
+  });
+  EXPECT_FALSE(source.next().has_value()) << "in place of the error after ten seconds";
+  other.join();
+  EXPECT_FALSE(source.next().has_value());
 }
 
 TEST(V4l2SourceTest, WithoutTheClockOfADriverThatOfTheComputerServes) {

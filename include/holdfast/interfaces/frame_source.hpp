@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -38,7 +39,7 @@ struct SourceDescription {
 };
 
 /// Provides the frames of a recording, a simulation or a live camera. Time stamps increase strictly from frame to
-/// frame. Used by one thread.
+/// frame. Used by one thread, but for interrupt().
 class FrameSource : public Module {
  public:
   static constexpr const char* kind = "source";
@@ -55,6 +56,16 @@ class FrameSource : public Module {
   virtual Trajectory truth() const { return {}; }
   /// Frames skipped so far.
   virtual std::vector<SkippedFrame> skipped() const { return {}; }
+
+  /// Ends the source early: a next() that waits for a camera returns nothing within 0.1 s, and so does every later one.
+  /// A source that does not wait need not obey; one that wraps another hands it on. Any thread may call it.
+  virtual void interrupt() { interrupted_ = true; }
+
+ protected:
+  bool is_interrupted() const { return interrupted_; }
+
+ private:
+  std::atomic<bool> interrupted_ = false;
 };
 
 }  // namespace holdfast

@@ -31,6 +31,7 @@ class PerturbedSource final : public FrameSource {
   std::vector<double> pass_over(double timestamp) override;
   Trajectory truth() const override { return source_->truth(); }
   std::vector<SkippedFrame> skipped() const override { return source_->skipped(); }
+  void interrupt() override { source_->interrupt(); }
   Warnings warnings() const override { return source_->warnings(); }
 
  private:

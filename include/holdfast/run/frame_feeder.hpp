@@ -41,7 +41,8 @@ class FrameFeeder {
   /// frames before it. `stop` is asked ten times a second while a frame is awaited; the result is empty once it is
   /// true.
   std::optional<FedFrame> next(const std::function<bool()>& stop = {});
-  /// Ends the reading; next() returns empty from now on. Any thread may call it.
+  /// Ends the reading and the source (FrameSource::interrupt()); next() returns empty from now on. Any thread may call
+  /// it.
   void stop();
 
   /// Frames passed over are counted as dropped.

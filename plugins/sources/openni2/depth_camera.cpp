@@ -133,10 +133,11 @@ class OpenNiCamera final : public DepthCamera {
   OpenNiCamera(const OpenNiCamera&) = delete;
   OpenNiCamera& operator=(const OpenNiCamera&) = delete;
 
-  std::optional<StreamImage> next() override {
+  std::optional<StreamImage> next(const std::function<bool()>& stop) override {
     openni::VideoStream* streams[] = {&colour_, &depth_};
     int ready = -1;
     for (int waited = 0; waited < patience; waited += step) {
+      if (stop()) return std::nullopt;
       const openni::Status status = openni::OpenNI::waitForAnyStream(streams, 2, &ready, step);
       if (status == openni::STATUS_OK) return read(*streams[ready]);
       if (watch_->is_unplugged()) fail("the camera was unplugged");
@@ -146,7 +147,7 @@ class OpenNiCamera final : public DepthCamera {
   }
 
  private:
-  static constexpr int step = 250;  // ms, after which unplugging is looked for
+  static constexpr int step = 50;  // ms, after which unplugging and `stop` are looked for
 
   [[noreturn]] void fail(const std::string& problem) const { throw InputError({place_}, problem); }
 

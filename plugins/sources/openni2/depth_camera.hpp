@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <opencv2/core/mat.hpp>
 #include <optional>
@@ -30,9 +31,10 @@ struct DepthCameraRequest {
 class DepthCamera {
  public:
   virtual ~DepthCamera() = default;
-  /// Waits for the next image of either stream; empty when there will be none. Throws InputError for a camera that
+  /// Waits for the next image of either stream; empty when there will be none, and within 0.1 s once `stop` is true,
+  /// which another thread may set. Throws InputError for a camera that
   /// was unplugged, or that gives no images for five seconds.
-  virtual std::optional<StreamImage> next() = 0;
+  virtual std::optional<StreamImage> next(const std::function<bool()>& stop) = 0;
 };
 
 /// Opens a camera. Throws InputError for one that is missing or cannot be opened, for a size that it

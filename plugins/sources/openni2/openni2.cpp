@@ -97,14 +97,14 @@ std::optional<SensorFrame> Openni2Source::next() {
   while (!has_ended_) {
     std::optional<StreamImage> image;
     try {
-      image = camera_->next();
+      image = camera_->next([this] { return is_interrupted(); });
     } catch (const InputError&) {
       has_ended_ = true;
       throw;
     }
     if (!image) {
       has_ended_ = true;
-      if (!has_given_)
+      if (!has_given_ && !is_interrupted())
         throw InputError({place()}, "gave no colour image with a depth image within " +
                                         std::to_string(settings_.max_time_difference) +
                                         " s; set `source.openni2.max_time_difference`");

@@ -73,10 +73,19 @@ void V4l2Source::count_lost_frames(double stamp) {
   }
 }
 
+/// Waits in short steps, because a driver that gives no frames cannot be interrupted.
+bool V4l2Source::grab() {
+  constexpr double patience = 10.0, step = 0.05;  // [s]
+  for (double waited = 0.0; waited < patience && !is_interrupted(); waited += step)
+    if (input_->wait(step)) return input_->grab();
+  return false;
+}
+
 std::optional<SensorFrame> V4l2Source::next() {
   if (has_ended_) return std::nullopt;
-  if (!input_->grab()) {
+  if (!grab()) {
     has_ended_ = true;
+    if (is_interrupted()) return std::nullopt;
     if (is_live_)
       throw InputError({place()}, "the camera gave no more frames after " + std::to_string(given_) +
                                       "; it was unplugged, or its driver stopped");

@@ -26,8 +26,8 @@ struct V4l2Settings {
 
 /// One colour camera, or a video file. Time stamps: of a file those of its frames, or numbers / frame_rate; of a camera
 /// those of its driver, or of this computer's monotonic clock when a frame comes, for a driver without. Frames that a
-/// camera gave and nobody fetched are counted as skipped. A camera that gives no more frames, because it was unplugged,
-/// is an InputError, after which a run writes what it has.
+/// camera gave and nobody fetched are counted as skipped. A camera that gives no more frames, because it was unplugged
+/// or has been silent for 10 s, is an InputError, after which a run writes what it has.
 class V4l2Source final : public FrameSource {
  public:
   V4l2Source(const V4l2Settings& settings, const CreationContext& context);
@@ -39,6 +39,7 @@ class V4l2Source final : public FrameSource {
   std::vector<SkippedFrame> skipped() const override { return skipped_; }
 
  private:
+  bool grab();
   double stamp_of_frame();
   void count_lost_frames(double stamp);
   std::string place() const;

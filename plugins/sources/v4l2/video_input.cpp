@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/videoio.hpp>
+#include <vector>
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/size_text.hpp"
@@ -34,7 +37,23 @@ void silence_ffmpeg() {
   ::setenv("OPENCV_FFMPEG_LOGLEVEL", quiet, /*overwrite=*/0);
 }
 
-class OpenCvVideo final : public VideoInput {
+/// Signals go to other threads, or wait: OpenCV prints a message when one ends its poll().
+class BlockedSignals {
+ public:
+  BlockedSignals() {
+    sigset_t all;
+    sigfillset(&all);
+    pthread_sigmask(SIG_BLOCK, &all, &before_);
+  }
+  ~BlockedSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  BlockedSignals(const BlockedSignals&) = delete;
+  BlockedSignals& operator=(const BlockedSignals&) = delete;
+
+ private:
+  sigset_t before_;
+};
+
+class OpenCvVideo : public VideoInput {
  public:
   explicit OpenCvVideo(cv::VideoCapture capture) : capture_(std::move(capture)) {}
   bool grab() override {
@@ -48,8 +67,25 @@ class OpenCvVideo final : public VideoInput {
   }
   double time() const override { return capture_.get(cv::CAP_PROP_POS_MSEC) * 1e-3; }
 
- private:
+ protected:
   cv::VideoCapture capture_;
+};
+
+class OpenCvCamera final : public OpenCvVideo {
+ public:
+  using OpenCvVideo::OpenCvVideo;
+  bool wait(double seconds) override {
+    constexpr double nanoseconds = 1e9;
+    const QuietOpenCv quiet;
+    const BlockedSignals blocked;
+    std::vector<int> ready;
+    try {
+      return cv::VideoCapture::waitAny({capture_}, ready, static_cast<std::int64_t>(seconds * nanoseconds)) &&
+             !ready.empty();
+    } catch (const cv::Exception&) {
+      return true;  // the driver reports an error, as for a camera that was unplugged; so will grab()
+    }
+  }
 };
 
 std::string without_zeros(double number) {
@@ -110,7 +146,10 @@ std::unique_ptr<VideoInput> open_camera(const CameraRequest& request) {
                                    "; calibrate it at a size that it has (`v4l2-ctl --list-formats-ext`), and give "
                                    "that size under `camera:`");
   set_exposure(capture, request.exposure, device);
-  return std::make_unique<OpenCvVideo>(std::move(capture));
+  const QuietOpenCv quiet;
+  if (!capture.grab())  // starts the stream, without which OpenCV cannot wait for a frame
+    throw InputError({device}, "the camera gives no pictures; unplug it and plug it in again");
+  return std::make_unique<OpenCvCamera>(std::move(capture));
 }
 
 std::unique_ptr<VideoInput> open_video(const std::filesystem::path& file) {

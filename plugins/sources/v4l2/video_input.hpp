@@ -12,6 +12,8 @@ namespace holdfast::v4l2_plugin {
 class VideoInput {
  public:
   virtual ~VideoInput() = default;
+  /// Waits for a frame at most so long [s]. True if grab() need not wait, at the end of a file too.
+  virtual bool wait([[maybe_unused]] double seconds) { return true; }
   /// Waits for the next frame; false if there is none: the end of a file, or a camera that was unplugged.
   virtual bool grab() = 0;
   /// Decodes the frame that was grabbed: 8UC1 or 8UC3, blue green red. Empty if it cannot be decoded.

@@ -80,7 +80,7 @@ TEST(Openni2DeviceTest, SaysWhatACameraCannotDo) {
 class ListedImages final : public DepthCamera {
  public:
   explicit ListedImages(std::vector<StreamImage> images) : images_(std::move(images)) {}
-  std::optional<StreamImage> next() override {
+  std::optional<StreamImage> next(const std::function<bool()>&) override {
     if (position_ == images_.size()) return std::nullopt;
     return images_[position_++];
   }
@@ -131,6 +131,19 @@ TEST(Openni2PairsTest, ColourWithoutDepthAndLostColourAreCounted) {
   EXPECT_THAT(result.skipped[1].reason, HasSubstr("was not fetched in time"));
   EXPECT_NEAR(result.skipped[1].timestamp, 0.1003333, 1e-5);
   EXPECT_THAT(result.skipped[3].reason, HasSubstr("no depth image near enough"));
+}
+
+TEST(Openni2PairsTest, AnInterruptEndsTheWaitForACameraThatHangs) {
+  class HangingCamera final : public DepthCamera {
+    std::optional<StreamImage> next(const std::function<bool()>& stop) override {
+      while (!stop()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      return std::nullopt;
+    }
+  };
+  Openni2Source source({}, std::make_unique<HangingCamera>());
+  std::thread other([&] { source.interrupt(); });
+  EXPECT_FALSE(source.next().has_value()) << "and says nothing of images that do not fit";
+  other.join();
 }
 
 TEST(Openni2PairsTest, RefusesStampsThatDoNotIncreaseAndRecordingsWithoutPairs) {
