@@ -9,6 +9,7 @@
 #include "frame_loop.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/dense_map/static_scene.hpp"
+#include "focal_check.hpp"
 #include "run_warnings.hpp"
 
 namespace holdfast {
@@ -67,6 +68,7 @@ void record_pipeline(const Pipeline& pipeline, RunRecord& record) {
   record.masks = pipeline.mask_counts();
   record.mask_ages = pipeline.mask_latencies();
   record.readout = pipeline.readout();
+  record.focal_ratio = estimate_focal_ratio(pipeline.map());
 }
 
 }  // namespace

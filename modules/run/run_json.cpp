@@ -175,6 +175,8 @@ std::string run_json(const RunRecord& record) {
   json["repeated_images"] = {{"frames", record.repeated_images.frames},
                              {"longest_s", record.repeated_images.longest},
                              {"longest_from", record.repeated_images.begin}};
+  if (const std::optional<FocalRatio>& focal = record.focal_ratio)
+    json["focal_ratio"] = {{"value", focal->ratio}, {"deviation", focal->deviation}};
   json["map"] = map_json(record);
   json["loops"] = loops_json(record.loops);
   json["masks"] = masks_json(record.masks, record.mask_ages);

@@ -7,6 +7,7 @@
 #include "holdfast/core/counted.hpp"
 #include "holdfast/evaluation/number_text.hpp"
 #include "holdfast/run/results.hpp"
+#include "focal_check.hpp"
 #include "repeated_images.hpp"
 
 namespace holdfast {
@@ -58,6 +59,9 @@ Warnings find_warnings(const RunRecord& record) {
   Warnings warnings;
   if (std::string text = unsupported_poses(record); !text.empty()) add_warning(warnings, {{}, std::move(text)});
   find_mask_warnings(record, warnings);
+  if (record.focal_ratio)
+    if (std::string text = focal_warning(*record.focal_ratio, record.camera); !text.empty())
+      add_warning(warnings, {{}, std::move(text)});
   // Only a simulation knows the classes of its pixels; there, a camera that stands still without noise repeats images.
   const bool is_simulated = !record.source.class_names.empty();
   if (is_simulated) return warnings;

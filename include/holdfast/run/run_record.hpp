@@ -38,6 +38,12 @@ struct RepeatedImages {
   double begin = 0.0;    ///< time stamp of the frame with which it began [s]
 };
 
+/// True focal length divided by that of the camera in the configuration, as the map's depths and turns tell it.
+struct FocalRatio {
+  double ratio = 1.0;
+  double deviation = 0.0;  ///< standard deviation, from the scatter of parts of the run
+};
+
 /// Everything that is known at the end of a run. The record owns its content and refers to no pipeline.
 struct RunRecord {
   Configuration configuration;
@@ -47,6 +53,7 @@ struct RunRecord {
   double readout = 0.0;  ///< Pipeline::readout() at the end [s]
   RunSummary summary;    ///< counts and stage times over all frames
   RepeatedImages repeated_images;
+  std::optional<FocalRatio> focal_ratio;  ///< empty without depth
   std::vector<SkippedFrame> skipped;
   std::vector<double> frame_stamps;  ///< time stamps of all frames of the source, skipped ones included, sorted [s]
   std::size_t frames_expected = 0;   ///< number of frames that the source announced, else the number of frame_stamps
