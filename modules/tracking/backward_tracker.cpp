@@ -41,18 +41,17 @@ void BackwardTracker::clear() {
 
 void BackwardTracker::track(const Frame& located, StageTimes& times) {
   if (frames_.empty()) return;
-  constexpr int steps = 2;  // for each frame, so that tracking does not stall
   const StageTimer timer(times, "backwards");
   last_index_ = located.index;
   if (!located_)
     located_ = located;
   else if (!anchor_)
     after_.push_back({located.timestamp, located.T_world_camera()});
-  if (anchor_ || begin(false)) track_kept(steps);
+  if (anchor_ || begin(false)) track_kept(settings_.backward_steps);
 }
 
 bool BackwardTracker::begin(bool now) {
-  constexpr std::uint64_t mask_time = 8;  // frames
+  const auto mask_time = static_cast<std::uint64_t>(settings_.backward_mask_frames);
   if (!now && last_index_ < located_->index + mask_time) return false;
   const KeyFrame* keyframe = parts_.map.find_keyframe(keyframe_);
   anchor_ = keyframe != nullptr ? keyframe->frame : *located_;
@@ -66,13 +65,12 @@ bool BackwardTracker::begin(bool now) {
 }
 
 void BackwardTracker::track_kept(int max_count) {
-  constexpr int patience = 3;  // frames in a row without a pose
   for (int i = 0; i < max_count && !frames_.empty(); ++i) {
     Frame frame = std::move(frames_.back());
     frames_.pop_back();
     if (!find_pose(frame)) {
       check_earlier_pose(frame);
-      if (++failures_ < patience) continue;
+      if (++failures_ < settings_.backward_patience) continue;
       for (auto earlier = frames_.rbegin(); earlier != frames_.rend(); ++earlier) check_earlier_pose(*earlier);
       return clear();
     }

@@ -16,10 +16,11 @@ bool LossRecovery::was_lost_at_start(double map_start) const {
   if (context_.localises_only || history.empty()) return false;
   // The next frames or a mask that is on its way may help; the longer the map has been tracked by, the longer it is
   // worth waiting for a view of it.
-  constexpr double min_patience = 0.1, patience_share = 0.5;  // s; share of the map's age
+  const TrackingSettings& settings = context_.settings;
   const double age = history.last_timestamp() - map_start;
   const double lost_for = context_.current.timestamp - history.last_timestamp();
-  return age < context_.settings.young_map_time && lost_for > std::max(min_patience, patience_share * age);
+  return age < settings.young_map_time &&
+         lost_for > std::max(settings.young_map_patience, settings.young_map_share * age);
 }
 
 bool LossRecovery::should_begin_submap() const {
@@ -53,8 +54,7 @@ void LossRecovery::try_to_return(TrackedView& view, const PoseSituation& situati
     left_keyframe_ = left_reference_ = KeyFrameId();
     return;
   }
-  constexpr std::uint64_t interval = 3;  // frames; the search takes as long as tracking
-  if (result.index % interval != 0) return;
+  if (result.index % static_cast<std::uint64_t>(context_.settings.return_interval) != 0) return;
   const Frame in_submap = context_.current;
   const KeyFrameId reference = context_.reference_keyframe;
   FrameResult trial = result;
@@ -78,13 +78,12 @@ void LossRecovery::try_to_return(TrackedView& view, const PoseSituation& situati
 void LossRecovery::confirm(bool found, bool was_lost, int inliers) {
   if (found && was_lost) found_time_ = context_.current.timestamp;
   if (!context_.features_have_depth || context_.localises_only || may_return()) return;
-  constexpr int confirming_frames = 8;  // in a row
   const bool is_ample = local_map_.checks().has_ample_inliers(inliers);
   if (!found) {
     withdraw();
   } else if (was_lost && !is_ample && !context_.history.empty()) {
     unconfirmed_ = {context_.history.mark()};
-  } else if (unconfirmed_ && (is_ample || ++unconfirmed_->frames >= confirming_frames)) {
+  } else if (unconfirmed_ && (is_ample || ++unconfirmed_->frames >= context_.settings.confirming_frames)) {
     unconfirmed_.reset();
   }
 }
@@ -96,8 +95,7 @@ void LossRecovery::withdraw() {
 }
 
 bool LossRecovery::was_just_found() const {
-  constexpr double recent = 0.5;  // s
-  return found_time_ && context_.current.timestamp - *found_time_ < recent;
+  return found_time_ && context_.current.timestamp - *found_time_ < context_.settings.found_time;
 }
 
 bool LossRecovery::wants_mask(TrackerState state) const {

@@ -89,16 +89,8 @@ bool DepthStart::is_provisional() const {
 }
 
 std::optional<int> DepthStart::kept_frames(TrackerState, const FrameResult&) const {
-  constexpr int start_frames = 30;  // as long as a mask may take
-  return is_provisional() ? std::optional(start_frames) : std::nullopt;
+  return is_provisional() ? std::optional(context_.settings.provisional_frames) : std::nullopt;
 }
-
-namespace {
-
-/// How long the map of one camera takes to settle after its start, which is judged then [s].
-constexpr double settling_time = 0.5;
-
-}  // namespace
 
 TwoViewStart::TwoViewStart(TrackingContext& context, const TrackerParts& parts)
     : MapStart(context), initialiser_(context.settings, parts.optimizer, parts.seed, parts.matcher) {}
@@ -122,9 +114,10 @@ bool TwoViewStart::begin(const SensorFrame& sensor_frame, FrameResult& result) {
 }
 
 bool TwoViewStart::is_weak(const FrameResult& result) {
-  constexpr double first_age = 0.3;  // s; before, a right map is small too
+  const TrackingSettings& settings = context_.settings;
+  const double settling_time = settings.start_settling_time;
   const double age = context_.current.timestamp - time();
-  if (age >= first_age && age <= settling_time && result.matches > 0) {
+  if (age >= settings.start_support_age && age <= settling_time && result.matches > 0) {
     // How many of the static features are in the map, times how many of those agree with the pose.
     const double inliers = result.inliers, found = result.matches, seen = std::max(result.static_features, 1);
     support_ += inliers / seen * inliers / found;
@@ -135,12 +128,14 @@ bool TwoViewStart::is_weak(const FrameResult& result) {
   frames_ = 0;
   support_ = 0.0;
   // A place without texture may offer no better start: each further one needs half as much.
-  if (support >= std::ldexp(context_.settings.start_support, -weak_starts_)) return false;
+  if (support >= std::ldexp(settings.start_support, -weak_starts_)) return false;
   ++weak_starts_;
   return true;
 }
 
-bool TwoViewStart::is_provisional() const { return context_.current.timestamp - time() <= settling_time; }
+bool TwoViewStart::is_provisional() const {
+  return context_.current.timestamp - time() <= context_.settings.start_settling_time;
+}
 
 std::optional<int> TwoViewStart::kept_frames(TrackerState state, const FrameResult& result) const {
   // Without a mask no features are weighted yet.

@@ -6,8 +6,7 @@
 namespace holdfast {
 
 bool PoseChecks::has_ample_inliers(int inliers) const {
-  constexpr int ample_inliers = 4;  // times minimum_inliers
-  return inliers >= ample_inliers * context_.settings.minimum_inliers;
+  return inliers >= context_.settings.ample_inliers * context_.settings.minimum_inliers;
 }
 
 bool PoseChecks::contradicts_motion(int inliers) const {
@@ -27,9 +26,9 @@ bool PoseChecks::exceeds_acceleration(double factor) const {
 /// Whether the map of one camera explains next to nothing of the static features, as where a person whom no mask shows
 /// fills the view. New points would fit any scale that such a pose goes on with.
 bool PoseChecks::lacks_support(const FrameResult& result, double map_age) const {
-  constexpr double first_age = 0.5;   // s; before, a right map of one camera is small too
-  constexpr double min_share = 0.06;  // without people, 0.12 and more; on a person who fills the view, 0.02 to 0.05
-  return !context_.features_have_depth && map_age > first_age && result.inliers < min_share * result.static_features;
+  const TrackingSettings& settings = context_.settings;
+  return !context_.features_have_depth && map_age > settings.support_age &&
+         result.inliers < settings.minimum_support * result.static_features;
 }
 
 bool PoseChecks::is_refuted(int inliers, bool was_lost) const {

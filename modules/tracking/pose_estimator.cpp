@@ -11,14 +11,6 @@ namespace holdfast {
 
 namespace {
 
-/// Since a point was first seen [s]: somebody who walks past the camera is in view for about as long.
-constexpr double established_age = 1.0;
-/// So many established points that agree with each other determine a pose.
-constexpr int min_established = 50;
-/// 95 % of the reprojection errors of a right point are within chi-square 5.99 of two degrees of freedom; the pose that
-/// new points are compared with, and the points themselves, are uncertain as well.
-constexpr double max_new_error = 4.0 * 5.991;
-
 int count_static_inliers(const PoseProblem& problem) {
   int inliers = 0;
   for (std::size_t i = 0; i < problem.size(); ++i)
@@ -78,7 +70,7 @@ bool PoseEstimator::is_established(const MapPoint& point, double now) const {
   const KeyFrame* first = map_.find_keyframe(point.reference_keyframe);
   if (first == nullptr) return false;
   const double age = now - first->frame.timestamp;
-  return age >= established_age || age < 0.0;  // a loaded map may be of a later recording
+  return age >= settings_.established_age || age < 0.0;  // a loaded map may be of a later recording
 }
 
 void PoseEstimator::reject_new_points(const Frame& frame) {
@@ -92,19 +84,20 @@ void PoseEstimator::reject_new_points(const Frame& frame) {
     add_observation(established_, frame, features_[i], problem_.points[i]);
   }
   established_.inlier.assign(established_.size(), 0);
-  const bool decides = established_.size() >= min_established && established_.size() < problem_.size() &&
-                       optimizer_.optimize_pose(established_).usable &&
-                       count_static_inliers(established_) >= min_established;
+  const int needed = settings_.established_points;
+  const bool decides = static_cast<int>(established_.size()) >= needed && established_.size() < problem_.size() &&
+                       optimizer_.optimize_pose(established_).usable && count_static_inliers(established_) >= needed;
   if (!decides) {
     rejected_.clear();
     return;
   }
   problem_.T_camera_world = established_.T_camera_world;
+  const double max_error = settings_.new_point_factor * geometry::chi_square_two;
   for (std::size_t i = 0; i < rejected_.size(); ++i) {
     if (rejected_[i] == 0) continue;
     const Eigen::Vector3d point = problem_.T_camera_world * problem_.points[i];
     const Eigen::Vector2d error = problem_.camera->project(point) - Eigen::Vector2d(problem_.x[i], problem_.y[i]);
-    rejected_[i] = !(point.z() > 0.0) || error.squaredNorm() * problem_.inverse_sigma2[i] >= max_new_error ? 1 : 0;
+    rejected_[i] = !(point.z() > 0.0) || error.squaredNorm() * problem_.inverse_sigma2[i] >= max_error ? 1 : 0;
     if (rejected_[i] != 0) problem_.weight[i] = 0.0F;
   }
 }

@@ -8,12 +8,6 @@
 #include "holdfast/matching/frame_features.hpp"
 
 namespace holdfast {
-namespace {
-
-/// Of the matches of a wide search near a wrong pose of one camera, up to a seventh agree with it after an adjustment.
-constexpr double chance_share = 1.0 / 6.0;
-
-}  // namespace
 
 bool Relocaliser::relocalise(KeyFrameId last_keyframe, KeyFrameId reference, const cv::Mat& image, Frame& frame,
                              FrameResult& result) {
@@ -145,7 +139,8 @@ bool Relocaliser::fits_surroundings(Frame& frame, FrameResult& result) {
 }
 
 bool Relocaliser::is_beyond_chance(int inliers) const {
-  return features_have_depth(parts_.map.sensor()) || inliers >= chance_share * parts_.estimator.matches();
+  return features_have_depth(parts_.map.sensor()) ||
+         inliers >= settings_.relocalisation_chance * parts_.estimator.matches();
 }
 
 bool Relocaliser::is_reachable(const Frame& frame, double tolerance) const {

@@ -15,7 +15,7 @@ TrackingContext::TrackingContext(const TrackingSettings& given, const TrackerPar
       features_have_depth(parts.features_have_depth),
       builder(parts.camera, parts.features, settings.depth_edge_ratio),
       matcher(settings, map, parts.matcher),
-      estimator(parts.optimizer, moving_world, map),
+      estimator(settings, parts.optimizer, moving_world, map),
       relocaliser(settings, {parts.detector, moving_world, map, matcher, estimator, history}, parts.seed),
       shutter(parts.stereo ? RollingShutterMode::off : settings.rolling_shutter, parts.camera.readout) {
   if (parts.stereo) builder.use_stereo(*parts.stereo);

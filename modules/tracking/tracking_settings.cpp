@@ -26,13 +26,28 @@ void describe_start(ParameterTable<S>& table) {
       .range(0, 90)
       .unit("deg");
   table
-      .add(
-          "start_support", &S::start_support,
-          "with one camera, share of a frame's static features that are found in the map 0.3 to 0.5 s after its start, "
-          "times the share of those that agree with the pose; a map with less is given up, and another one begins; "
-          "half "
-          "is enough for each further start; 0 = off")
+      .add("start_support", &S::start_support,
+           "with one camera, share of a frame's static features that are found in the map start_support_age to "
+           "start_settling_time after its start, "
+           "times the share of those that agree with the pose; a map with less is given up, and another one begins; "
+           "half is "
+           "enough for each further start; 0 = off")
       .range(0, 1);
+  table
+      .add("start_settling_time", &S::start_settling_time,
+           "with one camera, time for which a new map is provisional; then start_support judges it")
+      .range(0, 100)
+      .unit("s");
+  table
+      .add("start_support_age", &S::start_support_age,
+           "time after the start from which frames count for start_support; before, a right map is small too")
+      .range(0, 100)
+      .unit("s");
+  table
+      .add("provisional_frames", &S::provisional_frames,
+           "frames that are kept, at most, while the first mask is awaited; if it refutes the start, they are tracked "
+           "anew")
+      .range(0, 1000);
   table
       .add("close_depth_factor", &S::close_depth_factor,
            "depth up to this many baselines is trusted alone; farther points are triangulated")
@@ -121,6 +136,41 @@ void describe_acceptance(ParameterTable<S>& table) {
       .range(1, 1000);
 }
 
+void describe_trust(ParameterTable<S>& table) {
+  table
+      .add("ample_inliers", &S::ample_inliers,
+           "times minimum_inliers: with so many inliers, a pose needs no confirmation by motion or later frames")
+      .range(1, 1000);
+  table
+      .add("support_age", &S::support_age,
+           "with one camera, age of the map from which a pose needs minimum_support; before, a right map is small too")
+      .range(0, 100)
+      .unit("s");
+  table
+      .add("minimum_support", &S::minimum_support,
+           "with one camera, share of a frame's static features that must agree with its pose; without people it is "
+           "0.12 and more, on a person who fills the view 0.02 to 0.05; 0 = any")
+      .range(0, 1);
+  table
+      .add("established_age", &S::established_age,
+           "with one camera, time since a point was first seen after which it is established: where established points "
+           "determine a pose, newer ones that contradict it are outliers. People walk past a camera in about this time")
+      .range(0, 100)
+      .unit("s");
+  table.add("established_points", &S::established_points, "established points that must agree to determine a pose")
+      .range(6, 10000);
+  table
+      .add("new_point_factor", &S::new_point_factor,
+           "factor on the 95 % bound of the squared reprojection error of a newer point, because the pose and the "
+           "point are uncertain too")
+      .range(1, 1000);
+  table
+      .add("confirming_frames", &S::confirming_frames,
+           "frames in a row after which a pose that was found again with few inliers is confirmed; a loss before "
+           "withdraws their poses")
+      .range(1, 1000);
+}
+
 void describe_keyframes(ParameterTable<S>& table) {
   table
       .add("keyframe_minimum_interval", &S::keyframe_minimum_interval,
@@ -172,9 +222,28 @@ void describe_corrections(ParameterTable<S>& table) {
 void describe_losses(ParameterTable<S>& table) {
   table
       .add("young_map_time", &S::young_map_time,
-           "a camera that is lost so soon after its map began, for longer than half of the time tracked until then, "
-           "begins "
-           "the map anew where the motion model puts it; 0 = never")
+           "a camera that is lost so soon after its map began, for longer than half of the time tracked until then "
+           "(young_map_share), begins the map anew where the motion model puts it; 0 = never")
+      .range(0, 100)
+      .unit("s");
+  table
+      .add("young_map_patience", &S::young_map_patience,
+           "how long such a camera is lost, at least: the next frames or a mask that is on its way may help")
+      .range(0, 100)
+      .unit("s");
+  table
+      .add("young_map_share", &S::young_map_share,
+           "how long such a camera is lost, at least, as a share of the time tracked")
+      .range(0, 100);
+  table
+      .add("return_interval", &S::return_interval,
+           "after a new submap began, every so manieth frame is searched for in the submap that was left")
+      .range(1, 1000);
+  table
+      .add("found_time", &S::found_time,
+           "time after a loss for which a view that shows little of the map is not taken for a new place, because what "
+           "fills "
+           "it may have caused the loss")
       .range(0, 100)
       .unit("s");
   table
@@ -189,6 +258,18 @@ void describe_losses(ParameterTable<S>& table) {
            "frames without a pose that are kept, at most, to be tracked backwards from the next frame that has one; "
            "their poses come with the trajectory of the run; 0 = none")
       .range(0, 1000);
+  table
+      .add("backward_steps", &S::backward_steps,
+           "kept frames that are tracked backwards with each new frame, at most, so that tracking does not stall")
+      .range(1, 1000);
+  table
+      .add("backward_mask_frames", &S::backward_mask_frames,
+           "frames for which a keyframe with its mask is awaited before kept frames are tracked backwards from it")
+      .range(0, 1000);
+  table
+      .add("backward_patience", &S::backward_patience,
+           "frames in a row without a pose after which tracking backwards ends")
+      .range(1, 1000);
   table
       .add("start_share", &S::start_share,
            "when the first mask shows that less than this share of the first keyframe's features is static, the map "
@@ -228,6 +309,12 @@ void describe_relocalisation(ParameterTable<S>& table) {
       .range(0.01, 1000)
       .unit("m/s");
   table
+      .add(
+          "relocalisation_chance", &S::relocalisation_chance,
+          "with one camera, share of the matches of a wide search that must agree with a pose: near a wrong one, up to "
+          "a seventh agree by chance")
+      .range(0, 1);
+  table
       .add("relocalisation_tolerance", &S::relocalisation_tolerance,
            "distance that is added to what relocalisation_speed allows, for poses that had gone astray before the "
            "loss")
@@ -242,6 +329,7 @@ void TrackingSettings::describe(ParameterTable<TrackingSettings>& table) {
   describe_matching(table);
   describe_extraction(table);
   describe_acceptance(table);
+  describe_trust(table);
   describe_keyframes(table);
   describe_corrections(table);
   describe_losses(table);

@@ -64,7 +64,8 @@ struct RoomAndPerson {
     if (with_filter) filters.add("none", std::make_unique<NoEvidence>());
     MovingWorld moving_world({.camera = world.camera(), .filters = std::move(filters), .has_depth = false}, map);
     DefaultOptimizer optimizer;
-    PoseEstimator estimator(optimizer, moving_world, map);
+    const TrackingSettings settings;
+    PoseEstimator estimator(settings, optimizer, moving_world, map);
     std::vector<OdometryMatch> odometry;
     inliers = estimator.adjust_as_weighted(frame, odometry);
     for (std::uint32_t i = 0; i < frame.size(); ++i)

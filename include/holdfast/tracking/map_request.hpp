@@ -23,7 +23,7 @@ struct MapRequest {
   /// A mask of this frame is needed although it has no pose or an unconfirmed one: static features find the camera
   /// again, begin a new submap, or begin the map of one camera.
   bool wants_mask = false;
-  bool follows_loss = false;              ///< found less than 0.5 s ago: what fills the view may have caused the loss
+  bool follows_loss = false;              ///< found within found_time: what fills the view may have caused the loss
   const TwoViewMap* two_views = nullptr;  ///< valid until the next frame
 };
 

@@ -99,7 +99,7 @@ class DepthStart final : public MapStart {
 };
 
 /// Begins the map of one camera with two views (MonoInitialiser), once a mask tells where people are if masks are
-/// expected. From the frames 0.3 to 0.5 s after the start it judges whether the map grows
+/// expected. From the frames start_support_age to start_settling_time after the start it judges whether the map grows
 /// (TrackingSettings::start_support).
 class TwoViewStart final : public MapStart {
  public:

@@ -9,6 +9,7 @@
 #include "holdfast/interfaces/optimizer.hpp"
 #include "holdfast/moving_world/moving_world.hpp"
 #include "holdfast/tracking/frame_matcher.hpp"
+#include "holdfast/tracking/tracking_settings.hpp"
 
 namespace holdfast {
 
@@ -17,13 +18,14 @@ namespace holdfast {
 ///
 /// With one camera among people, established points precede new ones: a part of a person that no mask shows gets map
 /// points, too, which agree with each other and, being near, determine the translation more than the room does. Where
-/// the points that were first seen a second ago or earlier determine the pose, newer ones are outliers unless they
-/// agree with it. With depth, filters measure what moves; without filters, nothing is expected to move.
+/// the points that were first seen TrackingSettings::established_age ago or earlier determine the pose, newer ones are
+/// outliers unless they agree with it. With depth, filters measure what moves; without filters, nothing is expected to
+/// move.
 class PoseEstimator {
  public:
   /// All must outlive the estimator.
-  PoseEstimator(Optimizer& optimizer, MovingWorld& moving_world, const Map& map)
-      : optimizer_(optimizer), moving_world_(moving_world), map_(map) {}
+  PoseEstimator(const TrackingSettings& settings, Optimizer& optimizer, MovingWorld& moving_world, const Map& map)
+      : settings_(settings), optimizer_(optimizer), moving_world_(moving_world), map_(map) {}
 
   /// Weights the frame's features and builds the motion-only problem of all its matches, which starts at the frame's
   /// pose. Matches with points that are gone are removed.
@@ -52,6 +54,7 @@ class PoseEstimator {
   bool is_established(const MapPoint& point, double now) const;
   void reject_new_points(const Frame& frame);
 
+  const TrackingSettings& settings_;
   Optimizer& optimizer_;
   MovingWorld& moving_world_;
   const Map& map_;

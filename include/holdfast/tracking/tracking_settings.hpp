@@ -36,10 +36,10 @@ struct TrackingSettings {
   /// One camera: standard deviation of the direction of motion between the first two views above which the start waits
   /// [deg]; 0 = off. What people leave of an image may hardly tell translation from rotation.
   double start_deviation = 0.0;
-  /// One camera: after 0.3 to 0.5 s, the share of a frame's static features that are found in the map, times the share
-  /// of those that agree with the pose; a map with less is given up. Maps that were begun with people, or with points
-  /// that hardly determine their shape, have 0.05 to 0.1, others 0.08 to 0.5. Half is enough for each further start.
-  /// 0 = off.
+  /// One camera: after start_support_age to start_settling_time, the share of a frame's static features that are found
+  /// in the map, times the share of those that agree with the pose; a map with less is given up. Maps that were begun
+  /// with people, or with points that hardly determine their shape, have 0.05 to 0.1, others 0.08 to 0.5. Half is
+  /// enough for each further start. 0 = off.
   double start_support = 0.0;
   double close_depth_factor = 40.0;  ///< baselines; beyond it, noise of depth exceeds that of triangulation (ORB-SLAM2)
   double depth_edge_ratio = 0.05;    ///< share of the depth; features at larger steps of depth have none; 0 = off
@@ -81,9 +81,28 @@ struct TrackingSettings {
   int keyframe_close_tracked = 100;   ///< features
   int keyframe_close_possible = 70;   ///< features
 
+  // Which poses are believed, and for how long.
+  int ample_inliers = 4;             ///< times minimum_inliers: what determines a pose beyond doubt
+  double support_age = 0.5;          ///< [s]; before, a right map of one camera is small too
+  double minimum_support = 0.06;     ///< without people, 0.12 and more; on a person who fills the view, 0.02 to 0.05
+  double established_age = 1.0;      ///< [s]; somebody who walks past the camera is in view for about as long
+  int established_points = 50;       ///< that agree with each other
+  double new_point_factor = 4.0;     ///< on chi-square; the established pose and the points are uncertain as well
+  double start_settling_time = 0.5;  ///< [s]
+  double start_support_age = 0.3;    ///< [s]; before, a right map is small too
+  int provisional_frames = 30;       ///< as long as a mask may take
+  int confirming_frames = 8;         ///< in a row
+  double young_map_patience = 0.1;   ///< [s]; the next frames or a mask that is on its way may help
+  double young_map_share = 0.5;      ///< of the time tracked: a longer map is worth waiting longer for
+  int return_interval = 3;           ///< frames; the search takes as long as tracking
+  double found_time = 0.5;           ///< [s]
+
   // Relocalisation.
   double restart_time = 0.0;                              ///< [s]; a camera lost for longer begins a new submap
   int backward_frames = 60;                               ///< kept, of those without a pose
+  int backward_steps = 2;                                 ///< for each frame, so that tracking does not stall
+  int backward_mask_frames = 8;                           ///< as long as a mask usually takes
+  int backward_patience = 3;                              ///< frames in a row without a pose
   double start_share = 0.6;                               ///< of the first keyframe's features
   double young_map_time = 1.0;                            ///< [s]; a map lost so soon after its start begins anew
   double coasting_time = 1.0;                             ///< [s]
@@ -94,7 +113,10 @@ struct TrackingSettings {
   int relocalisation_inliers = 50;                        ///< map points
   double relocalisation_window = 2.0;                     ///< factor on local_map_window
   double relocalisation_speed = 3.0;                      ///< [m/s]; a running person
-  double relocalisation_tolerance = 1.0;                  ///< [m]; for poses that had gone astray before the loss
+  /// Of the matches of a wide search near a wrong pose of one camera, up to a seventh agree with it after an
+  /// adjustment.
+  double relocalisation_chance = 1.0 / 6.0;
+  double relocalisation_tolerance = 1.0;  ///< [m]; for poses that had gone astray before the loss
 
   static void describe(ParameterTable<TrackingSettings>& table);
 };
