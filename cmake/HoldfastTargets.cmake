@@ -76,10 +76,11 @@ function(holdfast_add_builtin_plugin name)
   set_property(GLOBAL APPEND PROPERTY HOLDFAST_BUILTIN_PLUGINS ${name})
 endfunction()
 
-# holdfast_add_test(NAME SOURCES a.cpp ... [DEPENDS target ...] [LABELS label ...] [TIMEOUT seconds])
-# A GoogleTest program; each of its tests becomes a ctest case. Labels: quick (default), slow, data.
+# holdfast_add_test(NAME SOURCES a.cpp ... [DEPENDS target ...] [LABELS label ...] [TIMEOUT seconds] [NIGHTLY test ...])
+# A GoogleTest program; each of its tests becomes a ctest case. Labels: quick (default), slow, data. The tests named
+# under NIGHTLY (Suite.Name) have the label nightly instead.
 function(holdfast_add_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "TIMEOUT" "SOURCES;DEPENDS;LABELS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "TIMEOUT" "SOURCES;DEPENDS;LABELS;NIGHTLY")
   if(NOT arg_LABELS)
     set(arg_LABELS quick)
   endif()
@@ -93,6 +94,11 @@ function(holdfast_add_test name)
   target_link_libraries(${name} PRIVATE ${arg_DEPENDS} GTest::gtest GTest::gmock GTest::gtest_main)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${holdfast_BINARY_DIR}/tests)
   include(GoogleTest)
-  gtest_discover_tests(${name} PROPERTIES LABELS "${arg_LABELS}" TIMEOUT ${arg_TIMEOUT} DISCOVERY_TIMEOUT 60
-                       DISCOVERY_MODE PRE_TEST)
+  set(discovery TIMEOUT ${arg_TIMEOUT} DISCOVERY_TIMEOUT 60 DISCOVERY_MODE PRE_TEST)
+  list(JOIN arg_NIGHTLY ":" nightly)
+  if(nightly)
+    gtest_discover_tests(${name} TEST_FILTER "${nightly}" TEST_LIST ${name}_nightly PROPERTIES LABELS nightly ${discovery})
+    set(others TEST_FILTER "-${nightly}")
+  endif()
+  gtest_discover_tests(${name} ${others} PROPERTIES LABELS "${arg_LABELS}" ${discovery})
 endfunction()
