@@ -15,7 +15,7 @@ namespace holdfast {
 /// Tracking state of a frame.
 enum class TrackingStatus {
   waiting,      ///< there is no map yet, and this frame could not initialise one
-  initialised,  ///< this frame began the map, or began it anew after a loss right at its start
+  initialised,  ///< this frame initialised the map, or after a loss a new map or submap
   tracked,      ///< the pose was estimated
   lost,         ///< a map exists, but the pose could not be estimated
 };
@@ -27,15 +27,15 @@ enum class TrackingMethod {
   reference_keyframe,  ///< descriptor matches with the reference keyframe
   recovered,           ///< after tracking was lost, from one of the last keyframes
   relocalised,         ///< after tracking was lost or in a loaded map, at a place recognised by the loop detector
-  flow,                ///< map points of an earlier frame, followed from its image by optical flow
+  flow,                ///< map points of an earlier frame, tracked into this image by optical flow
 };
 
 /// Fallback method of a pose that the static features of the frame did not determine.
 enum class TrackingFallback {
   none,
-  odometry,         ///< static features of the previous frame, with their depth; too little of the map is in view
-  masked_features,  ///< features on masks of movable classes as well; dense depth confirms the pose
-  dense_depth,      ///< alignment of the depth image with those of keyframes, refined by features where they agree
+  odometry,         ///< frame-to-frame odometry on static features with depth: too little of the map is in view
+  masked_features,  ///< features on movable objects are used as well; dense depth must confirm the pose
+  dense_depth,      ///< alignment of the depth image with those of keyframes, refined by features if they agree
 };
 
 /// Why a frame has no pose.
@@ -45,9 +45,9 @@ enum class TrackingFailure {
   few_features,
   few_matches,
   few_inliers,
-  little_parallax,  ///< the parallax is too small to initialise the map of one camera
+  little_parallax,  ///< the parallax is too small for monocular initialisation
   no_mask,          ///< monocular initialisation waits for the first mask
-  weak_start,       ///< the map of one camera did not grow after its initialisation and was discarded
+  weak_start,       ///< the monocular map did not grow after its initialisation and was discarded
   exchanged_pair,   ///< the left and the right image of the stereo pair are swapped
 };
 
@@ -75,7 +75,8 @@ struct FrameResult {
   KeyFrameId keyframe;  ///< the keyframe created from this frame, otherwise the reference keyframe
   /// Moving objects by rising id, if a filter tracks them (`motion_objects`); empty for a lost frame.
   std::vector<MovingObject> objects;
-  /// Time from images to pose [s], including masks that arrived with this frame; without decoding and local mapping.
+  /// Time from images to pose [s]. It includes the processing of a mask that arrived with this frame, and excludes
+  /// decoding and local mapping.
   double tracking_seconds = 0.0;
   StageTimes times;
 };

@@ -74,11 +74,11 @@ class Map {
   void remove_point(MapPointId point);
 
   /// Recounts the points that a keyframe shares with others and updates the covisibility edges on both sides. An edge
-  /// needs at least the minimum of set_covisibility_minimum() in shared points; the strongest neighbour is always kept.
+  /// needs as many shared points as set_covisibility_minimum() says; the strongest neighbour is always kept.
   /// Sets the spanning-tree parent of a new keyframe.
   void update_covisibility(KeyFrameId keyframe);
-  /// Sets the spanning-tree parent of a keyframe that is not covisible with any older one, because its pose was
-  /// estimated without the map.
+  /// Makes `older` the spanning-tree parent of a keyframe without one. Needed for a keyframe that is not covisible with
+  /// any older one, because its pose was estimated without the map.
   void set_parent(KeyFrameId keyframe, KeyFrameId older);
   /// Removes a keyframe with its observations, covisibility edges and loop edges. Its children in the spanning tree get
   /// new parents among their neighbours. Its pose stays available relative to its parent; see pose_of().
@@ -86,9 +86,9 @@ class Map {
 
   /// Number of a new submap (KeyFrame::submap).
   std::uint32_t new_submap() { return ++last_submap_; }
-  /// Submap of a keyframe; a removed one belongs to that of its parent. Nothing for a keyframe of a removed submap.
+  /// Submap of a keyframe; for a removed keyframe, that of its parent. Nothing for a keyframe of a removed submap.
   std::optional<std::uint32_t> submap_of(KeyFrameId keyframe) const;
-  /// Merges two submaps under the lower number, after their relative pose was corrected.
+  /// Gives two submaps the lower number of the two. Their relative pose must have been corrected before.
   void join_submaps(std::uint32_t first, std::uint32_t second);
   /// Keyframes of all other submaps, oldest first.
   std::vector<KeyFrameId> keyframes_outside(std::uint32_t submap) const;
@@ -108,11 +108,11 @@ class Map {
   /// T_camera_world of a keyframe. For a removed keyframe, it is composed from the current pose of its parent and the
   /// relative pose at the time of removal.
   Eigen::Isometry3d pose_of(KeyFrameId keyframe) const;
-  /// KeyFrame::scale of a keyframe; a removed one follows the scale of its parent.
+  /// KeyFrame::scale of a keyframe; for a removed one, its scale then times the change of its parent's scale since.
   double scale_of(KeyFrameId keyframe) const;
 
-  /// Bound on the magnitude of the static log-odds that fuse_points() leaves on a point (EvidenceSettings::limit). It
-  /// belongs to the run, not to the content: files do not keep it, and clear() and restore() leave it as it is.
+  /// Magnitude to which fuse_points() clamps the static log-odds of a point (EvidenceSettings::limit). It belongs to
+  /// the run, not to the content: files do not keep it, and clear() and restore() leave it as it is.
   void set_evidence_limit(float log_odds) { evidence_limit_ = log_odds; }
   float evidence_limit() const { return evidence_limit_; }
 
@@ -131,11 +131,11 @@ class Map {
   void set_features(MapFeatures features) { features_ = std::move(features); }
   /// Names of the classes that points can have, by MapPoint::label; empty = points have no classes.
   const std::vector<std::string>& classes() const { return classes_; }
-  /// Replaces the names; those beyond the 255th, which no label refers to, are dropped. Points keep their class by its
-  /// name: the label follows it, and becomes unknown if the name is gone.
+  /// Replaces the names; those beyond the 255th, which no label refers to, are dropped. Labels of
+  /// points are remapped by name; labels whose name is gone become unknown.
   void set_classes(std::vector<std::string> names);
-  /// Sets the class of each point to the most frequent label among the masks of the keyframes that observe it; of equal
-  /// counts the lower label. A point without a label in any mask keeps its class.
+  /// Sets the class of each point to the most frequent label of the masks at its observations; of equal counts, the
+  /// lower label. A point without a label in any mask keeps its class.
   void classify_points();
 
   /// Incremented by invalidate_copies(); a holder of copied map data compares versions to detect that the copy is
@@ -149,11 +149,13 @@ class Map {
   /// reused.
   void remove_all();
 
-  /// Replaces the whole map by `content`, whose positions become the ids, and rebuilds the feature grids. The content
-  /// must satisfy the invariants of Map: observations agree on both sides, every point has at least one and its
-  /// reference keyframe is among them, covisibility edges are symmetric and sorted, and parents are older than their
-  /// children and list them. Feature positions must be finite. Throws Error that describes the violation and leaves
-  /// the map unchanged.
+  /// Replaces the whole map by `content`, whose entry i gets the id of slot i, and rebuilds the feature grids. Throws
+  /// Error that describes the violation, and leaves the map unchanged, unless the content satisfies the invariants of
+  /// Map:
+  /// - observations agree on both sides; every point has at least one, and its reference keyframe is among them;
+  /// - covisibility edges are symmetric and sorted;
+  /// - parents are older than their children and list them;
+  /// - feature positions are finite.
   void restore(MapContent content);
 
  private:

@@ -14,11 +14,12 @@ enum class Sensor {
   mono,    ///< colour alone; the unit of the map is arbitrary (TrackingSettings::start_depth)
 };
 
-/// Facts of a sensor. Code asks these, not which sensor it is, so that a sensor is added in one place.
+/// Properties of a sensor mode. Code queries these instead of comparing with Sensor, so that a sensor is added in one
+/// place.
 /// @{
 /// Features have a measured depth, by a depth image or by the disparity of a pair.
 constexpr bool features_have_depth(Sensor sensor) { return sensor != Sensor::mono; }
-/// The unit of the map is the metre, and its scale does not drift. An inertial sensor would give one camera this, too.
+/// The unit of the map is the metre, and its scale does not drift.
 constexpr bool scale_is_known(Sensor sensor) { return sensor != Sensor::mono; }
 /// Frames have a depth image.
 constexpr bool has_dense_depth(Sensor sensor) { return sensor == Sensor::rgbd; }

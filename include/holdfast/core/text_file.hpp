@@ -10,7 +10,7 @@
 namespace holdfast {
 
 /// Reads a text file line by line; a UTF-8 byte-order mark at its beginning, which some editors write, is left out. All
-/// readers of lists use it, so that a file that can be read only in part is an error everywhere. Used by one thread.
+/// readers of lists use it, so that a read error in the middle of a file is reported everywhere. Used by one thread.
 class LineReader {
  public:
   static constexpr std::size_t longest_line = 1 << 20;  ///< [bytes]

@@ -21,23 +21,22 @@ struct TimedPose {
 using Trajectory = std::vector<TimedPose>;
 
 /// Sorts the poses by time stamp and removes duplicates: of several poses with the same stamp the last one is kept, as
-/// in the TUM tools. Poses with a value that is not finite are removed, as there.
+/// in the TUM tools. Poses with a value that is not finite are also removed.
 Trajectory sort_and_clean(Trajectory trajectory);
 
 /// Reads a trajectory in TUM format: lines "timestamp tx ty tz qx qy qz qw", where '#' begins a comment. The result is
 /// sorted and cleaned as by sort_and_clean(). Quaternions are normalised, zero ones skipped. Throws InputError (file,
-/// line) for a file that cannot be read, a line that is not a pose of 8 numbers separated by blanks (the message names
-/// the format that it looks like), and a quaternion whose length differs from 1 by more than 0.02. The position of the
-/// quaternion's real part cannot be recognised by its values, so that commas, and a comment that names it first, are
-/// errors as well.
+/// line) for an unreadable file, for a line that is not a pose of 8 numbers separated by blanks, and for a quaternion
+/// whose norm differs from 1 by more than 0.02. The message names the format that the line looks like. The values do
+/// not show whether qw comes first; therefore commas, and a comment that names qw first, are errors as well.
 Trajectory read_trajectory(const std::filesystem::path& file);
 
 /// Format of the lines of a trajectory file.
 enum class TrajectoryFormat {
   tum,    ///< "t tx ty tz qx qy qz qw", t in seconds
   kitti,  ///< 12 numbers: the upper three rows of T_world_camera, row by row; no stamp
-  euroc,  ///< "t, tx, ty, tz, qw, qx, qy, qz", t in nanoseconds; further columns (velocity, biases) are not read. To be
-          ///< recognised it needs its commas, or a comment that names qw first
+  euroc,  ///< "t, tx, ty, tz, qw, qx, qy, qz", t in nanoseconds; further columns (velocity, biases) are not read. It is
+          ///< recognised by its commas, or by a comment that names qw first
 };
 
 /// tum, kitti or euroc.
@@ -48,18 +47,18 @@ std::optional<TrajectoryFormat> find_trajectory_format(const std::string& name);
 /// Options of read_trajectory_file().
 struct TrajectoryReading {
   std::optional<TrajectoryFormat> format = TrajectoryFormat::tum;  ///< empty: recognised by the first pose of the file
-  std::vector<double> stamps;  ///< of the poses of a file in KITTI's format [s]; empty: ten poses a second, from 0
+  std::vector<double> stamps;  ///< time stamps of the poses of a KITTI file [s]; empty: 10 Hz, from 0
 };
 
-/// Content of a trajectory file, and numbers of ignored lines.
+/// Content of a trajectory file, with counts of ignored poses.
 struct TrajectoryFile {
-  Trajectory poses;  ///< as of read_trajectory()
+  Trajectory poses;  ///< sorted and cleaned as by sort_and_clean()
   TrajectoryFormat format = TrajectoryFormat::tum;
   std::size_t not_finite = 0;
   std::size_t zero_quaternions = 0;
   std::size_t repeated_stamps = 0;  ///< poses replaced by a later pose with the same stamp
 
-  /// Ignored lines, as "2 poses that are not finite, 1 pose with a zero quaternion"; empty without any.
+  /// The ignored poses as text, "2 poses that are not finite, 1 pose with a zero quaternion"; empty if there are none.
   std::string omissions() const;
 };
 
@@ -67,7 +66,7 @@ struct TrajectoryFile {
 /// well for KITTI's format with more or fewer poses than stamps, or an invalid rotation matrix.
 TrajectoryFile read_trajectory_file(const std::filesystem::path& file, const TrajectoryReading& reading = {});
 
-/// The comment line that begins every trajectory that is written: the columns and their units.
+/// The comment line that begins every file in TUM format that is written: the columns and their units.
 inline constexpr const char* trajectory_header =
     "# timestamp [s] tx ty tz [m] qx qy qz qw, pose of the camera in the world\n";
 
@@ -78,7 +77,7 @@ std::string pose_text(const TimedPose& pose);
 /// Returns the trajectory in TUM format: trajectory_header, then pose_text() of every pose.
 std::string trajectory_text(const Trajectory& trajectory);
 
-/// The same in any of the formats; that of KITTI has no stamps.
+/// Returns the trajectory in the given format; KITTI's has no time stamps.
 std::string trajectory_text(const Trajectory& trajectory, TrajectoryFormat format);
 
 /// Writes trajectory_text() atomically. Throws InputError if the file cannot be written.

@@ -15,8 +15,8 @@ namespace holdfast::geometry {
 
 namespace detail {
 
-/// Eigenvalues of the companion matrix of a polynomial of degree four, which is upper Hessenberg as it is: of the real
-/// Schur form's diagonal blocks. False when the iteration does not converge.
+/// Eigenvalues of the companion matrix of a quartic polynomial, from its real Schur form; the matrix is already upper
+/// Hessenberg. False when the iteration does not converge.
 inline bool companion_eigenvalues(const Eigen::Matrix4d& companion, Eigen::Vector4cd& values) {
   const double scale = companion.cwiseAbs().maxCoeff();
   const Eigen::Matrix4d scaled = companion / scale;

@@ -23,13 +23,13 @@
 namespace holdfast {
 
 /// Tracking (Mur-Artal and Tardos 2017, section III): estimates the pose of every frame against the map and requests
-/// keyframes. It is the state machine of TrackerState around three rooms: FrameTracker finds the pose of one frame,
-/// MapStart begins maps, LossRecovery deals with losses.
+/// keyframes. It is the state machine of TrackerState with three components: FrameTracker finds the pose of one
+/// frame, MapStart initialises maps, LossRecovery deals with losses.
 ///
 /// The pipeline calls, for each frame and in this order: judge_start(), begin(), locate(), and keyframe_added() for a
 /// frame that became a keyframe. The tracker writes to the map only its observations of points: how often they are
-/// visible and found, and their static log-odds (through MovingWorld). One thread. Functions that use the map take a
-/// MapAccess.
+/// visible and found, and their static log-odds (through MovingWorld). Not thread-safe: one thread calls it.
+/// Functions that use the map take a MapAccess.
 class Tracker {
  public:
   /// With keyframes in the map the tracker begins lost and has to relocalise first.
@@ -42,34 +42,37 @@ class Tracker {
 
   /// Throws InputError for images that begin() would refuse.
   void check_images(const SensorFrame& sensor_frame) const { context_.builder.check_images(sensor_frame); }
-  /// Whether the first mask, which has just arrived, shows that the map began on what moves: then remove all of it,
-  /// call forget_map(), and the next frame begins another one, from which those before it are tracked backwards.
+  /// True if the first mask, which has just arrived, shows mostly movable objects in the first keyframe. Then the
+  /// caller clears the map and calls forget_map(); the next frame initialises another map, from which the frames before
+  /// it are tracked backwards.
   bool judge_start(const MapAccess& map);
   /// First half of a frame: propagates the mask and extracts features. It does not read the map.
   void begin(const SensorFrame& sensor_frame, FrameResult& result);
   /// Second half: estimates the pose. The caller carries out the request before the next frame.
   MapRequest locate(const MapAccess& map, const SensorFrame& sensor_frame, FrameResult& result);
-  /// For MapRequest::Kind::two_views: the first view became `reference`, and its points, in their order, `points`.
+  /// For MapRequest::Kind::two_views: takes over the id of the first view, inserted as a keyframe, and the ids of the
+  /// initial points, in their order.
   void map_begun(const MapAccess&, KeyFrameId reference, const std::vector<MapPointId>& points) {
     start_->map_begun(reference, points);
   }
   /// Takes over the matches and the pose of the keyframe that the frame became, as local mapping left them.
   void keyframe_added(const MapAccess& map, KeyFrameId keyframe);
-  /// As if no frame had been tracked. The map is empty.
+  /// Resets tracking to the state before the first frame. The caller has emptied the map.
   void forget_map(const MapAccess& map);
-  /// No frame follows: withdraws poses after a loss that nothing has confirmed, and tracks kept frames backwards.
+  /// Ends tracking: withdraws unconfirmed poses after a loss, and tracks kept frames backwards.
   void finish(const MapAccess&, StageTimes& times) { recovery_.finish(times); }
 
   /// The frame last tracked, with features, matches and pose.
   const Frame& frame() const { return context_.current; }
   TrackerState state() const { return state_; }
-  /// Counts of frames around losses until now.
+  /// Statistics of the frames around losses so far.
   LossRecord loss_record(const MapAccess&) const { return recovery_.record(); }
   /// The rolling-shutter correction with its estimated readout time.
   const RollingShutter& rolling_shutter() const { return context_.shutter; }
   /// The submap with most of the tracked frames.
   std::uint32_t main_submap(const MapAccess& map) const { return context_.history.main_submap(map.map()); }
-  /// Every tracked frame's pose by the map as it is now. Frames follow the keyframes that they were tracked against.
+  /// Current poses of the tracked frames of the main submap. Poses are stored relative to keyframes, so that
+  /// corrections of the map move them.
   Trajectory trajectory(const MapAccess& map) const { return context_.history.trajectory(map.map()); }
 
  private:
