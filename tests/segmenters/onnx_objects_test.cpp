@@ -3,6 +3,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "holdfast/inference/network.hpp"
 #include "segmenters/segmenter_fixture.hpp"
 
 extern "C" void holdfast_register_plugin_onnx(holdfast::Registry& registry);
@@ -18,6 +19,7 @@ using testing::HasSubstr;
 
 std::unique_ptr<Segmenter> make(const std::string& model, ParameterValues values = {}) {
   values["model"] = std::string(HOLDFAST_TEST_MODELS) + "/" + model + ".onnx";
+  values.try_emplace("engine", "opencv");
   return test::make_segmenter(holdfast_register_plugin_onnx, "onnx", values);
 }
 
@@ -98,6 +100,17 @@ TEST(OnnxObjects, FreeDimensionsAreThoseOfTheMetadata) {
   EXPECT_LE(differences(result.labels, expected), 24) << "six pixels of a corner";
   EXPECT_THAT(make("yolov8n-seg-dynamic", {{"width", std::int64_t{320}}, {"height", std::int64_t{320}}})->description(),
               HasSubstr("Input 320x320"));
+}
+
+TEST(OnnxObjects, OnnxruntimeFindsTheSame) {
+  if (!has_onnxruntime()) GTEST_SKIP() << "no ONNX Runtime: sh cmake/install_dependencies.sh --onnxruntime";
+  for (const char* model : {"yolov8n-seg", "yolov8n-seg-dynamic", "yolo26n-seg"}) {
+    const Segmentation expected = make(model)->segment(red_and_green());
+    const Segmentation found = make(model, {{"engine", "onnxruntime"}})->segment(red_and_green());
+    EXPECT_EQ(found.found.size(), expected.found.size()) << model;
+    EXPECT_EQ(differences(found.labels, expected.labels), 0) << model;
+    EXPECT_EQ(differences(found.instances, expected.instances), 0) << model;
+  }
 }
 
 TEST(OnnxObjects, BoxesAreCutOutByDepth) {

@@ -56,7 +56,7 @@ struct OnnxSettings {
   using Interface = Segmenter;
   static constexpr const char* module = "onnx";
 
-  std::filesystem::path model;                  ///< ONNX file with float32 weights; required
+  std::filesystem::path model;                  ///< ONNX file; required
   int width = 0;                                ///< width of the network input [px]; 0 = as declared by the model
   int height = 0;                               ///< height of the network input [px]; 0 = as declared by the model
   ColourOrder colour_order = ColourOrder::rgb;  ///< of the input
@@ -77,9 +77,12 @@ struct OnnxSettings {
   /// The subset of classes that can move; empty = person for a network for objects, otherwise not
   /// specified.
   std::vector<std::string> movable;
-  NetworkEngine engine = NetworkEngine::opencv;         ///< what computes the network
+  NetworkEngine engine = NetworkEngine::automatic;      ///< what computes the network
   NetworkPrecision precision = NetworkPrecision::fp32;  ///< bf16: with onednn, where the processor has it
-  /// OpenCV: for the whole process, 0 = unchanged; oneDNN: for this network, 0 = 1.
+  std::string provider = "cpu";                         ///< of ONNX Runtime: what it computes on
+  /// ONNX Runtime's library, or its folder; empty = the variable HOLDFAST_ONNXRUNTIME, otherwise the usual places.
+  std::filesystem::path engine_library;
+  /// OpenCV: for the whole process, 0 = unchanged; other engines: for this network, 0 = 1.
   int threads = 0;
 
   static void describe(ParameterTable<OnnxSettings>& table);

@@ -114,6 +114,7 @@ std::string ObjectSegmenter::description() const {
   text += ". Scores of at least " + number_text(min_score_);
   text += max_overlap_ < 1.0 ? ", duplicates overlap by more than " + number_text(max_overlap_) + "."
                              : ", no suppression of duplicates.";
+  text += " Computed by " + network_.engine_text() + ".";
   return text;
 }
 

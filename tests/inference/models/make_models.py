@@ -10,7 +10,7 @@ if something is green; prototype 0 is positive where it is red, prototype 1 wher
 import pathlib
 import struct
 
-FLOAT, INT64, FLOAT16 = 1, 7, 10
+FLOAT, UINT8, INT8, INT64, FLOAT16 = 1, 2, 3, 7, 10
 HEIGHT, WIDTH = 12, 16
 
 
@@ -39,7 +39,7 @@ def value_info(name, shape, element=FLOAT):
 
 
 def tensor(name, shape, values, element=FLOAT):
-    form = {FLOAT: "f", FLOAT16: "e", INT64: "q"}[element]
+    form = {FLOAT: "f", UINT8: "B", INT8: "b", FLOAT16: "e", INT64: "q"}[element]
     raw = struct.pack(f"<{len(values)}{form}", *values)
     return b"".join(number(1, s) for s in shape) + number(2, element) + content(8, name) + content(9, raw)
 
@@ -326,6 +326,22 @@ def main():
     half, half_weights = convolution(SCORES, "image", "scores", element=FLOAT16)
     write("half", model([half], [value_info("image", [1, 3] + plane, FLOAT16)],
                         [value_info("scores", [1, 3] + plane, FLOAT16)], half_weights))
+
+    # 8 bits: pixels from 0 to 255, and weights in eighths.
+    eighths = [round(8 * w) for row in SCORES for w in row[:3]]
+    parts = [node("DequantizeLinear", ["image", "pixel_scale"], "colours"),
+             node("DequantizeLinear", ["weight", "weight_scale"], "real_weight"),
+             node("Conv", ["colours", "real_weight", "bias"], "scores", integers("kernel_shape", [1, 1]))]
+    numbers = [tensor("pixel_scale", [], [1 / 255]), tensor("weight", [3, 3, 1, 1], eighths, INT8),
+               tensor("weight_scale", [], [1 / 8]), tensor("bias", [3], [row[3] for row in SCORES])]
+    write("quantised", model(parts, [value_info("image", [1, 3] + plane, UINT8)], [scores], numbers, opset=13))
+
+    # An operator that is younger than OpenCV 4.6, between free dimensions; it keeps the order of the scores.
+    parts = [conv, node("Transpose", ["scores"], "pixels", integers("perm", [0, 2, 3, 1])),
+             node("LayerNormalization", ["pixels", "norm_scale"], "normal"),
+             node("Transpose", ["normal"], "normal_scores", integers("perm", [0, 3, 1, 2]))]
+    write("opset_17", model(parts, [free], [value_info("normal_scores", [1, 3, "height", "width"])],
+                            weights + [tensor("norm_scale", [3], [1.0, 1.0, 1.0])], opset=17))
 
     boxes = node("Reshape", ["scores", "box_shape"], "boxes")
     box_shape = tensor("box_shape", [3], [1, 8, 72], INT64)
