@@ -17,6 +17,9 @@ namespace holdfast {
 
 namespace {
 
+/// Whether an input is one image, without a dimension for several: torchvision exports detectors so.
+bool is_without_batch(const OnnxTensor& input) { return input.shape.size() == 3; }
+
 /// The size of the input, from the options and from what the model declares, which must agree.
 cv::Size input_size(const NetworkOptions& options, const OnnxNet& net) {
   const OnnxSignature& signature = net.signature();
@@ -29,8 +32,9 @@ cv::Size input_size(const NetworkOptions& options, const OnnxNet& net) {
       options.channels_last ? "1 x height x width x 3 (layout nhwc)" : "1 x 3 x height x width (layout nchw)";
   std::array<std::int64_t, 4> shape = {-1, -1, -1, -1};
   if (!input.shape.empty()) {
-    if (input.shape.size() != 4) fail("has an input of " + input.shape_text() + "; expected " + expected);
-    std::copy(input.shape.begin(), input.shape.end(), shape.begin());
+    if (input.shape.size() != 4 && !is_without_batch(input))
+      fail("has an input of " + input.shape_text() + "; expected " + expected);
+    std::copy(input.shape.rbegin(), input.shape.rend(), shape.rbegin());
   }
   const std::int64_t channels = shape[options.channels_last ? 3 : 1];
   if ((shape[0] != -1 && shape[0] != 1) || (channels != -1 && channels != 3))
@@ -181,7 +185,8 @@ Network::Network(const NetworkOptions& options) {
   const int h = parts_->size.height, w = parts_->size.width;
   const int channels_first[] = {1, 3, h, w}, channels_last[] = {1, h, w, 3};
   cv::Mat& input = parts_->input;
-  input.create(4, options.channels_last ? channels_last : channels_first, CV_32F);
+  const int dimensions = is_without_batch(signature.inputs.front()) ? 3 : 4;
+  input.create(dimensions, (options.channels_last ? channels_last : channels_first) + 4 - dimensions, CV_32F);
   std::vector<std::string> outputs = {parts_->output.name};
   if (options.every_output) {
     outputs.clear();

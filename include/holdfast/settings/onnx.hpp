@@ -26,7 +26,18 @@ enum class NetworkOutput { automatic, logits, probabilities, labels, instances, 
 /// padded with grey. automatic: as the family is trained; semantic networks stretch.
 enum class InputFit { automatic, stretch, letterbox };
 /// Family of a network for objects: what its outputs mean and how its input is prepared (`holdfast modules onnx`).
-enum class ObjectFamily { automatic, yolo, yolov5, yolo_end_to_end, rtdetr, detr, ssd };
+enum class ObjectFamily {
+  automatic,
+  yolo,
+  yolov5,
+  yolo_end_to_end,
+  rtdetr,
+  detr,
+  ssd,
+  mask_rcnn,
+  maskformer,
+  fastestdet
+};
 
 template <>
 inline constexpr Choice<ColourOrder> choice_table<ColourOrder>[] = {{"rgb", ColourOrder::rgb},
@@ -46,10 +57,16 @@ inline constexpr Choice<InputFit> choice_table<InputFit>[] = {
     {"auto", InputFit::automatic}, {"stretch", InputFit::stretch}, {"letterbox", InputFit::letterbox}};
 template <>
 inline constexpr Choice<ObjectFamily> choice_table<ObjectFamily>[] = {
-    {"auto", ObjectFamily::automatic}, {"yolo", ObjectFamily::yolo},
-    {"yolov5", ObjectFamily::yolov5},  {"yolo_end_to_end", ObjectFamily::yolo_end_to_end},
-    {"rtdetr", ObjectFamily::rtdetr},  {"detr", ObjectFamily::detr},
-    {"ssd", ObjectFamily::ssd}};
+    {"auto", ObjectFamily::automatic},
+    {"yolo", ObjectFamily::yolo},
+    {"yolov5", ObjectFamily::yolov5},
+    {"yolo_end_to_end", ObjectFamily::yolo_end_to_end},
+    {"rtdetr", ObjectFamily::rtdetr},
+    {"detr", ObjectFamily::detr},
+    {"ssd", ObjectFamily::ssd},
+    {"mask_rcnn", ObjectFamily::mask_rcnn},
+    {"maskformer", ObjectFamily::maskformer},
+    {"fastestdet", ObjectFamily::fastestdet}};
 
 /// Settings of the segmenter `onnx`. Ranges and units: `holdfast modules onnx`.
 struct OnnxSettings {

@@ -286,6 +286,34 @@ def ssd():
     return net.write([1, 3, 300, 300], {"scores": [1, 3000, 21], "boxes": [1, 3000, 4]})
 
 
+def mask_rcnn():
+    """As torchvision exports it: one image without a batch, and as many boxes, labels, scores and masks as there are."""
+    rows = [(1, 0, 0, 0.0), (0, 1, 0, 0.0)]
+    conv, weights = convolution(rows, "images", "planes")
+    nodes = [node("Unsqueeze", ["image"], "images", integers("axes", [0])), conv,
+             node("Transpose", ["planes"], "every_mask", integers("perm", [1, 0, 2, 3])),
+             node("ReduceMax", ["every_mask"], "highest", integers("axes", [1, 2, 3]), integer("keepdims", 0)),
+             node("Greater", ["highest", "half"], "is_there"), node("NonZero", ["is_there"], "row"),
+             node("Reshape", ["row", "any"], "kept")]
+    nodes += [node("Gather", ["every_" + part, "kept"], part) for part in ("box", "label", "score", "mask")]
+    weights += [tensor("half", [], [0.5]), tensor("any", [1], [-1], INT64),
+                tensor("every_box", [2, 4], [2, 2, 16, 22, 16, 2, 30, 22]), tensor("every_label", [2], [1, 62], INT64),
+                tensor("every_score", [2], [0.75, 0.875])]
+    outputs = [value_info("box", ["n", 4]), value_info("label", ["n"], INT64), value_info("score", ["n"]),
+               value_info("mask", ["n", 1, "height", "width"])]
+    return model(nodes, [value_info("image", [3, "height", "width"])], outputs, weights)
+
+
+def maskformer():
+    """Four queries of two classes and none: a person where it is red, a chair where it is green."""
+    net = Objects()
+    net.turned("zeros", net.cells("columns", [24, 8], [NOTHING] * 3))
+    net.tensor("queries", [1, 4, 3], [0, 0, 9, 9, 0, 0, 0, 0, 9, 0, 6, 0])
+    net.nodes.append(node("Add", ["zeros", "queries"], "class_queries_logits"))
+    net.colours("masks_queries_logits", [4, 4], [(0, 0, 0, -1.0), (1, 0, 0, -0.5), (0, 0, 0, 1.0), (0, 1, 0, -0.5)])
+    return net.write([1, 3, 24, 32], {"class_queries_logits": [1, 4, 3], "masks_queries_logits": [1, 4, 6, 8]})
+
+
 def main():
     folder = pathlib.Path(__file__).parent
     image = value_info("image", [1, 3, HEIGHT, WIDTH])
@@ -378,6 +406,8 @@ def main():
     write("detr", detr())
     write("rtdetr", rtdetr())
     write("ssd", ssd())
+    write("mask_rcnn", mask_rcnn())
+    write("maskformer", maskformer())
 
     total = node("Add", ["image", "other"], "sum")
     write("two_inputs", model([total], [image, value_info("other", [1, 3] + plane)],
