@@ -13,6 +13,9 @@
 #   sh cmake/install_dependencies.sh --bench-tests    also a browser, Slurm's daemons and GNU parallel for tests of the
 #                                                     bench
 #   sh cmake/install_dependencies.sh --cameras        also what the source `openni2` (Kinect, Xtion, Astra) is built of
+#   sh cmake/install_dependencies.sh --onnxruntime    also ONNX Runtime, the engine `onnxruntime` of networks, in
+#                                                     /usr/local/lib, from the npm package onnxruntime-node (70 MB), where
+#                                                     Debian has no package of it
 #   sh cmake/install_dependencies.sh --clang          also clang, for tests of the headers and of the format, the fuzz targets and the
 #                                                     quick sanitizer build
 #   sh cmake/install_dependencies.sh --valgrind       also valgrind, for tests/valgrind
@@ -29,6 +32,16 @@ packages="
 say() { printf 'install_dependencies: %s\n' "$*"; }
 fail() { say "$@" >&2; exit 1; }
 
+# The version of ONNX Runtime that is brought where Debian has none.
+onnxruntime=1.20.1
+wants_onnxruntime=no
+
+# ONNX Runtime is there where the dynamic loader knows it, by whatever way it came.
+has_onnxruntime() {
+  ldconfig=$(command -v ldconfig || echo /sbin/ldconfig)
+  "$ldconfig" -p 2>/dev/null | grep -q 'libonnxruntime\.so'
+}
+
 dry_run=no
 for argument in "$@"; do
   case "$argument" in
@@ -42,17 +55,28 @@ for argument in "$@"; do
       ;;
     --bench-tests) packages="$packages chromium munge parallel slurm-client slurmctld slurmd" ;;
     --cameras) packages="$packages libopenni2-dev" ;;
+    --onnxruntime) wants_onnxruntime=yes ;;
     --clang) packages="$packages clang clang-format libclang-rt-dev llvm" ;;
     --valgrind) packages="$packages valgrind" ;;
     --clean-root) packages="$packages mmdebstrap" ;;
     --dry-run) dry_run=yes ;;
-    -h | --help) sed -n '3,20s/^# \{0,1\}//p' "$0"; exit 0 ;;
-    *) fail "unknown argument '$argument'; known are --training, --documentation, --benchmarks, --python, --python-tests, --bench-tests, --cameras, --clang, --valgrind, --clean-root, --dry-run and --help" ;;
+    -h | --help) sed -n '3,23s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) fail "unknown argument '$argument'; known are --training, --documentation, --benchmarks, --python, --python-tests, --bench-tests, --cameras, --onnxruntime, --clang, --valgrind, --clean-root, --dry-run and --help" ;;
   esac
 done
 
 if ! command -v apt-get >/dev/null 2>&1 || ! command -v dpkg-query >/dev/null 2>&1; then
   fail "no apt-get here: please install, by the means of your system, what Debian 12 calls" $packages
+fi
+
+if [ "$wants_onnxruntime" = yes ] && has_onnxruntime; then wants_onnxruntime=no; fi
+if [ "$wants_onnxruntime" = yes ]; then
+  if [ -n "$(apt-cache search --names-only '^libonnxruntime-dev$' 2>/dev/null)" ]; then
+    packages="$packages libonnxruntime-dev"
+    wants_onnxruntime=no
+  elif ! command -v npm >/dev/null 2>&1; then
+    packages="$packages npm"
+  fi
 fi
 
 missing=""
@@ -62,12 +86,13 @@ for package in $packages; do
 done
 missing=${missing# }
 
-if [ -z "$missing" ]; then
+[ "$wants_onnxruntime" = no ] || from_npm=" onnxruntime-node@$onnxruntime (npm)"
+if [ -z "$missing${from_npm:-}" ]; then
   say "everything is installed"
   exit 0
 fi
 if [ "$dry_run" = yes ]; then
-  say "would install: $missing"
+  say "would install:${missing:+ $missing}${from_npm:-}"
   exit 0
 fi
 
@@ -77,14 +102,36 @@ elif command -v sudo >/dev/null 2>&1 && sudo -n true 2>/dev/null; then
   as_root="sudo -n"
 else
   say "missing packages, and neither root nor sudo without a password. Run this as root, then try again:" >&2
-  printf '  apt-get update && apt-get install --yes --no-install-recommends %s\n' "$missing" >&2
+  [ -z "$missing" ] || printf '  apt-get update && apt-get install --yes --no-install-recommends %s\n' "$missing" >&2
+  [ -z "${from_npm:-}" ] || printf '  sh cmake/install_dependencies.sh --onnxruntime\n' >&2
   exit 1
 fi
 
 # `env` because sudo does not pass variables on.
 run_apt() { $as_root env DEBIAN_FRONTEND=noninteractive apt-get "$@"; }
-say "installing: $missing"
-run_apt update --quiet || fail "apt-get update failed; is there a network, and are the package sources right?"
-run_apt install --quiet --yes --no-install-recommends $missing ||
-  fail "apt-get install failed. These were wanted: $missing"
+if [ -n "$missing" ]; then
+  say "installing: $missing"
+  run_apt update --quiet || fail "apt-get update failed; is there a network, and are the package sources right?"
+  run_apt install --quiet --yes --no-install-recommends $missing ||
+    fail "apt-get install failed. These were wanted: $missing"
+fi
+
+# The package carries the libraries of several systems; npm checks its sum, and only the one for this machine is kept.
+install_onnxruntime() {
+  case $(uname -m) in
+    x86_64) machine=x64 ;;
+    aarch64) machine=arm64 ;;
+    *) fail "the npm package onnxruntime-node has no library for $(uname -m); build ONNX Runtime, and name it in \`engine_library\`" ;;
+  esac
+  say "installing: onnxruntime-node@$onnxruntime (npm)"
+  folder=$(mktemp -d)
+  trap 'rm -rf "$folder"' EXIT
+  (cd "$folder" && npm pack --silent "onnxruntime-node@$onnxruntime" >/dev/null) ||
+    fail "npm pack onnxruntime-node@$onnxruntime failed; is there a network?"
+  tar -xzf "$folder/onnxruntime-node-$onnxruntime.tgz" -C "$folder" "package/bin/napi-v3/linux/$machine"
+  $as_root install -m 644 "$folder/package/bin/napi-v3/linux/$machine/libonnxruntime.so.1" "/usr/local/lib/libonnxruntime.so.$onnxruntime"
+  $as_root "$ldconfig"
+  has_onnxruntime || fail "/usr/local/lib/libonnxruntime.so.$onnxruntime is not known to the dynamic loader"
+}
+[ "$wants_onnxruntime" = no ] || install_onnxruntime
 say "done"

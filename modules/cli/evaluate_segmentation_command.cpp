@@ -15,11 +15,13 @@
 #include <vector>
 
 #include "holdfast/config/configuration.hpp"
+#include "holdfast/core/cell_mask.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/size_text.hpp"
 #include "holdfast/core/stage_times.hpp"
 #include "holdfast/core/text_file.hpp"
 #include "holdfast/core/trajectory.hpp"
+#include "holdfast/evaluation/instance_evaluation.hpp"
 #include "holdfast/evaluation/segmentation_evaluation.hpp"
 #include "holdfast/pipeline/configured_pipeline.hpp"
 #include "installed_files.hpp"
@@ -43,7 +45,7 @@ struct EvaluateSegmentationArguments {
   std::string label_map, prediction_map;
   std::string list, json;
   std::uint64_t every = 1;
-  bool overwrite = false, quiet = false;
+  bool instances = false, overwrite = false, quiet = false;
 };
 
 constexpr const char* evaluate_segmentation_explanation = R"(
@@ -63,6 +65,9 @@ Definitions
   accuracy   correctly labelled pixels / true pixels
   detected   of the images that show the class, those where its IoU is above 0.5
   boundary   IoU of the outlines, 2 % of the image's diagonal wide (person only)
+  AP50, AP   of instances, where the segmenter and the truth separate them: average precision at an IoU of
+             0.5, and its mean over 0.5 to 0.95 (COCO)
+  PQ         panoptic quality: sum of the IoUs above 0.5 / (pairs + half of what has no counterpart)
   calibr.    mean difference between the confidence of pixels found to be of the class and the share of
              them that are; of a segmenter with confidence
 
@@ -70,6 +75,8 @@ Examples
   holdfast evaluate-segmentation --labels masks --label-map '{1-254: person}' --predictions out/labels
   holdfast evaluate-segmentation full.yaml --set segmenter=unet --images rgb --labels masks \
     --label-map '{1-254: person}' --json -
+  holdfast evaluate-segmentation yolo.yaml --images PNGImages --labels PedMasks --instances \
+    --label-map '{1-254: person}'
   holdfast evaluate-segmentation simulated.yaml --set segmenter=unet --every 10
 )";
 
@@ -119,34 +126,75 @@ std::vector<Pair> pairs_of(const EvaluateSegmentationArguments& arguments,
   return pairs;
 }
 
+/// Where the label of one list of classes is in another; background if it is not there.
+std::uint8_t translated_label(std::uint8_t label, const std::vector<std::string>& from,
+                              const std::vector<std::string>& to) {
+  const auto place = std::find(to.begin(), to.end(), from[label]);
+  return place == to.end() ? std::uint8_t{0} : static_cast<std::uint8_t>(place - to.begin());
+}
+
+/// The objects of a source's mask (8UC1) with the classes of their pixels.
+InstanceImage true_instances(const cv::Mat& objects, const cv::Mat& labels) {
+  InstanceImage image{cv::Mat::zeros(objects.size(), CV_16UC1), std::vector<InstanceImage::Entry>(255)};
+  for (int y = 0; y < objects.rows; ++y)
+    for (int x = 0; x < objects.cols; ++x) {
+      const std::uint8_t object = objects.at<std::uint8_t>(y, x), label = labels.at<std::uint8_t>(y, x);
+      if (object == 0 || !CellMask::is_object(label)) continue;
+      image.instances.at<std::uint16_t>(y, x) = object;
+      image.entries[object - 1U].label = label;
+    }
+  return image;
+}
+
 /// What there is to say, and the time that the segmenter took, where one ran.
 struct Outcome {
   SegmentationEvaluation evaluation;
   std::optional<double> seconds_per_image;
+  std::optional<InstanceEvaluation> instances = {};
 };
 
-template <class Found>
+/// Instances of a segmentation with the labels of another list of classes; those of other classes do not count.
+InstanceImage translated_instances(const Segmentation& found, const std::vector<std::string>& from,
+                                   const std::vector<std::string>& to) {
+  InstanceImage image{found.instances, {}};
+  for (const Instance& instance : found.found) {
+    image.entries.push_back({translated_label(instance.label, from, to), instance.score});
+  }
+  return image;
+}
+
+/// An image's segmentation and its instances.
+struct Found {
+  Segmentation segmentation;
+  InstanceImage instances = {};
+};
+
+template <class Find>
 Outcome compare(const EvaluateSegmentationArguments& arguments, const std::map<std::string, fs::path>& others,
-                LabelFolder& labels, const Found& found_of) {
+                LabelFolder& labels, const Find& found_of) {
   SegmentationEvaluator evaluator(labels.classes());
+  InstanceEvaluator instances(labels.classes());
   const std::vector<Pair> pairs = pairs_of(arguments, labels.files(), others);
   Progress progress(pairs.size(), arguments.quiet);
   for (std::size_t i = 0; i < pairs.size() && !interrupted(); i += arguments.every) {
-    const cv::Mat truth = labels.read(pairs[i].labels);
-    const Segmentation found = found_of(pairs[i].other, truth);
-    evaluator.add(truth, found.labels, found.confidence);
+    const auto [truth, true_instances] = labels.read_instances(pairs[i].labels);
+    const Found found = found_of(pairs[i].other, truth);
+    evaluator.add(truth, found.segmentation.labels, found.segmentation.confidence);
+    if (arguments.instances) instances.add(true_instances, found.instances, truth != CellMask::unknown);
     progress.update(i + 1);
   }
-  return {evaluator.result(), {}};
+  return {evaluator.result(), {}, arguments.instances ? std::optional(instances.result()) : std::nullopt};
 }
 
 Outcome compare_folders(const EvaluateSegmentationArguments& arguments) {
   LabelFolder labels(arguments.labels, arguments.label_map, "--label-map");
   LabelFolder predictions(arguments.predictions, arguments.prediction_map, "--prediction-map");
   return compare(arguments, predictions.files(), labels, [&](const fs::path& file, const cv::Mat& truth) {
-    const cv::Mat found = predictions.read(file);
+    auto [found, instances] = predictions.read_instances(file);
     require_same_size(file, found.size(), truth.size());
-    return Segmentation{translated(found, predictions.classes(), labels.classes()), {}};
+    for (InstanceImage::Entry& entry : instances.entries)
+      entry.label = translated_label(entry.label, predictions.classes(), labels.classes());
+    return Found{{translated(found, predictions.classes(), labels.classes()), {}}, std::move(instances)};
   });
 }
 
@@ -166,7 +214,12 @@ Outcome segment_images(const EvaluateSegmentationArguments& arguments, const Con
     const Segmentation found = segmenter->segment(frame);
     seconds += watch.seconds();
     if (found.empty()) throw InputError({file.string()}, "the segmenter has nothing for this image");
-    return Segmentation{translated(found.labels, segmenter->classes(), labels.classes()), found.confidence};
+    if (arguments.instances && found.instances.empty())
+      throw InputError({file.string()},
+                       "the segmenter separates no instances in this image; leave --instances out, or "
+                       "choose a segmenter that does, such as `onnx` with a network for instances");
+    return Found{{translated(found.labels, segmenter->classes(), labels.classes()), found.confidence},
+                 translated_instances(found, segmenter->classes(), labels.classes())};
   });
   outcome.seconds_per_image = seconds / static_cast<double>(outcome.evaluation.images);
   return outcome;
@@ -185,6 +238,7 @@ Outcome segment_source(const EvaluateSegmentationArguments& arguments, const Con
   for (const std::string& name : built.segmenter->classes())
     if (name != known.front() && std::find(known.begin(), known.end(), name) != known.end()) classes.push_back(name);
   SegmentationEvaluator evaluator(classes);
+  InstanceEvaluator instances(classes);
   Progress progress(description.frame_count, arguments.quiet);
   const SourceInterrupter interrupter(*built.source);
   double seconds = 0.0;
@@ -196,13 +250,21 @@ Outcome segment_source(const EvaluateSegmentationArguments& arguments, const Con
       const Stopwatch watch;
       const Segmentation found = built.segmenter->segment(*frame);
       seconds += watch.seconds();
-      if (!found.empty())
-        evaluator.add(translated(frame->truth->class_labels, known, classes),
-                      translated(found.labels, built.segmenter->classes(), classes), found.confidence);
+      if (!found.empty()) {
+        const cv::Mat truth = translated(frame->truth->class_labels, known, classes);
+        evaluator.add(truth, translated(found.labels, built.segmenter->classes(), classes), found.confidence);
+        if (!found.instances.empty() && frame->truth->object_mask.size() == truth.size())
+          instances.add(true_instances(frame->truth->object_mask, truth),
+                        translated_instances(found, built.segmenter->classes(), classes), truth != CellMask::unknown);
+      }
     }
     progress.update(done);
   }
-  return {evaluator.result(), seconds / static_cast<double>(evaluator.result().images)};
+  const InstanceEvaluation of_instances = instances.result();
+  if (arguments.instances && of_instances.images == 0)
+    throw InputError({arguments.configuration}, "the segmenter separates no instances; leave --instances out");
+  return {evaluator.result(), seconds / static_cast<double>(evaluator.result().images),
+          of_instances.images > 0 ? std::optional(of_instances) : std::nullopt};
 }
 
 Outcome evaluate_by(const EvaluateSegmentationArguments& arguments, const ProgramHost& host) {
@@ -228,10 +290,11 @@ int run(const EvaluateSegmentationArguments& arguments, const ProgramHost& host)
   const Outcome outcome = evaluate_by(arguments, host);
   if (outcome.evaluation.images == 0) throw Error("no image was compared");
   if (arguments.json != "-") std::cout << bold_labels(to_text(outcome.evaluation), STDOUT_FILENO);
+  if (arguments.json != "-" && outcome.instances) std::cout << bold_labels(to_text(*outcome.instances), STDOUT_FILENO);
   if (arguments.json != "-" && outcome.seconds_per_image)
     std::cout << "segmented at " << static_cast<int>(1e4 * *outcome.seconds_per_image + 0.5) / 10.0
               << " ms an image, reading not included\n";
-  if (!arguments.json.empty()) write_output(arguments.json, to_json(outcome.evaluation));
+  if (!arguments.json.empty()) write_output(arguments.json, to_json(outcome.evaluation, outcome.instances));
   return interrupted() ? interrupted_exit_code() : 0;
 }
 
@@ -252,6 +315,8 @@ void add_evaluate_segmentation_command(CLI::App& app, int& exit_code, const Prog
   command->add_option("--label-map", arguments->label_map, "What the values in --labels mean: '{1-254: person}'")
       ->type_name("MAP");
   command->add_option("--prediction-map", arguments->prediction_map, "The same for --predictions")->type_name("MAP");
+  command->add_flag("--instances", arguments->instances,
+                    "Score instances too: each value in --labels (and --predictions) is one object");
   command->add_option("--list", arguments->list, "File of the names, without ending, to compare; otherwise all")
       ->type_name("FILE");
   command->add_option("--every", arguments->every, "Compare every N-th only")

@@ -6,6 +6,7 @@
 #include <opencv2/core.hpp>
 
 #include "holdfast/config/configuration_node.hpp"
+#include "holdfast/core/cell_mask.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/plugin/parameter.hpp"
 
@@ -78,6 +79,25 @@ LabelFolder::LabelFolder(const fs::path& folder, const std::string& map, const s
     : files_(files_by_stem(folder, {".png"})), map_(labels_of_map(folder, map, option)) {}
 
 cv::Mat LabelFolder::read(const fs::path& file) { return map_.apply(decoder_.read_labels(file), file); }
+
+std::pair<cv::Mat, InstanceImage> LabelFolder::read_instances(const fs::path& file) {
+  const cv::Mat values = decoder_.read_labels(file), labels = map_.apply(values, file);
+  const bool is_wide = values.depth() == CV_16U;
+  InstanceImage image{cv::Mat::zeros(values.size(), CV_16UC1), {}};
+  std::vector<std::uint16_t> number(65536, 0);
+  for (int y = 0; y < values.rows; ++y)
+    for (int x = 0; x < values.cols; ++x) {
+      const std::uint8_t label = labels.at<std::uint8_t>(y, x);
+      if (!CellMask::is_object(label)) continue;
+      const std::size_t value = is_wide ? values.at<std::uint16_t>(y, x) : values.at<std::uint8_t>(y, x);
+      if (number[value] == 0) {
+        image.entries.push_back({label, 1.0F});
+        number[value] = static_cast<std::uint16_t>(image.entries.size());
+      }
+      image.instances.at<std::uint16_t>(y, x) = number[value];
+    }
+  return {labels, image};
+}
 
 cv::Mat translated(const cv::Mat& labels, const std::vector<std::string>& from, const std::vector<std::string>& to) {
   cv::Mat table = cv::Mat::zeros(1, 256, CV_8UC1);

@@ -5,8 +5,10 @@
 #include <map>
 #include <opencv2/core/mat.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "holdfast/evaluation/instance_evaluation.hpp"
 #include "holdfast/image_files/image_decoder.hpp"
 #include "holdfast/image_files/label_map.hpp"
 
@@ -28,6 +30,9 @@ class LabelFolder {
   const std::vector<std::string>& classes() const { return map_.classes(); }
   /// Indices into classes(), 255 = unknown. Throws InputError as ImageDecoder and LabelMap do.
   cv::Mat read(const std::filesystem::path& file);
+  /// The same and, as an instance, each value of an image that has a class other than background: label images in which
+  /// values number objects, such as 3 for the third person.
+  std::pair<cv::Mat, InstanceImage> read_instances(const std::filesystem::path& file);
 
  private:
   std::map<std::string, std::filesystem::path> files_;

@@ -34,6 +34,24 @@ Json reliability(const ClassEvaluation& one) {
   return bins;
 }
 
+Json instances_json(const InstanceEvaluation& evaluation) {
+  Json classes = Json::array();
+  for (const ClassInstanceEvaluation& one : evaluation.classes)
+    if (one.true_instances + one.found_instances > 0)
+      classes.push_back({{"name", one.name},
+                         {"ap50", one.ap50()},
+                         {"ap", one.ap()},
+                         {"panoptic_quality", one.panoptic_quality()},
+                         {"true_instances", one.true_instances},
+                         {"found_instances", one.found_instances},
+                         {"matched", one.matched}});
+  return {{"images", evaluation.images},
+          {"mean_ap50", evaluation.mean_ap50()},
+          {"mean_ap", evaluation.mean_ap()},
+          {"mean_panoptic_quality", evaluation.mean_panoptic_quality()},
+          {"classes", classes}};
+}
+
 }  // namespace
 
 std::string to_text(const SegmentationEvaluation& evaluation) {
@@ -59,7 +77,7 @@ std::string to_text(const SegmentationEvaluation& evaluation) {
          "calibr.: mean difference between confidence and share of correct pixels.\n";
 }
 
-std::string to_json(const SegmentationEvaluation& evaluation) {
+std::string to_json(const SegmentationEvaluation& evaluation, const std::optional<InstanceEvaluation>& instances) {
   Json classes = Json::array();
   for (const ClassEvaluation& one : evaluation.classes)
     classes.push_back({{"name", one.name},
@@ -74,13 +92,14 @@ std::string to_json(const SegmentationEvaluation& evaluation) {
                        {"detected_images", one.detected},
                        {"calibration_error", one.calibration_error()},
                        {"reliability", reliability(one)}});
-  const Json json = {{"images", evaluation.images},
-                     {"known_pixels", evaluation.known_pixels},
-                     {"correct_pixels", evaluation.correct_pixels},
-                     {"overall_accuracy", evaluation.overall_accuracy()},
-                     {"mean_iou", evaluation.mean_iou()},
-                     {"mean_accuracy", evaluation.mean_accuracy()},
-                     {"classes", classes}};
+  Json json = {{"images", evaluation.images},
+               {"known_pixels", evaluation.known_pixels},
+               {"correct_pixels", evaluation.correct_pixels},
+               {"overall_accuracy", evaluation.overall_accuracy()},
+               {"mean_iou", evaluation.mean_iou()},
+               {"mean_accuracy", evaluation.mean_accuracy()},
+               {"classes", classes}};
+  if (instances) json["instances"] = instances_json(*instances);
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 

@@ -17,6 +17,9 @@ namespace holdfast {
 
 namespace {
 
+/// Whether an input is one image, without a dimension for several: torchvision exports detectors so.
+bool is_without_batch(const OnnxTensor& input) { return input.shape.size() == 3; }
+
 /// The size of the input, from the options and from what the model declares, which must agree.
 cv::Size input_size(const NetworkOptions& options, const OnnxNet& net) {
   const OnnxSignature& signature = net.signature();
@@ -29,8 +32,9 @@ cv::Size input_size(const NetworkOptions& options, const OnnxNet& net) {
       options.channels_last ? "1 x height x width x 3 (layout nhwc)" : "1 x 3 x height x width (layout nchw)";
   std::array<std::int64_t, 4> shape = {-1, -1, -1, -1};
   if (!input.shape.empty()) {
-    if (input.shape.size() != 4) fail("has an input of " + input.shape_text() + "; expected " + expected);
-    std::copy(input.shape.begin(), input.shape.end(), shape.begin());
+    if (input.shape.size() != 4 && !is_without_batch(input))
+      fail("has an input of " + input.shape_text() + "; expected " + expected);
+    std::copy(input.shape.rbegin(), input.shape.rend(), shape.rbegin());
   }
   const std::int64_t channels = shape[options.channels_last ? 3 : 1];
   if ((shape[0] != -1 && shape[0] != 1) || (channels != -1 && channels != 3))
@@ -58,6 +62,12 @@ std::string chosen_output(const NetworkOptions& options, const OnnxSignature& si
   return options.output_name;
 }
 
+/// Whether the elements of an input are integers: not float, float16, double or bfloat16.
+bool takes_integers(const OnnxTensor& input) {
+  constexpr std::array<int, 5> real = {0, 1, 10, 11, 16};
+  return std::find(real.begin(), real.end(), input.element_type) == real.end();
+}
+
 void require_three(const InputPreparation& options) {
   const auto fail = [](const char* name, const std::string& message) {
     throw ConfigurationError(SourceLocation{}, std::string(name) + ": " + message);
@@ -75,8 +85,8 @@ void require_three(const InputPreparation& options) {
 struct Network::Parts {
   explicit Parts(const NetworkOptions& given)
       : options(given),
-        net({given.model, given.bytes, given.in_background, given.engine, given.precision,
-             std::max(1, given.threads)}) {}
+        net({given.model, given.bytes, given.in_background, given.engine, given.precision, std::max(1, given.threads),
+             given.provider, given.engine_library}) {}
 
   NetworkOptions options;
   cv::Size size;
@@ -89,12 +99,24 @@ struct Network::Parts {
   std::array<std::array<float, 256>, 3> value;  ///< of a pixel's value, by channel of the network
 
   void prepare(const InputPreparation& given) {
+    require_range(given);
     preparation = given;
     place = {};
     for (std::size_t channel = 0; channel < 3; ++channel)
       for (std::size_t number = 0; number < 256; ++number)
         value[channel][number] = static_cast<float>((static_cast<double>(number) * given.scale - given.mean[channel]) /
                                                     given.standard_deviation[channel]);
+  }
+
+  /// Refuses numbers of which an input of integers would keep next to nothing.
+  void require_range(const InputPreparation& given) const {
+    if (options.engine != NetworkEngine::onnxruntime || !takes_integers(net.signature().inputs.front())) return;
+    constexpr double least_range = 2.0;
+    for (const double deviation : given.standard_deviation)
+      if (255.0 * given.scale / deviation < least_range)
+        throw InputError({options.model.string()},
+                         "has an input of whole numbers, to which `scale` " + std::to_string(given.scale) +
+                             " rounds all pixels to 0 or 1; expected `scale: 1` for such a network");
   }
 
   void fill_input(const cv::Mat& colour) {
@@ -159,11 +181,12 @@ Network::Network(const NetworkOptions& options) {
   parts_->size = input_size(options, parts_->net);
   parts_->output = parts_->net.output(chosen_output(options, signature), "output_name");
   parts_->prepare(preparation);
-  if (options.engine != NetworkEngine::onednn && options.threads > 0) cv::setNumThreads(options.threads);
+  if (options.engine == NetworkEngine::opencv && options.threads > 0) cv::setNumThreads(options.threads);
   const int h = parts_->size.height, w = parts_->size.width;
   const int channels_first[] = {1, 3, h, w}, channels_last[] = {1, h, w, 3};
   cv::Mat& input = parts_->input;
-  input.create(4, options.channels_last ? channels_last : channels_first, CV_32F);
+  const int dimensions = is_without_batch(signature.inputs.front()) ? 3 : 4;
+  input.create(dimensions, (options.channels_last ? channels_last : channels_first) + 4 - dimensions, CV_32F);
   std::vector<std::string> outputs = {parts_->output.name};
   if (options.every_output) {
     outputs.clear();
@@ -203,5 +226,6 @@ int Network::height() const { return parts_->size.height; }
 const OnnxTensor& Network::output() const { return parts_->output; }
 
 std::string Network::input_text() const { return parts_->input_text(); }
+std::string Network::engine_text() const { return parts_->net.engine_text(); }
 
 }  // namespace holdfast

@@ -28,9 +28,9 @@ class NetworkRunner {
 /// "cannot be run by ENGINE on an input of 1x3x288x384 (REASON); ADVICE".
 std::string cannot_run(const std::string& engine, const OnnxNet::Use& use, const std::string& reason);
 
-/// Throws ConfigurationError, which says what to do, for an engine that this build has not, and for a precision that
-/// the engine or the processor has not.
-void require_engine(NetworkEngine engine, NetworkPrecision precision);
+/// Throws ConfigurationError, which says what to do, for an engine or a provider that is not there, and for a precision
+/// that the engine or the processor has not.
+void require_engine(const OnnxNet::File& file);
 /// The part of require_engine() that depends on whether oneDNN is there.
 void require_onednn(NetworkPrecision precision);
 
@@ -40,5 +40,7 @@ std::unique_ptr<NetworkRunner> load_with_opencv(const std::filesystem::path& mod
                                                 const OnnxNet::Use& use);
 std::unique_ptr<NetworkRunner> load_with_onednn(const std::filesystem::path& model, std::span<const std::uint8_t> bytes,
                                                 const OnnxNet::Use& use, NetworkPrecision precision, int threads);
+/// Throws ConfigurationError, too, for a library or a provider that is not there.
+std::unique_ptr<NetworkRunner> load_with_onnxruntime(const OnnxNet::File& file, const OnnxNet::Use& use);
 
 }  // namespace holdfast

@@ -18,22 +18,29 @@ using Form = ScoreForm;
 
 /// The families, as their authors train and export them. Thresholds are the usual defaults of such programs; they were
 /// not compared with an export of each.
-constexpr std::array<ObjectPreset, 8> presets = {{
-    {ObjectFamily::yolo, "YOLO (v8 to 12)", BoxForm::centre, BoxUnit::pixels, Form::probabilities, InputFit::letterbox,
-     false, 0.25, 0.7},
-    {ObjectFamily::yolov5, "YOLO (v5, v7)", BoxForm::centre, BoxUnit::pixels, Form::objectness, InputFit::letterbox,
-     false, 0.25, 0.45},
+constexpr std::array<ObjectPreset, 11> presets = {{
+    {ObjectFamily::yolo, "YOLO (v8 to 12)", BoxForm::centre, BoxUnit::pixels, Form::probabilities, 0.0F,
+     InputFit::letterbox, false, 0.25, 0.7},
+    {ObjectFamily::yolov5, "YOLO (v5, v7)", BoxForm::centre, BoxUnit::pixels, Form::objectness, 0.0F,
+     InputFit::letterbox, false, 0.25, 0.45},
     {ObjectFamily::yolo_end_to_end, "YOLO, end to end (v10, 26, exported with nms)", BoxForm::corners, BoxUnit::pixels,
-     Form::best, InputFit::letterbox, false, 0.25, 1.0},
-    {ObjectFamily::rtdetr, "RT-DETR, one output", BoxForm::centre, BoxUnit::fractions, Form::probabilities,
+     Form::best, 0.0F, InputFit::letterbox, false, 0.25, 1.0},
+    {ObjectFamily::rtdetr, "RT-DETR, one output", BoxForm::centre, BoxUnit::fractions, Form::probabilities, 0.0F,
      InputFit::stretch, false, 0.5, 1.0},
-    {ObjectFamily::rtdetr, "RT-DETR", BoxForm::centre, BoxUnit::fractions, Form::logits, InputFit::stretch, false, 0.5,
+    {ObjectFamily::rtdetr, "RT-DETR", BoxForm::centre, BoxUnit::fractions, Form::logits, 0.0F, InputFit::stretch, false,
+     0.5, 1.0},
+    {ObjectFamily::detr, "DETR", BoxForm::centre, BoxUnit::fractions, Form::softmax, 0.0F, InputFit::stretch, true, 0.5,
      1.0},
-    {ObjectFamily::detr, "DETR", BoxForm::centre, BoxUnit::fractions, Form::softmax, InputFit::stretch, true, 0.5, 1.0},
-    {ObjectFamily::ssd, "SSD", BoxForm::corners, BoxUnit::either, Form::background_first, InputFit::stretch, false, 0.5,
-     0.45},
-    {ObjectFamily::ssd, "SSD, with class numbers", BoxForm::corners, BoxUnit::either, Form::numbered, InputFit::stretch,
+    {ObjectFamily::ssd, "SSD", BoxForm::corners, BoxUnit::either, Form::background_first, 0.0F, InputFit::stretch,
+     false, 0.5, 0.45},
+    {ObjectFamily::ssd, "SSD, with class numbers", BoxForm::corners, BoxUnit::either, Form::numbered, 0.5F,
+     InputFit::stretch, false, 0.5, 1.0},
+    {ObjectFamily::mask_rcnn, "Mask R-CNN", BoxForm::corners, BoxUnit::either, Form::numbered, 0.5F, InputFit::stretch,
      false, 0.5, 1.0},
+    {ObjectFamily::fastestdet, "FastestDet", BoxForm::cell, BoxUnit::fractions, Form::cell, 0.0F, InputFit::stretch,
+     false, 0.5, 0.45},
+    {ObjectFamily::maskformer, "MaskFormer (and Mask2Former)", BoxForm::corners, BoxUnit::pixels, Form::softmax, 0.0F,
+     InputFit::stretch, true, 0.5, 1.0},
 }};
 
 const ObjectPreset& preset_of(ObjectFamily family, Form scores) {
@@ -57,6 +64,13 @@ std::optional<List> as_list(const OnnxTensor& tensor, std::size_t output) {
   constexpr std::int64_t most = 1 << 22;
   if (shape.size() != 2 || shape[0] < 1 || shape[1] < 1 || shape[0] > most || shape[1] > most) return std::nullopt;
   return List{output, shape[0], shape[1]};
+}
+
+/// Images of masks: boxes x 1 x height x width, any number of boxes.
+bool is_masks(const OnnxTensor& tensor) {
+  constexpr std::int64_t most_side = 8192;
+  const std::vector<std::int64_t>& s = tensor.shape;
+  return s.size() == 4 && s[1] == 1 && s[2] >= 2 && s[3] >= 2 && s[2] <= most_side && s[3] <= most_side;
 }
 
 bool is_prototypes(const OnnxTensor& tensor) {
@@ -87,6 +101,9 @@ class Recogniser {
   }
 
   std::optional<ObjectLayout> find() const {
+    if (const auto found = boxes_of_any_number()) return found;
+    if (const auto found = queries_with_masks()) return found;
+    if (question_.family == ObjectFamily::fastestdet) return cells();
     const auto boxes = box_list();
     if (boxes && lists_.size() == 2) return two_outputs(*boxes);
     if (boxes && lists_.size() >= 3) return three_outputs(*boxes);
@@ -116,6 +133,7 @@ class Recogniser {
             .scores = {},
             .numbers = {},
             .prototypes = {},
+            .masks = {},
             .count = static_cast<int>(boxes.rows),
             .width = static_cast<int>(boxes.columns),
             .classes = static_cast<int>(classes)};
@@ -128,6 +146,58 @@ class Recogniser {
     if (is_transposed) std::swap(result.count, result.width);
     result.coefficients = coefficients_;
     if (question_.wants_masks) result.prototypes = prototypes_;
+    return result;
+  }
+
+  /// As torchvision exports SSD, Faster and Mask R-CNN: boxes x 4, and numbers and scores of as many as there are in
+  /// the image, with masks or without.
+  std::optional<ObjectLayout> boxes_of_any_number() const {
+    std::optional<std::size_t> boxes, numbers, scores, masks;
+    for (std::size_t i = 0; i < question_.outputs.size(); ++i) {
+      const OnnxTensor& output = question_.outputs[i];
+      const bool is_column = output.shape.size() == 1 || (output.shape.size() == 2 && output.shape[1] == 1);
+      constexpr int int64 = 7;
+      if (output.shape.size() == 2 && output.shape[1] == 4)
+        boxes = i;
+      else if (is_column && (output.element_type == int64 || says(output.name, "label")))
+        numbers = i;
+      else if (is_column)
+        scores = i;
+      else if (is_masks(output))
+        masks = i;
+    }
+    if (!boxes || !numbers || !scores) return std::nullopt;
+    const ObjectFamily family = masks ? ObjectFamily::mask_rcnn : ObjectFamily::ssd;
+    if (!may_be(family)) return std::nullopt;
+    ObjectLayout result = layout(family, Form::numbered, {*boxes, 0, 4}, 0);
+    result.scores = scores, result.numbers = numbers;
+    if (question_.wants_masks) result.masks = masks;
+    return result;
+  }
+
+  /// FastestDet: one output, 1 x (5 + classes) x rows x columns of a grid. Other networks have outputs of this shape,
+  /// so that it is not recognised unasked.
+  std::optional<ObjectLayout> cells() const {
+    if (question_.outputs.size() != 1 || !is_prototypes(question_.outputs.front())) return std::nullopt;
+    const std::vector<std::int64_t>& shape = question_.outputs.front().shape;
+    if (!has_classes(shape[1] - 5)) return std::nullopt;
+    ObjectLayout result =
+        layout(ObjectFamily::fastestdet, Form::cell, {0, shape[2] * shape[3], shape[1]}, shape[1] - 5);
+    result.is_transposed = true;
+    result.grid_columns = static_cast<int>(shape[3]);
+    return result;
+  }
+
+  /// MaskFormer and Mask2Former: 1 x queries x (classes + 1) and 1 x queries x height x width.
+  std::optional<ObjectLayout> queries_with_masks() const {
+    if (!may_be(ObjectFamily::maskformer) || !prototypes_ || lists_.size() != 1 || !question_.wants_masks)
+      return std::nullopt;
+    const List& scores = lists_.front();
+    const bool fits = scores.rows == question_.outputs[*prototypes_].shape[1] && scores.columns >= 2 &&
+                      has_classes(scores.columns - 1);
+    if (!fits) return std::nullopt;
+    ObjectLayout result = layout(ObjectFamily::maskformer, Form::softmax, scores, scores.columns - 1);
+    result.scores = scores.output, result.masks = prototypes_, result.has_boxes = false;
     return result;
   }
 
@@ -225,13 +295,15 @@ bool declares_list(const std::vector<std::int64_t>& shape, const std::vector<std
 bool declares_objects(const OnnxSignature& signature, const ModelMetadata& metadata) {
   for (const char* task : {"detect", "segment", "pose", "obb"})
     if (metadata.task == task) return true;
-  bool has_boxes = false, has_list = false;
+  bool has_boxes = false, has_list = false, has_queries = false, has_images = false;
   for (const OnnxTensor& output : signature.outputs) {
     const std::vector<std::int64_t>& shape = output.shape;
     has_boxes = has_boxes || ((shape.size() == 2 || shape.size() == 3) && shape.back() == 4);
+    has_queries = has_queries || (shape.size() == 3 && shape[1] != 1);
+    has_images = has_images || shape.size() == 4;
     has_list = has_list || declares_list(shape, signature.inputs.front().shape);
   }
-  return has_list || (has_boxes && signature.outputs.size() > 1);
+  return has_list || (has_boxes && signature.outputs.size() > 1) || (has_queries && has_images);
 }
 
 ObjectLayout recognise_objects(const ObjectQuestion& question) {
@@ -245,7 +317,7 @@ ObjectLayout recognise_objects(const ObjectQuestion& question) {
        (is_asked_for ? std::string("the `family` ") + choice_name(question.family) : std::string("a known family")) +
        (question.classes > 0 ? " for " + counted(static_cast<std::size_t>(question.classes), "class name") : "") +
        "; expected, for " + std::to_string(question.input.width) + "x" + std::to_string(question.input.height) +
-       " pixels, boxes with scores of each class, and with prototypes their coefficients; correct `classes`" +
+       " pixels, boxes with scores of each class, and with prototypes their coefficients, or masks; correct `classes`" +
        (is_asked_for ? " or `family`" : ", name the `family`") +
        ", or run the network elsewhere and read its masks with the segmenter `precomputed`");
   return {};

@@ -31,6 +31,27 @@ struct PrototypeAxis {
   }
 };
 
+/// The pixels at which the values of a part of an image (from the first neighbours of the axes on), resized bilinearly,
+/// are above a threshold.
+cv::Mat resized_above(const cv::Mat& sum, const PrototypeAxis& x, const PrototypeAxis& y, float threshold) {
+  cv::Mat mask = cv::Mat::zeros(static_cast<int>(y.first.size()), static_cast<int>(x.first.size()), CV_8UC1);
+  for (int row = 0; row < mask.rows; ++row) {
+    const auto r = static_cast<std::size_t>(row);
+    const int above_row = y.first[r] - y.low;
+    const auto* above = sum.ptr<float>(above_row);
+    const auto* below = sum.ptr<float>(std::min(above_row + 1, sum.rows - 1));
+    auto* to = mask.ptr<std::uint8_t>(row);
+    for (int column = 0; column < mask.cols; ++column) {
+      const auto c = static_cast<std::size_t>(column);
+      const int left = x.first[c] - x.low, right = std::min(left + 1, sum.cols - 1);
+      const float upper = above[left] + x.weight[c] * (above[right] - above[left]);
+      const float lower = below[left] + x.weight[c] * (below[right] - below[left]);
+      to[column] = upper + y.weight[r] * (lower - upper) > threshold ? 255 : 0;
+    }
+  }
+  return mask;
+}
+
 /// Interval of depths [m].
 struct DepthRange {
   float nearest = 0.0F, farthest = 0.0F;
@@ -114,8 +135,7 @@ cv::Mat prototype_mask(const cv::Mat& prototypes, std::span<const float> coeffic
                      prototypes.type() == CV_32FC1 && prototypes.isContinuous(),
                  "prototypes for " << coefficients.size() << " coefficients");
   HOLDFAST_CHECK((pixels & cv::Rect({}, place.frame)) == pixels, "pixels outside the frame");
-  cv::Mat mask = cv::Mat::zeros(pixels.size(), CV_8UC1);
-  if (pixels.empty()) return mask;
+  if (pixels.empty()) return cv::Mat::zeros(pixels.size(), CV_8UC1);
   const int rows = prototypes.size[2], columns = prototypes.size[3];
   const auto axis = [](int from, int count, int content_first, int content_size, int frame, int input, int size) {
     const double by_input = static_cast<double>(size) / input;
@@ -134,21 +154,27 @@ cv::Mat prototype_mask(const cv::Mat& prototypes, std::span<const float> coeffic
       const float coefficient = coefficients[static_cast<std::size_t>(k)];
       for (int column = 0; column < sum.cols; ++column) to[column] += coefficient * from[column];
     }
-  for (int row = 0; row < mask.rows; ++row) {
-    const auto r = static_cast<std::size_t>(row);
-    const int above_row = y.first[r] - y.low;
-    const auto* above = sum.ptr<float>(above_row);
-    const auto* below = sum.ptr<float>(std::min(above_row + 1, sum.rows - 1));
-    auto* to = mask.ptr<std::uint8_t>(row);
-    for (int column = 0; column < mask.cols; ++column) {
-      const auto c = static_cast<std::size_t>(column);
-      const int left = x.first[c] - x.low, right = std::min(left + 1, sum.cols - 1);
-      const float upper = above[left] + x.weight[c] * (above[right] - above[left]);
-      const float lower = below[left] + x.weight[c] * (below[right] - below[left]);
-      to[column] = upper + y.weight[r] * (lower - upper) > 0.0F ? 255 : 0;
-    }
-  }
-  return mask;
+  return resized_above(sum, x, y, 0.0F);
+}
+
+cv::Mat image_mask(const cv::Mat& image, const cv::Rect2f& covered, float threshold, const FramePlace& place,
+                   const cv::Rect& pixels) {
+  HOLDFAST_CHECK(image.type() == CV_32FC1 && !image.empty() && covered.width > 0.0F && covered.height > 0.0F,
+                 "type " << image.type());
+  HOLDFAST_CHECK((pixels & cv::Rect({}, place.frame)) == pixels, "pixels outside the frame");
+  if (pixels.empty()) return cv::Mat::zeros(pixels.size(), CV_8UC1);
+  const auto axis = [](int from, int count, int content_first, int content_size, int frame, float first, float length,
+                       int size) {
+    const double by_input = size / double{length};
+    return PrototypeAxis(from, count, by_input * content_size / frame, by_input * (content_first - double{first}),
+                         size);
+  };
+  const cv::Rect& content = place.content;
+  const PrototypeAxis x =
+      axis(pixels.x, pixels.width, content.x, content.width, place.frame.width, covered.x, covered.width, image.cols);
+  const PrototypeAxis y = axis(pixels.y, pixels.height, content.y, content.height, place.frame.height, covered.y,
+                               covered.height, image.rows);
+  return resized_above(image(cv::Range(y.low, y.high + 1), cv::Range(x.low, x.high + 1)), x, y, threshold);
 }
 
 cv::Mat depth_mask(const cv::Mat& depth, const cv::Rect& pixels) {

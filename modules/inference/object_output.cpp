@@ -31,19 +31,21 @@ class ObjectReader {
  public:
   ObjectReader(const std::vector<cv::Mat>& outputs, const ObjectLayout& layout, const cv::Size& input, int names,
                const std::filesystem::path& model)
-      : outputs_(outputs), layout_(layout), input_(input), names_(names), model_(model) {
-    boxes_ = table(layout.boxes, layout.is_transposed ? layout.width : layout.count,
-                   layout.is_transposed ? layout.count : layout.width);
+      : outputs_(outputs), layout_(layout), input_(input), names_(names), model_(model), count_(count_of(layout)) {
+    if (count_ == 0) return;
+    boxes_ =
+        table(layout.boxes, layout.is_transposed ? layout.width : count_, layout.is_transposed ? count_ : layout.width);
     if (layout.is_transposed) std::swap(boxes_.row_step, boxes_.column_step);
     const bool has_numbers = layout.numbers.has_value();
     const int columns = has_numbers ? 1 : layout.classes + (layout.preset.scores == ScoreForm::logits ? 0 : 1);
-    if (layout.scores) scores_ = table(*layout.scores, layout.count, columns);
-    if (has_numbers) numbers_ = table(*layout.numbers, layout.count, 1);
+    if (layout.scores) scores_ = table(*layout.scores, count_, columns);
+    if (has_numbers) numbers_ = table(*layout.numbers, count_, 1);
+    if (layout.masks) check_masks(outputs_[*layout.masks]);
   }
 
   std::vector<Candidate> candidates(float min_score) const {
     std::vector<Candidate> found;
-    for (int box = 0; box < layout_.count; ++box) {
+    for (int box = 0; box < count_; ++box) {
       Candidate candidate = best_class(box);
       candidate.box = box;
       if (candidate.class_number >= 0 && candidate.score >= min_score) found.push_back(candidate);
@@ -63,13 +65,30 @@ class ObjectReader {
              std::to_string(names_) + ", for the names in `classes`; correct `classes` or `family`");
       const cv::Rect2f box = clipped_box(candidate.box, is_fraction);
       if (box.width <= 0.0F || box.height <= 0.0F) continue;
-      result.push_back({candidate.class_number, candidate.score, box, coefficients(candidate.box)});
+      result.push_back({candidate.class_number, candidate.score, box, coefficients(candidate.box), candidate.box});
     }
     return result;
   }
 
  private:
   [[noreturn]] void fail(const std::string& message) const { throw InputError({model_.string()}, message); }
+
+  /// The number of boxes of this image.
+  int count_of(const ObjectLayout& layout) const {
+    if (layout.count > 0) return layout.count;
+    const std::size_t numbers = layout.boxes < outputs_.size() ? outputs_[layout.boxes].total() : 0;
+    constexpr std::size_t most = std::size_t{1} << 22;
+    return static_cast<int>(std::min(numbers / static_cast<std::size_t>(layout.width), most));
+  }
+
+  void check_masks(const cv::Mat& masks) const {
+    const auto boxes = static_cast<std::size_t>(count_);
+    if (masks.dims == 4 && masks.type() == CV_32FC1 && masks.isContinuous() && masks.total() > 0 &&
+        masks.total() == boxes * static_cast<std::size_t>(masks.size[2]) * static_cast<std::size_t>(masks.size[3]))
+      return;
+    fail("gives masks of " + std::to_string(masks.total()) + " numbers for " + std::to_string(boxes) +
+         " boxes; expected an image for each");
+  }
 
   Table table(std::size_t output, int rows, int columns) const {
     const auto expected = static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns);
@@ -108,6 +127,11 @@ class ObjectReader {
       case ScoreForm::objectness: {
         Candidate best = best_probability(boxes_, box, 5);
         best.score *= probability(boxes_.at(box, 4));
+        return best;
+      }
+      case ScoreForm::cell: {
+        Candidate best = best_probability(boxes_, box, 5);
+        best.score = std::pow(probability(boxes_.at(box, 0)), 0.6F) * std::pow(best.score, 0.4F);
         return best;
       }
       case ScoreForm::best:
@@ -164,6 +188,8 @@ class ObjectReader {
   }
 
   cv::Rect2f clipped_box(int box, bool is_fraction) const {
+    if (!layout_.has_boxes) return {0.0F, 0.0F, static_cast<float>(input_.width), static_cast<float>(input_.height)};
+    if (layout_.preset.box == BoxForm::cell) return cell_box(box);
     double left = finite(boxes_.at(box, 0)), top = finite(boxes_.at(box, 1));
     double right = finite(boxes_.at(box, 2)), bottom = finite(boxes_.at(box, 3));
     if (layout_.preset.box == BoxForm::centre) {
@@ -180,6 +206,19 @@ class ObjectReader {
             static_cast<float>(last.y - first.y)};
   }
 
+  cv::Rect2f cell_box(int box) const {
+    const int columns = layout_.grid_columns, rows = count_ / columns;
+    const auto sigmoid = [](double value) { return 1.0 / (1.0 + std::exp(-value)); };
+    const double x = (box % columns + std::tanh(finite(boxes_.at(box, 1)))) / columns;
+    const double y = (box / columns + std::tanh(finite(boxes_.at(box, 2)))) / rows;
+    const double half_width = 0.5 * sigmoid(finite(boxes_.at(box, 3)));
+    const double half_height = 0.5 * sigmoid(finite(boxes_.at(box, 4)));
+    const auto place = [](double value, int size) { return static_cast<float>(std::clamp(value, 0.0, 1.0) * size); };
+    const cv::Point2f first(place(x - half_width, input_.width), place(y - half_height, input_.height));
+    const cv::Point2f last(place(x + half_width, input_.width), place(y + half_height, input_.height));
+    return {first.x, first.y, last.x - first.x, last.y - first.y};
+  }
+
   std::vector<float> coefficients(int box) const {
     std::vector<float> result;
     if (!layout_.prototypes) return result;
@@ -193,6 +232,7 @@ class ObjectReader {
   cv::Size input_;
   int names_;
   const std::filesystem::path& model_;
+  int count_;
   Table boxes_, scores_, numbers_;
 };
 

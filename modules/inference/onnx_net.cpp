@@ -2,12 +2,14 @@
 #include "holdfast/inference/onnx_net.hpp"
 
 #include <future>
+#include <opencv2/core/version.hpp>
 #include <utility>
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/input_file.hpp"
 #include "holdfast/plugin/did_you_mean.hpp"
 #include "network_runner.hpp"
+#include "onnxruntime_library.hpp"
 
 namespace holdfast {
 
@@ -47,16 +49,17 @@ struct OnnxNet::Loaded {
 
 OnnxNet::OnnxNet(File file) : file_(std::move(file)), loaded_(std::make_unique<Loaded>()) {
   HOLDFAST_CHECK(!file_.in_background || !file_.bytes.empty(), "a file is not loaded in the background");
-  require_engine(file_.engine, file_.precision);
+  require_engine(file_);
   if (file_.bytes.empty()) {
     content_ = read_bytes(file_.model);
     file_.bytes = content_;
   }
   signature_ = read_onnx_signature(file_.bytes, file_.model);
-  if (signature_.has_half_precision)
+  if (signature_.has_half_precision && file_.engine != NetworkEngine::onnxruntime)
     throw InputError({file_.model.string()},
-                     "has float16 numbers, which no engine here can read; expected float32; export the network without "
-                     "half precision");
+                     std::string("has float16 numbers, which the engine ") + choice_name(file_.engine) +
+                         " cannot read; expected float32; export the network without half precision, or use `engine: "
+                         "onnxruntime`");
 }
 
 OnnxNet::~OnnxNet() = default;
@@ -65,6 +68,7 @@ void OnnxNet::load(const Use& use) {
   HOLDFAST_CHECK(!loaded_->runner && !loaded_->loading.valid(), "a network is loaded once");
   loaded_->use = use;
   const auto load = [file = file_, use] {
+    if (file.engine == NetworkEngine::onnxruntime) return load_with_onnxruntime(file, use);
     return file.engine == NetworkEngine::onednn
                ? load_with_onednn(file.model, file.bytes, use, file.precision, file.threads)
                : load_with_opencv(file.model, file.bytes, use);
@@ -74,6 +78,13 @@ void OnnxNet::load(const Use& use) {
   else
     loaded_->runner = load();
   content_ = {};
+}
+
+std::string OnnxNet::engine_text() const {
+  if (file_.engine == NetworkEngine::onednn) return "oneDNN";
+  if (file_.engine != NetworkEngine::onnxruntime) return "OpenCV " CV_VERSION;
+  const OnnxruntimeLibrary& library = OnnxruntimeLibrary::get(file_.engine_library);
+  return library.title() + " (" + library.file().string() + "), provider " + file_.provider;
 }
 
 void OnnxNet::finish_loading() {

@@ -51,7 +51,7 @@ cv::dnn::Net load(const std::filesystem::path& model, std::span<const std::uint8
   } catch (const cv::Exception& error) {
     throw InputError({model.string()}, "cannot be loaded by OpenCV " CV_VERSION " (" + one_line(error.err) +
                                            "); expected layers that it knows; export with a lower opset, or simplify "
-                                           "the network; or " +
+                                           "the network, or use `engine: onnxruntime`; or " +
                                            use.advice);
   }
 }

@@ -11,6 +11,14 @@ namespace {
 
 constexpr int bucket = 6;  // cells: one followed point per bucket with a corner
 
+std::vector<std::uint16_t> sample_instances(const CoarseSampler& sampler, const cv::Mat& instances) {
+  std::vector<std::uint16_t> cells(static_cast<std::size_t>(sampler.grid().size()), 0);
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (const std::int32_t raw = sampler.raw_pixel(static_cast<int>(i)); raw >= 0)
+      cells[i] = instances.ptr<std::uint16_t>(raw / instances.cols)[raw % instances.cols];
+  return cells;
+}
+
 }  // namespace
 
 CellMask sample_mask(const CoarseSampler& sampler, const Segmentation& segmentation) {
@@ -21,6 +29,7 @@ CellMask sample_mask(const CoarseSampler& sampler, const Segmentation& segmentat
     mask.confidence.assign(mask.labels.size(), 255);
   else
     sampler.sample_labels(segmentation.confidence, 0, mask.confidence);
+  if (!segmentation.instances.empty()) mask.instances = sample_instances(sampler, segmentation.instances);
   return mask;
 }
 
@@ -33,7 +42,7 @@ void MaskPropagator::advance(const cv::Mat& grey, const Frame& frame, const Eige
   frame_ = &frame;
   take_view(frame, current_);
   if (labels_.empty()) return;
-  pair_with(previous_, labels_.labels);
+  pair_with(previous_, labels_);
   transfer_.transfer(previous_.coarse, labels_, current_.coarse, T_frame_previous, pairs_, next_labels_);
   std::swap(labels_, next_labels_);
   renew_points(frame);
@@ -56,7 +65,7 @@ void MaskPropagator::take_points(View& view) const {
   view.x = points.x, view.y = points.y, view.depth = points.depth;
 }
 
-void MaskPropagator::pair_with(const View& view, const std::vector<std::uint8_t>& labels_there) {
+void MaskPropagator::pair_with(const View& view, const CellMask& mask_there) {
   // Points on an object of that view, but not at its border, where a point may follow the background.
   pairs_.clear();
   const PointFollower::Points& points = follower_.points();
@@ -70,10 +79,16 @@ void MaskPropagator::pair_with(const View& view, const std::vector<std::uint8_t>
     if (column < 1 || row < 1 || column + 1 >= grid.columns || row + 1 >= grid.rows) continue;
     const std::size_t cell = static_cast<std::size_t>(row * grid.columns + column);
     const auto width = static_cast<std::size_t>(grid.columns);
-    const std::uint8_t label = labels_there[cell];
-    if (!CellMask::is_object(label) || labels_there[cell - 1] != label || labels_there[cell + 1] != label ||
-        labels_there[cell - width] != label || labels_there[cell + width] != label)
+    const auto is_inside = [&](const auto& values) {
+      const auto value = values[cell];
+      return values[cell - 1] == value && values[cell + 1] == value && values[cell - width] == value &&
+             values[cell + width] == value;
+    };
+    const bool has_instances = !mask_there.instances.empty();
+    if (!CellMask::is_object(mask_there.labels[cell]) || !is_inside(mask_there.labels) ||
+        (has_instances && !is_inside(mask_there.instances)))
       continue;
+    if (has_instances) pairs_.instance.push_back(mask_there.instances[cell]);
     pairs_.from_x.push_back(view.x[there]), pairs_.from_y.push_back(view.y[there]);
     pairs_.from_depth.push_back(view.depth[there]);
     pairs_.to_x.push_back(points.x[i]), pairs_.to_y.push_back(points.y[i]);
@@ -142,13 +157,25 @@ void MaskPropagator::remember() {
   remembered_.back() = current_;
 }
 
-void MaskPropagator::apply(std::uint64_t frame_index, const CellMask& mask) {
+void MaskPropagator::name_instances(const View& there, const CellMask& held, CellMask& mask) {
+  if (mask.instances.empty()) return;
+  const std::vector<std::uint16_t> ids =
+      ids_.assign({camera_, there.coarse, mask, there.T_camera_world, there.timestamp}, labels_, held);
+  for (std::vector<std::uint16_t>* instances : {&mask.instances, &labels_.instances})
+    for (std::uint16_t& instance : *instances) instance = ids[instance];
+}
+
+CellMask MaskPropagator::apply(std::uint64_t frame_index, CellMask mask) {
   while (!remembered_.empty() && remembered_.front().frame_index < frame_index) remembered_.pop_front();
-  if (remembered_.empty() || remembered_.front().frame_index != frame_index) return;
+  if (remembered_.empty() || remembered_.front().frame_index != frame_index) {
+    mask.instances.clear();
+    return mask;
+  }
   const View there = std::move(remembered_.front());
   remembered_.pop_front();
-  if (mask.empty()) return;
+  if (mask.empty()) return mask;
 
+  const CellMask held = mask.instances.empty() ? CellMask() : labels_;
   CellMask exact = mask;
   exact.moving.assign(exact.labels.size(), 0);
   labels_from_ = there.timestamp;
@@ -159,10 +186,12 @@ void MaskPropagator::apply(std::uint64_t frame_index, const CellMask& mask) {
     Eigen::Isometry3d T_current_there = Eigen::Isometry3d::Identity();
     if (there.T_camera_world && current_.T_camera_world)
       T_current_there = *current_.T_camera_world * there.T_camera_world->inverse();
-    pair_with(there, exact.labels);
+    pair_with(there, exact);
     transfer_.transfer(there.coarse, exact, current_.coarse, T_current_there, pairs_, labels_);
   }
+  name_instances(there, held, mask);
   publish();
+  return mask;
 }
 
 void MaskPropagator::publish() {
@@ -171,6 +200,7 @@ void MaskPropagator::publish() {
   const double share = std::exp2(-std::max(0.0, age) / memory_);
   mask_.age = age;
   mask_.labels = labels_.labels;
+  mask_.instances = labels_.instances;
   std::array<std::uint8_t, 256> faded;  // by confidence
   for (std::size_t i = 0; i < faded.size(); ++i) faded[i] = static_cast<std::uint8_t>(static_cast<double>(i) * share);
   mask_.confidence.resize(labels_.confidence.size());

@@ -39,7 +39,8 @@ void MaskTransfer::find_movers(const CoarseGrid& grid, const FollowedPairs& pair
       const std::size_t i = nearest_[k].pair;
       const bool deep = pairs.from_depth[i] > 0.0F && pairs.to_depth[i] > 0.0F;
       movers_[k] = {cells(pairs.from_x[i] - pairs.to_x[i]), cells(pairs.from_y[i] - pairs.to_y[i]),
-                    deep ? pairs.from_depth[i] - pairs.to_depth[i] : 0.0F};
+                    deep ? pairs.from_depth[i] - pairs.to_depth[i] : 0.0F,
+                    pairs.instance.empty() ? std::uint16_t{0} : pairs.instance[i]};
     }
 }
 
@@ -80,6 +81,7 @@ struct MaskTransfer::Job {
     to.labels[cell] = from.labels[source];
     to.confidence[cell] = from.confidence[source];
     to.moving[cell] = from.moving[source];
+    if (!from.instances.empty()) to.instances[cell] = from.instances[source];
   }
 };
 
@@ -89,6 +91,7 @@ void MaskTransfer::transfer(const CoarseView& from_view, const CellMask& from, c
   find_movers(grid, pairs);
   const std::size_t size = static_cast<std::size_t>(grid.size());
   to.assign(size, CellMask::background, 255);
+  if (!from.instances.empty()) to.instances.assign(size, 0);
   previous_state_.assign(size, CellState::occluded);
   constexpr float min_depth = 0.05F;  // m
   const Job job{.from_view = from_view,
@@ -149,7 +152,7 @@ void MaskTransfer::transfer_by_points_alone(const Job& job, const FollowedPairs&
       for (std::size_t k = 0; k < movers; ++k) {
         const Mover& mover = movers_[place * max_movers + k];
         const std::size_t there = cell_at(column + mover.columns, row + mover.rows);
-        if (CellMask::is_object(job.from.labels[there]) && votes++ == 0) source = there;
+        if (mover.moves(job.from, there) && votes++ == 0) source = there;
       }
       if (2 * votes >= movers) job.take(cell, source);
     }
@@ -201,7 +204,7 @@ void MaskTransfer::take_by_object_motion(const Job& job, int column, int row) {
     const int source_column = column + mover.columns, source_row = row + mover.rows;
     if (source_column < 0 || source_row < 0 || source_column >= grid.columns || source_row >= grid.rows) continue;
     const std::size_t source = static_cast<std::size_t>(source_row * grid.columns + source_column);
-    if (!CellMask::is_object(job.from.labels[source])) continue;
+    if (!mover.moves(job.from, source)) continue;
     const float before = job.from_view.depth[source];
     if (depth > 0.0F &&
         (before == 0.0F || std::abs(before - depth - mover.depth_change) > depth_noise::same_surface(depth)))
@@ -268,6 +271,7 @@ void MaskTransfer::grow(const CoarseView& to_view, CellMask& to) {
         start_depth_[other] = start;
         to.moving[other] = to.moving[static_cast<std::size_t>(cell)];
         to.labels[other] = to.labels[static_cast<std::size_t>(cell)];
+        if (!to.instances.empty()) to.instances[other] = to.instances[static_cast<std::size_t>(cell)];
         to.confidence[other] = static_cast<std::uint8_t>(to.confidence[static_cast<std::size_t>(cell)] * 15 / 16);
         next_front_.push_back(static_cast<std::int32_t>(other));
       }
@@ -286,14 +290,18 @@ void MaskTransfer::fill_holes(const CoarseView& to_view, CellMask& to) {
     for (std::size_t cell = row * width + 1; cell + 1 < (row + 1) * width; ++cell) {
       if (labels[cell] != 0 || depth[cell] > 0.0F) continue;
       int labelled = 0;
+      std::uint16_t instance = 0;
       std::uint8_t label = 0, quality = 255;
       for (const std::size_t other : {cell - width, cell + width, cell - 1, cell + 1}) {
         if (!CellMask::is_object(labels[other])) continue;
         ++labelled;
         label = labels[other];
+        if (!to.instances.empty()) instance = to.instances[other];
         quality = std::min(quality, to.confidence[other]);
       }
-      if (labelled >= 3) labels[cell] = label, to.confidence[cell] = quality;
+      if (labelled < 3) continue;
+      labels[cell] = label, to.confidence[cell] = quality;
+      if (!to.instances.empty()) to.instances[cell] = instance;
     }
 }
 

@@ -123,8 +123,7 @@ std::optional<ArrivedMask> MovingWorld::take_mask(StageTimes& times) {
                       .keyframe = segmented->keyframe,
                       .segmentation = std::move(segmented->segmentation),
                       .mask = {}};
-  arrived.mask = sample_mask(sampler_, arrived.segmentation);
-  propagator_->apply(arrived.frame.index, arrived.mask);
+  arrived.mask = propagator_->apply(arrived.frame.index, sample_mask(sampler_, arrived.segmentation));
   count_mask(arrived.mask);
   if (!arrived.mask.empty()) mask_latencies_.push_back(timestamp_ - arrived.frame.timestamp);
   return arrived;

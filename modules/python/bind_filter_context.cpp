@@ -98,6 +98,9 @@ void bind_features_view(py::module_& module) {
       .def_property_readonly(
           "cell_labels",
           [](const FeaturesView& view) { return cell_array(view.get().coarse.grid, view.get().coarse.mask.labels); })
+      .def_property_readonly(
+          "cell_instances",
+          [](const FeaturesView& view) { return cell_array(view.get().coarse.grid, view.get().coarse.mask.instances); })
       .def_property_readonly("cell_confidence", [](const FeaturesView& view) {
         return cell_array(view.get().coarse.grid, view.get().coarse.mask.confidence);
       });

@@ -28,6 +28,7 @@ std::string result_text(const FrameResult& result) {
 void bind_objects(py::module_& module) {
   py::class_<MovingObject>(module, "MovingObject", "A rigid object that moves or has moved; metres, world frame.")
       .def_readonly("id", &MovingObject::id)
+      .def_readonly("instance", &MovingObject::instance)
       .def_readonly("class_name", &MovingObject::class_name)
       .def_property_readonly("T_world_object", [](const MovingObject& o) { return pose_array(o.T_world_object); })
       .def_property_readonly("velocity", [](const MovingObject& o) { return vector_array(o.velocity); })

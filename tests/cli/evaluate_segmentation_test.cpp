@@ -57,6 +57,22 @@ TEST_F(EvaluateSegmentation, ComparesFoldersByNameAndClass) {
   EXPECT_DOUBLE_EQ(json["overall_accuracy"], 0.75);
 }
 
+TEST_F(EvaluateSegmentation, ScoresInstances) {
+  // The value 7 is one person; it was found as 1 and as a part of 2, which lies over the background, too.
+  const std::vector<std::string> maps = {"--label-map", "{7: person}", "--prediction-map", "{1-2: person}"};
+  std::vector<std::string> with = maps;
+  with.insert(with.end(), {"--instances", "--json", "-"});
+  const Outcome outcome = compare(with);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  const auto instances = nlohmann::json::parse(outcome.output)["instances"];
+  EXPECT_EQ(instances["classes"][0]["true_instances"], 2);
+  EXPECT_EQ(instances["classes"][0]["found_instances"], 3);
+  EXPECT_EQ(instances["classes"][0]["matched"], 0) << "the IoU of 1 is 0.5, and of 2 a quarter";
+  with = maps;
+  with.insert(with.end(), {"--json", "-"});
+  EXPECT_FALSE(nlohmann::json::parse(compare(with).output).contains("instances"));
+}
+
 TEST_F(EvaluateSegmentation, TakesWhatSegmentWrites) {
   program_.write("scene.yaml",
                  "room: office\nduration: 0.3\nframe_rate: 10\ncamera: { path: static }\n"
@@ -77,6 +93,10 @@ TEST_F(EvaluateSegmentation, TakesWhatSegmentWrites) {
   ASSERT_EQ(by_source.exit_code, 0) << by_source.errors;
   EXPECT_EQ(nlohmann::json::parse(by_source.output)["images"], 2);
   EXPECT_DOUBLE_EQ(nlohmann::json::parse(by_source.output)["mean_iou"], 1.0);
+  EXPECT_THAT(run({"truth.yaml", "--instances"}).errors, HasSubstr("the segmenter separates no instances"));
+  const Outcome separated = run({"truth.yaml", "--set", "segmenter.truth.instances=true", "--json", "-"});
+  ASSERT_EQ(separated.exit_code, 0) << separated.errors;
+  EXPECT_DOUBLE_EQ(nlohmann::json::parse(separated.output)["instances"]["mean_ap"], 1.0);
 }
 
 TEST_F(EvaluateSegmentation, SaysWhatIsMissing) {

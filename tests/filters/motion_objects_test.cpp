@@ -120,6 +120,10 @@ class MotionObjectsTest : public testing::Test {
     if (classes != nullptr) {
       seen.frame.coarse.mask.labels = seen.labels;
       seen.frame.coarse.mask.confidence.assign(seen.labels.size(), 255);
+      if (are_instances_) {
+        seen.frame.coarse.mask.instances.assign(seen.labels.begin(), seen.labels.end());
+        for (std::uint8_t& label : seen.frame.coarse.mask.labels) label = label == 0 ? 0 : 1;
+      }
     }
     filter.apply({.sensor_frame = image,
                   .frame = seen.frame,
@@ -156,6 +160,7 @@ class MotionObjectsTest : public testing::Test {
     return MotionObjects({}, context);
   }
 
+  bool are_instances_ = false;  ///< labels of the world are instances of one class in the masks
   Map map_;
   cv::Mat colour_{480, 640, CV_8UC3, cv::Scalar::all(100)};
   Frame previous_;
@@ -290,6 +295,31 @@ TEST_F(MotionObjectsTest, MasksNameObjectsAndTellThemApart) {
   std::set<std::string> names;
   for (const MovingObject& object : last.objects()) names.insert(object.class_name);
   EXPECT_EQ(names, (std::set<std::string>{"person", "box"}));
+}
+
+TEST_F(MotionObjectsTest, InstancesOfOneClassAreToldApart) {
+  // Two people side by side, of one class: one surface goes on in the other, and both move alike.
+  const std::vector<std::string> classes{"background", "person"};
+  const auto world = [](double time) {
+    BoxWorld result = room();
+    const double x = -0.5 + 0.4 * time;
+    result.boxes = {BoxWorld::box({x, 0.0, 2.2}, {0.2, 0.7, 0.15}, 1),
+                    BoxWorld::box({x + 0.4, 0.1, 2.2}, {0.2, 0.6, 0.15}, 2)};
+    return result;
+  };
+  are_instances_ = true;
+  auto tracker = filter();
+  std::set<std::pair<std::uint32_t, int>> ids;  // of objects, with their instances
+  for (const Seen& seen : run(tracker, world, still, 1.2, &classes)) {
+    if (seen.time < 0.8) continue;
+    EXPECT_EQ(seen.objects().size(), 2U) << seen.time;
+    for (const MovingObject& object : seen.objects()) {
+      ids.insert({object.id, object.instance});
+      EXPECT_EQ(object.class_name, "person");
+    }
+  }
+  ASSERT_EQ(ids.size(), 2U);
+  EXPECT_EQ(ids.begin()->second + ids.rbegin()->second, 3) << "each has an instance of its own";
 }
 
 TEST_F(MotionObjectsTest, HiddenObjectsCoastAreForgottenAndTheirIdsNotUsedAgain) {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Both engines compute the same. In builds without oneDNN: what its absence says.
+// All engines compute the same. In builds without oneDNN, and without ONNX Runtime: what its absence says.
 #include <gmock/gmock.h>
 
 #include <array>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <thread>
 
 #include "holdfast/core/error.hpp"
@@ -41,8 +43,6 @@ TEST(Engines, OpencvKnowsOnePrecision) {
               HasSubstr("precision: found bf16 with `engine: opencv`, which computes in fp32 only"));
 }
 
-#if defined(HOLDFAST_ONEDNN)
-
 cv::Mat picture(int width, int height, std::uint64_t seed = 1) {
   cv::Mat colour(height, width, CV_8UC3);
   cv::RNG(seed).fill(colour, cv::RNG::UNIFORM, 0, 256);
@@ -53,6 +53,111 @@ double difference(const cv::Mat& a, const cv::Mat& b) {
   EXPECT_EQ(std::vector<int>(a.size.p, a.size.p + a.dims), std::vector<int>(b.size.p, b.size.p + b.dims));
   return cv::norm(a, b, cv::NORM_INF);
 }
+
+class Onnxruntime : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!has_onnxruntime()) GTEST_SKIP() << "no ONNX Runtime: sh cmake/install_dependencies.sh --onnxruntime";
+  }
+  static NetworkOptions of(const std::string& name) { return options(name, NetworkEngine::onnxruntime); }
+};
+
+TEST_F(Onnxruntime, GivesTheSameAsOpencv) {
+  for (const char* name : {"logits", "probabilities", "coarse", "one_channel"}) {
+    Network opencv(options(name, NetworkEngine::opencv)), onnxruntime(of(name));
+    const cv::Mat colour = picture(16, 12);
+    EXPECT_LT(difference(onnxruntime.run(colour), opencv.run(colour)), 1e-5) << name;
+    EXPECT_LT(difference(onnxruntime.run_mirrored(), opencv.run_mirrored()), 1e-5) << name;
+  }
+  for (const int width : {16, 100}) {
+    NetworkOptions with_opencv = options("every_layer", NetworkEngine::opencv);
+    with_opencv.width = width, with_opencv.height = 20;
+    NetworkOptions chosen = with_opencv;
+    chosen.engine = NetworkEngine::onnxruntime, chosen.threads = width == 16 ? 1 : 2;
+    Network opencv(with_opencv), onnxruntime(chosen);
+    EXPECT_LT(difference(onnxruntime.run(picture(width, 20)), opencv.run(picture(width, 20))), 1e-5);
+  }
+}
+
+TEST_F(Onnxruntime, GivesAndTakesTheNumbersOfTheNetworkAsFloats) {
+  const cv::Mat colour = picture(16, 12);
+  const cv::Mat expected = Network(options("logits", NetworkEngine::opencv)).run(colour).clone();
+  EXPECT_LT(difference(Network(of("half")).run(colour), expected), 0.02);
+  NetworkOptions bytes = of("quantised");
+  bytes.scale = 1.0;
+  EXPECT_LT(difference(Network(bytes).run(colour), expected), 1e-4);
+  const cv::Mat labels = Network(options("labels", NetworkEngine::opencv)).run(colour).clone();
+  EXPECT_EQ(difference(Network(of("labels")).run(colour), labels), 0.0);
+}
+
+TEST_F(Onnxruntime, RunsOperatorsAndSizesThatOpencvDoesNot) {
+  NetworkOptions chosen = of("opset_17");
+  chosen.width = 31, chosen.height = 21;
+  Network network(chosen);
+  const cv::Mat scores = network.run(picture(31, 21));
+  EXPECT_EQ(std::vector<int>(scores.size.p, scores.size.p + scores.dims), (std::vector<int>{1, 3, 21, 31}));
+  EXPECT_THAT(network.engine_text(), testing::AllOf(HasSubstr("ONNX Runtime 1."), HasSubstr("provider cpu")));
+}
+
+TEST_F(Onnxruntime, ErrorsSayWhatIsThere) {
+  EXPECT_THAT(error_of([] { Network{of("strange_layer")}; }),
+              testing::AllOf(HasSubstr("cannot be run by ONNX Runtime 1."), HasSubstr("Sorcery")));
+  NetworkOptions chosen = of("logits");
+  chosen.provider = "abacus";
+  EXPECT_THAT(error_of([&] { Network{chosen}; }),
+              testing::AllOf(HasSubstr("provider: found 'abacus'"), HasSubstr("has "), HasSubstr("cpu")));
+  EXPECT_THAT(error_of([] { Network{options("logits", NetworkEngine::onnxruntime, NetworkPrecision::bf16)}; }),
+              HasSubstr("with `engine: onnxruntime`, which computes with the numbers of the file"));
+}
+
+/// The environment variable that names a library of ONNX Runtime, for one test.
+class NamedLibrary {
+ public:
+  explicit NamedLibrary(const std::string& file) {
+    if (const char* value = std::getenv(name)) before_ = value;
+    setenv(name, file.c_str(), 1);
+  }
+  ~NamedLibrary() { before_ ? setenv(name, before_->c_str(), 1) : unsetenv(name); }
+  NamedLibrary(const NamedLibrary&) = delete;
+  NamedLibrary& operator=(const NamedLibrary&) = delete;
+
+ private:
+  static constexpr const char* name = "HOLDFAST_ONNXRUNTIME";
+  std::optional<std::string> before_;
+};
+
+TEST(OnnxruntimeLibrary, OneThatCannotBeUsedIsAnErrorThatSaysWhy) {
+  const auto error = [](const std::string& library) {
+    const NamedLibrary named(library);
+    return error_of([] { Network{options("logits", NetworkEngine::onnxruntime)}; });
+  };
+  EXPECT_THAT(error("/absent/libonnxruntime.so"),
+              testing::AllOf(HasSubstr("engine: found onnxruntime, but `HOLDFAST_ONNXRUNTIME` names "
+                                       "/absent/libonnxruntime.so, which does not exist"),
+                             HasSubstr("install_dependencies.sh --onnxruntime"), HasSubstr("`engine_library`")));
+  EXPECT_THAT(error(HOLDFAST_TEST_MODELS), HasSubstr("in which there is no libonnxruntime.so"));
+  EXPECT_THAT(error(HOLDFAST_TEST_MODELS "/logits.onnx"), HasSubstr("its library cannot be loaded"));
+  EXPECT_THAT(error("none"), HasSubstr("HOLDFAST_ONNXRUNTIME is 'none'; unset it"));
+  EXPECT_THAT(error(HOLDFAST_OTHER_LIBRARY), HasSubstr("is another library, without OrtGetApiBase"));
+  EXPECT_THAT(error(HOLDFAST_OLD_ONNXRUNTIME), HasSubstr("is version 1.7.2; expected version 1.12 or later"));
+}
+
+TEST(OnnxruntimeLibrary, AutoDoesWithoutAndANamedOneIsTaken) {
+  const NamedLibrary named("none");
+  EXPECT_EQ(chosen_engine({}, false), NetworkEngine::opencv);
+  EXPECT_EQ(chosen_engine({}, true), has_onednn() ? NetworkEngine::onednn : NetworkEngine::opencv);
+  EXPECT_EQ(chosen_engine({.provider = "cuda"}, true), NetworkEngine::onnxruntime);
+  EXPECT_EQ(chosen_engine({.engine_library = "/opt/it.so"}, false), NetworkEngine::onnxruntime);
+  EXPECT_THAT(error_of([] { chosen_engine({.engine = NetworkEngine::opencv, .provider = "cuda"}, false); }),
+              HasSubstr("provider: found 'cuda' with `engine: opencv`"));
+}
+
+TEST_F(Onnxruntime, IsTheChoiceOfAutoWhereItIsFoundButForOnednnsNetworks) {
+  EXPECT_EQ(chosen_engine({}, false), NetworkEngine::onnxruntime);
+  EXPECT_EQ(chosen_engine({}, true), has_onednn() ? NetworkEngine::onednn : NetworkEngine::onnxruntime);
+}
+
+#if defined(HOLDFAST_ONEDNN)
 
 bool has_bf16() {
   try {

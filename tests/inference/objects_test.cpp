@@ -160,7 +160,7 @@ cv::Mat list_of(int boxes, int numbers, const std::vector<float>& values) {
 }
 
 ObjectLayout layout_of(BoxForm box, BoxUnit unit, ScoreForm scores, int count, int width, int classes) {
-  ObjectLayout layout{{ObjectFamily::yolo, "a test", box, unit, scores, InputFit::letterbox, false, 0.25, 0.7}};
+  ObjectLayout layout{{ObjectFamily::yolo, "a test", box, unit, scores, 0.0F, InputFit::letterbox, false, 0.25, 0.7}};
   layout.count = count, layout.width = width, layout.classes = classes;
   return layout;
 }
@@ -191,6 +191,32 @@ TEST(ObjectOutput, BoxesAroundTheirCentreInBothOrders) {
     EXPECT_EQ(found[1].class_number, 0);
     expect_box(found[1].box, 0, 80, 20, 20);  // clipped to the input
   }
+}
+
+TEST(ObjectOutput, CellsOfFastestDet) {
+  ObjectQuestion question{.outputs = {{.name = "758", .shape = {1, 7, 2, 4}}},
+                          .input = {64, 32},
+                          .classes = 2,
+                          .family = ObjectFamily::fastestdet,
+                          .model = "net"};
+  const ObjectLayout layout = recognise_objects(question);
+  EXPECT_EQ(layout.count, 8);
+  const int shape[] = {1, 7, 2, 4};
+  cv::Mat output = cv::Mat::zeros(4, shape, CV_32F);
+  const auto set = [&](int channel, float value) {
+    output.ptr<float>()[8 * channel + 4 + 2] = value;
+  };  // row 1, column 2
+  set(0, 0.5F), set(1, 0.0F), set(2, std::atanh(-0.5F)), set(6, 0.25F);
+  set(3, std::log(0.25F / 0.75F)), set(4, 0.0F);  // a quarter wide, half high
+  const auto found = decode_objects({output}, layout, question.input, 0.1, 2, "net");
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].class_number, 1);
+  EXPECT_NEAR(found[0].score, std::pow(0.5, 0.6) * std::pow(0.25, 0.4), 1e-6);
+  expect_box(found[0].box, 32 - 8, 8 - 8, 16, 16);
+  question.classes = 3;
+  EXPECT_THROW(recognise_objects(question), InputError);
+  question.classes = 2, question.family = ObjectFamily::automatic;
+  EXPECT_THROW(recognise_objects(question), InputError) << "a semantic network has such an output, too";
 }
 
 TEST(ObjectOutput, EveryFormOfScores) {

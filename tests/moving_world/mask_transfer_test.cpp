@@ -20,7 +20,9 @@ using test::overlap;
 struct Sight {
   Sight(const BoxWorld& world, const Isometry3d& pose) : T_world_camera(pose) { view = world.view(pose, &truth); }
   CellMask exact() const {
-    return {truth, std::vector<std::uint8_t>(truth.size(), 255), std::vector<std::uint8_t>(truth.size(), 0), 0.0};
+    return {.labels = truth,
+            .confidence = std::vector<std::uint8_t>(truth.size(), 255),
+            .moving = std::vector<std::uint8_t>(truth.size(), 0)};
   }
   Isometry3d T_world_camera;
   CoarseView view;

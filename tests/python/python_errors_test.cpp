@@ -92,7 +92,9 @@ TEST_F(PythonErrors, ResultsOfTheWrongForm) {
   EXPECT_THAT(result("image[:, :, 0] > 3"), HasSubstr("labels of dtype bool"));
   EXPECT_THAT(result("image"), AllOf(HasSubstr("labels of shape (4, 6, 3)"), HasSubstr(shape)));
   EXPECT_THAT(result("numpy.zeros((6, 4), numpy.uint8)"), HasSubstr("labels of shape (6, 4)"));
-  EXPECT_THAT(result("(1, 2, 3)"), HasSubstr("a tuple of 3; expected labels, (labels, confidence), or None"));
+  EXPECT_THAT(
+      result("(1, 2, 3, 4)"),
+      HasSubstr("a tuple of 4; expected labels, (labels, confidence), (labels, confidence, instances), or None"));
   EXPECT_THAT(result("numpy.zeros((4, 6), numpy.uint8), 0.5"), HasSubstr("expected confidence as a numpy array"));
   EXPECT_THAT(result("numpy.array([[0] * 6] * 3 + [[0, 0, 2, 0, 0, 0]], numpy.uint8)"),
               HasSubstr("the label 2 at row 3, column 2; expected an index into `classes`, 0 to 1, or 255"));

@@ -31,6 +31,19 @@ TEST_F(PythonSegmenter, TakesConfidenceAndNone) {
   EXPECT_TRUE(with_body("return None")->segment(frame()).empty());
 }
 
+TEST_F(PythonSegmenter, TakesInstances) {
+  const auto segmenter = with_body(
+      "labels = numpy.ones(image.shape[:2], numpy.uint8); labels[0] = 0; instances = labels * 7; instances[:, 3:] = 9; "
+      "return labels, None, instances");
+  const Segmentation result = segmenter->segment(frame());
+  ASSERT_EQ(result.found.size(), 2U) << "none on the background";
+  EXPECT_EQ(result.found[0].label, 1);
+  EXPECT_EQ(result.found[1].box, cv::Rect2f(3, 1, 3, 3));
+  EXPECT_EQ(result.instances.at<std::uint16_t>(2, 1), 1);
+  EXPECT_EQ(result.instances.at<std::uint16_t>(2, 4), 2);
+  EXPECT_EQ(result.instances.at<std::uint16_t>(0, 4), 0);
+}
+
 TEST_F(PythonSegmenter, GivesImagesInTheOrderThatWasAsked) {
   const std::string file = write(
       "import numpy\nclass Segmenter:\n  classes = [str(i) for i in range(250)]\n"

@@ -3,6 +3,7 @@
 
 #include <opencv2/core.hpp>
 
+#include "holdfast/inference/network.hpp"
 #include "segmenters/segmenter_fixture.hpp"
 
 extern "C" void holdfast_register_plugin_onnx(holdfast::Registry& registry);
@@ -18,6 +19,7 @@ using testing::HasSubstr;
 
 std::unique_ptr<Segmenter> make(const std::string& model, ParameterValues values = {}) {
   values["model"] = std::string(HOLDFAST_TEST_MODELS) + "/" + model + ".onnx";
+  values.try_emplace("engine", "opencv");
   return test::make_segmenter(holdfast_register_plugin_onnx, "onnx", values);
 }
 
@@ -98,6 +100,61 @@ TEST(OnnxObjects, FreeDimensionsAreThoseOfTheMetadata) {
   EXPECT_LE(differences(result.labels, expected), 24) << "six pixels of a corner";
   EXPECT_THAT(make("yolov8n-seg-dynamic", {{"width", std::int64_t{320}}, {"height", std::int64_t{320}}})->description(),
               HasSubstr("Input 320x320"));
+}
+
+TEST(OnnxObjects, OnnxruntimeFindsTheSame) {
+  if (!has_onnxruntime()) GTEST_SKIP() << "no ONNX Runtime: sh cmake/install_dependencies.sh --onnxruntime";
+  for (const char* model : {"yolov8n-seg", "yolov8n-seg-dynamic", "yolo26n-seg"}) {
+    const Segmentation expected = make(model)->segment(red_and_green());
+    const Segmentation found = make(model, {{"engine", "onnxruntime"}})->segment(red_and_green());
+    EXPECT_EQ(found.found.size(), expected.found.size()) << model;
+    EXPECT_EQ(differences(found.labels, expected.labels), 0) << model;
+    EXPECT_EQ(differences(found.instances, expected.instances), 0) << model;
+  }
+}
+
+/// Of frames of 320 x 240, 10 pixels for one of the inputs of 32 x 24: a red and a green thing.
+SensorFrame small_red_and_green() {
+  SensorFrame frame = frame_of(1.0, 320, 240);
+  frame.colour(cv::Rect(40, 40, 80, 120)).setTo(red);
+  frame.colour(cv::Rect(200, 80, 80, 80)).setTo(green);
+  return frame;
+}
+
+TEST(OnnxObjects, MaskRcnnGivesAsManyObjectsAsThereAre) {
+  if (!has_onnxruntime()) GTEST_SKIP() << "no ONNX Runtime: sh cmake/install_dependencies.sh --onnxruntime";
+  std::vector<std::string> names;
+  for (int i = 1; i <= 90; ++i) names.push_back(i == 1 ? "person" : i == 62 ? "chair" : "other " + std::to_string(i));
+  const auto segmenter =
+      make("mask_rcnn",
+           {{"engine", "onnxruntime"}, {"width", std::int64_t{32}}, {"height", std::int64_t{24}}, {"classes", names}});
+  EXPECT_THAT(segmenter->description(), AllOf(HasSubstr("of the family mask_rcnn"), HasSubstr("instances with masks")));
+  const Segmentation result = segmenter->segment(small_red_and_green());
+  ASSERT_EQ(result.found.size(), 2U);
+  EXPECT_EQ(result.found[0].label, 62);
+  EXPECT_FLOAT_EQ(result.found[0].score, 0.875F);
+  EXPECT_EQ(result.found[1].label, 1);
+  EXPECT_EQ(result.found[1].box, cv::Rect2f(20, 20, 140, 200));
+  cv::Mat expected = cv::Mat::zeros(240, 320, CV_8UC1);
+  expected(cv::Rect(40, 40, 80, 120)).setTo(1), expected(cv::Rect(200, 80, 80, 80)).setTo(62);
+  EXPECT_LE(differences(result.labels, expected), 80) << "ten pixels of each corner";
+  EXPECT_TRUE(segmenter->segment(frame_of(2.0, 320, 240)).found.empty());
+  EXPECT_EQ(segmenter->segment(frame_of(2.0, 320, 240, red)).found.size(), 1U);
+}
+
+TEST(OnnxObjects, QueriesWithMasks) {
+  const auto segmenter = make("maskformer", {{"classes", std::vector<std::string>{"person", "chair"}},
+                                             {"mean", std::vector<double>{0, 0, 0}},
+                                             {"standard_deviation", std::vector<double>{1, 1, 1}}});
+  EXPECT_THAT(segmenter->description(), HasSubstr("of the family maskformer"));
+  const Segmentation result = segmenter->segment(small_red_and_green());
+  ASSERT_EQ(result.found.size(), 2U) << "one query finds nothing, one says that there is nothing";
+  EXPECT_EQ(result.found[0].label, 1);
+  EXPECT_EQ(result.found[1].label, 2);
+  EXPECT_EQ(result.found[1].box, cv::Rect2f(200, 80, 80, 80));
+  cv::Mat expected = cv::Mat::zeros(240, 320, CV_8UC1);
+  expected(cv::Rect(40, 40, 80, 120)).setTo(1), expected(cv::Rect(200, 80, 80, 80)).setTo(2);
+  EXPECT_LE(differences(result.labels, expected), 8 * 160) << "corners: a pixel of the masks is one of 40 x 40";
 }
 
 TEST(OnnxObjects, BoxesAreCutOutByDepth) {

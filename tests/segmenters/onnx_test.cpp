@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "holdfast/inference/network.hpp"
 #include "segmenters/segmenter_fixture.hpp"
 
 extern "C" void holdfast_register_plugin_onnx(holdfast::Registry& registry);
@@ -22,6 +23,7 @@ const std::vector<std::string> three = {"background", "person", "chair"};
 std::unique_ptr<Segmenter> make(const std::string& model, ParameterValues values = {}) {
   values["model"] = std::string(HOLDFAST_TEST_MODELS) + "/" + model + ".onnx";
   values.try_emplace("classes", three);
+  values.try_emplace("engine", "opencv");
   testing::internal::CaptureStderr();
   struct Silence {
     ~Silence() { EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "a library printed"; }
@@ -54,6 +56,20 @@ TEST(OnnxSegmenter, EveryFormOfOutput) {
   expect_stripes(*make("any_size", {{"width", std::int64_t{32}}, {"height", std::int64_t{24}}}));
   expect_stripes(*make("two_outputs", {{"output_name", "shares"}, {"output", "probabilities"}}));
   expect_stripes(*make("one_channel", {{"classes", std::vector<std::string>{"background", "person"}}}), 1, 0);
+}
+
+TEST(OnnxSegmenter, OnnxruntimeReadsWhatOthersCannot) {
+  if (!has_onnxruntime()) GTEST_SKIP() << "no ONNX Runtime: sh cmake/install_dependencies.sh --onnxruntime";
+  const ParameterValues engine = {{"engine", "onnxruntime"}};
+  expect_stripes(*make("logits", engine));
+  expect_stripes(*make("half", engine));
+  expect_stripes(*make("labels", {{"engine", "onnxruntime"}, {"output", "labels"}}));
+  expect_stripes(*make("channels_last", {{"engine", "onnxruntime"}, {"layout", "nhwc"}}));
+  expect_stripes(*make("quantised", {{"engine", "onnxruntime"}, {"scale", 1.0}}));
+  expect_stripes(*make("opset_17", {{"engine", "auto"}, {"width", std::int64_t{32}}, {"height", std::int64_t{24}}}));
+  EXPECT_THAT(make("logits", {{"engine", "auto"}})->description(), HasSubstr("Computed by ONNX Runtime 1."));
+  EXPECT_THAT(error_of([&] { make("quantised", engine); }),
+              AllOf(HasSubstr("has an input of whole numbers"), HasSubstr("expected `scale: 1`")));
 }
 
 TEST(OnnxSegmenter, ConfidenceIsTheProbabilityOfTheWinner) {
@@ -94,7 +110,10 @@ TEST(OnnxSegmenter, WrongModelsSayWhatWasFoundAndExpected) {
   EXPECT_THAT(error("two_outputs", {{"output_name", "score"}}),
               HasSubstr("has no output 'score'; did you mean 'scores'?"));
   EXPECT_THAT(error("two_inputs"), HasSubstr("has 2 inputs"));
-  EXPECT_THAT(error("half"), HasSubstr("float16 numbers, which no engine here can read"));
+  EXPECT_THAT(error("half"), AllOf(HasSubstr("float16 numbers, which the engine opencv cannot read"),
+                                   HasSubstr("`engine: onnxruntime`")));
+  EXPECT_THAT(error("opset_17", {{"width", std::int64_t{32}}, {"height", std::int64_t{24}}}),
+              AllOf(HasSubstr("cannot be loaded by OpenCV"), HasSubstr("use `engine: onnxruntime`")));
   EXPECT_THAT(error("strange_layer"), AllOf(HasSubstr("strange_layer.onnx: cannot be"), HasSubstr("Sorcery")));
   EXPECT_THAT(error("logits", {{"output", "labels"}}), HasSubstr("1 x 1 x height x width"));
   EXPECT_THAT(error("one_channel",

@@ -322,6 +322,49 @@ TEST_F(PrecomputedTest, ArraysOfLabelsAndOfInstances) {
   EXPECT_EQ(at(5).found.size(), 1U);
 }
 
+/// A ZIP file as numpy.savez() writes it, but for the sums, of files of this folder by their names in it.
+void write_archive(const fs::path& file, const std::vector<std::pair<std::string, fs::path>>& members, int method = 0) {
+  const auto little = [](std::uint64_t value, int bytes) {
+    std::string text;
+    for (int i = 0; i < bytes; ++i) text += static_cast<char>(value >> (8 * i) & 255);
+    return text;
+  };
+  std::string archive, directory;
+  for (const auto& [name, source] : members) {
+    std::ifstream stream(source, std::ios::binary);
+    const std::string data{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+    const std::string common = little(20, 2) + little(0, 2) + little(static_cast<std::uint64_t>(method), 2) +
+                               little(0, 8) + little(data.size(), 4) + little(data.size(), 4) + little(name.size(), 2);
+    const std::size_t begin = archive.size();
+    archive += "PK\x03\x04" + common + little(4, 2) + name + "more" + data;
+    directory +=
+        "PK\x01\x02" + little(20, 2) + common + little(0, 2) + little(0, 2) + little(0, 8) + little(begin, 4) + name;
+  }
+  std::ofstream(file, std::ios::binary) << archive << directory << "PK\x05\x06" << little(0, 4)
+                                        << little(members.size(), 2) << little(members.size(), 2)
+                                        << little(directory.size(), 4) << little(archive.size(), 4) << little(0, 2);
+}
+
+TEST_F(PrecomputedTest, ArchivesOfArrays) {
+  const fs::path folder = folder_ / "arrays";
+  fs::create_directory(folder);
+  write_array(folder / "labels", "|u1", "(6, 8)", plane(2, 1));
+  write_array(folder / "masks", "|b1", "(2, 6, 8)", plane(1, 1) + plane(5, 1));
+  write_archive(folder_ / "1.npz", {{"arr_0.npy", folder / "labels"}});
+  write_archive(folder_ / "2.npz", {{"boxes.npy", folder / "labels"}, {"masks.npy", folder / "masks"}});
+  write_archive(folder_ / "3.npz", {{"boxes.npy", folder / "labels"}, {"scores.npy", folder / "masks"}});
+  write_archive(folder_ / "4.npz", {{"masks.npy", folder / "masks"}}, 8);
+  write_array(folder_ / "5.npz", "|u1", "(6, 8)", plane(2, 1));
+  const auto segmenter = make({{"1", "person"}});
+  const auto at = [&](double stamp) { return segmenter->segment(frame_of(stamp, width, height)); };
+  const auto error = [&](double stamp) { return error_of([&] { at(stamp); }); };
+  EXPECT_EQ(cv::countNonZero(at(1).labels.col(2)), 2);
+  EXPECT_EQ(at(2).found.size(), 2U);
+  EXPECT_THAT(error(3), HasSubstr("has the arrays boxes.npy, scores.npy, none of which is called labels"));
+  EXPECT_THAT(error(4), HasSubstr("the compressed array masks.npy; save it with numpy.savez()"));
+  EXPECT_THAT(error(5), HasSubstr("5.npz: is no archive of arrays (.npz)"));
+}
+
 TEST_F(PrecomputedTest, ArraysOfOtherKindsAreRefused) {
   const auto error = [&](const std::string& type, const std::string& shape, const std::string& values,
                          const std::string& order = "False") {
@@ -339,6 +382,88 @@ TEST_F(PrecomputedTest, ArraysOfOtherKindsAreRefused) {
   EXPECT_THAT(error("|u1", "(6, 8)", plane(1, 2)), HasSubstr("1.npy"));
   EXPECT_THAT(error("|u1", "(99999999999, 8)", ""), HasSubstr("too large"));
   EXPECT_THAT(error("|u1", "6", ""), HasSubstr("no array that can be read"));
+}
+
+/// A file of COCO with these annotations of one image at 1.5 s; some text of it may be replaced.
+class PrecomputedCoco : public PrecomputedTest {
+ protected:
+  std::string coco(const std::string& annotations, const std::string& from = "", const std::string& to = "") const {
+    std::string text =
+        R"({"images": [{"id": 7, "file_name": "rgb/1.5.png", "width": 8, "height": 6}], "categories":
+ [{"id": 1, "name": "person"}, {"id": 3, "name": "chair"}], "annotations": [)" +
+        annotations + "]}";
+    if (!from.empty()) text.replace(text.find(from), from.size(), to);
+    std::ofstream(folder_ / "masks.json") << text;
+    return (folder_ / "masks.json").string();
+  }
+  static std::unique_ptr<Segmenter> make_of(const std::string& file, ParameterValues values = {}) {
+    values["path"] = file;
+    return test::make_segmenter(holdfast_register_plugin_precomputed, "precomputed", values);
+  }
+  /// Of an annotation of a person.
+  static std::string person(const std::string& segmentation, const std::string& more = "") {
+    return R"({"image_id": 7, "category_id": 1, "segmentation": )" + segmentation + more + "}";
+  }
+};
+
+TEST_F(PrecomputedCoco, PolygonsAndRunLengths) {
+  // A square of 3 x 2 pixels, and one column of 6 by run lengths: compressed, "f0" is 54 = 22 + 32, negative or not.
+  const auto segmenter = make_of(coco(person("[[2.5, 1.5, 4.5, 1.5, 4.5, 2.5, 2.5, 2.5]]") + "," +
+                                      R"({"image_id": 7, "category_id": 3, "score": 0.25,
+                      "segmentation": {"size": [6, 8], "counts": [18, 6, 24]}})"));
+  EXPECT_THAT(segmenter->classes(), ElementsAre("background", "person", "chair"));
+  const Segmentation result = segmenter->segment(frame_of(1.5, width, height));
+  ASSERT_EQ(result.found.size(), 2U);
+  EXPECT_EQ(result.found[0].label, 1);
+  EXPECT_EQ(result.found[0].box, cv::Rect2f(2, 1, 3, 2));
+  EXPECT_EQ(result.found[1].label, 2);
+  EXPECT_FLOAT_EQ(result.found[1].score, 0.25F);
+  EXPECT_EQ(result.found[1].box, cv::Rect2f(3, 0, 1, 6));
+  EXPECT_EQ(cv::countNonZero(result.labels == 1), 6) << "the better one covers";
+  EXPECT_EQ(cv::countNonZero(result.instances == 2), 4);
+  EXPECT_TRUE(segmenter->segment(frame_of(2.5, width, height)).empty());
+}
+
+TEST_F(PrecomputedCoco, CompressedRunLengths) {
+  // 18, 6, 24 - 0: groups of five bits from '0' on; the third number is a difference from nothing yet.
+  const auto text = [](int value) {
+    std::string result;
+    for (; value > 15; value >>= 5) result += static_cast<char>('0' + (value & 31) + 32);
+    return result + static_cast<char>('0' + value);
+  };
+  const std::string counts = text(18) + text(6) + text(24);
+  const Segmentation result =
+      make_of(coco(person(R"({"size": [6, 8], "counts": ")" + counts + "\"}", R"(, "iscrowd": 1)")))
+          ->segment(frame_of(1.5, width, height));
+  EXPECT_EQ(cv::countNonZero(result.labels.col(3) == 1), 6);
+  EXPECT_EQ(cv::countNonZero(result.labels), 6);
+  EXPECT_TRUE(result.found.empty()) << "a crowd is no instance";
+}
+
+TEST_F(PrecomputedCoco, OtherNamesOfCategories) {
+  const auto segmenter = make_of(coco(person("[[0, 0, 8, 0, 8, 6, 0, 6]]")),
+                                 {{"labels", TextMap{{"1", "somebody"}, {"3", "background"}}}});
+  EXPECT_THAT(segmenter->classes(), ElementsAre("background", "somebody"));
+  EXPECT_EQ(cv::countNonZero(segmenter->segment(frame_of(1.5, width, height)).labels), 48);
+}
+
+TEST_F(PrecomputedCoco, ErrorsSayWhatWasFoundAndExpected) {
+  const auto error = [&](const std::string& segmentation, const std::string& from = "", const std::string& to = "") {
+    return error_of([&] { make_of(coco(person(segmentation), from, to)); });
+  };
+  const std::string square = "[[0, 0, 2, 0, 2, 2, 0, 2]]";
+  EXPECT_THAT(error("[[1, 2, 3, 4]]"), HasSubstr("has a polygon of 4 numbers; expected x, y of at least three"));
+  EXPECT_THAT(error(R"({"size": [6, 8], "counts": [18, 6]})"), HasSubstr("run lengths of 24 pixels; expected 48, 8x6"));
+  EXPECT_THAT(error(R"({"size": [6, 8], "counts": "~"})"), HasSubstr("run lengths of 0 pixels"));
+  EXPECT_THAT(error(R"({"size": [8, 6], "counts": [48]})"), HasSubstr("size [8,6]; expected [6,8]"));
+  EXPECT_THAT(error(square, "rgb/1.5.png", "first.png"), HasSubstr("'first.png', which is no time stamp"));
+  EXPECT_THAT(error(square, "\"category_id\": 1", "\"category_id\": 2"), HasSubstr("the category 2, which is not in"));
+  EXPECT_THAT(error(square, "\"image_id\": 7", "\"image_id\": 8"), HasSubstr("the image 8, which is not in"));
+  EXPECT_THAT(error(square, "annotations", "notes"), HasSubstr("has no list `annotations`"));
+  EXPECT_THAT(error(square, "{", "["), HasSubstr("is no JSON"));
+  EXPECT_THAT(error_of([&] { make_of(coco(person(square)))->segment(frame_of(1.5, 16, 12)); }),
+              HasSubstr("has an image of 8x6 pixels, but the frame is 16x12"));
+  EXPECT_THAT(error_of([&] { make_of(folder_.string()); }), HasSubstr("segmenter.precomputed.labels: is missing"));
 }
 
 }  // namespace

@@ -48,6 +48,26 @@ TEST(TruthSegmenter, FindsOnlyTheClassesAskedFor) {
   EXPECT_THAT(std::vector<int>(labels.begin<std::uint8_t>(), labels.end<std::uint8_t>()), ElementsAre(0, 1, 0, 2));
 }
 
+TEST(TruthSegmenter, SeparatesObjectsIfAsked) {
+  CreationContext context;
+  context.class_names = known;
+  const auto segmenter =
+      test::make_segmenter(holdfast_register_plugin_simulated_truth, "truth",
+                           {{"classes", std::vector<std::string>{"person"}}, {"instances", true}}, context);
+  SensorFrame frame = test::frame_of(1.0, 5, 1);
+  auto truth = std::make_shared<FrameTruth>();
+  truth->class_labels = (cv::Mat_<std::uint8_t>(1, 5) << 2, 2, 0, 2, 1);
+  frame.truth = truth;
+  EXPECT_THAT(error_of([&] { segmenter->segment(frame); }), HasSubstr("comes without the true objects of its pixels"));
+  truth->object_mask = (cv::Mat_<std::uint8_t>(1, 5) << 9, 9, 0, 4, 5);
+  const Segmentation result = segmenter->segment(frame);
+  ASSERT_EQ(result.found.size(), 2U) << "the chair is not asked for";
+  EXPECT_EQ(result.found[1].box, cv::Rect2f(0, 0, 2, 1));
+  EXPECT_THAT(std::vector<int>(result.instances.begin<std::uint16_t>(), result.instances.end<std::uint16_t>()),
+              ElementsAre(2, 2, 0, 1, 0));
+  EXPECT_TRUE(make({}, known)->segment(frame).instances.empty());
+}
+
 TEST(TruthSegmenter, KnowsPeopleWhereThereAreNone) {
   const auto segmenter = make({}, {"background", "chair"});
   EXPECT_THAT(segmenter->classes(), ElementsAre("background", "chair", "person"));

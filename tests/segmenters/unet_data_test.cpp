@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "holdfast/evaluation/segmentation_evaluation.hpp"
+#include "holdfast/inference/network.hpp"
 #include "segmenters/segmenter_fixture.hpp"
 
 extern "C" void holdfast_register_plugin_unet(holdfast::Registry& registry);
@@ -56,41 +57,60 @@ TEST(UnetData, FindsPeopleInPhotographsThatItNeverSaw) {
   EXPECT_GT(evaluator.result().classes[person].iou(), 0.55);
 }
 
-#if defined(HOLDFAST_ONEDNN)
-/// Of all pixels of 40 photographs with people and 20 frames of a room, the share whose labels differ from OpenCV's.
-double share_of_other_labels(const fs::path& data, const std::string& precision) {
+/// Of all pixels of some photographs with people and half as many frames of a room, the share whose labels differ from
+/// OpenCV's.
+double share_of_other_labels(const fs::path& data, const std::string& engine, std::size_t photographs,
+                             const std::string& precision = "fp32") {
   std::vector<fs::path> files;
   const std::vector<std::string> names = held_out_photographs();
-  for (std::size_t i = 0; i < 40; ++i) files.push_back(data / "people" / "voc_person" / "images" / (names[i] + ".jpg"));
+  for (std::size_t i = 0; i < photographs; ++i)
+    files.push_back(data / "people" / "voc_person" / "images" / (names[i] + ".jpg"));
   std::vector<fs::path> room;
   for (const auto& entry : fs::directory_iterator(data / "tum_fr1_xyz" / "rgb")) room.push_back(entry.path());
   std::sort(room.begin(), room.end());
-  for (std::size_t i = 0; i < 20; ++i) files.push_back(room[i * room.size() / 20]);
-  const auto opencv = test::make_segmenter(holdfast_register_plugin_unet, "unet", {});
-  const auto onednn = test::make_segmenter(holdfast_register_plugin_unet, "unet",
-                                           {{"engine", std::string("onednn")}, {"precision", precision}});
+  for (std::size_t i = 0; i < photographs / 2; ++i) files.push_back(room[i * room.size() / (photographs / 2)]);
+  const auto opencv = test::make_segmenter(holdfast_register_plugin_unet, "unet", {{"engine", std::string("opencv")}});
+  const auto other =
+      test::make_segmenter(holdfast_register_plugin_unet, "unet", {{"engine", engine}, {"precision", precision}});
   double pixels = 0.0, others = 0.0;
   for (const fs::path& file : files) {
     SensorFrame frame = test::frame_of(0.0, 16, 16);
     frame.colour = cv::imread(file.string());
     EXPECT_FALSE(frame.colour.empty()) << file;
-    const cv::Mat differs = opencv->segment(frame).labels != onednn->segment(frame).labels;
+    const cv::Mat differs = opencv->segment(frame).labels != other->segment(frame).labels;
     pixels += static_cast<double>(differs.total());
     others += cv::countNonZero(differs);
   }
   return others / pixels;
 }
 
-TEST(UnetData, BothEnginesGiveTheSameLabels) {
+/// The folder of recordings, empty without those of this test.
+fs::path data_of_engines() {
   const char* data = std::getenv("HOLDFAST_DATA");
-  if (data == nullptr) GTEST_SKIP() << "HOLDFAST_DATA is not set";
+  if (data == nullptr) return {};
   for (const char* folder : {"people/voc_person", "tum_fr1_xyz/rgb"})
-    if (!fs::exists(fs::path(data) / folder)) GTEST_SKIP() << folder << " is missing";
-  const double full = share_of_other_labels(data, "fp32");
+    if (!fs::exists(fs::path(data) / folder)) return {};
+  return data;
+}
+
+TEST(UnetData, OnnxruntimeGivesTheSameLabels) {
+  const fs::path data = data_of_engines();
+  if (data.empty()) GTEST_SKIP() << "HOLDFAST_DATA has no people/voc_person or tum_fr1_xyz";
+  if (!has_onnxruntime()) GTEST_SKIP() << "no ONNX Runtime: sh cmake/install_dependencies.sh --onnxruntime";
+  const double share = share_of_other_labels(data, "onnxruntime", 10);
+  std::cout << "onnxruntime: other labels " << share << '\n';
+  EXPECT_LE(share, 0.001);
+}
+
+#if defined(HOLDFAST_ONEDNN)
+TEST(UnetData, BothEnginesGiveTheSameLabels) {
+  const fs::path data = data_of_engines();
+  if (data.empty()) GTEST_SKIP() << "HOLDFAST_DATA has no people/voc_person or tum_fr1_xyz";
+  const double full = share_of_other_labels(data, "onednn", 40);
   std::cout << "fp32: other labels " << full << '\n';
   EXPECT_LE(full, 0.0001);
   try {
-    const double half = share_of_other_labels(data, "bf16");
+    const double half = share_of_other_labels(data, "onednn", 40, "bf16");
     std::cout << "bf16: other labels " << half << '\n';
     EXPECT_LE(half, 0.01);
   } catch (const ConfigurationError& error) {

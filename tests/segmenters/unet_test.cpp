@@ -5,6 +5,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "holdfast/inference/network.hpp"
 #include "holdfast/simulation/scene_file.hpp"
 #include "holdfast/simulation/simulator.hpp"
 #include "segmenters/segmenter_fixture.hpp"
@@ -152,6 +153,16 @@ TEST(UnetSegmenter, BothEnginesGiveTheSameLabels) {
   }
 }
 #endif
+
+TEST(UnetSegmenter, OnnxruntimeGivesTheSameLabels) {
+  if (!has_onnxruntime()) GTEST_SKIP() << "no ONNX Runtime: sh cmake/install_dependencies.sh --onnxruntime";
+  simulation::Simulator room = room_with("{ at: [2.5, 3.0] }");
+  const SensorFrame frame = room.frame(0);
+  const cv::Mat expected = make({{"engine", std::string("opencv")}})->segment(frame).labels;
+  const cv::Mat differs = make({{"engine", std::string("onnxruntime")}})->segment(frame).labels != expected;
+  EXPECT_LE(cv::countNonZero(differs), 0.001 * static_cast<double>(expected.total()));
+  EXPECT_GT(cv::countNonZero(expected), 1000);
+}
 
 TEST(UnetSegmenter, SaysWhatItKnowsAndWhatMoves) {
   const auto segmenter = make();

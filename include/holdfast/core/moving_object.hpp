@@ -14,7 +14,9 @@ namespace holdfast {
 /// The origin is the centroid of the visible surface, smoothed over time. For an object seen from one side only, this
 /// is not the centroid of the object. A non-rigid object such as a person is approximated by one rigid motion.
 struct MovingObject {
-  std::uint32_t id = 0;    ///< from 1; never reused
+  std::uint32_t id = 0;  ///< from 1; never reused
+  /// Of its instance in the mask (CellMask::instances), which the object keeps while it is seen; 0 without instances.
+  std::uint16_t instance = 0;
   std::string class_name;  ///< majority of the mask's labels on the object; empty without a majority
   /// Its axes are parallel to the world axes when the object is first seen and rotate with the object afterwards.
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();

@@ -4,8 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <opencv2/core/mat.hpp>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "holdfast/evaluation/instance_evaluation.hpp"
 
 namespace holdfast {
 
@@ -83,7 +86,9 @@ class SegmentationEvaluator {
 
 /// Formats the result as a table for a terminal; ends with a newline.
 std::string to_text(const SegmentationEvaluation& evaluation);
-/// Formats the result as JSON in full precision; a figure without pixels or images is null.
-std::string to_json(const SegmentationEvaluation& evaluation);
+/// Formats the result as JSON in full precision; a figure without pixels, images or instances is null. `instances`, if
+/// there are any, become its member "instances".
+std::string to_json(const SegmentationEvaluation& evaluation,
+                    const std::optional<InstanceEvaluation>& instances = std::nullopt);
 
 }  // namespace holdfast

@@ -27,7 +27,7 @@ struct InputPreparation {
 /// Model and preprocessing of a network. The input is the image, resized to width x height, in the first place without
 /// preserving its aspect ratio, with every channel normalised as InputPreparation says.
 struct NetworkOptions {
-  std::filesystem::path model;  ///< ONNX, float32
+  std::filesystem::path model;  ///< ONNX
   /// The model in memory; if it is not empty, `model` only names it in messages. It is read during construction only,
   /// or, with in_background, until the first run.
   std::span<const std::uint8_t> bytes = {};
@@ -45,13 +45,32 @@ struct NetworkOptions {
   bool every_output = false;   ///< compute all outputs, for Network::outputs()
   NetworkEngine engine = NetworkEngine::opencv;
   NetworkPrecision precision = NetworkPrecision::fp32;
-  /// OpenCV: number of threads for the whole process, set on construction; 0 = unchanged. oneDNN: number of threads for
-  /// this network; 0 = 1.
+  std::string provider = "cpu";          ///< of ONNX Runtime
+  std::filesystem::path engine_library;  ///< ONNX Runtime's; empty = as find_onnxruntime() searches
+  /// OpenCV: number of threads for the whole process, set on construction; 0 = unchanged. Other engines: number of
+  /// threads for this network; 0 = 1.
   int threads = 0;
 };
 
 /// Whether this build has the engine onednn.
 bool has_onednn();
+
+/// Whether a library of ONNX Runtime is found: `given`, a file or a folder, if it is not empty; otherwise the one that
+/// the environment variable HOLDFAST_ONNXRUNTIME names ("none": no library is); otherwise in the usual places, where
+/// one that cannot be used is none. Throws ConfigurationError for a named one that cannot be used.
+bool has_onnxruntime(const std::filesystem::path& given = {});
+
+/// What a user asks to compute a network.
+struct EngineChoice {
+  NetworkEngine engine = NetworkEngine::automatic;
+  std::string provider = "cpu";
+  std::filesystem::path engine_library;
+};
+
+/// The engine of a choice, never automatic. `is_for_onednn`: automatic is oneDNN where this build has it. A provider
+/// other than "cpu", and a library, are of ONNX Runtime; throws ConfigurationError for them beside another engine, and
+/// as has_onnxruntime().
+NetworkEngine chosen_engine(const EngineChoice& choice, bool is_for_onednn);
 
 /// An OnnxNet with one colour image as input and one output. Used by one thread at a time.
 class Network {
@@ -59,7 +78,7 @@ class Network {
   /// Loads the model, or begins to with in_background. Throws InputError, which states what was found and what was
   /// expected, for a missing file, a file that is not an ONNX model, float16 weights, an input that is not one image
   /// with three channels, a size other than the declared one, an unknown output name, and layers that the engine cannot
-  /// load. Throws ConfigurationError for an engine or a precision that is not there.
+  /// load. Throws ConfigurationError for an engine, a provider or a precision that is not there.
   explicit Network(const NetworkOptions& options);
   ~Network();
   Network(const Network&) = delete;
@@ -87,6 +106,8 @@ class Network {
   const OnnxSignature& signature() const;
   /// Shape of the input, such as "1x3x480x640".
   std::string input_text() const;
+  /// What computes the network, for people: "ONNX Runtime 1.20.1 (/usr/lib/libonnxruntime.so.1), provider cpu".
+  std::string engine_text() const;
 
  private:
   struct Parts;

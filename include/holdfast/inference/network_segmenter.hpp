@@ -34,6 +34,8 @@ class NetworkSegmenter : public Segmenter {
  protected:
   /// Size of the network's input [px].
   cv::Size input_size() const { return {network_.width(), network_.height()}; }
+  /// What computes the network, for people.
+  std::string engine_text() const { return network_.engine_text(); }
   /// Computes the network's output for an image, valid until the next call.
   virtual cv::Mat scores(const cv::Mat& colour) { return network_.run(colour); }
   /// Computes the output for the mirror image of the last image, at most once after each scores(); valid until the next

@@ -17,8 +17,9 @@ namespace holdfast {
 
 /// How a network for objects writes its boxes.
 enum class BoxForm {
-  centre,  ///< centre x, centre y, width, height
-  corners  ///< left, top, right, bottom
+  centre,   ///< centre x, centre y, width, height
+  corners,  ///< left, top, right, bottom
+  cell      ///< offsets of the centre from the cell of a grid, before tanh, and sizes, before the sigmoid
 };
 
 /// Unit of its boxes. either: fractions, unless one of the coordinates is above 2.
@@ -32,6 +33,7 @@ enum class ScoreForm {
   logits,            ///< one for each class, before the sigmoid
   softmax,           ///< one for each class before softmax, "no object" last
   background_first,  ///< probability of each class, the background first
+  cell,              ///< objectness, four numbers of the box, probability of each class: objectness^0.6 * best^0.4
   numbered           ///< score and number of the best class in outputs of their own, 0 = background
 };
 
@@ -43,6 +45,7 @@ struct ObjectPreset {
   BoxForm box;
   BoxUnit unit;
   ScoreForm scores;
+  float mask_threshold;  ///< value of the masks from which on a pixel is the object's: 0.5 or, before a sigmoid, 0
   InputFit fit;
   bool has_imagenet_colours;  ///< mean and deviation of ImageNet; otherwise 0 to 1
   double min_score;
@@ -56,11 +59,14 @@ struct ObjectLayout {
   std::optional<std::size_t> scores;   ///< of the output with scores, if they are not with the boxes
   std::optional<std::size_t> numbers;  ///< of the output with class numbers
   std::optional<std::size_t> prototypes;
+  std::optional<std::size_t> masks;  ///< of the output with an image for each box, in the order of the boxes
+  bool has_boxes = true;             ///< otherwise the masks say where objects are, and `boxes` is that of the scores
   bool is_transposed = false;  ///< the output with the boxes is 1 x numbers x boxes instead of 1 x boxes x numbers
-  int count = 0;               ///< boxes
+  int count = 0;               ///< boxes; 0 = differs from image to image
   int width = 0;               ///< numbers of a box, in the output with the boxes
   int classes = 0;             ///< of the network, without the background; 0 = it gives class numbers
   int coefficients = 0;        ///< of a mask
+  int grid_columns = 0;        ///< of BoxForm::cell
 };
 
 /// Mean and standard deviation of the colours of ImageNet, red green blue.
@@ -69,7 +75,7 @@ inline constexpr std::array<double, 3> imagenet_deviation = {0.229, 0.224, 0.225
 
 /// What is asked of recognise_objects().
 struct ObjectQuestion {
-  std::vector<OnnxTensor> outputs;  ///< names and shapes, without free dimensions
+  std::vector<OnnxTensor> outputs;  ///< names, types and shapes, without free dimensions; 0 where nothing was found
   cv::Size input;                   ///< [px]
   std::string task;                 ///< ModelMetadata::task
   int classes = 0;                  ///< without the background; 0 if unknown
@@ -79,7 +85,8 @@ struct ObjectQuestion {
 };
 
 /// Whether the declarations of a model are those of a network for objects rather than for semantic segmentation: its
-/// metadata say so, or it has an output with four numbers for each box, or one with a list that is no image.
+/// metadata say so, or it has an output with four numbers for each box, one with a list that is no image, or one with a
+/// list and one with images.
 bool declares_objects(const OnnxSignature& signature, const ModelMetadata& metadata);
 
 /// Finds the family and the meaning of the outputs of a network for objects. Throws InputError, which states what was

@@ -33,6 +33,12 @@ cv::Rect pixels_of(const cv::Rect2f& box, const cv::Size& image);
 cv::Mat prototype_mask(const cv::Mat& prototypes, std::span<const float> coefficients, const FramePlace& place,
                        const cv::Rect& pixels);
 
+/// The mask of an object from an image of its own (32F): its values, resized bilinearly from the part `covered` of the
+/// network's input that it shows, where they are above `threshold`. 8UC1 of the size of `pixels`, a rectangle of the
+/// frame: 255 = object. Values that are not finite are none of the object's.
+cv::Mat image_mask(const cv::Mat& image, const cv::Rect2f& covered, float threshold, const FramePlace& place,
+                   const cv::Rect& pixels);
+
 /// The mask of an object in a box by depth: the pixels whose depth is at most 0.25 m before or behind the largest
 /// cluster of depths in the middle of the box, half as wide and half as high as the box, and those without depth.
 /// Clusters are separated by gaps of 0.1 m, or of 3 % of the depth if that is more. All of the box without a depth

@@ -15,6 +15,7 @@ struct Detection {
   float score = 0.0F;                    ///< 0 to 1
   cv::Rect2f box;                        ///< in the network's input [px], within it
   std::vector<float> mask_coefficients;  ///< one for each prototype; empty without prototypes
+  int number = 0;                        ///< of its box in the outputs
 };
 
 /// Decodes the outputs of a network for objects (32F) to the objects with a score of at least `min_score`, by

@@ -15,9 +15,10 @@
 
 namespace holdfast {
 
-/// A network in ONNX format with any inputs and outputs of float32, run on the CPU by OpenCV's DNN module or by oneDNN.
-/// The same inputs give the same outputs on the same machine; both engines select their kernels by processor, so that
-/// the last bits may differ on another processor. Used by one thread at a time, not necessarily the one that made it.
+/// A network in ONNX format with any inputs and outputs, run on the CPU by OpenCV's DNN module or by oneDNN, or by ONNX
+/// Runtime on what its library offers. The same inputs give the same outputs on the same machine; all engines select
+/// their kernels by processor, so that the last bits may differ on another processor. Used by one thread at a time, not
+/// necessarily the one that made it.
 class OnnxNet {
  public:
   /// Where the network comes from.
@@ -31,7 +32,9 @@ class OnnxNet {
     bool in_background = false;
     NetworkEngine engine = NetworkEngine::opencv;
     NetworkPrecision precision = NetworkPrecision::fp32;
-    int threads = 1;  ///< of oneDNN for this network; OpenCV has one number for the whole process
+    int threads = 1;                       ///< for this network; OpenCV has one number for the whole process
+    std::string provider = "cpu";          ///< of ONNX Runtime
+    std::filesystem::path engine_library;  ///< ONNX Runtime's; empty = as has_onnxruntime() searches
   };
 
   /// What every run computes.
@@ -42,8 +45,9 @@ class OnnxNet {
   };
 
   /// Reads the signature. Throws InputError, which states what was found and what was expected, for a missing file, a
-  /// file that is not an ONNX model, and float16 weights. Throws ConfigurationError for an engine that this build has
-  /// not, and a precision that the engine or the processor has not.
+  /// file that is not an ONNX model, and float16 weights for an engine other than ONNX Runtime. Throws
+  /// ConfigurationError for an engine or a provider that is not there, and a precision that the engine or the processor
+  /// has not.
   explicit OnnxNet(File file);
   ~OnnxNet();
   OnnxNet(const OnnxNet&) = delete;
@@ -51,6 +55,8 @@ class OnnxNet {
 
   const std::filesystem::path& model() const { return file_.model; }
   const OnnxSignature& signature() const { return signature_; }
+  /// What computes the network, for people.
+  std::string engine_text() const;
   /// The declared output of this name. Throws InputError, which names the nearest, when there is none; `setting` is the
   /// parameter that says the name.
   const OnnxTensor& output(const std::string& name, const std::string& setting) const;
@@ -66,8 +72,8 @@ class OnnxNet {
   void load(const Use& use);
   /// Waits for a model that is loaded in the background. Throws as load().
   void finish_loading();
-  /// Sets an input, 32F of the shape that was given to load(), for the next run. Its data must stay as they are until
-  /// then.
+  /// Sets an input, 32F of the shape that was given to load(), for the next run; ONNX Runtime gets it in the type that
+  /// the network declares. Its data must stay as they are until then.
   void set_input(const cv::Mat& values, const std::string& name);
   /// Computes the outputs that were given to load(): 32F with the dimensions of the network, valid until the next run.
   /// Throws InputError if the network cannot be run.

@@ -11,12 +11,14 @@
 #include "holdfast/core/coarse_view.hpp"
 #include "holdfast/core/frame.hpp"
 #include "holdfast/interfaces/segmenter.hpp"
+#include "holdfast/moving_world/instance_ids.hpp"
 #include "holdfast/moving_world/mask_transfer.hpp"
 #include "holdfast/moving_world/point_follower.hpp"
 
 namespace holdfast {
 
 /// Samples a segmentation at the centres of the cells; background outside the image. Empty for an empty segmentation.
+/// Instances have their numbers in the segmentation.
 CellMask sample_mask(const CoarseSampler& sampler, const Segmentation& segmentation);
 
 /// Propagates the masks of few segmented frames, which arrive late, to every frame by optical flow and ego-motion. For
@@ -42,8 +44,9 @@ class MaskPropagator {
   void set_pose(const std::optional<Eigen::Isometry3d>& T_camera_world, const CoarseView& evaluated, float moving);
   void remember();
   /// Applies the mask of a remembered frame, and forgets that frame and older ones; an empty mask has no other effect.
-  /// mask.moving is not read.
-  void apply(std::uint64_t frame_index, const CellMask& mask);
+  /// mask.moving is not read. The mask's instances, numbers in the segmentation, become ids (InstanceIds).
+  /// Returns the mask with ids; that of a frame that is not remembered has no instances.
+  CellMask apply(std::uint64_t frame_index, CellMask mask);
 
   /// The mask of the last frame, `moving` left out; empty before the first segmentation.
   const CellMask& mask() const { return mask_; }
@@ -65,7 +68,9 @@ class MaskPropagator {
 
   void take_view(const Frame& frame, View& view) const;
   void take_points(View& view) const;
-  void pair_with(const View& view, const std::vector<std::uint8_t>& labels_there);
+  void pair_with(const View& view, const CellMask& mask_there);
+  /// Replaces the numbers of instances in a mask of a remembered frame by ids, there and in labels_.
+  void name_instances(const View& there, const CellMask& held, CellMask& mask);
   void renew_points(const Frame& frame);
   /// The raw pixel at the centre of a cell; its x is negative outside the image.
   cv::Point raw_pixel(int cell) const {
@@ -83,6 +88,7 @@ class MaskPropagator {
   double memory_;
   PointFollower follower_;
   MaskTransfer transfer_;
+  InstanceIds ids_;
   const Frame* frame_ = nullptr;  // of the last advance(), until the next
   View current_, previous_;
   std::deque<View> remembered_;

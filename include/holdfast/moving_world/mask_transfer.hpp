@@ -17,9 +17,12 @@ namespace holdfast {
 struct FollowedPairs {
   std::vector<float> from_x, from_y, from_depth;
   std::vector<float> to_x, to_y, to_depth;
+  std::vector<std::uint16_t> instance;  ///< of the object, 0 = none; empty without instances
 
   std::size_t size() const { return from_x.size(); }
-  void clear() { from_x.clear(), from_y.clear(), from_depth.clear(), to_x.clear(), to_y.clear(), to_depth.clear(); }
+  void clear() {
+    from_x.clear(), from_y.clear(), from_depth.clear(), to_x.clear(), to_y.clear(), to_depth.clear(), instance.clear();
+  }
 };
 
 /// Transfers the labels of one frame to another on their coarse views. A cell takes the label at its
@@ -29,6 +32,8 @@ struct FollowedPairs {
 /// spreading over the floor. After the idea of NGD-SLAM (Zhang et al. 2024, section III-B: points of the last mask are
 /// followed by optical flow and the mask is rebuilt by depth), with the background as a second source of motion. Keeps
 /// its buffers; one thread.
+///
+/// Instances go with the labels; a point moves cells of its own instance only.
 ///
 /// Without depth, a cell is labelled if at least half of the followed points near it moved here from a labelled cell.
 /// Labels at the image border are extrapolated beyond it, so that parts that come into view are labelled. Without
@@ -67,6 +72,12 @@ class MaskTransfer {
   struct Mover {
     int columns, rows;   // cells, from minus to
     float depth_change;  // m, from minus to
+    std::uint16_t instance;
+
+    /// Whether it may move a cell of a mask.
+    bool moves(const CellMask& mask, std::size_t cell) const {
+      return CellMask::is_object(mask.labels[cell]) && (instance == 0 || mask.instances[cell] == instance);
+    }
   };
   static constexpr int block = 8;  // cells
   static constexpr int max_movers = 4;

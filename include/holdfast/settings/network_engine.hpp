@@ -5,17 +5,20 @@
 
 namespace holdfast {
 
-/// What computes a network: OpenCV's DNN module, or oneDNN where the build has it. automatic: oneDNN for a network
-/// whose operators it is known to have, where the build has it; otherwise OpenCV.
-enum class NetworkEngine { automatic, opencv, onednn };
+/// What computes a network: OpenCV's DNN module, oneDNN where the build has it, or ONNX Runtime where its library is
+/// found at run time. automatic: oneDNN for a network whose operators it is known to have, where the build has it;
+/// otherwise ONNX Runtime where it is found; otherwise OpenCV.
+enum class NetworkEngine { automatic, opencv, onednn, onnxruntime };
 
 /// Numbers that a network computes with: 32 bits, or 16 bits with an exponent of eight (bfloat16), which needs a
 /// processor with instructions for them.
 enum class NetworkPrecision { fp32, bf16 };
 
 template <>
-inline constexpr Choice<NetworkEngine> choice_table<NetworkEngine>[] = {
-    {"auto", NetworkEngine::automatic}, {"opencv", NetworkEngine::opencv}, {"onednn", NetworkEngine::onednn}};
+inline constexpr Choice<NetworkEngine> choice_table<NetworkEngine>[] = {{"auto", NetworkEngine::automatic},
+                                                                        {"opencv", NetworkEngine::opencv},
+                                                                        {"onednn", NetworkEngine::onednn},
+                                                                        {"onnxruntime", NetworkEngine::onnxruntime}};
 template <>
 inline constexpr Choice<NetworkPrecision> choice_table<NetworkPrecision>[] = {{"fp32", NetworkPrecision::fp32},
                                                                               {"bf16", NetworkPrecision::bf16}};

@@ -26,7 +26,18 @@ enum class NetworkOutput { automatic, logits, probabilities, labels, instances, 
 /// padded with grey. automatic: as the family is trained; semantic networks stretch.
 enum class InputFit { automatic, stretch, letterbox };
 /// Family of a network for objects: what its outputs mean and how its input is prepared (`holdfast modules onnx`).
-enum class ObjectFamily { automatic, yolo, yolov5, yolo_end_to_end, rtdetr, detr, ssd };
+enum class ObjectFamily {
+  automatic,
+  yolo,
+  yolov5,
+  yolo_end_to_end,
+  rtdetr,
+  detr,
+  ssd,
+  mask_rcnn,
+  maskformer,
+  fastestdet
+};
 
 template <>
 inline constexpr Choice<ColourOrder> choice_table<ColourOrder>[] = {{"rgb", ColourOrder::rgb},
@@ -46,17 +57,23 @@ inline constexpr Choice<InputFit> choice_table<InputFit>[] = {
     {"auto", InputFit::automatic}, {"stretch", InputFit::stretch}, {"letterbox", InputFit::letterbox}};
 template <>
 inline constexpr Choice<ObjectFamily> choice_table<ObjectFamily>[] = {
-    {"auto", ObjectFamily::automatic}, {"yolo", ObjectFamily::yolo},
-    {"yolov5", ObjectFamily::yolov5},  {"yolo_end_to_end", ObjectFamily::yolo_end_to_end},
-    {"rtdetr", ObjectFamily::rtdetr},  {"detr", ObjectFamily::detr},
-    {"ssd", ObjectFamily::ssd}};
+    {"auto", ObjectFamily::automatic},
+    {"yolo", ObjectFamily::yolo},
+    {"yolov5", ObjectFamily::yolov5},
+    {"yolo_end_to_end", ObjectFamily::yolo_end_to_end},
+    {"rtdetr", ObjectFamily::rtdetr},
+    {"detr", ObjectFamily::detr},
+    {"ssd", ObjectFamily::ssd},
+    {"mask_rcnn", ObjectFamily::mask_rcnn},
+    {"maskformer", ObjectFamily::maskformer},
+    {"fastestdet", ObjectFamily::fastestdet}};
 
 /// Settings of the segmenter `onnx`. Ranges and units: `holdfast modules onnx`.
 struct OnnxSettings {
   using Interface = Segmenter;
   static constexpr const char* module = "onnx";
 
-  std::filesystem::path model;                  ///< ONNX file with float32 weights; required
+  std::filesystem::path model;                  ///< ONNX file; required
   int width = 0;                                ///< width of the network input [px]; 0 = as declared by the model
   int height = 0;                               ///< height of the network input [px]; 0 = as declared by the model
   ColourOrder colour_order = ColourOrder::rgb;  ///< of the input
@@ -77,9 +94,12 @@ struct OnnxSettings {
   /// The subset of classes that can move; empty = person for a network for objects, otherwise not
   /// specified.
   std::vector<std::string> movable;
-  NetworkEngine engine = NetworkEngine::opencv;         ///< what computes the network
+  NetworkEngine engine = NetworkEngine::automatic;      ///< what computes the network
   NetworkPrecision precision = NetworkPrecision::fp32;  ///< bf16: with onednn, where the processor has it
-  /// OpenCV: for the whole process, 0 = unchanged; oneDNN: for this network, 0 = 1.
+  std::string provider = "cpu";                         ///< of ONNX Runtime: what it computes on
+  /// ONNX Runtime's library, or its folder; empty = the variable HOLDFAST_ONNXRUNTIME, otherwise the usual places.
+  std::filesystem::path engine_library;
+  /// OpenCV: for the whole process, 0 = unchanged; other engines: for this network, 0 = 1.
   int threads = 0;
 
   static void describe(ParameterTable<OnnxSettings>& table);

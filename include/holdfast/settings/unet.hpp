@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "holdfast/plugin/choice.hpp"
 #include "holdfast/settings/network_engine.hpp"
@@ -34,7 +35,10 @@ struct UnetSettings {
   std::filesystem::path model;     ///< ONNX file with other weights; empty = the weights of the library
   NetworkEngine engine = NetworkEngine::automatic;      ///< what computes the network
   NetworkPrecision precision = NetworkPrecision::fp32;  ///< bf16: with onednn, where the processor has it
-  /// OpenCV: for the whole process, 0 = unchanged; oneDNN: for this network, 0 = 1.
+  std::string provider = "cpu";                         ///< of ONNX Runtime: what it computes on
+  /// ONNX Runtime's library, or its folder; empty = the variable HOLDFAST_ONNXRUNTIME, otherwise the usual places.
+  std::filesystem::path engine_library;
+  /// OpenCV: for the whole process, 0 = unchanged; other engines: for this network, 0 = 1.
   int threads = 0;
 
   static void describe(ParameterTable<UnetSettings>& table);

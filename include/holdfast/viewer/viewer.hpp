@@ -42,7 +42,8 @@ struct ViewedPicture {
   std::vector<Feature> features;
   std::vector<MapPointId> points;                ///< map points that the frame observes
   std::vector<Eigen::Vector3f> moving_features;  ///< positions of features that are probably moving, world frame [m]
-  /// Cells of a grid over the image, row by row: in the lower three bits the class (0 = none, 1 to 6, 7 = unknown), in
+  /// Cells of a grid over the image, row by row: in the lower three bits the class, or the instance where the mask has
+  /// instances (0 = none, 1 to 6 in turn, 7 = unknown), in
   /// the upper four how certainly it moves (0 to 15). Empty = no mask.
   std::vector<std::uint8_t> mask;
   int mask_columns = 0;

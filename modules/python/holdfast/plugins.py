@@ -103,11 +103,12 @@ class Segmenter(Module):
 
     def segment(
         self, frame: Frame
-    ) -> Union[None, npt.NDArray[np.uint8], Tuple[npt.NDArray[np.uint8], Optional[npt.NDArray[np.uint8]]]]:
-        """Labels, (labels, confidence), or None for a frame without segmentation.
+    ) -> Union[None, npt.NDArray[np.uint8], Tuple[Optional[npt.NDArray[np.uint8]], ...]]:
+        """Labels, (labels, confidence), (labels, confidence, instances), or None for a frame without segmentation.
 
-        Both are uint8 (rows, columns) of the size of `frame.colour`: indices into `classes`, 255 = unknown;
-        confidence 255 = certain. `frame.colour` must not be written to.
+        All are uint8 (rows, columns) of the size of `frame.colour`: indices into `classes`, 255 = unknown;
+        confidence 255 = certain, or None; instances 0 = none, otherwise a number for each object, such as each of
+        several people. `frame.colour` must not be written to.
         """
         raise NotImplementedError("segment")
 

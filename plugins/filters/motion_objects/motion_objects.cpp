@@ -84,22 +84,26 @@ bool MotionObjects::keep_up(const FilterContext& context) {
       const Eigen::Vector3d step = -interval_ * track.velocity();
       predictions_.push_back({observation.track, (last.T_view_world.linear() * step).cast<float>(),
                               (last.T_view_world * (track.position() + step)).cast<float>(),
-                              track.box().isEmpty() ? 0.0F : 0.5F * track.box().diagonal().norm() + 0.1F,
-                              track.label()});
+                              track.box().isEmpty() ? 0.0F : 0.5F * track.box().diagonal().norm() + 0.1F, track.label(),
+                              track.instance()});
     }
   }
   views_.push_back(std::move(view));
   return true;
 }
 
-std::uint32_t MotionObjects::track_before(const Eigen::Vector3f& in_view, std::uint8_t label) const {
+std::uint32_t MotionObjects::track_before(const Eigen::Vector3f& in_view, const BlockHint& hint) const {
+  if (hint.instance != 0)
+    for (const Prediction& prediction : predictions_)
+      if (prediction.instance == hint.instance) return prediction.track_id;
   const BlockGrid& grid = maker_.grid();
   const View& last = views_[views_.size() - 2];
   const Eigen::Vector3f stood = T_last_now_ * in_view;
   std::uint32_t best = BlockHint::unknown;
   float min_difference = 1e3F;
   for (const Prediction& prediction : predictions_) {
-    if (label != CellMask::unknown && prediction.label >= 0 && prediction.label != label) continue;
+    if (hint.label != CellMask::unknown && prediction.label >= 0 && prediction.label != hint.label) continue;
+    if (hint.instance != 0 && prediction.instance != 0) continue;
     const Eigen::Vector3f p = stood + prediction.back;
     if (p.z() < 0.1F || (p - prediction.centre).squaredNorm() > prediction.radius * prediction.radius) continue;
     const float x = grid.column_of(grid.fx * p.x() / p.z() + grid.cx) + 0.5F;
@@ -122,6 +126,7 @@ void MotionObjects::give_hints(const FilterContext& context, const StaticEvidenc
   const int coarse_columns = context.frame.coarse.grid.columns;
   const bool has_evidence = evidence.cells().size() == context.frame.coarse.depth.size();
   const bool has_mask = context.frame.coarse.mask.labels.size() == evidence.cells().size();
+  const bool has_instances = context.frame.coarse.mask.instances.size() == evidence.cells().size();
   hints_.assign(now.image.depth.size(), {});
   if (!has_evidence) return;
   for (int row = 0; row < grid.rows; ++row)
@@ -132,7 +137,8 @@ void MotionObjects::give_hints(const FilterContext& context, const StaticEvidenc
       if (said >= 0.0F || now.image.depth[static_cast<std::size_t>(block)] <= 0.0F) continue;
       BlockHint& hint = hints_[static_cast<std::size_t>(block)];
       if (has_mask) hint.label = context.frame.coarse.mask.labels[cell];
-      if (!predictions_.empty()) hint.track = track_before(point(block), hint.label);
+      if (has_instances) hint.instance = context.frame.coarse.mask.instances[cell];
+      if (!predictions_.empty()) hint.track = track_before(point(block), hint);
       // A block that belonged to a track stays with it at a weaker threshold.
       if (predictions_.empty() || hint.track == BlockHint::unknown)
         hint.track = said <= static_cast<float>(settings_.suspicion) ? BlockHint::unknown : BlockHint::background;
@@ -162,6 +168,20 @@ void MotionObjects::claim(std::size_t track, std::size_t region) {
       return;
     }
   parts_.push_back({track, {region}});
+}
+
+std::uint16_t MotionObjects::instance_of(const Region& region) const {
+  // The only one with a majority (Boyer and Moore), if there is one.
+  std::uint16_t candidate = 0;
+  int lead = 0, count = 0;
+  for (const int block : regions_.blocks(region)) {
+    const std::uint16_t instance = hints_[static_cast<std::size_t>(block)].instance;
+    if (lead == 0) candidate = instance;
+    lead += instance == candidate ? 1 : -1;
+  }
+  for (const int block : regions_.blocks(region))
+    count += hints_[static_cast<std::size_t>(block)].instance == candidate ? 1 : 0;
+  return 2 * count > region.size ? candidate : std::uint16_t{0};
 }
 
 bool MotionObjects::resembles(const ObjectTrack& track, const Region& region) const {
@@ -213,13 +233,21 @@ void MotionObjects::assign_regions() {
     if (taken[i] != 0 || region.surface < static_cast<float>(settings_.surface)) continue;
     constexpr int min_inner = 4;
     if (region.inner < min_inner || 5 * region.inner < region.size) continue;
+    const std::uint16_t instance = instance_of(region);
+    const auto same = std::find_if(tracks_.begin(), tracks_.end(), [&](const ObjectTrack& track) {
+      return instance != 0 && track.instance() == instance;
+    });
+    if (same != tracks_.end()) {
+      claim(static_cast<std::size_t>(same - tracks_.begin()), i);
+      continue;
+    }
     const Eigen::Vector3d centroid = T_world_view * region.centroid.cast<double>();
     std::size_t nearest = known;
     double min_distance = 1.0;
     for (std::size_t k = 0; k < known; ++k) {
       if (part_of(k) != nullptr) continue;
       const ObjectTrack& track = tracks_[k];
-      if (!resembles(track, region)) continue;
+      if ((instance != 0 && track.instance() != 0) || !resembles(track, region)) continue;
       const double reach = 0.25 + 0.25 * (timestamp - track.last_seen());  // m
       const double away = (track.position() - centroid).norm() / reach;
       if (away < min_distance) min_distance = away, nearest = k;
@@ -228,6 +256,7 @@ void MotionObjects::assign_regions() {
       if (tracks_.size() >= max_tracks) continue;
       tracks_.emplace_back(next_track_id_++, timestamp,
                            ObjectObservation{centroid, Eigen::Vector3d::Ones(), T_world_view.linear()});
+      tracks_.back().set_instance(instance);
       claim(tracks_.size() - 1, i);
     } else {
       claim(nearest, i);
@@ -321,6 +350,7 @@ void MotionObjects::follow(const Part& part) {
   std::fill(label_counts_.begin(), label_counts_.end(), 0);
   for (const std::size_t i : part.regions) {
     const Region& region = regions_.regions()[i];
+    if (const std::uint16_t instance = instance_of(region); instance != 0) track.set_instance(instance);
     const float blocks = static_cast<float>(region.size);
     observation.centroid += (blocks * region.centroid).cast<double>();
     observation.surface += region.surface;

@@ -23,7 +23,8 @@ namespace holdfast::motion_objects_plugin {
 ///
 /// After Ruenz and Agapito: Co-Fusion: Real-time Segmentation, Tracking and Fusion of Multiple Objects, ICRA 2017
 /// (connected moving regions become models, each of which is tracked like the camera), and Ruenz, Buffier and Agapito:
-/// MaskFusion, ISMAR 2018 (mask labels give their class). Here the model is the surface of the object in an earlier
+/// MaskFusion, ISMAR 2018 (mask labels give their class). Where masks have instances, a region belongs to the track of
+/// its instance, and none to two instances. Here the model is the surface of the object in an earlier
 /// frame; surfaces are not fused. Keeps images and poses of the last frames. The evidence is measurements.
 class MotionObjects final : public DynamicFilter {
  public:
@@ -57,7 +58,9 @@ class MotionObjects final : public DynamicFilter {
 
   bool keep_up(const FilterContext& context);
   void give_hints(const FilterContext& context, const StaticEvidence& evidence);
-  std::uint32_t track_before(const Eigen::Vector3f& in_view, std::uint8_t label) const;
+  std::uint32_t track_before(const Eigen::Vector3f& in_view, const BlockHint& hint) const;
+  /// Instance of more than half of a region's blocks, 0 if there is none.
+  std::uint16_t instance_of(const Region& region) const;
   bool may_join(int block, std::uint32_t track_id) const;
   void assign_regions();
   void claim(std::size_t track, std::size_t region);
@@ -97,6 +100,7 @@ class MotionObjects final : public DynamicFilter {
     Eigen::Vector3f centre;
     float radius;
     int label;
+    std::uint16_t instance;
   };
   std::vector<Prediction> predictions_;
   Eigen::Isometry3f T_last_now_ = Eigen::Isometry3f::Identity();

@@ -68,6 +68,9 @@ class ObjectTrack {
   const Eigen::Vector3d& angular_velocity() const { return object_.angular_velocity; }
   Eigen::Vector3d position() const { return object_.T_world_object.translation(); }
   const Eigen::AlignedBox3f& box() const { return object_.box; }
+  /// Id of its instance in the masks, 0 if it has none.
+  std::uint16_t instance() const { return object_.instance; }
+  void set_instance(std::uint16_t instance) { object_.instance = instance; }
   /// Index of the most frequent class of its labels, -1 without labels.
   int label() const;
   const MovingObject& object() const { return object_; }

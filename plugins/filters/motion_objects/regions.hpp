@@ -21,6 +21,7 @@ struct BlockHint {
 
   std::uint32_t track = background;        ///< background, unknown, or the track that was here before
   std::uint8_t label = CellMask::unknown;  ///< of the mask
+  std::uint16_t instance = 0;              ///< of the mask, 0 = none
 };
 
 /// A region of the frame that is connected in depth.
@@ -40,8 +41,8 @@ struct Region {
 class Regions {
  public:
   /// Unknown blocks first join an adjacent track, in up to `growth` steps and if `may_join(block, track)`; the first
-  /// step ignores the mask, because its outline is inexact. Regions are then the connected blocks of one track, or of
-  /// no track and one mask label. Regions are ordered by their first block.
+  /// step ignores the labels of the mask, because its outline is inexact. Regions are then the connected blocks of one
+  /// track, or of no track and one mask label and instance. Regions are ordered by their first block.
   template <class MayJoin>
   void divide(const BlockGrid& grid, const std::vector<float>& depth, std::vector<BlockHint>& hints, int growth,
               const MayJoin& may_join) {
@@ -52,7 +53,7 @@ class Regions {
         for_each_beside(grid, depth, block, [&](int other) {
           BlockHint& hint = hints[static_cast<std::size_t>(other)];
           const BlockHint& here = hints[static_cast<std::size_t>(block)];
-          if (hint.track != BlockHint::unknown || (step > 0 && !agree(here, hint))) return;
+          if (hint.track != BlockHint::unknown || are_apart(here, hint) || (step > 0 && !agree(here, hint))) return;
           if (!may_join(other, here.track)) return;
           hint.track = here.track;
           next_front_.push_back(other);
@@ -69,7 +70,10 @@ class Regions {
 
  private:
   static bool agree(const BlockHint& a, const BlockHint& b) {
-    return a.label == b.label || a.label == CellMask::unknown || b.label == CellMask::unknown;
+    return !are_apart(a, b) && (a.label == b.label || a.label == CellMask::unknown || b.label == CellMask::unknown);
+  }
+  static bool are_apart(const BlockHint& a, const BlockHint& b) {
+    return a.instance != 0 && b.instance != 0 && a.instance != b.instance;
   }
   template <class Visit>
   static void for_each_beside(const BlockGrid& grid, const std::vector<float>& depth, int block, const Visit& visit) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <opencv2/imgproc.hpp>
 
 #include "holdfast/core/cell_mask.hpp"
@@ -33,6 +34,7 @@ void blend(std::uint8_t* pixel, const Tint& tint, int share) {
 struct CellTint {
   std::uint8_t label = 0;
   std::uint8_t moving_share = 0;
+  std::uint16_t instance = 0;
 };
 
 }  // namespace
@@ -71,9 +73,11 @@ void Painter::tint(const cv::Mat& colour, const CoarseView& coarse, cv::Mat& out
   const auto cells = static_cast<std::size_t>(grid_.size());
   const bool has_labels = coarse.mask.labels.size() == cells, has_log_odds = coarse.static_log_odds.size() == cells;
   if (!(coarse.grid == grid_) || (!has_labels && !has_log_odds)) return;
+  const bool has_instances = coarse.mask.instances.size() == cells;
   std::vector<CellTint> tints(cells);
   for (std::size_t i = 0; i < cells; ++i) {
     if (has_labels) tints[i].label = coarse.mask.labels[i];
+    if (has_instances) tints[i].instance = coarse.mask.instances[i];
     if (has_log_odds && coarse.static_log_odds[i] < 0.0F)
       tints[i].moving_share =
           static_cast<std::uint8_t>(strongest * (0.4F + 0.6F * std::min(1.0F, -coarse.static_log_odds[i] / certain)));
@@ -87,9 +91,33 @@ void Painter::tint(const cv::Mat& colour, const CoarseView& coarse, cv::Mat& out
       if (tint.label == CellMask::unknown)
         blend(pixel, {0, 0, 0}, 80);
       else if (tint.label != 0)
-        blend(pixel, class_tints[(tint.label - 1U) % class_tints.size()], strongest);
+        blend(pixel, class_tints[((tint.instance != 0 ? tint.instance : tint.label) - 1U) % class_tints.size()],
+              strongest);
       if (tint.moving_share != 0) blend(pixel, moving_tint, tint.moving_share);
     }
+  }
+}
+
+void Painter::name_instances(const CoarseView& coarse, cv::Mat& out) const {
+  if (coarse.mask.instances.size() != static_cast<std::size_t>(grid_.size()) || !(coarse.grid == grid_)) return;
+  struct Sum {
+    double x = 0.0, y = 0.0, cells = 0.0;
+  };
+  std::map<std::uint16_t, Sum> sums;
+  for (std::size_t i = 0; i < coarse.mask.instances.size(); ++i) {
+    if (coarse.mask.instances[i] == 0) continue;
+    Sum& sum = sums[coarse.mask.instances[i]];
+    sum.x += grid_.x_of(static_cast<int>(i) % grid_.columns), sum.y += grid_.y_of(static_cast<int>(i) / grid_.columns);
+    ++sum.cells;
+  }
+  constexpr double least_cells = 40.0;  // enough for its number
+  for (const auto& [instance, sum] : sums) {
+    if (sum.cells < least_cells) continue;
+    const Eigen::Vector2d raw = camera_.distort({sum.x / sum.cells, sum.y / sum.cells});
+    const cv::Point place(static_cast<int>(raw.x()) - 8, static_cast<int>(raw.y()) + 5);
+    const std::string text = "#" + std::to_string(instance);
+    cv::putText(out, text, place, cv::FONT_HERSHEY_SIMPLEX, 0.5, {0, 0, 0}, 3, cv::LINE_AA);
+    cv::putText(out, text, place, cv::FONT_HERSHEY_SIMPLEX, 0.5, {255, 255, 255}, 1, cv::LINE_AA);
   }
 }
 
@@ -140,6 +168,7 @@ const cv::Mat& Painter::paint(const SensorFrame& sensor_frame, const Frame& fram
     const float probability = i < frame.static_probability.size() ? frame.static_probability[i] : 1.0F;
     cv::circle(right, place, shows_point ? 2 : 3, feature_colour(probability), shows_point ? cv::FILLED : 1);
   }
+  name_instances(frame.coarse, right);
   for (const MovingObject& object : result.objects) draw(object, result, right);
   cv::Mat line = picture_.rowRange(colour.rows, picture_.rows);
   line.setTo(cv::Scalar(32, 32, 32));

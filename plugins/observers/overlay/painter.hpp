@@ -19,9 +19,10 @@ class Painter {
   Painter(const Camera& camera, bool side_by_side);
 
   /// Draws a frame; the result is 8UC3, valid until the next call. Masks are tinted blue (class 1; further classes in
-  /// other colours), unknown cells of a mask are darkened, moving cells of the coarse view are tinted red. Features are
-  /// circles from green (static) over yellow to red (moving), filled if they have a map point. Moving objects have a
-  /// box and their velocity as an arrow. Below the image is a line of text.
+  /// other colours; instances by their ids, which are written on them), unknown cells of a mask are darkened, moving
+  /// cells of the coarse view are tinted red. Features are circles from green (static) over yellow to red (moving),
+  /// filled if they have a map point. Moving objects have a box and their velocity as an arrow. Below the image is a
+  /// line of text.
   const cv::Mat& paint(const SensorFrame& sensor_frame, const Frame& frame, const FrameResult& result);
   cv::Size size() const { return picture_.size(); }
 
@@ -29,6 +30,7 @@ class Painter {
 
  private:
   void tint(const cv::Mat& colour, const CoarseView& coarse, cv::Mat& out) const;
+  void name_instances(const CoarseView& coarse, cv::Mat& out) const;
   void draw(const MovingObject& object, const FrameResult& result, cv::Mat& out) const;
 
   Camera camera_;

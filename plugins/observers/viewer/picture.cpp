@@ -36,6 +36,7 @@ std::vector<std::uint8_t> PictureMaker::mask(const CoarseView& coarse) const {
   const auto size = static_cast<std::size_t>(grid_.size());
   const bool has_labels = coarse.mask.labels.size() == size, has_motion = coarse.static_log_odds.size() == size;
   if (!(coarse.grid == grid_) || (!has_labels && !has_motion)) return {};
+  const bool has_instances = coarse.mask.instances.size() == size;
   std::vector<std::uint8_t> mask;
   mask.reserve(cells_.size());
   for (const std::int32_t index : cells_) {
@@ -43,6 +44,8 @@ std::vector<std::uint8_t> PictureMaker::mask(const CoarseView& coarse) const {
     if (index >= 0) {
       const auto i = static_cast<std::size_t>(index);
       if (has_labels) value = class_number(coarse.mask.labels[i]);
+      if (has_instances && coarse.mask.instances[i] != 0)
+        value = static_cast<std::uint8_t>((coarse.mask.instances[i] - 1) % most_classes + 1);
       if (has_motion && coarse.static_log_odds[i] < 0.0F)
         value = static_cast<std::uint8_t>(
             value | (1 + static_cast<int>(14.0F * std::min(1.0F, -coarse.static_log_odds[i] / certain))) << 4);

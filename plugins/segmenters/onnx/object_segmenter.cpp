@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "holdfast/core/counted.hpp"
@@ -62,7 +63,7 @@ void ObjectSegmenter::recognise(const OnnxSettings& settings, const ModelMetadat
   }
   layout_ = recognise_objects(question);
   const auto fail = [&](const std::string& message) { throw InputError({model_.string()}, message); };
-  if (settings.output == NetworkOutput::instances && !layout_.prototypes)
+  if (settings.output == NetworkOutput::instances && !layout_.prototypes && !layout_.masks)
     fail("gives " + names(question.outputs) + ", the boxes of " + layout_.preset.title +
          " without masks; expected prototypes, 1 x coefficients x height x width, for `output: instances`; set "
          "`output: boxes`, or choose another network");
@@ -102,23 +103,41 @@ void ObjectSegmenter::prepare(const OnnxSettings& settings) {
 
 std::string ObjectSegmenter::description() const {
   const ObjectPreset& preset = layout_.preset;
-  std::string text = model_.filename().string() + " is a network of the family " + choice_name(preset.family) + ", " +
-                     preset.title + ", that gives " +
-                     (layout_.prototypes ? "instances with masks" : "boxes, which become masks by depth") + ". Input " +
-                     std::to_string(network_.width()) + "x" + std::to_string(network_.height()) +
-                     (preparation_.letterbox ? " with a letterbox, " : ", stretched, ") + colours_ + ". " +
-                     class_text({classes_.names.begin() + 1, classes_.names.end()}) +
-                     (classes_.are_of_metadata ? " named by its metadata" : "") + ", movable: ";
+  std::string text =
+      model_.filename().string() + " is a network of the family " + choice_name(preset.family) + ", " + preset.title +
+      ", that gives " +
+      (layout_.prototypes || layout_.masks ? "instances with masks" : "boxes, which become masks by depth") +
+      ". Input " + std::to_string(network_.width()) + "x" + std::to_string(network_.height()) +
+      (preparation_.letterbox ? " with a letterbox, " : ", stretched, ") + colours_ + ". " +
+      class_text({classes_.names.begin() + 1, classes_.names.end()}) +
+      (classes_.are_of_metadata ? " named by its metadata" : "") + ", movable: ";
   for (const std::string& name : classes_.movable) text += (name == classes_.movable.front() ? "" : ", ") + name;
   if (classes_.movable.empty()) text += "not said";
   text += ". Scores of at least " + number_text(min_score_);
   text += max_overlap_ < 1.0 ? ", duplicates overlap by more than " + number_text(max_overlap_) + "."
                              : ", no suppression of duplicates.";
+  text += " Computed by " + network_.engine_text() + ".";
   return text;
 }
 
 bool ObjectSegmenter::is_movable(std::size_t label) const {
   return std::find(classes_.movable.begin(), classes_.movable.end(), classes_.names[label]) != classes_.movable.end();
+}
+
+cv::Mat ObjectSegmenter::mask_of(const Detection& detection, const SensorFrame& frame, const FramePlace& place,
+                                 const cv::Rect& pixels) const {
+  const std::vector<cv::Mat>& outputs = network_.outputs();
+  if (layout_.prototypes)
+    return prototype_mask(outputs[*layout_.prototypes], detection.mask_coefficients, place, pixels);
+  if (!layout_.masks) return depth_mask(frame.depth, pixels);
+  const cv::Mat& masks = outputs[*layout_.masks];
+  const int rows = masks.size[2], columns = masks.size[3];
+  const std::ptrdiff_t first = std::ptrdiff_t{detection.number} * rows * columns;
+  const cv::Mat image(rows, columns, CV_32F, const_cast<float*>(masks.ptr<float>()) + first);
+  // Of a part that only its box has, or of all of the input.
+  const bool is_of_box = layout_.has_boxes && (rows != network_.height() || columns != network_.width());
+  const cv::Rect2f whole(0.0F, 0.0F, static_cast<float>(network_.width()), static_cast<float>(network_.height()));
+  return image_mask(image, is_of_box ? detection.box : whole, layout_.preset.mask_threshold, place, pixels);
 }
 
 Segmentation ObjectSegmenter::segment(const SensorFrame& frame) {
@@ -134,9 +153,14 @@ Segmentation ObjectSegmenter::segment(const SensorFrame& frame) {
     ObjectMask object{{static_cast<std::uint8_t>(label), detection.score, place.box_in_frame(detection.box)}};
     object.pixels = pixels_of(object.instance.box, frame.colour.size());
     if (object.pixels.empty()) continue;
-    object.mask = layout_.prototypes
-                      ? prototype_mask(outputs[*layout_.prototypes], detection.mask_coefficients, place, object.pixels)
-                      : depth_mask(frame.depth, object.pixels);
+    object.mask = mask_of(detection, frame, place, object.pixels);
+    if (!layout_.has_boxes) {
+      const cv::Rect box = cv::boundingRect(object.mask);
+      if (box.empty()) continue;
+      object.mask = object.mask(box).clone();
+      object.pixels = box + object.pixels.tl();
+      object.instance.box = object.pixels;
+    }
     object.is_movable = is_movable(label);
     objects.push_back(std::move(object));
   }

@@ -6,6 +6,7 @@
 
 #include "holdfast/inference/network.hpp"
 #include "holdfast/inference/object_layout.hpp"
+#include "holdfast/inference/object_masks.hpp"
 #include "holdfast/inference/object_output.hpp"
 #include "holdfast/interfaces/segmenter.hpp"
 #include "object_classes.hpp"
@@ -30,6 +31,9 @@ class ObjectSegmenter final : public Segmenter {
   void prepare(const OnnxSettings& settings);
   cv::Size input() const { return {network_.width(), network_.height()}; }
   bool is_movable(std::size_t label) const;
+  /// The mask of an object in a rectangle of the frame, of the last run.
+  cv::Mat mask_of(const Detection& detection, const SensorFrame& frame, const FramePlace& place,
+                  const cv::Rect& pixels) const;
 
   ObjectClasses classes_;
   Network network_;

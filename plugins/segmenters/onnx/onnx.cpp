@@ -17,7 +17,7 @@ namespace holdfast {
 
 void OnnxSettings::describe(ParameterTable<OnnxSettings>& table) {
   using S = OnnxSettings;
-  table.add("model", &S::model, "network for semantic segmentation, instances or boxes, ONNX, float32").required();
+  table.add("model", &S::model, "network for semantic segmentation, instances or boxes, ONNX").required();
   describe_network_input(table, "; empty = of the family, otherwise 0", "; empty = of the family, otherwise 1");
   table.add("fit", &S::fit,
             "how an image fills an input of another aspect ratio: stretched, or with a grey margin (letterbox); auto = "
@@ -56,9 +56,7 @@ NetworkOptions options_of(const OnnxSettings& s) {
   if (s.mean.empty()) options.mean = {0.0, 0.0, 0.0};
   if (s.standard_deviation.empty()) options.standard_deviation = {1.0, 1.0, 1.0};
   options.channels_last = s.layout == TensorLayout::nhwc;
-  options.engine = s.engine == NetworkEngine::automatic ? NetworkEngine::opencv : s.engine;
-  options.precision = s.precision;
-  options.threads = s.threads;
+  set_network_engine(options, s, false);
   return options;
 }
 
@@ -93,7 +91,8 @@ class SemanticSegmenter final : public NetworkSegmenter {
 
   std::string description() const override {
     return name_ + " is a semantic network, output " + output_ + ". Input " + std::to_string(input_size().width) + "x" +
-           std::to_string(input_size().height) + ", stretched. " + onnx_plugin::class_text(classes()) + ".";
+           std::to_string(input_size().height) + ", stretched. " + onnx_plugin::class_text(classes()) +
+           ". Computed by " + engine_text() + ".";
   }
 
  private:
@@ -123,12 +122,15 @@ std::unique_ptr<Segmenter> make_segmenter(const OnnxSettings& settings) {
                               settings.output != NetworkOutput::probabilities &&
                               settings.output != NetworkOutput::labels;
   if (may_be_objects) {
-    const OnnxSignature signature = OnnxNet({.model = settings.model}).signature();
+    const NetworkOptions options = options_of(settings);
+    const OnnxSignature signature =
+        OnnxNet({.model = settings.model, .engine = options.engine, .engine_library = options.engine_library})
+            .signature();
     const ModelMetadata metadata = read_model_metadata(signature.metadata);
     if (is_for_objects(settings, signature, metadata)) {
       refuse_parameters({{"output_name", !settings.output_name.empty()}},
                         "all outputs of a network for objects are read; leave it out");
-      return std::make_unique<ObjectSegmenter>(settings, options_of(settings), signature, metadata);
+      return std::make_unique<ObjectSegmenter>(settings, options, signature, metadata);
     }
   }
   std::vector<std::string> classes = settings.classes;
@@ -155,8 +157,9 @@ class OnnxSegmenter final : public Segmenter {
 HOLDFAST_PLUGIN(onnx, registry) {
   registry.add<Segmenter, OnnxSegmenter, OnnxSettings>(
       {.name = OnnxSettings::module,
-       .summary = "Runs networks for semantic segmentation, instances or boxes in ONNX format on the CPU with OpenCV "
-                  "or oneDNN."});
+       .summary =
+           "Runs networks for semantic segmentation, instances or boxes in ONNX format with ONNX Runtime, OpenCV "
+           "or oneDNN."});
 }
 
 }  // namespace holdfast

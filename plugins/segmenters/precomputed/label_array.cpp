@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "label_array.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <utility>
@@ -8,13 +9,15 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/input_file.hpp"
 #include "holdfast/image_files/numpy_array.hpp"
+#include "npz_member.hpp"
 
 namespace holdfast::precomputed_plugin {
 
 namespace {
 
 constexpr const char* expected_arrays =
-    "; expected an array of NumPy (.npy) with labels, height x width, or with masks, instances x height x width, "
+    "; expected an array of NumPy (.npy or .npz) with labels, height x width, or with masks, instances x height x "
+    "width, "
     "boolean or whole numbers; save it with numpy.save()";
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& found) {
@@ -33,7 +36,9 @@ std::size_t size_of(const std::string& type) {
 }  // namespace
 
 LabelArray read_label_array(const std::filesystem::path& file) {
-  InputFile input(file, largest_file::image, "an array of labels (.npy)");
+  InputFile input(file, largest_file::image, "an array of labels (.npy, .npz)");
+  const bool is_archive = file.extension() == ".npz";
+  const std::uint64_t member_size = is_archive ? seek_label_array(input, expected_arrays) : 0;
   const NumpyHeader header = read_numpy_header(input, expected_arrays);
   if (header.has_fortran_order) fail(file, "is an array in Fortran's order");
   const std::size_t size = size_of(header.type);
@@ -45,8 +50,13 @@ LabelArray read_label_array(const std::filesystem::path& file) {
       shape[2] > most_side)
     fail(file, "is an array of " + shape_text(header));
   std::vector<std::uint8_t> bytes;
-  input.read_rest(bytes);
   const std::size_t pixels = shape[1] * shape[2];
+  if (is_archive) {
+    bytes.resize(static_cast<std::size_t>(std::min<std::uint64_t>(shape[0] * pixels * size, member_size)));
+    bytes.resize(input.read(bytes.data(), bytes.size()));
+  } else {
+    input.read_rest(bytes);
+  }
   if (bytes.size() != shape[0] * pixels * size)
     fail(file, "has " + std::to_string(bytes.size()) + " bytes of values for " + shape_text(header));
   LabelArray result{{}, header.shape.size() == 3};

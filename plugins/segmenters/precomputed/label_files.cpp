@@ -15,13 +15,6 @@ namespace holdfast::precomputed_plugin {
 
 namespace {
 
-std::optional<double> stamp_of(const std::string& name) {
-  double stamp = 0.0;
-  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), stamp);
-  if (error != std::errc() || end != name.data() + name.size() || !std::isfinite(stamp)) return std::nullopt;
-  return stamp;
-}
-
 bool is_png(const std::filesystem::path& file) {
   const std::string extension = file.extension().string();
   return extension == ".png" || extension == ".PNG";
@@ -64,7 +57,14 @@ void require_folder(const std::filesystem::path& folder) {
 
 }  // namespace
 
-bool is_array(const std::filesystem::path& file) { return file.extension() == ".npy"; }
+std::optional<double> stamp_of(const std::string& name) {
+  double stamp = 0.0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), stamp);
+  if (error != std::errc() || end != name.data() + name.size() || !std::isfinite(stamp)) return std::nullopt;
+  return stamp;
+}
+
+bool is_array(const std::filesystem::path& file) { return file.extension() == ".npy" || file.extension() == ".npz"; }
 
 std::vector<LabelFile> find_label_files(const std::filesystem::path& folder) {
   require_folder(folder);
@@ -84,7 +84,7 @@ std::vector<LabelFile> find_label_files(const std::filesystem::path& folder) {
   if (error) throw InputError({folder.string()}, "cannot be read: " + error.message() + "; check its permissions");
   if (files.empty())
     throw InputError({folder.string()},
-                     "holds no label image; expected PNG or NPY files; correct `segmenter.precomputed.path`");
+                     "holds no label image; expected PNG, NPY or NPZ files; correct `segmenter.precomputed.path`");
   std::sort(files.begin(), files.end(), [](const LabelFile& left, const LabelFile& right) {
     return left.timestamp != right.timestamp ? left.timestamp < right.timestamp : left.path < right.path;
   });

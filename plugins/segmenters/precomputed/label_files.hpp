@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace holdfast::precomputed_plugin {
@@ -14,7 +16,10 @@ struct LabelFile {
   std::vector<std::filesystem::path> others = {};  ///< of the other instances
 };
 
-/// Whether the file is an array of NumPy (.npy) rather than a PNG.
+/// The time stamp that a name without ending is, such as 1305031102.175304; nothing if it is none.
+std::optional<double> stamp_of(const std::string& name);
+
+/// Whether the file is an array of NumPy (.npy, .npz) rather than a PNG.
 bool is_array(const std::filesystem::path& file);
 
 /// The PNG and NPY files of a folder by the time stamps that their names are (1305031102.175304.png), sorted, and those

@@ -4,7 +4,10 @@
 #include <pybind11/numpy.h>
 
 #include <cstring>
+#include <map>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "holdfast/core/cell_mask.hpp"
 #include "holdfast/core/error.hpp"
@@ -55,6 +58,27 @@ void check_labels(const cv::Mat& labels, std::size_t classes, const std::string&
     }
 }
 
+/// Takes the values of an image but 0 as instances: one for each value and class.
+void add_instances(const cv::Mat& values, Segmentation& segmentation) {
+  segmentation.instances = cv::Mat::zeros(values.size(), CV_16UC1);
+  std::map<std::pair<std::uint8_t, std::uint8_t>, std::size_t> number;  // by value and label
+  std::vector<cv::Rect> boxes;
+  for (int y = 0; y < values.rows; ++y)
+    for (int x = 0; x < values.cols; ++x) {
+      const std::uint8_t value = values.at<std::uint8_t>(y, x), label = segmentation.labels.at<std::uint8_t>(y, x);
+      if (value == 0 || !CellMask::is_object(label)) continue;
+      const auto [known, is_new] = number.emplace(std::pair(value, label), boxes.size());
+      const cv::Rect pixel(x, y, 1, 1);
+      if (is_new) {
+        boxes.push_back(pixel);
+        segmentation.found.push_back({label, 1.0F, {}});
+      }
+      boxes[known->second] |= pixel;
+      segmentation.instances.at<std::uint16_t>(y, x) = static_cast<std::uint16_t>(known->second + 1);
+    }
+  for (std::size_t i = 0; i < boxes.size(); ++i) segmentation.found[i].box = boxes[i];
+}
+
 }  // namespace
 
 Segmentation read_result(const py::object& result, const cv::Size& size, std::size_t classes, const std::string& owner,
@@ -62,12 +86,17 @@ Segmentation read_result(const py::object& result, const cv::Size& size, std::si
   if (result.is_none()) return {};
   Segmentation segmentation;
   if (py::isinstance<py::tuple>(result)) {
-    const auto pair = py::reinterpret_borrow<py::tuple>(result);
-    if (pair.size() != 2)
-      throw InputError({file.string()}, owner + ".segment returned a tuple of " + std::to_string(pair.size()) +
-                                            "; expected labels, (labels, confidence), or None");
-    segmentation.labels = read_image(pair[0], size, "labels", owner, file);
-    if (!pair[1].is_none()) segmentation.confidence = read_image(pair[1], size, "confidence", owner, file);
+    const auto parts = py::reinterpret_borrow<py::tuple>(result);
+    if (parts.size() != 2 && parts.size() != 3)
+      throw InputError({file.string()}, owner + ".segment returned a tuple of " + std::to_string(parts.size()) +
+                                            "; expected labels, (labels, confidence), (labels, confidence, instances), "
+                                            "or None");
+    segmentation.labels = read_image(parts[0], size, "labels", owner, file);
+    if (!parts[1].is_none()) segmentation.confidence = read_image(parts[1], size, "confidence", owner, file);
+    if (parts.size() == 3 && !parts[2].is_none()) {
+      check_labels(segmentation.labels, classes, owner, file);
+      add_instances(read_image(parts[2], size, "instances", owner, file), segmentation);
+    }
   } else {
     segmentation.labels = read_image(result, size, "labels", owner, file);
   }

@@ -82,11 +82,7 @@ NetworkOptions network_options(const UnetSettings& settings) {
   // What training/samples.py does to a pixel.
   options.mean = {0.5, 0.5, 0.5};
   options.standard_deviation = {0.25, 0.25, 0.25};
-  options.engine = settings.engine;
-  if (settings.engine == NetworkEngine::automatic)
-    options.engine = settings.model.empty() && has_onednn() ? NetworkEngine::onednn : NetworkEngine::opencv;
-  options.precision = settings.precision;
-  options.threads = settings.threads;
+  set_network_engine(options, settings, settings.model.empty());
   options.model = settings.model;
   if (settings.model.empty()) {
     check_side("width", options.width);

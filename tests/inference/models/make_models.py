@@ -10,7 +10,7 @@ if something is green; prototype 0 is positive where it is red, prototype 1 wher
 import pathlib
 import struct
 
-FLOAT, INT64, FLOAT16 = 1, 7, 10
+FLOAT, UINT8, INT8, INT64, FLOAT16 = 1, 2, 3, 7, 10
 HEIGHT, WIDTH = 12, 16
 
 
@@ -39,7 +39,7 @@ def value_info(name, shape, element=FLOAT):
 
 
 def tensor(name, shape, values, element=FLOAT):
-    form = {FLOAT: "f", FLOAT16: "e", INT64: "q"}[element]
+    form = {FLOAT: "f", UINT8: "B", INT8: "b", FLOAT16: "e", INT64: "q"}[element]
     raw = struct.pack(f"<{len(values)}{form}", *values)
     return b"".join(number(1, s) for s in shape) + number(2, element) + content(8, name) + content(9, raw)
 
@@ -286,6 +286,34 @@ def ssd():
     return net.write([1, 3, 300, 300], {"scores": [1, 3000, 21], "boxes": [1, 3000, 4]})
 
 
+def mask_rcnn():
+    """As torchvision exports it: one image without a batch, and as many boxes, labels, scores and masks as there are."""
+    rows = [(1, 0, 0, 0.0), (0, 1, 0, 0.0)]
+    conv, weights = convolution(rows, "images", "planes")
+    nodes = [node("Unsqueeze", ["image"], "images", integers("axes", [0])), conv,
+             node("Transpose", ["planes"], "every_mask", integers("perm", [1, 0, 2, 3])),
+             node("ReduceMax", ["every_mask"], "highest", integers("axes", [1, 2, 3]), integer("keepdims", 0)),
+             node("Greater", ["highest", "half"], "is_there"), node("NonZero", ["is_there"], "row"),
+             node("Reshape", ["row", "any"], "kept")]
+    nodes += [node("Gather", ["every_" + part, "kept"], part) for part in ("box", "label", "score", "mask")]
+    weights += [tensor("half", [], [0.5]), tensor("any", [1], [-1], INT64),
+                tensor("every_box", [2, 4], [2, 2, 16, 22, 16, 2, 30, 22]), tensor("every_label", [2], [1, 62], INT64),
+                tensor("every_score", [2], [0.75, 0.875])]
+    outputs = [value_info("box", ["n", 4]), value_info("label", ["n"], INT64), value_info("score", ["n"]),
+               value_info("mask", ["n", 1, "height", "width"])]
+    return model(nodes, [value_info("image", [3, "height", "width"])], outputs, weights)
+
+
+def maskformer():
+    """Four queries of two classes and none: a person where it is red, a chair where it is green."""
+    net = Objects()
+    net.turned("zeros", net.cells("columns", [24, 8], [NOTHING] * 3))
+    net.tensor("queries", [1, 4, 3], [0, 0, 9, 9, 0, 0, 0, 0, 9, 0, 6, 0])
+    net.nodes.append(node("Add", ["zeros", "queries"], "class_queries_logits"))
+    net.colours("masks_queries_logits", [4, 4], [(0, 0, 0, -1.0), (1, 0, 0, -0.5), (0, 0, 0, 1.0), (0, 1, 0, -0.5)])
+    return net.write([1, 3, 24, 32], {"class_queries_logits": [1, 4, 3], "masks_queries_logits": [1, 4, 6, 8]})
+
+
 def main():
     folder = pathlib.Path(__file__).parent
     image = value_info("image", [1, 3, HEIGHT, WIDTH])
@@ -327,6 +355,22 @@ def main():
     write("half", model([half], [value_info("image", [1, 3] + plane, FLOAT16)],
                         [value_info("scores", [1, 3] + plane, FLOAT16)], half_weights))
 
+    # 8 bits: pixels from 0 to 255, and weights in eighths.
+    eighths = [round(8 * w) for row in SCORES for w in row[:3]]
+    parts = [node("DequantizeLinear", ["image", "pixel_scale"], "colours"),
+             node("DequantizeLinear", ["weight", "weight_scale"], "real_weight"),
+             node("Conv", ["colours", "real_weight", "bias"], "scores", integers("kernel_shape", [1, 1]))]
+    numbers = [tensor("pixel_scale", [], [1 / 255]), tensor("weight", [3, 3, 1, 1], eighths, INT8),
+               tensor("weight_scale", [], [1 / 8]), tensor("bias", [3], [row[3] for row in SCORES])]
+    write("quantised", model(parts, [value_info("image", [1, 3] + plane, UINT8)], [scores], numbers, opset=13))
+
+    # An operator that is younger than OpenCV 4.6, between free dimensions; it keeps the order of the scores.
+    parts = [conv, node("Transpose", ["scores"], "pixels", integers("perm", [0, 2, 3, 1])),
+             node("LayerNormalization", ["pixels", "norm_scale"], "normal"),
+             node("Transpose", ["normal"], "normal_scores", integers("perm", [0, 3, 1, 2]))]
+    write("opset_17", model(parts, [free], [value_info("normal_scores", [1, 3, "height", "width"])],
+                            weights + [tensor("norm_scale", [3], [1.0, 1.0, 1.0])], opset=17))
+
     boxes = node("Reshape", ["scores", "box_shape"], "boxes")
     box_shape = tensor("box_shape", [3], [1, 8, 72], INT64)
     write("boxes", model([conv, boxes], [image], [value_info("boxes", [1, 8, 72])], weights + [box_shape]))
@@ -362,6 +406,8 @@ def main():
     write("detr", detr())
     write("rtdetr", rtdetr())
     write("ssd", ssd())
+    write("mask_rcnn", mask_rcnn())
+    write("maskformer", maskformer())
 
     total = node("Add", ["image", "other"], "sum")
     write("two_inputs", model([total], [image, value_info("other", [1, 3] + plane)],

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "holdfast/core/camera.hpp"
+#include "holdfast/core/cell_mask.hpp"
+#include "holdfast/core/coarse_view.hpp"
+
+namespace holdfast {
+
+/// A segmented frame: its mask with the instances' numbers in the segmentation, its depth and its pose.
+struct SegmentedView {
+  const Camera& camera;
+  const CoarseView& view;
+  const CellMask& mask;
+  std::optional<Eigen::Isometry3d> T_camera_world = {};
+  double timestamp = 0.0;  ///< [s]
+
+  /// The direction of the centre of a cell, with z = 1, camera frame.
+  Eigen::Vector3d ray(int column, int row) const {
+    return {(view.grid.x_of(column) - camera.cx) / camera.fx, (view.grid.y_of(row) - camera.cy) / camera.fy, 1.0};
+  }
+};
+
+/// Gives the instances of successive masks ids that they keep, over occlusions too: data association by mask overlap
+/// and predicted position, the greedy assignment by decreasing score. An instance gets the id of the track of its class
+/// with the highest sum of
+///
+///   - the intersection over union of its mask with the mask that the track has now, both carried to the same frame,
+///   - half of 1 - d / g, where d is the distance of its centroid to the predicted one (constant velocity, world frame)
+///     and g the gate, which grows with the time for which the track was not seen. Without depth or poses, centroids
+///     are compared in the image, relative to the size of the instance.
+///
+/// Slivers of less than 12 cells are matched by overlap alone and get no new id, but 0.
+///
+/// Tracks that no segmentation showed for 4 s, and that have no mask any more, are forgotten; their ids are not reused
+/// until 65535 are spent. One thread.
+class InstanceIds {
+ public:
+  /// Ids of the instances 1, 2, ... of a segmented frame; entry 0 is 0. `carried` is the mask of that frame carried to
+  /// the current frame, and `held` the mask of ids that was there before; both on the same cells.
+  std::vector<std::uint16_t> assign(const SegmentedView& segmented, const CellMask& carried, const CellMask& held);
+
+ private:
+  /// Where an instance is.
+  struct Place {
+    std::uint8_t label = CellMask::unknown;
+    std::size_t cells = 0;
+    Eigen::Vector2d in_image = Eigen::Vector2d::Zero();  ///< centroid [cells]
+    std::optional<Eigen::Vector3d> in_world;             ///< centroid of its visible surface [m]
+  };
+  struct Track {
+    std::uint16_t id = 0;
+    Place place;
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< [m/s]
+    double last_seen = 0.0;
+  };
+  struct Candidate {
+    double score = 0.0;
+    std::size_t instance = 0, track = 0;
+  };
+
+  static std::vector<Place> places_of(const SegmentedView& segmented);
+  /// Score of the positions alone, at most 0.5; nothing outside the gate.
+  static std::optional<double> nearness(const Track& track, const Place& place, double timestamp);
+  std::vector<Candidate> candidates(const std::vector<Place>& places, const CellMask& carried, const CellMask& held,
+                                    double timestamp) const;
+  void update(Track& track, const Place& place, double timestamp);
+
+  std::vector<Track> tracks_;  ///< by increasing time of their beginning
+  std::uint16_t next_id_ = 1;
+};
+
+}  // namespace holdfast
