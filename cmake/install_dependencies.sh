@@ -13,6 +13,7 @@
 #   sh cmake/install_dependencies.sh --bench-tests    also a browser, Slurm's daemons and GNU parallel for tests of the
 #                                                     bench
 #   sh cmake/install_dependencies.sh --cameras        also what the source `openni2` (Kinect, Xtion, Astra) is built of
+#   sh cmake/install_dependencies.sh --surface        also what the section `surface` is built of: OpenVDB
 #   sh cmake/install_dependencies.sh --clang          also clang, for tests of the headers and of the format, the fuzz targets and the
 #                                                     quick sanitizer build
 #   sh cmake/install_dependencies.sh --valgrind       also valgrind, for tests/valgrind
@@ -42,12 +43,13 @@ for argument in "$@"; do
       ;;
     --bench-tests) packages="$packages chromium munge parallel slurm-client slurmctld slurmd" ;;
     --cameras) packages="$packages libopenni2-dev" ;;
+    --surface) packages="$packages libopenvdb-dev" ;;
     --clang) packages="$packages clang clang-format libclang-rt-dev llvm" ;;
     --valgrind) packages="$packages valgrind" ;;
     --clean-root) packages="$packages mmdebstrap" ;;
     --dry-run) dry_run=yes ;;
-    -h | --help) sed -n '3,20s/^# \{0,1\}//p' "$0"; exit 0 ;;
-    *) fail "unknown argument '$argument'; known are --training, --documentation, --benchmarks, --python, --python-tests, --bench-tests, --cameras, --clang, --valgrind, --clean-root, --dry-run and --help" ;;
+    -h | --help) sed -n '3,21s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) fail "unknown argument '$argument'; known are --training, --documentation, --benchmarks, --python, --python-tests, --bench-tests, --cameras, --surface, --clang, --valgrind, --clean-root, --dry-run and --help" ;;
   esac
 done
 
