@@ -93,6 +93,7 @@ void evaluate(const EvaluateSurfaceArguments& arguments) {
     throw UsageError("--truth-trajectory and --trajectory belong together; give both, or none");
   if (arguments.json == "-" && arguments.csv == "-")
     throw UsageError("--json and --csv cannot both go to standard output; give one of them a file");
+  if (!arguments.errors_to.empty()) require_mesh_name(arguments.errors_to);
   require_new_files({arguments.json, arguments.csv, arguments.errors_to}, arguments.overwrite);
   const TriangleMesh truth = read_mesh(arguments.truth);
   const TriangleMesh seen = arguments.seen.empty() ? TriangleMesh() : read_mesh(arguments.seen);

@@ -75,6 +75,8 @@ int simulate(const SimulateArguments& arguments) {
   if (arguments.output.empty() && arguments.preview.empty() && !has_surface)
     throw UsageError(
         "nothing to write; expected --output FOLDER, --preview FILE.png, --surface FILE.ply, or several of them");
+  for (const std::filesystem::path& file : {arguments.surface, arguments.seen_surface})
+    if (!file.empty()) require_mesh_name(file);
   require_new_files({arguments.surface, arguments.seen_surface}, arguments.overwrite);
   const std::optional<Camera> camera = find_camera(arguments.camera);
   if (!camera) {

@@ -156,16 +156,17 @@ std::string mesh_glb(const TriangleMesh& mesh) {
   return bytes + chunks;
 }
 
-void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh) {
+void require_mesh_name(const std::filesystem::path& file) {
   const std::string ending = file.extension().string();
-  if (ending == ".ply")
-    write_file_atomically(file, mesh_ply(mesh));
-  else if (ending == ".obj")
-    write_file_atomically(file, mesh_obj(mesh));
-  else if (ending == ".glb")
-    write_file_atomically(file, mesh_glb(mesh));
-  else
-    throw InputError({file.string()}, "is no name of a mesh; expected one that ends in .ply, .obj or .glb");
+  for (const std::string& format : mesh_formats())
+    if (ending == "." + format) return;
+  throw InputError({file.string()}, "is no name of a mesh; expected one that ends in .ply, .obj or .glb");
+}
+
+void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh) {
+  require_mesh_name(file);
+  const std::string ending = file.extension().string();
+  write_file_atomically(file, ending == ".ply" ? mesh_ply(mesh) : ending == ".obj" ? mesh_obj(mesh) : mesh_glb(mesh));
 }
 
 }  // namespace holdfast

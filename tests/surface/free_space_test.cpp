@@ -105,6 +105,16 @@ TEST_F(FreeSpaceTest, MakesAMapOfTheFloor) {
   };
   EXPECT_EQ(state({}, 0.0, 0.0), Occupancy::occupied);
   EXPECT_EQ(state({}, 0.8, 0.6), Occupancy::free);
+  // A board above a floor that was seen.
+  const TriangleMesh without = mesh_;
+  const auto first = static_cast<std::uint32_t>(mesh_.vertices.size());
+  for (const Eigen::Vector3f& corner :
+       {Eigen::Vector3f(0.7F, 0.5F, 2.0F), Eigen::Vector3f(0.9F, 0.5F, 2.0F), Eigen::Vector3f(0.8F, 0.8F, 2.0F)})
+    mesh_.vertices.push_back({corner, {}, 0, 0, 0});
+  mesh_.triangles.push_back({first, first + 1, first + 2});
+  EXPECT_EQ(state({}, 0.8, 0.6), Occupancy::occupied);
+  EXPECT_EQ(state({.robot_highest = 0.4}, 0.8, 0.6), Occupancy::free) << "low enough to drive under the board";
+  mesh_ = without;
   EXPECT_EQ(state({.robot_lowest = 0.45}, 0.0, 0.0), Occupancy::free) << "high enough to drive over the box";
   EXPECT_FALSE(maps.octomap.empty());
 }

@@ -21,6 +21,9 @@ std::string mesh_obj(const TriangleMesh& mesh);
 /// are rotated by -90 degrees about x, which the node undoes no more.
 std::string mesh_glb(const TriangleMesh& mesh);
 
+/// Throws InputError if the ending of a file names no format of meshes; for commands, before the work.
+void require_mesh_name(const std::filesystem::path& file);
+
 /// Writes a mesh atomically in the format that the ending of the file names. Throws InputError for another ending and
 /// if it cannot be written.
 void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh);
