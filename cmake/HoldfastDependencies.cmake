@@ -78,7 +78,18 @@ if(HOLDFAST_INFERENCE)
   holdfast_optional(HOLDFAST_ONEDNN "Run networks by oneDNN, too" "the engine `onednn` of networks" ${found}
                     "${missing}" libdnnl-dev)
 endif()
-mark_as_advanced(HOLDFAST_LIBDEFLATE_INCLUDE_DIR HOLDFAST_LIBDEFLATE_LIBRARY HOLDFAST_LIBJPEG_INCLUDE_DIR
+# Optional: a fused surface of the static scene.
+find_path(HOLDFAST_OPENVDB_INCLUDE_DIR openvdb/openvdb.h)
+find_library(HOLDFAST_OPENVDB_LIBRARY openvdb)
+find_library(HOLDFAST_TBB_LIBRARY tbb)
+set(found OFF)
+if(HOLDFAST_OPENVDB_INCLUDE_DIR AND HOLDFAST_OPENVDB_LIBRARY AND HOLDFAST_TBB_LIBRARY)
+  set(found ON)
+endif()
+holdfast_optional(HOLDFAST_SURFACE "Fuse surfaces in trees of OpenVDB" "the section `surface`, which fuses a mesh"
+                  ${found} "OpenVDB was not found" libopenvdb-dev)
+mark_as_advanced(HOLDFAST_OPENVDB_INCLUDE_DIR HOLDFAST_OPENVDB_LIBRARY HOLDFAST_TBB_LIBRARY
+                 HOLDFAST_LIBDEFLATE_INCLUDE_DIR HOLDFAST_LIBDEFLATE_LIBRARY HOLDFAST_LIBJPEG_INCLUDE_DIR
                  HOLDFAST_LIBJPEG_LIBRARY HOLDFAST_ONEDNN_INCLUDE_DIR HOLDFAST_ONEDNN_LIBRARY)
 holdfast_find(nlohmann_json 3.10 nlohmann-json3-dev)
 if(HOLDFAST_BUILD_PROGRAM)

@@ -11,7 +11,7 @@ cd "$(dirname "$0")/.."
 build=${1:-build}
 jobs=$(nproc)
 
-sh cmake/install_dependencies.sh --training --documentation --benchmarks --cameras --onnxruntime --python-tests --valgrind --clang
+sh cmake/install_dependencies.sh --training --documentation --benchmarks --cameras --onnxruntime --surface --python-tests --valgrind --clang
 cmake --preset release -B "$build" \
   -DHOLDFAST_UNITY=ON -DHOLDFAST_BUILD_TESTS=ON -DHOLDFAST_BUILD_BENCHMARKS=ON -DHOLDFAST_BUILD_EXAMPLES=ON -DHOLDFAST_PYTHON=ON \
   -DHOLDFAST_PYTHON_PACKAGE=ON

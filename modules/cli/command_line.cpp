@@ -20,6 +20,7 @@
 #include "dataset_command.hpp"
 #include "evaluate_command.hpp"
 #include "evaluate_segmentation_command.hpp"
+#include "evaluate_surface_command.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/system_reason.hpp"
 #include "manual_command.hpp"
@@ -100,6 +101,7 @@ void add_commands(CLI::App& app, int& exit_code, const ProgramHost& host) {
   add_dataset_command(app, exit_code);
   add_evaluate_command(app, exit_code);
   add_evaluate_segmentation_command(app, exit_code, host);
+  add_evaluate_surface_command(app, exit_code);
   add_map_command(app, exit_code);
   add_background_command(app, exit_code, host);
   add_simulate_command(app, exit_code);

@@ -188,6 +188,8 @@ void add_run_command(CLI::App& app, int& exit_code, const ProgramHost& host) {
       "  config.yaml     the configuration with every default     evaluation.json, *.svg  where there is truth\n"
       "  map.hfm         the map, for --map and `holdfast map`    static_map.ply  its points, or with\n"
       "                                                           dense_map.enabled a dense cloud\n"
+      "  surface.ply     the mesh of the room, with surface.enabled; with surface.navigation map.pgm, map.yaml and\n"
+      "                  octomap.bt, too\n"
       "While it runs, trajectory.txt holds the poses so far; of a run that is killed they are what is left.\n"
       "Exits 0 when the run reached its end with a trajectory that its map supports, 3 with --strict when fewer\n"
       "frames than run.minimum_coverage have a pose, 130 on Ctrl-C, 143 on SIGTERM and SIGHUP (what was done is "

@@ -14,11 +14,14 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/simulation/scene_file.hpp"
 #include "holdfast/simulation/simulator.hpp"
+#include "holdfast/surface/mesh_files.hpp"
 #include "installed_files.hpp"
+#include "output_file.hpp"
 #include "output_folder.hpp"
 #include "positive_number.hpp"
 #include "scene_preview.hpp"
 #include "sequence_writer.hpp"
+#include "simulated_surface.hpp"
 #include "terminal.hpp"
 #include "usage_error.hpp"
 
@@ -30,6 +33,8 @@ struct SimulateArguments {
   std::filesystem::path scene;
   std::filesystem::path output;
   std::filesystem::path preview;
+  std::filesystem::path surface, seen_surface;
+  double surface_depth = 4.0;
   std::vector<std::string> overrides;
   std::string camera = "tum_fr1";
   std::string colour_format = "png";
@@ -59,9 +64,20 @@ std::vector<std::string> all_overrides(const SimulateArguments& arguments) {
   return overrides;
 }
 
+void write_surfaces(const SimulateArguments& arguments, simulation::Simulator& simulator) {
+  const SimulatedSurface surface = simulated_surface(simulator, arguments.surface_depth);
+  if (!arguments.surface.empty()) write_mesh(arguments.surface, surface.all);
+  if (!arguments.seen_surface.empty()) write_mesh(arguments.seen_surface, surface.seen);
+}
+
 int simulate(const SimulateArguments& arguments) {
-  if (arguments.output.empty() && arguments.preview.empty())
-    throw UsageError("nothing to write; expected --output FOLDER, --preview FILE.png, or both");
+  const bool has_surface = !arguments.surface.empty() || !arguments.seen_surface.empty();
+  if (arguments.output.empty() && arguments.preview.empty() && !has_surface)
+    throw UsageError(
+        "nothing to write; expected --output FOLDER, --preview FILE.png, --surface FILE.ply, or several of them");
+  for (const std::filesystem::path& file : {arguments.surface, arguments.seen_surface})
+    if (!file.empty()) require_mesh_name(file);
+  require_new_files({arguments.surface, arguments.seen_surface}, arguments.overwrite);
   const std::optional<Camera> camera = find_camera(arguments.camera);
   if (!camera) {
     std::string known;
@@ -72,10 +88,10 @@ int simulate(const SimulateArguments& arguments) {
       simulation::read_scene(find_file(arguments.scene.string(), InstalledFolder::scenes), all_overrides(arguments));
   if (scene.seed == 0) scene.seed = 1;
   simulation::Simulator simulator(scene, *camera);
-  if (!arguments.preview.empty()) {
+  if (!arguments.preview.empty())
     write_image_atomically(arguments.preview, scene_preview(simulator), {}, Durability::now);
-    if (arguments.output.empty()) return 0;
-  }
+  if (has_surface) write_surfaces(arguments, simulator);
+  if (arguments.output.empty()) return 0;
   const FolderLock lock = prepare_output_folder(arguments.output, arguments.overwrite, SequenceWriter::entries());
   SequenceWriter writer(simulator, arguments.output, arguments.colour_format);
   catch_interrupts();
@@ -107,12 +123,22 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
       "  holdfast simulate examples/scenes/crowd.yaml --preview crowd.png\n"
       "  holdfast simulate examples/scenes/crowd.yaml --seed 7 --camera tum_fr3 --output out/crowd\n"
       "  holdfast simulate examples/scenes/walking_xyz.yaml --set people.0.do.0.walk.speed=0.6 --output out/slow\n"
+      "  holdfast simulate examples/scenes/crowd.yaml --surface room.ply --seen-surface seen.ply\n"
       "  holdfast simulate --path halfsphere --duration 10 --no-sensor-effects --output out/empty");
   command->add_option("SCENE", arguments->scene,
                       "scene file (YAML), or the name of an installed one, such as crowd; '-': standard input");
   command->add_option("-o,--output", arguments->output, "folder to write to");
   command->add_option("--preview", arguments->preview,
                       "image file (PNG) with frames of the scene and its floor plan; without --output nothing else");
+  command
+      ->add_option("--surface", arguments->surface,
+                   "mesh of the room without people (.ply, .obj, .glb), moved objects where they are at the end")
+      ->type_name("FILE");
+  command->add_option("--seen-surface", arguments->seen_surface, "the part of it that the camera sees")
+      ->type_name("FILE");
+  command->add_option("--surface-depth", arguments->surface_depth, "largest depth at which it is seen [m]")
+      ->check(positive_number())
+      ->capture_default_str();
   command->add_option("--set", arguments->overrides, "override a value of the scene: key.path=value; may be repeated")
       ->allow_extra_args(false);
   command->add_option("--seed", arguments->seed, "of textures, small things, people, path and noise (default 1)");

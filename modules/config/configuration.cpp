@@ -370,12 +370,16 @@ class Resolver {
     if (run.threaded() && run.prefetch != defaults.prefetch) warn("prefetch", in_mode);
   }
 
-  /// Masks reach poses by filters alone. A dense map leaves out what they mark without any.
+  /// Masks reach poses by filters alone. A dense map and a surface leave out what they mark without any.
   void warn_of_unused_masks() {
     if (!diagnostics_.empty()) return;  // values that were not read are missing
-    const auto dense_map = result_.sections.find("dense_map");
-    const bool has_dense_map = dense_map != result_.sections.end() && std::get<bool>(dense_map->second.at("enabled"));
-    if (result_.segmenter.name == "none" || !result_.filters.empty() || has_dense_map) return;
+    const auto is_enabled = [&](const char* name) {
+      const auto section = result_.sections.find(name);
+      return section != result_.sections.end() && std::get<bool>(section->second.at("enabled"));
+    };
+    if (result_.segmenter.name == "none" || !result_.filters.empty() || is_enabled("dense_map") ||
+        is_enabled("surface"))
+      return;
     result_.warnings.push_back(
         {result_.segmenter.location,
          "no filter uses the masks of the segmenter '" + result_.segmenter.name +

@@ -26,6 +26,8 @@ std::vector<SectionDescription> pipeline_sections() {
        ParameterTable<LoopClosingSettings>().parameters()},
       {"dense_map", "A dense cloud of the static scene, of what keyframes saw.",
        ParameterTable<DenseMapSettings>().parameters()},
+      {"surface", "A fused surface of the static scene, of what keyframes saw, and its mesh.",
+       ParameterTable<SurfaceSettings>().parameters()},
       {"perturbation", "What is made worse about the frames of the source, to see what a configuration withstands.",
        ParameterTable<PerturbationSettings>().parameters()}};
 }
@@ -98,6 +100,7 @@ void choose_settings(const Configuration& configuration, PipelineBuilder& builde
       .mapping(section_of<MappingSettings>(configuration, "mapping"))
       .loop_closing(section_of<LoopClosingSettings>(configuration, "loop_closing"))
       .dense_map(section_of<DenseMapSettings>(configuration, "dense_map"))
+      .surface(section_of<SurfaceSettings>(configuration, "surface"))
       .run(configuration.run);
 }
 

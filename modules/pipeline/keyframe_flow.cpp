@@ -26,7 +26,9 @@ KeyframeFlow::KeyframeFlow(PipelineParts& parts, GuardedMap& map, MovingWorld& m
   const Map& loaded = map.unshared();
   for (const KeyFrameId keyframe : loaded.keyframes_by_age())
     detector.add(keyframe, place_descriptors(loaded.keyframe(keyframe).frame, describes_images_));
-  if (parts.dense_map.enabled && !parts.localise_only) scene_.emplace(parts.camera, parts.dense_map);
+  if ((parts.dense_map.enabled || parts.surface.enabled) && !parts.localise_only)
+    scene_.emplace(parts.camera, parts.dense_map);
+  if (parts.surface.enabled && scene_) surface_.emplace(scene_->camera(), parts.surface);
   const std::vector<std::string>& out = parts.dense_map.classes;
   for (const std::string& name : parts.segmenter->classes())
     left_out_.push_back(std::find(out.begin(), out.end(), name) != out.end());
@@ -34,6 +36,11 @@ KeyframeFlow::KeyframeFlow(PipelineParts& parts, GuardedMap& map, MovingWorld& m
 
 void KeyframeFlow::start_threads() {
   const auto capacity = static_cast<std::size_t>(parts_.run.keyframe_queue);
+  if (surface_)
+    surface_fusion_.emplace("surface", 1, [this](SurfaceJob& job) {
+      const auto max_moves = static_cast<std::size_t>(parts_.surface.moves_per_keyframe);
+      in_background([&](StageTimes& times) { fuse(std::move(job.views), max_moves, times); });
+    });
   full_adjustment_.emplace("full adjustment", 1,
                            [this](AdjustmentJob&) { in_background([&](StageTimes& times) { adjust_map(times); }); });
   loop_closing_.emplace("loop closing", capacity, [this](LoopJob& job) {
@@ -52,6 +59,7 @@ void KeyframeFlow::rethrow_failures() {
   if (mapping_) mapping_->rethrow();
   if (loop_closing_) loop_closing_->rethrow();
   if (full_adjustment_) full_adjustment_->rethrow();
+  if (surface_fusion_) surface_fusion_->rethrow();
   moving_world_.rethrow();
 }
 
@@ -92,7 +100,9 @@ double KeyframeFlow::take_masks(StageTimes& times) {
     if (!arrived) return seconds;
     seconds += watch.seconds();
     if (!arrived->keyframe.valid()) continue;
-    show_view(apply_mask(*arrived, seconds, times));
+    const KeptView* view = apply_mask(*arrived, seconds, times);
+    show_view(view);
+    update_surface(view, times);
     hand_to_mapping({arrived->keyframe, true, image_to_describe(arrived->frame)}, times);
   }
 }
@@ -118,7 +128,9 @@ void KeyframeFlow::request_mask(const SensorFrame& sensor_frame, const Frame& fr
     if (points_need_parallax_) hand_to_mapping({keyframe, false}, times);
     return;
   }
-  show_view(keep_view(keyframe, sensor_frame, frame.coarse, {}, times));
+  const KeptView* view = keep_view(keyframe, sensor_frame, frame.coarse, {}, times);
+  show_view(view);
+  update_surface(view, times);
   hand_to_mapping({keyframe, true, image_to_describe(sensor_frame)}, times);
 }
 
@@ -247,8 +259,34 @@ const KeptView* KeyframeFlow::keep_view(KeyFrameId keyframe, const SensorFrame& 
   return &scene_->add(keyframe, frame, coarse, labels, left_out_);
 }
 
+void KeyframeFlow::update_surface(const KeptView* view, StageTimes& times) {
+  if (view == nullptr || !surface_) return;
+  if (surface_fusion_)
+    surface_fusion_->queue().push_newest({scene_->views()});
+  else
+    fuse(scene_->views(), static_cast<std::size_t>(parts_.surface.moves_per_keyframe), times);
+}
+
+void KeyframeFlow::fuse(std::vector<KeptView> views, std::size_t max_moves, StageTimes& times) {
+  const StageTimer timer(times, "surface");
+  std::vector<Eigen::Isometry3d> poses;
+  {
+    const LockedMap map(map_, LockPriority::background);
+    // The map of a view may have been removed since.
+    std::erase_if(views, [&](const KeptView& view) { return !map->submap_of(view.keyframe); });
+    for (const KeptView& view : views) poses.push_back(map->pose_of(view.keyframe).inverse());
+  }
+  surface_->update(views, poses, max_moves);
+}
+
+void KeyframeFlow::finish_surface() {
+  if (!surface_) return;
+  const std::size_t all = scene_->views().size();
+  in_background([&](StageTimes& times) { fuse(scene_->views(), all, times); });
+}
+
 void KeyframeFlow::show_view(const KeptView* view) {
-  if (view == nullptr || parts_.observers.empty()) return;
+  if (view == nullptr || parts_.observers.empty() || !parts_.dense_map.enabled) return;
   ObservedView observed{.keyframe = view->keyframe, .timestamp = view->timestamp};
   observed.points = [this, view](std::size_t max_count) { return scene_->surface(*view, max_count); };
   {
@@ -273,6 +311,7 @@ void KeyframeFlow::finish() {
   if (mapping_) mapping_->finish();
   if (loop_closing_) loop_closing_->finish();
   if (full_adjustment_) full_adjustment_->finish();
+  if (surface_fusion_) surface_fusion_->finish();
 }
 
 void KeyframeFlow::adjust_after_last_loop() {
@@ -304,6 +343,7 @@ std::vector<WorkerCounts> KeyframeFlow::worker_counts() const {
   if (mapping_) counts.push_back(mapping_->counts());
   if (loop_closing_) counts.push_back(loop_closing_->counts());
   if (full_adjustment_) counts.push_back(full_adjustment_->counts());
+  if (surface_fusion_) counts.push_back(surface_fusion_->counts());
   if (const auto segmentation = moving_world_.worker_counts()) counts.push_back(*segmentation);
   return counts;
 }

@@ -16,6 +16,7 @@
 #include "holdfast/mapping/local_mapper.hpp"
 #include "holdfast/moving_world/moving_world.hpp"
 #include "holdfast/pipeline/pipeline.hpp"
+#include "holdfast/surface/surface_map.hpp"
 #include "holdfast/tracking/mono_initialiser.hpp"
 
 namespace holdfast {
@@ -69,6 +70,8 @@ class KeyframeFlow {
   void finish();
   /// Runs one more full adjustment if keyframes were added since the last loop, which constrain it further.
   void adjust_after_last_loop();
+  /// Fuses every view at its final pose; the threads have ended.
+  void finish_surface();
   /// Makes long adjustments end after their current iteration.
   void request_stop();
 
@@ -85,7 +88,8 @@ class KeyframeFlow {
   std::uint64_t keyframes_deferred() const { return keyframes_deferred_; }
   std::vector<WorkerCounts> worker_counts() const;
   const MappingCounts& mapping_counts() const { return mapper_.counts(); }
-  const StaticScene* static_scene() const { return scene_ ? &*scene_ : nullptr; }
+  const StaticScene* static_scene() const { return parts_.dense_map.enabled && scene_ ? &*scene_ : nullptr; }
+  const SurfaceMap* surface() const { return surface_ ? &*surface_ : nullptr; }
   /// A copy of the map, from any thread.
   MapSnapshot snapshot() const;
 
@@ -102,6 +106,10 @@ class KeyframeFlow {
     KeyFrameId keyframe;
     std::vector<KeyFrameId> removed;
     cv::Mat image;
+  };
+  /// All views that are kept, for the surface: a newer job replaces one that waits.
+  struct SurfaceJob {
+    std::vector<KeptView> views;
   };
   /// The whole map, for full adjustment.
   struct AdjustmentJob {};
@@ -124,6 +132,9 @@ class KeyframeFlow {
   /// nullptr without a dense map; valid until the next call.
   const KeptView* keep_view(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse,
                             const cv::Mat& labels, StageTimes& times);
+  /// Adds a kept view to the surface, if there are both.
+  void update_surface(const KeptView* view, StageTimes& times);
+  void fuse(std::vector<KeptView> views, std::size_t max_moves, StageTimes& times) HOLDFAST_EXCLUDES(map_);
   /// Tells the observers of a kept view, if there is one.
   void show_view(const KeptView* view) HOLDFAST_EXCLUDES(map_);
   bool has_keyframe(KeyFrameId keyframe) const HOLDFAST_EXCLUDES(map_);
@@ -141,6 +152,7 @@ class KeyframeFlow {
   LoopCloser closer_;
   FullAdjustment adjustment_;
   std::optional<StaticScene> scene_;
+  std::optional<SurfaceMap> surface_;
   std::vector<bool> left_out_;      // of the static scene, by label
   std::deque<MappingJob> waiting_;  // they have their masks, but mapping had no room
   std::uint64_t keyframes_deferred_ = 0;
@@ -153,6 +165,7 @@ class KeyframeFlow {
   int keyframes_since_adjustment_ HOLDFAST_GUARDED_BY(record_mutex_) = 0;
 
   // Threads last: they use everything above, and each hands its work on to the one before it here.
+  std::optional<Worker<SurfaceJob>> surface_fusion_;
   std::optional<Worker<AdjustmentJob>> full_adjustment_;
   std::optional<Worker<LoopJob>> loop_closing_;
   std::optional<Worker<MappingJob>> mapping_;

@@ -242,6 +242,7 @@ void Pipeline::finish() {
     s.flow.keep_submap(locked, s.tracker.main_submap(locked));
   }
   s.flow.adjust_after_last_loop();
+  s.flow.finish_surface();
   if (s.keeps_classes()) s.map.unshared().classify_points();
   for (const auto& observer : s.parts.observers) observer->on_finish(s.map.unshared());
 }
@@ -280,6 +281,7 @@ Map Pipeline::take_map() {
   return std::exchange(state_->map.unshared(), Map());
 }
 const StaticScene* Pipeline::static_scene() const { return state_->flow.static_scene(); }
+const SurfaceMap* Pipeline::surface() const { return state_->flow.surface(); }
 const MappingCounts& Pipeline::mapping_counts() const { return state_->flow.mapping_counts(); }
 LoopRecord Pipeline::loop_record() const { return state_->flow.loop_record(); }
 Warnings Pipeline::warnings() const {

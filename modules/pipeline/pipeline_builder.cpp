@@ -9,6 +9,7 @@
 #include "holdfast/plugin/loader.hpp"
 #include "holdfast/plugin/module_check.hpp"
 #include "holdfast/plugin/parameter_check.hpp"
+#include "holdfast/surface/surface_field.hpp"
 
 namespace holdfast {
 
@@ -124,6 +125,10 @@ PipelineBuilder& PipelineBuilder::dense_map(const DenseMapSettings& settings) {
   parts_.dense_map = settings;
   return *this;
 }
+PipelineBuilder& PipelineBuilder::surface(const SurfaceSettings& settings) {
+  parts_.surface = settings;
+  return *this;
+}
 
 PipelineBuilder& PipelineBuilder::run(const RunSettings& settings) {
   parts_.run = settings;
@@ -232,6 +237,14 @@ void PipelineBuilder::check_settings() {
   check(parts_.mapping, "mapping");
   check(parts_.loop_closing, "loop_closing");
   check(parts_.dense_map, "dense_map");
+  check(parts_.surface, "surface");
+  if (const std::string trouble = parts_.surface.trouble(); !trouble.empty()) add_diagnostic(origin_.place, trouble);
+  if (parts_.surface.enabled && !SurfaceField::is_available())
+    add_diagnostic(
+        origin_.place,
+        "surface.enabled is true, and this build has no OpenVDB, which surfaces need; install it (`sh "
+        "cmake/install_dependencies.sh --surface`), configure and build again, or use `dense_map: { enabled: "
+        "true }` for a coloured cloud");
   check(parts_.run, "run");
   if (const auto reason = parts_.run.contradiction()) add_diagnostic(origin_.place, *reason);
 }
@@ -326,6 +339,9 @@ void PipelineBuilder::choose_sensor() {
   if (parts_.dense_map.enabled && parts_.sensor != Sensor::rgbd)
     add_diagnostic(origin_.place, "dense_map needs depth images, and the sensor is '" +
                                       std::string(sensor_name(parts_.sensor)) + "'; remove `dense_map`");
+  if (parts_.surface.enabled && parts_.sensor != Sensor::rgbd)
+    add_diagnostic(origin_.place, "surface needs depth images, and the sensor is '" +
+                                      std::string(sensor_name(parts_.sensor)) + "'; remove `surface`");
   if (parts_.sensor != Sensor::stereo) return;
   if (parts_.tracking.between_keyframes == BetweenKeyframes::flow)
     add_diagnostic(origin_.place,

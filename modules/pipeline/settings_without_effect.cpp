@@ -10,6 +10,10 @@ void PipelineBuilder::check_effects() {
     suspect(origin_.place,
             "'dense_map' has no effect where the camera is only localised in a map, which stays as it is; continue the "
             "map instead, or remove 'dense_map'");
+  if (parts_.localise_only && parts_.surface.enabled)
+    suspect(origin_.place,
+            "'surface' has no effect where the camera is only localised in a map, which stays as it is; continue the "
+            "map instead, or remove 'surface'");
   bool uses_masks = false;
   for (std::size_t i = 0; i < filters_.size(); ++i) {
     const Needs needs = parts_.filters[i].second->needs();

@@ -9,6 +9,9 @@
 #include "holdfast/evaluation/report.hpp"
 #include "holdfast/map_io/map_export.hpp"
 #include "holdfast/map_io/map_file.hpp"
+#include "holdfast/plugin/parameter_table.hpp"
+#include "holdfast/surface/mesh_files.hpp"
+#include "holdfast/surface/surface_settings.hpp"
 
 namespace holdfast {
 
@@ -60,13 +63,20 @@ void write_dense_map(const RunRecord& record, const std::filesystem::path& file)
     write_points_ply(file, record.map);
 }
 
+std::vector<std::string> surface_formats(const RunRecord& record) {
+  const auto section = record.configuration.sections.find("surface");
+  if (section == record.configuration.sections.end()) return SurfaceSettings().formats;
+  return ParameterTable<SurfaceSettings>().settings(section->second).formats;
+}
+
 }  // namespace
 
 const std::vector<std::string>& result_names() {
   static const std::vector<std::string> names = {"report.html",     "run.json",    "trajectory.txt", "keyframes.txt",
                                                  "evaluation.json", "tracks.json", "trajectory.svg", "error.svg",
-                                                 "config.yaml",     "map.hfm",     "static_map.ply", "objects.csv",
-                                                 "overlay"};
+                                                 "config.yaml",     "map.hfm",     "static_map.ply", "surface.ply",
+                                                 "surface.obj",     "surface.glb", "map.pgm",        "map.yaml",
+                                                 "octomap.bt",      "objects.csv", "overlay"};
   return names;
 }
 
@@ -93,6 +103,16 @@ void write_results(const RunRecord& record, const std::filesystem::path& folder)
     results.write_text("error.svg", [&] { return error_over_time_svg(*record.evaluation); });
   }
   if (has_map) results.write("static_map.ply", [&](const path& file) { write_dense_map(record, file); });
+  if (record.surface && !record.surface->empty())
+    for (const std::string& format : surface_formats(record))
+      results.write(("surface." + format).c_str(), [&](const path& file) { write_mesh(file, *record.surface); });
+  if (record.navigation) {
+    results.write_text("octomap.bt", [&] { return record.navigation->octomap; });
+    if (record.navigation->floor) {
+      results.write_text("map.pgm", [&] { return grid_map_pgm(record.navigation->grid); });
+      results.write_text("map.yaml", [&] { return grid_map_yaml(record.navigation->grid, "map.pgm"); });
+    }
+  }
   results.throw_failures();
 }
 

@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <utility>
 
+#include "focal_check.hpp"
 #include "frame_loop.hpp"
+#include "holdfast/core/counted.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/dense_map/static_scene.hpp"
-#include "focal_check.hpp"
+#include "holdfast/evaluation/number_text.hpp"
+#include "holdfast/surface/surface_map.hpp"
 #include "run_warnings.hpp"
 
 namespace holdfast {
@@ -71,6 +74,27 @@ void record_pipeline(const Pipeline& pipeline, RunRecord& record) {
   record.focal_ratio = estimate_focal_ratio(pipeline.map());
 }
 
+void record_surface(const SurfaceMap& surface, RunRecord& record) {
+  record.surface = surface.field().mesh();
+  if (record.surface->empty())
+    add_warning(record.warnings,
+                {{},
+                 "the surface is empty, and no mesh is written: " + counted(surface.view_count(), "keyframe") +
+                     " with depth up to " + fixed_text(surface.field().settings().maximum_depth, 1) +
+                     " m show no surface in " + counted(surface.field().settings().minimum_views, "view") +
+                     "; check the depth of the source, and `surface.maximum_depth`"});
+  if (!surface.field().settings().navigation || record.surface->empty()) return;
+  record.navigation = make_navigation_maps(surface, *record.surface);
+  constexpr double least_floor = 1.0;  // [m^2]
+  if (const double area = record.navigation->floor ? record.navigation->floor->area : 0.0; area < least_floor)
+    add_warning(record.warnings,
+                {{},
+                 (record.navigation->floor
+                      ? "the floor of map.pgm is a plane of " + fixed_text(area, 2) + " m^2: is it a table?"
+                      : std::string("no floor was found, and map.pgm is not written.")) +
+                     " Let the camera see more of the floor"});
+}
+
 }  // namespace
 
 RunRecord run(BuiltPipeline& built, const Configuration& configuration, const RunOptions& options) {
@@ -102,6 +126,7 @@ RunRecord run(const Configuration& configuration, const Registry& registry, cons
   if (options.wrap_source) built.source = options.wrap_source(std::move(built.source));
   RunRecord record = run(built, configuration, options);
   if (const StaticScene* scene = built.pipeline.static_scene()) record.dense_map = scene->cloud(built.pipeline.map());
+  if (const SurfaceMap* surface = built.pipeline.surface()) record_surface(*surface, record);
   record.map = built.pipeline.take_map();
   return record;
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <CLI/CLI.hpp>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -12,10 +13,12 @@
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
+#include "cli/command.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/simulation/scene_file.hpp"
 #include "holdfast/simulation/simulator.hpp"
+#include "holdfast/surface/mesh_files.hpp"
 
 namespace holdfast {
 namespace {
@@ -211,6 +214,60 @@ TEST_F(SimulateScene, DrawsAPreviewAndNothingElse) {
   cv::meanStdDev(preview, mean, deviation);
   EXPECT_GT(deviation[0], 10.0);
   EXPECT_EQ(std::distance(fs::directory_iterator(root_), {}), 2);  // the scene and the picture
+}
+
+TEST_F(SimulateScene, WritesTheTrueSurfaceWhichEvaluateSurfaceCompares) {
+  const std::string all = (root_ / "all.ply").string(), seen = (root_ / "seen.ply").string();
+  ASSERT_EQ(run(command("--set duration=0.04 --surface " + all + " --seen-surface " + seen)), 0);
+  const TriangleMesh room = read_mesh(all), part = read_mesh(seen);
+  Eigen::AlignedBox3f box;
+  for (const MeshVertex& vertex : room.vertices) box.extend(vertex.position);
+  // The office, and what is behind its door.
+  EXPECT_TRUE(box.contains(Eigen::Vector3f(0.001F, 0.001F, 0.001F)));
+  EXPECT_TRUE(box.contains(Eigen::Vector3f(5.999F, 4.999F, 2.599F)));
+  EXPECT_LT(box.sizes().maxCoeff(), 7.0F);
+  EXPECT_GT(part.area(), 1.0);
+  EXPECT_LT(part.area(), 0.2 * room.area());
+
+  const auto figures = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), "evaluate-surface");
+    for (const char* word : {"--json", "-", "--spacing", "0.05"}) words.emplace_back(word);
+    const test::CommandOutcome outcome = test::run_command(words);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+    return nlohmann::json::parse(outcome.output);
+  };
+  const nlohmann::json whole = figures({all, seen});
+  EXPECT_LT(whole["accuracy"], 1e-4);
+  EXPECT_EQ(whole["ghosts"], 0.0);
+  EXPECT_LT(whole["completion_ratio"], 0.5);
+  EXPECT_EQ(figures({all, seen, "--seen", seen})["completion_ratio"], 1.0);
+
+  // The same part in another world frame, with the trajectories of both.
+  const Eigen::Isometry3d motion =
+      Eigen::Translation3d(1.0, -2.0, 0.5) * Eigen::AngleAxisd(2.0, Eigen::Vector3d(1, 2, -1).normalized());
+  TriangleMesh moved = part;
+  for (MeshVertex& vertex : moved.vertices) vertex.position = motion.cast<float>() * vertex.position;
+  write_mesh(root_ / "moved.ply", moved);
+  Trajectory truth, estimate;
+  for (int i = 0; i < 3; ++i) {
+    const Eigen::Isometry3d pose =
+        Eigen::Translation3d(0.1 * i, 0.0, 1.0) * Eigen::AngleAxisd(0.3 * i, Eigen::Vector3d::UnitZ());
+    truth.push_back({0.1 * i, pose});
+    estimate.push_back({0.1 * i + 0.001, motion * pose});
+  }
+  write_trajectory(root_ / "truth.txt", truth);
+  write_trajectory(root_ / "estimate.txt", estimate);
+  const std::string other = (root_ / "moved.ply").string();
+  EXPECT_LT(figures({all, other, "--truth-trajectory", (root_ / "truth.txt").string(), "--trajectory",
+                     (root_ / "estimate.txt").string()})["accuracy"],
+            1e-4);
+
+  const test::CommandOutcome half = test::run_command({"evaluate-surface", all, seen, "--trajectory", "x.txt"});
+  EXPECT_EQ(half.exit_code, 2);
+  EXPECT_NE(half.errors.find("--truth-trajectory and --trajectory belong together"), std::string::npos) << half.errors;
+  const test::CommandOutcome scene_as_mesh = test::run_command({"evaluate-surface", scene().string(), seen});
+  EXPECT_EQ(scene_as_mesh.exit_code, 1);
+  EXPECT_NE(scene_as_mesh.errors.find("scene.yaml: is no PLY file"), std::string::npos) << scene_as_mesh.errors;
 }
 
 TEST_F(SimulateScene, TellsWhereTheSceneIsWrongAndWritesNothing) {

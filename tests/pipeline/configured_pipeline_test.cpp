@@ -260,7 +260,7 @@ TEST_F(ConfiguredPipeline, DescribesItsSections) {
     }
   }
   EXPECT_THAT(names, ::testing::ElementsAre("tracking", "stereo", "segmentation", "evidence", "mapping", "loop_closing",
-                                            "dense_map", "perturbation"));
+                                            "dense_map", "surface", "perturbation"));
 }
 
 }  // namespace

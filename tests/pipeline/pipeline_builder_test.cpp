@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "holdfast/settings/ceres.hpp"
+#include "holdfast/surface/surface_field.hpp"
 #include "support/brute_force_detector.hpp"
 #include "support/point_world.hpp"
 
@@ -240,6 +241,24 @@ TEST(PipelineBuilder, ADenseMapWhileLocalisingIsNamed) {
   ASSERT_EQ(warnings_of(true).size(), 1U);
   EXPECT_THAT(warnings_of(true)[0].message, HasSubstr("'dense_map' has no effect where the camera is only localised"));
   EXPECT_TRUE(warnings_of(false).empty());
+}
+
+TEST(PipelineBuilder, ASurfaceIsCheckedBeforeTheRun) {
+  test::PointWorld world(find_camera("tum_fr1").value());
+  PipelineBuilder unknown = builder_for(world);
+  unknown.surface({.enabled = true, .formats = {"stl"}});
+  EXPECT_THAT(complaints(unknown),
+              HasSubstr("surface.formats: 'stl' is no format of meshes; expected ply, obj or glb"));
+  PipelineBuilder range = builder_for(world);
+  range.surface({.enabled = true, .voxel = 5.0});
+  EXPECT_THAT(complaints(range), HasSubstr("voxel"));
+  PipelineBuilder mono = builder_for(world);
+  mono.surface({.enabled = true}).sensor(Sensor::mono);
+  EXPECT_THAT(complaints(mono), HasSubstr("surface needs depth images, and the sensor is 'mono'"));
+  if (SurfaceField::is_available()) return;
+  PipelineBuilder builder = builder_for(world);
+  builder.surface({.enabled = true});
+  EXPECT_THAT(complaints(builder), HasSubstr("this build has no OpenVDB"));
 }
 
 TEST(PipelineBuilder, AMapIsContinuedByItsOwnExtractorOnly) {

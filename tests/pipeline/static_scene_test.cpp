@@ -6,6 +6,7 @@
 #include "holdfast/dense_map/static_scene.hpp"
 #include "holdfast/pipeline/pipeline.hpp"
 #include "holdfast/plugin/registry.hpp"
+#include "holdfast/surface/surface_map.hpp"
 #include "support/point_world.hpp"
 
 extern "C" void holdfast_register_plugin_ceres(holdfast::Registry&);
@@ -117,6 +118,38 @@ TEST(PipelineStaticScene, IsToldToObservers) {
   EXPECT_TRUE(told.keyframes.empty());
   EXPECT_EQ(told.classes.size(), 3U);
 }
+
+/// Frames with depth everywhere: that of the points, and a wall behind them.
+SensorFrame with_wall(SensorFrame frame) {
+  frame.depth.setTo(8.0F, frame.depth == 0.0F);
+  return frame;
+}
+
+TEST(PipelineSurface, HasEveryKeyframeAtItsFinalPose) {
+  if (!SurfaceField::is_available()) GTEST_SKIP() << "built without OpenVDB";
+  for (const bool threaded : {false, true}) {
+    test::PointWorld world(find_camera("tum_fr3").value());
+    Registry registry;
+    holdfast_register_plugin_ceres(registry);
+    PipelineParts parts;
+    parts.camera = world.camera();
+    parts.features = std::make_unique<test::PointExtractor>(world, 0.3);
+    parts.optimizer = registry.create<Optimizer>("ceres", {}, {});
+    parts.surface = {.enabled = true, .voxel = 0.2, .maximum_depth = 9.0, .moves_per_keyframe = 0};
+    parts.dense_map.step = 8;
+    if (threaded) parts.run.mode = RunMode::threaded;
+    Pipeline pipeline(std::move(parts));
+    for (int i = 0; i < 40; ++i)
+      pipeline.feed(with_wall(world.frame(static_cast<std::uint64_t>(i), i / 30.0, test::path_pose(i / 30.0))));
+    pipeline.finish();
+    ASSERT_NE(pipeline.surface(), nullptr);
+    EXPECT_EQ(pipeline.static_scene(), nullptr) << "a surface keeps views, and asks for no cloud";
+    EXPECT_EQ(pipeline.surface()->view_count(), pipeline.mapping_counts().keyframes_made);
+    EXPECT_FALSE(pipeline.surface()->field().mesh().empty());
+  }
+}
+
+TEST(PipelineSurface, IsMadeOnlyWhenAskedFor) { EXPECT_EQ(fed_pipeline(true, false, false).surface(), nullptr); }
 
 }  // namespace
 }  // namespace holdfast

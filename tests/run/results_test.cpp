@@ -11,6 +11,7 @@
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/map_io/map_file.hpp"
+#include "holdfast/plugin/parameter_table.hpp"
 #include "holdfast/run/trajectory_journal.hpp"
 #include "run/point_run.hpp"
 
@@ -88,6 +89,29 @@ TEST_F(ResultsTest, TheDenseMapTakesThePlaceOfTheMapPoints) {
   record_.dense_map = std::vector<CloudPoint>(3);
   write_results(record_, folder_);
   EXPECT_THAT(text("static_map.ply"), HasSubstr("element vertex 3\n"));
+}
+
+TEST_F(ResultsTest, ASurfaceIsWrittenInItsFormatsAndWithItsMaps) {
+  record_.surface.emplace().vertices.resize(3);
+  for (int i = 0; i < 3; ++i) record_.surface->vertices[static_cast<std::size_t>(i)].position[i] = 1.0F;
+  record_.surface->triangles = {{0, 1, 2}};
+  SurfaceSettings settings;
+  settings.formats = {"glb", "obj"};
+  record_.configuration.sections["surface"] = ParameterTable<SurfaceSettings>().values(settings);
+  NavigationMaps& maps = record_.navigation.emplace();
+  maps.floor.emplace();
+  maps.grid.width = maps.grid.height = 1;
+  maps.grid.cells = {Occupancy::free};
+  maps.octomap = "tree";
+  write_results(record_, folder_);
+  EXPECT_THAT(text("surface.glb"), ::testing::StartsWith("glTF"));
+  EXPECT_THAT(text("surface.obj"), HasSubstr("f 1//1 2//2 3//3"));
+  EXPECT_FALSE(fs::exists(folder_ / "surface.ply"));
+  EXPECT_EQ(text("octomap.bt"), "tree");
+  EXPECT_EQ(text("map.pgm"), "P5\n1 1\n255\n\xFE");
+  EXPECT_THAT(text("map.yaml"), ::testing::StartsWith("image: map.pgm\n"));
+  for (const std::string& name : files())
+    EXPECT_EQ(std::count(result_names().begin(), result_names().end(), name), 1) << name;
 }
 
 TEST_F(ResultsTest, RunJsonHoldsTheFigures) {

@@ -25,6 +25,7 @@
 #include "holdfast/moving_world/evidence_settings.hpp"
 #include "holdfast/moving_world/mask_counts.hpp"
 #include "holdfast/moving_world/segmentation_settings.hpp"
+#include "holdfast/surface/surface_settings.hpp"
 #include "holdfast/tracking/loss_record.hpp"
 #include "holdfast/tracking/stereo_settings.hpp"
 #include "holdfast/tracking/tracking_settings.hpp"
@@ -32,6 +33,7 @@
 namespace holdfast {
 
 class StaticScene;
+class SurfaceMap;
 
 /// The parts of a pipeline. PipelineBuilder checks and fills them.
 struct PipelineParts {
@@ -53,6 +55,7 @@ struct PipelineParts {
   MappingSettings mapping;
   LoopClosingSettings loop_closing;
   DenseMapSettings dense_map;
+  SurfaceSettings surface;
   RunSettings run;
   Map map;                     ///< map to continue; empty = begin a new map
   bool localise_only = false;  ///< find poses in the map and leave it unchanged
@@ -119,6 +122,9 @@ class Pipeline {
   Map take_map();
   /// What keyframes saw of the static scene; nullptr unless DenseMapSettings::enabled. Not while feed() runs.
   const StaticScene* static_scene() const;
+  /// The fused surface of the static scene; nullptr unless SurfaceSettings::enabled. After finish() it has every kept
+  /// view at its final pose; not before.
+  const SurfaceMap* surface() const;
   const MappingCounts& mapping_counts() const;
   LoopRecord loop_record() const;
   const Camera& camera() const;

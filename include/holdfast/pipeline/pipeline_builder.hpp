@@ -117,6 +117,7 @@ class PipelineBuilder {
   PipelineBuilder& mapping(const MappingSettings& settings);
   PipelineBuilder& loop_closing(const LoopClosingSettings& settings);
   PipelineBuilder& dense_map(const DenseMapSettings& settings);
+  PipelineBuilder& surface(const SurfaceSettings& settings);
 
   /// Threads, pace and seed; the default is sequential.
   PipelineBuilder& run(const RunSettings& settings);

@@ -14,6 +14,8 @@
 #include "holdfast/interfaces/frame_source.hpp"
 #include "holdfast/map_io/cloud_ply.hpp"
 #include "holdfast/pipeline/pipeline.hpp"
+#include "holdfast/surface/free_space.hpp"
+#include "holdfast/surface/triangle_mesh.hpp"
 
 namespace holdfast {
 
@@ -65,6 +67,8 @@ struct RunRecord {
   Map map;                        ///< the map at the end; empty when the caller keeps the pipeline, see run()
   bool localised_only = false;    ///< the run found poses in a given map and left it unchanged
   std::optional<std::vector<CloudPoint>> dense_map;  ///< cloud of the static scene, with dense_map.enabled
+  std::optional<TriangleMesh> surface;               ///< mesh of the static scene, with surface.enabled
+  std::optional<NavigationMaps> navigation;          ///< with surface.navigation; never without a mesh
   MappingCounts mapping;
   LoopRecord loops;
   LossRecord losses;

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "holdfast/surface/triangle_mesh.hpp"
+
+namespace holdfast {
+
+struct SurfaceEvaluationOptions {
+  double threshold = 0.05;       ///< distance up to which a point counts as right, for the ratios and the F-score [m]
+  double ghost_distance = 0.15;  ///< estimated surface farther from the truth is a ghost [m]
+  double spacing = 0.02;         ///< of the points at which distances are measured [m]: one per square of this side
+};
+
+/// Agreement of an estimated surface with the true one, from points spread evenly over both.
+struct SurfaceEvaluation {
+  double accuracy = 0.0;           ///< mean distance from the estimate to the truth [m]
+  double accuracy_median = 0.0;    ///< [m]
+  double completion = 0.0;         ///< mean distance from the truth to the estimate [m]
+  double completion_median = 0.0;  ///< [m]
+  double precision = 0.0;          ///< share of the estimate within the threshold of the truth, 0 to 1
+  double completion_ratio = 0.0;   ///< share of the truth within the threshold of the estimate, 0 to 1
+  double f_score = 0.0;            ///< harmonic mean of both shares, 0 to 1
+  double chamfer = 0.0;            ///< mean of accuracy and completion [m]
+  double normal_agreement = 0.0;   ///< mean absolute cosine of the angle between the normals, within the threshold
+  double ghosts = 0.0;             ///< share of the estimate farther from the truth than ghost_distance, 0 to 1
+  double truth_area = 0.0, estimate_area = 0.0;  ///< [m^2]
+  std::size_t truth_points = 0, estimate_points = 0;
+  SurfaceEvaluationOptions options;
+};
+
+/// Compares surfaces in one world frame. Distances are exact, from points to triangles (Knapitsch et al., Tanks and
+/// Temples, TOG 2017, with triangles in place of points). `seen` is the part of the truth that an estimate could
+/// contain, for completion; accuracy and ghosts refer to all of `truth`. Deterministic. Throws Error for a mesh without
+/// area.
+SurfaceEvaluation evaluate_surface(const TriangleMesh& truth, const TriangleMesh& seen, const TriangleMesh& estimate,
+                                   const SurfaceEvaluationOptions& options);
+
+/// Colours the vertices of a mesh by their distance to the truth: blue 0, green half of `scale`, red `scale` [m] and
+/// more.
+void colour_by_error(TriangleMesh& mesh, const TriangleMesh& truth, double scale);
+
+/// Formats the figures as a table for a terminal; ends with a newline.
+std::string to_text(const SurfaceEvaluation& evaluation);
+/// Formats the figures as JSON in full precision.
+std::string to_json(const SurfaceEvaluation& evaluation);
+/// Formats the figures as CSV: "name,value" lines.
+std::string to_csv(const SurfaceEvaluation& evaluation);
+
+}  // namespace holdfast

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace holdfast {
+
+/// A vertex of a mesh in world coordinates.
+struct MeshVertex {
+  Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< [m]
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();    ///< unit, towards free space; zero if unknown
+  std::uint8_t red = 0, green = 0, blue = 0;
+};
+
+/// An indexed triangle mesh. The corners of a triangle are counter-clockwise as seen from free space.
+struct TriangleMesh {
+  std::vector<MeshVertex> vertices;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+
+  bool empty() const { return triangles.empty(); }
+  const Eigen::Vector3f& corner(std::size_t triangle, int index) const {
+    return vertices[triangles[triangle][static_cast<std::size_t>(index)]].position;
+  }
+  /// Half the cross product of two edges: its length is the area [m^2], its direction the normal.
+  Eigen::Vector3d area_vector(std::size_t triangle) const;
+  /// Sum of the areas of all triangles [m^2].
+  double area() const;
+};
+
+/// Sets the normal of every vertex to the mean of those of its triangles, weighted by their areas.
+void compute_normals(TriangleMesh& mesh);
+
+/// Removes connected parts (by shared vertices) with an area below `smallest_area` [m^2], and vertices without
+/// triangles. The order of what remains is unchanged.
+void remove_small_parts(TriangleMesh& mesh, double smallest_area);
+
+}  // namespace holdfast

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "block_tree.hpp"
+
+namespace holdfast::surface {
+
+/// 8^3 voxels: sums over views. Voxel (x, y, z) is entry 64 x + 8 y + z; its position is that of its corner with the
+/// smallest coordinates, (8 * coordinates + (x, y, z)) * SurfaceSettings::voxel.
+struct Block {
+  static constexpr int side = 8, size = side * side * side;
+  static constexpr int truncation_units = 256;  ///< of a distance of SurfaceSettings::truncation
+  static constexpr int colour_limit = 255;      ///< observations, so that their sum fits 16 bits
+  static constexpr float free_below = -1.2F;    ///< balance
+
+  struct Colour {
+    std::uint16_t red = 0, green = 0, blue = 0, count = 0;
+  };
+
+  Eigen::Vector3i coordinates = Eigen::Vector3i::Zero();
+  std::uint64_t birth = 0;                           ///< position in the order of creation
+  std::array<std::int32_t, size> distance{};         ///< sum of weight * distance
+  std::array<float, size> balance{};                 ///< see SurfaceField, in units of a view with the number `last`
+  std::array<std::uint16_t, size> weight{};          ///< sum
+  std::array<std::uint16_t, size> last{};            ///< largest number of a view in the balance
+  std::array<std::uint8_t, size> views{};            ///< that observed the surface
+  std::unique_ptr<std::array<Colour, size>> colour;  ///< near the surface
+
+  static constexpr int index(int x, int y, int z) { return (x * side + y) * side + z; }
+
+  /// Truncated distance from -1 to 1, or NaN where nothing is known.
+  float value(int i, int minimum_views) const {
+    const auto at = static_cast<std::size_t>(i);
+    const bool is_free = balance[at] < free_below;
+    if (weight[at] > 0 && views[at] >= minimum_views) {
+      const float mean =
+          static_cast<float>(distance[at]) / (static_cast<float>(weight[at]) * static_cast<float>(truncation_units));
+      return is_free && mean < 0.5F ? 0.5F : mean;
+    }
+    return is_free ? 1.0F : std::numeric_limits<float>::quiet_NaN();
+  }
+};
+
+/// All blocks, in the order of their creation, and the tree that finds them by their coordinates.
+class Blocks {
+ public:
+  Block& at(const Eigen::Vector3i& coordinates) {
+    const std::int32_t found = tree_.find(coordinates);
+    if (found >= 0) return *blocks_[static_cast<std::size_t>(found)];
+    tree_.set(coordinates, static_cast<std::int32_t>(blocks_.size()));
+    blocks_.push_back(std::make_unique<Block>());
+    blocks_.back()->coordinates = coordinates;
+    blocks_.back()->birth = births_++;
+    return *blocks_.back();
+  }
+  /// Position in list(), or -1.
+  std::int32_t find(const Eigen::Vector3i& coordinates) const { return tree_.find(coordinates); }
+  const std::vector<std::unique_ptr<Block>>& list() const { return blocks_; }
+  std::uint64_t births() const { return births_; }
+
+  template <class Condition>
+  void remove_if(const Condition& condition) {
+    if (std::erase_if(blocks_, [&](const std::unique_ptr<Block>& block) { return condition(*block); }) == 0) return;
+    tree_.clear();
+    for (std::size_t i = 0; i < blocks_.size(); ++i) tree_.set(blocks_[i]->coordinates, static_cast<std::int32_t>(i));
+  }
+
+ private:
+  BlockTree tree_;
+  std::vector<std::unique_ptr<Block>> blocks_;
+  std::uint64_t births_ = 0;
+};
+
+}  // namespace holdfast::surface

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/surface/surface_evaluation.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+#include "holdfast/core/error.hpp"
+#include "holdfast/surface/triangle_tree.hpp"
+
+namespace holdfast {
+
+namespace {
+
+struct SurfacePoint {
+  Eigen::Vector3d position;
+  std::size_t triangle = 0;
+};
+
+/// Points in numbers proportional to the area, within a triangle by the sequence R2 (Roberts 2018).
+std::vector<SurfacePoint> points_on(const TriangleMesh& mesh, double spacing) {
+  constexpr double first = 0.7548776662466927, second = 0.5698402909980532;  // powers of 1 / the plastic number
+  std::vector<SurfacePoint> points;
+  double due = 0.5, u = 0.5, v = 0.5;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    due += mesh.area_vector(i).norm() / (spacing * spacing);
+    const Eigen::Vector3d a = mesh.corner(i, 0).cast<double>(), b = mesh.corner(i, 1).cast<double>(),
+                          c = mesh.corner(i, 2).cast<double>();
+    for (; due >= 1.0; due -= 1.0) {
+      u = std::fmod(u + first, 1.0), v = std::fmod(v + second, 1.0);
+      const bool is_mirrored = u + v > 1.0;
+      const double s = is_mirrored ? 1.0 - u : u, t = is_mirrored ? 1.0 - v : v;
+      points.push_back({a + s * (b - a) + t * (c - a), i});
+    }
+  }
+  return points;
+}
+
+struct Distances {
+  double mean = 0.0, median = 0.0, share_within = 0.0, share_beyond = 0.0, normal_agreement = 0.0;
+  std::size_t points = 0;
+};
+
+Distances distances(const TriangleMesh& from, const TriangleMesh& to, const SurfaceEvaluationOptions& options) {
+  const TriangleTree tree(to);
+  std::vector<double> all;
+  std::size_t within = 0, beyond = 0;
+  double cosines = 0.0;
+  for (const SurfacePoint& point : points_on(from, options.spacing)) {
+    const TriangleTree::Nearest nearest = tree.nearest(point.position);
+    all.push_back(nearest.distance);
+    if (nearest.distance > options.ghost_distance) ++beyond;
+    if (nearest.distance > options.threshold) continue;
+    ++within;
+    cosines +=
+        std::abs(from.area_vector(point.triangle).normalized().dot(to.area_vector(nearest.triangle).normalized()));
+  }
+  Distances result;
+  result.points = all.size();
+  if (all.empty()) return result;
+  const auto count = static_cast<double>(all.size());
+  for (const double distance : all) result.mean += distance / count;
+  std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), all.end());
+  result.median = all[all.size() / 2];
+  result.share_within = static_cast<double>(within) / count;
+  result.share_beyond = static_cast<double>(beyond) / count;
+  result.normal_agreement = within > 0 ? cosines / static_cast<double>(within) : 0.0;
+  return result;
+}
+
+void require_area(const TriangleMesh& mesh, const char* name, double spacing) {
+  if (mesh.area() < spacing * spacing)
+    throw Error(std::string("the ") + name + " has no surface; expected a mesh with triangles, in metres");
+}
+
+std::vector<std::pair<const char*, double>> figures(const SurfaceEvaluation& e) {
+  return {{"accuracy", e.accuracy},
+          {"accuracy_median", e.accuracy_median},
+          {"completion", e.completion},
+          {"completion_median", e.completion_median},
+          {"precision", e.precision},
+          {"completion_ratio", e.completion_ratio},
+          {"f_score", e.f_score},
+          {"chamfer", e.chamfer},
+          {"normal_agreement", e.normal_agreement},
+          {"ghosts", e.ghosts},
+          {"truth_area", e.truth_area},
+          {"estimate_area", e.estimate_area},
+          {"threshold", e.options.threshold},
+          {"ghost_distance", e.options.ghost_distance},
+          {"spacing", e.options.spacing}};
+}
+
+}  // namespace
+
+SurfaceEvaluation evaluate_surface(const TriangleMesh& truth, const TriangleMesh& seen, const TriangleMesh& estimate,
+                                   const SurfaceEvaluationOptions& options) {
+  require_area(truth, "truth", options.spacing);
+  require_area(seen, "seen part of the truth", options.spacing);
+  require_area(estimate, "estimate", options.spacing);
+  const Distances to_truth = distances(estimate, truth, options), to_estimate = distances(seen, estimate, options);
+  SurfaceEvaluation result;
+  result.options = options;
+  result.accuracy = to_truth.mean;
+  result.accuracy_median = to_truth.median;
+  result.precision = to_truth.share_within;
+  result.ghosts = to_truth.share_beyond;
+  result.normal_agreement = to_truth.normal_agreement;
+  result.completion = to_estimate.mean;
+  result.completion_median = to_estimate.median;
+  result.completion_ratio = to_estimate.share_within;
+  const double sum = result.precision + result.completion_ratio;
+  result.f_score = sum > 0.0 ? 2.0 * result.precision * result.completion_ratio / sum : 0.0;
+  result.chamfer = 0.5 * (result.accuracy + result.completion);
+  result.truth_area = seen.area();
+  result.estimate_area = estimate.area();
+  result.truth_points = to_estimate.points;
+  result.estimate_points = to_truth.points;
+  return result;
+}
+
+void colour_by_error(TriangleMesh& mesh, const TriangleMesh& truth, double scale) {
+  const TriangleTree tree(truth);
+  for (MeshVertex& vertex : mesh.vertices) {
+    const double part = std::min(tree.nearest(vertex.position.cast<double>()).distance / scale, 1.0);
+    const auto level = [](double value) { return static_cast<std::uint8_t>(std::lround(255.0 * value)); };
+    vertex.red = level(std::clamp(2.0 * part - 1.0, 0.0, 1.0));
+    vertex.green = level(1.0 - std::abs(2.0 * part - 1.0));
+    vertex.blue = level(std::clamp(1.0 - 2.0 * part, 0.0, 1.0));
+  }
+}
+
+std::string to_text(const SurfaceEvaluation& e) {
+  std::string text;
+  const auto add = [&](const char* format, auto... values) {
+    char line[160];
+    std::snprintf(line, sizeof(line), format, values...);
+    text += line;
+  };
+  add("surface     %.2f m^2 estimated, %.2f m^2 true\n", e.estimate_area, e.truth_area);
+  add("accuracy    %.2f cm mean, %.2f cm median (estimate to truth)\n", 100 * e.accuracy, 100 * e.accuracy_median);
+  add("completion  %.2f cm mean, %.2f cm median (truth to estimate)\n", 100 * e.completion, 100 * e.completion_median);
+  add("within %.3g cm  precision %.2f %%, completion ratio %.2f %%, F-score %.2f %%\n", 100 * e.options.threshold,
+      100 * e.precision, 100 * e.completion_ratio, 100 * e.f_score);
+  add("Chamfer     %.2f cm\n", 100 * e.chamfer);
+  add("normals     %.3f mean cosine\n", e.normal_agreement);
+  add("ghosts      %.3f %% of the estimate is farther than %.3g cm from the truth\n", 100 * e.ghosts,
+      100 * e.options.ghost_distance);
+  return text;
+}
+
+std::string to_json(const SurfaceEvaluation& evaluation) {
+  nlohmann::ordered_json json;
+  for (const auto& [name, value] : figures(evaluation)) json[name] = value;
+  json["truth_points"] = evaluation.truth_points;
+  json["estimate_points"] = evaluation.estimate_points;
+  return json.dump(2) + "\n";
+}
+
+std::string to_csv(const SurfaceEvaluation& evaluation) {
+  std::string text = "name,value\n";
+  for (const auto& [name, value] : figures(evaluation)) {
+    char line[64];
+    std::snprintf(line, sizeof(line), "%s,%.9g\n", name, value);
+    text += line;
+  }
+  return text;
+}
+
+}  // namespace holdfast

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/surface/surface_settings.hpp"
+
+#include <algorithm>
+
+#include "holdfast/plugin/parameter_table.hpp"
+#include "holdfast/surface/mesh_files.hpp"
+
+namespace holdfast {
+
+void SurfaceSettings::describe(ParameterTable<SurfaceSettings>& table) {
+  using S = SurfaceSettings;
+  table.add(
+      "enabled", &S::enabled,
+      "fuse the depth of keyframes into a surface and write it as a mesh; needs a build with OpenVDB. Which images "
+      "and pixels count is said by the section `dense_map`");
+  table.add("voxel", &S::voxel, "side of a voxel").range(0.002, 0.5).unit("m");
+  table.add("truncation", &S::truncation, "largest distance to the surface that a voxel stores")
+      .range(2, 20)
+      .unit("voxels");
+  table.add("maximum_depth", &S::maximum_depth, "larger depths are not fused; they are too noisy")
+      .range(0.1, 16)
+      .unit("m");
+  table.add("minimum_views", &S::minimum_views, "minimum number of keyframes that observe the surface at a voxel")
+      .range(1, 100);
+  table.add("smallest_part", &S::smallest_part, "connected parts of the mesh with a smaller area are left out")
+      .range(0, 100)
+      .unit("m^2");
+  table
+      .add("moves_per_keyframe", &S::moves_per_keyframe,
+           "maximum number of keyframes that are fused again at their adjusted pose with each new keyframe; at the end "
+           "of a run all are")
+      .range(0, 1000);
+  table.add("formats", &S::formats, "files to write: ply (surface.ply), obj, glb (binary glTF 2.0)");
+  table.add("navigation", &S::navigation,
+            "also write maps for navigation: map.pgm and map.yaml for ROS's map_server, and octomap.bt");
+  table.add("cell", &S::cell, "side of a cell of these maps").range(0.01, 1).unit("m");
+  table.add("robot_lowest", &S::robot_lowest, "surface below this height over the floor is no obstacle")
+      .range(0, 1)
+      .unit("m");
+  table.add("robot_highest", &S::robot_highest, "surface above this height over the floor is no obstacle")
+      .range(0.01, 10)
+      .unit("m");
+}
+
+std::string SurfaceSettings::trouble() const {
+  const std::vector<std::string>& known = mesh_formats();
+  for (const std::string& format : formats)
+    if (std::find(known.begin(), known.end(), format) == known.end())
+      return "surface.formats: '" + format + "' is no format of meshes; expected ply, obj or glb";
+  if (robot_lowest >= robot_highest)
+    return "surface.robot_lowest is not below surface.robot_highest; between them surface is an obstacle";
+  return {};
+}
+
+}  // namespace holdfast

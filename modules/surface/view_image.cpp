@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "view_image.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "holdfast/core/depth_noise.hpp"
+#include "holdfast/dense_map/kept_view.hpp"
+
+namespace holdfast::surface {
+
+namespace {
+
+constexpr float smallest_cosine = 0.25F;  // of the viewing angle; closer to the rim of a surface depth says little
+constexpr int reach = 3;                  // of the normal, to each side [px]
+
+float depth_of(std::uint16_t bits) {
+  return static_cast<float>(bits & KeptView::depth_bits) * static_cast<float>(KeptView::depth_unit);
+}
+
+}  // namespace
+
+ViewImage::ViewImage(const KeptView& view, const Camera& camera, const SurfaceSettings& settings) : camera_(camera) {
+  tile_columns_ = (camera.width + tile - 1) / tile;
+  tiles_.assign(static_cast<std::size_t>(tile_columns_ * ((camera.height + tile - 1) / tile)), 0.0F);
+  pixels_.resize(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
+  for (int x = 0; x < camera.width; ++x) rays_x_.push_back(static_cast<float>((x - camera.cx) / camera.fx));
+  for (int y = 0; y < camera.height; ++y) rays_y_.push_back(static_cast<float>((y - camera.cy) / camera.fy));
+  const cv::Mat depths = read_depth(view, static_cast<float>(settings.maximum_depth));
+  for (int y = 0; y < camera.height; ++y)
+    for (int x = 0; x < camera.width; ++x) set_slope(depths, x, y);
+}
+
+cv::Mat ViewImage::read_depth(const KeptView& view, float maximum_depth) {
+  cv::Mat depths(camera_.height, camera_.width, CV_32FC1);
+  cv::Mat nearest = view.depth & cv::Scalar(KeptView::depth_bits);
+  cv::erode(nearest, nearest, cv::Mat::ones(3, 3, CV_8U));
+  Pixel* pixel = pixels_.data();
+  for (int y = 0; y < camera_.height; ++y)
+    for (int x = 0; x < camera_.width; ++x, ++pixel) {
+      pixel->near = depth_of(nearest.ptr<std::uint16_t>(y)[x]);
+      const std::uint16_t bits = view.depth.ptr<std::uint16_t>(y)[x];
+      const float depth = depths.ptr<float>(y)[x] = depth_of(bits);
+      float& farthest = tiles_[static_cast<std::size_t>(y / tile * tile_columns_ + x / tile)];
+      farthest = std::max({farthest, depth, pixel->near});
+      if ((bits & KeptView::moves_bit) != 0 || depth > maximum_depth) continue;
+      pixel->depth = depth;
+      const cv::Vec3b& colour = view.colour.ptr<cv::Vec3b>(y)[x];
+      pixel->blue = colour[0], pixel->green = colour[1], pixel->red = colour[2];
+    }
+  return depths;
+}
+
+/// Normal from the depths of four pixels around, or of the centre in place of those that are no continuation of it.
+void ViewImage::set_slope(const cv::Mat& depths, int x, int y) {
+  const float centre = depths.ptr<float>(y)[x];
+  if (centre <= 0.0F) return;
+  const float gap = static_cast<float>(reach) * depth_noise::continues_normal(centre);
+  const auto point = [&](int column, int row) -> Eigen::Vector3f {
+    column = std::clamp(column, 0, camera_.width - 1), row = std::clamp(row, 0, camera_.height - 1);
+    float depth = depths.ptr<float>(row)[column];
+    if (depth <= 0.0F || std::abs(depth - centre) > gap) column = x, row = y, depth = centre;
+    return {rays_x_[static_cast<std::size_t>(column)] * depth, rays_y_[static_cast<std::size_t>(row)] * depth, depth};
+  };
+  const Eigen::Vector3f normal =
+      (point(x + reach, y) - point(x - reach, y)).cross(point(x, y + reach) - point(x, y - reach));
+  const float length = normal.norm();
+  if (!(length > 0.0F)) return;
+  const Eigen::Vector3f ray(rays_x_[static_cast<std::size_t>(x)], rays_y_[static_cast<std::size_t>(y)], 1.0F);
+  Pixel& pixel = pixels_[static_cast<std::size_t>(y * camera_.width + x)];
+  const float along = std::abs(normal.dot(ray)) / length;
+  pixel.slope = std::max(along, smallest_slope);
+  const float cosine = along / ray.norm();
+  if (pixel.depth <= 0.0F || cosine < smallest_cosine) return;
+  const float deviation = depth_noise::alignment_deviation(pixel.depth) / depth_noise::alignment_deviation(0.0F);
+  const float weight = 64.0F * cosine * cosine / (deviation * deviation);
+  pixel.weight = static_cast<std::uint8_t>(std::clamp(weight + 0.5F, 1.0F, 64.0F));
+}
+
+float ViewImage::farthest(int left, int top, int right, int bottom) const {
+  const int first_column = std::max(left, 0) / tile, last_column = std::min(right, camera_.width - 1) / tile;
+  const int first_row = std::max(top, 0) / tile, last_row = std::min(bottom, camera_.height - 1) / tile;
+  float farthest = 0.0F;
+  for (int row = first_row; row <= last_row; ++row)
+    for (int column = first_column; column <= last_column; ++column)
+      farthest = std::max(farthest, tiles_[static_cast<std::size_t>(row * tile_columns_ + column)]);
+  return farthest;
+}
+
+}  // namespace holdfast::surface

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <opencv2/core/mat.hpp>
+#include <vector>
+
+#include "holdfast/core/camera.hpp"
+#include "holdfast/surface/surface_settings.hpp"
+
+namespace holdfast {
+struct KeptView;
+}
+
+namespace holdfast::surface {
+
+/// A view as the fusion reads it.
+class ViewImage {
+ public:
+  static constexpr int tile = 8;  ///< [px]
+  static constexpr float smallest_slope = 0.2F;
+
+  struct Pixel {
+    float depth = 0.0F;  ///< of the static surface [m]
+    float near = 0.0F;   ///< smallest depth, static or dynamic, of the 3x3 pixels [m]; 0 if one is missing
+    /// Distance to the tangent plane per difference in depth; at least smallest_slope.
+    float slope = smallest_slope;
+    std::uint8_t weight = 0;  ///< 1 to 64; 0 = nothing to fuse
+    std::uint8_t red = 0, green = 0, blue = 0;
+  };
+
+  ViewImage(const KeptView& view, const Camera& camera, const SurfaceSettings& settings);
+
+  const Camera& camera() const { return camera_; }
+  const Pixel& at(int x, int y) const { return pixels_[static_cast<std::size_t>(y * camera_.width + x)]; }
+  const Pixel* pixels() const { return pixels_.data(); }
+  /// Largest depth in a rectangle of pixels, or in slightly more than it [m].
+  float farthest(int left, int top, int right, int bottom) const;
+
+ private:
+  /// Fills the pixels without slope and weight; returns all depths, those of dynamic pixels included.
+  cv::Mat read_depth(const KeptView& view, float maximum_depth);
+  void set_slope(const cv::Mat& depths, int x, int y);
+
+  Camera camera_;
+  std::vector<Pixel> pixels_;
+  std::vector<float> rays_x_, rays_y_;  // of the columns and rows, at depth 1
+  std::vector<float> tiles_;            // largest depth of each tile [m]
+  int tile_columns_ = 0;
+};
+
+}  // namespace holdfast::surface

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/surface/surface_field.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "holdfast/surface/mesh_files.hpp"
+#include "surface/solid_world.hpp"
+
+namespace holdfast {
+namespace {
+
+using test::SolidWorld;
+
+SurfaceSettings settings_of_test() {
+  SurfaceSettings settings;
+  settings.smallest_part = 0.0;
+  return settings;
+}
+
+class SurfaceFieldTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!SurfaceField::is_available()) GTEST_SKIP() << "built without OpenVDB";
+  }
+
+  static std::vector<KeptView> views_of(const SolidWorld& world, const std::vector<Eigen::Isometry3d>& poses) {
+    std::vector<KeptView> views;
+    for (const Eigen::Isometry3d& pose : poses) views.push_back(world.view(pose, views.size()));
+    return views;
+  }
+  static std::vector<Eigen::Isometry3d> side_by_side(int count, double step) {
+    std::vector<Eigen::Isometry3d> poses(static_cast<std::size_t>(count), Eigen::Isometry3d::Identity());
+    for (int i = 0; i < count; ++i) poses[static_cast<std::size_t>(i)].translation().x() = i * step;
+    return poses;
+  }
+  static SurfaceMap map_of(const SolidWorld& world, const std::vector<Eigen::Isometry3d>& poses) {
+    SurfaceMap map(world.camera, settings_of_test());
+    map.update(views_of(world, poses), poses, 0);
+    return map;
+  }
+  static double area_in_front_of(const TriangleMesh& mesh, double z) {
+    double area = 0.0;
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+      if (mesh.corner(i, 0).z() < z) area += mesh.area_vector(i).norm();
+    return area;
+  }
+};
+
+TEST_F(SurfaceFieldTest, FusesABallToItsRadiusNormalAreaAndColour) {
+  const SolidWorld world;
+  const TriangleMesh mesh = map_of(world, test::poses_around(world.centre, 1.2)).field().mesh();
+  ASSERT_GT(mesh.triangles.size(), 1000U);
+  double error = 0.0, worst = 0.0, worst_normal = 1.0;
+  for (const MeshVertex& vertex : mesh.vertices) {
+    const Eigen::Vector3d offset = vertex.position.cast<double>() - world.centre;
+    error += std::abs(offset.norm() - SolidWorld::radius);
+    worst = std::max(worst, std::abs(offset.norm() - SolidWorld::radius));
+    worst_normal = std::min(worst_normal, offset.normalized().dot(vertex.normal.cast<double>()));
+    EXPECT_EQ(vertex.red, 200);
+    EXPECT_EQ(vertex.green, 100);
+    EXPECT_EQ(vertex.blue, 10);
+  }
+  EXPECT_LT(worst, 0.015);
+  EXPECT_LT(error / static_cast<double>(mesh.vertices.size()), 0.003);
+  EXPECT_GT(worst_normal, 0.85);
+  EXPECT_NEAR(mesh.area(), 4.0 * M_PI * SolidWorld::radius * SolidWorld::radius, 0.05);
+}
+
+TEST_F(SurfaceFieldTest, ClosesTheMeshOfABall) {
+  const SolidWorld world;
+  const TriangleMesh mesh = map_of(world, test::poses_around(world.centre, 1.2)).field().mesh();
+  // Closed and oriented: each edge is once in each direction in two triangles. Euler: V - E + F = 2.
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+  for (const auto& triangle : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) ++edges[{triangle[k], triangle[(k + 1) % 3]}];
+  int open = 0, repeated = 0;
+  for (const auto& [edge, count] : edges) {
+    repeated += count == 1 ? 0 : 1;
+    open += edges.count({edge.second, edge.first}) == 1U ? 0 : 1;
+  }
+  EXPECT_EQ(open, 0);
+  EXPECT_EQ(repeated, 0);
+  EXPECT_EQ(mesh.vertices.size() + mesh.triangles.size(), edges.size() / 2 + 2);
+}
+
+TEST_F(SurfaceFieldTest, GivesTheSameBytesTwice) {
+  const SolidWorld world;
+  const auto poses = test::poses_around(world.centre, 1.2);
+  EXPECT_EQ(mesh_ply(map_of(world, poses).field().mesh()), mesh_ply(map_of(world, poses).field().mesh()));
+}
+
+TEST_F(SurfaceFieldTest, LeavesOutDynamicPixels) {
+  SolidWorld world;
+  world.has_wall = true;
+  const auto poses = side_by_side(4, 0.02);
+  std::vector<KeptView> views = views_of(world, poses);
+  for (KeptView& view : views)
+    for (int y = 0; y < view.depth.rows; ++y)
+      for (int x = 0; x < view.depth.cols; ++x)
+        if (view.depth_at(x, y) < 2.0) view.depth.at<std::uint16_t>(y, x) |= KeptView::moves_bit;
+  SurfaceMap map(world.camera, settings_of_test());
+  map.update(views, poses, 0);
+  const TriangleMesh mesh = map.field().mesh();
+  EXPECT_GT(mesh.area(), 3.0);
+  EXPECT_EQ(area_in_front_of(mesh, 2.3), 0.0);
+}
+
+TEST_F(SurfaceFieldTest, RemovesWhatLeavesAndKeepsWhatArrives) {
+  SolidWorld with, without;
+  with.has_ball = without.has_ball = false;
+  with.has_wall = without.has_wall = with.has_box = true;
+  const auto poses = side_by_side(24, 0.01);
+  const auto fused = [&](int first, int last) {  // the box is there from one view to another one
+    std::vector<KeptView> views;
+    for (int i = 0; i < 24; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      views.push_back((i >= first && i < last ? with : without).view(poses[at], at));
+    }
+    SurfaceMap map(with.camera, settings_of_test());
+    map.update(views, poses, 0);
+    return map.field().mesh();
+  };
+  const double front = 0.36, empty_wall = fused(0, 0).area();
+  // Twenty views of it, and four without.
+  const TriangleMesh left = fused(0, 20);
+  EXPECT_EQ(area_in_front_of(left, 2.3), 0.0);
+  EXPECT_NEAR(left.area(), empty_wall, 0.02 * empty_wall);
+  EXPECT_NEAR(area_in_front_of(fused(20, 24), 1.65), front, 0.05);
+  EXPECT_NEAR(area_in_front_of(fused(0, 24), 1.65), front, 0.05);
+  // One view that sees through it proves nothing.
+  EXPECT_NEAR(area_in_front_of(fused(0, 23), 1.65), front, 0.05);
+}
+
+TEST_F(SurfaceFieldTest, ForgetsAViewThatIsTakenOut) {
+  SolidWorld world;
+  world.has_wall = true;
+  const auto poses = side_by_side(4, 0.02);
+  const std::vector<KeptView> views = views_of(world, poses);
+  SurfaceMap map(world.camera, settings_of_test());
+  map.update(views, poses, 0);
+  EXPECT_GT(map.field().block_count(), 100U);
+  map.update({}, {}, 0);
+  EXPECT_EQ(map.field().block_count(), 0U);
+  EXPECT_TRUE(map.field().mesh().empty());
+}
+
+TEST_F(SurfaceFieldTest, MovesViewsToTheirAdjustedPoses) {
+  SolidWorld world;
+  world.has_wall = true;
+  const auto poses = side_by_side(6, 0.03);
+  const std::vector<KeptView> views = views_of(world, poses);
+  std::vector<Eigen::Isometry3d> drifted = poses;
+  for (std::size_t i = 3; i < drifted.size(); ++i) drifted[i].translation() += Eigen::Vector3d(0.0, 0.0, -0.25);
+
+  SurfaceMap moved(world.camera, settings_of_test());
+  moved.update(views, drifted, 0);
+  const double two_walls = moved.field().mesh().area();
+  EXPECT_EQ(moved.update(views, poses, 2), 1U);  // one of three waits
+  EXPECT_EQ(moved.update(views, poses, 2), 0U);
+  EXPECT_EQ(moved.move_count(), 3U);
+
+  const TriangleMesh expected = map_of(world, poses).field().mesh(), found = moved.field().mesh();
+  EXPECT_GT(two_walls, 1.5 * expected.area());
+  EXPECT_NEAR(found.area(), expected.area(), 1e-3 * expected.area());
+  ASSERT_EQ(area_in_front_of(found, 1.0), 0.0);
+  double worst = 0.0;
+  for (const MeshVertex& vertex : found.vertices) {
+    const Eigen::Vector3d p = vertex.position.cast<double>();
+    worst = std::max(worst, std::min(std::abs(p.z() - SolidWorld::wall_z),
+                                     std::abs((p - world.centre).norm() - SolidWorld::radius)));
+  }
+  double worst_expected = 0.0;
+  for (const MeshVertex& vertex : expected.vertices) {
+    const Eigen::Vector3d p = vertex.position.cast<double>();
+    worst_expected = std::max(worst_expected, std::min(std::abs(p.z() - SolidWorld::wall_z),
+                                                       std::abs((p - world.centre).norm() - SolidWorld::radius)));
+  }
+  EXPECT_NEAR(worst, worst_expected, 1e-3);
+}
+
+TEST_F(SurfaceFieldTest, LeavesOutSmallParts) {
+  SolidWorld world;
+  const auto poses = test::poses_around(world.centre, 1.2);
+  SurfaceSettings settings;
+  settings.smallest_part = 2.1;  // the ball has 2.01 m^2
+  SurfaceMap map(world.camera, settings);
+  map.update(views_of(world, poses), poses, 0);
+  EXPECT_TRUE(map.field().mesh().empty());
+}
+
+}  // namespace
+}  // namespace holdfast
