@@ -4,23 +4,22 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <functional>
-#include <string>
 #include <vector>
 
+#include "geometry/inertial_motion.hpp"
 #include "holdfast/core/median.hpp"
 #include "holdfast/core/random.hpp"
-#include "holdfast/core/trajectory.hpp"
 
 namespace holdfast::geometry {
 namespace {
 
 using namespace inertial;
 
-const Eigen::Vector3d gravity(0, 0, -standard_gravity);
+using inertial_motion::gravity;
+using inertial_motion::RecordedFlight;
+using inertial_motion::true_samples;
+using inertial_motion::true_state;
 
 Eigen::Vector3d normal(Random& random, double deviation) {
   return deviation * Eigen::Vector3d(random.normal(), random.normal(), random.normal());
@@ -224,28 +223,6 @@ TEST(Preintegration, CovarianceIsConsistentOverMonteCarlo) {
   for (const double part : parts) EXPECT_NEAR(part, 3.0, 3.3 * std::sqrt(2.0 * 3.0 / runs));
 }
 
-/// A smooth motion in closed form, as samples.
-InertialState true_state(double t) {
-  InertialState state;
-  state.T_world_body.linear() = (Eigen::AngleAxisd(std::sin(2 * t), Eigen::Vector3d::UnitZ()) *
-                                 Eigen::AngleAxisd(0.5 * t, Eigen::Vector3d::UnitX()))
-                                    .toRotationMatrix();
-  state.T_world_body.translation() << std::sin(3 * t), std::cos(2 * t), 0.3 * t * t;
-  state.velocity << 3 * std::cos(3 * t), -2 * std::sin(2 * t), 0.6 * t;
-  return state;
-}
-std::vector<ImuSample> true_samples(double begin, double end, double rate) {
-  std::vector<ImuSample> samples;
-  for (double t = begin; t <= end + 1e-9; t += 1.0 / rate) {
-    const Eigen::Matrix3d turn = true_state(t).T_world_body.linear();
-    const Eigen::Vector3d world_rate = 2 * std::cos(2 * t) * Eigen::Vector3d::UnitZ();
-    const Eigen::Vector3d acceleration(-9 * std::sin(3 * t), -4 * std::cos(2 * t), 0.6);
-    samples.push_back({t, turn.transpose() * world_rate + 0.5 * Eigen::Vector3d::UnitX(),
-                       turn.transpose() * (acceleration - gravity)});
-  }
-  return samples;
-}
-
 TEST(Preintegrate, PredictsAMotionInClosedFormBetweenAnyTwoTimes) {
   const std::vector<ImuSample> samples = true_samples(0.0, 2.0, 200.0);
   for (const auto& [begin, end] : {std::pair(0.0, 1.0), {0.5012, 1.5037}, {0.1001, 0.1004}}) {
@@ -272,49 +249,12 @@ TEST(Preintegrate, IsEmptyWithoutMeasurementsForTheWholeTime) {
   EXPECT_TRUE(preintegrate(samples, 1.0, 1.39, {}, {})) << "the gap comes later";
 }
 
-struct RecordedFlight {
-  std::vector<ImuSample> samples;
-  std::vector<TimedPose> body;  ///< T_world_body
-};
-
-RecordedFlight read_flight(const std::filesystem::path& folder) {
-  RecordedFlight flight;
-  std::ifstream file(folder / "imu0.csv");
-  std::string line;
-  std::getline(file, line);
-  while (std::getline(file, line)) {
-    ImuSample sample;
-    long long stamp = 0;
-    double* const numbers[] = {&sample.angular_velocity[0], &sample.angular_velocity[1], &sample.angular_velocity[2],
-                               &sample.acceleration[0],     &sample.acceleration[1],     &sample.acceleration[2]};
-    const char* at = line.c_str();
-    char* next = nullptr;
-    stamp = std::strtoll(at, &next, 10);
-    for (double* number : numbers) *number = std::strtod(next + 1, &next);
-    sample.timestamp = static_cast<double>(stamp) * 1e-9;
-    flight.samples.push_back(sample);
-  }
-  Eigen::Isometry3d T_body_camera = Eigen::Isometry3d::Identity();  // of sensor.yaml
-  T_body_camera.matrix().topRows<3>() << 0.0148655429818, -0.999880929698, 0.00414029679422, -0.0216401454975,
-      0.999557249008, 0.0149672133247, 0.025715529948, -0.064676986768, -0.0257744366974, 0.00375618835797,
-      0.999660727178, 0.00981073058949;
-  for (const TimedPose& pose : read_trajectory(folder / "groundtruth_cam0.txt")) {
-    // The file has the position of the camera in the world, but the rotation from the world to the camera.
-    Eigen::Isometry3d T_world_camera = pose.T_world_camera;
-    T_world_camera.linear().transposeInPlace();
-    flight.body.push_back({pose.timestamp, T_world_camera * T_body_camera.inverse()});
-  }
-  return flight;
-}
-
 /// EuRoC V1_01_easy: from the true state, with the velocity by differences of the true positions, over 0.5 s. The true
 /// orientations of this flight are tilted by 2 degrees, which the estimated bias of the accelerometer absorbs.
 TEST(PreintegrationData, PredictsARealFlight) {
-  const char* data = std::getenv("HOLDFAST_DATA");
-  const std::filesystem::path folder = std::filesystem::path(data != nullptr ? data : "") / "euroc_v101_imu";
-  if (data == nullptr || !std::filesystem::exists(folder))
-    GTEST_SKIP() << "HOLDFAST_DATA does not name the folder with euroc_v101_imu";
-  const RecordedFlight flight = read_flight(folder);
+  const std::optional<std::filesystem::path> folder = inertial_motion::flight_folder();
+  if (!folder) GTEST_SKIP() << "HOLDFAST_DATA does not name the folder with euroc_v101_imu";
+  const RecordedFlight flight = inertial_motion::read_flight(*folder);
   ASSERT_GT(flight.body.size(), 2000U);
   const ImuNoise noise{1.6968e-04, 2.0e-03, 1.9393e-05, 3.0e-03};
   const Eigen::Vector3d down(0, 0, -9.81);
