@@ -12,6 +12,7 @@
 #include "holdfast/image_files/icl_nuim_files.hpp"
 #include "holdfast/image_files/image_decoder.hpp"
 #include "holdfast/image_files/image_structure.hpp"
+#include "holdfast/image_files/recorded_imu.hpp"
 #include "holdfast/image_files/recording_pairs.hpp"
 
 namespace holdfast {
@@ -106,6 +107,7 @@ class Checker {
     const auto depth = check_list("depth.txt", "depth", recipe_ ? recipe_->depth : std::nullopt);
     for (const ListedImage& image : colour) stamps_.push_back(image.timestamp);
     check_colour_and_depth(colour, depth);
+    check_imu(find_imu_file(folder_, {}), {}, stamps_);
     if (has_lists && !colour.empty() && !depth.empty())
       attempt([&] { check_pairs(dataset_pairs(folder_, DatasetLayout::tum, max_time_difference).size()); });
     if ((recipe_ && recipe_->has_masks) || is_file(folder_ / "mask.txt")) check_masks(colour);
@@ -166,11 +168,14 @@ class Checker {
     if (recording.depth)
       check_side(recording.left_size, "depth", &ImageFiles::depth, &ImageFiles::depth_listed_at,
                  [&](const fs::path& file) { decoder_.read_depth(file, *recording.depth); });
+    std::vector<double> stamps;
+    for (const ImageFiles& files : recording.files) stamps.push_back(files.timestamp);
+    check_imu(recording.imu_file, recording.imu, stamps);
     if (recording.truth.empty()) {
       fact("no true poses: there is nothing to measure an error by");
       return;
     }
-    for (const ImageFiles& files : recording.files) stamps_.push_back(files.timestamp);
+    stamps_ = stamps;
     check_coverage("the truth", recording.truth);
   }
 
@@ -277,6 +282,15 @@ class Checker {
       const fs::path file = folder_ / images[i].name;
       if (is_file(file) && !unusable_.contains(images[i].name)) attempt([&] { decode(file); });
     }
+  }
+
+  void check_imu(const fs::path& file, const std::optional<ImuCalibration>& calibration,
+                 const std::vector<double>& stamps) {
+    if (file.empty()) return;
+    attempt([&] {
+      fact(counted(read_imu_samples(file).size(), "inertial measurement"));
+      for (const Diagnostic& warning : RecordedImu(file, calibration, stamps).warnings()) problem(warning.to_string());
+    });
   }
 
   void check_pairs(std::size_t pairs) {

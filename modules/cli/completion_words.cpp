@@ -28,6 +28,7 @@ std::vector<SectionDescription> plain_sections() {
   std::vector<SectionDescription> sections = pipeline_sections();
   sections.push_back({"run", "", ParameterTable<RunSettings>().parameters()});
   sections.push_back({"camera", "", ParameterTable<CameraSettings>().parameters()});
+  sections.push_back({"imu", "", ParameterTable<ImuSettings>().parameters()});
   return sections;
 }
 

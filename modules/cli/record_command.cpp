@@ -84,6 +84,7 @@ void add_record_command(CLI::App& app, int& exit_code, const ProgramHost& host) 
       "  rgb.txt, depth.txt, associations.txt  their lists\n"
       "  groundtruth.txt    where the source has truth               recording.yaml  the configuration, on the "
       "recording\n"
+      "  imu.csv            where frames have inertial measurements\n"
       "`holdfast run --record DIR` records while it tracks. Exits 0 when the source came to its end, 130 on Ctrl-C, "
       "143\n"
       "on SIGTERM (what was recorded is whole), 2 when the configuration is wrong, 1 for anything else.\n\n"

@@ -29,6 +29,9 @@ Configuration on_recording(const Configuration& original, const Registry& regist
   for (const Parameter& parameter : tum->parameters) result.source.values[parameter.name] = parameter.default_value;
   result.source.values["path"] = std::string(".");
   result.source.values["associations"] = std::string("associations.txt");
+  // The recorded measurements are by the clock of the camera, and the camera is that of the recorded frames.
+  result.imu = source.imu ? source.imu : original.imu;
+  if (result.imu) result.imu->time_offset = 0.0;
   const bool source_precedes = original.unknown_camera.has_value();
   if (original.camera && !(source_precedes && source.camera))
     result.camera = perturbed_camera(*original.camera, perturbation, original.run.seed);

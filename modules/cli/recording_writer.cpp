@@ -9,6 +9,7 @@
 
 #include "depth_units.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/image_files/recorded_imu.hpp"
 #include "png_encoder.hpp"
 
 namespace holdfast {
@@ -45,7 +46,7 @@ void write_image_atomically(const fs::path& file, const cv::Mat& image, const st
 
 const std::vector<std::string>& RecordingWriter::entries() {
   static const std::vector<std::string> names = {
-      "rgb.txt", "depth.txt", "associations.txt", "groundtruth.txt", "shutter.txt", "rgb", "depth"};
+      "rgb.txt", "depth.txt", "associations.txt", "groundtruth.txt", "shutter.txt", "imu.csv", "rgb", "depth"};
   return names;
 }
 
@@ -108,6 +109,12 @@ void RecordingWriter::add(const SensorFrame& frame) {
   encoder.queue().push({folder_ / colour_name, folder_ / depth_name, frame.colour, frame.depth, depth_factor()});
   colour_list_ += colour_stamp + " " + colour_name + "\n";
   depth_list_ += stamp + " " + depth_name + "\n";
+  for (const ImuSample& sample : frame.imu) {
+    if (!imu_lines_.empty() && !(sample.timestamp > last_imu_stamp_)) continue;  // shared with the frame before
+    if (imu_lines_.empty()) imu_lines_ = imu_header;
+    imu_lines_ += imu_sample_text(sample);
+    last_imu_stamp_ = sample.timestamp;
+  }
   associations_ += colour_stamp + " " + colour_name + " " + stamp + " " + depth_name + "\n";
   ++frames_;
 }
@@ -119,6 +126,7 @@ void RecordingWriter::finish(const Trajectory& truth) {
     throw InputError({folder_.string()}, "an image could not be written, so that the recording has no lists");
   sync_file_system(folder_);
   if (!truth.empty()) write_trajectory(folder_ / "groundtruth.txt", truth);
+  if (!imu_lines_.empty()) write_file_atomically(folder_ / "imu.csv", imu_lines_);
   if (options_.has_global_shutter) write_file_atomically(folder_ / "shutter.txt", "global\n");
   write_file_atomically(folder_ / "associations.txt", associations_);
   write_file_atomically(folder_ / "depth.txt", depth_list_);

@@ -23,10 +23,11 @@ void write_image_atomically(const std::filesystem::path& file, const cv::Mat& im
 
 /// Writes a recording in the layout of the TUM RGB-D benchmark: rgb/, depth/ (16 bit, 0 = no value), their lists
 /// rgb.txt and depth.txt, associations.txt and groundtruth.txt; beside them shutter.txt, with the word "global", where
-/// all rows of an image were exposed at once. Colour as PNG and time stamps are written without loss,
-/// and so is depth of sensors that measure whole numbers of 16 bits: their units to the metre are those that the writer
-/// is told, or those that it finds by the first image with depth. Other depth is rounded to a fifth of a millimetre,
-/// the unit of the benchmark, and what lies beyond 13.1 m has no value then.
+/// all rows of an image were exposed at once, and imu.csv with inertial measurements, where frames have some. Colour as
+/// PNG and time stamps are written without loss, and so is depth of sensors that measure whole numbers of 16 bits:
+/// their units to the metre are those that the writer is told, or those that it finds by the first image with depth.
+/// Other depth is rounded to a fifth of a millimetre, the unit of the benchmark, and what lies beyond 13.1 m has no
+/// value then.
 ///
 /// Two threads encode, so that a camera of 30 frames per second loses none; add() waits for them when four frames wait.
 /// Every image is written in one step, lists last, when all images have reached the disk, so that no list names a
@@ -86,6 +87,8 @@ class RecordingWriter {
   std::filesystem::path folder_;
   Options options_;
   std::string colour_list_, depth_list_, associations_;
+  std::string imu_lines_;        // empty without inertial measurements
+  double last_imu_stamp_ = 0.0;  // of imu_lines_
   std::uint64_t frames_ = 0, rounded_frames_ = 0;
   std::optional<double> depth_factor_;  // once there was depth
   bool has_failed_ = false;             // an image is missing

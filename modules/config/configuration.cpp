@@ -167,6 +167,7 @@ class Resolver {
     result_.filters = chain("filters");
     result_.observers = chain("observers");
     read_camera();
+    read_imu();
     read_sensor();
     read_run();
     for (const SectionDescription& section : sections_) read_section(section);
@@ -217,7 +218,7 @@ class Resolver {
 
   void check_section_names() {
     std::vector<std::string> known = choice_sections();
-    known.insert(known.end(), {"filters", "observers", "camera", "sensor", "run", "plugins"});
+    known.insert(known.end(), {"filters", "observers", "camera", "imu", "sensor", "run", "plugins"});
     for (const SectionDescription& section : sections_) known.push_back(section.name);
     for (const ConfigurationNode::Entry& entry : root_.entries)
       if (std::find(known.begin(), known.end(), entry.key) == known.end())
@@ -317,6 +318,13 @@ class Resolver {
       result_.warnings.push_back({node.location, "found the camera '" + result_.camera->name + "' for the folder '" +
                                                      folder + "'; expected '" + *named +
                                                      "' by the name of the folder; write 'camera: auto' to follow it"});
+  }
+
+  void read_imu() {
+    const ConfigurationNode& node = at("imu");
+    if (node.kind == Kind::nothing) return;
+    result_.imu = holdfast::read_imu(node, diagnostics_, elsewhere_);
+    result_.imu_location = node.location;
   }
 
   void read_sensor() {

@@ -37,6 +37,10 @@ std::string to_yaml(const Configuration& configuration) {
     yaml += "camera:\n";
     add_values(ParameterTable<CameraSettings>().values(camera_settings(*configuration.camera)), "  ", yaml);
   }
+  if (configuration.imu) {
+    yaml += "imu:\n";
+    add_values(ParameterTable<ImuSettings>().values(imu_settings(*configuration.imu)), "  ", yaml);
+  }
   yaml += std::string("sensor: ") + (configuration.sensor ? sensor_name(*configuration.sensor) : "auto") + "\n";
   add_choice(configuration.features, yaml);
   add_choice(configuration.matcher, yaml);

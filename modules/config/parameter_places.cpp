@@ -28,6 +28,7 @@ ParameterPlaces::ParameterPlaces(const ConfigurationNode& root, const Registry& 
   for (const SectionDescription& section : sections) selected_.emplace_back(section.name, section.parameters);
   selected_.emplace_back("run", ParameterTable<RunSettings>().parameters());
   selected_.emplace_back("camera", ParameterTable<CameraSettings>().parameters());
+  selected_.emplace_back("imu", ParameterTable<ImuSettings>().parameters());
 }
 
 void ParameterPlaces::add_module(const std::string& kind, const std::string& prefix, const ConfigurationNode& node) {

@@ -49,6 +49,13 @@ std::vector<Entry> all_entries(const Registry& registry, const std::vector<Secti
                   ", or by numbers; auto = the source's own, else the one that the name of its folder says, such as "
                   "rgbd_dataset_freiburg1_xyz or rgbd_bonn_crowd.",
               ParameterTable<CameraSettings>().parameters());
+  std::string sensors;
+  for (const std::string& sensor : imu_names()) sensors += (sensors.empty() ? "" : ", ") + sensor;
+  add_section("imu",
+              "The IMU (gyroscope and accelerometer) of the camera: one of the names " + sensors +
+                  ", or by numbers. In place of the source's own, if it has one. Its measurements are checked and "
+                  "recorded; poses are estimated from images alone.",
+              ParameterTable<ImuSettings>().parameters());
   const auto add_sections = [&](bool plain) {
     for (const SectionDescription& section : sections)
       if ((section.kind == "section") == plain)

@@ -47,6 +47,7 @@ CalibratedSource::CalibratedSource(CalibratedRecording recording, const std::fil
   description_.camera = recording.camera;
   description_.truth_frame = recording.truth_frame;
   truth_ = std::move(recording.truth);
+  read_imu(recording.imu_file, recording.imu);
 }
 
 }  // namespace holdfast

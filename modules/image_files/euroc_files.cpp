@@ -83,6 +83,21 @@ EurocCamera read_euroc_camera(const std::filesystem::path& file) {
   return result;
 }
 
+ImuCalibration read_euroc_imu(const std::filesystem::path& file) {
+  const YAML::Node root = yaml_numbers::load(file, expected_file);
+  const auto positive = [&](const char* key) {
+    return yaml_numbers::number(file, required(file, root, key), key, true);
+  };
+  ImuCalibration imu;
+  imu.T_body_camera = read_pose(file, root).inverse();
+  imu.rate = positive("rate_hz");
+  imu.noise.gyroscope_noise_density = positive("gyroscope_noise_density");
+  imu.noise.accelerometer_noise_density = positive("accelerometer_noise_density");
+  imu.noise.gyroscope_random_walk = positive("gyroscope_random_walk");
+  imu.noise.accelerometer_random_walk = positive("accelerometer_random_walk");
+  return imu;
+}
+
 std::vector<ListedImage> read_euroc_image_list(const std::filesystem::path& file) {
   constexpr const char* form = "expected lines 'time stamp [ns],file name'";
   LineReader lines(file, "lines 'time stamp [ns],file name'");

@@ -77,6 +77,23 @@ Trajectory read_truth(const fs::path& body, const Eigen::Isometry3d& T_body_came
   return {};
 }
 
+/// The inertial measurements, with their calibration for the camera of the frames. The IMU's own axes and origin are
+/// the body frame of ImuCalibration; in the ASL layout they are usually those of the recording's body as well.
+void add_imu(const fs::path& body, const EurocOptions& options, const Eigen::Isometry3d& T_body_camera,
+             CalibratedRecording& recording) {
+  std::error_code error;
+  if (!options.with_imu || !fs::exists(body / "imu0" / "data.csv", error)) return;
+  recording.imu_file = body / "imu0" / "data.csv";
+  if (options.imu)
+    recording.imu = options.imu;
+  else if (fs::exists(body / "imu0" / "sensor.yaml", error)) {
+    recording.imu = read_euroc_imu(body / "imu0" / "sensor.yaml");
+    recording.imu->T_body_camera = recording.imu->T_body_camera * T_body_camera;
+  }
+  if (recording.imu && recording.rectification)
+    recording.imu->T_body_camera = recording.imu->T_body_camera * recording.rectification->T_left_rectified();
+}
+
 }  // namespace
 
 CalibratedRecording read_euroc_recording(const EurocOptions& options) {
@@ -95,6 +112,7 @@ CalibratedRecording read_euroc_recording(const EurocOptions& options) {
     rectify_pair(recording, right.camera, left.T_body_camera.inverse() * right.T_body_camera, file);
     T_body_camera = T_body_camera * recording.rectification->T_left_rectified();
   }
+  add_imu(body, options, left.T_body_camera, recording);
   recording.files = find_frames(body, is_pair, options.max_time_difference);
   recording.truth = read_truth(body, T_body_camera);
   recording.truth_frame = "transformed";

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "holdfast/core/imu_timeline.hpp"
 #include "holdfast/perturbation/image_faults.hpp"
 
 namespace holdfast {
@@ -85,8 +86,16 @@ bool PerturbedSource::is_dropped(std::uint64_t index) const {
 
 std::optional<SensorFrame> PerturbedSource::next() {
   std::optional<SensorFrame> frame = source_->next();
-  while (frame && is_dropped(frame->index)) frame = source_->next();
+  std::vector<ImuSample> of_dropped;
+  while (frame && is_dropped(frame->index)) {
+    append_imu(of_dropped, frame->imu);
+    frame = source_->next();
+  }
   if (!frame) return frame;
+  if (!of_dropped.empty()) {
+    append_imu(of_dropped, frame->imu);
+    frame->imu = std::move(of_dropped);
+  }
   if (last_ && settings_.repeated > 0.0 && draw(repeat_stream, frame->index) < settings_.repeated) {
     frame->colour = last_->colour;
     frame->depth = last_->depth;

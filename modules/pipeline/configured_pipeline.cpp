@@ -48,6 +48,7 @@ CreationContext context_of_source(const Configuration& configuration) {
   CreationContext context;
   if (configuration.camera) context.camera = *configuration.camera;
   context.sensor = configuration.sensor;
+  context.imu = configuration.imu;
   context.seed = configuration.run.seed;
   context.sequential = !configuration.run.threaded();
   return context;
@@ -109,6 +110,7 @@ PipelineBuilder builder_of(const Configuration& configuration, const Registry& r
                            const SourceDescription& source, const std::string& map_file = {}) {
   PipelineOrigin origin{.place = {configuration.file},
                         .source_place = configuration.source.location,
+                        .imu_place = configuration.imu_location,
                         .source_name = configuration.source.name,
                         .unknown_camera = configuration.unknown_camera,
                         .is_camera_judged = true};
@@ -118,6 +120,7 @@ PipelineBuilder builder_of(const Configuration& configuration, const Registry& r
   if (configuration.camera)
     builder.camera(perturbed_camera(*configuration.camera, perturbation_of(configuration), configuration.run.seed));
   if (configuration.sensor) builder.sensor(*configuration.sensor);
+  if (configuration.imu && !source.imu) builder.imu(*configuration.imu);
   choose_modules(configuration, builder);
   choose_settings(configuration, builder);
   return builder;

@@ -9,6 +9,8 @@
 
 #include "guarded_map.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/imu_plausibility.hpp"
+#include "holdfast/core/imu_timeline.hpp"
 #include "holdfast/core/thread_annotations.hpp"
 #include "holdfast/map_io/map_export.hpp"
 #include "holdfast/moving_world/moving_world.hpp"
@@ -59,6 +61,19 @@ std::optional<StereoParts> stereo_parts(const PipelineParts& parts) {
                      .is_dense = has_segmenter(parts) || !parts.filters.empty()};
 }
 
+/// Throws InputError for inertial measurements that are not finite, or not in temporal order.
+void check_imu(const SensorFrame& frame) {
+  for (std::size_t i = 0; i < frame.imu.size(); ++i) {
+    const ImuSample& sample = frame.imu[i];
+    const std::string which = "its inertial measurement " + std::to_string(i);
+    if (!std::isfinite(sample.timestamp) || !sample.angular_velocity.allFinite() || !sample.acceleration.allFinite())
+      throw InputError({"frame " + std::to_string(frame.index)}, which + " is not finite; expected finite numbers");
+    if (i > 0 && !(frame.imu[i - 1].timestamp < sample.timestamp))
+      throw InputError({"frame " + std::to_string(frame.index)},
+                       which + " does not follow the one before it in time; expected time stamps that rise strictly");
+  }
+}
+
 }  // namespace
 
 /// The facade's parts: what a frame passes through (tracker), and what its keyframes do (flow).
@@ -89,6 +104,7 @@ struct Pipeline::State {
   /// Throws InputError for a frame that cannot be processed; it leaves no trace: the next one may have its stamp.
   void accept(const SensorFrame& frame);
   void check_stamp(const SensorFrame& frame) const;
+  void keep_imu(const SensorFrame& frame);
   /// The frame as given, or in `other` what the sensor of this pipeline has of it, in colour where a part needs that.
   const SensorFrame& used_images(const SensorFrame& given, SensorFrame& other) const;
   bool is_start_refuted() HOLDFAST_EXCLUDES(map);
@@ -113,12 +129,15 @@ struct Pipeline::State {
   bool finished = false;
   bool has_frame = false;
   double last_timestamp = 0.0;
-  KeyframeFlow flow;  // last: its threads end before the others go
+  std::vector<ImuSample> imu;  ///< the first minutes, for warnings
+  KeyframeFlow flow;           // last: its threads end before the others go
 };
 
 void Pipeline::State::accept(const SensorFrame& frame) {
   check_stamp(frame);
+  check_imu(frame);
   tracker.check_images(frame);
+  keep_imu(frame);
   has_frame = true;
   last_timestamp = frame.timestamp;
 }
@@ -133,6 +152,12 @@ void Pipeline::State::check_stamp(const SensorFrame& frame) const {
                   frame.timestamp, last_timestamp);
     throw InputError({"frame " + std::to_string(frame.index)}, text);
   }
+}
+
+void Pipeline::State::keep_imu(const SensorFrame& frame) {
+  constexpr std::size_t most = 30000;
+  if (!parts.imu || !parts.checks_imu) return;
+  if (imu.size() < most) append_imu(imu, frame.imu);
 }
 
 const SensorFrame& Pipeline::State::used_images(const SensorFrame& given, SensorFrame& other) const {
@@ -286,6 +311,10 @@ const MappingCounts& Pipeline::mapping_counts() const { return state_->flow.mapp
 LoopRecord Pipeline::loop_record() const { return state_->flow.loop_record(); }
 Warnings Pipeline::warnings() const {
   Warnings warnings = state_->parts.warnings;
+  if (const auto& imu = state_->parts.imu)
+    for (std::string& suspicion :
+         imu_suspicions(state_->imu, {imu->rate, imu->gyroscope_range, imu->accelerometer_range}))
+      add_warning(warnings, {{"SensorFrame::imu"}, std::move(suspicion)});
   for (const Module* module : state_->modules) add_warnings(warnings, module->warnings());
   return warnings;
 }

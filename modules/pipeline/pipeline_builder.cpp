@@ -52,6 +52,9 @@ PipelineBuilder& PipelineBuilder::source(const SourceDescription& description) {
   origin_.source_name = description.name;
   has_depth_ = description.has_depth;
   has_right_ = description.has_right;
+  has_imu_ = description.has_imu;
+  if (description.imu) parts_.imu = description.imu;
+  parts_.checks_imu = !description.imu;  // a source that has applied the calibration judges the measurements itself
   has_global_shutter_ = description.has_global_shutter;
   context_.class_names = description.class_names;
   context_.frame_timestamps = description.frame_timestamps;
@@ -65,6 +68,11 @@ PipelineBuilder& PipelineBuilder::origin(PipelineOrigin origin) {
 
 PipelineBuilder& PipelineBuilder::sensor(Sensor sensor) {
   sensor_ = sensor;
+  return *this;
+}
+
+PipelineBuilder& PipelineBuilder::imu(const ImuCalibration& calibration) {
+  parts_.imu = calibration;
   return *this;
 }
 
@@ -229,6 +237,17 @@ void PipelineBuilder::judge_camera() {
     suspect(place, whose + suspicion);
 }
 
+void PipelineBuilder::check_imu() {
+  context_.imu = parts_.imu;
+  if (!parts_.imu) return;
+  if (const std::string trouble = parts_.imu->trouble(); !trouble.empty())
+    add_diagnostic(origin_.imu_place, "the calibration of the IMU: " + trouble);
+  if (!origin_.source_name.empty() && !has_imu_)
+    suspect(origin_.imu_place, "'imu' has no effect, because the source '" + origin_.source_name +
+                                   "' gives no inertial measurements; name their file in the source, where it has the "
+                                   "parameter `imu`, or remove the section");
+}
+
 void PipelineBuilder::check_settings() {
   check(parts_.tracking, "tracking");
   check(parts_.stereo, "stereo");
@@ -391,6 +410,7 @@ Pipeline PipelineBuilder::build() {
   check_camera();
   if (!features_) add_diagnostic(origin_.place, "features() is missing; choose an extractor, such as 'orb'");
   if (!optimizer_) add_diagnostic(origin_.place, "optimizer() is missing; choose one, such as 'ceres'");
+  check_imu();
   check_settings();
   choose_sensor();
   make_modules();

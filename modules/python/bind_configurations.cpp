@@ -59,6 +59,7 @@ py::dict to_dictionary(const Configuration& configuration) {
   all["source"] = dictionary_of(configuration.source);
   if (configuration.camera)
     all["camera"] = py::cast(ParameterTable<CameraSettings>().values(camera_settings(*configuration.camera)));
+  if (configuration.imu) all["imu"] = py::cast(ParameterTable<ImuSettings>().values(imu_settings(*configuration.imu)));
   all["features"] = dictionary_of(configuration.features);
   all["segmenter"] = dictionary_of(configuration.segmenter);
   all["filters"] = dictionaries_of(configuration.filters);

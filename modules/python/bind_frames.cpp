@@ -27,6 +27,32 @@ std::shared_ptr<const FrameTruth> truth_of(const py::object& pose, const py::obj
   return truth;
 }
 
+std::vector<ImuSample> imu_of_array(const py::object& rows) {
+  std::vector<ImuSample> samples;
+  if (rows.is_none()) return samples;
+  const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(rows);
+  if (!array || array.ndim() != 2 || array.shape(1) != 7)
+    throw InputError({"imu"},
+                     "has another shape; expected one row for each measurement: time stamp [s], angular velocity x, y, "
+                     "z [rad/s], specific force x, y, z [m/s^2]");
+  for (py::ssize_t i = 0; i < array.shape(0); ++i) {
+    const double* row = array.data(i, 0);
+    samples.push_back({row[0], {row[1], row[2], row[3]}, {row[4], row[5], row[6]}});
+  }
+  return samples;
+}
+
+py::array_t<double> array_of_imu(const SensorFrame& frame) {
+  py::array_t<double> rows({static_cast<py::ssize_t>(frame.imu.size()), py::ssize_t{7}});
+  for (std::size_t i = 0; i < frame.imu.size(); ++i) {
+    double* row = rows.mutable_data(static_cast<py::ssize_t>(i), 0);
+    row[0] = frame.imu[i].timestamp;
+    Eigen::Map<Eigen::Vector3d>(row + 1) = frame.imu[i].angular_velocity;
+    Eigen::Map<Eigen::Vector3d>(row + 4) = frame.imu[i].acceleration;
+  }
+  return rows;
+}
+
 template <class Value>
 py::object of_truth(const SensorFrame& frame, Value value) {
   if (!frame.truth) return py::none();
@@ -71,26 +97,28 @@ SensorFrame make_frame(double timestamp, const py::object& colour, const py::obj
 void bind_frames(py::module_& module) {
   py::class_<SensorFrame>(module, "Frame",
                           "A colour image with its time and its depth image, or the right image of a stereo pair.")
-      .def(
-          py::init([](double timestamp, const py::object& colour, const py::object& depth, const py::object& right,
-                      std::uint64_t index, double depth_delay, const py::object& true_pose,
-                      const py::object& object_mask, const py::object& class_labels, const py::object& moving_objects) {
-            SensorFrame frame = make_frame(timestamp, colour, depth, right);
-            frame.index = index;
-            frame.depth_delay = depth_delay;
-            frame.truth = truth_of(true_pose, object_mask, class_labels, moving_objects);
-            return frame;
-          }),
-          py::arg("timestamp"), py::arg("colour"), py::arg("depth") = py::none(), py::kw_only(),
-          py::arg("right") = py::none(), py::arg("index") = 0, py::arg("depth_delay") = 0.0,
-          py::arg("true_pose") = py::none(), py::arg("object_mask") = py::none(), py::arg("class_labels") = py::none(),
-          py::arg("moving_objects") = py::none())
+      .def(py::init([](double timestamp, const py::object& colour, const py::object& depth, const py::object& right,
+                       std::uint64_t index, double depth_delay, const py::object& true_pose,
+                       const py::object& object_mask, const py::object& class_labels, const py::object& moving_objects,
+                       const py::object& imu) {
+             SensorFrame frame = make_frame(timestamp, colour, depth, right);
+             frame.index = index;
+             frame.depth_delay = depth_delay;
+             frame.truth = truth_of(true_pose, object_mask, class_labels, moving_objects);
+             frame.imu = imu_of_array(imu);
+             return frame;
+           }),
+           py::arg("timestamp"), py::arg("colour"), py::arg("depth") = py::none(), py::kw_only(),
+           py::arg("right") = py::none(), py::arg("index") = 0, py::arg("depth_delay") = 0.0,
+           py::arg("true_pose") = py::none(), py::arg("object_mask") = py::none(), py::arg("class_labels") = py::none(),
+           py::arg("moving_objects") = py::none(), py::arg("imu") = py::none())
       .def_readonly("index", &SensorFrame::index)
       .def_readonly("timestamp", &SensorFrame::timestamp)
       .def_readonly("depth_delay", &SensorFrame::depth_delay)
       .def_property_readonly("colour", [](const SensorFrame& frame) { return array_of_image(frame.colour); })
       .def_property_readonly("depth", [](const SensorFrame& frame) { return array_of_image(frame.depth); })
       .def_property_readonly("right", [](const SensorFrame& frame) { return array_of_image(frame.right); })
+      .def_property_readonly("imu", &array_of_imu)
       .def_property_readonly("true_pose",
                              [](const SensorFrame& frame) {
                                return of_truth(frame, [](const FrameTruth& t) { return pose_array(t.T_world_camera); });

@@ -33,6 +33,7 @@ class FedFrames final : public FrameSource {
     description.name = "frames fed from Python";
     description.has_depth = !settings_.stereo;
     description.has_right = settings_.stereo;
+    description.has_imu = true;
     description.class_names = settings_.class_names;
     return description;
   }

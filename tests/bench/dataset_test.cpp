@@ -11,6 +11,7 @@
 #include "cli/program.hpp"
 #include "holdfast/bench/dataset_check.hpp"
 #include "holdfast/bench/published.hpp"
+#include "holdfast/image_files/recorded_imu.hpp"
 #include "sources/png_file.hpp"
 
 namespace holdfast {
@@ -123,6 +124,21 @@ TEST_F(DatasetCheckTest, FindsNothingWrongWithAWholeRecording) {
   EXPECT_THAT(check_dataset(program_.path("rec"), &recipe_).facts,
               AllOf(Contains("4 colour images, expected 4"), Contains("4 colour-depth pairs, expected 4"),
                     Contains("2 true poses"), Contains("4 mask images, expected 4")));
+}
+
+TEST_F(DatasetCheckTest, LooksAtInertialMeasurements) {
+  const auto write = [&](double force, double offset) {
+    std::string text = imu_header;
+    for (int i = 0; i <= 200; ++i) text += imu_sample_text({9.0 + offset + 0.01 * i, {0, 0, 0}, {0, force, 0}});
+    program_.write("rec/imu.csv", text);
+  };
+  write(9.8, 0.0);
+  EXPECT_THAT(problems(), IsEmpty());
+  EXPECT_THAT(check_dataset(program_.path("rec"), &recipe_).facts, Contains("201 inertial measurements"));
+  write(1.0, 0.0);
+  EXPECT_THAT(problems(), ElementsAre(AllOf(HasSubstr("imu.csv"), HasSubstr("multiples of g"))));
+  write(9.8, 100.0);
+  EXPECT_THAT(problems(), ElementsAre(HasSubstr("expected the same time by the same clock")));
 }
 
 TEST_F(DatasetCheckTest, ExplainsWhatIsMissing) {

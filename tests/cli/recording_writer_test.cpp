@@ -9,6 +9,7 @@
 #include "cli/program.hpp"
 #include "depth_units.hpp"
 #include "holdfast/image_files/image_structure.hpp"
+#include "holdfast/image_files/recorded_imu.hpp"
 #include "png_encoder.hpp"
 
 namespace holdfast {
@@ -100,6 +101,18 @@ TEST_F(RecordingWriterTest, OtherDepthIsRoundedAndCounted) {
   EXPECT_EQ(recording.rounded_frames(), 1u);
   EXPECT_EQ(recorded.depth.at<float>(1, 1), 6173.0F / 5000.0F);
   EXPECT_EQ(recorded.depth.at<float>(0, 0), 0.0F) << "too far for 16 bits";
+}
+
+TEST_F(RecordingWriterTest, InertialMeasurementsAreWrittenOnce) {
+  RecordingWriter recording = writer({1000.0});
+  SensorFrame first = frame_of(1.0, all_depths(1000.0)), second = frame_of(1.1, all_depths(1000.0));
+  const ImuSample a{0.995, {1, 2, 3}, {4, 5, 9.8}}, b{1.05, {0, 0, 1}, {0, 0, 9.8}}, c{1.1, {0, 0, 2}, {0, 0, 9.7}};
+  first.imu = {a};
+  second.imu = {a, b, c};
+  recording.add(first);
+  recording.add(second);
+  recording.finish({});
+  EXPECT_EQ(read_imu_samples(find_imu_file(program_.path("recording"), {})), (std::vector<ImuSample>{a, b, c}));
 }
 
 }  // namespace

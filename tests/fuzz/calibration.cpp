@@ -40,6 +40,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     check(read.camera);
     check(read.T_body_camera);
   });
+  fuzz::accepts([&] { check(read_euroc_imu(file).T_body_camera); });
   fuzz::accepts([&] { check(read_openloris_camera(file, "d400_color_optical_frame")); });
   fuzz::accepts([&] { check(read_openloris_pose(file, "d400_color_optical_frame")); });
   fuzz::accepts([&] {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <limits>
 #include <thread>
 
 #include "holdfast/settings/ceres.hpp"
@@ -259,6 +260,49 @@ TEST(PipelineBuilder, ASurfaceIsCheckedBeforeTheRun) {
   PipelineBuilder builder = builder_for(world);
   builder.surface({.enabled = true});
   EXPECT_THAT(complaints(builder), HasSubstr("this build has no OpenVDB"));
+}
+
+TEST(PipelineBuilder, AnImuWithoutMeasurementsIsNamed) {
+  test::PointWorld world(find_camera("tum_fr1").value());
+  const auto warnings_of = [&](bool has_imu) {
+    PipelineBuilder builder = builder_for(world);
+    builder.source({.name = "a recording", .has_depth = true, .has_imu = has_imu}).imu(*find_imu("bmi160"));
+    return builder.build().warnings();
+  };
+  EXPECT_TRUE(warnings_of(true).empty());
+  ASSERT_EQ(warnings_of(false).size(), 1U);
+  EXPECT_THAT(warnings_of(false)[0].message, HasSubstr("'imu' has no effect, because the source 'a recording'"));
+  PipelineBuilder wrong = builder_for(world);
+  ImuCalibration calibration;
+  calibration.time_offset = 12.0;
+  wrong.imu(calibration);
+  EXPECT_THAT(complaints(wrong), HasSubstr("time offset"));
+}
+
+TEST(PipelineBuilder, InertialMeasurementsOfACallerAreChecked) {
+  test::PointWorld world(find_camera("tum_fr1").value());
+  PipelineBuilder builder = builder_for(world);
+  Pipeline pipeline = builder.imu(*find_imu("bmi160")).build();
+  const auto frame = [&](std::uint64_t i) {
+    const double stamp = static_cast<double>(i) / 30.0;
+    SensorFrame frame = world.frame(i, stamp, test::path_pose(stamp));
+    for (int k = 0; k < 7; ++k) {
+      const double time = stamp - 1.0 / 30.0 + k / 180.0;
+      frame.imu.push_back({time, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()});
+    }
+    return frame;
+  };
+  for (std::uint64_t i = 0; i < 20; ++i) pipeline.feed(frame(i));
+  SensorFrame swapped = frame(20);
+  std::swap(swapped.imu[2], swapped.imu[3]);
+  EXPECT_THROW(pipeline.feed(swapped), InputError);
+  SensorFrame infinite = frame(20);
+  infinite.imu[2].acceleration.x() = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(pipeline.feed(infinite), InputError);
+  pipeline.feed(frame(20));
+  pipeline.finish();
+  ASSERT_EQ(pipeline.warnings().size(), 1U);
+  EXPECT_THAT(pipeline.warnings()[0].message, HasSubstr("multiples of g"));
 }
 
 TEST(PipelineBuilder, AMapIsContinuedByItsOwnExtractorOnly) {

@@ -99,6 +99,15 @@ def test_simulation_is_a_sequence_with_truth():
         holdfast.simulate(overrides={"durration": 1})
 
 
+def test_frames_have_inertial_measurements():
+    colour = numpy.zeros((4, 5, 3), numpy.uint8)
+    rows = numpy.arange(14.0).reshape(2, 7)
+    assert numpy.array_equal(holdfast.Frame(1.0, colour, imu=rows).imu, rows)
+    assert holdfast.Frame(1.0, colour).imu.shape == (0, 7)
+    with pytest.raises(holdfast.InputError, match="angular velocity"):
+        holdfast.Frame(1.0, colour, imu=numpy.zeros((2, 6)))
+
+
 def test_bench_tables_are_records(tmp_path):
     (tmp_path / "runs.csv").write_text(
         'variant,sequence,poses,ate_rmse_m,counts\n"a, b",xyz,-3,0.25,true\nc,rpy,,,false\n'

@@ -39,5 +39,24 @@ TEST(SimulatedSource, DeliversItsFramesInOrderAndThenEnds) {
   EXPECT_FALSE(source->next());
 }
 
+TEST(SimulatedSource, HasTheInertialSensorOfTheConfiguration) {
+  Registry registry;
+  holdfast_register_plugin_simulated(registry);
+  CreationContext context;
+  context.camera = *find_camera("tum_fr1");
+  context.camera.width = 64, context.camera.height = 48;
+  const ParameterValues values = {{"path", std::string("rpy")}, {"duration", 0.1}};
+  EXPECT_FALSE(registry.create<FrameSource>("simulated", values, context)->describe().has_imu);
+  EXPECT_TRUE(registry.create<FrameSource>("simulated", values, context)->next()->imu.empty());
+  context.imu = find_imu("bmi160");
+  const auto source = registry.create<FrameSource>("simulated", values, context);
+  EXPECT_TRUE(source->describe().has_imu);
+  EXPECT_EQ(source->describe().imu, context.imu);
+  source->next();
+  const SensorFrame second = *source->next();
+  EXPECT_EQ(second.imu.size(), 8U) << "0 to 0.035 s";
+  EXPECT_NEAR(second.imu.back().acceleration.norm(), standard_gravity, 1.0);
+}
+
 }  // namespace
 }  // namespace holdfast

@@ -187,5 +187,34 @@ TEST_F(EurocTest, SaysWhatIsWrong) {
   EXPECT_THAT(test::input_error([&] { open({}, "V9/mav0/cam0"); }), HasSubstr("contains neither mav0/cam0 nor cam0"));
 }
 
+/// The IMU of a body whose frame is not that of the IMU.
+constexpr const char* imu_sensor =
+    "sensor_type: imu\nT_BS:\n  cols: 4\n  rows: 4\n  data: [1, 0, 0, 0.2, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, "
+    "1]\nrate_hz: 200\ngyroscope_noise_density: 1.7e-04\ngyroscope_random_walk: 1.9e-05\n"
+    "accelerometer_noise_density: 2.0e-3\naccelerometer_random_walk: 3.0e-3\n";
+
+TEST_F(EurocTest, GivesInertialMeasurementsAndTheirCalibration) {
+  EXPECT_FALSE(open()->describe().has_imu);
+  std::string samples = "#timestamp [ns],w_RS_S_x [rad s^-1],...\n";
+  for (int i = -1; i < 30; ++i) samples += std::to_string(1403636579763555584 + i * 5000000LL) + ",0,0,0,9.8,0,0\n";
+  folder_.write("V9/mav0/imu0/data.csv", samples);
+  folder_.write("V9/mav0/imu0/sensor.yaml", imu_sensor);
+  const auto source = open({{"cameras", std::string("left")}});
+  const SourceDescription description = source->describe();
+  EXPECT_TRUE(description.has_imu);
+  ASSERT_TRUE(description.imu);
+  EXPECT_EQ(description.imu->rate, 200.0);
+  EXPECT_EQ(description.imu->noise, (ImuNoise{1.7e-4, 2e-3, 1.9e-5, 3e-3}));
+  // The camera stands at x = 0.5 of the body and looks along its x axis, the IMU at x = 0.2.
+  EXPECT_LT((description.imu->T_body_camera * Eigen::Vector3d(0, 0, 1) - Eigen::Vector3d(1.3, 0, 0)).norm(), 1e-9);
+  source->next();
+  const SensorFrame second = *source->next();
+  EXPECT_EQ(second.imu.size(), 11U);
+  EXPECT_EQ(second.imu.back().timestamp, second.timestamp);
+  EXPECT_FALSE(open({{"imu", std::string("none")}})->describe().has_imu);
+  folder_.write("V9/mav0/imu0/sensor.yaml", "rate_hz: 200\n");
+  EXPECT_THAT(test::input_error([&] { open(); }), HasSubstr("T_BS"));
+}
+
 }  // namespace
 }  // namespace holdfast

@@ -316,5 +316,51 @@ TEST_F(RosbagTest, StartFramesAndTruth) {
   EXPECT_EQ(source->next()->colour.at<cv::Vec3b>(0, 0)[0], 41);
 }
 
+/// A sensor_msgs/Imu of ROS 1.
+std::string imu_message(std::uint64_t stamp, double rate, double force) {
+  test::ByteText message;
+  message.number(std::uint32_t{0}).number(static_cast<std::uint32_t>(stamp / 1'000'000'000));
+  message.number(static_cast<std::uint32_t>(stamp % 1'000'000'000)).text("imu");
+  for (int i = 0; i < 13; ++i) message.number(-1.0);
+  for (int i = 0; i < 3; ++i) message.number(rate + i);
+  for (int i = 0; i < 9; ++i) message.number(-2.0);
+  for (int i = 0; i < 3; ++i) message.number(force + i);
+  for (int i = 0; i < 9; ++i) message.number(-3.0);
+  return message.bytes;
+}
+
+std::string bag_with_imu(const std::vector<std::string>& topics, std::size_t bytes = 1000) {
+  BagWriter bag;
+  for (int i = 0; i < 3; ++i) {
+    bag.add(depth_topic, image, received(i), depth_message(i));
+    bag.add(colour_topic, image, received(i) + 2000, colour_message(i));
+    for (const std::string& topic : topics)
+      for (int k = 0; k < 10; ++k)
+        bag.add(topic, "sensor_msgs/Imu", received(i) + 3000,
+                imu_message(colour_stamp(i) + 10'000'000ULL * static_cast<unsigned>(k), 0.1, 9.8).substr(0, bytes));
+  }
+  return bag.finish();
+}
+
+TEST_F(RosbagTest, FramesHaveTheInertialMeasurementsOfATopic) {
+  EXPECT_FALSE(open(bag_with_imu({"/imu"}))->describe().has_imu) << "unless they are asked for";
+  const auto source = open(bag_with_imu({"/imu"}), {{"imu", std::string("/imu")}});
+  EXPECT_TRUE(source->describe().has_imu);
+  const std::vector<SensorFrame> frames = read_all(*source);
+  ASSERT_EQ(frames.size(), 3U);
+  ASSERT_EQ(frames[1].imu.size(), 11U);
+  EXPECT_EQ(frames[1].imu.front().timestamp, frames[0].timestamp);
+  EXPECT_EQ(frames[1].imu.back().timestamp, frames[1].timestamp);
+  EXPECT_EQ(frames[1].imu[5].angular_velocity, Eigen::Vector3d(0.1, 1.1, 2.1));
+  EXPECT_EQ(frames[1].imu[5].acceleration, Eigen::Vector3d(9.8, 10.8, 11.8));
+}
+
+TEST_F(RosbagTest, ErrorsOfInertialMeasurementsNameTheTopics) {
+  const ParameterValues other = {{"imu", std::string("/other")}};
+  EXPECT_THAT(error(bag_with_imu({"/a", "/b"}), other), AllOf(HasSubstr("'/other'"), HasSubstr("has /a, /b")));
+  EXPECT_THAT(error(bag_with_imu({}), other), HasSubstr("the recording has none"));
+  EXPECT_THAT(error(bag_with_imu({"/a"}, 100), {{"imu", std::string("/a")}}), HasSubstr("covariance"));
+}
+
 }  // namespace
 }  // namespace holdfast

@@ -11,6 +11,7 @@
 #include "holdfast/config/parameter_reader.hpp"
 #include "holdfast/config/run_settings.hpp"
 #include "holdfast/core/camera.hpp"
+#include "holdfast/core/imu.hpp"
 #include "holdfast/core/sensor.hpp"
 #include "holdfast/core/warning.hpp"
 #include "holdfast/plugin/registry.hpp"
@@ -48,6 +49,30 @@ Camera make_camera(const CameraSettings& settings);
 std::optional<Camera> read_camera(const ConfigurationNode& node, std::vector<Diagnostic>& diagnostics,
                                   const FindParameter& elsewhere = {});
 
+/// The `imu` section when it is a map: numbers, or a known name and the numbers that differ from it.
+struct ImuSettings {
+  std::string name;
+  std::vector<std::string> kalibr;
+  RealTable T_body_camera;  ///< the rows of a 4 x 4 matrix; empty = identity
+  double rate = ImuCalibration().rate;
+  double time_offset = 0.0;
+  double gyroscope_noise_density = ImuNoise().gyroscope_noise_density;
+  double accelerometer_noise_density = ImuNoise().accelerometer_noise_density;
+  double gyroscope_random_walk = ImuNoise().gyroscope_random_walk;
+  double accelerometer_random_walk = ImuNoise().accelerometer_random_walk;
+  double gyroscope_range = ImuCalibration().gyroscope_range;
+  double accelerometer_range = ImuCalibration().accelerometer_range;
+
+  static void describe(ParameterTable<ImuSettings>& table);
+};
+
+ImuSettings imu_settings(const ImuCalibration& calibration);
+
+/// Reads an `imu` section, which is a known name or a map of numbers. Problems are appended to `diagnostics`, and the
+/// result is empty then. `elsewhere`: see read_parameters().
+std::optional<ImuCalibration> read_imu(const ConfigurationNode& node, std::vector<Diagnostic>& diagnostics,
+                                       const FindParameter& elsewhere = {});
+
 /// A module that a configuration selects, with the values of all its parameters, defaults included.
 struct ModuleChoice {
   std::string kind;
@@ -67,7 +92,9 @@ struct Configuration {
   /// Set by `camera: auto`: the source's own camera takes precedence over `camera`, which follows from the name of its
   /// folder; this is the error if there is neither.
   std::optional<Diagnostic> unknown_camera;
-  std::optional<Sensor> sensor;  ///< empty: all that the source has
+  std::optional<Sensor> sensor;       ///< empty: all that the source has
+  std::optional<ImuCalibration> imu;  ///< empty: that of the source, if it has one
+  SourceLocation imu_location;        ///< of the section, if there is one
   /// Warnings with their locations, such as a folder that is named after another camera.
   Warnings warnings;
   RunSettings run;

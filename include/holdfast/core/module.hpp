@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "holdfast/core/camera.hpp"
+#include "holdfast/core/imu.hpp"
 #include "holdfast/core/sensor.hpp"
 #include "holdfast/core/warning.hpp"
 
@@ -41,6 +42,8 @@ struct CreationContext {
   std::optional<Sensor> sensor = {};
   /// SourceDescription::frame_timestamps of the source; empty for the source itself.
   std::vector<double> frame_timestamps = {};
+  /// The configured calibration of the IMU; empty = the source's own, if it has one.
+  std::optional<ImuCalibration> imu = {};
 };
 
 }  // namespace holdfast

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "holdfast/core/build_layout.hpp"
+#include "holdfast/core/imu.hpp"
 
 namespace holdfast {
 
@@ -42,6 +43,11 @@ struct SensorFrame {
   /// may be empty.
   cv::Mat right;
   std::shared_ptr<const FrameTruth> truth;  ///< nullptr if the source has none
+  /// Inertial measurements from the time stamp of the previous frame to that of this one, in temporal order and with
+  /// time stamps by the clock of the camera: the first is the last one at or before the earlier stamp, the last the
+  /// first one at or after the later stamp, as far as they exist. The first frame begins with the last one at or before
+  /// its stamp. Empty without an IMU.
+  std::vector<ImuSample> imu;
 };
 
 }  // namespace holdfast

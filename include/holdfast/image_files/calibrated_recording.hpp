@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "holdfast/core/camera.hpp"
+#include "holdfast/core/imu.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/image_files/image_sequence.hpp"
 #include "holdfast/image_files/stereo_rectification.hpp"
@@ -27,6 +28,8 @@ struct CalibratedRecording {
   std::shared_ptr<const StereoRectification> rectification;  ///< nullptr: the images need none
   Trajectory truth;                                          ///< of `camera`; empty if there is none
   std::string truth_frame = "raw";                           ///< see SourceDescription
+  std::filesystem::path imu_file;                            ///< of inertial measurements; empty without any
+  std::optional<ImuCalibration> imu;                         ///< relative to `camera`
 };
 
 /// Makes a recording of one camera, the left one, that of a pair which has to be rectified. `T_left_right` maps points
@@ -64,6 +67,8 @@ struct EurocOptions {
   std::string cameras = "auto";        ///< pair: cam0 and cam1; left: cam0; auto: pair if cam1 exists
   double max_time_difference = 0.002;  ///< upper bound of the time between the images of a pair [s]
   FrameRange range;
+  bool with_imu = true;               ///< read imu0 if it exists
+  std::optional<ImuCalibration> imu;  ///< in place of the calibration of the recording; relative to cam0 as it is
 };
 
 /// Finds the frames of a sequence in the ASL layout of the EuRoC MAV data (Burri et al. 2016), with camera and truth.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "holdfast/core/camera.hpp"
+#include "holdfast/core/imu.hpp"
 #include "holdfast/image_files/image_list.hpp"
 
 namespace holdfast {
@@ -23,6 +24,11 @@ EurocCamera read_euroc_camera(const std::filesystem::path& file);
 
 /// Reads T_BS of a sensor.yaml: the pose of a sensor on the body. Throws as read_euroc_camera().
 Eigen::Isometry3d read_euroc_pose(const std::filesystem::path& file);
+
+/// Reads a sensor.yaml of an IMU: rate_hz, gyroscope_noise_density, gyroscope_random_walk, accelerometer_noise_density,
+/// accelerometer_random_walk. T_body_camera is the inverse of T_BS, that is, of a camera at the body's origin. Throws
+/// as read_euroc_camera().
+ImuCalibration read_euroc_imu(const std::filesystem::path& file);
 
 /// Reads a data.csv of a camera: lines "time stamp [ns],file name", '#' begins a comment. The stamps [s] increase
 /// strictly. Throws InputError (file and line) for anything else.

@@ -14,6 +14,7 @@
 #include "holdfast/core/sensor_frame.hpp"
 #include "holdfast/core/warning.hpp"
 #include "holdfast/image_files/image_decoder.hpp"
+#include "holdfast/image_files/recorded_imu.hpp"
 #include "holdfast/image_files/stereo_rectification.hpp"
 #include "holdfast/interfaces/frame_source.hpp"
 
@@ -90,11 +91,19 @@ class ImageSequence {
 class ImageSequenceSource : public FrameSource {
  public:
   SourceDescription describe() const override { return description_; }
-  std::optional<SensorFrame> next() override { return sequence_.next(); }
+  std::optional<SensorFrame> next() override {
+    std::optional<SensorFrame> frame = sequence_.next();
+    if (frame) imu_.add_to(*frame);
+    return frame;
+  }
   std::vector<double> pass_over(double timestamp) override { return sequence_.pass_over(timestamp); }
   Trajectory truth() const override { return truth_; }
   std::vector<SkippedFrame> skipped() const override { return sequence_.skipped(); }
-  Warnings warnings() const override { return sequence_.warnings(); }
+  Warnings warnings() const override {
+    Warnings warnings = sequence_.warnings();
+    add_warnings(warnings, imu_.warnings());
+    return warnings;
+  }
 
  protected:
   ImageSequenceSource(std::vector<ImageFiles> files, const ImageSequenceOptions& options)
@@ -104,11 +113,18 @@ class ImageSequenceSource : public FrameSource {
     description_.frame_timestamps = sequence_.timestamps();
   }
 
+  /// Adds the inertial measurements of a file to the frames; an empty path adds none. See RecordedImu.
+  void read_imu(const std::filesystem::path& file, const std::optional<ImuCalibration>& calibration) {
+    imu_ = RecordedImu(file, calibration, description_.frame_timestamps);
+    imu_.describe(description_);
+  }
+
   SourceDescription description_;
   Trajectory truth_;
 
  private:
   ImageSequence sequence_;
+  RecordedImu imu_;
 };
 
 /// The depth [m] that stands for "no measurement" in the given depth images (32FC1), if one seems to: the largest one

@@ -36,6 +36,10 @@ struct SourceDescription {
   /// Time stamps of all frames in their order [s], if they are known before the first frame; otherwise empty.
   std::vector<double> frame_timestamps;
   std::optional<Camera> camera;  ///< calibration known to the source; another one in the configuration is an error
+  bool has_imu = false;          ///< frames have inertial measurements; see SensorFrame::imu
+  /// Calibration of the IMU: CreationContext::imu or, without it, that known to the source. T_body_camera is that of
+  /// the camera of the frames, which is rectified where the source rectifies.
+  std::optional<ImuCalibration> imu;
 };
 
 /// Provides the frames of a recording, a simulation or a live camera. Time stamps increase strictly from frame to

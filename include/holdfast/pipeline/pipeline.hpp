@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "holdfast/config/run_settings.hpp"
 #include "holdfast/core/camera.hpp"
 #include "holdfast/core/frame_result.hpp"
+#include "holdfast/core/imu.hpp"
 #include "holdfast/core/map.hpp"
 #include "holdfast/core/map_snapshot.hpp"
 #include "holdfast/core/sensor.hpp"
@@ -48,6 +50,8 @@ struct PipelineParts {
   std::unique_ptr<Optimizer> optimizer;
   std::unique_ptr<LoopDetector> loop_detector;
   std::vector<std::unique_ptr<Observer>> observers;
+  std::optional<ImuCalibration> imu;  ///< frames have inertial measurements of this IMU
+  bool checks_imu = true;             ///< suspicions about the measurements are warnings of the pipeline
   TrackingSettings tracking;
   StereoSettings stereo;
   EvidenceSettings evidence;

@@ -51,6 +51,7 @@ class ModuleOf {
 struct PipelineOrigin {
   SourceLocation place{"PipelineBuilder"};   ///< of choices without a place of their own, such as a configuration file
   SourceLocation source_place = place;       ///< of the source
+  SourceLocation imu_place = place;          ///< of the calibration of the IMU
   std::string source_name;                   ///< empty: there is no source
   std::string map_name = "the map";          ///< of the map to continue or to localise in
   std::optional<Diagnostic> unknown_camera;  ///< Configuration::unknown_camera
@@ -99,6 +100,9 @@ class PipelineBuilder {
   /// Selects the sensor mode. Default: RGB-D if the source has depth, else stereo if it has a right image, else
   /// monocular.
   PipelineBuilder& sensor(Sensor sensor);
+
+  /// The IMU whose measurements the frames have (SensorFrame::imu). Default: that of the source, if it knows it.
+  PipelineBuilder& imu(const ImuCalibration& calibration);
 
   PipelineBuilder& features(ModuleOf<FeatureExtractor> module);
   PipelineBuilder& optimizer(ModuleOf<Optimizer> module);
@@ -156,6 +160,7 @@ class PipelineBuilder {
   bool follows_another_filter(std::size_t index) const;
   void check_map() const;
   void check_places() const;
+  void check_imu();
   void add_diagnostic(const SourceLocation& place, std::string message);
   /// Adds a warning (core/warning.hpp) to those of the pipeline.
   void suspect(const SourceLocation& place, std::string message);
@@ -168,6 +173,7 @@ class PipelineBuilder {
   bool has_global_shutter_ = false;
   bool has_depth_ = true;
   bool has_right_ = false;
+  bool has_imu_ = false;
   std::optional<Sensor> sensor_;
   bool has_map_ = false;
   PipelineOrigin origin_;

@@ -37,6 +37,7 @@ class Simulator {
   /// The rendered images without sensor effects.
   RenderedFrame render(std::uint64_t index) { return render(index, Eigen::Isometry3d::Identity()); }
 
+  const CameraPath& path() const { return path_; }
   const World& world() const { return scene_world_.world; }
   const Stage& stage() const { return scene_world_.stage; }
   /// The movable objects of this scene, by number.

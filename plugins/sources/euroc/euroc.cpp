@@ -11,6 +11,7 @@ struct EurocSettings : RecordedFrames {
   std::filesystem::path path;
   std::string cameras = "auto";
   double max_time_difference = 0.002;
+  std::string imu = "auto";
 
   static void describe(ParameterTable<EurocSettings>& table) {
     table.add("path", &EurocSettings::path, "folder of a sequence, which contains mav0, or mav0 itself").required();
@@ -23,6 +24,11 @@ struct EurocSettings : RecordedFrames {
              "upper bound of the time difference between the two images of a pair")
         .range(1e-6, 1.0)
         .unit("s");
+    table
+        .add("imu", &EurocSettings::imu,
+             "auto: inertial measurements of imu0, if it exists, with the calibration of its sensor.yaml unless the "
+             "configuration has the section 'imu'; none: they are not read")
+        .one_of({"auto", "none"});
     add_rows(table, "frame");
   }
 };
@@ -30,9 +36,11 @@ struct EurocSettings : RecordedFrames {
 /// A sequence in the ASL layout of the EuRoC MAV data (Burri et al. 2016): stereo pairs, or one camera.
 class EurocSource final : public CalibratedSource {
  public:
-  EurocSource(const EurocSettings& s, const CreationContext&)
-      : CalibratedSource(read_euroc_recording({s.path, s.cameras, s.max_time_difference, {s.start, s.frames}}), s.path,
-                         s.skips_bad_frames()) {}
+  EurocSource(const EurocSettings& s, const CreationContext& context)
+      : CalibratedSource(
+            read_euroc_recording(
+                {s.path, s.cameras, s.max_time_difference, {s.start, s.frames}, s.imu == "auto", context.imu}),
+            s.path, s.skips_bad_frames()) {}
 };
 
 }  // namespace

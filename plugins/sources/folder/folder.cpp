@@ -9,6 +9,7 @@
 #include "holdfast/image_files/image_sequence.hpp"
 #include "holdfast/image_files/numbered_files.hpp"
 #include "holdfast/image_files/recorded_frames.hpp"
+#include "holdfast/image_files/recorded_imu.hpp"
 #include "holdfast/interfaces/frame_source.hpp"
 #include "holdfast/plugin/plugin.hpp"
 
@@ -28,6 +29,7 @@ struct FolderSettings : RecordedFrames {
   std::filesystem::path stamps;
   std::filesystem::path truth;
   std::filesystem::path intrinsics;
+  std::filesystem::path imu;
 
   static void describe(ParameterTable<FolderSettings>& table) {
     table.add("path", &FolderSettings::path, "folder of the recording").required();
@@ -61,6 +63,11 @@ struct FolderSettings : RecordedFrames {
         "YAML or JSON file with fx, fy, cx, cy, width, height and, for a lens with distortion, k1 to k6, p1, p2, lens; "
         "'right' is the right camera of a pair that is not rectified. If the configuration has a camera too, both must "
         "agree");
+    table.add(
+        "imu", &FolderSettings::imu,
+        "file of inertial measurements under path, lines 'time stamp, angular velocity x, y, z [rad/s], specific force "
+        "x, "
+        "y, z [m/s^2]', stamps in seconds or nanoseconds; empty = an imu.csv that Holdfast wrote, if there is one");
     add_rows(table, "frame");
   }
 };
@@ -122,6 +129,7 @@ class FolderSource final : public FrameSource {
         sequence_(open(settings, context.camera)) {
     description_.frame_count = sequence_.size();
     description_.frame_timestamps = sequence_.timestamps();
+    read_imu(settings, context.imu);
     if (!settings.truth.empty()) truth_ = read_frame_poses(settings.truth, frames_.numbered, frames_.image_count);
     if (rectification_ == nullptr) return;
     for (TimedPose& pose : truth_) pose.T_world_camera = pose.T_world_camera * rectification_->T_left_rectified();
@@ -129,13 +137,29 @@ class FolderSource final : public FrameSource {
   }
 
   SourceDescription describe() const override { return description_; }
-  std::optional<SensorFrame> next() override { return sequence_.next(); }
+  std::optional<SensorFrame> next() override {
+    std::optional<SensorFrame> frame = sequence_.next();
+    if (frame) imu_.add_to(*frame);
+    return frame;
+  }
   std::vector<double> pass_over(double timestamp) override { return sequence_.pass_over(timestamp); }
   Trajectory truth() const override { return truth_; }
   std::vector<SkippedFrame> skipped() const override { return sequence_.skipped(); }
-  Warnings warnings() const override { return sequence_.warnings(); }
+  Warnings warnings() const override {
+    Warnings warnings = sequence_.warnings();
+    add_warnings(warnings, imu_.warnings());
+    return warnings;
+  }
 
  private:
+  /// The calibration is relative to the left camera as it is, and described for the rectified one.
+  void read_imu(const FolderSettings& settings, std::optional<ImuCalibration> calibration) {
+    if (calibration && rectification_ != nullptr)
+      calibration->T_body_camera = calibration->T_body_camera * rectification_->T_left_rectified();
+    imu_ = RecordedImu(find_imu_file(settings.path, settings.imu), calibration, description_.frame_timestamps);
+    imu_.describe(description_);
+  }
+
   SourceDescription describe(const FolderSettings& settings, const Camera& camera) {
     SourceDescription description;
     description.name = folder_name(settings.path);
@@ -177,6 +201,7 @@ class FolderSource final : public FrameSource {
   SourceDescription description_;                             // then: the sequence needs its camera
   FolderFrames frames_;
   ImageSequence sequence_;
+  RecordedImu imu_;
   Trajectory truth_;
 };
 

@@ -11,9 +11,11 @@
 #include "holdfast/core/size_text.hpp"
 #include "holdfast/image_files/image_sequence.hpp"
 #include "holdfast/image_files/recorded_frames.hpp"
+#include "holdfast/image_files/recorded_imu.hpp"
 #include "holdfast/interfaces/frame_source.hpp"
 #include "holdfast/plugin/plugin.hpp"
 #include "image_message.hpp"
+#include "imu_message.hpp"
 #include "topics.hpp"
 
 namespace holdfast {
@@ -22,7 +24,7 @@ namespace {
 
 struct RosbagSettings : RecordedFrames {
   std::filesystem::path path;
-  std::string colour, depth, camera_info;
+  std::string colour, depth, camera_info, imu;
   double max_time_difference = 0.02;
   double depth_factor = 1000.0;
   int invalid_depth = DepthEncoding::largest;
@@ -45,6 +47,9 @@ struct RosbagSettings : RecordedFrames {
     table.add("camera_info", &S::camera_info,
               "topic of the calibration of the colour camera; empty = camera_info beside the colour images, if it is "
               "there and the configuration gives no camera; none = it is not read");
+    table.add("imu", &S::imu,
+              "topic of inertial measurements (sensor_msgs/Imu); empty = the only one, if the configuration has the "
+              "section 'imu'; none = they are not read");
     table
         .add("max_time_difference", &S::max_time_difference,
              "upper bound of the time difference between a colour image and its depth image")
@@ -146,6 +151,10 @@ class RosbagSource final : public FrameSource {
       size_ = {description_.camera->width, description_.camera->height};
     }
     if (!settings.truth.empty()) truth_ = read_trajectory(settings.truth);
+    const std::string imu_topic = choose_imu_topic(*bag_, settings.imu, context.imu.has_value());
+    imu_ = RecordedImu(read_imu_topic(*bag_, imu_topic), settings.path.string() + ", " + imu_topic, context.imu,
+                       description_.frame_timestamps);
+    imu_.describe(description_);
   }
 
   SourceDescription describe() const override { return description_; }
@@ -155,6 +164,7 @@ class RosbagSource final : public FrameSource {
       try {
         SensorFrame frame = decode(frames_[index]);
         frame.index = index;
+        imu_.add_to(frame);
         return frame;
       } catch (const InputError& error) {
         if (!settings_.skips_bad_frames()) throw;
@@ -174,7 +184,11 @@ class RosbagSource final : public FrameSource {
   }
   Trajectory truth() const override { return truth_; }
   std::vector<SkippedFrame> skipped() const override { return skipped_; }
-  Warnings warnings() const override { return bag_->warnings(); }
+  Warnings warnings() const override {
+    Warnings warnings = bag_->warnings();
+    add_warnings(warnings, imu_.warnings());
+    return warnings;
+  }
 
  private:
   Camera read_camera() {
@@ -212,6 +226,7 @@ class RosbagSource final : public FrameSource {
   ImageMessages images_;
   SourceDescription description_;
   Trajectory truth_;
+  RecordedImu imu_;
   std::vector<SkippedFrame> skipped_;
   std::size_t position_ = 0;
 };

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "holdfast/interfaces/frame_source.hpp"
 #include "holdfast/plugin/plugin.hpp"
+#include "holdfast/simulation/imu_sensor.hpp"
 #include "holdfast/simulation/scene_file.hpp"
 #include "holdfast/simulation/simulator.hpp"
 
@@ -49,7 +51,11 @@ struct SimulatedSourceSettings {
 class SimulatedSource final : public FrameSource {
  public:
   SimulatedSource(const SimulatedSourceSettings& settings, const CreationContext& context)
-      : simulator_(scene_of(settings, context), context.camera), stereo_baseline_(settings.stereo_baseline) {}
+      : simulator_(scene_of(settings, context), context.camera),
+        stereo_baseline_(settings.stereo_baseline),
+        imu_calibration_(context.imu) {
+    if (context.imu) imu_.emplace(simulator_.path(), *context.imu, simulator_.scene().seed);
+  }
 
   SourceDescription describe() const override {
     const simulation::Scene& scene = simulator_.scene();
@@ -65,6 +71,8 @@ class SimulatedSource final : public FrameSource {
     for (std::uint64_t i = 0; i < simulator_.frame_count(); ++i)
       description.frame_timestamps.push_back(simulator_.timestamp(i));
     description.camera = simulator_.camera();
+    description.has_imu = imu_.has_value();
+    description.imu = imu_calibration_;
     if (is_stereo()) description.camera->baseline = stereo_baseline_;
     return description;
   }
@@ -72,7 +80,9 @@ class SimulatedSource final : public FrameSource {
   std::optional<SensorFrame> next() override {
     if (next_ >= simulator_.frame_count()) return std::nullopt;
     const std::uint64_t index = next_++;
-    return is_stereo() ? simulator_.stereo_frame(index, stereo_baseline_) : simulator_.frame(index);
+    SensorFrame frame = is_stereo() ? simulator_.stereo_frame(index, stereo_baseline_) : simulator_.frame(index);
+    if (imu_) frame.imu = imu_->take(frame.timestamp);
+    return frame;
   }
 
   std::vector<double> pass_over(double timestamp) override {
@@ -100,6 +110,8 @@ class SimulatedSource final : public FrameSource {
 
   simulation::Simulator simulator_;
   double stereo_baseline_;
+  std::optional<ImuCalibration> imu_calibration_;
+  std::optional<simulation::ImuSensor> imu_;
   std::uint64_t next_ = 0;
 };
 

@@ -25,6 +25,7 @@ struct TumSettings : RecordedFrames {
   std::filesystem::path associations;
   std::string truth_frame = "camera";
   RealTable truth_left, truth_right;
+  std::filesystem::path imu;
 
   static void describe(ParameterTable<TumSettings>& table) {
     table
@@ -57,6 +58,11 @@ struct TumSettings : RecordedFrames {
              "of the camera is truth_left * pose * truth_right, for motion capture that tracks markers")
         .unit("m");
     table.add("truth_right", &TumSettings::truth_right, "the same after each pose").unit("m");
+    table.add(
+        "imu", &TumSettings::imu,
+        "file of inertial measurements under path, lines 'time stamp, angular velocity x, y, z [rad/s], specific force "
+        "x, "
+        "y, z [m/s^2]', stamps in seconds or nanoseconds; empty = an imu.csv that Holdfast wrote, if there is one");
     add_rows(table, "pair");
   }
 };
@@ -149,6 +155,7 @@ class TumSource final : public ImageSequenceSource {
                                                             truth_file, context.camera);
     description_.truth_frame = transform.frame();
     if (std::filesystem::exists(truth_file)) truth_ = transformed(transform, read_trajectory(truth_file));
+    read_imu(find_imu_file(settings.path, settings.imu), context.imu);
   }
 };
 

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "holdfast/geometry/preintegration.hpp"
+
+/// Start of visual-inertial estimation from camera poses that images alone gave: inertial-only maximum a posteriori
+/// estimation after Campos, Montiel and Tardos, "Inertial-only optimization for visual-inertial initialization", ICRA
+/// 2020.
+namespace holdfast::geometry {
+
+/// Settings of start_inertially().
+struct InertialStartOptions {
+  bool estimate_scale = false;        ///< of one camera; otherwise the poses are in metres
+  double gravity = standard_gravity;  ///< [m/s^2]
+  /// Standard deviations of the given poses, per axis [m] (after scaling), [rad].
+  double position_deviation = 0.002;
+  double rotation_deviation = 0.001;
+  /// Standard deviations of the biases before any measurement [rad/s], [m/s^2].
+  double gyroscope_bias_deviation = 0.1;
+  double accelerometer_bias_deviation = 0.2;
+  int iterations = 15;  ///< at most
+  /// A result is usable only with standard deviations up to these: direction of gravity [rad], scale (relative),
+  /// velocities [m/s].
+  double largest_direction_deviation = 0.03;
+  double largest_scale_deviation = 0.02;
+  double largest_velocity_deviation = 0.05;
+  /// And if the mean squared normalised residual, which is 1 for the stated deviations, does not exceed this.
+  double largest_mean_chi_square = 4.0;
+};
+
+/// Result of start_inertially().
+struct InertialStart {
+  bool usable = false;                                ///< see InertialStartOptions; false: begin again later
+  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< acceleration of free fall in the world frame [m/s^2]
+  double scale = 1.0;                                 ///< metres in a unit of the given poses
+  ImuBias bias;                                       ///< constant over the time of the poses
+  std::vector<Eigen::Vector3d> velocities;            ///< of the body at each pose, in the world frame [m/s]
+  double direction_deviation = std::numeric_limits<double>::infinity();       ///< of gravity [rad], the larger axis
+  double scale_deviation = 0.0;                                               ///< relative; 0 if it is not estimated
+  double velocity_deviation = std::numeric_limits<double>::infinity();        ///< the largest of all [m/s]
+  double gyroscope_bias_deviation = std::numeric_limits<double>::infinity();  ///< the largest axis [rad/s]
+  double accelerometer_bias_deviation = std::numeric_limits<double>::infinity();  ///< the largest axis [m/s^2]
+  double mean_chi_square = std::numeric_limits<double>::infinity();               ///< mean squared normalised residual
+};
+
+namespace detail {
+
+/// The unknowns: velocities of all poses, direction of gravity (2), logarithm of the scale, biases.
+class InertialStartProblem {
+ public:
+  InertialStartProblem(std::span<const Eigen::Isometry3d> T_world_camera, std::span<const Preintegration> motions,
+                       const Eigen::Isometry3d& T_body_camera, const InertialStartOptions& options)
+      : poses_(T_world_camera), motions_(motions), T_camera_body_(T_body_camera.inverse()), options_(options) {}
+
+  InertialStart solve() {
+    estimate_gyroscope_bias();
+    if (!solve_linearly()) return result_;
+    double cost = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < options_.iterations; ++i) {
+      const double next = iterate();
+      if (!std::isfinite(next)) return result_;
+      if (std::abs(cost - next) < 1e-6 * next) break;
+      cost = next;
+    }
+    judge();
+    return result_;
+  }
+
+ private:
+  std::size_t count() const { return poses_.size(); }
+  int direction_index() const { return static_cast<int>(3 * count()); }
+  int scale_index() const { return direction_index() + 2; }
+  int bias_index() const { return scale_index() + 1; }
+  int size() const { return bias_index() + 6; }
+
+  Eigen::Matrix3d body_rotation(std::size_t i) const { return poses_[i].linear() * T_camera_body_.linear(); }
+  /// Position of the body in metres, without that of the camera, which is scaled.
+  Eigen::Vector3d lever(std::size_t i) const { return poses_[i].linear() * T_camera_body_.translation(); }
+
+  InertialState state(std::size_t i) const {
+    InertialState state;
+    state.T_world_body.linear() = body_rotation(i);
+    state.T_world_body.translation() = result_.scale * poses_[i].translation() + lever(i);
+    state.velocity = result_.velocities[i];
+    state.bias = result_.bias;
+    return state;
+  }
+
+  /// The rotations alone determine the bias of the gyroscope, by linear least squares, twice for its nonlinearity.
+  void estimate_gyroscope_bias() {
+    for (int iteration = 0; iteration < 3; ++iteration) {
+      Eigen::Matrix3d hessian = 1e-9 * Eigen::Matrix3d::Identity();
+      Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+      for (std::size_t i = 0; i + 1 < count(); ++i) {
+        const Eigen::Matrix3d jacobian = motions_[i].bias_jacobian().block<3, 3>(inertial::rotation, 0);
+        const Eigen::Vector3d error = log_so3(Eigen::Matrix3d(motions_[i].delta(result_.bias).rotation.transpose() *
+                                                              body_rotation(i).transpose() * body_rotation(i + 1)));
+        hessian += jacobian.transpose() * jacobian;
+        gradient += jacobian.transpose() * error;
+      }
+      result_.bias.gyroscope += hessian.ldlt().solve(gradient);
+    }
+  }
+
+  /// First values of velocities, gravity and scale: equations of motion that are linear in them, with the bias of the
+  /// accelerometer zero.
+  bool solve_linearly() {
+    const int columns = static_cast<int>(3 * count()) + 4, gravity = columns - 4, scale = columns - 1;
+    Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(columns, columns);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(columns);
+    for (std::size_t i = 0; i + 1 < count(); ++i) {
+      const double t = motions_[i].duration();
+      const InertialDelta delta = motions_[i].delta(result_.bias);
+      Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(6, columns);
+      Eigen::Matrix<double, 6, 1> values;
+      const int v = static_cast<int>(3 * i);
+      rows.block<3, 3>(0, v) = -Eigen::Matrix3d::Identity();
+      rows.block<3, 3>(0, gravity) = -0.5 * t * Eigen::Matrix3d::Identity();
+      rows.block<3, 1>(0, scale) = (poses_[i + 1].translation() - poses_[i].translation()) / t;
+      values.head<3>() = (body_rotation(i) * delta.position - lever(i + 1) + lever(i)) / t;
+      rows.block<3, 3>(3, v) = -Eigen::Matrix3d::Identity();
+      rows.block<3, 3>(3, v + 3).setIdentity();
+      rows.block<3, 3>(3, gravity) = -t * Eigen::Matrix3d::Identity();
+      values.tail<3>() = body_rotation(i) * delta.velocity;
+      hessian += rows.transpose() * rows;
+      right += rows.transpose() * values;
+    }
+    if (!options_.estimate_scale) {  // the scale is 1
+      right -= hessian.col(scale);
+      hessian.row(scale).setZero(), hessian.col(scale).setZero();
+      hessian(scale, scale) = 1.0, right[scale] = 1.0;
+    }
+    const Eigen::VectorXd solution = hessian.ldlt().solve(right);
+    result_.velocities.resize(count());
+    for (std::size_t i = 0; i < count(); ++i) result_.velocities[i] = solution.segment<3>(static_cast<int>(3 * i));
+    result_.scale = solution[scale];
+    result_.gravity = options_.gravity * solution.segment<3>(gravity).normalized();
+    return solution.allFinite() && result_.scale > 0.0 && result_.gravity.norm() > 0.0;
+  }
+
+  /// Two directions that gravity can turn to, which are columns.
+  Eigen::Matrix<double, 3, 2> gravity_tangent() const {
+    Eigen::Matrix<double, 3, 2> tangent;
+    tangent.col(0) = result_.gravity.unitOrthogonal() * options_.gravity;
+    tangent.col(1) = result_.gravity.normalized().cross(tangent.col(0));
+    return tangent;
+  }
+
+  /// Covariance of the residual of position, rotation and velocity, with the errors of both poses.
+  Eigen::Matrix<double, 9, 9> residual_covariance(std::size_t i) const {
+    Eigen::Matrix<double, 9, 9> covariance = motions_[i].covariance().topLeftCorner<9, 9>();
+    covariance.diagonal().segment<3>(inertial::position).array() += 2.0 * std::pow(options_.position_deviation, 2);
+    covariance.diagonal().segment<3>(inertial::rotation).array() += 2.0 * std::pow(options_.rotation_deviation, 2);
+    return covariance;
+  }
+
+  /// One Gauss-Newton step; returns the cost before it.
+  double iterate() {
+    build_system();
+    const Eigen::VectorXd step = hessian_.ldlt().solve(-gradient_);
+    if (!step.allFinite()) return std::numeric_limits<double>::quiet_NaN();
+    for (std::size_t i = 0; i < count(); ++i) result_.velocities[i] += step.segment<3>(static_cast<int>(3 * i));
+    const Eigen::Vector3d moved = result_.gravity + gravity_tangent() * step.segment<2>(direction_index());
+    result_.gravity = options_.gravity * moved.normalized();
+    result_.scale *= std::exp(std::clamp(step[scale_index()], -0.5, 0.5));
+    result_.bias.gyroscope += step.segment<3>(bias_index());
+    result_.bias.accelerometer += step.segment<3>(bias_index() + 3);
+    return cost_;
+  }
+
+  void build_system() {
+    hessian_ = Eigen::MatrixXd::Zero(size(), size());
+    gradient_ = Eigen::VectorXd::Zero(size());
+    cost_ = 0.0;
+    if (!options_.estimate_scale) hessian_(scale_index(), scale_index()) = 1.0;
+    const Eigen::Matrix<double, 3, 2> tangent = gravity_tangent();
+    for (std::size_t i = 0; i + 1 < count(); ++i) add_motion(i, tangent);
+    const auto add_prior = [&](int index, const Eigen::Vector3d& value, double deviation) {
+      const double information = 1.0 / (deviation * deviation);
+      hessian_.diagonal().segment<3>(index).array() += information;
+      gradient_.segment<3>(index) += information * value;
+      cost_ += information * value.squaredNorm();
+    };
+    add_prior(bias_index(), result_.bias.gyroscope, options_.gyroscope_bias_deviation);
+    add_prior(bias_index() + 3, result_.bias.accelerometer, options_.accelerometer_bias_deviation);
+  }
+
+  void add_motion(std::size_t i, const Eigen::Matrix<double, 3, 2>& tangent) {
+    InertialJacobians jacobians;
+    const Eigen::Matrix<double, 9, 1> error =
+        motions_[i].residual(state(i), state(i + 1), result_.gravity, &jacobians).head<9>();
+    const Eigen::Matrix<double, 9, 9> information =
+        residual_covariance(i).ldlt().solve(Eigen::Matrix<double, 9, 9>::Identity());
+    // Columns: both velocities, direction of gravity, scale, biases.
+    Eigen::Matrix<double, 9, 15> jacobian;
+    jacobian.leftCols<3>() = jacobians.first.block<9, 3>(0, inertial::velocity);
+    jacobian.middleCols<3>(3) = jacobians.second.block<9, 3>(0, inertial::velocity);
+    jacobian.middleCols<2>(6) = jacobians.gravity.topRows<9>() * tangent;
+    jacobian.col(8).setZero();
+    if (options_.estimate_scale)
+      jacobian.col(8) =
+          result_.scale * (jacobians.first.block<9, 3>(0, inertial::position) * poses_[i].translation() +
+                           jacobians.second.block<9, 3>(0, inertial::position) * poses_[i + 1].translation());
+    jacobian.rightCols<6>() = jacobians.first.block<9, 6>(0, inertial::gyroscope);
+    const Eigen::Matrix<double, 15, 15> block = jacobian.transpose() * information * jacobian;
+    const Eigen::Matrix<double, 15, 1> slope = jacobian.transpose() * information * error;
+    const int v = static_cast<int>(3 * i), rest = direction_index();
+    hessian_.block<6, 6>(v, v) += block.topLeftCorner<6, 6>();
+    hessian_.block<6, 9>(v, rest) += block.topRightCorner<6, 9>();
+    hessian_.block<9, 6>(rest, v) += block.bottomLeftCorner<9, 6>();
+    hessian_.block<9, 9>(rest, rest) += block.bottomRightCorner<9, 9>();
+    gradient_.segment<6>(v) += slope.head<6>();
+    gradient_.segment<9>(rest) += slope.tail<9>();
+    cost_ += error.dot(information * error);
+  }
+
+  void judge() {
+    build_system();
+    const Eigen::MatrixXd covariance = hessian_.ldlt().solve(Eigen::MatrixXd::Identity(size(), size()));
+    if (!covariance.allFinite()) return;
+    const Eigen::VectorXd deviation = covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
+    result_.velocity_deviation = deviation.head(direction_index()).maxCoeff();
+    result_.direction_deviation = deviation.segment<2>(direction_index()).maxCoeff();
+    result_.scale_deviation = options_.estimate_scale ? deviation[scale_index()] : 0.0;
+    result_.gyroscope_bias_deviation = deviation.segment<3>(bias_index()).maxCoeff();
+    result_.accelerometer_bias_deviation = deviation.segment<3>(bias_index() + 3).maxCoeff();
+    // Nine residuals a motion, and six of the prior; as many unknowns as the system has rows.
+    const double unknowns = size() - (options_.estimate_scale ? 0 : 1);
+    result_.mean_chi_square = cost_ / std::max(1.0, 9.0 * static_cast<double>(count() - 1) + 6.0 - unknowns);
+    result_.usable = result_.direction_deviation <= options_.largest_direction_deviation &&
+                     result_.scale_deviation <= options_.largest_scale_deviation &&
+                     result_.velocity_deviation <= options_.largest_velocity_deviation &&
+                     result_.mean_chi_square <= options_.largest_mean_chi_square;
+  }
+
+  std::span<const Eigen::Isometry3d> poses_;
+  std::span<const Preintegration> motions_;
+  Eigen::Isometry3d T_camera_body_;
+  InertialStartOptions options_;
+  InertialStart result_;
+  Eigen::MatrixXd hessian_;
+  Eigen::VectorXd gradient_;
+  double cost_ = 0.0;
+};
+
+}  // namespace detail
+
+/// Estimates gravity, biases, velocities and, if asked, the scale from camera poses and the preintegrated measurements
+/// between them: motions[i] from pose i to pose i + 1, so that there is one motion less than poses. The poses stay as
+/// they are. `T_body_camera` is that of ImuCalibration. Two seconds with ten poses serve where the unit of the poses is
+/// known, also at rest, where gravity and the bias of the accelerometer can be told apart only by the prior of the
+/// bias; one camera needs some five seconds with accelerations. Not usable without at least four poses.
+///
+/// First the bias of the gyroscope from rotations, then all else by linear equations, then Gauss-Newton iterations on
+/// the residuals of equation 13, with priors on the biases and the errors of the given poses in the covariances.
+inline InertialStart start_inertially(std::span<const Eigen::Isometry3d> T_world_camera,
+                                      std::span<const Preintegration> motions, const Eigen::Isometry3d& T_body_camera,
+                                      const InertialStartOptions& options = {}) {
+  if (T_world_camera.size() < 4 || motions.size() + 1 != T_world_camera.size()) return {};
+  return detail::InertialStartProblem(T_world_camera, motions, T_body_camera, options).solve();
+}
+
+}  // namespace holdfast::geometry
