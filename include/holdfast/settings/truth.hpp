@@ -16,7 +16,7 @@ struct TruthSettings {
   static constexpr const char* module = "truth";
 
   std::vector<std::string> classes;  ///< classes of the source to segment, all others are background; empty = all
-  bool instances = false;  ///< also separate objects of one class, such as several people
+  bool instances = false;            ///< also separate objects of one class, such as several people
 
   static void describe(ParameterTable<TruthSettings>& table);
 };
