@@ -67,6 +67,7 @@ void record_pipeline(const Pipeline& pipeline, RunRecord& record) {
   record.masks = pipeline.mask_counts();
   record.mask_ages = pipeline.mask_latencies();
   record.readout = pipeline.readout();
+  record.pair = pipeline.pair_calibration();
 }
 
 }  // namespace

@@ -44,8 +44,9 @@ struct RunRecord {
   SourceDescription source;
   Camera camera;
   Sensor sensor = Sensor::rgbd;
-  double readout = 0.0;  ///< Pipeline::readout() at the end [s]
-  RunSummary summary;    ///< counts and stage times over all frames
+  double readout = 0.0;              ///< Pipeline::readout() at the end [s]
+  std::optional<PairEstimate> pair;  ///< Pipeline::pair_calibration() at the end
+  RunSummary summary;                ///< counts and stage times over all frames
   RepeatedImages repeated_images;
   std::vector<SkippedFrame> skipped;
   std::vector<double> frame_stamps;  ///< time stamps of all frames of the source, skipped ones included, sorted [s]
