@@ -24,8 +24,17 @@ void LocalMapper::build_bundle_problem(KeyFrameId id) {
   // these points are fixed.
   std::vector<KeyFrameId>& keyframes = problem_keyframes_;
   keyframes = {id};
-  for (const KeyFrameId neighbour : map_.best_covisible(id, settings_.bundle_keyframes - 1))
-    keyframes.push_back(neighbour);
+  if (disparities_changed_) {
+    // The disparities of all keyframes are corrected: the latest ones of this submap are free, covisible or not.
+    constexpr std::size_t max_count = 40;
+    const std::vector<KeyFrameId> by_age = map_.keyframes_by_age();
+    for (auto other = by_age.rbegin(); other != by_age.rend() && keyframes.size() < max_count; ++other)
+      if (*other != id && map_.keyframe(*other).submap == map_.keyframe(id).submap) keyframes.push_back(*other);
+    disparities_changed_ = false;
+  } else {
+    for (const KeyFrameId neighbour : map_.best_covisible(id, settings_.bundle_keyframes - 1))
+      keyframes.push_back(neighbour);
+  }
   const std::size_t moving = keyframes.size();
 
   std::vector<std::int32_t> pose_of_slot(map_.keyframes().slot_count(), -1);

@@ -14,6 +14,7 @@ KeyFrameId LocalMapper::insert(const Frame& frame, bool points_wait, StageTimes&
   const KeyFrameId keyframe = map_.add_keyframe(frame);
   map_.keyframe(keyframe).submap = submap;
   ++counts_.keyframes_made;
+  if (calibrator_) calibrator_->add(keyframe);
   drop_moving_features(keyframe);
   if (!points_wait) make_points_from_depth(keyframe);
   for (const MapPointId point : map_.keyframe(keyframe).frame.map_points)
@@ -59,6 +60,7 @@ std::vector<KeyFrameId> LocalMapper::refine(KeyFrameId keyframe, StageTimes& tim
     {
       const std::lock_guard lock(mutex_);
       if (map_.find_keyframe(keyframe) == nullptr) return {};
+      if (calibrator_) disparities_changed_ = calibrator_->correct() || disparities_changed_;
       // Its mask may have arrived since it was inserted.
       for (const MapPointId point : drop_moving_features(keyframe)) drop_weak_point(point);
       make_points_from_depth(keyframe);
@@ -78,6 +80,10 @@ std::vector<KeyFrameId> LocalMapper::refine(KeyFrameId keyframe, StageTimes& tim
   {
     const StageTimer timer(times, "mapping: bundle adjustment");
     adjust_bundle(keyframe);
+  }
+  if (calibrator_) {
+    const StageTimer timer(times, "mapping: pair calibration");
+    calibrator_->learn(keyframe);
   }
   const StageTimer timer(times, "mapping: culling");
   const std::lock_guard lock(mutex_);

@@ -32,6 +32,8 @@ class KeyframeFlow {
   /// All must outlive the object.
   KeyframeFlow(PipelineParts& parts, GuardedMap& map, MovingWorld& moving_world, SharedLoopDetector& detector);
 
+  /// Corrects the keyframes by the calibration of a stereo pair; before the first keyframe.
+  void calibrate_pair(StereoCalibration& calibration) { mapper_.calibrate_pair(calibration); }
   void start_threads();
   bool is_threaded() const { return mapping_.has_value(); }
   /// Throws what a thread threw, the segmenter's included.

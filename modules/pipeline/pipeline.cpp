@@ -11,6 +11,7 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/imu_plausibility.hpp"
 #include "holdfast/core/imu_timeline.hpp"
+#include "holdfast/core/stereo_calibration.hpp"
 #include "holdfast/core/thread_annotations.hpp"
 #include "holdfast/map_io/map_export.hpp"
 #include "holdfast/moving_world/moving_world.hpp"
@@ -54,11 +55,22 @@ MovingWorldParts moving_world_parts(PipelineParts& parts) {
           .has_depth = features_have_depth(parts.sensor)};
 }
 
-std::optional<StereoParts> stereo_parts(const PipelineParts& parts) {
+/// Makes the calibration of a pair that corrects itself, or nothing.
+std::unique_ptr<StereoCalibration> calibration_of_pair(const PipelineParts& parts) {
+  const StereoSettings& s = parts.stereo;
+  if (parts.sensor != Sensor::stereo || s.self_calibration == SelfCalibration::off) return nullptr;
+  return std::make_unique<StereoCalibration>(
+      parts.camera,
+      PairErrors{{s.rotation_x, s.rotation_y, s.rotation_z}, s.focal_ratio, s.column_offset, s.row_product},
+      s.self_calibration == SelfCalibration::estimated);
+}
+
+std::optional<StereoParts> stereo_parts(const PipelineParts& parts, StereoCalibration* calibration) {
   if (parts.sensor != Sensor::stereo) return std::nullopt;
   return StereoParts{.settings = parts.stereo,
                      .right_features = parts.right_features.get(),
-                     .is_dense = has_segmenter(parts) || !parts.filters.empty()};
+                     .is_dense = has_segmenter(parts) || !parts.filters.empty(),
+                     .calibration = calibration};
 }
 
 /// Throws InputError for inertial measurements that are not finite, or not in temporal order.
@@ -84,15 +96,17 @@ struct Pipeline::State {
         map(std::move(parts.map)),
         moving_world(moving_world_parts(parts), map.unshared()),
         detector(*parts.loop_detector),
-        tracker(parts.tracking,
-                {parts.camera, *parts.features, *parts.optimizer, detector, moving_world, map.unshared(),
-                 parts.run.seed, stereo_parts(parts), features_have_depth(parts.sensor), *parts.matcher}),
+        calibration(calibration_of_pair(parts)),
+        tracker(parts.tracking, {parts.camera, *parts.features, *parts.optimizer, detector, moving_world,
+                                 map.unshared(), parts.run.seed, stereo_parts(parts, calibration.get()),
+                                 features_have_depth(parts.sensor), *parts.matcher}),
         flow(parts, map, moving_world, detector) {
     Map& whole = map.unshared();
     whole.set_sensor(parts.sensor);
     whole.set_features({parts.features_name, parts.features->descriptor_type()});
     if (keeps_classes()) whole.set_classes(parts.segmenter->classes());
     whole.set_evidence_limit(static_cast<float>(parts.evidence.limit));
+    if (calibration) flow.calibrate_pair(*calibration);
     for (const auto& observer : parts.observers) observer->on_start(parts.segmenter->classes());
     if (parts.localise_only)
       tracker.localise_only();
@@ -125,6 +139,7 @@ struct Pipeline::State {
   GuardedMap map;
   MovingWorld moving_world;
   SharedLoopDetector detector;
+  std::unique_ptr<StereoCalibration> calibration;  // of a pair whose calibration is corrected
   Tracker tracker;
   bool finished = false;
   bool has_frame = false;
@@ -323,6 +338,10 @@ LossRecord Pipeline::loss_record() const {
   return state_->tracker.loss_record(locked);
 }
 Sensor Pipeline::sensor() const { return state_->parts.sensor; }
+std::optional<PairEstimate> Pipeline::pair_calibration() const {
+  if (!state_->calibration) return std::nullopt;
+  return state_->calibration->estimate();
+}
 double Pipeline::readout() const {
   const RollingShutter& shutter = state_->tracker.rolling_shutter();
   return shutter.is_active() ? shutter.readout() : 0.0;

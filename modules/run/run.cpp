@@ -72,6 +72,7 @@ void record_pipeline(const Pipeline& pipeline, RunRecord& record) {
   record.mask_ages = pipeline.mask_latencies();
   record.readout = pipeline.readout();
   record.focal_ratio = estimate_focal_ratio(pipeline.map());
+  record.pair = pipeline.pair_calibration();
 }
 
 void record_surface(const SurfaceMap& surface, RunRecord& record) {

@@ -56,6 +56,18 @@ Json threads_json(const ThreadRecord& threads) {
   return json;
 }
 
+Json pair_json(const PairEstimate& estimate) {
+  const auto json_of = [](const Eigen::Vector3d& v) { return Json{v.x(), v.y(), v.z()}; };
+  return {{"rotation_rad", json_of(estimate.errors.rotation)},
+          {"rotation_sigma_rad", json_of(estimate.rotation_sigma)},
+          {"focal_ratio", estimate.errors.focal_ratio},
+          {"focal_ratio_sigma", estimate.focal_ratio_sigma},
+          {"column_offset_px", estimate.errors.column_offset},
+          {"row_product", estimate.errors.row_product},
+          {"shift_px", estimate.shift},
+          {"shift_sigma_px", estimate.shift_sigma}};
+}
+
 Json loops_json(const LoopRecord& record) {
   Json json;
   json["keyframes"] = record.counts.keyframes;
@@ -182,6 +194,7 @@ std::string run_json(const RunRecord& record) {
   json["masks"] = masks_json(record.masks, record.mask_ages);
   json["mean_inliers"] = s.mean_inliers();
   json["readout_s"] = record.readout;
+  json["pair_calibration"] = record.pair ? pair_json(*record.pair) : Json(nullptr);
   json["evaluation"] = record.evaluation ? Json::parse(to_json(*record.evaluation)) : Json(nullptr);
   json["tracking"] = stage_json(s.tracking());
   Json& stages = json["stages"] = Json::array();

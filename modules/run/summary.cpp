@@ -99,6 +99,17 @@ std::string advice_to_restart(const RunRecord& record) {
          "most frames is the result.";
 }
 
+std::string pair_text(const PairEstimate& pair) {
+  std::string rotation;
+  for (int axis = 0; axis < 3; ++axis)
+    rotation += (axis == 0 ? "" : ", ") + fixed_text(1e3 * pair.errors.rotation[axis], 2);
+  std::string text = "calibration corrected: right camera turned by " + rotation + " mrad about x, y, z, focal ratio " +
+                     fixed_text(pair.errors.focal_ratio, 5);
+  if (pair.shift_sigma > 0.0)
+    text += ", columns shifted by " + fixed_text(pair.shift, 2) + " +- " + fixed_text(pair.shift_sigma, 2) + " px";
+  return text;
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, double>> perturbation_strengths(const Configuration& configuration) {
@@ -143,6 +154,7 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& r
                                "; " + fixed_text(s.mean_inliers(), 0) + " inliers a frame");
   if (record.readout != 0.0)
     rows.emplace_back("rolling shutter", "rows are exposed during " + fixed_text(1e3 * record.readout, 1) + " ms");
+  if (record.pair && record.pair->errors != PairErrors()) rows.emplace_back("stereo pair", pair_text(*record.pair));
   if (record.configuration.loop_detector.name != "none")
     rows.emplace_back("loops", std::to_string(record.loops.loops.size()) + " closed");
   if (record.evaluation) {

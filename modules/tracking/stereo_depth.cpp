@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <thread>
 
+#include "holdfast/core/stereo_calibration.hpp"
 #include "holdfast/core/thread_name.hpp"
 
 namespace holdfast {
@@ -66,6 +67,17 @@ void StereoDepth::extract(const cv::Mat& left, const cv::Mat& right, const cv::M
   });
   extractor.extract(left, ignore, frame.features);
   other.get();
+}
+
+void StereoDepth::depth(const cv::Mat& left, const cv::Mat& right, Frame& frame) {
+  if (parts_.calibration == nullptr) {
+    matcher_.match(left, right, right_features_, frame);
+    return;
+  }
+  matcher_.match(left, right, right_features_, frame, parts_.calibration->begin_frame());
+  // Rows that turn out wrong make columns wrong, because patches are compared in them.
+  if (parts_.calibration->learn_rows(matcher_.row_differences()))
+    matcher_.match(left, right, right_features_, frame, parts_.calibration->begin_frame());
 }
 
 bool StereoDepth::is_exchanged(const cv::Mat& left, const cv::Mat& right, const Frame& frame) {

@@ -27,7 +27,8 @@ void StereoMatcher::sort_by_row(const Features& features, int rows) {
   row_begin_.back() = static_cast<std::uint32_t>(features.size());
 }
 
-void StereoMatcher::find_matches(const Frame& frame, const Features& right, float max_disparity) {
+void StereoMatcher::find_matches(const Frame& frame, const Features& right, float max_disparity,
+                                 const PairErrors& errors) {
   const Features& left = frame.features;
   const int rows = static_cast<int>(row_begin_.size()) - 1;
   const DescriptorView left_descriptors = left.descriptors, right_descriptors = right.descriptors;
@@ -36,16 +37,17 @@ void StereoMatcher::find_matches(const Frame& frame, const Features& right, floa
   matches_.clear();
   for (std::size_t i = 0; i < left.size(); ++i) {
     const float tolerance = static_cast<float>(settings_.row_tolerance) * frame.pyramid->scale[left.octave[i]];
-    const int first = std::clamp(static_cast<int>(left.y[i] - tolerance), 0, rows - 1);
-    const int last = std::clamp(static_cast<int>(left.y[i] + tolerance), 0, rows - 1);
+    const float row = left.y[i] + static_cast<float>(errors.row(*frame.camera, left.x[i], left.y[i]));
+    const float infinity = left.x[i] + static_cast<float>(errors.column(*frame.camera, left.x[i], left.y[i]));
+    const int first = std::clamp(static_cast<int>(row - tolerance), 0, rows - 1);
+    const int last = std::clamp(static_cast<int>(row + tolerance), 0, rows - 1);
     // Both positions have an error of the size of a pixel of their level.
-    const float least = left.x[i] - max_disparity, most = left.x[i] + frame.pyramid->scale[left.octave[i]];
+    const float least = infinity - max_disparity, most = infinity + frame.pyramid->scale[left.octave[i]];
     candidates_.clear();
     for (std::uint32_t k = row_begin_[static_cast<std::size_t>(first)];
          k < row_begin_[static_cast<std::size_t>(last) + 1]; ++k) {
       const std::uint32_t candidate = by_row_[k];
-      if (right.x[candidate] < least || right.x[candidate] > most ||
-          std::abs(right.y[candidate] - left.y[i]) > tolerance ||
+      if (right.x[candidate] < least || right.x[candidate] > most || std::abs(right.y[candidate] - row) > tolerance ||
           std::abs(static_cast<int>(right.octave[candidate]) - static_cast<int>(left.octave[i])) > 1)
         continue;
       candidates_.push_back(candidate);
@@ -79,16 +81,39 @@ constexpr int max_reach = 12, max_radius = 15;  // px, of the search and of the 
 constexpr int lanes = 8;                        // columns that are compared at once
 constexpr int max_shifts = (2 * max_reach + 1 + lanes - 1) / lanes * lanes, max_side = 2 * max_radius + 1;
 
-/// Sums of absolute differences between a patch of the left image and those of the right image in the same rows that
-/// are centred in the columns from `first` on. The mean difference is subtracted: it is one of exposure.
-void compare_patches(const cv::Mat& left, const cv::Mat& right, int x, int y, int first, int shifts, int radius,
+/// The part of the right image that the patches of one feature are compared with: as a view of the image, or, between
+/// two of its rows, interpolated.
+struct Strip {
+  const std::uint8_t* data;
+  std::ptrdiff_t step;
+  const std::uint8_t* row(int k) const { return data + k * step; }
+};
+using StripBuffer = std::array<std::uint8_t, static_cast<std::size_t>(max_side) * (max_side + max_shifts)>;
+
+Strip strip_of(const cv::Mat& right, int column, float top, int width, int side, StripBuffer& buffer) {
+  const float whole = std::floor(top);
+  const int first = static_cast<int>(whole), part = static_cast<int>(std::lround(64.0F * (top - whole)));
+  if (part == 0) return {right.ptr<std::uint8_t>(first) + column, static_cast<std::ptrdiff_t>(right.step)};
+  for (int row = 0; row < side; ++row) {
+    const std::uint8_t* above = right.ptr<std::uint8_t>(first + row) + column;
+    const std::uint8_t* below = right.ptr<std::uint8_t>(first + row + 1) + column;
+    std::uint8_t* to = buffer.data() + static_cast<std::ptrdiff_t>(row) * width;
+    for (int k = 0; k < width; ++k)
+      to[k] = static_cast<std::uint8_t>((above[k] * (64 - part) + below[k] * part + 32) / 64);
+  }
+  return {buffer.data(), width};
+}
+
+/// Sums of absolute differences between a patch of the left image, centred at (x, y), and those of the strip, the first
+/// of which is at its left end. The mean difference is subtracted: it is one of exposure.
+void compare_patches(const cv::Mat& left, int x, int y, const Strip& right, int shifts, int radius,
                      std::array<int, max_shifts>& costs) {
   const int side = 2 * radius + 1, width = side - 1 + shifts;
   int left_sum = 0;
   std::array<int, max_side + max_shifts> column_sums{};
-  for (int row = y - radius; row <= y + radius; ++row) {
-    const std::uint8_t* a = left.ptr<std::uint8_t>(row) + x - radius;
-    const std::uint8_t* b = right.ptr<std::uint8_t>(row) + first - radius;
+  for (int row = 0; row < side; ++row) {
+    const std::uint8_t* a = left.ptr<std::uint8_t>(y - radius + row) + x - radius;
+    const std::uint8_t* b = right.row(row);
     for (int k = 0; k < side; ++k) left_sum += a[k];
     for (int k = 0; k < width; ++k) column_sums[static_cast<std::size_t>(k)] += b[k];
   }
@@ -101,9 +126,9 @@ void compare_patches(const cv::Mat& left, const cv::Mat& right, int x, int y, in
 
   costs.fill(0);
   std::array<std::int16_t, max_side + max_shifts> strip{};
-  for (int row = y - radius; row <= y + radius; ++row) {
-    const std::uint8_t* a = left.ptr<std::uint8_t>(row) + x - radius;
-    const std::uint8_t* b = right.ptr<std::uint8_t>(row) + first - radius;
+  for (int row = 0; row < side; ++row) {
+    const std::uint8_t* a = left.ptr<std::uint8_t>(y - radius + row) + x - radius;
+    const std::uint8_t* b = right.row(row);
     for (int k = 0; k < width; ++k) strip[static_cast<std::size_t>(k)] = b[k];
     for (int block = 0; block < shifts; block += lanes) {
       // The differences of one row, 31 times 510 at most, fit into 16 bits.
@@ -121,23 +146,29 @@ void compare_patches(const cv::Mat& left, const cv::Mat& right, int x, int y, in
 
 }  // namespace
 
-float StereoMatcher::refine(const cv::Mat& left, const cv::Mat& right, float left_x, float left_y, float right_x,
+float StereoMatcher::refine(const cv::Mat& left, const cv::Mat& right, cv::Point2f left_at, cv::Point2f right_at,
                             float scale, float& difference) const {
+  constexpr float none = std::numeric_limits<float>::quiet_NaN();
   const int radius = settings_.patch_radius;
   const int reach = std::min(max_reach, 2 + static_cast<int>(std::ceil(2.0F * scale)));
-  const int x = static_cast<int>(std::lround(left_x)), y = static_cast<int>(std::lround(left_y));
-  const int there = static_cast<int>(std::lround(right_x));
-  if (y - radius < 0 || y + radius >= left.rows || x - radius < 0 || x + radius >= left.cols) return -1.0F;
+  const int x = static_cast<int>(std::lround(left_at.x)), y = static_cast<int>(std::lround(left_at.y));
+  const int there = static_cast<int>(std::lround(right_at.x));
+  const float top = static_cast<float>(y - radius) + (right_at.y - left_at.y);
+  if (y - radius < 0 || y + radius >= left.rows || x - radius < 0 || x + radius >= left.cols || top < 0.0F ||
+      top + static_cast<float>(2 * radius + 1) > static_cast<float>(right.rows))
+    return none;
   const int first = std::max(there - reach, radius), last = std::min(there + reach, right.cols - 1 - radius);
-  if (last - first < 2) return -1.0F;
+  if (last - first < 2) return none;
 
   std::array<int, max_shifts> costs;
-  compare_patches(left, right, x, y, first, last - first + 1, radius, costs);
-  const int side = 2 * radius + 1, area = side * side;
+  const int side = 2 * radius + 1, area = side * side, shifts = last - first + 1;
+  StripBuffer buffer;
+  const Strip strip = strip_of(right, first - radius, top, side - 1 + shifts, side, buffer);
+  compare_patches(left, x, y, strip, shifts, radius, costs);
   const auto count = static_cast<std::size_t>(last - first + 1);
   const std::size_t best = static_cast<std::size_t>(
       std::min_element(costs.begin(), costs.begin() + static_cast<std::ptrdiff_t>(count)) - costs.begin());
-  if (best == 0 || best + 1 == count) return -1.0F;
+  if (best == 0 || best + 1 == count) return none;
   const float before = static_cast<float>(costs[best - 1]), at = static_cast<float>(costs[best]),
               after = static_cast<float>(costs[best + 1]);
   const float curvature = before + after - 2.0F * at;
@@ -146,23 +177,30 @@ float StereoMatcher::refine(const cv::Mat& left, const cv::Mat& right, float lef
   return static_cast<float>(x - first - static_cast<int>(best)) - fraction;
 }
 
-void StereoMatcher::match(const cv::Mat& left, const cv::Mat& right, const Features& right_features, Frame& frame) {
+void StereoMatcher::match(const cv::Mat& left, const cv::Mat& right, const Features& right_features, Frame& frame,
+                          const PairErrors& errors) {
+  constexpr double row_sigma = 0.7;  // px at level 0, of the difference between two keypoints
   const std::size_t count = frame.size();
   frame.depth.assign(count, 0.0F);
   frame.right_x.assign(count, std::numeric_limits<float>::quiet_NaN());
   const float fx_baseline = static_cast<float>(frame.camera->fx * frame.camera->baseline);
   const float max_disparity = fx_baseline / static_cast<float>(settings_.minimum_depth);
   sort_by_row(right_features, left.rows);
-  find_matches(frame, right_features, max_disparity);
+  find_matches(frame, right_features, max_disparity, errors);
   keep_best_of_each_right_feature(right_features);
 
   disparity_.resize(matches_.size());
   difference_.resize(matches_.size());
   sorted_.clear();
+  row_differences_.clear();
   for (std::size_t k = 0; k < matches_.size(); ++k) {
     const std::size_t i = matches_[k].left;
-    disparity_[k] = refine(left, right, frame.features.x[i], frame.features.y[i], right_features.x[matches_[k].right],
-                           frame.pyramid->scale[frame.features.octave[i]], difference_[k]);
+    const cv::Point2f at(frame.features.x[i], frame.features.y[i]);
+    const float there = right_features.x[matches_[k].right];
+    const auto below = static_cast<float>(errors.row(*frame.camera, there, at.y));
+    const float shown =
+        refine(left, right, at, {there, at.y + below}, frame.pyramid->scale[frame.features.octave[i]], difference_[k]);
+    disparity_[k] = shown + static_cast<float>(errors.column(*frame.camera, at.x - shown, at.y));
     if (disparity_[k] >= 0.0F) sorted_.push_back(difference_[k]);
   }
   if (sorted_.empty()) return;
@@ -170,12 +208,18 @@ void StereoMatcher::match(const cv::Mat& left, const cv::Mat& right, const Featu
   const float limit = 2.1F * upper_median(sorted_);  // 1.5 standard deviations of 1.4 medians, as Mur-Artal and Tardos
   for (std::size_t k = 0; k < matches_.size(); ++k) {
     const float disparity = disparity_[k];
-    if (disparity < static_cast<float>(settings_.minimum_disparity) || disparity > max_disparity ||
+    if (!(disparity >= static_cast<float>(settings_.minimum_disparity)) || disparity > max_disparity ||
         difference_[k] > limit)
       continue;
     const std::size_t i = matches_[k].left;
     frame.depth[i] = fx_baseline / disparity;
     frame.right_x[i] = frame.x[i] - disparity;
+    // The keypoints are the same point if the patches agree with them.
+    const double scale = frame.pyramid->scale[frame.features.octave[i]], x = frame.x[i], y = frame.y[i];
+    const std::size_t other = matches_[k].right;
+    const double there = right_features.x[other];
+    if (std::abs(x - disparity + errors.column(*frame.camera, there, y) - there) < scale)
+      row_differences_.push_back({there, y, right_features.y[other] - y, row_sigma * scale});
   }
 }
 

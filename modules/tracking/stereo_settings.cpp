@@ -27,6 +27,28 @@ void StereoSettings::describe(ParameterTable<StereoSettings>& table) {
   table.add("minimum_disparity", &S::minimum_disparity, "features with a smaller disparity get no depth")
       .range(0.01, 100)
       .unit("px");
+  table.add(
+      "self_calibration", &S::self_calibration,
+      "whether errors of the calibration of the pair are corrected: fixed = by the errors given below; estimated = the "
+      "same, and they are estimated while tracking, from the rows of both images and from motion");
+  table
+      .add("rotation_x", &S::rotation_x,
+           "error of the calibration: rotation of the right camera against the left one, about the axis to the right")
+      .range(-0.05, 0.05)
+      .unit("rad");
+  table.add("rotation_y", &S::rotation_y, "the same about the axis downwards").range(-0.05, 0.05).unit("rad");
+  table.add("rotation_z", &S::rotation_z, "the same about the optical axis").range(-0.05, 0.05).unit("rad");
+  table.add("focal_ratio", &S::focal_ratio, "error of the calibration: ratio of the focal lengths, right to left")
+      .range(0.9, 1.1);
+  table
+      .add("column_offset", &S::column_offset,
+           "error of the calibration: how much farther to the right the principal point of the right camera lies")
+      .range(-100, 100)
+      .unit("px");
+  table
+      .add("row_product", &S::row_product,
+           "error of the calibration: coefficient of column by row in the differences of rows, all by focal length")
+      .range(-0.1, 0.1);
 }
 
 }  // namespace holdfast

@@ -109,6 +109,40 @@ TEST_F(StereoMatcherTest, TheDisparityHasNoBiasAtAnyDistanceOrOctave) {
     }
 }
 
+TEST_F(StereoMatcherTest, ErrorsOfThePairAreCorrectedInRowsAndColumns) {
+  constexpr float lower = 3.4F, to_the_right = 0.4F;
+  const cv::Matx23f shift(1, 0, to_the_right, 0, 1, lower);
+  cv::warpAffine(right_.clone(), right_, shift, right_.size(), cv::INTER_CUBIC, cv::BORDER_REFLECT);
+  for (float& x : right_features_.x) x += to_the_right;
+  for (float& y : right_features_.y) y += lower;
+  // Of a long focal length, a rotation displaces all columns and rows alike.
+  Camera camera = *frame_.camera;
+  camera.fx = camera.fy = 2000.0;
+  camera.baseline = 0.01;
+  frame_.camera = std::make_shared<const Camera>(camera);
+  match();
+  const std::size_t without = with_depth();
+  PairErrors errors;
+  errors.rotation.x() = -lower / frame_.camera->fy;
+  errors.column_offset = to_the_right;
+  StereoMatcher matcher({});
+  matcher.match(left_, right_, right_features_, frame_, errors);
+  EXPECT_GT(with_depth(), std::max(frame_.size() * 8 / 10, 2 * without));
+  double sum = 0.0;
+  for (std::size_t i = 0; i < frame_.size(); ++i) {
+    if (!frame_.has_depth(i)) continue;
+    const float disparity = frame_.x[i] - frame_.right_x[i];
+    EXPECT_NEAR(disparity, disparity_at(frame_.y[i]), 0.25F) << i;
+    EXPECT_NEAR(frame_.depth[i], 20.0F / disparity, 1e-4F) << i;
+    sum += disparity - disparity_at(frame_.y[i]);
+  }
+  EXPECT_NEAR(sum / static_cast<double>(with_depth()), 0.0, 0.08);  // a parabola prefers whole pixels
+  ASSERT_GT(matcher.row_differences().size(), frame_.size() / 2);
+  double rows = 0.0;
+  for (const RowDifference& row : matcher.row_differences()) rows += row.difference;
+  EXPECT_NEAR(rows / static_cast<double>(matcher.row_differences().size()), lower, 0.3);
+}
+
 TEST_F(StereoMatcherTest, AFeatureWithoutItsLikeInTheRowHasNoDepth) {
   right_features_.descriptors.of_256_bits()[5].words = {1, 2, 3, 4};
   right_features_.y[6] += 5.0F;

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "holdfast/interfaces/optimizer.hpp"
 #include "holdfast/mapping/mapping_counts.hpp"
 #include "holdfast/mapping/mapping_settings.hpp"
+#include "holdfast/mapping/pair_calibrator.hpp"
 
 namespace holdfast {
 
@@ -55,13 +57,22 @@ class LocalMapper {
   /// by an older mask: such points need a second observation. Call it before the first insert().
   void expect_masks() { expects_masks_ = true; }
 
+  /// Corrects and estimates the errors of a stereo pair's calibration (PairCalibrator). Call it before the first
+  /// insert().
+  void calibrate_pair(StereoCalibration& calibration) {
+    calibrator_ = std::make_unique<PairCalibrator>(map_, mutex_, calibration);
+  }
+
   /// Refines the map around an inserted keyframe and returns the removed keyframes. Acquires the lock of the map for
   /// short intervals and not during the bundle adjustment. Has no effect for a removed keyframe. Adds stages "mapping:
   /// ...".
   std::vector<KeyFrameId> refine(KeyFrameId keyframe, StageTimes& times);
 
   /// Resets the mapper after the map was cleared, except counts(). No other thread may refine.
-  void forget_map() { recent_points_.clear(); }
+  void forget_map() {
+    recent_points_.clear();
+    if (calibrator_) calibrator_->forget_map();
+  }
 
   /// Requests a running bundle adjustment to end after its current iteration; may be called by any thread.
   void request_stop() { stop_ = true; }
@@ -100,6 +111,8 @@ class LocalMapper {
   const FeatureMatcher& matcher_;
   std::atomic<bool> stop_{false};
   bool expects_masks_ = false;
+  std::unique_ptr<PairCalibrator> calibrator_;  // of a stereo pair whose calibration is corrected
+  bool disparities_changed_ = false;            // since the last bundle adjustment
   std::vector<MapPointId> recent_points_;
   MappingCounts counts_;
 

@@ -14,6 +14,7 @@
 #include "holdfast/core/imu.hpp"
 #include "holdfast/core/map.hpp"
 #include "holdfast/core/map_snapshot.hpp"
+#include "holdfast/core/pair_errors.hpp"
 #include "holdfast/core/sensor.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/core/worker_counts.hpp"
@@ -135,6 +136,9 @@ class Pipeline {
   Sensor sensor() const;
   /// The readout time by which features are corrected now, estimated if the settings say so [s]; 0 = not corrected.
   double readout() const;
+  /// What is known of the errors of a stereo pair's calibration by now; nothing without a pair, or with
+  /// StereoSettings::self_calibration off.
+  std::optional<PairEstimate> pair_calibration() const;
 
   /// Suspicions about the parts, and of the modules about what they were given (core/warning.hpp). Before the first
   /// frame or after finish().

@@ -52,8 +52,9 @@ struct RunRecord {
   SourceDescription source;
   Camera camera;
   Sensor sensor = Sensor::rgbd;
-  double readout = 0.0;  ///< Pipeline::readout() at the end [s]
-  RunSummary summary;    ///< counts and stage times over all frames
+  double readout = 0.0;              ///< Pipeline::readout() at the end [s]
+  std::optional<PairEstimate> pair;  ///< Pipeline::pair_calibration() at the end
+  RunSummary summary;                ///< counts and stage times over all frames
   RepeatedImages repeated_images;
   std::optional<FocalRatio> focal_ratio;  ///< empty without depth
   std::vector<SkippedFrame> skipped;

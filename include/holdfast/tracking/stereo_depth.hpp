@@ -13,6 +13,8 @@ class StereoSGBM;
 
 namespace holdfast {
 
+class StereoCalibration;
+
 /// Where the depth of frames comes from when a camera has a right image in place of a depth image.
 struct StereoParts {
   StereoSettings settings;
@@ -20,6 +22,9 @@ struct StereoParts {
   /// where the machine has a second core; nullptr: the left one's, afterwards. It must outlive the reader.
   FeatureExtractor* right_features = nullptr;
   bool is_dense = false;  ///< filters and masks need a depth image
+  /// Errors of the calibration, by which features are corrected, and which learn their rows; nullptr: there are none.
+  /// It must outlive the reader.
+  StereoCalibration* calibration = nullptr;
 };
 
 /// Depth from a rectified pair: of the features by StereoMatcher, and, if it is wanted, of the whole image by
@@ -41,9 +46,7 @@ class StereoDepth {
   void extract(const cv::Mat& left, const cv::Mat& right, const cv::Mat& ignore, FeatureExtractor& extractor,
                Frame& frame);
   /// Writes frame.depth and frame.right_x.
-  void depth(const cv::Mat& left, const cv::Mat& right, Frame& frame) {
-    matcher_.match(left, right, right_features_, frame);
-  }
+  void depth(const cv::Mat& left, const cv::Mat& right, Frame& frame);
   /// Whether far more features have a depth if the images of the pair of the last call of depth() are exchanged.
   bool is_exchanged(const cv::Mat& left, const cv::Mat& right, const Frame& frame);
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "holdfast/core/frame.hpp"
+#include "holdfast/core/pair_errors.hpp"
 #include "holdfast/tracking/stereo_settings.hpp"
 
 namespace holdfast {
@@ -21,8 +22,13 @@ class StereoMatcher {
   explicit StereoMatcher(const StereoSettings& settings) : settings_(settings) {}
 
   /// Writes frame.depth [m] and frame.right_x [px], which get one entry for each feature. `left` and `right`: 8UC1 of
-  /// the camera's size. The camera must have no distortion.
-  void match(const cv::Mat& left, const cv::Mat& right, const Features& right_features, Frame& frame);
+  /// the camera's size. The camera must have no distortion. `errors`: of the pair, by which rows and disparities are
+  /// corrected.
+  void match(const cv::Mat& left, const cv::Mat& right, const Features& right_features, Frame& frame,
+             const PairErrors& errors = {});
+  /// How much lower the right image shows the features that the last match() gave depth, as far as the keypoints of
+  /// both images are the same point.
+  const std::vector<RowDifference>& row_differences() const { return row_differences_; }
 
  private:
   struct Match {
@@ -30,10 +36,11 @@ class StereoMatcher {
     float distance;  // of the descriptors
   };
   void sort_by_row(const Features& features, int rows);
-  void find_matches(const Frame& frame, const Features& right, float max_disparity);
+  void find_matches(const Frame& frame, const Features& right, float max_disparity, const PairErrors& errors);
   void keep_best_of_each_right_feature(const Features& right);
-  /// The disparity [px] of a match, and how different the patches are; negative for one that cannot be refined.
-  float refine(const cv::Mat& left, const cv::Mat& right, float left_x, float left_y, float right_x, float scale,
+  /// The disparity [px] of a match as the images show it, and how different the patches are; NaN for one that cannot be
+  /// refined.
+  float refine(const cv::Mat& left, const cv::Mat& right, cv::Point2f left_at, cv::Point2f right_at, float scale,
                float& difference) const;
 
   StereoSettings settings_;
@@ -43,6 +50,7 @@ class StereoMatcher {
   std::vector<Match> matches_;
   std::vector<std::int32_t> match_of_right_;
   std::vector<float> disparity_, difference_, sorted_;
+  std::vector<RowDifference> row_differences_;
 };
 
 }  // namespace holdfast

@@ -1,10 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "holdfast/plugin/choice.hpp"
+
 namespace holdfast {
 
 template <class Settings>
 class ParameterTable;
+
+/// Correction of errors of a pair's calibration: none, the given errors, or errors that are estimated during the run,
+/// beginning with the given ones.
+enum class SelfCalibration { off, fixed, estimated };
+
+template <>
+inline constexpr Choice<SelfCalibration> choice_table<SelfCalibration>[] = {
+    {"off", SelfCalibration::off}, {"fixed", SelfCalibration::fixed}, {"estimated", SelfCalibration::estimated}};
 
 /// The `stereo` section of a configuration: how the features of the left image get their depth from the right one.
 struct StereoSettings {
@@ -15,6 +25,13 @@ struct StereoSettings {
   double maximum_distance = 0.0;
   int patch_radius = 5;            ///< px; half the width of the patch by which the disparity is refined
   double minimum_disparity = 0.5;  ///< px; farther features have no depth
+
+  SelfCalibration self_calibration = SelfCalibration::estimated;
+  // PairErrors: given, or first ones.
+  double rotation_x = 0.0, rotation_y = 0.0, rotation_z = 0.0;  ///< [rad]
+  double focal_ratio = 1.0;
+  double column_offset = 0.0;  ///< [px]
+  double row_product = 0.0;
 
   static void describe(ParameterTable<StereoSettings>& table);
 };

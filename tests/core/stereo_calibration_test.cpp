@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/core/stereo_calibration.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <vector>
+
+#include "holdfast/core/random.hpp"
+
+namespace holdfast {
+namespace {
+
+/// A pair on a street, whose right camera is turned and has another focal length, and points that it sees.
+class StereoCalibrationTest : public ::testing::Test {
+ protected:
+  StereoCalibrationTest() {
+    camera_.width = 1226, camera_.height = 370;
+    camera_.fx = camera_.fy = 707.0;
+    camera_.cx = 602.0, camera_.cy = 183.0;
+    camera_.baseline = 0.54;
+  }
+
+  struct Sight {
+    double x, y;              // in the left image [px]
+    double disparity;         // of a perfect pair [px]
+    double right_x, right_y;  // as the pair shows it [px]
+  };
+
+  /// Points between 6 m and 60 m. The right image is that of the rotation and focal length themselves, without
+  /// linearisation.
+  std::vector<Sight> look(std::size_t count) {
+    const Eigen::Matrix3d turn =
+        Eigen::AngleAxisd(truth_.rotation.norm(), truth_.rotation.normalized()).toRotationMatrix();
+    std::vector<Sight> sights;
+    while (sights.size() < count) {
+      Sight sight{random_.uniform(20.0, 1206.0), random_.uniform(20.0, 350.0), 0.0, 0.0, 0.0};
+      const double depth = 1.0 / random_.uniform(1.0 / 60.0, 1.0 / 6.0);
+      const Eigen::Vector3d point = camera_.back_project(sight.x, sight.y, depth);
+      const Eigen::Vector3d in_right = turn * (point - Eigen::Vector3d(camera_.baseline, 0.0, 0.0));
+      sight.disparity = camera_.fx * camera_.baseline / depth;
+      sight.right_x = camera_.cx + truth_.focal_ratio * camera_.fx * in_right.x() / in_right.z();
+      sight.right_y = camera_.cy + truth_.focal_ratio * camera_.fy * in_right.y() / in_right.z();
+      sights.push_back(sight);
+    }
+    return sights;
+  }
+
+  void learn_rows(StereoCalibration& calibration, int frames) {
+    for (int frame = 0; frame < frames; ++frame) {
+      std::vector<RowDifference> rows;
+      for (const Sight& s : look(400)) rows.push_back({s.right_x, s.y, s.right_y - s.y + 0.7 * random_.normal(), 0.7});
+      for (std::size_t i = 0; i < rows.size(); i += 10) rows[i].difference += 8.0;  // wrong matches
+      calibration.learn_rows(rows);
+    }
+  }
+  /// The coefficients that bundle adjustment finds: of a turn and of the principal point.
+  ColumnEstimate columns(const PairErrors& used, double sigma) {
+    const double turn = camera_.fx * (truth_.rotation.y() - used.rotation.y());
+    ColumnEstimate estimate;
+    estimate.value << turn + truth_.column_offset - used.column_offset, turn;
+    for (double& value : estimate.value) value += sigma * random_.normal();
+    estimate.information.diagonal().setConstant(1.0 / (sigma * sigma));
+    return estimate;
+  }
+
+  Random random_{3};
+  Camera camera_;
+  PairErrors truth_;
+};
+
+TEST_F(StereoCalibrationTest, RowsDetermineRollPitchAndFocalRatioAndMotionTheRest) {
+  truth_.rotation = {0.001, -0.0008, 0.0012};
+  truth_.focal_ratio = 1.002;
+  truth_.column_offset = 0.3;
+  StereoCalibration calibration(camera_, {}, true);
+  learn_rows(calibration, 10);
+  EXPECT_EQ(calibration.errors().rotation.y(), 0.0) << "no motion yet";
+  for (int window = 0; window < 4; ++window)
+    calibration.learn_columns(columns(calibration.errors(), 0.03), calibration.errors(), true);
+  const PairEstimate found = calibration.estimate();
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(found.errors.rotation[axis], truth_.rotation[axis], 1e-4) << axis;
+    EXPECT_GT(found.rotation_sigma[axis], 0.0) << axis;
+    EXPECT_LT(found.rotation_sigma[axis], 2e-4) << axis;
+  }
+  EXPECT_NEAR(found.errors.focal_ratio, 1.002, 2e-4);
+  EXPECT_NEAR(found.errors.column_offset, 0.3, 0.1);
+  EXPECT_NEAR(found.shift, camera_.fx * -0.0008 + 0.3, 0.05);
+  EXPECT_NEAR(found.shift_sigma, 0.015, 0.005);
+}
+
+TEST_F(StereoCalibrationTest, CorrectedDisparitiesAndRowsAreThoseOfAPerfectPair) {
+  truth_.rotation = {0.001, -0.0008, 0.0012};
+  truth_.focal_ratio = 1.002;
+  StereoCalibration calibration(camera_, {}, true);
+  learn_rows(calibration, 20);
+  for (int window = 0; window < 4; ++window)
+    calibration.learn_columns(columns(calibration.errors(), 0.03), calibration.errors(), true);
+  double before = 0.0, after = 0.0, rows_before = 0.0, rows_after = 0.0;
+  const PairErrors errors = calibration.errors();
+  for (const Sight& s : look(500)) {
+    before += std::abs(s.x - s.right_x - s.disparity);
+    after += std::abs(s.x - s.right_x + errors.column(camera_, s.right_x, s.y) - s.disparity);
+    rows_before += std::abs(s.right_y - s.y);
+    rows_after += std::abs(s.right_y - s.y - errors.row(camera_, s.right_x, s.y));
+  }
+  EXPECT_LT(after, 0.1 * before);
+  EXPECT_LT(rows_after, 0.2 * rows_before);
+}
+
+/// The estimate of a growing window replaces the one before: the same keyframes do not count twice.
+TEST_F(StereoCalibrationTest, AWindowCountsOnce) {
+  truth_.column_offset = 0.5;
+  StereoCalibration once(camera_, {}, true), often(camera_, {}, true);
+  const ColumnEstimate estimate = columns({}, 0.04);
+  once.learn_columns(estimate, {}, true);
+  for (int i = 0; i < 5; ++i) often.learn_columns(estimate, {}, i == 4);
+  EXPECT_EQ(once.estimate().shift_sigma, often.estimate().shift_sigma);
+  once.learn_columns(estimate, {}, true);
+  EXPECT_LT(once.estimate().shift_sigma, 0.8 * often.estimate().shift_sigma);
+}
+
+TEST_F(StereoCalibrationTest, ARestOfDistortionIsTakenNeitherForRollNorForAFocalLength) {
+  StereoCalibration calibration(camera_, {}, true);
+  for (int frame = 0; frame < 10; ++frame) {
+    std::vector<RowDifference> rows;
+    for (const Sight& s : look(400)) {
+      // Facades: most points are above the middle.
+      const double x = (s.x - camera_.cx) / camera_.fx, y = (0.5 * s.y - camera_.cy) / camera_.fy;
+      rows.push_back({s.x, 0.5 * s.y, 7.0 * x * y + 0.7 * random_.normal(), 0.7});
+    }
+    calibration.learn_rows(rows);
+  }
+  EXPECT_EQ(calibration.errors().rotation, PairErrors().rotation);
+  EXPECT_EQ(calibration.errors().focal_ratio, 1.0);
+  EXPECT_NEAR(calibration.errors().row_product * camera_.fy, 7.0, 0.7);
+}
+
+TEST_F(StereoCalibrationTest, APerfectPairIsLeftAlone) {
+  StereoCalibration calibration(camera_, {}, true);
+  learn_rows(calibration, 30);
+  for (int window = 0; window < 30; ++window)
+    calibration.learn_columns(columns(calibration.errors(), 0.05), calibration.errors(), true);
+  EXPECT_EQ(calibration.errors(), PairErrors());
+}
+
+TEST_F(StereoCalibrationTest, ErrorsThatMotionDoesNotDetermineAreNotUsed) {
+  truth_.column_offset = 0.7;
+  StereoCalibration calibration(camera_, {}, true);
+  calibration.learn_columns(columns({}, 0.5), {}, true);
+  EXPECT_EQ(calibration.errors(), PairErrors());
+}
+
+TEST_F(StereoCalibrationTest, FixedErrorsStay) {
+  truth_.rotation = {0.001, -0.0008, 0.0012};
+  PairErrors given;
+  given.rotation = {0.0, 0.0005, 0.0};
+  StereoCalibration calibration(camera_, given, false);
+  learn_rows(calibration, 5);
+  calibration.learn_columns(columns({}, 0.01), {}, true);
+  EXPECT_EQ(calibration.errors(), given);
+  EXPECT_FALSE(calibration.is_estimated());
+}
+
+}  // namespace
+}  // namespace holdfast
