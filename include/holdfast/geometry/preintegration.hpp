@@ -197,7 +197,8 @@ class Preintegration {
     const Eigen::Matrix3d R = delta_.rotation;
     const Eigen::Matrix3d turned = exp_so3(turn).toRotationMatrix();
 
-    // Transition of the error of delta and biases, and its derivative by the measurement (equations A.7 to A.9).
+    // Transition of the error of delta and biases, and its derivative by the measurement (appendix "Iterative Noise
+    // Propagation").
     Matrix15d transition = Matrix15d::Identity();
     transition.block<3, 3>(position, rotation) = -dt2 * R * hat(twice.value);
     transition.block<3, 3>(position, velocity) = dt * Eigen::Matrix3d::Identity();
