@@ -77,7 +77,8 @@ TEST(FocalCheck, ATurnTellsTheFocalLength) {
 
 TEST(FocalCheck, WithoutATurnNothingIsSuspected) {
   const std::optional<FocalRatio> found = estimate_focal_ratio(map_of(1.25, 0.0));
-  if (found) EXPECT_EQ(focal_warning(*found, without_distortion()), "") << found->ratio << " " << found->deviation;
+  ASSERT_TRUE(found);
+  EXPECT_EQ(focal_warning(*found, without_distortion()), "") << found->ratio << " " << found->deviation;
   EXPECT_FALSE(estimate_focal_ratio(Map()));
 }
 
