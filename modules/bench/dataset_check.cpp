@@ -289,7 +289,8 @@ class Checker {
     if (file.empty()) return;
     attempt([&] {
       fact(counted(read_imu_samples(file).size(), "inertial measurement"));
-      for (const Diagnostic& warning : RecordedImu(file, calibration, stamps).warnings()) problem(warning.to_string());
+      const RecordedImu recorded(file, calibration, stamps);
+      for (const Diagnostic& warning : recorded.warnings()) problem(warning.to_string());
     });
   }
 
