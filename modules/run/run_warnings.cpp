@@ -4,10 +4,10 @@
 #include <string>
 #include <utility>
 
+#include "focal_check.hpp"
 #include "holdfast/core/counted.hpp"
 #include "holdfast/evaluation/number_text.hpp"
 #include "holdfast/run/results.hpp"
-#include "focal_check.hpp"
 #include "repeated_images.hpp"
 
 namespace holdfast {
