@@ -13,6 +13,7 @@ namespace holdfast {
 /// Instances of an image, true or found: 16UC1, 0 = none, k = instance k, with the label and the score of instance k in
 /// entry k - 1.
 struct InstanceImage {
+  /// Class and score of an instance.
   struct Entry {
     std::uint8_t label = 0;  ///< index into the classes; 0 and 255 do not count
     float score = 1.0F;

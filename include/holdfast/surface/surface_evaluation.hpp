@@ -8,6 +8,7 @@
 
 namespace holdfast {
 
+/// Thresholds and sampling of a comparison of surfaces.
 struct SurfaceEvaluationOptions {
   double threshold = 0.05;       ///< distance up to which a point counts as right, for the ratios and the F-score [m]
   double ghost_distance = 0.15;  ///< estimated surface farther from the truth is a ghost [m]

@@ -15,6 +15,7 @@ namespace holdfast {
 /// tree, and be unchanged. Any thread.
 class TriangleTree {
  public:
+  /// The point of the mesh that is nearest to another point, and its triangle.
   struct Nearest {
     double distance = std::numeric_limits<double>::infinity();  ///< [m]
     std::size_t triangle = 0;
