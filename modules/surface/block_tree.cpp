@@ -6,10 +6,12 @@
 
 namespace holdfast::surface {
 
-// The accessor keeps the nodes of the last access: neighbours are found without a descent from the root.
+// The accessor keeps the nodes of the last access: neighbours are found without a descent from the root. The tree does
+// not know it (IsSafe is false), so that clear() has to clear both.
 struct BlockTree::Tree {
-  openvdb::tree::Tree4<std::int32_t, 5, 4, 3>::Type tree{-1};
-  openvdb::tree::ValueAccessor<openvdb::tree::Tree4<std::int32_t, 5, 4, 3>::Type> accessor{tree};
+  using Content = openvdb::tree::Tree4<std::int32_t, 5, 4, 3>::Type;
+  Content tree{-1};
+  openvdb::tree::ValueAccessor<Content, /*IsSafe=*/false> accessor{tree};
 };
 
 BlockTree::BlockTree() : tree_(std::make_unique<Tree>()) {}
