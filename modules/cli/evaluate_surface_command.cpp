@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <Eigen/SVD>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -12,6 +11,7 @@
 
 #include "holdfast/core/association.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/nearest_rotation.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/surface/mesh_files.hpp"
 #include "holdfast/surface/surface_evaluation.hpp"
@@ -69,10 +69,8 @@ Eigen::Isometry3d alignment_of(const Trajectory& truth, const Trajectory& estima
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (const auto& [i, j] : pairs)
     sum += truth[i].T_world_camera.linear() * estimate[j].T_world_camera.linear().transpose();
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(sum, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Vector3d signs(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant());
   Eigen::Isometry3d alignment = Eigen::Isometry3d::Identity();
-  alignment.linear() = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+  alignment.linear() = nearest_rotation(sum);
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
   for (const auto& [i, j] : pairs)
     offset += truth[i].T_world_camera.translation() - alignment.linear() * estimate[j].T_world_camera.translation();

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <Eigen/SVD>
 #include <algorithm>
 #include <utility>
 
 #include "holdfast/config/configuration.hpp"
+#include "holdfast/core/nearest_rotation.hpp"
 #include "holdfast/plugin/did_you_mean.hpp"
 
 namespace holdfast {
@@ -79,8 +79,7 @@ std::optional<Eigen::Isometry3d> motion_of(const RealTable& rows) {
     motion.matrix().row(static_cast<int>(row)) = Eigen::RowVector4d::Map(rows[row].data());
   const Eigen::Matrix3d turn = motion.linear();
   if (!(turn.transpose() * turn).isIdentity(0.01) || turn.determinant() < 0.0) return std::nullopt;
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(turn, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  if (!(turn.transpose() * turn).isIdentity(1e-14)) motion.linear() = svd.matrixU() * svd.matrixV().transpose();
+  if (!(turn.transpose() * turn).isIdentity(1e-14)) motion.linear() = nearest_rotation(turn);
   return motion;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/image_files/frame_poses.hpp"
 
-#include <Eigen/SVD>
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -15,6 +14,7 @@
 
 #include "holdfast/core/counted.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/nearest_rotation.hpp"
 #include "holdfast/core/text_file.hpp"
 #include "holdfast/image_files/numpy_array.hpp"
 #include "yaml_numbers.hpp"
@@ -46,9 +46,8 @@ OptionalPose pose_of(const std::vector<double>& numbers, const SourceLocation& p
     throw InputError(place, "is not a pose: its 3 x 3 part is a reflection; expected a rotation");
   if ((stored * stored.transpose() - Eigen::Matrix3d::Identity()).norm() > tolerance)
     throw InputError(place, "is not a pose: its 3 x 3 part is not a rotation, or a scaled one; expected a rotation");
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(stored, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.linear() = svd.matrixU() * svd.matrixV().transpose();
+  pose.linear() = nearest_rotation(stored);
   pose.translation() = upper.col(3);
   return pose;
 }

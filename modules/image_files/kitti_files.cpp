@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/image_files/kitti_files.hpp"
 
-#include <Eigen/SVD>
 #include <charconv>
 #include <cmath>
 #include <optional>
 #include <string>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/nearest_rotation.hpp"
 #include "holdfast/core/text_file.hpp"
 
 namespace holdfast {
@@ -86,9 +86,8 @@ std::vector<Eigen::Isometry3d> read_kitti_poses(const std::filesystem::path& fil
     constexpr double tolerance = 1e-3;
     if ((stored * stored.transpose() - Eigen::Matrix3d::Identity()).norm() > tolerance || stored.determinant() < 0.0)
       throw InputError(place, "is not a pose: its left 3x3 part is not a rotation");
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(stored, Eigen::ComputeFullU | Eigen::ComputeFullV);
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    pose.linear() = svd.matrixU() * svd.matrixV().transpose();
+    pose.linear() = nearest_rotation(stored);
     pose.translation() = line.matrix.col(3);
     poses.push_back(pose);
   });

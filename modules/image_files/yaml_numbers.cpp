@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "yaml_numbers.hpp"
 
-#include <Eigen/SVD>
 #include <charconv>
 #include <cmath>
 
 #include "holdfast/core/counted.hpp"
 #include "holdfast/core/input_file.hpp"
+#include "holdfast/core/nearest_rotation.hpp"
 
 namespace holdfast::yaml_numbers {
 
@@ -80,9 +80,8 @@ std::optional<Eigen::Isometry3d> rigid_motion(const std::vector<double>& row_by_
   if ((stored * stored.transpose() - Eigen::Matrix3d::Identity()).norm() > tolerance || stored.determinant() < 0.0 ||
       matrix.row(3) != Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0))
     return std::nullopt;
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(stored, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
-  motion.linear() = svd.matrixU() * svd.matrixV().transpose();
+  motion.linear() = nearest_rotation(stored);
   motion.translation() = matrix.topRightCorner<3, 1>();
   return motion;
 }
