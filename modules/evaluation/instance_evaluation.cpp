@@ -2,14 +2,12 @@
 #include "holdfast/evaluation/instance_evaluation.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <map>
 #include <utility>
 
 #include "holdfast/core/cell_mask.hpp"
 #include "holdfast/core/check.hpp"
-#include "holdfast/evaluation/number_text.hpp"
+#include "holdfast/core/instance_overlaps.hpp"
 
 namespace holdfast {
 
@@ -19,29 +17,18 @@ constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 double threshold(std::size_t index) { return 0.5 + 0.05 * static_cast<double>(index); }
 
-/// Numbers of pixels of true and found instances, and of their pairs.
-struct Overlaps {
-  std::vector<double> of_truth, of_found;
-  std::map<std::pair<std::size_t, std::size_t>, double> both;
-
-  Overlaps(const InstanceImage& truth, const InstanceImage& found, const cv::Mat& is_known)
-      : of_truth(truth.entries.size() + 1, 0.0), of_found(found.entries.size() + 1, 0.0) {
-    for (int y = 0; y < truth.instances.rows; ++y)
-      for (int x = 0; x < truth.instances.cols; ++x) {
-        if (!is_known.empty() && is_known.at<std::uint8_t>(y, x) == 0) continue;
-        const std::size_t t = truth.instances.at<std::uint16_t>(y, x), f = found.instances.at<std::uint16_t>(y, x);
-        HOLDFAST_CHECK(t < of_truth.size() && f < of_found.size(), "instances " << t << " and " << f);
-        if (t != 0) ++of_truth[t];
-        if (f != 0) ++of_found[f];
-        if (t != 0 && f != 0) ++both[{t, f}];
-      }
-  }
-
-  double iou(std::size_t truth, std::size_t found) const {
-    const auto shared = both.find({truth, found});
-    return shared == both.end() ? 0.0 : shared->second / (of_truth[truth] + of_found[found] - shared->second);
-  }
-};
+/// Numbers of pixels of true (first) and found (second) instances.
+InstanceOverlaps overlaps_of(const InstanceImage& truth, const InstanceImage& found, const cv::Mat& is_known) {
+  InstanceOverlaps overlaps;
+  for (int y = 0; y < truth.instances.rows; ++y)
+    for (int x = 0; x < truth.instances.cols; ++x) {
+      if (!is_known.empty() && is_known.at<std::uint8_t>(y, x) == 0) continue;
+      const std::size_t t = truth.instances.at<std::uint16_t>(y, x), f = found.instances.at<std::uint16_t>(y, x);
+      HOLDFAST_CHECK(t <= truth.entries.size() && f <= found.entries.size(), "instances " << t << " and " << f);
+      overlaps.add(t, f);
+    }
+  return overlaps;
+}
 
 /// Precision at 101 recalls, of finds in the order of their scores.
 double interpolated_precision(const std::vector<bool>& is_right, std::size_t true_instances) {
@@ -71,11 +58,6 @@ double mean_over_classes(const InstanceEvaluation& evaluation, const Figure& fig
     if (one.true_instances > 0) sum += figure(one), ++count;
   return count == 0 ? nothing : sum / count;
 }
-
-std::string cell(const std::string& text, std::size_t width) {
-  return text.size() < width ? std::string(width - text.size(), ' ') + text : text;
-}
-std::string percent(double share) { return std::isnan(share) ? "-" : fixed_text(100.0 * share, 2); }
 
 }  // namespace
 
@@ -109,24 +91,24 @@ void InstanceEvaluator::add(const InstanceImage& truth, const InstanceImage& fou
   HOLDFAST_CHECK(truth.instances.type() == CV_16UC1 && found.instances.type() == CV_16UC1 &&
                      truth.instances.size() == found.instances.size(),
                  "types " << truth.instances.type() << " and " << found.instances.type());
-  const Overlaps overlaps(truth, found, is_known);
+  const InstanceOverlaps overlaps = overlaps_of(truth, found, is_known);
   const auto counts = [&](std::uint8_t label) {
     HOLDFAST_CHECK(label == CellMask::unknown || label < result_.classes.size(), "label " << int{label});
     return CellMask::is_object(label);
   };
   ++result_.images;
-  for (std::size_t t = 1; t < overlaps.of_truth.size(); ++t)
-    if (counts(truth.entries[t - 1].label) && overlaps.of_truth[t] > 0.0)
+  for (std::size_t t = 1; t <= truth.entries.size(); ++t)
+    if (counts(truth.entries[t - 1].label) && overlaps.of_first(t) > 0.0)
       ++result_.classes[truth.entries[t - 1].label].true_instances;
   std::vector<std::size_t> order;
-  for (std::size_t f = 1; f < overlaps.of_found.size(); ++f)
+  for (std::size_t f = 1; f <= found.entries.size(); ++f)
     if (counts(found.entries[f - 1].label)) order.push_back(f);
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return found.entries[a - 1].score > found.entries[b - 1].score;
   });
   // The best first takes the true instance that it overlaps most, at each threshold on its own.
   std::array<std::vector<std::uint8_t>, instance_threshold_count> taken;
-  for (auto& each : taken) each.assign(overlaps.of_truth.size(), 0);
+  for (auto& each : taken) each.assign(truth.entries.size() + 1, 0);
   for (const std::size_t f : order) {
     const std::uint8_t label = found.entries[f - 1].label;
     ClassInstanceEvaluation& one = result_.classes[label];
@@ -135,7 +117,7 @@ void InstanceEvaluator::add(const InstanceImage& truth, const InstanceImage& fou
     for (std::size_t k = 0; k < instance_threshold_count; ++k) {
       std::size_t best = 0;
       double best_iou = threshold(k);
-      for (std::size_t t = 1; t < overlaps.of_truth.size(); ++t) {
+      for (std::size_t t = 1; t <= truth.entries.size(); ++t) {
         if (truth.entries[t - 1].label != label || taken[k][t] != 0) continue;
         if (const double iou = overlaps.iou(t, f); iou > best_iou || (best == 0 && iou >= best_iou && iou > 0.0))
           best = t, best_iou = iou;
@@ -163,22 +145,6 @@ InstanceEvaluation InstanceEvaluator::result() const {
     }
   }
   return result;
-}
-
-std::string to_text(const InstanceEvaluation& evaluation) {
-  constexpr std::size_t name_width = 16, width = 14;
-  const auto row = [&](const std::string& name, std::initializer_list<std::string> cells) {
-    std::string line = name.size() < name_width ? name + std::string(name_width - name.size(), ' ') : name;
-    for (const std::string& text : cells) line += cell(text, width);
-    return line + '\n';
-  };
-  std::string text = row("instances", {"AP50 [%]", "AP [%]", "PQ [%]", "true", "found"});
-  for (const ClassInstanceEvaluation& one : evaluation.classes)
-    if (one.true_instances + one.found_instances > 0)
-      text += row(one.name, {percent(one.ap50()), percent(one.ap()), percent(one.panoptic_quality()),
-                             std::to_string(one.true_instances), std::to_string(one.found_instances)});
-  return text + row("mean", {percent(evaluation.mean_ap50()), percent(evaluation.mean_ap()),
-                             percent(evaluation.mean_panoptic_quality())});
 }
 
 }  // namespace holdfast

@@ -17,6 +17,14 @@ std::string left(const std::string& text, std::size_t width) {
 }
 std::string percent(double share) { return std::isnan(share) ? "-" : fixed_text(100.0 * share, 2); }
 
+/// A row of a table: a name and figures.
+std::string row(const std::string& name, std::initializer_list<std::string> cells) {
+  constexpr std::size_t name_width = 16, width = 14;
+  std::string line = left(name, name_width);
+  for (const std::string& cell : cells) line += right(cell, width);
+  return line + '\n';
+}
+
 using Json = nlohmann::ordered_json;
 
 /// Reliability diagram of a class; intervals without pixels are left out.
@@ -55,12 +63,6 @@ Json instances_json(const InstanceEvaluation& evaluation) {
 }  // namespace
 
 std::string to_text(const SegmentationEvaluation& evaluation) {
-  constexpr std::size_t name_width = 16, width = 14;
-  const auto row = [&](const std::string& name, std::initializer_list<std::string> cells) {
-    std::string line = left(name, name_width);
-    for (const std::string& cell : cells) line += right(cell, width);
-    return line + '\n';
-  };
   std::string text = row("", {"IoU [%]", "accuracy [%]", "detected [%]", "boundary [%]", "calibr. [%]", "false [%]",
                               "images", "pixels [%]"});
   const auto known = static_cast<double>(evaluation.known_pixels);
@@ -75,6 +77,16 @@ std::string to_text(const SegmentationEvaluation& evaluation) {
          " pixels with a true label. detected: images that show the class where its IoU is above 0.5.\n"
          "false: pixels found to be of the class that are not, of all. "
          "calibr.: mean difference between confidence and share of correct pixels.\n";
+}
+
+std::string to_text(const InstanceEvaluation& evaluation) {
+  std::string text = row("instances", {"AP50 [%]", "AP [%]", "PQ [%]", "true", "found"});
+  for (const ClassInstanceEvaluation& one : evaluation.classes)
+    if (one.true_instances + one.found_instances > 0)
+      text += row(one.name, {percent(one.ap50()), percent(one.ap()), percent(one.panoptic_quality()),
+                             std::to_string(one.true_instances), std::to_string(one.found_instances)});
+  return text + row("mean", {percent(evaluation.mean_ap50()), percent(evaluation.mean_ap()),
+                             percent(evaluation.mean_panoptic_quality())});
 }
 
 std::string to_json(const SegmentationEvaluation& evaluation, const std::optional<InstanceEvaluation>& instances) {

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
+
+#include "holdfast/core/instance_overlaps.hpp"
 
 namespace holdfast {
 
@@ -16,26 +17,14 @@ constexpr double least_score = 0.05;
 constexpr double clear_overlap = 0.5;    // although positions disagree
 constexpr std::size_t least_cells = 12;  // of an instance whose position says who it is
 
-/// The number of cells of each pair of an instance and an id, and of each alone.
-struct Overlaps {
-  std::map<std::pair<std::uint16_t, std::uint16_t>, double> both;
-  std::map<std::uint16_t, double> of_instance, of_id;
-
-  Overlaps(const CellMask& carried, const CellMask& held) {
-    const bool has_ids = held.instances.size() == carried.instances.size();
-    for (std::size_t cell = 0; cell < carried.instances.size(); ++cell) {
-      const std::uint16_t instance = carried.instances[cell], id = has_ids ? held.instances[cell] : std::uint16_t{0};
-      if (instance != 0) ++of_instance[instance];
-      if (id != 0) ++of_id[id];
-      if (instance != 0 && id != 0) ++both[{instance, id}];
-    }
-  }
-
-  double iou(std::uint16_t instance, std::uint16_t id) const {
-    const auto shared = both.find({instance, id});
-    return shared == both.end() ? 0.0 : shared->second / (of_instance.at(instance) + of_id.at(id) - shared->second);
-  }
-};
+/// Numbers of cells of instances (first) and of ids (second).
+InstanceOverlaps overlaps_of(const CellMask& carried, const CellMask& held) {
+  InstanceOverlaps overlaps;
+  const bool has_ids = held.instances.size() == carried.instances.size();
+  for (std::size_t cell = 0; cell < carried.instances.size(); ++cell)
+    overlaps.add(carried.instances[cell], has_ids ? held.instances[cell] : std::uint16_t{0});
+  return overlaps;
+}
 
 bool may_be_same(std::uint8_t a, std::uint8_t b) { return a == b || a == CellMask::unknown || b == CellMask::unknown; }
 
@@ -93,13 +82,13 @@ std::optional<double> InstanceIds::nearness(const Track& track, const Place& pla
 
 std::vector<InstanceIds::Candidate> InstanceIds::candidates(const std::vector<Place>& places, const CellMask& carried,
                                                             const CellMask& held, double timestamp) const {
-  const Overlaps overlaps(carried, held);
+  const InstanceOverlaps overlaps = overlaps_of(carried, held);
   std::vector<Candidate> result;
   for (std::size_t i = 1; i < places.size(); ++i) {
     if (places[i].cells == 0) continue;
     for (std::size_t k = 0; k < tracks_.size(); ++k) {
       if (!may_be_same(tracks_[k].place.label, places[i].label)) continue;
-      const double iou = overlaps.iou(static_cast<std::uint16_t>(i), tracks_[k].id);
+      const double iou = overlaps.iou(i, tracks_[k].id);
       const std::optional<double> near = nearness(tracks_[k], places[i], timestamp);
       if (!near && places[i].in_world && tracks_[k].place.in_world && iou < clear_overlap) continue;
       const double score = iou + near.value_or(0.0);
