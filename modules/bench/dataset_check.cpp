@@ -288,8 +288,9 @@ class Checker {
                  const std::vector<double>& stamps) {
     if (file.empty()) return;
     attempt([&] {
-      fact(counted(read_imu_samples(file).size(), "inertial measurement"));
-      const RecordedImu recorded(file, calibration, stamps);
+      std::vector<ImuSample> samples = read_imu_samples(file);
+      fact(counted(samples.size(), "inertial measurement"));
+      const RecordedImu recorded(std::move(samples), file.string(), calibration, stamps);
       for (const Diagnostic& warning : recorded.warnings()) problem(warning.to_string());
     });
   }

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <optional>
 
+#include "holdfast/core/counted.hpp"
 #include "holdfast/core/median.hpp"
 
 namespace holdfast {
@@ -143,9 +144,8 @@ std::optional<std::string> suspected_rates(std::span<const ImuSample> samples, d
       short_number(as_given / radians_per_degree) +
       " degrees from one quarter of a second to the next, where no rotation at all would by " +
       short_number(still / radians_per_degree) + "; ";
-  if (prediction_error(windows, Eigen::Matrix3d::Identity() * radians_per_degree) < 0.5 * as_given &&
-      prediction_error(windows, Eigen::Matrix3d::Identity() * radians_per_degree) < 0.8 * still)
-    return finding + degrees;
+  const double in_degrees = prediction_error(windows, Eigen::Matrix3d::Identity() * radians_per_degree);
+  if (in_degrees < 0.5 * as_given && in_degrees < 0.8 * still) return finding + degrees;
   // Without a change that fits, other accelerations hide gravity: that of a multirotor is always along its axis.
   const RateChange* best = nullptr;
   double best_error = 0.6 * still;
@@ -170,8 +170,8 @@ std::optional<std::string> suspected_gaps(std::span<const ImuSample> samples, do
   if (gaps == 0) return std::nullopt;
   char stamp[32];
   std::snprintf(stamp, sizeof stamp, "%.6f", at);
-  return "the inertial measurements have " + std::to_string(gaps) + (gaps == 1 ? " gap" : " gaps") +
-         ", the longest of " + short_number(longest) + " s at " + stamp + ", with one each " + short_number(interval) +
+  return "the inertial measurements have " + counted(gaps, "gap") + ", the longest of " + short_number(longest) +
+         " s at " + stamp + ", with one each " + short_number(interval) +
          " s elsewhere; motion over a gap is not known: check how they were recorded";
 }
 
