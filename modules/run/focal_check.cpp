@@ -32,8 +32,8 @@ constexpr std::size_t fewest_pairs = 10;
 constexpr int iterations = 6;
 constexpr double huber_bound = 1.5;  // in standard deviations
 
-/// Measurement noise: half the step of a feature at a coarse level [px], and that of depth [m], which grows with its
-/// square (Khoshelham and Oude Elberink 2012).
+/// Standard deviations of the position of a feature [px] and of its depth [m], which grows with the squared depth
+/// (Khoshelham and Oude Elberink 2012).
 constexpr double pixel_deviation = 1.0;
 double depth_deviation(double depth) { return 0.003 + 0.003 * depth * depth; }
 
@@ -42,17 +42,17 @@ Measurement measurement(const KeyFrame& keyframe, std::size_t feature) {
   return {point.x() / point.z(), point.y() / point.z(), point.z()};
 }
 
-Pair pair_of(const Map& map, const KeyFrame& first, const KeyFrame& second) {
+Pair pair_of(const Map& map, KeyFrameId first_id, KeyFrameId second_id) {
+  const KeyFrame &first = map.keyframe(first_id), &second = map.keyframe(second_id);
   Pair pair;
   pair.T_second_first = second.frame.T_camera_world * first.frame.T_camera_world.inverse();
   for (std::size_t i = 0; i < first.frame.size(); ++i) {
     const MapPointId id = first.frame.map_points[i];
     if (!id.valid() || !first.frame.has_depth(i)) continue;
-    for (const Observation& observation : map.point(id).observations) {
-      if (&map.keyframe(observation.keyframe) != &second || !second.frame.has_depth(observation.feature)) continue;
-      pair.first.push_back(measurement(first, i));
-      pair.second.push_back(measurement(second, observation.feature));
-    }
+    const int there = map.feature_of(id, second_id);
+    if (there < 0 || !second.frame.has_depth(static_cast<std::size_t>(there))) continue;
+    pair.first.push_back(measurement(first, i));
+    pair.second.push_back(measurement(second, static_cast<std::size_t>(there)));
   }
   return pair;
 }
@@ -61,7 +61,7 @@ std::vector<Pair> pairs_of(const Map& map) {
   std::vector<Pair> pairs;
   for (const KeyFrameId id : map.keyframes_by_age())
     for (const KeyFrameId neighbour : map.best_covisible(id, neighbours_of_keyframe)) {
-      Pair pair = pair_of(map, map.keyframe(neighbour), map.keyframe(id));
+      Pair pair = pair_of(map, neighbour, id);
       if (pair.first.size() >= fewest_points) pairs.push_back(std::move(pair));
     }
   return pairs;
