@@ -20,6 +20,7 @@ FILES = (
     "modules",
     "plugins",
     "examples",
+    "third_party",
 )
 
 USE = """
