@@ -55,7 +55,7 @@ std::optional<ClosedLoop> LoopCloser::process(KeyFrameId keyframe, StageTimes& t
   }
   if (chosen.empty()) return std::nullopt;
 
-  const std::lock_guard structure_lock(structure_mutex_);
+  const std::lock_guard structure(structure_mutex_);
   std::optional<ClosedLoop> closed;
   for (const KeyFrameId candidate : chosen) {
     CandidateReport trial;
@@ -68,7 +68,7 @@ std::optional<ClosedLoop> LoopCloser::process(KeyFrameId keyframe, StageTimes& t
     }
     if (measurement) {
       const StageTimer timer(times, "loops: correction");
-      closed = correct(trial, *measurement);
+      closed = correct(structure, trial, *measurement);
     }
     ++counts_.verdicts[static_cast<std::size_t>(trial.verdict)];
     if (closed) break;
@@ -157,7 +157,8 @@ std::optional<LoopMeasurement> LoopCloser::check(CandidateReport& trial) {
   return measurement;
 }
 
-std::optional<ClosedLoop> LoopCloser::correct(CandidateReport& trial, const LoopMeasurement& measurement) {
+std::optional<ClosedLoop> LoopCloser::correct(const std::lock_guard<std::mutex>& structure, CandidateReport& trial,
+                                              const LoopMeasurement& measurement) {
   const Stopwatch watch;
   if (adjustment_ != nullptr) adjustment_->request_stop();
   ClosedLoop loop{.keyframe = trial.keyframe,
@@ -174,7 +175,7 @@ std::optional<ClosedLoop> LoopCloser::correct(CandidateReport& trial, const Loop
     last_loop_ = map_.keyframe(trial.keyframe).sequence;
   }
   LoopCorrection correction(settings_, map_, map_mutex_, optimizer_, matcher_, measurement);
-  if (!correction.run()) {
+  if (!correction.run(structure)) {
     trial.verdict = LoopVerdict::not_solved;
     return std::nullopt;
   }

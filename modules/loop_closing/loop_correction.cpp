@@ -19,7 +19,7 @@ std::vector<KeyFrameId> with_neighbours(const Map& map, KeyFrameId keyframe, int
 
 }  // namespace
 
-bool LoopCorrection::run() {
+bool LoopCorrection::run(const std::lock_guard<std::mutex>&) {
   {
     const std::lock_guard lock(map_mutex_);
     current_side_ = with_neighbours(map_, loop_.keyframe, settings_.neighbours);

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <mutex>
 #include <utility>
 #include <vector>
 
 #include "holdfast/core/map.hpp"
 #include "holdfast/core/map_mutex.hpp"
+#include "holdfast/interfaces/feature_matcher.hpp"
 #include "holdfast/interfaces/optimizer.hpp"
 #include "holdfast/loop_closing/loop_closing_settings.hpp"
 
@@ -22,16 +24,17 @@ struct LoopMeasurement {
   double scale = 1.0;                                        ///< of the Sim(3) from keyframe to candidate
 };
 
-/// Closes a loop in the map (Mur-Artal et al. 2015, sections VII-C and VII-D). The caller holds the structure mutex,
-/// not the map's lock. One object, one loop.
+/// Closes a loop in the map (Mur-Artal et al. 2015, sections VII-C and VII-D). Acquires the map's lock for short
+/// intervals. One object, one loop.
 class LoopCorrection {
  public:
   LoopCorrection(const LoopClosingSettings& settings, Map& map, MapMutex& map_mutex, Optimizer& optimizer,
                  const FeatureMatcher& matcher, const LoopMeasurement& loop)
       : settings_(settings), map_(map), map_mutex_(map_mutex), optimizer_(optimizer), matcher_(matcher), loop_(loop) {}
 
-  /// False if the pose graph could not be solved; then the map is unchanged.
-  bool run();
+  /// `structure` holds SharedMap::structure_mutex. False if the pose graph could not be solved; then the map is
+  /// unchanged.
+  bool run(const std::lock_guard<std::mutex>& structure);
   int points_fused() const { return points_fused_; }
 
  private:

@@ -12,7 +12,7 @@ namespace holdfast {
 
 /// Propagates new poses of some keyframes to the rest of the map. A keyframe without a new pose keeps its pose relative
 /// to its parent (or to the keyframe before it, if it has no parent), a point relative to its reference keyframe. With
-/// one camera, the scale around a keyframe changes as well (similarity). The caller holds the map's lock.
+/// one camera, the scale around a keyframe changes as well (similarity).
 class MapMotion {
  public:
   /// `poses[i]` is the new T_camera_world of `keyframes[i]`; removed keyframes are skipped. `scales` (may be empty) are

@@ -27,7 +27,7 @@ struct LocatedFeatures {
   bool scale_is_free = false;              ///< positions are those of map points, whose scale may have drifted
 };
 
-/// Features with depth; with one camera, features with a map point. The caller holds the map's lock.
+/// Features with depth; with one camera, features with a map point.
 LocatedFeatures located_features(const Frame& frame, const Map& map);
 
 /// Geometric verification of a loop candidate (Mur-Artal et al. 2015, section VII-B; with depth an SE(3) alignment,

@@ -9,12 +9,13 @@
 
 namespace holdfast {
 
-KeyFrameId LocalMapper::insert(const Frame& frame, bool points_wait, StageTimes& times, std::uint32_t submap) {
+KeyFrameId LocalMapper::insert(const MapAccess& map, const Frame& frame, bool points_wait, StageTimes& times,
+                               std::uint32_t submap) {
   const StageTimer timer(times, "mapping: insertion");
   const KeyFrameId keyframe = map_.add_keyframe(frame);
   map_.keyframe(keyframe).submap = submap;
   ++counts_.keyframes_made;
-  if (calibrator_) calibrator_->add(keyframe);
+  if (calibrator_) calibrator_->add(map, keyframe);
   drop_moving_features(keyframe);
   if (!points_wait) make_points_from_depth(keyframe);
   for (const MapPointId point : map_.keyframe(keyframe).frame.map_points)
@@ -24,7 +25,8 @@ KeyFrameId LocalMapper::insert(const Frame& frame, bool points_wait, StageTimes&
   return keyframe;
 }
 
-KeyFrameId LocalMapper::begin(const Frame& frame, std::span<const std::pair<Eigen::Vector3d, std::uint32_t>> points,
+KeyFrameId LocalMapper::begin(const MapAccess&, const Frame& frame,
+                              std::span<const std::pair<Eigen::Vector3d, std::uint32_t>> points,
                               std::vector<MapPointId>& ids, StageTimes& times) {
   const StageTimer timer(times, "mapping: insertion");
   const KeyFrameId keyframe = map_.add_keyframe(frame);
@@ -58,9 +60,9 @@ std::vector<KeyFrameId> LocalMapper::refine(KeyFrameId keyframe, StageTimes& tim
   {
     const StageTimer timer(times, "mapping: points");
     {
-      const std::lock_guard lock(mutex_);
-      if (map_.find_keyframe(keyframe) == nullptr) return {};
-      if (calibrator_) disparities_changed_ = calibrator_->correct() || disparities_changed_;
+      const MapLock map(map_, mutex_);
+      if (map->find_keyframe(keyframe) == nullptr) return {};
+      if (calibrator_) disparities_changed_ = calibrator_->correct(map) || disparities_changed_;
       // Its mask may have arrived since it was inserted.
       for (const MapPointId point : drop_moving_features(keyframe)) drop_weak_point(point);
       make_points_from_depth(keyframe);

@@ -66,15 +66,17 @@ PairCalibrator::PairCalibrator(Map& map, MapMutex& mutex, StereoCalibration& cal
     : map_(map), mutex_(mutex), calibration_(calibration), bundle_(std::make_unique<PairBundle>()) {}
 PairCalibrator::~PairCalibrator() = default;
 
-void PairCalibrator::add(KeyFrameId keyframe) { corrected_by_.emplace_back(keyframe, calibration_.errors_of_frame()); }
+void PairCalibrator::add(const MapAccess&, KeyFrameId keyframe) {
+  corrected_by_.emplace_back(keyframe, calibration_.errors_of_frame());
+}
 
-bool PairCalibrator::correct() {
+bool PairCalibrator::correct(const MapAccess& map) {
   const PairErrors now = corrected_ = calibration_.errors();
   bool has_changed = false;
-  std::erase_if(corrected_by_, [&](const auto& entry) { return map_.find_keyframe(entry.first) == nullptr; });
+  std::erase_if(corrected_by_, [&](const auto& entry) { return map->find_keyframe(entry.first) == nullptr; });
   for (auto& [keyframe, errors] : corrected_by_) {
     if (errors == now) continue;
-    correct_frame(errors, now, map_.keyframe(keyframe).frame);
+    correct_frame(errors, now, map->keyframe(keyframe).frame);
     errors = now;
     has_changed = true;
   }

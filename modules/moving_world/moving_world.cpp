@@ -142,8 +142,8 @@ void MovingWorld::count_mask(const CellMask& mask) {
   if (2 * movable > known) ++mask_counts_.mostly_movable;
 }
 
-void MovingWorld::evaluate_keyframe(const ArrivedMask& arrived, StageTimes& times) {
-  KeyFrame* keyframe = map_.find_keyframe(arrived.keyframe);
+void MovingWorld::evaluate_keyframe(const MapAccess& map, const ArrivedMask& arrived, StageTimes& times) {
+  KeyFrame* keyframe = map->find_keyframe(arrived.keyframe);
   if (keyframe == nullptr || arrived.mask.empty()) return;
   const StageTimer timer(times, "masks");
   keyframe->frame.coarse.mask = arrived.mask;

@@ -80,16 +80,16 @@ bool KeyframeFlow::has_room_for_keyframe() {
   return false;
 }
 
-KeyFrameId KeyframeFlow::begin_map(const LockedMap&, const TwoViewMap& start, std::vector<MapPointId>& ids,
+KeyFrameId KeyframeFlow::begin_map(const LockedMap& map, const TwoViewMap& start, std::vector<MapPointId>& ids,
                                    StageTimes& times) {
   std::vector<std::pair<Eigen::Vector3d, std::uint32_t>> points;
   for (const TwoViewMap::Point& point : start.points) points.emplace_back(point.position, point.in_reference);
-  return mapper_.begin(start.reference, points, ids, times);
+  return mapper_.begin(map, start.reference, points, ids, times);
 }
 
-KeyFrameId KeyframeFlow::insert(const LockedMap&, const Frame& frame, bool waits_for_mask, std::uint32_t submap,
+KeyFrameId KeyframeFlow::insert(const LockedMap& map, const Frame& frame, bool waits_for_mask, std::uint32_t submap,
                                 StageTimes& times) {
-  return mapper_.insert(frame, waits_for_mask, times, submap);
+  return mapper_.insert(map, frame, waits_for_mask, times, submap);
 }
 
 double KeyframeFlow::take_masks(StageTimes& times) {
@@ -110,7 +110,7 @@ double KeyframeFlow::take_masks(StageTimes& times) {
 const KeptView* KeyframeFlow::apply_mask(const ArrivedMask& arrived, double& seconds, StageTimes& times) {
   const Stopwatch watch;
   const LockedMap map(map_, LockPriority::tracking);
-  moving_world_.evaluate_keyframe(arrived, times);
+  moving_world_.evaluate_keyframe(map, arrived, times);
   seconds += watch.seconds();
   const KeyFrame* keyframe = map->find_keyframe(arrived.keyframe);
   if (keyframe == nullptr) return nullptr;

@@ -45,7 +45,7 @@ class LocalMapperTest : public testing::Test {
       });
   }
   KeyFrameId add_keyframe(const Frame& frame) {
-    const KeyFrameId keyframe = mapper->insert(frame, false, times);
+    const KeyFrameId keyframe = mapper->insert(MapAccess(map), frame, false, times);
     mapper->refine(keyframe, times);
     return keyframe;
   }
@@ -143,13 +143,13 @@ class Flight final : public Optimizer {
 TEST_F(LocalMapperTest, AKeyframeThatFewPointsHoldDoesNotFlee) {
   Flight flight;
   LocalMapper fleeing(MappingSettings{}, close_depth_factor, map, mutex, flight);
-  fleeing.refine(fleeing.insert(frame_at(beside(0)), false, times), times);
+  fleeing.refine(fleeing.insert(MapAccess(map), frame_at(beside(0)), false, times), times);
   // The second keyframe is so far aside that next to no point of the first one is still in view.
   for (const double x : {4.2, 0.1}) {
     Frame frame = frame_at(beside(x));
     match(frame, 1);
     const Eigen::Isometry3d before = frame.T_camera_world;
-    const KeyFrameId id = fleeing.insert(frame, false, times);
+    const KeyFrameId id = fleeing.insert(MapAccess(map), frame, false, times);
     fleeing.refine(id, times);
     int shared = 0;
     for (const MapPointId point : map.keyframe(id).frame.map_points)
@@ -178,7 +178,7 @@ TEST_F(LocalMapperTest, KeyframesWithoutClosePointsAreRemovedOnceTheyAreOld) {
   const auto add = [&](double x) {
     Frame frame = frame_at(beside(x));
     match(frame, 1);
-    const KeyFrameId keyframe = far_mapper.insert(frame, false, times);
+    const KeyFrameId keyframe = far_mapper.insert(MapAccess(map), frame, false, times);
     far_mapper.refine(keyframe, times);
     return keyframe;
   };
@@ -236,7 +236,7 @@ TEST_F(LocalMapperTest, WhatProbablyMovesMakesNoPoints) {
 
 TEST_F(LocalMapperTest, PointsThatWaitComeWithTheirMask) {
   const Frame frame = frame_at(beside(0));
-  const KeyFrameId id = mapper->insert(frame, true, times);
+  const KeyFrameId id = mapper->insert(MapAccess(map), frame, true, times);
   EXPECT_EQ(map.points().size(), 0U);
   // The mask comes between insertion and refinement.
   for (std::size_t i = 0; i < frame.size(); i += 3) map.keyframe(id).frame.static_probability[i] = 0.1F;
@@ -251,8 +251,8 @@ TEST_F(LocalMapperTest, PointsOfLaterKeyframesStayUnlessAMaskMayContradictThem) 
   for (const bool expects_masks : {false, true}) {
     if (expects_masks) mapper->expect_masks();
     add_keyframe(frame_at(beside(0)));
-    const KeyFrameId busy_with = mapper->insert(frame_at(beside(0.1)), false, times);
-    const KeyFrameId later = mapper->insert(frame_at(beside(1.5)), false, times);
+    const KeyFrameId busy_with = mapper->insert(MapAccess(map), frame_at(beside(0.1)), false, times);
+    const KeyFrameId later = mapper->insert(MapAccess(map), frame_at(beside(1.5)), false, times);
     const std::vector<MapPointId> made = map.keyframe(later).frame.map_points;
     mapper->refine(busy_with, times);
     std::size_t left = 0, all = 0;
@@ -271,7 +271,7 @@ TEST_F(LocalMapperTest, AMaskTakesMatchesOfMovingFeaturesBack) {
   add_keyframe(frame_at(beside(0)));
   Frame frame = frame_at(beside(0.05));
   match(frame, 1);
-  const KeyFrameId id = mapper->insert(frame, true, times);
+  const KeyFrameId id = mapper->insert(MapAccess(map), frame, true, times);
   std::vector<std::pair<std::uint32_t, MapPointId>> masked;
   for (std::uint32_t i = 0; i < frame.size(); i += 4)
     if (frame.map_points[i].valid()) {
@@ -292,7 +292,7 @@ TEST_F(LocalMapperTest, OneCameraDropsAPointThatAMaskLeavesWithTwoViews) {
   for (const double x : {0.05, 0.1, 0.15}) {
     Frame frame = frame_at(beside(x));
     match(frame, 1);
-    mapper->insert(frame, false, times);
+    mapper->insert(MapAccess(map), frame, false, times);
   }
   const KeyFrameId last = map.keyframes_by_age().back();
   std::vector<MapPointId> of_two, of_more;

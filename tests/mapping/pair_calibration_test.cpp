@@ -123,21 +123,21 @@ TEST(PairCalibratorTest, KeyframesAreCorrectedInRetrospect) {
   frame.depth = {1.0F, 0.0F, 1.0F};
   calibration.begin_frame();
   const KeyFrameId id = map.add_keyframe(frame);
-  calibrator.add(id);
-  EXPECT_FALSE(calibrator.correct());
+  calibrator.add(MapAccess(map), id);
+  EXPECT_FALSE(calibrator.correct(MapAccess(map)));
 
   ColumnEstimate estimate;
   estimate.value[0] = -0.5;  // the right image shows everything half a pixel too far left
   estimate.information.diagonal().setConstant(1e4);
   calibration.learn_columns(estimate, {}, true);
-  EXPECT_TRUE(calibrator.correct());
+  EXPECT_TRUE(calibrator.correct(MapAccess(map)));
   const Frame& corrected = map.keyframe(id).frame;
   EXPECT_NEAR(corrected.right_x[0], 590.5, 0.01);
   EXPECT_NEAR(corrected.depth[0], 707.0 * 0.54 / 9.5, 0.05);
   EXPECT_TRUE(std::isnan(corrected.right_x[1]));
   EXPECT_TRUE(std::isnan(corrected.right_x[2])) << "a disparity below 0";
   EXPECT_EQ(corrected.depth[2], 0.0F);
-  EXPECT_FALSE(calibrator.correct());
+  EXPECT_FALSE(calibrator.correct(MapAccess(map)));
 }
 
 }  // namespace

@@ -212,13 +212,14 @@ TEST_F(MovingWorldTest, AKeyframeIsEvaluatedAgainByItsOwnMask) {
   ASSERT_TRUE(world.request_mask(sensor_frame(0), keyframe, times));
   const std::optional<ArrivedMask> arrived = world.take_mask(times);
   ASSERT_TRUE(arrived);
-  world.evaluate_keyframe(*arrived, times);
+  world.evaluate_keyframe(MapAccess(map), *arrived, times);
   const Frame& frame = map.keyframe(keyframe).frame;
   EXPECT_GE(suspects(frame), 50);
   EXPECT_EQ(frame.coarse.mask.labels, arrived->mask.labels);
   EXPECT_LT(frame.coarse.static_log_odds[static_cast<std::size_t>(frame.coarse.grid.cell_of(320, 240))], 0.0F);
   // A keyframe that was removed in the meantime, or a segmenter without a result, changes nothing.
-  world.evaluate_keyframe({.frame = {}, .keyframe = {99, 0}, .segmentation = {}, .mask = arrived->mask}, times);
+  world.evaluate_keyframe(MapAccess(map), {.frame = {}, .keyframe = {99, 0}, .segmentation = {}, .mask = arrived->mask},
+                          times);
   segmenter.finds_nothing = true;
   const KeyFrameId second = map.add_keyframe(track(world, 1));
   ASSERT_TRUE(world.request_mask(sensor_frame(1), second, times));
@@ -226,7 +227,7 @@ TEST_F(MovingWorldTest, AKeyframeIsEvaluatedAgainByItsOwnMask) {
   const std::optional<ArrivedMask> nothing = world.take_mask(times);
   ASSERT_TRUE(nothing);
   EXPECT_TRUE(nothing->mask.empty());
-  world.evaluate_keyframe(*nothing, times);
+  world.evaluate_keyframe(MapAccess(map), *nothing, times);
   EXPECT_EQ(map.keyframe(second).frame.static_probability, before);
 }
 

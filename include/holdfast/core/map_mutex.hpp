@@ -4,6 +4,8 @@
 #include <condition_variable>
 #include <mutex>
 
+#include "holdfast/core/map_access.hpp"
+
 namespace holdfast {
 
 class Map;
@@ -40,6 +42,15 @@ class MapMutex {
   std::condition_variable changed_;
   bool held_ = false;
   int trackers_waiting_ = 0;
+};
+
+/// Holds the lock of a shared map during its lifetime, for background work.
+class MapLock : public MapAccess {
+ public:
+  MapLock(Map& map, MapMutex& mutex) : MapAccess(map), lock_(mutex) {}
+
+ private:
+  std::lock_guard<MapMutex> lock_;
 };
 
 /// A map shared by several threads, and its two locks, which are always acquired in this order:

@@ -16,8 +16,7 @@ namespace holdfast {
 /// uses their points), recent keyframes, and keyframes that are less similar to the current one than its least similar
 /// neighbour. The others are grouped by covisibility, and a group must be consistent over several consecutive
 /// keyframes, which is rare for a wrong place. Keyframes of another submap are exempt from these conditions, because
-/// both submaps may be in view for a moment only; the geometric check decides. Reads the map; the caller holds its
-/// lock. Used by one thread.
+/// both submaps may be in view for a moment only; the geometric check decides. Used by one thread.
 class LoopCandidates {
  public:
   explicit LoopCandidates(const LoopClosingSettings& settings) : settings_(settings) {}

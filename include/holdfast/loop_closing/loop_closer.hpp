@@ -66,7 +66,8 @@ class LoopCloser {
  private:
   std::vector<KeyFrameId> find_candidates(KeyFrameId keyframe);
   std::optional<LoopMeasurement> check(CandidateReport& trial);
-  std::optional<ClosedLoop> correct(CandidateReport& trial, const LoopMeasurement& measurement);
+  std::optional<ClosedLoop> correct(const std::lock_guard<std::mutex>& structure, CandidateReport& trial,
+                                    const LoopMeasurement& measurement);
 
   LoopClosingSettings settings_;
   Map& map_;

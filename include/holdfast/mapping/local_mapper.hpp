@@ -43,15 +43,17 @@ class LocalMapper {
 
   /// Inserts a tracked frame into the map as a keyframe and creates points from its depth; with `points_wait`, refine()
   /// creates them later. Only features that are more likely static than moving create points. The keyframe belongs to
-  /// the submap `submap`. Fast; the caller holds the lock of the map. Adds the stage "mapping: insertion".
-  KeyFrameId insert(const Frame& frame, bool points_wait, StageTimes& times, std::uint32_t submap = 0);
+  /// the submap `submap`. Fast. Adds the stage "mapping: insertion".
+  KeyFrameId insert(const MapAccess& map, const Frame& frame, bool points_wait, StageTimes& times,
+                    std::uint32_t submap = 0);
 
   /// Initialises a map from two views without depth: inserts the first keyframe with the triangulated points. `points`
   /// lists each position [world] and its feature in the keyframe; the ids of the points are written to `ids`, in the
-  /// same order, and insert() of the second keyframe, whose frame refers to them, must follow. The caller holds the
-  /// lock of the map. Adds the stage "mapping: insertion".
-  KeyFrameId begin(const Frame& frame, std::span<const std::pair<Eigen::Vector3d, std::uint32_t>> points,
-                   std::vector<MapPointId>& ids, StageTimes& times);
+  /// same order, and insert() of the second keyframe, whose frame refers to them, must follow. Adds the stage
+  /// "mapping: insertion".
+  KeyFrameId begin(const MapAccess& map, const Frame& frame,
+                   std::span<const std::pair<Eigen::Vector3d, std::uint32_t>> points, std::vector<MapPointId>& ids,
+                   StageTimes& times);
 
   /// Declares that keyframes are refined after their masks have arrived, when later keyframes may have created points
   /// by an older mask: such points need a second observation. Call it before the first insert().

@@ -23,11 +23,10 @@ class PairCalibrator {
   PairCalibrator(Map& map, MapMutex& mutex, StereoCalibration& calibration);
   ~PairCalibrator();
 
-  /// Declares that a keyframe of the last frame was inserted. The caller holds the lock of the map.
-  void add(KeyFrameId keyframe);
-  /// Corrects right columns and depths of all added keyframes by the errors in use now; true if they have changed. The
-  /// caller holds the lock of the map.
-  bool correct();
+  /// Declares that a keyframe of the last frame was inserted.
+  void add(const MapAccess&, KeyFrameId keyframe);
+  /// Corrects right columns and depths of all added keyframes by the errors in use now; true if they have changed.
+  bool correct(const MapAccess& map);
   /// Adjusts the window with one more keyframe. Acquires the lock of the map.
   void learn(KeyFrameId keyframe);
   /// The map is empty. What is known of the pair stays.

@@ -21,7 +21,7 @@ enum class FusionOutcome {
 };
 
 /// Adds an observation of a map point by a keyframe's feature, or fuses the point with the one that the feature
-/// observes already. The caller holds the lock of the map.
+/// observes already.
 FusionOutcome add_or_fuse(Map& map, MapPointId point, KeyFrameId keyframe, std::uint32_t feature,
                           FusionSurvivor survivor);
 

@@ -12,6 +12,7 @@
 #include "holdfast/core/cell_mask.hpp"
 #include "holdfast/core/frame.hpp"
 #include "holdfast/core/map.hpp"
+#include "holdfast/core/map_access.hpp"
 #include "holdfast/core/sensor_frame.hpp"
 #include "holdfast/core/stage_times.hpp"
 #include "holdfast/core/worker.hpp"
@@ -61,7 +62,7 @@ struct ArrivedMask {
 /// It owns the masks (segmentation queue, propagation to every frame) and the filters with their evidence, and hides
 /// them from tracker and pipeline. One thread, except the segmenter's own.
 ///
-/// Functions that read or write the map (marked with *) are called while the caller holds the map's lock.
+/// Functions marked with * read or write the map: Tracker calls them within the MapAccess that it was given.
 class MovingWorld {
  public:
   /// The map must outlive the MovingWorld.
@@ -126,9 +127,9 @@ class MovingWorld {
   void next_frame(double timestamp);
   /// The next mask that has arrived, if any. It is already applied to the current frame. Adds the stage "masks".
   std::optional<ArrivedMask> take_mask(StageTimes& times);
-  /// * Evaluates the features of the keyframe again by its own mask; has no effect if the keyframe was removed or the
+  /// Evaluates the features of the keyframe again by its own mask; has no effect if the keyframe was removed or the
   /// mask is empty. Adds the stage "masks".
-  void evaluate_keyframe(const ArrivedMask& arrived, StageTimes& times);
+  void evaluate_keyframe(const MapAccess& map, const ArrivedMask& arrived, StageTimes& times);
   /// Requests the mask of the frame last tracked, which became `keyframe` or, when that is invalid, none. False when
   /// the frame is not to be segmented or the queue has no room; `is_needed`: a frame that is no keyframe is segmented
   /// nevertheless. In sequential mode this adds the stage "segmentation".
