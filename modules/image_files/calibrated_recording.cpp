@@ -28,7 +28,7 @@ void rectify_pair(CalibratedRecording& recording, const Camera& right, const Eig
                   const std::filesystem::path& file) {
   try {
     recording.rectification =
-        std::make_shared<const StereoRectification>(StereoCalibration{recording.camera, right, T_left_right});
+        std::make_shared<const StereoRectification>(StereoCameras{recording.camera, right, T_left_right});
   } catch (const Error& problem) {
     throw InputError({file.string()}, problem.what());
   }

@@ -149,7 +149,7 @@ CameraFile read_camera_file(const std::filesystem::path& file, const Camera& def
   result.camera = reader.read();
   if (!reader.right()) return result;
   CameraReader right(file, *reader.right(), result.camera, true);
-  StereoCalibration pair;
+  StereoCameras pair;
   pair.left = result.camera;
   pair.right = right.read();
   pair.T_left_right = right.T_left_right();

@@ -119,7 +119,7 @@ SensorFrame ImageSequence::decode(const ImageFiles& files) {
   };
   cv::Size left_size(options_.width, options_.height), right_size = left_size;
   if (rectification != nullptr) {
-    const StereoCalibration& pair = rectification->calibration();
+    const StereoCameras& pair = rectification->calibration();
     left_size = {pair.left.width, pair.left.height};
     right_size = {pair.right.width, pair.right.height};
   }

@@ -43,7 +43,7 @@ std::string text(const Eigen::Vector3d& v) {
 
 }  // namespace
 
-StereoRectification::StereoRectification(const StereoCalibration& calibration) : calibration_(calibration) {
+StereoRectification::StereoRectification(const StereoCameras& calibration) : calibration_(calibration) {
   for (const auto& [name, camera] : {std::pair("left", &calibration.left), std::pair("right", &calibration.right)})
     if (const std::string trouble = camera->trouble(); !trouble.empty())
       throw Error("the " + std::string(name) + " camera cannot be rectified: " + trouble);

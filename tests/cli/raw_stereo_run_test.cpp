@@ -57,7 +57,7 @@ class Recording {
   void write_euroc(const std::string& folder) const {
     const Eigen::Isometry3d T_body_left =
         Eigen::Translation3d(0.1, -0.3, 0.2) * Eigen::AngleAxisd(1.2, Eigen::Vector3d(1, -2, 3).normalized());
-    const StereoCalibration& calibration = pair_.calibration();
+    const StereoCameras& calibration = pair_.calibration();
     std::string lists[2], truth = "#timestamp [ns], p_RS_R_x [m], ...\n";
     write_sensor(folder + "/mav0/cam0", calibration.left, T_body_left);
     write_sensor(folder + "/mav0/cam1", calibration.right, T_body_left * calibration.T_left_right);
@@ -80,7 +80,7 @@ class Recording {
 
   /// Writes left/, right/, camera.yaml and truth.txt, that of the raw left camera, below `folder`.
   void write_folder(const std::string& folder) const {
-    const StereoCalibration& calibration = pair_.calibration();
+    const StereoCameras& calibration = pair_.calibration();
     for (const char* side : {"left", "right"}) std::filesystem::create_directories(program_.path(folder + "/" + side));
     Trajectory truth;
     for (std::uint64_t i = 0; i < frames_; ++i) {

@@ -30,7 +30,7 @@ class AnyPair : public testing::TestWithParam<Camera> {
 };
 
 TEST_P(AnyPair, PointsLieInOneRowTheirDisparityApart) {
-  const StereoCalibration& raw = pair_.calibration();
+  const StereoCameras& raw = pair_.calibration();
   const Camera& camera = rectification_.camera();
   EXPECT_TRUE(camera.distortion.is_zero());
   EXPECT_NEAR(camera.baseline, 0.11, 1e-12);
@@ -86,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(Lenses, AnyPair, testing::Values(test::barrel_camera(),
 
 TEST(StereoRectification, AgreesWithOpenCv) {
   const test::RawPair pair(rendered_camera(), test::barrel_camera());
-  const StereoCalibration& raw = pair.calibration();
+  const StereoCameras& raw = pair.calibration();
   const StereoRectification rectification(raw);
   const auto matrix_of = [](const Camera& camera) -> cv::Mat {
     return (cv::Mat_<double>(3, 3) << camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1);
@@ -126,7 +126,7 @@ TEST(StereoRectification, AgreesWithOpenCv) {
 }
 
 TEST(StereoRectification, APairThatIsRectifiedStaysAsItIs) {
-  StereoCalibration pair;
+  StereoCameras pair;
   pair.T_left_right.translation().x() = 0.2;
   const StereoRectification rectification(pair);
   EXPECT_TRUE(rectification.T_left_rectified().matrix().isIdentity(1e-12));
@@ -137,7 +137,7 @@ TEST(StereoRectification, APairThatIsRectifiedStaysAsItIs) {
 
 TEST(StereoRectification, SaysWhatIsNoPair) {
   const auto message = [](const Eigen::Isometry3d& T_left_right) {
-    StereoCalibration pair;
+    StereoCameras pair;
     pair.T_left_right = T_left_right;
     try {
       const StereoRectification rectification(pair);

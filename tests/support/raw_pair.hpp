@@ -24,7 +24,7 @@ class RawPair {
     right_map_ = map_of(calibration_.right, T_rendered_right.linear());
   }
 
-  const StereoCalibration& calibration() const { return calibration_; }
+  const StereoCameras& calibration() const { return calibration_; }
   const Eigen::Isometry3d& T_rendered_left() const { return T_rendered_left_; }
   cv::Mat left(const cv::Mat& rendered) const { return warped(rendered, left_map_); }
   cv::Mat right(const cv::Mat& rendered) const { return warped(rendered, right_map_); }
@@ -53,7 +53,7 @@ class RawPair {
   }
 
   Camera rendered_;
-  StereoCalibration calibration_;
+  StereoCameras calibration_;
   Eigen::Isometry3d T_rendered_left_;
   cv::Mat left_map_, right_map_;
 };

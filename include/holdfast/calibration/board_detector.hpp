@@ -23,7 +23,7 @@ struct BoardView {
 /// which does not affect calibration. Used by one thread.
 class BoardDetector {
  public:
-  /// Throws Error for a board with markers in a build that has none, and for one with more of them than the dictionary.
+  /// Throws Error for a board with markers in a build without them, and for more markers than the dictionary has.
   explicit BoardDetector(const CalibrationBoard& board);
   ~BoardDetector();
   BoardDetector(BoardDetector&&) noexcept;

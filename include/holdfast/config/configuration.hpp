@@ -81,18 +81,18 @@ struct ModuleChoice {
   SourceLocation location;  ///< of the name
 };
 
-/// A configuration in which every name is known and every value is in range. Whether the modules fit together (camera,
+/// A configuration in which every name is known and every value is in range. The compatibility of the modules (camera,
 /// depth, segmentation) is checked by PipelineBuilder, which knows the source.
 struct Configuration {
   std::string file;
   ModuleChoice source, features, matcher, segmenter, optimizer, loop_detector;
   std::vector<ModuleChoice> filters;  ///< a chain
   std::vector<ModuleChoice> observers;
-  std::optional<Camera> camera;  ///< empty: the source must know it
+  std::optional<Camera> camera;  ///< empty: that of the source
   /// Set by `camera: auto`: the source's own camera takes precedence over `camera`, which follows from the name of its
   /// folder; this is the error if there is neither.
   std::optional<Diagnostic> unknown_camera;
-  std::optional<Sensor> sensor;       ///< empty: all that the source has
+  std::optional<Sensor> sensor;       ///< empty: all images of the source
   std::optional<ImuCalibration> imu;  ///< empty: that of the source, if it has one
   SourceLocation imu_location;        ///< of the section, if there is one
   /// Warnings with their locations, such as a folder that is named after another camera.
@@ -112,8 +112,7 @@ Configuration read_configuration(const std::filesystem::path& file, const std::v
 Configuration resolve_configuration(const ConfigurationNode& root, const std::string& file, Registry& registry,
                                     const std::vector<SectionDescription>& sections);
 
-/// YAML that gives the same configuration when it is loaded again. Every default is written out, and paths are
-/// absolute.
+/// YAML of the same configuration with all defaults and absolute paths.
 std::string to_yaml(const Configuration& configuration);
 
 /// Names of the sections that choose one module.

@@ -10,7 +10,7 @@ namespace holdfast {
 /// When a file must be on the disk, so that it survives a loss of power.
 enum class Durability {
   now,    ///< when the call returns
-  later,  ///< after sync_file_system(); for pictures, of which many are written in a second
+  later,  ///< after sync_file_system(); for many files in a short time, such as pictures
 };
 
 /// Replaces the content of a file atomically: the file always has its earlier or its complete new content. Bytes are

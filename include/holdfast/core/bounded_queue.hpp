@@ -21,13 +21,13 @@ class BoundedQueue {
  public:
   explicit BoundedQueue(std::size_t capacity) { counts_.capacity = std::max<std::size_t>(capacity, 1); }
 
-  /// Waits for room. Returns false and discards the value when the queue is closed.
+  /// Adds a value, waiting while the queue is full. Returns false and discards the value when the queue is closed.
   bool push(T value) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return closed_ || has_room_unlocked(); });
     return add(std::move(value));
   }
-  /// Makes room by dropping the oldest value.
+  /// Adds a value without waiting; a full queue drops its oldest value.
   bool push_newest(T value) {
     const std::lock_guard lock(mutex_);
     if (!closed_ && !has_room_unlocked()) {
@@ -37,7 +37,7 @@ class BoundedQueue {
     return add(std::move(value));
   }
 
-  /// Waits for a value; nothing when the queue is closed and empty.
+  /// Waits for a value; returns nothing when the queue is closed and empty.
   std::optional<T> pop() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return closed_ || !entries_.empty(); });
@@ -59,7 +59,7 @@ class BoundedQueue {
     const std::lock_guard lock(mutex_);
     return has_room_unlocked();
   }
-  /// Returns at once when the queue is closed.
+  /// Waits until a value can be added or the queue is closed.
   void wait_for_room() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return closed_ || has_room_unlocked(); });

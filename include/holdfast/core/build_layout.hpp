@@ -5,9 +5,9 @@
 
 /// Compiler flags that the layout of types in public headers depends on. A program compiled with flags that differ from
 /// those of the library in one of these does not link: `-march=native` and `-mavx2` change the alignment of Eigen's
-/// matrices, as do EIGEN_MAX_ALIGN_BYTES and EIGEN_MAX_STATIC_ALIGN_BYTES. Each object file refers to
-/// `is_that_of_the_library` of the BuildLayout of its own flags, and the library defines that of its flags alone, so
-/// that the linker's message states the flags of the program. docs/embedding.md states what to do.
+/// matrices, as do EIGEN_MAX_ALIGN_BYTES and EIGEN_MAX_STATIC_ALIGN_BYTES. Each object file refers to the static member
+/// `is_that_of_the_library` of its own BuildLayout, and the library defines this member for its own layout only. The
+/// linker's message therefore states the flags of the program. The remedies are in docs/embedding.md.
 ///
 /// Plugins in shared libraries are compared with the program when they are loaded (AbiRecord in plugin/abi.hpp).
 namespace holdfast::build_layout {

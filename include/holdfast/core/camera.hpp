@@ -38,7 +38,7 @@ struct Distortion {
   double k4 = 0, k5 = 0, k6 = 0;
   Lens lens = Lens::radial_tangential;
 
-  /// Whether there is no distortion; never true for a fisheye lens.
+  /// True without distortion; never true for a fisheye lens.
   bool is_zero() const {
     return lens == Lens::radial_tangential && k1 == 0 && k2 == 0 && p1 == 0 && p2 == 0 && k3 == 0 && !is_rational();
   }

@@ -5,7 +5,7 @@
 
 namespace holdfast {
 
-/// A point of a dense cloud [m]. Who holds the cloud documents its coordinate frame.
+/// A coloured point of a dense cloud [m]. The coordinate frame is documented with the cloud.
 struct CloudPoint {
   float x = 0, y = 0, z = 0;
   std::uint8_t red = 0, green = 0, blue = 0;

@@ -49,7 +49,7 @@ struct CoarseView {
   Eigen::Isometry3d T_view_camera = Eigen::Isometry3d::Identity();
   std::vector<float> depth;            ///< along the optical axis at the cell's centre [m], 0 = none
   std::vector<float> static_log_odds;  ///< of the surface in the cell: positive = static, 0 = unknown; may be empty
-  CellMask mask;                       ///< propagated to this frame, or its own segmentation once that was applied
+  CellMask mask;                       ///< propagated mask, replaced by the frame's own segmentation when that arrives
 
   bool empty() const { return depth.empty(); }
   /// Pose of the depth image when the camera has the given pose: T_view_camera * T_camera_world.
@@ -62,11 +62,12 @@ class CoarseSampler {
   explicit CoarseSampler(const Camera& camera);
 
   const CoarseGrid& grid() const { return grid_; }
-  /// Replaces view.depth by values of a depth image of the camera's size (32FC1 [m]; empty = no depth anywhere): the
-  /// one at the cell's centre, or the nearest within a pixel when that one is missing. Clears the log-odds and the
-  /// mask.
+  /// Samples view.depth from a depth image of the camera's size (32FC1 [m]; empty = no depth anywhere). A cell gets the
+  /// depth of the pixel at its centre or, if that is missing, of one of the four neighbouring pixels. Clears the
+  /// log-odds and the mask.
   void sample_depth(const cv::Mat& depth, CoarseView& view) const;
-  /// Labels (8UC1 of the camera's size) at the cells' centres; `outside` where a cell lies outside the image.
+  /// Samples labels (8UC1 of the camera's size) at the centres of the cells. Cells outside the image get the label
+  /// `outside`.
   void sample_labels(const cv::Mat& labels, std::uint8_t outside, std::vector<std::uint8_t>& cells) const;
   /// Sets all raw pixels of the marked cells (not 0, one entry per cell) to 255 in an image of the camera's size, 8UC1;
   /// empty if no cell is marked.
@@ -75,7 +76,7 @@ class CoarseSampler {
   std::int32_t raw_pixel(int cell) const { return raw_[static_cast<std::size_t>(cell)]; }
 
  private:
-  /// Depth of a neighbour of a pixel without depth; 0 if no neighbour has depth.
+  /// Depth of one of the four neighbours of a pixel without depth; 0 if none has depth.
   float measured_beside(const float* depth, std::int32_t pixel) const;
 
   int width_, height_;

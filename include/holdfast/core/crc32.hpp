@@ -10,7 +10,7 @@ namespace holdfast {
 
 namespace detail {
 
-/// [k][b]: what byte b does to the remainder when k zero bytes follow it.
+/// Entry [k][b] is the remainder of byte b followed by k zero bytes.
 using CrcTables = std::array<std::array<std::uint32_t, 256>, 8>;
 
 constexpr CrcTables make_crc_tables(std::uint32_t reflected_polynomial) {
@@ -32,8 +32,8 @@ inline constexpr CrcTables crc_tables = make_crc_tables(reflected_polynomial);
 
 }  // namespace detail
 
-/// A cyclic redundancy check of 32 bits, reflected, begin and end inverted, of bytes that come in parts. Eight bytes at
-/// a time by independent look-ups.
+/// Cyclic redundancy check of 32 bits with reflected polynomial and inverted initial and final value. add() may be
+/// called repeatedly; it processes eight bytes at a time by table look-up (slicing-by-8).
 template <std::uint32_t reflected_polynomial>
 class ReflectedCrc32 {
  public:
@@ -61,10 +61,10 @@ class ReflectedCrc32 {
   std::uint32_t remainder_ = 0xFFFFFFFFU;
 };
 
-/// ISO 3309 (polynomial 0x04C11DB7), as MCAP uses it; that of "123456789" is 0xCBF43926.
+/// ISO 3309 (polynomial 0x04C11DB7), used by MCAP. The value of "123456789" is 0xCBF43926.
 using Crc32 = ReflectedCrc32<0xEDB88320U>;
-/// Castagnoli et al. 1993 (polynomial 0x1EDC6F41), as RFC 3720 and map files use it; that of "123456789" is 0xE3069283.
-/// Finds every change of up to 32 neighbouring bits.
+/// CRC-32C of Castagnoli et al. 1993 (polynomial 0x1EDC6F41, RFC 3720), used by map files. The value of "123456789" is
+/// 0xE3069283. Detects every burst error of up to 32 bits.
 using Crc32c = ReflectedCrc32<0x82F63B78U>;
 
 }  // namespace holdfast

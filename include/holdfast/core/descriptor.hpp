@@ -20,13 +20,12 @@ enum class DescriptorKind : std::uint8_t {
 
 /// How the distance of two descriptors is computed.
 enum class DescriptorMetric : std::uint8_t {
-  hamming,    ///< number of bits in which they differ; of binary descriptors, and of no others
+  hamming,    ///< number of differing bits; for binary descriptors only
   euclidean,  ///< length of their difference, in the unit of their numbers
   cosine      ///< 1 minus the cosine of the angle between them, 0 to 2; float32 descriptors have unit length
 };
 
-/// All descriptors of an extractor are of one type. It carries the distances that the extractor recommends, because
-/// only the extractor knows how much the descriptors of one feature differ between images.
+/// Type of all descriptors of an extractor, with the matching distances that the extractor recommends for it.
 struct DescriptorType {
   DescriptorKind kind = DescriptorKind::binary;
   DescriptorMetric metric = DescriptorMetric::hamming;
@@ -89,7 +88,7 @@ class DescriptorView {
   bool empty() const { return count_ == 0; }
   /// Units of memory per descriptor.
   std::size_t units() const { return units_; }
-  /// The units of descriptor i; those of the next one follow.
+  /// The first unit of descriptor i; descriptors are contiguous.
   const Descriptor256* row(std::size_t i) const { return rows_ + i * units_; }
   /// The bytes of descriptor i, without padding.
   std::span<const std::byte> bytes(std::size_t i) const {
@@ -112,7 +111,7 @@ class DescriptorView {
 /// Descriptors of one type in one contiguous block, each aligned to 32 bytes and padded with zeros.
 class DescriptorBlock {
  public:
-  /// Empty, of 256 bits.
+  /// An empty block of descriptors of 256 bits.
   DescriptorBlock() = default;
   /// `count` descriptors of zeros.
   explicit DescriptorBlock(const DescriptorType& type, std::size_t count = 0) { reset(type, count); }
@@ -120,7 +119,7 @@ class DescriptorBlock {
   /// Sets type and number of the descriptors; all are zeros unless the type is unchanged. Throws CheckError for an
   /// invalid type.
   void reset(const DescriptorType& type, std::size_t count);
-  /// Changes the number; new descriptors are zeros.
+  /// Changes the number of descriptors; new ones are zeros.
   void resize(std::size_t count) { rows_.resize(count * units_); }
   void clear() { rows_.clear(); }
   void reserve(std::size_t count) { rows_.reserve(count * units_); }
@@ -131,7 +130,7 @@ class DescriptorBlock {
     rows_.insert(rows_.end(), others.row(i), others.row(i) + units_);
   }
 
-  /// Appends a descriptor of 256 bits. Throws CheckError among others.
+  /// Appends a descriptor of 256 bits. Throws CheckError if the block holds descriptors of another type.
   void push_back(const Descriptor256& descriptor) { append(std::span(&descriptor, 1), 0); }
 
   const DescriptorType& type() const { return type_; }

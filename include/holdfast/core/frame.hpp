@@ -21,10 +21,9 @@ namespace holdfast {
 /// Writers, in this order: FrameBuilder fills everything up to `right_x`, the grid and coarse.depth, and resets the
 /// rest. MovingWorld writes coarse.mask before features are extracted; then static_probability, measured_log_odds,
 /// coarse.static_log_odds and coarse.T_view_camera while the frame is tracked. The tracker writes map_points and
-/// T_camera_world. When the frame becomes a keyframe, Map stores a copy, and from then on Map and the local mapper
-/// change map_points and T_camera_world of the copy; its mask and static_probability are written once more when its own
-/// segmentation arrives. `image_descriptor` is written by tracking for a lost frame, and by loop closing for a
-/// keyframe.
+/// T_camera_world. When the frame becomes a keyframe, Map stores a copy. Map and the local mapper then change
+/// map_points and T_camera_world of the copy; mask and static_probability are updated when the segmentation of the
+/// keyframe arrives. `image_descriptor` is written by tracking for a lost frame, and by loop closing for a keyframe.
 struct Frame {
   std::uint64_t index = 0;  ///< SensorFrame::index
   double timestamp = 0.0;   ///< of the colour image [s]
@@ -43,7 +42,7 @@ struct Frame {
   std::vector<float> measured_log_odds;
   FeatureGrid grid;   ///< of the undistorted positions
   CoarseView coarse;  ///< the depth image on a coarse grid, its mask and its evidence
-  /// Global image descriptor for place recognition, if the loop detector uses one; empty until it was computed.
+  /// Global image descriptor for place recognition, if the loop detector uses one; empty before its computation.
   DescriptorBlock image_descriptor;
 
   Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();

@@ -12,14 +12,14 @@
 
 namespace holdfast {
 
-/// Calibration of an IMU and of its place on the camera.
+/// Calibration of an IMU: extrinsics to the camera, clock, noise and ranges.
 struct ImuCalibration {
   std::string name;  ///< of a known sensor; empty for one that is given by numbers
   /// Pose of the camera in the body frame.
   Eigen::Isometry3d T_body_camera = Eigen::Isometry3d::Identity();
   ImuNoise noise;
   double rate = 200.0;  ///< samples per second
-  /// Time of an event by the clock of the IMU, minus that by the clock of the camera [s] (Kalibr: timeshift_cam_imu).
+  /// Time offset of the clocks [s]: time of the IMU = time of the camera + time_offset (Kalibr: timeshift_cam_imu).
   double time_offset = 0.0;
   double gyroscope_range = 1000.0 * std::numbers::pi / 180.0;  ///< measurements saturate at +- this value [rad/s]
   double accelerometer_range = 16.0 * standard_gravity;        ///< the same [m/s^2]

@@ -9,22 +9,22 @@
 
 namespace holdfast {
 
-/// What a check of inertial measurements is told besides them.
+/// Specifications against which inertial measurements are checked.
 struct ImuExpectation {
   double rate = 0.0;                 ///< samples per second; 0 = unknown
   double gyroscope_range = 0.0;      ///< [rad/s]; 0 = unknown
   double accelerometer_range = 0.0;  ///< [m/s^2]; 0 = unknown
 };
 
-/// Suspicions about inertial measurements of some seconds or more, each a clause with the finding, its probable cause
-/// and the remedy: accelerations in g, or from which gravity was subtracted; rates in degrees per second; axes of the
-/// gyroscope that are not those of the accelerometer; gaps; another rate than expected; saturation. Samples have
-/// increasing time stamps. Empty for plausible measurements, and for what a short or resting recording leaves open.
+/// Plausibility check of inertial measurements over at least some seconds. Each result is a clause with the finding,
+/// its probable cause and the remedy. Detected are accelerations in g or without gravity, angular velocities in degrees
+/// per second, different axes of gyroscope and accelerometer, gaps, an unexpected rate, and saturation. The time stamps
+/// must increase. The result is empty for plausible measurements, and for recordings that are too short or at rest.
 ///
-/// Gyroscope and accelerometer are compared by gravity, as the attitude filter of Mahony, Hamel and Pflimlin (2008) is
-/// corrected: the mean specific force of a quarter of a second, turned by the integrated rates, must point where that
-/// of the next quarter points. Rates are suspected only if they predict it worse than no rotation at all, and another
-/// unit or other axes predict it well.
+/// Gyroscope and accelerometer are compared by the direction of gravity, as in the attitude filter of Mahony, Hamel and
+/// Pflimlin (2008): the mean specific force over 0.25 s, rotated by the integrated angular velocity, predicts the
+/// direction of the mean specific force over the next 0.25 s. Angular velocities are suspected only if this prediction
+/// is worse than that without any rotation, and another unit or other axes give a good one.
 std::vector<std::string> imu_suspicions(std::span<const ImuSample> samples, const ImuExpectation& expected = {});
 
 }  // namespace holdfast

@@ -5,8 +5,7 @@
 
 namespace holdfast {
 
-/// Magnitude of gravity that estimation and simulation use [m/s^2]: the standard value, within 0.3 % of that of any
-/// place on earth.
+/// Standard gravity [m/s^2], used by estimation and simulation; within 0.3 % of local gravity anywhere on earth.
 inline constexpr double standard_gravity = 9.80665;
 
 /// One measurement of an inertial measurement unit (IMU), a gyroscope and an accelerometer with common axes. These axes
@@ -31,7 +30,7 @@ struct ImuNoise {
   friend bool operator==(const ImuNoise&, const ImuNoise&) = default;
 };
 
-/// Biases of an IMU: what it measures in excess.
+/// Additive biases of an IMU: measurement = true value + bias + noise.
 struct ImuBias {
   Eigen::Vector3d gyroscope = Eigen::Vector3d::Zero();      ///< [rad/s]
   Eigen::Vector3d accelerometer = Eigen::Vector3d::Zero();  ///< [m/s^2]

@@ -9,21 +9,20 @@
 
 namespace holdfast {
 
-/// Appends those of a later frame's samples that are later than `samples`, so that both frames' samples are those of
-/// one.
+/// Appends the samples of a later frame without those that `samples` already contains, as if both frames were one.
 void append_imu(std::vector<ImuSample>& samples, const std::vector<ImuSample>& later);
 
-/// Deals the inertial measurements of a recording to its frames, as SensorFrame::imu describes. Used by one thread.
+/// Splits the inertial measurements of a recording by frame, as SensorFrame::imu specifies. Used by one thread.
 class ImuTimeline {
  public:
   ImuTimeline() = default;
-  /// Samples by the clock of the IMU, whose time stamps increase strictly; `time_offset` is that of ImuCalibration.
+  /// `samples`: strictly increasing time stamps of the IMU's clock. `time_offset`: see ImuCalibration.
   explicit ImuTimeline(std::vector<ImuSample> samples, double time_offset = 0.0);
 
   bool empty() const { return samples_.empty(); }
-  /// All samples, by the clock of the camera.
+  /// All samples, with time stamps of the camera's clock.
   const std::vector<ImuSample>& samples() const { return samples_; }
-  /// Returns the samples for the frame at `timestamp` [s], which follows that of the last call.
+  /// Returns the samples of the frame at `timestamp` [s]. Frames must be passed in temporal order.
   std::vector<ImuSample> take(double timestamp);
 
  private:

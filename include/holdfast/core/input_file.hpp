@@ -10,7 +10,7 @@
 
 namespace holdfast {
 
-/// Maximum size of a file of each kind [bytes]: far more than any such file needs, and less than the usual memory.
+/// Maximum size of a file of each kind [bytes], far above any valid file.
 namespace largest_file {
 inline constexpr std::uint64_t configuration = std::uint64_t{16} << 20;  ///< YAML: configurations, scenes, cameras
 inline constexpr std::uint64_t json = std::uint64_t{512} << 20;
@@ -22,13 +22,13 @@ inline constexpr std::uint64_t unbounded = std::numeric_limits<std::uint64_t>::m
 }  // namespace largest_file
 
 /// Describes why a file cannot be read, such as "no such file", "found a folder", "found a device, which may never end"
-/// or "found more than 16 MiB, the most that is read of such a file"; empty if it seems readable. Only regular files
-/// are read, because a device or named pipe may block or never end; descriptors that are open already, /dev/stdin and a
-/// shell's <(command), are read as well.
+/// or "found more than 16 MiB, the most that is read of such a file"; empty if it seems readable. Devices and named
+/// pipes are refused because they may block or never end, except open descriptors such as /dev/stdin and a shell's
+/// <(command).
 std::string why_unreadable(const std::filesystem::path& file, std::uint64_t most_bytes);
 
-/// A file that is read from its beginning, unbuffered. A read that fails is an error with the system's reason, never
-/// the end of the file. Used by one thread.
+/// A file that is read from its beginning, unbuffered. A failed read throws InputError with the system's reason and is
+/// never mistaken for the end of the file. Used by one thread.
 class InputFile {
  public:
   /// Opens the file. Throws InputError with the text of why_unreadable() and "; expected EXPECTED".
@@ -43,7 +43,7 @@ class InputFile {
   /// Reads `count` bytes; fewer only at the end of the file. Throws InputError for a read that fails, and for a file
   /// that has more than `most_bytes`.
   std::size_t read(void* into, std::size_t count);
-  /// Continues at a position of a regular file. Throws InputError if the system refuses it.
+  /// Sets the position of the next read() in a regular file. Throws InputError if the system refuses it.
   void seek(std::uint64_t position);
   /// Reads the rest of the file into a std::string or a std::vector of bytes, and reuses its memory.
   template <class Bytes>

@@ -8,7 +8,8 @@
 
 namespace holdfast {
 
-/// Numbers of pixels (or cells) of the instances of two label images, and of each pair of them. 0 is no instance.
+/// Confusion matrix of two instance label images: pixels (or cells) of each instance and of each pair. Label 0 is no
+/// instance.
 class InstanceOverlaps {
  public:
   void add(std::size_t first, std::size_t second) {

@@ -20,13 +20,13 @@ struct KeyFrame {
   std::uint64_t sequence = 0;  ///< 0 for the first keyframe of the map, then increasing; not reused until Map::clear()
   Frame frame;                 ///< frame.T_camera_world is the keyframe's pose, frame.map_points its observations
   /// Submap (as an Atlas map of ORB-SLAM3). A new submap may begin after a loss; its pose relative to the others is a
-  /// guess until a loop joins them. A map file holds one submap: that with most tracked frames.
+  /// guess until a loop joins them. A map file contains only the submap with the most tracked frames.
   std::uint32_t submap = 0;
   std::vector<CovisibilityEdge> covisible;  ///< by decreasing weight, equal weights by increasing sequence
   KeyFrameId parent;                        ///< in the spanning tree; invalid for the first keyframe of a submap
   std::vector<KeyFrameId> children;         ///< in the spanning tree, in order of insertion
-  /// Accumulated scale correction of this keyframe by monocular loop closures (1 otherwise). Translations of
-  /// poses that are stored relative to this keyframe are multiplied by it; files do not keep it.
+  /// Accumulated scale correction of this keyframe by monocular loop closures (1 otherwise). It scales the translations
+  /// of poses stored relative to this keyframe. It is not saved in map files.
   double scale = 1.0;
   std::vector<KeyFrameId> loop_edges;  ///< other ends of closed loops; a keyframe with one is never culled
 };

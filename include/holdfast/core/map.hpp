@@ -73,9 +73,9 @@ class Map {
   void fuse_points(MapPointId from, MapPointId to);
   void remove_point(MapPointId point);
 
-  /// Recounts the points that a keyframe shares with others and updates the covisibility edges on both sides. An edge
-  /// needs as many shared points as set_covisibility_minimum() says; the strongest neighbour is always kept.
-  /// Sets the spanning-tree parent of a new keyframe.
+  /// Recounts the points that a keyframe shares with others and updates the covisibility edges on both sides. Edges
+  /// below the minimum weight (set_covisibility_minimum()) are removed, except that to the strongest neighbour. Sets
+  /// the spanning-tree parent of a new keyframe.
   void update_covisibility(KeyFrameId keyframe);
   /// Makes `older` the spanning-tree parent of a keyframe without one. Needed for a keyframe that is not covisible with
   /// any older one, because its pose was estimated without the map.
@@ -88,13 +88,13 @@ class Map {
   std::uint32_t new_submap() { return ++last_submap_; }
   /// Submap of a keyframe; for a removed keyframe, that of its parent. Nothing for a keyframe of a removed submap.
   std::optional<std::uint32_t> submap_of(KeyFrameId keyframe) const;
-  /// Gives two submaps the lower number of the two. Their relative pose must have been corrected before.
+  /// Merges two submaps under the lower of their numbers. Their relative pose must have been corrected before.
   void join_submaps(std::uint32_t first, std::uint32_t second);
   /// Keyframes of all other submaps, oldest first.
   std::vector<KeyFrameId> keyframes_outside(std::uint32_t submap) const;
   /// Number of keyframes of a submap.
   std::size_t keyframes_in(std::uint32_t submap) const;
-  /// Removes the keyframes and points of all other submaps; pose_of() has no pose of these keyframes any more.
+  /// Removes the keyframes and points of all other submaps. pose_of() is invalid for these keyframes afterwards.
   void keep_submap(std::uint32_t submap);
 
   /// Adds a loop edge between two keyframes, on both sides. Adding it again has no effect.
@@ -108,16 +108,16 @@ class Map {
   /// T_camera_world of a keyframe. For a removed keyframe, it is composed from the current pose of its parent and the
   /// relative pose at the time of removal.
   Eigen::Isometry3d pose_of(KeyFrameId keyframe) const;
-  /// KeyFrame::scale of a keyframe; for a removed one, its scale then times the change of its parent's scale since.
+  /// KeyFrame::scale of a keyframe. For a removed one, its scale at removal times the later scale change of its parent.
   double scale_of(KeyFrameId keyframe) const;
 
-  /// Magnitude to which fuse_points() clamps the static log-odds of a point (EvidenceSettings::limit). It belongs to
-  /// the run, not to the content: files do not keep it, and clear() and restore() leave it as it is.
+  /// Magnitude to which fuse_points() clamps the static log-odds of a point (EvidenceSettings::limit). It is a setting
+  /// of the run: map files do not contain it, and clear() and restore() do not change it.
   void set_evidence_limit(float log_odds) { evidence_limit_ = log_odds; }
   float evidence_limit() const { return evidence_limit_; }
 
-  /// Minimum number of shared points of a covisibility edge (MappingSettings::covisibility_minimum). It belongs to the
-  /// run, like the evidence limit.
+  /// Minimum number of shared points of a covisibility edge (MappingSettings::covisibility_minimum). It is a setting of
+  /// the run, like the evidence limit.
   void set_covisibility_minimum(int points) { covisibility_minimum_ = points; }
 
   /// Sequence number of the next keyframe.
@@ -131,8 +131,8 @@ class Map {
   void set_features(MapFeatures features) { features_ = std::move(features); }
   /// Names of the classes that points can have, by MapPoint::label; empty = points have no classes.
   const std::vector<std::string>& classes() const { return classes_; }
-  /// Replaces the names; those beyond the 255th, which no label refers to, are dropped. Labels of
-  /// points are remapped by name; labels whose name is gone become unknown.
+  /// Replaces the class names; names beyond the 255th are dropped. Labels of points are remapped by name; labels of
+  /// removed names become unknown.
   void set_classes(std::vector<std::string> names);
   /// Sets the class of each point to the most frequent label of the masks at its observations; of equal counts, the
   /// lower label. A point without a label in any mask keeps its class.

@@ -5,10 +5,10 @@ namespace holdfast {
 
 class Map;
 
-/// Shows that the caller may use a map that other threads use as well: functions that need the map's lock take one, and
-/// what they call works within it. Where threads share the map, it is an object that holds the lock (LockedMap of the
-/// pipeline, MapLock of mapping); a MapAccess made of the map itself is for a map that no other thread uses. Functions
-/// that are given the `Map&` itself know of no threads: who calls them has access.
+/// Capability to access a map: functions that require the map's lock take a MapAccess as an argument. For a map shared
+/// between threads it is created by the object that holds the lock (LockedMap of the pipeline, MapLock of mapping). It
+/// can be created from the map directly if no other thread uses the map. Functions that take the `Map&` itself are
+/// unaware of threads; their caller has access.
 class MapAccess {
  public:
   explicit MapAccess(Map& map) : map_(map) {}

@@ -25,14 +25,14 @@ struct MapPoint {
   float minimum_distance = 0.0F;  ///< distance range in which the descriptor can be matched [m]
   float maximum_distance = 0.0F;
   DescriptorBlock descriptor{DescriptorType(),
-                             1};          ///< one: that of the observation with the least median distance to all others
+                             1};          ///< observed descriptor with the least median distance to the others
   std::vector<Observation> observations;  ///< in order of insertion
   KeyFrameId reference_keyframe;          ///< first keyframe that still observes it
   std::uint64_t created_at = 0;           ///< sequence number of the keyframe that created it
   std::uint32_t visible_count = 1;        ///< frames in which it is predicted to be visible
   std::uint32_t found_count = 1;          ///< frames in which it was matched
   float static_log_odds = 0.0F;           ///< accumulated log-odds that the point is static; 0 = unknown
-  /// Class, an index into Map::classes(). In a run it is found at the end, by Map::classify_points().
+  /// Class, an index into Map::classes(). Set at the end of a run by Map::classify_points().
   std::uint8_t label = CellMask::unknown;
 
   float found_ratio() const { return static_cast<float>(found_count) / static_cast<float>(visible_count); }

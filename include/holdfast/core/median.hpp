@@ -9,8 +9,8 @@
 
 namespace holdfast {
 
-/// Upper median: the central value, or the larger one of two central values. Reorders the values, of which there must
-/// be at least one.
+/// Upper median: the central value, or the larger one of two central values. Requires at least one value, and reorders
+/// them.
 template <class Value>
 Value upper_median(std::vector<Value>& values) {
   HOLDFAST_CHECK(!values.empty(), "a median of no values");

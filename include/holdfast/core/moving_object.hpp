@@ -15,10 +15,10 @@ namespace holdfast {
 /// is not the centroid of the object. A non-rigid object such as a person is approximated by one rigid motion.
 struct MovingObject {
   std::uint32_t id = 0;  ///< from 1; never reused
-  /// Of its instance in the mask (CellMask::instances), which the object keeps while it is seen; 0 without instances.
+  /// Id of its instance in the mask (CellMask::instances), constant while the object is visible; 0 without instances.
   std::uint16_t instance = 0;
   std::string class_name;  ///< majority of the mask's labels on the object; empty without a majority
-  /// Its axes are parallel to the world axes when the object is first seen and rotate with the object afterwards.
+  /// Pose of the object. Its axes are parallel to the world axes when the object is first seen and rotate with it.
   Eigen::Isometry3d T_world_object = Eigen::Isometry3d::Identity();
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();          ///< of the origin, world frame [m/s]
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();  ///< world frame [rad/s]
@@ -26,7 +26,7 @@ struct MovingObject {
   float speed_deviation = 0.0F;  ///< standard deviation of the speed [m/s]
   bool moving = false;           ///< whether it moves now; otherwise it is at rest after a motion
   double first_seen = 0.0;       ///< [s]
-  /// [s]; earlier than the frame's stamp while the object is occluded, in which case its pose is a prediction.
+  /// Time of the last observation [s]. While the object is occluded it is in the past, and the pose is a prediction.
   double last_seen = 0.0;
 
   double speed() const;

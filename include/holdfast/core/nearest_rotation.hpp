@@ -7,8 +7,8 @@
 
 namespace holdfast {
 
-/// The rotation that is nearest to a matrix in the Frobenius norm, by its singular value decomposition (Umeyama, PAMI
-/// 1991, lemma): of a rotation matrix that was rounded, or of a sum of rotations, whose chordal mean it is.
+/// Nearest rotation to a matrix in the Frobenius norm, by singular value decomposition (Umeyama, PAMI 1991, lemma).
+/// Orthonormalises a rounded rotation matrix; for a sum of rotations it is their chordal L2 mean.
 inline Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& matrix) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const Eigen::Matrix3d orthogonal = svd.matrixU() * svd.matrixV().transpose();

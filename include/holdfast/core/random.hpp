@@ -8,8 +8,8 @@
 namespace holdfast {
 
 /// A small random number generator whose results are the same on every machine and with every standard library
-/// (SplitMix64; Steele, Lea and Flood 2014). The distributions are implemented here for the same reason: the standard
-/// does not specify the algorithms of the library's distributions.
+/// (SplitMix64; Steele, Lea and Flood 2014). The distributions are implemented here because the standard does not
+/// specify the algorithms of its own.
 class Random {
  public:
   explicit Random(std::uint64_t seed = 1) : state_(seed) {}
@@ -33,8 +33,8 @@ class Random {
     const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
     return radius * std::cos(2.0 * std::numbers::pi * uniform());
   }
-  /// Returns an independent generator for one component, so that adding a component does not change the random numbers
-  /// of the others.
+  /// Returns an independent generator for one component, identified by `stream`. Adding a component does not change the
+  /// random numbers of the others.
   Random fork(std::uint64_t stream) const {
     Random child(state_ ^ (stream * 0xd1342543de82ef95ULL + 0x2545f4914f6cdd1dULL));
     child.next();

@@ -14,8 +14,7 @@ enum class Sensor {
   mono,    ///< colour alone; the unit of the map is arbitrary (TrackingSettings::start_depth)
 };
 
-/// Properties of a sensor mode. Code queries these instead of comparing with Sensor, so that a sensor is added in one
-/// place.
+/// Properties of a sensor mode. Use these functions instead of comparisons with Sensor.
 /// @{
 /// Features have a measured depth, by a depth image or by the disparity of a pair.
 constexpr bool features_have_depth(Sensor sensor) { return sensor != Sensor::mono; }

@@ -38,15 +38,15 @@ struct SensorFrame {
   double depth_delay = 0.0;
   cv::Mat colour;  ///< 8UC3, blue green red; Pipeline::feed() takes grey images, 8UC1, as well
   cv::Mat depth;   ///< 32FC1 along the optical axis [m], 0 = no value; same size as colour; may be empty
-  /// 8UC1 or 8UC3, the image of the right camera of a rectified stereo pair, whose left camera took `colour`: a point
-  /// lies in the same row of both, Camera::baseline * fx / depth columns further left in this one. Same size as colour;
+  /// Right image of a rectified stereo pair (8UC1 or 8UC3), of which `colour` is the left image. A point lies in the
+  /// same row of both, and Camera::baseline * fx / depth columns further left in the right image. Same size as colour;
   /// may be empty.
   cv::Mat right;
   std::shared_ptr<const FrameTruth> truth;  ///< nullptr if the source has none
-  /// Inertial measurements from the time stamp of the previous frame to that of this one, in temporal order and with
-  /// time stamps by the clock of the camera: the first is the last one at or before the earlier stamp, the last the
-  /// first one at or after the later stamp, as far as they exist. The first frame begins with the last one at or before
-  /// its stamp. Empty without an IMU.
+  /// Inertial measurements between the previous frame and this one, in temporal order, with time stamps of the camera's
+  /// clock. The interval is extended to the last measurement at or before the previous frame and to the first one at or
+  /// after this frame, if they exist. For the first frame of a source it begins at the last measurement at or before
+  /// the frame. Empty without an IMU.
   std::vector<ImuSample> imu;
 };
 

@@ -11,7 +11,7 @@ namespace holdfast {
 class Stopwatch {
  public:
   double seconds() const { return std::chrono::duration<double>(Clock::now() - begin_).count(); }
-  /// Restarts the measurement, as if `already` seconds had passed.
+  /// Restarts the measurement at `already` seconds.
   void restart(double already = 0.0) {
     begin_ = Clock::now() - std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(already));
   }

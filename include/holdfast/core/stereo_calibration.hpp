@@ -10,41 +10,41 @@
 
 namespace holdfast {
 
-/// Estimate of the displacement of columns in the right image, c + q x^2 [px] (x: column there, from the principal
-/// point by focal length), by the motion of a window of keyframes: c and q beyond the errors that were corrected
-/// already, and their information (inverse covariance).
+/// Estimated column displacement in the right image, c + q x^2 [px] (x: normalised column), from a window of keyframes.
+/// c and q are relative to the errors already corrected; `information` is their inverse covariance.
 struct ColumnEstimate {
   Eigen::Vector2d value = Eigen::Vector2d::Zero();
   Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
 };
 
-/// Self-calibration of a rectified stereo pair while it moves. Rows determine the rotations about x and z and the ratio
-/// of focal lengths: a rectified pair shows a point in the same row of both images. They do not determine the rotation
-/// about y nor the column of the principal point, which displace columns only. Motion does, in a bundle adjustment with
-/// these errors as unknowns (mapping/pair_calibrator.hpp).
+/// Online self-calibration of a rectified stereo pair. The row differences of matched features (zero for an ideal pair)
+/// determine the rotations about x and z and the ratio of focal lengths. The rotation about y and the column of the
+/// principal point displace columns only; they are estimated by bundle adjustment over several keyframes
+/// (mapping/pair_calibrator.hpp).
 ///
-/// An error is used once it displaces points by more than `minimum_shift` and is significant, so that a perfect
-/// calibration is not changed: errors of rows one by one, by what they displace at the border of the image; the two of
-/// columns together, by the root of the mean square over the image. Thread-safe.
+/// An error is corrected only if it is significant and displaces points by more than `minimum_shift`, so that a perfect
+/// calibration is not changed. The displacement of each row error is that at the image border; that of the two column
+/// errors is their joint root mean square over the image. Thread-safe.
 class StereoCalibration {
  public:
   static constexpr double minimum_shift = 0.1;  ///< px; the matching of images has biases up to a few hundredths
 
-  /// `estimates`: learn_rows() and learn_columns() improve the first errors.
+  /// `errors` are the initial values, which learn_rows() and learn_columns() refine if `estimates` is true.
   StereoCalibration(const Camera& camera, const PairErrors& errors, bool estimates);
 
   bool is_estimated() const { return estimates_; }
   PairErrors errors() const;
   PairEstimate estimate() const;
-  /// The errors in use for a new frame; errors_of_frame() returns the same until the next call.
+  /// Fixes the errors that correct a new frame and returns them; errors_of_frame() returns the same until the next
+  /// call.
   PairErrors begin_frame();
   PairErrors errors_of_frame() const;
 
-  /// Improves rotations about x and z and the focal ratio by the features of one pair. Returns true if the errors in
-  /// use have changed.
+  /// Updates rotations about x and z and the focal ratio by the row differences of one frame. Returns true if the
+  /// corrected errors have changed.
   bool learn_rows(std::span<const RowDifference> differences);
-  /// Improves the rotation about y and the column of the principal point by the motion of a window of keyframes, whose
-  /// disparities `used` has corrected. Replaces the estimate of the last call, unless that window was complete.
+  /// Updates the rotation about y and the column of the principal point by the estimate of a window of keyframes, whose
+  /// disparities were corrected by `used`. Replaces the estimate of the last call, unless that window was complete.
   void learn_columns(const ColumnEstimate& estimate, const PairErrors& used, bool window_is_complete);
 
  private:

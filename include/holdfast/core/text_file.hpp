@@ -9,8 +9,8 @@
 
 namespace holdfast {
 
-/// Reads a text file line by line; a UTF-8 byte-order mark at its beginning, which some editors write, is left out. All
-/// readers of lists use it, so that a read error in the middle of a file is reported everywhere. Used by one thread.
+/// Reads a text file line by line, without a UTF-8 byte-order mark. Read errors in the middle of a file are reported.
+/// Used by one thread.
 class LineReader {
  public:
   static constexpr std::size_t longest_line = 1 << 20;  ///< [bytes]
@@ -19,8 +19,8 @@ class LineReader {
   LineReader(const std::filesystem::path& file, const std::string& expected,
              std::uint64_t most_bytes = largest_file::text);
 
-  /// Reads the next line without its line feed; false after the last one. Throws InputError for a read that fails and
-  /// for a line longer than longest_line.
+  /// Reads the next line without its line feed; false after the last one. Throws InputError for a failed read and for a
+  /// line longer than longest_line.
   bool next(std::string& line);
   /// Number of the last line, from 1.
   int number() const { return number_; }

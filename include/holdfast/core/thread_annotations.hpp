@@ -3,8 +3,8 @@
 
 #include <mutex>
 
-/// Annotations for clang's thread safety analysis (-Wthread-safety): which data a lock guards, and which lock a
-/// function acquires, releases or needs. Other compilers ignore them.
+/// Annotations for clang's thread safety analysis (-Wthread-safety): the data that a lock guards, and the locks that a
+/// function acquires, releases or requires. Other compilers ignore them.
 #if defined(__clang__)
 #define HOLDFAST_THREAD_ANNOTATION(attribute) __attribute__((attribute))
 #else
@@ -20,7 +20,7 @@
 
 namespace holdfast {
 
-/// A std::mutex that the analysis knows.
+/// A std::mutex with the annotations of the analysis.
 class HOLDFAST_CAPABILITY("mutex") Mutex {
  public:
   void lock() HOLDFAST_ACQUIRE() { mutex_.lock(); }

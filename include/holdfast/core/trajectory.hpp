@@ -27,8 +27,8 @@ Trajectory sort_and_clean(Trajectory trajectory);
 /// Reads a trajectory in TUM format: lines "timestamp tx ty tz qx qy qz qw", where '#' begins a comment. The result is
 /// sorted and cleaned as by sort_and_clean(). Quaternions are normalised, zero ones skipped. Throws InputError (file,
 /// line) for an unreadable file, for a line that is not a pose of 8 numbers separated by blanks, and for a quaternion
-/// whose norm differs from 1 by more than 0.02. The message names the format that the line looks like. The values do
-/// not show whether qw comes first; therefore commas, and a comment that names qw first, are errors as well.
+/// whose norm differs from 1 by more than 0.02. The message names the format that the line resembles. Commas, and a
+/// comment that names qw first, are errors because they indicate another order of the quaternion.
 Trajectory read_trajectory(const std::filesystem::path& file);
 
 /// Format of the lines of a trajectory file.
@@ -62,8 +62,8 @@ struct TrajectoryFile {
   std::string omissions() const;
 };
 
-/// Reads a trajectory in any of the formats as read_trajectory() does, and reports ignored lines. Throws InputError as
-/// well for KITTI's format with more or fewer poses than stamps, or an invalid rotation matrix.
+/// Reads a trajectory in any of the formats as read_trajectory() does, and reports ignored lines. For KITTI's format it
+/// also throws InputError if the numbers of poses and stamps differ, and for an invalid rotation matrix.
 TrajectoryFile read_trajectory_file(const std::filesystem::path& file, const TrajectoryReading& reading = {});
 
 /// The comment line that begins every file in TUM format that is written: the columns and their units.

@@ -13,14 +13,14 @@
 
 namespace holdfast {
 
-/// A thread that executes jobs in their order of arrival. An exception ends it: waiting jobs are discarded, and
-/// rethrow() throws the exception. Debuggers and `top -H` show the name of the thread.
+/// A thread that executes jobs in their order of arrival. An exception of a job ends the thread: queued jobs are
+/// discarded, and rethrow() throws the exception. Debuggers and `top -H` show the name of the thread.
 template <class Job>
 class Worker {
  public:
   Worker(std::string name, std::size_t capacity, std::function<void(Job&)> work)
       : name_(std::move(name)), work_(std::move(work)), queue_(capacity), thread_([this] { run(); }) {}
-  /// Discards waiting jobs and waits for the job in progress.
+  /// Discards queued jobs and waits for the job in progress.
   ~Worker() {
     queue_.close(true);
     if (thread_.joinable()) thread_.join();
@@ -30,7 +30,7 @@ class Worker {
 
   BoundedQueue<Job>& queue() { return queue_; }
   const BoundedQueue<Job>& queue() const { return queue_; }
-  /// Executes the waiting jobs, then ends.
+  /// Executes the queued jobs, then ends the thread.
   void finish() {
     queue_.close();
     if (thread_.joinable()) thread_.join();

@@ -70,17 +70,16 @@ struct SegmentError {
     double translation = 0.0;  ///< mean [% of the length]
     double rotation = 0.0;     ///< mean [deg/m]
   };
-  std::vector<OfLength> lengths;  ///< those that the path has segments of, increasing
+  std::vector<OfLength> lengths;  ///< lengths with at least one segment, increasing
   std::size_t segments = 0;       ///< of all lengths; 0 if the path is shorter than 100 m
   double translation = 0.0;       ///< mean over all segments [% of the length]
   double rotation = 0.0;          ///< the same [deg/m]
 };
 
 /// Scale drift of an estimate along the path, for the alignment sim3. The pairs are divided into ten windows of equal
-/// length of true path; each is aligned by itself with a scale, whose ratio to the scale of the alignment of the whole
-/// is the window's: above 1 where the estimate is too small. A window with fewer than ten pairs, or without motion, is
-/// left out. An estimate whose error is not small compared with the motion in a window has scales below their true
-/// values there.
+/// length of true path; the scale of a window is that of its own similarity alignment divided by that of the whole,
+/// above 1 where the estimate is too small. A window with fewer than ten pairs, or without motion, is left out. An
+/// estimate whose error is not small compared with the motion in a window has scales below their true values there.
 struct ScaleDrift {
   /// A tenth of the true path.
   struct Window {
@@ -141,8 +140,8 @@ std::string to_csv(const Evaluation& evaluation);
 std::string to_tracks_json(const Evaluation& evaluation);
 
 /// Plots the aligned estimate and the ground truth with equal scales, projected along an axis of the ground truth: the
-/// vertical one, which the camera's own upright direction tells, unless the path is nearly flat as seen from above;
-/// else the axis of the smallest extent of the path. Self-contained SVG.
+/// vertical one (from the upright direction of the camera), or, if the path is nearly flat in this view, the axis of
+/// its smallest extent. Self-contained SVG.
 std::string top_view_svg(const Evaluation& evaluation);
 /// Plots the absolute error over time with its RMSE. Frames without a pose are shaded, or times without a pair if the
 /// frames are unknown. Self-contained SVG.

@@ -22,7 +22,7 @@ struct InstanceImage {
   std::vector<Entry> entries;
 };
 
-/// Intersection over union from which on a found instance is the true one, of average precision: 0.5, 0.55, ... 0.95.
+/// Number of the thresholds of intersection over union of average precision: 0.5, 0.55, ... 0.95.
 inline constexpr std::size_t instance_threshold_count = 10;
 
 /// Accuracy of the instances of one class over all images. A figure without instances is NaN.
@@ -37,7 +37,7 @@ struct ClassInstanceEvaluation {
   double ap50() const { return average_precision.front(); }
   /// Mean of the average precision over the thresholds 0.5 to 0.95.
   double ap() const;
-  /// Panoptic quality, of things: matched_iou / (matched + half of those that have no counterpart); equation 1 of
+  /// Panoptic quality of things: matched_iou / (matched + half of the instances without counterpart); equation 1 of
   /// Kirillov et al., Panoptic segmentation, CVPR 2019.
   double panoptic_quality() const;
 };
@@ -67,7 +67,7 @@ class InstanceEvaluator {
   InstanceEvaluation result() const;
 
  private:
-  /// A found instance, and at which thresholds it is a true one.
+  /// A found instance and the thresholds at which it is a true positive.
   struct Find {
     float score = 0.0F;
     std::uint16_t is_right = 0;  ///< a bit for each threshold

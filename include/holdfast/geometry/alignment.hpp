@@ -36,7 +36,7 @@ struct Similarity {
 
 namespace detail {
 
-/// Marks the points within the threshold and returns their number; points that are not finite are outliers.
+/// Marks points within the threshold as inliers and returns their number; points that are not finite are outliers.
 inline int mark_inliers(std::span<const Eigen::Vector3d> source, std::span<const Eigen::Vector3d> target,
                         const Similarity& similarity, double threshold, std::vector<std::uint8_t>& inlier) {
   int count = 0;

@@ -18,8 +18,8 @@ namespace holdfast::geometry {
 
 namespace detail {
 
-/// Isotropic normalisation (section 4.4.4): the matrix that moves pixels to mean 0 and mean distance sqrt(2); empty for
-/// pixels that coincide or are not finite.
+/// Isotropic normalisation (section 4.4.4): the transformation to mean 0 and mean distance sqrt(2) of the pixels. Empty
+/// for pixels that coincide or are not finite.
 inline std::optional<Eigen::Matrix3d> normalising_transform(std::span<const Eigen::Vector2d> pixels) {
   Eigen::Vector2d mean = Eigen::Vector2d::Zero();
   for (const Eigen::Vector2d& pixel : pixels) mean += pixel;
@@ -34,16 +34,17 @@ inline std::optional<Eigen::Matrix3d> normalising_transform(std::span<const Eige
   return transform;
 }
 
-/// Homogeneous least squares: the unit vector that minimises the equations whose squares are summed in `normal`, as a
-/// matrix by rows.
+/// Homogeneous least squares: the unit eigenvector of the smallest eigenvalue of `normal` (A^T A), as a row-major
+/// matrix.
 inline Eigen::Matrix3d least_squares_matrix(const Eigen::Matrix<double, 9, 9>& normal) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver(normal);
   const Eigen::Matrix<double, 9, 1> solution = solver.eigenvectors().col(0);
   return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(solution.data());
 }
 
-/// A 3x3 matrix by a normalised linear algorithm: `add_equations(p, q, normal)` adds the squared equations of the
-/// normalised, homogeneous pixels p of a and q of b, and `denormalise(matrix, from_a, from_b)` leads back to pixels.
+/// Estimates a 3x3 matrix by a normalised linear algorithm. `add_equations(p, q, normal)` adds the equations of a pair
+/// of normalised homogeneous pixels, p of a and q of b, to A^T A; `denormalise(matrix, from_a, from_b)` undoes the
+/// normalisation.
 template <class AddEquations, class Denormalise>
 std::optional<Eigen::Matrix3d> estimate_normalised(std::span<const Eigen::Vector2d> a,
                                                    std::span<const Eigen::Vector2d> b, std::size_t minimum,
@@ -98,7 +99,7 @@ inline std::optional<Eigen::Matrix3d> estimate_homography(std::span<const Eigen:
       });
 }
 
-/// The four motions T_b_a, with a translation of unit length, that an essential matrix allows (result 9.19).
+/// The four motions T_b_a with unit translation that are consistent with an essential matrix (result 9.19).
 inline std::array<Eigen::Isometry3d, 4> decompose_essential(const Eigen::Matrix3d& essential) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(essential, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Matrix3d quarter_turn;
@@ -117,7 +118,7 @@ inline std::array<Eigen::Isometry3d, 4> decompose_essential(const Eigen::Matrix3
   return motions;
 }
 
-/// The four motions T_b_a, with a translation of unit length, by which a plane causes a homography of rays (x, y, 1)
+/// The four motions T_b_a with unit translation that are consistent with a plane-induced homography of rays (x, y, 1)
 /// (Ma, Soatto, Kosecka and Sastry, An Invitation to 3-D Vision, 2004, section 5.3.3). Empty for a pure rotation, which
 /// has no translation.
 inline std::optional<std::array<Eigen::Isometry3d, 4>> decompose_homography(Eigen::Matrix3d homography) {

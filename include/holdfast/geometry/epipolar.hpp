@@ -30,14 +30,14 @@ Eigen::Matrix3d fundamental_matrix(const Camera& camera_model, const Eigen::Isom
 struct EpipolarLine {
   double a = 0.0, b = 0.0, c = 0.0;
 
-  /// Squared distance of a pixel from the line [px^2]; infinite where there is no line (the pixel in a is the epipole,
-  /// or the cameras share their centre).
+  /// Squared distance of a pixel from the line [px^2]; infinite if the line is undefined (the pixel in a is the
+  /// epipole, or the camera centres coincide).
   double distance2(double x, double y) const {
     const double norm2 = a * a + b * b, value = a * x + b * y + c;
     return norm2 > 0.0 ? value * value / norm2 : std::numeric_limits<double>::infinity();
   }
-  /// Whether the squared distance is at most `limit` variances of a pixel coordinate; `inverse_sigma2` [1/px^2].
-  /// Without division, for searches through many pixels. False if there is no line.
+  /// Whether the squared distance is at most `limit` variances of a pixel coordinate; `inverse_sigma2` [1/px^2]. Needs
+  /// no division. False if the line is undefined.
   bool is_near(double x, double y, double inverse_sigma2, double limit = 3.841) const {
     const double norm2 = a * a + b * b, value = a * x + b * y + c;
     return norm2 > 0.0 && value * value * inverse_sigma2 <= limit * norm2;

@@ -12,14 +12,13 @@
 
 #include "holdfast/geometry/preintegration.hpp"
 
-/// Start of visual-inertial estimation from camera poses that images alone gave: inertial-only maximum a posteriori
-/// estimation after Campos, Montiel and Tardos, "Inertial-only optimization for visual-inertial initialization", ICRA
-/// 2020.
+/// Initialisation of visual-inertial estimation from visual camera poses: inertial-only maximum a posteriori estimation
+/// of Campos, Montiel and Tardos, "Inertial-only optimization for visual-inertial initialization", ICRA 2020.
 namespace holdfast::geometry {
 
 /// Settings of start_inertially().
 struct InertialStartOptions {
-  bool estimate_scale = false;        ///< of one camera; otherwise the poses are in metres
+  bool estimate_scale = false;        ///< for monocular poses; otherwise they are in metres
   double gravity = standard_gravity;  ///< [m/s^2]
   /// Standard deviations of the given poses, per axis [m] (after scaling), [rad].
   double position_deviation = 0.002;
@@ -33,15 +32,15 @@ struct InertialStartOptions {
   double largest_direction_deviation = 0.03;
   double largest_scale_deviation = 0.02;
   double largest_velocity_deviation = 0.05;
-  /// And if the mean squared normalised residual, which is 1 for the stated deviations, does not exceed this.
+  /// Maximum mean squared normalised residual of a usable result; it is 1 if the stated deviations are correct.
   double largest_mean_chi_square = 4.0;
 };
 
 /// Result of start_inertially().
 struct InertialStart {
-  bool usable = false;                                ///< see InertialStartOptions; false: begin again later
-  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< acceleration of free fall in the world frame [m/s^2]
-  double scale = 1.0;                                 ///< metres in a unit of the given poses
+  bool usable = false;  ///< whether the conditions of InertialStartOptions are fulfilled; otherwise try again later
+  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< gravity vector in the world frame [m/s^2]
+  double scale = 1.0;                                 ///< metres per unit of the given poses
   ImuBias bias;                                       ///< constant over the time of the poses
   std::vector<Eigen::Vector3d> velocities;            ///< of the body at each pose, in the world frame [m/s]
   double direction_deviation = std::numeric_limits<double>::infinity();       ///< of gravity [rad], the larger axis
@@ -83,7 +82,7 @@ class InertialStartProblem {
   int size() const { return bias_index() + 6; }
 
   Eigen::Matrix3d body_rotation(std::size_t i) const { return poses_[i].linear() * T_camera_body_.linear(); }
-  /// Position of the body in metres, without that of the camera, which is scaled.
+  /// Vector from the camera to the body in the world frame [m], which is not scaled.
   Eigen::Vector3d lever(std::size_t i) const { return poses_[i].linear() * T_camera_body_.translation(); }
 
   InertialState state(std::size_t i) const {
@@ -95,7 +94,7 @@ class InertialStartProblem {
     return state;
   }
 
-  /// The rotations alone determine the bias of the gyroscope, by linear least squares, twice for its nonlinearity.
+  /// Estimates the gyroscope bias from the rotations alone, by two iterations of linear least squares.
   void estimate_gyroscope_bias() {
     for (int iteration = 0; iteration < 3; ++iteration) {
       Eigen::Matrix3d hessian = 1e-9 * Eigen::Matrix3d::Identity();
@@ -111,8 +110,7 @@ class InertialStartProblem {
     }
   }
 
-  /// First values of velocities, gravity and scale: equations of motion that are linear in them, with the bias of the
-  /// accelerometer zero.
+  /// Initial values of velocities, gravity and scale by linear equations of motion, with zero accelerometer bias.
   bool solve_linearly() {
     const int columns = static_cast<int>(3 * count()) + 4, gravity = columns - 4, scale = columns - 1;
     Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(columns, columns);
@@ -147,7 +145,7 @@ class InertialStartProblem {
     return solution.allFinite() && result_.scale > 0.0 && result_.gravity.norm() > 0.0;
   }
 
-  /// Two directions that gravity can turn to, which are columns.
+  /// Basis of the tangent plane of the direction of gravity, as columns.
   Eigen::Matrix<double, 3, 2> gravity_tangent() const {
     Eigen::Matrix<double, 3, 2> tangent;
     tangent.col(0) = result_.gravity.unitOrthogonal() * options_.gravity;
@@ -255,13 +253,13 @@ class InertialStartProblem {
 }  // namespace detail
 
 /// Estimates gravity, biases, velocities and, if asked, the scale from camera poses and the preintegrated measurements
-/// between them: motions[i] from pose i to pose i + 1, so that there is one motion less than poses. The poses stay as
-/// they are. `T_body_camera` is that of ImuCalibration. Two seconds with ten poses serve where the unit of the poses is
-/// known, also at rest, where gravity and the bias of the accelerometer can be told apart only by the prior of the
-/// bias; one camera needs some five seconds with accelerations. Not usable without at least four poses.
+/// between them: motions[i] from pose i to pose i + 1, so that there is one motion less than poses. The poses are not
+/// changed. `T_body_camera` is that of ImuCalibration. For metric poses two seconds with ten poses suffice, also at
+/// rest, where only the prior separates the accelerometer bias from gravity; monocular poses need about five seconds
+/// with accelerations. At least four poses are required.
 ///
-/// First the bias of the gyroscope from rotations, then all else by linear equations, then Gauss-Newton iterations on
-/// the residuals of equation 13, with priors on the biases and the errors of the given poses in the covariances.
+/// Steps: gyroscope bias from the rotations, linear initialisation of the other unknowns, Gauss-Newton iterations on
+/// the residuals of equation 13 with priors on the biases. The covariances include the errors of the given poses.
 inline InertialStart start_inertially(std::span<const Eigen::Isometry3d> T_world_camera,
                                       std::span<const Preintegration> motions, const Eigen::Isometry3d& T_body_camera,
                                       const InertialStartOptions& options = {}) {

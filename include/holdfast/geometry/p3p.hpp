@@ -65,8 +65,8 @@ inline std::vector<double> real_roots(const std::array<double, 5>& c) {
 
 }  // namespace detail
 
-/// The camera poses T_camera_world from which three world points are seen along three directions (camera frame, any
-/// length): none to four. Grunert's solution of 1841, as given by Haralick, Lee, Ottenberg and Noelle, "Review and
+/// P3P: the up to four camera poses T_camera_world from which three world points are seen along three directions
+/// (camera frame, any length). Grunert's solution of 1841, as given by Haralick, Lee, Ottenberg and Noelle, "Review and
 /// analysis of solutions of the three point perspective pose estimation problem", IJCV 13(3), 1994, equations 9 and 10;
 /// the roots of the quartic are the eigenvalues of its companion matrix.
 inline std::vector<Eigen::Isometry3d> solve_p3p(const std::array<Eigen::Vector3d, 3>& points,

@@ -20,7 +20,7 @@ namespace holdfast::geometry {
 
 namespace detail {
 
-/// The observations from which samples are drawn: their numbers are finite and their weight is not 0.
+/// Observations that samples are drawn from: finite, with non-zero weight.
 template <class Problem>
 std::vector<std::uint32_t> usable_observations(const Problem& problem) {
   using Traits = PoseProblemTraits<Problem>;
@@ -86,7 +86,7 @@ PoseSummary find_pose(Problem& problem, const PnpOptions& options) {
                                      options.confidence, options.iterations);
     }
   }
-  // A pose from three noisy pixels is rough: fewer observations agree with it than with the adjusted pose.
+  // A pose from a minimal sample is imprecise: it has fewer inliers than the adjusted pose.
   if (best_inliers < std::max(4, needed / 2)) return {};
   const Eigen::Isometry3d before = Traits::pose(problem);
   Traits::set_pose(problem, best);

@@ -31,7 +31,7 @@ bool is_finite(const Problem& problem, std::size_t i) {
 /// Stopping criteria of a round of Levenberg-Marquardt.
 struct RoundLimits {
   int iterations;   ///< at most
-  double relative;  ///< it ends when the predicted decrease is below this times the cost and below `absolute`
+  double relative;  ///< converged when the predicted decrease is below this factor times the cost, and below `absolute`
   double absolute;  ///< half the squared Mahalanobis distance from the pose to the predicted minimum
 };
 
@@ -50,7 +50,7 @@ class PoseAdjustment {
   const Eigen::Isometry3d& pose() const { return pose_; }
   double cost() const { return system_.cost; }
 
-  /// Fills the batches; returns how many observations count.
+  /// Fills the batches and returns the number of usable observations.
   int pack(const Problem& problem) {
     const double information_disparity = 1.0 / (options_.disparity_sigma * options_.disparity_sigma);
     const std::size_t size = Traits::size(problem);
@@ -82,7 +82,7 @@ class PoseAdjustment {
     return count;
   }
 
-  /// Tests every observation anew at the pose. Returns whether the set of observations that count has changed.
+  /// Reclassifies every observation at the current pose. Returns whether the inlier set has changed.
   bool set_outliers_aside() {
     chi_squares(batches_, PoseView(camera_, pose_));
     bool changed = false;
@@ -98,7 +98,7 @@ class PoseAdjustment {
 
   /// Whether observation i passed the last test, whatever its weight.
   bool is_inlier(std::size_t i) const { return is_inlier(batches_[i / batch_size], i % batch_size); }
-  /// How many observations with a weight passed the last test.
+  /// Number of observations with non-zero weight that passed the last test.
   int count_inliers() const {
     int count = 0;
     for (const ObservationBatch& batch : batches_)
@@ -173,7 +173,7 @@ PoseSummary adjust_pose(Problem& problem, const PoseAdjustmentOptions& options) 
   for (int round = 0; round < options.robust_rounds + options.final_rounds; ++round) {
     const bool robust = round < options.robust_rounds;
     if (settled && round != options.robust_rounds) continue;
-    // The robust rounds only have to separate outliers from inliers.
+    // Robust rounds only separate outliers from inliers and need less precision.
     const detail::RoundLimits limits{options.iterations, robust ? 1e-4 : 1e-8, robust ? 0.02 : 1e-4};
     summary.iterations += adjustment.minimise(robust, limits);
     settled = !adjustment.set_outliers_aside();

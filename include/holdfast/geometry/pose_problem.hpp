@@ -18,14 +18,14 @@ namespace holdfast::geometry {
 inline constexpr double chi_square_two = 5.991;
 inline constexpr double chi_square_three = 7.815;
 
-/// Disparity noise of a depth sensor such as the Kinect, in the equivalent stereo pair: the same at every distance, and
-/// independent of the noise of the pixel (Khoshelham and Elberink 2012, equation 13, with the errors that neighbouring
-/// pixels share). Its cost is linear beyond `disparity_threshold` deviations, because a wrong depth does not make the
-/// pixel an outlier.
+/// Disparity noise of a structured-light sensor such as the Kinect, for the equivalent stereo pair: constant over depth
+/// and independent of the pixel noise (Khoshelham and Elberink 2012, equation 13, including errors correlated between
+/// neighbouring pixels). Its cost is linear (Huber) beyond `disparity_threshold` standard deviations, because a wrong
+/// depth does not make the pixel an outlier.
 inline constexpr double disparity_sigma = 0.7;  ///< [px]
 inline constexpr double disparity_threshold = 1.5;
 
-/// Points nearer to the image plane than this, or behind it, are outliers [m].
+/// Minimum depth of an inlier in the camera frame [m].
 inline constexpr double minimum_depth = 1e-3;
 
 /// Access of the solvers to a caller's problem. Specialise it; all members are static functions:
@@ -48,7 +48,7 @@ inline constexpr double minimum_depth = 1e-3;
 template <class Problem>
 struct PoseProblemTraits;
 
-/// A type for which PoseProblemTraits has the members without a default.
+/// Type whose PoseProblemTraits has all required members.
 template <class Problem>
 concept PoseProblemType = requires(Problem& problem, const Problem& constant, const Eigen::Isometry3d& pose) {
   { PoseProblemTraits<Problem>::pinhole(constant) } -> std::convertible_to<Pinhole>;
@@ -72,10 +72,10 @@ struct PoseSummary {
 
 /// Rounds and limits of adjust_pose().
 struct PoseAdjustmentOptions {
-  int robust_rounds = 2;     ///< with Huber's cost
-  int final_rounds = 2;      ///< without it
-  bool trust_guess = false;  ///< the first guess already decides which observations count in the first round
-  int iterations = 10;       ///< at most, per round
+  int robust_rounds = 2;                    ///< with Huber's cost
+  int final_rounds = 2;                     ///< without it
+  bool trust_guess = false;                 ///< outliers at the initial guess are already excluded from the first round
+  int iterations = 10;                      ///< at most, per round
   double chi_square_2d = chi_square_two;    ///< an observation with two residuals beyond this is an outlier
   double chi_square_3d = chi_square_three;  ///< an observation with three residuals beyond this is an outlier
   double disparity_sigma = geometry::disparity_sigma;          ///< standard deviation of x - right_x [px]

@@ -29,7 +29,7 @@ struct alignas(32) ObservationBatch {
   Batch information_right;          ///< of right_x in the chi-square test, 0 where there is none
   Batch information_disparity;      ///< of x - right_x in the cost, 0 where there is none
   Batch limit;                      ///< chi-square limit, and square of Huber's threshold
-  Batch full_weight;                ///< of the observation's cost while it is no outlier
+  Batch full_weight;                ///< weight of the observation's cost as an inlier
   Batch weight;                     ///< full_weight, or 0 in a round in which the observation is an outlier
   Batch chi_square;                 ///< by chi_squares()
 };
@@ -55,8 +55,8 @@ struct PoseView {
   double fx, fy, cx, cy, fx_baseline;
 };
 
-/// Cost of a point behind the camera, in units of its limit: larger than relevant residuals, so that a step that moves
-/// points behind the camera is rejected.
+/// Cost of a point behind the camera, in units of the chi-square limit. Large, so that steps that move points behind
+/// the camera are rejected.
 inline constexpr double behind_cost = 100.0;
 
 /// Sums over all observations of the blocks of the Hessian (t: translation, r: rotation), of the gradient and of the

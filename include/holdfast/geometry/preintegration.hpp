@@ -18,7 +18,7 @@
 ///
 /// The error of a state has 15 components, in this order in every function: position [m] in the world frame, rotation
 /// [rad] in the body frame, velocity [m/s] in the world frame, bias of the gyroscope [rad/s], bias of the accelerometer
-/// [m/s^2]. A rotation is disturbed from the right, R exp(d), and everything else by addition.
+/// [m/s^2]. Rotations are perturbed from the right, R exp(d), all other components by addition.
 namespace holdfast::geometry {
 
 using Vector15d = Eigen::Matrix<double, 15, 1>;
@@ -36,7 +36,7 @@ struct InertialState {
   ImuBias bias;
 };
 
-/// The state that differs from `state` by an error.
+/// Applies an error to a state.
 inline InertialState disturbed(InertialState state, const Vector15d& error) {
   state.T_world_body.translation() += error.segment<3>(inertial::position);
   state.T_world_body.linear() =
@@ -104,8 +104,8 @@ inline RotatedVector rotated_vector(double first, const RotationSeries& a, const
 
 }  // namespace detail
 
-/// The inertial measurements between two times as one constraint between their states: delta, derivatives by the biases
-/// and covariance. Biases are constant in the delta; their random walk is in the covariance.
+/// Preintegrated inertial measurements between two times: delta, its derivatives by the biases, and covariance. The
+/// delta assumes constant biases; the covariance contains their random walk.
 class Preintegration {
  public:
   explicit Preintegration(const ImuNoise& noise = {}, const ImuBias& bias = {}) : noise_(noise), bias_(bias) {}
@@ -137,8 +137,8 @@ class Preintegration {
             delta_.velocity + d.segment<3>(inertial::velocity)};
   }
 
-  /// The state at the end, from that at the beginning. `gravity` is the acceleration of free fall in the world frame,
-  /// (0, 0, -9.81) where z points up.
+  /// Predicts the state at the end from that at the beginning. `gravity` is the gravity vector in the world frame, (0,
+  /// 0, -9.81) if z points up.
   InertialState predict(const InertialState& first, const Eigen::Vector3d& gravity) const {
     const InertialDelta change = delta(first.bias);
     const Eigen::Matrix3d turn = first.T_world_body.linear();
@@ -150,7 +150,7 @@ class Preintegration {
     return second;
   }
 
-  /// Covariance of the error of predict(), from that of the state at the beginning.
+  /// Covariance of the predicted state, from that of the state at the beginning.
   Matrix15d predicted_covariance(const InertialState& first, const Matrix15d& covariance,
                                  const Eigen::Vector3d& gravity) const {
     InertialJacobians jacobians;

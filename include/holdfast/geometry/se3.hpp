@@ -10,7 +10,7 @@ namespace holdfast::geometry {
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-/// The motion of a tangent vector (equation 172).
+/// Exponential map (equation 172).
 inline Eigen::Isometry3d exp_se3(const Vector6d& tangent) {
   const Eigen::Vector3d rotation = tangent.tail<3>();
   Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
@@ -19,7 +19,7 @@ inline Eigen::Isometry3d exp_se3(const Vector6d& tangent) {
   return result;
 }
 
-/// The tangent vector of a motion, rotation at most pi (equation 173).
+/// Logarithm, with a rotation angle of at most pi (equation 173).
 inline Vector6d log_se3(const Eigen::Isometry3d& motion) {
   Vector6d result;
   result.tail<3>() = log_so3(Eigen::Matrix3d(motion.linear()));
@@ -27,12 +27,12 @@ inline Vector6d log_se3(const Eigen::Isometry3d& motion) {
   return result;
 }
 
-/// Whether a motion goes farther than `distance` [m] or turns by more than `angle` [rad].
+/// True if the translation is longer than `distance` [m] or the rotation angle larger than `angle` [rad].
 inline bool exceeds(const Eigen::Isometry3d& motion, double distance, double angle) {
   return motion.translation().norm() > distance || Eigen::AngleAxisd(motion.linear()).angle() > angle;
 }
 
-/// motion * exp(d) = exp(adjoint * d) * motion (equation 175).
+/// Adjoint matrix: motion * exp(d) = exp(adjoint * d) * motion (equation 175).
 inline Matrix6d adjoint_se3(const Eigen::Isometry3d& motion) {
   Matrix6d result = Matrix6d::Zero();
   result.topLeftCorner<3, 3>() = motion.linear();
@@ -76,7 +76,7 @@ inline Matrix6d left_jacobian_inverse_se3(const Vector6d& tangent) {
 /// Inverse of the right Jacobian J, for which exp(tangent + d) = exp(tangent) * exp(J * d) to first order in d.
 inline Matrix6d right_jacobian_inverse_se3(const Vector6d& tangent) { return left_jacobian_inverse_se3(-tangent); }
 
-/// The nearest rigid motion: removes the rounding errors that a product of many motions accumulates in its rotation.
+/// Normalises the rotation, which removes rounding errors accumulated by a product of many motions.
 inline Eigen::Isometry3d orthonormalised(const Eigen::Isometry3d& motion) {
   Eigen::Isometry3d result = motion;
   result.linear() = Eigen::Quaterniond(motion.linear()).normalized().toRotationMatrix();

@@ -15,7 +15,7 @@ inline Eigen::Matrix3d hat(const Eigen::Vector3d& vector) {
   return result;
 }
 
-/// Unit quaternion of a rotation vector (equation 132, as a quaternion).
+/// Exponential map: unit quaternion of a rotation vector (equation 132).
 inline Eigen::Quaterniond exp_so3(const Eigen::Vector3d& rotation) {
   const double angle = rotation.norm();
   // sin(angle / 2) / angle; the series' next term is below rounding there.
@@ -23,8 +23,7 @@ inline Eigen::Quaterniond exp_so3(const Eigen::Vector3d& rotation) {
   return Eigen::Quaterniond(std::cos(0.5 * angle), scale * rotation.x(), scale * rotation.y(), scale * rotation.z());
 }
 
-/// Rotation vector of a rotation, angle at most pi. Computed from the half angle, so that angles near pi lose no
-/// digits.
+/// Logarithm: rotation vector with an angle of at most pi. Computed from the half angle, which is accurate near pi.
 inline Eigen::Vector3d log_so3(const Eigen::Quaterniond& rotation) {
   const double sine = rotation.vec().norm();
   const double sign = rotation.w() < 0.0 ? -1.0 : 1.0;
@@ -34,7 +33,7 @@ inline Eigen::Vector3d log_so3(const Eigen::Quaterniond& rotation) {
 }
 inline Eigen::Vector3d log_so3(const Eigen::Matrix3d& rotation) { return log_so3(Eigen::Quaterniond(rotation)); }
 
-/// exp(rotation + d) = exp(left_jacobian * d) * exp(rotation) to first order in d (equation 145).
+/// Left Jacobian: exp(rotation + d) = exp(left_jacobian * d) * exp(rotation) to first order in d (equation 145).
 inline Eigen::Matrix3d left_jacobian_so3(const Eigen::Vector3d& rotation) {
   const double angle2 = rotation.squaredNorm();
   const double angle = std::sqrt(angle2);

@@ -28,11 +28,11 @@ struct PixelPair {
 /// Conditions of find_two_view_motion().
 struct TwoViewOptions {
   int iterations = 200;            ///< samples of eight pairs, for both models
-  double homography_share = 0.45;  ///< of both scores; above it the scene is taken for planar (equation 5)
-  int minimum_points = 50;         ///< triangulated with enough parallax, in front of both cameras
-  double minimum_inliers = 0.5;    ///< minimum share of inliers of the model; other pairs move or are mismatches
-  double minimum_share = 0.75;     ///< of the model's inliers that must be in front of both cameras and reproject well
-  double rival_share = 0.75;       ///< a second motion that explains more than this share makes the result ambiguous
+  double homography_share = 0.45;  ///< share of the homography in both scores above which it is chosen (equation 5)
+  int minimum_points = 50;         ///< minimum number of points with enough parallax in front of both cameras
+  double minimum_inliers = 0.5;    ///< minimum share of inliers of the chosen model
+  double minimum_share = 0.75;  ///< minimum share of these inliers that are in front of both cameras and reproject well
+  double rival_share = 0.75;    ///< a second motion that explains more than this share makes the result ambiguous
   double max_parallax_cosine = 0.99985;  ///< 1 degree
   std::uint64_t seed = 1;
 };
@@ -98,7 +98,7 @@ inline void score_homography(std::span<const PixelPair> pairs, const Eigen::Matr
 /// Evaluation of a motion by the inliers of a model.
 struct TwoViewHypothesis {
   TwoViewMotion motion;
-  int explained = 0;  // points in front of both cameras that project onto their pixels, whatever their parallax
+  int explained = 0;  // points of any parallax that are in front of both cameras and project onto their pixels
 };
 
 inline TwoViewHypothesis explain(const Pinhole& camera, std::span<const PixelPair> pairs,
@@ -127,10 +127,10 @@ inline TwoViewHypothesis explain(const Pinhole& camera, std::span<const PixelPai
 }  // namespace detail
 
 /// Two-view initialisation of one camera (Mur-Artal et al. 2015, section IV): a homography and a fundamental matrix are
-/// estimated from the same samples, the better scored one is chosen, and of the motions that it allows the one that
-/// puts clearly more points in front of both cameras. Empty if there are too few pairs, too little parallax, or a
-/// second motion that explains nearly as many points, as often for a planar scene. The same input and seed give the
-/// same result. Any camera type with CameraTraits.
+/// estimated from the same samples, the better scored one is chosen, and decomposed; the motion with clearly more
+/// points in front of both cameras is selected (cheirality). Empty if there are too few pairs, too little parallax, or
+/// an ambiguity (a second motion explains nearly as many points), as often for a planar scene. The same input and seed
+/// give the same result. Any camera type with CameraTraits.
 template <class Camera>
 std::optional<TwoViewMotion> find_two_view_motion(const Camera& camera_model, std::span<const PixelPair> pairs,
                                                   const TwoViewOptions& options = {}) {
@@ -149,7 +149,7 @@ std::optional<TwoViewMotion> find_two_view_motion(const Camera& camera_model, st
   }
   if (!(fundamental.score + homography.score > 0.0)) return std::nullopt;
 
-  // The chosen model once more, from all its inliers.
+  // Re-estimate the chosen model from all its inliers.
   const bool is_planar = homography.score > options.homography_share * (fundamental.score + homography.score);
   detail::TwoViewModel& model = is_planar ? homography : fundamental;
   std::vector<Eigen::Vector2d> a, b;

@@ -15,7 +15,7 @@ namespace holdfast::geometry {
 /// Projection of a point into another view.
 struct WarpedPoint {
   Eigen::Vector3f point;  ///< in the camera frame of the other view [m]; its z is the expected depth
-  float x, y;             ///< pixel in the other view, perhaps outside its image [px]
+  float x, y;             ///< pixel in the other view [px]; may lie outside its image
 };
 
 /// Projections of the pixels of a row into another view: entry i of each array belongs to pixel i.
@@ -32,14 +32,14 @@ struct WarpedRow {
 /// second one. Immutable; any thread.
 class Warp {
  private:
-  /// Coordinate i of the point, of a number or an array of them. Both are computed in this order, for the same bits.
+  /// Coordinate i of the point, for scalars or arrays, with the same order of operations for bit-identical results.
   template <class Numbers>
   auto coordinate(int i, const Numbers& ray_x, float ray_y, const Numbers& depth) const {
     return depth * R_(i, 0) * ray_x + (depth * R_(i, 1) * ray_y + depth * R_(i, 2)) + t_[i];
   }
 
  public:
-  /// Points nearer to the second camera than `nearest` [m] have no pixel there.
+  /// Points with a depth below `nearest` [m] in the second view are not projected.
   Warp(const Eigen::Isometry3d& T_to_from, const Pinhole& from, const Pinhole& to, float nearest = 0.1F)
       : R_(T_to_from.linear().cast<float>()),
         t_(T_to_from.translation().cast<float>()),
@@ -65,15 +65,15 @@ class Warp {
     const float inverse = 1.0F / point.z();
     return WarpedPoint{point, to_.fx * point.x() * inverse + to_.cx, to_.fy * point.y() * inverse + to_.cy};
   }
-  /// The same for a row of pixels, with the same bits and vectorised: `rays_x` and `depth` have an entry for each of
-  /// them. x and y are invalid where !is_visible(z); all values are invalid where depth is not positive.
+  /// Vectorised projection of a row of pixels, bit-identical to operator(); `rays_x` and `depth` have one entry per
+  /// pixel. x and y are invalid where !is_visible(z), all values where depth is not positive.
   void row(const Eigen::Ref<const Eigen::ArrayXf>& rays_x, float ray_y, const Eigen::Ref<const Eigen::ArrayXf>& depth,
            WarpedRow& to) const {
     to.z = coordinate(2, rays_x, ray_y, depth);
     to.x = to_.fx * coordinate(0, rays_x, ray_y, depth) * (1.0F / to.z) + to_.cx;
     to.y = to_.fy * coordinate(1, rays_x, ray_y, depth) * (1.0F / to.z) + to_.cy;
   }
-  /// Whether a point at depth z [m] in the second view has a pixel there, perhaps outside its image.
+  /// Whether a point at depth z [m] in the second view is projected; its pixel may lie outside the image.
   bool is_visible(float z) const { return z >= minimum_depth_; }
   /// Projection into the second view of a point at infinity on a ray of the first view (rotation only).
   std::optional<WarpedPoint> project_direction(float ray_x, float ray_y) const {
@@ -97,8 +97,8 @@ class Warp {
 };
 
 /// Free-space test (see-through): whether at least six of the 3 x 3 cells around a cell measured a depth of `limit` [m]
-/// or more, and none a smaller one, because near a depth edge a small pose error would look like free space. `depth`:
-/// row by row, 0 = no measurement; the cell must not lie on the border.
+/// or more, and none a smaller one. The neighbourhood avoids false detections at depth edges due to small pose errors.
+/// `depth`: row by row, 0 = no measurement; the cell must not lie on the border.
 inline bool is_seen_through(std::span<const float> depth, int columns, int cell, float limit) {
   constexpr int enough = 6;
   int farther = 0;

@@ -11,7 +11,7 @@
 
 namespace holdfast {
 
-/// A camera of a recording in the ASL layout, and where it stands on the body that carries it.
+/// A camera of a recording in the ASL layout and its pose on the body.
 struct EurocCamera {
   Camera camera;
   Eigen::Isometry3d T_body_camera = Eigen::Isometry3d::Identity();
@@ -19,7 +19,7 @@ struct EurocCamera {
 
 /// Reads a sensor.yaml of a camera: T_BS, rate_hz, resolution, camera_model (pinhole), intrinsics, distortion_model
 /// (radial-tangential, equidistant, which is that of a fisheye lens, or none) and distortion_coefficients; other keys
-/// are left alone. Throws InputError (file, line and column) for what is missing or cannot be.
+/// are ignored. Throws InputError (file, line and column) for missing or invalid values.
 EurocCamera read_euroc_camera(const std::filesystem::path& file);
 
 /// Reads T_BS of a sensor.yaml: the pose of a sensor on the body. Throws as read_euroc_camera().

@@ -10,7 +10,7 @@
 
 namespace holdfast {
 
-/// A frame of a recording of numbered images, as files of poses refer to it.
+/// A frame of a recording of numbered images, to which files of poses refer.
 struct NumberedFrame {
   double timestamp = 0.0;  ///< [s]
   std::size_t index = 0;   ///< of the image among all images of the recording
@@ -29,9 +29,9 @@ struct NumberedFrame {
 ///   of seven numbers qx qy qz qw px py pz (Record3D): of cameras that look along -z with y up, as OpenGL has them,
 ///   which are converted.
 ///
-/// `image_count` is the number of all images, each of which has a pose where poses have no numbers of their own. A pose
-/// that is not finite is left out, as ScanNet marks frames without one. Throws InputError (with the line where there is
-/// one) for anything else, such as a matrix that is scaled or mirrored.
+/// `image_count` is the number of all images; poses without numbers must have one for each image. Poses that are not
+/// finite (ScanNet's mark of a missing pose) are omitted. Throws InputError (with the line, if there is one) for
+/// anything else, such as a scaled or mirrored matrix.
 Trajectory read_frame_poses(const std::filesystem::path& path, const std::vector<NumberedFrame>& frames,
                             std::size_t image_count);
 

@@ -14,12 +14,12 @@ namespace holdfast {
 
 class PngRows;
 
-/// How the stored numbers of a 16-bit depth image are meant.
+/// Meaning of the stored values of a 16-bit depth image.
 struct DepthEncoding {
   DepthEncoding(double factor_given = 5000.0, int no_value_given = largest)  // NOLINT(google-explicit-constructor)
       : factor(factor_given), no_value(no_value_given) {}
 
-  static constexpr int largest = 65535;  ///< the end of the range: what is as far or farther, never a distance
+  static constexpr int largest = 65535;  ///< end of the range, which never denotes a distance
   double factor;                         ///< stored value of one metre
   int no_value;                          ///< stored value without a measurement, besides 0
 };
@@ -46,16 +46,15 @@ class ImageDecoder {
   /// Decodes an 8-bit image with three channels to 8UC3, blue green red, in the orientation of the sensor (EXIF is not
   /// applied).
   cv::Mat read_colour(const std::filesystem::path& file, const SizeCheck& check_size = {});
-  /// Decodes an 8-bit image with one or three channels to 8UC1, in the orientation of the sensor. Of colour, the
-  /// weighted mean of OpenCV's conversion to grey.
+  /// Decodes an 8-bit image with one or three channels to 8UC1, in the orientation of the sensor. Colour is converted
+  /// to grey as by OpenCV.
   cv::Mat read_grey(const std::filesystem::path& file, const SizeCheck& check_size = {});
   /// The same for an image with one or three channels to 8UC3; the three channels of a grey image are equal.
   cv::Mat read_widened(const std::filesystem::path& file, const SizeCheck& check_size = {});
   /// Decodes a 16-bit PNG with one channel to 32FC1 [m]: value / factor, 0 = no value.
   cv::Mat read_depth(const std::filesystem::path& file, const DepthEncoding& encoding,
                      const SizeCheck& check_size = {});
-  /// As read_widened() and read_depth(), of the bytes of such a file, which a message may hold; `name` stands for the
-  /// file in errors.
+  /// As read_widened() and read_depth(), for the content of a file in memory; `name` denotes it in errors.
   cv::Mat decode_widened(std::span<const std::uint8_t> bytes, const std::string& name,
                          const SizeCheck& check_size = {});
   cv::Mat decode_depth(std::span<const std::uint8_t> bytes, const std::string& name, const DepthEncoding& encoding,

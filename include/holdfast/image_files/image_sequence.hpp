@@ -28,11 +28,11 @@ struct ImageFiles {
   std::filesystem::path depth;      ///< empty for a recording without depth
   SourceLocation colour_listed_at;  ///< the line of the list with the image; no file without a list
   SourceLocation depth_listed_at;
-  std::filesystem::path right = {};  ///< of a stereo pair; empty for a recording without
+  std::filesystem::path right = {};  ///< right image of a stereo pair; empty without one
   SourceLocation right_listed_at = {};
 };
 
-/// How the images of a sequence are read.
+/// Options for reading the images of a sequence.
 struct ImageSequenceOptions {
   DepthEncoding depth;  ///< of the depth images
   int width = 0;        ///< of every image [px]
@@ -44,7 +44,7 @@ struct ImageSequenceOptions {
   /// the depth pixel that covers its centre. For cameras whose images show the same view.
   bool scales_depth = false;
   bool stamps_are_read = true;  ///< from a list; otherwise they follow from a frame rate, and are seconds
-  /// Rectifies both images of pairs that are not; their sizes are those of its cameras. nullptr: they are rectified.
+  /// Rectification of stereo pairs, whose images have the sizes of its cameras; nullptr = already rectified.
   std::shared_ptr<const StereoRectification> rectification = nullptr;
   /// The key that sets DepthEncoding::no_value, such as "source.tum.invalid_depth", for ImageSequence::warnings().
   std::string invalid_depth_key = {};
@@ -67,9 +67,9 @@ class ImageSequence {
   /// Of all frames [s].
   std::vector<double> timestamps() const;
   const std::vector<SkippedFrame>& skipped() const { return skipped_; }
-  /// The suspicions that the time stamps are not seconds (core/stamp_unit.hpp), and that a value of the depth images
-  /// means that there is no measurement (find_no_value()). The first call reads some images; none without
-  /// ImageSequenceOptions::invalid_depth_key.
+  /// Warnings about time stamps that are not seconds (core/stamp_unit.hpp), and about a depth value that seems to
+  /// denote missing measurements (find_no_value()). The first call reads some images, unless
+  /// ImageSequenceOptions::invalid_depth_key is empty.
   Warnings warnings() const;
 
  private:
@@ -127,9 +127,9 @@ class ImageSequenceSource : public FrameSource {
   RecordedImu imu_;
 };
 
-/// The depth [m] that stands for "no measurement" in the given depth images (32FC1), if one seems to: the largest one
-/// of each, which is the same in at least three images, a hundredth of the pixels or more, and a quarter above all
-/// others.
+/// Depth [m] that probably denotes missing measurements in the given depth images (32FC1): the maximum of each image if
+/// it is equal in at least three images, covers at least 1 % of the pixels, and exceeds all other values by a quarter.
+/// Empty if there is none.
 std::optional<float> find_no_value(const std::vector<cv::Mat>& depths);
 
 /// Throws InputError unless `folder` is a folder: "is missing; expected EXPECTED; set `SETTING`".

@@ -39,14 +39,14 @@ struct ImageStructure {
 /// read.
 ImageStructure examine_image(std::span<const std::uint8_t> bytes);
 
-/// Looks at the begin and the end of a PNG or JPEG file only, which tells a truncated file and the size of the image
-/// without reading all of it; damage between them stays unseen. Where the end is not in its place, all is read and
-/// examined. Throws InputError if the file cannot be read.
+/// Examines only the begin and the end of a PNG or JPEG file, which detects truncated files and gives the size of the
+/// image; damage between them is not detected. If the end marker is not found, the whole file is examined. Throws
+/// InputError if the file cannot be read.
 ImageStructure examine_image_ends(const std::filesystem::path& file);
 
-/// Removes from a PNG that examine_image() accepted what its pixels do not depend on: ancillary chunks (colour profile,
-/// background, text, times), a suggested palette, bytes after the end. The decoding library prints messages about
-/// contents that it dislikes, such as a faulty profile that many programs write. JPEG files stay as they are.
+/// Removes data that do not affect the pixels from a PNG accepted by examine_image(): ancillary chunks (colour profile,
+/// background, text, times), a suggested palette, bytes after the end. Otherwise the decoding library prints messages,
+/// for instance about faulty profiles. JPEG files are not changed.
 void drop_png_annotations(std::vector<std::uint8_t>& bytes);
 
 /// Converts an 8-bit palette PNG that examine_image() accepted to a grey PNG whose pixels are the indices, because the

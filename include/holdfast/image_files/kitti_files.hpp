@@ -12,8 +12,8 @@ namespace holdfast {
 using KittiProjection = Eigen::Matrix<double, 3, 4>;
 
 /// Reads the lines "P0: ..." to "P3: ..." of a calib.txt, or lines of twelve numbers without a name, in their order.
-/// Lines with other names (Tr) are left alone. Throws InputError (file and line) for a line with another count of
-/// numbers, a matrix that is not the projection of a rectified camera, and a file with fewer than `least`.
+/// Lines with other names (Tr) are ignored. Throws InputError (file and line) for a line with another count of numbers,
+/// a matrix that is not the projection of a rectified camera, and a file with fewer than `least`.
 std::vector<KittiProjection> read_kitti_calibration(const std::filesystem::path& file, std::size_t least = 2);
 
 /// Reads lines of the twelve numbers of a 3x4 matrix: T_world_camera of each frame, row by row. Rotations are made

@@ -38,8 +38,8 @@ class NumberPattern {
 };
 
 /// The PNG and JPEG files of a folder by the numbers in their names, in natural order (9 before 10); other files are
-/// left alone. Throws InputError for a folder that is missing or has no image, a name without a number, and two names
-/// with the same numbers.
+/// ignored. Throws InputError for a folder that is missing or has no image, a name without a number, and two names with
+/// the same numbers.
 std::vector<NumberedFile> find_numbered_files(const std::filesystem::path& folder);
 /// The same for files with that extension (".txt") in place of images.
 std::vector<NumberedFile> find_numbered_files(const std::filesystem::path& folder, const std::string& extension);
@@ -47,14 +47,14 @@ std::vector<NumberedFile> find_numbered_files(const std::filesystem::path& folde
 /// The numbers in a file name without its extension.
 FileNumbers numbers_of(const std::string& name);
 
-/// For each of `files`, the image of the same numbers in another folder, as of a second camera. One that is not there
-/// gets the name that it should have, that of the file with the ending `extension` (empty: the file's own), so that its
-/// frame is bad and says so. Throws as find_numbered_files() for the folder.
+/// For each of `files`, the image with the same numbers in another folder, for instance of a second camera. A missing
+/// image gets its expected name, with the given `extension` (empty = that of the file), so that reading its frame
+/// reports the error. Throws as find_numbered_files() for the folder.
 std::vector<std::filesystem::path> find_partners(const std::vector<NumberedFile>& files,
                                                  const std::filesystem::path& folder,
                                                  const std::string& extension = "");
 
-/// Natural order: numbers by their value.
+/// Natural order: compares numbers by value.
 bool comes_before(const FileNumbers& left, const FileNumbers& right);
 
 }  // namespace holdfast

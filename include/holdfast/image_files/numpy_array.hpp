@@ -9,15 +9,15 @@
 
 namespace holdfast {
 
-/// What the header of an array says that numpy.save() wrote (NEP 1, versions 1 to 3).
+/// Header of an array file of numpy.save() (NEP 1, versions 1 to 3).
 struct NumpyHeader {
   std::string type;  ///< of the values, as NumPy names it: <f8, |u1; empty for one that is not such a name
   bool has_fortran_order = false;
   std::vector<std::size_t> shape;
 };
 
-/// Reads the header from the beginning of a file and leaves it at the first value. `expected` says what the array
-/// should be: throws InputError with what was found, followed by it.
+/// Reads the header at the beginning of a file; the position is then that of the first value. Throws InputError with
+/// the finding and `expected`.
 NumpyHeader read_numpy_header(InputFile& input, const std::string& expected);
 
 /// "6 x 8"; "one number" for an array without dimensions.

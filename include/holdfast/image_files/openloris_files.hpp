@@ -11,8 +11,8 @@ namespace holdfast {
 
 /// Reads one camera of a sensors.yaml of OpenLORIS-Scene, such as "d400_color_optical_frame": width, height, fps, model
 /// (pinhole), intrinsics in the order fx, cx, fy, cy, distortion_model (radial-tangential, Kannala-Brandt, which is
-/// that of a fisheye lens, or none) and distortion_coefficients. Throws InputError (file, line and column) for what is
-/// missing or cannot be.
+/// that of a fisheye lens, or none) and distortion_coefficients. Throws InputError (file, line and column) for missing
+/// or invalid values.
 Camera read_openloris_camera(const std::filesystem::path& file, const std::string& sensor);
 
 /// Reads the pose of a sensor on the robot, T_base_sensor, of a trans_matrix.yaml: a tree of rigid motions, each the

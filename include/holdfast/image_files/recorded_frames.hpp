@@ -8,8 +8,7 @@
 
 namespace holdfast {
 
-/// Which frames of a recording a source reads, and what an unusable one does: the base of the settings of every source
-/// of recordings.
+/// Common settings of all sources of recordings: range of frames, and handling of unusable ones.
 struct RecordedFrames {
   std::string on_bad_frame = "fail";
   std::int64_t start = 0;

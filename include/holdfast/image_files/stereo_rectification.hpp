@@ -10,7 +10,7 @@
 namespace holdfast {
 
 /// Two cameras that take their images at the same time, as calibrated.
-struct StereoCalibration {
+struct StereoCameras {
   Camera left;
   Camera right;
   /// Maps points from the frame of the right camera to that of the left one [m]; its translation is the position of the
@@ -28,9 +28,9 @@ class StereoRectification {
  public:
   /// Throws Error if one of the cameras has trouble (Camera::trouble), if the right camera is not to the right of the
   /// left one, or if they look at different places.
-  explicit StereoRectification(const StereoCalibration& calibration);
+  explicit StereoRectification(const StereoCameras& calibration);
 
-  const StereoCalibration& calibration() const { return calibration_; }
+  const StereoCameras& calibration() const { return calibration_; }
   /// The camera of both rectified images: the size and the frame rate of the left one, no distortion; `baseline` is the
   /// distance of the cameras.
   const Camera& camera() const { return camera_; }
@@ -51,7 +51,7 @@ class StereoRectification {
   cv::Mat rectify(const cv::Mat& raw, const Camera& camera, const Eigen::Isometry3d& T_raw_rectified,
                   std::once_flag& once, Maps& maps) const;
 
-  StereoCalibration calibration_;
+  StereoCameras calibration_;
   Eigen::Isometry3d T_left_rectified_, T_right_rectified_;
   Camera camera_;
   // Made with the first image: only then is it sure that images are as large as a calibration says.

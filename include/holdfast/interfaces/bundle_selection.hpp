@@ -34,7 +34,7 @@ bool is_outlier(const Camera& camera, const Eigen::Isometry3d& T_camera_world, c
 struct BundleSelection {
   std::vector<std::uint8_t> observation_counts;
   std::vector<std::uint8_t> point_counts;
-  std::vector<std::uint8_t> pose_moves;  ///< free poses with an observation that counts
+  std::vector<std::uint8_t> pose_moves;  ///< 1 for free poses with a selected observation
 
   /// Throws CheckError if the problem has no camera or an index out of range. Keeps its memory between calls.
   void select(const BundleProblem& problem);

@@ -26,8 +26,8 @@ class LoopDetector : public Module {
  public:
   static constexpr const char* kind = "loop_detector";
 
-  /// The type of the descriptors that describe() makes. Nothing, the default, is for a detector that recognises places
-  /// by the descriptors of features; describe() is then never called.
+  /// Type of the global descriptors of describe(). Empty, the default, is for a detector that recognises places by the
+  /// descriptors of features; describe() is then never called.
   virtual std::optional<DescriptorType> image_descriptor() const { return std::nullopt; }
   /// Describes a whole image by any number of descriptors, usually one. `image`: 8UC1, or 8UC3 in the order blue,
   /// green, red. `moving`: 8UC1 of the same size, not 0 where something moves that does not belong to the place, or

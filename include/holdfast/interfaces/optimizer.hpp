@@ -13,7 +13,7 @@
 
 namespace holdfast {
 
-/// One camera pose, seen against fixed points: motion-only bundle adjustment (Mur-Artal and Tardos 2017, equation 3).
+/// Motion-only bundle adjustment: the pose of one camera with fixed points (Mur-Artal and Tardos 2017, equation 3).
 /// Entry i of every array belongs to observation i. Residual: undistorted pixel and, where there is depth, column in
 /// the virtual right image, minus the projection of the point; weighted by inverse_sigma2 * weight.
 struct PoseProblem {
@@ -35,8 +35,8 @@ struct PoseProblem {
 /// Result of motion-only adjustment.
 using geometry::PoseSummary;
 
-/// Makes PoseProblem a problem of geometry::adjust_pose and geometry::find_pose. Without a camera, or with arrays of
-/// different lengths, they throw CheckError.
+/// Adapts PoseProblem to geometry::adjust_pose and geometry::find_pose, which throw CheckError without a camera or for
+/// arrays of different lengths.
 template <>
 struct geometry::PoseProblemTraits<PoseProblem> {
   static Pinhole pinhole(const PoseProblem& problem) { return pinhole_of(*problem.camera); }
@@ -49,7 +49,7 @@ struct geometry::PoseProblemTraits<PoseProblem> {
   static const Eigen::Isometry3d& pose(const PoseProblem& problem) { return problem.T_camera_world; }
   static void set_pose(PoseProblem& problem, const Eigen::Isometry3d& pose) { problem.T_camera_world = pose; }
   static void set_inlier(PoseProblem& problem, std::size_t i, bool inlier) { problem.inlier[i] = inlier; }
-  /// Checks the problem and makes room for the inliers.
+  /// Checks the problem and resizes its inlier flags.
   static void begin(PoseProblem& problem);
 };
 
@@ -66,7 +66,7 @@ struct BundleProblem {
     Eigen::Isometry3d T_camera_world;  ///< in and out
     bool fixed = false;
   };
-  /// One point as one camera sees it; `pose` and `point` are indices into the lists below.
+  /// Observation of a point by a camera; `pose` and `point` are indices into the lists below.
   struct Observation {
     std::uint32_t pose = 0;
     std::uint32_t point = 0;
@@ -83,11 +83,11 @@ struct BundleProblem {
   std::vector<Observation> observations;
   int robust_iterations = 5;  ///< with Huber's cost, then outliers are set aside
   int final_iterations = 10;  ///< without it, on what is left; 0 = skip
-  /// Both end when the relative decrease of the cost is below this tolerance; 0 = the optimizer's default.
+  /// Convergence tolerance of the relative cost decrease in both phases; 0 = the optimizer's default.
   double function_tolerance = 0.0;
 };
 
-/// How an adjustment of poses and points ended.
+/// Result of a bundle adjustment.
 struct BundleSummary {
   bool usable = false;   ///< false: nothing was changed
   bool stopped = false;  ///< the stop flag ended it early; the best state so far is in the problem
@@ -119,7 +119,7 @@ struct PoseGraphProblem {
   int iterations = 20;
 };
 
-/// How the adjustment of a pose graph ended.
+/// Result of a pose graph optimization.
 struct GraphSummary {
   bool usable = false;
   int iterations = 0;
@@ -135,16 +135,15 @@ class Optimizer : public Module {
  public:
   static constexpr const char* kind = "optimizer";
 
-  /// Motion-only bundle adjustment. The default is geometry::adjust_pose with its default options, so that an optimizer
-  /// has to implement bundles and pose graphs alone.
+  /// Motion-only bundle adjustment. The default is geometry::adjust_pose with its default options.
   virtual PoseSummary optimize_pose(PoseProblem& problem);
   /// `stop` is read between iterations.
   virtual BundleSummary optimize_bundle(BundleProblem& problem, const std::atomic<bool>& stop) = 0;
   virtual GraphSummary optimize_pose_graph(PoseGraphProblem& problem) = 0;
-  /// Pose graph over Sim(3) for one camera, whose scale drifts (Strasdat, Montiel and Davison, "Scale drift-aware large
-  /// scale monocular SLAM", RSS 2010): poses and scales together. The default optimizes the scales first (a linear
-  /// problem in their logarithms), and then the poses in the scaled units by optimize_pose_graph(). Nodes keep scale 1
-  /// when the summary is not usable.
+  /// Pose graph over Sim(3) for monocular maps with scale drift (Strasdat, Montiel and Davison, "Scale drift-aware
+  /// large scale monocular SLAM", RSS 2010). The default optimizes the scales first (a linear problem in their
+  /// logarithms), and then the poses in the scaled units by optimize_pose_graph(). Nodes keep scale 1 when the summary
+  /// is not usable.
   virtual GraphSummary optimize_similarity_graph(PoseGraphProblem& problem);
 };
 

@@ -4,8 +4,8 @@
 #include "holdfast/geometry/pose_problem.hpp"
 #include "holdfast/plugin/parameter_table.hpp"
 
-/// The parameters of motion-only adjustment (geometry::adjust_pose) that the settings of several optimizers have, as
-/// plain members of each: chi_square_two, chi_square_three, disparity_sigma, disparity_threshold, pose_rounds,
+/// Parameters of motion-only adjustment (geometry::adjust_pose) that are common to the settings of several optimizers,
+/// as plain members of each: chi_square_two, chi_square_three, disparity_sigma, disparity_threshold, pose_rounds,
 /// pose_iterations.
 namespace holdfast {
 

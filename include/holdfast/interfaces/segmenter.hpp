@@ -41,8 +41,8 @@ class Segmenter : public Module {
   virtual const std::vector<std::string>& classes() const = 0;
   /// The subset of classes() whose members can move or be moved; empty if the segmenter does not specify it.
   virtual std::vector<std::string> movable() const { return {}; }
-  /// What the segmenter recognised in its files, for people: one or several sentences, such as the kind of network, its
-  /// input, its classes and its thresholds. `holdfast check` prints it. Empty if there is nothing to say.
+  /// Description of the loaded network for users, in whole sentences: kind, input, classes, thresholds. Printed by
+  /// `holdfast check`; may be empty.
   virtual std::string description() const { return {}; }
   /// Whether the first call of segment() may have to wait for work that the constructor began in another thread, such
   /// as loading weights. Sequential mode then makes this call in another thread, which does not change results.

@@ -15,13 +15,14 @@ namespace holdfast {
 /// Excluded are keyframes of the neighbourhood (up to two steps in the covisibility graph, because tracking already
 /// uses their points), recent keyframes, and keyframes that are less similar to the current one than its least similar
 /// neighbour. The others are grouped by covisibility, and a group must be consistent over several consecutive
-/// keyframes, which is rare for a wrong place. Keyframes of another submap are exempt from these conditions, because
+/// keyframes, which is rare for false matches. Keyframes of another submap are exempt from these conditions, because
 /// both submaps may be in view for a moment only; the geometric check decides. Used by one thread.
 class LoopCandidates {
  public:
   explicit LoopCandidates(const LoopClosingSettings& settings) : settings_(settings) {}
 
-  /// Number of matches to request from the detector, so that candidates remain after the neighbours are excluded.
+  /// Number of matches to request from the detector: the configured number plus those that may be excluded as
+  /// neighbours or as recent.
   int matches_to_ask_for(const Map& map, KeyFrameId keyframe) const;
 
   /// The best keyframe of each consistent group, best group first. It must be called for each keyframe in order.

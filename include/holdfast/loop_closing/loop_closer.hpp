@@ -27,13 +27,13 @@ struct LoopMeasurement;
 ///
 /// 1. Candidates by place recognition, see LoopCandidates.
 /// 2. Geometric check: matched descriptors, rigid alignment by RANSAC, guided search, motion-only adjustment.
-/// 3. Plausibility. Two similar places pass steps 1 and 2; only the path between them distinguishes them. The
-///    correction must be within the possible drift: correction <= drift_constant + drift_per_metre * path length, and
-///    likewise for the rotation, where the path is the shortest one in the graph of keyframes. A keyframe that shares
-///    points with old keyframes near its current pose therefore has a short path and is not moved far. In addition, the
-///    current pose is tested as the competing hypothesis: if enough old points visible from it are matched in the
-///    keyframe and disagree with the loop, the pose is confirmed and the loop rejected. In case of doubt the loop is
-///    rejected: a missed loop is detected again later, a wrong one is permanent.
+/// 3. Plausibility. Two places of similar appearance pass steps 1 and 2 and can only be distinguished by the path
+///    between them. The correction must be within the possible drift: correction <= drift_constant + drift_per_metre *
+///    path length, and likewise for the rotation, where the path is the shortest one in the graph of keyframes. A
+///    keyframe that shares points with old keyframes near its current pose therefore has a short path and is not moved
+///    far. In addition, the current pose is tested as the competing hypothesis: if enough old points visible from it
+///    are matched in the keyframe and disagree with the loop, the pose is confirmed and the loop rejected. In case of
+///    doubt the loop is rejected: a missed loop is detected again later, a wrong one is permanent.
 /// 4. Correction: pose graph over the essential graph (spanning tree, strong covisibility edges, loop edges) with the
 ///    oldest keyframe fixed; points are moved with their reference keyframes; duplicate points of the candidate's and
 ///    of the keyframe's neighbourhood are fused; covisibility is updated; a loop edge is added.
@@ -58,7 +58,7 @@ class LoopCloser {
   /// is skipped. Adds stages "loops: ...".
   std::optional<ClosedLoop> process(KeyFrameId keyframe, StageTimes& times);
 
-  /// Removes a keyframe from the detector after it was removed from the map; has no effect if it was never added.
+  /// Removes a keyframe from the detector after its removal from the map. Has no effect for an unknown keyframe.
   void forget(KeyFrameId keyframe) { detector_.remove(keyframe); }
 
   const LoopCounts& counts() const { return counts_; }

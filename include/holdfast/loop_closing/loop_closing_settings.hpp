@@ -22,7 +22,8 @@ struct LoopClosingSettings {
   /// Maximum distance between the descriptors of feature and point; 0 = the extractor's strict distance plus a fifth of
   /// the difference to its loose distance, 60 bits for ORB.
   double match_distance = 0.0;
-  /// Maximum ratio of nearest to second-nearest distance of the first matches; adjacent points count as one.
+  /// Maximum ratio of nearest to second-nearest descriptor distance (ratio test). Adjacent map points are not compared
+  /// with each other.
   double match_ratio = 0.8;
   double alignment_threshold = 0.08;  ///< inlier threshold of the rigid alignment [m]
   int alignment_iterations = 300;     ///< maximum number of RANSAC samples of the rigid alignment; 300 as in ORB-SLAM2
@@ -35,8 +36,8 @@ struct LoopClosingSettings {
   double drift_constant = 0.15;  ///< plausible correction for a loop of zero length [m]
   /// Additional plausible correction for each metre (and each radian) of the path around the loop [m].
   double drift_per_metre = 0.02;
-  double drift_per_metre_mono = 0.15;  ///< the same for one camera, whose scale drifts and with it the path
-  double largest_scale_drift = 2.0;    ///< factor by which the scale of one camera may have drifted around a loop
+  double drift_per_metre_mono = 0.15;  ///< the same in monocular mode, where scale drift also distorts the path
+  double largest_scale_drift = 2.0;    ///< maximum scale drift around a loop in monocular mode, as a factor
   double turn_constant = 5.0;          ///< plausible rotation of the correction for a loop of zero length [deg]
   /// Additional plausible rotation for each metre (and each radian) of the path around the loop [deg].
   double turn_per_metre = 0.5;
@@ -46,8 +47,8 @@ struct LoopClosingSettings {
   bool full_adjustment = true;      ///< whether full bundle adjustment follows a loop closure
   int full_robust_iterations = 20;  ///< its maximum iterations with the robust cost
   int full_final_iterations = 40;   ///< its maximum iterations after the removal of outliers
-  /// Relative decrease of the cost at which it has converged; small, because the deformation of a long loop
-  /// changes the cost little and converges slowly.
+  /// Convergence tolerance of its relative cost decrease; small, because the deformation of a long loop converges
+  /// slowly.
   double full_tolerance = 1e-7;
 
   static void describe(ParameterTable<LoopClosingSettings>& table);

@@ -17,7 +17,7 @@ enum class LoopVerdict {
   few_inliers,             ///< too few points of the candidate are matched by the guided search
   small_share,             ///< too small a fraction of the points predicted to be visible is matched
   poor_coverage,           ///< the matches cover too small a part of the image
-  implausible_correction,  ///< the correction exceeds the bound of the drift over the path
+  implausible_correction,  ///< the correction exceeds the drift bound of the path
   pose_confirmed,          ///< old points confirm the current pose, which is the competing hypothesis
   not_solved,              ///< the pose graph has no solution; the map is unchanged
 };
@@ -32,7 +32,7 @@ struct PoseChange {
 /// Name of a verdict as in the report, such as "few inliers".
 const char* loop_verdict_name(LoopVerdict verdict);
 
-/// Measurements of the verification of a candidate; a value that its verdict did not require is zero.
+/// Measurements of the verification of a candidate; values that were not computed are zero.
 struct CandidateReport {
   KeyFrameId keyframe;
   KeyFrameId candidate;

@@ -55,8 +55,8 @@ class LocalMapper {
                    std::span<const std::pair<Eigen::Vector3d, std::uint32_t>> points, std::vector<MapPointId>& ids,
                    StageTimes& times);
 
-  /// Declares that keyframes are refined after their masks have arrived, when later keyframes may have created points
-  /// by an older mask: such points need a second observation. Call it before the first insert().
+  /// Announces that keyframes are refined only after their masks have arrived. Later keyframes may then have created
+  /// points by an older mask, so that such points need a second observation. Must be called before the first insert().
   void expect_masks() { expects_masks_ = true; }
 
   /// Corrects and estimates the errors of a stereo pair's calibration (PairCalibrator). Call it before the first
@@ -79,7 +79,7 @@ class LocalMapper {
   /// Requests a running bundle adjustment to end after its current iteration; may be called by any thread.
   void request_stop() { stop_ = true; }
 
-  /// Must not be called while another thread inserts or refines.
+  /// Cumulative statistics. Must not be called while another thread inserts or refines.
   const MappingCounts& counts() const { return counts_; }
 
  private:
@@ -87,8 +87,8 @@ class LocalMapper {
   /// Removes the observations of a keyframe whose features are more likely moving than static, and returns their
   /// points.
   std::vector<MapPointId> drop_moving_features(KeyFrameId keyframe);
-  /// With one camera, removes a point that has lost an observation and has fewer than three left (as in ORB-SLAM).
-  /// Called by the thread of refine() only, which relies on existing points.
+  /// With one camera, removes a point that has lost an observation and has fewer than three left (as in ORB-SLAM). Only
+  /// the thread of refine() may call it, because refine() relies on the existence of points.
   void drop_weak_point(MapPointId point);
   void remove_moving_points();
   void remove_weak_points(KeyFrameId keyframe);

@@ -13,23 +13,23 @@ namespace holdfast {
 
 class PairBundle;
 
-/// Corrects the keyframes of a stereo pair by the errors of its calibration, and estimates those that motion
-/// determines: bundle adjustment of a window of keyframes with the displacement of columns as unknowns. A window grows
-/// by each keyframe and is adjusted anew; once it is complete, its estimate is kept and the next window begins, so that
-/// no observation counts twice. Used by the thread of LocalMapper::refine(), add() excepted.
+/// Corrects keyframes of a stereo pair for calibration errors, and estimates the errors of columns by bundle adjustment
+/// of a window of keyframes with the column displacement as unknown. A window is adjusted again with each new keyframe.
+/// When it is complete, its estimate is kept and another window begins, so that no observation counts twice. All
+/// functions except add() are called by the thread of LocalMapper::refine().
 class PairCalibrator {
  public:
   /// All must outlive the object.
   PairCalibrator(Map& map, MapMutex& mutex, StereoCalibration& calibration);
   ~PairCalibrator();
 
-  /// Declares that a keyframe of the last frame was inserted.
+  /// Registers the keyframe inserted from the last frame.
   void add(const MapAccess&, KeyFrameId keyframe);
-  /// Corrects right columns and depths of all added keyframes by the errors in use now; true if they have changed.
+  /// Updates right columns and depths of all registered keyframes to the current errors. True if they have changed.
   bool correct(const MapAccess& map);
-  /// Adjusts the window with one more keyframe. Acquires the lock of the map.
+  /// Adds a keyframe to the window and adjusts it. Acquires the lock of the map.
   void learn(KeyFrameId keyframe);
-  /// The map is empty. What is known of the pair stays.
+  /// Forgets all keyframes after the map was cleared. The estimated errors are kept.
   void forget_map() { corrected_by_.clear(), window_.clear(); }
 
  private:

@@ -18,11 +18,11 @@ struct DescriptorMatchingSettings {
   /// Ratio test (Lowe 2004, section 7.1): maximum ratio of the smallest distance to that of any rival. 1 = no test.
   float ratio = 0.8F;
   /// Mutual nearest neighbours: the query must also be the nearest of all queries to its reference. Otherwise a
-  /// reference keeps the nearest of the queries that chose it, the first of equal ones.
+  /// reference that is the nearest of several queries is matched with the nearest of these, the first of equal ones.
   bool mutual = false;
 };
 
-/// Every other reference is a rival of the nearest one in the ratio test.
+/// Default of `is_rival`: the ratio test compares with every other reference.
 struct EveryReference {
   bool operator()(std::uint32_t, std::uint32_t) const { return true; }
 };
@@ -41,8 +41,8 @@ class DescriptorMatcher {
   };
 
   /// Matches queries (Match::source) with references (Match::feature), each of either at most once. The matches are
-  /// ordered by reference and valid until the next call. `is_rival(nearest, other)` restricts the ratio test, for
-  /// instance to exclude duplicates of the nearest reference in a place that was mapped twice.
+  /// ordered by reference and valid until the next call. `is_rival(nearest, other)` restricts the second-nearest
+  /// candidates of the ratio test, for instance to exclude duplicates of the nearest map point.
   template <class IsRival = EveryReference>
   const std::vector<FoundMatch>& match(const Selection& queries, const Selection& references,
                                        const DescriptorMatchingSettings& settings, IsRival&& is_rival = {}) {

@@ -19,7 +19,7 @@ struct EpipolarSearchSettings {
   /// Ratio test: maximum ratio of the smallest to the second smallest distance near the line, because repeated texture
   /// is ambiguous. 1 = no test.
   float ratio = 0.8F;
-  /// Largest squared distance from the line in variances of the feature's position: chi-square at 95 %, one residual.
+  /// Chi-square limit (95 %, one degree of freedom) of the distance from the epipolar line.
   double chi_square = 3.841;
 };
 
@@ -37,7 +37,7 @@ class EpipolarSearch {
                  const EpipolarSearchSettings& settings = {})
       : a_(a), b_(b), fundamental_(fundamental), settings_(settings) {}
 
-  /// Returns the feature of b that matches a feature of a, among `candidates` of b; of equally near ones the first.
+  /// Returns the feature of b that matches a feature of a, among `candidates` of b; ties are resolved by their order.
   std::optional<std::uint32_t> find(std::uint32_t feature, std::span<const std::uint32_t> candidates) {
     const geometry::EpipolarLine line =
         geometry::epipolar_line(fundamental_, {Traits::x(a_, feature), Traits::y(a_, feature)});

@@ -12,10 +12,10 @@ namespace holdfast::matching {
 
 /// Conditions under which a view should show a point (Mur-Artal et al. 2015, section V-D).
 struct VisibilityGates {
-  float min_depth = 0.05F;    ///< along the optical axis [m]; nearer points are out of focus and the division is unsafe
-  float min_distance = 0.8F;  ///< times the smallest distance from which the point was recognisable
-  float max_distance = 1.2F;  ///< times the largest one
-  float min_cosine = 0.5F;    ///< of the angle to the mean viewing direction: 60 degrees, where patches look different
+  float min_depth = 0.05F;    ///< minimum depth along the optical axis [m]
+  float min_distance = 0.8F;  ///< factor on the point's minimum matching distance
+  float max_distance = 1.2F;  ///< factor on its maximum matching distance
+  float min_cosine = 0.5F;    ///< minimum cosine of the angle to the mean viewing direction; 0.5 is 60 degrees
 };
 
 /// Pixel at which a point is predicted.
@@ -31,8 +31,8 @@ struct ExpectedView {
   float cosine = 0.0F;    ///< of the angle between the line of sight and the mean viewing direction
 };
 
-/// Projects points into a view from a given pose. It is prepared once, and then projects thousands of points in single
-/// precision: the rounding error is about 0.01 px at 100 m from the world's origin, far below the size of a window.
+/// Projects points into a view from a given pose. Computes in single precision: the rounding error is about 0.01 px at
+/// 100 m from the world's origin.
 template <FeatureView View>
 class ViewProjection {
  public:
@@ -59,8 +59,8 @@ class ViewProjection {
     return PredictedPixel{x, y, x - fx_baseline_ * inverse_z};
   }
 
-  /// Returns nothing also for a point outside its distance range, or seen at too large an angle to its mean viewing
-  /// direction. Distances are those of PointTraits [m].
+  /// Like project(), and also returns nothing for a point outside its distance range or seen at too large an angle to
+  /// its mean viewing direction. Distances are those of PointTraits [m].
   std::optional<ExpectedView> expect(const Eigen::Vector3f& position, const Eigen::Vector3f& direction,
                                      float min_distance, float max_distance) const {
     const std::optional<PredictedPixel> pixel = project(position);

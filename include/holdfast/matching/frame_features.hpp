@@ -58,8 +58,8 @@ inline bool is_static(const Frame& frame, std::size_t feature) { return is_stati
 
 /// Sets `usable` to 1 for each static feature and to 0 for the others.
 void mark_static(const Frame& frame, std::vector<std::uint8_t>& usable);
-/// Copies the descriptors of the static features, in the order of the features. Place recognition uses no others (Zeng
-/// et al. 2023, section 3.3); entry i does not belong to feature i if an earlier feature is not static.
+/// Copies the descriptors of the static features, in their order, for place recognition without dynamic objects (Zeng
+/// et al. 2023, section 3.3). Indices differ from those of the features.
 DescriptorBlock static_descriptors(const Frame& frame);
 /// Descriptors for place recognition: Frame::image_descriptor for a detector with global descriptors, otherwise the
 /// static descriptors.

@@ -17,7 +17,7 @@ namespace holdfast::matching {
 
 /// Test of the distance between a feature and its predicted position.
 enum class PositionGate {
-  window,     ///< within the window in the image, and in the right image where both columns are known
+  window,     ///< within the window in the image and, if both right columns are known, in the right image
   chi_square  ///< within the window, and within the 95 % ellipse of the feature's noise; for accurate poses
 };
 
@@ -47,7 +47,7 @@ class GuidedSearch {
   using Distance = DistanceOf<Descriptors>;
   using FoundMatch = Match<Distance>;
 
-  /// Points that are searched for. Descriptors and angles are indexed by SearchWindows::source.
+  /// The points to search for. Descriptors and angles are indexed by SearchWindows::source.
   struct Query {
     const SearchWindows& windows;
     Descriptors descriptors;
@@ -56,8 +56,8 @@ class GuidedSearch {
     std::span<const float> angles = {};
   };
 
-  /// `usable`: by feature of the view, 0 for features that are not to be matched; empty when all may be. The matches
-  /// are ordered by feature, or by window when every point is to keep its feature, and valid until the next call.
+  /// Searches the features of a view. `usable` has one entry for each feature, 0 = excluded; empty = all are used. The
+  /// matches are ordered by feature, or by window with FeatureAssignment::every_point, and valid until the next call.
   const std::vector<FoundMatch>& match(const View& view, const Query& query, const GuidedSearchSettings& settings,
                                        std::span<const std::uint8_t> usable = {}) {
     matches_.clear();
@@ -98,7 +98,7 @@ class GuidedSearch {
     const int min_octave = windows.min_octave[window], max_octave = windows.max_octave[window];
     candidates_.clear();
     Traits::near(view, x, y, radius, candidates_);
-    // Without a branch for each feature, because no processor can predict which of them fit.
+    // Branch-free, because the outcome for a feature is unpredictable.
     const bool all_usable = usable.empty();
     std::size_t count = 0;
     for (const std::uint32_t feature : candidates_) {

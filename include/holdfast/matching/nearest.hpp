@@ -30,7 +30,7 @@ struct NearestTwo {
   bool has_second() const { return second != none; }
 };
 
-/// Finds the two smallest distances; of equal ones the first in the list wins. distances[k] belongs to candidates[k].
+/// Finds the two smallest distances; ties are resolved by the order of the list. distances[k] belongs to candidates[k].
 template <class Distance>
 NearestTwo<Distance> nearest_two(std::span<const std::uint32_t> candidates, const Distance* distances) {
   NearestTwo<Distance> nearest;
@@ -45,7 +45,7 @@ NearestTwo<Distance> nearest_two(std::span<const std::uint32_t> candidates, cons
   return nearest;
 }
 
-/// Compares one query with all candidates. `distances` is a buffer that holds the distances afterwards.
+/// Compares one query with all candidates and writes the distances to `distances`.
 template <DescriptorSet Descriptors>
 NearestTwo<DistanceOf<Descriptors>> nearest_two(const Descriptors& queries, std::uint32_t query,
                                                 const Descriptors& references,

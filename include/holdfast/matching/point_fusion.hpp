@@ -15,8 +15,8 @@ enum class FusionSurvivor {
 
 /// Result of add_or_fuse().
 enum class FusionOutcome {
-  nothing,            ///< the point is gone, or the keyframe observes it already
-  observation_added,  ///< the feature was free and observes the point now
+  nothing,            ///< the point was removed, or the keyframe already observes it
+  observation_added,  ///< the feature had no point and observes this one now
   points_fused        ///< the feature observed another point, and the two were fused
 };
 

@@ -9,10 +9,10 @@
 
 namespace holdfast::matching {
 
-/// Removes matches whose rotation in the image is not among the three most frequent of 30 bins, because all features
-/// turn alike when the camera turns (Mur-Artal et al. 2015, section V-C). A second or third bin counts only with at
-/// least a tenth of the matches of the first. Of bins with equally many matches the lower one is kept.
-/// `rotation(match)`: angle of the feature less that of its partner [rad, any multiple of 2 pi].
+/// Rotation histogram test of ORB-SLAM (Mur-Artal et al. 2015, section V-C): a rotation of the camera rotates all
+/// features alike, so matches outside the three most frequent of 30 bins are removed. The second and the third bin need
+/// at least a tenth of the matches of the first. Of equal bins the lower one is preferred. `rotation(match)`: angle of
+/// the feature minus that of the matched one [rad], modulo 2 pi.
 template <class AnyMatch, class Rotation>
 void keep_consistent_rotations(std::vector<AnyMatch>& matches, Rotation&& rotation) {
   constexpr int bins = 30, kept_bins = 3;

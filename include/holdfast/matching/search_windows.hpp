@@ -48,11 +48,11 @@ struct WindowSettings {
   float frontal_radius = 4.0F;
   float factor = 1.0F;      ///< multiplies both radii, for instance after a loss
   int finer_octaves = 1;    ///< octaves below the expected one that may match
-  int coarser_octaves = 0;  ///< octaves above it
+  int coarser_octaves = 0;  ///< octaves above the expected one that may match
 };
 
-/// Adds the window of each point that the view should show and that `is_wanted(i)` accepts, and returns how many points
-/// the view should show. `is_wanted` is asked once for each of these, in order.
+/// Adds a window for each point i that is predicted to be visible and for which `is_wanted(i)` is true. Returns the
+/// number of visible points. `is_wanted` is called once for each visible point, in order.
 template <FeatureView View, PointSet Points, class IsWanted>
 int add_windows(const View& view, const ViewProjection<View>& projection, const Points& points,
                 const WindowSettings& settings, IsWanted&& is_wanted, SearchWindows& windows) {

@@ -56,7 +56,7 @@ struct PointTraits;
 template <class Descriptors>
 struct DescriptorTraits;
 
-/// A handle to descriptors that DescriptorTraits can compare.
+/// Handle to descriptors with DescriptorTraits.
 template <class Descriptors>
 concept DescriptorSet = requires(const Descriptors& set, std::span<const std::uint32_t> candidates,
                                  typename DescriptorTraits<Descriptors>::Distance* distances) {
@@ -64,7 +64,7 @@ concept DescriptorSet = requires(const Descriptors& set, std::span<const std::ui
   DescriptorTraits<Descriptors>::distances(set, std::uint32_t{}, set, candidates, distances);
 };
 
-/// Features of an image that ViewTraits can read.
+/// Features of one image with ViewTraits.
 template <class View>
 concept FeatureView = DescriptorSet<typename ViewTraits<View>::Descriptors> &&
     requires(const View& view, std::uint32_t feature, std::vector<std::uint32_t>& found) {
@@ -82,7 +82,7 @@ concept FeatureView = DescriptorSet<typename ViewTraits<View>::Descriptors> &&
   { ViewTraits<View>::inverse_sigma2(view, 0) } -> std::convertible_to<float>;
 };
 
-/// Points in space that PointTraits can read.
+/// Set of 3-D points with PointTraits.
 template <class Points>
 concept PointSet = requires(const Points& points, std::uint32_t i) {
   { PointTraits<Points>::size(points) } -> std::convertible_to<std::size_t>;

@@ -10,26 +10,26 @@
 
 namespace holdfast {
 
-/// Evaluates poses of a frame by dense depth: the share of its cells whose depth agrees with that of keyframes. Moving
-/// people can bias feature matches, but hardly this share. Keeps its buffers; one thread.
+/// Scores poses of a frame by dense depth: the share of its cells whose depth agrees with that of keyframes. Moving
+/// people bias this share less than they bias feature matches. Keeps its buffers; one thread.
 class DepthAgreement {
  public:
   explicit DepthAgreement(const EvidenceSettings& settings = {}) : settings_(settings) {}
 
-  /// Selects keyframes around `reference` for the comparison, preferably old ones, because moving people have hardly
-  /// moved since recent ones. False when there are none. The selection is valid until the map changes.
+  /// Selects keyframes around `reference` for the comparison. Old ones are preferred, because people have moved farther
+  /// since. False if there are none. The selection is valid until the map changes.
   bool choose(const Map& map, KeyFrameId reference, double timestamp);
   /// Share of the compared cells whose depth agrees with a keyframe's, 0 to 1; 0 when too few can be compared.
   double agreeing_share(const Frame& frame, const Eigen::Isometry3d& T_view_world) const;
   /// True if enough cells can be compared and less than `least_share` of them agree.
   bool disagrees(const Frame& frame, const Eigen::Isometry3d& T_view_world, double least_share) const;
   /// Share of agreeing cells among those that agree or see through a surface of a keyframe (measure more depth). Cells
-  /// nearer than the surface of the keyframe are ignored as possible occlusions. 0 when too few cells agree, or a
-  /// smaller share of those compared than required.
+  /// nearer than the surface of the keyframe are ignored as possible occlusions. 0 if the number or the share of
+  /// agreeing cells is below the minimum of EvidenceSettings.
   double unoccluded_share(const Frame& frame, const Eigen::Isometry3d& T_view_world) const;
   /// Projective point-to-plane ICP (Chen and Medioni 1992; Newcombe et al. 2011, equations 16 to 24) of the frame's
-  /// coarse depth image with those of the keyframes, with the predicted pose as initial value and prior in directions
-  /// that depth does not determine.
+  /// coarse depth image with those of the keyframes, with the predicted pose as initial value, and as a prior for
+  /// unobservable directions.
   Eigen::Isometry3d align(const Frame& frame, const Eigen::Isometry3d& T_view_world) const;
   /// Estimates the colour-depth time offset as a pose on the inter-frame motion: T_view_camera. `step` is the motion
   /// T_frame_previous; `share_there` is agreeing_share(frame, T_camera_world), already computed by the caller.
@@ -37,11 +37,11 @@ class DepthAgreement {
                               const Eigen::Isometry3d& step) const;
 
  private:
-  /// Numbers of cells of the frame by their comparison with the keyframes.
+  /// Numbers of cells of the frame by the result of the comparison.
   struct Counts {
     int compared = 0;
     int agreeing = 0;
-    int farther = 0;  ///< than the keyframe's surface
+    int farther = 0;  ///< farther than the surface of the keyframe
   };
   Counts count(const Frame& frame, const Eigen::Isometry3d& T_view_world) const;
 

@@ -25,31 +25,31 @@ struct EvidenceSettings {
   double measured_share = 0.3;            ///< share of a frame's measurement that is added to its points
   double limit = default_evidence_limit;  ///< bound of a point's log-odds
   bool skip_moving = true;
-  /// Share of compared cells by which the predicted pose must agree better with keyframes than the pose from matches to
-  /// replace it; above the noise of depth.
+  /// Minimum lead of the predicted pose in the share of agreeing cells to replace the pose from matches; above the
+  /// depth noise.
   double prediction_lead = 0.03;
-  /// Number of inliers below which a pose is checked against dense depth, because so few can agree by chance.
+  /// Number of inliers below which a pose is checked against dense depth.
   int depth_check_inliers = 50;
-  /// Minimum share of compared cells that agree; small, because people may fill most of the view.
+  /// Minimum share of compared cells that agree in this check; small, because people may fill most of the view.
   double depth_check_share = 0.05;
-  /// The same two for relocalisation, where the pose is the best of many hypotheses and chance agreement is more
+  /// The same two for relocalisation, which selects the best of many hypotheses, so that chance agreement is more
   /// likely.
   int depth_check_inliers_lost = 60;
   double depth_check_share_lost = 0.08;
   /// Maximum number of keyframes whose depth is compared; the time is proportional to it.
   int depth_check_keyframes = 3;
-  /// Age from which keyframes are preferred for the comparison [s], because walking people have moved since.
+  /// Age of keyframes that are preferred for the comparison [s], so that walking people have moved since.
   double depth_check_age = 0.7;
-  /// Minimum number of cells (16 pixels apart) for a share of them to be significant.
+  /// Minimum number of cells (16 pixels apart) for a significant share.
   int depth_check_cells = 50;
-  /// Whether a frame whose static features do not determine its pose is tracked by masked features, then by dense
-  /// depth. Off: it tracks more frames among near people, with lower accuracy (docs/moving_world.md).
+  /// Whether frames whose static features do not determine the pose are tracked by masked features, then by dense
+  /// depth. Off by default: it tracks more frames among near people, with lower accuracy (docs/moving_world.md).
   bool fallback = false;
   double fallback_log_odds = -1.5;  ///< minimum class prior in this fallback; 2 - 1.5 is a probability of 0.62
   /// Minimum share of agreeing cells among those that agree or see through surfaces of keyframes.
   double fallback_share = 0.7;
-  /// Minimum share of agreeing cells among all compared ones: a pose for which nearly all cells are nearer than the
-  /// known surfaces is wrong.
+  /// Minimum share of agreeing cells among all compared ones; rejects poses for which nearly all cells are nearer than
+  /// the known surfaces.
   double fallback_agreement = 0.2;
 
   static void describe(ParameterTable<EvidenceSettings>& table);

@@ -13,7 +13,7 @@
 
 namespace holdfast {
 
-/// Stage in which a filter runs: before matching if it needs neither pose_prior nor matches, so that suspect features
+/// Stage in which a filter runs: before matching if it needs neither pose_prior nor matches, so that dynamic features
 /// do not bias the pose; after the first pose estimate if it needs a pose; after the local map was matched if it needs
 /// matches.
 enum class FilterStage { before_matching, with_pose, after_matching };
@@ -51,11 +51,11 @@ class FilterChain {
   }
   /// Runs the filters of a stage in their order, once per frame; a second call has no effect.
   void evaluate(FilterStage stage, const FilterContext& context);
-  /// Bounds class priors from below by `fallback_log_odds` until the next frame. False if that changes no feature, or
-  /// if the settings exclude it.
+  /// Clamps class priors to at least `fallback_log_odds` until the next frame. False if no feature changes or the
+  /// fallback is disabled.
   bool discount_priors();
   bool discounts_priors() const { return discounts_priors_; }
-  /// Sets static_probability, measured_log_odds and the log-odds of the coarse cells of the frame that was begun.
+  /// Sets static_probability, measured_log_odds and the log-odds of the coarse cells of the current frame.
   void weight_features(const Map& map, Frame& frame);
   /// Adds the frame's measurements to its matched map points, and to points that filters measured directly.
   void accumulate(const Frame& frame, Map& map) const;
@@ -79,7 +79,7 @@ class FilterChain {
   StaticEvidence evidence_;
   std::array<bool, 3> evaluated_ = {};  // by FilterStage, of this frame
   bool discounts_priors_ = false;
-  /// The last weight of a feature of this frame. Most log-odds stay as they are while matches change.
+  /// Cached weight of a feature of this frame, because most log-odds do not change with the matches.
   struct Weight {
     float log_odds = std::numeric_limits<float>::quiet_NaN();  // not computed
     float probability = 0.0F;

@@ -26,27 +26,27 @@ struct SegmentedView {
   }
 };
 
-/// Gives the instances of successive masks ids that they keep, over occlusions too: data association by mask overlap
-/// and predicted position, the greedy assignment by decreasing score. An instance gets the id of the track of its class
-/// with the highest sum of
+/// Assigns persistent ids to the instances of successive masks: data association by mask overlap and predicted
+/// position, by greedy assignment in order of decreasing score. Ids survive occlusions. The score of an instance and a
+/// track of its class is the sum of
 ///
-///   - the intersection over union of its mask with the mask that the track has now, both carried to the same frame,
-///   - half of 1 - d / g, where d is the distance of its centroid to the predicted one (constant velocity, world frame)
-///     and g the gate, which grows with the time for which the track was not seen. Without depth or poses, centroids
-///     are compared in the image, relative to the size of the instance.
+///   - the intersection over union of its mask with the propagated mask of the track, both in the same frame,
+///   - 0.5 (1 - d / g), with the distance d of its centroid to the predicted one (constant velocity, world frame) and
+///     the gate g, which grows with the time since the last observation. Without depth or poses, centroids are compared
+///     in the image, relative to the size of the instance.
 ///
-/// Slivers of less than 12 cells are matched by overlap alone and get no new id, but 0.
+/// Instances of less than 12 cells are matched by overlap alone and never get a new id; unmatched ones get 0.
 ///
-/// Tracks that no segmentation showed for 4 s, and that have no mask any more, are forgotten; their ids are not reused
-/// until 65535 are spent. One thread.
+/// Tracks without a mask that were not observed for 4 s are removed. Ids are reused only when all 65535 have been
+/// assigned. One thread.
 class InstanceIds {
  public:
-  /// Ids of the instances 1, 2, ... of a segmented frame; entry 0 is 0. `carried` is the mask of that frame carried to
-  /// the current frame, and `held` the mask of ids that was there before; both on the same cells.
+  /// Returns the ids of the instances 1, 2, ... of a segmented frame; entry 0 is 0. `carried` is the mask of that frame
+  /// propagated to the current frame, `held` the previous mask (with ids) of the current frame; both on the same cells.
   std::vector<std::uint16_t> assign(const SegmentedView& segmented, const CellMask& carried, const CellMask& held);
 
  private:
-  /// Where an instance is.
+  /// Position and velocity of an instance.
   struct Place {
     std::uint8_t label = CellMask::unknown;
     std::size_t cells = 0;
@@ -65,7 +65,7 @@ class InstanceIds {
   };
 
   static std::vector<Place> places_of(const SegmentedView& segmented);
-  /// Score of the positions alone, at most 0.5; nothing outside the gate.
+  /// Score of the positions, at most 0.5; empty outside the gate.
   static std::optional<double> nearness(const Track& track, const Place& place, double timestamp);
   std::vector<Candidate> candidates(const std::vector<Place>& places, const CellMask& carried, const CellMask& held,
                                     double timestamp) const;

@@ -18,11 +18,11 @@
 namespace holdfast {
 
 /// Samples a segmentation at the centres of the cells; background outside the image. Empty for an empty segmentation.
-/// Instances have their numbers in the segmentation.
+/// Instances keep the numbers of the segmentation.
 CellMask sample_mask(const CoarseSampler& sampler, const Segmentation& segmentation);
 
-/// Propagates the masks of few segmented frames, which arrive late, to every frame by optical flow and ego-motion. For
-/// each frame:
+/// Propagates the masks of segmented frames, which are few and arrive late, to every frame by optical flow and
+/// ego-motion. Order of the calls for each frame:
 ///
 ///     advance(...)          moves the followed points and the mask to the frame
 ///     set_pose(...)         once its pose is estimated
@@ -44,11 +44,11 @@ class MaskPropagator {
   void set_pose(const std::optional<Eigen::Isometry3d>& T_camera_world, const CoarseView& evaluated, float moving);
   void remember();
   /// Applies the mask of a remembered frame, and forgets that frame and older ones; an empty mask has no other effect.
-  /// mask.moving is not read. The mask's instances, numbers in the segmentation, become ids (InstanceIds).
-  /// Returns the mask with ids; that of a frame that is not remembered has no instances.
+  /// mask.moving is not read. Instance numbers of the segmentation are replaced by ids (InstanceIds). Returns the mask
+  /// with ids, without instances if the frame is not remembered.
   CellMask apply(std::uint64_t frame_index, CellMask mask);
 
-  /// The mask of the last frame, `moving` left out; empty before the first segmentation.
+  /// The mask of the last frame, without `moving`; empty before the first segmentation.
   const CellMask& mask() const { return mask_; }
   const PointFollower::Points& points() const { return follower_.points(); }
   /// Raw pixels (8UC1, not 0) of objects that moved when they were last evaluated; empty when there are none. The
@@ -69,7 +69,7 @@ class MaskPropagator {
   void take_view(const Frame& frame, View& view) const;
   void take_points(View& view) const;
   void pair_with(const View& view, const CellMask& mask_there);
-  /// Replaces the numbers of instances in a mask of a remembered frame by ids, there and in labels_.
+  /// Replaces the instance numbers of a remembered frame's mask by ids, in the mask and in labels_.
   void name_instances(const View& there, const CellMask& held, CellMask& mask);
   void renew_points(const Frame& frame);
   /// The raw pixel at the centre of a cell; its x is negative outside the image.
@@ -77,8 +77,8 @@ class MaskPropagator {
     const std::int32_t raw = sampler_.raw_pixel(cell);
     return {raw % camera_.width, raw / camera_.width};
   }
-  /// Wanted cell with the largest corner strength in a bucket, given by its first column and row; -1 if all are below
-  /// the threshold.
+  /// Cell with the largest corner strength in a bucket among those for which is_wanted is true; -1 if all are below the
+  /// threshold. The bucket is given by its first column and row.
   template <class IsWanted>
   int strongest_corner(const CoarseGrid& grid, int first_column, int first_row, const IsWanted& is_wanted) const;
   void publish();

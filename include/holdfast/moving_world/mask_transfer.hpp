@@ -12,7 +12,7 @@
 
 namespace holdfast {
 
-/// Points of labelled objects, followed from one frame to another; a structure of arrays. Positions are undistorted
+/// Points of labelled objects tracked from one frame to another; a structure of arrays. Positions are undistorted
 /// pixels, depths [m], 0 = none.
 struct FollowedPairs {
   std::vector<float> from_x, from_y, from_depth;
@@ -28,16 +28,16 @@ struct FollowedPairs {
 /// Transfers the labels of one frame to another on their coarse views. A cell takes the label at its
 /// ego-motion-compensated position if the same surface was observed there, or else the label at its position
 /// compensated by the motion of followed points of an object, if depth agrees. Then objects grow over neighbouring
-/// cells of continuous depth that were free space in the previous view, which labels parts that come into view without
-/// spreading over the floor. After the idea of NGD-SLAM (Zhang et al. 2024, section III-B: points of the last mask are
-/// followed by optical flow and the mask is rebuilt by depth), with the background as a second source of motion. Keeps
-/// its buffers; one thread.
+/// cells of continuous depth that were free space in the previous view. This labels newly visible parts without
+/// spreading over the floor. It follows NGD-SLAM (Zhang et al. 2024, section III-B: points of the last mask are tracked
+/// by optical flow and the mask is reconstructed by depth), and adds the ego-motion of the background. Keeps its
+/// buffers; one thread.
 ///
-/// Instances go with the labels; a point moves cells of its own instance only.
+/// Instances are transferred with the labels; a point moves cells of its own instance only.
 ///
-/// Without depth, a cell is labelled if at least half of the followed points near it moved here from a labelled cell.
-/// Labels at the image border are extrapolated beyond it, so that parts that come into view are labelled. Without
-/// followed points, labels are transferred by the rotation of the camera.
+/// Without depth, a cell is labelled if at least half of the tracked points near it come from labelled cells. Labels at
+/// the image border are extrapolated beyond it, so that newly visible parts are labelled. Without followed points,
+/// labels are transferred by the rotation of the camera.
 class MaskTransfer {
  public:
   /// `has_depth`: whether views may have depth; without it, their depths are not read.
@@ -55,7 +55,7 @@ class MaskTransfer {
     std::size_t pair;
   };
   void find_movers(const CoarseGrid& grid, const FollowedPairs& pairs);
-  /// Offers a pair that ends at (x, y) to the blocks within reach.
+  /// Adds a pair that ends at (x, y) to the blocks within reach.
   void add_to_blocks(const CoarseGrid& grid, float x, float y, std::size_t pair);
   /// Keeps the max_movers nearest pairs of a block; of equally distant ones the first.
   static void insert_by_distance(const Neighbour& added, Neighbour* nearest, std::uint8_t& count);
@@ -74,7 +74,7 @@ class MaskTransfer {
     float depth_change;  // m, from minus to
     std::uint16_t instance;
 
-    /// Whether it may move a cell of a mask.
+    /// Whether this motion applies to a cell of a mask.
     bool moves(const CellMask& mask, std::size_t cell) const {
       return CellMask::is_object(mask.labels[cell]) && (instance == 0 || mask.instances[cell] == instance);
     }

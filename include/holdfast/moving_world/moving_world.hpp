@@ -33,7 +33,7 @@ struct MovingWorldParts {
   Segmenter* segmenter = nullptr;  ///< nullptr = none; must outlive the MovingWorld
   SegmentationSettings segmentation = {};
   bool threaded = false;  ///< the segmenter runs in a separate thread
-  bool has_depth = true;  ///< false for one camera: no pose is compared with dense depth then
+  bool has_depth = true;  ///< false in monocular mode, without checks by dense depth
 };
 
 /// The frame that is being tracked, as filters see it.
@@ -70,7 +70,7 @@ class MovingWorld {
   MovingWorld(const MovingWorld&) = delete;
   MovingWorld& operator=(const MovingWorld&) = delete;
 
-  // Asked by the tracker, in the order of a frame.
+  // Called by the tracker, in this order for each frame.
 
   /// Propagates the mask to a frame that has its coarse depth but no features yet; `T_frame_previous` is the predicted
   /// motion. Returns the raw pixels (8UC1, not 0) in which no features should be extracted; empty = extract everywhere.
@@ -82,11 +82,11 @@ class MovingWorld {
   bool has(FilterStage stage) const { return filters_.has(stage); }
   /// * Sets the weights of the frame's features from the evidence so far.
   void weight_features(Frame& frame) { filters_.weight_features(map_, frame); }
-  /// Whether features have different weights; then inliers that are more likely moving do not count.
+  /// True if features are weighted by filters. Inliers that are more likely moving than static are then not counted.
   bool weights_features() const { return !filters_.empty(); }
-  /// * Replaces the pose by the motion model's prediction if the latter agrees clearly better with the depth of
-  /// keyframes around `reference`: then matches on moving objects biased the pose. Then estimates coarse.T_view_camera.
-  /// Adds the stage "filters".
+  /// * Replaces the pose by the prediction of the motion model if that agrees clearly better with the depth of
+  /// keyframes around `reference`, because matches on moving objects have then biased the pose. Then estimates
+  /// coarse.T_view_camera. Adds the stage "filters".
   void check_pose(const PosePrediction& prediction, KeyFrameId reference, Frame& frame, StageTimes& times);
   /// * Whether a pose with this number of inliers contradicts the depth of the keyframes around `reference`. The limits
   /// are stricter after a loss, see EvidenceSettings.
@@ -94,8 +94,8 @@ class MovingWorld {
   /// * True if keyframes around `reference` predict depth for this view but almost none of it is observed: something
   /// large occludes the static scene, and the inliers may lie on it. False if the keyframes predict no depth.
   bool is_view_filled(const Frame& frame, KeyFrameId reference);
-  /// Gives features on masks a weight for another attempt at this frame; false if that changes no feature. From then on
-  /// contradicts_depth() requires the support of dense depth for any number of inliers.
+  /// Fallback for the current frame: gives features on masks a non-zero weight. False if no feature changes.
+  /// contradicts_depth() then requires agreement with dense depth for any number of inliers.
   bool discount_priors() { return has_depth_ && filters_.discount_priors(); }
   /// * Dense depth alignment: T_camera_world by ICP with keyframes around `reference`, from a predicted pose; nothing
   /// if its depth contradicts them. Adds the stage "depth alignment".
@@ -112,15 +112,15 @@ class MovingWorld {
   bool has_mask() const { return propagator_ && !propagator_->mask().empty(); }
   /// Age of the propagated mask [s]; 0 without a mask.
   double mask_age() const { return propagator_ ? propagator_->mask().age : 0.0; }
-  /// Whether so many keyframes wait for their masks that a further one is justified only if tracking would otherwise be
-  /// lost.
+  /// True if so many keyframes wait for their masks that another one should be created only to avoid a loss of
+  /// tracking.
   bool holds_keyframes() const { return queue_ && queue_->is_full(); }
 
   /// Raw pixels (8UC1, not 0) of the cells of a view that are more likely moving than static; empty if there are none.
   /// Any thread.
   cv::Mat moving_pixels(const CoarseView& view) const;
 
-  // Fed by the pipeline.
+  // Called by the pipeline.
 
   bool expects_masks() const { return queue_.has_value(); }
   /// Begins a frame: masks that are available at this frame can be taken.
@@ -130,11 +130,11 @@ class MovingWorld {
   /// Evaluates the features of the keyframe again by its own mask; has no effect if the keyframe was removed or the
   /// mask is empty. Adds the stage "masks".
   void evaluate_keyframe(const MapAccess& map, const ArrivedMask& arrived, StageTimes& times);
-  /// Requests the mask of the frame last tracked, which became `keyframe` or, when that is invalid, none. False when
-  /// the frame is not to be segmented or the queue has no room; `is_needed`: a frame that is no keyframe is segmented
-  /// nevertheless. In sequential mode this adds the stage "segmentation".
+  /// Requests the mask of the last tracked frame. `keyframe` is the keyframe made of it, invalid if there is none;
+  /// `is_needed` requests the mask of a frame that is no keyframe. False if the frame is not selected for segmentation
+  /// or the queue is full. In sequential mode this adds the stage "segmentation".
   bool request_mask(const SensorFrame& sensor_frame, KeyFrameId keyframe, StageTimes& times, bool is_needed = false);
-  /// Waits until every requested mask can be taken. Rethrows exceptions of the segmenter.
+  /// Waits until every requested mask is available. Rethrows exceptions of the segmenter.
   void finish();
   /// Rethrows exceptions of the segmenter's thread.
   void rethrow();

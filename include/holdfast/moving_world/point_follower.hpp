@@ -21,7 +21,7 @@ class PointFollower {
     std::vector<float> raw_x, raw_y;  ///< raw pixel of the full image
     std::vector<float> x, y;          ///< undistorted pixel
     std::vector<float> depth;         ///< [m], 0 = none
-    std::vector<std::uint8_t> label;  ///< as the caller sees fit
+    std::vector<std::uint8_t> label;  ///< assigned by the caller
 
     std::size_t size() const { return id.size(); }
   };

@@ -25,11 +25,11 @@ struct SegmentedFrame {
   Segmentation segmentation;  ///< empty when the segmenter had no result
 };
 
-/// Frames that wait for their segmentation, and results that wait to be applied. Sequential mode: push() segments at
-/// once, and pop() returns the result after the configured number of frames, which simulates a slow network
-/// deterministically; the first frame is segmented in a thread if the segmenter may still be loading. Threaded mode: a
-/// thread segments, at most one frame waits for it, and pop() returns a result as soon as it exists. First in, first
-/// out. One thread uses it.
+/// Queue of frames to be segmented and of results to be applied. Sequential mode: push() segments at once, and pop()
+/// returns the result after the configured number of frames, which simulates a slow network deterministically; the
+/// first frame is segmented in a thread if the segmenter may still be loading. Threaded mode: a thread segments, at
+/// most one frame waits for it, and pop() returns a result as soon as it exists. First in, first out. One thread uses
+/// it.
 class SegmentationQueue {
  public:
   /// The segmenter must outlive the queue.
@@ -38,7 +38,7 @@ class SegmentationQueue {
   /// Whether a frame that is not a keyframe should be segmented. Frames are counted from 0.
   bool wants(std::uint64_t frame_number) const;
   bool has_room() const { return !worker_ || worker_->queue().has_room(); }
-  /// Waits for the result that is due at this frame, if any, so that pop() does not have to.
+  /// Waits for the result that is due at this frame, if any, so that pop() does not block.
   void wait_for_due(std::uint64_t frame_number);
   /// Adds a frame; there must be room. Sequential mode throws exceptions of the segmenter here; those of the first
   /// frame of a loading segmenter are thrown by the next push() or when its result is due. `times` gets the stage
@@ -49,8 +49,8 @@ class SegmentationQueue {
   /// Waits until every frame is segmented; the next calls of pop() return all results.
   void finish();
 
-  /// True if no further keyframe should be created: the queue is full, or one keyframe is being segmented and another
-  /// one waits, so that the mask of a third would arrive too late.
+  /// True if no further keyframe should be created: the queue is full, or it contains two keyframes, so that the mask
+  /// of a third would arrive too late.
   bool is_full() const { return keyframes_inside_ >= 2 || !has_room(); }
   /// Stage times of the segmentation thread since the last call.
   std::vector<StageTimes> take_times();
@@ -58,7 +58,7 @@ class SegmentationQueue {
   void rethrow() {
     if (worker_) worker_->rethrow();
   }
-  /// Nothing in sequential mode.
+  /// Statistics of the thread; empty in sequential mode.
   std::optional<WorkerCounts> worker_counts() const;
 
  private:

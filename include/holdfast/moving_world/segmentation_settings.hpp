@@ -15,13 +15,14 @@ enum class SegmentedFrames {
 /// The `segmentation` section of a configuration: selection of the segmented frames, and latency of their masks.
 struct SegmentationSettings {
   SegmentedFrames frames = SegmentedFrames::keyframes;
-  int every = 5;  ///< with every_n, the n [frames]
-  /// In sequential mode, frames after which a mask is applied. Threaded, at 30 frames/s on two cores, the masks of
-  /// `unet` are one frame old in the median and at most two in 95 %; with the engine `opencv` two in the median.
+  int every = 5;  ///< interval of segmented frames with every_n [frames]
+  /// Latency of a mask in sequential mode [frames]. For comparison, in threaded mode at 30 frames/s on two cores the
+  /// masks of `unet` are one frame old in the median and at most two in 95 % of the cases; with the engine `opencv` two
+  /// in the median.
   int latency = 3;
   double memory = 1.0;  ///< time after which the confidence of a propagated mask has halved [s]
   /// Share of static features with map points below which a keyframe creates its points at once instead of waiting for
-  /// its mask, because tracking of an unmapped view would be lost before the mask arrives.
+  /// its mask, so that tracking of an unmapped view is not lost meanwhile.
   double new_view_share = 0.3;
 
   static void describe(ParameterTable<SegmentationSettings>& table);

@@ -8,13 +8,13 @@
 
 namespace holdfast {
 
-/// Grey image pyramid from half the resolution, for follow_points(). Each pixel of the first level is the mean of four
-/// of the image: x of the image is 0.5 * x - 0.25 there, with integers at the centres of pixels. Each further level is
-/// every second pixel of the one before, smoothed: x is 0.5 * x there. Keeps its buffers. One thread.
+/// Grey image pyramid from half the resolution, for follow_points(). The first level contains means of 2 x 2 pixels:
+/// column x of the image corresponds to 0.5 * x - 0.25 (integers at pixel centres). Each further level is smoothed and
+/// subsampled by two: x corresponds to 0.5 * x. Keeps its buffers. One thread.
 class ImagePyramid {
  public:
   static constexpr int levels = 3;
-  /// Each level is surrounded by this many pixels, which repeat its border.
+  /// Width of the replicated border around each level [px].
   static constexpr int border = 8;
 
   /// `image` is 8UC1 or 8UC3 (BGR). All levels of an image without two rows and columns are empty.

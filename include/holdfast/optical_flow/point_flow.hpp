@@ -13,8 +13,8 @@ namespace holdfast {
 /// Points in two images; entry i of each array belongs to point i. Positions are in pixels of the full image.
 struct PointFlow {
   std::vector<float> from_x, from_y;  ///< input: the points in the first image
-  std::vector<float> to_x, to_y;      ///< input: where they are expected in the second image; output: where they are
-  std::vector<std::uint8_t> found;    ///< output: 1 = found; otherwise to_x and to_y mean nothing
+  std::vector<float> to_x, to_y;      ///< input: predicted positions in the second image; output: estimated positions
+  std::vector<std::uint8_t> found;    ///< output: 1 = found; otherwise to_x and to_y are invalid
 
   std::size_t size() const { return from_x.size(); }
   void resize(std::size_t count);
@@ -22,9 +22,10 @@ struct PointFlow {
 
 /// Stopping and acceptance criteria of follow_points().
 struct PointFlowSettings {
-  int iterations = 10;               ///< at most, per level of the pyramid
-  float precision = 0.05F;           ///< a step shorter than this ends the iteration [px of the level]
-  float largest_difference = 25.0F;  ///< mean of the grey levels' differences in the window above which a point is lost
+  int iterations = 10;      ///< at most, per level of the pyramid
+  float precision = 0.05F;  ///< a step shorter than this ends the iteration [px of the level]
+  float largest_difference =
+      25.0F;  ///< mean absolute difference of grey levels in the window above which a point is lost
 };
 
 /// Pyramidal Lucas-Kanade optical flow of points (Bouguet, "Pyramidal implementation of the Lucas Kanade feature

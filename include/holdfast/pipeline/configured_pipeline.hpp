@@ -19,12 +19,13 @@ namespace holdfast {
 /// segmentation, evidence, mapping, loop_closing, dense_map.
 std::vector<SectionDescription> pipeline_sections();
 
-/// Loads a configuration file. Each override has the form "key.path=value" and counts as if the file contained it.
-/// Plugins that the configuration names are loaded into `registry`. Throws ConfigurationError with every problem found,
-/// each with file:line:column.
+/// Loads a configuration file. Each override "key.path=value" has the effect of an edit of the file. Plugins named by
+/// the configuration are loaded into `registry`. Throws ConfigurationError with all errors found, each with
+/// file:line:column.
 Configuration load_configuration(const std::filesystem::path& file, const std::vector<std::string>& overrides,
                                  Registry& registry);
-/// Loads a configuration file that may name the built-in modules and those of its own plugins. Link holdfast::holdfast.
+/// Loads a configuration file with the built-in modules and those of its plugins. Requires the library
+/// holdfast::holdfast.
 inline Configuration load_configuration(const std::filesystem::path& file,
                                         const std::vector<std::string>& overrides = {}) {
   Registry registry;
@@ -32,32 +33,33 @@ inline Configuration load_configuration(const std::filesystem::path& file,
   return load_configuration(file, overrides, registry);
 }
 
-/// Loads the plugins that a configuration names into `registry`. Throws PluginError as load_plugin() does.
+/// Loads the plugins of a configuration into `registry`. Throws PluginError as load_plugin() does.
 void load_plugins(const Configuration& configuration, Registry& registry);
 
-/// Properties of a run that its configuration does not contain.
+/// Options of a run that are not part of its configuration.
 struct PipelineOptions {
-  std::filesystem::path output_directory;  ///< given to the modules; empty when nothing is written
+  std::filesystem::path output_directory;  ///< output folder of the modules; empty if nothing is written
   std::filesystem::path map_file;          ///< map to continue, or to localise in; empty = begin a new map
-  bool localise_only = false;              ///< find poses in the map and leave it unchanged; needs map_file
+  bool localise_only = false;              ///< localisation in the map without changing it; requires map_file
 };
 
-/// A source and the pipeline that its frames go into.
+/// A source and the pipeline that processes its frames.
 struct BuiltPipeline {
   std::unique_ptr<FrameSource> source;
   Pipeline pipeline;
 
-  /// Suspicions of the source and of the pipeline: before the first frame those about files and settings, after
-  /// Pipeline::finish() those about the frames as well.
+  /// Warnings of the source and of the pipeline: before the first frame about files and settings, after
+  /// Pipeline::finish() about frames as well.
   Warnings warnings() const;
 };
 
-/// Makes every module that a configuration selects, by a PipelineBuilder, which checks that they fit together. Throws
-/// ConfigurationError with every misfit, InputError for a map file that cannot be used, and any exception of a module's
-/// constructor. The registry is not needed afterwards.
+/// Constructs the modules of a configuration and the pipeline by a PipelineBuilder. Throws ConfigurationError with all
+/// incompatibilities found, InputError for an unusable map file, and any exception of a module's constructor. The
+/// registry is not needed afterwards.
 BuiltPipeline build_pipeline(const Configuration& configuration, const Registry& registry,
                              const PipelineOptions& options = {});
-/// Makes the pipeline from the built-in modules and those of the configuration's plugins. Link holdfast::holdfast.
+/// Builds the pipeline with the built-in modules and those of the configuration's plugins. Requires the library
+/// holdfast::holdfast.
 inline BuiltPipeline build_pipeline(const Configuration& configuration, const PipelineOptions& options = {}) {
   Registry registry;
   register_builtin_plugins(registry);
@@ -65,17 +67,17 @@ inline BuiltPipeline build_pipeline(const Configuration& configuration, const Pi
   return build_pipeline(configuration, registry, options);
 }
 
-/// Makes the source of a configuration and nothing else. Throws any exception of its constructor.
+/// Constructs only the source of a configuration. Throws any exception of its constructor.
 std::unique_ptr<FrameSource> build_source(const Configuration& configuration, const Registry& registry);
 
-/// A source and the segmenter that its frames are given to.
+/// A source and the segmenter for its frames.
 struct BuiltSegmenter {
   std::unique_ptr<FrameSource> source;
   std::unique_ptr<Segmenter> segmenter;
 };
 
-/// Makes the source and the segmenter of a configuration and nothing else. Throws as build_pipeline() does, and
-/// ConfigurationError when the segmenter is 'none'.
+/// Constructs only the source and the segmenter of a configuration. Throws as build_pipeline() does, and
+/// ConfigurationError if the segmenter is 'none'.
 BuiltSegmenter build_segmenter(const Configuration& configuration, const Registry& registry);
 
 }  // namespace holdfast

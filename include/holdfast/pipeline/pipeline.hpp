@@ -38,21 +38,21 @@ namespace holdfast {
 class StaticScene;
 class SurfaceMap;
 
-/// The parts of a pipeline. PipelineBuilder checks and fills them.
+/// Modules and settings of a pipeline, checked and filled by PipelineBuilder.
 struct PipelineParts {
   Camera camera;
   std::unique_ptr<FeatureExtractor> features;
-  std::string features_name;                ///< of the module; empty for an object without a name
+  std::string features_name;                ///< name of the module; empty for an unnamed instance
   std::unique_ptr<FeatureMatcher> matcher;  ///< nullptr = NearestMatcher
   Sensor sensor = Sensor::rgbd;
-  std::unique_ptr<FeatureExtractor> right_features;  ///< of a stereo pair; may be nullptr, see StereoParts
+  std::unique_ptr<FeatureExtractor> right_features;  ///< extractor for right images; may be nullptr, see StereoParts
   std::unique_ptr<Segmenter> segmenter;
   std::vector<std::pair<std::string, std::unique_ptr<DynamicFilter>>> filters;  ///< by name, in order
   std::unique_ptr<Optimizer> optimizer;
   std::unique_ptr<LoopDetector> loop_detector;
   std::vector<std::unique_ptr<Observer>> observers;
   std::optional<ImuCalibration> imu;  ///< frames have inertial measurements of this IMU
-  bool checks_imu = true;             ///< suspicions about the measurements are warnings of the pipeline
+  bool checks_imu = true;             ///< the plausibility check of the measurements adds warnings
   TrackingSettings tracking;
   StereoSettings stereo;
   EvidenceSettings evidence;
@@ -63,98 +63,99 @@ struct PipelineParts {
   SurfaceSettings surface;
   RunSettings run;
   Map map;                     ///< map to continue; empty = begin a new map
-  bool localise_only = false;  ///< find poses in the map and leave it unchanged
-  Warnings warnings;           ///< about parts that fit together badly
+  bool localise_only = false;  ///< localisation in the map without changing it
+  Warnings warnings;           ///< about questionable combinations of modules and settings
 };
 
-/// A loop that was closed, with the stamps of both its ends [s].
+/// A closed loop and the time stamps of its two keyframes [s].
 struct LoopEvent {
   double timestamp = 0.0;
   double candidate_timestamp = 0.0;
   ClosedLoop loop;
 };
 
-/// What loop closing did so far.
+/// Counters and events of loop closing since the start of the run.
 struct LoopRecord {
   LoopCounts counts;
   std::vector<LoopEvent> loops;
   std::vector<FullAdjustmentSummary> adjustments;
 };
 
-/// Visual SLAM from frames to poses and a map. Pipelines share nothing: any number may live in one process.
+/// A visual SLAM system: estimates poses and a map from frames. Pipelines are independent of each other; a process may
+/// have any number of them.
 ///
-/// Sequential mode: feed() does all the work of a frame, mapping and loop closing included, in the calling thread, and
-/// gives the same bits on every run. Threaded mode: feed() tracks the frame and inserts keyframes; local mapping, loop
-/// closing, full bundle adjustment and segmentation have threads of their own, and tracking waits for none of them
-/// except, when it is not paced, for room in the queue of keyframes. One thread at a time calls feed(), finish() and
-/// the rest, all but interrupt() and map_snapshot().
+/// Sequential mode: feed() processes a frame completely in the calling thread, including mapping and loop closing, and
+/// results are bit-identical on every run. Threaded mode: feed() tracks the frame and inserts keyframes; local mapping,
+/// loop closing, full bundle adjustment and segmentation run in separate threads. Tracking waits for them only when the
+/// queue of keyframes is full and frames are not paced. interrupt() and map_snapshot() may be called by any thread, all
+/// other functions by one thread at a time.
 class Pipeline {
  public:
-  /// Throws CheckError when a required part is missing.
+  /// Throws CheckError if a required module is missing.
   explicit Pipeline(PipelineParts parts);
-  /// Ends the threads: waits for the jobs in progress, which are asked to end early; what waits is abandoned.
+  /// Ends the threads: requests the jobs in progress to end early, waits for them, and discards queued jobs.
   ~Pipeline();
   Pipeline(Pipeline&&) noexcept;
   Pipeline& operator=(Pipeline&&) noexcept;
 
-  /// Waits for what modules load in the background, such as the weights of a network, so that its errors are thrown
-  /// here and not by a later feed(). Optional, before the first feed().
+  /// Waits until modules have finished loading in the background (such as the weights of a network), so that errors are
+  /// thrown here and not by a later feed(). Optional, before the first feed().
   void finish_loading();
-  /// Segmenter::description() of the segmenter, for people; empty without one.
+  /// Segmenter::description() of the segmenter; empty without one.
   std::string segmenter_description() const;
-  /// Processes one frame; time stamps must rise strictly (InputError otherwise). Trouble with the frame is a typed
-  /// result. Throws what a thread of the pipeline threw.
+  /// Processes one frame. Time stamps must increase strictly (InputError otherwise). A tracking failure is a typed
+  /// result. Rethrows exceptions of the pipeline's threads.
   FrameResult feed(const SensorFrame& frame);
-  /// Ends the run: waits until the threads have done what waits for them, adjusts the whole map once more when it grew
-  /// after a loop and nobody interrupted, and tells the observers. feed() must not be
-  /// called any more. Throws what a thread of the pipeline threw.
+  /// Ends the run: waits until the threads have processed their queues, runs full bundle adjustment again if the map
+  /// has grown since the last loop (unless interrupted), and notifies the observers. feed() must not be called
+  /// afterwards. Rethrows exceptions of the pipeline's threads.
   void finish();
-  /// Makes long adjustments in progress end after their current iteration. From any thread.
+  /// Requests running bundle adjustments to end after their current iteration. Any thread.
   void interrupt();
 
-  /// Poses of all tracked frames, in order, as corrected by all that came later; where the map is in submaps, those of
-  /// the submap with most frames (TrackingSettings::restart_time). World frame: the first camera's, or
-  /// that of the map that was continued.
+  /// Poses of all tracked frames in temporal order, with all corrections so far. If the map consists of several
+  /// submaps, the poses of the submap with most frames (TrackingSettings::restart_time). World frame: the first camera
+  /// frame, or that of the continued map.
   Trajectory trajectory() const;
   /// Poses of the keyframes in the map, by time.
   Trajectory keyframe_trajectory() const;
-  /// Keyframes, points and loops as they are now, copied between two steps of whoever works on the map: frames and
-  /// background work go on. From any thread, in both modes. Tracking waits for the copy, about 2 ms for 50000 points.
+  /// Copy of the current keyframes, points and loops, during which the run continues. Any thread, in both modes.
+  /// Tracking waits for the copy, about 2 ms for 50000 points.
   MapSnapshot map_snapshot() const;
-  /// In threaded mode only after finish().
+  /// The map. In threaded mode only after finish().
   const Map& map() const;
-  /// Hands the map over and leaves an empty one; nothing else may be called but the destructor.
+  /// Moves the map out of the pipeline. Only the destructor may be called afterwards.
   Map take_map();
-  /// What keyframes saw of the static scene; nullptr unless DenseMapSettings::enabled. Not while feed() runs.
+  /// Kept keyframe images for the dense map; nullptr unless DenseMapSettings::enabled. Not while feed() runs.
   const StaticScene* static_scene() const;
-  /// The fused surface of the static scene; nullptr unless SurfaceSettings::enabled. After finish() it has every kept
-  /// view at its final pose; not before.
+  /// The fused surface of the static scene; nullptr unless SurfaceSettings::enabled. Complete, with final poses, after
+  /// finish().
   const SurfaceMap* surface() const;
   const MappingCounts& mapping_counts() const;
   LoopRecord loop_record() const;
   const Camera& camera() const;
   Sensor sensor() const;
-  /// The readout time by which features are corrected now, estimated if the settings say so [s]; 0 = not corrected.
+  /// Current rolling-shutter readout time of the correction [s], estimated if configured; 0 = no correction.
   double readout() const;
-  /// What is known of the errors of a stereo pair's calibration by now; nothing without a pair, or with
-  /// StereoSettings::self_calibration off.
+  /// Current estimate of the calibration errors of a stereo pair. Empty without a pair, and if
+  /// StereoSettings::self_calibration is off.
   std::optional<PairEstimate> pair_calibration() const;
 
-  /// Suspicions about the parts, and of the modules about what they were given (core/warning.hpp). Before the first
+  /// Warnings about the configuration, and those of the modules about their input (core/warning.hpp). Before the first
   /// frame or after finish().
   Warnings warnings() const;
 
-  /// What became of frames around losses; complete after finish().
+  /// Statistics of the frames around tracking losses; complete after finish().
   LossRecord loss_record() const;
 
-  /// Stage times of background work done since the last call; in sequential mode they are in each FrameResult.
+  /// Stage times of the background threads since the last call. In sequential mode FrameResult contains them.
   std::vector<StageTimes> take_background_times();
-  /// Of the frames whose segmentation has arrived; complete after finish().
+  /// Statistics of the segmented frames; complete after finish().
   const MaskCounts& mask_counts() const;
-  /// From the stamp of each frame with a segmentation to that of the first frame for which its mask counted, or of the
-  /// last frame of the run [s].
+  /// Latency of each mask: from the time stamp of its frame to that of the first frame to which it was applied, or of
+  /// the last frame of the run [s].
   const std::vector<double>& mask_latencies() const;
-  /// Keyframes that were due but found the mapping thread too busy.
+  /// Number of keyframes that were deferred because the mapping thread was busy.
   std::uint64_t keyframes_deferred() const;
   /// One entry per thread of the pipeline; empty in sequential mode.
   std::vector<WorkerCounts> worker_counts() const;

@@ -43,22 +43,22 @@ class ModuleOf {
 
   std::string name;
   ParameterValues values;
-  std::unique_ptr<Interface> object;  ///< nullptr: the module is made by name when the pipeline is built
-  SourceLocation place;               ///< where a configuration selects the module, for messages
+  std::unique_ptr<Interface> object;  ///< nullptr: build() constructs the module by name
+  SourceLocation place;               ///< location in the configuration, for messages
 };
 
-/// Names and places of the choices that a PipelineBuilder is given, for its messages. The default is a program.
+/// Source locations and names of the builder's inputs, for error messages. The default describes a C++ program.
 struct PipelineOrigin {
-  SourceLocation place{"PipelineBuilder"};   ///< of choices without a place of their own, such as a configuration file
-  SourceLocation source_place = place;       ///< of the source
-  SourceLocation imu_place = place;          ///< of the calibration of the IMU
-  std::string source_name;                   ///< empty: there is no source
-  std::string map_name = "the map";          ///< of the map to continue or to localise in
+  SourceLocation place{"PipelineBuilder"};  ///< of inputs without a location of their own, such as a configuration file
+  SourceLocation source_place = place;      ///< of the source
+  SourceLocation imu_place = place;         ///< of the calibration of the IMU
+  std::string source_name;                  ///< empty if there is no source
+  std::string map_name = "the map";         ///< of the map to continue or to localise in
   std::optional<Diagnostic> unknown_camera;  ///< Configuration::unknown_camera
-  bool is_camera_judged = false;             ///< the configuration has the warnings about its camera
+  bool is_camera_judged = false;             ///< the configuration already contains the warnings about the camera
 };
 
-/// Makes a pipeline without a configuration file:
+/// Builds a pipeline from C++:
 ///
 ///     Pipeline pipeline = PipelineBuilder()
 ///         .camera("tum_fr1")
@@ -67,50 +67,50 @@ struct PipelineOrigin {
 ///         .filter(MultiViewDepthSettings{})
 ///         .build();
 ///
-/// Camera, features and optimizer are required; every other part is optional, as in a configuration. It is the only
-/// place that checks whether the parts fit together: a configuration goes through it too (configured_pipeline.hpp).
-/// Nothing is made or checked before build(), which reports all problems together. Use a builder once, in one thread.
+/// Camera, features and optimizer are required; every other part is optional, as in a configuration. The builder also
+/// checks whether the modules are compatible with each other and with the source; configurations use it, too
+/// (configured_pipeline.hpp). Modules are constructed and checked by build(), which reports all errors together. A
+/// builder is used once, by one thread.
 class PipelineBuilder {
  public:
-  /// Knows the built-in modules; link holdfast::holdfast.
+  /// With the built-in modules. Requires the library holdfast::holdfast.
   PipelineBuilder() : PipelineBuilder(&register_builtin_plugins) {}
-  /// Knows the modules of this registry.
+  /// With the modules of this registry.
   explicit PipelineBuilder(Registry registry);
-  /// Knows the modules that this function registers.
+  /// With the modules that this function registers.
   explicit PipelineBuilder(void (*register_modules)(Registry&));
   ~PipelineBuilder();
   PipelineBuilder(PipelineBuilder&&) noexcept;
   PipelineBuilder& operator=(PipelineBuilder&&) noexcept;
 
-  /// Loads a shared plugin, so that its modules can be named. Throws as load_plugin() does.
+  /// Loads a shared plugin and registers its modules. Throws as load_plugin() does.
   PipelineBuilder& plugin(const std::string& name_or_path);
-  /// Calls the entry function of a plugin that is linked in, so that its modules can be named.
+  /// Registers the modules of a linked plugin by its entry function.
   PipelineBuilder& plugin(void (*entry)(Registry&));
 
   PipelineBuilder& camera(const Camera& camera);
-  /// A known name, see camera_names().
+  /// Selects a known camera by name, see camera_names().
   PipelineBuilder& camera(const std::string& name);
-  /// The description of the frame source: its camera, whether it has depth or a right image, and its class names for
-  /// the segmenter `truth`.
+  /// Sets the description of the frame source: camera, available images, and class names for the segmenter `truth`.
   PipelineBuilder& source(const SourceDescription& description);
 
-  /// Tells the places of the choices, where a configuration makes them. Call it after source(), whose name it replaces.
+  /// Sets the locations of the inputs in a configuration. Must be called after source(), whose name it replaces.
   PipelineBuilder& origin(PipelineOrigin origin);
 
   /// Selects the sensor mode. Default: RGB-D if the source has depth, else stereo if it has a right image, else
   /// monocular.
   PipelineBuilder& sensor(Sensor sensor);
 
-  /// The IMU whose measurements the frames have (SensorFrame::imu). Default: that of the source, if it knows it.
+  /// Sets the calibration of the IMU of SensorFrame::imu. Default: that of the source, if it has one.
   PipelineBuilder& imu(const ImuCalibration& calibration);
 
   PipelineBuilder& features(ModuleOf<FeatureExtractor> module);
   PipelineBuilder& optimizer(ModuleOf<Optimizer> module);
   PipelineBuilder& segmenter(ModuleOf<Segmenter> module);
-  /// Optional; without it `nearest`.
+  /// Selects the matcher. Default: `nearest`.
   PipelineBuilder& matcher(ModuleOf<FeatureMatcher> module);
   PipelineBuilder& loop_detector(ModuleOf<LoopDetector> module);
-  /// Adds to the chain, in the order of the calls.
+  /// Appends a filter to the chain.
   PipelineBuilder& filter(ModuleOf<DynamicFilter> module);
   PipelineBuilder& observer(ModuleOf<Observer> module);
 
@@ -127,18 +127,18 @@ class PipelineBuilder {
   PipelineBuilder& run(const RunSettings& settings);
   /// Changes only the seed of run().
   PipelineBuilder& seed(std::uint64_t seed);
-  /// Folder for modules that write files, such as the observer `overlay`.
+  /// Sets the folder for modules that write files, such as the observer `overlay`.
   PipelineBuilder& output_directory(std::filesystem::path folder);
-  /// A map to continue, for instance from read_map(). Relocalisation in it needs a loop detector.
+  /// Sets a map to continue, for instance from read_map(). Relocalisation in it requires a loop detector.
   PipelineBuilder& map(Map map);
-  /// A map in which only poses are found; it stays unchanged. It needs a loop detector, too.
+  /// Sets a map for localisation, which is not changed. Requires a loop detector.
   PipelineBuilder& localise_in(Map map);
 
-  /// Makes the modules and the pipeline. Throws ConfigurationError with every problem found (unknown modules and
-  /// parameters, values out of range, parts that are missing or do not fit), InputError for a map of another camera,
-  /// and any exception of a module's constructor. Call it once.
+  /// Constructs the modules and the pipeline. Throws ConfigurationError with all errors found (unknown modules and
+  /// parameters, values out of range, missing or incompatible modules), InputError for a map of another camera, and any
+  /// exception of a module's constructor. Must be called once.
   Pipeline build();
-  /// Makes the segmenter alone, with the same checks of what it needs.
+  /// Constructs the segmenter only, with the same checks of its requirements.
   std::unique_ptr<Segmenter> build_segmenter();
 
  private:

@@ -14,7 +14,7 @@ namespace holdfast {
 /// found from the running program, and the one beside the library that contains the loader.
 std::vector<std::filesystem::path> plugin_search_path(const std::vector<std::filesystem::path>& first);
 
-/// Whether load_plugin() would find a file for this name. The file itself is not looked at.
+/// Whether load_plugin() would find a file for this name. The file is not opened.
 bool can_find_plugin(const std::string& name_or_path, const std::vector<std::filesystem::path>& search_first = {});
 
 /// Loads a shared plugin, registers its modules and returns the absolute path of its file. The prefix "lib" and the

@@ -9,9 +9,8 @@
 
 namespace holdfast {
 
-/// Finds a module that a configuration or a program names. An unknown name is appended to `diagnostics` with the given
-/// place and the nearest known name; the result is nullptr then. For a module that this build cannot make the reason is
-/// appended.
+/// Finds a module by name. For an unknown name, returns nullptr and appends an error with the given location and the
+/// nearest known name to `diagnostics`. For a module that is not usable in this build the reason is appended.
 const ModuleEntry* find_module(const Registry& registry, const std::string& kind, const std::string& name,
                                const SourceLocation& place, std::vector<Diagnostic>& diagnostics);
 

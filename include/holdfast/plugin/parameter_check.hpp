@@ -9,10 +9,10 @@
 
 namespace holdfast {
 
-/// Checks values that a program gives by name against a table, as a configuration's are: every unknown name, wrong
-/// type, value out of range and missing required parameter is appended to `diagnostics` with the given place. An
-/// integer counts as a real where the table wants one. `owner` names whose parameters these are ("features 'orb'").
-/// Returns the values with the defaults of what was not given.
+/// Checks named values of a program against a parameter table, as for a configuration: unknown names, wrong types,
+/// values out of range and missing required parameters are appended to `diagnostics` with the given location. Integers
+/// are accepted for reals. `owner` names the module in messages ("features 'orb'"). Returns all values, with the
+/// defaults of missing ones.
 ParameterValues check_parameters(const ParameterValues& given, const std::vector<Parameter>& table,
                                  const std::string& owner, const SourceLocation& place,
                                  std::vector<Diagnostic>& diagnostics);

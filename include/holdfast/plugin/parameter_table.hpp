@@ -111,8 +111,8 @@ void from_parameter_value(const Value& value, Member& member) {
 ///       }
 ///     };
 ///
-/// The same struct serves those who configure in YAML and those who configure in C++. A member of an enum type is a
-/// choice of names (choice.hpp): a text in YAML, an enum in the code.
+/// The same struct is used for configuration in YAML and in C++. A member of an enum type is a choice of names
+/// (choice.hpp): a text in YAML, an enum in the code.
 template <class Settings>
 class ParameterTable {
  public:

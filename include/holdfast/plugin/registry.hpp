@@ -68,17 +68,16 @@ class Registry {
   /// Names of a kind's modules, sorted.
   std::vector<std::string> names(const std::string& kind) const;
 
-  /// Records that the build left out a module of ours; `option` is the CMake option that builds it.
+  /// Records a built-in module that is not part of this build; `option` is the CMake option that enables it.
   void add_left_out(const std::string& kind, const std::string& name, const std::string& option);
-  /// Records that a registered module cannot be made in this build; `reason` says why and how to change it.
+  /// Records a registered module that is not usable in this build; `reason` states the cause and the remedy.
   void add_unusable(const std::string& kind, const std::string& name, const std::string& reason);
-  /// Why a module cannot be made in this build and how to change that, for one that was left out, too; empty for any
-  /// other name.
+  /// Cause and remedy for a module that is missing or not usable in this build; empty for any other name.
   std::string absence(const std::string& kind, const std::string& name) const;
   /// Names of a kind's modules that were left out of this build, sorted.
   std::vector<std::string> left_out(const std::string& kind) const;
-  /// How to correct a name that the kind does not have, for messages: the CMake option for a module that was left out
-  /// of this build, otherwise the similar names.
+  /// Suggestion for an unknown name of a kind, for messages: the CMake option for a module that was left out of this
+  /// build, otherwise the similar names.
   std::string suggestion(const std::string& kind, const std::string& name) const;
 
   /// Creates a module. The values must have passed the checks of its parameter table. Throws PluginError for an unknown

@@ -18,7 +18,7 @@
 
 namespace holdfast {
 
-/// A frame that was read and waits for tracking.
+/// A frame in the queue between source and tracking.
 struct FedFrame {
   SensorFrame frame;
   double decode_seconds = 0.0;
@@ -38,18 +38,16 @@ class FrameFeeder {
   ~FrameFeeder();
 
   /// Waits for the next frame; empty at the end of the source. An exception of the source is thrown here, after the
-  /// frames before it. `stop` is asked ten times a second while a frame is awaited; the result is empty once it is
-  /// true.
+  /// frames before it. While waiting, `stop` is called ten times a second; if it returns true, the result is empty.
   std::optional<FedFrame> next(const std::function<bool()>& stop = {});
-  /// Ends the reading and the source (FrameSource::interrupt()); next() returns empty from now on. Any thread may call
-  /// it.
+  /// Stops reading and interrupts the source (FrameSource::interrupt()); next() then returns empty. Any thread.
   void stop();
 
-  /// Frames passed over are counted as dropped.
+  /// Statistics of the queue; frames skipped by pass_over() are counted as dropped.
   QueueCounts counts() const;
   /// Time stamps of all frames read so far, dropped ones included [s].
   std::vector<double> stamps() const;
-  /// Paced: number of frames that the source gave after they were due.
+  /// Paced: number of frames that were delivered late by the source.
   std::uint64_t late() const;
   /// Paced: largest delay of such a frame [s].
   double largest_delay() const;

@@ -13,8 +13,8 @@
 #include "holdfast/pipeline/configured_pipeline.hpp"
 #include "holdfast/run/run_record.hpp"
 
-/// Runs a whole configuration: it reads the source to its end, at the configured pace, feeds the pipeline and collects
-/// a record of the run. results.hpp writes the record into files. The program `holdfast run` is a shell over it.
+/// Runs a configuration from the first to the last frame of its source, at the configured pace, and collects a record
+/// of the run, which results.hpp writes to files. `holdfast run` uses this function.
 namespace holdfast {
 
 /// Progress of a run after a frame.
@@ -35,10 +35,10 @@ struct RunOptions {
   /// Called once, after all modules have been made and before the first frame is read.
   std::function<void(const RunRecord& record)> on_start;
   std::function<void(const RunProgress& progress)> on_frame;
-  /// Returns true when the run shall end early. Called before each frame, and ten times a second while one is awaited.
+  /// Returns true to end the run early. Called before each frame, and ten times a second while waiting for one.
   std::function<bool()> stop;
-  /// Start of the time measurement of RunRecord::start_seconds and total_seconds. A program gives a stopwatch that it
-  /// started itself, so that loading the configuration counts.
+  /// Start of the time measurement of RunRecord::start_seconds and total_seconds. A program can pass a stopwatch that
+  /// includes the loading of the configuration.
   Stopwatch since_start;
 };
 
@@ -48,7 +48,7 @@ struct RunOptions {
 /// handlers nor the number of OpenCV's threads: a program that wants the same times as `holdfast run` calls
 /// cv::setNumThreads(1).
 RunRecord run(const Configuration& configuration, const Registry& registry, const RunOptions& options = {});
-/// Runs with the built-in modules and those of the configuration's plugins. Link holdfast::holdfast.
+/// Runs with the built-in modules and those of the configuration's plugins. Requires the library holdfast::holdfast.
 inline RunRecord run(const Configuration& configuration, const RunOptions& options = {}) {
   Registry registry;
   register_builtin_plugins(registry);
@@ -56,8 +56,7 @@ inline RunRecord run(const Configuration& configuration, const RunOptions& optio
   return run(configuration, registry, options);
 }
 
-/// Runs a pipeline that the caller has built and keeps. The record has no dense map then, and its map is empty: the
-/// caller finds both in the pipeline.
+/// Runs a pipeline owned by the caller. Map and dense map remain in the pipeline and are empty in the record.
 RunRecord run(BuiltPipeline& built, const Configuration& configuration, const RunOptions& options = {});
 
 }  // namespace holdfast

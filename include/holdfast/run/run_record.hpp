@@ -22,7 +22,7 @@ namespace holdfast {
 /// Queues and delays of a run in threaded mode.
 struct ThreadRecord {
   QueueCounts frames;          ///< the queue between the source and tracking
-  std::uint64_t late = 0;      ///< paced: frames that the source gave after they were due
+  std::uint64_t late = 0;      ///< paced: frames delivered late by the source
   double largest_delay = 0.0;  ///< paced: largest delay of such a frame [s]
   std::vector<double> delays;  ///< per frame, time from when it was due (not paced: read) until its result [s]
   std::vector<WorkerCounts> workers;
@@ -40,13 +40,13 @@ struct RepeatedImages {
   double begin = 0.0;    ///< time stamp of the frame with which it began [s]
 };
 
-/// True focal length divided by that of the camera in the configuration, as the map's depths and turns tell it.
+/// Estimated ratio of the true focal length to the configured one, from depths of points before and after rotations.
 struct FocalRatio {
   double ratio = 1.0;
   double deviation = 0.0;  ///< standard deviation, from the scatter of parts of the run
 };
 
-/// Everything that is known at the end of a run. The record owns its content and refers to no pipeline.
+/// All results of a run. The record owns its content and does not refer to the pipeline.
 struct RunRecord {
   Configuration configuration;
   SourceDescription source;
@@ -66,14 +66,14 @@ struct RunRecord {
   std::size_t map_keyframes = 0;  ///< number of keyframes in the map at the end
   std::size_t map_points = 0;     ///< number of points in the map at the end
   Map map;                        ///< the map at the end; empty when the caller keeps the pipeline, see run()
-  bool localised_only = false;    ///< the run found poses in a given map and left it unchanged
+  bool localised_only = false;    ///< localisation in a given map, which was not changed
   std::optional<std::vector<CloudPoint>> dense_map;  ///< cloud of the static scene, with dense_map.enabled
   std::optional<TriangleMesh> surface;               ///< mesh of the static scene, with surface.enabled
   std::optional<NavigationMaps> navigation;          ///< with surface.navigation; never without a mesh
   MappingCounts mapping;
   LoopRecord loops;
   LossRecord losses;
-  MaskCounts masks;                     ///< of the frames that were segmented
+  MaskCounts masks;                     ///< statistics of the segmented frames
   std::vector<double> mask_ages;        ///< age of each segmentation mask when it was first used [s]
   std::optional<ThreadRecord> threads;  ///< in threaded mode
 
@@ -86,7 +86,7 @@ struct RunRecord {
   double start_seconds = 0.0;    ///< time from the start of the run to the first pose; 0 if there was none [s]
   double total_seconds = 0.0;    ///< duration of the run, evaluation included and dense map excluded [s]
   std::size_t peak_memory = 0;   ///< largest resident memory of the process so far [bytes]
-  bool was_interrupted = false;  ///< RunOptions::stop asked for the end
+  bool was_interrupted = false;  ///< ended by RunOptions::stop
   std::string failure;           ///< message of the exception that ended the run early; empty when none did
 
   /// Number of poses divided by the number of expected frames, skipped ones included. 0 to 1.

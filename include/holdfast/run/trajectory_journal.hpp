@@ -25,7 +25,7 @@ class TrajectoryJournal {
   Stopwatch since_flush_;
 };
 
-/// Whether a trajectory file is the journal of a run that was killed or goes on. False for anything but a regular file.
+/// Whether a trajectory file is the journal of a killed or running run. False for anything but a regular file.
 bool is_trajectory_journal(const std::filesystem::path& file);
 
 /// Number of poses that a killed run has left in a folder; -1 if the folder does not hold such a run.

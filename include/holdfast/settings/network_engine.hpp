@@ -5,8 +5,8 @@
 
 namespace holdfast {
 
-/// What computes a network: OpenCV's DNN module, oneDNN where the build has it, or ONNX Runtime where its library is
-/// found at run time. automatic: oneDNN for a network whose operators it is known to have, where the build has it;
+/// Inference engine of a network: OpenCV's DNN module, oneDNN (if built with it), or ONNX Runtime (if its library is
+/// found at run time). automatic: oneDNN for a network whose operators it is known to have, where the build has it;
 /// otherwise ONNX Runtime where it is found; otherwise OpenCV.
 enum class NetworkEngine { automatic, opencv, onednn, onnxruntime };
 

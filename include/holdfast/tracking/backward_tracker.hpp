@@ -16,23 +16,22 @@
 
 namespace holdfast {
 
-/// Tracks frames that had no pose backwards in time, once a later frame has one: where a camera comes back to the map,
-/// the frames right before it see part of the map, too, but only from there is it known where to search. Features,
-/// masks and weights of such a frame are kept, its images are not.
+/// Tracks frames without a pose backwards in time after tracking was recovered: the frames right before a recovery
+/// often show part of the map as well, and the later pose predicts theirs. Features, masks and weights of such frames
+/// are kept, images are not.
 ///
-/// The first of them is tracked from the keyframe that was made when the camera was found, after its mask has had time
-/// to arrive, because mapping then has made its points. Where the map does not suffice, a frame is tracked by all
-/// static features with depth of the frame after it, for TrackingSettings::odometry_time at most. Every pose must hold
-/// as firmly as one after a loss. One thread; LossRecovery calls it within a MapAccess for every frame,
-/// and at the end of the run.
+/// Backward tracking starts at the keyframe created after the recovery, when its mask has had time to arrive and
+/// mapping has created its points. If too little of the map is visible, a frame is tracked by odometry on the static
+/// features with depth of the frame after it, for at most TrackingSettings::odometry_time. Poses are accepted by the
+/// same tests as after a loss. One thread; LossRecovery calls it within a MapAccess for every frame and at the end of
+/// the run.
 ///
-/// The frames around the start of a map of one camera are kept as well, those before its second view and those that
-/// were tracked while bundle adjustment still changed the shape of the map: the pose that a frame gets backwards
-/// replaces the one that it had, unless the frame is a keyframe. A frame that gets none keeps the one that it had,
-/// unless that contradicts inertia.
+/// In monocular mode the frames around the initialisation of a map are kept as well: those before the second view, and
+/// those tracked while the map was still deformed by bundle adjustment. Their backward pose replaces the earlier one,
+/// except for keyframes. Without a backward pose the earlier one is kept unless it contradicts inertia.
 class BackwardTracker {
  public:
-  /// What it works with; all of it must outlive the object.
+  /// Components used by the tracker; all must outlive it.
   struct Parts {
     Map& map;
     MovingWorld& moving_world;
@@ -42,38 +41,38 @@ class BackwardTracker {
   };
   BackwardTracker(const TrackingSettings& settings, const Parts& parts) : settings_(settings), parts_(parts) {}
 
-  /// Keeps a copy of a frame that follows all others; only the last `max_count` stay. The frames of an earlier loss
-  /// that still wait are tracked first. Adds the stage "backwards" where it tracks.
+  /// Keeps a copy of the newest frame; only the last `max_count` frames are kept. Waiting frames of an earlier loss are
+  /// tracked first. Adds the stage "backwards" if it tracks.
   void keep(const Frame& frame, int max_count, StageTimes& times);
-  /// Tracks all kept frames, because no other frame follows.
+  /// Tracks all kept frames at the end of the run.
   void finish(StageTimes& times);
-  /// The frame that was located last became a keyframe.
+  /// Registers that the last located frame became a keyframe.
   void keyframe_added(KeyFrameId keyframe);
-  /// Forgets the kept frames.
+  /// Removes the kept frames.
   void clear();
 
-  /// Goes on with the kept frames, a few of them, latest first; `located` is the frame just tracked. Poses are added to
-  /// the history. Adds the stage "backwards" where it tracks.
+  /// Tracks some of the kept frames, latest first. `located` is the frame just tracked. Poses are added to the history.
+  /// Adds the stage "backwards" if it tracks.
   void track(const Frame& located, StageTimes& times);
 
-  /// How many frames without a pose have got one.
+  /// Number of frames without a pose that received one.
   std::size_t tracked() const { return tracked_; }
-  /// How many frames have lost the pose that they had.
+  /// Number of frames whose earlier pose was withdrawn.
   std::size_t withdrawn() const { return withdrawn_; }
 
  private:
-  /// Sets the frame to begin from, if it is time; `now`: even if points of the keyframe may still come.
+  /// Selects the start frame when its keyframe is complete; `now`: even if points of the keyframe may still be missing.
+  /// Returns whether it was selected.
   bool begin(bool now);
   void track_kept(int max_count);
   bool find_pose(Frame& frame);
   /// T_camera_world at an earlier time [s] by constant velocity from the anchor.
   Eigen::Isometry3d predicted_pose(double timestamp) const;
-  /// The kept frame has got a pose: adds it to the history.
+  /// Adds the pose of a kept frame to the history.
   void add_pose(const Frame& frame);
-  /// The kept frame has got no pose: withdraws the one that it had if that contradicts inertia.
+  /// For a kept frame without a backward pose: withdraws its earlier pose if that contradicts inertia.
   void check_earlier_pose(const Frame& frame);
-  /// The pose that was last adjusted is not determined well enough by its inliers, or contradicts the depth of
-  /// keyframes or inertia.
+  /// True if the last adjusted pose is too uncertain, or contradicts the depth of keyframes or inertia.
   bool is_refuted(const Frame& frame, const Eigen::Isometry3d& predicted, int inliers);
 
   const TrackingSettings& settings_;

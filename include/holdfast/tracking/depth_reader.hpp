@@ -10,24 +10,24 @@
 
 namespace holdfast {
 
-/// Reads the depth of features from a depth image, and with it the column in the virtual right image. Immutable; any
+/// Reads the depth of features from a depth image and computes the column in the virtual right image. Immutable; any
 /// thread.
 class DepthReader {
  public:
   /// edge_ratio: see TrackingSettings::depth_edge_ratio.
   DepthReader(std::shared_ptr<const Camera> camera, double edge_ratio);
 
-  /// Reads frame.depth and frame.right_x at the pixels of the features, as if both images were exposed together.
+  /// Sets frame.depth and frame.right_x at the pixels of the features, without compensation of the colour-depth delay.
   /// `depth`: 32FC1 [m] of the camera's size, or empty.
   void read(const cv::Mat& depth, Frame& frame) const;
-  /// Reads them again for a camera that moved by T_depth_colour from the exposure of the colour image to that of the
-  /// depth image. A feature with ray r, whose depth was z, is seen by the depth image at the projection of
+  /// Sets them with compensation of the ego-motion T_depth_colour between the exposures of the colour and the depth
+  /// image. A feature with ray r and depth z is visible in the depth image at the projection of
   ///
   ///   T_depth_colour * (z * r)
   ///
-  /// and the surface measured there, taken back to the colour image, has the new depth: one step of a fixed-point
-  /// iteration, which suffices because the motion is that of a few milliseconds. A feature without depth starts at a
-  /// typical depth, which rotation does not need.
+  /// and the depth measured there, transformed back to the colour camera, is the new depth. One fixed-point iteration
+  /// suffices because the delay is a few milliseconds. A feature without depth is projected at a typical depth, which
+  /// does not matter for a rotation.
   void align(const cv::Mat& depth, const Eigen::Isometry3d& T_depth_colour, Frame& frame) const;
 
  private:

@@ -11,28 +11,27 @@
 
 namespace holdfast {
 
-/// Follows the features of one image, the template, into the images after it by follow_points(), in place of extracting
-/// features there and matching them. Tracking by flow between keyframes is the idea of NGD-SLAM (Zhang et al. 2024).
-/// Every image is compared with the template and not with the image before it, so that errors do not add up. Keeps its
-/// buffers; one thread.
+/// Tracks the features of one image, the template, into later images by optical flow (follow_points()), in place of
+/// feature extraction and matching, as NGD-SLAM does between keyframes (Zhang et al. 2024). Every image is compared
+/// with the template and not with the previous image, so that errors do not accumulate. Keeps its buffers; one thread.
 class FeatureFlow {
  public:
-  /// Prepares an image (8UC1) for follow(), and perhaps for set_template() later. Must be called for every image.
+  /// Adds an image (8UC1) for follow() and a later set_template(). Must be called for every image.
   void add_image(const cv::Mat& grey);
-  /// Makes the image before the last one the template. `frame` is its frame with final pose and matches: its static
-  /// features that show points of the map will be followed.
+  /// Makes the image before the last one the template. `frame` is its frame with final pose and matches; its static
+  /// features with map points will be tracked.
   void set_template(const Frame& frame);
-  /// Gives the template up: nothing is followed until the next one.
+  /// Removes the template.
   void clear() { points_.clear(); }
-  /// Number of features of the template that are followed.
+  /// Number of tracked features of the template.
   std::size_t size() const { return points_.size(); }
 
-  /// Finds the template's features in the last image, from where they are predicted, and replaces `features` by those
-  /// found, with the octave, angle, response and descriptor that they have in the template. `T_camera_world` is the
-  /// predicted pose of the image's camera; none where `ignore` (8UC1, or empty) is not 0. Returns whether enough to
-  /// determine a pose were found.
+  /// Tracks the features of the template into the last image, starting at their predicted positions, and replaces
+  /// `features` by those found, with octave, angle, response and descriptor of the template. `T_camera_world` is the
+  /// predicted pose of the last image. Pixels where `ignore` (8UC1, or empty) is not 0 are excluded. Returns whether
+  /// enough features for a pose were found.
   bool follow(const Eigen::Isometry3d& T_camera_world, const cv::Mat& ignore, Features& features);
-  /// The map point that feature i of the last follow() shows in the template; it may have been removed since.
+  /// Map point of each feature of the last follow(); it may have been removed meanwhile.
   const std::vector<MapPointId>& found_points() const { return found_points_; }
 
  private:

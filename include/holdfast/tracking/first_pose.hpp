@@ -11,31 +11,31 @@
 
 namespace holdfast {
 
-/// The search for the pose of one frame, as its methods see it.
+/// Inputs and state of the pose search of one frame, shared by its methods.
 struct PoseSearch {
   TrackingContext& context;
   const LocalMapRefinement& local_map;
   const PoseSituation& situation;
   TrackedView& view;
   FrameResult& result;
-  bool is_predicted = false;  ///< an earlier method predicted the pose; relocalisation would not find a better one
-  bool extends_map = false;   ///< the final pose does not depend on the map and is certain enough for a keyframe
+  bool is_predicted = false;  ///< an earlier method has a prediction of the pose, so that relocalisation is not needed
+  bool extends_map = false;   ///< the final pose is independent of the map and accurate enough for a keyframe
 };
 
 /// The result of a first-pose method.
 enum class FirstPoseOutcome {
   none,        ///< no pose; the next method is tried
-  first_pose,  ///< a pose to be refined against the local map; if that fails, the next method is tried
+  first_pose,  ///< initial pose for the refinement against the local map; if that fails, the next method is tried
   final_pose,  ///< a pose that needs no further refinement
 };
 
-/// A method that gives a frame its first pose, such as the motion model. FrameTracker tries its methods in the order
-/// of a list until one leads to a final pose. A method writes context.current (pose and matches), and the method,
-/// fallback or failure of the result. One thread, within the MapAccess of Tracker::locate().
+/// A method to estimate the initial pose of a frame, such as the motion model. FrameTracker tries a list of methods in
+/// order until one leads to a final pose. A method sets pose and matches of context.current, and method, fallback or
+/// failure of the result. One thread, within the MapAccess of Tracker::locate().
 class FirstPose {
  public:
   virtual ~FirstPose() = default;
-  /// Tries to find the pose of context.current. Methods that do not apply return `none` at once.
+  /// Tries to estimate the pose of context.current. Methods that do not apply return `none` immediately.
   virtual FirstPoseOutcome find(PoseSearch& search) = 0;
 };
 

@@ -12,26 +12,26 @@
 
 namespace holdfast {
 
-/// Tracks frames between keyframes by optical flow of an earlier frame's features (BetweenKeyframes::flow).
-/// FrameTracker calls follow() in the first half of a frame, without the lock of the map, and track() in the second,
-/// with it. Without a pose from flow the frame is tracked by features of its own. One thread.
+/// Tracks frames between keyframes by optical flow of the features of an earlier frame (BetweenKeyframes::flow). For
+/// each frame FrameTracker calls follow() without the lock of the map, then track() with it. If optical flow gives no
+/// pose, features are extracted and the frame is tracked by these. One thread.
 class FlowTracker {
  public:
   /// All must outlive the object.
   FlowTracker(TrackingContext& context, const LocalMapRefinement& local_map, const KeyframeDecision& keyframes)
       : context_(context), local_map_(local_map), keyframes_(keyframes) {}
 
-  /// Gives the current frame the features of an earlier one that flow finds in its image. False if there are too few,
-  /// or the camera was not tracked, and the frame needs features of its own.
+  /// Sets the features of the current frame by optical flow of those of an earlier frame. False if features must be
+  /// extracted instead, because too few were found or the last frame has no pose.
   bool follow(const SensorFrame& sensor_frame, const cv::Mat& ignored, bool is_tracking, FrameResult& result);
-  /// The final pose of a frame with followed features. False if they do not determine it, or if the frame is due as a
-  /// keyframe, which needs features of its own.
+  /// Estimates the final pose by the features of follow(). False if features must be extracted instead, because the
+  /// pose is not determined or the frame is due as a keyframe.
   bool track(TrackedView& view, FrameResult& result);
-  /// Whether the current frame has followed features.
+  /// True if the features of the current frame come from optical flow.
   bool is_following() const { return frames_ > 0; }
-  /// The current frame has features of its own.
+  /// Registers that features were extracted from the current frame.
   void stop() { frames_ = 0; }
-  /// Gives up the features of earlier frames.
+  /// Removes the template.
   void forget();
 
  private:
@@ -39,7 +39,7 @@ class FlowTracker {
   const LocalMapRefinement& local_map_;
   const KeyframeDecision& keyframes_;
   FeatureFlow flow_;
-  int frames_ = 0;  // in a row, up to the current one, that have features of an earlier frame
+  int frames_ = 0;  // number of consecutive frames tracked by flow, including the current one
 };
 
 }  // namespace holdfast

@@ -18,14 +18,14 @@
 
 namespace holdfast {
 
-/// Makes frames of images: features, undistorted positions, depth, right column, grid. Depth comes from the depth
-/// image, or from the right image of a stereo pair. Reuses its buffers and those of the frame it fills. One thread.
+/// Computes the Frame of an image: features, undistorted positions, depth, right column, grid. Depth is that of the
+/// depth image or of a stereo pair. Reuses its buffers and those of the frame. One thread.
 class FrameBuilder {
  public:
   /// The extractor must outlive the builder. depth_edge_ratio: see TrackingSettings.
   FrameBuilder(const Camera& camera, FeatureExtractor& extractor, double depth_edge_ratio);
 
-  /// From now on the right image gives depth in place of the depth image. The camera must have no distortion.
+  /// Computes depth from the right image instead of the depth image. The camera must have no distortion.
   void use_stereo(const StereoParts& parts) { stereo_.emplace(*camera_, parts); }
 
   /// Throws InputError, with the number of the frame, for images of another type or size than the camera's.
@@ -37,32 +37,30 @@ class FrameBuilder {
     begin(sensor_frame, frame, times);
     find_features(sensor_frame, cv::Mat(), frame, times);
   }
-  /// The first half: all but features.
+  /// First part of build(): everything except features.
   void begin(const SensorFrame& sensor_frame, Frame& frame, StageTimes& times);
-  /// The second half; no features where `ignore` (8UC1 of the image's size, or empty) is not 0, nor where the camera
-  /// cannot use the image (Camera::is_usable).
+  /// Second part of build(): features with their positions and depth. Excluded are pixels where `ignore` (8UC1 of the
+  /// image's size, or empty) is not 0, and those that the camera cannot use (Camera::is_usable).
   void find_features(const SensorFrame& sensor_frame, const cv::Mat& ignore, Frame& frame, StageTimes& times);
 
-  /// The second half for a frame that has its features already: all but their extraction. Not for a stereo pair.
+  /// Second part for a frame whose features are already set, without their extraction. Not for stereo pairs.
   void complete(const SensorFrame& sensor_frame, Frame& frame, StageTimes& times);
 
-  /// Places the features again for a camera that moves: reads their depth where the depth image shows them, which was
-  /// exposed before or after the colour image, if `aligns_depth`; and takes them from the exposures of their rows to
-  /// that of the middle row. Does nothing for a stereo pair. Adds to the stage "frame". Reads the map if
-  /// features have map points.
+  /// Compensates the ego-motion within a frame: the colour-depth delay for the depth of features, if `aligns_depth`,
+  /// and the rolling shutter for their positions. Has no effect for a stereo pair. Adds to the stage "frame". Reads the
+  /// map if features have map points.
   void place_features(const SensorFrame& sensor_frame, const FrameMotion& motion, bool aligns_depth,
                       const RollingShutter& shutter, const Map& map, Frame& frame, StageTimes& times) const;
 
-  /// Whether the images of the last frame that was built are a stereo pair whose left and right images are exchanged,
-  /// as far as matches show it.
+  /// True if matches indicate that the left and the right image of the last frame are swapped.
   bool is_pair_exchanged(const Frame& frame) { return stereo_ && stereo_->is_exchanged(grey_, grey_right_, frame); }
 
-  /// From the next frame on, find_features() extracts `factor` times as many features (FeatureExtractor::set_budget).
+  /// Multiplies the number of features to extract from the next frame on (FeatureExtractor::set_budget).
   void set_budget(double factor);
 
   const std::shared_ptr<const Camera>& camera() const { return camera_; }
   const CoarseSampler& coarse_sampler() const { return coarse_sampler_; }
-  /// The grey image of the last frame that was built (8UC1); valid until the next.
+  /// Grey image of the last frame (8UC1); valid until the next one.
   const cv::Mat& grey() const { return grey_; }
 
  private:
@@ -78,8 +76,8 @@ class FrameBuilder {
   cv::Mat unusable_;  // 8UC1, not 0 where the camera cannot use the image; empty if it can everywhere
   cv::Mat ignored_;
   std::optional<StereoDepth> stereo_;
-  cv::Mat grey_, grey_right_;            // of the sensor frame, or of the buffers
-  cv::Mat converted_, converted_right_;  // the buffers: images of a sensor frame must not be written to
+  cv::Mat grey_, grey_right_;            // images of the sensor frame, or the buffers below
+  cv::Mat converted_, converted_right_;  // buffers, because images of a sensor frame must not be written to
 };
 
 }  // namespace holdfast

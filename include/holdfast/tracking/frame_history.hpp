@@ -12,45 +12,48 @@
 
 namespace holdfast {
 
-/// Poses of all tracked frames, and the motion model (constant velocity) that follows from the last two. Each pose is
-/// kept relative to the frame's reference keyframe, so that it follows later corrections of the map. Functions that
-/// take the map read it. One thread.
+/// Poses of all tracked frames, and the constant-velocity motion model. Each pose is stored relative to the reference
+/// keyframe of the frame, so that later corrections of the map apply to it. Functions with a map argument read the map.
+/// One thread.
 class FrameHistory {
  public:
-  /// Adds a tracked frame. Its velocity is T_current_previous when the frame before was tracked, too.
+  /// Adds a tracked frame. The velocity is T_current_previous if the previous frame was tracked as well.
   void add(const Frame& frame, KeyFrameId reference, const Map& map);
-  /// The last frame was not tracked: there is no previous frame and no velocity for the motion model. extrapolate()
-  /// still knows the velocity of the last tracked frame.
+  /// Registers a frame without a pose: the motion model then has no previous frame and no velocity. extrapolate() still
+  /// uses the velocity of the last tracked frame.
   void interrupt() { last_.has_previous = last_.has_velocity = false; }
-  /// Makes the last tracked frame, if that is its time stamp, the reference of itself: it became this keyframe.
+  /// If the last tracked frame has this time stamp, makes `keyframe` its reference keyframe: the frame became this
+  /// keyframe.
   void became_keyframe(KeyFrameId keyframe, double timestamp);
 
-  /// Adds a keyframe that was taken before the last tracked frame, but after all others.
+  /// Inserts a keyframe between the last tracked frame and the one before it.
   void add_before_last(KeyFrameId keyframe, double timestamp) {
     records_.insert(records_.end() - (records_.empty() ? 0 : 1), {timestamp, keyframe});
   }
 
-  /// Adds a frame that was taken before the last tracked one and has got its pose later; replaces the pose that it had.
-  /// Returns whether it had none.
+  /// Inserts a frame before the last tracked one, whose pose was estimated later, or replaces its pose. Returns whether
+  /// it had no pose.
   bool add_past(const Frame& frame, KeyFrameId reference, const Map& map);
 
-  /// Pose of a tracked frame by the map as it is now.
+  /// Current pose of a tracked frame.
   struct PastPose {
     Eigen::Isometry3d T_camera_world;
     bool is_keyframe;  ///< the frame is a keyframe in the map
   };
-  /// The pose of the frame with this time stamp; empty if it has none in the map.
+  /// Current pose of the frame with this time stamp; empty without a pose in the map.
   std::optional<PastPose> past_pose(double timestamp, const Map& map) const;
-  /// Removes the pose of the frame with this time stamp, which has one and is not the last tracked frame.
+  /// Removes the pose of the frame with this time stamp. The frame must have a pose and must not be the last tracked
+  /// one.
   void withdraw(double timestamp);
 
-  /// What the last tracked frames say, to return to.
+  /// A state of the history to which return_to() resets it.
   class Mark;
   Mark mark() const;
-  /// Forgets the frames that were added since the mark; returns how many. None may have been added before it meanwhile.
+  /// Removes the frames that were added since the mark and returns their number. No frame may have been inserted before
+  /// the mark meanwhile.
   std::size_t return_to(const Mark& mark);
 
-  /// Forgets all frames.
+  /// Removes all frames.
   void clear() { *this = FrameHistory(); }
 
   bool empty() const { return records_.empty(); }
@@ -59,26 +62,26 @@ class FrameHistory {
   bool has_velocity() const { return last_.has_velocity; }
   /// Time stamp of the last tracked frame [s]; the history must not be empty.
   double last_timestamp() const { return records_.back().timestamp; }
-  /// T_camera_world of the last tracked frame by the map as it is now; the history must not be empty.
+  /// Current T_camera_world of the last tracked frame; the history must not be empty.
   Eigen::Isometry3d last_pose(const Map& map) const;
 
-  /// The motion model: T_current_previous for a frame at this time; the identity without a velocity.
+  /// Constant-velocity prediction of T_current_previous for a frame at this time; the identity without a velocity.
   Eigen::Isometry3d predicted_step(double timestamp) const;
-  /// Motion since the last tracked frame if the camera went on with `share` of its last velocity, also after a loss.
+  /// Predicted motion since the last tracked frame with the last velocity times `share`, also after a loss.
   Eigen::Isometry3d extrapolate(double timestamp, double share) const;
 
-  /// The submap with most of the tracked frames; of equal ones the oldest.
+  /// The submap with the most tracked frames; the oldest one of equals.
   std::uint32_t main_submap(const Map& map) const;
-  /// How many tracked frames are not in the main submap.
+  /// Number of tracked frames outside the main submap.
   std::size_t frames_left_out(const Map& map) const;
-  /// Poses of the tracked frames of the main submap, by the map as it is now.
+  /// Current poses of the tracked frames of the main submap.
   Trajectory trajectory(const Map& map) const;
 
  private:
   struct Record {
     double timestamp;
     KeyFrameId reference;
-    // The pose of the last record is also kept as it came (Last::T_camera_reference): the motion model needs every bit.
+    // The pose of the last record is also kept unconverted (Last::T_camera_reference), for an exact motion model.
     Eigen::Quaternion<double, Eigen::DontAlign> R_camera_reference = {1.0, 0.0, 0.0, 0.0};
     Eigen::Vector3d t_camera_reference = Eigen::Vector3d::Zero();  // [m], at scale 1 of the reference
   };
@@ -89,7 +92,7 @@ class FrameHistory {
   /// The first record at or after this time.
   std::vector<Record>::const_iterator record_from(double timestamp) const;
 
-  /// Of the last tracked frames, beside their records.
+  /// State of the motion model.
   struct Last {
     Eigen::Isometry3d T_camera_reference = Eigen::Isometry3d::Identity();  // of the last record
     double reference_scale = 1.0;                                          // KeyFrame::scale when it was added
@@ -103,7 +106,7 @@ class FrameHistory {
   Last last_;
 };
 
-/// A moment of a history.
+/// State of a history at the time of its construction.
 class FrameHistory::Mark {
   friend class FrameHistory;
   std::size_t count_ = 0;

@@ -12,33 +12,34 @@
 
 namespace holdfast {
 
-/// A feature of a frame that shows a point which is not in the map: where the previous frame's depth puts it.
+/// Match of a feature with a point of visual odometry: a feature with depth of the previous frame that has no map
+/// point.
 struct OdometryMatch {
   std::uint32_t feature = 0;
   Eigen::Vector3d position;  ///< world [m]
 };
 
-/// Matches the features of a frame with map points, by each of the priors that tracking has: the previous frame, a
-/// keyframe's descriptors alone, or the local map. Results are written to frame.map_points. Keeps its buffers; one
-/// thread, within a MapAccess.
+/// Matches the features of a frame with map points of the previous frame (guided by a predicted pose), of a keyframe
+/// (by descriptors alone), or of the local map. Results are written to frame.map_points. Keeps its buffers; one thread,
+/// within a MapAccess.
 class FrameMatcher {
  public:
   /// The map and the matcher of features must outlive the object.
   FrameMatcher(const TrackingSettings& settings, Map& map, const FeatureMatcher& matcher = nearest_matcher())
       : settings_(settings), map_(map), matcher_(matcher), local_map_(settings.local_keyframes) {}
 
-  /// Projects the map points of the previous frame by frame.T_camera_world and replaces the frame's matches by the
-  /// features found within `radius` pixels, times the scale of the octave. Names of points that are gone are cleared in
-  /// `previous`. Returns the number of matches.
+  /// Projects the map points of the previous frame by frame.T_camera_world and replaces the frame's matches by features
+  /// within `radius` pixels times the scale of the octave. Ids of removed points are cleared in `previous`. Returns the
+  /// number of matches.
   int match_previous(Frame& previous, float radius, Frame& frame);
-  /// The same with all static features of the previous frame that have depth, as visual odometry does: those without a
-  /// map point go to `odometry`, whose earlier content is dropped. Returns the number of matches of both kinds.
+  /// Like match_previous(), and also matches static features of the previous frame that have depth but no map point
+  /// (visual odometry). `odometry` is replaced by these matches. Returns the number of matches of both kinds.
   int match_previous_features(Frame& previous, float radius, Frame& frame, std::vector<OdometryMatch>& odometry);
   /// Replaces the frame's matches by mutual nearest neighbours among the descriptors of a keyframe's map points.
   /// Returns the number of matches.
   int match_keyframe(const Frame& keyframe_frame, Frame& frame);
-  /// Brings the local map up to date for the frame's matches and adds matches with points that project near a feature.
-  /// `window` multiplies the search radius, see LocalMap::project.
+  /// Updates the local map for the frame and matches its points by guided search. `window` multiplies the search
+  /// radius, see LocalMap::project.
   void match_local_map(float window, Frame& frame);
 
   LocalMap& local_map() { return local_map_; }
@@ -52,7 +53,7 @@ class FrameMatcher {
   LocalMap local_map_;
   std::vector<FeatureMatch> matches_;
   matching::SearchWindows windows_;
-  std::vector<std::uint8_t> usable_;  // features that a search may match
+  std::vector<std::uint8_t> usable_;  // features that may be matched, by index
 };
 
 }  // namespace holdfast

@@ -15,28 +15,28 @@
 
 namespace holdfast {
 
-/// Estimates the pose of one frame against the map. The methods of a list give first poses, LocalMapRefinement takes
-/// them to the final one, MovingWorld decides what to trust in each step. A frame with followed features is tracked by
-/// these first (FlowTracker). Knows nothing of how maps begin or of what follows a loss. Tracker calls begin() without
-/// the lock of the map, and locate() with it. One thread.
+/// Estimates the pose of one frame against the map: initial poses by a list of methods (FirstPose), refinement against
+/// the local map (LocalMapRefinement), weights of features by MovingWorld in each step. With features from optical
+/// flow, FlowTracker is tried first. Initialisation and losses are handled by MapStart and LossRecovery. Tracker calls
+/// begin() without the lock of the map and locate() with it. One thread.
 class FrameTracker {
  public:
   /// The context and the decision must outlive the object.
   FrameTracker(TrackingContext& context, const KeyframeDecision& keyframes, FirstPoses first_poses);
 
-  /// Builds context.current: propagates the mask and extracts or follows features. Does not read the map. More features
-  /// than usual are extracted after a frame of whose features few were static.
+  /// Builds context.current: propagates the mask, and extracts features or tracks them by optical flow. Does not read
+  /// the map. The number of features is increased if few features of the last frame were static.
   void begin(const SensorFrame& sensor_frame, TrackerState state, FrameResult& result);
-  /// Finds the pose of context.current. False: it has none, and the result says why.
+  /// Estimates the pose of context.current. False without a pose; the result then has the failure.
   bool locate(TrackedView& view, const PoseSituation& situation, FrameResult& result);
 
-  /// Whether the pose just found does not depend on the map, which ends here, and is certain enough for a keyframe.
+  /// True if the last pose was estimated by odometry beyond the mapped area and is accurate enough for a keyframe.
   bool extends_map() const { return extends_map_; }
-  /// Whether the current frame has features of its own, as a keyframe needs.
+  /// True if features were extracted from the current frame, as keyframes require.
   bool has_own_features() const { return !flow_ || !flow_->is_following(); }
-  /// The refinement, for poses that others propose.
+  /// The refinement against the local map, for poses of other components.
   const LocalMapRefinement& local_map() const { return local_map_; }
-  /// The map was removed.
+  /// Resets the state after the map was removed.
   void forget_map();
 
  private:
@@ -48,7 +48,7 @@ class FrameTracker {
   LocalMapRefinement local_map_;
   FirstPoses first_poses_;
   std::optional<FlowTracker> flow_;
-  cv::Mat ignored_;  // pixels of the current frame in which no features should be extracted
+  cv::Mat ignored_;  // pixels of the current frame that are excluded from feature extraction
   bool extends_map_ = false;
 };
 

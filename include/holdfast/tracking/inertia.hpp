@@ -10,9 +10,9 @@
 
 namespace holdfast {
 
-/// Whether a pose contradicts the inertia of a camera. `change` takes the pose that constant velocity predicts to the
-/// pose in question, T_camera_predicted, after `interval` seconds; allowed are `factor` times
-/// TrackingSettings::jump_distance and jump_angle for each 1/30 s, and for 1/30 s at least.
+/// Whether a pose contradicts the inertia of the camera, that is, deviates too far from the constant-velocity
+/// prediction. `change` is the deviation T_camera_predicted after `interval` seconds. The limit is `factor` times
+/// TrackingSettings::jump_distance and jump_angle for each 1/30 s of the interval, which counts as 1/30 s at least.
 inline bool contradicts_inertia(const Eigen::Isometry3d& change, double interval, const TrackingSettings& settings,
                                 double factor = 1.0) {
   constexpr double frame_interval = 1.0 / 30.0;  // s

@@ -11,24 +11,24 @@
 
 namespace holdfast {
 
-/// The part of the map that a frame may see: points of the keyframes that share points with it, and of their neighbours
-/// (Mur-Artal et al. 2015, section V-D), copied into flat arrays so that projecting thousands of points is one pass
-/// over memory. Rebuilt only when the map or the reference keyframe changes. One thread.
+/// Local map of a frame: points of the keyframes that share points with it, and of their neighbours (Mur-Artal et al.
+/// 2015, section V-D). The points are copied into flat arrays for fast projection. Rebuilt only when the map or the
+/// reference keyframe changes. One thread.
 class LocalMap {
  public:
   explicit LocalMap(int most_keyframes) : most_keyframes_(most_keyframes) {}
 
-  /// Brings the local map up to date for a frame whose map points name what is matched so far. `map_version` must
-  /// change whenever the map did.
+  /// Updates the local map for a frame with its matches so far. `map_version` must change whenever the map changes
+  /// (Map::version()).
   void update(Map& map, const Frame& frame, std::uint64_t map_version);
 
-  /// Adds the windows of all points that the frame should see and does not show yet, and counts the points as visible.
-  /// `radius_factor` multiplies the radius, which is 2.5 px, or 4 px for points seen at an angle, times the scale of
-  /// the expected octave. SearchWindows::source counts the points of points().
+  /// Adds search windows for all points that are predicted to be visible and not matched yet, and increments their
+  /// visible counts. The radius is 2.5 px (4 px for points seen at an angle to their viewing direction) times the scale
+  /// of the expected octave and `radius_factor`. SearchWindows::source is an index into points().
   void project(const Frame& frame, float radius_factor, matching::SearchWindows& windows);
 
-  /// Counts the points that the frame's features show as found, and writes the counts into the map when it is about to
-  /// be changed or the local map rebuilt.
+  /// Increments the found counts of the points matched in the frame. Counts are written to the map before it is changed
+  /// or the local map is rebuilt.
   void count_found(const Frame& frame);
   void write_counts(Map& map);
 

@@ -8,17 +8,17 @@
 
 namespace holdfast {
 
-/// Second step of tracking a frame (Mur-Artal et al. 2015, section V-D): takes a first pose to the final one by
-/// matching the local map, with filters that need a pose before it. FrameTracker calls it for every first pose. Keeps
-/// no state. One thread, within the MapAccess of Tracker::locate().
+/// Second step of tracking a frame (Mur-Artal et al. 2015, section V-D): refines an initial pose by matches with the
+/// local map, after the filters that need a pose. FrameTracker calls it for every initial pose. Keeps no state. One
+/// thread, within the MapAccess of Tracker::locate().
 class LocalMapRefinement {
  public:
   /// The context must outlive the object.
   explicit LocalMapRefinement(TrackingContext& context) : context_(context), checks_(context) {}
 
-  /// Refines the first pose of the current frame. False if the local map does not confirm it.
+  /// Refines the initial pose of the current frame. False if the pose is rejected.
   bool refine(TrackedView& view, const PoseSituation& situation, FrameResult& result) const;
-  /// The last part of it: matches the local map, adjusts the pose, and accepts or refuses it.
+  /// Last part of refine(): matches the local map, adjusts the pose, and accepts or rejects it.
   bool track_local_map(const TrackedView& view, const PoseSituation& situation, FrameResult& result) const;
   /// Runs the filters that need a pose and adjusts again.
   void evaluate_with_pose(const TrackedView& view, FrameResult& result) const;

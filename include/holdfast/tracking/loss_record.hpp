@@ -5,12 +5,12 @@
 
 namespace holdfast {
 
-/// What became of the frames around losses.
+/// Statistics of the frames around tracking losses.
 struct LossRecord {
-  std::size_t tracked_backwards = 0;  ///< frames that had no pose and got one after later frames
-  std::size_t withdrawn = 0;          ///< frames that had a pose after a loss and lost it, because nothing confirmed it
-  std::size_t submaps = 0;            ///< submaps that a lost camera began
-  std::size_t left_out = 0;           ///< frames that had a pose in a submap that nothing joined with the rest
+  std::size_t tracked_backwards = 0;  ///< frames whose pose was estimated later, by backward tracking
+  std::size_t withdrawn = 0;          ///< frames whose pose after a loss was not confirmed and was removed
+  std::size_t submaps = 0;            ///< submaps begun after losses
+  std::size_t left_out = 0;           ///< frames with a pose in a submap that was never joined with the main one
 };
 
 }  // namespace holdfast

@@ -15,49 +15,52 @@
 
 namespace holdfast {
 
-/// Decides what follows a loss: poses on which few inliers agree stay unconfirmed and may be withdrawn; a camera that
-/// is lost for long begins a new submap and returns from it; frames without a pose are tracked backwards. Tracker calls
-/// it for every frame with a map, in its thread and within its MapAccess.
+/// Recovery from tracking losses: poses with few inliers remain unconfirmed and may be withdrawn; after a long loss a
+/// new submap begins, which is left when the camera is relocalised in the old one; frames without a pose are tracked
+/// backwards. Called by Tracker for every frame with a map, in its thread and within its MapAccess.
 class LossRecovery {
  public:
   /// Both must outlive the object.
   LossRecovery(TrackingContext& context, const LocalMapRefinement& local_map);
 
-  /// Whether the camera was lost so soon after the map began, at `map_start` [s], that waiting for a known view is not
-  /// worth it: with a first keyframe on people, next to nothing of the map may be left.
+  /// True if the camera was lost so soon after the start of the map at `map_start` [s] that the map should be
+  /// restarted: if its first keyframe shows mostly people, hardly any points remain.
   bool was_lost_at_start(double map_start) const;
-  /// Whether the camera has been lost for TrackingSettings::restart_time, and a mask is fresh if masks are expected.
+  /// True if the camera has been lost for TrackingSettings::restart_time and, with a segmenter, a recent mask is
+  /// available.
   bool should_begin_submap() const;
   /// T_camera_world of a lost camera by constant velocity; after the coasting time, its last known pose.
   Eigen::Isometry3d coasting_pose() const;
-  /// The current frame begins a map, or begins it anew.
+  /// Registers that the current frame starts or restarts the map.
   void map_begun() { unconfirmed_.reset(); }
-  /// It begins a submap; `may_return`: the keyframes by which the camera was lost are remembered, to return there.
+  /// Registers that the current frame starts a submap. `may_return`: the keyframes where tracking was lost are kept for
+  /// try_to_return().
   void submap_begun(bool may_return);
-  /// Whether the camera is in a submap that it may return from.
+  /// True if the camera is in a submap and may be relocalised in the earlier one.
   bool may_return() const { return left_reference_.valid(); }
-  /// Relocalises a tracked camera where it was lost before it began a submap, and goes on there if that succeeds.
+  /// Tries to relocalise the camera at the keyframes where tracking was lost before the submap. On success tracking
+  /// continues there.
   void try_to_return(TrackedView& view, const PoseSituation& situation, FrameResult& result);
 
-  /// After the search for a pose: a pose found after a loss on which few inliers agree has to be confirmed by those
-  /// that follow; if the camera is lost before, it and the poses since are withdrawn.
+  /// Updates the confirmation state after the pose search: a pose with few inliers after a loss must be confirmed by
+  /// later frames. If the camera is lost before, all unconfirmed poses are withdrawn.
   void confirm(bool found, bool was_lost, int inliers);
-  /// Whether poses since the last loss are not confirmed yet.
+  /// True if the poses since the last loss are not confirmed yet.
   bool is_unconfirmed() const { return unconfirmed_.has_value(); }
-  /// Whether the camera was found less than 0.5 s ago, before a mask made since then can have arrived.
+  /// True for 0.5 s after a recovery, until the mask of a frame after it can have arrived.
   bool was_just_found() const;
-  /// Whether a mask would help to find the camera.
+  /// True if a mask of the current frame would help relocalisation.
   bool wants_mask(TrackerState state) const;
 
-  /// Keeps the current frame to track it backwards; only the last `count` stay.
+  /// Keeps the current frame for backward tracking; only the last `count` frames are kept.
   void keep_frame(int count, StageTimes& times) { backwards_.keep(context_.current, count, times); }
   void forget_frames() { backwards_.clear(); }
-  /// Tracks some of the kept frames backwards from the current one, which has a pose.
+  /// Tracks some of the kept frames backwards; the current frame must have a pose.
   void track_backwards(StageTimes& times) { backwards_.track(context_.current, times); }
   void keyframe_added(KeyFrameId keyframe) { backwards_.keyframe_added(keyframe); }
-  /// The map was removed.
+  /// Resets the state after the map was removed.
   void forget_map() { unconfirmed_.reset(); }
-  /// No frame follows: withdraws unconfirmed poses and tracks all kept frames.
+  /// Ends the run: withdraws unconfirmed poses and tracks all kept frames.
   void finish(StageTimes& times);
   LossRecord record() const;
 
@@ -72,10 +75,10 @@ class LossRecovery {
   TrackingContext& context_;
   const LocalMapRefinement& local_map_;
   BackwardTracker backwards_;
-  /// The last and the reference keyframe when the camera was lost before it began a submap; invalid if it did not.
+  /// Last and reference keyframe at the loss before the current submap; invalid without such a submap.
   KeyFrameId left_keyframe_, left_reference_;
   std::optional<Unconfirmed> unconfirmed_;
-  std::optional<double> found_time_;  // after the last loss [s]
+  std::optional<double> found_time_;  // time of the recovery after the last loss [s]
   std::size_t withdrawn_ = 0;         // frames
   std::size_t submaps_ = 0;
 };

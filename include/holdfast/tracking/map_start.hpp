@@ -17,16 +17,16 @@
 
 namespace holdfast {
 
-/// Judgement of the start of a map by the first mask.
+/// Verification of the first keyframe by the first mask.
 enum class StartVerdict {
-  pending,    ///< no mask yet, or nothing to judge
+  pending,    ///< no mask yet, or nothing to verify
   confirmed,  ///< enough of the first keyframe is static
-  refuted,    ///< it shows mostly what can move: the map should begin again
+  refuted,    ///< it shows mostly movable objects: the map should be restarted
 };
 
-/// Begins maps, judges how they began, and forgets them. DepthStart needs one frame with depth, TwoViewStart two views
-/// of one camera. Tracker calls it while there is no map, after losses, and to judge the start, in its
-/// thread and within its MapAccess.
+/// Map initialisation and its verification: from one frame with depth (DepthStart) or from two monocular views
+/// (TwoViewStart). Called by Tracker while there is no map, after losses, and to verify the start, in its thread and
+/// within its MapAccess.
 class MapStart {
  public:
   /// The context must outlive the object.
@@ -35,40 +35,42 @@ class MapStart {
   MapStart(const MapStart&) = delete;
   MapStart& operator=(const MapStart&) = delete;
 
-  /// Tries to begin the map with the current frame. True: the frame has its pose and becomes a keyframe.
+  /// Tries to initialise the map with the current frame. If true, the frame has a pose and becomes a keyframe.
   virtual bool begin(const SensorFrame& sensor_frame, FrameResult& result) = 0;
-  /// Whether a map can go on at a given pose after a loss; otherwise a map that is lost right after its start is given
-  /// up.
+  /// Whether a map can be continued at a predicted pose after a loss. Otherwise a map lost right after its start is
+  /// removed.
   virtual bool continues_after_loss() const = 0;
-  /// Makes the current frame, at this T_camera_world, the first keyframe after a loss. False if it shows too little.
+  /// Makes the current frame, with this T_camera_world, the first keyframe after a loss. False if it has too few
+  /// features.
   virtual bool begin_at(const Eigen::Isometry3d& T_camera_world, FrameResult& result) = 0;
-  /// The same if enough static features, by the present mask, have depth.
+  /// Like begin_at() for a new submap; also requires enough static features with depth according to the current mask.
   virtual bool begin_submap(const Eigen::Isometry3d& T_camera_world, FrameResult& result) = 0;
 
-  /// Whether a tracked frame shows that the map began wrong.
+  /// Whether a tracked frame indicates a failed initialisation.
   virtual bool is_weak(const FrameResult& result) = 0;
   virtual StartVerdict judge_by_mask() = 0;
-  /// Whether the start has not been judged yet.
+  /// True until the start has been verified.
   virtual bool is_provisional() const = 0;
-  /// How many frames are kept to be tracked backwards from the map once its start has been judged; empty when the
-  /// current frame does not belong to the start.
+  /// Number of frames to keep for backward tracking after the verification; empty if the current frame does not belong
+  /// to the start.
   virtual std::optional<int> kept_frames(TrackerState state, const FrameResult& result) const = 0;
 
-  /// The map was removed.
+  /// Resets the state after the map was removed.
   virtual void forget() = 0;
 
-  /// The request for a map that this object has just begun.
+  /// The request after a successful begin().
   virtual MapRequest request() const { return {.kind = MapRequest::Kind::first_keyframe}; }
-  /// Whether a mask is needed to begin with.
+  /// Whether the initialisation needs a mask.
   virtual bool wants_mask(TrackerState) const { return false; }
-  /// The first of two views became `reference`, and its points, in their order, became `points`.
+  /// Registers the ids of a two-view map: `reference` is the keyframe of the first view, `points` are the initial
+  /// points in their order.
   virtual void map_begun(KeyFrameId, const std::vector<MapPointId>&) {}
 
-  /// Time stamp of the frame that began the map, or began it anew [s]; a loaded map began long ago.
+  /// Time stamp of the frame that started or restarted the map [s]; far in the past for a loaded map.
   double time() const { return time_; }
 
  protected:
-  /// The current frame begins a map: sets the time and the result.
+  /// Sets the time and the result for a current frame that starts a map.
   void mark_begun(FrameResult& result);
 
   TrackingContext& context_;
@@ -77,8 +79,8 @@ class MapStart {
   double time_ = -std::numeric_limits<double>::infinity();
 };
 
-/// Begins the map with one frame whose features have depth. A start before the first mask is provisional: if the mask
-/// shows that the first keyframe was mostly on what can move (TrackingSettings::start_share), it is refuted.
+/// Initialises the map from one frame whose features have depth. A start before the first mask is provisional, and is
+/// refuted if the mask covers most features of the first keyframe with movable objects (TrackingSettings::start_share).
 class DepthStart final : public MapStart {
  public:
   explicit DepthStart(TrackingContext& context);
@@ -98,8 +100,8 @@ class DepthStart final : public MapStart {
   bool is_judged_;
 };
 
-/// Begins the map of one camera with two views (MonoInitialiser), once a mask tells where people are if masks are
-/// expected. From the frames start_support_age to start_settling_time after the start it judges whether the map grows
+/// Initialises a monocular map from two views (MonoInitialiser), with a segmenter only after the first mask. The frames
+/// from start_support_age to start_settling_time after the start verify that the map grows
 /// (TrackingSettings::start_support).
 class TwoViewStart final : public MapStart {
  public:
@@ -116,7 +118,7 @@ class TwoViewStart final : public MapStart {
   MapRequest request() const override {
     return {.kind = MapRequest::Kind::two_views, .two_views = &initialiser_.start()};
   }
-  /// The first two views should be chosen by masks that are as fresh as they can be.
+  /// Frames are segmented while waiting, so that the two views are selected with recent masks.
   bool wants_mask(TrackerState state) const override { return state == TrackerState::waiting; }
   void map_begun(KeyFrameId reference, const std::vector<MapPointId>& points) override;
 
@@ -127,7 +129,7 @@ class TwoViewStart final : public MapStart {
   int frames_ = 0;        // their number
 };
 
-/// The start for features with depth or without.
+/// Creates the initialisation for features with or without depth.
 std::unique_ptr<MapStart> make_map_start(TrackingContext& context, const TrackerParts& parts);
 
 }  // namespace holdfast

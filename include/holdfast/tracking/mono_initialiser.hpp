@@ -14,10 +14,10 @@
 
 namespace holdfast {
 
-/// The first points of one camera's map, and the earlier of the two views that show them, whose camera is the world
-/// frame. The median depth of the points is TrackingSettings::start_depth.
+/// Result of two-view initialisation: the initial points and the earlier view, whose camera frame is the world frame.
+/// The median depth of the points is TrackingSettings::start_depth.
 struct TwoViewMap {
-  /// A point that both views show.
+  /// A triangulated point and its features in both views.
   struct Point {
     Eigen::Vector3d position;  ///< world
     std::uint32_t in_reference = 0, in_frame = 0;
@@ -26,9 +26,9 @@ struct TwoViewMap {
   std::vector<Point> points;
 };
 
-/// Begins the map of one camera, which knows no depth (Mur-Artal et al. 2015, section IV): static features of a frame
-/// are matched with those of a reference, the motion between both is found by find_two_view_motion(), and both poses
-/// and the points are adjusted. A frame with too few matches becomes the new reference. One thread.
+/// Monocular map initialisation (Mur-Artal et al. 2015, section IV): static features of a frame are matched with those
+/// of a reference frame, the relative pose is estimated by find_two_view_motion(), and both poses and the points are
+/// refined by bundle adjustment. A frame with too few matches becomes the new reference. One thread.
 class MonoInitialiser {
  public:
   /// The optimizer and the matcher must outlive the initialiser. Random samples come from the seed.
@@ -36,13 +36,13 @@ class MonoInitialiser {
                   const FeatureMatcher& matcher = nearest_matcher())
       : settings_(settings), optimizer_(optimizer), matcher_(matcher), random_(Random(seed).fork(2)) {}
 
-  /// Tries to begin the map with a frame whose features are weighted (Frame::static_probability). On success, the
-  /// frame's pose is set, and start() holds the other view and the points; otherwise the failure is returned.
+  /// Tries to initialise the map with a frame whose features are weighted (Frame::static_probability). On success the
+  /// frame's pose is set, start() holds the other view and the points, and TrackingFailure::none is returned.
   TrackingFailure add(Frame& frame);
 
   /// Valid after add() returned no failure, until the next call.
   const TwoViewMap& start() const { return start_; }
-  /// Gives the reference up: the next frame becomes one.
+  /// Discards the reference; the next frame becomes the new one.
   void forget() { has_reference_ = false; }
 
  private:
@@ -52,7 +52,7 @@ class MonoInitialiser {
   /// Whether the points of start() determine the direction of the motion (TrackingSettings::start_deviation). Entry i
   /// of `pairs` belongs to matches_[i].
   bool is_certain(const std::vector<geometry::PixelPair>& pairs, const Frame& frame) const;
-  /// Adjusts both poses and the points, and gives the map its unit. False if too few points are left.
+  /// Bundle adjustment of both poses and the points, and scaling to start_depth. False if too few points remain.
   bool adjust(const geometry::TwoViewMotion& motion, Frame& frame);
 
   TrackingSettings settings_;

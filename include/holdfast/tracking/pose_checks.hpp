@@ -6,29 +6,29 @@
 
 namespace holdfast {
 
-/// Facts about the tracker's state on which the acceptance of a pose depends.
+/// State of the tracker on which the acceptance of a pose depends.
 struct PoseSituation {
-  bool was_lost = false;         ///< no pose of the previous frame predicts this one
-  bool may_be_anywhere = false;  ///< a relocalised pose need not be within reach of the last known one
-  double map_age = 0.0;          ///< since the map began or began anew [s]; infinite for a loaded map
+  bool was_lost = false;         ///< the previous frame has no pose
+  bool may_be_anywhere = false;  ///< a relocalised pose is not limited to the reachable area around the last one
+  double map_age = 0.0;          ///< time since the map was started or restarted [s]; infinite for a loaded map
 };
 
 /// Acceptance tests of an adjusted pose: number of inliers, inertia, covariance of the position, agreement with the
-/// dense depth of keyframes. FrameTracker and the first-pose methods ask for each frame. Keeps no state. One thread,
-/// within the MapAccess of Tracker::locate().
+/// dense depth of keyframes. Used by FrameTracker and the first-pose methods. Keeps no state. One thread, within the
+/// MapAccess of Tracker::locate().
 class PoseChecks {
  public:
   /// The context must outlive the object.
   explicit PoseChecks(TrackingContext& context) : context_(context) {}
 
-  /// Whether so many inliers need no other support: four times TrackingSettings::minimum_inliers.
+  /// True for a number of inliers that needs no other check: ample_inliers times TrackingSettings::minimum_inliers.
   bool has_ample_inliers(int inliers) const;
-  /// Whether the pose is more than `factor` times jump_distance or jump_angle from constant velocity.
+  /// Whether the pose deviates from constant velocity by more than `factor` times jump_distance or jump_angle.
   bool exceeds_acceleration(double factor) const;
-  /// Whether the pose contradicts inertia (unless the camera was lost), is not determined well enough by its inliers,
-  /// or contradicts the depth of keyframes.
+  /// True if the pose contradicts inertia (unless the camera was lost), is too uncertain, or contradicts the depth of
+  /// keyframes.
   bool is_refuted(int inliers, bool was_lost) const;
-  /// Whether a pose adjusted against the local map is final. `result` has its inliers, static features and method.
+  /// Whether a pose adjusted against the local map is accepted. `result` holds its inliers, static features and method.
   bool accepts(const FrameResult& result, const PoseSituation& situation) const;
 
  private:

@@ -16,36 +16,35 @@ namespace holdfast {
 /// Estimates the pose of a frame from its matches with map points, weighted by the probability that each feature is
 /// static. Keeps its buffers; one thread, within a MapAccess.
 ///
-/// With one camera among people, established points precede new ones: a part of a person that no mask shows gets map
-/// points, too, which agree with each other and, being near, determine the translation more than the room does. Where
-/// the points that were first seen TrackingSettings::established_age ago or earlier determine the pose, newer ones are
-/// outliers unless they agree with it. With depth, filters measure what moves; without filters, nothing is expected to
-/// move.
+/// Established points take precedence in monocular mode with filters: unmasked parts of people also create map points,
+/// which are consistent with each other and, being near, dominate the translation. If the points created at least
+/// TrackingSettings::established_age ago determine the pose, newer points that contradict it are outliers. With depth,
+/// filters measure the motion instead.
 class PoseEstimator {
  public:
   /// All must outlive the estimator.
   PoseEstimator(const TrackingSettings& settings, Optimizer& optimizer, MovingWorld& moving_world, const Map& map)
       : settings_(settings), optimizer_(optimizer), moving_world_(moving_world), map_(map) {}
 
-  /// Weights the frame's features and builds the motion-only problem of all its matches, which starts at the frame's
-  /// pose. Matches with points that are gone are removed.
+  /// Weights the frame's features and builds the motion-only problem of all matches with the frame's pose as initial
+  /// value. Matches with removed points are dropped.
   void build_problem(Frame& frame);
-  /// Builds the problem and adjusts the pose to it (motion-only bundle adjustment). Returns the number of inliers,
-  /// without those that are probably moving; 0 leaves the pose as it was.
+  /// Builds the problem and optimizes the pose (motion-only bundle adjustment). Returns the number of inliers that are
+  /// probably static; if it is 0, the pose is unchanged.
   int adjust(Frame& frame);
-  /// The same with points that are not in the map beside those that are. Drops the outliers of both from the frame's
-  /// matches and from `odometry`.
+  /// Like adjust(), with odometry points in addition to map points. Removes the outliers from the frame's matches and
+  /// from `odometry`.
   int adjust(Frame& frame, std::vector<OdometryMatch>& odometry);
-  /// The same for a frame that is not the current one: its features keep the weights that they have.
+  /// Like adjust() for a frame that is not the current one; the weights of its features are not changed.
   int adjust_as_weighted(Frame& frame, std::vector<OdometryMatch>& odometry);
   /// Removes the matches that are outliers of the last problem.
   void drop_outliers(Frame& frame) const;
 
-  /// The last problem, for other solvers; its inliers decide what drop_outliers() removes.
+  /// The last problem, for other solvers. Its inlier flags determine the matches that drop_outliers() removes.
   PoseProblem& problem() { return problem_; }
   /// Number of matches in the last problem.
   int matches() const { return static_cast<int>(problem_.size()); }
-  /// Standard deviation of the position that was last adjusted [m].
+  /// Standard deviation of the last adjusted position [m].
   double position_deviation() const { return position_deviation_; }
 
  private:

@@ -18,7 +18,7 @@
 
 namespace holdfast {
 
-/// What a Relocaliser works with; all of it must outlive the Relocaliser.
+/// Components used by a Relocaliser; all must outlive it.
 struct RelocaliserParts {
   LoopDetector& detector;
   const MovingWorld& moving_world;
@@ -28,36 +28,36 @@ struct RelocaliserParts {
   FrameHistory& history;
 };
 
-/// Finds the pose of a frame without the motion model's prediction: along the last velocity, from keyframes by
-/// descriptors, or at places that the loop detector recognises. Each function sets the frame's pose and matches and, in
-/// the result, the method when it succeeds or the failure when it does not. Random samples come from the seed. One
-/// thread, within a MapAccess.
+/// Relocalisation of a frame after a loss: by extrapolation of the last velocity, by descriptor matches with the last
+/// keyframes, or by place recognition. Each function sets pose and matches of the frame and, in the result, the method
+/// or the failure. Random samples depend on the seed only. One thread, within a MapAccess.
 class Relocaliser {
  public:
   Relocaliser(const TrackingSettings& settings, const RelocaliserParts& parts, std::uint64_t seed)
       : settings_(settings), parts_(parts), random_(Random(seed).fork(1)) {}
 
-  /// Matches the frame with one keyframe by descriptors, aligns depth with the map by RANSAC, and adjusts. When depth
-  /// gives no alignment, the adjustment starts at `start`, or at the keyframe's pose without one.
+  /// Matches the frame with one keyframe by descriptors, aligns its 3-D points with the map by RANSAC, and optimizes
+  /// the pose. Without an alignment the initial value is `start` or, if empty, the pose of the keyframe.
   bool align_with_keyframe(KeyFrameId keyframe, const std::optional<Eigen::Isometry3d>& start, Frame& frame,
                            FrameResult& result);
-  /// All hypotheses for a lost camera, in this order: coast(), recover(), find_place(). `image` is the frame's colour
-  /// image.
+  /// Tries coast(), recover() and find_place() in this order. `image` is the frame's colour image.
   bool relocalise(KeyFrameId last_keyframe, KeyFrameId reference, const cv::Mat& image, Frame& frame,
                   FrameResult& result);
 
-  /// For a short time after the last tracked frame: searches the local map at shares of the last velocity's motion.
+  /// Guided search in the local map at poses extrapolated by fractions of the last velocity, for a short time after the
+  /// loss.
   bool coast(Frame& frame, FrameResult& result);
-  /// Tries the last keyframe and the strongest neighbours of it and of the reference keyframe.
+  /// Tries align_with_keyframe() with the last keyframe and the strongest covisible neighbours of it and of the
+  /// reference keyframe.
   bool recover(KeyFrameId last_keyframe, KeyFrameId reference, Frame& frame, FrameResult& result);
-  /// Candidates by appearance, PnP with RANSAC, then guided search in the local map (Mur-Artal et al. 2015, section
-  /// V-C). Describes the image first if the loop detector compares whole images.
+  /// Relocalisation by place recognition: candidates of the loop detector, PnP with RANSAC, guided search in the local
+  /// map (Mur-Artal et al. 2015, section V-C). Computes the global image descriptor first if the detector uses one.
   bool find_place(const cv::Mat& image, Frame& frame, FrameResult& result);
-  /// Whether so many inliers of the last adjustment tell a pose from a wrong one. Depth does so for other sensors;
-  /// with one camera, their share of the matches must.
+  /// Whether the inliers of the last adjustment are too many for a chance result. In monocular mode this depends on
+  /// their share of the matches; with depth it is always true.
   bool is_beyond_chance(int inliers) const;
-  /// Whether the camera can have moved to the frame's pose since it was last tracked, at
-  /// TrackingSettings::relocalisation_speed; `tolerance` [m] is for a last pose that had gone astray.
+  /// Whether the frame's pose is reachable from the last tracked one at TrackingSettings::relocalisation_speed, plus a
+  /// `tolerance` [m] for errors of the last pose.
   bool is_reachable(const Frame& frame, double tolerance) const;
 
  private:

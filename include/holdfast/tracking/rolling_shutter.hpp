@@ -10,46 +10,44 @@
 
 namespace holdfast {
 
-/// How the camera moved from the previous frame to the current one.
+/// Motion of the camera from the previous frame to the current one.
 struct FrameMotion {
   geometry::Vector6d tangent;  ///< log of T_current_previous [m, rad]
   double interval;             ///< [s], above 0
 
-  /// T_later_current, by constant velocity, for a moment `seconds` after the current frame.
+  /// T_later_current by constant velocity, for a time `seconds` after the current frame.
   Eigen::Isometry3d during(double seconds) const { return geometry::exp_se3(seconds / interval * tangent); }
 };
 
-/// A rolling shutter exposes the rows of an image one after another. While a camera turns by 1 rad/s, the readout of a
-/// Kinect, 26 ms, moves the last row by 13 px against the first (Ringaby and Forssen, "Efficient Video Rectification
-/// and Stabilisation for Cell-Phones", IJCV 2012). This class takes features to where an image exposed at once, at the
-/// time of its middle row, would show them:
+/// Correction of the rolling shutter (Ringaby and Forssen, "Efficient Video Rectification and Stabilisation for
+/// Cell-Phones", IJCV 2012), which exposes the rows of an image one after another: for a rotation of 1 rad/s and a
+/// readout of 26 ms (Kinect), the last row is displaced by 13 px relative to the first. Features are moved to their
+/// positions in a global-shutter image at the time of the middle row:
 ///
 ///   X' = T(-t) X,  t = (row / height - 1/2) * readout,  T(t) = exp(t * velocity)
 ///
-/// to the second order in t, where X is the feature at its depth in the camera frame.
+/// to second order in t, where X is the 3-D position of the feature in the camera frame.
 ///
-/// The readout time can be estimated. Every tracked frame is one Gauss-Newton step of it: the sum of squared
-/// reprojection errors of its inliers, linearised in the pose and in the readout time, with the pose eliminated by the
-/// Schur complement. Points of the map were themselves seen with the previous estimates, so that a step falls short of
-/// the truth, while its zero lies where it should; steps are therefore enlarged, and averaged by their information.
-/// One thread.
+/// The readout time can be estimated, by one Gauss-Newton step per tracked frame: the squared reprojection errors of
+/// the inliers are linearised in the pose and the readout time, and the pose is eliminated by the Schur complement. Map
+/// points were observed with earlier estimates, so that a step is too short, although it vanishes at the true value;
+/// steps are therefore enlarged, and averaged by their information. One thread.
 class RollingShutter {
  public:
   /// `readout`: of the camera, see Camera::readout.
   RollingShutter(RollingShutterMode mode, double readout);
 
-  /// Whether correct() changes anything.
+  /// True if correct() has an effect.
   bool is_active() const { return mode_ != RollingShutterMode::off && readout_ != 0.0; }
   bool is_estimated() const { return mode_ == RollingShutterMode::estimated; }
-  /// The time in use now [s].
+  /// Current readout time [s].
   double readout() const { return readout_; }
 
-  /// Moves frame.x, y, depth and right_x, which are those of the rows' exposures; the grid is left as it is. Features
-  /// without depth have that of their map point by frame.T_camera_world, or a typical one: only
-  /// then is the map read.
+  /// Corrects frame.x, y, depth and right_x; the grid is not updated. Features without depth use that of their map
+  /// point (by frame.T_camera_world) or a typical depth; the map is read only in this case.
   void correct(const FrameMotion& motion, const Map& map, Frame& frame) const;
-  /// Improves the estimate by a frame with its final pose, whose map points agree with it, and whose features were
-  /// corrected for `motion`; does nothing unless the time is estimated.
+  /// Updates the estimate by a frame with final pose and inlier map points, whose features were corrected for `motion`.
+  /// Has no effect unless the readout time is estimated.
   void learn(const FrameMotion& motion, const Map& map, const Frame& frame);
 
  private:

@@ -11,23 +11,20 @@
 
 namespace holdfast {
 
-/// Gives the features of the left image of a rectified pair depth: each is searched for in its row of the right image
-/// by its descriptor, each right feature belongs to at most one left feature, and the column is refined by comparing
-/// image patches, to a fraction of a pixel by a parabola. After Mur-Artal and Tardos 2017, section III-A, who search
-/// along the rows in the same way; here the patches are those of the full image, so that the disparity of coarse
-/// features is as precise as that of fine ones, and differ by a constant brightness at most. Keeps its buffers; one
-/// thread.
+/// Sparse stereo matching for a rectified pair (Mur-Artal and Tardos 2017, section III-A): each left feature is matched
+/// by its descriptor along its row of the right image, each right feature is used once, and the column is refined by
+/// patch correlation with a parabola fit. Unlike the paper, patches are taken from the full image, so that coarse
+/// features have the same precision as fine ones, and are compared after subtraction of a constant brightness
+/// difference. Keeps its buffers; one thread.
 class StereoMatcher {
  public:
   explicit StereoMatcher(const StereoSettings& settings) : settings_(settings) {}
 
-  /// Writes frame.depth [m] and frame.right_x [px], which get one entry for each feature. `left` and `right`: 8UC1 of
-  /// the camera's size. The camera must have no distortion. `errors`: of the pair, by which rows and disparities are
-  /// corrected.
+  /// Sets frame.depth [m] and frame.right_x [px]. `left` and `right`: 8UC1 of the camera's size. The camera must have
+  /// no distortion. `errors`: calibration errors of the pair, for which rows and disparities are corrected.
   void match(const cv::Mat& left, const cv::Mat& right, const Features& right_features, Frame& frame,
              const PairErrors& errors = {});
-  /// How much lower the right image shows the features that the last match() gave depth, as far as the keypoints of
-  /// both images are the same point.
+  /// Row differences of the features matched by the last match(), if the keypoints of both images show the same point.
   const std::vector<RowDifference>& row_differences() const { return row_differences_; }
 
  private:
@@ -38,8 +35,7 @@ class StereoMatcher {
   void sort_by_row(const Features& features, int rows);
   void find_matches(const Frame& frame, const Features& right, float max_disparity, const PairErrors& errors);
   void keep_best_of_each_right_feature(const Features& right);
-  /// The disparity [px] of a match as the images show it, and how different the patches are; NaN for one that cannot be
-  /// refined.
+  /// Refined disparity [px] of a match and the difference of the patches; NaN if it cannot be refined.
   float refine(const cv::Mat& left, const cv::Mat& right, cv::Point2f left_at, cv::Point2f right_at, float scale,
                float& difference) const;
 

@@ -8,19 +8,19 @@ namespace holdfast {
 template <class Settings>
 class ParameterTable;
 
-/// Correction of errors of a pair's calibration: none, the given errors, or errors that are estimated during the run,
-/// beginning with the given ones.
+/// Correction of calibration errors of a stereo pair: none, by the configured errors, or by online estimates with the
+/// configured errors as initial values.
 enum class SelfCalibration { off, fixed, estimated };
 
 template <>
 inline constexpr Choice<SelfCalibration> choice_table<SelfCalibration>[] = {
     {"off", SelfCalibration::off}, {"fixed", SelfCalibration::fixed}, {"estimated", SelfCalibration::estimated}};
 
-/// The `stereo` section of a configuration: how the features of the left image get their depth from the right one.
+/// The `stereo` section of a configuration: depth of features from a stereo pair, and self-calibration.
 struct StereoSettings {
   double minimum_depth = 0.4;  ///< [m]; nearer surfaces have no depth
   double row_tolerance = 2.0;  ///< px at level 0, times the scale of the feature: of keypoints, and of rectification
-  /// Between the descriptors of both images; 0 = halfway between the extractor's strict and loose distance, 75 bits for
+  /// Maximum descriptor distance of a match; 0 = halfway between the extractor's strict and loose distance, 75 bits for
   /// ORB (Mur-Artal and Tardos 2017).
   double maximum_distance = 0.0;
   int patch_radius = 5;            ///< px; half the width of the patch by which the disparity is refined

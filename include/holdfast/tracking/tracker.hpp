@@ -23,8 +23,8 @@
 namespace holdfast {
 
 /// Tracking (Mur-Artal and Tardos 2017, section III): estimates the pose of every frame against the map and requests
-/// keyframes. It is the state machine of TrackerState with three components: FrameTracker finds the pose of one
-/// frame, MapStart initialises maps, LossRecovery deals with losses.
+/// keyframes. It is the state machine of TrackerState with three components: FrameTracker finds the pose of one frame,
+/// MapStart initialises maps, LossRecovery handles losses.
 ///
 /// The pipeline calls, for each frame and in this order: judge_start(), begin(), locate(), and keyframe_added() for a
 /// frame that became a keyframe. The tracker writes to the map only its observations of points: how often they are
@@ -32,19 +32,19 @@ namespace holdfast {
 /// Functions that use the map take a MapAccess.
 class Tracker {
  public:
-  /// With keyframes in the map the tracker begins lost and has to relocalise first.
+  /// With keyframes in the map the tracker starts in the state lost and must relocalise first.
   Tracker(const TrackingSettings& settings, const TrackerParts& parts, FirstPoses first_poses = default_first_poses());
   Tracker(const Tracker&) = delete;
   Tracker& operator=(const Tracker&) = delete;
 
-  /// From now on no frame becomes a keyframe.
+  /// Localisation mode: no further frames become keyframes.
   void localise_only() { context_.localises_only = true; }
 
   /// Throws InputError for images that begin() would refuse.
   void check_images(const SensorFrame& sensor_frame) const { context_.builder.check_images(sensor_frame); }
-  /// True if the first mask, which has just arrived, shows mostly movable objects in the first keyframe. Then the
-  /// caller clears the map and calls forget_map(); the next frame initialises another map, from which the frames before
-  /// it are tracked backwards.
+  /// True if the first mask has arrived and covers most of the first keyframe with movable objects. The caller must
+  /// then clear the map and call forget_map(); the next frame initialises another map, from which earlier frames are
+  /// tracked backwards.
   bool judge_start(const MapAccess& map);
   /// First half of a frame: propagates the mask and extracts features. It does not read the map.
   void begin(const SensorFrame& sensor_frame, FrameResult& result);
@@ -55,14 +55,14 @@ class Tracker {
   void map_begun(const MapAccess&, KeyFrameId reference, const std::vector<MapPointId>& points) {
     start_->map_begun(reference, points);
   }
-  /// Takes over the matches and the pose of the keyframe that the frame became, as local mapping left them.
+  /// Takes over matches and pose of the keyframe made of the last frame, as changed by local mapping.
   void keyframe_added(const MapAccess& map, KeyFrameId keyframe);
   /// Resets tracking to the state before the first frame. The caller has emptied the map.
   void forget_map(const MapAccess& map);
   /// Ends tracking: withdraws unconfirmed poses after a loss, and tracks kept frames backwards.
   void finish(const MapAccess&, StageTimes& times) { recovery_.finish(times); }
 
-  /// The frame last tracked, with features, matches and pose.
+  /// The last tracked frame, with features, matches and pose.
   const Frame& frame() const { return context_.current; }
   TrackerState state() const { return state_; }
   /// Statistics of the frames around losses so far.

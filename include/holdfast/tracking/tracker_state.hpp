@@ -22,14 +22,15 @@ namespace holdfast {
 ///                                            | unconfirmed | --> tracking: ample inliers, or eight frames
 ///                                            +-------------+
 ///
-/// A loaded map begins as lost. "Judged" is: with depth, the first mask has confirmed the start; with one camera, the
-/// map has settled for half a second. Only one camera gives a map up that was lost or found weak right after its start.
+/// With a loaded map the initial state is lost. The transition "judged" requires the first mask if features have depth,
+/// and half a second of tracking in monocular mode. "Given up" exists in monocular mode only, for maps that are lost or
+/// found weak right after their start.
 enum class TrackerState {
   waiting,      ///< there is no map
-  provisional,  ///< the camera is tracked; frames are kept to be tracked again once the start has been judged
+  provisional,  ///< the camera is tracked; frames are kept for backward tracking after the verification of the start
   tracking,     ///< the camera is tracked
   lost,         ///< there is a map, and the last frame has no pose in it
-  unconfirmed,  ///< found after a loss by few inliers; no keyframes, and the poses may be withdrawn
+  unconfirmed,  ///< recovered with few inliers; no keyframes are created, and the poses may be withdrawn
 };
 
 /// Whether the last frame has a pose.

@@ -29,15 +29,15 @@ struct TrackerParts {
   LoopDetector& detector;
   MovingWorld& moving_world;
   Map& map;
-  std::uint64_t seed = 1;                  ///< of the random samples of relocalisation
-  std::optional<StereoParts> stereo = {};  ///< depth comes from a right image
-  bool features_have_depth = true;         ///< false for one camera; stereo pairs have depth
+  std::uint64_t seed = 1;                  ///< seed of the random samples of relocalisation
+  std::optional<StereoParts> stereo = {};  ///< set if depth comes from a stereo pair
+  bool features_have_depth = true;         ///< false in monocular mode
   const FeatureMatcher& matcher = nearest_matcher();
 };
 
-/// The frame being tracked, the one before it, and the tools that estimate poses. Tracker owns it; its rooms
-/// (FrameTracker with the first-pose methods, MapStart, LossRecovery) share it within the MapAccess that Tracker was
-/// given; only Tracker::begin() has none. One thread.
+/// Data shared by the components of Tracker: the current and the previous frame, and the tools for pose estimation.
+/// FrameTracker, the first-pose methods, MapStart and LossRecovery use it within the MapAccess of Tracker, except in
+/// Tracker::begin(), which has none. One thread.
 struct TrackingContext {
   TrackingContext(const TrackingSettings& settings, const TrackerParts& parts);
   TrackingContext(const TrackingContext&) = delete;
@@ -60,14 +60,14 @@ struct TrackingContext {
   std::uint32_t submap() const { return map.submap_of(reference_keyframe).value_or(0); }
   /// Removes all matches of the current frame with map points.
   void drop_matches();
-  /// As if no frame had been tracked.
+  /// Resets the data to the state before the first frame.
   void forget_map();
 
   const TrackingSettings settings;
   MovingWorld& moving_world;
   Map& map;
   const bool features_have_depth;
-  bool localises_only = false;  ///< the map stays as it is
+  bool localises_only = false;  ///< localisation mode: the map is not changed
 
   FrameBuilder builder;
   FrameHistory history;
@@ -77,9 +77,9 @@ struct TrackingContext {
   RollingShutter shutter;
 
   Frame current, previous;
-  KeyFrameId reference_keyframe;   ///< against which the current frame is tracked
-  KeyFrameId last_keyframe;        ///< added last
-  double last_feature_time = 0.0;  ///< [s], of the last pose that matches with the map determined
+  KeyFrameId reference_keyframe;   ///< reference keyframe of the current frame
+  KeyFrameId last_keyframe;        ///< most recently added keyframe
+  double last_feature_time = 0.0;  ///< time of the last pose that was estimated from map matches [s]
 };
 
 }  // namespace holdfast

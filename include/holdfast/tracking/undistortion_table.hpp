@@ -7,8 +7,8 @@
 
 namespace holdfast {
 
-/// Undistorted pixels of raw image positions by look-up: a table with a knot every two pixels, interpolated bilinearly
-/// (error below 0.005 px for the known cameras). Immutable after construction; any thread.
+/// Undistortion of pixels by a look-up table with bilinear interpolation between nodes every two pixels (error below
+/// 0.005 px for the known cameras). Immutable after construction; any thread.
 class UndistortionTable {
  public:
   explicit UndistortionTable(const Camera& camera);

@@ -9,18 +9,17 @@
 
 namespace holdfast {
 
-/// The accuracy of a bench for people to read: what helps, by how much, is it sure; errors by variant and by cell;
-/// improvements as tables 2 and 3 of Zeng et al. 2023; published figures; what did not finish. Holds neither times nor
-/// anything else of the machine: the same bytes from equal results.
+/// The accuracy report (report.md): comparisons with effect size and significance, errors by variant and by cell,
+/// improvements as in tables 2 and 3 of Zeng et al. 2023, published figures, failed runs. It contains no times and
+/// nothing else that depends on the machine, so that equal results give the same bytes.
 std::string accuracy_report(const RunPlan& plan, const BenchResults& results, const Analysis& analysis,
                             const PublishedResults& published);
 
-/// Time and memory, the machine, and whether runs stood alone.
+/// The cost report (cost.md): time, memory, machine, and whether runs were executed alone.
 std::string cost_report(const RunPlan& plan, const BenchResults& results, const Analysis& analysis,
                         const PublishedResults& published);
 
-/// Everything of both, and where each run's files are, for programs and pages that draw (docs/benchmarking.md lists the
-/// keys).
+/// All results and the paths of the files of each run as JSON (docs/benchmarking.md).
 std::string results_json(const RunPlan& plan, const BenchResults& results, const Analysis& analysis,
                          const PublishedResults& published);
 

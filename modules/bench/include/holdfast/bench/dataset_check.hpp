@@ -10,7 +10,7 @@
 
 namespace holdfast {
 
-/// What a folder holds, and what is wrong with it, each with what to do.
+/// Content of a recording's folder, and problems with their remedies.
 struct DatasetCheck {
   std::vector<std::string> facts;
   std::vector<std::string> problems;
@@ -19,18 +19,17 @@ struct DatasetCheck {
 /// The recipe whose folder, or whose name, a path ends with; nullptr when none does.
 const DatasetRecipe* recipe_of_folder(const std::filesystem::path& folder);
 
-/// The layout that the files of a folder show; tum where they show none.
+/// Layout of a folder, recognised by its files; tum if none is recognised.
 DatasetLayout layout_of(const std::filesystem::path& folder);
 
-/// Looks at a recording: are the lists there and readable, is every image that they list, has each its end and the
-/// camera's size, does a sample of them decode, does the truth cover them, are there as many as the recipe says, has
-/// every colour image its mask where there should be masks. Of stereo pairs: the same of the images of both cameras,
-/// and are calibration and truth readable. Without a recipe: a recording of any camera in the layout that layout_of()
-/// says.
+/// Checks a recording: readable lists, all listed images present, complete and of the camera's size, decoding of a
+/// sample, coverage by the ground truth, the number of images of the recipe, and masks for all colour images of
+/// recordings with masks. For stereo pairs, the images of both cameras, calibration and truth are checked. Without a
+/// recipe the layout is that of layout_of(), with any camera.
 DatasetCheck check_dataset(const std::filesystem::path& folder, const DatasetRecipe* recipe);
 
-/// The pairs that the source `tum` gives for the recording, or, of a recording in the layout of ICL-NUIM, those that
-/// its list holds, the colour image first. Throws InputError, as for a recording without depth.
+/// The colour-depth pairs of the source `tum` or, for the layout of ICL-NUIM, of its list, colour image first. Throws
+/// InputError, also for a recording without depth.
 std::vector<ListedPair> dataset_pairs(const std::filesystem::path& folder, DatasetLayout layout,
                                       double max_time_difference);
 

@@ -12,7 +12,7 @@
 
 namespace holdfast {
 
-/// How the files of a recording are arranged.
+/// Layout of the files of a recording.
 enum class DatasetLayout {
   tum,        ///< rgb.txt and depth.txt list the images with their stamps (Sturm et al., IROS 2012)
   icl_nuim,   ///< associations.txt lists numbered pairs, the depth image first (Handa et al., ICRA 2014); what the
@@ -29,25 +29,25 @@ inline bool brings_camera(DatasetLayout layout) {
   return layout == DatasetLayout::kitti || layout == DatasetLayout::euroc || layout == DatasetLayout::openloris;
 }
 
-/// What is known of a recording: enough to say where to get it and whether a folder holds it. Nothing is ever fetched.
+/// Description of a known recording: its origin, and properties by which a folder is checked. Nothing is downloaded.
 struct DatasetRecipe {
   std::string name;      ///< as in published figures: fr3_walking_xyz, bonn_crowd, w21
-  std::string dataset;   ///< that it belongs to
-  std::string folder;    ///< that its archive unpacks to
+  std::string dataset;   ///< name of the data set
+  std::string folder;    ///< folder in its archive
   std::string licence;   ///< "unknown; ..." where its page says nothing that we know
-  std::string citation;  ///< to be named by whoever uses it
-  std::string address;   ///< where people get it
-  std::string about;     ///< what to know before using it; may be empty
-  std::string make;      ///< the command that makes it, of a composed sequence; otherwise empty
+  std::string citation;  ///< publication to cite
+  std::string address;   ///< web address of its download page
+  std::string about;     ///< remarks for users; may be empty
+  std::string make;      ///< command that generates a composed sequence; otherwise empty
   DatasetLayout layout = DatasetLayout::tum;
   Camera camera;  ///< a known one; of stereo pairs it is in their own files, and this one has no name
   std::string truth = "groundtruth.txt";
   /// Values of source.tum.truth_left and truth_right; nothing = the truth is that of the camera.
   std::optional<ConfigurationNode> truth_left, truth_right;
-  /// Whether depth.txt lists images that the archive lacks: nothing is damaged then.
+  /// True if depth.txt lists images that are not in the published archive, which is no damage.
   bool lists_absent_depth = false;
   bool has_masks = false;                    ///< mask.txt and mask/: of every colour image, 0 = static, k = person k
-  std::optional<std::size_t> colour, depth;  ///< images; nothing: no document says
+  std::optional<std::size_t> colour, depth;  ///< number of images; empty if not documented
   std::optional<std::size_t> pairs;          ///< colour-depth pairs within 0.02 s, or stereo pairs
 
   /// How to get it, in a sentence.

@@ -16,7 +16,7 @@
 
 namespace holdfast {
 
-/// A recording in TUM layout as programs of others get it: the same frames that the source `tum` gives to ours.
+/// A recording in TUM layout for external systems, with the frames of the source `tum`.
 struct RecordedSequence {
   std::string name;
   std::filesystem::path folder;  ///< absolute
@@ -26,8 +26,8 @@ struct RecordedSequence {
   TruthTransform truth;            ///< of groundtruth.txt
 };
 
-/// Frames that external systems can only get as a copy in TUM layout, because their source is another one or because
-/// they are perturbed. Made by `holdfast record`, once for all runs that need it.
+/// A copy of frames in TUM layout for external systems, needed for other sources and for perturbed frames. Written once
+/// by `holdfast record`.
 struct RecordedCopy {
   std::string id;             ///< SEQUENCE/PERTURBATION: its folder below `copies`
   std::string name;           ///< of the sequence
@@ -42,7 +42,7 @@ std::string associations_text(const RecordedSequence& sequence);
 std::string orb_slam2_settings(const RecordedSequence& sequence,
                                const std::vector<std::pair<std::string, std::string>>& changes);
 
-/// What a command, its folder, environment and trajectory may name in braces.
+/// Values of the placeholders in command, folder, environment and trajectory.
 using Placeholders = std::map<std::string, std::string>;
 
 /// The names of all placeholders: sequence (folder), name (of the sequence), associations (file), settings (file),
@@ -50,10 +50,10 @@ using Placeholders = std::map<std::string, std::string>;
 const std::vector<std::string>& placeholder_names();
 /// The first {word} of lower-case letters that is no placeholder.
 std::optional<std::string> unknown_placeholder(const std::string& text);
-/// Replaces every placeholder; values are not looked at again.
+/// Replaces every placeholder. Placeholders in values are not replaced.
 std::string fill_placeholders(const std::string& text, const Placeholders& values);
 
-/// What a program left behind, whatever became of it.
+/// Trajectory of an external system, with counts of invalid lines.
 struct SalvagedTrajectory {
   bool exists = false;
   Trajectory poses;            ///< sorted and cleaned
@@ -62,7 +62,7 @@ struct SalvagedTrajectory {
       0;  ///< other lines that are no pose, such as one cut short or without a unit quaternion; left out
 };
 
-/// Reads a trajectory in TUM format without trusting it.
+/// Reads a trajectory in TUM format and skips invalid lines.
 SalvagedTrajectory salvage_trajectory(const std::filesystem::path& file);
 
 }  // namespace holdfast

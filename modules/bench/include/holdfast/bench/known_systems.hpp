@@ -8,8 +8,8 @@
 
 namespace holdfast {
 
-/// How a program of others is called, and what it needs: those of modules/bench/systems/systems.yaml. Nothing of these
-/// programs is part of Holdfast.
+/// Wrapper of an external system (modules/bench/systems/systems.yaml): its command and requirements. The systems are
+/// not part of Holdfast.
 struct KnownSystem {
   std::string name;
   std::string about;
@@ -28,7 +28,7 @@ const std::vector<KnownSystem>& known_systems();
 /// own. An unknown name is appended to `diagnostics`.
 void follow_wrappers(ConfigurationNode& matrix, std::vector<Diagnostic>& diagnostics);
 
-/// What of a known system is found on this machine, and what is missing.
+/// Files and programs of a known system that are found or missing on this machine.
 struct SystemCheck {
   std::string name;
   std::vector<std::string> found;
@@ -36,7 +36,7 @@ struct SystemCheck {
 };
 /// Variables are those given, then the environment's.
 std::vector<SystemCheck> check_known_systems(const Variables& variables);
-/// The checks as text, with where each system comes from and how it is built.
+/// The checks as text, with address and build instructions of each system.
 std::string doctor_text(const std::vector<SystemCheck>& checks);
 
 }  // namespace holdfast

@@ -6,7 +6,7 @@
 
 namespace holdfast {
 
-/// How busy the machine is; NaN where the system does not say.
+/// Load of the machine; NaN if unknown.
 struct MachineLoad {
   double load_average = std::numeric_limits<double>::quiet_NaN();  ///< over the last minute
   /// Time that all processors together spent with work since the machine was started [s].

@@ -20,20 +20,20 @@ struct PlacedText {
   SourceLocation location;
 };
 
-/// What a matrix sets in a configuration: a key path, as after `--set`, and the value.
+/// Override of a configuration by a matrix: key path, as after `--set`, and value.
 struct KeyValue {
   std::string key;
   SourceLocation location;
   ConfigurationNode value;
 };
 
-/// One value of an axis: a name, and what it changes.
+/// One value of an axis: its name and overrides.
 struct AxisValue {
   std::string name;  ///< fit for the name of a folder
   SourceLocation location;
   std::optional<PlacedText> configuration;  ///< a file in place of the matrix's base, absolute
   std::vector<KeyValue> overrides;
-  bool timing = false;  ///< its runs stand alone on the machine
+  bool timing = false;  ///< its runs are executed alone
   /// Of a value of the axis `perturbation` that was listed by strength: what is made worse, and how much.
   std::optional<std::pair<std::string, double>> perturbation;
 };
@@ -43,15 +43,14 @@ struct AxisValue {
 inline constexpr const char* perturbation_axis = "perturbation";
 inline constexpr const char* unperturbed = "none";
 
-/// What is varied, and its values: one variant for every combination of the values of all axes.
+/// An axis and its values. The variants are all combinations of the values of all axes.
 struct Axis {
   std::string name;
   SourceLocation location;
   std::vector<AxisValue> values;
 };
 
-/// Where frames come from. Whatever knows sequences by other means than a `source:` section (a dataset recipe) fills
-/// the same fields.
+/// A sequence: the source of frames, given by a `source:` section or a dataset recipe.
 struct MatrixSequence {
   std::string name;  ///< fit for the name of a folder
   SourceLocation location;
@@ -80,10 +79,10 @@ struct ExternalSystem {
   bool timing = false;
 };
 
-/// Runs that are left out: those that meet every condition. Keys are axes, `sequence` and `system`.
+/// Excluded runs: those that meet all conditions. Keys are axes, `sequence` and `system`.
 struct Exclusion {
   SourceLocation location;
-  /// That an axis, the sequence or the system has one of some values.
+  /// Condition on the value of an axis, the sequence or the system.
   struct Condition {
     PlacedText key;
     std::vector<PlacedText> values;  ///< one of them
@@ -91,7 +90,7 @@ struct Exclusion {
   std::vector<Condition> conditions;
 };
 
-/// What is computed of the results beyond the report.
+/// Analysis of the results in addition to the report.
 struct MatrixAnalysis {
   std::vector<std::string> tables;  ///< of paper_table_names(), each once
   int decimals = 4;                 ///< of errors in these tables
@@ -101,13 +100,13 @@ struct MatrixAnalysis {
       columns;  ///< names of variants, and what the tables call them instead
 };
 
-/// Where runs are executed, as the key `executor` says.
+/// The key `executor`: where runs are executed.
 struct MatrixExecutor {
   std::string name = "local";                                ///< or slurm
   std::vector<std::pair<std::string, PlacedText>> settings;  ///< of slurm, by name
 };
 
-/// A file that says which systems run on which sequences, how often, and what is compared with what.
+/// A benchmark matrix: systems, sequences, repeats and comparisons.
 struct Matrix {
   std::filesystem::path file;
   std::string title;
@@ -118,7 +117,7 @@ struct Matrix {
   std::vector<std::uint64_t> seeds = {1};
   double time_limit = 3600.0;     ///< of a run [s]
   double minimum_coverage = 0.9;  ///< below it a comparison is marked, 0 to 1
-  bool timing = false;            ///< every run stands alone on the machine
+  bool timing = false;            ///< all runs are executed alone
   std::vector<Axis> axes;
   std::vector<MatrixSequence> sequences;
   std::vector<ExternalSystem> systems;
@@ -141,7 +140,7 @@ using Variables = std::map<std::string, std::string>;
 /// a listing. Throws ConfigurationError when the file cannot be read as YAML.
 Matrix read_matrix(const std::filesystem::path& file, const Variables& variables, std::vector<Diagnostic>& diagnostics);
 
-/// The name of a variable that was not set, when the tree holds one.
+/// Name of an undefined variable in the tree, if there is one.
 std::optional<PlacedText> missing_variable(const ConfigurationNode& node);
 /// The same for one text.
 std::optional<std::string> missing_variable(const std::string& text);

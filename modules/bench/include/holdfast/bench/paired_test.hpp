@@ -15,15 +15,14 @@ struct SignedRank {
   double p = 1.0;         ///< two-sided
 };
 
-/// Exact at every size: the distribution of the rank sum over all 2^n signs is computed, not approximated. Equal
-/// magnitudes share the mean of their ranks, and the distribution is that of the shared ranks. The differences must be
-/// finite.
+/// Exact for every size: the distribution of the rank sum over all 2^n signs is computed. Ties get the mean of their
+/// ranks, and the distribution takes them into account. The differences must be finite.
 SignedRank wilcoxon_signed_rank(std::span<const double> differences);
 
-/// Fewer pairs cannot reach p < 0.05, whatever they say: of n signs all alike p is 2 / 2^n.
+/// Minimum number of pairs for p < 0.05: with n equal signs p is 2 / 2^n.
 inline constexpr std::size_t fewest_pairs_to_test = 6;
 
-/// A confidence interval, in the unit of the values it was made of.
+/// A confidence interval, in the unit of the values.
 struct Interval {
   double low = 0.0;
   double high = 0.0;
@@ -33,7 +32,7 @@ struct Interval {
 /// with replacement. Same values and seed, same interval. At least one value.
 Interval bootstrap_median(std::span<const double> values, std::uint64_t seed = 1, int resamples = 10000);
 
-/// The step-down correction of Holm (1979) for several tests: what each p becomes, by its place.
+/// Step-down correction of Holm (1979) for multiple tests: the corrected p-values in the order of the input.
 std::vector<double> holm_adjusted(std::span<const double> p_values);
 
 }  // namespace holdfast

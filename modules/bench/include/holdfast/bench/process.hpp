@@ -22,7 +22,7 @@ struct ProcessRequest {
   std::filesystem::path log;                                     ///< standard output and error go here
 };
 
-/// How a process ended, with what the operating system counted for it and for those of its children that it waited for.
+/// End of a process, with the resources used by it and by its children that it waited for.
 struct ProcessEnd {
   bool was_started = true;
   int exit_code = 0;  ///< meaningless when a signal ended it
@@ -33,21 +33,21 @@ struct ProcessEnd {
   std::size_t peak_memory = 0;  ///< resident, of its largest process [bytes]
 };
 
-/// A running process, the head of a process group of its own: Ctrl-C on our terminal does not reach it, and a signal
-/// meets its children too. It ends when we end, however that happens (Linux's parent-death signal; its children are not
-/// covered). An object that goes kills the group. Used by one thread.
+/// A running process with a process group of its own: Ctrl-C in the terminal does not reach it, and signals are sent to
+/// its children, too. It is killed when this process ends (parent-death signal of Linux; its children are not). The
+/// destructor kills the group. Used by one thread.
 class Process {
  public:
-  /// What cannot be started ends at once, with was_started false and the reason in the log.
+  /// A program that cannot be started ends immediately, with was_started false and the reason in the log.
   explicit Process(const ProcessRequest& request);
   ~Process();
   Process(Process&& other) noexcept;
   Process& operator=(Process&& other) noexcept;
 
-  /// How it ended; nothing while it runs. Does not wait.
+  /// The end of the process; empty while it runs. Does not wait.
   std::optional<ProcessEnd> poll();
   double seconds() const { return watch_.seconds(); }
-  /// Asks the group to end (SIGTERM), or ends it (SIGKILL).
+  /// Sends SIGTERM or SIGKILL to the group.
   void terminate();
   void kill();
 
@@ -59,7 +59,7 @@ class Process {
   Stopwatch watch_;
 };
 
-/// Waits until one of our processes may have ended or a signal came, at most so long [s].
+/// Waits until a child process may have ended or a signal has arrived, at most for the given time [s].
 void wait_for_processes(double seconds);
 
 }  // namespace holdfast

@@ -12,8 +12,8 @@
 
 namespace holdfast {
 
-/// A row of a published table: ATE RMSE by sequence, with where it is printed and how it was measured. The same system
-/// differs between papers by a factor of up to 4.7, so a figure never goes without these two.
+/// A row of a published table: ATE RMSE by sequence, with source and protocol, because figures of one system differ
+/// between papers by a factor of up to 4.7.
 struct PublishedResult {
   std::string system;
   std::string citation;
@@ -28,7 +28,7 @@ struct PublishedResult {
 
   /// Whether a figure other than the RMSE is printed.
   bool has_more_than_rmse() const;
-  /// The system with what makes its figures incomparable: "DROID-W (monocular, Sim(3))".
+  /// The system with deviations of its protocol: "DROID-W (monocular, Sim(3))".
   std::string marked_system() const;
 };
 

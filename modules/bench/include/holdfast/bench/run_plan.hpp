@@ -15,7 +15,7 @@
 
 namespace holdfast {
 
-/// What is compared: one value of every axis, or an external system.
+/// A variant: one value of every axis, or an external system.
 struct Variant {
   /// The values' names joined by '+', or the system's, with '+' and the perturbation where there is one.
   std::string name;
@@ -54,7 +54,7 @@ struct RunPlan {
   std::vector<std::optional<RecordedSequence>> recordings;       ///< by sequence: those that external systems run on
   std::vector<RecordedCopy> copies;                              ///< that external systems need
   std::map<std::string, std::string> perturbation_units;         ///< unit of a strength by name of the perturbation
-  std::vector<Diagnostic> missing;  ///< folders, files and programs that are not there, with where to get them
+  std::vector<Diagnostic> missing;  ///< missing folders, files and programs, with their origin
 };
 
 /// Files in a run's folder that hold PlannedRun::request.
@@ -62,10 +62,9 @@ inline constexpr const char* configuration_file = "config.yaml";
 inline constexpr const char* external_request_file = "request.json";
 
 /// Expands a matrix: variants are the product of the axes (the first one varies slowest), then the systems; every
-/// configuration is built and checked as `holdfast check` does. Everything that is wrong is appended to `diagnostics`,
-/// each once; what is only missing on this machine goes to RunPlan::missing. Plugins that configurations name are
-/// loaded into `registry`. With the id of a run in `only`, the other cells are left out of RunPlan::runs, and are not
-/// checked.
+/// configuration is built and checked as `holdfast check` does. Errors are appended to `diagnostics`, each once; data
+/// that are missing on this machine to RunPlan::missing. Plugins that configurations name are loaded into `registry`.
+/// With the id of a run in `only`, the other cells are left out of RunPlan::runs, and are not checked.
 ///
 /// `try_out` makes the modules of a configuration and throws what does not fit, such as a filter with a class that the
 /// segmenter does not have. It is called once for each segmenter with its filters, where nothing is missing; a
@@ -74,7 +73,7 @@ RunPlan make_run_plan(Matrix matrix, Registry& registry, const std::vector<Secti
                       std::vector<Diagnostic>& diagnostics, const std::string& only = "",
                       const std::function<void(const Configuration&)>& try_out = {});
 
-/// What `--dry-run` prints: every run, their count, remarks, and what is missing.
+/// Output of `--dry-run`: all runs, their number, remarks, and missing data.
 std::string plan_text(const RunPlan& plan);
 
 }  // namespace holdfast

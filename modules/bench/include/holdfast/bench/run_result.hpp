@@ -37,8 +37,8 @@ inline constexpr std::array<const char*, 6> statistic_names = {"RMSE", "mean", "
 using SixStatistics = std::array<double, 6>;  ///< NaN where there are none
 SixStatistics six_statistics(const Statistics& statistics);
 
-/// What a run found: all that depends on the frames, the configuration and the seed, and nothing of the machine or the
-/// clock. In sequential mode the same bytes on every repetition.
+/// Result of a run without costs: it depends on frames, configuration and seed only, so that sequential repetitions
+/// give the same bytes.
 struct RunResult {
   RunStatus status = RunStatus::not_started;
   int code = 0;                              ///< exit code, or the signal of a crash
@@ -48,13 +48,13 @@ struct RunResult {
   std::size_t malformed = 0;                 ///< lines of an external system's trajectory that are no pose
   bool has_errors = false;                   ///< the statistics below
   std::array<SixStatistics, 3> errors = {};  ///< by Quantity
-  /// What was made worse about the frames, and its strength, by name; empty for an external system.
+  /// Strengths of the perturbations by name; empty for an external system.
   std::map<std::string, double> perturbation;
   std::string truth_frame = "raw";  ///< EvaluationOptions::truth_frame of the errors
   std::string no_errors;            ///< why there are none
 
   double coverage() const { return frames == 0 ? 0.0 : static_cast<double>(poses) / static_cast<double>(frames); }
-  /// Whether its errors enter tables and tests. What a run left that did not finish is shown, but stands for nothing.
+  /// Whether its errors are included in tables and tests; those of unfinished runs are only shown.
   bool counts() const { return status == RunStatus::finished && has_errors; }
 };
 
@@ -68,7 +68,7 @@ struct StageCost {
   double total = 0.0;   ///< [s]
 };
 
-/// What a run cost, and on which machine; differs from repetition to repetition.
+/// Cost of a run and its machine; differs between repetitions.
 struct RunCost {
   ProcessEnd process;
   bool alone = false;  ///< nothing else of the bench ran beside it
@@ -84,7 +84,7 @@ struct RunCost {
 
   /// User and system time / wall time: mean number of processors that the run kept busy.
   double processor_ratio() const;
-  /// Whether neither another run nor other programs disturbed its times, as far as is known.
+  /// Whether its times were disturbed by no other run or program, as far as known.
   bool is_undisturbed() const { return alone && !(other_processors > most_other_processors); }
 
   static constexpr double most_other_processors = 0.1;  ///< what an idle system uses
@@ -92,13 +92,13 @@ struct RunCost {
 
 std::string to_json(const RunResult& result);
 std::string to_json(const RunCost& cost);
-/// Throw InputError for a file that is not what to_json() gave.
+/// Read the output of to_json(). Throw InputError for any other content.
 RunResult read_run_result(const std::filesystem::path& file);
 RunCost read_run_cost(const std::filesystem::path& file);
 
-/// Fills in what an evaluation found.
+/// Sets the errors of an evaluation.
 void take_errors(const Evaluation& evaluation, RunResult& result);
-/// The same from the folder of `holdfast run` (run.json, evaluation.json); a file that is not there says nothing.
+/// The same from the folder of `holdfast run` (run.json, evaluation.json); missing files are ignored.
 void read_own_run(const std::filesystem::path& folder, RunResult& result, RunCost& cost);
 
 }  // namespace holdfast

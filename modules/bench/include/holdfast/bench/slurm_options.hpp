@@ -10,7 +10,7 @@
 namespace holdfast {
 
 /// Sets an option by its name: partition, account, time, memory, constraint, processors, array_size, poll_seconds.
-/// Whatever is wrong is appended to `diagnostics`.
+/// Errors are appended to `diagnostics`.
 void set_slurm_option(const std::string& name, const PlacedText& value, SlurmOptions& options,
                       std::vector<Diagnostic>& diagnostics);
 

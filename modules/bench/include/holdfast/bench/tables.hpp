@@ -9,8 +9,8 @@
 
 namespace holdfast {
 
-/// Text from a file as one line of Markdown: HTML shows as it is written instead of being obeyed, line feeds become
-/// blanks, and other control characters are written out, such as \x1b.
+/// Escapes text for one line of Markdown: HTML is not interpreted, line feeds become blanks, other control characters
+/// are written as \x1b.
 std::string markdown_text(const std::string& text);
 /// A table as Markdown, the first column flush left and the others flush right. Cells are escaped by markdown_text(),
 /// and '|' is, too.
@@ -18,8 +18,8 @@ std::string to_markdown(const ReportTable& table);
 /// A table as CSV with the header as its first line; quoted as RFC 4180 wants it.
 std::string to_csv(const ReportTable& table);
 
-// Tables for programs: one fact per row, full precision, an empty text where there is no figure. All but cost_table()
-// depend on nothing but the plan and what the runs found: the same bytes from equal results.
+// Tables for programs: one fact per row, full precision, an empty text where there is no figure. All except
+// cost_table() depend on the plan and the results only.
 
 /// Every run: how it ended, its poses and its 18 errors.
 ReportTable runs_table(const RunPlan& plan, const BenchResults& results);
@@ -33,7 +33,7 @@ ReportTable published_table(const RunPlan& plan, const PublishedResults& publish
 /// Time and memory of every cell.
 ReportTable cost_table(const RunPlan& plan, const Analysis& analysis);
 
-/// The name under which a sequence stands in the file of published figures.
+/// Name of a sequence in the file of published figures.
 const std::string& published_name(const MatrixSequence& sequence);
 
 }  // namespace holdfast
