@@ -2,10 +2,10 @@
 #include "holdfast/bench/external_system.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <string_view>
 
+#include "holdfast/core/parsed_number.hpp"
 #include "holdfast/core/text_file.hpp"
 #include "holdfast/evaluation/number_text.hpp"
 
@@ -41,8 +41,9 @@ Line read_line(std::string_view line, TimedPose& pose) {
     if (begin == std::string_view::npos) break;
     line.remove_prefix(begin);
     const std::size_t end = std::min(line.find_first_of(" \t\r,"), line.size());
-    const auto [stop, error] = std::from_chars(line.data(), line.data() + end, numbers[count]);
-    if (error != std::errc() || stop != line.data() + end) return Line::malformed;
+    const auto number = parsed_number<double>(line.substr(0, end));
+    if (!number) return Line::malformed;
+    numbers[count] = *number;
     line.remove_prefix(end);
     ++count;
   }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/bench/slurm_options.hpp"
 
-#include <charconv>
-
+#include "holdfast/core/parsed_number.hpp"
 #include "holdfast/plugin/did_you_mean.hpp"
 
 namespace holdfast {
@@ -22,23 +21,19 @@ void set_slurm_option(const std::string& name, const PlacedText& value, SlurmOpt
       return;
     }
   }
-  double number = 0.0;
-  const char* end = value.text.data() + value.text.size();
-  const auto [stop, error] = std::from_chars(value.text.data(), end, number);
-  const bool is_number = error == std::errc() && stop == end;
+  const auto parsed = parsed_number<double>(value.text);
+  const double number = parsed.value_or(0.0);
   const auto refuse = [&](const std::string& expected) {
     diagnostics.push_back(
         {value.location, "found '" + value.text + "' for '" + name + "' of slurm; expected " + expected});
   };
-  const bool is_whole =
-      is_number && number >= 1.0 && number <= 1e6 && number == static_cast<double>(static_cast<int>(number));
+  const bool is_whole = number >= 1.0 && number <= 1e6 && number == static_cast<double>(static_cast<int>(number));
   if (name == "processors")
     is_whole ? void(options.processors = static_cast<int>(number)) : refuse("a whole number of at least 1");
   else if (name == "array_size")
     is_whole ? void(options.array_size = static_cast<std::size_t>(number)) : refuse("a whole number of at least 1");
   else if (name == "poll_seconds")
-    is_number&& number >= 0.1 && number <= 3600.0 ? void(options.poll_seconds = number)
-                                                  : refuse("seconds from 0.1 to 3600");
+    number >= 0.1 && number <= 3600.0 ? void(options.poll_seconds = number) : refuse("seconds from 0.1 to 3600");
   else
     diagnostics.push_back({value.location, "slurm has no option '" + name + "'; " + did_you_mean(name, known)});
 }

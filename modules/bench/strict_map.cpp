@@ -2,9 +2,9 @@
 #include "strict_map.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
+#include "holdfast/core/parsed_number.hpp"
 #include "holdfast/evaluation/number_text.hpp"
 #include "holdfast/plugin/did_you_mean.hpp"
 
@@ -17,11 +17,7 @@ namespace {
 template <class Number>
 std::optional<Number> whole_text(const ConfigurationNode& node) {
   if (node.kind != Kind::scalar || node.quoted) return std::nullopt;
-  Number value{};
-  const char* end = node.text.data() + node.text.size();
-  const auto [stop, error] = std::from_chars(node.text.data(), end, value);
-  if (error != std::errc() || stop != end) return std::nullopt;
-  return value;
+  return parsed_number<Number>(node.text);
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -18,6 +17,7 @@
 
 #include "evaluation_table.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/parsed_number.hpp"
 #include "holdfast/evaluation/evaluation.hpp"
 #include "holdfast/evaluation/number_text.hpp"
 #include "holdfast/evaluation/time_offset.hpp"
@@ -243,10 +243,9 @@ int run(EvaluateArguments arguments) {
 CLI::Validator offset_or_estimate() {
   return CLI::Validator(
       [](const std::string& text) {
-        double number = 0.0;
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-        const bool is_number = error == std::errc() && end == text.data() + text.size() && std::isfinite(number);
-        return is_number || text == "estimate" ? std::string()
+        const auto number = parsed_number<double>(text);
+        const bool is_finite = number && std::isfinite(*number);
+        return is_finite || text == "estimate" ? std::string()
                                                : "found '" + text + "'; expected a number of seconds, or 'estimate'";
       },
       "");

@@ -2,12 +2,12 @@
 #include "label_writer.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <utility>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/parsed_number.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/plugin/parameter.hpp"
 #include "output_folder.hpp"
@@ -22,11 +22,7 @@ namespace {
 constexpr const char* classes_name = "classes.yaml";
 constexpr const char* list_name = "labels.txt";
 
-bool is_stamp(const std::string& name) {
-  double stamp = 0.0;
-  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), stamp);
-  return error == std::errc() && end == name.data() + name.size();
-}
+bool is_stamp(const std::string& name) { return parsed_number<double>(name).has_value(); }
 
 /// What an earlier run left, the list first.
 std::vector<std::string> files_of_earlier_run(const fs::path& folder) {

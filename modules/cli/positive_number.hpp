@@ -2,9 +2,10 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <cmath>
 #include <string>
+
+#include "holdfast/core/parsed_number.hpp"
 
 namespace holdfast {
 
@@ -12,10 +13,9 @@ namespace holdfast {
 inline CLI::Validator positive_number() {
   return CLI::Validator(
       [](const std::string& text) {
-        double number = 0.0;
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-        const bool is_number = error == std::errc() && end == text.data() + text.size() && std::isfinite(number);
-        return is_number && number > 0.0 ? std::string() : "found '" + text + "'; expected a number above 0";
+        const auto number = parsed_number<double>(text);
+        return number && std::isfinite(*number) && *number > 0.0 ? std::string()
+                                                                 : "found '" + text + "'; expected a number above 0";
       },
       "");
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <charconv>
 
 #include "holdfast/config/configuration_node.hpp"
+#include "holdfast/core/parsed_number.hpp"
 
 namespace holdfast {
 
@@ -44,13 +44,12 @@ void set_value(ConfigurationNode& root, const std::string& key_path, Configurati
   for (std::size_t depth = 0; depth < path.size(); ++depth) {
     const std::string& part = path[depth];
     if (node->kind == ConfigurationNode::Kind::list) {
-      std::size_t index = 0;
-      const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
-      if (error != std::errc() || end != part.data() + part.size() || index >= node->items.size())
+      const auto index = parsed_number<std::size_t>(part);
+      if (!index || *index >= node->items.size())
         fail("'" + part + "' is no element of the list" +
              (node->items.empty() ? std::string(", which is empty")
                                   : "; expected a number from 0 to " + std::to_string(node->items.size() - 1)));
-      node = &node->items[index];
+      node = &node->items[*index];
       continue;
     }
     // A list that is not there has no elements; a map with the name "0" in its place would only confuse what reads it.

@@ -2,11 +2,11 @@
 #include "holdfast/config/parameter_reader.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <optional>
 
+#include "holdfast/core/parsed_number.hpp"
 #include "holdfast/plugin/did_you_mean.hpp"
 
 namespace holdfast {
@@ -19,13 +19,8 @@ using Kind = ConfigurationNode::Kind;
 template <class Number>
 std::optional<Number> as_number(const ConfigurationNode& node) {
   if (node.kind != Kind::scalar || node.quoted || node.text.empty()) return std::nullopt;
-  const bool plus = node.text.front() == '+' && !node.text.starts_with("+-");  // from_chars knows no plus
-  const char* begin = node.text.data() + (plus ? 1 : 0);
-  const char* end = node.text.data() + node.text.size();
-  Number number = 0;
-  const auto [stop, error] = std::from_chars(begin, end, number);
-  if (error != std::errc() || stop != end) return std::nullopt;
-  return number;
+  const bool plus = node.text.front() == '+' && !node.text.starts_with("+-");  // parsed_number() knows no plus
+  return parsed_number<Number>(std::string_view(node.text).substr(plus ? 1 : 0));
 }
 
 std::optional<double> as_real(const ConfigurationNode& node) {

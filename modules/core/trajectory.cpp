@@ -2,13 +2,13 @@
 #include "holdfast/core/trajectory.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <string_view>
 #include <utility>
 
 #include "holdfast/core/counted.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/parsed_number.hpp"
 #include "holdfast/core/stamp_unit.hpp"
 #include "holdfast/core/text_file.hpp"
 
@@ -37,10 +37,9 @@ bool parse_numbers(const std::vector<std::string_view>& words, std::vector<doubl
   numbers.clear();
   for (std::string_view word : words) {
     if (word.starts_with('+')) word.remove_prefix(1);
-    double value = 0.0;
-    const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || stop != word.data() + word.size()) return false;
-    numbers.push_back(value);
+    const auto value = parsed_number<double>(word);
+    if (!value) return false;
+    numbers.push_back(*value);
   }
   return true;
 }

@@ -2,13 +2,13 @@
 #include "holdfast/evaluation/coverage.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <string>
 #include <string_view>
 
 #include "holdfast/core/association.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/parsed_number.hpp"
 #include "holdfast/core/text_file.hpp"
 
 namespace holdfast {
@@ -27,12 +27,11 @@ std::vector<double> read_stamp_list(const std::filesystem::path& file) {
     const std::size_t begin = content.find_first_not_of(" \t\r,");
     if (begin == std::string_view::npos) continue;
     const std::size_t end = std::min(content.find_first_of(" \t\r,", begin), content.size());
-    double stamp = 0.0;
-    const auto [stop, error] = std::from_chars(content.data() + begin, content.data() + end, stamp);
-    if (error != std::errc() || stop != content.data() + end || !std::isfinite(stamp))
+    const auto stamp = parsed_number<double>(content.substr(begin, end - begin));
+    if (!stamp || !std::isfinite(*stamp))
       throw InputError(lines.location(),
                        "found '" + line.substr(0, 60) + "'; expected a line that begins with a stamp in seconds");
-    stamps.push_back(stamp);
+    stamps.push_back(*stamp);
   }
   if (stamps.empty())
     throw InputError({file.string()}, "holds no frame; expected lines that begin with a stamp in seconds");

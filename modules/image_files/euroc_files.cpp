@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/image_files/euroc_files.hpp"
 
-#include <charconv>
 #include <string>
 
+#include "holdfast/core/parsed_number.hpp"
 #include "holdfast/core/text_file.hpp"
 #include "yaml_numbers.hpp"
 
@@ -109,18 +109,17 @@ std::vector<ListedImage> read_euroc_image_list(const std::filesystem::path& file
     if (begin == std::string::npos || line[begin] == '#') continue;
     const SourceLocation place = lines.location();
     const std::size_t comma = line.find(',');
-    std::int64_t nanoseconds = 0;
-    const char* first = line.data() + begin;
-    const char* last = line.data() + std::min(comma, line.size());
-    const auto [stop, failure] = std::from_chars(first, last, nanoseconds);
-    if (comma == std::string::npos || failure != std::errc() || stop != last || nanoseconds < 0)
+    const auto nanoseconds = comma == std::string::npos
+                                 ? std::nullopt
+                                 : parsed_number<std::int64_t>(std::string_view(line).substr(begin, comma - begin));
+    if (!nanoseconds || *nanoseconds < 0)
       throw InputError(place, "found '" + line.substr(0, 80) + "'; " + form + "; correct the line or take it out");
     const std::size_t name = line.find_first_not_of(blanks, comma + 1);
     const std::size_t end = line.find_last_not_of(blanks) + 1;
     if (name == std::string::npos || name >= end)
       throw InputError(place, std::string("names no file; ") + form + "; correct the line or take it out");
     // As of read_trajectory_file(), so that images and truth of one stamp have the same time.
-    const ListedImage image{static_cast<double>(nanoseconds) * 1e-9, line.substr(name, end - name), lines.number()};
+    const ListedImage image{static_cast<double>(*nanoseconds) * 1e-9, line.substr(name, end - name), lines.number()};
     if (!images.empty() && !(images.back().timestamp < image.timestamp))
       throw InputError(place, "has a time stamp that is not later than that of line " +
                                   std::to_string(images.back().line) + "; expected stamps that rise from line to line");

@@ -2,7 +2,6 @@
 #include "holdfast/image_files/frame_poses.hpp"
 
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <iterator>
@@ -15,6 +14,7 @@
 #include "holdfast/core/counted.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/nearest_rotation.hpp"
+#include "holdfast/core/parsed_number.hpp"
 #include "holdfast/core/text_file.hpp"
 #include "holdfast/image_files/numpy_array.hpp"
 #include "yaml_numbers.hpp"
@@ -71,11 +71,9 @@ void each_line(const fs::path& file, Use&& use) {
       rest.remove_prefix(begin);
       const std::string_view word = rest.substr(0, rest.find_first_of(" \t\r,"));
       rest.remove_prefix(word.size());
-      double value = 0.0;
-      const auto [stop, problem] = std::from_chars(word.data(), word.data() + word.size(), value);
-      if (problem != std::errc() || stop != word.data() + word.size())
-        throw InputError(lines.location(), "found '" + std::string(word) + "'; expected a number");
-      numbers.push_back(value);
+      const auto number = parsed_number<double>(word);
+      if (!number) throw InputError(lines.location(), "found '" + std::string(word) + "'; expected a number");
+      numbers.push_back(*number);
     }
     if (!numbers.empty()) use(lines.location(), numbers);
   }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/image_files/image_list.hpp"
 
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -9,6 +8,7 @@
 
 #include "holdfast/core/counted.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/parsed_number.hpp"
 #include "holdfast/core/stamp_unit.hpp"
 #include "holdfast/core/text_file.hpp"
 
@@ -47,9 +47,9 @@ class ListLine {
   ListedImage image(std::size_t first_word, bool has_name) const {
     std::string_view word = words_[first_word];
     ListedImage result;
-    const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), result.timestamp);
-    if (error != std::errc() || stop != word.data() + word.size())
-      fail("found '" + std::string(word) + "' where a time stamp should be");
+    const auto stamp = parsed_number<double>(word);
+    if (!stamp) fail("found '" + std::string(word) + "' where a time stamp should be");
+    result.timestamp = *stamp;
     if (!std::isfinite(result.timestamp)) fail("found the time stamp '" + std::string(word) + "', which is not finite");
     if (const std::string unit = stamp_magnitude_suspicion(result.timestamp); !unit.empty())
       throw InputError({file_.string(), number_},

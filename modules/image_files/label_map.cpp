@@ -2,13 +2,13 @@
 #include "holdfast/image_files/label_map.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <string_view>
 #include <utility>
 
 #include "holdfast/core/cell_mask.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/parsed_number.hpp"
 
 namespace holdfast {
 
@@ -18,10 +18,8 @@ constexpr std::uint16_t no_label = 256;
 constexpr std::size_t most_values = 65536;
 
 std::optional<std::size_t> value_of(std::string_view text) {
-  std::size_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || value >= most_values) return std::nullopt;
-  return value;
+  const auto value = parsed_number<std::size_t>(text);
+  return value && *value < most_values ? value : std::nullopt;
 }
 
 std::string_view trimmed(std::string_view text) {

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/parsed_number.hpp"
 
 namespace holdfast {
 
@@ -86,13 +87,11 @@ std::vector<NumberedFile> NumberPattern::find() const {
     const std::string name = path.filename().string();
     if (name.size() <= prefix_.size() + suffix_.size() || !name.starts_with(prefix_) || !name.ends_with(suffix_))
       continue;
-    const char* first = name.data() + prefix_.size();
-    const char* last = name.data() + name.size() - suffix_.size();
-    std::uint64_t number = 0;
-    const auto [stop, error] = std::from_chars(first, last, number);
-    if (error != std::errc() || stop != last || path_of(std::to_string(number)) != path) continue;
-    lowest = found_any ? std::min(lowest, number) : number;
-    highest = std::max(highest, number);
+    const std::size_t length = name.size() - prefix_.size() - suffix_.size();
+    const auto number = parsed_number<std::uint64_t>(std::string_view(name).substr(prefix_.size(), length));
+    if (!number || path_of(std::to_string(*number)) != path) continue;
+    lowest = found_any ? std::min(lowest, *number) : *number;
+    highest = std::max(highest, *number);
     found_any = true;
   }
   if (!found_any)

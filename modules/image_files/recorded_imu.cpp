@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <string_view>
 #include <utility>
 
 #include "holdfast/core/imu_plausibility.hpp"
+#include "holdfast/core/parsed_number.hpp"
 #include "holdfast/core/stamp_unit.hpp"
 #include "holdfast/core/text_file.hpp"
 #include "holdfast/image_files/image_list.hpp"
@@ -35,21 +35,18 @@ std::vector<std::string_view> split_numbers(std::string_view line) {
 }
 
 double parsed(std::string_view word, const SourceLocation& place) {
-  double value = 0.0;
-  const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || stop != word.data() + word.size() || !std::isfinite(value))
+  const auto value = parsed_number<double>(word);
+  if (!value || !std::isfinite(*value))
     throw InputError(place, "found '" + std::string(word.substr(0, 40)) + "'; " + expected_line +
                                 "; correct the line or take it out");
-  return value;
+  return *value;
 }
 
 /// Seconds; whole numbers beyond any second are nanoseconds, as in the ASL layout.
 double parsed_stamp(std::string_view word, const SourceLocation& place) {
   constexpr std::int64_t least_nanoseconds = 100'000'000'000'000'000;  // in the year 1973
-  std::int64_t whole = 0;
-  const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), whole);
-  if (error == std::errc() && stop == word.data() + word.size() && whole >= least_nanoseconds)
-    return static_cast<double>(whole) * 1e-9;
+  if (const auto whole = parsed_number<std::int64_t>(word); whole && *whole >= least_nanoseconds)
+    return static_cast<double>(*whole) * 1e-9;
   const double seconds = parsed(word, place);
   if (const std::string unit = stamp_magnitude_suspicion(seconds); !unit.empty())
     throw InputError(place, "found the time stamp '" + std::string(word) +

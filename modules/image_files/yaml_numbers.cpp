@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "yaml_numbers.hpp"
 
-#include <charconv>
 #include <cmath>
 
 #include "holdfast/core/counted.hpp"
 #include "holdfast/core/input_file.hpp"
 #include "holdfast/core/nearest_rotation.hpp"
+#include "holdfast/core/parsed_number.hpp"
 
 namespace holdfast::yaml_numbers {
 
@@ -34,23 +34,17 @@ void reject(const std::filesystem::path& file, const YAML::Node& node, const std
 double number(const std::filesystem::path& file, const YAML::Node& node, const std::string& key, bool positive) {
   const char* expected = positive ? "a number greater than 0" : "a number";
   if (!node.IsScalar()) reject(file, node, key, expected);
-  const std::string& text = node.Scalar();
-  double value = 0.0;
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || stop != text.data() + text.size() || !std::isfinite(value) || (positive && value <= 0.0))
-    reject(file, node, key, expected);
-  return value;
+  const auto value = parsed_number<double>(node.Scalar());
+  if (!value || !std::isfinite(*value) || (positive && *value <= 0.0)) reject(file, node, key, expected);
+  return *value;
 }
 
 int size(const std::filesystem::path& file, const YAML::Node& node, const std::string& key) {
   constexpr const char* expected = "a whole number of pixels from 1 to 32768";
   if (!node.IsScalar()) reject(file, node, key, expected);
-  const std::string& text = node.Scalar();
-  int value = 0;
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || stop != text.data() + text.size() || value < 1 || value > 32768)
-    reject(file, node, key, expected);
-  return value;
+  const auto value = parsed_number<int>(node.Scalar());
+  if (!value || *value < 1 || *value > 32768) reject(file, node, key, expected);
+  return *value;
 }
 
 std::vector<double> numbers(const std::filesystem::path& file, const YAML::Node& node, const std::string& key,

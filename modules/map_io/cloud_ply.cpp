@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/map_io/cloud_ply.hpp"
 
-#include <charconv>
 #include <cmath>
 
 #include "bytes.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/input_file.hpp"
+#include "holdfast/core/parsed_number.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/core/version.hpp"
 
@@ -57,14 +57,12 @@ std::optional<std::vector<CloudPoint>> read_cloud_ply(const std::filesystem::pat
   const std::string_view rest = header.substr(element + vertices.size());
   const std::string_view number = rest.substr(0, rest.find('\n'));
   if (rest.size() <= number.size() || rest.substr(number.size() + 1) != cloud_properties) return std::nullopt;
-  std::size_t count = 0;
-  const auto [last, error] = std::from_chars(number.data(), number.data() + number.size(), count);
+  const auto count = parsed_number<std::size_t>(number);
   const std::string_view data = text.substr(end + header_end.size());
-  if (error != std::errc() || last != number.data() + number.size() || count != data.size() / bytes_per_point ||
-      data.size() % bytes_per_point != 0)
+  if (!count || *count != data.size() / bytes_per_point || data.size() % bytes_per_point != 0)
     refuse(file, "states " + std::string(number) + " points and has " + std::to_string(data.size()) + " bytes of them");
   map_io::ByteReader reader(data, file.string(), "points", end + header_end.size());
-  std::vector<CloudPoint> cloud(count);
+  std::vector<CloudPoint> cloud(*count);
   for (CloudPoint& point : cloud) {
     for (float* value : {&point.x, &point.y, &point.z}) {
       *value = reader.get<float>();

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
+
+#include "holdfast/core/parsed_number.hpp"
 
 namespace holdfast {
 
@@ -143,10 +144,7 @@ std::string to_string(const ParameterValue& value) { return std::visit(YamlText{
 
 double shortest_double(float number) {
   if (!std::isfinite(number)) return number;
-  const std::string text = shortest_text(number);
-  double result = 0;
-  std::from_chars(text.data(), text.data() + text.size(), result);
-  return result;
+  return *parsed_number<double>(shortest_text(number));
 }
 
 std::string Parameter::range_text() const {
