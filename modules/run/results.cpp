@@ -76,7 +76,7 @@ const std::vector<std::string>& result_names() {
                                                  "evaluation.json", "tracks.json", "trajectory.svg", "error.svg",
                                                  "config.yaml",     "map.hfm",     "static_map.ply", "surface.ply",
                                                  "surface.obj",     "surface.glb", "map.pgm",        "map.yaml",
-                                                 "octomap.bt",      "objects.csv", "overlay"};
+                                                 "octomap.bt",      "objects.csv", "overlay",        "run.mcap"};
   return names;
 }
 
