@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Metadata and outputs of a network for objects. The input is a line of class names, a line of the task, one of the
-// size of the input, then bytes: family, number of outputs, the dimensions of each (their number, then 12 bits each),
-// and numbers of four bytes, which are repeated.
+// Metadata and outputs of a network. The input is a line of class names, a line of the task, one of the size of the
+// input, then bytes: family, number of outputs, the dimensions of each (their number, then 12 bits each), and numbers
+// of four bytes, which are repeated. The first output is also read as that of a semantic network.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -11,6 +11,7 @@
 #include "holdfast/inference/object_layout.hpp"
 #include "holdfast/inference/object_masks.hpp"
 #include "holdfast/inference/object_output.hpp"
+#include "holdfast/inference/segmentation_output.hpp"
 
 using namespace holdfast;
 
@@ -79,9 +80,22 @@ void require_sound(const std::vector<Detection>& objects, const cv::Size& input)
   }
 }
 
+/// The mask of an object from its own image, as the segmenter takes it.
+cv::Mat mask_of_image(const cv::Mat& images, const Detection& object, const ObjectLayout& layout, const cv::Size& input,
+                      const FramePlace& place, const cv::Rect& pixels) {
+  const int rows = images.size[2], columns = images.size[3];
+  const std::ptrdiff_t first = std::ptrdiff_t{object.number} * rows * columns;
+  fuzz::require(first + std::ptrdiff_t{rows} * columns <= static_cast<std::ptrdiff_t>(images.total()),
+                "an object has its image");
+  const cv::Mat image(rows, columns, CV_32F, const_cast<float*>(images.ptr<float>()) + first);
+  const bool is_of_box = layout.has_boxes && image.size() != input;
+  return image_mask(image, is_of_box ? object.box : cv::Rect2f({}, cv::Size2f(input)), layout.preset.mask_threshold,
+                    place, pixels);
+}
+
 Segmentation masks_of(const std::vector<Detection>& objects, const std::vector<cv::Mat>& outputs,
                       const ObjectLayout& layout, const cv::Size& input, const cv::Mat& depth) {
-  const FramePlace place = place_of_frame(frame, input, layout.preset.fit == InputFit::letterbox);
+  const FramePlace place = place_of_frame(frame, input, layout.preset.unit == BoxUnit::pixels);
   std::vector<ObjectMask> masks;
   for (const Detection& object : objects) {
     ObjectMask mask{{1, object.score, place.box_in_frame(object.box)}};
@@ -89,10 +103,27 @@ Segmentation masks_of(const std::vector<Detection>& objects, const std::vector<c
     if (mask.pixels.empty()) continue;
     mask.mask = layout.prototypes
                     ? prototype_mask(outputs[*layout.prototypes], object.mask_coefficients, place, mask.pixels)
-                    : depth_mask(depth, mask.pixels);
+                : layout.masks ? mask_of_image(outputs[*layout.masks], object, layout, input, place, mask.pixels)
+                               : depth_mask(depth, mask.pixels);
     masks.push_back(mask);
   }
   return join_objects(masks, frame);
+}
+
+void decode_semantic(const cv::Mat& output, int classes, std::uint8_t choices) {
+  const OutputForm form = {.kind = static_cast<OutputKind>(choices % 3),
+                           .channels_last = (choices & 8) != 0,
+                           .classes = classes,
+                           .model = "net",
+                           .input_width = (choices & 16) != 0 ? 64 : 0,
+                           .input_height = (choices & 16) != 0 ? 48 : 0};
+  const Segmentation result = decode_segmentation(output, form, frame.width, frame.height);
+  fuzz::require(result.labels.size() == frame, "labels have the frame's size");
+  for (int y = 0; y < frame.height; ++y)
+    for (int x = 0; x < frame.width; ++x) {
+      const int label = result.labels.at<std::uint8_t>(y, x);
+      fuzz::require(label < classes || label == 255, "a label has a class");
+    }
 }
 
 }  // namespace
@@ -105,9 +136,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   ObjectQuestion question{.task = metadata.task, .classes = static_cast<int>(metadata.names.size()), .model = "net"};
   question.input = {std::clamp(metadata.width, 8, 96), std::clamp(metadata.height, 8, 96)};
   const std::uint8_t choices = reader.byte();
-  question.family = static_cast<ObjectFamily>(choices % 7);
+  question.family = static_cast<ObjectFamily>(choices % 10);
   question.wants_masks = (choices & 128) == 0;
-  std::vector<std::vector<int>> shapes(1 + reader.byte() % 3U);
+  std::vector<std::vector<int>> shapes(1 + reader.byte() % 4U);
   for (std::vector<int>& shape : shapes) shape = shape_of(reader);
   std::vector<cv::Mat> outputs;
   for (const std::vector<int>& shape : shapes) {
@@ -116,11 +147,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     question.outputs.push_back({.name = outputs.size() == 1 ? "labels" : "scores", .element_type = 1});
     question.outputs.back().shape.assign(shape.begin(), shape.end());
   }
+  fuzz::accepts([&] { decode_semantic(outputs.front(), std::clamp(question.classes, 2, 254), choices); });
   fuzz::accepts([&] {
     const ObjectLayout layout = recognise_objects(question);
     std::vector<Detection> objects = decode_objects(outputs, layout, question.input, 0.25, 80, "net");
     require_sound(objects, question.input);
-    suppress_duplicates(objects, layout.preset.max_overlap, 20);
+    suppress_duplicates(objects, 0.45, 20);
     const Segmentation masks =
         masks_of(objects, outputs, layout, question.input, values_of({frame.height, frame.width}, reader.rest(), 3));
     double highest = 0.0;
