@@ -25,6 +25,16 @@ bool is_left_out(std::uint8_t label, const std::vector<bool>& left_out) {
 
 }  // namespace
 
+std::size_t densest_view(const std::vector<KeptView>& views) {
+  std::size_t least = views.size() - 1;
+  double smallest = 1e300;
+  for (std::size_t i = 1; i + 1 < views.size(); ++i) {
+    const double gap = views[i + 1].timestamp - views[i - 1].timestamp;
+    if (gap < smallest) smallest = gap, least = i;
+  }
+  return least;
+}
+
 ViewSampler::ViewSampler(const Camera& camera, const DenseMapSettings& settings)
     : raw_(camera),
       small_(camera),

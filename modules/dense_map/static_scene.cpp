@@ -39,16 +39,7 @@ std::vector<CloudPoint> StaticScene::surface(const KeptView& view, std::size_t m
   return points;
 }
 
-void StaticScene::make_room() {
-  // Gives up the view without which the gap in time is smallest.
-  std::size_t least = views_.size() - 1;
-  double smallest = 1e300;
-  for (std::size_t i = 1; i + 1 < views_.size(); ++i) {
-    const double gap = views_[i + 1].timestamp - views_[i - 1].timestamp;
-    if (gap < smallest) smallest = gap, least = i;
-  }
-  views_.erase(views_.begin() + static_cast<std::ptrdiff_t>(least));
-}
+void StaticScene::make_room() { views_.erase(views_.begin() + static_cast<std::ptrdiff_t>(densest_view(views_))); }
 
 void StaticScene::forget_removed(const Map& map) {
   std::erase_if(views_, [&](const KeptView& view) { return !map.submap_of(view.keyframe); });

@@ -29,6 +29,8 @@ KeyframeFlow::KeyframeFlow(PipelineParts& parts, GuardedMap& map, MovingWorld& m
   if ((parts.dense_map.enabled || parts.surface.enabled) && !parts.localise_only)
     scene_.emplace(parts.camera, parts.dense_map);
   if (parts.surface.enabled && scene_) surface_.emplace(scene_->camera(), parts.surface);
+  if (surface_ && parts.surface.carving_interval > 0.0)
+    carving_.emplace(parts.surface.carving_interval, CarvingViews::per_keyframe * parts.dense_map.keyframes);
   const std::vector<std::string>& out = parts.dense_map.classes;
   for (const std::string& name : parts.segmenter->classes())
     left_out_.push_back(std::find(out.begin(), out.end(), name) != out.end());
@@ -121,6 +123,7 @@ void KeyframeFlow::request_mask(const SensorFrame& sensor_frame, const Frame& fr
                                 const FrameResult& result, StageTimes& times) {
   const KeyFrameId keyframe = result.is_keyframe ? result.keyframe : KeyFrameId();
   const bool is_requested = moving_world_.request_mask(sensor_frame, keyframe, times, is_needed);
+  keep_carving_view(frame, result);
   if (!result.is_keyframe) return;
   if (is_requested) {
     // One camera makes all its points by triangulation, and would be lost before the mask arrives: a propagated mask
@@ -143,6 +146,7 @@ void KeyframeFlow::remove_map(const std::function<void(const LockedMap&)>& forge
     job.removed = map->keyframes_by_age();
     map->remove_all();
     if (scene_) scene_->forget_removed(map.map());
+    if (carving_) carving_->forget_removed(map.map());
     mapper_.forget_map();
     forget(map);
   }
@@ -158,6 +162,7 @@ void KeyframeFlow::keep_submap(const LockedMap& map, std::uint32_t submap) {
   if (map->keyframes_outside(submap).empty()) return;
   map->keep_submap(submap);
   if (scene_) scene_->forget_removed(map.map());
+  if (carving_) carving_->forget_removed(map.map());
 }
 
 void KeyframeFlow::hand_to_mapping(const MappingJob& job, StageTimes& times) {
@@ -259,12 +264,32 @@ const KeptView* KeyframeFlow::keep_view(KeyFrameId keyframe, const SensorFrame& 
   return &scene_->add(keyframe, frame, coarse, labels, left_out_);
 }
 
+void KeyframeFlow::keep_carving_view(const Frame& frame, const FrameResult& result) {
+  if (!carving_) return;
+  if (result.is_keyframe) return carving_->keyframe_kept(frame.timestamp);
+  if (result.status != TrackingStatus::tracked || result.fallback != TrackingFallback::none) return;
+  if (!carving_->is_due(frame.timestamp)) return;
+  const LockedMap map(map_, LockPriority::tracking);
+  if (!map->submap_of(result.keyframe)) return;
+  carving_->add(frame, result.keyframe, map->pose_of(result.keyframe));
+}
+
+std::vector<KeptView> KeyframeFlow::views_of_surface() const {
+  const std::vector<KeptView>& kept = scene_->views();
+  if (!carving_) return kept;
+  std::vector<KeptView> views;
+  views.reserve(kept.size() + carving_->views().size());
+  std::merge(kept.begin(), kept.end(), carving_->views().begin(), carving_->views().end(), std::back_inserter(views),
+             [](const KeptView& a, const KeptView& b) { return a.frame_index < b.frame_index; });
+  return views;
+}
+
 void KeyframeFlow::update_surface(const KeptView* view, StageTimes& times) {
   if (view == nullptr || !surface_) return;
   if (surface_fusion_)
-    surface_fusion_->queue().push_newest({scene_->views()});
+    surface_fusion_->queue().push_newest({views_of_surface()});
   else
-    fuse(scene_->views(), static_cast<std::size_t>(parts_.surface.moves_per_keyframe), times);
+    fuse(views_of_surface(), static_cast<std::size_t>(parts_.surface.moves_per_keyframe), times);
 }
 
 void KeyframeFlow::fuse(std::vector<KeptView> views, std::size_t max_moves, StageTimes& times) {
@@ -274,15 +299,16 @@ void KeyframeFlow::fuse(std::vector<KeptView> views, std::size_t max_moves, Stag
     const LockedMap map(map_, LockPriority::background);
     // The map of a view may have been removed since.
     std::erase_if(views, [&](const KeptView& view) { return !map->submap_of(view.keyframe); });
-    for (const KeptView& view : views) poses.push_back(map->pose_of(view.keyframe).inverse());
+    for (const KeptView& view : views) poses.push_back((view.T_view_keyframe * map->pose_of(view.keyframe)).inverse());
   }
   surface_->update(views, poses, max_moves);
 }
 
 void KeyframeFlow::finish_surface() {
   if (!surface_) return;
-  const std::size_t all = scene_->views().size();
-  in_background([&](StageTimes& times) { fuse(scene_->views(), all, times); });
+  std::vector<KeptView> views = views_of_surface();
+  const std::size_t all = views.size();
+  in_background([&](StageTimes& times) { fuse(std::move(views), all, times); });
 }
 
 void KeyframeFlow::show_view(const KeptView* view) {

@@ -16,6 +16,7 @@
 #include "holdfast/mapping/local_mapper.hpp"
 #include "holdfast/moving_world/moving_world.hpp"
 #include "holdfast/pipeline/pipeline.hpp"
+#include "holdfast/surface/carving_views.hpp"
 #include "holdfast/surface/surface_map.hpp"
 #include "holdfast/tracking/mono_initialiser.hpp"
 
@@ -134,6 +135,10 @@ class KeyframeFlow {
   /// nullptr without a dense map; valid until the next call.
   const KeptView* keep_view(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse,
                             const cv::Mat& labels, StageTimes& times);
+  /// Keeps the coarse depth of a frame between keyframes if the surface is to be carved by it.
+  void keep_carving_view(const Frame& frame, const FrameResult& result) HOLDFAST_EXCLUDES(map_);
+  /// What the surface is made of: kept views and those that only carve, by increasing frame index.
+  std::vector<KeptView> views_of_surface() const;
   /// Adds a kept view to the surface, if there are both.
   void update_surface(const KeptView* view, StageTimes& times);
   void fuse(std::vector<KeptView> views, std::size_t max_moves, StageTimes& times) HOLDFAST_EXCLUDES(map_);
@@ -154,6 +159,7 @@ class KeyframeFlow {
   LoopCloser closer_;
   FullAdjustment adjustment_;
   std::optional<StaticScene> scene_;
+  std::optional<CarvingViews> carving_;
   std::optional<SurfaceMap> surface_;
   std::vector<bool> left_out_;      // of the static scene, by label
   std::deque<MappingJob> waiting_;  // they have their masks, but mapping had no room

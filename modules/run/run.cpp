@@ -80,7 +80,7 @@ void record_surface(const SurfaceMap& surface, RunRecord& record) {
   if (record.surface->empty())
     add_warning(record.warnings,
                 {{},
-                 "the surface is empty, and no mesh is written: " + counted(surface.view_count(), "keyframe") +
+                 "the surface is empty, and no mesh is written: " + counted(surface.keyframe_count(), "keyframe") +
                      " with depth up to " + fixed_text(surface.field().settings().maximum_depth, 1) +
                      " m show no surface in " + counted(surface.field().settings().minimum_views, "view") +
                      "; check the depth of the source, and `surface.maximum_depth`"});

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -36,15 +37,21 @@ struct Block {
 
   static constexpr int index(int x, int y, int z) { return (x * side + y) * side + z; }
 
+  bool is_observed(std::size_t at, int minimum_views) const { return weight[at] > 0 && views[at] >= minimum_views; }
+  /// Mean distance of an observed voxel, from -1 to 1.
+  float mean(std::size_t at) const {
+    return static_cast<float>(distance[at]) / (static_cast<float>(weight[at]) * static_cast<float>(truncation_units));
+  }
+  /// Whether a surface was observed at a voxel that has become free.
+  bool is_gone(std::size_t at, int minimum_views) const {
+    return balance[at] < free_below && is_observed(at, minimum_views) && mean(at) < 0.5F;
+  }
+
   /// Truncated distance from -1 to 1, or NaN where nothing is known.
   float value(int i, int minimum_views) const {
     const auto at = static_cast<std::size_t>(i);
     const bool is_free = balance[at] < free_below;
-    if (weight[at] > 0 && views[at] >= minimum_views) {
-      const float mean =
-          static_cast<float>(distance[at]) / (static_cast<float>(weight[at]) * static_cast<float>(truncation_units));
-      return is_free && mean < 0.5F ? 0.5F : mean;
-    }
+    if (is_observed(at, minimum_views)) return is_free ? std::max(mean(at), 0.5F) : mean(at);
     return is_free ? 1.0F : std::numeric_limits<float>::quiet_NaN();
   }
 };

@@ -80,12 +80,12 @@ void FreeSpace::set_size(const SurfaceMap& surface, const TriangleMesh& mesh) {
 }
 
 void FreeSpace::look_through(const SurfaceMap& surface) {
-  constexpr int stride = 4;  // [px]
-  const Camera& camera = surface.camera();
   const double farthest = surface.field().settings().maximum_depth;
   for (std::size_t i = 0; i < surface.view_count(); ++i) {
     const KeptView& view = surface.view(i);
     const Eigen::Isometry3d& pose = surface.pose(i);
+    const Camera& camera = view.only_carves() ? *view.coarse_camera : surface.camera();
+    const int stride = view.only_carves() ? 2 : 4;  // [px]
     for (int y = 0; y < camera.height; y += stride)
       for (int x = 0; x < camera.width; x += stride) {
         const double depth = view.depth_at(x, y);

@@ -7,6 +7,7 @@
 #include "blocks.hpp"
 #include "holdfast/dense_map/kept_view.hpp"
 #include "marching_cubes.hpp"
+#include "remnants.hpp"
 #include "view_image.hpp"
 
 namespace holdfast {
@@ -53,7 +54,12 @@ class Integrator {
   void update(Block& block) const {
     const Eigen::Vector3f corner =
         rotation_ * (block.coordinates.cast<float>() * (voxel_ * Block::side)) + translation_;
-    if (!is_in_view(corner)) return;
+    const Reach reach = reach_of(corner);
+    if (reach == Reach::nothing) return;
+    if (reach == Reach::all_free) {
+      for (std::size_t i = 0; i < Block::size; ++i) add_balance(block, i, -1.0F);
+      return;
+    }
     const Eigen::Vector3f step_x = rotation_.col(0) * voxel_, step_y = rotation_.col(1) * voxel_;
     const Eigen::Vector3f step_z = rotation_.col(2) * voxel_;
     int i = 0;
@@ -77,26 +83,42 @@ class Integrator {
   float width() const { return static_cast<float>(image_.camera().width); }
   float height() const { return static_cast<float>(image_.camera().height); }
 
-  /// Whether voxels of a block may be in the image and not behind all that is measured there.
-  bool is_in_view(const Eigen::Vector3f& corner) const {
+  /// Distance by which a surface must lie behind a voxel for it to be free [m].
+  float margin_at(float depth) const { return std::max(truncation_, 0.04F + 0.01F * depth * depth); }
+
+  /// What a view has to say about the voxels of a block.
+  enum class Reach { nothing, something, all_free };
+
+  /// Nothing of blocks outside the image, and of those behind all that is measured there.
+  Reach reach_of(const Eigen::Vector3f& corner) const {
     const float half = 0.5F * voxel_ * Block::side;
     const Eigen::Vector3f centre = corner + rotation_ * Eigen::Vector3f::Constant(half);
     const float radius = half * 1.7321F;
     const float nearest = centre.z() - radius;
-    if (centre.z() + radius < nearest_depth) return false;
+    if (centre.z() + radius < nearest_depth) return Reach::nothing;
     // Close to the camera the projection of the sphere may be unbounded.
-    if (nearest < nearest_depth) return true;
+    if (nearest < nearest_depth) return Reach::something;
     const float u = fx_ * centre.x() / centre.z() + cx_, v = fy_ * centre.y() / centre.z() + cy_;
     const float reach = 1.5F * std::max(fx_, fy_) * radius / nearest + 1.0F;
-    if (u + reach < 0.0F || v + reach < 0.0F || u - reach > width() || v - reach > height()) return false;
-    const float farthest =
-        image_.farthest(static_cast<int>(std::max(u - reach, 0.0F)), static_cast<int>(std::max(v - reach, 0.0F)),
-                        static_cast<int>(u + reach), static_cast<int>(v + reach));
-    return farthest > 0.0F && nearest < farthest + truncation_ / ViewImage::smallest_slope;
+    if (u + reach < 0.0F || v + reach < 0.0F || u - reach > width() || v - reach > height()) return Reach::nothing;
+    const int right = static_cast<int>(u + reach), bottom = static_cast<int>(v + reach);
+    const float farthest = image_.farthest(static_cast<int>(std::max(u - reach, 0.0F)),
+                                           static_cast<int>(std::max(v - reach, 0.0F)), right, bottom);
+    if (farthest <= 0.0F || nearest >= farthest + truncation_ / ViewImage::smallest_slope) return Reach::nothing;
+    if (!image_.only_carves()) return Reach::something;
+    const float last = centre.z() + radius;
+    if (nearest > farthest + margin_at(last)) return Reach::nothing;
+    const int left = static_cast<int>(std::floor(u - reach)), top = static_cast<int>(std::floor(v - reach));
+    return image_.nearest(left, top, right, bottom) - last > margin_at(last) ? Reach::all_free : Reach::something;
   }
 
   void update(Block& block, std::size_t i, const ViewImage::Pixel& pixel, float depth) const {
-    const float margin = std::max(truncation_, 0.04F + 0.01F * depth * depth);
+    const float margin = margin_at(depth);
+    if (image_.only_carves()) {
+      if (pixel.near <= 0.0F || depth - pixel.near > margin) return;
+      add_balance(block, i, pixel.near - depth > margin ? -1.0F : 1.0F);
+      return;
+    }
     if ((pixel.near - depth) * pixel.slope > margin) {
       add_balance(block, i, -1.0F);
       return;
@@ -220,6 +242,7 @@ void SurfaceField::remove_empty_blocks() {
 TriangleMesh SurfaceField::mesh() const {
   const SurfaceSettings& settings = parts_->settings;
   TriangleMesh mesh = surface::march(parts_->blocks, settings.voxel, settings.minimum_views);
+  surface::remove_remnants(mesh, parts_->blocks, settings);
   remove_small_parts(mesh, settings.smallest_part);
   compute_normals(mesh);
   return mesh;

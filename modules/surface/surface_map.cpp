@@ -8,6 +8,11 @@
 
 namespace holdfast {
 
+std::size_t SurfaceMap::keyframe_count() const {
+  return static_cast<std::size_t>(
+      std::count_if(entries_.begin(), entries_.end(), [](const Entry& entry) { return !entry.view.only_carves(); }));
+}
+
 double SurfaceMap::motion(const Eigen::Isometry3d& before, const Eigen::Isometry3d& after) const {
   const double depth = 0.75 * field_.settings().maximum_depth;
   double largest = 0.0;

@@ -27,6 +27,11 @@ void SurfaceSettings::describe(ParameterTable<SurfaceSettings>& table) {
       .range(0, 100)
       .unit("m^2");
   table
+      .add("carving_interval", &S::carving_interval,
+           "time between frames whose coarse depth carves free space, beside the keyframes; 0: keyframes alone carve")
+      .range(0, 60)
+      .unit("s");
+  table
       .add("moves_per_keyframe", &S::moves_per_keyframe,
            "maximum number of keyframes that are fused again at their adjusted pose with each new keyframe; at the end "
            "of a run all are")

@@ -50,17 +50,24 @@ void compute_normals(TriangleMesh& mesh) {
     if (const float length = vertex.normal.norm(); length > 0.0F) vertex.normal /= length;
 }
 
-void remove_small_parts(TriangleMesh& mesh, double smallest_area) {
-  DisjointSets parts(mesh.vertices.size());
+MeshParts::MeshParts(const TriangleMesh& mesh) : part(mesh.vertices.size()), area(mesh.vertices.size(), 0.0) {
+  DisjointSets sets(mesh.vertices.size());
   for (const auto& triangle : mesh.triangles) {
-    parts.join(triangle[0], triangle[1]);
-    parts.join(triangle[0], triangle[2]);
+    sets.join(triangle[0], triangle[1]);
+    sets.join(triangle[0], triangle[2]);
   }
-  std::vector<double> areas(mesh.vertices.size(), 0.0);
+  for (std::uint32_t i = 0; i < part.size(); ++i) part[i] = sets.find(i);
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-    areas[parts.find(mesh.triangles[i][0])] += mesh.area_vector(i).norm();
-  std::erase_if(mesh.triangles, [&](const auto& triangle) { return areas[parts.find(triangle[0])] < smallest_area; });
+    area[part[mesh.triangles[i][0]]] += mesh.area_vector(i).norm();
+}
 
+void remove_small_parts(TriangleMesh& mesh, double smallest_area) {
+  const MeshParts parts(mesh);
+  remove_triangles(mesh, [&](const auto& triangle) { return parts.area[parts.part[triangle[0]]] < smallest_area; });
+}
+
+void remove_triangles(TriangleMesh& mesh, const std::function<bool(const std::array<std::uint32_t, 3>&)>& is_removed) {
+  std::erase_if(mesh.triangles, is_removed);
   constexpr std::uint32_t unused = 0xFFFFFFFF;
   std::vector<std::uint32_t> numbers(mesh.vertices.size(), unused);
   for (const auto& triangle : mesh.triangles)

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <opencv2/imgproc.hpp>
 
 #include "holdfast/core/depth_noise.hpp"
@@ -22,13 +23,16 @@ float depth_of(std::uint16_t bits) {
 
 }  // namespace
 
-ViewImage::ViewImage(const KeptView& view, const Camera& camera, const SurfaceSettings& settings) : camera_(camera) {
+ViewImage::ViewImage(const KeptView& view, const Camera& kept, const SurfaceSettings& settings)
+    : camera_(view.only_carves() ? *view.coarse_camera : kept), only_carves_(view.only_carves()) {
+  const Camera& camera = camera_;
   tile_columns_ = (camera.width + tile - 1) / tile;
   tiles_.assign(static_cast<std::size_t>(tile_columns_ * ((camera.height + tile - 1) / tile)), 0.0F);
   pixels_.resize(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
   for (int x = 0; x < camera.width; ++x) rays_x_.push_back(static_cast<float>((x - camera.cx) / camera.fx));
   for (int y = 0; y < camera.height; ++y) rays_y_.push_back(static_cast<float>((y - camera.cy) / camera.fy));
   const cv::Mat depths = read_depth(view, static_cast<float>(settings.maximum_depth));
+  if (only_carves_) return;
   for (int y = 0; y < camera.height; ++y)
     for (int x = 0; x < camera.width; ++x) set_slope(depths, x, y);
 }
@@ -36,7 +40,7 @@ ViewImage::ViewImage(const KeptView& view, const Camera& camera, const SurfaceSe
 cv::Mat ViewImage::read_depth(const KeptView& view, float maximum_depth) {
   cv::Mat depths(camera_.height, camera_.width, CV_32FC1);
   cv::Mat nearest = view.depth & cv::Scalar(KeptView::depth_bits);
-  cv::erode(nearest, nearest, cv::Mat::ones(3, 3, CV_8U));
+  if (!only_carves_) cv::erode(nearest, nearest, cv::Mat::ones(3, 3, CV_8U));
   Pixel* pixel = pixels_.data();
   for (int y = 0; y < camera_.height; ++y)
     for (int x = 0; x < camera_.width; ++x, ++pixel) {
@@ -45,7 +49,7 @@ cv::Mat ViewImage::read_depth(const KeptView& view, float maximum_depth) {
       const float depth = depths.ptr<float>(y)[x] = depth_of(bits);
       float& farthest = tiles_[static_cast<std::size_t>(y / tile * tile_columns_ + x / tile)];
       farthest = std::max({farthest, depth, pixel->near});
-      if ((bits & KeptView::moves_bit) != 0 || depth > maximum_depth) continue;
+      if (only_carves_ || (bits & KeptView::moves_bit) != 0 || depth > maximum_depth) continue;
       pixel->depth = depth;
       const cv::Vec3b& colour = view.colour.ptr<cv::Vec3b>(y)[x];
       pixel->blue = colour[0], pixel->green = colour[1], pixel->red = colour[2];
@@ -87,6 +91,14 @@ float ViewImage::farthest(int left, int top, int right, int bottom) const {
     for (int column = first_column; column <= last_column; ++column)
       farthest = std::max(farthest, tiles_[static_cast<std::size_t>(row * tile_columns_ + column)]);
   return farthest;
+}
+
+float ViewImage::nearest(int left, int top, int right, int bottom) const {
+  if (left < 0 || top < 0 || right >= camera_.width || bottom >= camera_.height) return 0.0F;
+  float nearest = std::numeric_limits<float>::infinity();
+  for (int y = top; y <= bottom; ++y)
+    for (int x = left; x <= right; ++x) nearest = std::min(nearest, at(x, y).near);
+  return nearest;
 }
 
 }  // namespace holdfast::surface

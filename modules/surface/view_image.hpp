@@ -22,20 +22,28 @@ class ViewImage {
 
   struct Pixel {
     float depth = 0.0F;  ///< of the static surface [m]
-    float near = 0.0F;   ///< smallest depth, static or dynamic, of the 3x3 pixels [m]; 0 if one is missing
+    /// Smallest depth, static or dynamic, around the pixel [m]; 0 if one is missing. Around are the 3x3 pixels, or
+    /// those of which the depth of a view that only carves is the smallest.
+    float near = 0.0F;
     /// Distance to the tangent plane per difference in depth; at least smallest_slope.
     float slope = smallest_slope;
     std::uint8_t weight = 0;  ///< 1 to 64; 0 = nothing to fuse
     std::uint8_t red = 0, green = 0, blue = 0;
   };
 
+  /// `camera` is that of the kept views of keyframes.
   ViewImage(const KeptView& view, const Camera& camera, const SurfaceSettings& settings);
+
+  /// Whether the view has no surface to fuse: all weights are 0.
+  bool only_carves() const { return only_carves_; }
 
   const Camera& camera() const { return camera_; }
   const Pixel& at(int x, int y) const { return pixels_[static_cast<std::size_t>(y * camera_.width + x)]; }
   const Pixel* pixels() const { return pixels_.data(); }
   /// Largest depth in a rectangle of pixels, or in slightly more than it [m].
   float farthest(int left, int top, int right, int bottom) const;
+  /// Smallest Pixel::near in a rectangle of pixels; 0 if one is missing or outside the image.
+  float nearest(int left, int top, int right, int bottom) const;
 
  private:
   /// Fills the pixels without slope and weight; returns all depths, those of dynamic pixels included.
@@ -43,6 +51,7 @@ class ViewImage {
   void set_slope(const cv::Mat& depths, int x, int y);
 
   Camera camera_;
+  bool only_carves_;
   std::vector<Pixel> pixels_;
   std::vector<float> rays_x_, rays_y_;  // of the columns and rows, at depth 1
   std::vector<float> tiles_;            // largest depth of each tile [m]

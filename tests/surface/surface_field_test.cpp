@@ -5,6 +5,9 @@
 
 #include <map>
 
+#include "holdfast/core/coarse_view.hpp"
+#include "holdfast/core/frame.hpp"
+#include "holdfast/surface/carving_views.hpp"
 #include "holdfast/surface/mesh_files.hpp"
 #include "surface/solid_world.hpp"
 
@@ -131,6 +134,76 @@ TEST_F(SurfaceFieldTest, RemovesWhatLeavesAndKeepsWhatArrives) {
   EXPECT_NEAR(area_in_front_of(fused(0, 24), 1.65), front, 0.05);
   // One view that sees through it proves nothing.
   EXPECT_NEAR(area_in_front_of(fused(0, 23), 1.65), front, 0.05);
+}
+
+/// Coarse views of frames between keyframes.
+class CarvingTest : public SurfaceFieldTest {
+ protected:
+  /// Frames of a world from poses; `first` is the index of the first one.
+  static void add_frames(const SolidWorld& world, const std::vector<Eigen::Isometry3d>& poses, std::uint64_t first,
+                         CarvingViews& carving) {
+    const CoarseSampler sampler(world.camera);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      const KeptView view = world.view(poses[i], first + i);
+      cv::Mat depth;
+      view.depth.convertTo(depth, CV_32F, KeptView::depth_unit);
+      Frame frame;
+      frame.index = view.frame_index;
+      frame.timestamp = view.timestamp;
+      frame.camera = std::make_shared<Camera>(world.camera);
+      frame.coarse.grid = sampler.grid();
+      sampler.sample_depth(depth, frame.coarse);
+      frame.T_camera_world = poses[i].inverse();
+      carving.add(frame, {}, Eigen::Isometry3d::Identity());
+    }
+  }
+  /// A box before a wall in eight keyframes, then without the box in as many frames as there are poses.
+  static TriangleMesh mesh_after_box(const std::vector<Eigen::Isometry3d>& later) {
+    SolidWorld with, without;
+    with.has_ball = without.has_ball = false;
+    with.has_wall = without.has_wall = with.has_box = true;
+    const auto poses = side_by_side(8, 0.05);
+    std::vector<KeptView> views = views_of(with, poses);
+    CarvingViews carving(0.1, 100);
+    add_frames(without, later, poses.size(), carving);
+    views.insert(views.end(), carving.views().begin(), carving.views().end());
+    std::vector<Eigen::Isometry3d> all = poses;
+    for (const KeptView& view : carving.views()) all.push_back(view.T_view_keyframe.inverse());
+    SurfaceMap map(with.camera, settings_of_test());
+    map.update(views, all, 0);
+    EXPECT_EQ(map.keyframe_count(), 8U);
+    const TriangleMesh mesh = map.field().mesh();
+    // Taken out, they leave no trace.
+    map.update(views_of(with, poses), poses, 0);
+    EXPECT_EQ(map.view_count(), 8U);
+    return mesh;
+  }
+};
+
+TEST_F(CarvingTest, CarvesByTheCoarseDepthOfFrames) {
+  const double front = 0.36;
+  EXPECT_GT(area_in_front_of(mesh_after_box(side_by_side(2, 0.05)), 2.3), front);  // two frames prove nothing
+  EXPECT_LT(area_in_front_of(mesh_after_box(side_by_side(6, 0.05)), 2.3), 0.02);
+}
+
+TEST_F(CarvingTest, RemovesTheRemnantsOfWhatIsCarved) {
+  // The last frames do not see the top of the box, a sixth of its front.
+  std::vector<Eigen::Isometry3d> lower = side_by_side(6, 0.05);
+  for (Eigen::Isometry3d& pose : lower) pose.linear() = Eigen::AngleAxisd(-0.31, Eigen::Vector3d::UnitX()).matrix();
+  EXPECT_EQ(area_in_front_of(mesh_after_box(lower), 2.3), 0.0);
+}
+
+TEST_F(CarvingTest, KeepsViewsApartInTimeAndFewEnough) {
+  CarvingViews carving(0.2, 5);
+  EXPECT_TRUE(carving.is_due(0.0));
+  carving.keyframe_kept(1.0);
+  EXPECT_FALSE(carving.is_due(1.1));
+  EXPECT_TRUE(carving.is_due(1.25));
+  add_frames(SolidWorld(), side_by_side(20, 0.01), 0, carving);
+  ASSERT_EQ(carving.views().size(), 5U);
+  EXPECT_EQ(carving.views().front().frame_index, 0U);
+  EXPECT_EQ(carving.views().back().frame_index, 19U);
+  EXPECT_EQ(carving.views().back().depth.cols, 20);
 }
 
 TEST_F(SurfaceFieldTest, ForgetsAViewThatIsTakenOut) {

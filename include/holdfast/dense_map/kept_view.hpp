@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
+#include <memory>
 #include <opencv2/core/mat.hpp>
 #include <vector>
 
@@ -13,7 +15,8 @@
 
 namespace holdfast {
 
-/// The kept images of a keyframe: undistorted and subsampled, 5 bytes per pixel.
+/// The kept images of a keyframe, undistorted and subsampled, 5 bytes per pixel; or the coarse depth of a frame between
+/// keyframes (CarvingViews).
 struct KeptView {
   static constexpr std::uint16_t moves_bit = 0x8000, depth_bits = 0x7FFF;
   static constexpr double depth_unit = 0.0005;  ///< [m]; the maximum depth is 16.38 m
@@ -23,11 +26,19 @@ struct KeptView {
   double timestamp = 0.0;  ///< [s]
   cv::Mat colour;          ///< 8UC3
   cv::Mat depth;           ///< 16UC1: depth_bits in depth_units, 0 = none; moves_bit for dynamic pixels
+  /// Of a frame between keyframes, which only carves free space and has no colour: its camera. Else nullptr.
+  std::shared_ptr<const Camera> coarse_camera = nullptr;
+  Eigen::Isometry3d T_view_keyframe = Eigen::Isometry3d::Identity();  ///< of such a frame relative to `keyframe`
+
+  bool only_carves() const { return coarse_camera != nullptr; }
 
   bool moves(int x, int y) const { return (depth.at<std::uint16_t>(y, x) & moves_bit) != 0; }
   /// Depth of the visible surface, static or dynamic [m]; 0 = none.
   double depth_at(int x, int y) const { return (depth.at<std::uint16_t>(y, x) & depth_bits) * depth_unit; }
 };
+
+/// Position of the view without which the gap in time is smallest; neither the first nor the last of three or more.
+std::size_t densest_view(const std::vector<KeptView>& views);
 
 /// Creates kept views from the images of a camera. Immutable after construction.
 class ViewSampler {

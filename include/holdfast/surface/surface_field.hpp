@@ -26,7 +26,9 @@ struct KeptView;
 /// free space beyond it (-1), in which a view counts 1.5 times as much as the view before it. A voxel below -1.2 is
 /// free, whatever surface was observed there: surfaces that disappeared are removed after three views, and surfaces
 /// that appeared are kept. A view sees through a voxel if all depths of the 3x3 pixels around it are larger by the
-/// truncation and by 4 cm plus 1 % of the squared depth.
+/// truncation and by 4 cm plus 1 % of the squared depth. The coarse depth of frames between keyframes (CarvingViews)
+/// counts in the balance, and not in the distances. The mesh leaves out remnants: parts that adjoin removed surface
+/// with half of their vertices, and at which no view has looked since.
 ///
 /// Memory: 6.6 kB per block, and 4 kB of colour for each block that a surface crosses. Used by one thread.
 class SurfaceField {

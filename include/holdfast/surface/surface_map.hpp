@@ -15,7 +15,7 @@ namespace holdfast {
 /// the field and put in again (Dai et al., BundleFusion, TOG 2017). Used by one thread.
 class SurfaceMap {
  public:
-  /// `camera` is the pinhole camera of the views.
+  /// `camera` is the pinhole camera of the views, but for those that only carve.
   SurfaceMap(const Camera& camera, const SurfaceSettings& settings) : camera_(camera), field_(camera, settings) {}
 
   /// Makes the field that of these views, by increasing frame index, and of their poses T_world_camera: takes out views
@@ -27,7 +27,9 @@ class SurfaceMap {
   const SurfaceField& field() const { return field_; }
   const Camera& camera() const { return camera_; }
   std::size_t view_count() const { return entries_.size(); }
-  /// The views that are fused, by increasing frame index.
+  /// Number of the views that do not only carve.
+  std::size_t keyframe_count() const;
+  /// The views that are fused, by increasing frame index, and those that only carve.
   const KeptView& view(std::size_t number) const { return entries_[number].view; }
   /// T_world_camera with which a view is fused.
   const Eigen::Isometry3d& pose(std::size_t number) const { return entries_[number].fusion.T_world_camera; }

@@ -18,6 +18,8 @@ struct SurfaceSettings {
   double maximum_depth = 4.0;   ///< larger depths are not fused [m]; the noise grows with the square of the depth
   int minimum_views = 2;        ///< number of keyframes that must have observed the surface at a voxel
   double smallest_part = 0.02;  ///< connected parts of the mesh with a smaller area are left out [m^2]
+  /// Time between frames whose coarse depth carves free space, beside the keyframes [s]; 0 = keyframes alone carve.
+  double carving_interval = 0.2;
   /// Maximum number of keyframes that are fused again at their adjusted pose when another one is added; at the end of a
   /// run all are.
   int moves_per_keyframe = 2;

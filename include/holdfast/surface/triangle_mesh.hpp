@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 namespace holdfast {
@@ -33,6 +34,17 @@ struct TriangleMesh {
 
 /// Sets the normal of every vertex to the mean of those of its triangles, weighted by their areas.
 void compute_normals(TriangleMesh& mesh);
+
+/// Connected parts of a mesh, by shared vertices. A part is named by its first vertex.
+struct MeshParts {
+  explicit MeshParts(const TriangleMesh& mesh);
+
+  std::vector<std::uint32_t> part;  ///< of each vertex
+  std::vector<double> area;         ///< of each part [m^2], at the position of its first vertex
+};
+
+/// Removes triangles, and vertices without triangles. The order of what remains is unchanged.
+void remove_triangles(TriangleMesh& mesh, const std::function<bool(const std::array<std::uint32_t, 3>&)>& is_removed);
 
 /// Removes connected parts (by shared vertices) with an area below `smallest_area` [m^2], and vertices without
 /// triangles. The order of what remains is unchanged.
