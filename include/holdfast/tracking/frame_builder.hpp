@@ -60,6 +60,10 @@ class FrameBuilder {
   /// From the next frame on, find_features() extracts `factor` times as many features (FeatureExtractor::set_budget).
   void set_budget(double factor);
 
+  /// The depth image of the stereo pair of the last frame (StereoDepth::depth_image), which is computed at the first
+  /// call; the caller must not write to it.
+  const cv::Mat& pair_depth();
+
   const std::shared_ptr<const Camera>& camera() const { return camera_; }
   const CoarseSampler& coarse_sampler() const { return coarse_sampler_; }
   /// The grey image of the last frame that was built (8UC1); valid until the next.
@@ -78,6 +82,7 @@ class FrameBuilder {
   cv::Mat unusable_;  // 8UC1, not 0 where the camera cannot use the image; empty if it can everywhere
   cv::Mat ignored_;
   std::optional<StereoDepth> stereo_;
+  std::optional<cv::Mat> pair_depth_;    // of the last frame, once it was needed
   cv::Mat grey_, grey_right_;            // of the sensor frame, or of the buffers
   cv::Mat converted_, converted_right_;  // the buffers: images of a sensor frame must not be written to
 };

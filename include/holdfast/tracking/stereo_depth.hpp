@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <opencv2/core/mat.hpp>
 
 #include "holdfast/core/frame.hpp"
+#include "holdfast/core/pair_errors.hpp"
+#include "holdfast/interfaces/dense_stereo.hpp"
 #include "holdfast/interfaces/feature_extractor.hpp"
 #include "holdfast/tracking/stereo_matcher.hpp"
-
-namespace cv {
-class StereoSGBM;
-}
 
 namespace holdfast {
 
@@ -21,22 +20,25 @@ struct StereoParts {
   /// Of the right image, equal to that of the left one. With one of its own, both images are searched at the same time
   /// where the machine has a second core; nullptr: the left one's, afterwards. It must outlive the reader.
   FeatureExtractor* right_features = nullptr;
-  bool is_dense = false;  ///< filters and masks need a depth image
+  bool is_dense = false;         ///< every frame gets a depth image, for filters and masks
+  DenseStereo* dense = nullptr;  ///< in place of that of settings.dense; it must outlive the reader
   /// Errors of the calibration, by which features are corrected, and which learn their rows; nullptr: there are none.
   /// It must outlive the reader.
   StereoCalibration* calibration = nullptr;
 };
 
-/// Depth from a rectified pair: of the features by StereoMatcher, and, if it is wanted, of the whole image by
-/// semi-global matching (Hirschmueller 2008, in OpenCV's version) at half the resolution. One thread, which waits for a
-/// second one of its own.
+/// Depth from a rectified pair: of the features by StereoMatcher, and of the whole image by a DenseStereo. One thread,
+/// which waits for a second one of its own.
 class StereoDepth {
  public:
   StereoDepth(const Camera& camera, const StereoParts& parts);
+  ~StereoDepth();
 
-  /// The depth image of a pair of 8UC1 images: 32FC1 [m] of the same size, 0 = none; blocks of 2 x 2 pixels have one
-  /// depth. Empty unless parts.is_dense. Valid until the next call.
-  const cv::Mat& dense(const cv::Mat& left, const cv::Mat& right);
+  bool is_dense() const { return parts_.is_dense; }
+  /// A depth image of a pair of 8UC1 images: 32FC1 [m] of the same size, 0 = none. The right image is corrected by the
+  /// errors of the calibration. The noise of depth grows with its square: no depth where its standard deviation exceeds
+  /// depth_noise::farther. Empty with DenseStereoMethod::off.
+  cv::Mat depth_image(const cv::Mat& left, const cv::Mat& right);
   /// The number of features of the right image, as FeatureExtractor::set_budget; that of the left one is the caller's.
   void set_budget(double factor) {
     if (parts_.right_features != nullptr) parts_.right_features->set_budget(factor);
@@ -52,11 +54,17 @@ class StereoDepth {
 
  private:
   StereoParts parts_;
+  Camera camera_;
   double fx_baseline_;
   StereoMatcher matcher_;
   Features right_features_;
-  cv::Ptr<cv::StereoSGBM> dense_matcher_;  // none unless parts_.is_dense
-  cv::Mat half_left_, half_right_, disparity_, dense_;
+  /// The right image as a pair without errors would show it.
+  const cv::Mat& corrected(const cv::Mat& right);
+
+  std::unique_ptr<DenseStereo> own_dense_;
+  cv::Mat disparity_, corrected_;
+  PairErrors errors_;      // of the maps
+  cv::Mat map_x_, map_y_;  // column and row in the right image of each of its pixels in a pair without errors
 };
 
 }  // namespace holdfast

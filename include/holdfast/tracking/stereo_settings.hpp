@@ -16,6 +16,13 @@ template <>
 inline constexpr Choice<SelfCalibration> choice_table<SelfCalibration>[] = {
     {"off", SelfCalibration::off}, {"fixed", SelfCalibration::fixed}, {"estimated", SelfCalibration::estimated}};
 
+/// Dense disparity of a pair: none, or semi-global matching.
+enum class DenseStereoMethod { off, sgbm };
+
+template <>
+inline constexpr Choice<DenseStereoMethod> choice_table<DenseStereoMethod>[] = {{"off", DenseStereoMethod::off},
+                                                                                {"sgbm", DenseStereoMethod::sgbm}};
+
 /// The `stereo` section of a configuration: how the features of the left image get their depth from the right one.
 struct StereoSettings {
   double minimum_depth = 0.4;  ///< [m]; nearer surfaces have no depth
@@ -25,6 +32,8 @@ struct StereoSettings {
   double maximum_distance = 0.0;
   int patch_radius = 5;            ///< px; half the width of the patch by which the disparity is refined
   double minimum_disparity = 0.5;  ///< px; farther features have no depth
+
+  DenseStereoMethod dense = DenseStereoMethod::sgbm;
 
   SelfCalibration self_calibration = SelfCalibration::estimated;
   // PairErrors: given, or first ones.

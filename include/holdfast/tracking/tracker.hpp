@@ -42,6 +42,8 @@ class Tracker {
 
   /// Throws InputError for images that begin() would refuse.
   void check_images(const SensorFrame& sensor_frame) const { context_.builder.check_images(sensor_frame); }
+  /// The depth image of the stereo pair of the frame of the last begin(); see FrameBuilder::pair_depth.
+  const cv::Mat& pair_depth() { return context_.builder.pair_depth(); }
   /// True if the first mask, which has just arrived, shows mostly movable objects in the first keyframe. Then the
   /// caller clears the map and calls forget_map(); the next frame initialises another map, from which the frames before
   /// it are tracked backwards.
