@@ -44,6 +44,9 @@ bool has_segmenter(const PipelineParts& parts) {
   return dynamic_cast<const NullSegmenter*>(parts.segmenter.get()) == nullptr;
 }
 
+/// Whether filters and masks compare the depth of every frame.
+bool needs_depth_images(const PipelineParts& parts) { return has_segmenter(parts) || !parts.filters.empty(); }
+
 MovingWorldParts moving_world_parts(PipelineParts& parts) {
   FilterChain chain(parts.evidence);
   for (auto& [name, filter] : parts.filters) chain.add(name, std::move(filter));
@@ -52,7 +55,7 @@ MovingWorldParts moving_world_parts(PipelineParts& parts) {
           .segmenter = has_segmenter(parts) ? parts.segmenter.get() : nullptr,
           .segmentation = parts.segmentation,
           .threaded = parts.run.threaded(),
-          .has_depth = features_have_depth(parts.sensor)};
+          .has_depth = parts.has_dense_depth()};
 }
 
 /// Makes the calibration of a pair that corrects itself, or nothing.
@@ -69,7 +72,8 @@ std::optional<StereoParts> stereo_parts(const PipelineParts& parts, StereoCalibr
   if (parts.sensor != Sensor::stereo) return std::nullopt;
   return StereoParts{.settings = parts.stereo,
                      .right_features = parts.right_features.get(),
-                     .is_dense = has_segmenter(parts) || !parts.filters.empty(),
+                     .is_dense = needs_depth_images(parts),
+                     .dense = parts.dense_stereo.get(),
                      .calibration = calibration};
 }
 
@@ -119,12 +123,18 @@ struct Pipeline::State {
   void accept(const SensorFrame& frame);
   void check_stamp(const SensorFrame& frame) const;
   void keep_imu(const SensorFrame& frame);
-  /// The frame as given, or in `other` what the sensor of this pipeline has of it, in colour where a part needs that.
-  const SensorFrame& used_images(const SensorFrame& given, SensorFrame& other) const;
+  /// What the sensor of this pipeline has of a frame, in colour where a part needs that.
+  SensorFrame used_images(const SensorFrame& given) const;
+  /// Gives the frame that is tracked the depth image of its pair, if there is one and something needs it.
+  void add_depth(SensorFrame& frame, bool is_needed, StageTimes& times) {
+    if (!is_needed || parts.sensor != Sensor::stereo) return;
+    const StageTimer timer(times, "frame");
+    frame.depth = tracker.pair_depth();
+  }
   bool is_start_refuted() HOLDFAST_EXCLUDES(map);
   /// Tracks the frame and inserts it as a keyframe if it is due. In `first_keyframe` the first view of one camera's map
   /// that was inserted before it, invalid otherwise.
-  MapRequest track(const SensorFrame& frame, FrameResult& result, KeyFrameId& first_keyframe) HOLDFAST_EXCLUDES(map);
+  MapRequest track(SensorFrame& frame, FrameResult& result, KeyFrameId& first_keyframe) HOLDFAST_EXCLUDES(map);
   KeyFrameId insert_keyframe(const LockedMap& locked, const MapRequest& request, FrameResult& result)
       HOLDFAST_REQUIRES(map);
   /// Whether tracking goes on while the keyframe just inserted is refined.
@@ -175,23 +185,20 @@ void Pipeline::State::keep_imu(const SensorFrame& frame) {
   if (imu.size() < most) append_imu(imu, frame.imu);
 }
 
-const SensorFrame& Pipeline::State::used_images(const SensorFrame& given, SensorFrame& other) const {
-  const bool drops_depth = parts.sensor != Sensor::rgbd && !given.depth.empty();
-  const bool drops_right = parts.sensor != Sensor::stereo && !given.right.empty();
+SensorFrame Pipeline::State::used_images(const SensorFrame& given) const {
   // Tracking and mapping need grey alone.
   const bool shows_colour = moving_world.expects_masks() || moving_world.weights_features() ||
                             !parts.observers.empty() || flow.static_scene() != nullptr;
   // An image without pixels has the type of a grey one; tracking refuses it.
   const bool gets_channels = shows_colour && !given.colour.empty() && given.colour.type() == CV_8UC1;
-  if (!drops_depth && !drops_right && !gets_channels) return given;
-  other = given;
-  if (drops_depth) other.depth.release();
-  if (drops_right) other.right.release();
+  SensorFrame used = given;
+  if (parts.sensor != Sensor::rgbd) used.depth.release();
+  if (parts.sensor != Sensor::stereo) used.right.release();
   if (gets_channels) {
-    other.colour = cv::Mat();
-    cv::merge(std::vector<cv::Mat>(3, given.colour), other.colour);
+    used.colour = cv::Mat();
+    cv::merge(std::vector<cv::Mat>(3, given.colour), used.colour);
   }
-  return other;
+  return used;
 }
 
 bool Pipeline::State::is_start_refuted() {
@@ -199,9 +206,10 @@ bool Pipeline::State::is_start_refuted() {
   return tracker.judge_start(locked);
 }
 
-MapRequest Pipeline::State::track(const SensorFrame& frame, FrameResult& result, KeyFrameId& first_keyframe) {
+MapRequest Pipeline::State::track(SensorFrame& frame, FrameResult& result, KeyFrameId& first_keyframe) {
   const Stopwatch watch;
   tracker.begin(frame, result);
+  add_depth(frame, needs_depth_images(parts), result.times);
   const LockedMap locked(map, LockPriority::tracking);
   const MapRequest request = tracker.locate(locked, frame, result);
   result.tracking_seconds += watch.seconds();
@@ -242,8 +250,7 @@ void Pipeline::finish_loading() { state_->parts.segmenter->finish_loading(); }
 
 FrameResult Pipeline::feed(const SensorFrame& given) {
   State& s = *state_;
-  SensorFrame other;
-  const SensorFrame& frame = s.used_images(given, other);
+  SensorFrame frame = s.used_images(given);
   s.accept(frame);
   s.flow.rethrow_failures();
   s.flow.wait_for_room();
@@ -256,6 +263,8 @@ FrameResult Pipeline::feed(const SensorFrame& given) {
   result.tracking_seconds = mask_seconds;
   KeyFrameId first_keyframe;
   const MapRequest request = s.track(frame, result, first_keyframe);
+  // Without the map's lock.
+  s.add_depth(frame, result.is_keyframe && (s.parts.dense_map.enabled || s.parts.surface.enabled), result.times);
   if (request.kind == MapRequest::Kind::give_up) s.give_map_up(result.times);
   if (first_keyframe.valid()) s.flow.refine_without_mask(first_keyframe, result.times);
   s.flow.request_mask(frame, s.tracker.frame(), request.wants_mask, result, result.times);

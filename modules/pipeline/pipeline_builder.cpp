@@ -113,6 +113,10 @@ PipelineBuilder& PipelineBuilder::stereo(const StereoSettings& settings) {
   parts_.stereo = settings;
   return *this;
 }
+PipelineBuilder& PipelineBuilder::dense_stereo(std::unique_ptr<DenseStereo> matcher) {
+  parts_.dense_stereo = std::move(matcher);
+  return *this;
+}
 PipelineBuilder& PipelineBuilder::segmentation(const SegmentationSettings& settings) {
   parts_.segmentation = settings;
   return *this;
@@ -268,12 +272,15 @@ void PipelineBuilder::check_settings() {
   if (const auto reason = parts_.run.contradiction()) add_diagnostic(origin_.place, *reason);
 }
 
+std::string PipelineBuilder::reason_of_no_depth() const {
+  return parts_.sensor == Sensor::stereo ? "stereo.dense is 'off'"
+                                         : "the sensor is '" + std::string(sensor_name(parts_.sensor)) + "'";
+}
+
 void PipelineBuilder::check_filter(const ModuleOf<DynamicFilter>& module, const Needs& needs) {
-  if (needs.depth && parts_.sensor == Sensor::mono)
-    add_diagnostic(module.place,
-                   "the filter '" + module.name +
-                       "' needs depth, and one camera has none; remove it, or choose one that does without, "
-                       "such as 'epipolar_consistency'");
+  if (needs.depth && !parts_.has_dense_depth())
+    add_diagnostic(module.place, "the filter '" + module.name + "' needs depth, and " + reason_of_no_depth() +
+                                     "; remove it, or choose one that does without, such as 'epipolar_consistency'");
   if (needs.segmentation && is_absent(segmenter_))
     add_diagnostic(module.place, "the filter '" + module.name +
                                      "' needs a segmentation, but the segmenter is 'none'; choose a segmenter");
@@ -355,12 +362,11 @@ void PipelineBuilder::choose_sensor() {
                                              "', and the source '" + origin_.source_name + "' has no " +
                                              (lacks_depth ? "depth" : "right") +
                                              " images; expected another source, or another 'sensor'");
-  if (parts_.dense_map.enabled && parts_.sensor != Sensor::rgbd)
-    add_diagnostic(origin_.place, "dense_map needs depth images, and the sensor is '" +
-                                      std::string(sensor_name(parts_.sensor)) + "'; remove `dense_map`");
-  if (parts_.surface.enabled && parts_.sensor != Sensor::rgbd)
-    add_diagnostic(origin_.place, "surface needs depth images, and the sensor is '" +
-                                      std::string(sensor_name(parts_.sensor)) + "'; remove `surface`");
+  for (const auto& [section, is_enabled] : {std::pair{std::string("dense_map"), parts_.dense_map.enabled},
+                                            std::pair{std::string("surface"), parts_.surface.enabled}})
+    if (is_enabled && !parts_.has_dense_depth())
+      add_diagnostic(origin_.place,
+                     section + " needs depth images, and " + reason_of_no_depth() + "; remove `" + section + "`");
   if (parts_.sensor != Sensor::stereo) return;
   if (parts_.tracking.between_keyframes == BetweenKeyframes::flow)
     add_diagnostic(origin_.place,

@@ -88,7 +88,13 @@ void FrameBuilder::begin(const SensorFrame& sensor_frame, Frame& frame, StageTim
   }
   if (right.channels() == 3) cv::cvtColor(right, converted_right_, cv::COLOR_BGR2GRAY);
   grey_right_ = right.channels() == 3 ? converted_right_ : right;
-  coarse_sampler_.sample_depth(stereo_->dense(grey_, grey_right_), frame.coarse);
+  pair_depth_.reset();
+  coarse_sampler_.sample_depth(stereo_->is_dense() ? pair_depth() : cv::Mat(), frame.coarse);
+}
+
+const cv::Mat& FrameBuilder::pair_depth() {
+  if (!pair_depth_) pair_depth_ = stereo_->depth_image(grey_, grey_right_);
+  return *pair_depth_;
 }
 
 void FrameBuilder::find_features(const SensorFrame& sensor_frame, const cv::Mat& ignore, Frame& frame,

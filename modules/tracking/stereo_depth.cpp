@@ -2,56 +2,57 @@
 #include "holdfast/tracking/stereo_depth.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <future>
-#include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 #include <thread>
 
+#include "holdfast/core/depth_noise.hpp"
 #include "holdfast/core/stereo_calibration.hpp"
 #include "holdfast/core/thread_name.hpp"
+#include "semi_global_stereo.hpp"
 
 namespace holdfast {
 
-namespace {
-
-/// Semi-global matching at half the resolution, with the penalties that OpenCV's documentation recommends.
-cv::Ptr<cv::StereoSGBM> semi_global_matcher(double max_disparity, int width) {
-  constexpr int block = 5, step = 16;  // px; the number of disparities is a multiple of the step
-  const int wanted = static_cast<int>(std::ceil(std::min(max_disparity, 0.5 * width) / 2.0));
-  const int disparities = std::max(step, (wanted + step - 1) / step * step);
-  constexpr int uniqueness = 10, speckle_size = 60, speckle_range = 2;
-  return cv::StereoSGBM::create(0, disparities, block, 8 * block * block, 32 * block * block, 1, 0, uniqueness,
-                                speckle_size, speckle_range, cv::StereoSGBM::MODE_SGBM);
-}
-
-}  // namespace
-
 StereoDepth::StereoDepth(const Camera& camera, const StereoParts& parts)
-    : parts_(parts), fx_baseline_(camera.fx * camera.baseline), matcher_(parts.settings) {
-  if (!parts.is_dense) return;
-  dense_matcher_ = semi_global_matcher(fx_baseline_ / parts.settings.minimum_depth, camera.width);
+    : parts_(parts), camera_(camera), fx_baseline_(camera.fx * camera.baseline), matcher_(parts.settings) {}
+StereoDepth::~StereoDepth() = default;
+
+const cv::Mat& StereoDepth::corrected(const cv::Mat& right) {
+  const PairErrors errors = parts_.calibration != nullptr ? parts_.calibration->errors() : PairErrors();
+  if (errors == PairErrors()) return right;
+  if (map_x_.empty() || !(errors == errors_)) {
+    errors_ = errors;
+    map_x_.create(right.size(), CV_32FC1), map_y_.create(right.size(), CV_32FC1);
+    for (int y = 0; y < right.rows; ++y)
+      for (int x = 0; x < right.cols; ++x) {
+        map_x_.ptr<float>(y)[x] = static_cast<float>(x + errors.column(camera_, x, y));
+        map_y_.ptr<float>(y)[x] = static_cast<float>(y + errors.row(camera_, x, y));
+      }
+  }
+  cv::remap(right, corrected_, map_x_, map_y_, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  return corrected_;
 }
 
-const cv::Mat& StereoDepth::dense(const cv::Mat& left, const cv::Mat& right) {
-  if (!dense_matcher_) return dense_;
-  const cv::Size half(left.cols / 2, left.rows / 2);
-  cv::resize(left, half_left_, half, 0, 0, cv::INTER_AREA);
-  cv::resize(right, half_right_, half, 0, 0, cv::INTER_AREA);
-  dense_matcher_->compute(half_left_, half_right_, disparity_);
-  dense_.create(left.size(), CV_32FC1);
-  // Disparities are sixteenths of a pixel of the half resolution.
-  const float numerator = static_cast<float>(fx_baseline_ * 16.0 / 2.0);
-  const int least = std::max(1, static_cast<int>(std::lround(parts_.settings.minimum_disparity * 8.0)));
-  for (int row = 0; row < dense_.rows; ++row) {
-    const std::int16_t* from = disparity_.ptr<std::int16_t>(std::min(row / 2, half.height - 1));
-    float* to = dense_.ptr<float>(row);
-    for (int column = 0; column < dense_.cols; ++column) {
-      const std::int16_t value = from[std::min(column / 2, half.width - 1)];
-      to[column] = value >= least ? numerator / static_cast<float>(value) : 0.0F;
+cv::Mat StereoDepth::depth_image(const cv::Mat& left, const cv::Mat& right) {
+  if (parts_.settings.dense == DenseStereoMethod::off) return {};
+  if (parts_.dense == nullptr) {
+    own_dense_ = std::make_unique<SemiGlobalStereo>(fx_baseline_ / parts_.settings.minimum_depth, camera_.width);
+    parts_.dense = own_dense_.get();
+  }
+  parts_.dense->match(left, corrected(right), disparity_);
+  constexpr float noise = 0.17F;  // px; standard deviation of disparities
+  cv::Mat depth(left.size(), CV_32FC1);
+  const auto numerator = static_cast<float>(fx_baseline_);
+  const auto least = static_cast<float>(parts_.settings.minimum_disparity);
+  for (int row = 0; row < depth.rows; ++row) {
+    const float* from = disparity_.ptr<float>(row);
+    float* to = depth.ptr<float>(row);
+    for (int column = 0; column < depth.cols; ++column) {
+      const float z = from[column] >= least ? numerator / from[column] : 0.0F;
+      to[column] = z * noise <= depth_noise::farther(z) * from[column] ? z : 0.0F;
     }
   }
-  return dense_;
+  return depth;
 }
 
 void StereoDepth::extract(const cv::Mat& left, const cv::Mat& right, const cv::Mat& ignore, FeatureExtractor& extractor,

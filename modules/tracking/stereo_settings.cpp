@@ -27,6 +27,9 @@ void StereoSettings::describe(ParameterTable<StereoSettings>& table) {
   table.add("minimum_disparity", &S::minimum_disparity, "features with a smaller disparity get no depth")
       .range(0.01, 100)
       .unit("px");
+  table.add("dense", &S::dense,
+            "depth images of a pair, which are computed where something needs them: filters, masks, dense_map or "
+            "surface; sgbm = semi-global matching");
   table.add(
       "self_calibration", &S::self_calibration,
       "whether errors of the calibration of the pair are corrected: fixed = by the errors given below; estimated = the "

@@ -113,7 +113,7 @@ TEST(MonoRun, WhatNeedsDepthIsRefused) {
     return program.run(arguments).errors;
   };
   EXPECT_THAT(check("filters=[multi_view_depth]"),
-              HasSubstr("the filter 'multi_view_depth' needs depth, and one camera has none"));
+              HasSubstr("the filter 'multi_view_depth' needs depth, and the sensor is 'mono'"));
   EXPECT_THAT(check("dense_map.enabled=true"), HasSubstr("dense_map needs depth images, and the sensor is 'mono'"));
   EXPECT_THAT(check("sensor=stereo"), HasSubstr("the sensor is 'stereo', and the source"));
   EXPECT_THAT(check("sensor=momo"), HasSubstr("did you mean 'mono'?"));

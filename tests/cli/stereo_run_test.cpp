@@ -73,6 +73,18 @@ TEST(StereoRun, ABaselineInMillimetresIsToldAndTheRunIsNoSuccess) {
   EXPECT_NE(run.errors.find("error: no pose is supported by the map"), std::string::npos) << run.errors;
 }
 
+TEST(StereoRun, APairHasADenseMapWhichDoesNotChangeItsPath) {
+  const test::Program program;
+  const std::vector<std::string> plain{"source={simulated: {path: xyz, duration: 1, stereo_baseline: 0.11, seed: 1}}",
+                                       "camera=tum_fr3", "features.orb.count=500"};
+  std::vector<std::string> dense = plain;
+  dense.emplace_back("dense_map={enabled: true, voxel_size: 0.05, minimum_views: 1}");
+  run_stereo(program, "plain", plain);
+  run_stereo(program, "dense", dense);
+  EXPECT_EQ(program.text("plain/trajectory.txt"), program.text("dense/trajectory.txt"));
+  EXPECT_GT(program.text("dense/static_map.ply").size(), 3 * program.text("plain/static_map.ply").size());
+}
+
 TEST(StereoRun, ASimulatedPairIsTrackedToAMillimetre) {
   const test::Program program;
   const nlohmann::json summary =

@@ -235,7 +235,7 @@ TEST_F(ConfiguredPipeline, TheSensorNeedsItsImages) {
               HasSubstr("c.yaml:5:9: found 'rgb' for 'sensor'; did you mean 'rgbd'?"));
   world_.needs.depth = true;
   EXPECT_THAT(complaints(camera + "filters: [ filter ]\n"),
-              HasSubstr("c.yaml:5:12: the filter 'filter' needs depth, and one camera has none"));
+              HasSubstr("c.yaml:5:12: the filter 'filter' needs depth, and the sensor is 'mono'"));
 }
 
 TEST_F(ConfiguredPipeline, TellsAllMisfitsAtOnce) {

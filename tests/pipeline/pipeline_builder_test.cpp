@@ -256,6 +256,13 @@ TEST(PipelineBuilder, ASurfaceIsCheckedBeforeTheRun) {
   PipelineBuilder mono = builder_for(world);
   mono.surface({.enabled = true}).sensor(Sensor::mono);
   EXPECT_THAT(complaints(mono), HasSubstr("surface needs depth images, and the sensor is 'mono'"));
+  PipelineBuilder pair = builder_for(world);
+  StereoSettings without;
+  without.dense = DenseStereoMethod::off;
+  pair.surface({.enabled = true}).sensor(Sensor::stereo).stereo(without);
+  EXPECT_THAT(complaints(pair), HasSubstr("surface needs depth images, and stereo.dense is 'off'"));
+  pair.stereo({});
+  EXPECT_THAT(complaints(pair), ::testing::Not(HasSubstr("needs depth images")));
   if (SurfaceField::is_available()) return;
   PipelineBuilder builder = builder_for(world);
   builder.surface({.enabled = true});

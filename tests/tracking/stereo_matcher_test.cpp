@@ -3,11 +3,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <opencv2/imgproc.hpp>
 
+#include "holdfast/core/median.hpp"
 #include "holdfast/core/random.hpp"
+#include "holdfast/core/stereo_calibration.hpp"
+#include "holdfast/simulation/simulator.hpp"
 #include "holdfast/tracking/stereo_depth.hpp"
 
 namespace holdfast {
@@ -222,6 +227,91 @@ TEST_F(StereoMatcherTest, WithoutRightFeaturesNothingHasDepth) {
   right_features_.clear();
   match();
   EXPECT_EQ(with_depth(), 0U);
+}
+
+/// Errors of the disparities of a depth image [px]; `disparity_at` of column and row, 0 = not compared.
+std::vector<double> disparity_errors(const cv::Mat& depth, double fx_baseline,
+                                     const std::function<double(int, int)>& disparity_at) {
+  std::vector<double> errors;
+  for (int row = 0; row < depth.rows; ++row)
+    for (int column = 0; column < depth.cols; ++column) {
+      const double expected = disparity_at(column, row), found = depth.at<float>(row, column);
+      if (expected > 0.0 && found > 0.0) errors.push_back(std::abs(fx_baseline / found - expected));
+    }
+  return errors;
+}
+
+TEST_F(StereoMatcherTest, TheDepthImageIsThatOfTheImagesAndIsCorrectedByTheErrorsOfThePair) {
+  const auto errors_of = [&](StereoCalibration* calibration) {
+    StereoDepth stereo(*frame_.camera, {.calibration = calibration});
+    return disparity_errors(stereo.depth_image(left_, right_), 20.0,
+                            [&](int x, int y) { return x < 60 ? 0.0 : disparity_at(static_cast<float>(y)); });
+  };
+  constexpr std::size_t pixels = (width - 60) * height;
+  std::vector<double> errors = errors_of(nullptr);
+  EXPECT_GT(errors.size(), pixels * 9 / 10);
+  EXPECT_LT(upper_median(errors), 0.1);
+  // Two pixels lower, and 1.5 px to the right.
+  cv::warpAffine(right_.clone(), right_, cv::Matx23f(1, 0, 1.5F, 0, 1, 2), right_.size(), cv::INTER_CUBIC,
+                 cv::BORDER_REFLECT);
+  PairErrors pair;
+  pair.column_offset = 1.5;
+  pair.rotation.x() = -2.0 / frame_.camera->fy;
+  StereoCalibration calibration(*frame_.camera, pair, false);
+  errors = errors_of(&calibration);
+  EXPECT_GT(errors.size(), pixels * 8 / 10);
+  EXPECT_LT(upper_median(errors), 0.2);
+  errors = errors_of(nullptr);
+  EXPECT_GT(errors.empty() ? 9.0 : upper_median(errors), 1.0);
+}
+
+TEST_F(StereoMatcherTest, FarSurfacesAndPairsWithoutADenseMatcherHaveNoDepthImage) {
+  show(1.0F, 0);  // up to 11 px: 20 m to 1.8 m
+  StereoDepth stereo(*frame_.camera, {}), off(*frame_.camera, {.settings = {.dense = DenseStereoMethod::off}});
+  EXPECT_TRUE(off.depth_image(left_, right_).empty());
+  const cv::Mat depth = stereo.depth_image(left_, right_);
+  double farthest = 0.0;
+  cv::minMaxLoc(depth, nullptr, &farthest);
+  EXPECT_GT(farthest, 3.0);
+  EXPECT_LT(farthest, 6.0);  // 0.17 px are 0.3 m here
+}
+
+/// A matcher of the caller.
+class SameDisparity final : public DenseStereo {
+ public:
+  void match(const cv::Mat& left, const cv::Mat&, cv::Mat& disparity) override {
+    disparity.create(left.size(), CV_32FC1);
+    disparity.setTo(10.0F);
+  }
+};
+
+TEST_F(StereoMatcherTest, AnotherDenseMatcherTakesThePlaceOfTheBuiltInOne) {
+  SameDisparity same;
+  StereoDepth stereo(*frame_.camera, {.dense = &same});
+  EXPECT_EQ(cv::countNonZero(stereo.depth_image(left_, right_) == 2.0F), width * height);
+}
+
+TEST(DenseDepth, OfASimulatedPairAgreesWithTheTrueDepth) {
+  Camera camera = find_camera("tum_fr3").value();
+  camera.baseline = 0.11;
+  simulation::Scene scene;
+  scene.seed = 1, scene.duration = 0.1;
+  simulation::Simulator simulator(scene, camera);
+  const SensorFrame frame = simulator.stereo_frame(0, camera.baseline);
+  const cv::Mat truth = simulator.render(0).depth;
+  cv::Mat left, right;
+  cv::cvtColor(frame.colour, left, cv::COLOR_BGR2GRAY);
+  cv::cvtColor(frame.right, right, cv::COLOR_BGR2GRAY);
+  StereoDepth stereo(camera, {});
+  const double fx_baseline = camera.fx * camera.baseline;
+  auto errors = disparity_errors(stereo.depth_image(left, right), fx_baseline, [&](int x, int y) -> double {
+    const float z = truth.at<float>(y, x);
+    return z > 0.4F && fx_baseline / z < x ? fx_baseline / z : 0.0;
+  });
+  EXPECT_GT(errors.size(), truth.total() * 45 / 100);  // of the others, most show plain walls
+  EXPECT_LT(upper_median(errors), 0.2);
+  const auto wrong = std::count_if(errors.begin(), errors.end(), [](double error) { return error > 1.0; });
+  EXPECT_LT(wrong, static_cast<std::ptrdiff_t>(errors.size() / 10));
 }
 
 }  // namespace

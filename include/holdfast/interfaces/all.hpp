@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "holdfast/interfaces/dense_stereo.hpp"
 #include "holdfast/interfaces/dynamic_filter.hpp"
 #include "holdfast/interfaces/feature_extractor.hpp"
 #include "holdfast/interfaces/feature_matcher.hpp"

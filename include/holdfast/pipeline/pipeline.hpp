@@ -46,6 +46,7 @@ struct PipelineParts {
   std::unique_ptr<FeatureMatcher> matcher;  ///< nullptr = NearestMatcher
   Sensor sensor = Sensor::rgbd;
   std::unique_ptr<FeatureExtractor> right_features;  ///< extractor for right images; may be nullptr, see StereoParts
+  std::unique_ptr<DenseStereo> dense_stereo;         ///< dense matcher of a stereo pair; nullptr = by stereo.dense
   std::unique_ptr<Segmenter> segmenter;
   std::vector<std::pair<std::string, std::unique_ptr<DynamicFilter>>> filters;  ///< by name, in order
   std::unique_ptr<Optimizer> optimizer;
@@ -62,6 +63,10 @@ struct PipelineParts {
   DenseMapSettings dense_map;
   SurfaceSettings surface;
   RunSettings run;
+  /// Frames have a depth image, or get one from their pair.
+  bool has_dense_depth() const {
+    return sensor == Sensor::rgbd || (sensor == Sensor::stereo && stereo.dense != DenseStereoMethod::off);
+  }
   Map map;                     ///< map to continue; empty = begin a new map
   bool localise_only = false;  ///< localisation in the map without changing it
   Warnings warnings;           ///< about questionable combinations of modules and settings

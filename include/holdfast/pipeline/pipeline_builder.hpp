@@ -116,6 +116,8 @@ class PipelineBuilder {
 
   PipelineBuilder& tracking(const TrackingSettings& settings);
   PipelineBuilder& stereo(const StereoSettings& settings);
+  /// Dense disparities of a pair by an algorithm of the caller, in place of StereoSettings::dense = sgbm.
+  PipelineBuilder& dense_stereo(std::unique_ptr<DenseStereo> matcher);
   PipelineBuilder& segmentation(const SegmentationSettings& settings);
   PipelineBuilder& evidence(const EvidenceSettings& settings);
   PipelineBuilder& mapping(const MappingSettings& settings);
@@ -154,6 +156,7 @@ class PipelineBuilder {
   void make_modules();
   void throw_diagnostics();
   void choose_sensor();
+  std::string reason_of_no_depth() const;
   void check_filter(const ModuleOf<DynamicFilter>& module, const Needs& needs);
   void check_classes(const ModuleOf<DynamicFilter>& module, const DynamicFilter& filter);
   void check_effects();

@@ -58,6 +58,10 @@ class FrameBuilder {
   /// Multiplies the number of features to extract from the next frame on (FeatureExtractor::set_budget).
   void set_budget(double factor);
 
+  /// The depth image of the stereo pair of the last frame (StereoDepth::depth_image), which is computed at the first
+  /// call; the caller must not write to it.
+  const cv::Mat& pair_depth();
+
   const std::shared_ptr<const Camera>& camera() const { return camera_; }
   const CoarseSampler& coarse_sampler() const { return coarse_sampler_; }
   /// Grey image of the last frame (8UC1); valid until the next one.
@@ -76,6 +80,7 @@ class FrameBuilder {
   cv::Mat unusable_;  // 8UC1, not 0 where the camera cannot use the image; empty if it can everywhere
   cv::Mat ignored_;
   std::optional<StereoDepth> stereo_;
+  std::optional<cv::Mat> pair_depth_;    // depth image of the last frame, once it was requested
   cv::Mat grey_, grey_right_;            // images of the sensor frame, or the buffers below
   cv::Mat converted_, converted_right_;  // buffers, because images of a sensor frame must not be written to
 };

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <memory>
 #include <opencv2/core/mat.hpp>
 
 #include "holdfast/core/frame.hpp"
+#include "holdfast/core/pair_errors.hpp"
+#include "holdfast/interfaces/dense_stereo.hpp"
 #include "holdfast/interfaces/feature_extractor.hpp"
 #include "holdfast/tracking/stereo_matcher.hpp"
-
-namespace cv {
-class StereoSGBM;
-}
 
 namespace holdfast {
 
@@ -21,22 +20,25 @@ struct StereoParts {
   /// Extractor for the right image, configured like the left one; both images are then processed in parallel if the
   /// machine has a second core. nullptr = the left extractor is used for both. Must outlive the reader.
   FeatureExtractor* right_features = nullptr;
-  bool is_dense = false;  ///< compute a depth image, for filters and masks
+  bool is_dense = false;         ///< compute a depth image for every frame, for filters and masks
+  DenseStereo* dense = nullptr;  ///< dense matcher; nullptr = that of settings.dense. Must outlive the reader
   /// Calibration errors, which correct the features and are refined by their row differences; nullptr = no correction.
   /// Must outlive the reader.
   StereoCalibration* calibration = nullptr;
 };
 
-/// Depth from a rectified pair: of features by StereoMatcher and, with StereoParts::is_dense, of the whole image by
-/// semi-global matching (Hirschmueller 2008, implementation of OpenCV) at half the resolution. Called by one thread;
-/// uses a second one internally.
+/// Depth from a rectified pair: of features by StereoMatcher, and of the whole image by a DenseStereo. Called by one
+/// thread; uses a second one internally.
 class StereoDepth {
  public:
   StereoDepth(const Camera& camera, const StereoParts& parts);
+  ~StereoDepth();
 
-  /// The depth image of a pair of 8UC1 images: 32FC1 [m] of the same size, 0 = none; blocks of 2 x 2 pixels have one
-  /// depth. Empty unless parts.is_dense. Valid until the next call.
-  const cv::Mat& dense(const cv::Mat& left, const cv::Mat& right);
+  bool is_dense() const { return parts_.is_dense; }
+  /// The depth image of a pair of 8UC1 images: 32FC1 [m] of the same size, 0 = none. The right image is corrected by the
+  /// calibration errors. The noise of depth grows with its square: there is no depth where its standard deviation
+  /// exceeds depth_noise::farther. Empty with DenseStereoMethod::off.
+  cv::Mat depth_image(const cv::Mat& left, const cv::Mat& right);
   /// Multiplies the number of features of the right image (FeatureExtractor::set_budget). The caller sets that of the
   /// left one.
   void set_budget(double factor) {
@@ -53,11 +55,17 @@ class StereoDepth {
 
  private:
   StereoParts parts_;
+  Camera camera_;
   double fx_baseline_;
   StereoMatcher matcher_;
   Features right_features_;
-  cv::Ptr<cv::StereoSGBM> dense_matcher_;  // none unless parts_.is_dense
-  cv::Mat half_left_, half_right_, disparity_, dense_;
+  /// The right image as a pair without errors would show it.
+  const cv::Mat& corrected(const cv::Mat& right);
+
+  std::unique_ptr<DenseStereo> own_dense_;
+  cv::Mat disparity_, corrected_;
+  PairErrors errors_;      // of the maps
+  cv::Mat map_x_, map_y_;  // column and row in the right image of each of its pixels in a pair without errors
 };
 
 }  // namespace holdfast

@@ -16,7 +16,14 @@ template <>
 inline constexpr Choice<SelfCalibration> choice_table<SelfCalibration>[] = {
     {"off", SelfCalibration::off}, {"fixed", SelfCalibration::fixed}, {"estimated", SelfCalibration::estimated}};
 
-/// The `stereo` section of a configuration: depth of features from a stereo pair, and self-calibration.
+/// Dense disparity of a pair: none, or semi-global matching.
+enum class DenseStereoMethod { off, sgbm };
+
+template <>
+inline constexpr Choice<DenseStereoMethod> choice_table<DenseStereoMethod>[] = {{"off", DenseStereoMethod::off},
+                                                                                {"sgbm", DenseStereoMethod::sgbm}};
+
+/// The `stereo` section of a configuration: depth of features from a stereo pair, dense depth, and self-calibration.
 struct StereoSettings {
   double minimum_depth = 0.4;  ///< [m]; nearer surfaces have no depth
   double row_tolerance = 2.0;  ///< px at level 0, times the scale of the feature: of keypoints, and of rectification
@@ -25,6 +32,8 @@ struct StereoSettings {
   double maximum_distance = 0.0;
   int patch_radius = 5;            ///< px; half the width of the patch by which the disparity is refined
   double minimum_disparity = 0.5;  ///< px; farther features have no depth
+
+  DenseStereoMethod dense = DenseStereoMethod::sgbm;
 
   SelfCalibration self_calibration = SelfCalibration::estimated;
   // PairErrors: given, or first ones.

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "semi_global_stereo.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace holdfast {
+
+namespace {
+
+constexpr int window = 9;           // px, of the sums of differences
+constexpr int max_difference = 40;  // grey levels
+constexpr int eighths = 8;          // of the full resolution: sixteenths of a pixel of half the resolution
+
+/// The disparity at half the resolution that belongs to a row of the full one.
+const std::int16_t* half_row(const cv::Mat& half, int row) {
+  return half.ptr<std::int16_t>(std::min(row / 2, half.rows - 1));
+}
+
+}  // namespace
+
+SemiGlobalStereo::SemiGlobalStereo(double max_disparity, int width) {
+  constexpr int block = 5, step = 16;  // px; the number of disparities is a multiple of the step
+  constexpr int uniqueness = 10, speckle_size = 60, speckle_range = 2, left_right = 1;
+  const int wanted = static_cast<int>(std::ceil(std::min(max_disparity, 0.5 * width) / 2.0));
+  const int disparities = std::max(step, (wanted + step - 1) / step * step);
+  // The penalties that OpenCV's documentation recommends.
+  matcher_ = cv::StereoSGBM::create(0, disparities, block, 8 * block * block, 32 * block * block, left_right, 0,
+                                    uniqueness, speckle_size, speckle_range, cv::StereoSGBM::MODE_SGBM_3WAY);
+}
+
+void SemiGlobalStereo::match(const cv::Mat& left, const cv::Mat& right, cv::Mat& disparity) {
+  const cv::Size half(left.cols / 2, left.rows / 2);
+  cv::resize(left, half_left_, half, 0, 0, cv::INTER_AREA);
+  cv::resize(right, half_right_, half, 0, 0, cv::INTER_AREA);
+  matcher_->compute(half_left_, half_right_, half_disparity_);
+  left_ = left;
+  right.convertTo(right_, CV_8U, 1.0, brightness_difference());
+  compare();
+  refine(disparity);
+  remove_occluded(disparity);
+}
+
+int SemiGlobalStereo::brightness_difference() const {
+  constexpr int levels = 256;
+  std::array<int, 2 * levels> counts{};
+  int total = 0;
+  for (int row = 0; row < half_left_.rows; ++row) {
+    const std::uint8_t *left = half_left_.ptr<std::uint8_t>(row), *right = half_right_.ptr<std::uint8_t>(row);
+    const std::int16_t* disparity = half_disparity_.ptr<std::int16_t>(row);
+    for (int column = 0; column < half_left_.cols; ++column) {
+      const int there = column - (disparity[column] + eighths) / (2 * eighths);
+      if (disparity[column] < eighths || there < 0) continue;
+      ++counts[static_cast<std::size_t>(left[column] - right[there] + levels)];
+      ++total;
+    }
+  }
+  int level = 0;
+  for (int passed = counts[0]; 2 * passed < total; passed += counts[static_cast<std::size_t>(level)]) ++level;
+  return total == 0 ? 0 : level - levels;
+}
+
+void SemiGlobalStereo::compare() {
+  const int rows = left_.rows, columns = left_.cols, last = half_disparity_.cols - 1;
+  for (cv::Mat& image : differences_) image.create(rows, columns, CV_8UC1);
+  for (int row = 0; row < rows; ++row) {
+    const std::uint8_t *left = left_.ptr<std::uint8_t>(row), *right = right_.ptr<std::uint8_t>(row);
+    const std::int16_t* disparity = half_row(half_disparity_, row);
+    std::array<std::uint8_t*, candidates> to{};
+    for (std::size_t k = 0; k < candidates; ++k) to[k] = differences_[k].ptr<std::uint8_t>(row);
+    for (int column = 0; column < columns; ++column) {
+      const int found = disparity[std::min(column / 2, last)], place = eighths * column - found;
+      const int whole = place >> 3, part = place & 7;
+      if (found < eighths || whole < reach || whole + reach + 1 >= columns) {
+        for (std::uint8_t* out : to) out[column] = max_difference;
+        continue;
+      }
+      for (int k = 0; k < candidates; ++k) {
+        const std::uint8_t* from = right + whole + reach - k;
+        const int value = (from[0] * (eighths - part) + from[1] * part + eighths / 2) / eighths;
+        to[static_cast<std::size_t>(k)][column] =
+            static_cast<std::uint8_t>(std::min(std::abs(left[column] - value), max_difference));
+      }
+    }
+  }
+  for (std::size_t k = 0; k < candidates; ++k)
+    cv::boxFilter(differences_[k], costs_[k], CV_16U, cv::Size(window, window), cv::Point(-1, -1), false);
+}
+
+void SemiGlobalStereo::refine(cv::Mat& disparity) {
+  constexpr int distinct = window * window / 4;  // a quarter of a grey level
+  const int rows = left_.rows, columns = left_.cols, last = half_disparity_.cols - 1;
+  disparity.create(rows, columns, CV_32FC1);
+  least_.create(rows, columns, CV_16UC1);
+  for (int row = 0; row < rows; ++row) {
+    const std::int16_t* half = half_row(half_disparity_, row);
+    std::array<const std::uint16_t*, candidates> cost{};
+    for (std::size_t k = 0; k < candidates; ++k) cost[k] = costs_[k].ptr<std::uint16_t>(row);
+    float* to = disparity.ptr<float>(row);
+    auto* least_to = least_.ptr<std::uint16_t>(row);
+    for (int column = 0; column < columns; ++column) {
+      to[column] = 0.0F;
+      least_to[column] = 0;
+      const int found = half[std::min(column / 2, last)];
+      if (found < eighths) continue;
+      std::size_t best = 0;
+      for (std::size_t k = 1; k < candidates; ++k)
+        if (cost[k][column] < cost[best][column]) best = k;
+      if (best == 0 || best + 1 == candidates) continue;
+      const int least = cost[best][column], before = cost[best - 1][column] - least,
+                after = cost[best + 1][column] - least, rise = std::max(before, after);
+      if (rise <= distinct) continue;
+      const float offset = 0.5F * static_cast<float>(before - after) / static_cast<float>(rise);
+      const float value = static_cast<float>(found) / eighths + static_cast<float>(best) - reach + offset;
+      to[column] = std::max(value, 0.0F);
+      least_to[column] = static_cast<std::uint16_t>(least);
+    }
+  }
+}
+
+void SemiGlobalStereo::remove_occluded(cv::Mat& disparity) {
+  constexpr float tolerance = 1.5F;  // px; a slanted surface shows several disparities in one column
+  const int columns = disparity.cols;
+  for (int row = 0; row < disparity.rows; ++row) {
+    float* values = disparity.ptr<float>(row);
+    const auto place = [&](int column) {
+      return static_cast<std::size_t>(
+          std::clamp(column - static_cast<int>(std::lround(values[column])), 0, columns - 1));
+    };
+    const std::uint16_t* costs = least_.ptr<std::uint16_t>(row);
+    best_.assign(static_cast<std::size_t>(columns), -1);
+    for (int column = 0; column < columns; ++column) {
+      if (values[column] == 0.0F) continue;
+      int& best = best_[place(column)];
+      if (best < 0 || costs[column] < costs[best]) best = column;
+    }
+    for (int column = 0; column < columns; ++column)
+      if (values[column] > 0.0F && std::abs(values[best_[place(column)]] - values[column]) > tolerance)
+        removed_.push_back(column);
+    for (const int column : removed_) values[column] = 0.0F;
+    removed_.clear();
+  }
+}
+
+}  // namespace holdfast

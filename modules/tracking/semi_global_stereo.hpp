@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "holdfast/interfaces/dense_stereo.hpp"
+
+namespace cv {
+class StereoSGBM;
+}
+
+namespace holdfast {
+
+/// Semi-global matching (Hirschmueller 2008, OpenCV's version in three directions) at half the resolution, refined at
+/// the full one: each disparity is compared with its neighbours up to `reach` pixels away by sums of absolute
+/// differences, at equal brightness of both images, in windows that follow the disparities found, and the minimum is
+/// interpolated by two lines of equal slope (Shimizu and Okutomi 2001). No disparity where the minimum lies at the end
+/// of this range or is not distinct, and where another pixel matches the same pixel of the right image better.
+class SemiGlobalStereo final : public DenseStereo {
+ public:
+  /// `max_disparity`: [px]; larger disparities are not searched.
+  SemiGlobalStereo(double max_disparity, int width);
+
+  void match(const cv::Mat& left, const cv::Mat& right, cv::Mat& disparity) override;
+
+ private:
+  static constexpr int reach = 2, candidates = 2 * reach + 1;
+
+  /// Median difference of the brightness of both images, left minus right, at the matches of half the resolution:
+  /// exposures differ.
+  int brightness_difference() const;
+  void compare();
+  void refine(cv::Mat& disparity);
+  void remove_occluded(cv::Mat& disparity);
+
+  cv::Ptr<cv::StereoSGBM> matcher_;
+  cv::Mat half_left_, half_right_, half_disparity_;  // the last one 16SC1 [1/16 px]
+  cv::Mat left_, right_;                             // 8UC1, of the same mean
+  std::array<cv::Mat, candidates> differences_, costs_;
+  cv::Mat least_;  // 16UC1: the least sum of differences of each pixel
+  // Of a row: the column of the left image with the least sum, by column of the right image; columns to remove.
+  std::vector<int> best_, removed_;
+};
+
+}  // namespace holdfast
