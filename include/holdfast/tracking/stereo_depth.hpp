@@ -35,8 +35,8 @@ class StereoDepth {
   ~StereoDepth();
 
   bool is_dense() const { return parts_.is_dense; }
-  /// The depth image of a pair of 8UC1 images: 32FC1 [m] of the same size, 0 = none. The right image is corrected by the
-  /// calibration errors. The noise of depth grows with its square: there is no depth where its standard deviation
+  /// The depth image of a pair of 8UC1 images: 32FC1 [m] of the same size, 0 = none. The right image is corrected by
+  /// the calibration errors. The noise of depth grows with its square: there is no depth where its standard deviation
   /// exceeds depth_noise::farther. Empty with DenseStereoMethod::off.
   cv::Mat depth_image(const cv::Mat& left, const cv::Mat& right);
   /// Multiplies the number of features of the right image (FeatureExtractor::set_budget). The caller sets that of the
