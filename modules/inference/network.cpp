@@ -138,7 +138,7 @@ struct Network::Parts {
       for (int x = 0; x < image->cols; ++x, from += 3, to += to_pixel)
         for (std::size_t channel = 0; channel < 3; ++channel)
           to[static_cast<std::ptrdiff_t>(channel) * to_channel] =
-              value[channel][from[options.rgb ? 2 - channel : channel]];
+              value[channel][from[preparation.rgb ? 2 - channel : channel]];
     }
   }
 
@@ -174,7 +174,7 @@ struct Network::Parts {
 };
 
 Network::Network(const NetworkOptions& options) {
-  const InputPreparation preparation{false, options.scale, options.mean, options.standard_deviation};
+  const InputPreparation preparation{false, options.rgb, options.scale, options.mean, options.standard_deviation};
   require_three(preparation);
   parts_ = std::make_unique<Parts>(options);
   const OnnxSignature& signature = parts_->net.signature();

@@ -16,31 +16,20 @@ namespace {
 
 using Form = ScoreForm;
 
-/// The families, as their authors train and export them. Thresholds are the usual defaults of such programs; they were
-/// not compared with an export of each.
+/// The families, as their authors export them.
 constexpr std::array<ObjectPreset, 11> presets = {{
-    {ObjectFamily::yolo, "YOLO (v8 to 12)", BoxForm::centre, BoxUnit::pixels, Form::probabilities, 0.0F,
-     InputFit::letterbox, false, 0.25, 0.7},
-    {ObjectFamily::yolov5, "YOLO (v5, v7)", BoxForm::centre, BoxUnit::pixels, Form::objectness, 0.0F,
-     InputFit::letterbox, false, 0.25, 0.45},
+    {ObjectFamily::yolo, "YOLO (v8 to 12)", BoxForm::centre, BoxUnit::pixels, Form::probabilities, 0.0F},
+    {ObjectFamily::yolov5, "YOLO (v5, v7)", BoxForm::centre, BoxUnit::pixels, Form::objectness, 0.0F},
     {ObjectFamily::yolo_end_to_end, "YOLO, end to end (v10, 26, exported with nms)", BoxForm::corners, BoxUnit::pixels,
-     Form::best, 0.0F, InputFit::letterbox, false, 0.25, 1.0},
-    {ObjectFamily::rtdetr, "RT-DETR, one output", BoxForm::centre, BoxUnit::fractions, Form::probabilities, 0.0F,
-     InputFit::stretch, false, 0.5, 1.0},
-    {ObjectFamily::rtdetr, "RT-DETR", BoxForm::centre, BoxUnit::fractions, Form::logits, 0.0F, InputFit::stretch, false,
-     0.5, 1.0},
-    {ObjectFamily::detr, "DETR", BoxForm::centre, BoxUnit::fractions, Form::softmax, 0.0F, InputFit::stretch, true, 0.5,
-     1.0},
-    {ObjectFamily::ssd, "SSD", BoxForm::corners, BoxUnit::either, Form::background_first, 0.0F, InputFit::stretch,
-     false, 0.5, 0.45},
-    {ObjectFamily::ssd, "SSD, with class numbers", BoxForm::corners, BoxUnit::either, Form::numbered, 0.5F,
-     InputFit::stretch, false, 0.5, 1.0},
-    {ObjectFamily::mask_rcnn, "Mask R-CNN", BoxForm::corners, BoxUnit::either, Form::numbered, 0.5F, InputFit::stretch,
-     false, 0.5, 1.0},
-    {ObjectFamily::fastestdet, "FastestDet", BoxForm::cell, BoxUnit::fractions, Form::cell, 0.0F, InputFit::stretch,
-     false, 0.5, 0.45},
-    {ObjectFamily::maskformer, "MaskFormer (and Mask2Former)", BoxForm::corners, BoxUnit::pixels, Form::softmax, 0.0F,
-     InputFit::stretch, true, 0.5, 1.0},
+     Form::best, 0.0F},
+    {ObjectFamily::rtdetr, "RT-DETR, one output", BoxForm::centre, BoxUnit::fractions, Form::probabilities, 0.0F},
+    {ObjectFamily::rtdetr, "RT-DETR", BoxForm::centre, BoxUnit::fractions, Form::logits, 0.0F},
+    {ObjectFamily::detr, "DETR", BoxForm::centre, BoxUnit::fractions, Form::softmax, 0.0F},
+    {ObjectFamily::ssd, "SSD", BoxForm::corners, BoxUnit::either, Form::background_first, 0.0F},
+    {ObjectFamily::ssd, "SSD, with class numbers", BoxForm::corners, BoxUnit::either, Form::numbered, 0.5F},
+    {ObjectFamily::mask_rcnn, "Mask R-CNN", BoxForm::corners, BoxUnit::either, Form::numbered, 0.5F},
+    {ObjectFamily::fastestdet, "FastestDet", BoxForm::cell, BoxUnit::fractions, Form::cell, 0.0F},
+    {ObjectFamily::maskformer, "MaskFormer (and Mask2Former)", BoxForm::corners, BoxUnit::pixels, Form::softmax, 0.0F},
 }};
 
 const ObjectPreset& preset_of(ObjectFamily family, Form scores) {

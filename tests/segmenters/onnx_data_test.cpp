@@ -26,16 +26,54 @@ std::vector<std::string> names_of(const fs::path& file) {
   return names;
 }
 
-TEST(OnnxData, FastestDetFindsWhatItsAuthorsShow) {
+/// A network of a folder of HOLDFAST_RECORDINGS; empty if it is not there.
+fs::path recording(const std::string& name) {
   const char* recordings = std::getenv("HOLDFAST_RECORDINGS");
-  const fs::path folder = fs::path(recordings == nullptr ? "" : recordings) / "FastestDet/example/onnx-runtime";
-  if (!fs::exists(folder / "FastestDet.onnx")) GTEST_SKIP() << "no FastestDet in HOLDFAST_RECORDINGS";
+  const fs::path file = fs::path(recordings == nullptr ? "" : recordings) / name;
+  return fs::exists(file) ? file : fs::path();
+}
+
+/// Networks for portraits of github.com/anilsathyan7/Portrait-Segmentation (MIT), on a photograph beside them.
+TEST(OnnxData, PortraitNetworksFindTheManInAPhotograph) {
+  struct Portrait {
+    const char* model;
+    ParameterValues values;
+  };
+  const std::vector<Portrait> networks = {
+      {"SINet/SINet.onnx", {{"preset", "sinet"}}},
+      {"SINet/SINet_Softmax.onnx", {{"preset", "sinet"}, {"output", "probabilities"}}},
+      {"models/deeplab_dm05_513/deeplab_nchw.onnx", {}},
+      {"models/prisma_seg/prisma_nchw.onnx", {{"preset", "prisma_net"}}}};
+  if (!has_onnxruntime()) GTEST_SKIP() << "no ONNX Runtime: install_dependencies.sh --onnxruntime brings it";
+  SensorFrame frame = test::frame_of(0.0, 16, 16);
+  const fs::path photograph = recording("Portrait-Segmentation/SINet/obama.jpg");
+  if (photograph.empty()) GTEST_SKIP() << "no Portrait-Segmentation in HOLDFAST_RECORDINGS";
+  frame.colour = cv::imread(photograph.string());
+  ASSERT_EQ(frame.colour.size(), cv::Size(1314, 1752));
+  // Head, shirt and shoulders, and the wall and the flag behind him, by eye.
+  const cv::Rect him[] = {{330, 300, 630, 900}, {450, 1400, 400, 350}, {90, 1500, 300, 250}};
+  const cv::Rect behind[] = {{0, 0, 1314, 90}, {1100, 0, 214, 1100}, {0, 0, 180, 1100}};
+  for (const Portrait& network : networks) {
+    ParameterValues values = network.values;
+    values["model"] = recording(std::string("Portrait-Segmentation/") + network.model).string();
+    values["engine"] = "onnxruntime";
+    const auto segmenter = test::make_segmenter(holdfast_register_plugin_onnx, "onnx", values);
+    const Segmentation result = segmenter->segment(frame);
+    const auto share = [&](const cv::Rect& part) { return cv::mean(result.labels(part) == 1)[0] / 255.0; };
+    for (const cv::Rect& part : him) EXPECT_GT(share(part), 0.95) << network.model << ' ' << part;
+    for (const cv::Rect& part : behind) EXPECT_LT(share(part), 0.03) << network.model << ' ' << part;
+    EXPECT_NEAR(cv::mean(result.labels)[0], 0.57, 0.1) << network.model;
+  }
+}
+
+TEST(OnnxData, FastestDetFindsWhatItsAuthorsShow) {
+  const fs::path folder = recording("FastestDet/example/onnx-runtime");
+  if (folder.empty()) GTEST_SKIP() << "no FastestDet in HOLDFAST_RECORDINGS";
   for (const char* engine : {"opencv", "onnxruntime"}) {
     if (std::string(engine) == "onnxruntime" && !has_onnxruntime()) continue;
     const auto segmenter = test::make_segmenter(holdfast_register_plugin_onnx, "onnx",
                                                 {{"model", (folder / "FastestDet.onnx").string()},
-                                                 {"family", "fastestdet"},
-                                                 {"colour_order", "bgr"},
+                                                 {"preset", "fastestdet"},
                                                  {"min_score", 0.65},
                                                  {"engine", engine},
                                                  {"classes", names_of(folder / "coco.names")}});

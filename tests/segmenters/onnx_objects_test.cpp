@@ -214,6 +214,8 @@ TEST(OnnxObjects, OthersStretchTheImageAndHaveNoNames) {
                                         std::to_string(names.size()) + " classes in `classes`"));
   }
   EXPECT_THAT(make("detr", {{"classes", detr}})->description(), HasSubstr("rgb from (-2.118 -2.036 -1.804) to (2.249"));
+  EXPECT_THAT(make("detr", {{"classes", detr}, {"colour_order", "bgr"}})->description(),
+              HasSubstr("bgr from (-1.804 -2.036 -2.118) to"));
 }
 
 TEST(OnnxObjects, ClassesOfTheSettings) {
@@ -254,12 +256,68 @@ TEST(OnnxObjects, WrongParametersAreNamed) {
               HasSubstr("not the outputs of a known family"));
 }
 
+/// A folder with a network and a preset beside it.
+struct NetworkWithPreset {
+  explicit NetworkWithPreset(const std::string& model, const std::string& preset) {
+    std::string name = (std::filesystem::temp_directory_path() / "holdfast_preset_XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) ADD_FAILURE() << "no folder";
+    folder = name;
+    std::filesystem::copy(std::string(HOLDFAST_TEST_MODELS) + "/" + model + ".onnx", folder / "net.onnx");
+    std::ofstream(folder / "mine.yaml") << preset;
+  }
+  ~NetworkWithPreset() { std::filesystem::remove_all(folder); }
+  std::unique_ptr<Segmenter> make(ParameterValues values = {}) const {
+    values["model"] = (folder / "net.onnx").string();
+    values["engine"] = "opencv";
+    values.try_emplace("preset", "mine.yaml");
+    return test::make_segmenter(holdfast_register_plugin_onnx, "onnx", values);
+  }
+  std::filesystem::path folder;
+};
+
+TEST(OnnxPresets, AFileGivesWhatTheConfigurationLeavesOut) {
+  const NetworkWithPreset network("yolov5s", "# mine\nmin_score: 0.6\ncolour_order: rgb\n");
+  EXPECT_EQ(network.make()->segment(red_and_green()).found.size(), 1U);
+  EXPECT_EQ(network.make({{"min_score", 0.3}})->segment(red_and_green()).found.size(), 2U);
+  const NetworkWithPreset other("yolov5s", "colour_order: bgr\nfit: stretch");
+  EXPECT_THAT(other.make()->description(), AllOf(HasSubstr("stretched, bgr from 0 to 1"),
+                                                 HasSubstr("at least 0.25, duplicates overlap by more than 0.45")));
+  EXPECT_THAT(other.make({{"fit", "letterbox"}, {"colour_order", "rgb"}})->description(),
+              HasSubstr("with a letterbox, rgb from 0 to 1"));
+}
+
+TEST(OnnxPresets, ThoseOfTheModuleHoldForTheirFamilyOrByName) {
+  EXPECT_THAT(make("yolov8n", {{"preset", "yolo"}})->description(), HasSubstr("with a letterbox, rgb from 0 to 1"));
+  EXPECT_THAT(error("yolov8n", {{"preset", "fastestdet"}}), HasSubstr("not the outputs of the `family` fastestdet"));
+  EXPECT_THAT(make("one_channel", {{"preset", "sinet"}})->description(), HasSubstr("bgr from (-0.006411"));
+  EXPECT_THAT(error("one_channel", {{"preset", "prisma"}}),
+              HasSubstr("there is no preset 'prisma'; did you mean 'prisma_net'?"));
+}
+
+TEST(OnnxPresets, WrongValuesAreNamed) {
+  const auto error_with = [](const std::string& preset) {
+    return error_of([&] { NetworkWithPreset("yolov5s", preset).make(); });
+  };
+  EXPECT_THAT(error_with("fit: stretch\nmin_scor: 1"),
+              AllOf(HasSubstr("mine.yaml:2:1"), HasSubstr("did you mean 'min_score'?")));
+  EXPECT_THAT(error_with("min_score: much"), HasSubstr("min_score is not what it must be; expected a number"));
+  EXPECT_THAT(error_with("min_score: 7"), HasSubstr("from 0 to 1"));
+  EXPECT_THAT(error_with("fit: squeeze"), HasSubstr("expected"));
+  EXPECT_THAT(error_with("model: other.onnx"), HasSubstr("'model' is no parameter of a preset"));
+  EXPECT_THAT(error_with("[1, 2]"), HasSubstr("is no map"));
+  EXPECT_THAT(error_with("a: ["), HasSubstr("expected YAML"));
+  const NetworkWithPreset network("yolov5s", "");
+  EXPECT_THAT(error_of([&] { network.make({{"preset", "none.yaml"}}); }), HasSubstr("none.yaml"));
+}
+
 TEST(OnnxObjects, SemanticNetworksAreAsBefore) {
   const auto segmenter = make("one_channel");
   EXPECT_THAT(segmenter->classes(), ElementsAre("background", "person"));
   EXPECT_THAT(segmenter->movable(), ElementsAre());
-  EXPECT_THAT(segmenter->description(),
-              HasSubstr("one_channel.onnx is a semantic network, output logits. Input 16x12, stretched. 2 classes"));
+  EXPECT_THAT(
+      segmenter->description(),
+      HasSubstr(
+          "one_channel.onnx is a semantic network, output logits. Input 16x12, stretched, rgb from 0 to 1. 2 classes"));
   const Segmentation result = segmenter->segment(frame_of(1.0, 64, 48, {0, 0, 200}));
   EXPECT_EQ(result.labels.at<std::uint8_t>(20, 20), 1);
   EXPECT_TRUE(result.instances.empty());

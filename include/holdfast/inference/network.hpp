@@ -19,6 +19,7 @@ namespace holdfast {
 struct InputPreparation {
   /// Scale the image by one factor, and pad it with grey on both sides (place_of_frame()), in place of stretching it.
   bool letterbox = false;
+  bool rgb = true;  ///< order of the channels: red green blue, or blue green red
   double scale = 1.0 / 255.0;
   std::vector<double> mean = {0.0, 0.0, 0.0};  ///< in the order of the channels
   std::vector<double> standard_deviation = {1.0, 1.0, 1.0};

@@ -19,7 +19,8 @@ void describe_network_input(ParameterTable<Settings>& table, const std::string& 
   table.add("height", &Settings::height, "height of the network input; 0 = as declared by the model")
       .range(0, 8192)
       .unit("px");
-  table.add("colour_order", &Settings::colour_order, "order of the input channels");
+  table.add("colour_order", &Settings::colour_order,
+            "order of the input channels; auto = of the preset, otherwise rgb");
   table.add("scale", &Settings::scale, "input = (pixel * scale - mean) / standard_deviation, pixels from 0 to 255");
   table.add("mean", &Settings::mean, "subtracted from each channel, in colour_order, after scale" + of_mean);
   table.add("standard_deviation", &Settings::standard_deviation,
@@ -65,7 +66,7 @@ NetworkOptions network_options(const Settings& settings) {
   return {.model = settings.model,
           .width = settings.width,
           .height = settings.height,
-          .rgb = settings.colour_order == decltype(settings.colour_order)::rgb,
+          .rgb = settings.colour_order != decltype(settings.colour_order)::bgr,
           .scale = settings.scale,
           .mean = settings.mean,
           .standard_deviation = settings.standard_deviation,

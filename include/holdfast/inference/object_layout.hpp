@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <opencv2/core/types.hpp>
@@ -37,8 +36,7 @@ enum class ScoreForm {
   numbered           ///< score and number of the best class in outputs of their own, 0 = background
 };
 
-/// A family of networks for objects: what their outputs mean, and how they are used. `holdfast modules onnx` describes
-/// the families.
+/// A family of networks for objects: what their outputs mean. `holdfast modules onnx` describes the families.
 struct ObjectPreset {
   ObjectFamily family;
   const char* title;  ///< for people: "YOLO (v8, v9, 11, 12)"
@@ -46,10 +44,6 @@ struct ObjectPreset {
   BoxUnit unit;
   ScoreForm scores;
   float mask_threshold;  ///< value of the masks from which on a pixel is the object's: 0.5 or, before a sigmoid, 0
-  InputFit fit;
-  bool has_imagenet_colours;  ///< mean and deviation of ImageNet; otherwise 0 to 1
-  double min_score;
-  double max_overlap;  ///< of non-maximum suppression; 1 = the network suppresses by itself
 };
 
 /// Where the numbers of a network for objects are: which of its outputs, and which numbers.
@@ -68,10 +62,6 @@ struct ObjectLayout {
   int coefficients = 0;        ///< of a mask
   int grid_columns = 0;        ///< of BoxForm::cell
 };
-
-/// Mean and standard deviation of the colours of ImageNet, red green blue.
-inline constexpr std::array<double, 3> imagenet_mean = {0.485, 0.456, 0.406};
-inline constexpr std::array<double, 3> imagenet_deviation = {0.229, 0.224, 0.225};
 
 /// What is asked of recognise_objects().
 struct ObjectQuestion {

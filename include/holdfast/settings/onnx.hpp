@@ -14,8 +14,8 @@ class Segmenter;
 template <class Settings>
 class ParameterTable;
 
-/// Order of the channels of a colour image.
-enum class ColourOrder { rgb, bgr };
+/// Order of the channels of a colour image. automatic: of the network's preset, otherwise rgb.
+enum class ColourOrder { automatic, rgb, bgr };
 /// Layout of the network's input and output: channels first or channels last.
 enum class TensorLayout { nchw, nhwc };
 /// Output of a network for segmentation. Of a semantic network: scores before softmax, probabilities, or class indices.
@@ -40,8 +40,8 @@ enum class ObjectFamily {
 };
 
 template <>
-inline constexpr Choice<ColourOrder> choice_table<ColourOrder>[] = {{"rgb", ColourOrder::rgb},
-                                                                    {"bgr", ColourOrder::bgr}};
+inline constexpr Choice<ColourOrder> choice_table<ColourOrder>[] = {
+    {"auto", ColourOrder::automatic}, {"rgb", ColourOrder::rgb}, {"bgr", ColourOrder::bgr}};
 template <>
 inline constexpr Choice<TensorLayout> choice_table<TensorLayout>[] = {{"nchw", TensorLayout::nchw},
                                                                       {"nhwc", TensorLayout::nhwc}};
@@ -73,10 +73,13 @@ struct OnnxSettings {
   using Interface = Segmenter;
   static constexpr const char* module = "onnx";
 
-  std::filesystem::path model;                  ///< ONNX file; required
-  int width = 0;                                ///< width of the network input [px]; 0 = as declared by the model
-  int height = 0;                               ///< height of the network input [px]; 0 = as declared by the model
-  ColourOrder colour_order = ColourOrder::rgb;  ///< of the input
+  std::filesystem::path model;  ///< ONNX file; required
+  /// Name of a preset of the module, or a YAML file, relative to the model's folder: values for parameters with their
+  /// defaults.
+  std::string preset;
+  int width = 0;   ///< width of the network input [px]; 0 = as declared by the model
+  int height = 0;  ///< height of the network input [px]; 0 = as declared by the model
+  ColourOrder colour_order = ColourOrder::automatic;  ///< of the input
   /// Input = (pixel * scale - mean) / standard_deviation with pixels from 0 to 255; 1/255 maps them to [0, 1].
   double scale = 1.0 / 255.0;
   std::vector<double> mean;                ///< per channel, in colour_order; empty = of the family, otherwise 0

@@ -2,7 +2,6 @@
 #include "object_segmenter.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <opencv2/imgproc.hpp>
 #include <utility>
@@ -12,6 +11,7 @@
 #include "holdfast/inference/network_segmenter.hpp"
 #include "holdfast/inference/object_masks.hpp"
 #include "holdfast/inference/onnx_net.hpp"
+#include "preset.hpp"
 
 namespace holdfast::onnx_plugin {
 
@@ -74,31 +74,18 @@ void ObjectSegmenter::recognise(const OnnxSettings& settings, const ModelMetadat
 }
 
 void ObjectSegmenter::prepare(const OnnxSettings& settings) {
-  const ObjectPreset& preset = layout_.preset;
-  const InputFit fit = settings.fit == InputFit::automatic ? preset.fit : settings.fit;
-  const auto colours = [&](const std::vector<double>& given, const std::array<double, 3>& imagenet, double otherwise) {
-    if (!given.empty()) return given;
-    std::vector<double> result(3, otherwise);
-    if (preset.has_imagenet_colours) result.assign(imagenet.begin(), imagenet.end());
-    if (settings.colour_order == ColourOrder::bgr) std::reverse(result.begin(), result.end());
-    return result;
+  const OnnxSettings s = with_preset(settings, shipped_preset(choice_name(layout_.preset.family)));
+  const auto or_else = [](const std::vector<double>& given, double otherwise) {
+    return given.empty() ? std::vector<double>(3, otherwise) : given;
   };
-  preparation_ = {fit == InputFit::letterbox, settings.scale, colours(settings.mean, imagenet_mean, 0.0),
-                  colours(settings.standard_deviation, imagenet_deviation, 1.0)};
+  preparation_ = {s.fit == InputFit::letterbox, s.colour_order != ColourOrder::bgr, s.scale, or_else(s.mean, 0.0),
+                  or_else(s.standard_deviation, 1.0)};
   network_.set_preparation(preparation_);
-  min_score_ = settings.min_score > 0.0 ? settings.min_score : preset.min_score;
-  max_overlap_ = settings.max_overlap > 0.0 ? settings.max_overlap : preset.max_overlap;
-  const auto range = [&](double value) {
-    std::string text;
-    for (std::size_t i = 0; i < 3; ++i)
-      text += (i == 0 ? "" : " ") +
-              number_text((value * preparation_.scale - preparation_.mean[i]) / preparation_.standard_deviation[i]);
-    return preparation_.mean == std::vector<double>(3, preparation_.mean[0]) &&
-                   preparation_.standard_deviation == std::vector<double>(3, preparation_.standard_deviation[0])
-               ? text.substr(0, text.find(' '))
-               : "(" + text + ")";
-  };
-  colours_ = std::string(choice_name(settings.colour_order)) + " from " + range(0.0) + " to " + range(255.0);
+  min_score_ = s.min_score;
+  // Class numbers are of a network that suppresses duplicates by itself.
+  const bool is_suppressed = layout_.preset.scores == ScoreForm::numbered && settings.max_overlap == 0.0;
+  max_overlap_ = is_suppressed ? 1.0 : s.max_overlap;
+  colours_ = colour_text(s);
 }
 
 std::string ObjectSegmenter::description() const {

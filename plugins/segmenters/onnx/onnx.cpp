@@ -12,13 +12,17 @@
 #include "holdfast/settings/onnx.hpp"
 #include "object_classes.hpp"
 #include "object_segmenter.hpp"
+#include "preset.hpp"
 
 namespace holdfast {
 
 void OnnxSettings::describe(ParameterTable<OnnxSettings>& table) {
   using S = OnnxSettings;
   table.add("model", &S::model, "network for semantic segmentation, instances or boxes, ONNX").required();
-  describe_network_input(table, "; empty = of the family, otherwise 0", "; empty = of the family, otherwise 1");
+  table.add("preset", &S::preset,
+            "values for parameters that have their defaults: a preset of the module, or a YAML file (.yaml) with such "
+            "values, relative to the model's folder; empty = of the family");
+  describe_network_input(table, "; empty = of the preset, otherwise 0", "; empty = of the preset, otherwise 1");
   table.add("fit", &S::fit,
             "how an image fills an input of another aspect ratio: stretched, or with a grey margin (letterbox); auto = "
             "as the family is trained; semantic networks stretch");
@@ -49,6 +53,7 @@ void OnnxSettings::describe(ParameterTable<OnnxSettings>& table) {
 
 namespace {
 
+using onnx_plugin::colour_text;
 using onnx_plugin::ObjectSegmenter;
 
 NetworkOptions options_of(const OnnxSettings& s) {
@@ -87,12 +92,13 @@ class SemanticSegmenter final : public NetworkSegmenter {
       : NetworkSegmenter((check(settings, classes), options_of(settings)), output_form(settings), classes,
                          settings.movable),
         name_(settings.model.filename().string()),
-        output_(output_text(settings)) {}
+        output_(output_text(settings)),
+        colours_(colour_text(settings)) {}
 
   std::string description() const override {
     return name_ + " is a semantic network, output " + output_ + ". Input " + std::to_string(input_size().width) + "x" +
-           std::to_string(input_size().height) + ", stretched. " + onnx_plugin::class_text(classes()) +
-           ". Computed by " + engine_text() + ".";
+           std::to_string(input_size().height) + ", stretched, " + colours_ + ". " +
+           onnx_plugin::class_text(classes()) + ". Computed by " + engine_text() + ".";
   }
 
  private:
@@ -106,7 +112,7 @@ class SemanticSegmenter final : public NetworkSegmenter {
                           "`), which has no objects; expected `output: instances` or `output: boxes`, or leave it out");
   }
 
-  std::string name_, output_;
+  std::string name_, output_, colours_;
 };
 
 bool is_for_objects(const OnnxSettings& settings, const OnnxSignature& signature, const ModelMetadata& metadata) {
@@ -141,7 +147,8 @@ std::unique_ptr<Segmenter> make_segmenter(const OnnxSettings& settings) {
 /// Any network that finds people or things in an image, as its file and the settings say.
 class OnnxSegmenter final : public Segmenter {
  public:
-  OnnxSegmenter(const OnnxSettings& settings, const CreationContext&) : segmenter_(make_segmenter(settings)) {}
+  OnnxSegmenter(const OnnxSettings& settings, const CreationContext&)
+      : segmenter_(make_segmenter(onnx_plugin::with_named_preset(settings))) {}
 
   const std::vector<std::string>& classes() const override { return segmenter_->classes(); }
   std::vector<std::string> movable() const override { return segmenter_->movable(); }
