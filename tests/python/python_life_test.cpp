@@ -123,6 +123,81 @@ TEST_F(PythonEnd, APythonThreadThatStillRunsDoesNotHinder) {
 }
 
 /// A pipeline on simulated frames with the segmenter of a file.
+/// A segmenter in its own process, whose segment() has this body; `self.calls` counts from 1.
+class PythonProcess : public test::PythonFiles {
+ protected:
+  std::unique_ptr<Segmenter> with_calls(const std::string& body, ParameterValues values = {}) const {
+    values["process"] = std::string("own");
+    return make(write("import numpy, os, signal, time\nclass Segmenter:\n  classes = ['background', 'person']\n"
+                      "  movable = ['person']\n  calls = 0\n  def segment(self, image):\n    self.calls += 1\n"
+                      "    ones = numpy.ones(image.shape[:2], numpy.uint8)\n    " +
+                      body + "\n"),
+                values);
+  }
+};
+
+TEST_F(PythonProcess, GivesWhatPythonReturned) {
+  const auto segmenter = with_calls("return ones, ones * 77, ones * 5");
+  EXPECT_EQ(segmenter->classes(), (std::vector<std::string>{"background", "person"}));
+  EXPECT_EQ(segmenter->movable(), std::vector<std::string>{"person"});
+  const Segmentation result = segmenter->segment(frame());
+  EXPECT_EQ(cv::countNonZero(result.labels == 1), 24);
+  EXPECT_EQ(cv::countNonZero(result.confidence == 77), 24);
+  EXPECT_EQ(cv::countNonZero(result.instances == 1), 24);
+  ASSERT_EQ(result.found.size(), 1U);
+  EXPECT_EQ(result.found[0].label, 1);
+  EXPECT_EQ(result.found[0].box, cv::Rect2f(0, 0, 6, 4));
+  EXPECT_TRUE(segmenter->warnings().empty());
+  EXPECT_TRUE(with_calls("return None")->segment(frame()).empty());
+}
+
+TEST_F(PythonProcess, ErrorsAreThoseOfTheSharedProcess) {
+  EXPECT_THAT(error_of([&] { with_calls("raise RuntimeError('no memory')")->segment(frame()); }),
+              testing::AllOf(HasSubstr("segmenter.py:9: Segmenter.segment raised RuntimeError: no memory"),
+                             HasSubstr("labels for frame 3"), HasSubstr("Traceback")));
+  EXPECT_THAT(error_of([&] {
+                make(write("import nothing_like_it\n"), {{"process", std::string("own")}});
+              }),
+              HasSubstr("segmenter.py:1: running the file raised ModuleNotFoundError"));
+  EXPECT_THAT(error_of([&] {
+                make(write("import os\nos._exit(7)\n"), {{"process", std::string("own")}});
+              }),
+              HasSubstr("its process ended with exit code 7 before it was ready"));
+}
+
+TEST_F(PythonProcess, ACrashCostsTheMaskOfAFrame) {
+  const auto segmenter = with_calls("os.kill(os.getpid(), signal.SIGSEGV) if self.calls == 2 else None; return ones");
+  EXPECT_FALSE(segmenter->segment(frame()).empty());
+  EXPECT_TRUE(segmenter->segment(frame()).empty());
+  EXPECT_FALSE(segmenter->segment(frame()).empty());
+  const Warnings warnings = segmenter->warnings();
+  ASSERT_EQ(warnings.size(), 1U);
+  EXPECT_THAT(warnings[0].message, testing::AllOf(HasSubstr("failed at 1 of 3 segmented frames"),
+                                                  HasSubstr("signal 11"), HasSubstr("at frame 3")));
+}
+
+TEST_F(PythonProcess, OneThatHangsIsEnded) {
+  const auto segmenter = with_calls("time.sleep(1000 if self.calls == 2 else 0); return ones", {{"timeout", 0.5}});
+  EXPECT_FALSE(segmenter->segment(frame()).empty());
+  EXPECT_TRUE(segmenter->segment(frame()).empty());
+  EXPECT_THAT(segmenter->warnings().at(0).message, HasSubstr("took longer than 0.5 s and was ended at frame 3"));
+}
+
+TEST_F(PythonProcess, ThreeFailuresInSuccessionAreAnError) {
+  const auto segmenter = with_calls("os._exit(3)");
+  EXPECT_TRUE(segmenter->segment(frame()).empty());
+  EXPECT_TRUE(segmenter->segment(frame()).empty());
+  EXPECT_THAT(error_of([&] { segmenter->segment(frame()); }),
+              testing::AllOf(HasSubstr("ended with exit code 3 at frame 3"), HasSubstr("3 frames in succession")));
+}
+
+TEST_F(PythonProcess, ItsEndIsAnOrderlyOne) {
+  const std::string mark = (folder_ / "ended").string();
+  with_calls("import atexit; atexit.register(lambda open=open: open('" + mark + "', 'w').close()); return ones")
+      ->segment(frame());
+  EXPECT_TRUE(std::filesystem::exists(mark));
+}
+
 class PythonPipeline : public test::PythonFiles {
  protected:
   struct Run {
