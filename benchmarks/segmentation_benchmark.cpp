@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <memory>
 #include <opencv2/core/utility.hpp>
@@ -18,6 +19,7 @@
 #include <vector>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/inference/network.hpp"
 #include "holdfast/interfaces/segmenter.hpp"
 #include "holdfast/plugin/builtin.hpp"
 #include "holdfast/plugin/registry.hpp"
@@ -82,13 +84,48 @@ void unet(benchmark::State& state, const ParameterValues& settings) {
   state.counters["cv_orb_ms"] = 1e3 * median(reference_times);
   state.counters["to_cv_orb"] = median(times) / median(reference_times);
 }
+
+double processor_seconds() {
+  timespec now = {};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// Processor time of the U-Net by ONNX Runtime, relative to oneDNN, image by image in turn: the counter `to_onednn` is
+/// the median of the ratios, which other programs hardly disturb.
+void onnxruntime_to_onednn(benchmark::State& state) {
+  const std::vector<cv::Mat> images = load_images();
+  Registry registry;
+  register_builtin_plugins(registry);
+  const auto make = [&](const char* engine) {
+    return registry.create<Segmenter>("unet", {{"engine", std::string(engine)}}, CreationContext{});
+  };
+  const std::unique_ptr<Segmenter> segmenters[] = {make("onednn"), make("onnxruntime")};
+  std::vector<double> ratios, times[2];
+  for (auto _ : state) {
+    SensorFrame frame;
+    frame.colour = images[ratios.size() % images.size()];
+    for (const std::size_t turn : {0, 1}) {
+      const std::size_t engine = (turn + ratios.size()) % 2;
+      const double begin = processor_seconds();
+      benchmark::DoNotOptimize(segmenters[engine]->segment(frame));
+      times[engine].push_back(processor_seconds() - begin);
+    }
+    ratios.push_back(times[1].back() / times[0].back());
+  }
+  state.counters["onednn_ms"] = 1e3 * median(times[0]);
+  state.counters["onnxruntime_ms"] = 1e3 * median(times[1]);
+  state.counters["to_onednn"] = median(ratios);
+}
+
 /// With every engine and precision that this build and this processor have.
 void register_benchmarks() {
   Registry registry;
   register_builtin_plugins(registry);
   for (const char* size : {"small", "base", "large"})
     for (const bool mirror : {false, true})
-      for (const auto& [engine, precision] : {std::pair("opencv", "fp32"), {"onednn", "fp32"}, {"onednn", "bf16"}}) {
+      for (const auto& [engine, precision] :
+           {std::pair("opencv", "fp32"), {"onednn", "fp32"}, {"onednn", "bf16"}, {"onnxruntime", "fp32"}}) {
         const ParameterValues settings = {{"size", std::string(size)},
                                           {"mirror", mirror},
                                           {"engine", std::string(engine)},
@@ -104,6 +141,10 @@ void register_benchmarks() {
             ->Iterations(40)
             ->Unit(benchmark::kMillisecond);
       }
+  if (has_onednn() && has_onnxruntime())
+    benchmark::RegisterBenchmark("unet/onnxruntime_to_onednn", onnxruntime_to_onednn)
+        ->Iterations(60)
+        ->Unit(benchmark::kMillisecond);
 }
 
 }  // namespace
