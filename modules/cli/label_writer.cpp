@@ -34,7 +34,8 @@ std::vector<std::string> files_of_earlier_run(const fs::path& folder) {
     return names;
   }
   for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (entry.path().extension() == ".png" && is_stamp(entry.path().stem().string()))
+    if ((entry.path().extension() == ".png" || entry.path().extension() == ".jpg") &&
+        is_stamp(entry.path().stem().string()))
       names.push_back(entry.path().filename().string());
   std::sort(names.begin() + 1, names.end());
   names.emplace_back(classes_name);
@@ -60,11 +61,12 @@ LabelWriter::LabelWriter(fs::path folder, std::vector<std::string> classes, bool
   write_file_atomically(folder_ / classes_name, "labels: " + meaning_of_values(classes_) + "\n");
 }
 
-void LabelWriter::write(double timestamp, const cv::Mat& labels) {
+void LabelWriter::write(double timestamp, const cv::Mat& labels, const cv::Mat& picture) {
   char stamp[400];
   std::snprintf(stamp, sizeof(stamp), "%.6f", timestamp);
   const std::string name = std::string(stamp) + ".png";
   write_image_atomically(folder_ / name, labels);
+  if (!picture.empty()) write_image_atomically(folder_ / (std::string(stamp) + ".jpg"), picture);
   list_ += std::string(stamp) + " " + name + "\n";
   stamps_.push_back(timestamp);
 }

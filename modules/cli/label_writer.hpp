@@ -20,8 +20,8 @@ class LabelWriter {
   /// files of an earlier run are removed, which its classes.yaml vouches for: a folder without that is refused, too.
   LabelWriter(std::filesystem::path folder, std::vector<std::string> classes, bool overwrite);
 
-  /// Stamps rise.
-  void write(double timestamp, const cv::Mat& labels);
+  /// Stamps rise. A picture of the labels for people, unless it is empty, becomes STAMP.jpg.
+  void write(double timestamp, const cv::Mat& labels, const cv::Mat& picture = {});
   void finish();
 
   std::size_t count() const { return stamps_.size(); }

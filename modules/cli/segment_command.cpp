@@ -22,6 +22,7 @@
 #include "holdfast/pipeline/configured_pipeline.hpp"
 #include "label_writer.hpp"
 #include "program_host.hpp"
+#include "segmentation_picture.hpp"
 #include "source_interrupter.hpp"
 #include "terminal.hpp"
 
@@ -31,6 +32,8 @@ namespace {
 
 struct SegmentArguments : ConfiguredArguments {
   std::uint64_t every = 1;
+  std::uint64_t frames = 0;  ///< to segment; 0 = all
+  bool pictures = false;
 };
 
 struct Counts {
@@ -38,7 +41,7 @@ struct Counts {
   double seconds = 0.0;     ///< that it took for them
 };
 
-/// Until the source ends, a signal comes or something throws.
+/// Until the source ends, as many frames as asked for are done, a signal comes or something throws.
 void segment_frames(BuiltSegmenter& built, const SegmentArguments& arguments, LabelWriter& writer, Counts& counts) {
   Progress progress(built.source->describe().frame_count, arguments.quiet);
   const SourceInterrupter interrupter(*built.source);
@@ -51,9 +54,13 @@ void segment_frames(BuiltSegmenter& built, const SegmentArguments& arguments, La
       const Segmentation segmentation = built.segmenter->segment(*frame);
       counts.seconds += watch.seconds();
       ++counts.asked;
-      if (!segmentation.empty()) writer.write(frame->timestamp, segmentation.labels);
+      if (!segmentation.empty())
+        writer.write(frame->timestamp, segmentation.labels,
+                     arguments.pictures ? segmentation_picture(frame->colour, segmentation, built.segmenter->classes())
+                                        : cv::Mat());
     }
     progress.update(done);
+    if (counts.asked == arguments.frames) return;
   }
 }
 
@@ -102,17 +109,22 @@ void add_segment_command(CLI::App& app, int& exit_code, const ProgramHost& host)
       "run after it is fast. Writes into the output folder:\n"
       "  STAMP.png     labels of a frame: index into the classes, 255 = unknown\n"
       "  labels.txt    the list of them          classes.yaml  what the values mean\n"
+      "  STAMP.jpg     with --pictures: the frame with its masks, for people\n"
       "and prints what to put into a configuration to use them. Exits 0 when the source came to its end, 130\n"
       "on Ctrl-C, 143 on SIGTERM (what was done is kept), 2 when the configuration is wrong, 1 for anything else.\n\n"
       "Examples\n"
       "  holdfast segment rgbd.yaml --set 'segmenter={onnx: {model: net.onnx, classes: [background, person]}}' \\\n"
       "    --output out/labels\n"
-      "  holdfast segment simulated.yaml --set segmenter=truth --output out/labels --every 5");
+      "  holdfast segment simulated.yaml --set segmenter=truth --output out/labels --every 5\n"
+      "  holdfast segment yolo.yaml --frames 1 --pictures --output out/look");
   add_configured_options(*command, *arguments, "Folder for the label images",
                          "Replace the label images of an earlier run in the folder");
   command->add_option("--every", arguments->every, "Segment every N-th frame only")
       ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1000000}))
       ->capture_default_str();
+  command->add_option("--frames", arguments->frames, "Segment as many frames only, and end")
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1000000000}));
+  command->add_flag("--pictures", arguments->pictures, "Also write each segmented frame with its masks, as a JPEG");
   command->callback([arguments, host, &exit_code] { exit_code = segment(*arguments, host); });
 }
 

@@ -364,6 +364,7 @@ TEST_F(BenchExternalTest, FindsTheMatricesOfTheProjectSound) {
                                        {"kitti", 2},
                                        {"robustness", 74},
                                        {"robustness_people", 50},
+                                       {"segmenters", 12},
                                        {"simulated", 5},
                                        {"tum_dynamic", 5}}) {
     const Outcome list =

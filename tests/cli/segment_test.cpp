@@ -55,6 +55,22 @@ class SegmentTest : public ::testing::Test {
   test::Program program_;
 };
 
+TEST_F(SegmentTest, OneFrameWithItsPicture) {
+  const Outcome outcome = program_.run({"segment", "truth.yaml", "--output", "look", "--frames", "1", "--pictures"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
+  EXPECT_EQ(images_in("look"), 1U);
+  const cv::Mat picture = cv::imread(program_.path("look/0.000000.jpg").string());
+  const cv::Mat labels = cv::imread(program_.path("look/0.000000.png").string(), cv::IMREAD_UNCHANGED);
+  ASSERT_EQ(picture.size(), labels.size());
+  ASSERT_GT(cv::countNonZero(labels == 1), 100);
+  const cv::Scalar people = cv::mean(picture, labels == 1);
+  EXPECT_GT(people[2], people[0] + 60.0) << "vermilion on people";
+  const Outcome again = program_.run({"segment", "truth.yaml", "--output", "look", "--frames", "2", "--overwrite"});
+  ASSERT_EQ(again.exit_code, 0) << again.errors;
+  EXPECT_EQ(images_in("look"), 2U);
+  EXPECT_FALSE(fs::exists(program_.path("look/0.000000.jpg"))) << "pictures of an earlier run are replaced, too";
+}
+
 TEST_F(SegmentTest, WritesWhatPrecomputedReadsBackAsItWas) {
   const Outcome first = program_.run({"segment", "truth.yaml", "--output", "labels"});
   ASSERT_EQ(first.exit_code, 0) << first.errors;

@@ -160,7 +160,7 @@ cv::Mat list_of(int boxes, int numbers, const std::vector<float>& values) {
 }
 
 ObjectLayout layout_of(BoxForm box, BoxUnit unit, ScoreForm scores, int count, int width, int classes) {
-  ObjectLayout layout{{ObjectFamily::yolo, "a test", box, unit, scores, 0.0F, InputFit::letterbox, false, 0.25, 0.7}};
+  ObjectLayout layout{{ObjectFamily::yolo, "a test", box, unit, scores, 0.0F}};
   layout.count = count, layout.width = width, layout.classes = classes;
   return layout;
 }
