@@ -16,16 +16,17 @@ import warnings
 
 import torch
 
-from classes import PERSON
+from classes import CLASSES, PERSON
 from model import multiple
 from pack import PackError
 from weights import folded, load_weights
 
 
-def export(model, input_size, path, caution=0.0, temperature=1.0):
+def export(model, input_size, path, caution=0.0, temperature=1.0, offsets=(0.0,) * len(CLASSES)):
     """`model`: for evaluation; it is changed. Scores are divided by the temperature: the same labels, other confidence."""
     model = folded(model.eval())
     with torch.no_grad():
+        model.head.bias += torch.tensor(offsets)
         model.head.bias[PERSON] -= caution
         model.head.weight /= temperature
         model.head.bias /= temperature
@@ -44,13 +45,15 @@ def main():
     parser.add_argument("onnx", type=pathlib.Path, help="file to write")
     parser.add_argument("--caution", type=float, default=0.0,
                         help="subtracted from the score of 'person', where it is found too often (default: 0)")
+    parser.add_argument("--offsets", type=float, nargs=len(CLASSES), default=[0.0] * len(CLASSES), metavar="SCORE",
+                        help=f"added to the scores of {', '.join(CLASSES)}, where a class is found too seldom (default: 0)")
     parser.add_argument("--temperature", type=float, default=1.0,
                         help="divides the scores, so that confidence is a probability; calibrate.py finds it (default: 1)")
     arguments = parser.parse_args()
     if not arguments.temperature > 0.0:
         parser.error(f"a temperature of {arguments.temperature}; expected more than 0")
     model, (width, height) = load_weights(arguments.weights)
-    export(model, (width, height), arguments.onnx, arguments.caution, arguments.temperature)
+    export(model, (width, height), arguments.onnx, arguments.caution, arguments.temperature, arguments.offsets)
     print(f"{arguments.onnx}: size '{model.size}', trained for {width}x{height}, sides multiples of "
           f"{multiple(model.size)}, "
           f"{arguments.onnx.stat().st_size / 1e6:.2f} MB")

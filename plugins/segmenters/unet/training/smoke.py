@@ -30,16 +30,18 @@ def run(program, *arguments):
         raise PackError(f"{program} failed:\n{result.stdout}{result.stderr}")
 
 
-def check_temperature(folder, onnx, model, pictures):
-    """Scores are divided by the temperature."""
-    divided = onnx.with_name("divided.onnx")
-    run("export.py", folder / "weights.npz", divided, "--temperature", 2)
-    read_back = load_onnx(divided)
+def check_scores(folder, onnx, model, pictures):
+    """Offsets are added to the scores, which are divided by the temperature then."""
+    changed, offsets = onnx.with_name("changed.onnx"), [0.0, -1.0, 1.0, 0.5, 0.0]
+    run("export.py", folder / "weights.npz", changed, "--temperature", 2, "--offsets", *offsets)
+    read_back = load_onnx(changed)
     with torch.no_grad():
         read_back = with_normalisation(read_back, [pictures], in_order(read_back))
-        difference = float((2.0 * read_back(pictures) - model(pictures)).abs().max())
+        expected = model(pictures) + torch.tensor(offsets)[None, :, None, None]
+        difference = float((2.0 * read_back(pictures) - expected).abs().max())
     if not difference < 1e-3:
-        raise PackError(f"{divided}: twice its scores differ by {difference} from those of weights.npz; expected the same")
+        raise PackError(f"{changed}: twice its scores differ by {difference} from those of weights.npz with the offsets; "
+                        "expected the same")
 
 
 def check_kept_blocks(folder, pack):
@@ -90,7 +92,7 @@ def main():
         difference = float((read_back(pictures) - model(pictures)).abs().max())
     if not difference < 1e-3:
         raise PackError(f"{onnx}: scores differ by {difference} from those of weights.npz; expected the same")
-    check_temperature(arguments.output, onnx, model, pictures)
+    check_scores(arguments.output, onnx, model, pictures)
     run("calibrate.py", pack, arguments.output / "weights.npz", "--width", 64, "--height", 48, "--every", 1)
     run("int8_labels.py", pack, onnx, "--width", 64, "--height", 48, "--pictures", 4)
     run("train.py", pack, "--output", arguments.output / "further", "--size", "tiny", "--batch", 4, "--workers", 0,

@@ -21,6 +21,7 @@ import time
 import cv2
 import numpy as np
 import torch
+from torch import nn
 from torch.nn import functional
 
 from classes import CLASSES, IGNORED, NOT_PERSON, PERSON
@@ -30,6 +31,7 @@ from measure import Confusion
 from model import make_model, multiple
 from pack import PackError, read_pack
 from photographs import resized
+from pretrained import load_encoder
 from samples import DEVIATION, MEAN, to_tensor
 from teacher import SIDE, Teacher, labels_of, probabilities
 from train import Log, learning_rate, size_of, training_loss
@@ -98,17 +100,57 @@ class Validation:
         return figures
 
 
-def starting_model(path, samples, size, device, batches=24):
-    """Weights to begin with; where export.py took the batch normalisation away, it is restored."""
+class Limited(nn.Module):
+    """ReLU with an upper limit that all of a network's share."""
+
+    def __init__(self, limit):
+        super().__init__()
+        self.limit = limit
+
+    def forward(self, x):
+        return functional.relu(x) if self.limit[0] is None else x.clamp(0.0, self.limit[0])
+
+
+class Adoption:
+    """Makes a contracting path with ReLU6 our own, which has ReLU: the limit rises from 6 to 60 in the first half of the
+    training and then goes, and the path's learning rate rises in the first tenth, in which the rest learns to use it."""
+
+    def __init__(self, model, is_adopted):
+        self.is_adopted, self.limit = is_adopted, [6.0 if is_adopted else None]
+        for part in (model.stem, model.down) if is_adopted else ():
+            self.limit_all(part)
+
+    def limit_all(self, part):
+        for name, child in part.named_children():
+            if isinstance(child, nn.ReLU):
+                setattr(part, name, Limited(self.limit))
+            else:
+                self.limit_all(child)
+
+    def advance(self, progress):
+        """Sets the limit; returns what to multiply the path's learning rate by."""
+        if not self.is_adopted:
+            return 1.0
+        risen = max(0.0, (progress - 0.1) / 0.4)
+        self.limit[0] = 6.0 * 10.0 ** risen if risen < 1.0 else None
+        return min(1.0, progress / 0.1)
+
+
+def starting_model(path, encoder_path, samples, size, device, batches=24):
+    """Weights to begin with, and whether their contracting path is adopted; where export.py took the batch normalisation
+    away, it is restored."""
     if path is None:
-        return make_model("mobile").to(device)
-    model = load_onnx(path) if path.suffix == ".onnx" else load_weights(path)[0]
+        model = make_model("mobile")
+    else:
+        model = load_onnx(path) if path.suffix == ".onnx" else load_weights(path)[0]
+    layers = in_order(model)
+    if encoder_path:
+        layers = load_encoder(model, encoder_path, DEVIATION / 0.5)
+    adoption = Adoption(model, encoder_path is not None)
     model = model.to(device)
-    layers = in_order(model.cpu())
-    model.to(device)
-    if all(float(norm.running_mean.abs().max()) == 0.0 for _, norm in layers if norm):
+    if encoder_path or path and all(float(norm.running_mean.abs().max()) == 0.0 for _, norm in layers if norm):
         model = with_normalisation(model, (samples.batch(16, size)[0] for _ in range(batches)), layers)
-    return model
+    return model, adoption
 
 
 class Average:
@@ -139,9 +181,9 @@ def optimizer_for(model, arguments):
     return torch.optim.AdamW(groups, lr=arguments.learning_rate, weight_decay=arguments.weight_decay, foreach=True)
 
 
-def step(model, optimizer, samples, arguments, size, rate, class_weights, device):
+def step(model, optimizer, samples, arguments, size, rates, class_weights, device):
     """One step on a batch of the size; returns the loss, still on the device."""
-    for group in optimizer.param_groups:
+    for group, rate in zip(optimizer.param_groups, rates):
         group["lr"] = rate * group["share"]
     larger = size[0] * size[1] / (arguments.sizes[0][0] * arguments.sizes[0][1])
     count = max(2, round(arguments.batch / max(1.0, larger)))
@@ -177,7 +219,7 @@ def train(arguments):
     say(f"{taught} of them labelled by the teacher, {people.count} people cut out, squares of {store.side} px")
     samples = DeviceSamples(store, people, arguments.whole)
     show(samples, arguments.sizes[0], arguments.output / "samples.png")
-    model = starting_model(arguments.start_from, samples, arguments.sizes[0], device)
+    model, adoption = starting_model(arguments.start_from, arguments.encoder_from, samples, arguments.sizes[0], device)
     optimizer = optimizer_for(model, arguments)
     average, validation = Average(model, arguments.average), Validation(held_out)
     class_weights = torch.tensor(arguments.class_weights, device=device)
@@ -204,7 +246,8 @@ def train(arguments):
 
     while progress() < 1.0:
         rate = learning_rate(progress(), count, arguments.learning_rate, arguments.warm_up)
-        losses.append(step(model, optimizer, samples, arguments, arguments.sizes[count % len(arguments.sizes)], rate,
+        rates = (rate * adoption.advance(progress()), rate)
+        losses.append(step(model, optimizer, samples, arguments, arguments.sizes[count % len(arguments.sizes)], rates,
                            class_weights, device))
         count += 1
         average.add(model)
@@ -228,6 +271,8 @@ def main():
     parser.add_argument("packs", type=pathlib.Path, nargs="+", help="pictures and labels, from prepare.py")
     parser.add_argument("--output", type=pathlib.Path, required=True, help="folder of this run")
     parser.add_argument("--start-from", type=pathlib.Path, help="weights.npz of an earlier run, or unet.onnx")
+    parser.add_argument("--encoder-from", type=pathlib.Path,
+                        help="begin with this file's contracting path (that of the --teacher, say, which has seen COCO)")
     parser.add_argument("--teacher", type=pathlib.Path, help="deeplabv3_mnv2_pascal_quant.tflite, for pictures without labels")
     length = parser.add_mutually_exclusive_group()
     length.add_argument("--minutes", type=float, default=9.0, help="of training, all else comes on top (default: 9)")
