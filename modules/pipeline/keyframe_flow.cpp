@@ -301,7 +301,17 @@ void KeyframeFlow::fuse(std::vector<KeptView> views, std::size_t max_moves, Stag
     std::erase_if(views, [&](const KeptView& view) { return !map->submap_of(view.keyframe); });
     for (const KeptView& view : views) poses.push_back((view.T_view_keyframe * map->pose_of(view.keyframe)).inverse());
   }
+  const MutexLock lock(surface_mutex_);
   surface_->update(views, poses, max_moves);
+  free_space_.reset();
+}
+
+std::shared_ptr<const FreeSpace> KeyframeFlow::free_space() const {
+  if (!surface_) return nullptr;
+  const MutexLock lock(surface_mutex_);
+  if (!free_space_)
+    free_space_ = std::make_shared<const FreeSpace>(*surface_, surface_->field().mesh(), parts_.surface.cell);
+  return free_space_;
 }
 
 void KeyframeFlow::finish_surface() {

@@ -17,6 +17,7 @@
 #include "holdfast/moving_world/moving_world.hpp"
 #include "holdfast/pipeline/pipeline.hpp"
 #include "holdfast/surface/carving_views.hpp"
+#include "holdfast/surface/free_space.hpp"
 #include "holdfast/surface/surface_map.hpp"
 #include "holdfast/tracking/mono_initialiser.hpp"
 
@@ -93,6 +94,8 @@ class KeyframeFlow {
   const MappingCounts& mapping_counts() const { return mapper_.counts(); }
   const StaticScene* static_scene() const { return parts_.dense_map.enabled && scene_ ? &*scene_ : nullptr; }
   const SurfaceMap* surface() const { return surface_ ? &*surface_ : nullptr; }
+  /// See Pipeline::free_space().
+  std::shared_ptr<const FreeSpace> free_space() const HOLDFAST_EXCLUDES(surface_mutex_);
   /// A copy of the map, from any thread.
   MapSnapshot snapshot() const;
 
@@ -141,7 +144,8 @@ class KeyframeFlow {
   std::vector<KeptView> views_of_surface() const;
   /// Adds a kept view to the surface, if there are both.
   void update_surface(const KeptView* view, StageTimes& times);
-  void fuse(std::vector<KeptView> views, std::size_t max_moves, StageTimes& times) HOLDFAST_EXCLUDES(map_);
+  void fuse(std::vector<KeptView> views, std::size_t max_moves, StageTimes& times)
+      HOLDFAST_EXCLUDES(map_, surface_mutex_);
   /// Tells the observers of a kept view, if there is one.
   void show_view(const KeptView* view) HOLDFAST_EXCLUDES(map_);
   bool has_keyframe(KeyFrameId keyframe) const HOLDFAST_EXCLUDES(map_);
@@ -160,7 +164,9 @@ class KeyframeFlow {
   FullAdjustment adjustment_;
   std::optional<StaticScene> scene_;
   std::optional<CarvingViews> carving_;
-  std::optional<SurfaceMap> surface_;
+  mutable Mutex surface_mutex_;
+  std::optional<SurfaceMap> surface_;  // changes with the mutex held
+  mutable std::shared_ptr<const FreeSpace> free_space_ HOLDFAST_GUARDED_BY(surface_mutex_);  // nullptr if outdated
   std::vector<bool> left_out_;      // of the static scene, by label
   std::deque<MappingJob> waiting_;  // they have their masks, but mapping had no room
   std::uint64_t keyframes_deferred_ = 0;

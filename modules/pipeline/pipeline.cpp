@@ -90,6 +90,11 @@ void check_imu(const SensorFrame& frame) {
   }
 }
 
+const FreeSpace& required(const std::shared_ptr<const FreeSpace>& space) {
+  if (!space) throw Error("the pipeline has no surface to ask for free space; set surface.enabled");
+  return *space;
+}
+
 }  // namespace
 
 /// The facade's parts: what a frame passes through (tracker), and what its keyframes do (flow).
@@ -331,6 +336,9 @@ Map Pipeline::take_map() {
 }
 const StaticScene* Pipeline::static_scene() const { return state_->flow.static_scene(); }
 const SurfaceMap* Pipeline::surface() const { return state_->flow.surface(); }
+std::shared_ptr<const FreeSpace> Pipeline::free_space() const { return state_->flow.free_space(); }
+bool Pipeline::is_free(const Eigen::Vector3d& point) const { return required(free_space()).is_free(point); }
+double Pipeline::distance(const Eigen::Vector3d& point) const { return required(free_space()).distance(point); }
 const MappingCounts& Pipeline::mapping_counts() const { return state_->flow.mapping_counts(); }
 LoopRecord Pipeline::loop_record() const { return state_->flow.loop_record(); }
 Warnings Pipeline::warnings() const {

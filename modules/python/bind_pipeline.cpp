@@ -12,6 +12,7 @@
 #include "frames.hpp"
 #include "gil.hpp"
 #include "holdfast/pipeline/configured_pipeline.hpp"
+#include "holdfast/surface/free_space.hpp"
 #include "module_call.hpp"
 #include "registry.hpp"
 
@@ -20,6 +21,8 @@ namespace holdfast::python {
 namespace py = pybind11;
 
 namespace {
+
+using Points = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 /// A pipeline that Python feeds. Any thread may call anything: calls that C++ allows one thread at a time wait for each
 /// other, without Python's lock. Inside a call of one of the pipeline's own modules they would wait for ever, and throw
@@ -98,6 +101,26 @@ class FedPipeline {
     const std::lock_guard lock(life_);
     return open("map_snapshot").map_snapshot();
   }
+  /// Answers of the free space for points (N, 3).
+  template <class Answer>
+  py::array_t<Answer> ask_space(const char* call, const Points& points,
+                                Answer (FreeSpace::*question)(const Eigen::Vector3d&) const) {
+    if (points.ndim() != 2 || points.shape(1) != 3)
+      throw InputError({call}, "expected a point as 3 numbers, or points as an array of shape (N, 3) [m]");
+    refuse_modules(call, MapLock::held);
+    const std::shared_ptr<const FreeSpace> space = [&] {
+      const Unlock unlock;
+      const std::lock_guard lock(life_);
+      return open(call).free_space();
+    }();
+    if (!space) throw Error(std::string(call) + ": the pipeline has no surface; set surface.enabled");
+    py::array_t<Answer> answers(points.shape(0));
+    for (py::ssize_t i = 0; i < points.shape(0); ++i)
+      answers.mutable_at(i) = (*space.*question)({points.at(i, 0), points.at(i, 1), points.at(i, 2)});
+    return answers;
+  }
+  py::array_t<bool> is_free(const Points& points) { return ask_space("is_free", points, &FreeSpace::is_free); }
+  py::array_t<double> distance(const Points& points) { return ask_space("distance", points, &FreeSpace::distance); }
   std::shared_ptr<Map> take_map() {
     refuse_modules("take_map");
     const Unlock unlock;
@@ -176,6 +199,8 @@ void bind_pipeline(py::module_& module) {
       .def("trajectory", &FedPipeline::trajectory)
       .def("keyframes", &FedPipeline::keyframes)
       .def("map_snapshot", &FedPipeline::map_snapshot)
+      .def("is_free", &FedPipeline::is_free, py::arg("points"))
+      .def("distance", &FedPipeline::distance, py::arg("points"))
       .def("take_map", &FedPipeline::take_map)
       .def_property_readonly("camera", &FedPipeline::camera)
       .def_property_readonly("fed", &FedPipeline::fed)

@@ -77,6 +77,7 @@ void record_pipeline(const Pipeline& pipeline, RunRecord& record) {
 
 void record_surface(const SurfaceMap& surface, RunRecord& record) {
   record.surface = surface.field().mesh();
+  record.surface_bytes = surface.memory_bytes();
   if (record.surface->empty())
     add_warning(record.warnings,
                 {{},

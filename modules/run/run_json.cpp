@@ -190,6 +190,10 @@ std::string run_json(const RunRecord& record) {
   if (const std::optional<FocalRatio>& focal = record.focal_ratio)
     json["focal_ratio"] = {{"value", focal->ratio}, {"deviation", focal->deviation}};
   json["map"] = map_json(record);
+  if (record.surface)
+    json["surface"] = {{"area_m2", record.surface->area()},
+                       {"triangles", record.surface->triangles.size()},
+                       {"memory_bytes", record.surface_bytes}};
   json["loops"] = loops_json(record.loops);
   json["masks"] = masks_json(record.masks, record.mask_ages);
   json["mean_inliers"] = s.mean_inliers();

@@ -152,6 +152,10 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& r
                                       " by masked features, " + std::to_string(dense) + " by dense depth");
   rows.emplace_back("map", counted(record.map_keyframes, "keyframe") + ", " + counted(record.map_points, "point") +
                                "; " + fixed_text(s.mean_inliers(), 0) + " inliers a frame");
+  if (record.surface && !record.surface->empty())
+    rows.emplace_back("surface", fixed_text(record.surface->area(), 1) + " m^2 in " +
+                                     counted(record.surface->triangles.size(), "triangle") + "; " +
+                                     fixed_text(1e-6 * static_cast<double>(record.surface_bytes), 0) + " MB");
   if (record.readout != 0.0)
     rows.emplace_back("rolling shutter", "rows are exposed during " + fixed_text(1e3 * record.readout, 1) + " ms");
   if (record.pair && record.pair->errors != PairErrors()) rows.emplace_back("stereo pair", pair_text(*record.pair));

@@ -129,12 +129,13 @@ void FreeSpace::compute_distances() {
 }
 
 Occupancy FreeSpace::at(const Eigen::Vector3d& point) const {
+  if (!point.allFinite()) return Occupancy::unknown;
   const Eigen::Vector3i cell = cell_of(point);
   return contains(cell) ? states_[index(cell)] : Occupancy::unknown;
 }
 
 double FreeSpace::distance(const Eigen::Vector3d& point) const {
-  if (states_.empty()) return std::numeric_limits<double>::infinity();
+  if (states_.empty() || !point.allFinite()) return std::numeric_limits<double>::infinity();
   const Eigen::Vector3i cell = cell_of(point);
   const Eigen::Vector3i inside = cell.cwiseMax(0).cwiseMin(size_ - Eigen::Vector3i::Ones());
   const double outside = resolution_ * (cell - inside).cast<double>().norm();

@@ -13,6 +13,13 @@ std::size_t SurfaceMap::keyframe_count() const {
       std::count_if(entries_.begin(), entries_.end(), [](const Entry& entry) { return !entry.view.only_carves(); }));
 }
 
+std::size_t SurfaceMap::memory_bytes() const {
+  std::size_t bytes = field_.memory_bytes();
+  for (const Entry& entry : entries_)
+    bytes += entry.view.depth.total() * entry.view.depth.elemSize() + entry.view.colour.total() * 3;
+  return bytes;
+}
+
 double SurfaceMap::motion(const Eigen::Isometry3d& before, const Eigen::Isometry3d& after) const {
   const double depth = 0.75 * field_.settings().maximum_depth;
   double largest = 0.0;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "holdfast/core/error.hpp"
 #include "holdfast/dense_map/static_scene.hpp"
 #include "holdfast/pipeline/pipeline.hpp"
 #include "holdfast/plugin/registry.hpp"
@@ -135,21 +136,33 @@ TEST(PipelineSurface, HasEveryKeyframeAtItsFinalPose) {
     parts.camera = world.camera();
     parts.features = std::make_unique<test::PointExtractor>(world, 0.3);
     parts.optimizer = registry.create<Optimizer>("ceres", {}, {});
-    parts.surface = {.enabled = true, .voxel = 0.2, .maximum_depth = 9.0, .moves_per_keyframe = 0};
+    parts.surface = {.enabled = true, .voxel = 0.2, .maximum_depth = 9.0, .moves_per_keyframe = 0, .cell = 0.5};
     parts.dense_map.step = 8;
     if (threaded) parts.run.mode = RunMode::threaded;
     Pipeline pipeline(std::move(parts));
     for (int i = 0; i < 40; ++i)
       pipeline.feed(with_wall(world.frame(static_cast<std::uint64_t>(i), i / 30.0, test::path_pose(i / 30.0))));
+    // A wall 8 m ahead of the camera.
+    const Eigen::Vector3d ahead(0.0, 0.0, 6.0);
+    EXPECT_TRUE(threaded || pipeline.is_free(ahead)) << "while frames come";
     pipeline.finish();
+    EXPECT_TRUE(pipeline.is_free(ahead));
+    EXPECT_NEAR(pipeline.distance(ahead), 2.0, 0.6);
+    EXPECT_FALSE(pipeline.is_free({0.0, 0.0, 9.0}));
     ASSERT_NE(pipeline.surface(), nullptr);
     EXPECT_EQ(pipeline.static_scene(), nullptr) << "a surface keeps views, and asks for no cloud";
-    EXPECT_EQ(pipeline.surface()->view_count(), pipeline.mapping_counts().keyframes_made);
+    EXPECT_EQ(pipeline.surface()->keyframe_count(), pipeline.mapping_counts().keyframes_made);
+    EXPECT_GE(pipeline.surface()->view_count(), pipeline.surface()->keyframe_count() + 2U) << "frames that carve";
     EXPECT_FALSE(pipeline.surface()->field().mesh().empty());
   }
 }
 
-TEST(PipelineSurface, IsMadeOnlyWhenAskedFor) { EXPECT_EQ(fed_pipeline(true, false, false).surface(), nullptr); }
+TEST(PipelineSurface, IsMadeOnlyWhenAskedFor) {
+  const Pipeline pipeline = fed_pipeline(true, false, false);
+  EXPECT_EQ(pipeline.surface(), nullptr);
+  EXPECT_EQ(pipeline.free_space(), nullptr);
+  EXPECT_THROW(pipeline.is_free({0.0, 0.0, 1.0}), Error);
+}
 
 }  // namespace
 }  // namespace holdfast

@@ -198,6 +198,22 @@ def test_map_is_seen_while_frames_come(frames):
             pipeline.map
 
 
+def test_free_space_is_known_while_frames_come(frames):
+    with holdfast.Pipeline(PIPELINE, {"surface.enabled": True, "surface.minimum_views": 1}) as pipeline:
+        for frame in frames:
+            pipeline.feed(frame)
+        depth = numpy.array(frames[0].depth)
+        ahead = float(numpy.median(depth[230:250, 310:330]))
+        assert pipeline.is_free([0, 0, 0.5 * ahead]) is True and pipeline.is_free([0, 0, 99]) is False
+        distances = pipeline.distance([[0, 0, 0.5 * ahead], [0, 0, ahead]])
+        assert distances.shape == (2,) and distances[0] > distances[1]
+        with pytest.raises(holdfast.InputError, match="shape"):
+            pipeline.is_free([1, 2])
+    with holdfast.Pipeline(PIPELINE) as pipeline:
+        with pytest.raises(holdfast.Error, match="surface.enabled"):
+            pipeline.distance([0, 0, 1])
+
+
 def test_ends_once(frames):
     pipeline = holdfast.Pipeline(PIPELINE)
     pipeline.feed(frames[0])

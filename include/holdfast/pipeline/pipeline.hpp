@@ -35,6 +35,8 @@
 
 namespace holdfast {
 
+class FreeSpace;
+
 class StaticScene;
 class SurfaceMap;
 
@@ -136,6 +138,14 @@ class Pipeline {
   /// The fused surface of the static scene; nullptr unless SurfaceSettings::enabled. Complete, with final poses, after
   /// finish().
   const SurfaceMap* surface() const;
+  /// Free space of the surface as fused so far, in cells of SurfaceSettings::cell; nullptr without a surface. Kept
+  /// until more is fused: the first call after a keyframe meshes the surface, which takes 50 ms for a room and longer
+  /// for a hall, and fusion waits for it. From any thread, in both modes.
+  std::shared_ptr<const FreeSpace> free_space() const;
+  /// FreeSpace::is_free() and FreeSpace::distance() [m] of free_space(), for a point in world coordinates. Throw Error
+  /// without a surface.
+  bool is_free(const Eigen::Vector3d& point) const;
+  double distance(const Eigen::Vector3d& point) const;
   const MappingCounts& mapping_counts() const;
   LoopRecord loop_record() const;
   const Camera& camera() const;

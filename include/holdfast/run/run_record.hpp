@@ -69,6 +69,7 @@ struct RunRecord {
   bool localised_only = false;    ///< localisation in a given map, which was not changed
   std::optional<std::vector<CloudPoint>> dense_map;  ///< cloud of the static scene, with dense_map.enabled
   std::optional<TriangleMesh> surface;               ///< mesh of the static scene, with surface.enabled
+  std::size_t surface_bytes = 0;                     ///< memory of its field and of the views that it keeps
   std::optional<NavigationMaps> navigation;          ///< with surface.navigation; never without a mesh
   MappingCounts mapping;
   LoopRecord loops;

@@ -52,7 +52,8 @@ class FreeSpace {
            static_cast<std::size_t>(cell.x());
   }
   Eigen::Vector3i cell_of(const Eigen::Vector3d& point) const {
-    return ((point - origin_) / resolution_).array().floor().cast<int>();
+    constexpr double farthest = 1e9;  // fits an int
+    return ((point - origin_) / resolution_).array().floor().max(-farthest).min(farthest).cast<int>();
   }
   bool contains(const Eigen::Vector3i& cell) const {
     return (cell.array() >= 0).all() && (cell.array() < size_.array()).all();

@@ -33,6 +33,8 @@ class SurfaceMap {
   const KeptView& view(std::size_t number) const { return entries_[number].view; }
   /// T_world_camera with which a view is fused.
   const Eigen::Isometry3d& pose(std::size_t number) const { return entries_[number].fusion.T_world_camera; }
+  /// Memory of the field and of the images of the views.
+  std::size_t memory_bytes() const;
   /// Number of times that a view was fused again at another pose.
   std::size_t move_count() const { return moves_; }
 

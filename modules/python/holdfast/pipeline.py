@@ -7,7 +7,7 @@ import atexit
 import os
 import weakref
 from types import TracebackType
-from typing import Any, Dict, Optional, Sequence, Type, Union, overload
+from typing import Any, Callable, Dict, Optional, Sequence, Type, Union, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +20,12 @@ from .maps import Map, MapSnapshot
 from .trajectory import Trajectory
 
 _open_pipelines: "weakref.WeakSet[Pipeline]" = weakref.WeakSet()
+
+
+def _of_points(question: Callable[[Any], Any], points: Any) -> Any:
+    """The answers for points (N, 3), or the one for a point (3,)."""
+    array = np.asarray(points, dtype=float)
+    return question(array[None])[0].item() if array.ndim == 1 else question(array)
 
 
 class Pipeline:
@@ -142,6 +148,17 @@ class Pipeline:
         if self._finished is not None:
             return self._finished.map.snapshot()
         return MapSnapshot(self._core.map_snapshot())
+
+    def is_free(self, points: Any) -> Any:
+        """Whether points of the world [m] are known to be free, by the surface as fused so far (`surface.enabled`).
+
+        A point (3,) gives a bool, points (N, 3) an array. The first call after a keyframe meshes the surface.
+        """
+        return _of_points(self._core.is_free, points)
+
+    def distance(self, points: Any) -> Any:
+        """Distance of points of the world to the nearest surface [m], as is_free()."""
+        return _of_points(self._core.distance, points)
 
     @property
     def map(self) -> Map:
