@@ -10,6 +10,7 @@ namespace holdfast {
 struct PoseSituation {
   bool was_lost = false;         ///< no pose of the previous frame predicts this one
   bool may_be_anywhere = false;  ///< a relocalised pose need not be within reach of the last known one
+  bool is_unconfirmed = false;   ///< TrackerState::unconfirmed
   double map_age = 0.0;          ///< since the map began or began anew [s]; infinite for a loaded map
 };
 
@@ -25,6 +26,8 @@ class PoseChecks {
   bool has_ample_inliers(int inliers) const;
   /// Whether the pose is more than `factor` times jump_distance or jump_angle from constant velocity.
   bool exceeds_acceleration(double factor) const;
+  /// Whether the pose contradicts inertial measurements. Ample inliers may differ by twice as much.
+  bool contradicts_measured_motion(int inliers) const;
   /// Whether the pose contradicts inertia (unless the camera was lost), is not determined well enough by its inliers,
   /// or contradicts the depth of keyframes.
   bool is_refuted(int inliers, bool was_lost) const;
