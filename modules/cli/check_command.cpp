@@ -34,8 +34,10 @@ void check(const CheckArguments& arguments, const ProgramHost& host) {
     BuiltPipeline built = build_pipeline(configuration, registry);
     built.pipeline.finish_loading();
     print_warnings(built.warnings());
-    if (!arguments.print && built.source->describe().has_imu)
-      std::printf("imu: measurements are checked and recorded; poses are estimated from images alone\n");
+    if (const SourceDescription source = built.source->describe(); !arguments.print && source.has_imu)
+      std::printf("imu: %s\n", source.imu || configuration.imu
+                                   ? "measurements predict poses, unless tracking.inertia is false"
+                                   : "measurements are not used without a calibration; add the section 'imu'");
     const std::string understood = built.pipeline.segmenter_description();
     if (!arguments.print && !understood.empty())
       std::printf("%s: %s\n", configuration.segmenter.name.c_str(), printable(understood).c_str());

@@ -53,8 +53,8 @@ std::vector<Entry> all_entries(const Registry& registry, const std::vector<Secti
   for (const std::string& sensor : imu_names()) sensors += (sensors.empty() ? "" : ", ") + sensor;
   add_section("imu",
               "The IMU (gyroscope and accelerometer) of the camera: one of the names " + sensors +
-                  ", or by numbers. In place of the source's own, if it has one. Its measurements are checked and "
-                  "recorded; poses are estimated from images alone.",
+                  ", or by numbers. In place of the source's own, if it has one. tracking.inertia says what its "
+                  "measurements are used for.",
               ParameterTable<ImuSettings>().parameters());
   const auto add_sections = [&](bool plain) {
     for (const SectionDescription& section : sections)

@@ -13,6 +13,8 @@ const char* to_string(TrackingStatus status) {
       return "tracked";
     case TrackingStatus::lost:
       return "lost";
+    case TrackingStatus::inertial:
+      return "inertial";
   }
   return "?";
 }
@@ -45,6 +47,8 @@ const char* to_string(TrackingFallback fallback) {
       return "masked features";
     case TrackingFallback::dense_depth:
       return "dense depth";
+    case TrackingFallback::inertial:
+      return "inertial";
   }
   return "?";
 }

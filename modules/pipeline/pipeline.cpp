@@ -108,7 +108,7 @@ struct Pipeline::State {
         calibration(calibration_of_pair(parts)),
         tracker(parts.tracking, {parts.camera, *parts.features, *parts.optimizer, detector, moving_world,
                                  map.unshared(), parts.run.seed, stereo_parts(parts, calibration.get()),
-                                 features_have_depth(parts.sensor), *parts.matcher}),
+                                 features_have_depth(parts.sensor), *parts.matcher, parts.imu}),
         flow(parts, map, moving_world, detector) {
     Map& whole = map.unshared();
     whole.set_sensor(parts.sensor);

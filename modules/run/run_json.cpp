@@ -121,6 +121,7 @@ Json frames_json(const RunRecord& record) {
           {"by_odometry", s.count(TrackingFallback::odometry)},
           {"by_masked_features", s.count(TrackingFallback::masked_features)},
           {"by_dense_depth", s.count(TrackingFallback::dense_depth)},
+          {"by_inertia", s.count(TrackingStatus::inertial)},
           {"tracked_backwards", record.losses.tracked_backwards},
           {"withdrawn", record.losses.withdrawn},
           {"left_out", record.losses.left_out},

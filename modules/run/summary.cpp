@@ -150,6 +150,8 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& r
   if (odometry + masked + dense > 0)
     rows.emplace_back("fallback", counted(odometry, "frame") + " by odometry, " + std::to_string(masked) +
                                       " by masked features, " + std::to_string(dense) + " by dense depth");
+  if (const std::uint64_t inertial = s.count(TrackingStatus::inertial); inertial > 0)
+    rows.emplace_back("inertia", counted(inertial, "frame") + " bridged by inertial measurements");
   rows.emplace_back("map", counted(record.map_keyframes, "keyframe") + ", " + counted(record.map_points, "point") +
                                "; " + fixed_text(s.mean_inliers(), 0) + " inliers a frame");
   if (record.surface && !record.surface->empty())

@@ -24,7 +24,7 @@ bool FlowTracker::follow(const SensorFrame& sensor_frame, const cv::Mat& ignored
   }
   ++frames_;
   context_.builder.complete(sensor_frame, context_.current, result.times);
-  context_.place_features(sensor_frame, history.predicted_step(context_.current.timestamp), result.times);
+  context_.place_features(sensor_frame, context_.predicted_step(), result.times);
   result.features = static_cast<int>(context_.current.size());
   return true;
 }
@@ -54,6 +54,7 @@ bool FlowTracker::track(TrackedView& view, FrameResult& result) {
   if (result.inliers < required || local_map_.checks().is_refuted(result.inliers, false) || keyframes_.is_due(result))
     return false;
   result.method = TrackingMethod::flow;
+  result.covariance = context_.estimator.covariance();
   moving_world.accumulate(frame);
   return true;
 }

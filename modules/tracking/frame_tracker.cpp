@@ -15,8 +15,11 @@ void FrameTracker::begin(const SensorFrame& sensor_frame, TrackerState state, Fr
   std::swap(context_.current, context_.previous);
   Frame& frame = context_.current;
   context_.builder.begin(sensor_frame, frame, result.times);
-  ignored_ = context_.moving_world.begin_frame(context_.builder.grey(),
-                                               context_.history.predicted_step(frame.timestamp), frame, result.times);
+  if (context_.inertia.is_used()) {
+    const StageTimer timer(result.times, "inertia");
+    context_.inertia.begin_frame(sensor_frame);
+  }
+  ignored_ = context_.moving_world.begin_frame(context_.builder.grey(), context_.predicted_step(), frame, result.times);
   if (!flow_ || !flow_->follow(sensor_frame, ignored_, has_pose(state), result))
     find_features(sensor_frame, state != TrackerState::waiting, result);
 }
@@ -25,8 +28,7 @@ void FrameTracker::find_features(const SensorFrame& sensor_frame, bool has_map, 
   if (flow_) flow_->stop();
   context_.builder.set_budget(feature_budget(has_map));
   context_.builder.find_features(sensor_frame, ignored_, context_.current, result.times);
-  if (context_.history.has_velocity())
-    context_.place_features(sensor_frame, context_.history.predicted_step(context_.current.timestamp), result.times);
+  if (context_.history.has_velocity()) context_.place_features(sensor_frame, context_.predicted_step(), result.times);
   result.features = static_cast<int>(context_.current.size());
 }
 

@@ -33,6 +33,7 @@ bool LocalMapRefinement::track_local_map(const TrackedView& view, const PoseSitu
     result.failure = TrackingFailure::few_inliers;
     return false;
   }
+  result.covariance = context_.estimator.covariance();
   context_.moving_world.accumulate(frame);
   context_.reference_keyframe = context_.matcher.local_map().reference_keyframe();
   return true;

@@ -15,6 +15,10 @@ bool PoseChecks::contradicts_motion(int inliers) const {
   return !has_ample_inliers(inliers) && exceeds_acceleration(1.0);
 }
 
+bool PoseChecks::contradicts_measured_motion(int inliers) const {
+  return context_.inertia.contradicts(context_.current.T_camera_world, has_ample_inliers(inliers) ? 2.0 : 1.0);
+}
+
 bool PoseChecks::exceeds_acceleration(double factor) const {
   const FrameHistory& history = context_.history;
   if (!history.has_previous() || !history.has_velocity()) return false;
@@ -32,7 +36,7 @@ bool PoseChecks::lacks_support(const FrameResult& result, double map_age) const 
 }
 
 bool PoseChecks::is_refuted(int inliers, bool was_lost) const {
-  return (!was_lost && contradicts_motion(inliers)) ||
+  return (!was_lost && (contradicts_motion(inliers) || contradicts_measured_motion(inliers))) ||
          context_.estimator.position_deviation() > context_.settings.maximum_deviation ||
          context_.moving_world.contradicts_depth(context_.current, inliers, was_lost, context_.reference_keyframe);
 }
@@ -46,6 +50,7 @@ bool PoseChecks::accepts(const FrameResult& result, const PoseSituation& situati
   const bool may_be_anywhere = has_ample_inliers(result.inliers) || situation.may_be_anywhere;
   if (was_lost && !context_.relocaliser.is_beyond_chance(result.inliers)) return false;
   if (was_lost && !may_be_anywhere && !context_.relocaliser.is_reachable(context_.current, 0.0)) return false;
+  if (was_lost && !has_ample_inliers(result.inliers) && contradicts_measured_motion(result.inliers)) return false;
   return !lacks_support(result, situation.map_age) && !is_refuted(result.inliers, was_lost);
 }
 

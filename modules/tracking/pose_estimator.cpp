@@ -107,6 +107,7 @@ int PoseEstimator::solve(Frame& frame) {
   if (!features_have_depth(map_.sensor()) && moving_world_.weights_features()) reject_new_points(frame);
   const PoseSummary summary = optimizer_.optimize_pose(problem_);
   position_deviation_ = summary.usable ? std::sqrt(summary.covariance.topLeftCorner<3, 3>().trace()) : 0.0;
+  covariance_ = summary.usable ? std::optional(summary.covariance) : std::nullopt;
   if (!summary.usable) {
     std::fill(problem_.inlier.begin(), problem_.inlier.end(), std::uint8_t{0});
     return 0;

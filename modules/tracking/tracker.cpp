@@ -43,17 +43,20 @@ MapRequest Tracker::begin_map(const SensorFrame& sensor_frame, FrameResult& resu
 
 MapRequest Tracker::track(const SensorFrame& sensor_frame, FrameResult& result) {
   FrameHistory& history = context_.history;
+  if (!history.empty()) context_.inertia.follow_map(history.last_pose(context_.map));
   if (history.has_previous()) context_.previous.T_camera_world = history.last_pose(context_.map);
   TrackedView view{sensor_frame, history.has_previous() ? &context_.previous : nullptr, context_.current,
                    context_.submap()};
   const bool was_lost = state_ == TrackerState::lost;
   const PoseSituation situation{.was_lost = was_lost,
                                 .may_be_anywhere = !context_.features_have_depth || recovery_.may_return(),
+                                .is_unconfirmed = state_ == TrackerState::unconfirmed,
                                 .map_age = context_.current.timestamp - start_->time()};
   bool found = frame_tracker_.locate(view, situation, result);
   MapRequest request;
   if (found && start_->is_weak(result)) {
     found = false;
+    result.covariance.reset();
     result.failure = TrackingFailure::weak_start;
     request.kind = MapRequest::Kind::give_up;
   } else if (!found) {
@@ -62,10 +65,13 @@ MapRequest Tracker::track(const SensorFrame& sensor_frame, FrameResult& result) 
   }
   if (found) recovery_.try_to_return(view, situation, result);
   recovery_.confirm(found, was_lost, result.inliers);
-  result.status = found ? TrackingStatus::tracked : TrackingStatus::lost;
+  result.status = !found                                          ? TrackingStatus::lost
+                  : result.fallback == TrackingFallback::inertial ? TrackingStatus::inertial
+                                                                  : TrackingStatus::tracked;
   state_ = TrackerState::lost;
   if (!found) return request;
   enter_found_state();
+  if (!was_lost) fuse_with_inertia(result);
   found_pose(result);
   if (result.is_keyframe) request.kind = MapRequest::Kind::keyframe;
   return request;
@@ -124,13 +130,47 @@ void Tracker::end_frame(FrameResult& result) {
     recovery_.keep_frame(context_.settings.backward_frames, result.times);
   if (!is_found) {
     context_.history.interrupt();
+    context_.inertia.lost();
     return;
   }
   result.T_world_camera = context_.current.T_world_camera();
   if (context_.reference_keyframe.valid()) result.keyframe = context_.reference_keyframe;
   context_.history.add(context_.current, context_.reference_keyframe, context_.map);
+  follow_inertia(result);
   if (result.status == TrackingStatus::tracked && state_ == TrackerState::tracking)
     recovery_.track_backwards(result.times);
+}
+
+/// A pose that few features determine is adjusted with the inertial prediction as a prior, to first order.
+void Tracker::fuse_with_inertia(FrameResult& result) {
+  if (result.status != TrackingStatus::tracked || !context_.inertia.is_reliable() || !result.covariance ||
+      frame_tracker_.local_map().checks().has_ample_inliers(result.inliers))
+    return;
+  const bool is_relative = result.fallback == TrackingFallback::odometry;
+  if (!context_.inertia.correct(context_.current.T_camera_world, *result.covariance, is_relative)) return;
+  const InertialPrediction fused = *context_.inertia.prediction();
+  context_.current.T_camera_world = fused.T_camera_world;
+  result.covariance = fused.covariance;
+}
+
+/// Inertial motion learns from the pose, unless it gave the pose itself.
+void Tracker::follow_inertia(FrameResult& result) {
+  if (!context_.inertia.is_used()) return;
+  const StageTimer timer(result.times, "inertia");
+  const Eigen::Isometry3d& T_camera_world = context_.current.T_camera_world;
+  if (result.status == TrackingStatus::initialised) {
+    context_.inertia.reset();
+  } else if (result.status == TrackingStatus::inertial) {
+    context_.inertia.bridged(T_camera_world);
+  } else {
+    const auto past_pose = [this](double timestamp) -> std::optional<Eigen::Isometry3d> {
+      const auto pose = context_.history.past_pose(timestamp, context_.map);
+      return pose ? std::optional(pose->T_camera_world) : std::nullopt;
+    };
+    constexpr double deviation_of_depth = 0.01;  // [m], of a pose by dense depth alone
+    const double deviation = result.inliers > 0 ? context_.estimator.position_deviation() : deviation_of_depth;
+    context_.inertia.found(T_camera_world, deviation, past_pose);
+  }
 }
 
 void Tracker::keyframe_added(const MapAccess& map, KeyFrameId keyframe) {

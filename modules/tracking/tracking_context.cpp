@@ -17,8 +17,18 @@ TrackingContext::TrackingContext(const TrackingSettings& given, const TrackerPar
       matcher(settings, map, parts.matcher),
       estimator(settings, parts.optimizer, moving_world, map),
       relocaliser(settings, {parts.detector, moving_world, map, matcher, estimator, history}, parts.seed),
-      shutter(parts.stereo ? RollingShutterMode::off : settings.rolling_shutter, parts.camera.readout) {
+      shutter(parts.stereo ? RollingShutterMode::off : settings.rolling_shutter, parts.camera.readout),
+      inertia(settings.inertia ? parts.imu : std::nullopt, parts.features_have_depth) {
   if (parts.stereo) builder.use_stereo(*parts.stereo);
+}
+
+Eigen::Isometry3d TrackingContext::predicted_step() const {
+  if (const std::optional<Eigen::Isometry3d> step = inertia.step()) return *step;
+  return history.predicted_step(current.timestamp);
+}
+
+double TrackingContext::odometry_limit() const {
+  return last_feature_time + settings.odometry_time + (inertia.is_reliable() ? settings.inertial_time : 0.0);
 }
 
 std::optional<double> TrackingContext::interval() const {
@@ -45,6 +55,7 @@ void TrackingContext::drop_matches() { std::fill(current.map_points.begin(), cur
 
 void TrackingContext::forget_map() {
   history.clear();
+  inertia.reset();
   reference_keyframe = last_keyframe = KeyFrameId();
   last_feature_time = 0.0;
 }

@@ -219,6 +219,23 @@ void describe_corrections(ParameterTable<S>& table) {
       "fixed = by the readout time of the camera; estimated = the same, and the time is estimated while tracking");
 }
 
+void describe_inertia(ParameterTable<S>& table) {
+  table.add("inertia", &S::inertia,
+            "whether inertial measurements predict poses and bridge views that do not determine them, once gravity, "
+            "biases and velocity are known; without an IMU it has no effect");
+  table
+      .add("inertial_time", &S::inertial_time,
+           "time for which poses can be predicted by inertial measurements, because the images do not determine them; "
+           "0 = never")
+      .range(0, 100)
+      .unit("s");
+  table
+      .add("inertial_deviation", &S::inertial_deviation,
+           "standard deviation of the position above which such a pose is not used")
+      .range(0.001, 1000)
+      .unit("m");
+}
+
 void describe_losses(ParameterTable<S>& table) {
   table
       .add("young_map_time", &S::young_map_time,
@@ -332,6 +349,7 @@ void TrackingSettings::describe(ParameterTable<TrackingSettings>& table) {
   describe_trust(table);
   describe_keyframes(table);
   describe_corrections(table);
+  describe_inertia(table);
   describe_losses(table);
   describe_relocalisation(table);
 }

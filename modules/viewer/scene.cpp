@@ -37,11 +37,12 @@ nlohmann::json to_json(const MovingObject& object, double timestamp) {
           {"hidden", object.last_seen < timestamp}};
 }
 
-/// 0 waiting, 1 began the map, 2 tracked, 3 lost, 4 found again.
+/// 0 waiting, 1 began the map, 2 tracked, 3 lost, 4 found again, 5 predicted by inertia.
 int status_number(TrackingStatus status, TrackingMethod method) {
   if (status == TrackingStatus::waiting) return 0;
   if (status == TrackingStatus::initialised) return 1;
   if (status == TrackingStatus::lost) return 3;
+  if (status == TrackingStatus::inertial) return 5;
   return method == TrackingMethod::relocalised || method == TrackingMethod::recovered ? 4 : 2;
 }
 

@@ -18,12 +18,13 @@ enum class TrackingStatus {
   initialised,  ///< this frame initialised the map, or after a loss a new map or submap
   tracked,      ///< the pose was estimated
   lost,         ///< a map exists, but the pose could not be estimated
+  inertial,     ///< the images do not determine the pose: it is predicted by inertial measurements
 };
 
 /// How the initial pose was estimated, before the refinement against the local map.
 enum class TrackingMethod {
   none,
-  motion_model,        ///< matches of the previous frame's map points, predicted with constant velocity
+  motion_model,        ///< matches of map points, predicted with constant velocity or by inertial measurements
   reference_keyframe,  ///< descriptor matches with the reference keyframe
   recovered,           ///< after tracking was lost, from one of the last keyframes
   relocalised,         ///< after tracking was lost or in a loaded map, at a place recognised by the loop detector
@@ -36,6 +37,7 @@ enum class TrackingFallback {
   odometry,         ///< frame-to-frame odometry on static features with depth: too little of the map is in view
   masked_features,  ///< features on movable objects are used as well; dense depth must confirm the pose
   dense_depth,      ///< alignment of the depth image with those of keyframes, refined by features if they agree
+  inertial,         ///< prediction by inertial measurements, corrected by features if a few of them agree
 };
 
 /// Why a frame has no pose.
@@ -67,6 +69,9 @@ struct FrameResult {
   /// The pose as estimated when the frame was processed; empty without one. Later adjustments may correct it
   /// (Pipeline::trajectory).
   std::optional<Eigen::Isometry3d> T_world_camera;
+  /// Covariance of the error d of the pose, T_world_camera * exp(d): translation [m] and rotation [rad] in the camera
+  /// frame. Of the matches alone, as if the map had no error, or of the inertial prediction; empty if unknown.
+  std::optional<Eigen::Matrix<double, 6, 6>> covariance;
   int features = 0;         ///< features extracted from the image
   int static_features = 0;  ///< features that are not classified as dynamic
   int matches = 0;          ///< matches with the local map

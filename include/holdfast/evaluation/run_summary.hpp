@@ -32,7 +32,10 @@ class RunSummary {
   void add(const StageTimes& background);
 
   std::uint64_t frames() const { return frames_; }
-  std::uint64_t tracked() const { return count(TrackingStatus::tracked) + count(TrackingStatus::initialised); }
+  /// Number of frames with a pose.
+  std::uint64_t tracked() const {
+    return count(TrackingStatus::tracked) + count(TrackingStatus::initialised) + count(TrackingStatus::inertial);
+  }
   std::uint64_t lost() const { return count(TrackingStatus::lost); }
   /// Number of frames whose pose was recovered after a loss, from the last keyframes or by place recognition.
   std::uint64_t recovered() const { return recovered_; }

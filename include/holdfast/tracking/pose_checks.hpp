@@ -10,6 +10,7 @@ namespace holdfast {
 struct PoseSituation {
   bool was_lost = false;         ///< the previous frame has no pose
   bool may_be_anywhere = false;  ///< a relocalised pose is not limited to the reachable area around the last one
+  bool is_unconfirmed = false;   ///< TrackerState::unconfirmed
   double map_age = 0.0;          ///< time since the map was started or restarted [s]; infinite for a loaded map
 };
 
@@ -25,6 +26,8 @@ class PoseChecks {
   bool has_ample_inliers(int inliers) const;
   /// Whether the pose deviates from constant velocity by more than `factor` times jump_distance or jump_angle.
   bool exceeds_acceleration(double factor) const;
+  /// True if the pose contradicts the inertial measurements. Ample inliers may differ by twice as much.
+  bool contradicts_measured_motion(int inliers) const;
   /// True if the pose contradicts inertia (unless the camera was lost), is too uncertain, or contradicts the depth of
   /// keyframes.
   bool is_refuted(int inliers, bool was_lost) const;

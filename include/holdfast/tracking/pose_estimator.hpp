@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "holdfast/core/frame.hpp"
@@ -46,6 +47,9 @@ class PoseEstimator {
   int matches() const { return static_cast<int>(problem_.size()); }
   /// Standard deviation of the last adjusted position [m].
   double position_deviation() const { return position_deviation_; }
+  /// Covariance of the pose that was last adjusted, of the matches alone: translation [m] and rotation [rad] of
+  /// FrameResult::covariance, or of a left perturbation of T_camera_world. Empty if none was determined.
+  const std::optional<Eigen::Matrix<double, 6, 6>>& covariance() const { return covariance_; }
 
  private:
   void collect_observations(Frame& frame);
@@ -62,6 +66,7 @@ class PoseEstimator {
   PoseProblem established_;              // the observations of established points
   std::vector<std::uint8_t> rejected_;   // by the problem's observations: new points that contradict established ones
   double position_deviation_ = 0.0;
+  std::optional<Eigen::Matrix<double, 6, 6>> covariance_;
 };
 
 }  // namespace holdfast

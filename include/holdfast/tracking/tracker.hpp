@@ -84,6 +84,8 @@ class Tracker {
   void found_pose(FrameResult& result);
   void enter_found_state();
   void end_frame(FrameResult& result);
+  void fuse_with_inertia(FrameResult& result);
+  void follow_inertia(FrameResult& result);
 
   TrackingContext context_;
   KeyframeDecision keyframes_;

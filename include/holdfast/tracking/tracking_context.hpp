@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "holdfast/core/frame.hpp"
+#include "holdfast/core/imu.hpp"
 #include "holdfast/core/map.hpp"
 #include "holdfast/interfaces/feature_extractor.hpp"
 #include "holdfast/interfaces/loop_detector.hpp"
@@ -14,6 +15,7 @@
 #include "holdfast/tracking/frame_builder.hpp"
 #include "holdfast/tracking/frame_history.hpp"
 #include "holdfast/tracking/frame_matcher.hpp"
+#include "holdfast/tracking/inertial_motion.hpp"
 #include "holdfast/tracking/pose_estimator.hpp"
 #include "holdfast/tracking/relocaliser.hpp"
 #include "holdfast/tracking/rolling_shutter.hpp"
@@ -33,6 +35,7 @@ struct TrackerParts {
   std::optional<StereoParts> stereo = {};  ///< set if depth comes from a stereo pair
   bool features_have_depth = true;         ///< false in monocular mode
   const FeatureMatcher& matcher = nearest_matcher();
+  std::optional<ImuCalibration> imu = {};  ///< frames have inertial measurements
 };
 
 /// Data shared by the components of Tracker: the current and the previous frame, and the tools for pose estimation.
@@ -43,10 +46,13 @@ struct TrackingContext {
   TrackingContext(const TrackingContext&) = delete;
   TrackingContext& operator=(const TrackingContext&) = delete;
 
-  /// T_camera_world of the current frame by constant velocity.
-  Eigen::Isometry3d predicted_pose() const {
-    return history.predicted_step(current.timestamp) * previous.T_camera_world;
-  }
+  /// T_current_previous by inertial measurements or, without a reliable prediction, by constant velocity.
+  Eigen::Isometry3d predicted_step() const;
+  /// T_camera_world of the current frame by this step.
+  Eigen::Isometry3d predicted_pose() const { return predicted_step() * previous.T_camera_world; }
+  /// Time up to which poses can be based on the previous frame without the map [s]; inertial measurements refute those
+  /// that moving features determine, so that it is longer with them.
+  double odometry_limit() const;
   /// T_current_previous by the poses of both frames.
   Eigen::Isometry3d measured_step() const { return current.T_camera_world * previous.T_world_camera(); }
   /// Time since the last tracked frame [s]; empty if it is more than 0.2 s, when constant velocity is no longer a valid
@@ -75,6 +81,7 @@ struct TrackingContext {
   PoseEstimator estimator;
   Relocaliser relocaliser;
   RollingShutter shutter;
+  InertialMotion inertia;
 
   Frame current, previous;
   KeyFrameId reference_keyframe;   ///< reference keyframe of the current frame

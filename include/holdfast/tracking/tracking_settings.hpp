@@ -65,6 +65,11 @@ struct TrackingSettings {
   double odometry_time = 0.3;        ///< maximum duration of odometry without the map [s]
   double depth_only_time = 1.0;      ///< maximum duration of poses from dense depth alone [s]
 
+  // Inertial measurements.
+  bool inertia = true;               ///< they are used if frames have them
+  double inertial_time = 4.0;        ///< how long poses can be predicted by them alone [s]
+  double inertial_deviation = 0.15;  ///< standard deviation of the position up to which such a pose is used [m]
+
   // Optical flow.
   BetweenKeyframes between_keyframes = BetweenKeyframes::features;
   int flow_frames = 4;      ///< maximum number of consecutive frames tracked by flow

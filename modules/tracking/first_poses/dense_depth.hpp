@@ -16,7 +16,7 @@ class DenseDepth final : public FirstPose {
     result.fallback = TrackingFallback::dense_depth;
     const auto aligned = context.moving_world.align_depth(context.current, context.predicted_pose(),
                                                           context.reference_keyframe, result.times);
-    if (!aligned) return FirstPoseOutcome::none;
+    if (!aligned || context.inertia.contradicts(*aligned, 1.0)) return FirstPoseOutcome::none;
     result.method = TrackingMethod::motion_model;
     const TrackingFailure failure = result.failure;
     // The aligned pose is better than a prediction, but not as good as features: a wide search finds them if there are.

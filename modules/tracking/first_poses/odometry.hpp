@@ -14,7 +14,7 @@ class Odometry final : public FirstPose {
   FirstPoseOutcome find(PoseSearch& search) override {
     const TrackingContext& context = search.context;
     if (search.situation.was_lost || !context.history.has_previous() ||
-        context.current.timestamp > context.last_feature_time + context.settings.odometry_time)
+        context.current.timestamp > context.odometry_limit())
       return FirstPoseOutcome::none;
     const StageTimer timer(search.result.times, "odometry");
     const TrackingFailure failure = search.result.failure;
@@ -69,6 +69,7 @@ class Odometry final : public FirstPose {
 
   static void write_result(const TrackingContext& context, FrameResult& result) {
     result.method = TrackingMethod::motion_model;
+    result.covariance = context.estimator.covariance();
     result.fallback = TrackingFallback::odometry;
     result.matches = context.estimator.matches();
     result.inliers = result.static_features = 0;

@@ -34,8 +34,8 @@ class Rows {
   row(i) { return this.data.subarray(i * this.width, (i + 1) * this.width); }
 }
 
-const statusNames = ['waiting', 'map begun', 'tracking', 'lost', 'found again'];
-const statusKinds = ['warn', 'good', 'good', 'bad', 'warn'];
+const statusNames = ['waiting', 'map begun', 'tracking', 'lost', 'found again', 'bridged by inertia'];
+const statusKinds = ['warn', 'good', 'good', 'bad', 'warn', 'warn'];
 const pathWidth = 9;  // x y z, quaternion x y z w, status, error
 
 const pointWidth = 5;  // x y z, evidence (NaN = none), class; of the dense cloud: x y z, 0, colour as red << 16 | green << 8 | blue

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "holdfast/core/imu.hpp"
+#include "holdfast/core/sensor_frame.hpp"
+#include "holdfast/geometry/inertial_start.hpp"
+#include "holdfast/tracking/inertial_filter.hpp"
+
+namespace holdfast {
+
+/// A pose that inertial measurements predict.
+struct InertialPrediction {
+  Eigen::Isometry3d T_camera_world;
+  /// Of the error d in T_world_camera * exp(d): translation, in the unit of the map, and rotation [rad].
+  Eigen::Matrix<double, 6, 6> covariance;
+  double position_deviation;  ///< the larger axis, in the unit of the map
+  double rotation_deviation;  ///< the larger axis [rad]
+};
+
+/// Motion of the camera by inertial measurements. First, gravity, biases, velocity and, with one camera, the scale are
+/// estimated from the tracked poses of the last seconds (geometry::start_inertially); then an InertialFilter keeps them
+/// up to date. The filter must predict some poses before others use it (is_reliable); one that contradicts the images
+/// for long, or misses measurements, ends, and the start begins again. Until then, and without an IMU, it predicts
+/// nothing.
+///
+/// For each frame, begin_frame() is called first, then follow_map(), and one of found(), bridged() and lost() last.
+/// Poses are those of the camera in the map. Deterministic. One thread.
+class InertialMotion {
+ public:
+  /// Without a calibration nothing is ever predicted. `scale_is_known`: the unit of the map is the metre.
+  InertialMotion(const std::optional<ImuCalibration>& imu, bool scale_is_known);
+
+  /// Whether there is an IMU.
+  bool is_used() const { return imu_.has_value(); }
+  /// Propagates to the time stamp of a frame by its measurements.
+  void begin_frame(const SensorFrame& frame);
+  /// `T_camera_world`: of the last frame with a pose, by the map as it is now; corrections of the map move the state.
+  void follow_map(const Eigen::Isometry3d& T_camera_world);
+
+  /// Whether gravity, biases and velocity are known.
+  bool is_started() const { return last_.has_value(); }
+  /// Whether they have also predicted poses that images confirmed; then predictions are used.
+  bool is_reliable() const { return now_.has_value() && confirmations_ >= required_confirmations; }
+  /// T_current_previous from the frame before, whether it had a pose or not; empty unless reliable.
+  std::optional<Eigen::Isometry3d> step() const;
+  /// Empty unless reliable.
+  std::optional<InertialPrediction> prediction() const;
+  /// Whether a pose is farther from the prediction than both their uncertainties and `factor` allow; false unless
+  /// reliable.
+  bool contradicts(const Eigen::Isometry3d& T_camera_world, double factor) const;
+  /// Corrects the prediction for the current frame by a pose that few features determine, with the covariance of
+  /// PoseSummary; `is_relative`: these features are placed by the pose of the previous frame, so that its error is part
+  /// of this one's. False if it contradicts the prediction, which stays as it is.
+  bool correct(const Eigen::Isometry3d& T_camera_world, const Eigen::Matrix<double, 6, 6>& covariance,
+               bool is_relative);
+
+  /// Pose by the map as it is now of a frame that was tracked, empty if it has none any more.
+  using PastPose = std::function<std::optional<Eigen::Isometry3d>(double timestamp)>;
+  /// The images determined the current pose, which correct() has not got, with this standard deviation of the position,
+  /// as the matches determine it.
+  void found(const Eigen::Isometry3d& T_camera_world, double deviation, const PastPose& past_pose);
+  /// The current pose is the prediction, which may have been corrected.
+  void bridged(const Eigen::Isometry3d& T_camera_world) { keep_prediction(T_camera_world); }
+  /// The current frame has no pose.
+  void lost();
+  /// Begins again, as where the map begins.
+  void reset();
+
+  /// The state at the last frame, in metres, whose biases, velocity and gravity are estimates; empty before the start.
+  const std::optional<InertialFilter>& filter() const { return last_; }
+  /// Metres in a unit of the map.
+  double scale() const { return scale_; }
+
+ private:
+  static constexpr int required_confirmations = 10;
+  /// Standard deviations of tracked poses [m], [rad].
+  struct PoseDeviations {
+    double position = 0.0, rotation = 0.0;
+  };
+
+  bool saturates(const SensorFrame& frame) const;
+  Eigen::Isometry3d body_pose(const Eigen::Isometry3d& T_camera_world) const;
+  Eigen::Isometry3d camera_pose(const Eigen::Isometry3d& T_world_body) const;
+  InertialFilter::PoseCovariance measurement_covariance(double deviation) const;
+  void keep_prediction(const Eigen::Isometry3d& T_camera_world);
+  void learn(const Eigen::Isometry3d& T_camera_world, double deviation);
+  void try_to_start(const PastPose& past_pose);
+  void begin_filter(const geometry::InertialStart& start, const std::vector<Eigen::Isometry3d>& poses,
+                    const std::vector<geometry::Preintegration>& motions, const PoseDeviations& deviations);
+
+  const std::optional<ImuCalibration> imu_;
+  const bool scale_is_known_;
+  std::optional<double> timestamp_;           // of the last frame [s]
+  std::optional<InertialFilter> last_, now_;  // at the last frame, and predicted for the current one
+  std::optional<Eigen::Isometry3d> anchor_;   // T_camera_world of the last frame with a pose, to which last_ belongs
+  double scale_ = 1.0;
+  PoseDeviations deviations_;                   // as the start found them
+  int confirmations_ = 0, contradictions_ = 0;  // the latter in a row
+  bool is_corrected_ = false;                   // now_ knows the current pose
+  double turn_rate_ = 0.0;                      // of the current frame [rad/s]
+  double found_time_ = 0.0;                     // [s]
+  // Of the start.
+  std::vector<ImuSample> samples_;
+  std::vector<double> tracked_;  // time stamps [s]
+  double next_start_ = 0.0;      // [s]
+};
+
+}  // namespace holdfast

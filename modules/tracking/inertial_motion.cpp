@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/tracking/inertial_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "holdfast/core/imu_timeline.hpp"
+
+namespace holdfast {
+
+namespace {
+
+/// Measurements of the start [s].
+constexpr double start_time = 2.0, start_time_of_one_camera = 5.0;
+constexpr double pose_spacing = 0.1, pose_spacing_of_one_camera = 0.2;
+constexpr double largest_pose_gap = 1.0;
+constexpr std::size_t fewest_poses = 10;
+constexpr double start_interval = 0.25;  // between two attempts
+/// With six degrees of freedom, 18 is exceeded by chance once in 160 frames; poses from images have heavier tails.
+constexpr double largest_chi_square = 40.0;
+constexpr int tolerated_later = 15, tolerated_at_start = 2;  // frames in a row
+constexpr double most_lost_time = 10.0;                      // [s]; then the velocity says nothing
+
+/// The samples with one at each end of the interval, where one is missing by at most `tolerance` [s].
+std::vector<ImuSample> covering(std::vector<ImuSample> samples, double begin, double end, double tolerance) {
+  if (samples.empty()) return samples;
+  if (samples.back().timestamp < end && end - samples.back().timestamp <= tolerance) {
+    samples.push_back(samples.back());
+    samples.back().timestamp = end;
+  }
+  if (samples.front().timestamp > begin && samples.front().timestamp - begin <= tolerance) {
+    samples.insert(samples.begin(), samples.front());
+    samples.front().timestamp = begin;
+  }
+  return samples;
+}
+
+}  // namespace
+
+InertialMotion::InertialMotion(const std::optional<ImuCalibration>& imu, bool scale_is_known)
+    : imu_(imu), scale_is_known_(scale_is_known) {}
+
+void InertialMotion::begin_frame(const SensorFrame& frame) {
+  if (!imu_) return;
+  now_.reset();
+  is_corrected_ = false;
+  const std::optional<double> before = std::exchange(timestamp_, frame.timestamp);
+  if (!before) return;
+  const double tolerance = 2.0 / imu_->rate;
+  const std::vector<ImuSample> samples = covering(frame.imu, *before, frame.timestamp, tolerance);
+  const ImuBias bias = last_ ? last_->state().bias : ImuBias();
+  const auto motion = geometry::preintegrate(samples, *before, frame.timestamp, imu_->noise, bias);
+  if (!motion || saturates(frame)) {
+    reset();
+    timestamp_ = frame.timestamp;
+    return;
+  }
+  turn_rate_ = geometry::log_so3(motion->delta().rotation).norm() / motion->duration();
+  if (last_) {
+    now_ = last_;
+    now_->predict(*motion);
+  } else {
+    append_imu(samples_, samples);
+  }
+}
+
+/// A saturated measurement says nothing of the motion.
+bool InertialMotion::saturates(const SensorFrame& frame) const {
+  constexpr double share = 0.999;
+  return std::any_of(frame.imu.begin(), frame.imu.end(), [this](const ImuSample& sample) {
+    return sample.angular_velocity.cwiseAbs().maxCoeff() >= share * imu_->gyroscope_range ||
+           sample.acceleration.cwiseAbs().maxCoeff() >= share * imu_->accelerometer_range;
+  });
+}
+
+Eigen::Isometry3d InertialMotion::body_pose(const Eigen::Isometry3d& T_camera_world) const {
+  Eigen::Isometry3d T_world_camera = T_camera_world.inverse();
+  T_world_camera.translation() *= scale_;
+  return T_world_camera * imu_->T_body_camera.inverse();
+}
+
+Eigen::Isometry3d InertialMotion::camera_pose(const Eigen::Isometry3d& T_world_body) const {
+  Eigen::Isometry3d T_world_camera = T_world_body * imu_->T_body_camera;
+  T_world_camera.translation() /= scale_;
+  return T_world_camera.inverse();
+}
+
+void InertialMotion::follow_map(const Eigen::Isometry3d& T_camera_world) {
+  if (!last_ || !anchor_) return;
+  Eigen::Isometry3d T_new_old = T_camera_world.inverse() * *anchor_;
+  constexpr double rounding = 1e-9;
+  if ((T_new_old.matrix() - Eigen::Matrix4d::Identity()).cwiseAbs().maxCoeff() < rounding) return;
+  T_new_old.translation() *= scale_;
+  last_->move(T_new_old);
+  if (now_) now_->move(T_new_old);
+  anchor_ = T_camera_world;
+}
+
+std::optional<Eigen::Isometry3d> InertialMotion::step() const {
+  if (!is_reliable()) return std::nullopt;
+  return camera_pose(now_->state().T_world_body) * camera_pose(last_->state().T_world_body).inverse();
+}
+
+std::optional<InertialPrediction> InertialMotion::prediction() const {
+  if (!is_reliable()) return std::nullopt;
+  InertialPrediction result{camera_pose(now_->state().T_world_body), {}, 0.0, 0.0};
+  const Eigen::Matrix3d R_camera_body = imu_->T_body_camera.linear().transpose();
+  const Eigen::Matrix3d R_world_body = now_->state().T_world_body.linear();
+  Eigen::Matrix<double, 6, 6> to_camera = Eigen::Matrix<double, 6, 6>::Zero();
+  to_camera.topLeftCorner<3, 3>() = R_camera_body * R_world_body.transpose() / scale_;
+  to_camera.topRightCorner<3, 3>() = -R_camera_body * geometry::hat(imu_->T_body_camera.translation()) / scale_;
+  to_camera.bottomRightCorner<3, 3>() = R_camera_body;
+  result.covariance = to_camera * now_->pose_covariance() * to_camera.transpose();
+  result.position_deviation = std::sqrt(result.covariance.diagonal().head<3>().maxCoeff());
+  result.rotation_deviation = std::sqrt(result.covariance.diagonal().tail<3>().maxCoeff());
+  return result;
+}
+
+/// Of tracked poses: as the start found them to be, and larger where few matches determine one or the camera moves
+/// fast.
+InertialFilter::PoseCovariance InertialMotion::measurement_covariance(double deviation) const {
+  constexpr double stamp_deviation = 0.002;  // of time stamps [s]; those of cameras without a trigger scatter
+  const double speed = now_ ? now_->state().velocity.norm() : 0.0;
+  const auto total = [](double a, double b, double c) { return a * a + b * b + c * c; };
+  InertialFilter::PoseCovariance covariance = InertialFilter::PoseCovariance::Zero();
+  covariance.diagonal().head<3>().setConstant(total(deviations_.position, scale_ * deviation, stamp_deviation * speed));
+  covariance.diagonal().tail<3>().setConstant(total(deviations_.rotation, stamp_deviation * turn_rate_, 0.0));
+  return covariance;
+}
+
+bool InertialMotion::contradicts(const Eigen::Isometry3d& T_camera_world, double factor) const {
+  return is_reliable() && now_->chi_square(body_pose(T_camera_world), measurement_covariance(0.0)) >
+                              factor * factor * largest_chi_square;
+}
+
+bool InertialMotion::correct(const Eigen::Isometry3d& T_camera_world, const Eigen::Matrix<double, 6, 6>& covariance,
+                             bool is_relative) {
+  if (!is_reliable()) return false;
+  // From a left perturbation of T_camera_world to position in the world and rotation of the body.
+  const Eigen::Matrix3d R_world_camera = T_camera_world.linear().transpose();
+  const Eigen::Matrix3d R_body_camera = imu_->T_body_camera.linear();
+  const Eigen::Vector3d body_in_camera = imu_->T_body_camera.inverse().translation();
+  Eigen::Matrix<double, 6, 6> to_body = Eigen::Matrix<double, 6, 6>::Zero();
+  to_body.topLeftCorner<3, 3>() = scale_ * R_world_camera;
+  to_body.topRightCorner<3, 3>() = -R_world_camera * geometry::hat(body_in_camera);
+  to_body.bottomRightCorner<3, 3>() = R_body_camera;
+  // The few features may be wrong together: three times the deviation that they state.
+  constexpr double inflation = 9.0;
+  InertialFilter::PoseCovariance total =
+      inflation * to_body * covariance * to_body.transpose() + measurement_covariance(0.0);
+  if (is_relative) total += last_->pose_covariance();
+  const Eigen::Isometry3d measured = body_pose(T_camera_world);
+  if (!(now_->chi_square(measured, total) <= largest_chi_square)) return false;
+  now_->correct(measured, total);
+  is_corrected_ = true;
+  return true;
+}
+
+void InertialMotion::found(const Eigen::Isometry3d& T_camera_world, double deviation, const PastPose& past_pose) {
+  if (!imu_) return;
+  found_time_ = *timestamp_;
+  if (now_ && is_corrected_) {
+    contradictions_ = 0;
+    last_ = now_;
+  } else if (now_) {
+    learn(T_camera_world, deviation);
+  } else {
+    tracked_.push_back(*timestamp_);
+    if (*timestamp_ >= next_start_) try_to_start(past_pose);
+  }
+  anchor_ = T_camera_world;
+}
+
+void InertialMotion::learn(const Eigen::Isometry3d& T_camera_world, double deviation) {
+  const Eigen::Isometry3d measured = body_pose(T_camera_world);
+  const InertialFilter::PoseCovariance covariance = measurement_covariance(deviation);
+  if (now_->chi_square(measured, covariance) <= largest_chi_square) {
+    now_->correct(measured, covariance);
+    confirmations_ = std::min(confirmations_ + 1, required_confirmations);
+    contradictions_ = 0;
+  } else if (++contradictions_ > (confirmations_ < required_confirmations ? tolerated_at_start : tolerated_later)) {
+    reset();
+    return;
+  }
+  last_ = now_;
+}
+
+void InertialMotion::keep_prediction(const Eigen::Isometry3d& T_camera_world) {
+  last_ = now_;
+  anchor_ = T_camera_world;
+}
+
+void InertialMotion::lost() {
+  if (!imu_) return;
+  if (now_ && *timestamp_ - found_time_ <= most_lost_time)
+    last_ = now_;
+  else if (last_)
+    reset();
+}
+
+void InertialMotion::reset() {
+  last_.reset();
+  now_.reset();
+  anchor_.reset();
+  samples_.clear();
+  tracked_.clear();
+  confirmations_ = contradictions_ = 0;
+  scale_ = 1.0;
+  next_start_ = 0.0;
+}
+
+void InertialMotion::try_to_start(const PastPose& past_pose) {
+  const double now = *timestamp_;
+  const double time = scale_is_known_ ? start_time : start_time_of_one_camera;
+  const double spacing = scale_is_known_ ? pose_spacing : pose_spacing_of_one_camera;
+  const double earliest = now - 1.5 * time;
+  std::erase_if(tracked_, [&](double stamp) { return stamp < earliest; });
+  const auto first_kept = std::find_if(samples_.begin(), samples_.end(),
+                                       [&](const ImuSample& sample) { return sample.timestamp >= earliest; });
+  if (first_kept != samples_.begin()) samples_.erase(samples_.begin(), std::prev(first_kept));
+
+  // From the current frame backwards; in the end, the earliest comes first.
+  std::vector<double> stamps;
+  std::vector<Eigen::Isometry3d> poses;
+  for (auto stamp = tracked_.rbegin(); stamp != tracked_.rend() && *stamp > now - time - spacing; ++stamp) {
+    if (!stamps.empty() && stamps.back() - *stamp < spacing) continue;
+    if (!stamps.empty() && stamps.back() - *stamp > largest_pose_gap) break;
+    const std::optional<Eigen::Isometry3d> T_camera_world = past_pose(*stamp);
+    if (!T_camera_world) continue;
+    stamps.push_back(*stamp);
+    poses.push_back(T_camera_world->inverse());
+  }
+  if (stamps.size() < fewest_poses || now - stamps.back() < time) return;
+  next_start_ = now + start_interval;
+  std::reverse(stamps.begin(), stamps.end());
+  std::reverse(poses.begin(), poses.end());
+  std::vector<geometry::Preintegration> motions;
+  for (std::size_t i = 0; i + 1 < stamps.size(); ++i) {
+    const auto motion = geometry::preintegrate(samples_, stamps[i], stamps[i + 1], imu_->noise, {});
+    if (!motion) return;
+    motions.push_back(*motion);
+  }
+  geometry::InertialStartOptions options;
+  options.estimate_scale = !scale_is_known_;
+  // How exact the poses are is unknown: the first deviations that explain their residuals are right.
+  constexpr PoseDeviations possible_deviations[] = {{0.002, 0.001}, {0.005, 0.0025}, {0.01, 0.005}};
+  for (const PoseDeviations& deviations : possible_deviations) {
+    options.position_deviation = deviations.position;
+    options.rotation_deviation = deviations.rotation;
+    const geometry::InertialStart start = geometry::start_inertially(poses, motions, imu_->T_body_camera, options);
+    if (!start.usable) continue;
+    // Their mean squared residual, which is 1 for right deviations, says how wrong these are.
+    const double factor = std::sqrt(std::max(1.0, start.mean_chi_square));
+    begin_filter(start, poses, motions, {factor * deviations.position, factor * deviations.rotation});
+    return;
+  }
+}
+
+/// The start gives the values. Their joint covariance is that of a filter that passes the same poses once more, from
+/// wide priors.
+void InertialMotion::begin_filter(const geometry::InertialStart& start, const std::vector<Eigen::Isometry3d>& poses,
+                                  const std::vector<geometry::Preintegration>& motions,
+                                  const PoseDeviations& deviations) {
+  const geometry::InertialStartOptions priors;
+  scale_ = start.scale;
+  deviations_ = deviations;
+  geometry::InertialState state;
+  state.T_world_body = body_pose(poses.front().inverse());
+  state.velocity = start.velocities.front();
+  state.bias = start.bias;
+  constexpr double velocity_prior = 0.2, direction_prior = 0.1;  // [m/s], [rad]
+  InertialFilter filter(state, start.gravity,
+                        {deviations.position, deviations.rotation, velocity_prior, priors.gyroscope_bias_deviation,
+                         priors.accelerometer_bias_deviation, direction_prior});
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    filter.predict(motions[i]);
+    filter.correct(body_pose(poses[i + 1].inverse()), measurement_covariance(0.0));
+  }
+  last_ = filter;
+  confirmations_ = contradictions_ = 0;
+  samples_.clear();
+  tracked_.clear();
+}
+
+}  // namespace holdfast
