@@ -36,7 +36,7 @@ void check(const CheckArguments& arguments, const ProgramHost& host) {
     print_warnings(built.warnings());
     if (const SourceDescription source = built.source->describe(); !arguments.print && source.has_imu)
       std::printf("imu: %s\n", source.imu || configuration.imu
-                                   ? "measurements predict poses, unless tracking.inertia is false"
+                                   ? "measurements predict poses where tracking.inertia is true"
                                    : "measurements are not used without a calibration; add the section 'imu'");
     const std::string understood = built.pipeline.segmenter_description();
     if (!arguments.print && !understood.empty())

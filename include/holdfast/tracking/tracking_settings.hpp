@@ -66,7 +66,7 @@ struct TrackingSettings {
   double depth_only_time = 1.0;      ///< maximum duration of poses from dense depth alone [s]
 
   // Inertial measurements.
-  bool inertia = true;               ///< they are used if frames have them
+  bool inertia = false;              ///< they predict poses and bridge views, if frames have them
   double inertial_time = 4.0;        ///< how long poses can be predicted by them alone [s]
   double inertial_deviation = 0.15;  ///< standard deviation of the position up to which such a pose is used [m]
 
