@@ -123,9 +123,12 @@ TEST_F(RunTest, LeavesEarlierResultsAlone) {
   EXPECT_THAT(refused.errors, AllOf(HasSubstr("out: the output folder is not empty"), HasSubstr("--overwrite")));
   EXPECT_EQ(program_.text("out/trajectory.txt"), "precious");
   EXPECT_FALSE(fs::exists(program_.path("out/config.yaml")));
-  ASSERT_EQ(program_.run({"run", "room.yaml", "--output", "out", "--overwrite"}).exit_code, 0);
+  ASSERT_EQ(program_.run({"run", "room.yaml", "--output", "out", "--overwrite", "--set", "observers=[mcap]"}).exit_code,
+            0);
   EXPECT_NE(program_.text("out/trajectory.txt"), "precious");
   EXPECT_EQ(program_.text("out/notes.txt"), "mine");
+  EXPECT_GT(fs::file_size(program_.path("out/run.mcap")),
+            10000U);  // begun during the run, after the earlier results went
 }
 
 TEST_F(RunTest, TwoRunsDoNotShareAFolder) {

@@ -35,9 +35,7 @@ class McapTest : public testing::Test {
   std::unique_ptr<Observer> observer(const ParameterValues& values = {}) const {
     CreationContext context;
     context.output_directory = folder_;
-    auto made = registry_.create<Observer>("mcap", values, context);
-    made->on_start({"background", "person"});
-    return made;
+    return registry_.create<Observer>("mcap", values, context);
   }
 
   /// A frame at `index` tenths of a second after 1.5 s, with an object from the second one on.
@@ -109,7 +107,9 @@ TEST_F(McapTest, WritesWhatARunFinds) {
 }
 
 TEST_F(McapTest, GivesEverySchemaItsFields) {
-  observer()->on_finish(Map());
+  const auto writer = observer();
+  feed(*writer, 0);
+  writer->on_finish(Map());
   std::ifstream stream(folder_ / "run.mcap", std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
   for (const char* name : {"FrameTransform", "SceneUpdate", "CompressedImage", "PosesInFrame", "PointCloud"}) {
@@ -138,14 +138,13 @@ TEST_F(McapTest, LeavesAReadableFileWhenTheRunIsKilled) {
 TEST_F(McapTest, WritesNothingWithoutAFolderAndSaysWhyItCannotWrite) {
   CreationContext context;
   const auto silent = registry_.create<Observer>("mcap", {}, context);
-  silent->on_start({});
   feed(*silent, 0);
   silent->on_finish(Map());
   EXPECT_FALSE(fs::exists("run.mcap"));
 
   fs::create_directories(folder_ / "run.mcap");
   try {
-    observer();
+    feed(*observer(), 0);
     FAIL() << "a folder was written to";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("run.mcap: cannot be written: "));

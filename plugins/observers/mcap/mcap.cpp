@@ -45,22 +45,10 @@ class Mcap final : public Observer {
   Mcap(const McapSettings& settings, const CreationContext& context)
       : settings_(settings), folder_(context.output_directory) {}
 
-  void on_start(const std::vector<std::string>&) override {
-    if (folder_.empty()) return;
-    writer_.emplace(folder_ / "run.mcap");
-    status_ = add("/status", "holdfast.FrameStatus");
-    pose_ = add("/camera/pose", "foxglove.PoseInFrame");
-    transforms_ = add("/tf", "foxglove.FrameTransform");
-    objects_ = add("/objects", "foxglove.SceneUpdate");
-    image_ = add("/camera/image", "foxglove.CompressedImage");
-    moving_ = add("/camera/moving", "foxglove.CompressedImage");
-    path_ = add("/map/keyframes", "foxglove.PosesInFrame");
-    points_ = add("/map/points", "foxglove.PointCloud");
-  }
-
   void on_frame(const SensorFrame& sensor_frame, const Frame& frame, const FrameResult& result) override {
-    if (!writer_) return;
+    if (folder_.empty()) return;
     const std::lock_guard lock(mutex_);
+    if (!writer_) open();
     const double time = time_ = result.timestamp;
     write(status_, status_message(result));
     write(transforms_, transform_message(time, map_frame, world_frame, T_map_world()));
@@ -76,10 +64,9 @@ class Mcap final : public Observer {
   }
 
   void on_keyframe(KeyFrameId, const ObservedMap& map) override {
-    if (!writer_) return;
     {
       const std::lock_guard lock(mutex_);
-      if (time_ < map_time_ + settings_.map_interval) return;
+      if (!writer_ || time_ < map_time_ + settings_.map_interval) return;
       map_time_ = time_;
     }
     const MapSnapshot& snapshot = map.snapshot();
@@ -95,6 +82,18 @@ class Mcap final : public Observer {
   }
 
  private:
+  /// With the first frame: until then the folder may be cleared of earlier results.
+  void open() {
+    writer_.emplace(folder_ / "run.mcap");
+    status_ = add("/status", "holdfast.FrameStatus");
+    pose_ = add("/camera/pose", "foxglove.PoseInFrame");
+    transforms_ = add("/tf", "foxglove.FrameTransform");
+    objects_ = add("/objects", "foxglove.SceneUpdate");
+    image_ = add("/camera/image", "foxglove.CompressedImage");
+    moving_ = add("/camera/moving", "foxglove.CompressedImage");
+    path_ = add("/map/keyframes", "foxglove.PosesInFrame");
+    points_ = add("/map/points", "foxglove.PointCloud");
+  }
   std::uint16_t add(const char* topic, const char* schema) {
     return writer_->add_channel(topic, schema, schema_document(schema));
   }
