@@ -175,8 +175,9 @@ TEST(InertialMotion, BridgesAViewWithACovarianceThatGrows) {
     components << error.translation(), geometry::log_so3(Eigen::Matrix3d(error.linear()));
     chi_square += components.dot(prediction.covariance.ldlt().solve(components)) / (6.0 * runs);
   }
-  // Above, the 99.9 % band of the mean of 120 squares. Below, room for the walk of gravity that this world does not have,
-  // and for deviations that the residual of the start has enlarged: the covariance is too large rather than too small.
+  // Above, the 99.9 % band of the mean of 120 squares. Below, room for the walk of gravity that this world does not
+  // have, and for deviations that the residual of the start has enlarged: the covariance is too large rather than too
+  // small.
   EXPECT_GT(chi_square, 0.3);
   EXPECT_LT(chi_square, 1.5);
 }

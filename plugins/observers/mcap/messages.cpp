@@ -12,6 +12,9 @@ namespace holdfast::mcap_plugin {
 
 namespace {
 
+/// Shapes of a scene entity that are always empty here; readers expect the fields.
+constexpr const char* unused_shapes[] = {"spheres", "cylinders", "lines", "triangles", "models"};
+
 /// RFC 4648, section 4.
 std::string base64(std::span<const std::uint8_t> bytes) {
   constexpr const char* digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -87,6 +90,7 @@ Json entity_schema() {
                                      {"scale_invariant", type("boolean")},
                                      {"color", colour},
                                      {"text", type("string")}}));
+  for (const char* unused : unused_shapes) properties[unused] = list(type("object"));
   return object(properties);
 }
 
@@ -208,6 +212,7 @@ Json objects_message(double time, const std::vector<MovingObject>& objects) {
                                     {"scale_invariant", false},
                                     {"color", {{"r", 1.0}, {"g", 1.0}, {"b", 1.0}, {"a", 1.0}}},
                                     {"text", object.class_name + " " + std::to_string(object.id)}}});
+    for (const char* unused : unused_shapes) entity[unused] = Json::array();
     entities.push_back(std::move(entity));
   }
   return {{"deletions", Json::array()}, {"entities", std::move(entities)}};
