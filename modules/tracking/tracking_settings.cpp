@@ -222,7 +222,7 @@ void describe_corrections(ParameterTable<S>& table) {
 void describe_inertia(ParameterTable<S>& table) {
   table.add("inertia", &S::inertia,
             "whether inertial measurements predict poses and bridge views that do not determine them, once gravity, "
-            "biases and velocity are known; not the default, because it was measured on few recordings");
+            "biases and velocity are known; experimental, since a wrong prediction can drift by metres");
   table
       .add("inertial_time", &S::inertial_time,
            "time for which poses can be predicted by inertial measurements, because the images do not determine them; "
