@@ -11,7 +11,6 @@ set(expected "features/orb
 loop_detector/none
 matcher/nearest
 segmenter/none
-source/openloris
 source/tum
 no optimizer module is called 'ceres'; it was left out of this build; configure Holdfast with -DHOLDFAST_PLUGIN_CERES=ON
 ")
