@@ -27,7 +27,7 @@ constexpr std::size_t bytes_per_point = 3 * sizeof(float) + 3;
 }  // namespace
 
 std::string cloud_ply(std::span<const CloudPoint> cloud) {
-  map_io::ByteWriter writer;
+  ByteWriter writer;
   writer.put_bytes(binary_format);
   writer.put_bytes("comment static scene [m], made by Holdfast " HOLDFAST_VERSION "\nelement vertex " +
                    std::to_string(cloud.size()) + "\n");

@@ -13,8 +13,8 @@
 namespace holdfast {
 
 /// Coarse depth images of frames between keyframes, by which a surface is carved where few keyframes look: the smallest
-/// depth of each 8x8 pixels of the camera in 16 bits, 10 kB at 640x480. They need no
-/// mask: a person in front of a surface hides it, and carves nothing behind. Used by one thread.
+/// depth of each 8x8 pixels of the camera in 16 bits, 10 kB at 640x480. They need no mask: a person in front of a
+/// surface hides it, and carves nothing behind. Used by one thread.
 class CarvingViews {
  public:
   /// As many views are kept for each keyframe that is kept.

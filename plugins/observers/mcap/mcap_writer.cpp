@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <concepts>
 #include <limits>
 #include <system_error>
 
+#include "holdfast/core/byte_writer.hpp"
 #include "holdfast/core/crc32.hpp"
 #include "holdfast/core/error.hpp"
 
@@ -30,36 +30,18 @@ enum class Kind : std::uint8_t {
   data_end = 0x0F,
 };
 
-/// The content of a record. Numbers are little-endian; a text has its length before it.
-class Content {
- public:
-  template <std::unsigned_integral Number>
-  Content& add(Number value) {
-    for (std::size_t i = 0; i < sizeof(Number); ++i)
-      bytes_.push_back(static_cast<char>(static_cast<std::uint64_t>(value) >> (8 * i) & 0xFFU));
-    return *this;
-  }
-  Content& add(std::string_view text) {
-    add(static_cast<std::uint32_t>(text.size()));
-    bytes_ += text;
-    return *this;
-  }
-  Content& add_raw(std::string_view bytes) {
-    bytes_ += bytes;
-    return *this;
-  }
-  const std::string& bytes() const { return bytes_; }
+/// A text has its length before it.
+void put_text(ByteWriter& to, std::string_view text) {
+  to.put(static_cast<std::uint32_t>(text.size()));
+  to.put_bytes(text);
+}
 
- private:
-  std::string bytes_;
-};
-
-std::string record(Kind kind, const Content& content) {
-  return Content()
-      .add(static_cast<std::uint8_t>(kind))
-      .add(static_cast<std::uint64_t>(content.bytes().size()))
-      .add_raw(content.bytes())
-      .bytes();
+std::string record(Kind kind, const ByteWriter& content) {
+  ByteWriter writer;
+  writer.put(static_cast<std::uint8_t>(kind));
+  writer.put(static_cast<std::uint64_t>(content.size()));
+  writer.put_bytes(content.bytes());
+  return writer.bytes();
 }
 
 std::uint32_t checksum(const std::string& bytes) {
@@ -73,7 +55,10 @@ McapWriter::McapWriter(std::filesystem::path file) : file_(std::move(file)) {
   std::filesystem::create_directories(file_.parent_path(), error);
   stream_.open(file_, std::ios::binary | std::ios::trunc);
   put(magic);
-  put(record(Kind::header, Content().add(std::string_view("")).add(std::string_view("holdfast"))));
+  ByteWriter header;
+  put_text(header, "");  // no profile
+  put_text(header, "holdfast");
+  put(record(Kind::header, header));
 }
 
 void McapWriter::fail() const {
@@ -97,11 +82,16 @@ std::string McapWriter::definitions() const {
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     const auto id = static_cast<std::uint16_t>(i + 1);
     const Definition& definition = channels_[i];
-    Content schema, channel;
-    schema.add(id).add(std::string_view(definition.schema_name)).add(std::string_view("jsonschema"));
-    schema.add(std::string_view(definition.schema));
-    channel.add(id).add(id).add(std::string_view(definition.topic)).add(std::string_view("json"));
-    channel.add(std::uint32_t{0});  // no metadata
+    ByteWriter schema, channel;
+    schema.put(id);
+    put_text(schema, definition.schema_name);
+    put_text(schema, "jsonschema");
+    put_text(schema, definition.schema);
+    channel.put(id);
+    channel.put(id);  // of the schema
+    put_text(channel, definition.topic);
+    put_text(channel, "json");
+    put_text(channel, "");  // no metadata
     records += record(Kind::schema, schema) + record(Kind::channel, channel);
   }
   return records;
@@ -116,25 +106,39 @@ void McapWriter::write(std::uint16_t channel, std::uint64_t time, std::string_vi
   chunk_begin_ = std::min(chunk_begin_, time);
   chunk_end_ = std::max(chunk_end_, time);
   chunk_messages_[channel].emplace_back(time, chunk_.size());
-  Content content;
-  content.add(channel).add(static_cast<std::uint32_t>(channels_[channel - 1].messages++)).add(time).add(time);
-  chunk_ += record(Kind::message, content.add_raw(message));
+  ByteWriter content;
+  content.put(channel);
+  content.put(static_cast<std::uint32_t>(channels_[channel - 1U].messages++));
+  content.put(time);
+  content.put(time);
+  content.put_bytes(message);
+  chunk_ += record(Kind::message, content);
   if (chunk_.size() >= chunk_bytes) put_chunk();
 }
 
 void McapWriter::put_chunk() {
   if (chunk_.empty()) return;
   ChunkIndex index{.begin = chunk_begin_, .end = chunk_end_, .offset = written_, .size = chunk_.size()};
-  Content content;
-  content.add(chunk_begin_).add(chunk_end_).add(static_cast<std::uint64_t>(chunk_.size())).add(checksum(chunk_));
-  content.add(std::string_view("")).add(static_cast<std::uint64_t>(chunk_.size())).add_raw(chunk_);
+  ByteWriter content;
+  content.put(chunk_begin_);
+  content.put(chunk_end_);
+  content.put(index.size);
+  content.put(checksum(chunk_));
+  put_text(content, "");    // not compressed
+  content.put(index.size);  // stored
+  content.put_bytes(chunk_);
   put(record(Kind::chunk, content));
   index.length = written_ - index.offset;
   for (const auto& [channel, messages] : chunk_messages_) {
     index.index_offsets[channel] = written_;
-    Content entries;
-    for (const auto& [time, offset] : messages) entries.add(time).add(offset);
-    put(record(Kind::message_index, Content().add(channel).add(std::string_view(entries.bytes()))));
+    ByteWriter entries, content;
+    for (const auto& [time, offset] : messages) {
+      entries.put(time);
+      entries.put(offset);
+    }
+    content.put(channel);
+    put_text(content, entries.bytes());
+    put(record(Kind::message_index, content));
   }
   index.index_length = written_ - index.offset - index.length;
   chunks_.push_back(std::move(index));
@@ -143,36 +147,58 @@ void McapWriter::put_chunk() {
   if (!stream_.flush()) fail();
 }
 
+ByteWriter McapWriter::content_of(const ChunkIndex& chunk) {
+  ByteWriter offsets, content;
+  for (const auto& [channel, offset] : chunk.index_offsets) {
+    offsets.put(channel);
+    offsets.put(offset);
+  }
+  for (const std::uint64_t number : {chunk.begin, chunk.end, chunk.offset, chunk.length}) content.put(number);
+  put_text(content, offsets.bytes());
+  content.put(chunk.index_length);
+  put_text(content, "");    // not compressed
+  content.put(chunk.size);  // stored
+  content.put(chunk.size);
+  return content;
+}
+
 std::string McapWriter::statistics() const {
   std::uint64_t messages = 0, begin = std::numeric_limits<std::uint64_t>::max(), end = 0;
-  Content counts;
+  ByteWriter counts;
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     messages += channels_[i].messages;
-    counts.add(static_cast<std::uint16_t>(i + 1)).add(channels_[i].messages);
+    counts.put(static_cast<std::uint16_t>(i + 1));
+    counts.put(channels_[i].messages);
   }
   for (const ChunkIndex& chunk : chunks_) begin = std::min(begin, chunk.begin), end = std::max(end, chunk.end);
   const auto count = static_cast<std::uint32_t>(channels_.size());
-  Content content;
-  content.add(messages).add(static_cast<std::uint16_t>(count)).add(count);
-  content.add(std::uint32_t{0}).add(std::uint32_t{0}).add(static_cast<std::uint32_t>(chunks_.size()));
-  content.add(chunks_.empty() ? std::uint64_t{0} : begin).add(end).add(std::string_view(counts.bytes()));
+  ByteWriter content;
+  content.put(messages);
+  content.put(static_cast<std::uint16_t>(count));  // schemas
+  content.put(count);                              // channels
+  content.put(std::uint32_t{0});                   // attachments
+  content.put(std::uint32_t{0});                   // metadata
+  content.put(static_cast<std::uint32_t>(chunks_.size()));
+  content.put(chunks_.empty() ? std::uint64_t{0} : begin);
+  content.put(end);
+  put_text(content, counts.bytes());
   return record(Kind::statistics, content);
 }
 
 void McapWriter::close() {
   put_chunk();
-  put(record(Kind::data_end, Content().add(std::uint32_t{0})));
+  ByteWriter data_end;
+  data_end.put(std::uint32_t{0});  // no checksum of the data
+  put(record(Kind::data_end, data_end));
   const std::uint64_t summary = written_;
   put(definitions());
-  for (const ChunkIndex& chunk : chunks_) {
-    Content offsets, content;
-    for (const auto& [channel, offset] : chunk.index_offsets) offsets.add(channel).add(offset);
-    content.add(chunk.begin).add(chunk.end).add(chunk.offset).add(chunk.length);
-    content.add(std::string_view(offsets.bytes())).add(chunk.index_length).add(std::string_view(""));
-    put(record(Kind::chunk_index, content.add(chunk.size).add(chunk.size)));
-  }
+  for (const ChunkIndex& chunk : chunks_) put(record(Kind::chunk_index, content_of(chunk)));
   put(statistics());
-  put(record(Kind::footer, Content().add(summary).add(std::uint64_t{0}).add(std::uint32_t{0})));
+  ByteWriter footer;
+  footer.put(summary);
+  footer.put(std::uint64_t{0});  // no offsets of the summary's parts
+  footer.put(std::uint32_t{0});  // no checksum of the summary
+  put(record(Kind::footer, footer));
   put(magic);
   stream_.close();
   if (!stream_) fail();

@@ -10,6 +10,10 @@
 #include <utility>
 #include <vector>
 
+namespace holdfast {
+class ByteWriter;
+}
+
 namespace holdfast::mcap_plugin {
 
 /// Writes an MCAP file (mcap.dev/spec) with messages in JSON: uncompressed chunks of about 1 MB with their indexes, and
@@ -40,6 +44,7 @@ class McapWriter {
   void put(std::string_view bytes);
   void put_chunk();
   std::string definitions() const;
+  static ByteWriter content_of(const ChunkIndex& chunk);
   std::string statistics() const;
   [[noreturn]] void fail() const;
 

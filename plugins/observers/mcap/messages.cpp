@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <opencv2/imgcodecs.hpp>
 #include <span>
+
+#include "holdfast/core/error.hpp"
 
 namespace holdfast::mcap_plugin {
 
@@ -42,9 +43,10 @@ Json pose_of(const Eigen::Isometry3d& T) {
   return {{"position", vector_of(T.translation())}, {"orientation", rotation_of(Eigen::Quaterniond(T.linear()))}};
 }
 
-Json encoded(double time, const cv::Mat& image, const char* format, const std::vector<int>& options) {
+Json encoded(double time, const cv::Mat& image, const std::string& format, const std::vector<int>& options) {
   std::vector<std::uint8_t> bytes;
-  cv::imencode(std::string(".") + (std::strcmp(format, "jpeg") == 0 ? "jpg" : format), image, bytes, options);
+  if (!cv::imencode("." + format, image, bytes, options))
+    throw Error("observer 'mcap': this OpenCV cannot write " + format + " images; set image_every to 0");
   return {{"timestamp", time_of(time)}, {"frame_id", camera_frame}, {"format", format}, {"data", base64(bytes)}};
 }
 
