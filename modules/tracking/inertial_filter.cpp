@@ -4,6 +4,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 
+#include "holdfast/geometry/preintegration.hpp"
+
 namespace holdfast {
 
 namespace {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "holdfast/core/imu_timeline.hpp"
+#include "holdfast/geometry/inertial_start.hpp"
 
 namespace holdfast {
 

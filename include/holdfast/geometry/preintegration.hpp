@@ -9,32 +9,14 @@
 #include <span>
 
 #include "holdfast/core/imu_sample.hpp"
+#include "holdfast/geometry/inertial_state.hpp"
 #include "holdfast/geometry/so3.hpp"
 
 /// Preintegration of inertial measurements on the manifold, after Forster, Carlone, Dellaert and Scaramuzza,
 /// "On-manifold preintegration for real-time visual-inertial odometry", TRO 2017 (sections V and VI), with two
 /// deviations: a step is integrated exactly for measurements that are constant in the body frame, and the random walk
-/// of the biases is part of the covariance.
-///
-/// The error of a state has 15 components, in this order in every function: position [m] in the world frame, rotation
-/// [rad] in the body frame, velocity [m/s] in the world frame, bias of the gyroscope [rad/s], bias of the accelerometer
-/// [m/s^2]. Rotations are perturbed from the right, R exp(d), all other components by addition.
+/// of the biases is part of the covariance. Errors are those of inertial_state.hpp.
 namespace holdfast::geometry {
-
-using Vector15d = Eigen::Matrix<double, 15, 1>;
-using Matrix15d = Eigen::Matrix<double, 15, 15>;
-
-/// Index of the first of the three components of an error.
-namespace inertial {
-inline constexpr int position = 0, rotation = 3, velocity = 6, gyroscope = 9, accelerometer = 12;
-}
-
-/// State of a body with an IMU at one time.
-struct InertialState {
-  Eigen::Isometry3d T_world_body = Eigen::Isometry3d::Identity();
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the body in the world frame [m/s]
-  ImuBias bias;
-};
 
 /// Applies an error to a state.
 inline InertialState disturbed(InertialState state, const Vector15d& error) {

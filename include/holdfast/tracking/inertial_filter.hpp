@@ -3,9 +3,13 @@
 
 #include <Eigen/Geometry>
 
-#include "holdfast/geometry/preintegration.hpp"
+#include "holdfast/geometry/inertial_state.hpp"
 
 namespace holdfast {
+
+namespace geometry {
+class Preintegration;
+}
 
 /// Error-state Kalman filter that couples poses from images loosely with inertial measurements: preintegrated motions
 /// (Forster et al. 2017, equations 45 and 47) propagate the state of the body and gravity, poses correct them.

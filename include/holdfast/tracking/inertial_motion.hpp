@@ -8,10 +8,13 @@
 
 #include "holdfast/core/imu.hpp"
 #include "holdfast/core/sensor_frame.hpp"
-#include "holdfast/geometry/inertial_start.hpp"
 #include "holdfast/tracking/inertial_filter.hpp"
 
 namespace holdfast {
+
+namespace geometry {
+struct InertialStart;
+}
 
 /// A pose that inertial measurements predict.
 struct InertialPrediction {

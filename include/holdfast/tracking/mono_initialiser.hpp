@@ -7,12 +7,16 @@
 #include "holdfast/core/frame.hpp"
 #include "holdfast/core/frame_result.hpp"
 #include "holdfast/core/random.hpp"
-#include "holdfast/geometry/two_view_motion.hpp"
 #include "holdfast/interfaces/feature_matcher.hpp"
 #include "holdfast/interfaces/optimizer.hpp"
 #include "holdfast/tracking/tracking_settings.hpp"
 
 namespace holdfast {
+
+namespace geometry {
+struct PixelPair;
+struct TwoViewMotion;
+}  // namespace geometry
 
 /// Result of two-view initialisation: the initial points and the earlier view, whose camera frame is the world frame.
 /// The median depth of the points is TrackingSettings::start_depth.
