@@ -177,12 +177,15 @@ void LocalMapper::remove_weak_points(KeyFrameId id) {
 
 namespace {
 
-/// Number of points that a keyframe observes, and of those that three others observe at the same or a finer scale. With
-/// a `limit` [m], only features with depth up to it count.
+/// Points that a keyframe observes.
 struct SeenPoints {
-  int all = 0, redundant = 0;
+  int all = 0;
+  int redundant = 0;                 ///< three other keyframes observe them at the same or a finer scale
+  float redundant_found_sum = 0.0F;  ///< sum of the found ratios of these
+  std::vector<float> found;          ///< found ratios of the others
 };
 
+/// With a `limit` [m], only features with depth up to it count.
 SeenPoints seen_points(const Map& map, KeyFrameId id, std::optional<float> limit) {
   constexpr int enough = 3;
   const Frame& frame = map.keyframe(id).frame;
@@ -192,16 +195,28 @@ SeenPoints seen_points(const Map& map, KeyFrameId id, std::optional<float> limit
     if (limit && (!frame.has_depth(feature) || frame.depth[feature] > *limit)) continue;
     ++seen.all;
     const MapPoint& point = map.point(frame.map_points[feature]);
-    if (static_cast<int>(point.observations.size()) <= enough) continue;
     int others = 0;
     for (const Observation& observation : point.observations) {
       if (observation.keyframe == id) continue;
       const auto& octave = map.keyframe(observation.keyframe).frame.features.octave;
       if (octave[observation.feature] <= frame.features.octave[feature] + 1 && ++others >= enough) break;
     }
-    if (others >= enough) ++seen.redundant;
+    if (others >= enough) {
+      ++seen.redundant;
+      seen.redundant_found_sum += point.found_ratio();
+    } else {
+      seen.found.push_back(point.found_ratio());
+    }
   }
   return seen;
+}
+
+/// Leaves out points that are not redundant and found less often than `share` of the mean of those that are: tracking
+/// does without them. A share of that mean, because people hide all points of a room alike.
+void leave_out_rarely_found(SeenPoints& seen, double share) {
+  if (seen.redundant == 0) return;
+  const float limit = static_cast<float>(share) * seen.redundant_found_sum / static_cast<float>(seen.redundant);
+  seen.all -= static_cast<int>(std::count_if(seen.found.begin(), seen.found.end(), [&](float f) { return f < limit; }));
 }
 
 }  // namespace
@@ -209,7 +224,8 @@ SeenPoints seen_points(const Map& map, KeyFrameId id, std::optional<float> limit
 std::vector<KeyFrameId> LocalMapper::remove_redundant_keyframes(KeyFrameId id) {
   // Redundancy is measured by close points (Mur-Artal and Tardos 2017, section III-D). A keyframe with few of them,
   // such as people before a far wall, would never be redundant; therefore all its points count once it is not among the
-  // recent keyframes, whose depth the filters compare.
+  // recent keyframes, whose depth the filters compare. Nor does then one stay for the sake of points at the outlines of
+  // people, which are hardly ever found again: in a room the number of keyframes has to level off.
   constexpr std::uint64_t recent = 200;
   std::vector<KeyFrameId> removed;
   if (settings_.redundant_share >= 1.0) return removed;
@@ -223,8 +239,10 @@ std::vector<KeyFrameId> LocalMapper::remove_redundant_keyframes(KeyFrameId id) {
     std::optional<float> close;
     if (has_depth) close = static_cast<float>(close_depth_factor_ * keyframe.frame.camera->baseline);
     SeenPoints seen = seen_points(map_, edge.keyframe, close);
-    if (has_depth && seen.all < settings_.minimum_depth_points && keyframe.sequence + recent < sequence)
-      seen = seen_points(map_, edge.keyframe, std::nullopt);
+    if (keyframe.sequence + recent < sequence) {
+      if (has_depth && seen.all < settings_.minimum_depth_points) seen = seen_points(map_, edge.keyframe, std::nullopt);
+      leave_out_rarely_found(seen, settings_.weak_found_ratio);
+    }
     if (seen.redundant <= settings_.redundant_share * seen.all) continue;
     map_.remove_keyframe(edge.keyframe);
     removed.push_back(edge.keyframe);

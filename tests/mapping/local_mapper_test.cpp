@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 
 #include "holdfast/plugin/registry.hpp"
 #include "holdfast/tracking/frame_builder.hpp"
@@ -48,6 +49,14 @@ class LocalMapperTest : public testing::Test {
     const KeyFrameId keyframe = mapper->insert(MapAccess(map), frame, false, times);
     mapper->refine(keyframe, times);
     return keyframe;
+  }
+  /// Makes and removes 200 keyframes elsewhere, so that those of the map are not among the recent ones any more.
+  void make_old(KeyFrameId parent) {
+    for (int i = 0; i < 200; ++i) {
+      const KeyFrameId other = map.add_keyframe(frame_at(beside(-50.0)));
+      map.set_parent(other, parent);
+      map.remove_keyframe(other);
+    }
   }
   static Eigen::Isometry3d beside(double x) { return Eigen::Isometry3d(Eigen::Translation3d(x, 0, 0)); }
 
@@ -185,15 +194,51 @@ TEST_F(LocalMapperTest, KeyframesWithoutClosePointsAreRemovedOnceTheyAreOld) {
   const KeyFrameId first = add(0.0);
   for (int i = 1; i < 6; ++i) add(0.001 * i);
   ASSERT_EQ(map.keyframes().size(), 6U) << "the depth of recent ones is needed";
-  for (int i = 0; i < 200; ++i) {
-    const KeyFrameId other = map.add_keyframe(frame_at(beside(-50.0)));
-    map.set_parent(other, first);
-    map.remove_keyframe(other);
-  }
+  make_old(first);
   const KeyFrameId last = add(0.006);
   EXPECT_LE(map.keyframes().size(), 5U);
   EXPECT_NE(map.find_keyframe(first), nullptr);
   EXPECT_NE(map.find_keyframe(last), nullptr);
+}
+
+TEST_F(LocalMapperTest, RarelyFoundPointsDoNotKeepAnOldKeyframe) {
+  MappingSettings settings;
+  settings.neighbours = 0;  // nothing is fused
+  LocalMapper alone(settings, close_depth_factor, map, mutex, *optimizer);
+  const auto add = [&](double x) {
+    Frame frame = frame_at(beside(x));
+    match(frame, 1);
+    return alone.insert(MapAccess(map), frame, false, times);
+  };
+  const KeyFrameId first = add(0.0);
+  std::array<KeyFrameId, 2> old{add(0.001), add(0.002)};
+  for (int i = 3; i < 7; ++i) add(0.001 * i);
+  // A fifth of the points of two keyframes is seen by nobody else; tracking finds those of the second.
+  for (const KeyFrameId keyframe : old)
+    for (std::uint32_t i = 0; i < map.keyframe(keyframe).frame.size(); i += 5) {
+      const MapPointId shared = map.keyframe(keyframe).frame.map_points[i];
+      if (!shared.valid()) continue;
+      map.remove_observation(shared, keyframe);
+      const MapPointId own = map.add_point(map.point(shared).position, 0);
+      map.add_observation(own, keyframe, i);
+      map.update_point(own);
+      map.point(own).visible_count = 1000;
+      map.point(own).found_count = keyframe == old[0] ? 10 : 500;
+    }
+  std::vector<MapPointId> shared;
+  map.points().for_each([&](MapPointId id, const MapPoint& point) {
+    if (point.observations.size() > 1) shared.push_back(id);
+  });
+  for (const MapPointId id : shared) {
+    map.point(id).visible_count = 1000;
+    map.point(id).found_count = 400;  // people hide all of them
+  }
+  alone.refine(add(0.008), times);
+  ASSERT_NE(map.find_keyframe(old[0]), nullptr) << "it is recent";
+  make_old(first);
+  alone.refine(add(0.009), times);
+  EXPECT_EQ(map.find_keyframe(old[0]), nullptr);
+  EXPECT_NE(map.find_keyframe(old[1]), nullptr);
 }
 
 TEST_F(LocalMapperTest, PointsThatNobodyFindsAgainLeave) {
