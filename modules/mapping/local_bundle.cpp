@@ -86,9 +86,8 @@ void LocalMapper::apply_bundle() {
     if (problem_.poses[i].fixed) continue;
     Eigen::Isometry3d& pose = map_.keyframe(problem_keyframes_[i]).frame.T_camera_world;
     const Eigen::Isometry3d change = problem_.poses[i].T_camera_world * pose.inverse();
-    constexpr double far = 0.5, far_angle = 0.5;  // m, rad
-    const bool has_diverged =
-        problem_shared_points_[i] < minimum_shared_points && geometry::exceeds(change, far, far_angle);
+    const bool has_diverged = problem_shared_points_[i] < minimum_shared_points &&
+                              geometry::exceeds(change, local_divergence, local_divergence);
     if (!has_diverged) pose = problem_.poses[i].T_camera_world;
   }
   for (std::size_t p = 0; p < problem_points_.size(); ++p) map_.point(problem_points_[p]).position = problem_.points[p];
