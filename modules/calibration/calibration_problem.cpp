@@ -131,7 +131,8 @@ void CalibrationProblem::find_poses() {
     for (std::size_t i = 0; i < view.points.size(); ++i) {
       points.emplace_back(view.points[i].x(), view.points[i].y(), 0.0);
       const Eigen::Vector2d pixel = camera_.undistort(view.pixels[i]);
-      rays.emplace_back((pixel.x() - camera_.cx) / camera_.fx, (pixel.y() - camera_.cy) / camera_.fy);
+      const Eigen::Vector2d ray = camera_.normalised(pixel.x(), pixel.y());
+      rays.emplace_back(ray.x(), ray.y());
     }
     // Of a plane far away two poses look alike (Collins and Bartoli 2014); that counts which agrees better.
     std::vector<cv::Mat> rotations, translations;

@@ -65,7 +65,8 @@ std::string Distortion::trouble() const {
 
 Eigen::Vector2d Camera::distort(const Eigen::Vector2d& pixel) const {
   const Distortion& d = distortion;
-  const double x = (pixel.x() - cx) / fx, y = (pixel.y() - cy) / fy;
+  const Eigen::Vector2d at = normalised(pixel.x(), pixel.y());
+  const double x = at.x(), y = at.y();
   if (d.lens == Lens::fisheye) {
     const double r = std::sqrt(x * x + y * y);
     const double scale = r > 1e-12 ? fisheye_radius(d, std::atan(r)) / r : 1.0;
@@ -78,7 +79,8 @@ Eigen::Vector2d Camera::distort(const Eigen::Vector2d& pixel) const {
 Eigen::Vector2d Camera::undistort(const Eigen::Vector2d& raw) const {
   if (distortion.is_zero()) return raw;
   const Distortion& d = distortion;
-  const double raw_x = (raw.x() - cx) / fx, raw_y = (raw.y() - cy) / fy;
+  const Eigen::Vector2d at = normalised(raw.x(), raw.y());
+  const double raw_x = at.x(), raw_y = at.y();
   if (d.lens == Lens::fisheye) {
     const double radius = std::hypot(raw_x, raw_y);
     const double scale = radius > 1e-12 ? std::tan(fisheye_angle(d, radius, largest_angle)) / radius : 1.0;
@@ -98,14 +100,14 @@ Eigen::Vector2d Camera::undistort(const Eigen::Vector2d& raw) const {
   const Eigen::Vector2d undistorted(fx * x + cx, fy * y + cy);
   constexpr double accepted = 1e-3;  // px
   if (change < 1e-9 || (distort(undistorted) - raw).norm() < accepted) return undistorted;
-  const Eigen::Vector2d point = invert_distortion(d, {raw_x, raw_y}).point;
+  const Eigen::Vector2d point = invert_distortion(d, at).point;
   return {fx * point.x() + cx, fy * point.y() + cy};
 }
 
 bool Camera::is_usable(const Eigen::Vector2d& raw) const {
   if (distortion.lens != Lens::fisheye) return true;
-  const double radius = std::hypot((raw.x() - cx) / fx, (raw.y() - cy) / fy);
-  return fisheye_angle(distortion, radius, largest_angle) <= usable_angle;
+  const Eigen::Vector2d at = normalised(raw.x(), raw.y());
+  return fisheye_angle(distortion, std::hypot(at.x(), at.y()), largest_angle) <= usable_angle;
 }
 
 void Camera::undistorted_bounds(Eigen::Vector2d& minimum, Eigen::Vector2d& maximum) const {

@@ -43,10 +43,6 @@ std::vector<Eigen::Vector2d> border_of(const Camera& camera) {
   return border;
 }
 
-Eigen::Vector2d in_focal_lengths(const Camera& camera, const Eigen::Vector2d& raw) {
-  return {(raw.x() - camera.cx) / camera.fx, (raw.y() - camera.cy) / camera.fy};
-}
-
 std::string trouble_of_numbers(const Camera& camera) {
   if (camera.width < 1 || camera.height < 1 || !(camera.fx > 0.0) || !(camera.fy > 0.0))
     return "has no area or no focal length; expected width, height, fx and fy above 0";
@@ -81,7 +77,7 @@ std::string trouble_of_radial_tangential(const Camera& camera) {
   double radius = 0.0;
   bool is_missing = false, is_too_wide = false;
   for (const Eigen::Vector2d& raw : border_of(camera)) {
-    const LensInverse inverse = invert_distortion(camera.distortion, in_focal_lengths(camera, raw));
+    const LensInverse inverse = invert_distortion(camera.distortion, camera.normalised(raw.x(), raw.y()));
     if (inverse.is_complete()) continue;
     const Eigen::Vector2d last = centre + inverse.share * (raw - centre);
     if (is_missing && (last - centre).norm() >= radius) continue;
@@ -101,7 +97,7 @@ std::string trouble_of_radial_tangential(const Camera& camera) {
 std::string trouble_of_fisheye(const Camera& camera) {
   double farthest = 0.0;
   for (const Eigen::Vector2d& raw : border_of(camera))
-    farthest = std::max(farthest, in_focal_lengths(camera, raw).norm());
+    farthest = std::max(farthest, camera.normalised(raw.x(), raw.y()).norm());
   for (double angle = 0.0; angle < Camera::usable_angle; angle += 0.25 * degree) {
     const double radius = fisheye_radius(camera.distortion, angle);
     if (radius >= farthest) return "";

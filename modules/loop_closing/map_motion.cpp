@@ -2,6 +2,7 @@
 #include "map_motion.hpp"
 
 #include "holdfast/geometry/se3.hpp"
+#include "holdfast/interfaces/frame_observations.hpp"
 
 namespace holdfast {
 
@@ -28,10 +29,10 @@ MapMotion::MapMotion(const Map& map, std::span<const KeyFrameId> keyframes, std:
     // With a scale, new camera = scale * old camera for every point; a pose keeps its rotation and unit of length.
     Eigen::Isometry3d scaled_pose = old_pose;
     const Eigen::Isometry3d& with_parent = keyframe.parent.valid() ? motion_[keyframe.parent.slot] : before;
-    constexpr double far = 0.2, far_angle = 0.2;  // m, rad
     const bool has_diverged = given[id.slot] != nullptr && is_weakly_constrained[id.slot] != 0 &&
                               keyframe.parent.valid() &&
-                              geometry::exceeds(*given[id.slot] * with_parent * old_pose.inverse(), far, far_angle);
+                              geometry::exceeds(*given[id.slot] * with_parent * old_pose.inverse(),
+                                                divergence_from_parent, divergence_from_parent);
     if (given[id.slot] != nullptr && !has_diverged) {
       scaled_pose.translation() *= scale;
       poses_.push_back({id, *given[id.slot], false, scale});

@@ -17,7 +17,7 @@ class MapMotion {
  public:
   /// `poses[i]` is the new T_camera_world of `keyframes[i]`; removed keyframes are skipped. `scales` (may be empty) are
   /// scale factors of the lengths around the keyframes. `is_weak` (may be empty) marks keyframes with few shared
-  /// points: if the optimised pose differs by more than 0.2 m or 0.2 rad from that relative to the parent, it is
+  /// points: if the optimised pose differs by more than divergence_from_parent from that relative to the parent, it is
   /// rejected as diverged and the keyframe follows its parent.
   MapMotion(const Map& map, std::span<const KeyFrameId> keyframes, std::span<const Eigen::Isometry3d> poses,
             std::span<const double> scales = {}, std::span<const std::uint8_t> is_weak = {});

@@ -3,14 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <optional>
 
 #include "holdfast/core/median.hpp"
 #include "holdfast/geometry/epipolar.hpp"
-#include "holdfast/mapping/local_mapper.hpp"
 #include "holdfast/matching/epipolar_search.hpp"
 #include "holdfast/matching/frame_features.hpp"
 #include "holdfast/matching/reprojection.hpp"
+#include "mapping_steps.hpp"
 
 namespace holdfast {
 
@@ -110,27 +111,13 @@ std::vector<std::uint32_t> free_features(const Frame& frame) {
   return free;
 }
 
-}  // namespace
-
-void LocalMapper::triangulate_points(KeyFrameId id) {
-  std::vector<KeyFrameId> neighbours;
-  {
-    const std::lock_guard lock(mutex_);
-    neighbours = map_.best_covisible(id, settings_.neighbours);
-  }
-  for (const KeyFrameId neighbour : neighbours) {
-    const std::lock_guard lock(mutex_);
-    triangulate_with(id, neighbour);
-  }
-}
-
-void LocalMapper::triangulate_with(KeyFrameId id, KeyFrameId neighbour_id) {
-  const std::uint64_t sequence = map_.keyframe(id).sequence;
-  const Frame& frame = map_.keyframe(id).frame;
-  const Frame& neighbour = map_.keyframe(neighbour_id).frame;
+void triangulate_with(Map& map, KeyFrameId id, KeyFrameId neighbour_id, std::vector<MapPointId>& points) {
+  const std::uint64_t sequence = map.keyframe(id).sequence;
+  const Frame& frame = map.keyframe(id).frame;
+  const Frame& neighbour = map.keyframe(neighbour_id).frame;
   const Eigen::Isometry3d T_frame_neighbour = frame.T_camera_world * neighbour.T_world_camera();
   const TwoKeyframes views{frame, neighbour, T_frame_neighbour, T_frame_neighbour.inverse()};
-  if (T_frame_neighbour.translation().norm() < shortest_baseline(map_, neighbour)) return;
+  if (T_frame_neighbour.translation().norm() < shortest_baseline(map, neighbour)) return;
 
   std::vector<std::uint32_t> candidates = free_features(neighbour);
   if (candidates.empty()) return;
@@ -144,14 +131,29 @@ void LocalMapper::triangulate_with(KeyFrameId id, KeyFrameId neighbour_id) {
     if (!other) continue;
     const std::optional<Eigen::Vector3d> in_frame = triangulate(views, {feature, *other});
     if (!in_frame) continue;
-    const MapPointId point = map_.add_point(T_world_frame * *in_frame, sequence);
-    map_.add_observation(point, id, feature);
-    map_.add_observation(point, neighbour_id, *other);
-    map_.update_point(point);
+    const MapPointId point = map.add_point(T_world_frame * *in_frame, sequence);
+    map.add_observation(point, id, feature);
+    map.add_observation(point, neighbour_id, *other);
+    map.update_point(point);
     std::erase(candidates, *other);
-    recent_points_.push_back(point);
-    ++counts_.points_triangulated;
+    points.push_back(point);
   }
+}
+
+}  // namespace
+
+std::vector<MapPointId> triangulate_points(Map& map, MapMutex& mutex, KeyFrameId id, int max_neighbours) {
+  std::vector<MapPointId> points;
+  std::vector<KeyFrameId> neighbours;
+  {
+    const std::lock_guard lock(mutex);
+    neighbours = map.best_covisible(id, max_neighbours);
+  }
+  for (const KeyFrameId neighbour : neighbours) {
+    const std::lock_guard lock(mutex);
+    triangulate_with(map, id, neighbour, points);
+  }
+  return points;
 }
 
 }  // namespace holdfast

@@ -15,6 +15,9 @@
 #include "holdfast/core/thread_annotations.hpp"
 #include "holdfast/map_io/map_export.hpp"
 #include "holdfast/moving_world/moving_world.hpp"
+#include "holdfast/tracking/image_depth.hpp"
+#include "holdfast/tracking/no_depth.hpp"
+#include "holdfast/tracking/pair_depth.hpp"
 #include "holdfast/tracking/tracker.hpp"
 #include "keyframe_flow.hpp"
 
@@ -68,13 +71,14 @@ std::unique_ptr<StereoCalibration> calibration_of_pair(const PipelineParts& part
       s.self_calibration == SelfCalibration::estimated);
 }
 
-std::optional<StereoParts> stereo_parts(const PipelineParts& parts, StereoCalibration* calibration) {
-  if (parts.sensor != Sensor::stereo) return std::nullopt;
-  return StereoParts{.settings = parts.stereo,
-                     .right_features = parts.right_features.get(),
-                     .is_dense = needs_depth_images(parts),
-                     .dense = parts.dense_stereo.get(),
-                     .calibration = calibration};
+std::unique_ptr<DepthProvider> depth_provider(const PipelineParts& parts, StereoCalibration* calibration) {
+  if (parts.sensor == Sensor::rgbd) return std::make_unique<ImageDepth>(parts.camera, parts.tracking.depth_edge_ratio);
+  if (!features_have_depth(parts.sensor)) return std::make_unique<NoDepth>();
+  return std::make_unique<PairDepth>(parts.camera, StereoParts{.settings = parts.stereo,
+                                                               .right_features = parts.right_features.get(),
+                                                               .is_dense = needs_depth_images(parts),
+                                                               .dense = parts.dense_stereo.get(),
+                                                               .calibration = calibration});
 }
 
 /// Throws InputError for inertial measurements that are not finite, or not in temporal order.
@@ -106,9 +110,9 @@ struct Pipeline::State {
         moving_world(moving_world_parts(parts), map.unshared()),
         detector(*parts.loop_detector),
         calibration(calibration_of_pair(parts)),
-        tracker(parts.tracking, {parts.camera, *parts.features, *parts.optimizer, detector, moving_world,
-                                 map.unshared(), parts.run.seed, stereo_parts(parts, calibration.get()),
-                                 features_have_depth(parts.sensor), *parts.matcher, parts.imu}),
+        depth(depth_provider(parts, calibration.get())),
+        tracker(parts.tracking, {parts.camera, *parts.features, *depth, *parts.optimizer, detector, moving_world,
+                                 map.unshared(), parts.run.seed, *parts.matcher, parts.imu}),
         flow(parts, map, moving_world, detector) {
     Map& whole = map.unshared();
     whole.set_sensor(parts.sensor);
@@ -132,9 +136,9 @@ struct Pipeline::State {
   SensorFrame used_images(const SensorFrame& given) const;
   /// Gives the frame that is tracked the depth image of its pair, if there is one and something needs it.
   void add_depth(SensorFrame& frame, bool is_needed, StageTimes& times) {
-    if (!is_needed || parts.sensor != Sensor::stereo) return;
+    if (!is_needed) return;
     const StageTimer timer(times, "frame");
-    frame.depth = tracker.pair_depth();
+    depth->add_image(frame);
   }
   bool is_start_refuted() HOLDFAST_EXCLUDES(map);
   /// Tracks the frame and inserts it as a keyframe if it is due. In `first_keyframe` the first view of one camera's map
@@ -155,6 +159,7 @@ struct Pipeline::State {
   MovingWorld moving_world;
   SharedLoopDetector detector;
   std::unique_ptr<StereoCalibration> calibration;  // of a pair whose calibration is corrected
+  std::unique_ptr<DepthProvider> depth;
   Tracker tracker;
   bool finished = false;
   bool has_frame = false;

@@ -33,11 +33,11 @@ cv::Mat unusable_pixels(const Camera& camera) {
 
 }  // namespace
 
-FrameBuilder::FrameBuilder(const Camera& camera, FeatureExtractor& extractor, double depth_edge_ratio)
+FrameBuilder::FrameBuilder(const Camera& camera, FeatureExtractor& extractor, DepthProvider& depth)
     : camera_(std::make_shared<const Camera>(exposed_at_once(camera))),
       pyramid_(std::make_shared<const ScalePyramid>(extractor.pyramid())),
       extractor_(extractor),
-      depth_reader_(camera_, depth_edge_ratio),
+      depth_(depth),
       undistortion_(camera),
       coarse_sampler_(camera),
       unusable_(unusable_pixels(camera)) {
@@ -53,25 +53,12 @@ void FrameBuilder::check_images(const SensorFrame& sensor_frame) const {
                          std::to_string(colour.channels()) + " channels; expected " +
                          size_text(camera_->width, camera_->height) +
                          " with 1 or 3 channels of 8 bit, as the camera says");
-  const cv::Mat& depth = sensor_frame.depth;
-  if (!depth.empty() && (depth.type() != CV_32FC1 || depth.size() != colour.size()))
-    throw InputError({"frame " + std::to_string(sensor_frame.index)},
-                     "the depth image is " + size_text(depth.cols, depth.rows) +
-                         "; expected one 32 bit float channel [m] of the colour image's size");
-  const cv::Mat& right = sensor_frame.right;
-  if (stereo_ && ((right.type() != CV_8UC1 && right.type() != CV_8UC3) || right.size() != colour.size()))
-    throw InputError({"frame " + std::to_string(sensor_frame.index)},
-                     right.empty() ? std::string("has no right image; expected one in every frame of a stereo pair")
-                                   : "the right image is " + size_text(right.cols, right.rows) + " with " +
-                                         std::to_string(right.channels()) +
-                                         " channels; expected 1 or 3 channels of 8 bit, of the left image's size");
+  depth_.check_images(sensor_frame);
 }
 
 void FrameBuilder::begin(const SensorFrame& sensor_frame, Frame& frame, StageTimes& times) {
   check_images(sensor_frame);
   const cv::Mat& colour = sensor_frame.colour;
-  const cv::Mat& depth = sensor_frame.depth;
-  const cv::Mat& right = sensor_frame.right;
   const bool is_grey = colour.type() == CV_8UC1;
   const StageTimer timer(times, "frame");
   frame.index = sensor_frame.index;
@@ -82,19 +69,7 @@ void FrameBuilder::begin(const SensorFrame& sensor_frame, Frame& frame, StageTim
   frame.image_descriptor.clear();
   if (!is_grey) cv::cvtColor(colour, converted_, cv::COLOR_BGR2GRAY);
   grey_ = is_grey ? colour : converted_;
-  if (!stereo_) {
-    coarse_sampler_.sample_depth(depth, frame.coarse);
-    return;
-  }
-  if (right.channels() == 3) cv::cvtColor(right, converted_right_, cv::COLOR_BGR2GRAY);
-  grey_right_ = right.channels() == 3 ? converted_right_ : right;
-  pair_depth_.reset();
-  coarse_sampler_.sample_depth(stereo_->is_dense() ? pair_depth() : cv::Mat(), frame.coarse);
-}
-
-const cv::Mat& FrameBuilder::pair_depth() {
-  if (!pair_depth_) pair_depth_ = stereo_->depth_image(grey_, grey_right_);
-  return *pair_depth_;
+  coarse_sampler_.sample_depth(depth_.begin(sensor_frame, grey_), frame.coarse);
 }
 
 void FrameBuilder::find_features(const SensorFrame& sensor_frame, const cv::Mat& ignore, Frame& frame,
@@ -103,30 +78,27 @@ void FrameBuilder::find_features(const SensorFrame& sensor_frame, const cv::Mat&
     const StageTimer timer(times, "features");
     if (!ignore.empty() && !unusable_.empty()) cv::bitwise_or(ignore, unusable_, ignored_);
     const cv::Mat& without = unusable_.empty() ? ignore : ignore.empty() ? unusable_ : ignored_;
-    if (stereo_)
-      stereo_->extract(grey_, grey_right_, without, extractor_, frame);
-    else
-      extractor_.extract(grey_, without, frame.features);
+    depth_.extract(grey_, without, extractor_, frame);
   }
   complete(sensor_frame, frame, times);
 }
 
 void FrameBuilder::set_budget(double factor) {
   extractor_.set_budget(factor);
-  if (stereo_) stereo_->set_budget(factor);
+  depth_.set_budget(factor);
 }
 
 void FrameBuilder::place_features(const SensorFrame& sensor_frame, const FrameMotion& motion, bool aligns_depth,
                                   const RollingShutter& shutter, const Map& map, Frame& frame,
                                   StageTimes& times) const {
-  if (stereo_ || (!aligns_depth && !shutter.is_active())) return;
+  if (!depth_.allows_motion_compensation() || (!aligns_depth && !shutter.is_active())) return;
   const StageTimer timer(times, "frame");
   // Depth is measured row by row as well, almost at the same pace, so that it is read where the rows show it.
   if (shutter.is_active()) undistortion_.undistort(frame.features.x, frame.features.y, frame.x, frame.y);
   if (aligns_depth)
-    depth_reader_.align(sensor_frame.depth, motion.during(sensor_frame.depth_delay), frame);
+    depth_.align(sensor_frame, motion.during(sensor_frame.depth_delay), frame);
   else
-    depth_reader_.read(sensor_frame.depth, frame);
+    depth_.read(sensor_frame, frame);
   if (!shutter.is_active()) return;
   shutter.correct(motion, map, frame);
   build_grid(frame);
@@ -141,10 +113,7 @@ void FrameBuilder::build_grid(Frame& frame) const {
 void FrameBuilder::complete(const SensorFrame& sensor_frame, Frame& frame, StageTimes& times) {
   const StageTimer timer(times, "frame");
   undistortion_.undistort(frame.features.x, frame.features.y, frame.x, frame.y);
-  if (stereo_)
-    stereo_->depth(grey_, grey_right_, frame);
-  else
-    depth_reader_.read(sensor_frame.depth, frame);
+  depth_.read(sensor_frame, frame);
   frame.map_points.assign(frame.size(), MapPointId());
   frame.static_probability.assign(frame.size(), 1.0F);
   frame.measured_log_odds.assign(frame.size(), 0.0F);

@@ -37,7 +37,7 @@ bool DepthStart::begin(const SensorFrame& sensor_frame, FrameResult& result) {
 
 bool DepthStart::begin_at(const Eigen::Isometry3d& T_camera_world, FrameResult& result) {
   Frame& frame = context_.current;
-  if (context_.builder.is_pair_exchanged(frame)) {
+  if (context_.depth.is_pair_exchanged(frame)) {
     result.failure = TrackingFailure::exchanged_pair;
     return false;
   }

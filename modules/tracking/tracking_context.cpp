@@ -12,15 +12,15 @@ TrackingContext::TrackingContext(const TrackingSettings& given, const TrackerPar
     : settings(given),
       moving_world(parts.moving_world),
       map(parts.map),
-      features_have_depth(parts.features_have_depth),
-      builder(parts.camera, parts.features, settings.depth_edge_ratio),
+      depth(parts.depth),
+      features_have_depth(depth.features_have_depth()),
+      builder(parts.camera, parts.features, depth),
       matcher(settings, map, parts.matcher),
       estimator(settings, parts.optimizer, moving_world, map),
       relocaliser(settings, {parts.detector, moving_world, map, matcher, estimator, history}, parts.seed),
-      shutter(parts.stereo ? RollingShutterMode::off : settings.rolling_shutter, parts.camera.readout),
-      inertia(settings.inertia ? parts.imu : std::nullopt, parts.features_have_depth) {
-  if (parts.stereo) builder.use_stereo(*parts.stereo);
-}
+      shutter(depth.allows_motion_compensation() ? settings.rolling_shutter : RollingShutterMode::off,
+              parts.camera.readout),
+      inertia(settings.inertia ? parts.imu : std::nullopt, features_have_depth) {}
 
 Eigen::Isometry3d TrackingContext::predicted_step() const {
   if (const std::optional<Eigen::Isometry3d> step = inertia.step()) return *step;

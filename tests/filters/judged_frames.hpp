@@ -13,6 +13,7 @@
 #include "holdfast/plugin/builtin.hpp"
 #include "holdfast/plugin/registry.hpp"
 #include "holdfast/tracking/frame_builder.hpp"
+#include "holdfast/tracking/image_depth.hpp"
 
 namespace holdfast::test {
 
@@ -24,7 +25,8 @@ class JudgedFrames {
     context_.camera = *find_camera(camera);
     source_ = registry_.create<FrameSource>(source, values, context_);
     extractor_ = registry_.create<FeatureExtractor>("orb", {}, context_);
-    builder_ = std::make_unique<FrameBuilder>(context_.camera, *extractor_, 0.0);
+    depth_ = std::make_unique<ImageDepth>(context_.camera, 0.0);
+    builder_ = std::make_unique<FrameBuilder>(context_.camera, *extractor_, *depth_);
   }
 
   const CreationContext& context() const { return context_; }
@@ -71,6 +73,7 @@ class JudgedFrames {
   CreationContext context_;
   std::unique_ptr<FrameSource> source_;
   std::unique_ptr<FeatureExtractor> extractor_;
+  std::unique_ptr<ImageDepth> depth_;
   std::unique_ptr<FrameBuilder> builder_;
 };
 

@@ -8,6 +8,7 @@
 
 #include "holdfast/plugin/registry.hpp"
 #include "holdfast/tracking/frame_builder.hpp"
+#include "holdfast/tracking/image_depth.hpp"
 #include "support/point_world.hpp"
 
 extern "C" void holdfast_register_plugin_ceres(holdfast::Registry&);
@@ -21,7 +22,10 @@ constexpr double close_depth_factor = 40.0;  // baselines
 class LocalMapperTest : public testing::Test {
  protected:
   LocalMapperTest()
-      : world(find_camera("tum_fr3").value(), 800), extractor(world, 0.2), builder(world.camera(), extractor, 0.0) {
+      : world(find_camera("tum_fr3").value(), 800),
+        extractor(world, 0.2),
+        depth(world.camera(), 0.0),
+        builder(world.camera(), extractor, depth) {
     Registry registry;
     holdfast_register_plugin_ceres(registry);
     optimizer = registry.create<Optimizer>("ceres", {}, {});
@@ -62,6 +66,7 @@ class LocalMapperTest : public testing::Test {
 
   test::PointWorld world;
   test::PointExtractor extractor;
+  ImageDepth depth;
   FrameBuilder builder;
   Map map;
   MapMutex mutex;

@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/tracking/image_depth.hpp"
+#include "holdfast/tracking/no_depth.hpp"
+#include "holdfast/tracking/pair_depth.hpp"
 #include "support/point_world.hpp"
 
 namespace holdfast {
@@ -54,7 +57,8 @@ TEST(FrameBuilder, NothingIsExtractedWhereAFisheyeImageIsNotUsable) {
   Frame frame;
   StageTimes times;
   const auto found = [&](const cv::Mat& ignore) {
-    FrameBuilder builder(camera, extractor, 0.0);
+    ImageDepth depth(camera, 0.0);
+    FrameBuilder builder(camera, extractor, depth);
     builder.begin(sensor_frame, frame, times);
     builder.find_features(sensor_frame, ignore, frame, times);
     return frame.size();
@@ -72,7 +76,8 @@ TEST(FrameBuilder, NothingIsExtractedWhereAFisheyeImageIsNotUsable) {
 TEST(FrameBuilder, FeaturesLieWhereTheWorldIs) {
   test::PointWorld world(find_camera("tum_fr1").value());
   test::PointExtractor extractor(world);
-  FrameBuilder builder(world.camera(), extractor, 0.0);
+  ImageDepth depth(world.camera(), 0.0);
+  FrameBuilder builder(world.camera(), extractor, depth);
   Frame frame;
   StageTimes times;
   builder.build(world.frame(4, 2.5, Eigen::Isometry3d::Identity()), frame, times);
@@ -93,7 +98,8 @@ TEST(FrameBuilder, FeaturesLieWhereTheWorldIs) {
 TEST(FrameBuilder, AGreyImageIsTakenAsItIs) {
   test::PointWorld world(Camera{});
   test::PointExtractor extractor(world);
-  FrameBuilder builder(world.camera(), extractor, 0.0);
+  ImageDepth depth(world.camera(), 0.0);
+  FrameBuilder builder(world.camera(), extractor, depth);
   Frame frame;
   StageTimes times;
   SensorFrame sensor_frame = world.frame(0, 0.0, Eigen::Isometry3d::Identity());
@@ -112,8 +118,8 @@ TEST(FrameBuilder, AGreyImageIsTakenAsItIs) {
 TEST(FrameBuilder, ARightImageIsNotWrittenToAndMustFit) {
   test::PointWorld world(Camera{});
   test::PointExtractor extractor(world);
-  FrameBuilder builder(world.camera(), extractor, 0.0);
-  builder.use_stereo({});
+  PairDepth depth(world.camera(), {});
+  FrameBuilder builder(world.camera(), extractor, depth);
   const cv::Size size(world.camera().width, world.camera().height);
   Frame frame;
   StageTimes times;
@@ -134,16 +140,19 @@ TEST(FrameBuilder, ARightImageIsNotWrittenToAndMustFit) {
 TEST(FrameBuilder, WithoutDepthNothingHasDepth) {
   test::PointWorld world(Camera{});
   test::PointExtractor extractor(world);
-  FrameBuilder builder(world.camera(), extractor, 0.0);
   SensorFrame sensor_frame = world.frame(0, 0.0, Eigen::Isometry3d::Identity());
   sensor_frame.depth.release();
-  Frame frame;
-  StageTimes times;
-  builder.build(sensor_frame, frame, times);
-  ASSERT_GT(frame.size(), 0U);
-  for (std::size_t i = 0; i < frame.size(); ++i) {
-    EXPECT_FALSE(frame.has_depth(i));
-    EXPECT_TRUE(std::isnan(frame.right_x[i]));
+  ImageDepth image(world.camera(), 0.0);
+  NoDepth none;
+  for (DepthProvider* depth : {static_cast<DepthProvider*>(&image), static_cast<DepthProvider*>(&none)}) {
+    Frame frame;
+    StageTimes times;
+    FrameBuilder(world.camera(), extractor, *depth).build(sensor_frame, frame, times);
+    ASSERT_GT(frame.size(), 0U);
+    for (std::size_t i = 0; i < frame.size(); ++i) {
+      EXPECT_FALSE(frame.has_depth(i));
+      EXPECT_TRUE(std::isnan(frame.right_x[i]));
+    }
   }
 }
 
@@ -155,8 +164,9 @@ TEST(FrameBuilder, DepthAtAnEdgeIsNotTrustedWhenAsked) {
   sensor_frame.depth.colRange(320, 640).setTo(3.0F);
   StageTimes times;
   Frame careful, trusting;
-  FrameBuilder(world.camera(), extractor, 0.05).build(sensor_frame, careful, times);
-  FrameBuilder(world.camera(), extractor, 0.0).build(sensor_frame, trusting, times);
+  ImageDepth careful_depth(world.camera(), 0.05), trusting_depth(world.camera(), 0.0);
+  FrameBuilder(world.camera(), extractor, careful_depth).build(sensor_frame, careful, times);
+  FrameBuilder(world.camera(), extractor, trusting_depth).build(sensor_frame, trusting, times);
   int at_edge = 0;
   for (std::size_t i = 0; i < careful.size(); ++i) {
     const bool edge = std::abs(careful.features.x[i] - 319.5F) < 1.9F;
@@ -170,7 +180,8 @@ TEST(FrameBuilder, DepthAtAnEdgeIsNotTrustedWhenAsked) {
 TEST(FrameBuilder, WrongSizesNameBothSizes) {
   test::PointWorld world(Camera{});
   test::PointExtractor extractor(world);
-  FrameBuilder builder(world.camera(), extractor, 0.0);
+  ImageDepth depth(world.camera(), 0.0);
+  FrameBuilder builder(world.camera(), extractor, depth);
   SensorFrame sensor_frame = world.frame(3, 0.0, Eigen::Isometry3d::Identity());
   sensor_frame.colour = cv::Mat::zeros(100, 120, CV_8UC3);
   Frame frame;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "holdfast/tracking/frame_builder.hpp"
+#include "holdfast/tracking/image_depth.hpp"
 #include "support/point_world.hpp"
 
 namespace holdfast {
@@ -11,7 +12,11 @@ namespace {
 
 /// A map of one keyframe at the identity in which every feature is a point, and the frame that made it.
 struct OneKeyframe {
-  OneKeyframe() : world(find_camera("tum_fr3").value()), extractor(world), builder(world.camera(), extractor, 0.0) {
+  OneKeyframe()
+      : world(find_camera("tum_fr3").value()),
+        extractor(world),
+        depth(world.camera(), 0.0),
+        builder(world.camera(), extractor, depth) {
     frame = build(Eigen::Isometry3d::Identity());
     id = map.add_keyframe(frame);
     for (std::uint32_t i = 0; i < frame.size(); ++i) {
@@ -30,6 +35,7 @@ struct OneKeyframe {
   }
   test::PointWorld world;
   test::PointExtractor extractor;
+  ImageDepth depth;
   FrameBuilder builder;
   Map map;
   KeyFrameId id;

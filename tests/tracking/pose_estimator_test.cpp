@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "holdfast/tracking/frame_builder.hpp"
+#include "holdfast/tracking/image_depth.hpp"
 #include "support/point_world.hpp"
 
 namespace holdfast {
@@ -35,7 +36,10 @@ struct Times {
 /// moved by 5 cm since their points were made.
 struct RoomAndPerson {
   RoomAndPerson(Sensor sensor, bool with_filter, std::size_t every, const Times& times)
-      : world(find_camera("tum_fr3").value()), extractor(world), builder(world.camera(), extractor, 0.0) {
+      : world(find_camera("tum_fr3").value()),
+        extractor(world),
+        depth(world.camera(), 0.0),
+        builder(world.camera(), extractor, depth) {
     map.set_sensor(sensor);
     StageTimes stages;
     builder.build(world.frame(0, times.room, Eigen::Isometry3d::Identity()), frame, stages);
@@ -75,6 +79,7 @@ struct RoomAndPerson {
 
   test::PointWorld world;
   test::PointExtractor extractor;
+  ImageDepth depth;
   FrameBuilder builder;
   Map map;
   Frame frame;

@@ -13,7 +13,7 @@
 #include "holdfast/core/random.hpp"
 #include "holdfast/core/stereo_calibration.hpp"
 #include "holdfast/simulation/simulator.hpp"
-#include "holdfast/tracking/stereo_depth.hpp"
+#include "holdfast/tracking/pair_depth.hpp"
 
 namespace holdfast {
 namespace {
@@ -211,15 +211,19 @@ TEST_F(StereoMatcherTest, AnExchangedPairIsRecognised) {
   for (const float disparity : {3.0F, 12.0F}) {
     show(disparity, 0);
     PairExtractor extractor(left_, frame_.features, right_features_);
-    StereoDepth stereo(*frame_.camera, {});
+    PairDepth stereo(*frame_.camera, {});
     Frame right_order = frame_, exchanged = frame_;
-    stereo.extract(left_, right_, {}, extractor, right_order);
-    stereo.depth(left_, right_, right_order);
-    EXPECT_FALSE(stereo.is_exchanged(left_, right_, right_order)) << disparity;
-    stereo.extract(right_, left_, {}, extractor, exchanged);
-    exchanged.x = exchanged.features.x, exchanged.y = exchanged.features.y;
-    stereo.depth(right_, left_, exchanged);
-    EXPECT_TRUE(stereo.is_exchanged(right_, left_, exchanged)) << disparity;
+    const auto is_exchanged = [&](const cv::Mat& left, const cv::Mat& right, Frame& frame) {
+      SensorFrame pair;
+      pair.right = right;
+      stereo.begin(pair, left);
+      stereo.extract(left, {}, extractor, frame);
+      frame.x = frame.features.x, frame.y = frame.features.y;
+      stereo.read(pair, frame);
+      return stereo.is_pair_exchanged(frame);
+    };
+    EXPECT_FALSE(is_exchanged(left_, right_, right_order)) << disparity;
+    EXPECT_TRUE(is_exchanged(right_, left_, exchanged)) << disparity;
   }
 }
 
@@ -227,6 +231,14 @@ TEST_F(StereoMatcherTest, WithoutRightFeaturesNothingHasDepth) {
   right_features_.clear();
   match();
   EXPECT_EQ(with_depth(), 0U);
+}
+
+cv::Mat depth_image(PairDepth& pair, const cv::Mat& left, const cv::Mat& right) {
+  SensorFrame frame;
+  frame.right = right;
+  pair.begin(frame, left);
+  pair.add_image(frame);
+  return frame.depth;
 }
 
 /// Errors of the disparities of a depth image [px]; `disparity_at` of column and row, 0 = not compared.
@@ -243,8 +255,8 @@ std::vector<double> disparity_errors(const cv::Mat& depth, double fx_baseline,
 
 TEST_F(StereoMatcherTest, TheDepthImageIsThatOfTheImagesAndIsCorrectedByTheErrorsOfThePair) {
   const auto errors_of = [&](StereoCalibration* calibration) {
-    StereoDepth stereo(*frame_.camera, {.calibration = calibration});
-    return disparity_errors(stereo.depth_image(left_, right_), 20.0,
+    PairDepth stereo(*frame_.camera, {.calibration = calibration});
+    return disparity_errors(depth_image(stereo, left_, right_), 20.0,
                             [&](int x, int y) { return x < 60 ? 0.0 : disparity_at(static_cast<float>(y)); });
   };
   constexpr std::size_t pixels = (width - 60) * height;
@@ -267,9 +279,9 @@ TEST_F(StereoMatcherTest, TheDepthImageIsThatOfTheImagesAndIsCorrectedByTheError
 
 TEST_F(StereoMatcherTest, FarSurfacesAndPairsWithoutADenseMatcherHaveNoDepthImage) {
   show(1.0F, 0);  // up to 11 px: 20 m to 1.8 m
-  StereoDepth stereo(*frame_.camera, {}), off(*frame_.camera, {.settings = {.dense = DenseStereoMethod::off}});
-  EXPECT_TRUE(off.depth_image(left_, right_).empty());
-  const cv::Mat depth = stereo.depth_image(left_, right_);
+  PairDepth stereo(*frame_.camera, {}), off(*frame_.camera, {.settings = {.dense = DenseStereoMethod::off}});
+  EXPECT_TRUE(depth_image(off, left_, right_).empty());
+  const cv::Mat depth = depth_image(stereo, left_, right_);
   double farthest = 0.0;
   cv::minMaxLoc(depth, nullptr, &farthest);
   EXPECT_GT(farthest, 3.0);
@@ -287,8 +299,8 @@ class SameDisparity final : public DenseStereo {
 
 TEST_F(StereoMatcherTest, AnotherDenseMatcherTakesThePlaceOfTheBuiltInOne) {
   SameDisparity same;
-  StereoDepth stereo(*frame_.camera, {.dense = &same});
-  EXPECT_EQ(cv::countNonZero(stereo.depth_image(left_, right_) == 2.0F), width * height);
+  PairDepth stereo(*frame_.camera, {.dense = &same});
+  EXPECT_EQ(cv::countNonZero(depth_image(stereo, left_, right_) == 2.0F), width * height);
 }
 
 TEST(DenseDepth, OfASimulatedPairAgreesWithTheTrueDepth) {
@@ -302,9 +314,9 @@ TEST(DenseDepth, OfASimulatedPairAgreesWithTheTrueDepth) {
   cv::Mat left, right;
   cv::cvtColor(frame.colour, left, cv::COLOR_BGR2GRAY);
   cv::cvtColor(frame.right, right, cv::COLOR_BGR2GRAY);
-  StereoDepth stereo(camera, {});
+  PairDepth stereo(camera, {});
   const double fx_baseline = camera.fx * camera.baseline;
-  auto errors = disparity_errors(stereo.depth_image(left, right), fx_baseline, [&](int x, int y) -> double {
+  auto errors = disparity_errors(depth_image(stereo, left, right), fx_baseline, [&](int x, int y) -> double {
     const float z = truth.at<float>(y, x);
     return z > 0.4F && fx_baseline / z < x ? fx_baseline / z : 0.0;
   });

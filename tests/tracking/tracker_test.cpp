@@ -7,6 +7,8 @@
 #include <memory>
 #include <utility>
 
+#include "holdfast/tracking/image_depth.hpp"
+#include "holdfast/tracking/no_depth.hpp"
 #include "support/brute_force_detector.hpp"
 #include "support/point_world.hpp"
 
@@ -76,7 +78,7 @@ class Bench {
       : world(find_camera("tum_fr1").value(), 1500, seed),
         map(std::move(known)),
         moving_world({.camera = world.camera(), .filters = chain(with_filter, evidence), .segmenter = segmenter}, map),
-        tracker(of_patches(settings), {world.camera(), extractor, optimizer, detector, moving_world, map},
+        tracker(settings, {world.camera(), extractor, depth, optimizer, detector, moving_world, map},
                 std::move(first_poses)) {
     map.keyframes().for_each(
         [&](KeyFrameId id, const KeyFrame& keyframe) { detector.add(id, keyframe.frame.features.descriptors); });
@@ -121,6 +123,8 @@ class Bench {
   static constexpr double speed = 0.5;
   test::PointWorld world;
   SparseExtractor extractor{world};
+  /// The depth of this world consists of patches around points, all of whose borders are depth edges.
+  ImageDepth depth{world.camera(), 0.0};
   PoseOptimizer optimizer;
   test::BruteForceDetector detector;
   Map map;
@@ -132,11 +136,6 @@ class Bench {
   bool mask_covers = false;
 
  private:
-  /// The depth of this world consists of patches around points, all of whose borders are depth edges.
-  static TrackingSettings of_patches(TrackingSettings settings) {
-    settings.depth_edge_ratio = 0.0;
-    return settings;
-  }
   FilterChain chain(bool with_filter, const EvidenceSettings& evidence) const {
     FilterChain filters(evidence);
     if (with_filter) filters.add("mask", std::make_unique<MaskFilter>(&mask_covers));
@@ -464,8 +463,9 @@ TEST(Tracker, OneCameraIsNotCarriedByAMapThatExplainsNextToNothing) {
     ASSERT_EQ(maker.feed(0.0, at(0.0)).status, TrackingStatus::initialised);
     maker.map.set_sensor(Sensor::mono);
     Bench bench(settings, false, std::move(maker.map));
-    Tracker tracker(settings, {bench.world.camera(), bench.extractor, bench.optimizer, bench.detector,
-                               bench.moving_world, bench.map, 1, std::nullopt, false});
+    NoDepth no_depth;
+    Tracker tracker(settings, {bench.world.camera(), bench.extractor, no_depth, bench.optimizer, bench.detector,
+                               bench.moving_world, bench.map});
     const MapAccess access(bench.map);
     SensorFrame frame = bench.world.frame(0, 0.0, at(0.02, 0.01));
     frame.depth.release();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "holdfast/core/build_layout.hpp"
+#include "holdfast/core/pinhole.hpp"
 
 namespace holdfast {
 
@@ -72,18 +73,15 @@ struct Camera {
   /// once, below 0 = the last row first. The time stamp of an image is that of its middle row.
   double readout = 0.0;
 
-  /// Undistorted pixel of a point in the camera frame; z must be positive.
-  Eigen::Vector2d project(const Eigen::Vector3d& point) const {
-    const double inverse_z = 1.0 / point.z();
-    return {fx * point.x() * inverse_z + cx, fy * point.y() * inverse_z + cy};
-  }
-  /// The point in the camera frame at an undistorted pixel and a depth [m] along the optical axis.
-  Eigen::Vector3d back_project(double x, double y, double depth) const {
-    return {(x - cx) / fx * depth, (y - cy) / fy * depth, depth};
-  }
-  /// Column of the point in the virtual right image: x - fx * baseline / depth (Mur-Artal and Tardos 2017, section
-  /// III-A).
-  double right_x(double x, double depth) const { return x - fx * baseline / depth; }
+  /// The camera without its distortion, whose pixels are the undistorted ones.
+  Pinhole pinhole() const { return {fx, fy, cx, cy, baseline}; }
+  /// Functions of pinhole(), for undistorted pixels.
+  /// @{
+  Eigen::Vector2d project(const Eigen::Vector3d& point) const { return pinhole().project(point); }
+  Eigen::Vector2d normalised(double x, double y) const { return pinhole().normalised(x, y); }
+  Eigen::Vector3d back_project(double x, double y, double depth) const { return pinhole().back_project(x, y, depth); }
+  double right_x(double x, double depth) const { return pinhole().right_x(x, depth); }
+  /// @}
 
   /// Angle to the optical axis up to which the image of a fisheye lens is used [rad]: 60 degrees, where a pixel of the
   /// image is stretched fourfold.

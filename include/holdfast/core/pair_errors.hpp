@@ -21,16 +21,16 @@ struct PairErrors {
   /// Horizontal displacement [px], positive to the right, of a point in the right image that an ideal pair shows at
   /// (right_x, y). First order in the errors, second order in the position.
   double column(const Camera& camera, double right_x, double y) const {
-    const double normal_x = (right_x - camera.cx) / camera.fx, normal_y = (y - camera.cy) / camera.fy;
-    return camera.fx * (rotation.y() * (1.0 + normal_x * normal_x) - rotation.x() * normal_x * normal_y -
-                        rotation.z() * normal_y + (focal_ratio - 1.0) * normal_x) +
+    const Eigen::Vector2d at = camera.normalised(right_x, y);
+    return camera.fx * (rotation.y() * (1.0 + at.x() * at.x()) - rotation.x() * at.x() * at.y() -
+                        rotation.z() * at.y() + (focal_ratio - 1.0) * at.x()) +
            column_offset;
   }
   /// Vertical displacement [px], positive downwards.
   double row(const Camera& camera, double right_x, double y) const {
-    const double normal_x = (right_x - camera.cx) / camera.fx, normal_y = (y - camera.cy) / camera.fy;
-    return camera.fy * (-rotation.x() + rotation.z() * normal_x + (focal_ratio - 1.0) * normal_y +
-                        row_product * normal_x * normal_y);
+    const Eigen::Vector2d at = camera.normalised(right_x, y);
+    return camera.fy *
+           (-rotation.x() + rotation.z() * at.x() + (focal_ratio - 1.0) * at.y() + row_product * at.x() * at.y());
   }
   bool operator==(const PairErrors&) const = default;
 };

@@ -27,9 +27,7 @@ double direction_deviation(const Camera& camera_model, std::span<const PixelPair
   const Eigen::Vector3d direction = T_b_a.translation().normalized();
   if (pairs.size() < 5 || !direction.allFinite()) return undetermined;
   const Pinhole camera = pinhole_of(camera_model);
-  const auto ray = [&](const Eigen::Vector2d& pixel) {
-    return Eigen::Vector3d((pixel.x() - camera.cx) / camera.fx, (pixel.y() - camera.cy) / camera.fy, 1.0);
-  };
+  const auto ray = [&](const Eigen::Vector2d& pixel) { return camera.back_project(pixel.x(), pixel.y(), 1.0); };
   const Eigen::Vector3d first = direction.unitOrthogonal(), second = direction.cross(first);
   const auto essential = [&](const Eigen::Matrix<double, 5, 1>& change) -> Eigen::Matrix3d {
     const Eigen::Vector3d moved = (direction + change[3] * first + change[4] * second).normalized();

@@ -16,6 +16,15 @@ namespace holdfast {
 /// may diverge for a slightly lower cost.
 inline constexpr int minimum_shared_points = default_covisibility_minimum;
 
+/// Changes of the pose of a weakly constrained keyframe above which an adjustment has diverged [m] and [rad]; its pose
+/// is then rejected. The two adjustments bound different quantities:
+/// @{
+/// Local adjustment: the whole change, which contains the common motion of the neighbourhood and its correction.
+inline constexpr double local_divergence = 0.5;
+/// Full adjustment: the change relative to the parent, without the correction that both share; therefore smaller.
+inline constexpr double divergence_from_parent = 0.2;
+/// @}
+
 /// Adds to the pose problem of `frame` that its feature number `feature` shows `point` (world [m]).
 inline void add_observation(PoseProblem& problem, const Frame& frame, std::size_t feature,
                             const Eigen::Vector3d& point) {

@@ -84,26 +84,6 @@ class LocalMapper {
 
  private:
   void make_points_from_depth(KeyFrameId keyframe);
-  /// Removes the observations of a keyframe whose features are more likely moving than static, and returns their
-  /// points.
-  std::vector<MapPointId> drop_moving_features(KeyFrameId keyframe);
-  /// With one camera, removes a point that has lost an observation and has fewer than three left (as in ORB-SLAM). Only
-  /// the thread of refine() may call it, because refine() relies on the existence of points.
-  void drop_weak_point(MapPointId point);
-  void remove_moving_points();
-  void remove_weak_points(KeyFrameId keyframe);
-  void triangulate_points(KeyFrameId keyframe);
-  void triangulate_with(KeyFrameId keyframe, KeyFrameId neighbour);
-  /// Updates the covisibility of a new keyframe, and sets its parent unless it is the first of its submap.
-  void link(KeyFrameId keyframe);
-  std::vector<KeyFrameId> fusion_targets(KeyFrameId keyframe) const;
-  void fuse_with_neighbours(KeyFrameId keyframe);
-  struct FusionBuffers;
-  void fuse_into(KeyFrameId target, const std::vector<MapPointId>& points, FusionBuffers& buffers);
-  void adjust_bundle(KeyFrameId keyframe);
-  void build_bundle_problem(KeyFrameId keyframe);
-  void apply_bundle();
-  std::vector<KeyFrameId> remove_redundant_keyframes(KeyFrameId keyframe);
 
   MappingSettings settings_;
   double close_depth_factor_;
@@ -117,14 +97,6 @@ class LocalMapper {
   bool disparities_changed_ = false;            // since the last bundle adjustment
   std::vector<MapPointId> recent_points_;
   MappingCounts counts_;
-
-  // For each free keyframe of the bundle problem, the number of its points that another keyframe observes.
-  std::vector<int> problem_shared_points_;
-  // Keyframes, points and observations of the bundle problem.
-  BundleProblem problem_;
-  std::vector<KeyFrameId> problem_keyframes_;
-  std::vector<MapPointId> problem_points_;
-  std::vector<std::pair<MapPointId, KeyFrameId>> problem_observations_;
 };
 
 }  // namespace holdfast

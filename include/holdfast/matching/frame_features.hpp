@@ -27,10 +27,7 @@ struct ViewTraits<Frame> {
     frame.grid.query(x, y, radius, found);
   }
   static bool covers(const Frame& frame, float x, float y) { return frame.grid.covers(x, y); }
-  static Pinhole camera(const Frame& frame) {
-    const Camera& camera = *frame.camera;
-    return {camera.fx, camera.fy, camera.cx, camera.cy, camera.baseline};
-  }
+  static Pinhole camera(const Frame& frame) { return frame.camera->pinhole(); }
   static int predict_level(const Frame& frame, double max_distance, double distance) {
     return frame.pyramid->predict_level(max_distance, distance);
   }

@@ -22,7 +22,7 @@ struct SegmentedView {
 
   /// The direction of the centre of a cell, with z = 1, camera frame.
   Eigen::Vector3d ray(int column, int row) const {
-    return {(view.grid.x_of(column) - camera.cx) / camera.fx, (view.grid.y_of(row) - camera.cy) / camera.fy, 1.0};
+    return camera.back_project(view.grid.x_of(column), view.grid.y_of(row), 1.0);
   }
 };
 

@@ -42,8 +42,6 @@ class Tracker {
 
   /// Throws InputError for images that begin() would refuse.
   void check_images(const SensorFrame& sensor_frame) const { context_.builder.check_images(sensor_frame); }
-  /// The depth image of the stereo pair of the frame of the last begin(); see FrameBuilder::pair_depth.
-  const cv::Mat& pair_depth() { return context_.builder.pair_depth(); }
   /// True if the first mask has arrived and covers most of the first keyframe with movable objects. The caller must
   /// then clear the map and call forget_map(); the next frame initialises another map, from which earlier frames are
   /// tracked backwards.

@@ -12,6 +12,7 @@
 #include "holdfast/interfaces/loop_detector.hpp"
 #include "holdfast/interfaces/optimizer.hpp"
 #include "holdfast/moving_world/moving_world.hpp"
+#include "holdfast/tracking/depth_provider.hpp"
 #include "holdfast/tracking/frame_builder.hpp"
 #include "holdfast/tracking/frame_history.hpp"
 #include "holdfast/tracking/frame_matcher.hpp"
@@ -27,13 +28,12 @@ namespace holdfast {
 struct TrackerParts {
   const Camera& camera;
   FeatureExtractor& features;
+  DepthProvider& depth;
   Optimizer& optimizer;
   LoopDetector& detector;
   MovingWorld& moving_world;
   Map& map;
-  std::uint64_t seed = 1;                  ///< seed of the random samples of relocalisation
-  std::optional<StereoParts> stereo = {};  ///< set if depth comes from a stereo pair
-  bool features_have_depth = true;         ///< false in monocular mode
+  std::uint64_t seed = 1;  ///< seed of the random samples of relocalisation
   const FeatureMatcher& matcher = nearest_matcher();
   std::optional<ImuCalibration> imu = {};  ///< frames have inertial measurements
 };
@@ -72,6 +72,7 @@ struct TrackingContext {
   const TrackingSettings settings;
   MovingWorld& moving_world;
   Map& map;
+  DepthProvider& depth;
   const bool features_have_depth;
   bool localises_only = false;  ///< localisation mode: the map is not changed
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "holdfast/tracking/depth_reader.hpp"
+#include "holdfast/tracking/image_depth.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,21 +12,22 @@ namespace holdfast {
 namespace {
 
 /// A wall and a floor, of which colour and depth are exposed at different times.
-class DepthReaderTest : public testing::TestWithParam<std::string> {
+class ImageDepthTest : public testing::TestWithParam<std::string> {
  protected:
-  DepthReaderTest() {
+  ImageDepthTest() {
     world_.camera = find_camera(GetParam()).value();
     world_.floor_y = 1.0;
   }
 
-  cv::Mat depth_image(const Eigen::Isometry3d& T_world_camera) const {
-    cv::Mat depth(world_.camera.height, world_.camera.width, CV_32FC1);
-    for (int y = 0; y < depth.rows; ++y)
-      for (int x = 0; x < depth.cols; ++x) {
+  SensorFrame depth_image(const Eigen::Isometry3d& T_world_camera) const {
+    SensorFrame image;
+    image.depth.create(world_.camera.height, world_.camera.width, CV_32FC1);
+    for (int y = 0; y < world_.camera.height; ++y)
+      for (int x = 0; x < world_.camera.width; ++x) {
         const Eigen::Vector2d pixel = world_.camera.undistort({x, y});
-        depth.at<float>(y, x) = static_cast<float>(world_.look(T_world_camera, pixel.x(), pixel.y()).depth);
+        image.depth.at<float>(y, x) = static_cast<float>(world_.look(T_world_camera, pixel.x(), pixel.y()).depth);
       }
-    return depth;
+    return image;
   }
   Frame frame() const {
     Frame frame;
@@ -61,13 +62,13 @@ class DepthReaderTest : public testing::TestWithParam<std::string> {
   test::BoxWorld world_;
 };
 
-TEST_P(DepthReaderTest, AlignsDepthThatWasExposedLater) {
+TEST_P(ImageDepthTest, AlignsDepthThatWasExposedLater) {
   // 15 ms of a hand-held camera in fast rotation: 2 rad/s and 0.3 m/s.
   geometry::Vector6d motion;
   motion << 0.002, 0.001, 0.004, 0.025, -0.01, 0.01;
   const Eigen::Isometry3d T_depth_colour = geometry::exp_se3(motion);
-  const cv::Mat depth = depth_image(T_depth_colour.inverse());
-  const DepthReader reader(std::make_shared<const Camera>(world_.camera), 0.0);
+  const SensorFrame depth = depth_image(T_depth_colour.inverse());
+  ImageDepth reader(world_.camera, 0.0);
   Frame frame = this->frame();
   reader.read(depth, frame);
   const double before = error(frame);
@@ -83,9 +84,9 @@ TEST_P(DepthReaderTest, AlignsDepthThatWasExposedLater) {
     }
 }
 
-TEST_P(DepthReaderTest, WithoutMotionAlignmentChangesNothing) {
-  const cv::Mat depth = depth_image(Eigen::Isometry3d::Identity());
-  const DepthReader reader(std::make_shared<const Camera>(world_.camera), 0.0);
+TEST_P(ImageDepthTest, WithoutMotionAlignmentChangesNothing) {
+  const SensorFrame depth = depth_image(Eigen::Isometry3d::Identity());
+  ImageDepth reader(world_.camera, 0.0);
   Frame frame = this->frame();
   reader.read(depth, frame);
   const std::vector<float> before = frame.depth;
@@ -93,9 +94,9 @@ TEST_P(DepthReaderTest, WithoutMotionAlignmentChangesNothing) {
   for (std::size_t i = 0; i < frame.size(); ++i) ASSERT_NEAR(frame.depth[i], before[i], 1e-5);
 }
 
-TEST_P(DepthReaderTest, AFeatureOutsideTheDepthImageHasNoDepth) {
-  const cv::Mat depth = depth_image(Eigen::Isometry3d::Identity());
-  const DepthReader reader(std::make_shared<const Camera>(world_.camera), 0.0);
+TEST_P(ImageDepthTest, AFeatureOutsideTheDepthImageHasNoDepth) {
+  const SensorFrame depth = depth_image(Eigen::Isometry3d::Identity());
+  ImageDepth reader(world_.camera, 0.0);
   Frame frame = this->frame();
   reader.read(depth, frame);
   Eigen::Isometry3d T_depth_colour = Eigen::Isometry3d::Identity();
@@ -112,7 +113,7 @@ TEST_P(DepthReaderTest, AFeatureOutsideTheDepthImageHasNoDepth) {
   EXPECT_GT(lost, 10);
 }
 
-INSTANTIATE_TEST_SUITE_P(Cameras, DepthReaderTest, testing::Values("tum_fr1", "tum_fr3"));
+INSTANTIATE_TEST_SUITE_P(Cameras, ImageDepthTest, testing::Values("tum_fr1", "tum_fr3"));
 
 }  // namespace
 }  // namespace holdfast

@@ -1,22 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "holdfast/tracking/depth_reader.hpp"
+#include "holdfast/tracking/image_depth.hpp"
 
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <utility>
+#include <string>
 
-#include "holdfast/core/sensor_frame.hpp"
+#include "holdfast/core/error.hpp"
+#include "holdfast/core/size_text.hpp"
 #include "holdfast/geometry/warp.hpp"
 
 namespace holdfast {
 
-DepthReader::DepthReader(std::shared_ptr<const Camera> camera, double edge_ratio)
-    : camera_(std::move(camera)), edge_ratio_(edge_ratio) {}
+void ImageDepth::check_images(const SensorFrame& sensor_frame) const {
+  const cv::Mat& depth = sensor_frame.depth;
+  if (!depth.empty() && (depth.type() != CV_32FC1 || depth.size() != sensor_frame.colour.size()))
+    throw InputError({"frame " + std::to_string(sensor_frame.index)},
+                     "the depth image is " + size_text(depth.cols, depth.rows) +
+                         "; expected one 32 bit float channel [m] of the colour image's size");
+}
 
 /// The depth at a raw pixel; 0 without a measurement, outside the image, or at a depth edge. Elsewhere it is the mean
 /// of the pixel and of opposite pairs of neighbours, which has less noise and, on a slanted plane, the same value.
-float DepthReader::depth_at(const cv::Mat& depth, float x, float y) const {
+float ImageDepth::depth_at(const cv::Mat& depth, float x, float y) const {
   // A position far outside the image does not fit an integer.
   if (!(x > -0.5F) || !(y > -0.5F) || !(x < static_cast<float>(depth.cols)) || !(y < static_cast<float>(depth.rows)))
     return 0.0F;
@@ -55,14 +61,15 @@ float DepthReader::depth_at(const cv::Mat& depth, float x, float y) const {
   return farthest - nearest > edge_ratio_ * value ? 0.0F : sum / static_cast<float>(count);
 }
 
-void DepthReader::set_depth(std::size_t feature, float depth, Frame& frame) const {
-  const float fx_baseline = static_cast<float>(camera_->fx * camera_->baseline);
+void ImageDepth::set_depth(std::size_t feature, float depth, Frame& frame) const {
+  const float fx_baseline = static_cast<float>(camera_.fx * camera_.baseline);
   frame.depth[feature] = depth;
   frame.right_x[feature] =
       depth > 0.0F ? frame.x[feature] - fx_baseline / depth : std::numeric_limits<float>::quiet_NaN();
 }
 
-void DepthReader::read(const cv::Mat& depth, Frame& frame) const {
+void ImageDepth::read(const SensorFrame& sensor_frame, Frame& frame) {
+  const cv::Mat& depth = sensor_frame.depth;
   const std::size_t count = frame.size();
   frame.depth.assign(count, 0.0F);
   frame.right_x.assign(count, std::numeric_limits<float>::quiet_NaN());
@@ -74,17 +81,18 @@ void DepthReader::read(const cv::Mat& depth, Frame& frame) const {
   }
 }
 
-void DepthReader::align(const cv::Mat& depth, const Eigen::Isometry3d& T_depth_colour, Frame& frame) const {
+void ImageDepth::align(const SensorFrame& sensor_frame, const Eigen::Isometry3d& T_depth_colour, Frame& frame) {
+  const cv::Mat& depth = sensor_frame.depth;
   if (depth.empty()) return;
   constexpr float typical_depth = 2.0F, min_depth = 0.1F;  // m
-  const geometry::Pinhole pinhole = geometry::pinhole_of(*camera_);
+  const geometry::Pinhole pinhole = geometry::pinhole_of(camera_);
   const geometry::Warp to_depth(T_depth_colour, pinhole, min_depth);
   const geometry::Warp to_colour(T_depth_colour.inverse(), pinhole, min_depth);
   for (std::size_t i = 0; i < frame.size(); ++i) {
     const float guess = frame.has_depth(i) ? frame.depth[i] : typical_depth;
     float aligned = 0.0F;
     if (const auto seen = to_depth(to_depth.ray_x(frame.x[i]), to_depth.ray_y(frame.y[i]), guess)) {
-      const Eigen::Vector2d raw = camera_->distort({seen->x, seen->y});
+      const Eigen::Vector2d raw = camera_.distort({seen->x, seen->y});
       const float measured = depth_at(depth, static_cast<float>(raw.x()), static_cast<float>(raw.y()));
       if (measured > 0.0F)
         if (const auto back = to_colour(to_colour.ray_x(seen->x), to_colour.ray_y(seen->y), measured))

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "holdfast/tracking/pair_depth.hpp"
+
+#include <algorithm>
+#include <future>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <thread>
+
+#include "holdfast/core/depth_noise.hpp"
+#include "holdfast/core/error.hpp"
+#include "holdfast/core/size_text.hpp"
+#include "holdfast/core/stereo_calibration.hpp"
+#include "holdfast/core/thread_name.hpp"
+#include "semi_global_stereo.hpp"
+
+namespace holdfast {
+
+PairDepth::PairDepth(const Camera& camera, const StereoParts& parts)
+    : parts_(parts), camera_(camera), fx_baseline_(camera.fx * camera.baseline), matcher_(parts.settings) {}
+PairDepth::~PairDepth() = default;
+
+void PairDepth::check_images(const SensorFrame& sensor_frame) const {
+  const cv::Mat& right = sensor_frame.right;
+  if ((right.type() != CV_8UC1 && right.type() != CV_8UC3) || right.size() != sensor_frame.colour.size())
+    throw InputError({"frame " + std::to_string(sensor_frame.index)},
+                     right.empty() ? std::string("has no right image; expected one in every frame of a stereo pair")
+                                   : "the right image is " + size_text(right.cols, right.rows) + " with " +
+                                         std::to_string(right.channels()) +
+                                         " channels; expected 1 or 3 channels of 8 bit, of the left image's size");
+}
+
+cv::Mat PairDepth::begin(const SensorFrame& sensor_frame, const cv::Mat& grey) {
+  const cv::Mat& right = sensor_frame.right;
+  if (right.channels() == 3) cv::cvtColor(right, converted_, cv::COLOR_BGR2GRAY);
+  left_ = grey;
+  right_ = right.channels() == 3 ? converted_ : right;
+  image_.reset();
+  return parts_.is_dense ? image() : cv::Mat();
+}
+
+const cv::Mat& PairDepth::image() {
+  if (!image_) image_ = compute_image();
+  return *image_;
+}
+
+const cv::Mat& PairDepth::corrected_right() {
+  const PairErrors errors = parts_.calibration != nullptr ? parts_.calibration->errors() : PairErrors();
+  if (errors == PairErrors()) return right_;
+  if (map_x_.empty() || !(errors == errors_)) {
+    errors_ = errors;
+    map_x_.create(right_.size(), CV_32FC1), map_y_.create(right_.size(), CV_32FC1);
+    for (int y = 0; y < right_.rows; ++y)
+      for (int x = 0; x < right_.cols; ++x) {
+        map_x_.ptr<float>(y)[x] = static_cast<float>(x + errors.column(camera_, x, y));
+        map_y_.ptr<float>(y)[x] = static_cast<float>(y + errors.row(camera_, x, y));
+      }
+  }
+  cv::remap(right_, corrected_, map_x_, map_y_, cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+  return corrected_;
+}
+
+cv::Mat PairDepth::compute_image() {
+  if (parts_.settings.dense == DenseStereoMethod::off) return {};
+  if (parts_.dense == nullptr) {
+    own_dense_ = std::make_unique<SemiGlobalStereo>(fx_baseline_ / parts_.settings.minimum_depth, camera_.width);
+    parts_.dense = own_dense_.get();
+  }
+  parts_.dense->match(left_, corrected_right(), disparity_);
+  constexpr float noise = 0.17F;  // px; standard deviation of disparities
+  cv::Mat depth(left_.size(), CV_32FC1);
+  const auto numerator = static_cast<float>(fx_baseline_);
+  const auto least = static_cast<float>(parts_.settings.minimum_disparity);
+  for (int row = 0; row < depth.rows; ++row) {
+    const float* from = disparity_.ptr<float>(row);
+    float* to = depth.ptr<float>(row);
+    for (int column = 0; column < depth.cols; ++column) {
+      const float z = from[column] >= least ? numerator / from[column] : 0.0F;
+      to[column] = z * noise <= depth_noise::farther(z) * from[column] ? z : 0.0F;
+    }
+  }
+  return depth;
+}
+
+void PairDepth::extract(const cv::Mat& grey, const cv::Mat& ignore, FeatureExtractor& extractor, Frame& frame) {
+  if (parts_.right_features == nullptr || std::thread::hardware_concurrency() < 2) {
+    extractor.extract(grey, ignore, frame.features);
+    (parts_.right_features != nullptr ? *parts_.right_features : extractor).extract(right_, cv::Mat(), right_features_);
+    return;
+  }
+  std::future<void> other = std::async(std::launch::async, [&] {
+    name_this_thread("right features");
+    parts_.right_features->extract(right_, cv::Mat(), right_features_);
+  });
+  extractor.extract(grey, ignore, frame.features);
+  other.get();
+}
+
+void PairDepth::read(const SensorFrame&, Frame& frame) {
+  if (parts_.calibration == nullptr) {
+    matcher_.match(left_, right_, right_features_, frame);
+    return;
+  }
+  matcher_.match(left_, right_, right_features_, frame, parts_.calibration->begin_frame());
+  // Rows that turn out wrong make columns wrong, because patches are compared in them.
+  if (parts_.calibration->learn_rows(matcher_.row_differences()))
+    matcher_.match(left_, right_, right_features_, frame, parts_.calibration->begin_frame());
+}
+
+bool PairDepth::is_pair_exchanged(const Frame& frame) {
+  constexpr std::size_t least_features = 30, least_ratio = 3;
+  const auto with_depth = [](const Frame& any) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < any.size(); ++i) count += any.has_depth(i) ? 1 : 0;
+    return count;
+  };
+  Frame other;
+  other.camera = frame.camera;
+  other.pyramid = frame.pyramid;
+  other.features = right_features_;
+  other.x = right_features_.x, other.y = right_features_.y;
+  matcher_.match(right_, left_, frame.features, other);
+  const std::size_t count = with_depth(other);
+  return count >= least_features && count >= least_ratio * with_depth(frame);
+}
+
+}  // namespace holdfast
