@@ -258,6 +258,13 @@ def test_cameras_have_lenses():
         holdfast.Camera(**numbers, k1=-0.4)
 
 
+def test_refuses_a_perturbation_of_frames_that_are_fed():
+    config = {**PIPELINE, "perturbation": {"seed": 3}}
+    holdfast.Pipeline(config).close()
+    with pytest.raises(holdfast.ConfigurationError, match="'perturbation' changes the frames of the configuration's"):
+        holdfast.Pipeline(config, {"perturbation.calibration": 0.1})
+
+
 def test_camera_can_be_given(frames):
     without = {key: value for key, value in PIPELINE.items() if key != "camera"}
     with pytest.raises(holdfast.ConfigurationError, match="camera is missing"):
