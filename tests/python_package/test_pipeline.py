@@ -30,6 +30,8 @@ def test_gives_the_poses_of_a_run(config, frames):
     assert fed[0].status == "initialised" and fed[-1].status == "tracked"
     assert fed[-1].T_world_camera.shape == (4, 4) and fed[-1].index == len(frames) - 1
     assert sum(fed[-1].stage_seconds.values()) > 0.0
+    with pytest.warns(DeprecationWarning, match="FrameResult.trouble is now FrameResult.failure"):
+        assert fed[-1].trouble == fed[-1].failure == "none"
     assert numpy.array_equal(pipeline.trajectory().poses, result.trajectory.poses)
     assert numpy.array_equal(pipeline.map.snapshot().points, result.map.snapshot().points)
 
