@@ -14,8 +14,8 @@
 
 #include "holdfast/evaluation/evaluation.hpp"
 #include "holdfast/evaluation/statistics.hpp"
-#include "holdfast/pipeline/configured_pipeline.hpp"
 #include "holdfast/plugin/builtin.hpp"
+#include "holdfast/run/configured_pipeline.hpp"
 
 namespace holdfast {
 namespace {

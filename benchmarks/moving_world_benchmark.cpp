@@ -12,8 +12,8 @@
 
 #include "holdfast/config/configuration.hpp"
 #include "holdfast/evaluation/statistics.hpp"
-#include "holdfast/pipeline/configured_pipeline.hpp"
 #include "holdfast/plugin/builtin.hpp"
+#include "holdfast/run/configured_pipeline.hpp"
 #include "orb_yardstick.hpp"
 
 namespace holdfast {

@@ -11,8 +11,8 @@
 #include "holdfast/core/association.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/interfaces/feature_extractor.hpp"
-#include "holdfast/pipeline/configured_pipeline.hpp"
 #include "holdfast/plugin/builtin.hpp"
+#include "holdfast/run/configured_pipeline.hpp"
 
 namespace holdfast {
 

@@ -14,7 +14,7 @@ with holdfast.Pipeline(config) as pipeline:
     for frame in camera:
         result = pipeline.feed(frame.timestamp, frame.colour, frame.depth)
         if result.T_world_camera is None:
-            print(f"{frame.timestamp:.2f} s: {result.status}, {result.trouble}")
+            print(f"{frame.timestamp:.2f} s: {result.status}, {result.failure}")
         elif result.is_keyframe:
             x, y, z = result.T_world_camera[:3, 3]
             points = len(pipeline.map_snapshot().points)

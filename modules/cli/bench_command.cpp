@@ -25,7 +25,7 @@
 #include "holdfast/core/input_file.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/evaluation/number_text.hpp"
-#include "holdfast/pipeline/configured_pipeline.hpp"
+#include "holdfast/run/configured_pipeline.hpp"
 #include "program_host.hpp"
 #include "terminal.hpp"
 #include "usage_error.hpp"

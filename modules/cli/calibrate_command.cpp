@@ -15,7 +15,7 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/evaluation/number_text.hpp"
-#include "holdfast/pipeline/configured_pipeline.hpp"
+#include "holdfast/run/configured_pipeline.hpp"
 #include "output_file.hpp"
 #include "positive_number.hpp"
 #include "terminal.hpp"

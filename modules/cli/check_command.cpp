@@ -11,7 +11,7 @@
 
 #include "configured_command.hpp"
 #include "holdfast/config/configuration.hpp"
-#include "holdfast/pipeline/configured_pipeline.hpp"
+#include "holdfast/run/configured_pipeline.hpp"
 #include "program_host.hpp"
 #include "terminal.hpp"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "holdfast/config/configuration.hpp"
-#include "holdfast/pipeline/configured_pipeline.hpp"
+#include "holdfast/run/configured_pipeline.hpp"
 #include "holdfast/simulation/scene_file.hpp"
 #include "installed_files.hpp"
 

@@ -23,7 +23,7 @@
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/evaluation/instance_evaluation.hpp"
 #include "holdfast/evaluation/segmentation_evaluation.hpp"
-#include "holdfast/pipeline/configured_pipeline.hpp"
+#include "holdfast/run/configured_pipeline.hpp"
 #include "installed_files.hpp"
 #include "label_folder.hpp"
 #include "output_file.hpp"

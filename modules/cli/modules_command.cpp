@@ -12,8 +12,8 @@
 
 #include "built_without.hpp"
 #include "holdfast/config/reference.hpp"
-#include "holdfast/pipeline/configured_pipeline.hpp"
 #include "holdfast/plugin/loader.hpp"
+#include "holdfast/run/configured_pipeline.hpp"
 #include "holdfast/simulation/scene_file.hpp"
 #include "program_host.hpp"
 #include "terminal.hpp"

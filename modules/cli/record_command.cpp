@@ -11,7 +11,7 @@
 #include "configured_command.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/evaluation/number_text.hpp"
-#include "holdfast/pipeline/configured_pipeline.hpp"
+#include "holdfast/run/configured_pipeline.hpp"
 #include "recorder.hpp"
 #include "source_interrupter.hpp"
 #include "terminal.hpp"

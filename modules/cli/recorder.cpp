@@ -19,9 +19,7 @@ constexpr const char* configuration_file = "recording.yaml";
 /// moved.
 Configuration on_recording(const Configuration& original, const Registry& registry, const SourceDescription& source) {
   Configuration result = original;
-  PerturbationSettings perturbation;
-  if (const auto section = original.sections.find("perturbation"); section != original.sections.end())
-    perturbation = ParameterTable<PerturbationSettings>().settings(section->second);
+  const auto perturbation = section_settings<PerturbationSettings>(original, "perturbation");
   result.sections.erase("perturbation");  // the recorded frames and the camera below have it already
   result.source = {.kind = FrameSource::kind, .name = "tum", .values = {}, .location = {configuration_file}};
   const ModuleEntry* tum = registry.find(result.source.kind, result.source.name);

@@ -19,7 +19,7 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/stage_times.hpp"
 #include "holdfast/evaluation/number_text.hpp"
-#include "holdfast/pipeline/configured_pipeline.hpp"
+#include "holdfast/run/configured_pipeline.hpp"
 #include "label_writer.hpp"
 #include "program_host.hpp"
 #include "segmentation_picture.hpp"

@@ -10,8 +10,8 @@
 #include "holdfast/plugin/did_you_mean.hpp"
 #include "holdfast/plugin/loader.hpp"
 #include "holdfast/plugin/module_check.hpp"
-#include "moved_keys.hpp"
 #include "parameter_places.hpp"
+#include "renamed_keys.hpp"
 
 namespace holdfast {
 
@@ -143,9 +143,9 @@ std::optional<std::string> camera_of_recording(const std::string& folder) {
 
 class Resolver {
  public:
-  Resolver(const ConfigurationNode& root, std::string file, Registry& registry,
+  Resolver(ConfigurationNode root, std::string file, Registry& registry,
            const std::vector<SectionDescription>& sections)
-      : root_(root), file_(std::move(file)), registry_(registry), sections_(sections) {
+      : root_(std::move(root)), file_(std::move(file)), registry_(registry), sections_(sections) {
     elsewhere_ = [this](const std::string& name) { return ParameterPlaces(root_, registry_, sections_).find(name); };
   }
 
@@ -156,6 +156,7 @@ class Resolver {
                "found " + root_.found() + "; expected a map with the sections source, features, optimizer, ...");
       throw ConfigurationError(diagnostics_);
     }
+    replace_renamed_keys(root_, result_.warnings, diagnostics_);
     load_plugins();
     check_section_names();
     result_.source = choose("source", nullptr);
@@ -396,13 +397,11 @@ class Resolver {
   }
 
   void read_section(const SectionDescription& section) {
-    ConfigurationNode node = at(section.name);
-    reject_moved_keys(section.name, node, diagnostics_);
-    result_.sections[section.name] =
-        read_parameters(node, section.parameters, "section '" + section.name + "'", diagnostics_, elsewhere_);
+    result_.sections[section.name] = read_parameters(at(section.name), section.parameters,
+                                                     "section '" + section.name + "'", diagnostics_, elsewhere_);
   }
 
-  const ConfigurationNode& root_;
+  ConfigurationNode root_;
   std::string file_;
   Registry& registry_;
   const std::vector<SectionDescription>& sections_;

@@ -7,7 +7,8 @@
 #include "gil.hpp"
 #include "holdfast/config/configuration_node.hpp"
 #include "holdfast/config/reference.hpp"
-#include "holdfast/pipeline/configured_pipeline.hpp"
+#include "holdfast/perturbation/perturbation_settings.hpp"
+#include "holdfast/run/configured_pipeline.hpp"
 #include "holdfast/simulation/scene_file.hpp"
 #include "registry.hpp"
 
@@ -29,6 +30,14 @@ void apply_overrides(ConfigurationNode& root, const std::vector<std::string>& ov
   if (!wrong.empty()) throw ConfigurationError(std::move(wrong));
 }
 
+/// Frames of the caller are not perturbed, but the pipeline's camera would be.
+void refuse_perturbation(const Configuration& configuration, const ConfigurationNode& root) {
+  if (section_settings<PerturbationSettings>(configuration, "perturbation").is_nothing()) return;
+  throw ConfigurationError(root.find("perturbation")->location,
+                           "'perturbation' changes the frames of the configuration's source, and this pipeline gets "
+                           "its frames from the caller; remove the section, or use holdfast.run");
+}
+
 /// `text` is YAML and `name` its place in messages; without `text`, `name` is a file. With `fed`, frames come from the
 /// caller whatever the source is. `modules` are those of make_registry().
 Configuration load(const std::string& name, const std::optional<std::string>& text, const std::filesystem::path& folder,
@@ -38,7 +47,9 @@ Configuration load(const std::string& name, const std::optional<std::string>& te
   ConfigurationNode root = text ? parse_yaml(*text, name, folder) : read_yaml(name);
   apply_overrides(root, overrides);
   if (fed) feed_from_caller(root);
-  return resolve_configuration(root, name, registry, pipeline_sections());
+  Configuration configuration = resolve_configuration(root, name, registry, pipeline_sections());
+  if (fed) refuse_perturbation(configuration, root);
+  return configuration;
 }
 
 py::dict dictionary_of(const ModuleChoice& choice) {

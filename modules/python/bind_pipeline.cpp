@@ -11,7 +11,7 @@
 #include "bindings.hpp"
 #include "frames.hpp"
 #include "gil.hpp"
-#include "holdfast/pipeline/configured_pipeline.hpp"
+#include "holdfast/run/configured_pipeline.hpp"
 #include "holdfast/surface/free_space.hpp"
 #include "module_call.hpp"
 #include "registry.hpp"

@@ -19,6 +19,13 @@ py::dict stage_times(const FrameResult& result) {
   return times;
 }
 
+/// `trouble`, the earlier name of `failure`.
+std::string trouble_of(const FrameResult& result) {
+  if (PyErr_WarnEx(PyExc_DeprecationWarning, "FrameResult.trouble is now FrameResult.failure", 1) != 0)
+    throw py::error_already_set();
+  return to_string(result.failure);
+}
+
 std::string result_text(const FrameResult& result) {
   std::string text = "FrameResult(index=" + std::to_string(result.index) + ", " + to_string(result.status);
   if (result.failure != TrackingFailure::none) text += std::string(", ") + to_string(result.failure);
@@ -55,7 +62,8 @@ void bind_results(py::module_& module) {
       .def_property_readonly("status", [](const FrameResult& r) { return to_string(r.status); })
       .def_property_readonly("method", [](const FrameResult& r) { return to_string(r.method); })
       .def_property_readonly("fallback", [](const FrameResult& r) { return to_string(r.fallback); })
-      .def_property_readonly("trouble", [](const FrameResult& r) { return to_string(r.failure); })
+      .def_property_readonly("failure", [](const FrameResult& r) { return to_string(r.failure); })
+      .def_property_readonly("trouble", &trouble_of)
       .def_property_readonly("T_world_camera", [](const FrameResult& r) { return pose_array(r.T_world_camera); })
       .def_readonly("features", &FrameResult::features)
       .def_readonly("static_features", &FrameResult::static_features)

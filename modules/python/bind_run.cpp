@@ -10,7 +10,7 @@
 #include "bindings.hpp"
 #include "errors.hpp"
 #include "gil.hpp"
-#include "holdfast/pipeline/configured_pipeline.hpp"
+#include "holdfast/run/configured_pipeline.hpp"
 #include "holdfast/run/results.hpp"
 #include "holdfast/run/run.hpp"
 #include "holdfast/run/trajectory_journal.hpp"

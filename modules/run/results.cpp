@@ -63,12 +63,6 @@ void write_dense_map(const RunRecord& record, const std::filesystem::path& file)
     write_points_ply(file, record.map);
 }
 
-std::vector<std::string> surface_formats(const RunRecord& record) {
-  const auto section = record.configuration.sections.find("surface");
-  if (section == record.configuration.sections.end()) return SurfaceSettings().formats;
-  return ParameterTable<SurfaceSettings>().settings(section->second).formats;
-}
-
 }  // namespace
 
 const std::vector<std::string>& result_names() {
@@ -103,9 +97,11 @@ void write_results(const RunRecord& record, const std::filesystem::path& folder)
     results.write_text("error.svg", [&] { return error_over_time_svg(*record.evaluation); });
   }
   if (has_map) results.write("static_map.ply", [&](const path& file) { write_dense_map(record, file); });
-  if (record.surface && !record.surface->empty())
-    for (const std::string& format : surface_formats(record))
+  if (record.surface && !record.surface->empty()) {
+    const auto settings = section_settings<SurfaceSettings>(record.configuration, "surface");
+    for (const std::string& format : settings.formats)
       results.write(("surface." + format).c_str(), [&](const path& file) { write_mesh(file, *record.surface); });
+  }
   if (record.navigation) {
     results.write_text("octomap.bt", [&] { return record.navigation->octomap; });
     if (record.navigation->floor) {

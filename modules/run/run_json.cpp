@@ -81,8 +81,8 @@ Json loops_json(const LoopRecord& record) {
                      {"candidate_timestamp", event.candidate_timestamp},
                      {"inliers", event.loop.inliers},
                      {"points_fused", event.loop.points_fused},
-                     {"joins_pieces", event.loop.joins_submaps},
-                     {"way_m", event.loop.path_length},
+                     {"joins_submaps", event.loop.joins_submaps},
+                     {"path_length_m", event.loop.path_length},
                      {"correction_m", event.loop.correction.metres},
                      {"correction_deg", event.loop.correction.degrees},
                      {"seconds", event.loop.seconds}});
@@ -132,7 +132,7 @@ Json frames_json(const RunRecord& record) {
 Json map_json(const RunRecord& record) {
   return {{"keyframes", record.map_keyframes},
           {"points", record.map_points},
-          {"pieces_begun", record.losses.submaps},
+          {"submaps_begun", record.losses.submaps},
           {"keyframes_made", record.mapping.keyframes_made},
           {"keyframes_removed", record.mapping.keyframes_removed},
           {"points_from_depth", record.mapping.points_from_depth},
@@ -180,7 +180,7 @@ std::string run_json(const RunRecord& record) {
   if (const std::string warning = coverage_warning(record); !warning.empty()) warnings.push_back(warning);
   json["perturbation"] = perturbation_json(record.configuration);
   json["frames"] = frames_json(record);
-  Json& failures = json["troubles"] = Json::object();
+  Json& failures = json["tracking_failures"] = Json::object();
   for (const auto& [failure, count] : s.failures()) failures[to_string(failure)] = count;
   Json& skipped = json["skipped_frames"] = Json::array();
   for (const SkippedFrame& frame : record.skipped)

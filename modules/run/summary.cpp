@@ -62,22 +62,14 @@ std::string perturbation_text(const Configuration& configuration) {
   return text;
 }
 
-double tracking_restart_time(const Configuration& configuration) {
-  const auto section = configuration.sections.find("tracking");
-  if (section == configuration.sections.end()) return TrackingSettings().restart_time;
-  const auto value = section->second.find("restart_time");
-  if (value == section->second.end()) return TrackingSettings().restart_time;
-  const auto* seconds = std::get_if<double>(&value->second);
-  return seconds != nullptr ? *seconds : TrackingSettings().restart_time;
-}
-
 /// Advice for a camera with depth that was lost once, to the end of the run, although it saw features: the recording
 /// may go on in another place. Empty if nothing suggests that.
 std::string advice_to_restart(const RunRecord& record) {
   constexpr double suggested = 2.0;         // s, of tracking.restart_time
   constexpr double share_of_missing = 0.8;  // of all frames without a pose, those after the last one with a pose
   if (!features_have_depth(record.sensor) || record.localised_only || record.trajectory.empty() ||
-      record.frame_stamps.empty() || tracking_restart_time(record.configuration) > 0.0)
+      record.frame_stamps.empty() ||
+      section_settings<TrackingSettings>(record.configuration, "tracking").restart_time > 0.0)
     return "";
   const auto& failures = record.summary.failures();
   const auto count_of = [&](TrackingFailure failure) {
@@ -113,9 +105,7 @@ std::string pair_text(const PairEstimate& pair) {
 }  // namespace
 
 std::vector<std::pair<std::string, double>> perturbation_strengths(const Configuration& configuration) {
-  const auto section = configuration.sections.find("perturbation");
-  if (section == configuration.sections.end()) return {};
-  return ParameterTable<PerturbationSettings>().settings(section->second).strengths();
+  return section_settings<PerturbationSettings>(configuration, "perturbation").strengths();
 }
 
 std::string percent_text(double share) { return fixed_text(share * 100.0, 2) + " %"; }

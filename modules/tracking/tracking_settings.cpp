@@ -254,8 +254,9 @@ void describe_losses(ParameterTable<S>& table) {
       .range(0, 100);
   table
       .add("return_interval", &S::return_interval,
-           "after a new submap began, every so manieth frame is searched for in the submap that was left")
-      .range(1, 1000);
+           "after a new submap began, interval of the frames that are searched for in the submap that was left")
+      .range(1, 1000)
+      .unit("frames");
   table
       .add("found_time", &S::found_time,
            "time after a loss for which a view that shows little of the map is not taken for a new place, because what "

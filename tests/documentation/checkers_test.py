@@ -7,6 +7,7 @@ import tempfile
 import unittest
 
 import check_links
+import check_settings
 import markdown
 import shell
 
@@ -142,6 +143,38 @@ class Figures(unittest.TestCase):
             file.flush()
             with self.assertRaises(renew_figures.PageError):
                 renew_figures.read_list(pathlib.Path(file.name))
+
+
+class Settings(unittest.TestCase):
+    PARAMETER = {"name": "limit", "help": "longest time; 0 = none", "unit": "s", "default": 2.0, "minimum": 0.0,
+                 "maximum": 9.0, "required": False}
+
+    def problems(self, declaration: str, **changes) -> list[str]:
+        parameter = {**self.PARAMETER, **changes}
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            for top in ("include", "modules", "plugins"):
+                (root / top).mkdir()
+            (root / "include/a.hpp").write_text("struct ASettings {\n  int other;\n" + declaration + "\n};\n")
+            (root / "modules/a.cpp").write_text('using S = ASettings;\ntable\n.add("limit", &S::limit, "'
+                                                + parameter["help"].replace("; ", '; "\n"') + '")\n.range(0, 9);')
+            problems, count = check_settings.problems_of(root, [{"parameters": [parameter]}])
+            self.assertEqual(count, 1)
+            return problems
+
+    def test_texts_that_agree(self):
+        for declaration in ("  double limit = 2.0;", "  double limit = 2.0;  ///< time [s]; 0 = off",
+                            "  /// From 0 to 1: much. 0 = off; 2 as in ORB-SLAM2\n  double other = 1.0, limit = 2.0;",
+                            "  double limit =\n      2.0;  ///< time of a x^2 [m] or more,\n  ///< 0 = off"):
+            with self.subTest(declaration):
+                self.assertEqual(self.problems(declaration), [])
+
+    def test_texts_that_contradict(self):
+        for comment in ("0 = off [ms]", "longest time", "0 = off; 5 = all", "0 = off; 3 as in ORB-SLAM2",
+                        "0 = off; default: 2", "0 = off; required"):
+            with self.subTest(comment):
+                self.assertEqual(len(self.problems(f"  double limit = 2.0;  ///< {comment}")), 1)
+        self.assertEqual(len(self.problems("  double limit = 2.0;", minimum=1.0)), 1)
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/perturbation/image_faults.hpp"
-#include "holdfast/pipeline/configured_pipeline.hpp"
+#include "holdfast/run/configured_pipeline.hpp"
 
 namespace holdfast {
 namespace {

@@ -7,7 +7,7 @@
 #include <future>
 
 #include "holdfast/config/configuration.hpp"
-#include "holdfast/pipeline/configured_pipeline.hpp"
+#include "holdfast/run/configured_pipeline.hpp"
 #include "python/python_file.hpp"
 
 namespace holdfast {

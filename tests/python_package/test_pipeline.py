@@ -30,6 +30,8 @@ def test_gives_the_poses_of_a_run(config, frames):
     assert fed[0].status == "initialised" and fed[-1].status == "tracked"
     assert fed[-1].T_world_camera.shape == (4, 4) and fed[-1].index == len(frames) - 1
     assert sum(fed[-1].stage_seconds.values()) > 0.0
+    with pytest.warns(DeprecationWarning, match="FrameResult.trouble is now FrameResult.failure"):
+        assert fed[-1].trouble == fed[-1].failure == "none"
     assert numpy.array_equal(pipeline.trajectory().poses, result.trajectory.poses)
     assert numpy.array_equal(pipeline.map.snapshot().points, result.map.snapshot().points)
 
@@ -256,6 +258,13 @@ def test_cameras_have_lenses():
         holdfast.Camera(**numbers, lens="fisheye", p1=0.1)
     with pytest.raises(holdfast.InputError, match="no inverse in the image: from pixel"):
         holdfast.Camera(**numbers, k1=-0.4)
+
+
+def test_refuses_a_perturbation_of_frames_that_are_fed():
+    config = {**PIPELINE, "perturbation": {"seed": 3}}
+    holdfast.Pipeline(config).close()
+    with pytest.raises(holdfast.ConfigurationError, match="'perturbation' changes the frames of the configuration's"):
+        holdfast.Pipeline(config, {"perturbation.calibration": 0.1})
 
 
 def test_camera_can_be_given(frames):

@@ -56,6 +56,10 @@ def test_result_holds_what_the_run_computed(config):
     assert 0.0 < result.evaluation.ate_rmse < 0.02
     assert result.evaluation["ate_m"]["rmse"] == result.evaluation.ate_rmse
     assert {"stage", "median_s", "share"} <= set(result.stages[0])
+    with pytest.warns(DeprecationWarning, match="'pieces_begun' of run.json is now 'submaps_begun'"):
+        assert result.run_json["map"]["pieces_begun"] == result.run_json["map"]["submaps_begun"] == 0
+    with pytest.raises(KeyError, match="submap"):
+        result.run_json["submap"]
     assert result.tracking_seconds.shape == (count,)
     snapshot = result.map.snapshot()
     assert len(snapshot.keyframes) == result.map.keyframe_count > 0

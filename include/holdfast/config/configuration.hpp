@@ -14,6 +14,7 @@
 #include "holdfast/core/imu.hpp"
 #include "holdfast/core/sensor.hpp"
 #include "holdfast/core/warning.hpp"
+#include "holdfast/plugin/parameter_table.hpp"
 #include "holdfast/plugin/registry.hpp"
 
 namespace holdfast {
@@ -102,9 +103,16 @@ struct Configuration {
   std::vector<std::string> plugins;                 ///< absolute paths of the plugin files
 };
 
+/// The settings of a plain section. Parameters without a value, and those of a missing section, have their defaults.
+template <class Settings>
+Settings section_settings(const Configuration& configuration, const std::string& name) {
+  const auto section = configuration.sections.find(name);
+  return section == configuration.sections.end() ? Settings{} : ParameterTable<Settings>().settings(section->second);
+}
+
 /// Reads, overrides and resolves a configuration file with the given plain sections. Plugins that it names are loaded
 /// into `registry` first. Throws ConfigurationError with every problem found. load_configuration() of
-/// pipeline/configured_pipeline.hpp knows the sections of the pipeline.
+/// run/configured_pipeline.hpp knows the sections of the pipeline.
 Configuration read_configuration(const std::filesystem::path& file, const std::vector<std::string>& overrides,
                                  Registry& registry, const std::vector<SectionDescription>& sections);
 

@@ -42,7 +42,7 @@ struct RunSettings {
   int prefetch = 2;        ///< sequential mode: frames that another thread reads ahead; 0 = read by the same thread
   int frame_queue = 4;     ///< max. frames waiting for tracking; four frames bridge a pause of 130 ms at 30 Hz
   int keyframe_queue = 4;  ///< max. keyframes waiting for local mapping, and max. waiting for loop closing
-  double minimum_coverage = 0.5;  ///< share of frames with a pose below which a run counts as a failure to track
+  double minimum_coverage = 0.5;  ///< share of frames with a pose below which a run counts as a failure; 0 = never
 
   /// The reason why the fields do not fit together; empty when they do.
   std::optional<std::string> contradiction() const;

@@ -69,7 +69,7 @@ struct PipelineOrigin {
 ///
 /// Camera, features and optimizer are required; every other part is optional, as in a configuration. The builder also
 /// checks whether the modules are compatible with each other and with the source; configurations use it, too
-/// (configured_pipeline.hpp). Modules are constructed and checked by build(), which reports all errors together. A
+/// (run/configured_pipeline.hpp). Modules are constructed and checked by build(), which reports all errors together. A
 /// builder is used once, by one thread.
 class PipelineBuilder {
  public:

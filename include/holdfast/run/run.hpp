@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "holdfast/core/stage_times.hpp"
-#include "holdfast/pipeline/configured_pipeline.hpp"
+#include "holdfast/run/configured_pipeline.hpp"
 #include "holdfast/run/run_record.hpp"
 
 /// Runs a configuration from the first to the last frame of its source, at the configured pace, and collects a record

@@ -15,7 +15,7 @@ struct OpencvOrbSettings {
   int count = 1000;           ///< number of features to extract; 1000 as in ORB-SLAM2 for RGB-D
   double scale_factor = 1.2;  ///< scale between adjacent pyramid levels, as in ORB-SLAM2
   int levels = 8;             ///< number of pyramid levels, as in ORB-SLAM2
-  int fast_threshold = 20;    ///< minimum contrast of a FAST corner [grey levels], as in ORB-SLAM2
+  int fast_threshold = 20;    ///< minimum contrast of a FAST corner [grey level], as in ORB-SLAM2
 
   static void describe(ParameterTable<OpencvOrbSettings>& table);
 };

@@ -20,7 +20,7 @@ struct PrecomputedSettings {
   /// File with lines "timestamp filename"; empty = the name of each PNG is its time stamp.
   std::filesystem::path list;
   double tolerance = 0.0;  ///< maximum time difference between frame and label image [s]; 0 = identical time stamps
-  TextMap labels;          ///< class name of each value or range of values; required
+  TextMap labels;          ///< class name of each value or range of values; required except with annotations of COCO
 
   static void describe(ParameterTable<PrecomputedSettings>& table);
 };

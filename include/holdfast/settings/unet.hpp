@@ -26,7 +26,7 @@ struct UnetSettings {
 
   UnetSize size = UnetSize::base;  ///< small takes half the time of base, large twice
   int width = 0;                   ///< of the network input, a multiple of 32 [px]; 0 = given by `size`
-  int height = 0;                  ///< likewise
+  int height = 0;                  ///< the same of its height [px]; 0 = given by `size`
   /// Average the scores of the image and its mirror image; doubles the time and improves the masks slightly.
   bool mirror = false;
   /// Look again at the part of the image in which the network is least certain; up to twice the time.

@@ -62,12 +62,12 @@ struct TrackingSettings {
   double jump_distance = 0.06;       ///< maximum deviation from constant velocity in 1/30 s [m]: 54 m/s^2
   double jump_angle = 3.0;           ///< the same for the rotation [deg]
   int local_keyframes = 80;          ///< maximum number of keyframes of the local map
-  double odometry_time = 0.3;        ///< maximum duration of odometry without the map [s]
+  double odometry_time = 0.3;        ///< maximum duration of odometry without the map [s]; 0 = never
   double depth_only_time = 1.0;      ///< maximum duration of poses from dense depth alone [s]
 
   // Inertial measurements.
   bool inertia = false;              ///< they predict poses and bridge views, if frames have them
-  double inertial_time = 4.0;        ///< how long poses can be predicted by them alone [s]
+  double inertial_time = 4.0;        ///< how long poses can be predicted by them alone [s]; 0 = never
   double inertial_deviation = 0.15;  ///< standard deviation of the position up to which such a pose is used [m]
 
   // Optical flow.
@@ -90,7 +90,7 @@ struct TrackingSettings {
   int ample_inliers = 4;             ///< inliers that need no other check, as a multiple of minimum_inliers
   double support_age = 0.5;          ///< age of a monocular map from which minimum_support applies [s]
   double minimum_support = 0.06;     ///< minimum share of static features explained by a monocular map; without people
-                                     ///< 0.12 and more, on a person who fills the view 0.02 to 0.05
+                                     ///< 0.12 and more, on a person who fills the view 0.02 to 0.05; 0 = any
   double established_age = 1.0;      ///< age of established points [s]; a passing person is in view for about as long
   int established_points = 50;       ///< minimum number of consistent established points
   double new_point_factor = 4.0;     ///< factor on the chi-square limit of newer points
@@ -105,17 +105,17 @@ struct TrackingSettings {
 
   // Relocalisation.
   double restart_time = 0.0;     ///< duration of a loss after which a new submap begins [s]; 0 = never
-  int backward_frames = 60;      ///< maximum number of frames kept for backward tracking
+  int backward_frames = 60;      ///< maximum number of frames kept for backward tracking; 0 = none
   int backward_steps = 2;        ///< frames tracked backwards per new frame
   int backward_mask_frames = 8;  ///< frames to wait for the mask of the first keyframe after a recovery
   int backward_patience = 3;     ///< consecutive failures after which backward tracking ends
-  double start_share = 0.6;      ///< minimum static share of the first keyframe's features
-  double young_map_time = 1.0;   ///< age up to which a lost map is restarted [s]
+  double start_share = 0.6;      ///< minimum static share of the first keyframe's features; 0 = any
+  double young_map_time = 1.0;   ///< age up to which a lost map is restarted [s]; 0 = never
   double coasting_time = 1.0;    ///< duration of the extrapolation after a loss [s]
   std::vector<double> coasting_shares = {1.0, 0.5, 0.0};  ///< fractions of the last velocity that are extrapolated
   double coasting_window = 3.0;                           ///< factor on local_map_window
   int recovery_keyframes = 5;                             ///< keyframes compared with each frame after a loss
-  int relocalisation_candidates = 5;                      ///< maximum number of candidates of the loop detector
+  int relocalisation_candidates = 5;                      ///< candidates of the loop detector, at most; 0 = none
   int relocalisation_inliers = 50;                        ///< minimum number of inliers
   double relocalisation_window = 2.0;                     ///< factor on local_map_window
   double relocalisation_speed = 3.0;  ///< maximum speed of the camera during a loss [m/s]; a running person

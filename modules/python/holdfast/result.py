@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import os
+import warnings
 from typing import Any, Dict, List, Optional, Tuple, Union
 
 import numpy as np
@@ -17,8 +18,28 @@ from .maps import Map
 from .trajectory import Trajectory
 
 
+#: Keys of run.json that were renamed.
+_RENAMED = {
+    "troubles": "tracking_failures",
+    "pieces_begun": "submaps_begun",
+    "joins_pieces": "joins_submaps",
+    "way_m": "path_length_m",
+}
+
+
+class _RunJson(Dict[str, Any]):
+    """A mapping of run.json that understands the earlier names of keys, with a warning."""
+
+    def __missing__(self, key: str) -> Any:
+        name = _RENAMED.get(key, key)
+        if name not in self:
+            raise KeyError(key)
+        warnings.warn(f"'{key}' of run.json is now '{name}'", DeprecationWarning, stacklevel=2)
+        return self[name]
+
+
 class Result:
-    """A run at its end: trajectory, map, evaluation, times and troubles. `run_json` has the content of run.json."""
+    """A run at its end: trajectory, map, evaluation, times and failures. `run_json` has the content of run.json."""
 
     def __init__(self, core: _core.RunRecord) -> None:
         self._core = core
@@ -32,7 +53,7 @@ class Result:
         self.evaluation: Optional[Evaluation] = Evaluation(core.evaluation) if core.evaluation is not None else None
         self.no_evaluation: str = core.no_evaluation
         #: Content of run.json: version, counts, stage times, loops, machine.
-        self.run_json: Dict[str, Any] = json.loads(core.run_json())
+        self.run_json: Dict[str, Any] = json.loads(core.run_json(), object_hook=_RunJson)
 
     @property
     def map(self) -> Map:

@@ -112,7 +112,7 @@ void ColourSensorSettings::describe(ParameterTable<ColourSensorSettings>& table)
       .unit("grey levels");
   table
       .add("exposure_change", &S::exposure_change,
-           "how far the exposure wanders: gain up to 1 + this, down to 1 / that")
+           "how far the exposure wanders: gain up to 1 + this, down to 1 / that; 0 = constant")
       .range(0.0, 1.0);
   table.add("exposure_period", &S::exposure_period, "of the exposure's swings").range(0.1, 1000.0).unit("s");
   table.add("vignetting", &S::vignetting, "share of the light that is lost in the corners").range(0.0, 1.0);

@@ -23,8 +23,9 @@ void McapSettings::describe(ParameterTable<McapSettings>& table) {
   table.add("quality", &S::quality, "JPEG quality of the images").range(1, 100);
   table
       .add("map_interval", &S::map_interval,
-           "minimum time between two states of the map (keyframes and points) [s]; the last one is always written")
-      .range(0, 1e6);
+           "minimum time between two states of the map (keyframes and points); the last one is always written")
+      .range(0, 1e6)
+      .unit("s");
 }
 
 namespace {

@@ -12,7 +12,10 @@ void ViewerSettings::describe(ParameterTable<ViewerSettings>& table) {
             "numeric address to serve the page at; another one than 127.0.0.1 opens the run to other machines");
   table.add("port", &S::port, "port to serve the page at; 0 = any free one").range(0, 65535);
   table.add("wait", &S::wait, "wait for a browser after the first frame");
-  table.add("speed", &S::speed, "speed of the frames at first, relative to their time stamps; 0 = as fast as possible")
+  table
+      .add("speed", &S::speed,
+           "speed of the frames at first, relative to their time stamps; 1 = at the time stamps, 0 = as fast as "
+           "possible")
       .range(0.0, 4.0);
   table.add("picture_width", &S::picture_width, "wider pictures are scaled down before they are sent")
       .range(64, 4096)

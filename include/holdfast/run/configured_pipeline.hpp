@@ -15,8 +15,8 @@
 
 namespace holdfast {
 
-/// The plain sections of a configuration that belong to the pipeline, in the order of the reference: tracking,
-/// segmentation, evidence, mapping, loop_closing, dense_map.
+/// The plain sections of a configuration in the order of the reference: those of the pipeline, and `perturbation` of
+/// its source.
 std::vector<SectionDescription> pipeline_sections();
 
 /// Loads a configuration file. Each override "key.path=value" has the effect of an edit of the file. Plugins named by
@@ -53,8 +53,9 @@ struct BuiltPipeline {
   Warnings warnings() const;
 };
 
-/// Constructs the modules of a configuration and the pipeline by a PipelineBuilder. Throws ConfigurationError with all
-/// incompatibilities found, InputError for an unusable map file, and any exception of a module's constructor. The
+/// Constructs the modules of a configuration and the pipeline by a PipelineBuilder. The section `perturbation` acts on
+/// the frames and on the camera of BuiltPipeline::source, not on frames from elsewhere. Throws ConfigurationError with
+/// all incompatibilities found, InputError for an unusable map file, and any exception of a module's constructor. The
 /// registry is not needed afterwards.
 BuiltPipeline build_pipeline(const Configuration& configuration, const Registry& registry,
                              const PipelineOptions& options = {});
@@ -67,7 +68,7 @@ inline BuiltPipeline build_pipeline(const Configuration& configuration, const Pi
   return build_pipeline(configuration, registry, options);
 }
 
-/// Constructs only the source of a configuration. Throws any exception of its constructor.
+/// Constructs only the source of a configuration, with its perturbation. Throws any exception of its constructor.
 std::unique_ptr<FrameSource> build_source(const Configuration& configuration, const Registry& registry);
 
 /// A source and the segmenter for its frames.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "holdfast/pipeline/configured_pipeline.hpp"
+#include "holdfast/run/configured_pipeline.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

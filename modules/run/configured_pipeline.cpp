@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "holdfast/pipeline/configured_pipeline.hpp"
+#include "holdfast/run/configured_pipeline.hpp"
 
 #include <utility>
 
@@ -55,9 +55,7 @@ CreationContext context_of_source(const Configuration& configuration) {
 }
 
 PerturbationSettings perturbation_of(const Configuration& configuration) {
-  const auto section = configuration.sections.find("perturbation");
-  if (section == configuration.sections.end()) return {};
-  return ParameterTable<PerturbationSettings>().settings(section->second);
+  return section_settings<PerturbationSettings>(configuration, "perturbation");
 }
 
 std::unique_ptr<FrameSource> make_source(const Configuration& configuration, const Registry& registry,
@@ -76,12 +74,6 @@ ModuleOf<Interface> module_of(const ModuleChoice& choice) {
   return module;
 }
 
-template <class Settings>
-Settings section_of(const Configuration& configuration, const std::string& name) {
-  const auto found = configuration.sections.find(name);
-  return found == configuration.sections.end() ? Settings{} : ParameterTable<Settings>().settings(found->second);
-}
-
 void choose_modules(const Configuration& configuration, PipelineBuilder& builder) {
   builder.features(module_of<FeatureExtractor>(configuration.features))
       .segmenter(module_of<Segmenter>(configuration.segmenter))
@@ -94,14 +86,14 @@ void choose_modules(const Configuration& configuration, PipelineBuilder& builder
 }
 
 void choose_settings(const Configuration& configuration, PipelineBuilder& builder) {
-  builder.tracking(section_of<TrackingSettings>(configuration, "tracking"))
-      .stereo(section_of<StereoSettings>(configuration, "stereo"))
-      .segmentation(section_of<SegmentationSettings>(configuration, "segmentation"))
-      .evidence(section_of<EvidenceSettings>(configuration, "evidence"))
-      .mapping(section_of<MappingSettings>(configuration, "mapping"))
-      .loop_closing(section_of<LoopClosingSettings>(configuration, "loop_closing"))
-      .dense_map(section_of<DenseMapSettings>(configuration, "dense_map"))
-      .surface(section_of<SurfaceSettings>(configuration, "surface"))
+  builder.tracking(section_settings<TrackingSettings>(configuration, "tracking"))
+      .stereo(section_settings<StereoSettings>(configuration, "stereo"))
+      .segmentation(section_settings<SegmentationSettings>(configuration, "segmentation"))
+      .evidence(section_settings<EvidenceSettings>(configuration, "evidence"))
+      .mapping(section_settings<MappingSettings>(configuration, "mapping"))
+      .loop_closing(section_settings<LoopClosingSettings>(configuration, "loop_closing"))
+      .dense_map(section_settings<DenseMapSettings>(configuration, "dense_map"))
+      .surface(section_settings<SurfaceSettings>(configuration, "surface"))
       .run(configuration.run);
 }
 
