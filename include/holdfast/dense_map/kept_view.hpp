@@ -28,8 +28,14 @@ struct KeptView {
   cv::Mat depth;           ///< 16UC1: depth_bits in depth_units, 0 = none; moves_bit for dynamic pixels
   /// Of a frame between keyframes, which only carves free space and has no colour: its camera. Else nullptr.
   std::shared_ptr<const Camera> coarse_camera = nullptr;
-  Eigen::Isometry3d T_view_keyframe = Eigen::Isometry3d::Identity();  ///< of such a frame relative to `keyframe`
+  /// Pose of the depth image relative to `keyframe`: of such a frame, or of the keyframe's own, which many sensors take
+  /// some milliseconds before or after the colour image.
+  Eigen::Isometry3d T_view_keyframe = Eigen::Isometry3d::Identity();
 
+  /// T_world_view when the keyframe has the given pose.
+  Eigen::Isometry3d T_world_view(const Eigen::Isometry3d& T_keyframe_world) const {
+    return (T_view_keyframe * T_keyframe_world).inverse();
+  }
   bool only_carves() const { return coarse_camera != nullptr; }
 
   bool moves(int x, int y) const { return (depth.at<std::uint16_t>(y, x) & moves_bit) != 0; }
