@@ -10,6 +10,7 @@
 #include "holdfast/map_io/map_export.hpp"
 #include "holdfast/map_io/map_file.hpp"
 #include "holdfast/map_io/map_info.hpp"
+#include "holdfast/surface/decimation.hpp"
 #include "holdfast/surface/mesh_files.hpp"
 #include "holdfast/surface/surface_field.hpp"
 #include "holdfast/surface/surface_views.hpp"
@@ -27,6 +28,7 @@ struct MapArguments {
   std::string points_to, trajectory_to, json_to, mesh_to;
   std::string views;   // folder; empty = beside the map
   double voxel = 0.0;  // [m]; 0 = as in the run
+  int triangles = 0;   // most of the mesh; 0 = all
 };
 
 constexpr const char* map_explanation = R"(
@@ -80,6 +82,7 @@ TriangleMesh mesh_of(const Map& map, const MapArguments& arguments) {
   Progress progress(views.views.size());
   TriangleMesh mesh = fuse(views, map, [&](std::size_t done) { progress.update(done, "fused"); });
   if (mesh.empty()) throw Error("the views show no surface up to surface.maximum_depth; no mesh is written");
+  if (arguments.triangles > 0) decimate(mesh, static_cast<std::size_t>(arguments.triangles));
   return mesh;
 }
 
@@ -136,6 +139,9 @@ void add_map_command(CLI::App& app, int& exit_code) {
   exporting->add_option("--voxel", arguments->voxel, "Side of a voxel of the mesh [m]; otherwise that of the run")
       ->type_name("METRES")
       ->check(CLI::Range(0.002, 0.5))
+      ->needs(mesh);
+  exporting->add_option("--triangles", arguments->triangles, "Largest number of triangles of the mesh; otherwise all")
+      ->check(CLI::Range(1, 1'000'000'000))
       ->needs(mesh);
   exporting->add_option("--views", arguments->views, "Kept depth of the mesh; otherwise surface_views beside FILE")
       ->type_name("FOLDER")

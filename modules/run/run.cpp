@@ -12,6 +12,7 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/dense_map/static_scene.hpp"
 #include "holdfast/evaluation/number_text.hpp"
+#include "holdfast/surface/decimation.hpp"
 #include "holdfast/surface/surface_map.hpp"
 #include "run_warnings.hpp"
 
@@ -100,6 +101,7 @@ void record_surface(const SurfaceMap& surface, RunRecord& record) {
                      "; check the depth of the source, and `surface.maximum_depth`"});
   const SurfaceSettings& settings = surface.field().settings();
   if (settings.navigation && !record.surface->empty()) record_navigation(surface, record);
+  if (settings.triangles > 0) decimate(*record.surface, static_cast<std::size_t>(settings.triangles));
 }
 
 }  // namespace

@@ -135,6 +135,13 @@ TEST_F(MapCommand, ExportsAMeshFromTheKeptDepth) {
                   .exit_code,
               0);
   EXPECT_GT(read_mesh(fine).triangles.size(), 2 * read_mesh(coarse).triangles.size());
+  const std::string few = path("few.ply").string();
+  const std::size_t half = read_mesh(fine).triangles.size() / 2;
+  EXPECT_EQ(run({"map", "export", file(), "--mesh", few, "--voxel", "0.04", "--triangles", std::to_string(half),
+                 "--views", path("elsewhere").string()})
+                .exit_code,
+            0);
+  EXPECT_LE(read_mesh(few).triangles.size(), half);
   EXPECT_EQ(run({"map", "export", file(), "--voxel", "0.1", "--json", "-"}).exit_code, 2);
   EXPECT_THAT(run({"map", "export", file(), "--mesh", path("room.stl").string()}).errors,
               HasSubstr(".ply, .obj or .glb"));
