@@ -54,9 +54,10 @@ class ViewSampler {
   /// The pinhole camera of the kept views.
   const Camera& camera() const { return small_; }
 
-  /// Creates the kept view of a keyframe. Dynamic pixels are those whose label (`labels`, 8UC1 of the image's size;
-  /// coarse.mask if `labels` is empty) is unknown (255) or a class of `left_out` (by label), cells with negative
-  /// coarse.static_log_odds, pixels near these (DenseMapSettings::dilate, edge), and pixels outside the image.
+  /// Creates the kept view of a keyframe, at coarse.T_view_camera if the source states a SensorFrame::depth_delay.
+  /// Dynamic pixels are those whose label (`labels`, 8UC1 of the image's size; coarse.mask if `labels` is empty) is
+  /// unknown (255) or a class of `left_out` (by label), cells with negative coarse.static_log_odds, pixels near these
+  /// (DenseMapSettings::dilate, edge), and pixels outside the image.
   KeptView sample(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse, const cv::Mat& labels,
                   const std::vector<bool>& left_out) const;
 
