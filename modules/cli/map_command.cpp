@@ -10,6 +10,10 @@
 #include "holdfast/map_io/map_export.hpp"
 #include "holdfast/map_io/map_file.hpp"
 #include "holdfast/map_io/map_info.hpp"
+#include "holdfast/surface/decimation.hpp"
+#include "holdfast/surface/mesh_files.hpp"
+#include "holdfast/surface/surface_field.hpp"
+#include "holdfast/surface/surface_views.hpp"
 #include "output_file.hpp"
 #include "terminal.hpp"
 #include "usage_error.hpp"
@@ -21,7 +25,10 @@ namespace {
 struct MapArguments {
   std::string file;
   bool json = false, overwrite = false;
-  std::string points_to, trajectory_to, json_to;
+  std::string points_to, trajectory_to, json_to, mesh_to;
+  std::string views;   // folder; empty = beside the map
+  double voxel = 0.0;  // [m]; 0 = as in the run
+  int triangles = 0;   // most of the mesh; 0 = all
 };
 
 constexpr const char* map_explanation = R"(
@@ -46,13 +53,16 @@ constexpr const char* export_explanation = R"(
   points      binary PLY: x y z [m], nx ny nz towards the cameras, observations, static_log_odds
   trajectory  poses of the keyframes in TUM format: timestamp tx ty tz qx qy qz qw
   json        cameras, keyframes, covisibility edges, loops, points with their observations
+  mesh        surface of the static scene, as the ending says: .ply, .obj or .glb (glTF 2.0), from the depth that a
+              run with surface.keep_depth=true leaves beside its map; see docs/surface.md
 
-'-' in place of a file: to standard output; at most one of them.
+'-' in place of a file other than the mesh: to standard output; at most one of them.
 
 Examples
   holdfast map export out/map.hfm --points points.ply
   holdfast map export out/map.hfm --trajectory keyframes.txt --json map.json
   holdfast map export out/map.hfm --json - | jq '.points | length'
+  holdfast map export out/map.hfm --mesh room.glb --voxel 0.01
 )";
 
 void show_info(const MapArguments& arguments) {
@@ -60,20 +70,40 @@ void show_info(const MapArguments& arguments) {
   std::cout << (arguments.json ? to_json(info) : printable(to_text(info)));
 }
 
+TriangleMesh mesh_of(const Map& map, const MapArguments& arguments) {
+  if (!SurfaceField::is_available())
+    throw Error("this program was built without OpenVDB, which meshes need; see docs/surface.md");
+  const std::filesystem::path beside = std::filesystem::path(arguments.file).parent_path() / "surface_views";
+  SurfaceViews views = read_views(arguments.views.empty() ? beside : std::filesystem::path(arguments.views), map);
+  if (views.left_out > 0)
+    print_warning(std::to_string(views.left_out) + " of " + std::to_string(views.left_out + views.views.size()) +
+                  " views are left out, because their keyframes are not in the map; are they of another run?");
+  if (arguments.voxel > 0.0) views.settings.voxel = arguments.voxel;
+  Progress progress(views.views.size());
+  TriangleMesh mesh = fuse(views, map, [&](std::size_t done) { progress.update(done, "fused"); });
+  if (mesh.empty()) throw Error("the views show no surface up to surface.maximum_depth; no mesh is written");
+  if (arguments.triangles > 0) decimate(mesh, static_cast<std::size_t>(arguments.triangles));
+  return mesh;
+}
+
 void export_map(const MapArguments& arguments) {
   int given = 0, to_output = 0;
-  for (const std::string* target : {&arguments.points_to, &arguments.trajectory_to, &arguments.json_to}) {
+  for (const std::string* target :
+       {&arguments.points_to, &arguments.trajectory_to, &arguments.json_to, &arguments.mesh_to}) {
     given += target->empty() ? 0 : 1;
     to_output += *target == "-" ? 1 : 0;
   }
-  if (given == 0) throw UsageError("nothing to export; name at least one of --points, --trajectory, --json");
+  if (given == 0) throw UsageError("nothing to export; name at least one of --points, --trajectory, --json, --mesh");
   if (to_output > 1) throw UsageError("only one export can go to standard output; give the others a file");
-  require_new_files({arguments.points_to, arguments.trajectory_to, arguments.json_to}, arguments.overwrite);
+  if (!arguments.mesh_to.empty()) require_mesh_name(arguments.mesh_to);
+  require_new_files({arguments.points_to, arguments.trajectory_to, arguments.json_to, arguments.mesh_to},
+                    arguments.overwrite);
   const Map map = read_map(arguments.file);
   if (!arguments.points_to.empty()) write_output(arguments.points_to, points_ply(map));
   if (!arguments.trajectory_to.empty())
     write_output(arguments.trajectory_to, trajectory_text(keyframe_trajectory(map)));
   if (!arguments.json_to.empty()) write_output(arguments.json_to, map_json(map));
+  if (!arguments.mesh_to.empty()) write_mesh(arguments.mesh_to, mesh_of(map, arguments));
 }
 
 template <class Function>
@@ -98,11 +128,24 @@ void add_map_command(CLI::App& app, int& exit_code) {
   info->add_flag("--json", arguments->json, "Print them as JSON");
   answer(info, arguments, exit_code, show_info);
 
-  CLI::App* exporting = command->add_subcommand("export", "Write points as PLY, keyframes in TUM format, all as JSON");
+  CLI::App* exporting =
+      command->add_subcommand("export", "Write points, keyframes or a mesh for other programs, or all as JSON");
   exporting->footer(export_explanation);
   exporting->add_option("--points", arguments->points_to, "Points as PLY")->type_name("FILE");
   exporting->add_option("--trajectory", arguments->trajectory_to, "Poses of the keyframes")->type_name("FILE");
   exporting->add_option("--json", arguments->json_to, "Keyframes, edges and points")->type_name("FILE");
+  CLI::Option* mesh = exporting->add_option("--mesh", arguments->mesh_to, "Surface of the static scene");
+  mesh->type_name("FILE");
+  exporting->add_option("--voxel", arguments->voxel, "Side of a voxel of the mesh [m]; otherwise that of the run")
+      ->type_name("METRES")
+      ->check(CLI::Range(0.002, 0.5))
+      ->needs(mesh);
+  exporting->add_option("--triangles", arguments->triangles, "Largest number of triangles of the mesh; otherwise all")
+      ->check(CLI::Range(1, 1'000'000'000))
+      ->needs(mesh);
+  exporting->add_option("--views", arguments->views, "Kept depth of the mesh; otherwise surface_views beside FILE")
+      ->type_name("FOLDER")
+      ->needs(mesh);
   add_overwrite_option(*exporting, arguments->overwrite);
   answer(exporting, arguments, exit_code, export_map);
 }

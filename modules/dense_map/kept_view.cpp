@@ -81,6 +81,7 @@ KeptView ViewSampler::sample(KeyFrameId keyframe, const SensorFrame& frame, cons
 
   KeptView view{
       .keyframe = keyframe, .frame_index = frame.index, .timestamp = frame.timestamp, .colour = {}, .depth = {}};
+  if (frame.depth_delay != 0.0) view.T_view_keyframe = coarse.T_view_camera;
   view.colour.create(small_.height, small_.width, CV_8UC3);
   view.depth.create(small_.height, small_.width, CV_16UC1);
   std::size_t i = 0;

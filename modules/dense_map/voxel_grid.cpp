@@ -126,7 +126,7 @@ const Voxel* VoxelGrid::find(std::uint64_t key) const {
 std::vector<Eigen::Isometry3d> poses_of(const StaticScene& scene, const Map& map) {
   std::vector<Eigen::Isometry3d> poses;
   poses.reserve(scene.views().size());
-  for (const KeptView& view : scene.views()) poses.push_back(map.pose_of(view.keyframe).inverse());
+  for (const KeptView& view : scene.views()) poses.push_back(view.T_world_view(map.pose_of(view.keyframe)));
   return poses;
 }
 

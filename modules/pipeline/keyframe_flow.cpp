@@ -299,7 +299,7 @@ void KeyframeFlow::fuse(std::vector<KeptView> views, std::size_t max_moves, Stag
     const LockedMap map(map_, LockPriority::background);
     // The map of a view may have been removed since.
     std::erase_if(views, [&](const KeptView& view) { return !map->submap_of(view.keyframe); });
-    for (const KeptView& view : views) poses.push_back((view.T_view_keyframe * map->pose_of(view.keyframe)).inverse());
+    for (const KeptView& view : views) poses.push_back(view.T_world_view(map->pose_of(view.keyframe)));
   }
   const MutexLock lock(surface_mutex_);
   surface_->update(views, poses, max_moves);
@@ -327,7 +327,7 @@ void KeyframeFlow::show_view(const KeptView* view) {
   observed.points = [this, view](std::size_t max_count) { return scene_->surface(*view, max_count); };
   {
     const LockedMap map(map_, LockPriority::tracking);
-    observed.T_world_camera = map->pose_of(view->keyframe).inverse();
+    observed.T_world_camera = view->T_world_view(map->pose_of(view->keyframe));
   }
   for (const auto& observer : parts_.observers) observer->on_static_view(observed);
 }

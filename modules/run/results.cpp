@@ -66,11 +66,11 @@ void write_dense_map(const RunRecord& record, const std::filesystem::path& file)
 }  // namespace
 
 const std::vector<std::string>& result_names() {
-  static const std::vector<std::string> names = {"report.html",     "run.json",    "trajectory.txt", "keyframes.txt",
-                                                 "evaluation.json", "tracks.json", "trajectory.svg", "error.svg",
-                                                 "config.yaml",     "map.hfm",     "static_map.ply", "surface.ply",
-                                                 "surface.obj",     "surface.glb", "map.pgm",        "map.yaml",
-                                                 "octomap.bt",      "objects.csv", "overlay",        "run.mcap"};
+  static const std::vector<std::string> names = {
+      "report.html",    "run.json",    "trajectory.txt", "keyframes.txt", "evaluation.json", "tracks.json",
+      "trajectory.svg", "error.svg",   "config.yaml",    "map.hfm",       "static_map.ply",  "surface.ply",
+      "surface.obj",    "surface.glb", "map.pgm",        "map.yaml",      "octomap.bt",      "objects.csv",
+      "overlay",        "run.mcap",    "surface_views"};
   return names;
 }
 
@@ -97,6 +97,8 @@ void write_results(const RunRecord& record, const std::filesystem::path& folder)
     results.write_text("error.svg", [&] { return error_over_time_svg(*record.evaluation); });
   }
   if (has_map) results.write("static_map.ply", [&](const path& file) { write_dense_map(record, file); });
+  if (has_map && record.surface_views)
+    results.write("surface_views", [&](const path& views) { write_views(views, *record.surface_views, record.map); });
   if (record.surface && !record.surface->empty()) {
     const auto settings = section_settings<SurfaceSettings>(record.configuration, "surface");
     for (const std::string& format : settings.formats)

@@ -12,6 +12,7 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/dense_map/static_scene.hpp"
 #include "holdfast/evaluation/number_text.hpp"
+#include "holdfast/surface/decimation.hpp"
 #include "holdfast/surface/surface_map.hpp"
 #include "run_warnings.hpp"
 
@@ -75,17 +76,7 @@ void record_pipeline(const Pipeline& pipeline, RunRecord& record) {
   record.pair = pipeline.pair_calibration();
 }
 
-void record_surface(const SurfaceMap& surface, RunRecord& record) {
-  record.surface = surface.field().mesh();
-  record.surface_bytes = surface.memory_bytes();
-  if (record.surface->empty())
-    add_warning(record.warnings,
-                {{},
-                 "the surface is empty, and no mesh is written: " + counted(surface.keyframe_count(), "keyframe") +
-                     " with depth up to " + fixed_text(surface.field().settings().maximum_depth, 1) +
-                     " m show no surface in " + counted(surface.field().settings().minimum_views, "view") +
-                     "; check the depth of the source, and `surface.maximum_depth`"});
-  if (!surface.field().settings().navigation || record.surface->empty()) return;
+void record_navigation(const SurfaceMap& surface, RunRecord& record) {
   record.navigation = make_navigation_maps(surface, *record.surface);
   constexpr double least_floor = 1.0;  // [m^2]
   if (const double area = record.navigation->floor ? record.navigation->floor->area : 0.0; area < least_floor)
@@ -95,6 +86,22 @@ void record_surface(const SurfaceMap& surface, RunRecord& record) {
                       ? "the floor of map.pgm is a plane of " + fixed_text(area, 2) + " m^2: is it a table?"
                       : std::string("no floor was found, and map.pgm is not written.")) +
                      " Let the camera see more of the floor"});
+}
+
+void record_surface(const SurfaceMap& surface, RunRecord& record) {
+  record.surface = surface.field().mesh();
+  record.surface_bytes = surface.memory_bytes();
+  if (surface.field().settings().keep_depth) record.surface_views = SurfaceViews::of(surface);
+  if (record.surface->empty())
+    add_warning(record.warnings,
+                {{},
+                 "the surface is empty, and no mesh is written: " + counted(surface.keyframe_count(), "keyframe") +
+                     " with depth up to " + fixed_text(surface.field().settings().maximum_depth, 1) +
+                     " m show no surface in " + counted(surface.field().settings().minimum_views, "view") +
+                     "; check the depth of the source, and `surface.maximum_depth`"});
+  const SurfaceSettings& settings = surface.field().settings();
+  if (settings.navigation && !record.surface->empty()) record_navigation(surface, record);
+  if (settings.triangles > 0) decimate(*record.surface, static_cast<std::size_t>(settings.triangles));
 }
 
 }  // namespace

@@ -6,7 +6,10 @@
 
 #include "cli/command.hpp"
 #include "holdfast/map_io/map_export.hpp"
+#include "holdfast/surface/mesh_files.hpp"
+#include "holdfast/surface/surface_views.hpp"
 #include "map_io/map_files.hpp"
+#include "surface/solid_world.hpp"
 
 namespace holdfast {
 namespace {
@@ -95,12 +98,53 @@ TEST_F(MapCommand, SaysWhatIsWrong) {
   EXPECT_FALSE(std::filesystem::exists(path("points.ply")));
   const Outcome nothing = run({"map", "export", file()});
   EXPECT_EQ(nothing.exit_code, 2);
-  EXPECT_THAT(nothing.errors, HasSubstr("--points, --trajectory, --json; see `holdfast map export --help`"));
+  EXPECT_THAT(nothing.errors, HasSubstr("--points, --trajectory, --json, --mesh; see `holdfast map export --help`"));
   const Outcome unwritable = run({"map", "export", file(), "--points", path("nowhere/points.ply").string()});
   EXPECT_EQ(unwritable.exit_code, 1);
   EXPECT_THAT(unwritable.errors, HasSubstr("cannot be written"));
   EXPECT_EQ(run({"map"}).exit_code, 2);
   EXPECT_EQ(run({"map", "show", file()}).exit_code, 2);
+}
+
+TEST_F(MapCommand, ExportsAMeshFromTheKeptDepth) {
+  const std::string mesh = path("room.glb").string();
+  const Outcome without = run({"map", "export", file(), "--mesh", mesh});
+  EXPECT_EQ(without.exit_code, 1);
+  if (!SurfaceField::is_available()) {
+    EXPECT_THAT(without.errors, HasSubstr("built without OpenVDB"));
+    return;
+  }
+  EXPECT_THAT(without.errors, AllOf(HasSubstr("surface_views/views.json: "), HasSubstr("surface.keep_depth=true")));
+  test::SolidWorld world;
+  SurfaceViews views{world.camera, {}, {}, 0};
+  for (const KeyFrameId id : map_.keyframes_by_age()) {
+    const KeyFrame& keyframe = map_.keyframe(id);
+    views.views.push_back(world.view(keyframe.frame.T_world_camera(), views.views.size()));
+    views.views.back().keyframe = id;
+  }
+  views.settings.minimum_views = 1;
+  views.settings.smallest_part = 0.0;
+  write_views(path("surface_views"), views, map_);
+  const Outcome made = run({"map", "export", file(), "--mesh", mesh});
+  EXPECT_EQ(made.exit_code, 0) << made.errors;
+  EXPECT_THAT(content(mesh), StartsWith("glTF"));
+  std::filesystem::rename(path("surface_views"), path("elsewhere"));
+  const std::string coarse = path("coarse.ply").string(), fine = path("fine.ply").string();
+  for (const auto& [name, voxel] : {std::pair{coarse, "0.1"}, {fine, "0.04"}})
+    EXPECT_EQ(run({"map", "export", file(), "--mesh", name, "--voxel", voxel, "--views", path("elsewhere").string()})
+                  .exit_code,
+              0);
+  EXPECT_GT(read_mesh(fine).triangles.size(), 2 * read_mesh(coarse).triangles.size());
+  const std::string few = path("few.ply").string();
+  const std::size_t half = read_mesh(fine).triangles.size() / 2;
+  EXPECT_EQ(run({"map", "export", file(), "--mesh", few, "--voxel", "0.04", "--triangles", std::to_string(half),
+                 "--views", path("elsewhere").string()})
+                .exit_code,
+            0);
+  EXPECT_LE(read_mesh(few).triangles.size(), half);
+  EXPECT_EQ(run({"map", "export", file(), "--voxel", "0.1", "--json", "-"}).exit_code, 2);
+  EXPECT_THAT(run({"map", "export", file(), "--mesh", path("room.stl").string()}).errors,
+              HasSubstr(".ply, .obj or .glb"));
 }
 
 TEST_F(MapCommand, HelpHasExamples) {

@@ -99,6 +99,21 @@ TEST(KeptView, TakesLabelsBeforeTheCoarseOnes) {
   EXPECT_EQ(count_moving(measured), 4);  // one cell of 4 x 4 px
 }
 
+TEST(KeptView, HasThePoseOfTheDepthImage) {
+  const WallWorld world;
+  const ViewSampler sampler(world.camera, {});
+  SensorFrame frame = world.images(0.0, 0, std::nullopt);
+  CoarseView coarse = blank_coarse(world.camera);
+  coarse.T_view_camera.translation().x() = 0.02;
+  EXPECT_EQ(sampler.sample({}, frame, coarse, {}, {}).T_view_keyframe.translation().x(), 0.0) << "exposed together";
+  frame.depth_delay = -0.015;
+  const KeptView view = sampler.sample({}, frame, coarse, {}, {});
+  EXPECT_EQ(view.T_view_keyframe.translation().x(), 0.02);
+  Eigen::Isometry3d T_keyframe_world = Eigen::Isometry3d::Identity();
+  T_keyframe_world.translation().x() = 1.0;
+  EXPECT_NEAR(view.T_world_view(T_keyframe_world).translation().x(), -1.02, 1e-12);
+}
+
 TEST(KeptView, RefusesImagesOfAnotherSize) {
   const WallWorld world;
   const ViewSampler sampler(world.camera, {});

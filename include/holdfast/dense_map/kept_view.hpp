@@ -28,8 +28,14 @@ struct KeptView {
   cv::Mat depth;           ///< 16UC1: depth_bits in depth_units, 0 = none; moves_bit for dynamic pixels
   /// Of a frame between keyframes, which only carves free space and has no colour: its camera. Else nullptr.
   std::shared_ptr<const Camera> coarse_camera = nullptr;
-  Eigen::Isometry3d T_view_keyframe = Eigen::Isometry3d::Identity();  ///< of such a frame relative to `keyframe`
+  /// Pose of the depth image relative to `keyframe`: of such a frame, or of the keyframe's own, which many sensors take
+  /// some milliseconds before or after the colour image.
+  Eigen::Isometry3d T_view_keyframe = Eigen::Isometry3d::Identity();
 
+  /// T_world_view when the keyframe has the given pose.
+  Eigen::Isometry3d T_world_view(const Eigen::Isometry3d& T_keyframe_world) const {
+    return (T_view_keyframe * T_keyframe_world).inverse();
+  }
   bool only_carves() const { return coarse_camera != nullptr; }
 
   bool moves(int x, int y) const { return (depth.at<std::uint16_t>(y, x) & moves_bit) != 0; }
@@ -48,9 +54,10 @@ class ViewSampler {
   /// The pinhole camera of the kept views.
   const Camera& camera() const { return small_; }
 
-  /// Creates the kept view of a keyframe. Dynamic pixels are those whose label (`labels`, 8UC1 of the image's size;
-  /// coarse.mask if `labels` is empty) is unknown (255) or a class of `left_out` (by label), cells with negative
-  /// coarse.static_log_odds, pixels near these (DenseMapSettings::dilate, edge), and pixels outside the image.
+  /// Creates the kept view of a keyframe, at coarse.T_view_camera if the source states a SensorFrame::depth_delay.
+  /// Dynamic pixels are those whose label (`labels`, 8UC1 of the image's size; coarse.mask if `labels` is empty) is
+  /// unknown (255) or a class of `left_out` (by label), cells with negative coarse.static_log_odds, pixels near these
+  /// (DenseMapSettings::dilate, edge), and pixels outside the image.
   KeptView sample(KeyFrameId keyframe, const SensorFrame& frame, const CoarseView& coarse, const cv::Mat& labels,
                   const std::vector<bool>& left_out) const;
 

@@ -15,6 +15,7 @@
 #include "holdfast/map_io/cloud_ply.hpp"
 #include "holdfast/pipeline/pipeline.hpp"
 #include "holdfast/surface/free_space.hpp"
+#include "holdfast/surface/surface_views.hpp"
 #include "holdfast/surface/triangle_mesh.hpp"
 
 namespace holdfast {
@@ -70,6 +71,7 @@ struct RunRecord {
   std::optional<std::vector<CloudPoint>> dense_map;  ///< cloud of the static scene, with dense_map.enabled
   std::optional<TriangleMesh> surface;               ///< mesh of the static scene, with surface.enabled
   std::size_t surface_bytes = 0;                     ///< memory of its field and of the views that it keeps
+  std::optional<SurfaceViews> surface_views;         ///< with surface.keep_depth
   std::optional<NavigationMaps> navigation;          ///< with surface.navigation; never without a mesh
   MappingCounts mapping;
   LoopRecord loops;
