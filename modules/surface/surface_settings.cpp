@@ -42,7 +42,8 @@ void SurfaceSettings::describe(ParameterTable<SurfaceSettings>& table) {
            "largest number of triangles of the files, to which edges are collapsed by their quadric error; 0: all")
       .at_least(0);
   table.add("keep_depth", &S::keep_depth,
-            "keep the fused depth and colour in the folder surface_views beside map.hfm, about 0.3 MB per keyframe, from which "
+            "keep the fused depth and colour in the folder surface_views beside map.hfm, about 0.3 MB per keyframe, "
+            "from which "
             "`holdfast map export --mesh` makes meshes later");
   table.add("navigation", &S::navigation,
             "also write maps for navigation: map.pgm and map.yaml for ROS's map_server, and octomap.bt");

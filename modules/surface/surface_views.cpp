@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <fstream>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -14,6 +14,7 @@
 
 #include "holdfast/core/atomic_file.hpp"
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/input_file.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/image_files/image_decoder.hpp"
 #include "holdfast/plugin/parameter_table.hpp"
@@ -114,13 +115,12 @@ std::optional<KeyFrameId> reference_of(const KeptView& view, const Map& map) {
 }
 
 std::string text_of(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream)
-    throw InputError(
-        {file.string()},
-        "cannot be opened: depth is kept beside a map by runs with surface.keep_depth=true; run again with "
-        "it, or name the folder of the views");
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  std::string text;
+  InputFile(file, largest_file::json,
+            "the views that a run with surface.keep_depth=true leaves beside its map; run again with it, or name the "
+            "folder of the views")
+      .read_rest(text);
+  return text;
 }
 
 /// Reads the images of views by the size of their camera.

@@ -82,8 +82,12 @@ TEST(Decimate, APlaneKeepsItsBoundaryAndItsColours) {
   for (const MeshVertex& vertex : mesh.vertices) {
     EXPECT_NEAR(vertex.red + vertex.blue, 200, 1);
     EXPECT_NEAR(vertex.normal.z(), 1.0F, 1e-5);
-    if (vertex.position.x() < 0.02F) EXPECT_GT(vertex.red, 150);
-    if (vertex.position.x() > 0.38F) EXPECT_GT(vertex.blue, 150);
+    if (vertex.position.x() < 0.02F) {
+      EXPECT_GT(vertex.red, 150);
+    }
+    if (vertex.position.x() > 0.38F) {
+      EXPECT_GT(vertex.blue, 150);
+    }
   }
 }
 

@@ -93,7 +93,9 @@ TEST_F(SurfaceViewsTest, AreReadAsTheyWereWritten) {
     EXPECT_EQ(a.only_carves(), b.only_carves());
     EXPECT_EQ(a.T_view_keyframe.matrix(), b.T_view_keyframe.matrix());
     EXPECT_EQ(cv::norm(a.depth, b.depth, cv::NORM_INF), 0.0);
-    if (!a.only_carves()) EXPECT_EQ(cv::norm(a.colour, b.colour, cv::NORM_INF), 0.0);
+    if (!a.only_carves()) {
+      EXPECT_EQ(cv::norm(a.colour, b.colour, cv::NORM_INF), 0.0);
+    }
   }
 }
 
