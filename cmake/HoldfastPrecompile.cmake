@@ -4,8 +4,9 @@
 # ours makes them anew, and no file may rely on them: with -DHOLDFAST_PRECOMPILE=OFF everything compiles as well.
 include_guard()
 
-# holdfast_compile_quickly(TARGET): what only runs in tests is optimised less, which takes a third off its time to compile;
-# the libraries that it calls are not, so that tests run as fast.
+# holdfast_compile_quickly(TARGET): what only runs in tests is optimised less, which takes a third off the time to compile
+# of most files (nothing off those that instantiate much of Eigen); the libraries that it calls are not, so that tests
+# run as fast.
 function(holdfast_compile_quickly target)
   target_compile_options(${target} PRIVATE $<$<AND:$<CXX_COMPILER_ID:GNU>,$<CONFIG:Release>>:-O1>)
 endfunction()

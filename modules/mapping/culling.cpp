@@ -80,27 +80,35 @@ struct SeenPoints {
   std::vector<float> found;          ///< found ratios of the others
 };
 
+/// Whether three other keyframes observe the point of a feature at the same or a finer scale.
+bool is_redundant(const Map& map, KeyFrameId id, std::uint32_t feature) {
+  constexpr int enough = 3;
+  const Frame& frame = map.keyframe(id).frame;
+  const MapPoint& point = map.point(frame.map_points[feature]);
+  if (static_cast<int>(point.observations.size()) <= enough) return false;
+  int others = 0;
+  for (const Observation& observation : point.observations) {
+    if (observation.keyframe == id) continue;
+    const auto& octave = map.keyframe(observation.keyframe).frame.features.octave;
+    if (octave[observation.feature] <= frame.features.octave[feature] + 1 && ++others >= enough) return true;
+  }
+  return false;
+}
+
 /// With a `limit` [m], only features with depth up to it count.
 SeenPoints seen_points(const Map& map, KeyFrameId id, std::optional<float> limit) {
-  constexpr int enough = 3;
   const Frame& frame = map.keyframe(id).frame;
   SeenPoints seen;
   for (std::uint32_t feature = 0; feature < frame.size(); ++feature) {
     if (!frame.map_points[feature].valid()) continue;
     if (limit && (!frame.has_depth(feature) || frame.depth[feature] > *limit)) continue;
     ++seen.all;
-    const MapPoint& point = map.point(frame.map_points[feature]);
-    int others = 0;
-    for (const Observation& observation : point.observations) {
-      if (observation.keyframe == id) continue;
-      const auto& octave = map.keyframe(observation.keyframe).frame.features.octave;
-      if (octave[observation.feature] <= frame.features.octave[feature] + 1 && ++others >= enough) break;
-    }
-    if (others >= enough) {
+    const float found_ratio = map.point(frame.map_points[feature]).found_ratio();
+    if (is_redundant(map, id, feature)) {
       ++seen.redundant;
-      seen.redundant_found_sum += point.found_ratio();
+      seen.redundant_found_sum += found_ratio;
     } else {
-      seen.found.push_back(point.found_ratio());
+      seen.found.push_back(found_ratio);
     }
   }
   return seen;

@@ -48,13 +48,13 @@ json pinhole_json(const Camera& camera) {
 }
 
 Camera pinhole_of(const json& values) {
-  constexpr int largest = 20000;  // [px]
+  constexpr double largest = 20000.0;  // [px]
   Camera camera;
-  camera.width = values.at("width"), camera.height = values.at("height");
+  const double width = values.at("width"), height = values.at("height");
   camera.fx = values.at("fx"), camera.fy = values.at("fy"), camera.cx = values.at("cx"), camera.cy = values.at("cy");
-  if (camera.width < 3 || camera.height < 3 || camera.width > largest || camera.height > largest ||
-      !(camera.fx > 0.0 && camera.fy > 0.0))
+  if (!(width >= 3 && height >= 3 && width <= largest && height <= largest && camera.fx > 0.0 && camera.fy > 0.0))
     throw Error("found a camera without a valid size or focal length");
+  camera.width = static_cast<int>(width), camera.height = static_cast<int>(height);
   return camera;
 }
 
