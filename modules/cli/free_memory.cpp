@@ -17,4 +17,10 @@ void limit_free_memory() {
 #endif
 }
 
+void return_free_memory() {
+#if defined(__GLIBC__)
+  malloc_trim(0);
+#endif
+}
+
 }  // namespace holdfast

@@ -11,4 +11,9 @@ namespace holdfast {
 /// since it concerns the whole process.
 void limit_free_memory();
 
+/// Gives what is free within the heaps back to the system (malloc_trim of glibc). Without it, the memory of a run of
+/// hours grows although what it uses does not: the free space between buffers that stay is of no use to larger ones.
+/// From any thread; others that allocate may wait for some milliseconds. Has no effect with other C libraries.
+void return_free_memory();
+
 }  // namespace holdfast

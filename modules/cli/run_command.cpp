@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "configured_command.hpp"
+#include "free_memory.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/evaluation/number_text.hpp"
 #include "holdfast/run/results.hpp"
@@ -30,6 +31,7 @@ namespace holdfast {
 namespace {
 
 constexpr int low_coverage_exit_code = 3;
+constexpr double free_memory_period = 30.0;  // [s] between the times at which what is free goes back to the system
 
 struct RunArguments : ConfiguredArguments {
   std::filesystem::path map, record;
@@ -62,6 +64,7 @@ struct Running {
   std::optional<Recorder> recorder;
   Trajectory truth;                              ///< of what is recorded
   std::vector<std::shared_ptr<Viewer>> viewers;  ///< kept, so that they outlive the pipeline
+  Stopwatch since_memory_returned;
   std::size_t warnings_printed = 0;  ///< of RunRecord::warnings, which begin with those of the configuration
 };
 
@@ -111,6 +114,9 @@ RunOptions options_of(const RunArguments& arguments, const Registry& registry, c
   options.on_frame = [&](const RunProgress& run) {
     if (run.result.T_world_camera) running.journal->add({run.result.timestamp, *run.result.T_world_camera});
     running.progress->update(run.frames_done, to_string(run.result.status));
+    if (running.since_memory_returned.seconds() < free_memory_period) return;
+    return_free_memory();
+    running.since_memory_returned = {};
   };
   return options;
 }

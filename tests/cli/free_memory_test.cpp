@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 #include <malloc.h>
+#include <unistd.h>
 
 #include <cstdlib>
+#include <fstream>
 #include <memory>
 #include <vector>
 
@@ -12,6 +14,13 @@ namespace holdfast {
 namespace {
 
 std::size_t mapped() { return mallinfo2().hblkhd; }
+
+std::size_t resident() {
+  std::ifstream stream("/proc/self/statm");
+  std::size_t total = 0, pages = 0;
+  stream >> total >> pages;
+  return pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
 
 /// A buffer that was freed is no reason to keep the next one.
 TEST(FreeMemory, LargeBuffersGoBackToTheSystem) {
@@ -31,6 +40,20 @@ TEST(FreeMemory, LargeBuffersGoBackToTheSystem) {
   const std::size_t with_buffer = mapped();
   const std::vector<char> image(640 * 480 * 4);
   EXPECT_EQ(mapped(), with_buffer);
+}
+
+TEST(FreeMemory, GapsBetweenBuffersThatStayGoBackToTheSystem) {
+  if (mallinfo2().uordblks == 0) GTEST_SKIP() << "this allocator does not say what it uses";
+  constexpr std::size_t size = 256 << 10, count = 200;
+  std::vector<std::unique_ptr<std::vector<char>>> gaps, kept;
+  for (std::size_t i = 0; i < count; ++i) {
+    gaps.push_back(std::make_unique<std::vector<char>>(size, 'x'));
+    kept.push_back(std::make_unique<std::vector<char>>(1000, 'x'));
+  }
+  gaps.clear();
+  const std::size_t before = resident();
+  return_free_memory();
+  EXPECT_LT(resident() + size * count / 2, before);
 }
 
 }  // namespace
