@@ -43,8 +43,9 @@ watch() {
   kill -TERM "$process" 2> /dev/null || true
   wait "$process" || code=$?
   case "${code:-0}" in 0 | 130 | 143) ;; *) verdict=1; echo "$name: exit code $code" >&2; tail -n 20 "$work/log" >&2 ;; esac
-  # Least squares over the lines after the first sixth of the time, which fills the map and the caches. An image file
-  # may be open when a line is written, so that descriptors and threads are the least of each half.
+  # Least squares over the least memory of each minute, since frames in flight and adjustments take some for a while,
+  # after the first sixth of the time, which fills the map and the caches. An image file may be open when a line is
+  # written, so that descriptors and threads are the least of each half.
   awk -F, -v name="$name" -v all=$((minutes * 60)) '
     NR > 1 { memory[int($1 * 10 / (all + 1))] = $2 }
     END {
@@ -52,14 +53,22 @@ watch() {
       for (i = 0; i < 10; i++) if (i in memory) printf " %d", memory[i] / 1024
       print "" }' "$table"
   awk -F, -v name="$name" -v begin=$((minutes * 10)) -v middle=$((minutes * 35)) -v trajectory="$bytes_per_frame" '
+    function end_minute() {
+      if (least == "") return
+      n++; x += at; y += least; xx += at * at; xy += at * least
+      least = ""
+    }
     NR > 1 && $1 >= begin {
       memory = $2 - $5 * trajectory / 1024
-      n++; x += $1; y += memory; xx += $1 * $1; xy += $1 * memory
+      if (int($1 / 60) != minute) end_minute()
+      minute = int($1 / 60)
+      if (least == "" || memory < least) { least = memory; at = $1 }
       half = $1 >= middle
       if (!(half in d) || $3 < d[half]) d[half] = $3
       if (!(half in t) || $4 < t[half]) t[half] = $4
     }
     END {
+      end_minute()
       if (n < 3) { print name ": too short to judge"; exit 0 }
       slope = (n * xy - x * y) / (n * xx - x * x) * 600 / 1024
       changed = d[0] != d[1] || t[0] != t[1]
