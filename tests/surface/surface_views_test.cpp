@@ -149,6 +149,7 @@ TEST_F(SurfaceViewsTest, AreRefusedWithTheReason) {
   EXPECT_THAT(refusal_with("\"voxel\": 0.05", "\"voxel\": 0"), HasSubstr("'voxel'"));
   EXPECT_THAT(refusal_with("\"frame\": 1", "\"frame\": 0"), HasSubstr("out of order"));
   EXPECT_THAT(refusal_with("[\n    1.0", "[\n    2.0"), HasSubstr("no rigid motion"));
+  EXPECT_THAT(refusal_with("\"fx\": ", "\"fx\": 1e-300, \"unused\": "), HasSubstr("focal length"));
   EXPECT_THAT(refusal_with("]", ""), HasSubstr("is damaged"));
   EXPECT_EQ(refusal_of(map_), "");
   write_file_atomically(folder_ / "depth/000001.png", "no image");
