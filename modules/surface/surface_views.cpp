@@ -193,6 +193,23 @@ SurfaceViews SurfaceViews::of(const SurfaceMap& surface) {
   return result;
 }
 
+void SurfaceViews::append(SurfaceViews later) {
+  const auto values = [](const Camera& c) {
+    return std::array{static_cast<double>(c.width), static_cast<double>(c.height), c.fx, c.fy, c.cx, c.cy};
+  };
+  if (values(camera) != values(later.camera))
+    throw Error("views of different cameras, or of different dense_map.step, cannot be fused into one surface; found " +
+                std::to_string(camera.width) + "x" + std::to_string(camera.height) + ", fx " +
+                std::to_string(camera.fx) + ", and " + std::to_string(later.camera.width) + "x" +
+                std::to_string(later.camera.height) + ", fx " + std::to_string(later.camera.fx));
+  const std::uint64_t first = views.empty() ? 0 : views.back().frame_index + 1;
+  for (KeptView& view : later.views) {
+    view.frame_index += first;
+    views.push_back(std::move(view));
+  }
+  left_out += later.left_out;
+}
+
 void write_views(const fs::path& folder, const SurfaceViews& views, const Map& map) {
   for (const char* kind : {"colour", "depth"}) {
     std::error_code error;
