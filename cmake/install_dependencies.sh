@@ -16,7 +16,8 @@
 #   sh cmake/install_dependencies.sh --onnxruntime    also ONNX Runtime, the engine `onnxruntime` of networks, in
 #                                                     /usr/local/lib, from the npm package onnxruntime-node (70 MB), where
 #                                                     Debian has no package of it
-#   sh cmake/install_dependencies.sh --surface        also what the section `surface` is built of: OpenVDB
+#   sh cmake/install_dependencies.sh --surface        also what the section `surface` is built of, OpenVDB, and
+#                                                     OctoMap's library, with which its tests read maps
 #   sh cmake/install_dependencies.sh --clang          also clang, for tests of the headers and of the format, the fuzz targets and the
 #                                                     quick sanitizer build
 #   sh cmake/install_dependencies.sh --valgrind       also valgrind, for tests/valgrind
@@ -57,12 +58,12 @@ for argument in "$@"; do
     --bench-tests) packages="$packages chromium munge parallel slurm-client slurmctld slurmd" ;;
     --cameras) packages="$packages libopenni2-dev" ;;
     --onnxruntime) wants_onnxruntime=yes ;;
-    --surface) packages="$packages libopenvdb-dev" ;;
+    --surface) packages="$packages libopenvdb-dev liboctomap-dev" ;;
     --clang) packages="$packages clang clang-format libclang-rt-dev llvm" ;;
     --valgrind) packages="$packages valgrind" ;;
     --clean-root) packages="$packages mmdebstrap" ;;
     --dry-run) dry_run=yes ;;
-    -h | --help) sed -n '3,24s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    -h | --help) sed -n '3,25s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) fail "unknown argument '$argument'; known are --training, --documentation, --benchmarks, --python, --python-tests, --bench-tests, --cameras, --onnxruntime, --surface, --clang, --valgrind, --clean-root, --dry-run and --help" ;;
   esac
 done

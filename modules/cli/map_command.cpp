@@ -5,6 +5,7 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/map_io/map_export.hpp"
@@ -26,9 +27,9 @@ struct MapArguments {
   std::string file;
   bool json = false, overwrite = false;
   std::string points_to, trajectory_to, json_to, mesh_to;
-  std::string views;   // folder; empty = beside the map
-  double voxel = 0.0;  // [m]; 0 = as in the run
-  int triangles = 0;   // most of the mesh; 0 = all
+  std::vector<std::string> views;  // folders; empty = beside the map
+  double voxel = 0.0;              // [m]; 0 = as in the run
+  int triangles = 0;               // most of the mesh; 0 = all
 };
 
 constexpr const char* map_explanation = R"(
@@ -74,7 +75,9 @@ TriangleMesh mesh_of(const Map& map, const MapArguments& arguments) {
   if (!SurfaceField::is_available())
     throw Error("this program was built without OpenVDB, which meshes need; see docs/surface.md");
   const std::filesystem::path beside = std::filesystem::path(arguments.file).parent_path() / "surface_views";
-  SurfaceViews views = read_views(arguments.views.empty() ? beside : std::filesystem::path(arguments.views), map);
+  SurfaceViews views =
+      read_views(arguments.views.empty() ? beside : std::filesystem::path(arguments.views.front()), map);
+  for (std::size_t i = 1; i < arguments.views.size(); ++i) views.append(read_views(arguments.views[i], map));
   if (views.left_out > 0)
     print_warning(std::to_string(views.left_out) + " of " + std::to_string(views.left_out + views.views.size()) +
                   " views are left out, because their keyframes are not in the map; are they of another run?");
@@ -143,8 +146,12 @@ void add_map_command(CLI::App& app, int& exit_code) {
   exporting->add_option("--triangles", arguments->triangles, "Largest number of triangles of the mesh; otherwise all")
       ->check(CLI::Range(1, 1'000'000'000))
       ->needs(mesh);
-  exporting->add_option("--views", arguments->views, "Kept depth of the mesh; otherwise surface_views beside FILE")
+  exporting
+      ->add_option("--views", arguments->views,
+                   "Kept depth of the mesh, once for each run that the map was made by, oldest first; "
+                   "otherwise surface_views beside FILE")
       ->type_name("FOLDER")
+      ->allow_extra_args(false)
       ->needs(mesh);
   add_overwrite_option(*exporting, arguments->overwrite);
   answer(exporting, arguments, exit_code, export_map);

@@ -69,8 +69,8 @@ const std::vector<std::string>& result_names() {
   static const std::vector<std::string> names = {
       "report.html",    "run.json",    "trajectory.txt", "keyframes.txt", "evaluation.json", "tracks.json",
       "trajectory.svg", "error.svg",   "config.yaml",    "map.hfm",       "static_map.ply",  "surface.ply",
-      "surface.obj",    "surface.glb", "map.pgm",        "map.yaml",      "octomap.bt",      "objects.csv",
-      "overlay",        "run.mcap",    "surface_views"};
+      "surface.obj",    "surface.glb", "map.pgm",        "map.yaml",      "octomap.bt",      "octomap.ot",
+      "objects.csv",    "overlay",     "run.mcap",       "surface_views"};
   return names;
 }
 
@@ -106,6 +106,7 @@ void write_results(const RunRecord& record, const std::filesystem::path& folder)
   }
   if (record.navigation) {
     results.write_text("octomap.bt", [&] { return record.navigation->octomap; });
+    results.write_text("octomap.ot", [&] { return record.navigation->octomap_probabilities; });
     if (record.navigation->floor) {
       results.write_text("map.pgm", [&] { return grid_map_pgm(record.navigation->grid); });
       results.write_text("map.yaml", [&] { return grid_map_yaml(record.navigation->grid, "map.pgm"); });

@@ -63,6 +63,7 @@ class Blocks {
     const std::int32_t found = tree_.find(coordinates);
     if (found >= 0) return *blocks_[static_cast<std::size_t>(found)];
     tree_.set(coordinates, static_cast<std::int32_t>(blocks_.size()));
+    coordinates_.push_back(coordinates);
     blocks_.push_back(std::make_unique<Block>());
     blocks_.back()->coordinates = coordinates;
     blocks_.back()->birth = births_++;
@@ -71,18 +72,25 @@ class Blocks {
   /// Position in list(), or -1.
   std::int32_t find(const Eigen::Vector3i& coordinates) const { return tree_.find(coordinates); }
   const std::vector<std::unique_ptr<Block>>& list() const { return blocks_; }
+  /// Block::coordinates of list(), side by side in memory.
+  const std::vector<Eigen::Vector3i>& coordinates() const { return coordinates_; }
   std::uint64_t births() const { return births_; }
 
   template <class Condition>
   void remove_if(const Condition& condition) {
     if (std::erase_if(blocks_, [&](const std::unique_ptr<Block>& block) { return condition(*block); }) == 0) return;
     tree_.clear();
-    for (std::size_t i = 0; i < blocks_.size(); ++i) tree_.set(blocks_[i]->coordinates, static_cast<std::int32_t>(i));
+    coordinates_.clear();
+    for (std::size_t i = 0; i < blocks_.size(); ++i) {
+      coordinates_.push_back(blocks_[i]->coordinates);
+      tree_.set(blocks_[i]->coordinates, static_cast<std::int32_t>(i));
+    }
   }
 
  private:
   BlockTree tree_;
   std::vector<std::unique_ptr<Block>> blocks_;
+  std::vector<Eigen::Vector3i> coordinates_;
   std::uint64_t births_ = 0;
 };
 

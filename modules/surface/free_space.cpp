@@ -11,6 +11,8 @@ namespace holdfast {
 
 namespace {
 
+constexpr int most_evidence = 5;  // views
+
 /// Calls `visit` with points on a triangle that are at most `spacing` apart.
 template <class Visit>
 void visit_points(const TriangleMesh& mesh, std::size_t triangle, double spacing, const Visit& visit) {
@@ -76,16 +78,24 @@ void FreeSpace::set_size(const SurfaceMap& surface, const TriangleMesh& mesh) {
                 std::to_string(resolution_) + " m, at most 268 million are possible; choose larger cells");
   origin_ = resolution_ * first;
   size_ = cells.cast<int>();
-  states_.assign(static_cast<std::size_t>(cells.prod()), Occupancy::unknown);
+  evidence_.assign(static_cast<std::size_t>(cells.prod()), 0);
+  hits_.assign(evidence_.size(), 0);
 }
 
 void FreeSpace::look_through(const SurfaceMap& surface) {
   const double farthest = surface.field().settings().maximum_depth;
+  // The last view that looked through a cell, and that saw a surface in it: each counts once.
+  std::vector<std::uint32_t> passed(evidence_.size(), 0), hit(evidence_.size(), 0);
+  const auto cell_at = [&](const Eigen::Vector3d& point) {
+    const Eigen::Vector3i cell = cell_of(point);
+    return contains(cell) ? index(cell) : evidence_.size();
+  };
   for (std::size_t i = 0; i < surface.view_count(); ++i) {
     const KeptView& view = surface.view(i);
     const Eigen::Isometry3d& pose = surface.pose(i);
     const Camera& camera = view.only_carves() ? *view.coarse_camera : surface.camera();
     const int stride = view.only_carves() ? 2 : 4;  // [px]
+    const auto number = static_cast<std::uint32_t>(i + 1);
     for (int y = 0; y < camera.height; y += stride)
       for (int x = 0; x < camera.width; x += stride) {
         const double depth = view.depth_at(x, y);
@@ -94,9 +104,16 @@ void FreeSpace::look_through(const SurfaceMap& surface) {
         const double step = 0.7 * resolution_ / ray.norm();
         const double end = std::min(depth - resolution_, farthest);
         for (double along = step; along < end; along += step) {
-          const Eigen::Vector3i cell = cell_of(pose.translation() + along * ray);
-          if (contains(cell)) states_[index(cell)] = Occupancy::free;
+          const std::size_t cell = cell_at(pose.translation() + along * ray);
+          if (cell == evidence_.size() || passed[cell] == number) continue;
+          passed[cell] = number;
+          if (evidence_[cell] > -most_evidence) --evidence_[cell];
         }
+        if (view.only_carves() || view.moves(x, y) || depth > farthest) continue;
+        const std::size_t cell = cell_at(pose.translation() + depth * ray);
+        if (cell == evidence_.size() || hit[cell] == number) continue;
+        hit[cell] = number;
+        if (hits_[cell] < most_evidence) ++hits_[cell];
       }
   }
 }
@@ -105,14 +122,17 @@ void FreeSpace::occupy(const TriangleMesh& mesh) {
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
     visit_points(mesh, i, 0.5 * resolution_, [&](const Eigen::Vector3d& point) {
       const Eigen::Vector3i cell = cell_of(point);
-      if (contains(cell)) states_[index(cell)] = Occupancy::occupied;
+      if (!contains(cell)) return;
+      const std::size_t place = index(cell);
+      evidence_[place] = static_cast<std::int8_t>(std::max<int>(hits_[place], 1));
     });
+  hits_ = {};
 }
 
 void FreeSpace::compute_distances() {
-  distances_.resize(states_.size());
-  for (std::size_t i = 0; i < states_.size(); ++i)
-    distances_[i] = states_[i] == Occupancy::occupied ? 0.0F : std::numeric_limits<float>::infinity();
+  distances_.resize(evidence_.size());
+  for (std::size_t i = 0; i < evidence_.size(); ++i)
+    distances_[i] = evidence_[i] > 0 ? 0.0F : std::numeric_limits<float>::infinity();
   std::vector<float> values, borders;
   std::vector<int> parabolas;
   for (int axis = 0; axis < 3; ++axis) {
@@ -128,14 +148,19 @@ void FreeSpace::compute_distances() {
   for (float& distance : distances_) distance = std::sqrt(distance) * static_cast<float>(resolution_);
 }
 
+float FreeSpace::log_odds(int evidence) {
+  return evidence > 0 ? std::min(0.85F * static_cast<float>(evidence), 3.5F)
+                      : std::max(0.4F * static_cast<float>(evidence), -2.0F);
+}
+
 Occupancy FreeSpace::at(const Eigen::Vector3d& point) const {
   if (!point.allFinite()) return Occupancy::unknown;
   const Eigen::Vector3i cell = cell_of(point);
-  return contains(cell) ? states_[index(cell)] : Occupancy::unknown;
+  return contains(cell) ? at(cell) : Occupancy::unknown;
 }
 
 double FreeSpace::distance(const Eigen::Vector3d& point) const {
-  if (states_.empty() || !point.allFinite()) return std::numeric_limits<double>::infinity();
+  if (evidence_.empty() || !point.allFinite()) return std::numeric_limits<double>::infinity();
   const Eigen::Vector3i cell = cell_of(point);
   const Eigen::Vector3i inside = cell.cwiseMax(0).cwiseMin(size_ - Eigen::Vector3i::Ones());
   const double outside = resolution_ * (cell - inside).cast<double>().norm();
@@ -233,6 +258,7 @@ NavigationMaps make_navigation_maps(const SurfaceMap& surface, const TriangleMes
   const FreeSpace space(surface, mesh, settings.cell);
   NavigationMaps maps;
   maps.octomap = space.octomap();
+  maps.octomap_probabilities = space.octomap_probabilities();
   Eigen::Vector3d up = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < surface.view_count(); ++i) up -= surface.pose(i).linear().col(1);
   if (up.norm() > 0.0) maps.floor = find_floor(mesh, up);

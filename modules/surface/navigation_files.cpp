@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <array>
 #include <cstdio>
+#include <cstring>
+#include <limits>
 
 #include "holdfast/core/check.hpp"
 #include "holdfast/surface/free_space.hpp"
@@ -14,84 +17,114 @@ constexpr int octree_depth = 16;
 /// Writes an octree over a grid from its root, whose cells begin at -2^15 along each axis.
 class OctreeWriter {
  public:
-  OctreeWriter(const FreeSpace& space, const Eigen::Vector3i& first) : space_(space), first_(first) {}
+  OctreeWriter(const FreeSpace& space, const Eigen::Vector3i& first, bool with_probabilities)
+      : space_(space), first_(first), with_probabilities_(with_probabilities) {}
 
   std::string data;
   std::size_t nodes = 0;
 
-  /// Writes the children of a node, whose lowest cell is `corner` and whose side is 2^level cells.
-  void write(const Eigen::Vector3i& corner, int level) {
+  void write() {
+    if (content(root_, 1 << octree_depth).is_unknown()) return;
+    if (with_probabilities_)
+      write_probabilities(root_, octree_depth);
+    else
+      write_states(root_, octree_depth);
+  }
+
+ private:
+  /// What a cube holds: one value, or several; 0 = unknown.
+  struct Content {
+    int value = 0;
+    bool is_mixed = false;
+    bool is_unknown() const { return value == 0 && !is_mixed; }
+  };
+
+  /// Writes the children of a node, whose lowest cell is `corner` and whose side is 2^level cells: two bits for each.
+  void write_states(const Eigen::Vector3i& corner, int level) {
     ++nodes;
     const int half = 1 << (level - 1);
-    std::array<Content, 8> contents{};
+    std::array<Content, 8> contents;
     unsigned bits = 0;
-    for (int child = 0; child < 8; ++child) {
-      contents[static_cast<std::size_t>(child)] = content(corner_of(corner, child, half), half);
-      bits |= bits_of(contents[static_cast<std::size_t>(child)]) << (2 * child);
+    for (unsigned child = 0; child < 8; ++child) {
+      const Content& inside = contents[child] = content(corner_of(corner, child, half), half);
+      bits |= (inside.is_mixed ? 3U : inside.value < 0 ? 1U : inside.value > 0 ? 2U : 0U) << (2 * child);
     }
     data += static_cast<char>(bits & 255U);
     data += static_cast<char>(bits >> 8U);
-    for (int child = 0; child < 8; ++child) {
-      const Content inside = contents[static_cast<std::size_t>(child)];
-      if (inside == Content::mixed)
-        write(corner_of(corner, child, half), level - 1);
-      else if (inside != Content::unknown)
+    for (unsigned child = 0; child < 8; ++child) {
+      if (contents[child].is_mixed)
+        write_states(corner_of(corner, child, half), level - 1);
+      else if (!contents[child].is_unknown())
         ++nodes;
     }
   }
 
- private:
-  enum class Content { unknown, free, occupied, mixed };
-
-  static unsigned bits_of(Content content) {
-    switch (content) {
-      case Content::free:
-        return 1;
-      case Content::occupied:
-        return 2;
-      case Content::mixed:
-        return 3;
-      case Content::unknown:
-        break;
+  /// Writes a node with what is below it, and returns its log-odds: of an inner node, the largest of its children.
+  float write_probabilities(const Eigen::Vector3i& corner, int level) {
+    ++nodes;
+    const Content inside = content(corner, 1 << level);
+    const std::size_t place = data.size();
+    data.append(sizeof(float) + 1, '\0');
+    float log_odds = -std::numeric_limits<float>::infinity();
+    if (!inside.is_mixed) {
+      log_odds = FreeSpace::log_odds(inside.value);
+    } else {
+      const int half = 1 << (level - 1);
+      unsigned bits = 0;
+      for (unsigned child = 0; child < 8; ++child) {
+        const Eigen::Vector3i lowest = corner_of(corner, child, half);
+        if (content(lowest, half).is_unknown()) continue;
+        bits |= 1U << child;
+        log_odds = std::max(log_odds, write_probabilities(lowest, level - 1));
+      }
+      data[place + sizeof(float)] = static_cast<char>(bits);
     }
-    return 0;
-  }
-  static Eigen::Vector3i corner_of(const Eigen::Vector3i& corner, int child, int half) {
-    return corner + half * Eigen::Vector3i(child & 1, (child >> 1) & 1, (child >> 2) & 1);
+    std::memcpy(data.data() + place, &log_odds, sizeof(log_odds));
+    return log_odds;
   }
 
-  /// What a cube holds: one state, or several.
+  static Eigen::Vector3i corner_of(const Eigen::Vector3i& corner, unsigned child, int half) {
+    return corner + half * Eigen::Vector3i(child & 1U, (child >> 1U) & 1U, (child >> 2U) & 1U);
+  }
+
+  int value_at(const Eigen::Vector3i& cell) const {
+    const int evidence = space_.evidence(cell);
+    return with_probabilities_ ? evidence : (evidence > 0) - (evidence < 0);
+  }
+
   Content content(const Eigen::Vector3i& corner, int side) const {
     const Eigen::Vector3i low = (corner - first_).cwiseMax(0);
     const Eigen::Vector3i high = (corner - first_ + Eigen::Vector3i::Constant(side)).cwiseMin(space_.size());
-    if ((low.array() >= high.array()).any()) return Content::unknown;
+    if ((low.array() >= high.array()).any()) return {};
     const bool is_inside = ((high - low).array() == side).all();
-    const Occupancy first = is_inside ? space_.at(low) : Occupancy::unknown;
+    const int first = is_inside ? value_at(low) : 0;
     for (int z = low.z(); z < high.z(); ++z)
       for (int y = low.y(); y < high.y(); ++y)
         for (int x = low.x(); x < high.x(); ++x)
-          if (space_.at(Eigen::Vector3i(x, y, z)) != first) return Content::mixed;
-    return first == Occupancy::free       ? Content::free
-           : first == Occupancy::occupied ? Content::occupied
-                                          : Content::unknown;
+          if (value_at(Eigen::Vector3i(x, y, z)) != first) return {0, true};
+    return {first, false};
   }
 
+  const Eigen::Vector3i root_ = Eigen::Vector3i::Constant(-(1 << (octree_depth - 1)));
   const FreeSpace& space_;
   Eigen::Vector3i first_;  // cell of the grid's corner, as counted from the world's origin
+  bool with_probabilities_;
 };
+
+std::string octree(const FreeSpace& space, const Eigen::Vector3i& first, bool with_probabilities) {
+  OctreeWriter writer(space, first, with_probabilities);
+  writer.write();
+  std::array<char, 64> resolution{};
+  std::snprintf(resolution.data(), resolution.size(), "%.9g", space.resolution());
+  return std::string("# Octomap OcTree ") + (with_probabilities ? "file" : "binary file") +
+         "\n# (feel free to add / change comments, but leave the first line as it is!)\n#\nid OcTree\nsize " +
+         std::to_string(writer.nodes) + "\nres " + resolution.data() + "\ndata\n" + writer.data;
+}
 
 }  // namespace
 
-std::string FreeSpace::octomap() const {
-  const Eigen::Vector3i first = (origin_ / resolution_).array().round().cast<int>();
-  OctreeWriter writer(*this, first);
-  if (!states_.empty()) writer.write(Eigen::Vector3i::Constant(-(1 << (octree_depth - 1))), octree_depth);
-  std::array<char, 64> resolution{};
-  std::snprintf(resolution.data(), resolution.size(), "%.9g", resolution_);
-  return "# Octomap OcTree binary file\n# (feel free to add / change comments, but leave the first line as it is!)\n#\n"
-         "id OcTree\nsize " +
-         std::to_string(writer.nodes) + "\nres " + resolution.data() + "\ndata\n" + writer.data;
-}
+std::string FreeSpace::octomap() const { return octree(*this, first_cell(), false); }
+std::string FreeSpace::octomap_probabilities() const { return octree(*this, first_cell(), true); }
 
 std::string grid_map_pgm(const GridMap& map) {
   std::string bytes = "P5\n" + std::to_string(map.width) + " " + std::to_string(map.height) + "\n255\n";

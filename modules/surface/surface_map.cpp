@@ -59,13 +59,12 @@ std::size_t SurfaceMap::update(const std::vector<KeptView>& views, const std::ve
 
   std::sort(moved.begin(), moved.end());
   const std::size_t count = std::min(max_moves, moved.size());
-  for (std::size_t k = 0; k < count; ++k) take_out(entries_[moved[k].second]);
   for (std::size_t k = 0; k < count; ++k) {
     Entry& entry = entries_[moved[k].second];
-    entry.fusion = field_.put_in(entry.view, poses[moved[k].second], entry.fusion.number);
+    entry.fusion = field_.move(entry.view, entry.fusion, poses[moved[k].second]);
   }
   moves_ += count;
-  if (has_taken_out) field_.remove_empty_blocks();
+  if (has_taken_out || count > 0) field_.remove_empty_blocks();
   return moved.size() - count;
 }
 

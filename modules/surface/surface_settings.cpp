@@ -46,7 +46,7 @@ void SurfaceSettings::describe(ParameterTable<SurfaceSettings>& table) {
             "from which "
             "`holdfast map export --mesh` makes meshes later");
   table.add("navigation", &S::navigation,
-            "also write maps for navigation: map.pgm and map.yaml for ROS's map_server, and octomap.bt");
+            "also write maps for navigation: map.pgm and map.yaml for ROS's map_server, octomap.bt, octomap.ot");
   table.add("cell", &S::cell, "side of a cell of these maps").range(0.01, 1).unit("m");
   table.add("robot_lowest", &S::robot_lowest, "surface below this height over the floor is no obstacle")
       .range(0, 1)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <map>
@@ -48,12 +49,14 @@ json pinhole_json(const Camera& camera) {
 }
 
 Camera pinhole_of(const json& values) {
-  constexpr double largest = 20000.0;  // [px]
+  constexpr double largest = 20000.0, farthest = 1e6;  // [px]
   Camera camera;
   const double width = values.at("width"), height = values.at("height");
   camera.fx = values.at("fx"), camera.fy = values.at("fy"), camera.cx = values.at("cx"), camera.cy = values.at("cy");
-  if (!(width >= 3 && height >= 3 && width <= largest && height <= largest && camera.fx > 0.0 && camera.fy > 0.0))
-    throw Error("found a camera without a valid size or focal length");
+  if (!(width >= 3 && height >= 3 && width <= largest && height <= largest && camera.fx >= 1.0 && camera.fy >= 1.0 &&
+        camera.fx <= farthest && camera.fy <= farthest && std::abs(camera.cx) <= farthest &&
+        std::abs(camera.cy) <= farthest))
+    throw Error("found a camera without a valid size, focal length or principal point");
   camera.width = static_cast<int>(width), camera.height = static_cast<int>(height);
   return camera;
 }
@@ -90,12 +93,13 @@ json pose_json(const Eigen::Isometry3d& pose) {
 }
 
 Eigen::Isometry3d pose_of(const json& rows) {
+  constexpr double farthest = 1000.0;  // between the view and its keyframe [m]
   const auto values = rows.get<std::array<double, 12>>();
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   for (int i = 0; i < 12; ++i) pose.matrix()(i / 4, i % 4) = values[static_cast<std::size_t>(i)];
   const Eigen::Matrix3d square = pose.linear() * pose.linear().transpose();
-  if (!((square - Eigen::Matrix3d::Identity()).norm() < 1e-6) || !pose.translation().allFinite())
-    throw Error("found a pose that is no rigid motion");
+  if (!((square - Eigen::Matrix3d::Identity()).norm() < 1e-6) || !(pose.translation().norm() <= farthest))
+    throw Error("found a pose that is no rigid motion of at most 1000 m");
   return pose;
 }
 
@@ -187,6 +191,23 @@ SurfaceViews SurfaceViews::of(const SurfaceMap& surface) {
   SurfaceViews result{surface.camera(), surface.field().settings(), {}, 0};
   for (std::size_t i = 0; i < surface.view_count(); ++i) result.views.push_back(surface.view(i));
   return result;
+}
+
+void SurfaceViews::append(SurfaceViews later) {
+  const auto values = [](const Camera& c) {
+    return std::array{static_cast<double>(c.width), static_cast<double>(c.height), c.fx, c.fy, c.cx, c.cy};
+  };
+  if (values(camera) != values(later.camera))
+    throw Error("views of different cameras, or of different dense_map.step, cannot be fused into one surface; found " +
+                std::to_string(camera.width) + "x" + std::to_string(camera.height) + ", fx " +
+                std::to_string(camera.fx) + ", and " + std::to_string(later.camera.width) + "x" +
+                std::to_string(later.camera.height) + ", fx " + std::to_string(later.camera.fx));
+  const std::uint64_t first = views.empty() ? 0 : views.back().frame_index + 1;
+  for (KeptView& view : later.views) {
+    view.frame_index += first;
+    views.push_back(std::move(view));
+  }
+  left_out += later.left_out;
 }
 
 void write_views(const fs::path& folder, const SurfaceViews& views, const Map& map) {

@@ -103,12 +103,14 @@ TEST_F(ResultsTest, ASurfaceIsWrittenInItsFormatsAndWithItsMaps) {
   maps.grid.width = maps.grid.height = 1;
   maps.grid.cells = {Occupancy::free};
   maps.octomap = "tree";
+  maps.octomap_probabilities = "likely tree";
   record_.surface_views.emplace();
   write_results(record_, folder_);
   EXPECT_THAT(text("surface.glb"), ::testing::StartsWith("glTF"));
   EXPECT_THAT(text("surface.obj"), HasSubstr("f 1//1 2//2 3//3"));
   EXPECT_FALSE(fs::exists(folder_ / "surface.ply"));
   EXPECT_EQ(text("octomap.bt"), "tree");
+  EXPECT_EQ(text("octomap.ot"), "likely tree");
   EXPECT_THAT(text("surface_views/views.json"), HasSubstr("\"views\": []"));
   EXPECT_EQ(text("map.pgm"), "P5\n1 1\n255\n\xFE");
   EXPECT_THAT(text("map.yaml"), ::testing::StartsWith("image: map.pgm\n"));

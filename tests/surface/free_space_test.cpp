@@ -4,6 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <memory>
+#include <sstream>
+
+#ifdef HOLDFAST_TEST_WITH_OCTOMAP
+#include <octomap/OcTree.h>
+#endif
+
 #include "surface/solid_world.hpp"
 
 namespace holdfast {
@@ -119,9 +127,45 @@ TEST_F(FreeSpaceTest, MakesAMapOfTheFloor) {
   EXPECT_FALSE(maps.octomap.empty());
 }
 
+#ifdef HOLDFAST_TEST_WITH_OCTOMAP
+TEST_F(FreeSpaceTest, OctoMapsLibraryFindsEveryCellAsItIs) {
+  const FreeSpace space(*surface_, mesh_, 0.05);
+  std::istringstream states(space.octomap()), probabilities(space.octomap_probabilities());
+  octomap::OcTree binary(0.05);
+  ASSERT_TRUE(binary.readBinary(states));
+  const std::unique_ptr<octomap::AbstractOcTree> read(octomap::AbstractOcTree::read(probabilities));
+  const auto* full = dynamic_cast<octomap::OcTree*>(read.get());
+  ASSERT_NE(full, nullptr);
+  EXPECT_EQ(full->getResolution(), 0.05);
+  EXPECT_GT(full->size(), binary.size());
+  int certain = 0, free = 0, occupied = 0;
+  const Eigen::Vector3i size = space.size();
+  for (int z = 0; z < size.z(); ++z)
+    for (int y = 0; y < size.y(); ++y)
+      for (int x = 0; x < size.x(); ++x) {
+        const Eigen::Vector3d p = space.centre_of({x, y, z});
+        const int evidence = space.evidence({x, y, z});
+        const octomap::OcTreeNode* state = binary.search(p.x(), p.y(), p.z());
+        const octomap::OcTreeNode* node = full->search(p.x(), p.y(), p.z());
+        ASSERT_EQ(node != nullptr, evidence != 0) << p.transpose();
+        ASSERT_EQ(state != nullptr, evidence != 0) << p.transpose();
+        if (node == nullptr) continue;
+        ASSERT_EQ(node->getLogOdds(), FreeSpace::log_odds(evidence)) << p.transpose();
+        ASSERT_EQ(full->isNodeOccupied(node), evidence > 0);
+        ASSERT_EQ(binary.isNodeOccupied(state), evidence > 0);
+        certain += std::abs(evidence) >= 3, free += evidence<0, occupied += evidence> 0;
+      }
+  EXPECT_GT(free, 1000);
+  EXPECT_GT(occupied, 200);
+  EXPECT_GT(certain, 500);
+  EXPECT_LT(certain, free + occupied) << "at the rims few views look";
+}
+#endif
+
 TEST_F(FreeSpaceTest, WritesFilesOfTheMapServerAndOctoMap) {
   const FreeSpace space(*surface_, mesh_, 0.05);
   EXPECT_THAT(space.octomap(), StartsWith("# Octomap OcTree binary file\n"));
+  EXPECT_THAT(space.octomap_probabilities(), StartsWith("# Octomap OcTree file\n"));
   EXPECT_THAT(space.octomap(), HasSubstr("id OcTree\nsize "));
   EXPECT_THAT(space.octomap(), HasSubstr("\nres 0.05\ndata\n"));
   GridMap map;

@@ -122,6 +122,24 @@ TEST_F(SurfaceViewsTest, MakeTheMeshOfTheRunAtThePosesOfTheMap) {
   EXPECT_NEAR(after.max().z() - before.max().z(), 1.0, 1e-3);
 }
 
+TEST_F(SurfaceViewsTest, OfSeveralRunsOnOneMapMakeOneMesh) {
+  if (!SurfaceField::is_available()) GTEST_SKIP() << "built without OpenVDB";
+  // Both runs count their frames from 0.
+  SurfaceViews first = views_, second = views_;
+  first.views.assign(views_.views.begin(), views_.views.begin() + 3);
+  second.views.assign(views_.views.begin() + 3, views_.views.end());
+  for (std::size_t i = 0; i < second.views.size(); ++i) second.views[i].frame_index = i;
+  second.left_out = 2;
+  first.append(second);
+  ASSERT_EQ(first.views.size(), views_.views.size());
+  EXPECT_EQ(first.left_out, 2U);
+  for (std::size_t i = 1; i < first.views.size(); ++i)
+    EXPECT_LT(first.views[i - 1].frame_index, first.views[i].frame_index);
+  EXPECT_EQ(mesh_ply(fuse(first, map_)), mesh_ply(fuse(views_, map_)));
+  second.camera.fx += 1.0;
+  EXPECT_THROW(first.append(second), Error);
+}
+
 TEST_F(SurfaceViewsTest, OfARemovedKeyframeFollowTheOneNearestInTime) {
   const KeyFrameId removed = views_.views[2].keyframe;
   const Eigen::Isometry3d pose = map_.pose_of(removed);
@@ -149,6 +167,7 @@ TEST_F(SurfaceViewsTest, AreRefusedWithTheReason) {
   EXPECT_THAT(refusal_with("\"voxel\": 0.05", "\"voxel\": 0"), HasSubstr("'voxel'"));
   EXPECT_THAT(refusal_with("\"frame\": 1", "\"frame\": 0"), HasSubstr("out of order"));
   EXPECT_THAT(refusal_with("[\n    1.0", "[\n    2.0"), HasSubstr("no rigid motion"));
+  EXPECT_THAT(refusal_with("\"fx\": ", "\"fx\": 1e-300, \"unused\": "), HasSubstr("focal length"));
   EXPECT_THAT(refusal_with("]", ""), HasSubstr("is damaged"));
   EXPECT_EQ(refusal_of(map_), "");
   write_file_atomically(folder_ / "depth/000001.png", "no image");

@@ -39,10 +39,21 @@ class FreeSpace {
   Eigen::Vector3d centre_of(const Eigen::Vector3i& cell) const {
     return origin_ + resolution_ * (cell.cast<double>() + Eigen::Vector3d::Constant(0.5));
   }
-  Occupancy at(const Eigen::Vector3i& cell) const { return states_[index(cell)]; }
+  Occupancy at(const Eigen::Vector3i& cell) const {
+    const int found = evidence(cell);
+    return found > 0 ? Occupancy::occupied : found < 0 ? Occupancy::free : Occupancy::unknown;
+  }
+  /// Number of views that support the state of a cell, at most 5: positive if it is occupied, negative if it is free, 0
+  /// if it is unknown.
+  int evidence(const Eigen::Vector3i& cell) const { return evidence_[index(cell)]; }
+  /// Log-odds of the occupancy by OctoMap's sensor model: 0.85 for each view that supports it, at most 3.5; -0.4 for
+  /// each view that looked through, at least -2.
+  static float log_odds(int evidence);
 
   /// Formats the grid as a binary OctoMap (.bt; Hornung et al., Autonomous Robots 2013).
   std::string octomap() const;
+  /// Formats the grid as an OctoMap with log_odds() of each cell (.ot).
+  std::string octomap_probabilities() const;
 
  private:
   std::size_t index(const Eigen::Vector3i& cell) const {
@@ -61,13 +72,15 @@ class FreeSpace {
   void set_size(const SurfaceMap& surface, const TriangleMesh& mesh);
   void look_through(const SurfaceMap& surface);
   void occupy(const TriangleMesh& mesh);
+  Eigen::Vector3i first_cell() const { return (origin_ / resolution_).array().round().cast<int>(); }
   void compute_distances();
 
   double resolution_;
   Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // a multiple of the resolution
   Eigen::Vector3i size_ = Eigen::Vector3i::Zero();
-  std::vector<Occupancy> states_;
-  std::vector<float> distances_;  // [m]
+  std::vector<std::int8_t> evidence_;
+  std::vector<std::uint8_t> hits_;  // number of views that saw a surface in a cell; only during construction
+  std::vector<float> distances_;    // [m]
 };
 
 /// The floor of a mesh: points p with up . p = height.
@@ -102,7 +115,8 @@ GridMap make_grid_map(const FreeSpace& space, const TriangleMesh& mesh, const Fl
 struct NavigationMaps {
   std::optional<Floor> floor;  ///< empty without a horizontal surface; then there is no grid
   GridMap grid;
-  std::string octomap;  ///< see FreeSpace::octomap
+  std::string octomap;                ///< see FreeSpace::octomap
+  std::string octomap_probabilities;  ///< see FreeSpace::octomap_probabilities
 };
 
 /// Makes the maps of a surface and its mesh. Up is roughly that of the cameras.

@@ -53,6 +53,8 @@ class SurfaceField {
   Fusion put_in(const KeptView& view, const Eigen::Isometry3d& T_world_camera, std::uint32_t number);
   /// Subtracts what put_in() added.
   void take_out(const KeptView& view, const Fusion& fusion);
+  /// take_out() and put_in() at another pose, with one preparation of the image.
+  Fusion move(const KeptView& view, const Fusion& fusion, const Eigen::Isometry3d& T_world_camera);
   /// Removes blocks in which no view observes a surface.
   void remove_empty_blocks();
 

@@ -27,7 +27,7 @@ struct SurfaceSettings {
   /// Whether a run keeps the fused images in the folder surface_views beside its map, for `holdfast map export --mesh`.
   bool keep_depth = false;
   int triangles = 0;           ///< largest number of triangles of these files (decimate()); 0 = all
-  bool navigation = false;     ///< whether a run writes map.pgm, map.yaml and octomap.bt
+  bool navigation = false;     ///< whether a run writes map.pgm, map.yaml, octomap.bt and octomap.ot
   double cell = 0.05;          ///< side of a cell of these maps [m]
   double robot_lowest = 0.08;  ///< surface below this height over the floor is no obstacle [m]
   double robot_highest = 1.0;  ///< surface above it, neither: the height of the robot [m]

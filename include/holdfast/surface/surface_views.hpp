@@ -26,6 +26,9 @@ struct SurfaceViews {
 
   /// The views of a surface; images are shared.
   static SurfaceViews of(const SurfaceMap& surface);
+  /// Adds the views of a later run on the same map; its frames are numbered on. The settings stay. Throws Error if the
+  /// runs had different cameras or values of dense_map.step.
+  void append(SurfaceViews later);
 };
 
 /// Writes views into a folder: views.json, and images as PNG without loss, colour/FRAME.png and depth/FRAME.png (16

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "integrator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "holdfast/core/simd.hpp"
+
+namespace holdfast::surface {
+
+namespace {
+
+constexpr float growth = 1.5F;  // of the weight of a view in the balance, from view to view
+constexpr std::uint32_t largest_number = 65535;
+constexpr float nearest_depth = 0.1F;     // [m]
+constexpr std::int32_t most_faded = 128;  // views, after which nothing is left of one
+
+/// growth^-views
+constexpr auto faded = [] {
+  std::array<float, most_faded + 1> values{};
+  float value = 1.0F;
+  for (int i = 0; i < most_faded; ++i, value /= growth) values[static_cast<std::size_t>(i)] = value;
+  return values;
+}();
+
+void add_colour(Block& block, std::size_t i, const ViewImage::Pixel& pixel, int sign) {
+  if (!block.colour) block.colour = std::make_unique<std::array<Block::Colour, Block::size>>();
+  Block::Colour& colour = (*block.colour)[i];
+  if (sign > 0 && colour.count == Block::colour_limit)
+    colour.red /= 2, colour.green /= 2, colour.blue /= 2, colour.count /= 2;
+  const auto add = [&](std::uint16_t& sum, int value) {
+    sum = static_cast<std::uint16_t>(std::max(sum + sign * value, 0));
+  };
+  add(colour.red, pixel.red);
+  add(colour.green, pixel.green);
+  add(colour.blue, pixel.blue);
+  add(colour.count, 1);
+}
+
+#define HOLDFAST_INLINE __attribute__((always_inline)) static inline
+
+// Eight voxels, on which the compiler works with the instructions of the function into which a kernel is inlined.
+using Float8 = float __attribute__((vector_size(32)));
+using Int8 = std::int32_t __attribute__((vector_size(32)));
+using Short8 = std::uint16_t __attribute__((vector_size(16)));
+using Byte8 = std::uint8_t __attribute__((vector_size(8)));
+
+/// Adds `amount` to the balance of eight voxels from `first` on, where `is_active`.
+HOLDFAST_INLINE void add_balance(const ViewGeometry& view, Block& block, std::size_t first, const Int8& is_active,
+                                 const Float8& amount) {
+  Float8 balance;
+  Short8 last_bits;
+  std::memcpy(&balance, &block.balance[first], sizeof(balance));
+  std::memcpy(&last_bits, &block.last[first], sizeof(last_bits));
+  const Int8 last = __builtin_convertvector(last_bits, Int8);
+  const Int8 is_later = view.number > last;
+  Int8 views = is_later ? view.number - last : last - view.number;
+  views = views > most_faded ? Int8{} + most_faded : views;
+  Float8 factor;
+  for (int k = 0; k < 8; ++k) factor[k] = faded[static_cast<std::size_t>(views[k])];
+  const Float8 sum =
+      (is_later ? balance * factor : balance) + static_cast<float>(view.sign) * (is_later ? amount : amount * factor);
+  balance = is_active ? sum : balance;
+  last_bits = __builtin_convertvector((is_active & is_later) ? Int8{} + view.number : last, Short8);
+  std::memcpy(&block.balance[first], &balance, sizeof(balance));
+  std::memcpy(&block.last[first], &last_bits, sizeof(last_bits));
+}
+
+/// Adds a view to the eight voxels from `first` on. `x`, `y`, `z`: the first one in the frame of the camera.
+template <bool only_carves>
+HOLDFAST_INLINE void update_row(const ViewGeometry& view, float x, float y, float z, Block& block, std::size_t first) {
+  const Float8 steps = {0.0F, 1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 6.0F, 7.0F};
+  const Float8 depth = z + steps * view.rotation[8];
+  const Float8 inverse = 1.0F / depth;
+  Float8 u = view.fx * (x + steps * view.rotation[6]) * inverse + view.cx;
+  Float8 v = view.fy * (y + steps * view.rotation[7]) * inverse + view.cy;
+  const Int8 is_inside = (depth >= nearest_depth) & (u >= 0.0F) & (v >= 0.0F) & (u < view.width) & (v < view.height);
+  std::int64_t any[4];
+  std::memcpy(any, &is_inside, sizeof(any));
+  if ((any[0] | any[1] | any[2] | any[3]) == 0) return;
+  u = is_inside ? u : Float8{};
+  v = is_inside ? v : Float8{};
+  const Int8 place =
+      __builtin_convertvector(v, Int8) * static_cast<std::int32_t>(view.width) + __builtin_convertvector(u, Int8);
+  const Float8 square_margin = ViewGeometry::constant_margin + ViewGeometry::quadratic_margin * depth * depth;
+  const Float8 margin = square_margin < view.truncation ? Float8{} + view.truncation : square_margin;
+  Float8 near;
+  for (int k = 0; k < 8; ++k) near[k] = view.pixels[place[k]].near;
+  if constexpr (only_carves) {
+    const Int8 is_active = is_inside & (near > 0.0F) & (depth - near <= margin);
+    add_balance(view, block, first, is_active, (near - depth > margin) ? Float8{} - 1.0F : Float8{} + 1.0F);
+  } else {
+    Float8 surface, slope;
+    Int8 weight;
+    for (int k = 0; k < 8; ++k) {
+      const ViewImage::Pixel& pixel = view.pixels[place[k]];
+      surface[k] = pixel.depth, slope[k] = pixel.slope, weight[k] = pixel.weight;
+    }
+    const Int8 is_free = is_inside & ((near - depth) * slope > margin);
+    const Float8 distance = (surface - depth) * slope;
+    const Float8 length = distance < 0.0F ? -distance : distance;
+    const Int8 is_near = is_inside & ~is_free & (weight != 0) & (length <= view.truncation);
+    add_balance(view, block, first, is_free | (is_near & (distance < 0.5F * view.truncation)),
+                is_free ? Float8{} - 1.0F : Float8{} + 1.0F);
+    std::memcpy(any, &is_near, sizeof(any));
+    if ((any[0] | any[1] | any[2] | any[3]) == 0) return;
+
+    Int8 sum;
+    Short8 weight_bits;
+    Byte8 view_bits;
+    std::memcpy(&sum, &block.distance[first], sizeof(sum));
+    std::memcpy(&weight_bits, &block.weight[first], sizeof(weight_bits));
+    std::memcpy(&view_bits, &block.views[first], sizeof(view_bits));
+    const Float8 scaled = distance / view.truncation * static_cast<float>(Block::truncation_units);
+    const Float8 rounded = scaled + (scaled < 0.0F ? Float8{} - 0.5F : Float8{} + 0.5F);
+    const Int8 units = __builtin_convertvector(is_near ? rounded : Float8{}, Int8);
+    sum += is_near & (view.sign * units * weight);
+    // Halves the sums before they overflow, after more than a thousand views.
+    Int8 weights = __builtin_convertvector(weight_bits, Int8);
+    const Int8 is_full = is_near & (weights > 65535 - 64);
+    weights = is_full ? weights >> 1 : weights;
+    sum = is_full ? (sum - (sum < 0)) >> 1 : sum;
+    weights += is_near & (view.sign * weight);
+    weights = weights < 0 ? Int8{} : weights;
+    Int8 views = __builtin_convertvector(view_bits, Int8);
+    views += is_near & (views < 255) & (Int8{} + view.sign);
+    views = views < 0 ? Int8{} : views;
+    weight_bits = __builtin_convertvector(weights, Short8);
+    view_bits = __builtin_convertvector(views, Byte8);
+    std::memcpy(&block.distance[first], &sum, sizeof(sum));
+    std::memcpy(&block.weight[first], &weight_bits, sizeof(weight_bits));
+    std::memcpy(&block.views[first], &view_bits, sizeof(view_bits));
+    const Int8 has_colour = is_near & (length < 1.5F * view.voxel);
+    for (int k = 0; k < 8; ++k)
+      if (has_colour[k] != 0) add_colour(block, first + static_cast<std::size_t>(k), view.pixels[place[k]], view.sign);
+  }
+}
+
+template <bool only_carves>
+HOLDFAST_INLINE void update_voxels(const ViewGeometry& view, const float* corner, Block& block) {
+  const float* const r = view.rotation;
+  for (int i = 0; i < Block::side * Block::side; ++i) {
+    const auto a = static_cast<float>(i / Block::side), b = static_cast<float>(i % Block::side);
+    update_row<only_carves>(view, corner[0] + a * r[0] + b * r[3], corner[1] + a * r[1] + b * r[4],
+                            corner[2] + a * r[2] + b * r[5], block, static_cast<std::size_t>(i * Block::side));
+  }
+}
+
+HOLDFAST_INLINE void carve_all(const ViewGeometry& view, const float*, Block& block) {
+  for (std::size_t i = 0; i < Block::size; i += Block::side) add_balance(view, block, i, Int8{} - 1, Float8{} - 1.0F);
+}
+
+// The same loops once per set of instructions.
+#define HOLDFAST_LOOPS(name, target)                                                            \
+  struct name {                                                                                 \
+    target static void fuse(const ViewGeometry& view, const float* corner, Block& block) {      \
+      update_voxels<false>(view, corner, block);                                                \
+    }                                                                                           \
+    target static void carve(const ViewGeometry& view, const float* corner, Block& block) {     \
+      update_voxels<true>(view, corner, block);                                                 \
+    }                                                                                           \
+    target static void carve_all(const ViewGeometry& view, const float* corner, Block& block) { \
+      surface::carve_all(view, corner, block);                                                  \
+    }                                                                                           \
+  };
+
+HOLDFAST_LOOPS(ScalarLoops, )
+#if defined(__x86_64__)
+HOLDFAST_LOOPS(Sse4Loops, __attribute__((target("sse4.1"))))
+HOLDFAST_LOOPS(Avx2Loops, __attribute__((target("avx2"))))
+#endif
+
+#undef HOLDFAST_LOOPS
+#undef HOLDFAST_INLINE
+
+}  // namespace
+
+Integrator::Integrator(const ViewImage& image, const Eigen::Isometry3d& T_world_camera, std::uint32_t number, int sign,
+                       const SurfaceSettings& settings)
+    : image_(image) {
+  const Eigen::Isometry3d T_camera_world = T_world_camera.inverse();
+  rotation_ = T_camera_world.linear().cast<float>();
+  translation_ = T_camera_world.translation().cast<float>();
+  const Camera& camera = image.camera();
+  view_.voxel = static_cast<float>(settings.voxel);
+  view_.truncation = static_cast<float>(settings.truncation * settings.voxel);
+  Eigen::Map<Eigen::Matrix3f>(view_.rotation) = rotation_ * view_.voxel;
+  view_.fx = static_cast<float>(camera.fx), view_.fy = static_cast<float>(camera.fy);
+  view_.cx = static_cast<float>(camera.cx + 0.5), view_.cy = static_cast<float>(camera.cy + 0.5);
+  view_.width = static_cast<float>(camera.width), view_.height = static_cast<float>(camera.height);
+  view_.pixels = image.pixels();
+  view_.number = static_cast<std::int32_t>(std::min(number, largest_number));
+  view_.sign = sign;
+  const auto take = [&](auto loops) {
+    using Loops = decltype(loops);
+    update_voxels_ = image_.only_carves() ? Loops::carve : Loops::fuse;
+    carve_all_ = Loops::carve_all;
+  };
+  take(ScalarLoops());
+#if defined(__x86_64__)
+  if (simd_level() >= SimdLevel::sse4) take(Sse4Loops());
+  if (simd_level() >= SimdLevel::avx2) take(Avx2Loops());
+#endif
+}
+
+void Integrator::update(const Blocks& blocks, std::uint64_t births) const {
+  const std::vector<Eigen::Vector3i>& coordinates = blocks.coordinates();
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    const Eigen::Vector3f corner =
+        rotation_ * (coordinates[i].cast<float>() * (view_.voxel * Block::side)) + translation_;
+    const Reach reach = reach_of(corner);
+    if (reach == Reach::nothing) continue;
+    Block& block = *blocks.list()[i];
+    if (block.birth >= births) return;  // and so are all that follow
+    (reach == Reach::all_free ? carve_all_ : update_voxels_)(view_, corner.data(), block);
+  }
+}
+
+float Integrator::margin_at(float depth) const {
+  return std::max(view_.truncation, ViewGeometry::constant_margin + ViewGeometry::quadratic_margin * depth * depth);
+}
+
+Integrator::Reach Integrator::reach_of(const Eigen::Vector3f& corner) const {
+  const float half = 0.5F * view_.voxel * Block::side;
+  const Eigen::Vector3f centre = corner + rotation_ * Eigen::Vector3f::Constant(half);
+  const float radius = half * 1.7321F;
+  const float nearest = centre.z() - radius;
+  if (centre.z() + radius < nearest_depth) return Reach::nothing;
+  // Close to the camera the projection of the sphere may be unbounded.
+  if (nearest < nearest_depth) return Reach::something;
+  const float u = view_.fx * centre.x() / centre.z() + view_.cx, v = view_.fy * centre.y() / centre.z() + view_.cy;
+  const float reach = 1.5F * std::max(view_.fx, view_.fy) * radius / nearest + 1.0F;
+  if (u + reach < 0.0F || v + reach < 0.0F || u - reach > view_.width || v - reach > view_.height)
+    return Reach::nothing;
+  const int right = static_cast<int>(u + reach), bottom = static_cast<int>(v + reach);
+  const float farthest = image_.farthest(static_cast<int>(std::max(u - reach, 0.0F)),
+                                         static_cast<int>(std::max(v - reach, 0.0F)), right, bottom);
+  if (farthest <= 0.0F || nearest >= farthest + view_.truncation / ViewImage::smallest_slope) return Reach::nothing;
+  if (!image_.only_carves()) return Reach::something;
+  const float last = centre.z() + radius;
+  if (nearest > farthest + margin_at(last)) return Reach::nothing;
+  const int left = static_cast<int>(std::floor(u - reach)), top = static_cast<int>(std::floor(v - reach));
+  return image_.nearest(left, top, right, bottom) - last > margin_at(last) ? Reach::all_free : Reach::something;
+}
+
+}  // namespace holdfast::surface
