@@ -40,6 +40,51 @@ std::vector<KeyFrameId> placeable_keyframes(const Map& map) {
   return keyframes;
 }
 
+// In a degenerate configuration, more points than the minimum constrain poses weakly as well.
+constexpr int few_points = 4 * minimum_shared_points;
+
+/// By keyframe slot, the island of each keyframe: those that covisibility joins, by as many points as an adjustment
+/// requires. Islands are named by the slot of their oldest keyframe.
+std::vector<std::uint32_t> find_islands(const Map& map) {
+  constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> island(map.keyframes().slot_count(), none);
+  std::vector<KeyFrameId> reached;
+  for (const KeyFrameId first : map.keyframes_by_age()) {
+    if (island[first.slot] != none) continue;
+    island[first.slot] = first.slot;
+    reached.assign(1, first);
+    while (!reached.empty()) {
+      const KeyFrame& keyframe = map.keyframe(reached.back());
+      reached.pop_back();
+      for (const CovisibilityEdge& edge : keyframe.covisible) {
+        if (edge.weight < minimum_shared_points || island[edge.keyframe.slot] != none) continue;
+        island[edge.keyframe.slot] = first.slot;
+        reached.push_back(edge.keyframe);
+      }
+    }
+  }
+  return island;
+}
+
+/// By slot, whether a keyframe is the oldest of an island of several that shares hardly a point with the others, as
+/// behind a view that inertial measurements bridged: nothing else fixes the gauge of these.
+std::vector<std::uint8_t> find_island_holders(const Map& map) {
+  const std::vector<std::uint32_t> island = find_islands(map);
+  std::vector<int> keyframes(island.size(), 0), links(island.size(), 0);
+  for (const KeyFrameId id : map.keyframes_by_age()) ++keyframes[island[id.slot]];
+  map.points().for_each([&](MapPointId, const MapPoint& point) {
+    const auto is_other = [&](const Observation& observation) {
+      return island[observation.keyframe.slot] != island[point.observations.front().keyframe.slot];
+    };
+    if (std::none_of(point.observations.begin(), point.observations.end(), is_other)) return;
+    for (const Observation& observation : point.observations) ++links[island[observation.keyframe.slot]];
+  });
+  std::vector<std::uint8_t> holds(island.size(), 0);
+  for (const KeyFrameId id : map.keyframes_by_age())
+    holds[id.slot] = island[id.slot] == id.slot && keyframes[id.slot] > 1 && links[id.slot] < few_points ? 1 : 0;
+  return holds;
+}
+
 /// Calls function(index) for 0 ... count - 1 and releases the map's lock after every 1000 calls.
 template <class Function>
 void in_portions(MapMutex& mutex, std::size_t count, Function&& function) {
@@ -86,13 +131,14 @@ void FullAdjustment::prepare() {
   keyframes_ = placeable_keyframes(map_);
   constexpr std::uint32_t left_out = std::numeric_limits<std::uint32_t>::max();
   std::vector<std::uint32_t> pose_of_slot(map_.keyframes().slot_count(), left_out);
+  const std::vector<std::uint8_t> holds_island = find_island_holders(map_);
   SubmapSet submaps;
   for (std::uint32_t i = 0; i < keyframes_.size(); ++i) {
     const KeyFrame& keyframe = map_.keyframe(keyframes_[i]);
     if (i == 0) problem_.camera = keyframe.frame.camera.get();
     pose_of_slot[keyframes_[i].slot] = i;
     const bool holds_submap = submaps.add(keyframe.submap);
-    problem_.poses.push_back({keyframe.frame.T_camera_world, holds_submap});
+    problem_.poses.push_back({keyframe.frame.T_camera_world, holds_submap || holds_island[keyframes_[i].slot] != 0});
   }
   points_.reserve(map_.points().size());
   problem_.points.reserve(map_.points().size());
@@ -151,8 +197,6 @@ void FullAdjustment::move_map() {
 
   // Update poses and points under one lock so that readers never see a mixed state.
   const std::lock_guard lock(map_mutex_);
-  // In a degenerate configuration, more points than the minimum constrain a pose weakly as well.
-  constexpr int few_points = 4 * minimum_shared_points;
   const std::vector<int> shared = count_shared_points(map_);
   std::vector<std::uint8_t> is_weak;
   for (const KeyFrameId id : keyframes_) is_weak.push_back(shared[id.slot] < few_points ? 1 : 0);

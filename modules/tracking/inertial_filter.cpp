@@ -9,9 +9,11 @@
 namespace holdfast {
 
 namespace {
-constexpr int gravity_index = 15;
+constexpr int gravity_index = 15, mounting_index = 18, time_index = 21;
 /// Random walk of the direction of gravity in the world of the map, whose vertical drifts [rad/sqrt(s)].
 constexpr double direction_walk = 2e-4;
+/// Errors of the gyroscope's scale and axes, which calibrations leave, as a share of the rotation.
+constexpr double rate_error = 0.005;
 
 Eigen::Matrix3d tangent_projector(const Eigen::Vector3d& gravity) {
   const Eigen::Vector3d down = gravity.normalized();
@@ -31,11 +33,13 @@ InertialFilter::InertialFilter(const geometry::InertialState& state, const Eigen
   set(velocity, deviations.velocity);
   set(gyroscope, deviations.gyroscope);
   set(accelerometer, deviations.accelerometer);
-  covariance_.bottomRightCorner<3, 3>() =
+  set(mounting_index, deviations.mounting);
+  covariance_(time_index, time_index) = deviations.time_offset * deviations.time_offset;
+  covariance_.block<3, 3>(gravity_index, gravity_index) =
       deviations.direction * deviations.direction * gravity.squaredNorm() * tangent_projector(gravity);
 }
 
-void InertialFilter::predict(const geometry::Preintegration& motion) {
+void InertialFilter::predict(const geometry::Preintegration& motion, const Eigen::Vector3d& angular_velocity) {
   const geometry::InertialState next = motion.predict(state_, gravity_);
   geometry::InertialJacobians jacobians;
   motion.residual(state_, next, gravity_, &jacobians);
@@ -43,18 +47,49 @@ void InertialFilter::predict(const geometry::Preintegration& motion) {
   const geometry::Matrix15d inverse = jacobians.second.inverse();
   Covariance transition = Covariance::Identity();
   transition.topLeftCorner<15, 15>() = -inverse * jacobians.first;
-  transition.topRightCorner<15, 3>() = -inverse * jacobians.gravity;
+  transition.block<15, 3>(0, gravity_index) = -inverse * jacobians.gravity;
   covariance_ = (transition * covariance_ * transition.transpose()).eval();
   covariance_.topLeftCorner<15, 15>() += inverse * motion.covariance() * inverse.transpose();
-  covariance_.bottomRightCorner<3, 3>() +=
+  covariance_.block<3, 3>(gravity_index, gravity_index) +=
       direction_walk * direction_walk * motion.duration() * gravity_.squaredNorm() * tangent_projector(gravity_);
+  const double turn = rate_error * geometry::log_so3(motion.delta().rotation).norm();
+  covariance_.diagonal().segment<3>(geometry::inertial::rotation).array() += turn * turn;
   state_ = next;
+  measured_rate_ = angular_velocity;
+}
+
+Eigen::Isometry3d InertialFilter::pose() const {
+  Eigen::Isometry3d pose = state_.T_world_body;
+  pose.translation() += time_offset_ * state_.velocity;
+  pose.linear() =
+      pose.linear() * geometry::exp_so3(time_offset_ * angular_velocity()).toRotationMatrix() * mounting_.transpose();
+  return pose;
+}
+
+/// Derivatives of pose() by the state; its rotation is perturbed from the right, in the axes of the mounted body.
+InertialFilter::Observation InertialFilter::observation() const {
+  using namespace geometry::inertial;
+  Observation result = Observation::Zero();
+  result.block<3, 3>(0, position).setIdentity();
+  result.block<3, 3>(0, velocity) = time_offset_ * Eigen::Matrix3d::Identity();
+  result.block<3, 1>(0, time_index) = state_.velocity;
+  result.block<3, 3>(3, rotation) = geometry::exp_so3(-time_offset_ * angular_velocity()).toRotationMatrix();
+  result.block<3, 3>(3, gyroscope) = -time_offset_ * Eigen::Matrix3d::Identity();
+  result.block<3, 3>(3, mounting_index) = -Eigen::Matrix3d::Identity();
+  result.block<3, 1>(3, time_index) = angular_velocity();
+  return result;
+}
+
+InertialFilter::PoseCovariance InertialFilter::pose_covariance() const {
+  const Observation by_state = observation();
+  return by_state * covariance_ * by_state.transpose();
 }
 
 Eigen::Matrix<double, 6, 1> InertialFilter::innovation(const Eigen::Isometry3d& measured) const {
+  const Eigen::Isometry3d predicted = pose();
   Eigen::Matrix<double, 6, 1> result;
-  result << measured.translation() - state_.T_world_body.translation(),
-      geometry::log_so3(Eigen::Matrix3d(state_.T_world_body.linear().transpose() * measured.linear()));
+  result << measured.translation() - predicted.translation(),
+      mounting_.transpose() * geometry::log_so3(Eigen::Matrix3d(predicted.linear().transpose() * measured.linear()));
   return result;
 }
 
@@ -64,15 +99,19 @@ double InertialFilter::chi_square(const Eigen::Isometry3d& measured, const PoseC
 }
 
 void InertialFilter::correct(const Eigen::Isometry3d& measured, const PoseCovariance& covariance) {
-  const PoseCovariance total = pose_covariance() + covariance;
-  const Eigen::Matrix<double, 18, 6> gain = total.ldlt().solve(covariance_.topRows<6>()).transpose();
-  const Eigen::Matrix<double, 18, 1> correction = gain * innovation(measured);
+  const Observation by_state = observation();
+  const PoseCovariance total = by_state * covariance_ * by_state.transpose() + covariance;
+  const Eigen::Matrix<double, 22, 6> gain = total.ldlt().solve(by_state * covariance_).transpose();
+  const Eigen::Matrix<double, 22, 1> correction = gain * innovation(measured);
   state_ = geometry::disturbed(state_, correction.head<15>());
   state_.T_world_body.linear() = Eigen::Quaterniond(state_.T_world_body.linear()).normalized().toRotationMatrix();
-  gravity_ = gravity_.norm() * (gravity_ + correction.tail<3>()).normalized();
+  gravity_ = gravity_.norm() * (gravity_ + correction.segment<3>(gravity_index)).normalized();
+  mounting_ = Eigen::Quaterniond(mounting_ * geometry::exp_so3(correction.segment<3>(mounting_index)))
+                  .normalized()
+                  .toRotationMatrix();
+  time_offset_ += correction[time_index];
   // Joseph's form keeps the covariance positive.
-  Covariance rest = Covariance::Identity();
-  rest.leftCols<6>() -= gain;
+  const Covariance rest = Covariance::Identity() - gain * by_state;
   covariance_ = (rest * covariance_ * rest.transpose()).eval() + gain * covariance * gain.transpose();
 }
 

@@ -21,8 +21,10 @@ constexpr std::size_t fewest_poses = 10;
 constexpr double start_interval = 0.25;  // between two attempts
 /// With six degrees of freedom, 18 is exceeded by chance once in 160 frames; poses from images have heavier tails.
 constexpr double largest_chi_square = 40.0;
-constexpr int tolerated_later = 15, tolerated_at_start = 2;  // frames in a row
-constexpr double most_lost_time = 10.0;                      // [s]; then the velocity says nothing
+constexpr int tolerated_later = 15, tolerated_at_start = 2, tolerated_refusals = 4;  // frames in a row
+constexpr double most_lost_time = 10.0;  // [s]; then the velocity says nothing
+/// Of calibrations: rotation [rad], time offset [s].
+constexpr double mounting_deviation = 0.015, time_offset_deviation = 0.005;
 
 /// The samples with one at each end of the interval, where one is missing by at most `tolerance` [s].
 std::vector<ImuSample> covering(std::vector<ImuSample> samples, double begin, double end, double tolerance) {
@@ -38,6 +40,15 @@ std::vector<ImuSample> covering(std::vector<ImuSample> samples, double begin, do
   return samples;
 }
 
+/// The angular velocity at a time that the samples cover, or else the nearest one.
+Eigen::Vector3d rate_at(const std::vector<ImuSample>& samples, double time) {
+  const auto next = std::find_if(samples.begin(), samples.end(),
+                                 [time](const ImuSample& sample) { return sample.timestamp >= time; });
+  if (next == samples.begin()) return samples.front().angular_velocity;
+  if (next == samples.end()) return samples.back().angular_velocity;
+  return geometry::interpolated(*std::prev(next), *next, time).angular_velocity;
+}
+
 }  // namespace
 
 InertialMotion::InertialMotion(const std::optional<ImuCalibration>& imu, bool scale_is_known)
@@ -46,7 +57,7 @@ InertialMotion::InertialMotion(const std::optional<ImuCalibration>& imu, bool sc
 void InertialMotion::begin_frame(const SensorFrame& frame) {
   if (!imu_) return;
   now_.reset();
-  is_corrected_ = false;
+  is_corrected_ = is_refused_ = false;
   const std::optional<double> before = std::exchange(timestamp_, frame.timestamp);
   if (!before) return;
   const double tolerance = 2.0 / imu_->rate;
@@ -61,7 +72,7 @@ void InertialMotion::begin_frame(const SensorFrame& frame) {
   turn_rate_ = geometry::log_so3(motion->delta().rotation).norm() / motion->duration();
   if (last_) {
     now_ = last_;
-    now_->predict(*motion);
+    now_->predict(*motion, rate_at(samples, frame.timestamp));
   } else {
     append_imu(samples_, samples);
   }
@@ -101,17 +112,17 @@ void InertialMotion::follow_map(const Eigen::Isometry3d& T_camera_world) {
 
 std::optional<Eigen::Isometry3d> InertialMotion::step() const {
   if (!is_reliable()) return std::nullopt;
-  return camera_pose(now_->state().T_world_body) * camera_pose(last_->state().T_world_body).inverse();
+  return camera_pose(now_->pose()) * camera_pose(last_->pose()).inverse();
 }
 
 std::optional<InertialPrediction> InertialMotion::prediction() const {
   if (!is_reliable()) return std::nullopt;
-  InertialPrediction result{camera_pose(now_->state().T_world_body), {}, 0.0, 0.0};
-  const Eigen::Matrix3d R_camera_body = imu_->T_body_camera.linear().transpose();
-  const Eigen::Matrix3d R_world_body = now_->state().T_world_body.linear();
+  InertialPrediction result{camera_pose(now_->pose()), {}, 0.0, 0.0};
+  const Eigen::Matrix3d R_camera_body = imu_->T_body_camera.linear().transpose() * now_->mounting();
+  const Eigen::Vector3d camera_in_body = now_->mounting().transpose() * imu_->T_body_camera.translation();
   Eigen::Matrix<double, 6, 6> to_camera = Eigen::Matrix<double, 6, 6>::Zero();
-  to_camera.topLeftCorner<3, 3>() = R_camera_body * R_world_body.transpose() / scale_;
-  to_camera.topRightCorner<3, 3>() = -R_camera_body * geometry::hat(imu_->T_body_camera.translation()) / scale_;
+  to_camera.topLeftCorner<3, 3>() = result.T_camera_world.linear() / scale_;
+  to_camera.topRightCorner<3, 3>() = -R_camera_body * geometry::hat(camera_in_body) / scale_;
   to_camera.bottomRightCorner<3, 3>() = R_camera_body;
   result.covariance = to_camera * now_->pose_covariance() * to_camera.transpose();
   result.position_deviation = std::sqrt(result.covariance.diagonal().head<3>().maxCoeff());
@@ -134,6 +145,12 @@ InertialFilter::PoseCovariance InertialMotion::measurement_covariance(double dev
 bool InertialMotion::contradicts(const Eigen::Isometry3d& T_camera_world, double factor) const {
   return is_reliable() && now_->chi_square(body_pose(T_camera_world), measurement_covariance(0.0)) >
                               factor * factor * largest_chi_square;
+}
+
+void InertialMotion::count_refusal(const Eigen::Isometry3d& T_camera_world, double factor) {
+  if (is_refused_ || !contradicts(T_camera_world, factor)) return;
+  is_refused_ = true;
+  if (++refusals_ > tolerated_refusals) reset();
 }
 
 bool InertialMotion::correct(const Eigen::Isometry3d& T_camera_world, const Eigen::Matrix<double, 6, 6>& covariance,
@@ -163,7 +180,7 @@ void InertialMotion::found(const Eigen::Isometry3d& T_camera_world, double devia
   if (!imu_) return;
   found_time_ = *timestamp_;
   if (now_ && is_corrected_) {
-    contradictions_ = 0;
+    contradictions_ = refusals_ = 0;
     last_ = now_;
   } else if (now_) {
     learn(T_camera_world, deviation);
@@ -180,7 +197,7 @@ void InertialMotion::learn(const Eigen::Isometry3d& T_camera_world, double devia
   if (now_->chi_square(measured, covariance) <= largest_chi_square) {
     now_->correct(measured, covariance);
     confirmations_ = std::min(confirmations_ + 1, required_confirmations);
-    contradictions_ = 0;
+    contradictions_ = refusals_ = 0;
   } else if (++contradictions_ > (confirmations_ < required_confirmations ? tolerated_at_start : tolerated_later)) {
     reset();
     return;
@@ -207,7 +224,7 @@ void InertialMotion::reset() {
   anchor_.reset();
   samples_.clear();
   tracked_.clear();
-  confirmations_ = contradictions_ = 0;
+  confirmations_ = contradictions_ = refusals_ = 0;
   scale_ = 1.0;
   next_start_ = 0.0;
 }
@@ -238,6 +255,8 @@ void InertialMotion::try_to_start(const PastPose& past_pose) {
   std::reverse(stamps.begin(), stamps.end());
   std::reverse(poses.begin(), poses.end());
   std::vector<geometry::Preintegration> motions;
+  std::vector<Eigen::Vector3d> rates;
+  for (const double stamp : stamps) rates.push_back(rate_at(samples_, stamp));
   for (std::size_t i = 0; i + 1 < stamps.size(); ++i) {
     const auto motion = geometry::preintegrate(samples_, stamps[i], stamps[i + 1], imu_->noise, {});
     if (!motion) return;
@@ -245,16 +264,19 @@ void InertialMotion::try_to_start(const PastPose& past_pose) {
   }
   geometry::InertialStartOptions options;
   options.estimate_scale = !scale_is_known_;
+  options.mounting_deviation = mounting_deviation;
+  options.time_offset_deviation = time_offset_deviation;
   // How exact the poses are is unknown: the first deviations that explain their residuals are right.
   constexpr PoseDeviations possible_deviations[] = {{0.002, 0.001}, {0.005, 0.0025}, {0.01, 0.005}};
   for (const PoseDeviations& deviations : possible_deviations) {
     options.position_deviation = deviations.position;
     options.rotation_deviation = deviations.rotation;
-    const geometry::InertialStart start = geometry::start_inertially(poses, motions, imu_->T_body_camera, options);
+    const geometry::InertialStart start =
+        geometry::start_inertially(poses, motions, imu_->T_body_camera, options, rates);
     if (!start.usable) continue;
     // Their mean squared residual, which is 1 for right deviations, says how wrong these are.
     const double factor = std::sqrt(std::max(1.0, start.mean_chi_square));
-    begin_filter(start, poses, motions, {factor * deviations.position, factor * deviations.rotation});
+    begin_filter(start, poses, motions, rates, {factor * deviations.position, factor * deviations.rotation});
     return;
   }
 }
@@ -263,7 +285,7 @@ void InertialMotion::try_to_start(const PastPose& past_pose) {
 /// wide priors.
 void InertialMotion::begin_filter(const geometry::InertialStart& start, const std::vector<Eigen::Isometry3d>& poses,
                                   const std::vector<geometry::Preintegration>& motions,
-                                  const PoseDeviations& deviations) {
+                                  const std::vector<Eigen::Vector3d>& rates, const PoseDeviations& deviations) {
   const geometry::InertialStartOptions priors;
   scale_ = start.scale;
   deviations_ = deviations;
@@ -271,16 +293,22 @@ void InertialMotion::begin_filter(const geometry::InertialStart& start, const st
   state.T_world_body = body_pose(poses.front().inverse());
   state.velocity = start.velocities.front();
   state.bias = start.bias;
+  state.T_world_body.translation() -= start.time_offset * state.velocity;
+  const Eigen::Vector3d turn = start.time_offset * (rates.front() - start.bias.gyroscope);
+  state.T_world_body.linear() =
+      state.T_world_body.linear() * start.mounting * geometry::exp_so3(-turn).toRotationMatrix();
   constexpr double velocity_prior = 0.2, direction_prior = 0.1;  // [m/s], [rad]
-  InertialFilter filter(state, start.gravity,
-                        {deviations.position, deviations.rotation, velocity_prior, priors.gyroscope_bias_deviation,
-                         priors.accelerometer_bias_deviation, direction_prior});
+  InertialFilter filter(
+      state, start.gravity,
+      {deviations.position, deviations.rotation, velocity_prior, priors.gyroscope_bias_deviation,
+       priors.accelerometer_bias_deviation, direction_prior, mounting_deviation, time_offset_deviation});
+  filter.calibrate(start.mounting, start.time_offset);
   for (std::size_t i = 0; i < motions.size(); ++i) {
-    filter.predict(motions[i]);
+    filter.predict(motions[i], rates[i + 1]);
     filter.correct(body_pose(poses[i + 1].inverse()), measurement_covariance(0.0));
   }
   last_ = filter;
-  confirmations_ = contradictions_ = 0;
+  confirmations_ = contradictions_ = refusals_ = 0;
   samples_.clear();
   tracked_.clear();
 }

@@ -5,6 +5,11 @@
 
 namespace holdfast {
 
+namespace {
+/// Of the limit for a contradiction of inertia, where ample inliers determine the pose.
+constexpr double ample_factor = 2.0;
+}  // namespace
+
 bool PoseChecks::has_ample_inliers(int inliers) const {
   return inliers >= context_.settings.ample_inliers * context_.settings.minimum_inliers;
 }
@@ -16,7 +21,7 @@ bool PoseChecks::contradicts_motion(int inliers) const {
 }
 
 bool PoseChecks::contradicts_measured_motion(int inliers) const {
-  return context_.inertia.contradicts(context_.current.T_camera_world, has_ample_inliers(inliers) ? 2.0 : 1.0);
+  return context_.inertia.contradicts(context_.current.T_camera_world, has_ample_inliers(inliers) ? ample_factor : 1.0);
 }
 
 bool PoseChecks::exceeds_acceleration(double factor) const {
@@ -46,6 +51,8 @@ bool PoseChecks::accepts(const FrameResult& result, const PoseSituation& situati
   // A wide search finds some agreement anywhere: twice as many have to agree.
   const int required = (was_lost ? 2 : 1) * context_.settings.minimum_inliers;
   if (result.inliers < required) return false;
+  if (!was_lost && has_ample_inliers(result.inliers))
+    context_.inertia.count_refusal(context_.current.T_camera_world, ample_factor);
   // With few inliers the support may be a person, so a relocalised pose must be reachable from the last one.
   const bool may_be_anywhere = has_ample_inliers(result.inliers) || situation.may_be_anywhere;
   if (was_lost && !context_.relocaliser.is_beyond_chance(result.inliers)) return false;

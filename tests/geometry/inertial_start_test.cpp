@@ -27,14 +27,18 @@ struct StartCase {
   std::vector<Eigen::Isometry3d> poses;
   std::vector<Preintegration> motions;
   std::vector<InertialState> truth;
+  std::vector<Eigen::Vector3d> rates;
 
-  /// `rest`: the body stands as at time 0; `unit`: metres in a unit of the poses.
-  StartCase(double seconds, double interval, std::uint64_t seed, bool rest = false, double unit = 1.0) {
+  /// `rest`: the body stands as at time 0; `unit`: metres in a unit of the poses; `time_offset`: the poses are later
+  /// than the motions.
+  StartCase(double seconds, double interval, std::uint64_t seed, bool rest = false, double unit = 1.0,
+            double time_offset = 0.0) {
     Random random(seed);
     const ImuNoise noise{2e-4, 2e-3, 2e-5, 1e-3};
     T_body_camera.linear() = exp_so3({-1.2, 0.3, 0.9}).toRotationMatrix();
     T_body_camera.translation() << 0.1, -0.05, 0.03;
-    std::vector<ImuSample> samples = inertial_motion::true_samples(0.0, seconds + 0.02, 200.0);
+    std::vector<ImuSample> samples =
+        inertial_motion::true_samples(time_offset > 0.0 ? -0.02 : 0.0, seconds + 0.02, 200.0);
     if (rest)
       for (ImuSample& sample : samples) {
         sample.angular_velocity.setZero();
@@ -55,12 +59,16 @@ struct StartCase {
       camera.translation() = R_map_world * camera.translation() / unit + Eigen::Vector3d(3, 4, 5);
       poses.push_back(camera);
       truth.push_back(state);
-      if (i > 0) motions.push_back(*preintegrate(samples, (i - 1) * interval, i * interval, noise, {}));
+      const double stamp = i * interval - time_offset;
+      const auto next = std::find_if(samples.begin(), samples.end(),
+                                     [stamp](const ImuSample& sample) { return sample.timestamp >= stamp; });
+      rates.push_back(next->angular_velocity);
+      if (i > 0) motions.push_back(*preintegrate(samples, stamp - interval, stamp, noise, {}));
     }
   }
 
   InertialStart start(InertialStartOptions options = {}) const {
-    return start_inertially(poses, motions, T_body_camera, options);
+    return start_inertially(poses, motions, T_body_camera, options, rates);
   }
   double gravity_error(const InertialStart& start) const {
     const Eigen::Vector3d down = R_map_world * gravity;
@@ -94,6 +102,24 @@ TEST(InertialStart, TwoSecondsOfMotionServeWhereTheUnitIsKnown) {
     EXPECT_LT((start.bias.accelerometer - given.bias.accelerometer).norm(), 0.1);
     EXPECT_LT(given.velocity_error(start), 0.03);
     EXPECT_EQ(start.scale, 1.0);
+  }
+}
+
+TEST(InertialStart, CorrectsTheCalibration) {
+  const Eigen::Matrix3d mounting = exp_so3({0.015, -0.02, 0.01}).toRotationMatrix();
+  InertialStartOptions options;
+  options.mounting_deviation = 0.015;
+  options.time_offset_deviation = 0.005;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    StartCase given(3.0, 0.1, seed, false, 1.0, 0.006);
+    given.T_body_camera = mounting * given.T_body_camera;
+    const InertialStart start = given.start(options);
+    EXPECT_TRUE(start.usable) << start.mean_chi_square;
+    EXPECT_LT(log_so3(Eigen::Matrix3d(mounting.transpose() * start.mounting)).norm(), 0.003);
+    EXPECT_NEAR(start.time_offset, 0.006, 0.0007);
+    EXPECT_LT(given.gravity_error(start), 0.5 * degree);
+    EXPECT_LT(start.mean_chi_square, 0.5 * given.start().mean_chi_square)
+        << "with a calibration that is taken as exact";
   }
 }
 

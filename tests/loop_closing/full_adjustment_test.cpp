@@ -106,6 +106,25 @@ TEST_F(FullAdjustmentTest, AKeyframeThatFewPointsHoldDoesNotFlee) {
   }
 }
 
+TEST_F(FullAdjustmentTest, AnIslandOfKeyframesKeepsItsPlace) {
+  const std::vector<KeyFrameId> keyframes = map.keyframes_by_age();
+  const std::vector<KeyFrameId> island(keyframes.end() - 4, keyframes.end());
+  const std::uint64_t first = map.keyframe(island.front()).sequence;
+  for (const KeyFrameId id : island)
+    for (const MapPointId point : std::vector<MapPointId>(map.keyframe(id).frame.map_points)) {
+      if (!point.valid()) continue;
+      const auto is_older = [&](const Observation& other) { return map.keyframe(other.keyframe).sequence < first; };
+      const auto& seen = map.point(point).observations;
+      if (std::any_of(seen.begin(), seen.end(), is_older)) map.remove_observation(point, id);
+    }
+  for (const KeyFrameId id : keyframes) map.update_covisibility(id);
+  ASSERT_FALSE(map.keyframe(island.front()).covisible.empty());
+  const Eigen::Isometry3d place = map.pose_of(island.front()), other = map.pose_of(keyframes[10]);
+  EXPECT_TRUE(adjustment.run().applied);
+  EXPECT_TRUE(map.pose_of(island.front()).isApprox(place, 1e-12)) << "nothing else fixes its gauge";
+  EXPECT_FALSE(map.pose_of(keyframes[10]).isApprox(other, 1e-6));
+}
+
 /// Bytes that the process has allocated and not freed.
 std::size_t allocated() {
   const struct mallinfo2 info = mallinfo2();

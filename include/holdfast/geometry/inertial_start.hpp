@@ -26,6 +26,10 @@ struct InertialStartOptions {
   /// Standard deviations of the biases before any measurement [rad/s], [m/s^2].
   double gyroscope_bias_deviation = 0.1;
   double accelerometer_bias_deviation = 0.2;
+  /// Standard deviations of the given calibration: rotation of T_body_camera, per axis [rad], and time offset [s]. With
+  /// 0, it is taken as exact.
+  double mounting_deviation = 0.0;
+  double time_offset_deviation = 0.0;
   int iterations = 15;  ///< at most
   /// A result is usable only with standard deviations up to these: direction of gravity [rad], scale (relative),
   /// velocities [m/s].
@@ -42,7 +46,11 @@ struct InertialStart {
   Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  ///< gravity vector in the world frame [m/s^2]
   double scale = 1.0;                                 ///< metres per unit of the given poses
   ImuBias bias;                                       ///< constant over the time of the poses
-  std::vector<Eigen::Vector3d> velocities;            ///< of the body at each pose, in the world frame [m/s]
+  /// Corrections of the calibration: R_world_body = R_world_camera * R_camera_body * mounting, and the poses are those
+  /// of the body `time_offset` [s] after their time stamps.
+  Eigen::Matrix3d mounting = Eigen::Matrix3d::Identity();
+  double time_offset = 0.0;
+  std::vector<Eigen::Vector3d> velocities;  ///< of the body at each time stamp, in the world [m/s]
   double direction_deviation = std::numeric_limits<double>::infinity();       ///< of gravity [rad], the larger axis
   double scale_deviation = 0.0;                                               ///< relative; 0 if it is not estimated
   double velocity_deviation = std::numeric_limits<double>::infinity();        ///< the largest of all [m/s]
@@ -53,12 +61,18 @@ struct InertialStart {
 
 namespace detail {
 
-/// The unknowns: velocities of all poses, direction of gravity (2), logarithm of the scale, biases.
+/// The unknowns: velocities of all poses, direction of gravity (2), logarithm of the scale, biases, corrections of the
+/// calibration (rotation, time offset).
 class InertialStartProblem {
  public:
   InertialStartProblem(std::span<const Eigen::Isometry3d> T_world_camera, std::span<const Preintegration> motions,
-                       const Eigen::Isometry3d& T_body_camera, const InertialStartOptions& options)
-      : poses_(T_world_camera), motions_(motions), T_camera_body_(T_body_camera.inverse()), options_(options) {}
+                       std::span<const Eigen::Vector3d> angular_velocities, const Eigen::Isometry3d& T_body_camera,
+                       const InertialStartOptions& options)
+      : poses_(T_world_camera),
+        motions_(motions),
+        rates_(angular_velocities),
+        T_camera_body_(T_body_camera.inverse()),
+        options_(options) {}
 
   InertialStart solve() {
     estimate_gyroscope_bias();
@@ -79,16 +93,27 @@ class InertialStartProblem {
   int direction_index() const { return static_cast<int>(3 * count()); }
   int scale_index() const { return direction_index() + 2; }
   int bias_index() const { return scale_index() + 1; }
-  int size() const { return bias_index() + 6; }
+  int mounting_index() const { return bias_index() + 6; }
+  int time_index() const { return mounting_index() + 3; }
+  int size() const { return time_index() + 1; }
+  bool estimates_mounting() const { return options_.mounting_deviation > 0.0; }
+  bool estimates_time() const { return options_.time_offset_deviation > 0.0 && rates_.size() == count(); }
 
-  Eigen::Matrix3d body_rotation(std::size_t i) const { return poses_[i].linear() * T_camera_body_.linear(); }
+  Eigen::Vector3d rate(std::size_t i) const { return rates_[i] - result_.bias.gyroscope; }
+  /// At the time stamp of a pose.
+  Eigen::Matrix3d body_rotation(std::size_t i) const {
+    const Eigen::Matrix3d rotation = poses_[i].linear() * T_camera_body_.linear() * result_.mounting;
+    if (!estimates_time()) return rotation;
+    return rotation * exp_so3(-result_.time_offset * rate(i)).toRotationMatrix();
+  }
   /// Vector from the camera to the body in the world frame [m], which is not scaled.
   Eigen::Vector3d lever(std::size_t i) const { return poses_[i].linear() * T_camera_body_.translation(); }
 
   InertialState state(std::size_t i) const {
     InertialState state;
     state.T_world_body.linear() = body_rotation(i);
-    state.T_world_body.translation() = result_.scale * poses_[i].translation() + lever(i);
+    state.T_world_body.translation() =
+        result_.scale * poses_[i].translation() + lever(i) - result_.time_offset * result_.velocities[i];
     state.velocity = result_.velocities[i];
     state.bias = result_.bias;
     return state;
@@ -172,6 +197,8 @@ class InertialStartProblem {
     result_.scale *= std::exp(std::clamp(step[scale_index()], -0.5, 0.5));
     result_.bias.gyroscope += step.segment<3>(bias_index());
     result_.bias.accelerometer += step.segment<3>(bias_index() + 3);
+    result_.mounting = (result_.mounting * exp_so3(step.segment<3>(mounting_index())).toRotationMatrix()).eval();
+    result_.time_offset += step[time_index()];
     return cost_;
   }
 
@@ -179,17 +206,24 @@ class InertialStartProblem {
     hessian_ = Eigen::MatrixXd::Zero(size(), size());
     gradient_ = Eigen::VectorXd::Zero(size());
     cost_ = 0.0;
-    if (!options_.estimate_scale) hessian_(scale_index(), scale_index()) = 1.0;
+    const auto fix = [this](int index) { hessian_(index, index) = 1.0; };
+    if (!options_.estimate_scale) fix(scale_index());
+    if (!estimates_mounting())
+      for (int i = 0; i < 3; ++i) fix(mounting_index() + i);
+    if (!estimates_time()) fix(time_index());
     const Eigen::Matrix<double, 3, 2> tangent = gravity_tangent();
     for (std::size_t i = 0; i + 1 < count(); ++i) add_motion(i, tangent);
-    const auto add_prior = [&](int index, const Eigen::Vector3d& value, double deviation) {
+    const auto add_prior = [&](int index, const auto& value, double deviation) {
       const double information = 1.0 / (deviation * deviation);
-      hessian_.diagonal().segment<3>(index).array() += information;
-      gradient_.segment<3>(index) += information * value;
+      hessian_.diagonal().segment(index, value.size()).array() += information;
+      gradient_.segment(index, value.size()) += information * value;
       cost_ += information * value.squaredNorm();
     };
     add_prior(bias_index(), result_.bias.gyroscope, options_.gyroscope_bias_deviation);
     add_prior(bias_index() + 3, result_.bias.accelerometer, options_.accelerometer_bias_deviation);
+    if (estimates_mounting()) add_prior(mounting_index(), log_so3(result_.mounting), options_.mounting_deviation);
+    if (estimates_time())
+      add_prior(time_index(), Eigen::Matrix<double, 1, 1>(result_.time_offset), options_.time_offset_deviation);
   }
 
   void add_motion(std::size_t i, const Eigen::Matrix<double, 3, 2>& tangent) {
@@ -198,8 +232,8 @@ class InertialStartProblem {
         motions_[i].residual(state(i), state(i + 1), result_.gravity, &jacobians).head<9>();
     const Eigen::Matrix<double, 9, 9> information =
         residual_covariance(i).ldlt().solve(Eigen::Matrix<double, 9, 9>::Identity());
-    // Columns: both velocities, direction of gravity, scale, biases.
-    Eigen::Matrix<double, 9, 15> jacobian;
+    // Columns: both velocities, direction of gravity, scale, biases, rotation and time offset of the calibration.
+    Eigen::Matrix<double, 9, 19> jacobian;
     jacobian.leftCols<3>() = jacobians.first.block<9, 3>(0, inertial::velocity);
     jacobian.middleCols<3>(3) = jacobians.second.block<9, 3>(0, inertial::velocity);
     jacobian.middleCols<2>(6) = jacobians.gravity.topRows<9>() * tangent;
@@ -208,16 +242,25 @@ class InertialStartProblem {
       jacobian.col(8) =
           result_.scale * (jacobians.first.block<9, 3>(0, inertial::position) * poses_[i].translation() +
                            jacobians.second.block<9, 3>(0, inertial::position) * poses_[i + 1].translation());
-    jacobian.rightCols<6>() = jacobians.first.block<9, 6>(0, inertial::gyroscope);
-    const Eigen::Matrix<double, 15, 15> block = jacobian.transpose() * information * jacobian;
-    const Eigen::Matrix<double, 15, 1> slope = jacobian.transpose() * information * error;
+    jacobian.middleCols<6>(9) = jacobians.first.block<9, 6>(0, inertial::gyroscope);
+    jacobian.rightCols<4>().setZero();
+    if (estimates_mounting())
+      jacobian.middleCols<3>(15) =
+          jacobians.first.block<9, 3>(0, inertial::rotation) + jacobians.second.block<9, 3>(0, inertial::rotation);
+    if (estimates_time())
+      jacobian.col(18) = -jacobians.first.block<9, 3>(0, inertial::position) * result_.velocities[i] -
+                         jacobians.first.block<9, 3>(0, inertial::rotation) * rate(i) -
+                         jacobians.second.block<9, 3>(0, inertial::position) * result_.velocities[i + 1] -
+                         jacobians.second.block<9, 3>(0, inertial::rotation) * rate(i + 1);
+    const Eigen::Matrix<double, 19, 19> block = jacobian.transpose() * information * jacobian;
+    const Eigen::Matrix<double, 19, 1> slope = jacobian.transpose() * information * error;
     const int v = static_cast<int>(3 * i), rest = direction_index();
     hessian_.block<6, 6>(v, v) += block.topLeftCorner<6, 6>();
-    hessian_.block<6, 9>(v, rest) += block.topRightCorner<6, 9>();
-    hessian_.block<9, 6>(rest, v) += block.bottomLeftCorner<9, 6>();
-    hessian_.block<9, 9>(rest, rest) += block.bottomRightCorner<9, 9>();
+    hessian_.block<6, 13>(v, rest) += block.topRightCorner<6, 13>();
+    hessian_.block<13, 6>(rest, v) += block.bottomLeftCorner<13, 6>();
+    hessian_.block<13, 13>(rest, rest) += block.bottomRightCorner<13, 13>();
     gradient_.segment<6>(v) += slope.head<6>();
-    gradient_.segment<9>(rest) += slope.tail<9>();
+    gradient_.segment<13>(rest) += slope.tail<13>();
     cost_ += error.dot(information * error);
   }
 
@@ -231,8 +274,8 @@ class InertialStartProblem {
     result_.scale_deviation = options_.estimate_scale ? deviation[scale_index()] : 0.0;
     result_.gyroscope_bias_deviation = deviation.segment<3>(bias_index()).maxCoeff();
     result_.accelerometer_bias_deviation = deviation.segment<3>(bias_index() + 3).maxCoeff();
-    // Nine residuals a motion, and six of the prior; as many unknowns as the system has rows.
-    const double unknowns = size() - (options_.estimate_scale ? 0 : 1);
+    // Nine residuals a motion, and six of the prior. The calibration's priors are as many as its unknowns.
+    const double unknowns = mounting_index() - (options_.estimate_scale ? 0 : 1);
     result_.mean_chi_square = cost_ / std::max(1.0, 9.0 * static_cast<double>(count() - 1) + 6.0 - unknowns);
     result_.usable = result_.direction_deviation <= options_.largest_direction_deviation &&
                      result_.scale_deviation <= options_.largest_scale_deviation &&
@@ -242,6 +285,7 @@ class InertialStartProblem {
 
   std::span<const Eigen::Isometry3d> poses_;
   std::span<const Preintegration> motions_;
+  std::span<const Eigen::Vector3d> rates_;
   Eigen::Isometry3d T_camera_body_;
   InertialStartOptions options_;
   InertialStart result_;
@@ -260,11 +304,13 @@ class InertialStartProblem {
 ///
 /// Steps: gyroscope bias from the rotations, linear initialisation of the other unknowns, Gauss-Newton iterations on
 /// the residuals of equation 13 with priors on the biases. The covariances include the errors of the given poses.
+/// `angular_velocities`, measured at each pose [rad/s], are required to estimate the time offset.
 inline InertialStart start_inertially(std::span<const Eigen::Isometry3d> T_world_camera,
                                       std::span<const Preintegration> motions, const Eigen::Isometry3d& T_body_camera,
-                                      const InertialStartOptions& options = {}) {
+                                      const InertialStartOptions& options = {},
+                                      std::span<const Eigen::Vector3d> angular_velocities = {}) {
   if (T_world_camera.size() < 4 || motions.size() + 1 != T_world_camera.size()) return {};
-  return detail::InertialStartProblem(T_world_camera, motions, T_body_camera, options).solve();
+  return detail::InertialStartProblem(T_world_camera, motions, angular_velocities, T_body_camera, options).solve();
 }
 
 }  // namespace holdfast::geometry

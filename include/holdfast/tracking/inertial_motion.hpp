@@ -56,6 +56,10 @@ class InertialMotion {
   /// Whether a pose is farther from the prediction than both their uncertainties and `factor` allow; false unless
   /// reliable.
   bool contradicts(const Eigen::Isometry3d& T_camera_world, double factor) const;
+  /// Counts the current pose, which ample static points of the map determine, if it contradicts the prediction by
+  /// `factor`: the estimate ends where such poses contradict it in several frames in a row. To be called before
+  /// contradicts().
+  void count_refusal(const Eigen::Isometry3d& T_camera_world, double factor);
   /// Corrects the prediction for the current frame by a pose that few features determine, with the covariance of
   /// PoseSummary; `is_relative`: these features are placed by the pose of the previous frame, so that its error is part
   /// of this one's. False if it contradicts the prediction, which stays as it is.
@@ -94,7 +98,8 @@ class InertialMotion {
   void learn(const Eigen::Isometry3d& T_camera_world, double deviation);
   void try_to_start(const PastPose& past_pose);
   void begin_filter(const geometry::InertialStart& start, const std::vector<Eigen::Isometry3d>& poses,
-                    const std::vector<geometry::Preintegration>& motions, const PoseDeviations& deviations);
+                    const std::vector<geometry::Preintegration>& motions, const std::vector<Eigen::Vector3d>& rates,
+                    const PoseDeviations& deviations);
 
   const std::optional<ImuCalibration> imu_;
   const bool scale_is_known_;
@@ -102,11 +107,12 @@ class InertialMotion {
   std::optional<InertialFilter> last_, now_;  // at the last frame, and predicted for the current one
   std::optional<Eigen::Isometry3d> anchor_;   // T_camera_world of the last frame with a pose, to which last_ belongs
   double scale_ = 1.0;
-  PoseDeviations deviations_;                   // as the start found them
-  int confirmations_ = 0, contradictions_ = 0;  // the latter in a row
-  bool is_corrected_ = false;                   // now_ knows the current pose
-  double turn_rate_ = 0.0;                      // of the current frame [rad/s]
-  double found_time_ = 0.0;                     // [s]
+  PoseDeviations deviations_;                                  // as the start found them
+  int confirmations_ = 0, contradictions_ = 0, refusals_ = 0;  // the latter two in a row
+  bool is_refused_ = false;                                    // the current frame is counted in refusals_
+  bool is_corrected_ = false;                                  // now_ knows the current pose
+  double turn_rate_ = 0.0;                                     // of the current frame [rad/s]
+  double found_time_ = 0.0;                                    // [s]
   // Of the start.
   std::vector<ImuSample> samples_;
   std::vector<double> tracked_;  // time stamps [s]
