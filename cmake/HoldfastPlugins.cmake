@@ -8,6 +8,7 @@ include(HoldfastOptional)
 set(HOLDFAST_PLUGIN_TABLE
   "source          euroc                 sources/euroc"
   "source          folder                sources/folder"
+  "source          four_seasons          sources/four_seasons"
   "source          icl_nuim              sources/icl_nuim"
   "source          kitti                 sources/kitti"
   "source          openloris             sources/openloris"

@@ -52,6 +52,11 @@ CalibratedRecording read_calibrated(const fs::path& folder, DatasetLayout layout
     options.path = folder;
     return read_euroc_recording(options);
   }
+  if (layout == DatasetLayout::four_seasons) {
+    FourSeasonsOptions options;
+    options.path = folder;
+    return read_four_seasons_recording(options);
+  }
   OpenLorisOptions options;
   options.path = folder;
   return read_openloris_recording(options);
@@ -386,6 +391,10 @@ DatasetLayout layout_of(const fs::path& folder) {
   if (fs::is_directory(folder / "mav0", ignored) || fs::is_directory(folder / "cam0", ignored))
     return DatasetLayout::euroc;
   if (is_file(folder / "color.txt") && !is_file(folder / "rgb.txt")) return DatasetLayout::openloris;
+  if (is_file(folder / "times.txt") && fs::is_directory(folder / "undistorted_images", ignored))
+    return DatasetLayout::four_seasons;
+  for (const char* part : {"oxts", "image_00", "image_02"})
+    if (fs::is_directory(folder / part, ignored)) return DatasetLayout::kitti;
   if (is_file(folder / "calib.txt") && !is_file(folder / "rgb.txt")) return DatasetLayout::kitti;
   // Lists that were made for a recording in TUM layout have the same name.
   if (is_file(folder / icl_list) && !is_file(folder / "rgb.txt")) return DatasetLayout::icl_nuim;

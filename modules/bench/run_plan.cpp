@@ -415,7 +415,8 @@ class Planner {
     const MatrixSequence& on = matrix().sequences[sequence];
     const AxisValue* perturbation = perturbation_of(variant);
     if (perturbation == nullptr && has_tum_layout(on)) return std::nullopt;
-    if (on.source.find("kitti") != nullptr || on.source.find("euroc") != nullptr) {
+    if (on.source.find("kitti") != nullptr || on.source.find("euroc") != nullptr ||
+        on.source.find("four_seasons") != nullptr) {
       complain(on.location,
                "sequence '" + on.name +
                    "' has stereo pairs, and external systems get colour and depth; exclude it: { system: " +

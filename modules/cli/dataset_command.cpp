@@ -62,9 +62,16 @@ std::string camera_text(const Camera& camera) {
 }
 
 std::string files_text(const DatasetRecipe& recipe) {
+  if (recipe.layout == DatasetLayout::kitti && recipe.dataset == "KITTI raw")
+    return "image_00/ and image_01/ (grey) or image_02/ and image_03/ (colour), oxts/, ../calib_cam_to_cam.txt, "
+           "../calib_velo_to_cam.txt, ../calib_imu_to_velo.txt";
   if (recipe.layout == DatasetLayout::kitti)
     return "calib.txt, times.txt, image_0/ and image_1/ (grey) or image_2/ and image_3/ (colour), ../../poses/" +
            recipe.folder + ".txt";
+  if (recipe.layout == DatasetLayout::euroc && recipe.dataset == "TUM VI")
+    return "mav0/cam0/, mav0/cam1/, mav0/mocap0/, dso/camchain.yaml";
+  if (recipe.layout == DatasetLayout::four_seasons)
+    return "times.txt, undistorted_images/cam0/, undistorted_images/cam1/, GNSSPoses.txt, ../calibration/";
   if (recipe.layout == DatasetLayout::euroc) return "mav0/cam0/, mav0/cam1/, mav0/state_groundtruth_estimate0/";
   if (recipe.layout == DatasetLayout::openloris)
     return "color.txt, aligned_depth.txt, fisheye1.txt, fisheye2.txt, sensors.yaml, trans_matrix.yaml, groundtruth.txt";

@@ -37,6 +37,13 @@ void rectify_pair(CalibratedRecording& recording, const Camera& right, const Eig
   recording.camera = recording.rectification->camera();
 }
 
+void measure_frame_rate(CalibratedRecording& recording) {
+  const std::vector<ImageFiles>& files = recording.files;
+  if (files.size() < 2) return;
+  recording.camera.frame_rate =
+      static_cast<double>(files.size() - 1) / (files.back().timestamp - files.front().timestamp);
+}
+
 CalibratedSource::CalibratedSource(CalibratedRecording recording, const std::filesystem::path& folder,
                                    bool skip_bad_frames)
     : ImageSequenceSource(std::move(recording.files), options_of(recording, skip_bad_frames)) {

@@ -17,12 +17,17 @@ constexpr const char* expected_file =
     "the calibration of a sensor in the ASL layout, with T_BS, rate_hz, resolution, intrinsics, distortion_model and "
     "distortion_coefficients";
 
+constexpr const char* expected_chain =
+    "a camera chain of Kalibr, with T_cam_imu, resolution, intrinsics, distortion_model and distortion_coeffs of cam0 "
+    "and "
+    "cam1";
+
 /// The value of a key that must be there.
-YAML::Node required(const std::filesystem::path& file, const YAML::Node& root, const char* key) {
-  if (!root.IsMap())
-    throw InputError(location(file, root.Mark()), std::string("holds no keys; expected ") + expected_file);
+YAML::Node required(const std::filesystem::path& file, const YAML::Node& root, const char* key,
+                    const char* expected = expected_file) {
+  if (!root.IsMap()) throw InputError(location(file, root.Mark()), std::string("holds no keys; expected ") + expected);
   const YAML::Node node = root[key];
-  if (!node.IsDefined()) throw InputError({file.string()}, std::string("lacks ") + key + "; expected " + expected_file);
+  if (!node.IsDefined()) throw InputError({file.string()}, std::string("lacks ") + key + "; expected " + expected);
   return node;
 }
 
@@ -39,17 +44,53 @@ Eigen::Isometry3d read_pose(const std::filesystem::path& file, const YAML::Node&
   return *motion;
 }
 
-Distortion read_distortion(const std::filesystem::path& file, const YAML::Node& root) {
+Distortion read_distortion(const std::filesystem::path& file, const YAML::Node& root, const char* coefficients) {
   const YAML::Node model = required(file, root, "distortion_model");
   const std::string name = model.IsScalar() ? model.Scalar() : "";
   if (name == "none") return {};
   const bool is_fisheye = name == "equidistant";
   if (!is_fisheye && name != "radial-tangential" && name != "radtan")
     yaml_numbers::reject(file, model, "distortion_model", "radial-tangential, equidistant or none");
-  const YAML::Node list = required(file, root, "distortion_coefficients");
+  const YAML::Node list = required(file, root, coefficients);
   const std::vector<std::size_t> counts = is_fisheye ? std::vector<std::size_t>{4} : std::vector<std::size_t>{4, 5};
   return yaml_numbers::distortion(is_fisheye ? Lens::fisheye : Lens::radial_tangential,
-                                  yaml_numbers::numbers(file, list, "distortion_coefficients", counts));
+                                  yaml_numbers::numbers(file, list, coefficients, counts));
+}
+
+/// The camera without its frame rate; `coefficients` is the key of those of the distortion.
+Camera read_lens(const std::filesystem::path& file, const YAML::Node& root, const char* coefficients) {
+  if (const YAML::Node model = root["camera_model"];
+      model.IsDefined() && (!model.IsScalar() || model.Scalar() != "pinhole"))
+    yaml_numbers::reject(file, model, "camera_model", "pinhole");
+  Camera camera;
+  const YAML::Node resolution = required(file, root, "resolution");
+  yaml_numbers::numbers(file, resolution, "resolution", {2});
+  camera.width = yaml_numbers::size(file, resolution[0], "the width");
+  camera.height = yaml_numbers::size(file, resolution[1], "the height");
+  const YAML::Node intrinsics = required(file, root, "intrinsics");
+  yaml_numbers::numbers(file, intrinsics, "intrinsics", {4});
+  camera.fx = yaml_numbers::number(file, intrinsics[0], "the focal length fu", true);
+  camera.fy = yaml_numbers::number(file, intrinsics[1], "the focal length fv", true);
+  camera.cx = yaml_numbers::number(file, intrinsics[2], "cu");
+  camera.cy = yaml_numbers::number(file, intrinsics[3], "cv");
+  camera.distortion = read_distortion(file, root, coefficients);
+  if (const std::string trouble = camera.trouble(); !trouble.empty())
+    throw InputError(location(file, required(file, root, coefficients).Mark()), trouble);
+  return camera;
+}
+
+/// Noise and rate; `rate` is the key of the latter.
+ImuCalibration read_noise(const std::filesystem::path& file, const YAML::Node& root, const char* rate) {
+  const auto positive = [&](const char* key) {
+    return yaml_numbers::number(file, required(file, root, key), key, true);
+  };
+  ImuCalibration imu;
+  imu.rate = positive(rate);
+  imu.noise.gyroscope_noise_density = positive("gyroscope_noise_density");
+  imu.noise.accelerometer_noise_density = positive("accelerometer_noise_density");
+  imu.noise.gyroscope_random_walk = positive("gyroscope_random_walk");
+  imu.noise.accelerometer_random_walk = positive("accelerometer_random_walk");
+  return imu;
 }
 
 }  // namespace
@@ -62,40 +103,38 @@ EurocCamera read_euroc_camera(const std::filesystem::path& file) {
   const YAML::Node root = yaml_numbers::load(file, expected_file);
   EurocCamera result;
   result.T_body_camera = read_pose(file, root);
-  if (const YAML::Node model = root["camera_model"];
-      model.IsDefined() && (!model.IsScalar() || model.Scalar() != "pinhole"))
-    yaml_numbers::reject(file, model, "camera_model", "pinhole");
-  Camera& camera = result.camera;
-  const YAML::Node resolution = required(file, root, "resolution");
-  yaml_numbers::numbers(file, resolution, "resolution", {2});
-  camera.width = yaml_numbers::size(file, resolution[0], "the width");
-  camera.height = yaml_numbers::size(file, resolution[1], "the height");
-  const YAML::Node intrinsics = required(file, root, "intrinsics");
-  yaml_numbers::numbers(file, intrinsics, "intrinsics", {4});
-  camera.fx = yaml_numbers::number(file, intrinsics[0], "the focal length fu", true);
-  camera.fy = yaml_numbers::number(file, intrinsics[1], "the focal length fv", true);
-  camera.cx = yaml_numbers::number(file, intrinsics[2], "cu");
-  camera.cy = yaml_numbers::number(file, intrinsics[3], "cv");
-  camera.distortion = read_distortion(file, root);
-  if (const std::string trouble = camera.trouble(); !trouble.empty())
-    throw InputError(location(file, required(file, root, "distortion_coefficients").Mark()), trouble);
-  camera.frame_rate = yaml_numbers::number(file, required(file, root, "rate_hz"), "rate_hz", true);
+  result.camera = read_lens(file, root, "distortion_coefficients");
+  result.camera.frame_rate = yaml_numbers::number(file, required(file, root, "rate_hz"), "rate_hz", true);
   return result;
 }
 
 ImuCalibration read_euroc_imu(const std::filesystem::path& file) {
   const YAML::Node root = yaml_numbers::load(file, expected_file);
-  const auto positive = [&](const char* key) {
-    return yaml_numbers::number(file, required(file, root, key), key, true);
-  };
-  ImuCalibration imu;
-  imu.T_body_camera = read_pose(file, root).inverse();
-  imu.rate = positive("rate_hz");
-  imu.noise.gyroscope_noise_density = positive("gyroscope_noise_density");
-  imu.noise.accelerometer_noise_density = positive("accelerometer_noise_density");
-  imu.noise.gyroscope_random_walk = positive("gyroscope_random_walk");
-  imu.noise.accelerometer_random_walk = positive("accelerometer_random_walk");
+  const Eigen::Isometry3d T_body_imu = read_pose(file, root);
+  ImuCalibration imu = read_noise(file, root, "rate_hz");
+  imu.T_body_camera = T_body_imu.inverse();
   return imu;
+}
+
+EurocCamera read_kalibr_camera(const std::filesystem::path& file, const std::string& camera) {
+  const YAML::Node root = yaml_numbers::load(file, expected_chain);
+  const YAML::Node node = required(file, root, camera.c_str(), expected_chain);
+  const YAML::Node matrix = required(file, node, "T_cam_imu", expected_chain);
+  std::vector<double> numbers;
+  if (matrix.IsSequence())
+    for (const YAML::Node& row : matrix)
+      for (const double number : yaml_numbers::numbers(file, row, "a row of T_cam_imu", {4})) numbers.push_back(number);
+  const auto T_camera_imu = numbers.size() == 16 ? yaml_numbers::rigid_motion(numbers) : std::nullopt;
+  if (!T_camera_imu)
+    throw InputError(
+        location(file, matrix.Mark()),
+        "found a value for T_cam_imu that is not a rigid motion; expected the four rows of a rotation with "
+        "a translation [m], the last row 0 0 0 1");
+  return {read_lens(file, node, "distortion_coeffs"), T_camera_imu->inverse()};
+}
+
+ImuCalibration read_kalibr_imu(const std::filesystem::path& file) {
+  return read_noise(file, yaml_numbers::load(file, "the noise and rate of an IMU, as Kalibr has them"), "update_rate");
 }
 
 std::vector<ListedImage> read_euroc_image_list(const std::filesystem::path& file) {

@@ -29,6 +29,43 @@ fs::path find_body(const EurocOptions& options) {
                    "correct `source.euroc.path`");
 }
 
+/// The calibration of the recording: a sensor.yaml of each sensor, or Kalibr's files in dso/, beside mav0, as TUM VI
+/// has them.
+class AslCalibration {
+ public:
+  explicit AslCalibration(const fs::path& body) : body_(body) {
+    std::error_code error;
+    const fs::path dso = fs::weakly_canonical(body, error).parent_path() / "dso";
+    if (!fs::exists(body / "cam0" / "sensor.yaml", error) && fs::exists(dso / "camchain.yaml", error)) kalibr_ = dso;
+  }
+
+  bool has_frame_rate() const { return kalibr_.empty(); }
+  fs::path file_of(const char* camera) const {
+    return kalibr_.empty() ? body_ / camera / "sensor.yaml" : kalibr_ / "camchain.yaml";
+  }
+  EurocCamera camera(const char* name) const {
+    const fs::path file = file_of(name);
+    std::error_code error;
+    if (!kalibr_.empty()) return read_kalibr_camera(file, name);
+    if (!fs::exists(file, error))
+      throw InputError({file.string()},
+                       "is missing; expected the calibration of the camera, or that of all cameras in "
+                       "dso/camchain.yaml beside mav0, as the archives of the TUM VI data have it; unpack it again");
+    return read_euroc_camera(file);
+  }
+  /// With T_body_camera of a camera at the body's origin; nothing without a file.
+  std::optional<ImuCalibration> imu() const {
+    const fs::path file = kalibr_.empty() ? body_ / "imu0" / "sensor.yaml" : kalibr_ / "imu_config.yaml";
+    std::error_code error;
+    if (!fs::exists(file, error)) return std::nullopt;
+    return kalibr_.empty() ? read_euroc_imu(file) : read_kalibr_imu(file);
+  }
+
+ private:
+  fs::path body_;
+  fs::path kalibr_;  ///< empty: every sensor has a sensor.yaml
+};
+
 ImageFiles left_frame(const fs::path& camera, const ListedImage& image) {
   ImageFiles files;
   files.timestamp = image.timestamp;
@@ -79,17 +116,15 @@ Trajectory read_truth(const fs::path& body, const Eigen::Isometry3d& T_body_came
 
 /// The inertial measurements, with their calibration for the camera of the frames. The IMU's own axes and origin are
 /// the body frame of ImuCalibration; in the ASL layout they are usually those of the recording's body as well.
-void add_imu(const fs::path& body, const EurocOptions& options, const Eigen::Isometry3d& T_body_camera,
-             CalibratedRecording& recording) {
+void add_imu(const fs::path& body, const EurocOptions& options, const AslCalibration& calibration,
+             const Eigen::Isometry3d& T_body_camera, CalibratedRecording& recording) {
   std::error_code error;
   if (!options.with_imu || !fs::exists(body / "imu0" / "data.csv", error)) return;
   recording.imu_file = body / "imu0" / "data.csv";
   if (options.imu)
     recording.imu = options.imu;
-  else if (fs::exists(body / "imu0" / "sensor.yaml", error)) {
-    recording.imu = read_euroc_imu(body / "imu0" / "sensor.yaml");
+  else if ((recording.imu = calibration.imu()))
     recording.imu->T_body_camera = recording.imu->T_body_camera * T_body_camera;
-  }
   if (recording.imu && recording.rectification)
     recording.imu->T_body_camera = recording.imu->T_body_camera * recording.rectification->T_left_rectified();
 }
@@ -102,18 +137,20 @@ CalibratedRecording read_euroc_recording(const EurocOptions& options) {
   const bool is_pair =
       options.cameras == "pair" || (options.cameras == "auto" && fs::is_directory(body / "cam1", error));
   CalibratedRecording recording;
-  const EurocCamera left = read_euroc_camera(body / "cam0" / "sensor.yaml");
+  const AslCalibration calibration(body);
+  const EurocCamera left = calibration.camera("cam0");
   recording.camera = left.camera;
   recording.left_size = recording.right_size = {left.camera.width, left.camera.height};
   Eigen::Isometry3d T_body_camera = left.T_body_camera;
   if (is_pair) {
-    const fs::path file = body / "cam1" / "sensor.yaml";
-    const EurocCamera right = read_euroc_camera(file);
-    rectify_pair(recording, right.camera, left.T_body_camera.inverse() * right.T_body_camera, file);
+    const EurocCamera right = calibration.camera("cam1");
+    rectify_pair(recording, right.camera, left.T_body_camera.inverse() * right.T_body_camera,
+                 calibration.file_of("cam1"));
     T_body_camera = T_body_camera * recording.rectification->T_left_rectified();
   }
-  add_imu(body, options, left.T_body_camera, recording);
+  add_imu(body, options, calibration, left.T_body_camera, recording);
   recording.files = find_frames(body, is_pair, options.max_time_difference);
+  if (!calibration.has_frame_rate()) measure_frame_rate(recording);
   recording.truth = read_truth(body, T_body_camera);
   recording.truth_frame = "transformed";
   select_range(recording.files, options.range.start, options.range.frames, options.path,

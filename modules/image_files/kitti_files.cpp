@@ -56,20 +56,20 @@ void read_lines(const std::filesystem::path& file, const char* content, Use&& us
   }
 }
 
-void check_projection(const SourceLocation& place, const KittiProjection& p) {
+}  // namespace
+
+void require_rectified_projection(const SourceLocation& place, const KittiProjection& p) {
   const bool is_rectified = p(0, 0) > 0.0 && p(1, 1) > 0.0 && p(0, 1) == 0.0 && p(1, 0) == 0.0 && p(2, 0) == 0.0 &&
                             p(2, 1) == 0.0 && p(2, 2) == 1.0;
   if (!is_rectified)
     throw InputError(place, "is not the projection of a rectified camera; expected fx 0 cx tx, 0 fy cy ty, 0 0 1 tz");
 }
 
-}  // namespace
-
 std::vector<KittiProjection> read_kitti_calibration(const std::filesystem::path& file, std::size_t least) {
   std::vector<KittiProjection> projections;
   read_lines(file, "a 3x4 projection matrix, row by row", [&](const SourceLocation& place, const NumberedLine& line) {
     if (!line.name.empty() && line.name.front() != 'P') return;  // Tr, the laser scanner's
-    check_projection(place, line.matrix);
+    require_rectified_projection(place, line.matrix);
     projections.push_back(line.matrix);
   });
   if (projections.size() < least)

@@ -312,9 +312,53 @@ TEST_F(DatasetCheckTest, LooksAtStereoPairs) {
               ElementsAre(HasSubstr("calib.txt: no such file")));
 }
 
+/// A drive of KITTI's raw data and a sequence of 4Seasons; the sources' own tests look at their content.
+TEST_F(DatasetCheckTest, LooksAtDrives) {
+  const cv::Mat image(48, 64, CV_8UC1, cv::Scalar(20));
+  const std::string drive = "2011_09_30_drive_0018_sync", recording = "recording_2020-04-07_10-20-32";
+  for (const char* side : {"image_00", "image_01"}) {
+    fs::create_directories(program_.path(drive + "/" + side + "/data"));
+    cv::imwrite(program_.path(drive + "/" + side + "/data/0000000000.png").string(), image);
+  }
+  for (const char* side : {"cam0", "cam1"}) {
+    fs::create_directories(program_.path(recording + "/undistorted_images/" + side));
+    cv::imwrite(program_.path(recording + "/undistorted_images/" + side + "/7.png").string(), image);
+  }
+  program_.write(recording + "/times.txt", "7 1.5 0.1\n");
+  EXPECT_EQ(layout_of(program_.path(drive)), DatasetLayout::kitti);
+  EXPECT_EQ(layout_of(program_.path(recording)), DatasetLayout::four_seasons);
+  ASSERT_NE(recipe_of_folder(program_.path(drive)), nullptr);
+  EXPECT_EQ(recipe_of_folder(program_.path(drive))->name, "kitti_raw_05");
+  EXPECT_EQ(recipe_of_folder("dataset-room1_512_16")->name, "tum_vi_room1");
+  EXPECT_EQ(recipe_of_folder("office1-7")->layout, DatasetLayout::openloris);
+  const auto problems = [&](const std::string& folder) {
+    return check_dataset(program_.path(folder), recipe_of_folder(program_.path(folder))).problems;
+  };
+  EXPECT_THAT(problems(drive), ElementsAre(HasSubstr("calib_cam_to_cam.txt: is missing")));
+  EXPECT_THAT(problems(recording), ElementsAre(HasSubstr("calibration: is missing")));
+  std::string cameras = "R_rect_00: 1 0 0 0 1 0 0 0 1\n";
+  for (int i = 0; i < 4; ++i)
+    cameras += "S_rect_0" + std::to_string(i) + ": 64 48\nP_rect_0" + std::to_string(i) + ": 50 0 32 " +
+               std::to_string(i % 2 * -25) + " 0 50 24 0 0 0 1 0\n";
+  program_.write("calib_cam_to_cam.txt", cameras);
+  fs::create_directories(program_.path("calibration"));
+  for (const char* name : {"calibration/undistorted_calib_0.txt", "calibration/undistorted_calib_1.txt"})
+    program_.write(name, "Pinhole 50 50 32 24 0\n64 48\n");
+  program_.write("calibration/undistorted_calib_stereo.txt", "1 0 0 -0.3 0 1 0 0 0 0 1 0 0 0 0 1\n");
+  EXPECT_THAT(problems(drive), IsEmpty());
+  EXPECT_THAT(problems(recording), IsEmpty());
+  EXPECT_THAT(check_dataset(program_.path(recording), nullptr).facts,
+              ElementsAre("1 stereo pair", "camera of its own files: 64x48, baseline 0.300 m",
+                          "no true poses: there is nothing to measure an error by"));
+}
+
 TEST_F(DatasetCheckTest, IsACommand) {
   EXPECT_THAT(program_.run({"dataset", "list", "euroc_mh_01"}).output,
               AllOf(HasSubstr("3682 stereo pairs"), HasSubstr("mav0/cam0/"), HasSubstr("source    euroc")));
+  EXPECT_THAT(program_.run({"dataset", "list", "kitti_raw_05"}).output,
+              AllOf(HasSubstr("2011_09_30_drive_0018_sync"), HasSubstr("oxts/"), HasSubstr("source    kitti")));
+  EXPECT_THAT(program_.run({"dataset", "list", "four_seasons_2020_04_07"}).output, HasSubstr("GNSSPoses.txt"));
+  EXPECT_THAT(program_.run({"dataset", "list", "tum_vi_room1"}).output, HasSubstr("dso/camchain.yaml"));
   EXPECT_THAT(program_.run({"dataset", "list", "icl_of_kt3"}).output,
               AllOf(HasSubstr("fy 480 "), HasSubstr("traj3.gt.freiburg"), HasSubstr("source    icl_nuim")));
   EXPECT_THAT(program_.run({"dataset", "list"}).output,

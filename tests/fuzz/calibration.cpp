@@ -5,6 +5,7 @@
 #include "fuzz.hpp"
 #include "holdfast/image_files/camera_file.hpp"
 #include "holdfast/image_files/euroc_files.hpp"
+#include "holdfast/image_files/kitti_raw_files.hpp"
 #include "holdfast/image_files/openloris_files.hpp"
 
 using namespace holdfast;
@@ -41,6 +42,26 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     check(read.T_body_camera);
   });
   fuzz::accepts([&] { check(read_euroc_imu(file).T_body_camera); });
+  fuzz::accepts([&] {
+    const EurocCamera read = read_kalibr_camera(file, "cam0");
+    check(read.camera);
+    check(read.T_body_camera);
+  });
+  fuzz::accepts([&] { read_kalibr_imu(file); });
+  fuzz::accepts([&] { check(read_kitti_transform(file)); });
+  fuzz::accepts([&] {
+    const KittiRawCalibration read = read_kitti_raw_calibration(file);
+    fuzz::require(read.projections.size() == 4 && read.sizes.size() == 4, "all cameras are there");
+  });
+  fuzz::accepts([&] {
+    const KittiOxts packet = read_kitti_oxts(file);
+    check(KittiMercator(packet).pose(packet));
+  });
+  fuzz::accepts([&] {
+    const std::vector<double> stamps = read_kitti_stamps(file);
+    for (std::size_t i = 1; i < stamps.size(); ++i)
+      fuzz::require(stamps[i - 1] < stamps[i], "stamps increase strictly");
+  });
   fuzz::accepts([&] { check(read_openloris_camera(file, "d400_color_optical_frame")); });
   fuzz::accepts([&] { check(read_openloris_pose(file, "d400_color_optical_frame")); });
   fuzz::accepts([&] {

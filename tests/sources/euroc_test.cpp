@@ -136,6 +136,47 @@ TEST_F(EurocTest, AFisheyeLensIsEquidistant) {
   EXPECT_EQ(distortion.coefficients(), (std::vector<double>{-0.02, 0.001, 0.0002, 0.0001}));
 }
 
+/// A camera of a camchain.yaml of Kalibr; the keys are in the order of the TUM VI data.
+std::string chain_camera(const std::string& name, double x) {
+  return name + ":\n  T_cam_imu:\n  - [0.0, -1.0, 0.0, " + std::to_string(-x) +
+         "]\n  - [0.0, 0.0, -1.0, 0.0]\n  - [1.0, 0.0, 0.0, -0.5]\n  - [0.0, 0.0, 0.0, 1.0]\n  cam_overlaps: [1]\n"
+         "  camera_model: pinhole\n  distortion_coeffs: [-0.02, 0.001, 0.0002, 0.0001]\n"
+         "  distortion_model: equidistant\n  intrinsics: [50, 51, 32, 24]\n  resolution: [64, 48]\n"
+         "  rostopic: /" +
+         name + "/image_raw\n";
+}
+
+TEST_F(EurocTest, TumViHasItsCalibrationInOneFile) {
+  const Trajectory expected = open()->truth();
+  std::filesystem::remove(folder_.path() / left("sensor.yaml"));
+  std::filesystem::remove(folder_.path() / right("sensor.yaml"));
+  EXPECT_THAT(test::input_error([&] { open(); }),
+              AllOf(StartsWith(full(left("sensor.yaml"))), HasSubstr("dso/camchain.yaml beside mav0")));
+  folder_.write("V9/dso/camchain.yaml", chain_camera("cam0", 0.0) + chain_camera("cam1", 0.1));
+  for (const char* path : {"V9", "V9/mav0"}) {
+    const auto source = open({}, path);
+    EXPECT_NEAR(source->describe().camera->baseline, 0.1, 1e-9) << path;
+    EXPECT_NEAR(source->describe().camera->frame_rate, 20.0, 1e-4);
+    EXPECT_TRUE(source->truth()[2].T_world_camera.isApprox(expected[2].T_world_camera, 1e-9));
+  }
+  EXPECT_EQ(open({{"cameras", std::string("left")}})->describe().camera->distortion.lens, Lens::fisheye);
+  folder_.write("V9/mav0/imu0/data.csv", stamp(0) + ",0,0,0,9.8,0,0\n" + stamp(2) + ",0,0,0,9.8,0,0\n");
+  EXPECT_FALSE(open()->describe().imu.has_value());
+  folder_.write(
+      "V9/dso/imu_config.yaml",
+      "accelerometer_noise_density: 0.0028\naccelerometer_random_walk: 0.00086\n"
+      "gyroscope_noise_density: 0.00016\ngyroscope_random_walk: 2.2e-05\nrostopic: /imu0\nupdate_rate: 200.0\n");
+  const std::optional<ImuCalibration> imu = open({{"cameras", std::string("left")}})->describe().imu;
+  ASSERT_TRUE(imu.has_value());
+  EXPECT_EQ(imu->rate, 200.0);
+  EXPECT_TRUE(imu->T_body_camera.translation().isApprox(Eigen::Vector3d(0.5, 0.0, 0.0)));
+  const std::string chain = chain_camera("cam0", 0.0);
+  EXPECT_THAT(message("V9/dso/camchain.yaml", chain), HasSubstr("camchain.yaml: lacks cam1"));
+  EXPECT_THAT(message("V9/dso/camchain.yaml", "cam0:\n  T_cam_imu: [1, 2]\n"), HasSubstr("a row of T_cam_imu"));
+  EXPECT_THAT(message("V9/dso/camchain.yaml", "cam0:\n  T_cam_imu:\n  - [1, 0, 0, 0]\n"),
+              HasSubstr("T_cam_imu that is not a rigid motion"));
+}
+
 TEST_F(EurocTest, ImagesWithoutAPartnerMakeNoFrame) {
   folder_.write(right("data.csv"), stamp(0) + ",r0.png\n" + stamp(2) + ",r2.png\n");
   EXPECT_EQ(open()->describe().frame_count, 2U);

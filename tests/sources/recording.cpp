@@ -15,6 +15,7 @@
 extern "C" void holdfast_register_plugin_tum(holdfast::Registry& registry);
 extern "C" void holdfast_register_plugin_folder(holdfast::Registry& registry);
 extern "C" void holdfast_register_plugin_euroc(holdfast::Registry& registry);
+extern "C" void holdfast_register_plugin_four_seasons(holdfast::Registry& registry);
 extern "C" void holdfast_register_plugin_icl_nuim(holdfast::Registry& registry);
 extern "C" void holdfast_register_plugin_kitti(holdfast::Registry& registry);
 extern "C" void holdfast_register_plugin_openloris(holdfast::Registry& registry);
@@ -109,6 +110,7 @@ std::unique_ptr<FrameSource> make_source(const std::string& name, const Paramete
   holdfast_register_plugin_tum(registry);
   holdfast_register_plugin_folder(registry);
   holdfast_register_plugin_euroc(registry);
+  holdfast_register_plugin_four_seasons(registry);
   holdfast_register_plugin_icl_nuim(registry);
   holdfast_register_plugin_kitti(registry);
   holdfast_register_plugin_openloris(registry);

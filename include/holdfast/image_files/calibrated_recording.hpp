@@ -38,6 +38,9 @@ struct CalibratedRecording {
 void rectify_pair(CalibratedRecording& recording, const Camera& right, const Eigen::Isometry3d& T_left_right,
                   const std::filesystem::path& file);
 
+/// Sets the frame rate of the camera to the mean rate of the frames, if there are two.
+void measure_frame_rate(CalibratedRecording& recording);
+
 /// Range of the frames of a recording to read.
 struct FrameRange {
   std::int64_t start = 0;   ///< index of the first frame
@@ -56,8 +59,9 @@ struct KittiOptions {
   bool left_is_enough = false;  ///< for named cameras: use the left camera alone if the right one is missing
 };
 
-/// Finds the frames of a sequence in the layout of the KITTI odometry data (Geiger et al. 2012), with camera and truth.
-/// Reads only the size of the first image. Throws InputError.
+/// Finds the frames of a sequence in the layout of the KITTI odometry data (Geiger et al. 2012), or of a synchronised
+/// and rectified drive of the raw data (Geiger et al. 2013), with camera and truth. Reads only the size of the first
+/// image. Throws InputError.
 CalibratedRecording read_kitti_recording(const KittiOptions& options);
 
 /// Options of read_euroc_recording().
@@ -71,6 +75,7 @@ struct EurocOptions {
 };
 
 /// Finds the frames of a sequence in the ASL layout of the EuRoC MAV data (Burri et al. 2016), with camera and truth.
+/// The calibration is that of each sensor's sensor.yaml or, as in TUM VI (Schubert et al. 2018), in dso/ beside mav0.
 /// Images without a counterpart within max_time_difference are ignored. Reads no images. Throws InputError.
 CalibratedRecording read_euroc_recording(const EurocOptions& options);
 
@@ -89,6 +94,19 @@ struct OpenLorisOptions {
 /// truth: the recorded poses of base_link, moved to the camera by trans_matrix.yaml. Images without a counterpart
 /// within max_time_difference are ignored. Reads no images. Throws InputError.
 CalibratedRecording read_openloris_recording(const OpenLorisOptions& options);
+
+/// Options of read_four_seasons_recording().
+struct FourSeasonsOptions {
+  std::filesystem::path path;         ///< folder of the sequence, with times.txt and undistorted_images
+  std::string cameras = "auto";       ///< pair: cam0 and cam1; left: cam0; auto: pair if cam1 exists
+  std::filesystem::path calibration;  ///< folder of the calibration; empty = in the folder of the sequence or beside it
+  FrameRange range;
+  std::optional<ImuCalibration> imu;  ///< of imu.txt, which is read if this is given
+};
+
+/// Finds the undistorted frames of a sequence of 4Seasons (Wenzel et al., GCPR 2020), with camera and truth: the poses
+/// of keyframes in GNSSPoses.txt. Reads no images. Throws InputError.
+CalibratedRecording read_four_seasons_recording(const FourSeasonsOptions& options);
 
 /// Source of the frames of a CalibratedRecording; grey images are converted to three equal channels.
 class CalibratedSource : public ImageSequenceSource {

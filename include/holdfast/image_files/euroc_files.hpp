@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "holdfast/core/camera.hpp"
@@ -29,6 +30,15 @@ Eigen::Isometry3d read_euroc_pose(const std::filesystem::path& file);
 /// accelerometer_random_walk. T_body_camera is the inverse of T_BS, that is, of a camera at the body's origin. Throws
 /// as read_euroc_camera().
 ImuCalibration read_euroc_imu(const std::filesystem::path& file);
+
+/// Reads a camera ("cam0") of a camchain.yaml of Kalibr, which the TUM VI data have in place of sensor.yaml: T_cam_imu,
+/// resolution, camera_model, intrinsics, distortion_model and distortion_coeffs. The body is the IMU; the frame rate is
+/// not set. Throws as read_euroc_camera().
+EurocCamera read_kalibr_camera(const std::filesystem::path& file, const std::string& camera);
+
+/// Reads noise and update_rate of an IMU in Kalibr's format. T_body_camera is the identity. Throws as
+/// read_euroc_camera().
+ImuCalibration read_kalibr_imu(const std::filesystem::path& file);
 
 /// Reads a data.csv of a camera: lines "time stamp [ns],file name", '#' begins a comment. The stamps [s] increase
 /// strictly. Throws InputError (file and line) for anything else.

@@ -5,11 +5,16 @@
 #include <filesystem>
 #include <vector>
 
+#include "holdfast/core/error.hpp"
+
 namespace holdfast {
 
 /// A 3x4 projection matrix K [I | t] of a rectified camera of the KITTI odometry data (Geiger et al. 2013, section
 /// IV-C): a point of the reference camera's frame [m] to a pixel.
 using KittiProjection = Eigen::Matrix<double, 3, 4>;
+
+/// Throws InputError at `place` for a matrix that is not the projection of a rectified camera.
+void require_rectified_projection(const SourceLocation& place, const KittiProjection& matrix);
 
 /// Reads the lines "P0: ..." to "P3: ..." of a calib.txt, or lines of twelve numbers without a name, in their order.
 /// Lines with other names (Tr) are ignored. Throws InputError (file and line) for a line with another count of numbers,

@@ -17,7 +17,7 @@ struct KittiSettings : RecordedFrames {
     table
         .add("path", &KittiSettings::path,
              "folder of a sequence, with calib.txt and the folders of a rectified stereo pair: image_2 and image_3, "
-             "image_0 and image_1, or left and right; or of the left camera alone")
+             "image_0 and image_1, or left and right; or of the left camera alone; or a drive of the raw data")
         .required();
     table
         .add("cameras", &KittiSettings::cameras,
@@ -26,15 +26,15 @@ struct KittiSettings : RecordedFrames {
         .one_of({"auto", "colour", "grey", "pair"});
     table.add("poses", &KittiSettings::poses,
               "ground truth in KITTI's format; empty = poses.txt in the folder, or poses/NAME.txt beside its parent, "
-              "as in the data set, if there is one");
-    table.add("frame_rate", &KittiSettings::frame_rate, "frame rate, if the folder has no times.txt")
+              "as in the data set, or oxts of raw data, if there is one");
+    table.add("frame_rate", &KittiSettings::frame_rate, "frame rate, if there are no time stamps")
         .range(0.001, 100000.0)
         .unit("Hz");
     add_rows(table, "frame");
   }
 };
 
-/// A sequence of the KITTI odometry data (Geiger et al. 2012): rectified stereo pairs, or one camera.
+/// A sequence of the KITTI odometry or raw data (Geiger et al. 2012, 2013): rectified stereo pairs, or one camera.
 class KittiSource final : public CalibratedSource {
  public:
   KittiSource(const KittiSettings& s, const CreationContext& context)
@@ -49,7 +49,7 @@ class KittiSource final : public CalibratedSource {
 HOLDFAST_PLUGIN(kitti, registry) {
   registry.add<FrameSource, KittiSource, KittiSettings>(
       {.name = "kitti",
-       .summary = "A sequence in the layout of the KITTI odometry data: rectified stereo pairs, or one camera.",
+       .summary = "A sequence in the layout of the KITTI odometry or raw data: rectified stereo pairs, or one camera.",
        .paper = "Geiger, Lenz, Urtasun: Are we ready for Autonomous Driving? The KITTI Vision Benchmark Suite. CVPR "
                 "2012"});
 }

@@ -14,19 +14,22 @@ namespace holdfast {
 
 /// Layout of the files of a recording.
 enum class DatasetLayout {
-  tum,        ///< rgb.txt and depth.txt list the images with their stamps (Sturm et al., IROS 2012)
-  icl_nuim,   ///< associations.txt lists numbered pairs, the depth image first (Handa et al., ICRA 2014); what the
-              ///< source `icl_nuim` reads
-  kitti,      ///< stereo pairs of the KITTI odometry data (Geiger et al., CVPR 2012); what the source `kitti` reads
-  euroc,      ///< stereo pairs in the ASL layout (Burri et al., IJRR 2016); what the source `euroc` reads
-  openloris,  ///< the package format of OpenLORIS-Scene (Shi et al., ICRA 2020); what the source `openloris` reads
+  tum,       ///< rgb.txt and depth.txt list the images with their stamps (Sturm et al., IROS 2012)
+  icl_nuim,  ///< associations.txt lists numbered pairs, the depth image first (Handa et al., ICRA 2014); what the
+             ///< source `icl_nuim` reads
+  kitti,  ///< stereo pairs of the KITTI odometry or raw data (Geiger et al., CVPR 2012); what the source `kitti` reads
+  euroc,  ///< stereo pairs in the ASL layout (Burri et al., IJRR 2016); what the source `euroc` reads
+  four_seasons,  ///< undistorted stereo pairs of 4Seasons (Wenzel et al., GCPR 2020); what the source `four_seasons`
+                 ///< reads
+  openloris,     ///< the package format of OpenLORIS-Scene (Shi et al., ICRA 2020); what the source `openloris` reads
 };
 
-/// tum, icl_nuim, kitti, euroc or openloris.
+/// tum, icl_nuim, kitti, euroc, four_seasons or openloris.
 const char* layout_name(DatasetLayout layout);
 /// Whether the recording contains the calibration of its cameras, so that a recipe gives none.
 inline bool brings_camera(DatasetLayout layout) {
-  return layout == DatasetLayout::kitti || layout == DatasetLayout::euroc || layout == DatasetLayout::openloris;
+  return layout == DatasetLayout::kitti || layout == DatasetLayout::euroc || layout == DatasetLayout::four_seasons ||
+         layout == DatasetLayout::openloris;
 }
 
 /// Description of a known recording: its origin, and properties by which a folder is checked. Nothing is downloaded.
