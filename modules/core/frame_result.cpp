@@ -77,4 +77,44 @@ const char* to_string(TrackingFailure failure) {
   return "?";
 }
 
+const char* to_string(HealthState state) {
+  switch (state) {
+    case HealthState::waiting:
+      return "waiting";
+    case HealthState::good:
+      return "good";
+    case HealthState::degraded:
+      return "degraded";
+    case HealthState::inertial:
+      return "inertial";
+    case HealthState::relocalised:
+      return "relocalised";
+    case HealthState::lost:
+      return "lost";
+    case HealthState::stalled:
+      return "stalled";
+  }
+  return "?";
+}
+
+const char* to_string(HealthReason reason) {
+  switch (reason) {
+    case HealthReason::few_inliers:
+      return "few inliers";
+    case HealthReason::poor_geometry:
+      return "poor geometry";
+    case HealthReason::fallback:
+      return "fallback";
+    case HealthReason::unconfirmed:
+      return "unconfirmed";
+    case HealthReason::new_map:
+      return "new map";
+    case HealthReason::few_features:
+      return "few features";
+    case HealthReason::hidden_view:
+      return "hidden view";
+  }
+  return "?";
+}
+
 }  // namespace holdfast

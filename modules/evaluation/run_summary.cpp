@@ -11,6 +11,10 @@ namespace holdfast {
 void RunSummary::add(const FrameResult& result, double decode_seconds) {
   ++frames_;
   ++statuses_[result.status];
+  ++health_[result.health.state];
+  for (int i = 0; i < health_reasons; ++i)
+    if (const auto reason = static_cast<HealthReason>(i); result.health.reasons.has(reason)) ++reasons_[reason];
+  largest_jump_ = std::max(largest_jump_, result.health.jump);
   if (result.status == TrackingStatus::lost || result.status == TrackingStatus::waiting) ++failures_[result.failure];
   if (result.status == TrackingStatus::tracked) {
     inliers_ += static_cast<std::uint64_t>(result.inliers);
@@ -28,15 +32,18 @@ void RunSummary::add(const StageTimes& background) {
   for (const StageTimes::Entry& entry : background.entries()) stage(std::string(entry.stage)).add(entry.seconds);
 }
 
-std::uint64_t RunSummary::count(TrackingStatus status) const {
-  const auto found = statuses_.find(status);
-  return found == statuses_.end() ? 0 : found->second;
+namespace {
+template <class Key>
+std::uint64_t count_in(const std::map<Key, std::uint64_t>& counts, Key key) {
+  const auto found = counts.find(key);
+  return found == counts.end() ? 0 : found->second;
 }
+}  // namespace
 
-std::uint64_t RunSummary::count(TrackingFallback fallback) const {
-  const auto found = fallbacks_.find(fallback);
-  return found == fallbacks_.end() ? 0 : found->second;
-}
+std::uint64_t RunSummary::count(TrackingStatus status) const { return count_in(statuses_, status); }
+std::uint64_t RunSummary::count(TrackingFallback fallback) const { return count_in(fallbacks_, fallback); }
+std::uint64_t RunSummary::count(HealthState state) const { return count_in(health_, state); }
+std::uint64_t RunSummary::count(HealthReason reason) const { return count_in(reasons_, reason); }
 
 double RunSummary::mean_inliers() const {
   const std::uint64_t tracked_frames = count(TrackingStatus::tracked);

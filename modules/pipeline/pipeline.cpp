@@ -15,6 +15,7 @@
 #include "holdfast/core/thread_annotations.hpp"
 #include "holdfast/map_io/map_export.hpp"
 #include "holdfast/moving_world/moving_world.hpp"
+#include "holdfast/pipeline/health_monitor.hpp"
 #include "holdfast/tracking/image_depth.hpp"
 #include "holdfast/tracking/no_depth.hpp"
 #include "holdfast/tracking/pair_depth.hpp"
@@ -164,6 +165,8 @@ struct Pipeline::State {
   bool finished = false;
   bool has_frame = false;
   double last_timestamp = 0.0;
+  HealthMonitor health;
+  Stopwatch since_start;       ///< the clock of health
   std::vector<ImuSample> imu;  ///< the first minutes, for warnings
   KeyframeFlow flow;           // last: its threads end before the others go
 };
@@ -286,6 +289,7 @@ FrameResult Pipeline::feed(const SensorFrame& given) {
     result.T_world_camera = s.tracker.frame().T_world_camera();
   }
   result.tracking_seconds += s.flow.take_masks(result.times);  // this frame's own, when there is no latency
+  s.health.add(result, s.since_start.seconds());
   for (const auto& observer : s.parts.observers) observer->on_frame(frame, s.tracker.frame(), result);
   return result;
 }
@@ -294,6 +298,7 @@ void Pipeline::finish() {
   State& s = *state_;
   s.flow.finish();
   s.finished = true;
+  s.health.finish();
   s.flow.rethrow_failures();
   {
     const LockedMap locked(s.map, LockPriority::background);
@@ -304,6 +309,10 @@ void Pipeline::finish() {
   s.flow.finish_surface();
   if (s.keeps_classes()) s.map.unshared().classify_points();
   for (const auto& observer : s.parts.observers) observer->on_finish(s.map.unshared());
+}
+
+PipelineHealth Pipeline::health(double patience) const {
+  return state_->health.health(state_->since_start.seconds(), patience);
 }
 
 void Pipeline::interrupt() { state_->flow.request_stop(); }

@@ -95,6 +95,11 @@ class FedPipeline {
   py::tuple keyframes() {
     return trajectory_arrays(ask([](const Pipeline& p) { return p.keyframe_trajectory(); }));
   }
+  PipelineHealth health(double patience) {
+    const Unlock unlock;
+    const std::lock_guard lock(life_);
+    return open("health").health(patience);
+  }
   MapSnapshot map_snapshot() {
     refuse_modules("map_snapshot", MapLock::held);
     const Unlock unlock;
@@ -198,6 +203,7 @@ void bind_pipeline(py::module_& module) {
       .def("close", &FedPipeline::close)
       .def("trajectory", &FedPipeline::trajectory)
       .def("keyframes", &FedPipeline::keyframes)
+      .def("health", &FedPipeline::health, py::arg("patience"))
       .def("map_snapshot", &FedPipeline::map_snapshot)
       .def("is_free", &FedPipeline::is_free, py::arg("points"))
       .def("distance", &FedPipeline::distance, py::arg("points"))

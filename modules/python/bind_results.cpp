@@ -32,6 +32,33 @@ std::string result_text(const FrameResult& result) {
   return text + ", " + std::to_string(result.inliers) + " inliers" + (result.is_keyframe ? ", keyframe)" : ")");
 }
 
+py::list reason_names(const HealthReasons& reasons) {
+  py::list names;
+  for (int i = 0; i < health_reasons; ++i)
+    if (const auto reason = static_cast<HealthReason>(i); reasons.has(reason)) names.append(to_string(reason));
+  return names;
+}
+
+py::object covariance_array(const std::optional<Eigen::Matrix<double, 6, 6>>& covariance) {
+  if (!covariance) return py::none();
+  py::array_t<double> array({6, 6});
+  for (int i = 0; i < 36; ++i) array.mutable_at(i / 6, i % 6) = (*covariance)(i / 6, i % 6);
+  return array;
+}
+
+void bind_health(py::module_& module) {
+  py::class_<PipelineHealth>(module, "Health", "Health of the last frame of a pipeline, and whether frames arrive.")
+      .def_property_readonly("state", [](const PipelineHealth& h) { return to_string(h.health.state); })
+      .def_property_readonly("reasons", [](const PipelineHealth& h) { return reason_names(h.health.reasons); })
+      .def_property_readonly("jump", [](const PipelineHealth& h) { return h.health.jump; })
+      .def_readonly("frame", &PipelineHealth::frame)
+      .def_readonly("timestamp", &PipelineHealth::timestamp)
+      .def_property_readonly("T_world_camera", [](const PipelineHealth& h) { return pose_array(h.T_world_camera); })
+      .def_property_readonly("covariance", [](const PipelineHealth& h) { return covariance_array(h.covariance); })
+      .def_readonly("since_frame", &PipelineHealth::since_frame)
+      .def_readonly("frame_period", &PipelineHealth::frame_period);
+}
+
 void bind_objects(py::module_& module) {
   py::class_<MovingObject>(module, "MovingObject", "A rigid object that moves or has moved; metres, world frame.")
       .def_readonly("id", &MovingObject::id)
@@ -56,6 +83,7 @@ void bind_objects(py::module_& module) {
 
 void bind_results(py::module_& module) {
   bind_objects(module);
+  bind_health(module);
   py::class_<FrameResult>(module, "FrameResult", "What tracking found in one frame.")
       .def_readonly("index", &FrameResult::index)
       .def_readonly("timestamp", &FrameResult::timestamp)
@@ -65,6 +93,10 @@ void bind_results(py::module_& module) {
       .def_property_readonly("failure", [](const FrameResult& r) { return to_string(r.failure); })
       .def_property_readonly("trouble", &trouble_of)
       .def_property_readonly("T_world_camera", [](const FrameResult& r) { return pose_array(r.T_world_camera); })
+      .def_property_readonly("covariance", [](const FrameResult& r) { return covariance_array(r.covariance); })
+      .def_property_readonly("health", [](const FrameResult& r) { return to_string(r.health.state); })
+      .def_property_readonly("health_reasons", [](const FrameResult& r) { return reason_names(r.health.reasons); })
+      .def_property_readonly("jump", [](const FrameResult& r) { return r.health.jump; })
       .def_readonly("features", &FrameResult::features)
       .def_readonly("static_features", &FrameResult::static_features)
       .def_readonly("matches", &FrameResult::matches)

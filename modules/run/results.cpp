@@ -70,7 +70,7 @@ const std::vector<std::string>& result_names() {
       "report.html",    "run.json",    "trajectory.txt", "keyframes.txt", "evaluation.json", "tracks.json",
       "trajectory.svg", "error.svg",   "config.yaml",    "map.hfm",       "static_map.ply",  "surface.ply",
       "surface.obj",    "surface.glb", "map.pgm",        "map.yaml",      "octomap.bt",      "octomap.ot",
-      "objects.csv",    "overlay",     "run.mcap",       "surface_views"};
+      "objects.csv",    "health.csv",  "overlay",        "run.mcap",      "surface_views"};
   return names;
 }
 

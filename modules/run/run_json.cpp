@@ -129,6 +129,19 @@ Json frames_json(const RunRecord& record) {
           {"coverage", record.coverage()}};
 }
 
+Json health_json(const RunSummary& summary) {
+  Json json;
+  for (const HealthState state : {HealthState::good, HealthState::degraded, HealthState::inertial,
+                                  HealthState::relocalised, HealthState::lost, HealthState::waiting})
+    json[to_string(state)] = summary.count(state);
+  Json& reasons = json["reasons"] = Json::object();
+  for (int i = 0; i < health_reasons; ++i)
+    if (const auto reason = static_cast<HealthReason>(i); summary.count(reason) > 0)
+      reasons[to_string(reason)] = summary.count(reason);
+  json["largest_jump"] = summary.largest_jump();
+  return json;
+}
+
 Json map_json(const RunRecord& record) {
   return {{"keyframes", record.map_keyframes},
           {"points", record.map_points},
@@ -180,6 +193,7 @@ std::string run_json(const RunRecord& record) {
   if (const std::string warning = coverage_warning(record); !warning.empty()) warnings.push_back(warning);
   json["perturbation"] = perturbation_json(record.configuration);
   json["frames"] = frames_json(record);
+  json["health"] = health_json(s);
   Json& failures = json["tracking_failures"] = Json::object();
   for (const auto& [failure, count] : s.failures()) failures[to_string(failure)] = count;
   Json& skipped = json["skipped_frames"] = Json::array();

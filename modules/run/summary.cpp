@@ -91,6 +91,15 @@ std::string advice_to_restart(const RunRecord& record) {
          "most frames is the result.";
 }
 
+std::string reasons_text(const RunSummary& summary) {
+  std::string text;
+  for (int i = 0; i < health_reasons; ++i)
+    if (const auto reason = static_cast<HealthReason>(i); summary.count(reason) > 0)
+      text += (text.empty() ? " (frames not good: " : ", ") + std::to_string(summary.count(reason)) + " " +
+              to_string(reason);
+  return text.empty() ? "" : text + ")";
+}
+
 std::string pair_text(const PairEstimate& pair) {
   std::string rotation;
   for (int axis = 0; axis < 3; ++axis)
@@ -142,6 +151,8 @@ std::vector<std::pair<std::string, std::string>> summary_rows(const RunRecord& r
                                       " by masked features, " + std::to_string(dense) + " by dense depth");
   if (const std::uint64_t inertial = s.count(TrackingStatus::inertial); inertial > 0)
     rows.emplace_back("inertia", counted(inertial, "frame") + " bridged by inertial measurements");
+  if (const std::uint64_t degraded = s.count(HealthState::degraded); degraded > 0)
+    rows.emplace_back("health", counted(degraded, "frame") + " degraded" + reasons_text(s));
   rows.emplace_back("map", counted(record.map_keyframes, "keyframe") + ", " + counted(record.map_points, "point") +
                                "; " + fixed_text(s.mean_inliers(), 0) + " inliers a frame");
   if (record.surface && !record.surface->empty())

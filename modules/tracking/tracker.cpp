@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "holdfast/geometry/se3.hpp"
+
 namespace holdfast {
 
 Tracker::Tracker(const TrackingSettings& settings, const TrackerParts& parts, FirstPoses first_poses)
@@ -11,6 +13,7 @@ Tracker::Tracker(const TrackingSettings& settings, const TrackerParts& parts, Fi
       frame_tracker_(context_, keyframes_, std::move(first_poses)),
       start_(make_map_start(context_, parts)),
       recovery_(context_, frame_tracker_.local_map()),
+      health_(settings),
       state_(parts.map.keyframes().empty() ? TrackerState::waiting : TrackerState::lost) {}
 
 bool Tracker::judge_start(const MapAccess&) {
@@ -43,7 +46,11 @@ MapRequest Tracker::begin_map(const SensorFrame& sensor_frame, FrameResult& resu
 
 MapRequest Tracker::track(const SensorFrame& sensor_frame, FrameResult& result) {
   FrameHistory& history = context_.history;
-  if (!history.empty()) context_.inertia.follow_map(history.last_pose(context_.map));
+  if (!history.empty()) {
+    const Eigen::Isometry3d last_pose = history.last_pose(context_.map);
+    context_.inertia.follow_map(last_pose);
+    health_.follow_map(last_pose.inverse());
+  }
   if (history.has_previous()) context_.previous.T_camera_world = history.last_pose(context_.map);
   TrackedView view{sensor_frame, history.has_previous() ? &context_.previous : nullptr, context_.current,
                    context_.submap()};
@@ -71,7 +78,7 @@ MapRequest Tracker::track(const SensorFrame& sensor_frame, FrameResult& result) 
   state_ = TrackerState::lost;
   if (!found) return request;
   enter_found_state();
-  if (!was_lost) fuse_with_inertia(result);
+  if (was_lost || !fuse_with_inertia(result)) calibrate_covariance(result);
   found_pose(result);
   if (result.is_keyframe) request.kind = MapRequest::Kind::keyframe;
   return request;
@@ -131,9 +138,11 @@ void Tracker::end_frame(FrameResult& result) {
   if (!is_found) {
     context_.history.interrupt();
     context_.inertia.lost();
+    result.health = health_.judge(result, state_, context_.current.coarse);
     return;
   }
   result.T_world_camera = context_.current.T_world_camera();
+  result.health = health_.judge(result, state_, context_.current.coarse);
   if (context_.reference_keyframe.valid()) result.keyframe = context_.reference_keyframe;
   context_.history.add(context_.current, context_.reference_keyframe, context_.map);
   follow_inertia(result);
@@ -142,15 +151,26 @@ void Tracker::end_frame(FrameResult& result) {
 }
 
 /// A pose that few features determine is adjusted with the inertial prediction as a prior, to first order.
-void Tracker::fuse_with_inertia(FrameResult& result) {
+bool Tracker::fuse_with_inertia(FrameResult& result) {
   if (result.status != TrackingStatus::tracked || !context_.inertia.is_reliable() || !result.covariance ||
       frame_tracker_.local_map().checks().has_ample_inliers(result.inliers))
-    return;
+    return false;
   const bool is_relative = result.fallback == TrackingFallback::odometry;
-  if (!context_.inertia.correct(context_.current.T_camera_world, *result.covariance, is_relative)) return;
+  if (!context_.inertia.correct(context_.current.T_camera_world, *result.covariance, is_relative)) return false;
   const InertialPrediction fused = *context_.inertia.prediction();
   context_.current.T_camera_world = fused.T_camera_world;
   result.covariance = fused.covariance;
+  return true;
+}
+
+void Tracker::calibrate_covariance(FrameResult& result) const {
+  if (result.status != TrackingStatus::tracked || !result.covariance) return;
+  result.covariance = calibrated_covariance(context_.estimator.problem(), *result.covariance);
+  // Odometry places its points by the pose of the previous frame.
+  if (result.fallback != TrackingFallback::odometry || !health_.last_covariance() || !context_.history.has_previous())
+    return;
+  const auto to_current = geometry::adjoint_se3(context_.measured_step());
+  *result.covariance += to_current * *health_.last_covariance() * to_current.transpose();
 }
 
 /// Inertial motion learns from the pose, unless it gave the pose itself.
@@ -178,6 +198,7 @@ void Tracker::keyframe_added(const MapAccess& map, KeyFrameId keyframe) {
   context_.current.map_points = stored.map_points;
   context_.current.T_camera_world = stored.T_camera_world;
   context_.reference_keyframe = context_.last_keyframe = keyframe;
+  health_.refined(context_.current.T_world_camera());
   keyframes_.keyframe_added(context_.current.timestamp);
   recovery_.keyframe_added(keyframe);
   context_.history.became_keyframe(keyframe, context_.current.timestamp);
@@ -189,6 +210,7 @@ void Tracker::forget_map(const MapAccess&) {
   frame_tracker_.forget_map();
   start_->forget();
   recovery_.forget_map();
+  health_.forget_map();
   state_ = TrackerState::waiting;
 }
 

@@ -174,6 +174,11 @@ void Scene::describe_state(Message& message) const {
   state["timestamp"] = last_->timestamp;
   state["status"] = to_string(last_->status);
   state["status_number"] = status_number(last_->status, last_->method);
+  state["health"] = to_string(last_->health.state);
+  nlohmann::json& reasons = state["reasons"] = nlohmann::json::array();
+  for (int i = 0; i < health_reasons; ++i)
+    if (const auto reason = static_cast<HealthReason>(i); last_->health.reasons.has(reason))
+      reasons.push_back(to_string(reason));
   state["method"] = to_string(last_->method);
   state["fallback"] = to_string(last_->fallback);
   state["trouble"] = to_string(last_->failure);

@@ -78,6 +78,7 @@ TEST_F(RunTest, WritesItsResults) {
   EXPECT_EQ(run.at("frames").at("expected"), 15);
   EXPECT_EQ(run.at("frames").at("poses"), 15);
   EXPECT_EQ(run.at("frames").at("skipped"), 0);
+  EXPECT_EQ(run.at("health").at("good"), 15);
   EXPECT_EQ(run.at("interrupted"), false);
   EXPECT_TRUE(run.at("failure").is_null());
   EXPECT_LT(run.at("evaluation").at("ate_m").at("rmse"), 0.006);

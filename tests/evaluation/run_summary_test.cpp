@@ -31,5 +31,19 @@ TEST(RunSummary, StagesAreInTheOrderOfThePipeline) {
   EXPECT_NEAR(shares, 1.0, 1e-12);
 }
 
+TEST(RunSummary, CountsHealth) {
+  RunSummary summary;
+  FrameResult result;
+  result.health.state = HealthState::degraded;
+  result.health.reasons.add(HealthReason::few_inliers);
+  summary.add(result, 0.0);
+  result.health = {.state = HealthState::relocalised, .jump = 0.3};
+  summary.add(result, 0.0);
+  EXPECT_EQ(summary.count(HealthState::degraded), 1U);
+  EXPECT_EQ(summary.count(HealthState::good), 0U);
+  EXPECT_EQ(summary.count(HealthReason::few_inliers), 1U);
+  EXPECT_EQ(summary.largest_jump(), 0.3);
+}
+
 }  // namespace
 }  // namespace holdfast

@@ -195,6 +195,10 @@ def test_map_is_seen_while_frames_come(frames):
         for frame in frames:
             pipeline.feed(frame)
             snapshot = pipeline.map_snapshot()
+            health = pipeline.health(patience=1000)
+        assert health.state == "good" and health.reasons == [] and health.jump == 0
+        assert health.frame == len(frames) - 1 and health.since_frame >= 0
+        assert health.covariance.shape == (6, 6) and numpy.linalg.eigvalsh(health.covariance)[0] > 0
         assert len(snapshot.points) > 100 and len(snapshot.keyframes) >= 1
         with pytest.raises(holdfast.Error, match="not finished"):
             pipeline.map

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "holdfast/core/frame_health.hpp"
 #include "holdfast/core/id.hpp"
 #include "holdfast/core/moving_object.hpp"
 #include "holdfast/core/stage_times.hpp"
@@ -70,8 +71,10 @@ struct FrameResult {
   /// (Pipeline::trajectory).
   std::optional<Eigen::Isometry3d> T_world_camera;
   /// Covariance of the error d of the pose, T_world_camera * exp(d): translation [m] and rotation [rad] in the camera
-  /// frame. Of the matches alone, as if the map had no error, or of the inertial prediction; empty if unknown.
+  /// frame. The error is relative to the map around the camera, that is, to the reference keyframe: drift of the map is
+  /// not part of it. From the matches (calibrated_covariance()) or the inertial prediction; empty if unknown.
   std::optional<Eigen::Matrix<double, 6, 6>> covariance;
+  FrameHealth health;
   int features = 0;         ///< features extracted from the image
   int static_features = 0;  ///< features that are not classified as dynamic
   int matches = 0;          ///< matches with the local map

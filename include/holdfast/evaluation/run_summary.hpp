@@ -46,6 +46,11 @@ class RunSummary {
   /// Number of tracked frames with this fallback.
   std::uint64_t count(TrackingFallback fallback) const;
   const std::map<TrackingFailure, std::uint64_t>& failures() const { return failures_; }
+  std::uint64_t count(HealthState state) const;
+  /// Number of frames in states other than good with this reason.
+  std::uint64_t count(HealthReason reason) const;
+  /// Largest FrameHealth::jump, in the unit of the map.
+  double largest_jump() const { return largest_jump_; }
   double mean_inliers() const;
   /// Time from images to pose of every frame [s].
   const std::vector<double>& tracking_seconds() const { return tracking_seconds_; }
@@ -66,6 +71,9 @@ class RunSummary {
   std::map<TrackingStatus, std::uint64_t> statuses_;
   std::map<TrackingFallback, std::uint64_t> fallbacks_;
   std::map<TrackingFailure, std::uint64_t> failures_;
+  std::map<HealthState, std::uint64_t> health_;
+  std::map<HealthReason, std::uint64_t> reasons_;
+  double largest_jump_ = 0.0;
   std::vector<Stage> stages_;
   std::vector<double> tracking_seconds_;
 };

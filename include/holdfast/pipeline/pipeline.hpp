@@ -10,6 +10,7 @@
 
 #include "holdfast/config/run_settings.hpp"
 #include "holdfast/core/camera.hpp"
+#include "holdfast/core/frame_health.hpp"
 #include "holdfast/core/frame_result.hpp"
 #include "holdfast/core/imu.hpp"
 #include "holdfast/core/map.hpp"
@@ -94,8 +95,8 @@ struct LoopRecord {
 /// Sequential mode: feed() processes a frame completely in the calling thread, including mapping and loop closing, and
 /// results are bit-identical on every run. Threaded mode: feed() tracks the frame and inserts keyframes; local mapping,
 /// loop closing, full bundle adjustment and segmentation run in separate threads. Tracking waits for them only when the
-/// queue of keyframes is full and frames are not paced. interrupt() and map_snapshot() may be called by any thread, all
-/// other functions by one thread at a time.
+/// queue of keyframes is full and frames are not paced. interrupt(), health() and map_snapshot() may be called by any
+/// thread, all other functions by one thread at a time.
 class Pipeline {
  public:
   /// Throws CheckError if a required module is missing.
@@ -119,6 +120,10 @@ class Pipeline {
   void finish();
   /// Requests running bundle adjustments to end after their current iteration. Any thread.
   void interrupt();
+
+  /// Health of the last frame, as a robot acts on it, and whether frames still arrive: the state is stalled if there was
+  /// no frame for `patience` of their usual periods. Waits for nothing. Any thread, in both modes.
+  PipelineHealth health(double patience = 10.0) const;
 
   /// Poses of all tracked frames in temporal order, with all corrections so far. If the map consists of several
   /// submaps, the poses of the submap with most frames (TrackingSettings::restart_time). World frame: the first camera

@@ -43,6 +43,7 @@ class PoseEstimator {
 
   /// The last problem, for other solvers. Its inlier flags determine the matches that drop_outliers() removes.
   PoseProblem& problem() { return problem_; }
+  const PoseProblem& problem() const { return problem_; }
   /// Number of matches in the last problem.
   int matches() const { return static_cast<int>(problem_.size()); }
   /// Standard deviation of the last adjusted position [m].

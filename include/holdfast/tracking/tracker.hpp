@@ -12,6 +12,7 @@
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/tracking/first_pose.hpp"
 #include "holdfast/tracking/frame_tracker.hpp"
+#include "holdfast/tracking/health_judge.hpp"
 #include "holdfast/tracking/keyframe_decision.hpp"
 #include "holdfast/tracking/loss_record.hpp"
 #include "holdfast/tracking/loss_recovery.hpp"
@@ -82,7 +83,8 @@ class Tracker {
   void found_pose(FrameResult& result);
   void enter_found_state();
   void end_frame(FrameResult& result);
-  void fuse_with_inertia(FrameResult& result);
+  bool fuse_with_inertia(FrameResult& result);
+  void calibrate_covariance(FrameResult& result) const;
   void follow_inertia(FrameResult& result);
 
   TrackingContext context_;
@@ -90,6 +92,7 @@ class Tracker {
   FrameTracker frame_tracker_;
   std::unique_ptr<MapStart> start_;
   LossRecovery recovery_;
+  HealthJudge health_;
   TrackerState state_;
 };
 

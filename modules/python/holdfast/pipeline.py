@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._core import Camera, Frame, FrameResult
+from ._core import Camera, Frame, FrameResult, Health
 from ._parts import Part, Parts, given
 from .configuration import Config, Overrides, _load
 from .maps import Map, MapSnapshot
@@ -142,6 +142,13 @@ class Pipeline:
         if self._finished is not None:
             return self._finished.keyframes
         return Trajectory._of(self._core.keyframes())
+
+    def health(self, patience: float = 10.0) -> Health:
+        """Health of the last frame; its state is "stalled" if no frame came for `patience` of their usual periods.
+
+        Any thread may call it while frames are fed. After finish(), ask the results of frames.
+        """
+        return self._core.health(patience)
 
     def map_snapshot(self) -> MapSnapshot:
         """A copy of the map's geometry as it is now, while frames and background work go on."""

@@ -62,6 +62,7 @@ function showState(model, connected) {
   let text = status === undefined ? 'no frame yet' : statusNames[status], kind = status === undefined ? '' : statusKinds[status];
   if (status === 3 && state.trouble && state.trouble !== 'none') text += `: ${state.trouble.replaceAll('_', ' ')}`;
   if (status === 4) text = state.method === 'relocalised' ? 'relocalised' : 'found again';
+  if (state.health === 'degraded') { text = `degraded: ${state.reasons.join(', ')}`; kind = 'warn'; }
   if (state.finished) { text = 'finished'; kind = ''; }
   if (state.paused) text += ', paused';
   // A result that is here does not need the program any more.

@@ -123,8 +123,11 @@ Json properties_of(const std::string& name) {
         {"deletions", list(object({{"timestamp", time_schema()}, {"type", type("integer")}, {"id", type("string")}}))},
         {"entities", list(entity_schema())}};
   Json status = {{"timestamp", time_schema()}, {"index", type("integer")}};
-  for (const char* text : {"status", "method", "fallback", "failure"}) status[text] = type("string");
+  for (const char* text : {"health", "status", "method", "fallback", "failure"}) status[text] = type("string");
   for (const char* number : {"features", "static_features", "matches", "inliers"}) status[number] = type("integer");
+  status["reasons"] = list(type("string"));
+  status["covariance"] = list(type("number"));
+  status["jump"] = type("number");
   status["is_keyframe"] = type("boolean");
   status["tracking_ms"] = type("number");
   return status;
@@ -221,8 +224,18 @@ Json objects_message(double time, const std::vector<MovingObject>& objects) {
 }
 
 Json status_message(const FrameResult& result) {
+  Json reasons = Json::array(), covariance = Json::array();
+  for (int i = 0; i < health_reasons; ++i)
+    if (const auto reason = static_cast<HealthReason>(i); result.health.reasons.has(reason))
+      reasons.push_back(to_string(reason));
+  if (result.covariance)
+    for (Eigen::Index i = 0; i < 36; ++i) covariance.push_back((*result.covariance)(i / 6, i % 6));
   return {{"timestamp", time_of(result.timestamp)},
           {"index", result.index},
+          {"health", to_string(result.health.state)},
+          {"reasons", std::move(reasons)},
+          {"jump", result.health.jump},
+          {"covariance", std::move(covariance)},
           {"status", to_string(result.status)},
           {"method", to_string(result.method)},
           {"fallback", to_string(result.fallback)},

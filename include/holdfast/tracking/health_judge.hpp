@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+#include <optional>
+
+#include "holdfast/core/coarse_view.hpp"
+#include "holdfast/core/frame_result.hpp"
+#include "holdfast/interfaces/optimizer.hpp"
+#include "holdfast/tracking/tracker_state.hpp"
+#include "holdfast/tracking/tracking_settings.hpp"
+
+namespace holdfast {
+
+/// Covariance of an adjusted pose relative to the map around it: PoseSummary::covariance (inverse information for unit
+/// variance of the weighted residuals) times the variance factor of the residuals (sum of squares by degrees of
+/// freedom; Foerstner and Wrobel 2016, section 4.2.3) times correlation_factor. `problem` is the solved one. Does not
+/// allocate.
+Eigen::Matrix<double, 6, 6> calibrated_covariance(const PoseProblem& problem,
+                                                  const Eigen::Matrix<double, 6, 6>& covariance);
+
+/// Matches are not independent: neighbouring points, placed by the same keyframes, share errors of depth and pose. The
+/// covariance for independent ones is too small by this factor. It was measured, as the normalised estimation error
+/// squared (NEES) of 3285 frames of twenty simulated recordings: benchmarks/tools/measure_health.py.
+inline constexpr double correlation_factor = 2.75;
+
+/// Derives the health of frames from their results, one after the other. One thread.
+///
+/// A pose is degraded if the map did not determine it (a fallback), if it is unconfirmed, if fewer inliers agree than
+/// 4/3 of TrackingSettings::minimum_inliers, or if the largest standard deviation of its position exceeds half of
+/// TrackingSettings::maximum_deviation. It is relocalised if the frame before had none, or if corrections moved the map
+/// under the camera by more than `largest_correction`.
+class HealthJudge {
+ public:
+  static constexpr double largest_correction = 0.05;  ///< in the unit of the map
+
+  explicit HealthJudge(const TrackingSettings& settings)
+      : minimum_inliers_(settings.minimum_inliers * 4 / 3), largest_deviation_(0.5 * settings.maximum_deviation) {}
+
+  /// The map as it is now places the last frame that had a pose here.
+  void follow_map(const Eigen::Isometry3d& T_world_camera) { corrected_ = T_world_camera; }
+  /// `result` is complete but for its health.
+  FrameHealth judge(const FrameResult& result, TrackerState state, const CoarseView& view);
+  /// The pose of the last frame was refined before it was reported.
+  void refined(const Eigen::Isometry3d& T_world_camera) { reported_ = T_world_camera; }
+  /// Covariance of the frame before, if it had one.
+  const std::optional<Eigen::Matrix<double, 6, 6>>& last_covariance() const { return covariance_; }
+  /// The map was removed.
+  void forget_map() { reported_.reset(), corrected_.reset(), covariance_.reset(), was_lost_ = false; }
+
+ private:
+  HealthReasons find_reasons(const FrameResult& result, TrackerState state) const;
+  double correction() const;
+
+  int minimum_inliers_;
+  double largest_deviation_;
+  std::optional<Eigen::Isometry3d> reported_, corrected_;  // the last pose, as reported and by the map since
+  std::optional<Eigen::Matrix<double, 6, 6>> covariance_;
+  bool was_lost_ = false;
+};
+
+}  // namespace holdfast
