@@ -103,9 +103,11 @@ class FloorPlan {
       cv::line(picture_, pixel({x, y, 0}), pixel({x_end, y_end, 0}), {120, 120, 120}, 1, cv::LINE_AA);
       write(picture_, std::to_string(metres), pixel({x, y, 0}) + cv::Point(2, -3), 0.36, {255, 255, 255});
     };
-    for (int x = static_cast<int>(std::ceil(walls.min().x())); x <= walls.max().x(); ++x)
+    const int step = walls.sizes().x() > 100.0 ? 50 : 1;
+    const auto first = [&](double from) { return step * static_cast<int>(std::ceil(from / step)); };
+    for (int x = first(walls.min().x()); x <= walls.max().x(); x += step)
       mark(x, walls.min().y(), x, walls.max().y(), x);
-    for (int y = static_cast<int>(std::ceil(walls.min().y())); y <= walls.max().y(); ++y)
+    for (int y = first(walls.min().y()); y <= walls.max().y(); y += step)
       mark(walls.min().x(), y, walls.max().x(), y, y);
   }
 

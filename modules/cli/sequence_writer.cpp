@@ -140,7 +140,7 @@ std::string SequenceWriter::scene_json() const {
                {"file_content", content_of(scene.file)},
                {"overrides", scene.overrides},
                {"seed", scene.seed},
-               {"room", simulation::to_string(scene.room)},
+               {"room", scene.place_name()},
                {"path", simulation::to_string(scene.camera.path)},
                {"duration_s", scene.duration},
                {"frame_rate_hz", scene.frame_rate},

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "holdfast/tracking/rival_motion.hpp"
+
 namespace holdfast {
 
 bool LocalMapRefinement::refine(TrackedView& view, const PoseSituation& situation, FrameResult& result) const {
@@ -21,6 +23,8 @@ bool LocalMapRefinement::track_local_map(const TrackedView& view, const PoseSitu
     const StageTimer timer(result.times, "local map");
     context_.matcher.match_local_map(static_cast<float>(context_.settings.local_map_window), frame);
     result.inliers = context_.estimator.adjust(frame);
+    if (context_.map.sensor() == Sensor::stereo && test_local_motion(context_))
+      result.inliers = context_.estimator.adjust(frame);
   }
   if (result.inliers >= context_.settings.minimum_inliers &&
       context_.moving_world.evaluate(FilterStage::after_matching, view, result.times))

@@ -97,6 +97,18 @@ TEST(StereoRun, ASimulatedPairIsTrackedToAMillimetre) {
   EXPECT_EQ(summary.at("pair_calibration").at("column_offset_px"), 0.0);
 }
 
+/// A lorry fills the middle of the view at a constant distance, with more features than the road: the road decides.
+TEST(StereoRun, ASimulatedStreetIsDrivenToAFewCentimetres) {
+  const test::Program program;
+  const nlohmann::json summary =
+      run_stereo(program, "out",
+                 {"source={simulated: {scene: " + std::string(HOLDFAST_EXAMPLE_CONFIGURATIONS) +
+                      "/../scenes/street.yaml, duration: 4, stereo_baseline: 0.54, seed: 1}}",
+                  "camera=kitti_00"});
+  EXPECT_EQ(summary.at("frames").at("poses"), 40);
+  EXPECT_LE(summary.at("evaluation").at("ate_m").at("rmse"), 0.10);  // of 40 m
+}
+
 TEST(StereoRun, FiltersWorkOnTheDepthOfThePair) {
   // Two people walk through the view of the pair.
   const test::Program program;

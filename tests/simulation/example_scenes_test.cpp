@@ -30,7 +30,7 @@ std::vector<Scene> example_scenes(const std::string& room, std::uint64_t seed) {
   std::vector<Scene> scenes;
   for (const fs::path& file : files) {
     Scene scene = read_scene(file, {"seed=" + std::to_string(seed)});
-    if (to_string(scene.room) == room) scenes.push_back(std::move(scene));
+    if (scene.place_name() == room) scenes.push_back(std::move(scene));
   }
   return scenes;
 }

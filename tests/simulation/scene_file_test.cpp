@@ -158,7 +158,30 @@ lights_out:
   EXPECT_THAT(problems("camera: { path: xyz, closed: true }\n"),
               ElementsAre(HasSubstr("belongs to the path waypoints")));
   EXPECT_THAT(problems("people: [{ at: [1, 2], do: [{ walk: { to: [] } }] }]\n"), ElementsAre(HasSubstr("empty list")));
-  EXPECT_THAT(problems("- office\n"), ElementsAre(HasSubstr("expected a map with room")));
+  EXPECT_THAT(problems("- office\n"), ElementsAre(HasSubstr("expected a map with room or road")));
+}
+
+TEST_F(SceneFile, ReadsARoad) {
+  const Scene scene = read("road: { kind: motorway, speed: 30, traffic: 0.5, bends: 0 }\ncamera: { shake: 2 }\n");
+  ASSERT_TRUE(scene.road);
+  EXPECT_EQ(scene.place_name(), "motorway");
+  EXPECT_EQ(scene.camera.path, PathKind::drive);
+  EXPECT_EQ(scene.camera.style.shake, 2.0);
+  EXPECT_EQ(scene.road->mean_speed(), 30.0);
+  EXPECT_EQ(scene.road->traffic, 0.5);
+  EXPECT_EQ(scene.road->bends, 0.0);
+  EXPECT_EQ(read("road: { kind: street }\n").road->mean_speed(), 10.0);
+}
+
+TEST_F(SceneFile, RefusesWhatARoadCannotHave) {
+  EXPECT_THAT(problems("road: { speed: 20 }\n"), ElementsAre(HasSubstr("a road needs 'kind'")));
+  EXPECT_THAT(problems("road: street\n"), ElementsAre(HasSubstr("1:7: ")));
+  EXPECT_THAT(problems("road: { kind: lane }\n"), ElementsAre(HasSubstr("expected one of street, motorway")));
+  EXPECT_THAT(problems("road: { kind: street, speed: 90, traffic: -1, lenght: 3 }\n"),
+              ElementsAre(HasSubstr("from 0 to 40"), HasSubstr("from 0 to 3"), HasSubstr("no parameter 'lenght'")));
+  EXPECT_THAT(problems("road: { kind: street }\nroom: hall\npeople: []\ncamera: { path: xyz, closed: true }\n"),
+              ElementsAre(HasSubstr("2:7: 'room' has no meaning beside 'road'"), HasSubstr("'people' has no meaning"),
+                          HasSubstr("'path' has no meaning beside 'road'"), HasSubstr("'closed'")));
 }
 
 TEST_F(SceneFile, SaysThatItIsMissingAndWhichOneWasMeant) {
@@ -188,9 +211,10 @@ TEST(SceneSections, TellAllThatASceneCanSay) {
   const Registry registry;
   const std::string text = reference(registry, sections, "scene", ReferenceFormat::text),
                     markdown = reference(registry, sections, "scene", ReferenceFormat::markdown);
-  for (const char* name : {"scene", "scene.camera", "scene.people", "scene.people.do.walk", "scene.people.do.stand",
-                           "scene.people.do.sit", "scene.people.do.push", "scene.people.do.carry", "scene.doors",
-                           "scene.lights_out", "scene.colour_sensor", "scene.depth_sensor"}) {
+  for (const char* name :
+       {"scene", "scene.road", "scene.camera", "scene.people", "scene.people.do.walk", "scene.people.do.stand",
+        "scene.people.do.sit", "scene.people.do.push", "scene.people.do.carry", "scene.doors", "scene.lights_out",
+        "scene.colour_sensor", "scene.depth_sensor"}) {
     EXPECT_THAT(text, HasSubstr(std::string("scene: ") + name + "\n"));
     EXPECT_THAT(markdown, HasSubstr(std::string("### `") + name + "`\n"));
   }

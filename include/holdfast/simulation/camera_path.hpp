@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "holdfast/core/random.hpp"
+#include "holdfast/simulation/road.hpp"
 #include "holdfast/simulation/stage.hpp"
 #include "holdfast/simulation/waypoint_path.hpp"
 
@@ -17,15 +19,15 @@ namespace holdfast::simulation {
 /// at one position. Walks: loop: around the room, repeatedly; corridor: along a row of desks to the end and back. As in
 /// the experiments of Zeng et al. (Remote Sens. 2023, 15, 5479): table_edge: 7.5 cm along the edge of a table and back;
 /// rotation: full rotations on the spot; square: a square around a table, looking at it. waypoints: along given
-/// positions.
-enum class PathKind { fixed, xyz, halfsphere, rpy, loop, corridor, table_edge, rotation, square, waypoints };
+/// positions. drive: in a car along a road.
+enum class PathKind { fixed, xyz, halfsphere, rpy, loop, corridor, table_edge, rotation, square, waypoints, drive };
 
-/// "static", "xyz", "halfsphere", "rpy", "loop", "corridor", "table_edge", "rotation", "square", "waypoints".
+/// "static", "xyz", "halfsphere", "rpy", "loop", "corridor", "table_edge", "rotation", "square", "waypoints", "drive".
 const char* to_string(PathKind kind);
-/// The kind of that name; throws ConfigurationError naming the known ones.
+/// The kind of that name, except "drive"; throws ConfigurationError naming the known ones.
 PathKind path_kind(const std::string& name);
-/// The names of all kinds. With `of_stage_alone`, "waypoints" is excluded, because it needs more than a stage;
-/// otherwise it is the last one.
+/// The names of all kinds but "drive", which belongs to every road. With `of_stage_alone`, "waypoints" is excluded,
+/// because it needs more than a stage; otherwise it is the last one.
 std::vector<std::string> path_names(bool of_stage_alone = true);
 
 /// Factors on a camera path.
@@ -35,14 +37,17 @@ struct PathStyle {
 };
 
 /// The camera pose as a smooth function of time, with the tremor of a hand and, for walks, the vertical motion of
-/// walking. It starts at rest, reaches its speed after one second and never ends. The seed changes phases and tremor,
-/// not the kind of motion.
+/// walking, or with the vibrations of a car. It starts at rest, reaches its speed after one second and never ends; a
+/// drive has its speed from the beginning. The seed changes phases and tremor, not the kind of motion.
 class CameraPath {
  public:
-  /// A path of any kind except PathKind::waypoints, at the positions of a stage.
+  /// A path of any kind except PathKind::waypoints and PathKind::drive, at the positions of a stage.
   CameraPath(PathKind kind, const Stage& stage, std::uint64_t seed, const PathStyle& style = {});
   /// PathKind::waypoints; throws ConfigurationError as WaypointPath does.
   CameraPath(const Waypoints& waypoints, std::uint64_t seed, const PathStyle& style = {});
+
+  /// PathKind::drive: in the right lane of a road with the same seed, 1.65 m above it.
+  CameraPath(const RoadPlan& road, std::uint64_t seed, const PathStyle& style = {});
 
   /// T_world_camera at a time >= 0 [s]; camera frame x right, y down, z forward; world z up.
   Eigen::Isometry3d pose(double time) const;
@@ -57,6 +62,8 @@ class CameraPath {
   };
   CameraPath(PathKind kind, const Stage& stage, std::optional<WaypointPath> walk, std::uint64_t seed,
              const PathStyle& style);
+  void add_tremor(double position, double rotation, double frequency, double factor, Random random);
+  Eigen::Isometry3d drive_pose(double time) const;
   Eigen::Isometry3d hand_pose(double time) const;
   Eigen::Isometry3d walk_pose(double time) const;
 
@@ -64,6 +71,7 @@ class CameraPath {
   Stage stage_;
   PathStyle style_;
   std::optional<WaypointPath> walk_;
+  std::optional<RoadCourse> course_;
   double phases_[6];
   std::vector<Tremor> tremors_[6];  // three of position [m], three of rotation [rad]
 };

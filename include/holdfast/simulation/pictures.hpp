@@ -42,6 +42,27 @@ cv::Mat screen(cv::Size size, Random random);
 /// A food or drink package or a mug: bright, with a name and a pattern.
 cv::Mat label(cv::Size size, Random random);
 
+/// Asphalt with patches, cracks and stains.
+cv::Mat asphalt(cv::Size size, Random random);
+/// Grass with bare spots.
+cv::Mat grass(cv::Size size, Random random);
+/// Leaves of a tree or hedge.
+cv::Mat foliage(cv::Size size, Random random);
+/// Paving slabs, `slab` texels wide.
+cv::Mat paving(cv::Size size, int slab, Random random);
+/// The front of a house with storeys of 3 m; `texels` per metre.
+cv::Mat facade(cv::Size size, double texels, Random random);
+/// Sky with clouds above two chains of wooded hills; `horizon` is the row of the horizon. Left to right all around.
+cv::Mat panorama(cv::Size size, int horizon, Random random);
+/// Side of a car from sill to bonnet, with wheels and doors.
+cv::Mat car_side(cv::Size size, const cv::Scalar& colour, Random random);
+/// Front or rear of a car from bumper to bonnet: lamps, grille and number plate.
+cv::Mat car_end(cv::Size size, const cv::Scalar& colour, bool rear, Random random);
+/// Windows with pillars between them, `count` side by side.
+cv::Mat windows(cv::Size size, const cv::Scalar& colour, int count, Random random);
+/// Side or rear of a lorry: a coloured tarpaulin with lettering.
+cv::Mat tarpaulin(cv::Size size, Random random);
+
 /// Material of clothes. Colours are blue green red.
 struct Cloth {
   enum class Weave { plain, plaid, striped, dotted, printed, knitted, denim, flowered };

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "holdfast/simulation/camera_path.hpp"
 #include "holdfast/simulation/plan.hpp"
+#include "holdfast/simulation/road.hpp"
 #include "holdfast/simulation/room.hpp"
 #include "holdfast/simulation/sensor.hpp"
 
@@ -26,12 +28,14 @@ struct CameraPlan {
   Waypoints waypoints;  ///< for PathKind::waypoints
 };
 
-/// Description of a simulated sequence: a room, moving people and objects, the camera path and the sensors.
+/// Description of a simulated sequence: a room with moving people and objects, or a road; the camera path and the
+/// sensors.
 struct Scene {
   std::string name = "empty";
   std::string file;                    ///< path of the scene file, for messages and records; empty = none
   std::vector<std::string> overrides;  ///< overrides of the file's values, for records
   RoomKind room = RoomKind::office;
+  std::optional<RoadPlan> road;  ///< in place of the room; without people and doors
   CameraPlan camera;
   double duration = 20.0;    ///< [s]; frames from 0 up to, not including, this time
   double frame_rate = 30.0;  ///< [1/s]
@@ -41,6 +45,12 @@ struct Scene {
   std::vector<LightsOut> lights_out;
   DepthSensorSettings depth_sensor;
   ColourSensorSettings colour_sensor;
+
+  /// Name of the kind of road or room.
+  std::string place_name() const { return road ? to_string(road->kind) : to_string(room); }
 };
+
+/// The camera path of a scene. `stage` is that of its world.
+CameraPath make_path(const Scene& scene, const Stage& stage);
 
 }  // namespace holdfast::simulation

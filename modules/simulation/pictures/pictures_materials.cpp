@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "pictures_materials.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "holdfast/simulation/noise.hpp"
 #include "holdfast/simulation/pictures.hpp"
 
 namespace holdfast::simulation::pictures {
 
 namespace {
-// The colour times (1 + noise), the noise slightly different by channel where `tint` is given.
-cv::Mat coloured(const NoiseField& field, const cv::Scalar& colour, const NoiseField* tint = nullptr) {
+float smallest_side(cv::Size size) { return static_cast<float>(std::min(size.width, size.height)); }
+}  // namespace
+
+cv::Mat coloured(const NoiseField& field, const cv::Scalar& colour, const NoiseField* tint) {
   cv::Mat picture(field.height, field.width, CV_8UC3);
   for (int y = 0; y < field.height; ++y) {
     const float* value = field.row(y);
@@ -28,13 +31,10 @@ cv::Mat coloured(const NoiseField& field, const cv::Scalar& colour, const NoiseF
   return picture;
 }
 
-float smallest_side(cv::Size size) { return static_cast<float>(std::min(size.width, size.height)); }
-
 cv::Point any_texel(cv::Size size, Random& random) {
   const auto y = static_cast<int>(random.below(size.height)), x = static_cast<int>(random.below(size.width));
   return {x, y};
 }
-}  // namespace
 
 double brightness(const cv::Scalar& colour) { return 0.114 * colour[0] + 0.587 * colour[1] + 0.299 * colour[2]; }
 

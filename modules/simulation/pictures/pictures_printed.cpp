@@ -306,4 +306,15 @@ cv::Mat label(cv::Size size, Random random) {
   return picture;
 }
 
+cv::Mat tarpaulin(cv::Size size, Random random) {
+  const cv::Scalar ground = any_colour(random);
+  cv::Mat picture = plain(size, ground, random.fork(1));
+  for (int x = 0; x < size.width; x += std::max(8, size.height / 4))
+    cv::line(picture, {x, 0}, {x, size.height}, ground * 0.8, 1);
+  const cv::Scalar ink = contrasting(ground, random);
+  write(picture, title_of(1, random), {size.width / 10, size.height * 11 / 20}, 0.28 * size.height, ink, random);
+  write(picture, title_of(2, random), {size.width / 8, size.height * 4 / 5}, 0.1 * size.height, ink, random);
+  return picture;
+}
+
 }  // namespace holdfast::simulation::pictures

@@ -23,12 +23,13 @@ class SceneReader {
 
   Scene read() {
     const SceneRecord record = read_record<SceneRecord>(
-        root_, "a scene", {"camera", "people", "doors", "lights_out", "colour_sensor", "depth_sensor"});
+        root_, "a scene", {"road", "camera", "people", "doors", "lights_out", "colour_sensor", "depth_sensor"});
     scene_.room = room_kind(record.room);
     scene_.duration = record.duration;
     scene_.frame_rate = record.frame_rate;
     scene_.seed = record.seed;
     scene_.camera = read_camera(at("camera"));
+    if (root_.find("road") != nullptr) read_road(at("road"));
     scene_.colour_sensor = read_record<ColourSensorSettings>(at("colour_sensor"), "the colour sensor");
     scene_.depth_sensor = read_record<DepthSensorSettings>(at("depth_sensor"), "the depth sensor");
     for_each("people", [&](const ConfigurationNode& node) { scene_.people.push_back(read_person(node)); });
@@ -133,10 +134,29 @@ class SceneReader {
     const ConfigurationNode* path = node.find("path");
     const bool overridden = path != nullptr && path->location.file != node.location.file;
     for (const char* key : {"along", "closed", "walking_speed", "look_at"})
-      if (plan.path != PathKind::waypoints && !overridden && node.find(key) != nullptr)
+      if (plan.path != PathKind::waypoints && !overridden && node.find(key) != nullptr &&
+          root_.find("road") == nullptr)
         complain(node.find(key)->location,
                  "'" + std::string(key) + "' belongs to the path waypoints, not to '" + record.path + "'");
     return plan;
+  }
+
+  void read_road(const ConfigurationNode& node) {
+    const RoadRecord record = read_record<RoadRecord>(node, "a road");
+    scene_.camera.path = PathKind::drive;
+    scene_.road = RoadPlan{RoadKind::street, record.speed, record.traffic, record.bends};
+    // Of another kind, the table has complained.
+    if (const auto names = road_names(); std::find(names.begin(), names.end(), record.kind) != names.end())
+      scene_.road->kind = road_kind(record.kind);
+    for (const char* key : {"room", "people", "doors"})
+      if (const ConfigurationNode* other = root_.find(key))
+        complain(other->location, "'" + std::string(key) + "' has no meaning beside 'road'; expected one of the two");
+    for (const char* key : {"path", "along", "closed", "walking_speed", "look_at"})
+      if (const ConfigurationNode* other = at("camera").find(key))
+        complain(other->location,
+                 "'" + std::string(key) +
+                     "' has no meaning beside 'road', along which a car with the camera drives; expected "
+                     "none");
   }
 
   PersonPlan read_person(const ConfigurationNode& node) {
@@ -225,7 +245,7 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
   ConfigurationNode root = file.empty() ? ConfigurationNode{} : read_yaml(file);
   if (root.kind != Kind::map && root.kind != Kind::nothing)
     throw ConfigurationError({file.string()},
-                             "found " + root.found() + "; expected a map with room, camera, people, ...");
+                             "found " + root.found() + "; expected a map with room or road, camera, people, ...");
   for (const std::string& text : overrides) apply_override(root, text, {});
   Scene scene = SceneReader(root).read();
   if (!file.empty()) scene.name = file.stem().string(), scene.file = file.string();
@@ -236,6 +256,8 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
 std::vector<SectionDescription> scene_sections() {
   std::vector<SectionDescription> sections;
   add_section<SceneRecord>(sections, "scene", "The top of a scene file, beside the sections that follow.");
+  add_section<RoadRecord>(sections, "scene.road",
+                          "In place of a room: a road with traffic, along which a car with the camera drives.");
   add_section<CameraRecord>(sections, "scene.camera", "The camera's way.");
   add_section<PersonRecord>(sections, "scene.people",
                             "A list of people. What each one does stands under `do`, a list of the actions below.");

@@ -20,6 +20,16 @@ void SceneRecord::describe(ParameterTable<SceneRecord>& table) {
   table.add("seed", &S::seed, "of textures, small things, people, path and noise; 0 = the run's seed");
 }
 
+void RoadRecord::describe(ParameterTable<RoadRecord>& table) {
+  using S = RoadRecord;
+  table.add("kind", &S::kind, "a street with houses and parked cars, or a motorway").one_of(road_names()).required();
+  table.add("speed", &S::speed, "mean speed of the camera's car; 0 = 10 in a street, 25 on a motorway")
+      .range(0.0, 40.0)
+      .unit("m/s");
+  table.add("traffic", &S::traffic, "factor on the number of moving vehicles; 0 = none").range(0.0, 3.0);
+  table.add("bends", &S::bends, "factor on the curvature; 0 = straight").range(0.0, 2.0);
+}
+
 void CameraRecord::describe(ParameterTable<CameraRecord>& table) {
   using S = CameraRecord;
   table.add("path", &S::path, "how the camera moves; waypoints: past the places in `along`").one_of(path_names(false));

@@ -20,6 +20,14 @@ struct SceneRecord {
   static void describe(ParameterTable<SceneRecord>& table);
 };
 
+struct RoadRecord {
+  std::string kind;
+  double speed = RoadPlan{}.speed;
+  double traffic = RoadPlan{}.traffic;
+  double bends = RoadPlan{}.bends;
+  static void describe(ParameterTable<RoadRecord>& table);
+};
+
 struct CameraRecord {
   std::string path = "xyz";
   double speed = PathStyle{}.speed;

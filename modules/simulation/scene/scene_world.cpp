@@ -142,7 +142,12 @@ class SceneBuilder {
 }  // namespace
 
 SceneWorld make_scene_world(const Scene& scene) {
-  return make_scene_world(scene, furnish_room(scene.room, scene.seed));
+  if (!scene.road) return make_scene_world(scene, furnish_room(scene.room, scene.seed));
+  try {
+    return make_scene_world(scene, furnish_road(*scene.road, scene.duration * scene.camera.style.speed, scene.seed));
+  } catch (const ConfigurationError& error) {
+    throw ConfigurationError(SourceLocation{scene.file}, std::string("road: ") + error.what());
+  }
 }
 
 SceneWorld make_scene_world(const Scene& scene, Room furnished) {

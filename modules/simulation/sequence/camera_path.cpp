@@ -52,7 +52,7 @@ std::optional<WaypointPath> walk_of(PathKind kind, const Stage& stage) {
 const char* to_string(PathKind kind) {
   for (const auto& [known, name] : path_kinds)
     if (known == kind) return name;
-  return "";
+  return "drive";
 }
 
 std::vector<std::string> path_names(bool of_stage_alone) {
@@ -86,10 +86,19 @@ Eigen::Isometry3d look_at(const Vector3d& eye, const Vector3d& target) {
 CameraPath::CameraPath(PathKind kind, const Stage& stage, std::uint64_t seed, const PathStyle& style)
     : CameraPath(kind, stage, walk_of(kind, stage), seed, style) {
   HOLDFAST_CHECK(kind != PathKind::waypoints, "a path along waypoints needs them");
+  HOLDFAST_CHECK(kind != PathKind::drive, "a drive needs a road");
 }
 
 CameraPath::CameraPath(const Waypoints& waypoints, std::uint64_t seed, const PathStyle& style)
     : CameraPath(PathKind::waypoints, Stage(), WaypointPath(waypoints), seed, style) {}
+
+CameraPath::CameraPath(const RoadPlan& road, std::uint64_t seed, const PathStyle& style)
+    : kind_(PathKind::drive), style_(style), course_(RoadCourse(road, seed)) {
+  Random random = Random(seed).fork(0xd21);
+  for (double& phase : phases_) phase = random.uniform(0.0, full_turn<double>);
+  // A body on its springs sways between 1 and 2 Hz, and vibrates above.
+  add_tremor(0.006, 0.0025, 1.0, style.shake, random);
+}
 
 CameraPath::CameraPath(PathKind kind, const Stage& stage, std::optional<WaypointPath> walk, std::uint64_t seed,
                        const PathStyle& style)
@@ -98,12 +107,18 @@ CameraPath::CameraPath(PathKind kind, const Stage& stage, std::optional<Waypoint
   for (double& phase : phases_) phase = random.uniform(0.0, full_turn<double>);
   // On the table's edge the hand rests.
   const double steadiness = kind == PathKind::table_edge ? 0.3 : 1.0;
+  // A hand trembles most below 1 Hz.
+  add_tremor(0.0035, 0.0045, 0.4, steadiness * style.shake, random);
+}
+
+// Amplitudes fall with frequency so that no frame jumps.
+void CameraPath::add_tremor(double position, double rotation, double frequency, double factor, Random random) {
   for (int axis = 0; axis < 6; ++axis)
     for (int i = 0; i < 5; ++i) {
-      // A hand trembles most below 1 Hz; amplitudes fall with frequency so that no frame jumps.
-      const double frequency = random.uniform(0.4, 1.0) * (1.0 + 0.9 * i);
-      const double size = (axis < 3 ? 0.0035 : 0.0045) / (1.0 + i) * steadiness * style.shake;
-      tremors_[axis].push_back({size * random.uniform(0.5, 1.0), frequency, random.uniform(0.0, full_turn<double>)});
+      const double own_frequency = random.uniform(frequency, frequency + 0.6) * (1.0 + 0.9 * i);
+      const double size = (axis < 3 ? position : rotation) / (1.0 + i) * factor;
+      tremors_[axis].push_back(
+          {size * random.uniform(0.5, 1.0), own_frequency, random.uniform(0.0, full_turn<double>)});
     }
 }
 
@@ -172,9 +187,17 @@ Eigen::Isometry3d CameraPath::walk_pose(double t) const {
   return pose;
 }
 
+Eigen::Isometry3d CameraPath::drive_pose(double t) const {
+  constexpr double height = 1.65, weave = 0.12, weave_period = 9.0;
+  const double left = course_->lane() + weave * std::sin(full_turn<double> * t / weave_period + phases_[0]);
+  const Eigen::Isometry3d T_world_road = course_->frame(course_->driven(t), left);
+  const Vector3d eye = T_world_road * Vector3d(0.0, 0.0, height);
+  return look_at(eye, eye + T_world_road.linear().col(0));
+}
+
 Eigen::Isometry3d CameraPath::pose(double time) const {
-  const double hand_time = eased(time), t = style_.speed * hand_time;
-  Eigen::Isometry3d pose = walk_ ? walk_pose(t) : hand_pose(t);
+  const double hand_time = course_ ? time : eased(time), t = style_.speed * hand_time;
+  Eigen::Isometry3d pose = course_ ? drive_pose(t) : walk_ ? walk_pose(t) : hand_pose(t);
   double shake[6] = {};
   for (int axis = 0; axis < 6; ++axis)
     for (const Tremor& tremor : tremors_[axis])

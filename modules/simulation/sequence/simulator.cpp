@@ -21,17 +21,19 @@ cv::Mat look_up(const cv::Mat& object_ids, const std::vector<std::uint8_t>& valu
   return result;
 }
 
-CameraPath make_path(const Scene& scene, const Stage& stage) {
-  const CameraPlan& plan = scene.camera;
-  if (plan.path == PathKind::waypoints) return {plan.waypoints, scene.seed, plan.style};
-  return {plan.path, stage, scene.seed, plan.style};
-}
 Camera exposed_at_once(Camera camera) {
   camera.readout = 0.0;
   return camera;
 }
 
 }  // namespace
+
+CameraPath make_path(const Scene& scene, const Stage& stage) {
+  const CameraPlan& plan = scene.camera;
+  if (scene.road) return {*scene.road, scene.seed, plan.style};
+  if (plan.path == PathKind::waypoints) return {plan.waypoints, scene.seed, plan.style};
+  return {plan.path, stage, scene.seed, plan.style};
+}
 
 Simulator::Simulator(const Scene& scene, const Camera& camera)
     : scene_(scene),

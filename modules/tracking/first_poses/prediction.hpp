@@ -2,6 +2,7 @@
 #pragma once
 
 #include "holdfast/tracking/first_pose.hpp"
+#include "holdfast/tracking/rival_motion.hpp"
 
 namespace holdfast {
 
@@ -41,6 +42,9 @@ class Prediction final : public FirstPose {
     if (search.situation.was_lost || search.is_predicted) return FirstPoseOutcome::none;
     const StageTimer timer(search.result.times, "predict");
     search.is_predicted = predict_(search);
+    const TrackingContext& context = search.context;
+    if (search.is_predicted && context.map.sensor() == Sensor::stereo && !context.history.has_velocity())
+      test_start_motion(search.context);
     return search.is_predicted ? FirstPoseOutcome::first_pose : FirstPoseOutcome::none;
   }
 

@@ -60,7 +60,7 @@ class SimulatedSource final : public FrameSource {
   SourceDescription describe() const override {
     const simulation::Scene& scene = simulator_.scene();
     SourceDescription description;
-    description.name = "simulated " + scene.name + ", " + simulation::to_string(scene.room) + ", path " +
+    description.name = "simulated " + scene.name + ", " + scene.place_name() + ", path " +
                        simulation::to_string(scene.camera.path) + ", seed " + std::to_string(scene.seed);
     description.has_depth = !is_stereo();
     description.has_right = is_stereo();

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "holdfast/tracking/tracking_context.hpp"
+
+/// Choice between rigid motions that explain a frame of a stereo pair. A vehicle in front that keeps its distance
+/// supports a standing camera, often with more features than the road. Rival poses are found by PnP among the matches
+/// that contradict the pose so far. Of the matches that support one of two poses only, those of the static scene are
+/// spread over more of the image.
+namespace holdfast {
+
+/// Tests the pose of a frame without a velocity against rivals among the descriptor matches with the reference
+/// keyframe: the road may move farther between two frames than the search near the previous pose reaches. If a rival
+/// wins, pose and matches of the current frame become its own; otherwise they are left as they are.
+void test_start_motion(TrackingContext& context);
+
+/// Tests the pose that was adjusted last against rivals among its outliers, if these are many. Returns whether one has
+/// won; then the frame has its pose, and the matches that it explains.
+bool test_local_motion(TrackingContext& context);
+
+}  // namespace holdfast
