@@ -121,8 +121,8 @@ class Pipeline {
   /// Requests running bundle adjustments to end after their current iteration. Any thread.
   void interrupt();
 
-  /// Health of the last frame, as a robot acts on it, and whether frames still arrive: the state is stalled if there was
-  /// no frame for `patience` of their usual periods. Waits for nothing. Any thread, in both modes.
+  /// Health of the last frame, as a robot acts on it, and whether frames still arrive: the state is stalled if there
+  /// was no frame for `patience` of their usual periods. Waits for nothing. Any thread, in both modes.
   PipelineHealth health(double patience = 10.0) const;
 
   /// Poses of all tracked frames in temporal order, with all corrections so far. If the map consists of several
