@@ -49,6 +49,43 @@ Eigen::Vector3d rate_at(const std::vector<ImuSample>& samples, double time) {
   return geometry::interpolated(*std::prev(next), *next, time).angular_velocity;
 }
 
+/// Poses of earlier frames from which inertial estimation starts, the earliest first.
+struct StartPoses {
+  std::vector<double> stamps;  // [s]
+  std::vector<Eigen::Isometry3d> T_world_camera;
+};
+
+/// Chooses poses of tracked frames later than `earliest`, `spacing` apart, from the last one backwards to the first
+/// gap.
+StartPoses choose_start_poses(const std::vector<double>& tracked, double earliest, double spacing,
+                              const InertialMotion::PastPose& past_pose) {
+  StartPoses chosen;
+  for (auto stamp = tracked.rbegin(); stamp != tracked.rend() && *stamp > earliest; ++stamp) {
+    if (!chosen.stamps.empty() && chosen.stamps.back() - *stamp < spacing) continue;
+    if (!chosen.stamps.empty() && chosen.stamps.back() - *stamp > largest_pose_gap) break;
+    const std::optional<Eigen::Isometry3d> T_camera_world = past_pose(*stamp);
+    if (!T_camera_world) continue;
+    chosen.stamps.push_back(*stamp);
+    chosen.T_world_camera.push_back(T_camera_world->inverse());
+  }
+  std::reverse(chosen.stamps.begin(), chosen.stamps.end());
+  std::reverse(chosen.T_world_camera.begin(), chosen.T_world_camera.end());
+  return chosen;
+}
+
+/// Motions from each time to the next; empty where samples are missing.
+std::optional<std::vector<geometry::Preintegration>> preintegrate_between(const std::vector<ImuSample>& samples,
+                                                                          const std::vector<double>& stamps,
+                                                                          const ImuNoise& noise) {
+  std::vector<geometry::Preintegration> motions;
+  for (std::size_t i = 0; i + 1 < stamps.size(); ++i) {
+    const auto motion = geometry::preintegrate(samples, stamps[i], stamps[i + 1], noise, {});
+    if (!motion) return std::nullopt;
+    motions.push_back(*motion);
+  }
+  return motions;
+}
+
 }  // namespace
 
 InertialMotion::InertialMotion(const std::optional<ImuCalibration>& imu, bool scale_is_known)
@@ -239,29 +276,15 @@ void InertialMotion::try_to_start(const PastPose& past_pose) {
                                        [&](const ImuSample& sample) { return sample.timestamp >= earliest; });
   if (first_kept != samples_.begin()) samples_.erase(samples_.begin(), std::prev(first_kept));
 
-  // From the current frame backwards; in the end, the earliest comes first.
-  std::vector<double> stamps;
-  std::vector<Eigen::Isometry3d> poses;
-  for (auto stamp = tracked_.rbegin(); stamp != tracked_.rend() && *stamp > now - time - spacing; ++stamp) {
-    if (!stamps.empty() && stamps.back() - *stamp < spacing) continue;
-    if (!stamps.empty() && stamps.back() - *stamp > largest_pose_gap) break;
-    const std::optional<Eigen::Isometry3d> T_camera_world = past_pose(*stamp);
-    if (!T_camera_world) continue;
-    stamps.push_back(*stamp);
-    poses.push_back(T_camera_world->inverse());
-  }
-  if (stamps.size() < fewest_poses || now - stamps.back() < time) return;
+  const StartPoses start_poses = choose_start_poses(tracked_, now - time - spacing, spacing, past_pose);
+  const std::vector<double>& stamps = start_poses.stamps;
+  if (stamps.size() < fewest_poses || now - stamps.front() < time) return;
   next_start_ = now + start_interval;
-  std::reverse(stamps.begin(), stamps.end());
-  std::reverse(poses.begin(), poses.end());
-  std::vector<geometry::Preintegration> motions;
+  const auto motions = preintegrate_between(samples_, stamps, imu_->noise);
+  if (!motions) return;
+  const std::vector<Eigen::Isometry3d>& poses = start_poses.T_world_camera;
   std::vector<Eigen::Vector3d> rates;
   for (const double stamp : stamps) rates.push_back(rate_at(samples_, stamp));
-  for (std::size_t i = 0; i + 1 < stamps.size(); ++i) {
-    const auto motion = geometry::preintegrate(samples_, stamps[i], stamps[i + 1], imu_->noise, {});
-    if (!motion) return;
-    motions.push_back(*motion);
-  }
   geometry::InertialStartOptions options;
   options.estimate_scale = !scale_is_known_;
   options.mounting_deviation = mounting_deviation;
@@ -272,11 +295,11 @@ void InertialMotion::try_to_start(const PastPose& past_pose) {
     options.position_deviation = deviations.position;
     options.rotation_deviation = deviations.rotation;
     const geometry::InertialStart start =
-        geometry::start_inertially(poses, motions, imu_->T_body_camera, options, rates);
+        geometry::start_inertially(poses, *motions, imu_->T_body_camera, options, rates);
     if (!start.usable) continue;
     // Their mean squared residual, which is 1 for right deviations, says how wrong these are.
     const double factor = std::sqrt(std::max(1.0, start.mean_chi_square));
-    begin_filter(start, poses, motions, rates, {factor * deviations.position, factor * deviations.rotation});
+    begin_filter(start, poses, *motions, rates, {factor * deviations.position, factor * deviations.rotation});
     return;
   }
 }
