@@ -109,7 +109,7 @@ TEST_F(KittiRawTest, TheTruthIsThatOfTheRectifiedCamera) {
   // The scanner is 1 m before the IMU, the camera half a metre before that.
   EXPECT_TRUE(first.translation().isApprox(Eigen::Vector3d(0.0, 1.5, 0.0), 1e-9)) << first.translation().transpose();
   // The colour camera stands 6 cm to the left of it, along x of the rectified camera.
-  const Eigen::Isometry3d& colour = open()->truth()[0].T_world_camera;
+  const Eigen::Isometry3d colour = open()->truth()[0].T_world_camera;
   EXPECT_TRUE((first.inverse() * colour.translation()).isApprox(Eigen::Vector3d(-0.06, 0.0, 0.0), 1e-9));
 }
 
