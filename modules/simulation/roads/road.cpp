@@ -57,7 +57,7 @@ void RoadBuilder::surroundings(double from, double to) {
   wall({end, -backdrop, high}, {-length, 0, 0}, length + width);
   add_rectangle(sky.mesh, {begin, -backdrop, high}, {length, 0, 0}, {0, width, 0},
                 {all.texture, all.u, all.v, 0.01F * all.width, 0.01F * all.height}, 400.0F);  // overhead
-  for (Vertex& vertex : sky.mesh.vertices) vertex.normal = towards_sun.cast<float>();  // no shading on the sky
+  for (Vertex& vertex : sky.mesh.vertices) vertex.normal = towards_sun.cast<float>();         // no shading on the sky
 }
 
 void RoadBuilder::vehicle(const Mesh& mesh, const std::string& class_name,

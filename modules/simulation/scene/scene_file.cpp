@@ -134,8 +134,7 @@ class SceneReader {
     const ConfigurationNode* path = node.find("path");
     const bool overridden = path != nullptr && path->location.file != node.location.file;
     for (const char* key : {"along", "closed", "walking_speed", "look_at"})
-      if (plan.path != PathKind::waypoints && !overridden && node.find(key) != nullptr &&
-          root_.find("road") == nullptr)
+      if (plan.path != PathKind::waypoints && !overridden && node.find(key) != nullptr && root_.find("road") == nullptr)
         complain(node.find(key)->location,
                  "'" + std::string(key) + "' belongs to the path waypoints, not to '" + record.path + "'");
     return plan;
