@@ -4,6 +4,7 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "holdfast/core/frame_result.hpp"
+#include "holdfast/core/health_reason_names.hpp"
 #include "ids.hpp"
 
 namespace holdfast::python {
@@ -32,13 +33,6 @@ std::string result_text(const FrameResult& result) {
   return text + ", " + std::to_string(result.inliers) + " inliers" + (result.is_keyframe ? ", keyframe)" : ")");
 }
 
-py::list reason_names(const HealthReasons& reasons) {
-  py::list names;
-  for (int i = 0; i < health_reasons; ++i)
-    if (const auto reason = static_cast<HealthReason>(i); reasons.has(reason)) names.append(to_string(reason));
-  return names;
-}
-
 py::object covariance_array(const std::optional<Eigen::Matrix<double, 6, 6>>& covariance) {
   if (!covariance) return py::none();
   py::array_t<double> array({6, 6});
@@ -49,7 +43,7 @@ py::object covariance_array(const std::optional<Eigen::Matrix<double, 6, 6>>& co
 void bind_health(py::module_& module) {
   py::class_<PipelineHealth>(module, "Health", "Health of the last frame of a pipeline, and whether frames arrive.")
       .def_property_readonly("state", [](const PipelineHealth& h) { return to_string(h.health.state); })
-      .def_property_readonly("reasons", [](const PipelineHealth& h) { return reason_names(h.health.reasons); })
+      .def_property_readonly("reasons", [](const PipelineHealth& h) { return names_of(h.health.reasons); })
       .def_property_readonly("jump", [](const PipelineHealth& h) { return h.health.jump; })
       .def_readonly("frame", &PipelineHealth::frame)
       .def_readonly("timestamp", &PipelineHealth::timestamp)
@@ -95,7 +89,7 @@ void bind_results(py::module_& module) {
       .def_property_readonly("T_world_camera", [](const FrameResult& r) { return pose_array(r.T_world_camera); })
       .def_property_readonly("covariance", [](const FrameResult& r) { return covariance_array(r.covariance); })
       .def_property_readonly("health", [](const FrameResult& r) { return to_string(r.health.state); })
-      .def_property_readonly("health_reasons", [](const FrameResult& r) { return reason_names(r.health.reasons); })
+      .def_property_readonly("health_reasons", [](const FrameResult& r) { return names_of(r.health.reasons); })
       .def_property_readonly("jump", [](const FrameResult& r) { return r.health.jump; })
       .def_readonly("features", &FrameResult::features)
       .def_readonly("static_features", &FrameResult::static_features)

@@ -7,6 +7,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "holdfast/core/health_reason_names.hpp"
 #include "holdfast/core/version.hpp"
 
 namespace holdfast::viewer {
@@ -175,10 +176,7 @@ void Scene::describe_state(Message& message) const {
   state["status"] = to_string(last_->status);
   state["status_number"] = status_number(last_->status, last_->method);
   state["health"] = to_string(last_->health.state);
-  nlohmann::json& reasons = state["reasons"] = nlohmann::json::array();
-  for (int i = 0; i < health_reasons; ++i)
-    if (const auto reason = static_cast<HealthReason>(i); last_->health.reasons.has(reason))
-      reasons.push_back(to_string(reason));
+  state["reasons"] = names_of(last_->health.reasons);
   state["method"] = to_string(last_->method);
   state["fallback"] = to_string(last_->fallback);
   state["trouble"] = to_string(last_->failure);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "holdfast/core/health_reason_names.hpp"
 #include "holdfast/core/trajectory.hpp"
 #include "holdfast/interfaces/observer.hpp"
 #include "holdfast/plugin/plugin.hpp"
@@ -58,9 +59,7 @@ class Health final : public Observer {
   }
   static std::string reason_text(const HealthReasons& reasons) {
     std::string text;
-    for (int i = 0; i < health_reasons; ++i)
-      if (const auto reason = static_cast<HealthReason>(i); reasons.has(reason))
-        text += (text.empty() ? "" : ";") + std::string(to_string(reason));
+    for (const std::string& name : names_of(reasons)) text += (text.empty() ? "" : ";") + name;
     return text;
   }
   void add(const char* format, double value) {

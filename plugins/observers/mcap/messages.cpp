@@ -8,6 +8,7 @@
 #include <span>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/core/health_reason_names.hpp"
 
 namespace holdfast::mcap_plugin {
 
@@ -224,16 +225,13 @@ Json objects_message(double time, const std::vector<MovingObject>& objects) {
 }
 
 Json status_message(const FrameResult& result) {
-  Json reasons = Json::array(), covariance = Json::array();
-  for (int i = 0; i < health_reasons; ++i)
-    if (const auto reason = static_cast<HealthReason>(i); result.health.reasons.has(reason))
-      reasons.push_back(to_string(reason));
+  Json covariance = Json::array();
   if (result.covariance)
     for (Eigen::Index i = 0; i < 36; ++i) covariance.push_back((*result.covariance)(i / 6, i % 6));
   return {{"timestamp", time_of(result.timestamp)},
           {"index", result.index},
           {"health", to_string(result.health.state)},
-          {"reasons", std::move(reasons)},
+          {"reasons", names_of(result.health.reasons)},
           {"jump", result.health.jump},
           {"covariance", std::move(covariance)},
           {"status", to_string(result.status)},
