@@ -81,7 +81,7 @@ struct SeenPoints {
 };
 
 /// Whether three other keyframes observe the point of a feature at the same or a finer scale.
-bool is_redundant(const Map& map, KeyFrameId id, std::uint32_t feature) {
+bool is_point_redundant(const Map& map, KeyFrameId id, std::uint32_t feature) {
   constexpr int enough = 3;
   const Frame& frame = map.keyframe(id).frame;
   const MapPoint& point = map.point(frame.map_points[feature]);
@@ -104,7 +104,7 @@ SeenPoints seen_points(const Map& map, KeyFrameId id, std::optional<float> limit
     if (limit && (!frame.has_depth(feature) || frame.depth[feature] > *limit)) continue;
     ++seen.all;
     const float found_ratio = map.point(frame.map_points[feature]).found_ratio();
-    if (is_redundant(map, id, feature)) {
+    if (is_point_redundant(map, id, feature)) {
       ++seen.redundant;
       seen.redundant_found_sum += found_ratio;
     } else {
@@ -122,6 +122,38 @@ void leave_out_rarely_found(SeenPoints& seen, double share) {
   seen.all -= static_cast<int>(std::count_if(seen.found.begin(), seen.found.end(), [&](float f) { return f < limit; }));
 }
 
+// Number of later keyframes after which a keyframe is old.
+constexpr std::uint64_t recent = 200;
+
+bool is_old(const KeyFrame& keyframe, std::uint64_t now) { return keyframe.sequence + recent < now; }
+
+/// The neighbours of a keyframe, and of the old keyframes the one whose turn it is: one with few points is nobody's
+/// neighbour.
+std::vector<KeyFrameId> candidates(const Map& map, const KeyFrame& keyframe) {
+  std::vector<KeyFrameId> result;
+  for (const CovisibilityEdge& edge : keyframe.covisible) result.push_back(edge.keyframe);
+  const std::vector<KeyFrameId> by_age = map.keyframes_by_age();
+  const auto end = std::find_if(by_age.begin(), by_age.end(),
+                                [&](KeyFrameId id) { return !is_old(map.keyframe(id), keyframe.sequence); });
+  if (end == by_age.begin()) return result;
+  const KeyFrameId in_turn = by_age[keyframe.sequence % static_cast<std::uint64_t>(end - by_age.begin())];
+  if (std::find(result.begin(), result.end(), in_turn) == result.end()) result.push_back(in_turn);
+  return result;
+}
+
+/// Whether the points of an old keyframe are redundant, or so few are not that it adds little to the map.
+bool is_old_redundant(const Map& map, KeyFrameId id, SeenPoints close, const MappingSettings& settings) {
+  constexpr double little = 0.02;  // of its features
+  SeenPoints all = seen_points(map, id, std::nullopt);
+  leave_out_rarely_found(all, settings.weak_found_ratio);
+  const auto features = static_cast<double>(map.keyframe(id).frame.size());
+  if (all.all - all.redundant < little * features) return true;
+  if (features_have_depth(map.sensor()) && close.all < settings.minimum_depth_points)
+    return all.redundant > settings.redundant_share * all.all;
+  leave_out_rarely_found(close, settings.weak_found_ratio);
+  return close.redundant > settings.redundant_share * close.all;
+}
+
 }  // namespace
 
 std::vector<KeyFrameId> remove_redundant_keyframes(Map& map, KeyFrameId id, const MappingSettings& settings,
@@ -129,27 +161,24 @@ std::vector<KeyFrameId> remove_redundant_keyframes(Map& map, KeyFrameId id, cons
   // Redundancy is measured by close points (Mur-Artal and Tardos 2017, section III-D). A keyframe with few of them,
   // such as people before a far wall, would never be redundant; therefore all its points count once it is not among the
   // recent keyframes, whose depth the filters compare. Nor does then one stay for the sake of points at the outlines of
-  // people, which are hardly ever found again: in a room the number of keyframes has to level off.
-  constexpr std::uint64_t recent = 200;
+  // people, which are hardly ever found again, or of the few that a crowd left of its view: in a room the number of
+  // keyframes has to level off.
   std::vector<KeyFrameId> removed;
   if (settings.redundant_share >= 1.0) return removed;
-  const std::vector<CovisibilityEdge> neighbours = map.keyframe(id).covisible;
   const std::uint64_t sequence = map.keyframe(id).sequence;
-  const bool has_depth = features_have_depth(map.sensor());
-  for (const CovisibilityEdge& edge : neighbours) {
-    const KeyFrame& keyframe = map.keyframe(edge.keyframe);
+  for (const KeyFrameId candidate : candidates(map, map.keyframe(id))) {
+    const KeyFrame& keyframe = map.keyframe(candidate);
     if (!keyframe.parent.valid() || !keyframe.loop_edges.empty()) continue;
     if (keyframe.sequence > sequence) continue;  // not refined yet
     std::optional<float> close;
-    if (has_depth) close = static_cast<float>(close_depth_factor * keyframe.frame.camera->baseline);
-    SeenPoints seen = seen_points(map, edge.keyframe, close);
-    if (keyframe.sequence + recent < sequence) {
-      if (has_depth && seen.all < settings.minimum_depth_points) seen = seen_points(map, edge.keyframe, std::nullopt);
-      leave_out_rarely_found(seen, settings.weak_found_ratio);
-    }
-    if (seen.redundant <= settings.redundant_share * seen.all) continue;
-    map.remove_keyframe(edge.keyframe);
-    removed.push_back(edge.keyframe);
+    if (features_have_depth(map.sensor()))
+      close = static_cast<float>(close_depth_factor * keyframe.frame.camera->baseline);
+    const SeenPoints seen = seen_points(map, candidate, close);
+    const bool is_redundant = is_old(keyframe, sequence) ? is_old_redundant(map, candidate, seen, settings)
+                                                         : seen.redundant > settings.redundant_share * seen.all;
+    if (!is_redundant) continue;
+    map.remove_keyframe(candidate);
+    removed.push_back(candidate);
   }
   return removed;
 }

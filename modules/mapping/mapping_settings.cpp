@@ -33,7 +33,8 @@ void MappingSettings::describe(ParameterTable<MappingSettings>& table) {
       .add("redundant_share", &S::redundant_share,
            "a keyframe is removed if this fraction of its points is observed by three others at the same or a finer "
            "scale; only close points count, unless there are few of them and 200 keyframes have followed, after which "
-           "points found below weak_found_ratio of the mean do not count either; 1 = keep all")
+           "points found below weak_found_ratio of the mean do not count either, nor is one kept that has other "
+           "points at fewer than 2 % of its features; 1 = keep all")
       .range(0.1, 1);
   table.add("bundle_keyframes", &S::bundle_keyframes, "maximum number of free keyframes of a local bundle adjustment")
       .range(2, 200);

@@ -45,7 +45,8 @@ std::size_t remove_moving_points(Map& map, double moving_log_odds);
 /// VI-B); returns their number. `recent_points` loses them and those whose probation has ended.
 std::size_t remove_weak_points(Map& map, KeyFrameId keyframe, const MappingSettings& settings, bool expects_masks,
                                std::vector<MapPointId>& recent_points);
-/// Removes covisible keyframes most of whose points are redundant, and returns them.
+/// Removes covisible keyframes most of whose points are redundant, and old keyframes that add few others, and returns
+/// them.
 std::vector<KeyFrameId> remove_redundant_keyframes(Map& map, KeyFrameId keyframe, const MappingSettings& settings,
                                                    double close_depth_factor);
 

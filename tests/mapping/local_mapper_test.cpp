@@ -246,6 +246,35 @@ TEST_F(LocalMapperTest, RarelyFoundPointsDoNotKeepAnOldKeyframe) {
   EXPECT_NE(map.find_keyframe(old[1]), nullptr);
 }
 
+TEST_F(LocalMapperTest, AnOldKeyframeThatAddsLittleLeavesThoughItIsNobodysNeighbour) {
+  const KeyFrameId first = add_keyframe(frame_at(beside(0)));
+  std::vector<Frame> later;
+  for (int k = 1; k <= 12; ++k) {
+    later.push_back(frame_at(beside(0.1 * k)));
+    match(later.back(), 1);
+  }
+  // Two views through a crowd: one feature of a hundred, and one of ten, has a point, which nobody else sees.
+  std::array<KeyFrameId, 2> hidden;
+  for (const std::uint32_t step : {100U, 10U}) {
+    KeyFrameId& id = hidden[step == 100U ? 0 : 1];
+    id = map.add_keyframe(frame_at(beside(0.001)));
+    map.set_parent(id, first);
+    for (std::uint32_t i = 0; i < map.keyframe(id).frame.size(); i += step) {
+      const MapPointId own = map.add_point(Eigen::Vector3d(0, 0, 2), 0);
+      map.add_observation(own, id, i);
+      map.update_point(own);
+    }
+    ASSERT_TRUE(map.keyframe(id).covisible.empty());
+  }
+  for (int k = 0; k < 3; ++k) add_keyframe(later[k]);
+  EXPECT_NE(map.find_keyframe(hidden[0]), nullptr) << "it is recent";
+  make_old(first);
+  for (int k = 3; k < 12; ++k) add_keyframe(later[k]);
+  EXPECT_EQ(map.find_keyframe(hidden[0]), nullptr);
+  EXPECT_NE(map.find_keyframe(hidden[1]), nullptr);
+  EXPECT_NE(map.find_keyframe(first), nullptr);
+}
+
 TEST_F(LocalMapperTest, PointsThatNobodyFindsAgainLeave) {
   add_keyframe(frame_at(beside(0)));
   std::vector<MapPointId> missed;

@@ -20,9 +20,9 @@ struct MappingSettings {
   /// Number of keyframes after its creation in which a point can be culled; 3 as in ORB-SLAM.
   int probation_keyframes = 3;
   double moving_log_odds = -2.0;  ///< measured static log-odds below which a map point is moving and removed
-  /// A keyframe is culled if this fraction of its points is observed by three other keyframes at the same or a
-  /// finer scale; 0.9 as in ORB-SLAM (section VI-E). Once 200 keyframes have followed, points that are found in less
-  /// than weak_found_ratio of the frames in which its redundant points are found do not count.
+  /// A keyframe is culled if this fraction of its points is observed by three other keyframes at the same or a finer
+  /// scale; 0.9 as in ORB-SLAM (section VI-E). Once 200 keyframes have followed, points found less often than
+  /// weak_found_ratio of these do not count, and it is culled, too, if fewer than 2 % of its features have other ones.
   double redundant_share = 0.9;
   int bundle_keyframes = 20;         ///< maximum number of free keyframes of a local bundle adjustment; bounds its time
   int bundle_robust_iterations = 5;  ///< iterations with the robust cost; 5 as in ORB-SLAM2
