@@ -27,21 +27,23 @@ Motion motion_of(const PoseProblem& problem, const Eigen::Isometry3d& T_camera_w
   return motion;
 }
 
-/// Number of cells of a grid over the image with an observation that `one` explains and `other` does not.
-int cells_of_one_alone(const PoseProblem& problem, const Motion& one, const Motion& other) {
+/// Number of cells of a grid over the image with a position of a problem or frame that `one` explains and `other` not.
+template <class Positions>
+int cells_of_one_alone(const Positions& at, const std::vector<bool>& one, const std::vector<bool>& other) {
   constexpr int cells_across = 10;  // a vehicle is in few of them, however many features it has
-  const double side = static_cast<double>(problem.camera->width) / cells_across;
+  const double side = static_cast<double>(at.camera->width) / cells_across;
   std::vector<int> cells;
-  for (std::size_t i = 0; i < problem.size(); ++i)
-    if (one.explains[i] && !other.explains[i])
-      cells.push_back(static_cast<int>(problem.x[i] / side) + cells_across * static_cast<int>(problem.y[i] / side));
+  for (std::size_t i = 0; i < at.size(); ++i)
+    if (one[i] && !other[i])
+      cells.push_back(static_cast<int>(at.x[i] / side) + cells_across * static_cast<int>(at.y[i] / side));
   std::sort(cells.begin(), cells.end());
   return static_cast<int>(std::unique(cells.begin(), cells.end()) - cells.begin());
 }
 
-bool is_wider(const PoseProblem& problem, const Motion& one, const Motion& other) {
+template <class Positions>
+bool is_wider(const Positions& at, const std::vector<bool>& one, const std::vector<bool>& other) {
   constexpr double lead = 1.5;
-  return cells_of_one_alone(problem, one, other) > lead * cells_of_one_alone(problem, other, one);
+  return cells_of_one_alone(at, one, other) > lead * cells_of_one_alone(at, other, one);
 }
 
 /// Gives the current frame the pose of the widest motion of its matches, of which the estimator's problem consists, and
@@ -60,7 +62,7 @@ bool choose_motion(TrackingContext& context) {
       if (found.explains[i]) problem.weight[i] = 0.0F;
     if (!geometry::find_pose(problem, options).usable) break;
     found = motion_of(all, problem.T_camera_world);
-    if (is_wider(all, found, best)) best = found, has_won = true;
+    if (is_wider(all, found.explains, best.explains)) best = found, has_won = true;
   }
   if (!has_won) return false;
   std::size_t observation = 0;
@@ -70,9 +72,8 @@ bool choose_motion(TrackingContext& context) {
   return true;
 }
 
-}  // namespace
-
-void test_start_motion(TrackingContext& context) {
+/// The widest motion of descriptor matches with the reference keyframe; if it is the frame's own one, the frame stays.
+void test_descriptor_matches(TrackingContext& context) {
   const KeyFrame* keyframe = context.map.find_keyframe(context.reference_keyframe);
   if (keyframe == nullptr) return;
   Frame& frame = context.current;
@@ -88,6 +89,53 @@ void test_start_motion(TrackingContext& context) {
   }
   frame.map_points = own_matches;
   frame.T_camera_world = own_pose;
+}
+
+/// Which features have a match.
+std::vector<bool> matched(const Frame& frame) {
+  std::vector<bool> result(frame.size());
+  for (std::size_t i = 0; i < frame.size(); ++i) result[i] = frame.map_points[i].valid();
+  return result;
+}
+
+/// Searches the points of the previous frame as a camera sees them that drives forward at several speeds. Few points of
+/// a road have like descriptors after some metres.
+void test_speeds(TrackingContext& context) {
+  constexpr double step = 0.5;  // m
+  constexpr int steps = 8;
+  if (!context.history.has_previous()) return;
+  Frame& frame = context.current;
+  const Eigen::Isometry3d standing = context.previous.T_camera_world;
+  std::vector<MapPointId> best_matches = frame.map_points;
+  Eigen::Isometry3d best_pose = frame.T_camera_world;
+  std::vector<bool> best = matched(frame);
+  bool has_won = false;
+  for (int k = 1; k <= steps; ++k) {
+    frame.T_camera_world = Eigen::Translation3d(0.0, 0.0, -step * k) * standing;
+    const int matches =
+        context.matcher.match_previous(context.previous, static_cast<float>(context.settings.motion_window), frame);
+    if (matches < context.settings.minimum_matches) continue;
+    if (context.estimator.adjust(frame) < context.settings.minimum_matches / 2) continue;
+    const double apart = (frame.T_camera_world * best_pose.inverse()).translation().norm();
+    if (apart < step / 2.0) continue;  // the same motion
+    context.estimator.drop_outliers(frame);
+    std::vector<bool> found = matched(frame);
+    if (!is_wider(frame, found, best)) continue;
+    best = std::move(found), best_matches = frame.map_points, best_pose = frame.T_camera_world;
+    has_won = true;
+  }
+  frame.map_points = best_matches;
+  frame.T_camera_world = best_pose;
+  if (!has_won) return;
+  context.estimator.adjust(frame);
+  context.estimator.drop_outliers(frame);
+}
+
+}  // namespace
+
+void test_start_motion(TrackingContext& context) {
+  test_descriptor_matches(context);
+  test_speeds(context);
 }
 
 bool test_local_motion(TrackingContext& context) {

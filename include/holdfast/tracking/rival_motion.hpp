@@ -9,9 +9,10 @@
 /// spread over more of the image.
 namespace holdfast {
 
-/// Tests the pose of a frame without a velocity against rivals among the descriptor matches with the reference
-/// keyframe: the road may move farther between two frames than the search near the previous pose reaches. If a rival
-/// wins, pose and matches of the current frame become its own; otherwise they are left as they are.
+/// Tests the pose of a frame without a velocity against rivals: the road may move farther between two frames than the
+/// search near the previous pose reaches. Rivals are poses by descriptor matches with the reference keyframe, and those
+/// of a camera that drives forward by up to 4 m. If one wins, pose and matches of the current frame become its own;
+/// otherwise they are left as they are.
 void test_start_motion(TrackingContext& context);
 
 /// Tests the pose that was adjusted last against rivals among its outliers, if these are many. Returns whether one has
