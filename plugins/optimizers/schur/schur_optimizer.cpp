@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "schur_optimizer.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <utility>
 
 #include "holdfast/interfaces/pose_adjustment_settings.hpp"
@@ -26,8 +28,11 @@ BundleSummary SchurOptimizer::optimize_bundle(BundleProblem& problem, const std:
   }
   if (adjuster == nullptr) adjuster = std::make_unique<BundleAdjuster>(settings_, simd_level());
   const BundleSummary summary = adjuster->run(problem, stop);
-  // The memory of a full adjustment is not kept, because the next one is far away.
-  if (problem.poses.size() <= 200) {
+  // The memory of a full adjustment is not kept, because the next one is far away. Of poses, the free ones tell it from
+  // a local adjustment.
+  constexpr std::ptrdiff_t most_free = 64;
+  if (std::count_if(problem.poses.begin(), problem.poses.end(), [](const auto& pose) { return !pose.fixed; }) <=
+      most_free) {
     const std::lock_guard lock(mutex_);
     idle_.push_back(std::move(adjuster));
   }
