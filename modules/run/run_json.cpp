@@ -123,6 +123,7 @@ Json frames_json(const RunRecord& record) {
           {"by_dense_depth", s.count(TrackingFallback::dense_depth)},
           {"by_inertia", s.count(TrackingStatus::inertial)},
           {"tracked_backwards", record.losses.tracked_backwards},
+          {"located_late", record.losses.located_late},
           {"withdrawn", record.losses.withdrawn},
           {"left_out", record.losses.left_out},
           {"poses", record.trajectory.size()},

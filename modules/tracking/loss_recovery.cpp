@@ -9,7 +9,8 @@ LossRecovery::LossRecovery(TrackingContext& context, const LocalMapRefinement& l
     : context_(context),
       local_map_(local_map),
       backwards_(context.settings,
-                 {context.map, context.moving_world, context.matcher, context.estimator, context.history}) {}
+                 {context.map, context.moving_world, context.matcher, context.estimator, context.history}),
+      late_(context.settings, {context.map, context.matcher, context.estimator, context.history}) {}
 
 bool LossRecovery::was_lost_at_start(double map_start) const {
   const FrameHistory& history = context_.history;
@@ -106,10 +107,12 @@ bool LossRecovery::wants_mask(TrackerState state) const {
 void LossRecovery::finish(StageTimes& times) {
   withdraw();
   backwards_.finish(times);
+  late_.finish(times);
 }
 
 LossRecord LossRecovery::record() const {
   return {.tracked_backwards = backwards_.tracked(),
+          .located_late = late_.located(),
           .withdrawn = withdrawn_ + backwards_.withdrawn(),
           .submaps = submaps_,
           .left_out = context_.history.frames_left_out(context_.map)};

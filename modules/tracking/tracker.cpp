@@ -136,6 +136,7 @@ void Tracker::end_frame(FrameResult& result) {
   else if (!is_found && context_.features_have_depth)
     recovery_.keep_frame(context_.settings.backward_frames, result.times);
   if (!is_found) {
+    if (result.failure != TrackingFailure::no_mask) recovery_.keep_late_frame();
     context_.history.interrupt();
     context_.inertia.lost();
     result.health = health_.judge(result, state_, context_.current.coarse);

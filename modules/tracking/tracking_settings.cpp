@@ -289,6 +289,11 @@ void describe_losses(ParameterTable<S>& table) {
            "frames in a row without a pose after which tracking backwards ends")
       .range(1, 1000);
   table
+      .add("late_frames", &S::late_frames,
+           "frames without a pose whose features are kept, at most, to be located in the map at the end of the run "
+           "(0.2 MB each); 0 = none")
+      .range(0, 100000);
+  table
       .add("start_share", &S::start_share,
            "when the first mask shows that less than this share of the first keyframe's features is static, the map "
            "began on what moves and begins anew; 0 = never (always so with one camera, which waits for the mask)")

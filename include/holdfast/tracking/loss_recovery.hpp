@@ -7,6 +7,7 @@
 
 #include "holdfast/core/frame_result.hpp"
 #include "holdfast/tracking/backward_tracker.hpp"
+#include "holdfast/tracking/late_tracker.hpp"
 #include "holdfast/tracking/local_map_refinement.hpp"
 #include "holdfast/tracking/loss_record.hpp"
 #include "holdfast/tracking/map_request.hpp"
@@ -54,13 +55,15 @@ class LossRecovery {
 
   /// Keeps the current frame for backward tracking; only the last `count` frames are kept.
   void keep_frame(int count, StageTimes& times) { backwards_.keep(context_.current, count, times); }
+  /// Keeps the current frame, which has no pose, for the end of the run.
+  void keep_late_frame() { late_.keep(context_.current); }
   void forget_frames() { backwards_.clear(); }
   /// Tracks some of the kept frames backwards; the current frame must have a pose.
   void track_backwards(StageTimes& times) { backwards_.track(context_.current, times); }
   void keyframe_added(KeyFrameId keyframe) { backwards_.keyframe_added(keyframe); }
   /// Resets the state after the map was removed.
   void forget_map() { unconfirmed_.reset(); }
-  /// Ends the run: withdraws unconfirmed poses and tracks all kept frames.
+  /// Ends the run: withdraws unconfirmed poses, tracks all kept frames backwards, and locates those that are left.
   void finish(StageTimes& times);
   LossRecord record() const;
 
@@ -75,6 +78,7 @@ class LossRecovery {
   TrackingContext& context_;
   const LocalMapRefinement& local_map_;
   BackwardTracker backwards_;
+  LateTracker late_;
   /// Last and reference keyframe at the loss before the current submap; invalid without such a submap.
   KeyFrameId left_keyframe_, left_reference_;
   std::optional<Unconfirmed> unconfirmed_;

@@ -109,6 +109,7 @@ struct TrackingSettings {
   int backward_steps = 2;        ///< frames tracked backwards per new frame
   int backward_mask_frames = 8;  ///< frames to wait for the mask of the first keyframe after a recovery
   int backward_patience = 3;     ///< consecutive failures after which backward tracking ends
+  int late_frames = 0;           ///< maximum number of frames kept for the end of the run, see LateTracker; 0 = none
   double start_share = 0.6;      ///< minimum static share of the first keyframe's features; 0 = any
   double young_map_time = 1.0;   ///< age up to which a lost map is restarted [s]; 0 = never
   double coasting_time = 1.0;    ///< duration of the extrapolation after a loss [s]
