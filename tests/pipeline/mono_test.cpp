@@ -186,6 +186,29 @@ TEST_F(MonoTest, FramesOfTheStartAgreeWithTheirNeighbours) {
   }
 }
 
+TEST_F(MonoTest, FramesBeforeTheStartAreLocatedInTheFinishedMap) {
+  for (const std::size_t kept : {100U, 3U}) {
+    SCOPED_TRACE(kept);
+    next_ = 0;
+    truth_.clear();
+    TrackingSettings tracking;
+    tracking.backward_frames = 0;
+    tracking.late_frames = static_cast<int>(kept);
+    Pipeline pipeline = make(simulator_.camera(), tracking, false);
+    std::uint64_t index = 0;
+    while (index < 80 && feed(pipeline, index++).status != TrackingStatus::initialised) {
+    }
+    const auto without_pose = static_cast<std::size_t>(index - 2);  // all but the two views
+    ASSERT_GT(without_pose, 5U);
+    for (int i = 0; i < 60; ++i) ASSERT_EQ(feed(pipeline, index++).status, TrackingStatus::tracked);
+    pipeline.finish();
+    EXPECT_EQ(pipeline.loss_record().located_late, std::min(kept, without_pose));
+    EXPECT_EQ(pipeline.trajectory().size(), truth_.size() - without_pose + std::min(kept, without_pose));
+    std::size_t poses = 0;
+    EXPECT_LT(error(pipeline.trajectory(), 0.0, poses), 0.01);
+  }
+}
+
 /// A frame of the young map shows the room from a place that the camera cannot have reached: it is found there, and its
 /// pose is withdrawn when the neighbours have been tracked backwards.
 TEST_F(MonoTest, APoseOfTheStartThatContradictsItsNeighboursIsWithdrawn) {
