@@ -13,7 +13,7 @@
 //   right if it shows at least 0.2 of the query, recall counts queries for which a candidate shows at least 0.3
 //   (place_views.hpp); by score, and by score relative to the least similar neighbour of the same visit;
 // - loops: queries with a candidate (the three best with a relative score of at least LoopClosingSettings::score_share)
-//   that passes the verification of loop closing; right within 0.1 m and 3 degrees of the true pose. Recall counts
+//   that passes the verification of loop closing; right within 0.2 m and 5 degrees of the true pose. Recall counts
 //   those with more inliers than any wrong one, which are printed.
 #include <algorithm>
 #include <cstdio>
@@ -176,7 +176,7 @@ class Judge {
     if (checked.verdict != LoopVerdict::closed) return false;
     const PoseChange error = pose_change(frame.T_camera_world, checked.T_camera_world);
     result.is_closed = true;
-    result.closes_right = error.metres < 0.1 && error.degrees < 3.0;
+    result.closes_right = error.metres < 0.2 && error.degrees < 5.0;
     result.inliers = static_cast<double>(checked.inliers.size());
     if (!result.closes_right)
       std::printf(
