@@ -26,6 +26,17 @@ double row_position(const Camera& camera, int row) { return (row + 0.5) * camera
 
 }  // namespace
 
+PlaceView view_of(const Camera& camera, const SensorFrame& frame, const Eigen::Isometry3d& T_world_camera) {
+  PlaceView view;
+  view.timestamp = frame.timestamp;
+  view.T_world_camera = T_world_camera;
+  for (int row = 0; row < rows; ++row)
+    for (int column = 0; column < columns; ++column)
+      view.depth.push_back(frame.depth.at<float>(static_cast<int>(std::lround(row_position(camera, row))),
+                                                 static_cast<int>(std::lround(column_position(camera, column)))));
+  return view;
+}
+
 PlaceRecording read_recording(const std::string& source, int step) {
   Registry registry;
   register_builtin_plugins(registry);
@@ -47,19 +58,13 @@ PlaceRecording read_recording(const std::string& source, int step) {
     const double stamp[] = {frame->timestamp};
     const auto pairs = associate_stamps(stamp, truth_stamps, 0.02);
     if (pairs.empty()) continue;
-    PlaceView& view = recording.views.emplace_back();
-    view.timestamp = frame->timestamp;
-    view.T_world_camera = truth[pairs[0].second].T_world_camera;
+    PlaceView& view =
+        recording.views.emplace_back(view_of(recording.camera, *frame, truth[pairs[0].second].T_world_camera));
     cv::Mat grey;
     cv::cvtColor(frame->colour, grey, cv::COLOR_BGR2GRAY);
     Features features;
     extractor->extract(grey, {}, features);
     view.descriptors = std::move(features.descriptors);
-    for (int row = 0; row < rows; ++row)
-      for (int column = 0; column < columns; ++column)
-        view.depth.push_back(
-            frame->depth.at<float>(static_cast<int>(std::lround(row_position(recording.camera, row))),
-                                   static_cast<int>(std::lround(column_position(recording.camera, column)))));
   }
   return recording;
 }

@@ -7,6 +7,7 @@
 
 #include "holdfast/core/camera.hpp"
 #include "holdfast/core/descriptor.hpp"
+#include "holdfast/core/sensor_frame.hpp"
 
 namespace holdfast {
 
@@ -17,6 +18,9 @@ struct PlaceView {
   Eigen::Isometry3d T_world_camera = Eigen::Isometry3d::Identity();  ///< true
   std::vector<double> depth;                                         ///< on a grid of the image [m], 0 = no value
 };
+
+/// The depth of a frame on the grid of shared_view(), with its true pose; without descriptors.
+PlaceView view_of(const Camera& camera, const SensorFrame& frame, const Eigen::Isometry3d& T_world_camera);
 
 /// Views of a recording, evenly spaced in time.
 struct PlaceRecording {

@@ -32,6 +32,7 @@ set(HOLDFAST_PLUGIN_TABLE
   "filters         epipolar_consistency  filters/epipolar_consistency"
   "loop_detector   flann                 loop_detectors/flann"
   "loop_detector   global                loop_detectors/global"
+  "observers       class_motion          observers/class_motion"
   "observers       health                observers/health"
   "observers       mcap                  observers/mcap"
   "observers       objects               observers/objects"

@@ -150,6 +150,7 @@ std::string SequenceWriter::scene_json() const {
                {"colour_sensor", to_json(scene.colour_sensor, {})},
                {"depth_sensor", to_json(scene.depth_sensor, {})},
                {"classes", simulator_.class_names()}};
+  if (scene.visit > 1) json["visit"] = scene.visit;
   Json& dark = json["lights_out"] = Json::array();
   for (const simulation::LightsOut& lights : scene.lights_out)
     dark.push_back({{"from", lights.from}, {"to", lights.to}});

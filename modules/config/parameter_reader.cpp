@@ -91,6 +91,16 @@ std::optional<ParameterValue> as_type(const ConfigurationNode& node, ParameterTy
       }
       return map;
     }
+    case ParameterType::real_map: {
+      RealMap map;
+      if (node.kind != Kind::map) return std::nullopt;
+      for (const ConfigurationNode::Entry& entry : node.entries) {
+        const auto number = as_real(entry.value);
+        if (!number) return std::nullopt;
+        map.emplace_back(entry.key, *number);
+      }
+      return map;
+    }
   }
   return std::nullopt;
 }

@@ -196,9 +196,10 @@ std::string markdown_page(const std::vector<Entry>& entries) {
 nlohmann::ordered_json to_json(const ParameterValue& value) {
   return std::visit(
       [](const auto& v) -> nlohmann::ordered_json {
-        if constexpr (std::is_same_v<std::decay_t<decltype(v)>, TextMap>) {
+        using Value = std::decay_t<decltype(v)>;
+        if constexpr (std::is_same_v<Value, TextMap> || std::is_same_v<Value, RealMap>) {
           nlohmann::ordered_json map = nlohmann::ordered_json::object();
-          for (const auto& [key, text] : v) map[key] = text;
+          for (const auto& [key, content] : v) map[key] = content;
           return map;
         } else {
           return v;

@@ -150,6 +150,7 @@ void Map::fuse_points(MapPointId from_id, MapPointId to_id) {
   to.visible_count += from.visible_count;
   to.found_count += from.found_count;
   if (to.label == CellMask::unknown) to.label = from.label;
+  to.earlier_votes.add(from.earlier_votes);
   to.static_log_odds = std::clamp(to.static_log_odds + from.static_log_odds, -evidence_limit_, evidence_limit_);
   points_.erase(from_id);
   update_point(to_id);

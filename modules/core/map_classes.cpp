@@ -3,6 +3,7 @@
 #include <array>
 #include <utility>
 
+#include "holdfast/core/feature_label.hpp"
 #include "holdfast/core/map.hpp"
 
 namespace holdfast {
@@ -10,14 +11,6 @@ namespace holdfast {
 namespace {
 
 constexpr std::size_t most_classes = CellMask::unknown;
-
-/// Label of a keyframe's mask at one of its features; unknown without a mask.
-std::uint8_t label_at(const Frame& frame, std::uint32_t feature) {
-  const CoarseView& coarse = frame.coarse;
-  if (coarse.mask.labels.size() != static_cast<std::size_t>(coarse.grid.size())) return CellMask::unknown;
-  const int cell = coarse.grid.cell_of(frame.x[feature], frame.y[feature]);
-  return cell < 0 ? CellMask::unknown : coarse.mask.labels[static_cast<std::size_t>(cell)];
-}
 
 }  // namespace
 
@@ -30,19 +23,36 @@ void Map::set_classes(std::vector<std::string> names) {
     const auto same = std::find(names.begin(), names.end(), classes_[old]);
     if (same != names.end()) label_of[old] = static_cast<std::uint8_t>(same - names.begin());
   }
-  points_.for_each([&](MapPointId, MapPoint& point) { point.label = label_of[point.label]; });
+  points_.for_each([&](MapPointId, MapPoint& point) {
+    point.label = label_of[point.label];
+    const ClassVotes before = std::exchange(point.earlier_votes, {});
+    for (const ClassVotes::Entry& entry : before.entries()) point.earlier_votes.add(label_of[entry.label], entry.votes);
+  });
   classes_ = std::move(names);
+}
+
+ClassVotes Map::class_votes(const MapPoint& point) const {
+  ClassVotes votes = point.earlier_votes;
+  for (const Observation& observation : point.observations)
+    add_vote(keyframes_.at(observation.keyframe).frame, observation.feature, votes);
+  return votes;
+}
+
+void Map::add_vote(const Frame& frame, std::size_t feature, ClassVotes& votes) const {
+  const std::uint8_t label = feature_label(frame, feature);
+  if (label < classes_.size()) votes.add(label);
+}
+
+void Map::keep_votes(const Frame& frame) {
+  if (classes_.empty()) return;
+  for (std::size_t feature = 0; feature < frame.map_points.size(); ++feature)
+    if (MapPoint* point = points_.find(frame.map_points[feature])) add_vote(frame, feature, point->earlier_votes);
 }
 
 void Map::classify_points() {
   points_.for_each([&](MapPointId, MapPoint& point) {
-    std::array<std::uint32_t, most_classes> votes{};
-    std::uint32_t most = 0;
-    for (const Observation& observation : point.observations) {
-      const std::uint8_t label = label_at(keyframes_.at(observation.keyframe).frame, observation.feature);
-      if (label < classes_.size()) most = std::max(most, ++votes[label]);
-    }
-    if (most > 0) point.label = static_cast<std::uint8_t>(std::find(votes.begin(), votes.end(), most) - votes.begin());
+    const std::uint8_t label = class_votes(point).winner();
+    if (label != CellMask::unknown) point.label = label;
   });
 }
 

@@ -84,6 +84,7 @@ void Map::remove_keyframe(KeyFrameId id) {
   KeyFrame& keyframe = keyframes_.at(id);
   HOLDFAST_CHECK(keyframe.parent.valid(), "keyframe " << keyframe.sequence << " holds the map in place");
   const std::vector<MapPointId> points = keyframe.frame.map_points;
+  keep_votes(keyframe.frame);
   for (const MapPointId point_id : points) {
     const MapPoint* point = points_.find(point_id);
     if (point == nullptr) continue;

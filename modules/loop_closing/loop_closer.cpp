@@ -29,6 +29,8 @@ const char* loop_verdict_name(LoopVerdict verdict) {
       return "implausible correction";
     case LoopVerdict::pose_confirmed:
       return "pose confirmed";
+    case LoopVerdict::other_classes:
+      return "other classes";
     case LoopVerdict::not_solved:
       return "not solved";
   }
@@ -78,6 +80,7 @@ std::optional<ClosedLoop> LoopCloser::process(KeyFrameId keyframe, StageTimes& t
 
 std::vector<KeyFrameId> LoopCloser::find_candidates(KeyFrameId id) {
   DescriptorBlock descriptors;
+  std::vector<float> weights;
   int ask_for = 0;
   std::uint64_t sequence = 0;
   {
@@ -87,12 +90,16 @@ std::vector<KeyFrameId> LoopCloser::find_candidates(KeyFrameId id) {
       ++counts_.removed;
       return {};
     }
-    descriptors = place_descriptors(keyframe->frame, detector_.image_descriptor().has_value());
+    if (!weights_) weights_.emplace(detector_, map_.classes());
+    const bool of_image = detector_.image_descriptor().has_value();
+    descriptors = place_descriptors(keyframe->frame, of_image);
+    if (!of_image) weights = weights_->of_static_features(keyframe->frame);
     sequence = keyframe->sequence;
     ask_for = candidates_.matches_to_ask_for(map_, id);
   }
   ++counts_.keyframes;
-  const std::vector<PlaceMatch> matches = detector_.query(descriptors, ask_for);
+  const std::vector<PlaceMatch> matches =
+      weights.empty() ? detector_.query(descriptors, ask_for) : detector_.query_weighted(descriptors, weights, ask_for);
   detector_.add(id, descriptors);
   if (last_loop_ && sequence < *last_loop_ + static_cast<std::uint64_t>(settings_.pause)) return {};
 
@@ -118,15 +125,17 @@ std::optional<LoopMeasurement> LoopCloser::check(CandidateReport& trial) {
     for (const KeyFrameId neighbour : map_.best_covisible(trial.candidate, settings_.neighbours))
       side.push_back(neighbour);
     place = copy_points_seen_by(map_, side);
+    if (!weights_->are_uniform()) copy_votes(map_, place);
   }
-  const CheckedPlace checked =
-      check_place(settings_, matcher_, optimizer_, *frame, located, place, Random(seed_).fork(sequence).next());
+  const CheckedPlace checked = check_place(settings_, matcher_, optimizer_, *frame, located, place,
+                                           Random(seed_).fork(sequence).next(), *weights_);
   trial.verdict = checked.verdict;
   trial.matches = checked.matches;
   trial.aligned = checked.aligned;
   trial.inliers = static_cast<int>(checked.inliers.size());
   trial.expected = checked.expected;
   trial.cells = checked.cells;
+  trial.class_agreement = checked.class_agreement;
   if (checked.verdict != LoopVerdict::closed) return std::nullopt;
 
   PlacePoints old_points;

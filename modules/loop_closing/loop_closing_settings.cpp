@@ -64,6 +64,11 @@ void LoopClosingSettings::describe(ParameterTable<LoopClosingSettings>& table) {
       .add("minimum_cells", &S::minimum_cells,
            "minimum number of cells of a 4 x 4 grid over the image with at least two matches each")
       .range(1, 16);
+  table
+      .add("class_agreement", &S::class_agreement,
+           "minimum mean share of the votes of matched points for the classes of their features; compared only with "
+           "`class_weights` of the loop detector; 0 = never")
+      .range(0, 1);
   table.add("drift_constant", &S::drift_constant, "plausible correction for a path of zero length between the places")
       .unit("m")
       .range(0, 100);

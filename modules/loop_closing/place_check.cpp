@@ -5,6 +5,7 @@
 #include <array>
 #include <numeric>
 
+#include "class_evidence.hpp"
 #include "holdfast/core/median.hpp"
 #include "holdfast/geometry/alignment.hpp"
 #include "holdfast/matching/frame_features.hpp"
@@ -58,6 +59,16 @@ double scale_of_place(const LocatedFeatures& located, const PlacePoints& place, 
   return upper_median(ratios);
 }
 
+/// Judges inliers, share, coverage and classes of a place whose pose was found.
+LoopVerdict judge(const LoopClosingSettings& settings, const ClassEvidence& evidence, int cells) {
+  if (evidence.inliers < settings.minimum_inliers) return LoopVerdict::few_inliers;
+  if (evidence.inliers < settings.minimum_share * evidence.expected) return LoopVerdict::small_share;
+  if (cells < settings.minimum_cells) return LoopVerdict::poor_coverage;
+  const bool is_compared = evidence.compared >= settings.minimum_aligned;
+  if (is_compared && evidence.agreement < settings.class_agreement) return LoopVerdict::other_classes;
+  return LoopVerdict::closed;
+}
+
 }  // namespace
 
 LocatedFeatures located_features(const Frame& frame, const Map& map) {
@@ -80,7 +91,7 @@ LocatedFeatures located_features(const Frame& frame, const Map& map) {
 
 CheckedPlace check_place(const LoopClosingSettings& settings, const FeatureMatcher& matcher, Optimizer& optimizer,
                          const Frame& frame, const LocatedFeatures& located, const PlacePoints& place,
-                         std::uint64_t seed) {
+                         std::uint64_t seed, const PlaceWeights& weights) {
   CheckedPlace result;
   if (place.size() == 0) return result;
   const std::vector<FeatureMatch> matches = match_descriptors(settings, matcher, frame, located, place);
@@ -118,15 +129,10 @@ CheckedPlace check_place(const LoopClosingSettings& settings, const FeatureMatch
   }
   if (located.scale_is_free) result.scale = scale_of_place(located, place, result);
   result.expected = search.expected;
-  result.cells = filled_cells(frame, result.inliers);
-  const int inliers = static_cast<int>(result.inliers.size());
-  if (inliers < settings.minimum_inliers) return result;
-  if (inliers < settings.minimum_share * result.expected)
-    result.verdict = LoopVerdict::small_share;
-  else if (result.cells < settings.minimum_cells)
-    result.verdict = LoopVerdict::poor_coverage;
-  else
-    result.verdict = LoopVerdict::closed;
+  const ClassEvidence evidence = class_evidence(frame, place, search.visible, result.inliers, weights);
+  result.cells = filled_cells(frame, evidence.solid);
+  result.class_agreement = evidence.agreement;
+  result.verdict = judge(settings, evidence, result.cells);
   return result;
 }
 

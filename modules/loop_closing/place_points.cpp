@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "place_points.hpp"
 
+#include <utility>
+
 #include "holdfast/interfaces/frame_observations.hpp"
 #include "holdfast/matching/frame_features.hpp"
 
@@ -10,6 +12,11 @@ PlacePoints copy_points_seen_by(const Map& map, std::span<const KeyFrameId> keyf
   PlacePoints points;
   for (const MapPointId id : points_seen_by(map, keyframes)) points.add(id, map.point(id));
   return points;
+}
+
+void copy_votes(const Map& map, PlacePoints& points) {
+  points.votes.clear();
+  for (const MapPointId id : points.block.ids) points.votes.push_back(map.class_votes(map.point(id)));
 }
 
 float match_distance(double configured, const DescriptorType& type) {
@@ -27,6 +34,7 @@ PointSearch find_points(const FeatureMatcher& matcher, const PointBlock& points,
       frame, projection_into(frame, T_camera_world), points, settings, [](std::uint32_t) { return true; }, windows);
   matcher.match_guided(frame, {windows, points.descriptors},
                        {.max_distance = match_distance(max_distance, points.descriptors.type())}, {}, result.matches);
+  result.visible = std::move(windows.source);
   return result;
 }
 

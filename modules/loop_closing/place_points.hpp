@@ -17,6 +17,7 @@ namespace holdfast {
 struct PlacePoints {
   PointBlock block;
   std::vector<Eigen::Vector3d> positions;  ///< world [m], in double precision for the alignment
+  std::vector<ClassVotes> votes;           ///< histograms of their classes, see copy_votes(); empty = not copied
 
   std::size_t size() const { return positions.size(); }
   void add(MapPointId id, const MapPoint& point) {
@@ -28,10 +29,14 @@ struct PlacePoints {
 /// Copies every point that the keyframes observe, in the order of points_seen_by().
 PlacePoints copy_points_seen_by(const Map& map, std::span<const KeyFrameId> keyframes);
 
+/// Copies the class histograms of the points, which must be in the map.
+void copy_votes(const Map& map, PlacePoints& points);
+
 /// Result of the guided search for the points of a candidate in a frame.
 struct PointSearch {
   std::vector<matching::FeatureMatch> matches;  ///< by feature; each feature and each point at most once
   int expected = 0;                             ///< points predicted to be visible in the frame
+  std::vector<std::uint32_t> visible;           ///< these points, by their index
 };
 
 /// Guided search: projects the points with T_camera_world and looks for the nearest descriptor within `radius` pixels

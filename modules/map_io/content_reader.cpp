@@ -69,6 +69,10 @@ class ContentReader {
       expect(has_points_ && !has_classes_);
       content_.map.classes = read_classes(container_.payload(), content_.map.points);
       has_classes_ = true;
+    } else if (type == vote_section) {
+      expect(has_classes_ && !has_votes_);
+      read_votes(container_.payload(), content_.map.classes.size(), content_.map.points);
+      has_votes_ = true;
     } else if (container_.required()) {
       container_.fail("found a section '" + type +
                       "' that this Holdfast does not know and cannot leave out: use a newer Holdfast");
@@ -80,7 +84,8 @@ class ContentReader {
       fail("found section '" + container_.type() + "' where it does not belong; expected '" + camera_section + "', '" +
            lens_section + "' if there are such lenses, '" + descriptor_section + "' if there are such descriptors, '" +
            keyframe_section + "', one '" + feature_section + "' for each keyframe, '" + point_section + "', '" +
-           place_section + "' if images were described, '" + class_section + "' if points have classes, in this order");
+           place_section + "' if images were described, '" + class_section + "' if points have classes, '" +
+           vote_section + "' if they have votes, in this order");
   }
 
   void check_header() {
@@ -103,7 +108,7 @@ class ContentReader {
   std::vector<std::uint32_t> feature_counts_;
   std::uint32_t features_read_ = 0;
   bool has_tables_ = false, has_lenses_ = false, has_descriptors_ = false, has_keyframes_ = false, has_points_ = false,
-       has_places_ = false, has_classes_ = false;
+       has_places_ = false, has_classes_ = false, has_votes_ = false;
 };
 
 }  // namespace

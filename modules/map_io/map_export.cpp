@@ -45,6 +45,12 @@ void append_point(const MapPoint& point, std::size_t position, const Map& map, c
     json << R"(,"label":)" << int{point.label};
   else if (!map.classes().empty())
     json << R"(,"label":null)";
+  if (const ClassVotes votes = map.class_votes(point); !votes.empty()) {
+    json << R"(,"class_votes":[)";
+    for (const ClassVotes::Entry& entry : votes.entries())
+      json << (&entry == &votes.entries().front() ? "[" : ",[") << int{entry.label} << "," << entry.votes << "]";
+    json << "]";
+  }
   json << R"(,"observations":[)";
   bool first = true;
   for (const Observation& observation : point.observations) {

@@ -511,4 +511,44 @@ std::vector<std::string> read_classes(ByteReader reader, std::vector<MapPoint>& 
   return names;
 }
 
+void write_votes(const Map& map, const DenseIndex& index, ByteWriter& writer) {
+  ByteWriter votes;
+  bool has_votes = false;
+  for (const MapPointId id : index.points()) {
+    const ClassVotes of_point = map.class_votes(map.point(id));
+    has_votes = has_votes || !of_point.empty();
+    votes.put(static_cast<std::uint8_t>(of_point.entries().size()));
+    for (const ClassVotes::Entry& entry : of_point.entries()) {
+      HOLDFAST_CHECK(entry.label < map.classes().size(), "point " << id.slot << ": votes for " << int{entry.label});
+      votes.put(entry.label);
+      votes.put(entry.votes);
+    }
+  }
+  if (!has_votes) return;
+  writer.put(static_cast<std::uint32_t>(index.points().size()));
+  writer.put_bytes(votes.bytes());
+}
+
+void read_votes(ByteReader reader, std::size_t classes, std::vector<MapPoint>& points) {
+  const std::uint32_t count = reader.get_count(1, "points with votes");
+  if (count != points.size())
+    reader.fail("found votes of " + std::to_string(count) + " points; expected those of " +
+                std::to_string(points.size()));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint8_t entries = reader.get<std::uint8_t>();
+    int last = -1;
+    for (std::uint8_t k = 0; k < entries; ++k) {
+      const std::uint8_t label = reader.get<std::uint8_t>();
+      const std::uint32_t votes = reader.get<std::uint32_t>();
+      if (label >= classes || label <= last || votes == 0)
+        reader.fail("point " + std::to_string(i) + ": found " + std::to_string(votes) + " votes for label " +
+                    std::to_string(label) + "; expected at least one vote each for increasing labels below " +
+                    std::to_string(classes));
+      last = label;
+      points[i].earlier_votes.add(label, votes);
+    }
+  }
+  reader.expect_end();
+}
+
 }  // namespace holdfast::map_io

@@ -22,6 +22,7 @@ inline constexpr const char* feature_section = "FEAT";
 inline constexpr const char* point_section = "POIN";
 inline constexpr const char* place_section = "PLAC";  ///< only if images of keyframes were described
 inline constexpr const char* class_section = "CLAS";  ///< only if points have classes; not required
+inline constexpr const char* vote_section = "VOTE";   ///< only if points have votes; not required
 
 /// Cameras and pyramids that keyframes share; keyframes name them by position.
 struct SharedTables {
@@ -70,6 +71,8 @@ void write_map_features(const MapFeatures& features, ByteWriter& writer);
 void write_places(const Map& map, const DenseIndex& index, ByteWriter& writer);
 /// Names of classes and the labels of all points; writes nothing if there are no classes.
 void write_classes(const Map& map, const DenseIndex& index, ByteWriter& writer);
+/// Map::class_votes() of all points; writes nothing if there are none.
+void write_votes(const Map& map, const DenseIndex& index, ByteWriter& writer);
 
 /// Reading throws InputError.
 SharedTables read_tables(ByteReader reader);
@@ -87,5 +90,7 @@ MapFeatures read_map_features(ByteReader reader);
 void read_places(ByteReader reader, std::vector<KeyFrame>& keyframes);
 /// The names; fills MapPoint::label of the points.
 std::vector<std::string> read_classes(ByteReader reader, std::vector<MapPoint>& points);
+/// Fills MapPoint::earlier_votes of the points; `classes`: number of classes of the map.
+void read_votes(ByteReader reader, std::size_t classes, std::vector<MapPoint>& points);
 
 }  // namespace holdfast::map_io

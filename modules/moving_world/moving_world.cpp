@@ -101,10 +101,17 @@ void MovingWorld::end_frame(const Frame& frame, bool has_pose) {
   propagator_->set_pose(has_pose ? std::optional(frame.T_camera_world) : std::nullopt, frame.coarse, moving);
 }
 
-cv::Mat MovingWorld::moving_pixels(const CoarseView& view) const {
-  std::vector<std::uint8_t> moving(view.static_log_odds.size());
-  if (moving.size() != static_cast<std::size_t>(sampler_.grid().size())) return {};
-  for (std::size_t i = 0; i < moving.size(); ++i) moving[i] = view.static_log_odds[i] < 0.0F ? 1 : 0;
+cv::Mat MovingWorld::moving_pixels(const CoarseView& view, std::span<const std::uint8_t> left_out) const {
+  const auto cells = static_cast<std::size_t>(sampler_.grid().size());
+  const bool has_evidence = view.static_log_odds.size() == cells;
+  const bool has_labels = !left_out.empty() && view.mask.labels.size() == cells;
+  if (!has_evidence && !has_labels) return {};
+  std::vector<std::uint8_t> moving(cells, 0);
+  if (has_evidence)
+    for (std::size_t i = 0; i < cells; ++i) moving[i] = view.static_log_odds[i] < 0.0F ? 1 : 0;
+  if (has_labels)
+    for (std::size_t i = 0; i < cells; ++i)
+      if (left_out[view.mask.labels[i]] != 0) moving[i] = 1;
   return sampler_.pixels_of(moving);
 }
 

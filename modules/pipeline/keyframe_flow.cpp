@@ -204,9 +204,11 @@ void KeyframeFlow::describe_image(const LoopJob& job, StageTimes& times) {
     const KeyFrame* keyframe = map->find_keyframe(job.keyframe);
     if (keyframe == nullptr) return;
     coarse.static_log_odds = keyframe->frame.coarse.static_log_odds;
+    coarse.mask.labels = keyframe->frame.coarse.mask.labels;
   }
   const StageTimer timer(times, "loops: describe");
-  DescriptorBlock descriptor = detector_.describe(job.image, moving_world_.moving_pixels(coarse));
+  const std::vector<std::uint8_t> left_out = PlaceWeights(detector_, moving_world_.classes()).minor_labels();
+  DescriptorBlock descriptor = detector_.describe(job.image, moving_world_.moving_pixels(coarse, left_out));
   const LockedMap map(map_, LockPriority::background);
   if (KeyFrame* keyframe = map->find_keyframe(job.keyframe)) keyframe->frame.image_descriptor = std::move(descriptor);
 }

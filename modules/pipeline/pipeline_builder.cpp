@@ -286,15 +286,36 @@ void PipelineBuilder::check_filter(const ModuleOf<DynamicFilter>& module, const 
                                      "' needs a segmentation, but the segmenter is 'none'; choose a segmenter");
 }
 
-void PipelineBuilder::check_classes(const ModuleOf<DynamicFilter>& module, const DynamicFilter& filter) {
+void PipelineBuilder::check_class(const SourceLocation& place, const std::string& name, const std::string& use,
+                                  const std::string& remedy) {
   if (is_absent(segmenter_) || !parts_.segmenter) return;
   const std::vector<std::string>& known = parts_.segmenter->classes();
+  if (std::find(known.begin(), known.end(), name) != known.end()) return;
+  add_diagnostic(place, use + ", and the segmenter '" + segmenter_->name + "' has no such class; " + remedy +
+                            did_you_mean(name, known));
+}
+
+void PipelineBuilder::check_classes(const ModuleOf<DynamicFilter>& module, const DynamicFilter& filter) {
+  if (!parts_.segmenter) return;
   for (const std::string& name : filter.movable_classes(parts_.segmenter->movable()))
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      add_diagnostic(module.place, "the filter '" + module.name + "' counts the class '" + name +
-                                       "' as movable, and the segmenter '" + segmenter_->name +
-                                       "' has no such class; expected one of its classes in `classes` of the filter; " +
-                                       did_you_mean(name, known));
+    check_class(module.place, name, "the filter '" + module.name + "' counts the class '" + name + "' as movable",
+                "expected one of its classes in `classes` of the filter; ");
+  for (const std::string& name : filter.named_classes())
+    check_class(module.place, name, "the filter '" + module.name + "' names the class '" + name + "'",
+                "expected one of its classes in `movable` of the filter; ");
+}
+
+void PipelineBuilder::check_class_weights() {
+  if (!parts_.loop_detector) return;
+  const auto weights = parts_.loop_detector->class_weights();
+  const std::string detector = "the loop detector '" + loop_detector_->name + "'";
+  if (!weights.empty() && is_absent(segmenter_))
+    add_diagnostic(loop_detector_->place, detector +
+                                              " weights classes, and the segmenter is 'none'; choose a segmenter, "
+                                              "or remove `class_weights`");
+  for (const auto& [name, weight] : weights)
+    check_class(loop_detector_->place, name, detector + " weights the class '" + name + "'",
+                "expected its classes in `class_weights`; ");
 }
 
 /// A map can only be continued by the camera that made it, because bundle adjustment knows one camera, and by the
@@ -405,6 +426,7 @@ void PipelineBuilder::make_modules() {
     }
     parts_.filters.emplace_back(module.name, std::move(filter));
   }
+  check_class_weights();
   for (ModuleOf<Observer>& module : observers_) parts_.observers.push_back(make(module));
 }
 

@@ -81,6 +81,10 @@ struct YamlText {
     return '{' + joined(value, [](const auto& pair) { return yaml_text(pair.first) + ": " + yaml_text(pair.second); }) +
            '}';
   }
+  std::string operator()(const RealMap& value) const {
+    return '{' + joined(value, [](const auto& pair) { return yaml_text(pair.first) + ": " + yaml_real(pair.second); }) +
+           '}';
+  }
 };
 
 /// For people to read: 100000 rather than 1e+05.
@@ -110,8 +114,14 @@ bool has_type(const ParameterValue& value, ParameterType type) {
       return std::holds_alternative<TextMap>(value);
     case ParameterType::real_table:
       return std::holds_alternative<RealTable>(value);
+    case ParameterType::real_map:
+      return std::holds_alternative<RealMap>(value);
   }
   return false;
+}
+
+bool is_collection(ParameterType type) {
+  return type == ParameterType::real_list || type == ParameterType::real_table || type == ParameterType::real_map;
 }
 
 }  // namespace
@@ -136,6 +146,8 @@ const char* to_string(ParameterType type) {
       return "map of texts";
     case ParameterType::real_table:
       return "list of lists of reals";
+    case ParameterType::real_map:
+      return "map of reals";
   }
   return "unknown";
 }
@@ -186,9 +198,11 @@ std::string Parameter::expectation() const {
     case ParameterType::real_table:
       text = "a list of lists of numbers";
       break;
+    case ParameterType::real_map:
+      text = "a map from names to numbers";
+      break;
   }
-  if (const std::string range = range_text(); !range.empty())
-    text += (type == ParameterType::real_list || type == ParameterType::real_table ? ", each " : " ") + range;
+  if (const std::string range = range_text(); !range.empty()) text += (is_collection(type) ? ", each " : " ") + range;
   if (!unit_name.empty()) text += " [" + unit_name + "]";
   return text;
 }
@@ -221,6 +235,10 @@ std::optional<std::string> Parameter::reject(const ParameterValue& value) const 
     for (const std::vector<double>& row : *table)
       for (double number : row)
         if (auto reason = check_number(number)) return reason;
+  }
+  if (const auto* map = std::get_if<RealMap>(&value)) {
+    for (const auto& [name, number] : *map)
+      if (auto reason = check_number(number)) return "'" + name + "': " + *reason;
   }
   if (const auto* texts = std::get_if<std::vector<std::string>>(&value)) {
     for (const std::string& text : *texts)

@@ -107,9 +107,9 @@ bool Relocaliser::find_place(const cv::Mat& image, Frame& frame, FrameResult& re
   parts_.estimator.build_problem(frame);
   const bool of_image = parts_.detector.image_descriptor().has_value();
   if (of_image)
-    frame.image_descriptor = parts_.detector.describe(image, parts_.moving_world.moving_pixels(frame.coarse));
-  for (const PlaceMatch& place :
-       parts_.detector.query(place_descriptors(frame, of_image), settings_.relocalisation_candidates)) {
+    frame.image_descriptor =
+        parts_.detector.describe(image, parts_.moving_world.moving_pixels(frame.coarse, weights_.minor_labels()));
+  for (const PlaceMatch& place : similar_places(frame, of_image)) {
     const KeyFrame* keyframe = parts_.map.find_keyframe(place.keyframe);
     if (keyframe == nullptr) continue;  // removed a moment ago, and the detector does not know yet
     parts_.matcher.match_keyframe(keyframe->frame, frame);
@@ -127,6 +127,13 @@ bool Relocaliser::find_place(const cv::Mat& image, Frame& frame, FrameResult& re
     return true;
   }
   return false;
+}
+
+std::vector<PlaceMatch> Relocaliser::similar_places(const Frame& frame, bool of_image) const {
+  const int count = settings_.relocalisation_candidates;
+  const DescriptorBlock descriptors = place_descriptors(frame, of_image);
+  if (of_image || weights_.are_uniform()) return parts_.detector.query(descriptors, count);
+  return parts_.detector.query_weighted(descriptors, weights_.of_static_features(frame), count);
 }
 
 bool Relocaliser::fits_surroundings(Frame& frame, FrameResult& result) {

@@ -156,6 +156,13 @@ TEST(ConfigurationErrors, Chains) {
       ElementsAre("c.yaml:6:31: found a list for 'weights' of filters 'semantic_mask': 2 is above 1; expected a "
                   "list of numbers, each from 0 to 1",
                   "c.yaml:7:5: there is no filters module 'semantic_msk'; did you mean 'semantic_mask'?"));
+  EXPECT_THAT(
+      problems(test::good + "filters:\n  - semantic_mask: { shares: { a: 1, b: 2 } }\n  - semantic_mask: { "
+                            "shares: { a: x } }\n"),
+      ElementsAre("c.yaml:6:30: found a map for 'shares' of filters 'semantic_mask': 'b': 2 is above 1; expected "
+                  "a map from names to numbers, each from 0 to 1",
+                  "c.yaml:7:30: found a map for 'shares' of filters 'semantic_mask'; expected a map from names "
+                  "to numbers, each from 0 to 1"));
 }
 
 TEST(ConfigurationErrors, Camera) {

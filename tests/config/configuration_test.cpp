@@ -181,7 +181,7 @@ TEST(Configuration, LensesOfCameras) {
 TEST(Configuration, WrittenAndReadAgainIsTheSame) {
   const Configuration first = resolve(test::good + R"(run: { seed: 7 }
 filters:
-  - semantic_mask: { classes: [ "true", "a b" ], weights: [ 0.1, 1 ], names: { "1": "it's \"x\"" } }
+  - semantic_mask: { classes: [ "true", "a b" ], weights: [ 0.1, 1 ], names: { "1": "it's \"x\"" }, shares: { a b: 0.25, c: 1 } }
   - semantic_mask
 )");
   const std::string yaml = to_yaml(first);

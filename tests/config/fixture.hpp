@@ -34,11 +34,13 @@ struct FilterSettings {
   std::vector<std::string> classes{"person"};
   std::vector<double> weights{1};
   TextMap names;
+  RealMap shares;
   static void describe(ParameterTable<FilterSettings>& table) {
     using S = FilterSettings;
     table.add("classes", &S::classes, "what moves");
     table.add("weights", &S::weights, "of the classes").range(0, 1);
     table.add("names", &S::names, "from label to class");
+    table.add("shares", &S::shares, "of the classes").range(0, 1);
   }
 };
 

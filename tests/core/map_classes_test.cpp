@@ -95,5 +95,60 @@ TEST(MapClasses, AFusedPointKeepsAClass) {
   EXPECT_EQ(labels_of(map), (std::vector<int>{1, 0}));
 }
 
+ClassVotes votes(std::initializer_list<std::pair<int, std::uint32_t>> counts) {
+  ClassVotes result;
+  for (const auto& [label, count] : counts) result.add(static_cast<std::uint8_t>(label), count);
+  return result;
+}
+
+TEST(MapClasses, HistogramsCountTheMasks) {
+  Map map;
+  map.set_classes({"background", "person", "cat"});
+  std::vector<MapPointId> points;
+  add_view(map, {1, 0, CellMask::unknown}, points, 3);
+  add_view(map, {1, 2, 9}, points, 3);
+  const auto first = map.class_votes(map.point(points[0])), second = map.class_votes(map.point(points[1]));
+  EXPECT_EQ(first, votes({{1, 2}}));
+  EXPECT_EQ(second, votes({{2, 1}, {0, 1}}));
+  EXPECT_TRUE(map.class_votes(map.point(points[2])).empty()) << "unknown, and a label that is no class";
+  EXPECT_EQ(second.winner(), 0) << "of equal counts, the lowest";
+  EXPECT_DOUBLE_EQ(second.share(2), 0.5);
+  EXPECT_DOUBLE_EQ(second.share(1), 0.0);
+  EXPECT_EQ(ClassVotes().winner(), CellMask::unknown);
+}
+
+TEST(MapClasses, RemovedKeyframesLeaveTheirVotes) {
+  Map map;
+  map.set_classes({"background", "person"});
+  std::vector<MapPointId> points;
+  const KeyFrameId oldest = add_view(map, {0, 0}, points, 2);
+  const KeyFrameId culled = add_view(map, {1, 1}, points, 2);
+  const KeyFrameId other = add_view(map, {1, 1}, points, 2);
+  map.set_parent(culled, oldest);
+  map.set_parent(other, oldest);
+  map.remove_observation(points[1], culled);  // an outlier: its vote goes
+  map.remove_keyframe(culled);
+  EXPECT_EQ(map.class_votes(map.point(points[0])), votes({{0, 1}, {1, 2}}));
+  EXPECT_EQ(map.class_votes(map.point(points[1])), votes({{0, 1}, {1, 1}}));
+  map.classify_points();
+  map.classify_points();
+  EXPECT_EQ(map.class_votes(map.point(points[0])), votes({{0, 1}, {1, 2}})) << "counting is no vote";
+  EXPECT_EQ(map.point(points[0]).label, 1);
+}
+
+TEST(MapClasses, FusedPointsPutTheirVotesTogether) {
+  Map map;
+  map.set_classes({"background", "person", "cat"});
+  std::vector<MapPointId> points;
+  add_view(map, {1, 0}, points, 2);
+  map.point(points[0]).earlier_votes.add(2, 3);
+  map.point(points[1]).earlier_votes.add(2, 4);
+  map.fuse_points(points[0], points[1]);
+  // The keyframe observes both: the point keeps its own observation.
+  EXPECT_EQ(map.class_votes(map.point(points[1])), votes({{0, 1}, {2, 7}}));
+  map.set_classes({"cat", "background"});
+  EXPECT_EQ(map.point(points[1]).earlier_votes, votes({{0, 7}})) << "votes follow names";
+}
+
 }  // namespace
 }  // namespace holdfast

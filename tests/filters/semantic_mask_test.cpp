@@ -200,5 +200,37 @@ TEST_F(SemanticMaskTest, WithoutAMaskNothingIsSaid) {
   EXPECT_TRUE(evaluate(&no_segmentation, &no_mask).contributions().empty());
 }
 
+TEST_F(SemanticMaskTest, ClassesThatMoveSeldomHaveAPriorBetween) {
+  const std::size_t person = add_feature(300, 250, person_depth), chair = add_feature(560, 250, wall_depth);
+  const std::size_t wall = add_feature(450, 50, wall_depth);
+  Registry registry;
+  holdfast_register_plugin_semantic_mask(registry);
+  const auto priors = [&](const RealMap& shares, bool by_exact) {
+    const auto filter = registry.create<DynamicFilter>("semantic_mask", {{"movable", shares}}, {});
+    StaticEvidence evidence(frame.size(), frame.coarse.depth.size());
+    evidence.begin_stage("semantic_mask");
+    frame.coarse.mask = by_exact ? CellMask() : propagated;
+    filter->apply({.sensor_frame = image,
+                   .frame = frame,
+                   .map = map,
+                   .segmentation = by_exact ? &exact : nullptr,
+                   .classes = &classes},
+                  evidence);
+    return std::vector<float>{evidence.prior(person), evidence.prior(chair), evidence.prior(wall)};
+  };
+  for (const bool by_exact : {true, false}) {
+    EXPECT_EQ(priors({}, by_exact), (std::vector<float>{movable, background, background}));
+    EXPECT_EQ(priors({{"chair", 0.2}}, by_exact), (std::vector<float>{movable, -0.4F, background}));
+    EXPECT_EQ(priors({{"chair", 1.0}}, by_exact), (std::vector<float>{movable, movable, background}));
+    EXPECT_EQ(priors({{"person", 0.0}}, by_exact), (std::vector<float>{background, background, background}))
+        << "takes precedence over `classes`";
+  }
+  EXPECT_THROW(priors({{"sofa", 0.5}}, true), InputError);
+  const auto filter =
+      registry.create<DynamicFilter>("semantic_mask", {{"movable", RealMap{{"chair", 0.2}, {"tv", 0.6}}}}, {});
+  EXPECT_EQ(filter->named_classes(), (std::vector<std::string>{"chair", "tv"}));
+  EXPECT_EQ(filter->movable_classes({}), (std::vector<std::string>{"person", "tv"})) << "0.2 is not mostly movable";
+}
+
 }  // namespace
 }  // namespace holdfast

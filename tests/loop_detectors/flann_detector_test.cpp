@@ -306,5 +306,56 @@ TEST(FlannDetector, KeepsTypesApart) {
   EXPECT_THROW(detector.query(test::random_descriptors(random, 5), 3), CheckError);
 }
 
+TEST(FlannDetector, WeightsOfDescriptors) {
+  // Two places that differ in their first half, which changes; the query has the half of the wrong one.
+  Random random(5);
+  const Descriptors left = random_descriptors(random, 50), right = random_descriptors(random, 50);
+  const Descriptors here = random_descriptors(random, 30), there = random_descriptors(random, 50);
+  const auto joined = [](Descriptors a, const Descriptors& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+  };
+  FlannDetector detector({});
+  detector.add(id(1), joined(left, here));
+  detector.add(id(2), joined(right, there));
+  const Descriptors query = joined(right, here);
+  std::vector<float> weights(query.size(), 1.0F);
+  EXPECT_EQ(detector.query(query, 5)[0].keyframe, id(2));
+  EXPECT_EQ(plain(detector.query_weighted(query, weights, 5)), plain(detector.query(query, 5)));
+  EXPECT_EQ(plain(detector.query_weighted(query, {}, 5)), plain(detector.query(query, 5)));
+
+  std::fill(weights.begin(), weights.begin() + 50, 0.1F);
+  const auto weighted = detector.query_weighted(query, weights, 5);
+  ASSERT_EQ(weighted.size(), 2U);
+  EXPECT_EQ(weighted[0].keyframe, id(1));
+  EXPECT_NEAR(weighted[0].score, 30.0 / 35.0, 0.01);
+  EXPECT_NEAR(weighted[1].score, 5.0 / 35.0, 0.01);
+
+  std::fill(weights.begin(), weights.begin() + 50, 0.0F);
+  const auto without = detector.query_weighted(query, weights, 5);
+  ASSERT_EQ(without.size(), 1U) << "a weight of 0 is no vote";
+  EXPECT_EQ(plain(without), plain(detector.query(here, 5)));
+  EXPECT_TRUE(detector.query_weighted(query, std::vector<float>(query.size(), 0.0F), 5).empty());
+  EXPECT_THROW(detector.query_weighted(query, std::vector<float>(3, 1.0F), 5), CheckError);
+}
+
+TEST(FlannDetector, WeightsOfSampledDescriptors) {
+  // With more descriptors than are used, each keeps its own weight.
+  Random random(6);
+  const Descriptors place = random_descriptors(random, 100), other = random_descriptors(random, 100);
+  FlannDetector detector({.descriptors = 70});
+  detector.add(id(1), place);
+  detector.add(id(2), other);
+  Descriptors query;
+  std::vector<float> weights;
+  for (std::size_t i = 0; i < place.size(); ++i) {
+    query.push_back(i % 3 == 0 ? other[i] : place[i]);
+    weights.push_back(i % 3 == 0 ? 0.0F : 1.0F);
+  }
+  const auto matches = detector.query_weighted(query, weights, 5);
+  ASSERT_EQ(matches.size(), 1U);
+  EXPECT_EQ(matches[0].keyframe, id(1));
+}
+
 }  // namespace
 }  // namespace holdfast::flann_plugin

@@ -214,5 +214,26 @@ TEST_F(MapDamage, Classes) {
   EXPECT_EQ(refusal_with(labels + 4, std::uint8_t{255}), "");
 }
 
+TEST_F(MapDamage, Votes) {
+  Map map = random_map(4, 10, 9);
+  map.set_classes({"background", "person"});
+  for (const MapPointId id : map.points().ids())
+    map.point(id).earlier_votes.add(1, 2), map.point(id).earlier_votes.add(0);
+  const std::string bytes = bytes_of(map);
+  const std::size_t votes = find_section(bytes, "VOTE") + 24;
+  const auto refusal_with = [&](std::size_t offset, auto value) {
+    std::string changed = bytes;
+    put_at(changed, offset, value);
+    repair_checksums(changed);
+    return refusal_of(changed);
+  };
+  EXPECT_THAT(refusal_with(votes, 3U), HasSubstr("found votes of 3 points; expected those of"));
+  EXPECT_THAT(refusal_with(votes + 4, std::uint8_t{200}), HasSubstr("section 'VOTE'"));
+  EXPECT_THAT(refusal_with(votes + 5, std::uint8_t{2}), HasSubstr("1 votes for label 2; expected at least one vote"));
+  EXPECT_THAT(refusal_with(votes + 6, 0U), HasSubstr("point 0: found 0 votes for label 0"));
+  EXPECT_THAT(refusal_with(votes + 10, std::uint8_t{0}), HasSubstr("increasing labels below 2"));
+  EXPECT_EQ(refusal_with(votes + 6, 5U), "");
+}
+
 }  // namespace
 }  // namespace holdfast

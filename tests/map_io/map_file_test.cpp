@@ -107,6 +107,7 @@ void expect_same(const Map& a, const Map& b) {
     EXPECT_EQ(p.found_count, q.found_count);
     EXPECT_EQ(p.static_log_odds, q.static_log_odds);
     EXPECT_EQ(p.label, q.label);
+    EXPECT_EQ(a.class_votes(p), b.class_votes(q));
     ASSERT_EQ(p.observations.size(), q.observations.size());
     for (std::size_t o = 0; o < p.observations.size(); ++o) {
       EXPECT_EQ(in_a.of(p.observations[o].keyframe), in_b.of(q.observations[o].keyframe));
@@ -303,6 +304,27 @@ TEST_F(MapFile, HoldsClasses) {
   map.set_classes({});
   write_map(path("removed.hfm"), map);
   EXPECT_TRUE(content(path("removed.hfm")) == without);
+}
+
+TEST_F(MapFile, HoldsVotes) {
+  Map map = random_map(8, 20, 21);
+  map.set_classes({"background", "person"});
+  write_map(path("classes.hfm"), map);
+  const std::string without = content(path("classes.hfm"));
+  EXPECT_EQ(without.find("VOTE"), std::string::npos);
+  std::uint32_t next = 0;
+  for (const MapPointId id : map.points().ids()) {
+    map.point(id).earlier_votes.add(static_cast<std::uint8_t>(next % 2), 1 + next / 3);
+    if (++next % 3 == 0) map.point(id).earlier_votes.add(1, 70000);
+  }
+  write_map(path("votes.hfm"), map);
+  const Map again = read_map(path("votes.hfm"));
+  expect_same(map, again);
+  write_map(path("again.hfm"), again);
+  EXPECT_TRUE(content(path("votes.hfm")) == content(path("again.hfm")));
+  EXPECT_TRUE(content(path("votes.hfm")).substr(76, without.size() - 76) == without.substr(76))
+      << "everything else is as in a file without votes";
+  EXPECT_TRUE(read_map(path("classes.hfm")).point({0, 0}).earlier_votes.empty());
 }
 
 TEST_F(MapFile, SharedCamerasStayShared) {

@@ -127,6 +127,33 @@ TEST(PipelineBuilder, ClassesOfFiltersAreThoseOfTheSegmenter) {
   EXPECT_THAT(complaints_with({"persn"}), HasSubstr("did you mean 'person'?"));
 }
 
+class WeightingDetector final : public LoopDetector {
+ public:
+  explicit WeightingDetector(std::string name) : name_(std::move(name)) {}
+  std::vector<std::pair<std::string, double>> class_weights() const override { return {{name_, 0.1}}; }
+  void add(KeyFrameId, const DescriptorView&) override {}
+  void remove(KeyFrameId) override {}
+  std::vector<PlaceMatch> query(const DescriptorView&, int) const override { return {}; }
+
+ private:
+  std::string name_;
+};
+
+TEST(PipelineBuilder, ClassesOfLoopDetectorsAreThoseOfTheSegmenter) {
+  test::PointWorld world(Camera{});
+  const auto complaints_with = [&](const char* name, bool has_segmenter) {
+    PipelineBuilder builder = builder_for(world);
+    builder.loop_detector({std::make_unique<WeightingDetector>(name), "places"});
+    if (has_segmenter) builder.segmenter({std::make_unique<TwoClasses>(), "two"});
+    return complaints(builder);
+  };
+  EXPECT_EQ(complaints_with("person", true), "");
+  EXPECT_THAT(complaints_with("chair", true),
+              HasSubstr("the loop detector 'places' weights the class 'chair', and the segmenter 'two' has no such "
+                        "class; expected its classes in `class_weights`; known are background, person"));
+  EXPECT_THAT(complaints_with("person", false), HasSubstr("weights classes, and the segmenter is 'none'"));
+}
+
 TEST(PipelineBuilder, TypedSettingsNamesAndObjectsAreOneThing) {
   const auto trajectory = [](ModuleOf<Optimizer> optimizer) {
     test::PointWorld world(find_camera("tum_fr1").value());

@@ -27,6 +27,7 @@ struct Settings {
   std::vector<double> weights{1, 0.5};
   TextMap names{{"b", "2"}, {"a", "1"}};
   RealTable places{{1, 2}, {3.5, 4}};
+  RealMap shares{{"b", 0.25}, {"a", 1}};
 
   static void describe(ParameterTable<Settings>& table) {
     using S = Settings;
@@ -42,6 +43,7 @@ struct Settings {
     table.add("weights", &S::weights, "").at_most(1);
     table.add("names", &S::names, "");
     table.add("places", &S::places, "").at_least(-9).unit("m");
+    table.add("shares", &S::shares, "").range(0, 1);
   }
 };
 
@@ -106,6 +108,7 @@ TEST(Parameter, SaysWhatIsExpected) {
   EXPECT_EQ(parameter("mode").expectation(), "one of fast, exact");
   EXPECT_EQ(parameter("weights").expectation(), "a list of numbers, each of at most 1");
   EXPECT_EQ(parameter("places").expectation(), "a list of lists of numbers, each of at least -9 [m]");
+  EXPECT_EQ(parameter("shares").expectation(), "a map from names to numbers, each from 0 to 1");
   EXPECT_TRUE(parameter("model").is_required);
 }
 
@@ -118,6 +121,8 @@ TEST(Parameter, RejectsWhatIsOutOfRange) {
   EXPECT_EQ(parameter("mode").reject(std::string("slow")), "'slow' is not among them");
   EXPECT_EQ(parameter("weights").reject(std::vector<double>{0.5, 7}), "7 is above 1");
   EXPECT_EQ(parameter("places").reject(RealTable{{1, 2}, {3, -10}}), "-10 is below -9");
+  EXPECT_EQ(parameter("shares").reject(RealMap{{"a", 1}, {"b", 1.5}}), "'b': 1.5 is above 1");
+  EXPECT_EQ(parameter("shares").reject(RealMap{}), std::nullopt);
   EXPECT_EQ(parameter("classes").reject(std::vector<std::string>{"person", "dog"}), "'dog' is not among them");
 }
 

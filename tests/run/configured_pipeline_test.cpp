@@ -207,6 +207,22 @@ TEST_F(ConfiguredPipeline, FiltersGetWhatTheyNeed) {
   EXPECT_EQ(complaints(filter + "segmenter: fake\n"), "");
 }
 
+class WeightingDetector final : public LoopDetector {
+ public:
+  std::vector<std::pair<std::string, double>> class_weights() const override { return {{"chair", 0.1}}; }
+  void add(KeyFrameId, const DescriptorView&) override {}
+  void remove(KeyFrameId) override {}
+  std::vector<PlaceMatch> query(const DescriptorView&, int) const override { return {}; }
+};
+
+TEST_F(ConfiguredPipeline, ClassesThatTheSegmenterDoesNotHaveAreNamedWithTheirPlace) {
+  add<LoopDetector>(registry_, "places", [](const CreationContext&) { return std::make_unique<WeightingDetector>(); });
+  EXPECT_THAT(
+      complaints("camera: tum_fr1\nsegmenter: fake\nloop_detector: places\n"),
+      HasSubstr("c.yaml:6:16: the loop detector 'places' weights the class 'chair', and the segmenter 'fake' has "
+                "no such class"));
+}
+
 TEST_F(ConfiguredPipeline, FiltersThatMissEvidenceAndMasksThatMissAFilterAreNamed) {
   const std::string camera = "camera: tum_fr1\n";
   EXPECT_THAT(warnings(camera + "segmenter: fake\nfilters: [ filter ]\n"),

@@ -26,7 +26,9 @@ const Room& room(RoomKind kind) {
   return found != rooms.end() ? found->second : rooms.emplace(kind, make_room(kind, 3)).first->second;
 }
 
-std::vector<RoomKind> all_rooms() { return {RoomKind::office, RoomKind::hall, RoomKind::corridor}; }
+std::vector<RoomKind> all_rooms() {
+  return {RoomKind::office, RoomKind::hall, RoomKind::corridor, RoomKind::open_plan};
+}
 
 const Object& object(const World& world, std::string_view name) {
   const auto found = std::find_if(world.objects.begin(), world.objects.end(),
@@ -50,7 +52,7 @@ Camera small_camera() {
 }
 
 TEST(Room, NamesAndKindsBelongTogether) {
-  ASSERT_EQ(room_names().size(), 3U);
+  ASSERT_EQ(room_names().size(), 4U);
   for (const std::string& name : room_names()) EXPECT_EQ(to_string(room_kind(name)), name);
   EXPECT_THROW(room_kind("kitchen"), ConfigurationError);
 }
@@ -222,6 +224,58 @@ TEST(Room, SameSeedSameBytesAnotherSeedOtherTextures) {
   const cv::Mat third = Renderer(other.world, camera).render(pose, 0.0).colour;
   EXPECT_EQ(cv::norm(first, second, cv::NORM_INF), 0.0);
   EXPECT_GT(cv::norm(first, third, cv::NORM_L1) / static_cast<double>(3 * first.total()), 10.0);
+}
+
+std::vector<cv::Mat> screens_of(const World& world) {
+  std::vector<cv::Mat> screens;
+  for (const Object& each : world.objects) {
+    if (each.class_name != "monitor") continue;
+    const Texture& texture = world.textures[each.mesh.triangles.front().texture];
+    cv::Mat colours(1, 64, CV_32FC1);
+    for (int i = 0; i < 64; ++i) {
+      const float u = 0.5F + static_cast<float>(i * texture.width() / 64),
+                  v = 0.5F * static_cast<float>(texture.height());
+      const float us[4] = {u}, vs[4] = {v};
+      float sampled[16] = {};
+      texture.sample(us, vs, 1, {}, sampled);
+      colours.at<float>(i) = sampled[0] + sampled[1] + sampled[2];
+    }
+    screens.push_back(colours);
+  }
+  return screens;
+}
+
+TEST(Room, OnAnotherVisitChairsAndScreensHaveChanged) {
+  const auto differs = [](const cv::Mat& a, const cv::Mat& b) { return cv::norm(a, b, cv::NORM_INF) > 1.0; };
+  for (const RoomKind kind : {RoomKind::hall, RoomKind::open_plan}) {
+    const Room before = furnish_room(kind, 3);
+    Room first = before, second = before, again = before;
+    rearrange(first.world, 3, 1);
+    rearrange(second.world, 3, 2);
+    rearrange(again.world, 3, 2);
+    int chairs = 0, moved = 0;
+    for (std::size_t i = 0; i < before.world.objects.size(); ++i) {
+      const auto pose = [&](const Room& of) { return of.world.objects[i].T_world_object.matrix(); };
+      EXPECT_EQ(pose(first), pose(before)) << "visit 1 is the room as it was furnished";
+      EXPECT_EQ(pose(second), pose(again));
+      const bool is_chair = before.world.objects[i].class_name == "chair";
+      chairs += is_chair ? 1 : 0;
+      moved += pose(second) != pose(before) ? 1 : 0;
+      if (!is_chair) EXPECT_EQ(pose(second), pose(before)) << before.world.objects[i].name;
+      const double x = second.world.objects[i].T_world_object.translation().x();
+      EXPECT_TRUE(x >= 0.0 && x <= before.stage.walls.max().x()) << before.world.objects[i].name;
+    }
+    EXPECT_EQ(moved, chairs);
+    const auto shown = screens_of(before.world), later = screens_of(second.world);
+    int known = 0;
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+      EXPECT_FALSE(differs(shown[i], screens_of(first.world)[i]));
+      EXPECT_TRUE(differs(shown[i], later[i])) << "screen " << i;
+      known += std::any_of(shown.begin(), shown.end(), [&](const cv::Mat& s) { return !differs(s, later[i]); }) ? 1 : 0;
+    }
+    EXPECT_GT(known, 2) << "some show what another one showed";
+    EXPECT_LT(known, static_cast<int>(shown.size()) - 2) << "some show something new";
+  }
 }
 
 }  // namespace

@@ -69,7 +69,8 @@ class Map {
   void update_point_geometry(MapPointId point);
 
   /// Merges `from` into `to`: moves its observations and removes it. If a keyframe observes both, `to` keeps its own
-  /// observation. Their static log-odds are summed, within the evidence limit; `to` keeps its class if it has one.
+  /// observation. Their static log-odds are summed, within the evidence limit, and so are their earlier votes; `to`
+  /// keeps its class if it has one.
   void fuse_points(MapPointId from, MapPointId to);
   void remove_point(MapPointId point);
 
@@ -134,8 +135,10 @@ class Map {
   /// Replaces the class names; names beyond the 255th are dropped. Labels of points are remapped by name; labels of
   /// removed names become unknown.
   void set_classes(std::vector<std::string> names);
-  /// Sets the class of each point to the most frequent label of the masks at its observations; of equal counts, the
-  /// lower label. A point without a label in any mask keeps its class.
+  /// Histogram of the classes of a point: the labels of the masks at its observations, and its earlier votes.
+  ClassVotes class_votes(const MapPoint& point) const;
+  /// Sets the class of each point to the most frequent label of class_votes(); of equal counts, the lower label. A
+  /// point without votes keeps its class.
   void classify_points();
 
   /// Incremented by invalidate_copies(); a holder of copied map data compares versions to detect that the copy is
@@ -167,6 +170,9 @@ class Map {
   void set_edge(KeyFrame& keyframe, KeyFrameId neighbour, int weight);
   void erase_edge(KeyFrame& keyframe, KeyFrameId neighbour);
   void find_new_parents(KeyFrameId removed);
+  void add_vote(const Frame& frame, std::size_t feature, ClassVotes& votes) const;
+  /// Adds the votes of a frame's mask to the earlier votes of its points, before its observations are removed.
+  void keep_votes(const Frame& frame);
 
   KeyFrames keyframes_;
   MapPoints points_;

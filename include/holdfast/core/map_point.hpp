@@ -7,6 +7,7 @@
 
 #include "holdfast/core/build_layout.hpp"
 #include "holdfast/core/cell_mask.hpp"
+#include "holdfast/core/class_votes.hpp"
 #include "holdfast/core/descriptor.hpp"
 #include "holdfast/core/id.hpp"
 
@@ -34,6 +35,9 @@ struct MapPoint {
   float static_log_odds = 0.0F;           ///< accumulated log-odds that the point is static; 0 = unknown
   /// Class, an index into Map::classes(). Set at the end of a run by Map::classify_points().
   std::uint8_t label = CellMask::unknown;
+  /// Votes of masks that are no longer in the map: of removed keyframes and of the runs that made a loaded map.
+  /// Map::class_votes() adds those of the present observations.
+  ClassVotes earlier_votes;
 
   float found_ratio() const { return static_cast<float>(found_count) / static_cast<float>(visible_count); }
 };

@@ -133,6 +133,9 @@ class DynamicFilter : public Module {
   /// that the segmenter does not have are an error before the first frame, and the run counts masks in which these
   /// classes cover most of the image. Empty for a filter that uses no classes. Constant after construction.
   virtual std::vector<std::string> movable_classes(const std::vector<std::string>& /*specified*/) const { return {}; }
+  /// Further classes of the segmenter that the settings name, such as those that move seldom. Names that the segmenter
+  /// does not have are an error before the first frame. Constant after construction.
+  virtual std::vector<std::string> named_classes() const { return {}; }
   /// Adds evidence about the features of context.frame in finite numbers; adds nothing where it cannot decide. The same
   /// contexts in the same order give the same evidence. Throws InputError for a context that it cannot use, for example
   /// when the segmenter lacks a class that its settings name.

@@ -4,6 +4,9 @@
 #include <mutex>
 #include <opencv2/core/mat.hpp>
 #include <optional>
+#include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "holdfast/core/descriptor.hpp"
@@ -35,6 +38,12 @@ class LoopDetector : public Module {
   /// functions below.
   virtual DescriptorBlock describe(const cv::Mat& /*image*/, const cv::Mat& /*moving*/) { return {}; }
 
+  /// Weights from 0 to 1 of the features of some classes of the segmenter, by name; features of other classes have the
+  /// weight 1. Names that the segmenter does not have are an error before the first frame. With weights, loop
+  /// candidates are also verified by classes (LoopClosingSettings::class_agreement). Constant after construction;
+  /// empty, the default, for a detector that knows no classes.
+  virtual std::vector<std::pair<std::string, double>> class_weights() const { return {}; }
+
   /// Adds a keyframe with any number of descriptors, of its static features or from describe(). The keyframe must not
   /// be in the database yet.
   virtual void add(KeyFrameId keyframe, const DescriptorView& descriptors) = 0;
@@ -44,6 +53,13 @@ class LoopDetector : public Module {
   /// duplicates. Scores are finite. The same calls in the same order give the same matches, and a query does not affect
   /// later results.
   virtual std::vector<PlaceMatch> query(const DescriptorView& descriptors, int max_count) const = 0;
+  /// The same with a weight from 0 to 1 for each descriptor: one with the weight 0 does not affect scores. Without
+  /// weights, and with weights of 1, equal to query(). The default ignores them. Called only if class_weights() is not
+  /// empty.
+  virtual std::vector<PlaceMatch> query_weighted(const DescriptorView& descriptors, std::span<const float> /*weights*/,
+                                                 int max_count) const {
+    return query(descriptors, max_count);
+  }
 };
 
 /// Null object without matches: `loop_detector: none`, the default.
@@ -77,6 +93,12 @@ class SharedLoopDetector final : public LoopDetector {
   std::vector<PlaceMatch> query(const DescriptorView& descriptors, int max_count) const override {
     const std::lock_guard lock(mutex_);
     return detector_.query(descriptors, max_count);
+  }
+  std::vector<std::pair<std::string, double>> class_weights() const override { return detector_.class_weights(); }
+  std::vector<PlaceMatch> query_weighted(const DescriptorView& descriptors, std::span<const float> weights,
+                                         int max_count) const override {
+    const std::lock_guard lock(mutex_);
+    return detector_.query_weighted(descriptors, weights, max_count);
   }
 
  private:

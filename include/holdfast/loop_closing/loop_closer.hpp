@@ -12,6 +12,7 @@
 #include "holdfast/interfaces/feature_matcher.hpp"
 #include "holdfast/interfaces/loop_detector.hpp"
 #include "holdfast/interfaces/optimizer.hpp"
+#include "holdfast/interfaces/place_weights.hpp"
 #include "holdfast/loop_closing/closed_loop.hpp"
 #include "holdfast/loop_closing/full_adjustment.hpp"
 #include "holdfast/loop_closing/loop_candidates.hpp"
@@ -26,7 +27,9 @@ struct LoopMeasurement;
 /// Mur-Artal and Tardos 2017, section III-D).
 ///
 /// 1. Candidates by place recognition, see LoopCandidates.
-/// 2. Geometric check: matched descriptors, rigid alignment by RANSAC, guided search, motion-only adjustment.
+/// 2. Geometric check: matched descriptors, rigid alignment by RANSAC, guided search, motion-only adjustment. If the
+///    detector weights classes (LoopDetector::class_weights()), matches count by their class, and the classes of the
+///    matched points must agree with those of the features.
 /// 3. Plausibility. Two places of similar appearance pass steps 1 and 2 and can only be distinguished by the path
 ///    between them. The correction must be within the possible drift: correction <= drift_constant + drift_per_metre *
 ///    path length, and likewise for the rotation, where the path is the shortest one in the graph of keyframes. A
@@ -79,6 +82,7 @@ class LoopCloser {
   std::uint64_t seed_;
   FullAdjustment* adjustment_ = nullptr;
   LoopCandidates candidates_;
+  std::optional<PlaceWeights> weights_;  // for the labels of the map; set at the first keyframe
   LoopCounts counts_;
   std::optional<std::uint64_t> last_loop_;  // sequence of the keyframe
 };

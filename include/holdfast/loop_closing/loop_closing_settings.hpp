@@ -33,6 +33,9 @@ struct LoopClosingSettings {
   int minimum_inliers = 40;
   double minimum_share = 0.12;  ///< minimum fraction that these matches have of the points predicted to be visible
   int minimum_cells = 5;  ///< minimum number of cells of a 4 x 4 grid over the image with at least two matches each
+  /// Minimum mean share of the votes of matched points (Map::class_votes()) for the classes of their features. It is
+  /// compared only if the loop detector weights classes; 0 = never.
+  double class_agreement = 0.5;
   double drift_constant = 0.15;  ///< plausible correction for a loop of zero length [m]
   /// Additional plausible correction for each metre (and each radian) of the path around the loop [m].
   double drift_per_metre = 0.02;

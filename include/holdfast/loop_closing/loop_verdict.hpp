@@ -19,9 +19,10 @@ enum class LoopVerdict {
   poor_coverage,           ///< the matches cover too small a part of the image
   implausible_correction,  ///< the correction exceeds the drift bound of the path
   pose_confirmed,          ///< old points confirm the current pose, which is the competing hypothesis
+  other_classes,           ///< the matched points and features are of different classes
   not_solved,              ///< the pose graph has no solution; the map is unchanged
 };
-inline constexpr std::size_t loop_verdicts = 9;
+inline constexpr std::size_t loop_verdicts = 10;
 
 /// Magnitude of a correction: translation of the camera centre and angle of rotation.
 struct PoseChange {
@@ -41,6 +42,7 @@ struct CandidateReport {
   int aligned = 0;             ///< inliers of the rigid alignment among them
   int inliers = 0;             ///< points of the candidate that are matched in the keyframe
   int expected = 0;            ///< points of the candidate that are predicted to be visible in the keyframe
+  double class_agreement = 1;  ///< mean share of the votes of these points for the classes of their features
   int cells = 0;               ///< number of 16 cells over the image with at least two inliers
   bool joins_submaps = false;  ///< the two are in different submaps
   double path_length = 0.0;    ///< length of the path between the two in the map [m], with one metre per radian

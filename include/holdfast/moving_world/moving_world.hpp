@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <opencv2/core/mat.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -116,9 +117,12 @@ class MovingWorld {
   /// tracking.
   bool holds_keyframes() const { return queue_ && queue_->is_full(); }
 
-  /// Raw pixels (8UC1, not 0) of the cells of a view that are more likely moving than static; empty if there are none.
-  /// Any thread.
-  cv::Mat moving_pixels(const CoarseView& view) const;
+  /// Class names of the segmenter by label; empty without one. Any thread.
+  const std::vector<std::string>& classes() const { return classes_; }
+  /// Raw pixels (8UC1, not 0) of the cells of a view that are more likely moving than static, or whose label is left
+  /// out: `left_out` has an entry that is not 0 for each of 256 labels to leave out, or is empty. Empty if there are
+  /// none. Any thread.
+  cv::Mat moving_pixels(const CoarseView& view, std::span<const std::uint8_t> left_out = {}) const;
 
   // Called by the pipeline.
 

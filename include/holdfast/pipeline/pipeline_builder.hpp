@@ -159,6 +159,9 @@ class PipelineBuilder {
   std::string reason_of_no_depth() const;
   void check_filter(const ModuleOf<DynamicFilter>& module, const Needs& needs);
   void check_classes(const ModuleOf<DynamicFilter>& module, const DynamicFilter& filter);
+  void check_class(const SourceLocation& place, const std::string& name, const std::string& use,
+                   const std::string& remedy);
+  void check_class_weights();
   void check_effects();
   bool follows_another_filter(std::size_t index) const;
   void check_map() const;

@@ -15,14 +15,17 @@ namespace holdfast {
 /// Key-value pairs in file order.
 using TextMap = std::vector<std::pair<std::string, std::string>>;
 
+/// Numbers by name, in file order, such as a weight of each of some classes.
+using RealMap = std::vector<std::pair<std::string, double>>;
+
 /// Rows of numbers, such as the waypoints of a path.
 using RealTable = std::vector<std::vector<double>>;
 
 /// The value of a parameter.
 using ParameterValue = std::variant<bool, std::int64_t, double, std::string, std::vector<std::string>,
-                                    std::vector<double>, TextMap, RealTable>;
+                                    std::vector<double>, TextMap, RealTable, RealMap>;
 
-enum class ParameterType { boolean, integer, real, text, path, text_list, real_list, text_map, real_table };
+enum class ParameterType { boolean, integer, real, text, path, text_list, real_list, text_map, real_table, real_map };
 const char* to_string(ParameterType type);
 /// YAML of the value, on one line.
 std::string to_string(const ParameterValue& value);
@@ -39,8 +42,8 @@ struct Parameter {
   std::string help;
   std::string unit_name;
   bool is_required = false;
-  std::optional<double> minimum;     ///< bound of a number, or of every number of a list
-  std::optional<double> maximum;     ///< bound of a number, or of every number of a list
+  std::optional<double> minimum;     ///< bound of a number, or of every number of a list or map
+  std::optional<double> maximum;     ///< bound of a number, or of every number of a list or map
   std::vector<std::string> allowed;  ///< names for a text, or for every text of a list; empty = any text
   std::int64_t min_integer = std::numeric_limits<std::int64_t>::min();  ///< smallest value of the member's type
   std::int64_t max_integer = std::numeric_limits<std::int64_t>::max();  ///< largest value of the member's type

@@ -58,6 +58,8 @@ constexpr ParameterType parameter_type_of() {
     return ParameterType::real_list;
   else if constexpr (std::is_same_v<Member, RealTable>)
     return ParameterType::real_table;
+  else if constexpr (std::is_same_v<Member, RealMap>)
+    return ParameterType::real_map;
   else {
     static_assert(std::is_same_v<Member, TextMap>, "no parameter type for this member");
     return ParameterType::text_map;

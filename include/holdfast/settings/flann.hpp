@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <string>
+#include <utility>
+#include <vector>
+
 namespace holdfast {
 
 class LoopDetector;
@@ -20,6 +24,8 @@ struct FlannSettings {
   /// Number of buckets of words that are searched per descriptor; more find more words at a higher cost.
   int probes = 3;
   int checks = 48;  ///< number of bucket centres that FLANN compares per descriptor before it stops
+  /// Weights of the features of some classes, 0 to 1, by the segmenter's names; features of other classes count fully.
+  std::vector<std::pair<std::string, double>> class_weights;
 
   static void describe(ParameterTable<FlannSettings>& table);
 };

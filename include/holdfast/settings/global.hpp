@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "holdfast/settings/onnx.hpp"
@@ -27,6 +28,9 @@ struct GlobalSettings {
   std::vector<double> standard_deviation = {0.229, 0.224, 0.225};  ///< per channel, in colour_order
   std::string output_name;          ///< name of the output; needed if the model has several
   double minimum_similarity = 0.5;  ///< cosine of the angle between two vectors below which places do not match
+  /// Classes whose pixels count little, by the segmenter's names: pixels of a class with a weight below 0.5 are
+  /// replaced as moving ones are.
+  std::vector<std::pair<std::string, double>> class_weights;
 
   static void describe(ParameterTable<GlobalSettings>& table);
 };

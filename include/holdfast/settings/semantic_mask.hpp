@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace holdfast {
@@ -17,6 +18,9 @@ struct SemanticMaskSettings {
 
   /// Names of movable classes; empty = Segmenter::movable(), or `person` if the segmenter does not specify it.
   std::vector<std::string> classes;
+  /// How much some classes move, 0 to 1: 1 as those of `classes`, 0 as the background, between them classes that move
+  /// seldom. Takes precedence over `classes`.
+  std::vector<std::pair<std::string, double>> movable;
   int dilate = 10;  ///< features within this distance of a mask belong to it unless their depth is behind it [px]
   int edge = 4;     ///< features within this distance belong to the mask for any depth [px]
   double depth_margin = 0.15;        ///< depth difference from which on a feature is behind the adjacent mask [m]

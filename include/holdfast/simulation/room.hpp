@@ -21,9 +21,12 @@ namespace holdfast::simulation {
 ///
 /// corridor: 20 m by 2.6 m by 2.6 m. The same desk group every 2 m along y = 2.6 and the same cabinet and pictures on
 /// the opposite side with identical textures; only a mug on some of the desks distinguishes them.
-enum class RoomKind { office, hall, corridor };
+///
+/// open_plan: 12 m by 9 m by 2.8 m. Three rows of four desks with one or two screens each and chairs of one model, and
+/// furnished walls around them.
+enum class RoomKind { office, hall, corridor, open_plan };
 
-/// "office", "hall", "corridor".
+/// "office", "hall", "corridor", "open_plan".
 const char* to_string(RoomKind kind);
 /// The kind of that name; throws ConfigurationError naming the known ones.
 RoomKind room_kind(const std::string& name);
@@ -41,6 +44,11 @@ Room make_room(RoomKind kind, std::uint64_t seed);
 /// Creates a room without baked light, so that objects can be set in motion first and leave no shadow at their initial
 /// position; call bake_light afterwards.
 Room furnish_room(RoomKind kind, std::uint64_t seed);
+
+/// Makes a room that furnish_room() made what it is on another visit: chairs stand at each other's places, turned and
+/// pushed by up to 0.35 m, and screens show other pictures, half of which another screen showed on the first visit.
+/// Visits 0 and 1 change nothing.
+void rearrange(World& world, std::uint64_t seed, std::uint64_t visit);
 
 /// The positions of a room only; independent of the seed.
 Stage make_stage(RoomKind kind);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "holdfast/core/random.hpp"
 #include "holdfast/simulation/camera_path.hpp"
 #include "holdfast/simulation/plan.hpp"
 #include "holdfast/simulation/road.hpp"
@@ -39,13 +40,18 @@ struct Scene {
   CameraPlan camera;
   double duration = 20.0;    ///< [s]; frames from 0 up to, not including, this time
   double frame_rate = 30.0;  ///< [1/s]
-  std::uint64_t seed = 1;    ///< seed of textures, small objects, people, path and noise
+  /// Number of the visit to the room: from 2 on, chairs stand elsewhere and screens show other pictures (rearrange()),
+  /// and the camera's tremor and noise differ.
+  std::uint64_t visit = 1;
+  std::uint64_t seed = 1;  ///< seed of textures, small objects, people, path and noise
   std::vector<PersonPlan> people;
   std::vector<SwingPlan> doors;
   std::vector<LightsOut> lights_out;
   DepthSensorSettings depth_sensor;
   ColourSensorSettings colour_sensor;
 
+  /// Seed of what differs between visits: that of the scene on the first one.
+  std::uint64_t visit_seed() const { return visit <= 1 ? seed : Random(seed).fork(0x7152).fork(visit).next(); }
   /// Name of the kind of road or room.
   std::string place_name() const { return road ? to_string(road->kind) : to_string(room); }
 };

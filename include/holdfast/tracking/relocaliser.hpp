@@ -10,6 +10,7 @@
 #include "holdfast/core/map.hpp"
 #include "holdfast/core/random.hpp"
 #include "holdfast/interfaces/loop_detector.hpp"
+#include "holdfast/interfaces/place_weights.hpp"
 #include "holdfast/moving_world/moving_world.hpp"
 #include "holdfast/tracking/frame_history.hpp"
 #include "holdfast/tracking/frame_matcher.hpp"
@@ -34,7 +35,10 @@ struct RelocaliserParts {
 class Relocaliser {
  public:
   Relocaliser(const TrackingSettings& settings, const RelocaliserParts& parts, std::uint64_t seed)
-      : settings_(settings), parts_(parts), random_(Random(seed).fork(1)) {}
+      : settings_(settings),
+        parts_(parts),
+        weights_(parts.detector, parts.moving_world.classes()),
+        random_(Random(seed).fork(1)) {}
 
   /// Matches the frame with one keyframe by descriptors, aligns its 3-D points with the map by RANSAC, and optimizes
   /// the pose. Without an alignment the initial value is `start` or, if empty, the pose of the keyframe.
@@ -63,9 +67,11 @@ class Relocaliser {
  private:
   bool fits_surroundings(Frame& frame, FrameResult& result);
   int search_local_map(double window, Frame& frame);
+  std::vector<PlaceMatch> similar_places(const Frame& frame, bool of_image) const;
 
   TrackingSettings settings_;
   RelocaliserParts parts_;
+  PlaceWeights weights_;  // for the labels of the segmenter
   Random random_;
 };
 

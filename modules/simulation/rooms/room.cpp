@@ -9,8 +9,10 @@
 namespace holdfast::simulation {
 
 namespace {
-constexpr std::pair<RoomKind, const char*> room_kinds[] = {
-    {RoomKind::office, "office"}, {RoomKind::hall, "hall"}, {RoomKind::corridor, "corridor"}};
+constexpr std::pair<RoomKind, const char*> room_kinds[] = {{RoomKind::office, "office"},
+                                                           {RoomKind::hall, "hall"},
+                                                           {RoomKind::corridor, "corridor"},
+                                                           {RoomKind::open_plan, "open_plan"}};
 }
 
 const char* to_string(RoomKind kind) {
@@ -28,7 +30,8 @@ std::vector<std::string> room_names() {
 RoomKind room_kind(const std::string& name) {
   for (const auto& [kind, known] : room_kinds)
     if (name == known) return kind;
-  throw ConfigurationError(SourceLocation{}, "room '" + name + "' is not known; expected office, hall or corridor");
+  throw ConfigurationError(SourceLocation{},
+                           "room '" + name + "' is not known; expected office, hall, corridor or open_plan");
 }
 
 Stage make_stage(RoomKind kind) {
@@ -39,6 +42,8 @@ Stage make_stage(RoomKind kind) {
       return hall_stage();
     case RoomKind::corridor:
       return corridor_stage();
+    case RoomKind::open_plan:
+      return open_plan_stage();
   }
   return {};
 }
@@ -51,6 +56,8 @@ Room furnish_room(RoomKind kind, std::uint64_t seed) {
       return {make_hall(seed), hall_stage()};
     case RoomKind::corridor:
       return {make_corridor(seed), corridor_stage()};
+    case RoomKind::open_plan:
+      return {make_open_plan(seed), open_plan_stage()};
   }
   return {};
 }

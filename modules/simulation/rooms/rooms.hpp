@@ -15,5 +15,7 @@ Stage hall_stage();
 World make_hall(std::uint64_t seed);
 Stage corridor_stage();
 World make_corridor(std::uint64_t seed);
+Stage open_plan_stage();
+World make_open_plan(std::uint64_t seed);
 
 }  // namespace holdfast::simulation

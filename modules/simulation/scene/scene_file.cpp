@@ -28,6 +28,7 @@ class SceneReader {
     scene_.duration = record.duration;
     scene_.frame_rate = record.frame_rate;
     scene_.seed = record.seed;
+    scene_.visit = record.visit;
     scene_.camera = read_camera(at("camera"));
     if (root_.find("road") != nullptr) read_road(at("road"));
     scene_.colour_sensor = read_record<ColourSensorSettings>(at("colour_sensor"), "the colour sensor");

@@ -18,6 +18,11 @@ void SceneRecord::describe(ParameterTable<SceneRecord>& table) {
   table.add("duration", &S::duration, "length of the sequence").range(0.001, 36000.0).unit("s");
   table.add("frame_rate", &S::frame_rate, "frames per second").range(0.1, 1000.0).unit("1/s");
   table.add("seed", &S::seed, "of textures, small things, people, path and noise; 0 = the run's seed");
+  table
+      .add("visit", &S::visit,
+           "number of the visit to the room: from 2 on, chairs stand elsewhere, screens show other pictures, and the "
+           "camera's tremor and noise differ")
+      .range(1, 1000000);
 }
 
 void RoadRecord::describe(ParameterTable<RoadRecord>& table) {

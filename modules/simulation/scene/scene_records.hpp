@@ -17,6 +17,7 @@ struct SceneRecord {
   double duration = Scene{}.duration;
   double frame_rate = Scene{}.frame_rate;
   std::uint64_t seed = 0;
+  std::uint64_t visit = Scene{}.visit;
   static void describe(ParameterTable<SceneRecord>& table);
 };
 

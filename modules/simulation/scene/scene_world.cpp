@@ -40,8 +40,10 @@ Physique physique_of(const PersonPlan& plan, Random random) {
 
 class SceneBuilder {
  public:
-  SceneBuilder(const Scene& scene, Room furnished)
-      : scene_(scene), room_(std::move(furnished)), things_(things_of(room_.world)) {}
+  SceneBuilder(const Scene& scene, Room furnished) : scene_(scene), room_(std::move(furnished)) {
+    if (!scene.road) rearrange(room_.world, scene.seed, scene.visit);
+    things_ = things_of(room_.world);
+  }
 
   SceneWorld build() {
     for (std::size_t k = 0; k < scene_.people.size(); ++k) add_person(k);

@@ -30,9 +30,9 @@ Camera exposed_at_once(Camera camera) {
 
 CameraPath make_path(const Scene& scene, const Stage& stage) {
   const CameraPlan& plan = scene.camera;
-  if (scene.road) return {*scene.road, scene.seed, plan.style};
-  if (plan.path == PathKind::waypoints) return {plan.waypoints, scene.seed, plan.style};
-  return {plan.path, stage, scene.seed, plan.style};
+  if (scene.road) return {*scene.road, scene.visit_seed(), plan.style};
+  if (plan.path == PathKind::waypoints) return {plan.waypoints, scene.visit_seed(), plan.style};
+  return {plan.path, stage, scene.visit_seed(), plan.style};
 }
 
 Simulator::Simulator(const Scene& scene, const Camera& camera)
@@ -49,7 +49,7 @@ Simulator::Simulator(const Scene& scene, const Camera& camera)
     throw ConfigurationError(SourceLocation{}, text.str());
   }
   frame_count_ = static_cast<std::uint64_t>(count);
-  Random random = Random(scene_.seed).fork(0x5e4503);
+  Random random = Random(scene_.visit_seed()).fork(0x5e4503);
   depth_seed_ = random.next(), colour_seed_ = random.next(), right_seed_ = random.next();
   class_names_ = simulation::class_names(world());
   mask_values_.assign(world().objects.size() + 1, 0);

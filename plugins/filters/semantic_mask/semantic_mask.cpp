@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <optional>
 
 #include "holdfast/core/cell_mask.hpp"
 #include "holdfast/core/error.hpp"
@@ -17,6 +18,12 @@ void SemanticMaskSettings::describe(ParameterTable<SemanticMaskSettings>& table)
   using S = SemanticMaskSettings;
   table.add("classes", &S::classes,
             "names of the segmenter's movable classes; empty = as the segmenter specifies, or `person` if it does not");
+  table
+      .add(
+          "movable", &S::movable,
+          "how much some classes move, such as { chair: 0.3 }: 1 as those of `classes`, 0 as the background; the prior "
+          "between is interpolated, without `dilate` and `edge`; takes precedence over `classes`")
+      .range(0, 1);
   table
       .add("dilate", &S::dilate, "features within this distance of a mask belong to it unless their depth is behind it")
       .range(0, 40)
@@ -82,8 +89,16 @@ class SemanticMask final : public DynamicFilter {
 
   Needs needs() const override { return {.segmentation = true}; }
   std::vector<std::string> movable_classes(const std::vector<std::string>& specified) const override {
-    if (!settings_.classes.empty()) return settings_.classes;
-    return specified.empty() ? std::vector<std::string>{"person"} : specified;
+    std::vector<std::string> names = fully_movable(specified);
+    std::erase_if(names, [this](const std::string& name) { return share_of(name).value_or(1.0) < mostly_movable; });
+    for (const auto& [name, share] : settings_.movable)
+      if (share >= mostly_movable && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    return names;
+  }
+  std::vector<std::string> named_classes() const override {
+    std::vector<std::string> names;
+    for (const auto& [name, share] : settings_.movable) names.push_back(name);
+    return names;
   }
 
   void apply(const FilterContext& context, StaticEvidence& evidence) override {
@@ -97,21 +112,42 @@ class SemanticMask final : public DynamicFilter {
   }
 
  private:
+  std::vector<std::string> fully_movable(const std::vector<std::string>& specified) const {
+    if (!settings_.classes.empty()) return settings_.classes;
+    return specified.empty() ? std::vector<std::string>{"person"} : specified;
+  }
+  /// The configured share of a class that moves seldom.
+  std::optional<double> share_of(const std::string& name) const {
+    for (const auto& [known, share] : settings_.movable)
+      if (known == name) return share;
+    return std::nullopt;
+  }
+
   /// Throws InputError for a class that the segmenter does not have.
   void find_movable(const std::vector<std::string>& classes, const std::vector<std::string>* said_by_segmenter) {
     movable_.fill(0);
-    for (const std::string& name :
-         movable_classes(said_by_segmenter != nullptr ? *said_by_segmenter : std::vector<std::string>())) {
+    seldom_.fill(0);
+    static_log_odds_.fill(settings_.background_log_odds);
+    const auto label_of = [&](const std::string& name, const char* parameter) {
       const auto found = std::find(classes.begin(), classes.end(), name);
       if (found == classes.end())
-        throw InputError({"filters: semantic_mask: classes"},
+        throw InputError({std::string("filters: semantic_mask: ") + parameter},
                          "the segmenter has no class '" + name + "'; " + did_you_mean(name, classes));
-      movable_[static_cast<std::size_t>(found - classes.begin())] = 1;
+      return static_cast<std::size_t>(found - classes.begin());
+    };
+    for (const std::string& name :
+         fully_movable(said_by_segmenter != nullptr ? *said_by_segmenter : std::vector<std::string>()))
+      movable_[label_of(name, "classes")] = 1;
+    for (const auto& [name, share] : settings_.movable) {
+      const std::size_t label = label_of(name, "movable");
+      movable_[label] = share >= 1.0 ? 1 : 0;
+      seldom_[label] = share >= mostly_movable ? 1 : 0;
+      static_log_odds_[label] =
+          settings_.background_log_odds + share * (settings_.movable_log_odds - settings_.background_log_odds);
     }
   }
 
-  void add_evidence(StaticEvidence& evidence, std::size_t feature, bool movable, std::uint8_t confidence) const {
-    const double log_odds = movable ? settings_.movable_log_odds : settings_.background_log_odds;
+  void add_evidence(StaticEvidence& evidence, std::size_t feature, double log_odds, std::uint8_t confidence) const {
     evidence.add(feature, static_cast<float>(log_odds * confidence / 255.0), StaticEvidence::Kind::prior);
   }
 
@@ -164,7 +200,8 @@ class SemanticMask final : public DynamicFilter {
         movable = true;
         certainty = raster.confidence(column, row);
       }
-    if (movable || label != CellMask::unknown) add_evidence(evidence, feature, movable, certainty);
+    if (movable || label != CellMask::unknown)
+      add_evidence(evidence, feature, movable ? settings_.movable_log_odds : static_log_odds_[label], certainty);
   }
 
   void apply_exact(const FilterContext& context, StaticEvidence& evidence) {
@@ -224,17 +261,23 @@ class SemanticMask final : public DynamicFilter {
 
   void evaluate_cells(const CellMask& mask, StaticEvidence& evidence) const {
     for (std::size_t cell = 0; cell < mask.labels.size() && cell < evidence.cells().size(); ++cell)
-      if (movable_[mask.labels[cell]] != 0) evidence.add_cell(cell, movable_log_odds_[mask.confidence[cell]]);
+      if (const std::uint8_t label = mask.labels[cell]; movable_[label] != 0)
+        evidence.add_cell(cell, movable_log_odds_[mask.confidence[cell]]);
+      else if (seldom_[label] != 0)
+        evidence.add_cell(cell, static_cast<float>(static_log_odds_[label] * mask.confidence[cell] / 255.0));
   }
 
   bool lies_behind(float depth, float mask_depth) const {
     return depth > 0.0F && mask_depth > 0.0F && depth > mask_depth + static_cast<float>(settings_.depth_margin);
   }
 
-  static constexpr int tile = 16;  // pixels
+  static constexpr int tile = 16;                // pixels
+  static constexpr double mostly_movable = 0.5;  // share of a class from which on its surface is evidence of motion
   SemanticMaskSettings settings_;
-  std::array<std::uint8_t, 256> movable_{};
-  std::vector<std::uint8_t> movable_tiles_;  // row by row
+  std::array<std::uint8_t, 256> movable_{};    // by label: share 1
+  std::array<std::uint8_t, 256> seldom_{};     // by label: share below 1, and mostly movable
+  std::array<double, 256> static_log_odds_{};  // by label, of what is not movable_
+  std::vector<std::uint8_t> movable_tiles_;    // row by row
   int tile_columns_ = 0;
   std::array<float, 256> movable_log_odds_{};                                // by confidence
   std::vector<std::uint8_t> movable_cells_, beside_movable_, near_movable_;  // 1 = yes, by cell

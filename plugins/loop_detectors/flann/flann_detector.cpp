@@ -13,6 +13,12 @@ namespace holdfast::flann_plugin {
 namespace {
 
 constexpr std::uint64_t seed_stream = 0x706c616365;  // of this plugin among those that fork the run's seed
+
+std::uint64_t weighted(std::uint64_t vote, float weight) {
+  if (weight == 1.0F) return vote;
+  return static_cast<std::uint64_t>(std::llround(static_cast<double>(vote) * static_cast<double>(weight)));
+}
+
 }  // namespace
 
 FlannDetector::FlannDetector(const FlannSettings& settings, const CreationContext& context)
@@ -71,7 +77,10 @@ void FlannDetector::remove(KeyFrameId keyframe) {
   slots_.erase(found);
 }
 
-std::vector<PlaceMatch> FlannDetector::query(const DescriptorView& descriptors, int max_count) const {
+std::vector<PlaceMatch> FlannDetector::query_weighted(const DescriptorView& descriptors, std::span<const float> weights,
+                                                      int max_count) const {
+  HOLDFAST_CHECK(weights.empty() || weights.size() == descriptors.size(),
+                 weights.size() << " weights for " << descriptors.size() << " descriptors");
   if (max_count <= 0 || slots_.empty()) return {};
   look_up(descriptors);
   tallies_.assign(entries_.size(), {});
@@ -81,12 +90,13 @@ std::vector<PlaceMatch> FlannDetector::query(const DescriptorView& descriptors, 
     for (std::uint32_t k = 0; k < lookups_[i].count; ++k)
       for (const std::uint32_t slot : inverted_.keyframes(lookups_[i].words[k]))
         if (std::exchange(tallies_[slot].last_voter, i + 1) != i + 1) voted_.push_back(slot);
-    const std::uint64_t vote = weight(std::max<std::size_t>(voted_.size(), 1));
+    std::uint64_t vote = weight(std::max<std::size_t>(voted_.size(), 1));
+    if (!weights.empty()) vote = weighted(vote, weights[used_index(i, descriptors.size())]);
     total += vote;
     for (const std::uint32_t slot : voted_) tallies_[slot].votes += vote;
   }
 
-  std::vector<PlaceMatch> matches;
+  std::vector<PlaceMatch> matches;  // a keyframe with votes has a part of the total, which is not 0 then
   for (std::size_t slot = 0; slot < tallies_.size(); ++slot)
     if (const std::uint64_t votes = tallies_[slot].votes; votes > 0)
       matches.push_back({entries_[slot].keyframe, static_cast<double>(votes) / static_cast<double>(total)});
@@ -109,15 +119,18 @@ void FlannDetector::look_up(const DescriptorView& descriptors) const {
                                                                             << ", the database has those of "
                                                                             << to_string(type_));
   DescriptorBlock used(descriptors.type());
-  const std::size_t limit = static_cast<std::size_t>(settings_.descriptors);
-  const std::size_t count = std::min(descriptors.size(), limit);
+  const std::size_t count = used_count(descriptors.size());
   used.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) used.append(descriptors, i * descriptors.size() / count);
+  for (std::size_t i = 0; i < count; ++i) used.append(descriptors, used_index(i, descriptors.size()));
   if (looked_up_ && used == looked_up_descriptors_) return;
 
   looked_up_descriptors_ = std::move(used);
   vocabulary_->find(looked_up_descriptors_, lookups_);
   looked_up_ = true;
+}
+
+std::size_t FlannDetector::used_count(std::size_t given) const {
+  return std::min(given, static_cast<std::size_t>(settings_.descriptors));
 }
 
 /// log(1 + N / n) in 1/1024.

@@ -21,12 +21,15 @@ namespace holdfast::flann_plugin {
 /// decreases with n_i (the inverse document frequency of Nister and Stewenius, "Scalable recognition with a vocabulary
 /// tree", CVPR 2006, equation 4; one is added so that it is never zero, and n_i is 1 without such keyframes):
 ///
-///     weight_i = log(1 + N / n_i),     score of a keyframe = sum of the weights that voted for it / sum of all weights
+///     weight_i = w_i log(1 + N / n_i),   score of a keyframe = sum of the weights that voted for it / sum of all
+///     weights
 ///
-/// The score is thus the fraction of the query's descriptors, weighted by rarity, that the keyframe has as well; it
-/// lies between 0 and 1 and does not depend on the number of descriptors of the keyframe. Up to four words per
-/// descriptor are used, because the approximate search may have created several words for one feature. Weights are
-/// rounded to 1/1024, so that sums are exact in any order. Keyframes without a vote are omitted.
+/// where w_i is the weight of the descriptor's class, 1 by default: features on what changes between visits neither
+/// vote much nor lower the score of the right place much. The score is thus the fraction of the query's descriptors,
+/// weighted by rarity, that the keyframe has as well; it lies between 0 and 1 and does not depend on the number of
+/// descriptors of the keyframe. Up to four words per descriptor are used, because the approximate search may have
+/// created several words for one feature. Weights are rounded to 1/1024, so that sums are exact in any order. Keyframes
+/// without a vote are omitted.
 ///
 /// Results depend on the settings, the seed and the sequence of add() and remove() only. Cost: see README.md.
 class FlannDetector final : public LoopDetector {
@@ -39,7 +42,13 @@ class FlannDetector final : public LoopDetector {
   /// Removes a keyframe, and the words that no other keyframe has. An unknown keyframe is ignored, because a keyframe
   /// may be culled before it is added.
   void remove(KeyFrameId keyframe) override;
-  std::vector<PlaceMatch> query(const DescriptorView& descriptors, int max_count) const override;
+  std::vector<PlaceMatch> query(const DescriptorView& descriptors, int max_count) const override {
+    return query_weighted(descriptors, {}, max_count);
+  }
+  std::vector<std::pair<std::string, double>> class_weights() const override { return settings_.class_weights; }
+  /// Throws CheckError unless there is a weight for each descriptor, or none.
+  std::vector<PlaceMatch> query_weighted(const DescriptorView& descriptors, std::span<const float> weights,
+                                         int max_count) const override;
 
   std::size_t keyframes() const { return slots_.size(); }
   std::size_t words() const { return vocabulary_ ? vocabulary_->size() : 0; }
@@ -57,6 +66,9 @@ class FlannDetector final : public LoopDetector {
   void look_up(const DescriptorView& descriptors) const;
   void begin_vocabulary(const DescriptorType& type);
   std::uint64_t weight(std::size_t voted_for) const;
+  /// Number of descriptors used of so many, and the place of one of them among those given.
+  std::size_t used_count(std::size_t given) const;
+  std::size_t used_index(std::size_t used, std::size_t given) const { return used * given / used_count(given); }
 
   FlannSettings settings_;
   std::uint64_t seed_;

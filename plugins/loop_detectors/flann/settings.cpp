@@ -24,6 +24,12 @@ void FlannSettings::describe(ParameterTable<FlannSettings>& table) {
       .add("checks", &FlannSettings::checks,
            "number of bucket centres that FLANN compares per descriptor before it stops")
       .range(1, 10000);
+  table
+      .add(
+          "class_weights", &FlannSettings::class_weights,
+          "weights of the features of some classes of the segmenter, such as { chair: 0.1 }; features of other classes "
+          "count fully; also turns on loop_closing.class_agreement")
+      .range(0, 1);
 }
 
 }  // namespace holdfast

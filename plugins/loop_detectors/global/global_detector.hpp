@@ -31,6 +31,7 @@ class GlobalDetector final : public LoopDetector {
   std::optional<DescriptorType> image_descriptor() const override { return type_; }
   /// Throws InputError for an output that is not finite.
   DescriptorBlock describe(const cv::Mat& image, const cv::Mat& moving) override;
+  std::vector<std::pair<std::string, double>> class_weights() const override { return settings_.class_weights; }
 
   /// Throws CheckError if the keyframe is already in the database, for descriptors of another type, and for more than
   /// one.

@@ -16,6 +16,12 @@ void GlobalSettings::describe(ParameterTable<GlobalSettings>& table) {
            "cosine of the angle between the vectors of two images below which the places do not match; the score of a "
            "match rises from 0 there to 1")
       .range(-1.0, 0.999);
+  table
+      .add(
+          "class_weights", &S::class_weights,
+          "classes of the segmenter that count little, such as { chair: 0.1 }: below 0.5, their pixels are replaced as "
+          "moving ones are; also turns on loop_closing.class_agreement")
+      .range(0, 1);
 }
 
 }  // namespace holdfast
