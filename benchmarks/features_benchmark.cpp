@@ -106,13 +106,17 @@ void opencv_orb(benchmark::State& state) {
 BENCHMARK(opencv_orb)->UseManualTime()->Iterations(120)->Unit(benchmark::kMillisecond);
 
 void orb(benchmark::State& state) {
-  const auto level = static_cast<SimdLevel>(state.range(0));
-  if (level > simd_level()) return state.SkipWithError("this processor lacks the SIMD level");
+  const SimdLevel level = simd_levels.at(static_cast<std::size_t>(state.range(0)));
+  if (!has_simd_level(level)) return state.SkipWithError("this processor lacks the SIMD level");
   state.SetLabel(to_string(level));
   OrbExtractor extractor({}, {}, level);
   run_extractor(state, extractor);
 }
-BENCHMARK(orb)->DenseRange(0, 3)->UseManualTime()->Iterations(120)->Unit(benchmark::kMillisecond);
+BENCHMARK(orb)
+    ->DenseRange(0, static_cast<std::int64_t>(simd_levels.size()) - 1)
+    ->UseManualTime()
+    ->Iterations(120)
+    ->Unit(benchmark::kMillisecond);
 
 std::vector<Descriptor256> random_descriptors(std::size_t count) {
   Random random(7);

@@ -18,6 +18,7 @@ endif()
 include(HoldfastOptional)
 include(HoldfastVersions)
 holdfast_check_compiler(${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION})
+holdfast_check_processor("${CMAKE_SIZEOF_VOID_P}" "${CMAKE_CXX_BYTE_ORDER}")
 find_package(Threads REQUIRED)
 holdfast_find(Eigen3 3.4 libeigen3-dev ARGUMENTS NO_MODULE)
 # What only some plugins need is looked for only when these are built.

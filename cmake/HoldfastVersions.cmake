@@ -30,6 +30,24 @@ function(holdfast_check_version name found minimum package)
   set_property(GLOBAL APPEND_STRING PROPERTY HOLDFAST_VERSION_PROBLEMS "  ${name} ${problem}\n")
 endfunction()
 
+# The processor: holdfast/core/platform.hpp checks the same for programs that are built on an installed Holdfast.
+function(holdfast_check_processor pointer_bytes byte_order)
+  if(pointer_bytes STREQUAL "")
+    return()  # CMake could not find out
+  elseif(NOT pointer_bytes EQUAL 8)
+    math(EXPR bits "8 * ${pointer_bytes}")
+    set(problem "${bits} bits")
+    set(remedy "install a 64-bit system (on ARM boards: aarch64, also called arm64), or leave out -m32")
+  elseif(NOT byte_order STREQUAL "LITTLE_ENDIAN")
+    set(problem "a big-endian byte order")
+    set(remedy "maps, bags and depth files are read in the byte order of memory, so that this processor is not supported")
+  else()
+    return()
+  endif()
+  set_property(GLOBAL APPEND_STRING PROPERTY HOLDFAST_VERSION_PROBLEMS
+    "  the compiler's target has ${problem}; expected 64 bits and little-endian: ${remedy}\n")
+endfunction()
+
 # The compiler, whose C++20 is what matters.
 function(holdfast_check_compiler id version)
   if(id STREQUAL "GNU")

@@ -22,7 +22,10 @@
 #                                                     quick sanitizer build
 #   sh cmake/install_dependencies.sh --valgrind       also valgrind, for tests/valgrind
 #   sh cmake/install_dependencies.sh --clean-root     also mmdebstrap, for tests/clean_root.sh
+#   sh cmake/install_dependencies.sh --arm64          also the cross compiler for aarch64, mmdebstrap and qemu, for
+#                                                     `tests/clean_root.sh arm64` (docs/arm.md)
 #   sh cmake/install_dependencies.sh --dry-run        say what would be installed, change nothing
+#   sh cmake/install_dependencies.sh --list           print the names of all packages, installed or not, change nothing
 set -eu
 
 packages="
@@ -45,6 +48,7 @@ has_onnxruntime() {
 }
 
 dry_run=no
+lists=no
 for argument in "$@"; do
   case "$argument" in
     --training) packages="$packages python3 python3-numpy python3-onnx python3-opencv python3-torch" ;;
@@ -62,12 +66,18 @@ for argument in "$@"; do
     --clang) packages="$packages clang clang-format libclang-rt-dev llvm" ;;
     --valgrind) packages="$packages valgrind" ;;
     --clean-root) packages="$packages mmdebstrap" ;;
+    --arm64) packages="$packages crossbuild-essential-arm64 mmdebstrap qemu-user-static" ;;
     --dry-run) dry_run=yes ;;
-    -h | --help) sed -n '3,25s/^# \{0,1\}//p' "$0"; exit 0 ;;
-    *) fail "unknown argument '$argument'; known are --training, --documentation, --benchmarks, --python, --python-tests, --bench-tests, --cameras, --onnxruntime, --surface, --clang, --valgrind, --clean-root, --dry-run and --help" ;;
+    --list) lists=yes ;;
+    -h | --help) sed -n '3,28s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) fail "unknown argument '$argument'; known are --training, --documentation, --benchmarks, --python, --python-tests, --bench-tests, --cameras, --onnxruntime, --surface, --clang, --valgrind, --clean-root, --arm64, --dry-run, --list and --help" ;;
   esac
 done
 
+if [ "$lists" = yes ]; then
+  echo $packages
+  exit 0
+fi
 if ! command -v apt-get >/dev/null 2>&1 || ! command -v dpkg-query >/dev/null 2>&1; then
   fail "no apt-get here: please install, by the means of your system, what Debian 12 calls" $packages
 fi

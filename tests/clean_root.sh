@@ -7,12 +7,18 @@
 #   sh tests/clean_root.sh [--suite SUITE]            all of it; SUITE: bookworm (Debian 12, the default) or trixie (13)
 #   sh tests/clean_root.sh [--suite SUITE] readme     the README's two commands in both orders, on what is committed
 #   sh tests/clean_root.sh packages BUILD_FOLDER...   the packages of trees that are built here, on this machine's Debian
+#   sh tests/clean_root.sh [--suite SUITE] arm64 [CTEST_OPTION...]
+#                                                     cross-compiles for aarch64 against the libraries of a root of
+#                                                     arm64, and runs the quick tests, or those of CTEST_OPTION..., under
+#                                                     qemu; `arm64 root` makes the root alone, for your own build
 #
-# Runs as root. `sh cmake/install_dependencies.sh --clean-root` installs mmdebstrap. Variables:
+# Runs as root. `sh cmake/install_dependencies.sh --clean-root` installs mmdebstrap, and `--arm64` also the cross compiler
+# and qemu. Variables:
 #   HOLDFAST_MIRROR      http://deb.debian.org/debian by default
 #   HOLDFAST_CLEAN_ROOT  folder for the roots, 15 GB for all of it; one that is kept makes the next time quicker. Not
 #                        set: a folder below /tmp, which is removed at the end
 #   HOLDFAST_CCACHE      a ccache folder to lend to the builds, for trials of this script
+#   HOLDFAST_ARM64_BUILD build folder of arm64; build-arm64 by default. An earlier build there is continued
 set -eu
 
 cd "$(dirname "$0")/.."
@@ -37,8 +43,9 @@ case "${1:-all}" in
     [ $# -gt 0 ] || fail "packages of which build folder? expected sh tests/clean_root.sh packages BUILD_FOLDER..."
     suite=$(. /etc/os-release && echo "$VERSION_CODENAME")
     ;;
-  -h | --help) sed -n '3,18s/^# \{0,1\}//p' "$0"; exit 0 ;;
-  *) fail "unknown argument '$1'; expected [--suite SUITE], then readme, packages BUILD_FOLDER..., or nothing" ;;
+  arm64) part=arm64; shift ;;
+  -h | --help) sed -n '3,24s/^# \{0,1\}//p' "$0"; exit 0 ;;
+  *) fail "unknown argument '$1'; expected [--suite SUITE], then readme, packages BUILD_FOLDER..., arm64, or nothing" ;;
 esac
 [ "$(id -u)" -eq 0 ] || fail "needs root: roots have owners, and chroot is root's"
 command -v mmdebstrap > /dev/null ||
@@ -57,7 +64,9 @@ release() {  # ROOT: nothing of this machine is in it any more
     if mountpoint -q "$1/$place"; then umount "$1/$place"; fi
   done
 }
+registered=no
 clean_up() {
+  if [ "$registered" = yes ]; then echo -1 > "$binfmt/qemu-aarch64"; fi
   for each in "$roots"/*/; do release "${each%/}"; done
   # A root that could not be released still shows this machine's files: --one-file-system leaves those alone.
   [ "$is_kept" = yes ] || rm -rf --one-file-system "$roots"
@@ -169,7 +178,62 @@ END
   say "$1: the packages work in a clean root"
 }
 
+# make_arm64_root FOLDER: the libraries that Holdfast is built on, for arm64. Packages are unpacked by this machine's dpkg and
+# not configured, which would need hours under qemu; what configuring would have done for us follows.
+make_arm64_root() {
+  libraries=$(sh cmake/install_dependencies.sh --surface --list | tr ' ' '\n' | grep -- '-dev$' | paste -s -d , -)
+  say "asking $mirror for the libraries of $suite for arm64"
+  rm -rf "$1.part"
+  mmdebstrap --quiet --architectures=arm64 --variant=extract --include="$libraries" "$suite" "$1.part" "$mirror"
+  # The linker takes absolute links to be this machine's.
+  find "$1.part" -type l -lname '/*' | while read -r link; do
+    ln -sfn "$(realpath -m --relative-to="$(dirname "$link")" "$1.part$(readlink "$link")")" "$link"
+  done
+  # The packages of Ceres and FLANN name libraries by absolute paths; the prefix of a CMake package is the root's.
+  grep -rl 'LIBRARIES.*[;"]/usr/lib/aarch64-linux-gnu/' --include='*.cmake' "$1.part/usr/lib" |
+    xargs sed -i '/LIBRARIES/s|\([;"]\)/usr/lib/aarch64-linux-gnu/|\1${_IMPORT_PREFIX}/lib/aarch64-linux-gnu/|g'
+  libraries=$1.part/usr/lib/aarch64-linux-gnu
+  for name in libblas liblapack; do
+    for folder in ${name#lib} atlas; do  # the one that Debian's alternatives prefer last
+      for file in $name.so.3 $name.so; do
+        [ ! -e "$libraries/$folder/$file" ] || ln -sf "$folder/$file" "$libraries/$file"
+      done
+    done
+  done
+  mv "$1.part" "$1"
+}
+
+# Programs for aarch64 run as if they were this machine's: tests start the program `holdfast` by themselves.
+binfmt=/proc/sys/fs/binfmt_misc
+register_qemu() {
+  [ -e "$binfmt/register" ] || mount -t binfmt_misc binfmt_misc "$binfmt" ||
+    fail "this kernel has no binfmt_misc, by which the system runs programs of another processor"
+  [ ! -e "$binfmt/qemu-aarch64" ] || return 0
+  cat /usr/lib/binfmt.d/qemu-aarch64.conf > "$binfmt/register" || fail "qemu could not be registered in $binfmt"
+  registered=yes
+}
+
+try_arm64() {
+  for program in aarch64-linux-gnu-g++ qemu-aarch64-static; do
+    command -v "$program" > /dev/null ||
+      fail "$program is missing; \`sh cmake/install_dependencies.sh --arm64\` installs it"
+  done
+  [ "${1:-}" != root ] || [ "$is_kept" = yes ] || fail "where is the root to be? expected the variable HOLDFAST_CLEAN_ROOT"
+  root=$roots/arm64-$suite
+  [ -d "$root" ] || make_arm64_root "$root"
+  [ "${1:-}" != root ] || return 0
+  build=${HOLDFAST_ARM64_BUILD:-build-arm64}
+  cmake --preset release -B "$build" -DCMAKE_TOOLCHAIN_FILE="$source/cmake/toolchains/aarch64-linux-gnu.cmake" \
+    -DCMAKE_SYSROOT="$root" -DHOLDFAST_UNITY=ON -DHOLDFAST_BUILD_EXAMPLES=OFF -DHOLDFAST_INSTALL=OFF
+  cmake --build "$build" --parallel "$(nproc)"
+  register_qemu
+  [ $# -gt 0 ] || set -- --label-regex '^quick$'
+  QEMU_LD_PREFIX=$root ctest --test-dir "$build" --parallel "$(nproc)" --output-on-failure --no-tests=error \
+    --output-log "$build/tests_arm64.log" --timeout 3000 "$@"
+}
+
 case "$part" in
+  arm64) try_arm64 "$@" ;;
   packages)
     number=0
     for build in "$@"; do

@@ -7,6 +7,10 @@
 #include "holdfast/core/check.hpp"
 #include "holdfast/core/simd.hpp"
 
+#if defined(__aarch64__)
+#include "descriptor_distance_neon.hpp"
+#endif
+
 namespace holdfast {
 
 namespace {
@@ -116,44 +120,72 @@ HOLDFAST_LOOPS(Sse4Loops, __attribute__((target("sse4.1,popcnt"))))
 HOLDFAST_LOOPS(Avx2Loops, __attribute__((target("avx2,popcnt"))))
 #endif
 
+#if defined(__aarch64__)
+/// The kernel of NEON in place of a scalar one.
+template <class Kernel>
+struct OnNeon {
+  using type = Kernel;
+};
+template <>
+struct OnNeon<Bits256> {
+  using type = neon::Bits256;
+};
+template <>
+struct OnNeon<Bits> {
+  using type = neon::Bits;
+};
+template <>
+struct OnNeon<Int8Euclidean> {
+  using type = neon::Int8Euclidean;
+};
+template <>
+struct OnNeon<Int8Cosine> {
+  using type = neon::Int8Cosine;
+};
+#endif
+
 #undef HOLDFAST_LOOPS
 #undef HOLDFAST_INLINE
 
 }  // namespace
 
 template <class Kernel>
-void DescriptorDistances::use() {
+void DescriptorDistances::use(SimdLevel level) {
   const auto take = [&](auto loops) {
     using Loops = decltype(loops);
     two_ = Loops::two, rows_ = Loops::rows, candidates_ = Loops::candidates;
   };
 #if defined(__x86_64__)
-  if (simd_level() >= SimdLevel::avx2) return take(Avx2Loops<Kernel>());
-  if (simd_level() >= SimdLevel::sse4) return take(Sse4Loops<Kernel>());
+  if (level >= SimdLevel::avx2) return take(Avx2Loops<Kernel>());
+  if (level >= SimdLevel::sse4) return take(Sse4Loops<Kernel>());
+#elif defined(__aarch64__)
+  if (level == SimdLevel::neon) return take(ScalarLoops<typename OnNeon<Kernel>::type>());
 #endif
   take(ScalarLoops<Kernel>());
 }
 
-DescriptorDistances::DescriptorDistances(const DescriptorType& type) : units_(DescriptorView::units_of(type)) {
+DescriptorDistances::DescriptorDistances(const DescriptorType& type, SimdLevel level)
+    : units_(DescriptorView::units_of(type)) {
+  HOLDFAST_CHECK(has_simd_level(level), to_string(level) << " asked for, " << to_string(simd_level()) << " available");
   const bool is_cosine = type.metric == DescriptorMetric::cosine;
   switch (type.kind) {
     case DescriptorKind::binary:
       if (units_ == 1)
-        use<Bits256>();
+        use<Bits256>(level);
       else
-        use<Bits>();
+        use<Bits>(level);
       break;
     case DescriptorKind::float32:
       if (is_cosine)
-        use<FloatCosine>();
+        use<FloatCosine>(level);
       else
-        use<FloatEuclidean>();
+        use<FloatEuclidean>(level);
       break;
     case DescriptorKind::int8:
       if (is_cosine)
-        use<Int8Cosine>();
+        use<Int8Cosine>(level);
       else
-        use<Int8Euclidean>();
+        use<Int8Euclidean>(level);
       break;
   }
   HOLDFAST_CHECK(two_ != nullptr, "descriptor kind " << static_cast<int>(type.kind));

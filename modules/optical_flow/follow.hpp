@@ -15,6 +15,8 @@ void follow_scalar(const ImagePyramid& from, const ImagePyramid& to, const Point
 #if defined(__x86_64__)
 void follow_sse4(const ImagePyramid& from, const ImagePyramid& to, const PointFlowSettings& settings, PointFlow& flow);
 void follow_avx2(const ImagePyramid& from, const ImagePyramid& to, const PointFlowSettings& settings, PointFlow& flow);
+#elif defined(__aarch64__)
+void follow_neon(const ImagePyramid& from, const ImagePyramid& to, const PointFlowSettings& settings, PointFlow& flow);
 #endif
 
 }  // namespace holdfast::point_flow

@@ -18,6 +18,8 @@ void follow_points(const ImagePyramid& from, const ImagePyramid& to, const Point
 #if defined(__x86_64__)
   if (simd >= SimdLevel::avx2) return point_flow::follow_avx2(from, to, settings, flow);
   if (simd >= SimdLevel::sse4) return point_flow::follow_sse4(from, to, settings, flow);
+#elif defined(__aarch64__)
+  if (simd == SimdLevel::neon) return point_flow::follow_neon(from, to, settings, flow);
 #endif
   point_flow::follow_scalar(from, to, settings, flow);
 }

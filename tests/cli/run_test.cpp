@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "cli/program.hpp"
+#include "holdfast/core/simd.hpp"
 
 namespace holdfast {
 namespace {
@@ -104,15 +105,17 @@ TEST_F(RunTest, GivesTheSameBytesAgainAndFromItsOwnConfiguration) {
 }
 
 TEST_F(RunTest, GivesTheSameBytesAtEverySimdLevel) {
-  for (const char* level : {"scalar", "sse4", "avx2", "avx512"}) {
+  for (const SimdLevel each : simd_levels) {
+    const char* level = to_string(each);
     ASSERT_EQ(setenv("HOLDFAST_SIMD", level, 1), 0);
     const Outcome outcome = program_.run({"run", "room.yaml", "--output", level, "--quiet"});
     ASSERT_EQ(unsetenv("HOLDFAST_SIMD"), 0);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
   }
   EXPECT_EQ(summary("scalar").at("machine").at("simd"), "scalar");
-  for (const char* level : {"sse4", "avx2", "avx512"})
-    EXPECT_EQ(program_.text(std::string(level) + "/trajectory.txt"), program_.text("scalar/trajectory.txt")) << level;
+  for (const SimdLevel level : simd_levels)
+    EXPECT_EQ(program_.text(std::string(to_string(level)) + "/trajectory.txt"), program_.text("scalar/trajectory.txt"))
+        << to_string(level);
 }
 
 TEST_F(RunTest, LeavesEarlierResultsAlone) {

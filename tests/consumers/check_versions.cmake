@@ -30,6 +30,12 @@ holdfast_check_compiler(GNU 10.2.1)
 expect_problem("  g++ 10.2.1 is too old; expected 11 or later (Debian: g++); name another compiler by -DCMAKE_CXX_COMPILER=g++-12\n")
 holdfast_check_compiler(Clang 13.0.1)
 expect_problem("  clang++ 13.0.1 is too old; expected 14 or later (Debian: clang); name another compiler by -DCMAKE_CXX_COMPILER=g++\n")
+holdfast_check_processor(8 LITTLE_ENDIAN)
+expect_problem("")
+holdfast_check_processor(4 LITTLE_ENDIAN)
+expect_problem("  the compiler's target has 32 bits; expected 64 bits and little-endian: install a 64-bit system (on ARM boards: aarch64, also called arm64), or leave out -m32\n")
+holdfast_check_processor(8 BIG_ENDIAN)
+expect_problem("  the compiler's target has a big-endian byte order; expected 64 bits and little-endian: maps, bags and depth files are read in the byte order of memory, so that this processor is not supported\n")
 
 # A system with old versions of OpenCV and Ceres, and of nothing else, as Holdfast's own CMake files see it.
 set(folder ${WORK_FOLDER}/versions)

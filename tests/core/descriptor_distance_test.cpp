@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <vector>
 
 #include "holdfast/core/random.hpp"
@@ -75,6 +76,19 @@ TEST_P(DescriptorDistance, KernelsAgreeWithTheDefinition) {
       EXPECT_EQ(of_candidates[i], distances.of_two(view.row(5), view.row(candidates[i])));
       EXPECT_NEAR(of_rows[i], plain_distance(view, 5, i), tolerance * (1.0 + of_rows[i]));
     }
+  }
+}
+
+TEST_P(DescriptorDistance, HasTheSameBitsAtEverySimdLevel) {
+  const DescriptorBlock descriptors = random_descriptors(GetParam(), 150);
+  const DescriptorView view = descriptors;
+  std::vector<float> expected(150), found(150);
+  DescriptorDistances(GetParam(), SimdLevel::scalar).of_rows(view.row(5), view.row(0), 150, expected.data());
+  for (const SimdLevel level : simd_levels) {
+    if (!has_simd_level(level)) break;
+    const DescriptorDistances distances(GetParam(), level);
+    distances.of_rows(view.row(5), view.row(0), 150, found.data());
+    EXPECT_EQ(std::memcmp(found.data(), expected.data(), 150 * sizeof(float)), 0) << to_string(level);
   }
 }
 

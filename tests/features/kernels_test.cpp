@@ -38,7 +38,7 @@ TEST(Kernels, FastScoresAreTheSameAtEveryLevel) {
   for (const cv::Mat& image : samples())
     for (const int threshold : {1, 7, 20, 100, 254}) {
       const cv::Mat expected = fast_scores(scalar_kernels(), image, threshold);
-      for (const SimdLevel level : test::simd_levels())
+      for (const SimdLevel level : test::available_simd_levels())
         EXPECT_TRUE(is_same(fast_scores(kernels(level), image, threshold), expected))
             << to_string(level) << " " << image.size() << " " << threshold;
     }
@@ -66,7 +66,7 @@ TEST(Kernels, FastScoreIsTheLargestThresholdAsInOpencv) {
 
 TEST(Kernels, NeighbourScoresAreThoseOfTheImage) {
   const cv::Mat image = test::scene_image(120, 90, 7), scores = fast_scores(scalar_kernels(), image, 1);
-  for (const SimdLevel level : test::simd_levels())
+  for (const SimdLevel level : test::available_simd_levels())
     for (int y = 19; y < 71; ++y)
       for (int x = 19; x < 101; ++x) {
         std::uint8_t found[9];
@@ -83,7 +83,7 @@ TEST(Kernels, LocalMaximaKeepOneOfEqualNeighbours) {
   scores.at<std::uint8_t>(2, 20) = 5, scores.at<std::uint8_t>(1, 21) = 6;  // beaten from above
   scores.at<std::uint8_t>(2, 40) = 200, scores.at<std::uint8_t>(3, 39) = 199;
   scores.at<std::uint8_t>(2, 70) = 1;
-  for (const SimdLevel level : test::simd_levels()) {
+  for (const SimdLevel level : test::available_simd_levels()) {
     std::uint16_t columns[80];
     const int count = kernels(level).local_maxima(scores.ptr(2) + 1, 80, 78, columns);
     EXPECT_EQ(std::vector<int>(columns, columns + count), (std::vector<int>{9, 39, 69})) << to_string(level);
@@ -99,7 +99,7 @@ TEST(Kernels, LocalMaximaAreTheSameAtEveryLevel) {
         scores.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(random.below(4) == 0 ? random.below(4) : 0);
     std::vector<std::uint16_t> expected(width), found(width);
     const int expected_count = scalar_kernels().local_maxima(scores.ptr(1) + 1, width + 2, width, expected.data());
-    for (const SimdLevel level : test::simd_levels()) {
+    for (const SimdLevel level : test::available_simd_levels()) {
       EXPECT_EQ(kernels(level).local_maxima(scores.ptr(1) + 1, width + 2, width, found.data()), expected_count);
       EXPECT_TRUE(std::equal(expected.begin(), expected.begin() + expected_count, found.begin())) << to_string(level);
     }
@@ -124,7 +124,7 @@ TEST(Kernels, ResizeIsBilinearAndTheSameAtEveryLevel) {
       cv::Mat reference;
       cv::resize(image, reference, size, 0, 0, cv::INTER_LINEAR);
       EXPECT_LE(cv::norm(expected, reference, cv::NORM_INF), 5) << factor;  // weights are in 1/128
-      for (const SimdLevel level : test::simd_levels())
+      for (const SimdLevel level : test::available_simd_levels())
         EXPECT_TRUE(is_same(resized(kernels(level), image, size), expected)) << to_string(level) << " " << factor;
     }
 }
@@ -143,7 +143,7 @@ TEST(Kernels, BlurIsGaussianAndTheSameAtEveryLevel) {
     cv::GaussianBlur(image, reference, {7, 7}, 2.0);
     const cv::Rect inner(blur_radius, blur_radius, image.cols - 2 * blur_radius, image.rows - 2 * blur_radius);
     EXPECT_LE(cv::norm(expected(inner), reference(inner), cv::NORM_INF), 3);
-    for (const SimdLevel level : test::simd_levels())
+    for (const SimdLevel level : test::available_simd_levels())
       EXPECT_TRUE(is_same(blurred(kernels(level), image), expected)) << to_string(level);
   }
 }
@@ -166,7 +166,7 @@ TEST(Kernels, MomentsAndDescriptorsAreTheSameAtEveryLevel) {
     Descriptor256 expected, found;
     const std::int32_t* offsets = pattern.offsets(static_cast<float>(x) * 0.06F);
     scalar_kernels().describe(centre, offsets, expected);
-    for (const SimdLevel level : test::simd_levels()) {
+    for (const SimdLevel level : test::available_simd_levels()) {
       kernels(level).moments(centre, static_cast<std::ptrdiff_t>(image.step), found_x, found_y);
       EXPECT_EQ(std::pair(found_x, found_y), std::pair(expected_x, expected_y)) << to_string(level);
       kernels(level).describe(centre, offsets, found);

@@ -43,10 +43,10 @@ inline cv::Mat scene_image(int width, int height, std::uint64_t seed) {
 }
 
 /// Every SIMD level that this processor has.
-inline std::vector<SimdLevel> simd_levels() {
+inline std::vector<SimdLevel> available_simd_levels() {
   std::vector<SimdLevel> levels;
-  for (const SimdLevel level : {SimdLevel::scalar, SimdLevel::sse4, SimdLevel::avx2, SimdLevel::avx512})
-    if (level <= simd_level()) levels.push_back(level);
+  for (const SimdLevel level : simd_levels)
+    if (has_simd_level(level)) levels.push_back(level);
   return levels;
 }
 

@@ -129,8 +129,8 @@ TEST_F(PointFlowTest, HasTheSameBitsOnEveryProcessor) {
   PointFlow first = grid(0, 620, 0, 460);
   from.build(picture.seen(0, 0)), to.build(picture.seen(5.3, -3.1));
   follow_points(from, to, settings, first, SimdLevel::scalar);
-  for (const SimdLevel level : {SimdLevel::sse4, SimdLevel::avx2, SimdLevel::avx512}) {
-    if (level > simd_level()) break;
+  for (const SimdLevel level : simd_levels) {
+    if (!has_simd_level(level)) break;
     PointFlow flow = grid(0, 620, 0, 460);
     follow_points(from, to, settings, flow, level);
     EXPECT_EQ(flow.found, first.found) << to_string(level);

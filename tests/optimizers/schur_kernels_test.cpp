@@ -241,8 +241,8 @@ TEST(SchurKernels, EveryLevelGivesTheSameBits) {
     return all;
   };
   const std::vector<double> expected = solve(SimdLevel::scalar);
-  for (const SimdLevel level : {SimdLevel::sse4, SimdLevel::avx2, SimdLevel::avx512}) {
-    if (level > simd_level()) continue;
+  for (const SimdLevel level : simd_levels) {
+    if (!has_simd_level(level)) break;
     const std::vector<double> found = solve(level);
     ASSERT_EQ(found.size(), expected.size());
     EXPECT_EQ(std::memcmp(found.data(), expected.data(), sizeof(double) * found.size()), 0) << to_string(level);

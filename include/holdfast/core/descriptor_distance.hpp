@@ -6,6 +6,7 @@
 #include <span>
 
 #include "holdfast/core/descriptor.hpp"
+#include "holdfast/core/simd.hpp"
 
 namespace holdfast {
 
@@ -13,8 +14,8 @@ namespace holdfast {
 /// values are the same at every SIMD level: sums of floating-point numbers are formed in one fixed order.
 class DescriptorDistances {
  public:
-  /// `type` must be valid; see trouble_of().
-  explicit DescriptorDistances(const DescriptorType& type);
+  /// `type` must be valid; see trouble_of(). The processor must have `level`.
+  explicit DescriptorDistances(const DescriptorType& type, SimdLevel level = simd_level());
 
   /// The distance of two descriptors, given by their first units of memory.
   float of_two(const Descriptor256* a, const Descriptor256* b) const { return two_(a, b, units_); }
@@ -35,7 +36,7 @@ class DescriptorDistances {
                               std::span<const std::uint32_t>, float*);
 
   template <class Kernel>
-  void use();
+  void use(SimdLevel level);
 
   std::size_t units_;
   Two two_ = nullptr;

@@ -43,11 +43,13 @@ void ResizeAxis::build(int input_size, int output_size) {
 }
 
 const Kernels& kernels(SimdLevel level) {
-  HOLDFAST_CHECK(level <= simd_level(), to_string(level) << " asked for, " << to_string(simd_level()) << " available");
+  HOLDFAST_CHECK(has_simd_level(level), to_string(level) << " asked for, " << to_string(simd_level()) << " available");
 #if defined(__x86_64__)
   if (level == SimdLevel::avx512) return avx512_kernels();
   if (level == SimdLevel::avx2) return avx2_kernels();
   if (level == SimdLevel::sse4) return sse4_kernels();
+#elif defined(__aarch64__)
+  if (level == SimdLevel::neon) return neon_kernels();
 #endif
   return scalar_kernels();
 }

@@ -105,6 +105,8 @@ const Kernels& scalar_kernels();
 const Kernels& sse4_kernels();
 const Kernels& avx2_kernels();
 const Kernels& avx512_kernels();
+#elif defined(__aarch64__)
+const Kernels& neon_kernels();
 #endif
 
 }  // namespace holdfast::orb_plugin

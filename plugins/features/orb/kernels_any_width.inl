@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The kernels for vectors of any width, written once: included by kernels_sse4.cpp, kernels_avx2.cpp and
-// kernels_avx512.cpp after they have defined HOLDFAST_TARGET, HOLDFAST_TARGET_INLINE and the operations on vectors of
+// The kernels for vectors of any width, written once: included by kernels_sse4.cpp, kernels_avx2.cpp,
+// kernels_avx512.cpp and kernels_neon.cpp after they have defined HOLDFAST_TARGET, HOLDFAST_TARGET_INLINE and the operations on vectors of
 // Simd::bytes (see there). A region whose width is no multiple of a vector's ends with a vector that overlaps the one
 // before; results do not depend on it.
 
@@ -108,17 +108,18 @@ HOLDFAST_TARGET int local_maxima(const std::uint8_t* scores, std::ptrdiff_t stri
 
 /// Weights of the blur of two adjacent outputs, in pairs: an output reads seven inputs, so that eight serve both.
 struct BlurWeights {
-  Vector first[4] = {Simd::fill_pairs(blur_weights[3], blur_weights[2]),
+  Simd::PairWeights first[4] = {Simd::fill_pairs(blur_weights[3], blur_weights[2]),
                      Simd::fill_pairs(blur_weights[1], blur_weights[0]),
                      Simd::fill_pairs(blur_weights[1], blur_weights[2]), Simd::fill_pairs(blur_weights[3], 0)};
-  Vector second[4] = {Simd::fill_pairs(0, blur_weights[3]), Simd::fill_pairs(blur_weights[2], blur_weights[1]),
+  Simd::PairWeights second[4] = {Simd::fill_pairs(0, blur_weights[3]), Simd::fill_pairs(blur_weights[2], blur_weights[1]),
                       Simd::fill_pairs(blur_weights[0], blur_weights[1]),
                       Simd::fill_pairs(blur_weights[2], blur_weights[3])};
   HOLDFAST_TARGET_INLINE BlurWeights() {}
 };
 
 /// Weighted mean of pairs of inputs, in 16 bits.
-HOLDFAST_TARGET_INLINE Vector blur_pairs(const Vector* pairs, const Vector* weights) {
+template <class Pairs>
+HOLDFAST_TARGET_INLINE Vector blur_pairs(const Pairs* pairs, const Simd::PairWeights* weights) {
   const Vector near =
       Simd::add16(Simd::multiply_pairs(pairs[0], weights[0]), Simd::multiply_pairs(pairs[1], weights[1]));
   const Vector far =
@@ -129,7 +130,7 @@ HOLDFAST_TARGET_INLINE Vector blur_pairs(const Vector* pairs, const Vector* weig
 /// Blurs down the columns: a vector of the row of `p` and of the one below.
 HOLDFAST_TARGET_INLINE void blur_down(const std::uint8_t* p, std::ptrdiff_t stride, const BlurWeights& weights,
                                       std::uint8_t* first, std::uint8_t* second) {
-  Vector low[4], high[4];
+  Simd::Pairs low[4], high[4];
   for (int i = 0; i < 4; ++i) {
     const Vector a = Simd::load(p + (2 * i - 3) * stride), b = Simd::load(p + (2 * i - 2) * stride);
     low[i] = Simd::interleave_low(a, b);

@@ -16,6 +16,8 @@ const Kernels& narrower_kernels() { return sse4_kernels(); }
 struct Simd {
   using Bits = std::uint32_t;
   using Vector = __m256i;
+  using Pairs = Vector;        ///< bytes of two vectors, alternating
+  using PairWeights = Vector;  ///< two weights, alternating
   static constexpr int bytes = 32;
   HOLDFAST_TARGET_INLINE static Vector load(const void* p) { return _mm256_loadu_si256(static_cast<const Vector*>(p)); }
   HOLDFAST_TARGET_INLINE static void store(void* p, Vector v) { _mm256_storeu_si256(static_cast<Vector*>(p), v); }

@@ -16,6 +16,8 @@ const Kernels& narrower_kernels() { return avx2_kernels(); }
 struct Simd {
   using Vector = __m512i;
   using Bits = std::uint64_t;
+  using Pairs = Vector;        ///< bytes of two vectors, alternating
+  using PairWeights = Vector;  ///< two weights, alternating
   static constexpr int bytes = 64;
   HOLDFAST_TARGET_INLINE static Vector load(const void* p) { return _mm512_loadu_si512(p); }
   HOLDFAST_TARGET_INLINE static void store(void* p, Vector v) { _mm512_storeu_si512(p, v); }

@@ -19,6 +19,8 @@ const Kernels& narrower_kernels() { return scalar_kernels(); }
 struct Simd {
   using Bits = std::uint32_t;
   using Vector = __m128i;
+  using Pairs = Vector;        ///< bytes of two vectors, alternating
+  using PairWeights = Vector;  ///< two weights, alternating
   static constexpr int bytes = 16;
   HOLDFAST_TARGET_INLINE static Vector load(const void* p) { return _mm_loadu_si128(static_cast<const Vector*>(p)); }
   HOLDFAST_TARGET_INLINE static void store(void* p, Vector v) { _mm_storeu_si128(static_cast<Vector*>(p), v); }

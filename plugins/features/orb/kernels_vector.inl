@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The kernels for vectors of 16 or 32 bytes, written once: included by kernels_sse4.cpp and kernels_avx2.cpp after
-// kernels_any_width.inl.
+// The kernels for vectors of 16 or 32 bytes, written once: included by kernels_sse4.cpp, kernels_avx2.cpp and
+// kernels_neon.cpp after kernels_any_width.inl.
 
 HOLDFAST_TARGET void resize(const ImageView& input, const ResizeAxis& columns, const ResizeAxis& rows,
                             std::uint8_t* row, const OutputRows& output) {
@@ -15,7 +15,7 @@ HOLDFAST_TARGET void resize(const ImageView& input, const ResizeAxis& columns, c
   const auto* block_weights = columns.block_weights.data();
   for (std::size_t y = 0; y < rows.first.size(); ++y) {
     const std::uint8_t* upper = input.at(0, rows.first[y]);
-    const Vector weights = Simd::fill_pairs(128 - rows.weight[y], rows.weight[y]);
+    const Simd::PairWeights weights = Simd::fill_pairs(128 - rows.weight[y], rows.weight[y]);
     for (int x = 0;; x += bytes) {
       x = x + bytes <= input_width ? x : input_width - bytes;
       const Vector a = Simd::load(upper + x), b = Simd::load(upper + x + input_stride);

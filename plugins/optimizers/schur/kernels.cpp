@@ -6,7 +6,7 @@
 namespace holdfast::schur_plugin {
 
 const Kernels& kernels(SimdLevel level) {
-  HOLDFAST_CHECK(level <= simd_level(), to_string(level) << " asked for, " << to_string(simd_level()) << " available");
+  HOLDFAST_CHECK(has_simd_level(level), to_string(level) << " asked for, " << to_string(simd_level()) << " available");
 #if defined(__x86_64__)
   if (level >= SimdLevel::avx2) return avx2_kernels();
 #endif
