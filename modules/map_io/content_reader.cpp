@@ -69,6 +69,9 @@ class ContentReader {
       expect(has_points_ && !has_classes_);
       content_.map.classes = read_classes(container_.payload(), content_.map.points);
       has_classes_ = true;
+    } else if (type == inertia_section) {
+      expect(has_points_ && !content_.map.inertia);
+      content_.map.inertia = read_inertia(container_.payload());
     } else if (container_.required()) {
       container_.fail("found a section '" + type +
                       "' that this Holdfast does not know and cannot leave out: use a newer Holdfast");
@@ -80,7 +83,8 @@ class ContentReader {
       fail("found section '" + container_.type() + "' where it does not belong; expected '" + camera_section + "', '" +
            lens_section + "' if there are such lenses, '" + descriptor_section + "' if there are such descriptors, '" +
            keyframe_section + "', one '" + feature_section + "' for each keyframe, '" + point_section + "', '" +
-           place_section + "' if images were described, '" + class_section + "' if points have classes, in this order");
+           place_section + "' if images were described, '" + class_section + "' if points have classes, '" +
+           inertia_section + "' if estimates of an IMU are kept, in this order");
   }
 
   void check_header() {

@@ -35,7 +35,7 @@ void write_content(AtomicFile& file, const Map& map) {
   const SharedTables shared = tables_of(map, index);
   const MapFeatures& map_features = map.features();
   const bool has_descriptor_section = map_features != MapFeatures();
-  ByteWriter tables, lenses, descriptors, keyframes, points, places, classes;
+  ByteWriter tables, lenses, descriptors, keyframes, points, places, classes, inertia;
   if (has_descriptor_section) write_map_features(map_features, descriptors);
   write_tables(shared, tables);
   write_lenses(shared, lenses);
@@ -43,14 +43,16 @@ void write_content(AtomicFile& file, const Map& map) {
   write_points(map, index, points);
   write_places(map, index, places);
   write_classes(map, index, classes);
+  write_inertia(map, inertia);
 
   FileHeader header;
   header.library_version = HOLDFAST_VERSION;
   const bool has_lenses = lenses.size() > 0;
   const bool has_places = places.size() > 0;
   const bool has_classes = classes.size() > 0;
-  const std::uint32_t optional_sections =
-      (has_lenses ? 1U : 0U) + (has_descriptor_section ? 1U : 0U) + (has_places ? 1U : 0U) + (has_classes ? 1U : 0U);
+  const bool has_inertia = inertia.size() > 0;
+  const std::uint32_t optional_sections = (has_lenses ? 1U : 0U) + (has_descriptor_section ? 1U : 0U) +
+                                          (has_places ? 1U : 0U) + (has_classes ? 1U : 0U) + (has_inertia ? 1U : 0U);
   header.sections = 3 + optional_sections + static_cast<std::uint32_t>(index.keyframes().size());
   header.keyframes = static_cast<std::uint32_t>(index.keyframes().size());
   header.points = static_cast<std::uint32_t>(index.points().size());
@@ -58,7 +60,8 @@ void write_content(AtomicFile& file, const Map& map) {
   header.next_sequence = map.next_sequence();
   header.sensor = static_cast<std::uint32_t>(map.sensor());
   header.file_size = header_size + header.sections * section_header_size + tables.size() + lenses.size() +
-                     descriptors.size() + keyframes.size() + points.size() + places.size() + classes.size();
+                     descriptors.size() + keyframes.size() + points.size() + places.size() + classes.size() +
+                     inertia.size();
   for (const KeyFrameId id : index.keyframes())
     header.file_size += features_size(map.keyframe(id).frame.size(), map_features.descriptors);
 
@@ -76,6 +79,7 @@ void write_content(AtomicFile& file, const Map& map) {
   write_section(file, point_section, points.bytes());
   if (has_places) write_section(file, place_section, places.bytes());
   if (has_classes) write_section(file, class_section, classes.bytes(), 0);
+  if (has_inertia) write_section(file, inertia_section, inertia.bytes(), 0);
 }
 
 }  // namespace

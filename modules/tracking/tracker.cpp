@@ -193,6 +193,13 @@ void Tracker::follow_inertia(FrameResult& result) {
   }
 }
 
+std::optional<MapInertia> Tracker::inertia_of(const MapAccess& map, std::uint32_t submap) const {
+  // The keyframes that were loaded with the map are those of submap 0.
+  const std::optional<MapInertia> kept = submap == 0 ? map->inertia() : std::nullopt;
+  const std::optional<MapInertia> found = context_.submap() == submap ? context_.inertia.estimates() : std::nullopt;
+  return found ? found : kept;
+}
+
 void Tracker::keyframe_added(const MapAccess& map, KeyFrameId keyframe) {
   const Frame& stored = map->keyframe(keyframe).frame;
   context_.current.map_points = stored.map_points;
