@@ -52,8 +52,9 @@ MapRequest Tracker::track(const SensorFrame& sensor_frame, FrameResult& result) 
     health_.follow_map(last_pose.inverse());
   }
   if (history.has_previous()) context_.previous.T_camera_world = history.last_pose(context_.map);
+  const std::optional<InertialPrediction> prediction = context_.inertia.prediction();
   TrackedView view{sensor_frame, history.has_previous() ? &context_.previous : nullptr, context_.current,
-                   context_.submap()};
+                   context_.submap(), prediction ? &*prediction : nullptr};
   const bool was_lost = state_ == TrackerState::lost;
   const PoseSituation situation{.was_lost = was_lost,
                                 .may_be_anywhere = !context_.features_have_depth || recovery_.may_return(),
