@@ -53,6 +53,7 @@ MapRequest Tracker::track(const SensorFrame& sensor_frame, FrameResult& result) 
   }
   if (history.has_previous()) context_.previous.T_camera_world = history.last_pose(context_.map);
   const std::optional<InertialPrediction> prediction = context_.inertia.prediction();
+  context_.current.inertial_deviation = prediction ? prediction->position_deviation : 0.0;
   TrackedView view{sensor_frame, history.has_previous() ? &context_.previous : nullptr, context_.current,
                    context_.submap(), prediction ? &*prediction : nullptr};
   const bool was_lost = state_ == TrackerState::lost;
