@@ -425,6 +425,25 @@ TEST(InertialMotion, AWrongFirstPoseDoesNotCostTheEstimates) {
   EXPECT_TRUE(bench.motion.is_reliable());
 }
 
+TEST(InertialMotion, GoesOnWhereTheMapFindsTheCamera) {
+  Bench bench(5.0);
+  bench.track(3.0);
+  ASSERT_TRUE(bench.motion.is_reliable());
+  const Vector3d gyroscope = bench.motion.filter()->state().bias.gyroscope;
+  bench.begin();
+  const Isometry3d found = bench.measured(bench.time) * Eigen::Translation3d(0.5, 0.0, 0.0);
+  ASSERT_TRUE(bench.motion.contradicts(found, 1.0));
+  bench.motion.relocated();
+  bench.found(found);
+  ASSERT_TRUE(bench.motion.is_started());
+  EXPECT_LT((bench.motion.filter()->state().bias.gyroscope - gyroscope).norm(), 1e-9);
+  for (int i = 0; i < 15; ++i) {
+    bench.begin();
+    bench.found(bench.measured(bench.time) * Eigen::Translation3d(0.5, 0.0, 0.0));
+  }
+  EXPECT_TRUE(bench.motion.is_reliable());
+}
+
 TEST(InertialMotion, AfterALongLossItBeginsWithWhatItKnew) {
   Bench bench(16.0, true);  // the speed of the motion grows without bound
   bench.track(3.0);

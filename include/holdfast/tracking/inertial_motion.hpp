@@ -77,6 +77,9 @@ class InertialMotion {
   void bridged(const Eigen::Isometry3d& T_camera_world) { keep_prediction(T_camera_world); }
   /// The current frame has no pose.
   void lost();
+  /// The map alone gives the current pose, which contradicts the prediction, and found() gets it next: the state begins
+  /// again there, with gravity, biases and calibration as they are.
+  void relocated() { interrupt(); }
   /// Begins again with nothing known, as where the map begins.
   void reset();
   /// The estimates, for maps: of the current state if it is reliable, or else what a filter begins with.
