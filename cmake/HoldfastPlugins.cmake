@@ -25,6 +25,7 @@ set(HOLDFAST_PLUGIN_TABLE
   "matcher         mutual_ratio          matchers/mutual_ratio"
   "matcher         onnx_matcher          matchers/onnx_matcher"
   "filters         depth_clusters        filters/depth_clusters"
+  "filters         inertial_consistency  filters/inertial_consistency"
   "filters         motion_objects        filters/motion_objects"
   "filters         multi_view_depth      filters/multi_view_depth"
   "filters         reprojection_error    filters/reprojection_error"

@@ -86,7 +86,8 @@ void needs_stay(const Maker& maker) {
                                        {" segmentation", n.segmentation},
                                        {" pose_prior", n.pose_prior},
                                        {" matches", n.matches},
-                                       {" evidence", n.evidence}})
+                                       {" evidence", n.evidence},
+                                       {" inertia", n.inertia}})
       if (needed) result += name;
     return result;
   };
@@ -123,10 +124,12 @@ void never_takes_away(const Maker& maker) {
 
 void lives_without_what_may_be_missing(const Maker& maker) {
   FilterScene given(standard_camera(), 4);
-  for (const Shown& shown : {Shown{.previous = false}, Shown{.pose = false}, Shown{.masks = false},
-                             Shown{.previous = false, .pose = false, .masks = false}}) {
+  for (const Shown& shown :
+       {Shown{.previous = false}, Shown{.pose = false}, Shown{.masks = false}, Shown{.inertia = false},
+        Shown{.previous = false, .pose = false, .masks = false, .inertia = false}}) {
     SCOPED_TRACE(std::string("shown: previous frame ") + (shown.previous ? "yes" : "no") + ", pose " +
-                 (shown.pose ? "yes" : "no") + ", masks " + (shown.masks ? "yes" : "no"));
+                 (shown.pose ? "yes" : "no") + ", masks " + (shown.masks ? "yes" : "no") + ", inertia " +
+                 (shown.inertia ? "yes" : "no"));
     expect_sound(given, *maker.make<DynamicFilter>(), shown);
   }
 }

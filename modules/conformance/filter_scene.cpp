@@ -115,11 +115,14 @@ void FilterScene::judge(DynamicFilter& filter, std::size_t moment, const Shown& 
   const bool has_masks = shown.masks && !now.frame.coarse.mask.empty();
   Frame frame = now.frame;
   if (!has_masks) frame.coarse.mask.clear();
+  constexpr double deviation = 0.002;  // [m], [rad]
+  const PredictedPose predicted{T_camera_world, deviation * deviation * Eigen::Matrix<double, 6, 6>::Identity()};
   filter.apply({.sensor_frame = now.sensor,
                 .frame = frame,
                 .previous = shown.previous && moment > 0 ? &moments_[moment - 1].frame : nullptr,
                 .map = map_,
                 .T_camera_world = shown.pose ? &T_camera_world : nullptr,
+                .inertial_prediction = shown.inertia ? &predicted : nullptr,
                 .segmentation = has_masks && moment % 2 == 1 ? &now.segmentation : nullptr,
                 .classes = has_masks ? &Scene::classes() : nullptr},
                evidence);

@@ -18,7 +18,7 @@ struct Moment {
 
 /// What of a moment a filter is shown.
 struct Shown {
-  bool previous = true, pose = true, masks = true;
+  bool previous = true, pose = true, masks = true, inertia = true;
 };
 
 /// The scene as filters see it: features with depth, descriptors and map points, a map of two keyframes, masks.

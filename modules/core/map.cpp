@@ -170,6 +170,7 @@ void Map::remove_all() {
   removed_keyframes_.clear();
   next_sequence_ = 0;
   last_submap_ = 0;
+  inertia_.reset();
   ++version_;
 }
 
@@ -180,6 +181,7 @@ void Map::clear() {
   next_sequence_ = 0;
   last_submap_ = 0;
   sensor_ = Sensor::rgbd;
+  inertia_.reset();
   ++version_;
 }
 

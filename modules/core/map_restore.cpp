@@ -210,6 +210,7 @@ void Map::restore(MapContent content) {
   sensor_ = content.sensor;
   features_ = std::move(content.features);
   classes_ = std::move(content.classes);
+  inertia_ = content.inertia;
   version_ = version + 1;
 }
 

@@ -73,6 +73,9 @@ class ContentReader {
       expect(has_classes_ && !has_votes_);
       read_votes(container_.payload(), content_.map.classes.size(), content_.map.points);
       has_votes_ = true;
+    } else if (type == inertia_section) {
+      expect(has_points_ && !content_.map.inertia);
+      content_.map.inertia = read_inertia(container_.payload());
     } else if (container_.required()) {
       container_.fail("found a section '" + type +
                       "' that this Holdfast does not know and cannot leave out: use a newer Holdfast");
@@ -85,7 +88,8 @@ class ContentReader {
            lens_section + "' if there are such lenses, '" + descriptor_section + "' if there are such descriptors, '" +
            keyframe_section + "', one '" + feature_section + "' for each keyframe, '" + point_section + "', '" +
            place_section + "' if images were described, '" + class_section + "' if points have classes, '" +
-           vote_section + "' if they have votes, in this order");
+           vote_section + "' if they have votes, '" + inertia_section +
+           "' if estimates of an IMU are kept, in this order");
   }
 
   void check_header() {

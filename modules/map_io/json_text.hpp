@@ -6,10 +6,12 @@
 #include <charconv>
 #include <cmath>
 #include <concepts>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "holdfast/core/camera.hpp"
+#include "holdfast/core/map_inertia.hpp"
 
 namespace holdfast::map_io {
 
@@ -85,6 +87,13 @@ class JsonText {
                  << R"(,"k3":)" << d.k3 << R"(,"k4":)" << d.k4 << R"(,"k5":)" << d.k5 << R"(,"k6":)" << d.k6
                  << R"(,"lens":")" << lens_name(d.lens) << R"(","baseline":)" << camera.baseline << R"(,"frame_rate":)"
                  << camera.frame_rate << "}";
+  }
+  /// Null without any.
+  JsonText& operator<<(const std::optional<MapInertia>& inertia) {
+    if (!inertia) return *this << "null";
+    return *this << R"({"gravity":)" << inertia->gravity << R"(,"scale":)" << inertia->scale << R"(,"gyroscope_bias":)"
+                 << inertia->bias.gyroscope << R"(,"accelerometer_bias":)" << inertia->bias.accelerometer
+                 << R"(,"time_offset":)" << inertia->time_offset << "}";
   }
   template <class Values>
   JsonText& list(const Values& values, std::string_view separator) {

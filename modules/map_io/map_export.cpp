@@ -129,7 +129,7 @@ std::string map_json(const Map& map) {
   append_pairs(map, index, covisibility, loops);
   json << "],\n\"covisibility\":[" << covisibility.text() << "],\n\"loops\":[" << loops.text() << "],\n\"classes\":[";
   for (std::size_t i = 0; i < map.classes().size(); ++i) (json << (i == 0 ? "" : ",")).quote(map.classes()[i]);
-  json << "],\n\"points\":[";
+  json << "],\n\"inertia\":" << map.inertia() << ",\n\"points\":[";
   for (std::size_t i = 0; i < index.points().size(); ++i) {
     json << (i == 0 ? "\n" : ",\n");
     append_point(map.point(index.points()[i]), i, map, index, json);

@@ -50,6 +50,12 @@ std::string classes_text(const MapInfo& info) {
   return std::move((text << "unknown " << unknown).text());
 }
 
+std::string inertia_text(const MapInertia& inertia) {
+  return "down is " + corner(inertia.gravity.normalized()) + ", biases of the gyroscope " +
+         fixed(inertia.bias.gyroscope.norm(), 4) + " rad/s, of the accelerometer " +
+         fixed(inertia.bias.accelerometer.norm(), 3) + " m/s^2";
+}
+
 void add_keyframes(const std::vector<KeyFrame>& keyframes, MapInfo& info) {
   info.keyframes = keyframes.size();
   for (const KeyFrame& keyframe : keyframes) {
@@ -91,6 +97,7 @@ MapInfo read_map_info(const std::filesystem::path& file) {
   info.features = content.features;
   for (const auto& camera : content.tables.cameras) info.cameras.push_back(*camera);
   add_keyframes(content.map.keyframes, info);
+  info.inertia = content.map.inertia;
   for (const std::string& name : content.map.classes) info.classes.emplace_back(name, 0);
   add_points(content.map.points, info);
   return info;
@@ -108,6 +115,7 @@ std::string to_text(const MapInfo& info) {
                                      std::to_string(info.covisibility_edges) + " covisibility edges");
   rows.emplace_back("points", std::to_string(info.points) + ", " + std::to_string(info.observations) + " observations");
   if (!info.classes.empty()) rows.emplace_back("classes", classes_text(info));
+  if (info.inertia) rows.emplace_back("inertia", inertia_text(*info.inertia));
   rows.emplace_back("loops", std::to_string(info.loops));
   if (info.keyframes > 0)
     rows.emplace_back("time", fixed(info.last_timestamp - info.first_timestamp, 2) + " s, from " +
@@ -140,10 +148,11 @@ std::string to_json(const MapInfo& info) {
   for (std::size_t k = 0; k < info.classes.size(); ++k)
     (json << (k == 0 ? "" : ", ")).quote(info.classes[k].first) << ": " << info.classes[k].second;
   json << "}"
-       << ",\n  \"covisibility_edges\": " << info.covisibility_edges << ",\n  \"loops\": " << info.loops
-       << ",\n  \"next_sequence\": " << info.next_sequence << ",\n  \"first_timestamp\": " << info.first_timestamp
-       << ",\n  \"last_timestamp\": " << info.last_timestamp << ",\n  \"minimum_point\": " << info.minimum_point
-       << ",\n  \"maximum_point\": " << info.maximum_point << "\n}\n";
+       << ",\n  \"inertia\": " << info.inertia << ",\n  \"covisibility_edges\": " << info.covisibility_edges
+       << ",\n  \"loops\": " << info.loops << ",\n  \"next_sequence\": " << info.next_sequence
+       << ",\n  \"first_timestamp\": " << info.first_timestamp << ",\n  \"last_timestamp\": " << info.last_timestamp
+       << ",\n  \"minimum_point\": " << info.minimum_point << ",\n  \"maximum_point\": " << info.maximum_point
+       << "\n}\n";
   return std::move(json.text());
 }
 

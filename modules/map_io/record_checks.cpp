@@ -26,6 +26,13 @@ std::string wrong(const std::string& what, double found, const std::string& expe
 
 bool within(double value, double minimum, double maximum) { return value >= minimum && value <= maximum; }
 
+std::string trouble_of_rotation(const Eigen::Matrix3d& rotation, const std::string& of) {
+  const double error = (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
+  if (!(error <= rotation_tolerance)) return wrong("departure of " + of + " from a rotation", error, "at most 1e-4");
+  if (!(rotation.determinant() > 0)) return wrong("determinant of the rotation", rotation.determinant(), "1");
+  return "";
+}
+
 }  // namespace
 
 std::string trouble_of_numbers(const Camera& camera) {
@@ -73,10 +80,8 @@ std::string trouble_of(const KeyFrame& keyframe) {
   for (int i = 0; i < 3; ++i)
     if (!within(translation[i], -largest_position, largest_position))
       return wrong("translation of the pose", translation[i], "-1e9 to 1e9 m");
-  const Eigen::Matrix3d rotation = frame.T_camera_world.linear();
-  const double error = (rotation.transpose() * rotation - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (!(error <= rotation_tolerance)) return wrong("departure of the pose from a rotation", error, "at most 1e-4");
-  if (!(rotation.determinant() > 0)) return wrong("determinant of the rotation", rotation.determinant(), "1");
+  if (std::string trouble = trouble_of_rotation(frame.T_camera_world.linear(), "the pose"); !trouble.empty())
+    return trouble;
   for (const CovisibilityEdge& edge : keyframe.covisible)
     if (edge.weight < 1) return wrong("weight of a covisibility edge", edge.weight, "at least 1");
   return "";
@@ -135,6 +140,24 @@ std::string trouble_of(const MapPoint& point) {
   if (point.visible_count < 1) return wrong("visible count", point.visible_count, "at least 1");
   if (point.observations.empty()) return wrong("number of observations", 0, "at least 1");
   return "";
+}
+
+std::string trouble_of(const MapInertia& inertia) {
+  if (!within(inertia.gravity.norm(), 1.0, 100.0))
+    return wrong("magnitude of gravity", inertia.gravity.norm(), "1 to 100 m/s^2");
+  if (!within(inertia.scale, 1e-6, 1e6)) return wrong("scale", inertia.scale, "1e-6 to 1e6");
+  const auto of_bias = [](const Eigen::Vector3d& bias) { return within(bias.norm(), 0, 100); };
+  if (!of_bias(inertia.bias.gyroscope) || !of_bias(inertia.bias.accelerometer)) return "a bias is not within 100";
+  for (const double offset : {inertia.time_offset, inertia.calibrated_time_offset})
+    if (!within(offset, -10, 10)) return wrong("time offset", offset, "-10 to 10 s");
+  for (const double deviation : {inertia.gravity_deviation, inertia.gyroscope_deviation,
+                                 inertia.accelerometer_deviation, inertia.mounting_deviation,
+                                 inertia.time_offset_deviation, inertia.position_deviation, inertia.rotation_deviation})
+    if (!within(deviation, 0, 100)) return wrong("standard deviation", deviation, "0 to 100");
+  if (!within(inertia.T_body_camera.translation().norm(), 0, 100))
+    return "T_body_camera has a translation of more than 100 m";
+  std::string trouble = trouble_of_rotation(inertia.mounting, "the correction of T_body_camera");
+  return trouble.empty() ? trouble_of_rotation(inertia.T_body_camera.linear(), "T_body_camera") : trouble;
 }
 
 }  // namespace holdfast::map_io

@@ -551,4 +551,45 @@ void read_votes(ByteReader reader, std::size_t classes, std::vector<MapPoint>& p
   reader.expect_end();
 }
 
+namespace {
+
+/// Calls `number` with every number of the section, in its order.
+template <class Inertia>
+void for_each_number(Inertia& inertia, auto&& number) {
+  const auto vector = [&](auto& v) {
+    for (int i = 0; i < 3; ++i) number(v[i]);
+  };
+  vector(inertia.gravity);
+  number(inertia.scale);
+  vector(inertia.bias.gyroscope);
+  vector(inertia.bias.accelerometer);
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) number(inertia.mounting(row, column));
+  number(inertia.time_offset);
+  for (auto* deviation : {&inertia.gravity_deviation, &inertia.gyroscope_deviation, &inertia.accelerometer_deviation,
+                          &inertia.mounting_deviation, &inertia.time_offset_deviation, &inertia.position_deviation,
+                          &inertia.rotation_deviation})
+    number(*deviation);
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 4; ++column) number(inertia.T_body_camera(row, column));
+  number(inertia.calibrated_time_offset);
+}
+
+}  // namespace
+
+void write_inertia(const Map& map, ByteWriter& writer) {
+  if (!map.inertia()) return;
+  const std::string trouble = trouble_of(*map.inertia());
+  HOLDFAST_CHECK(trouble.empty(), "inertia: " << trouble);
+  for_each_number(*map.inertia(), [&](const double& value) { writer.put(value); });
+}
+
+MapInertia read_inertia(ByteReader reader) {
+  MapInertia inertia;
+  for_each_number(inertia, [&](double& value) { value = reader.get<double>(); });
+  reader.expect_end();
+  if (const std::string trouble = trouble_of(inertia); !trouble.empty()) reader.fail(trouble);
+  return inertia;
+}
+
 }  // namespace holdfast::map_io

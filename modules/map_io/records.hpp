@@ -20,9 +20,10 @@ inline constexpr const char* descriptor_section = "DESC";  ///< absent for ORB's
 inline constexpr const char* keyframe_section = "KEYF";
 inline constexpr const char* feature_section = "FEAT";
 inline constexpr const char* point_section = "POIN";
-inline constexpr const char* place_section = "PLAC";  ///< only if images of keyframes were described
-inline constexpr const char* class_section = "CLAS";  ///< only if points have classes; not required
-inline constexpr const char* vote_section = "VOTE";   ///< only if points have votes; not required
+inline constexpr const char* place_section = "PLAC";    ///< only if images of keyframes were described
+inline constexpr const char* class_section = "CLAS";    ///< only if points have classes; not required
+inline constexpr const char* vote_section = "VOTE";     ///< only if points have votes; not required
+inline constexpr const char* inertia_section = "INER";  ///< only if the map keeps estimates of an IMU; not required
 
 /// Cameras and pyramids that keyframes share; keyframes name them by position.
 struct SharedTables {
@@ -55,6 +56,7 @@ std::string trouble_of(const ScalePyramid& pyramid);
 std::string trouble_of(const KeyFrame& keyframe);  ///< without its features
 std::string trouble_of_features(const Frame& frame);
 std::string trouble_of(const MapPoint& point);
+std::string trouble_of(const MapInertia& inertia);
 
 /// Writing throws CheckError, with the entry's trouble, for a map that no reader would take.
 SharedTables tables_of(const Map& map, const DenseIndex& index);
@@ -73,6 +75,8 @@ void write_places(const Map& map, const DenseIndex& index, ByteWriter& writer);
 void write_classes(const Map& map, const DenseIndex& index, ByteWriter& writer);
 /// Map::class_votes() of all points; writes nothing if there are none.
 void write_votes(const Map& map, const DenseIndex& index, ByteWriter& writer);
+/// Writes nothing if the map keeps none.
+void write_inertia(const Map& map, ByteWriter& writer);
 
 /// Reading throws InputError.
 SharedTables read_tables(ByteReader reader);
@@ -92,5 +96,6 @@ void read_places(ByteReader reader, std::vector<KeyFrame>& keyframes);
 std::vector<std::string> read_classes(ByteReader reader, std::vector<MapPoint>& points);
 /// Fills MapPoint::earlier_votes of the points; `classes`: number of classes of the map.
 void read_votes(ByteReader reader, std::size_t classes, std::vector<MapPoint>& points);
+MapInertia read_inertia(ByteReader reader);
 
 }  // namespace holdfast::map_io

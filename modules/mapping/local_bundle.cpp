@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <mutex>
+#include <numeric>
+#include <optional>
 #include <utility>
 
 #include "holdfast/geometry/se3.hpp"
@@ -46,8 +48,10 @@ void fix_gauge(const Map& map, LocalBundle& bundle) {
   poses[static_cast<std::size_t>(oldest - bundle.keyframes.begin())].fixed = true;
 }
 
-/// Free are the given keyframes and all points that they observe; other keyframes that observe these points are fixed.
-LocalBundle build_bundle(const Map& map, std::vector<KeyFrameId> free, const MappingSettings& settings) {
+/// Free are the given keyframes, except `held`, and all points that they observe; other keyframes that observe these
+/// points are fixed.
+LocalBundle build_bundle(const Map& map, std::vector<KeyFrameId> free, const std::vector<KeyFrameId>& held,
+                         const MappingSettings& settings) {
   LocalBundle bundle;
   bundle.keyframes = std::move(free);
   std::vector<KeyFrameId>& keyframes = bundle.keyframes;
@@ -78,10 +82,40 @@ LocalBundle build_bundle(const Map& map, std::vector<KeyFrameId> free, const Map
   }
   for (std::size_t i = 0; i < keyframes.size(); ++i) {
     const KeyFrame& keyframe = map.keyframe(keyframes[i]);
-    problem.poses.push_back({keyframe.frame.T_camera_world, i >= moving || keyframe.sequence == 0});
+    const bool is_held = std::find(held.begin(), held.end(), keyframes[i]) != held.end();
+    problem.poses.push_back({keyframe.frame.T_camera_world, i >= moving || keyframe.sequence == 0 || is_held});
   }
   fix_gauge(map, bundle);
   return bundle;
+}
+
+/// The keyframes that few points constrain and whose adjusted poses contradict inertial measurements, with those that
+/// depend on them. Keyframes behind a view that people hid may share a handful of points with the rest of the map, or
+/// only with each other; such points move all of them by decimetres.
+std::vector<KeyFrameId> find_diverged(const LocalBundle& bundle, const Map& map) {
+  constexpr int few_points = 2 * minimum_shared_points;
+  std::vector<std::size_t> by_age(bundle.shared_points.size());
+  std::iota(by_age.begin(), by_age.end(), std::size_t{0});
+  const auto keyframe = [&](std::size_t i) -> const KeyFrame& { return map.keyframe(bundle.keyframes[i]); };
+  std::sort(by_age.begin(), by_age.end(),
+            [&](std::size_t a, std::size_t b) { return keyframe(a).sequence < keyframe(b).sequence; });
+  std::vector<KeyFrameId> diverged;
+  for (const std::size_t i : by_age) {
+    const double limit = inertial_divergence(keyframe(i).frame);
+    const KeyFrameId parent = keyframe(i).parent;
+    if (bundle.problem.poses[i].fixed || limit <= 0.0 || !parent.valid() || bundle.shared_points[i] >= few_points)
+      continue;
+    Eigen::Isometry3d motion = bundle.problem.poses[i].T_camera_world * keyframe(i).frame.T_world_camera();
+    const auto found = std::find(bundle.keyframes.begin(), bundle.keyframes.end(), parent);
+    if (found != bundle.keyframes.end()) {
+      const auto p = static_cast<std::size_t>(found - bundle.keyframes.begin());
+      motion = bundle.problem.poses[i].T_camera_world * bundle.problem.poses[p].T_camera_world.inverse() *
+               keyframe(p).frame.T_camera_world * keyframe(i).frame.T_world_camera();
+    }
+    const bool depends = std::find(diverged.begin(), diverged.end(), parent) != diverged.end();
+    if (depends || geometry::exceeds(motion, limit, limit)) diverged.push_back(bundle.keyframes[i]);
+  }
+  return diverged;
 }
 
 void apply_poses(const LocalBundle& bundle, Map& map) {
@@ -120,15 +154,26 @@ BundleRemovals apply_bundle(const LocalBundle& bundle, Map& map) {
 
 BundleRemovals adjust_bundle(Map& map, MapMutex& mutex, KeyFrameId keyframe, bool frees_latest,
                              const MappingSettings& settings, Optimizer& optimizer, const std::atomic<bool>& stop) {
-  LocalBundle bundle;
-  {
+  const auto solve = [&](const std::vector<KeyFrameId>& held) -> std::optional<LocalBundle> {
+    LocalBundle bundle;
+    {
+      const std::lock_guard lock(mutex);
+      const int max_neighbours = settings.bundle_keyframes - 1;
+      bundle = build_bundle(map, free_keyframes(map, keyframe, frees_latest, max_neighbours), held, settings);
+    }
+    if (!optimizer.optimize_bundle(bundle.problem, stop).usable) return std::nullopt;
+    return bundle;
+  };
+  std::optional<LocalBundle> bundle = solve({});
+  if (!bundle) return {};
+  const std::vector<KeyFrameId> diverged = [&] {
     const std::lock_guard lock(mutex);
-    bundle = build_bundle(map, free_keyframes(map, keyframe, frees_latest, settings.bundle_keyframes - 1), settings);
-  }
-  const BundleSummary summary = optimizer.optimize_bundle(bundle.problem, stop);
-  if (!summary.usable) return {};
+    return find_diverged(*bundle, map);
+  }();
+  if (!diverged.empty()) bundle = solve(diverged);
+  if (!bundle) return {};
   const std::lock_guard lock(mutex);
-  return apply_bundle(bundle, map);
+  return apply_bundle(*bundle, map);
 }
 
 }  // namespace holdfast

@@ -47,6 +47,7 @@ bool MovingWorld::evaluate(FilterStage stage, const TrackedView& view, StageTime
   FilterContext inputs = context(view.sensor_frame, view.frame);
   inputs.previous = view.previous;
   inputs.submap = view.submap;
+  inputs.inertial_prediction = view.inertial_prediction;
   if (stage != FilterStage::before_matching) inputs.T_camera_world = &view.frame.T_camera_world;
   filters_.evaluate(stage, inputs);
   return true;

@@ -42,6 +42,19 @@ Random random_of(std::uint64_t seed, std::uint64_t stream, std::uint64_t index) 
   return Random(seed).fork(0x7065727475726221ULL).fork(stream).fork(index);
 }
 
+void make_black(cv::Mat& image) {
+  if (!image.empty()) image = cv::Mat::zeros(image.size(), image.type());
+}
+
+/// Leaves nothing to see, also of the objects of the ground truth.
+void cover(SensorFrame& frame) {
+  for (cv::Mat* image : {&frame.colour, &frame.depth, &frame.right}) make_black(*image);
+  if (frame.truth == nullptr) return;
+  auto truth = std::make_shared<FrameTruth>(*frame.truth);
+  for (cv::Mat* image : {&truth->object_mask, &truth->class_labels}) make_black(*image);
+  frame.truth = std::move(truth);
+}
+
 }  // namespace
 
 Camera perturbed_camera(Camera camera, const PerturbationSettings& settings, std::uint64_t seed_of_run) {
@@ -105,6 +118,7 @@ std::optional<SensorFrame> PerturbedSource::next() {
     if (settings_.occluder > 0.0) occlude(*frame);
     if (settings_.rolling_shutter > 0.0) shear(*frame);
     if (!frame->depth.empty()) spoil_depth(*frame);
+    if (is_covered(frame->index)) cover(*frame);
     spoil_images(*frame);
   }
   frame->timestamp = delayed(frame->timestamp, frame->index, last_timestamp_);
@@ -207,6 +221,13 @@ void PerturbedSource::occlude(SensorFrame& frame) {
     truth->class_labels(area).setTo(0);
   }
   frame.truth = std::move(truth);
+}
+
+bool PerturbedSource::is_covered(std::uint64_t index) const {
+  constexpr double usual_rate = 30.0;  // frames per second
+  const double rate = camera_.frame_rate > 0.0 ? camera_.frame_rate : usual_rate;
+  const double time = static_cast<double>(index) / rate - static_cast<double>(settings_.covered_after);
+  return time >= 0.0 && time < settings_.covered;
 }
 
 void PerturbedSource::shear(SensorFrame& frame) const {

@@ -303,7 +303,9 @@ void Pipeline::finish() {
   {
     const LockedMap locked(s.map, LockPriority::background);
     s.flow.in_background([&](StageTimes& times) { s.tracker.finish(locked, times); });
-    s.flow.keep_submap(locked, s.tracker.main_submap(locked));
+    const std::uint32_t submap = s.tracker.main_submap(locked);
+    if (!s.parts.localise_only) locked->set_inertia(s.tracker.inertia_of(locked, submap));
+    s.flow.keep_submap(locked, submap);
   }
   s.flow.adjust_after_last_loop();
   s.flow.finish_surface();

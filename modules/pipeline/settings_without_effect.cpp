@@ -22,6 +22,11 @@ void PipelineBuilder::check_effects() {
       suspect(filters_[i].place, "the filter '" + filters_[i].name +
                                      "' starts from the evidence of filters that run before it, and there is none: it "
                                      "finds nothing; add one before it, such as 'multi_view_depth'");
+    if (needs.inertia && !(parts_.tracking.inertia && parts_.imu))
+      suspect(filters_[i].place,
+              "the filter '" + filters_[i].name +
+                  "' judges by inertial measurements, which tracking does not use: it finds nothing; set "
+                  "tracking.inertia, with a source that has an IMU, or remove the filter");
   }
   // Without any filter the configuration has said so.
   if (segmenter_ && segmenter_->name != "none" && !filters_.empty() && !uses_masks)

@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
+#include <cmath>
 
 #include "holdfast/geometry/preintegration.hpp"
 
@@ -37,6 +38,15 @@ InertialFilter::InertialFilter(const geometry::InertialState& state, const Eigen
   covariance_(time_index, time_index) = deviations.time_offset * deviations.time_offset;
   covariance_.block<3, 3>(gravity_index, gravity_index) =
       deviations.direction * deviations.direction * gravity.squaredNorm() * tangent_projector(gravity);
+}
+
+InertialFilter::Deviations InertialFilter::deviations() const {
+  using namespace geometry::inertial;
+  const auto largest = [this](int index) { return std::sqrt(covariance_.diagonal().segment<3>(index).maxCoeff()); };
+  return {largest(position),       largest(rotation),
+          largest(velocity),       largest(gyroscope),
+          largest(accelerometer),  largest(gravity_index) / gravity_.norm(),
+          largest(mounting_index), std::sqrt(covariance_(time_index, time_index))};
 }
 
 void InertialFilter::predict(const geometry::Preintegration& motion, const Eigen::Vector3d& angular_velocity) {

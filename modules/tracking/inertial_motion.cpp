@@ -25,6 +25,12 @@ constexpr int tolerated_later = 15, tolerated_at_start = 2, tolerated_refusals =
 constexpr double most_lost_time = 10.0;  // [s]; then the velocity says nothing
 /// Of calibrations: rotation [rad], time offset [s].
 constexpr double mounting_deviation = 0.015, time_offset_deviation = 0.005;
+/// Where the estimates of an earlier run are known. Biases differ each time that a sensor is switched on.
+constexpr double unknown_velocity = 1.0;  // [m/s]
+constexpr double gyroscope_repeatability = 0.003, accelerometer_repeatability = 0.03;
+constexpr double gravity_repeatability = 0.003, mounting_repeatability = 0.001, time_repeatability = 0.001;
+constexpr double largest_first_deviation = 0.02;  // of the first pose [m]
+constexpr int most_known_trials = 3;
 
 /// The samples with one at each end of the interval, where one is missing by at most `tolerance` [s].
 std::vector<ImuSample> covering(std::vector<ImuSample> samples, double begin, double end, double tolerance) {
@@ -95,6 +101,7 @@ void InertialMotion::begin_frame(const SensorFrame& frame) {
   if (!imu_) return;
   now_.reset();
   is_corrected_ = is_refused_ = false;
+  rate_.reset();
   const std::optional<double> before = std::exchange(timestamp_, frame.timestamp);
   if (!before) return;
   const double tolerance = 2.0 / imu_->rate;
@@ -102,14 +109,14 @@ void InertialMotion::begin_frame(const SensorFrame& frame) {
   const ImuBias bias = last_ ? last_->state().bias : ImuBias();
   const auto motion = geometry::preintegrate(samples, *before, frame.timestamp, imu_->noise, bias);
   if (!motion || saturates(frame)) {
-    reset();
-    timestamp_ = frame.timestamp;
+    interrupt();
     return;
   }
+  rate_ = rate_at(samples, frame.timestamp);
   turn_rate_ = geometry::log_so3(motion->delta().rotation).norm() / motion->duration();
   if (last_) {
     now_ = last_;
-    now_->predict(*motion, rate_at(samples, frame.timestamp));
+    now_->predict(*motion, *rate_);
   } else {
     append_imu(samples_, samples);
   }
@@ -154,7 +161,8 @@ std::optional<Eigen::Isometry3d> InertialMotion::step() const {
 
 std::optional<InertialPrediction> InertialMotion::prediction() const {
   if (!is_reliable()) return std::nullopt;
-  InertialPrediction result{camera_pose(now_->pose()), {}, 0.0, 0.0};
+  InertialPrediction result;
+  result.T_camera_world = camera_pose(now_->pose());
   const Eigen::Matrix3d R_camera_body = imu_->T_body_camera.linear().transpose() * now_->mounting();
   const Eigen::Vector3d camera_in_body = now_->mounting().transpose() * imu_->T_body_camera.translation();
   Eigen::Matrix<double, 6, 6> to_camera = Eigen::Matrix<double, 6, 6>::Zero();
@@ -187,7 +195,7 @@ bool InertialMotion::contradicts(const Eigen::Isometry3d& T_camera_world, double
 void InertialMotion::count_refusal(const Eigen::Isometry3d& T_camera_world, double factor) {
   if (is_refused_ || !contradicts(T_camera_world, factor)) return;
   is_refused_ = true;
-  if (++refusals_ > tolerated_refusals) reset();
+  if (++refusals_ > tolerated_refusals) refute();
 }
 
 bool InertialMotion::correct(const Eigen::Isometry3d& T_camera_world, const Eigen::Matrix<double, 6, 6>& covariance,
@@ -221,6 +229,8 @@ void InertialMotion::found(const Eigen::Isometry3d& T_camera_world, double devia
     last_ = now_;
   } else if (now_) {
     learn(T_camera_world, deviation);
+  } else if (known_ && rate_ && deviation * known_->scale <= largest_first_deviation) {
+    begin_with_known(T_camera_world);
   } else {
     tracked_.push_back(*timestamp_);
     if (*timestamp_ >= next_start_) try_to_start(past_pose);
@@ -236,7 +246,7 @@ void InertialMotion::learn(const Eigen::Isometry3d& T_camera_world, double devia
     confirmations_ = std::min(confirmations_ + 1, required_confirmations);
     contradictions_ = refusals_ = 0;
   } else if (++contradictions_ > (confirmations_ < required_confirmations ? tolerated_at_start : tolerated_later)) {
-    reset();
+    refute();
     return;
   }
   last_ = now_;
@@ -252,7 +262,86 @@ void InertialMotion::lost() {
   if (now_ && *timestamp_ - found_time_ <= most_lost_time)
     last_ = now_;
   else if (last_)
-    reset();
+    interrupt();
+}
+
+/// The state is lost, and what changes slowly is kept.
+void InertialMotion::interrupt() {
+  const std::optional<MapInertia> known = estimates();
+  reset();
+  known_ = known;
+}
+
+/// The state was wrong. If no image confirmed it, perhaps only the pose was that it began with.
+void InertialMotion::refute() {
+  const bool tries_again = confirmations_ < required_confirmations && known_trials_ < most_known_trials;
+  const std::optional<MapInertia> known = tries_again ? known_ : std::nullopt;
+  const int trials = known_trials_;
+  reset();
+  known_ = known;
+  if (known_) known_trials_ = trials;
+}
+
+std::optional<MapInertia> InertialMotion::estimates() const {
+  if (!last_ || confirmations_ < required_confirmations) return known_;
+  MapInertia result;
+  result.gravity = last_->gravity();
+  result.scale = scale_;
+  result.bias = last_->state().bias;
+  result.mounting = last_->mounting();
+  result.time_offset = last_->time_offset();
+  const InertialFilter::Deviations deviations = last_->deviations();
+  result.gravity_deviation = deviations.direction;
+  result.gyroscope_deviation = deviations.gyroscope;
+  result.accelerometer_deviation = deviations.accelerometer;
+  result.mounting_deviation = deviations.mounting;
+  result.time_offset_deviation = deviations.time_offset;
+  result.position_deviation = deviations_.position;
+  result.rotation_deviation = deviations_.rotation;
+  result.T_body_camera = imu_->T_body_camera;
+  result.calibrated_time_offset = imu_->time_offset;
+  return result;
+}
+
+bool InertialMotion::is_calibrated_as(const MapInertia& known) const {
+  constexpr double tolerance = 1e-6;
+  return (imu_->T_body_camera.matrix() - known.T_body_camera.matrix()).cwiseAbs().maxCoeff() < tolerance &&
+         std::abs(imu_->time_offset - known.calibrated_time_offset) < tolerance;
+}
+
+/// Biases and corrections of the calibration are used for the same calibration only, gravity and scale always.
+void InertialMotion::begin_with_known(const Eigen::Isometry3d& T_camera_world) {
+  const MapInertia& known = *known_;
+  ++known_trials_;
+  scale_ = scale_is_known_ ? 1.0 : known.scale;
+  deviations_ = {known.position_deviation, known.rotation_deviation};
+  const geometry::InertialStartOptions priors;
+  InertialFilter::Deviations deviations{known.position_deviation,
+                                        known.rotation_deviation,
+                                        unknown_velocity,
+                                        priors.gyroscope_bias_deviation,
+                                        priors.accelerometer_bias_deviation,
+                                        std::hypot(known.gravity_deviation, gravity_repeatability),
+                                        mounting_deviation,
+                                        time_offset_deviation};
+  geometry::InertialState state;
+  state.T_world_body = body_pose(T_camera_world);
+  const bool is_same = is_calibrated_as(known);
+  if (is_same) {
+    state.bias = known.bias;
+    const Eigen::Vector3d turn = known.time_offset * (*rate_ - known.bias.gyroscope);
+    state.T_world_body.linear() =
+        state.T_world_body.linear() * known.mounting * geometry::exp_so3(-turn).toRotationMatrix();
+    deviations.gyroscope = std::hypot(known.gyroscope_deviation, gyroscope_repeatability);
+    deviations.accelerometer = std::hypot(known.accelerometer_deviation, accelerometer_repeatability);
+    deviations.mounting = std::hypot(known.mounting_deviation, mounting_repeatability);
+    deviations.time_offset = std::hypot(known.time_offset_deviation, time_repeatability);
+  }
+  last_.emplace(state, known.gravity, deviations);
+  if (is_same) last_->calibrate(known.mounting, known.time_offset);
+  confirmations_ = contradictions_ = refusals_ = 0;
+  samples_.clear();
+  tracked_.clear();
 }
 
 void InertialMotion::reset() {
@@ -261,7 +350,8 @@ void InertialMotion::reset() {
   anchor_.reset();
   samples_.clear();
   tracked_.clear();
-  confirmations_ = contradictions_ = refusals_ = 0;
+  known_.reset();
+  confirmations_ = contradictions_ = refusals_ = known_trials_ = 0;
   scale_ = 1.0;
   next_start_ = 0.0;
 }

@@ -52,8 +52,10 @@ MapRequest Tracker::track(const SensorFrame& sensor_frame, FrameResult& result) 
     health_.follow_map(last_pose.inverse());
   }
   if (history.has_previous()) context_.previous.T_camera_world = history.last_pose(context_.map);
+  const std::optional<InertialPrediction> prediction = context_.inertia.prediction();
+  context_.current.inertial_deviation = prediction ? prediction->position_deviation : 0.0;
   TrackedView view{sensor_frame, history.has_previous() ? &context_.previous : nullptr, context_.current,
-                   context_.submap()};
+                   context_.submap(), prediction ? &*prediction : nullptr};
   const bool was_lost = state_ == TrackerState::lost;
   const PoseSituation situation{.was_lost = was_lost,
                                 .may_be_anywhere = !context_.features_have_depth || recovery_.may_return(),
@@ -184,6 +186,9 @@ void Tracker::follow_inertia(FrameResult& result) {
   } else if (result.status == TrackingStatus::inertial) {
     context_.inertia.bridged(T_camera_world);
   } else {
+    // Found by the map alone after a bridge that drifted.
+    if (result.method == TrackingMethod::recovered && context_.inertia.contradicts(T_camera_world, 1.0))
+      context_.inertia.relocated();
     const auto past_pose = [this](double timestamp) -> std::optional<Eigen::Isometry3d> {
       const auto pose = context_.history.past_pose(timestamp, context_.map);
       return pose ? std::optional(pose->T_camera_world) : std::nullopt;
@@ -192,6 +197,13 @@ void Tracker::follow_inertia(FrameResult& result) {
     const double deviation = result.inliers > 0 ? context_.estimator.position_deviation() : deviation_of_depth;
     context_.inertia.found(T_camera_world, deviation, past_pose);
   }
+}
+
+std::optional<MapInertia> Tracker::inertia_of(const MapAccess& map, std::uint32_t submap) const {
+  // The keyframes that were loaded with the map are those of submap 0.
+  const std::optional<MapInertia> kept = submap == 0 ? map->inertia() : std::nullopt;
+  const std::optional<MapInertia> found = context_.submap() == submap ? context_.inertia.estimates() : std::nullopt;
+  return found ? found : kept;
 }
 
 void Tracker::keyframe_added(const MapAccess& map, KeyFrameId keyframe) {

@@ -20,7 +20,9 @@ TrackingContext::TrackingContext(const TrackingSettings& given, const TrackerPar
       relocaliser(settings, {parts.detector, moving_world, map, matcher, estimator, history}, parts.seed),
       shutter(depth.allows_motion_compensation() ? settings.rolling_shutter : RollingShutterMode::off,
               parts.camera.readout),
-      inertia(settings.inertia ? parts.imu : std::nullopt, features_have_depth) {}
+      inertia(settings.inertia ? parts.imu : std::nullopt, features_have_depth) {
+  if (map.inertia()) inertia.begin_with(*map.inertia());
+}
 
 Eigen::Isometry3d TrackingContext::predicted_step() const {
   if (const std::optional<Eigen::Isometry3d> step = inertia.step()) return *step;

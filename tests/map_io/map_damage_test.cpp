@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "holdfast/map_io/map_info.hpp"
+#include "map_io/example_inertia.hpp"
 #include "map_io/map_files.hpp"
 
 namespace holdfast {
@@ -233,6 +234,28 @@ TEST_F(MapDamage, Votes) {
   EXPECT_THAT(refusal_with(votes + 6, 0U), HasSubstr("point 0: found 0 votes for label 0"));
   EXPECT_THAT(refusal_with(votes + 10, std::uint8_t{0}), HasSubstr("increasing labels below 2"));
   EXPECT_EQ(refusal_with(votes + 6, 5U), "");
+}
+
+TEST_F(MapDamage, EstimatesOfAnImu) {
+  Map map = random_map(4, 10, 9);
+  map.set_inertia(test::example_inertia());
+  const std::string bytes = bytes_of(map);
+  const auto refusal_with = [&](std::size_t number, double value) {
+    std::string changed = bytes;
+    put_at(changed, find_section(bytes, "INER") + 24 + 8 * number, value);
+    repair_checksums(changed);
+    return refusal_of(changed);
+  };
+  EXPECT_THAT(refusal_with(1, 9500.0), HasSubstr("magnitude of gravity is"));
+  EXPECT_THAT(refusal_with(3, 0.0), HasSubstr("scale is 0"));
+  EXPECT_THAT(refusal_with(5, -101.0), HasSubstr("a bias is not within 100"));
+  EXPECT_THAT(refusal_with(10, 0.5), HasSubstr("departure of the correction of T_body_camera from a rotation"));
+  EXPECT_THAT(refusal_with(19, 11.0), HasSubstr("time offset is 11"));
+  EXPECT_THAT(refusal_with(22, -1.0), HasSubstr("standard deviation is -1"));
+  EXPECT_THAT(refusal_with(27, 0.5), HasSubstr("departure of T_body_camera from a rotation"));
+  EXPECT_THAT(refusal_with(30, 1e9), HasSubstr("T_body_camera has a translation"));
+  for (std::size_t number = 0; number < 40; ++number)
+    EXPECT_NE(refusal_with(number, std::numeric_limits<double>::quiet_NaN()), "") << number;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "json_text.hpp"
+#include "map_io/example_inertia.hpp"
 #include "map_io/map_files.hpp"
 
 namespace holdfast {
@@ -142,6 +143,9 @@ TEST_F(MapExport, AllAsJson) {
   EXPECT_EQ(with_classes["classes"][1], "person");
   EXPECT_EQ(with_classes["points"][0]["label"], 1);
   EXPECT_TRUE(with_classes["points"][1]["label"].is_null());
+  EXPECT_TRUE(with_classes["inertia"].is_null());
+  classified.set_inertia(test::example_inertia());
+  EXPECT_EQ(nlohmann::json::parse(map_json(classified))["inertia"]["gravity"][1], -9.5);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/map_io/map_info.hpp"
+#include "map_io/example_inertia.hpp"
 #include "map_io/map_files.hpp"
 
 namespace holdfast {
@@ -325,6 +326,30 @@ TEST_F(MapFile, HoldsVotes) {
   EXPECT_TRUE(content(path("votes.hfm")).substr(76, without.size() - 76) == without.substr(76))
       << "everything else is as in a file without votes";
   EXPECT_TRUE(read_map(path("classes.hfm")).point({0, 0}).earlier_votes.empty());
+}
+
+TEST_F(MapFile, HoldsEstimatesOfAnImu) {
+  Map map = random_map(8, 20, 22);
+  write_map(path("none.hfm"), map);
+  const std::string without = content(path("none.hfm"));
+  EXPECT_FALSE(read_map(path("none.hfm")).inertia());
+
+  map.set_inertia(test::example_inertia());
+  write_map(path("inertia.hfm"), map);
+  const Map again = read_map(path("inertia.hfm"));
+  ASSERT_TRUE(again.inertia());
+  EXPECT_TRUE(test::are_same(*again.inertia(), test::example_inertia()));
+  write_map(path("again.hfm"), again);
+  EXPECT_TRUE(content(path("inertia.hfm")) == content(path("again.hfm")));
+
+  // Readers that do not know the section leave it out.
+  const std::string bytes = content(path("inertia.hfm"));
+  const std::size_t section = test::find_section(bytes, "INER");
+  EXPECT_EQ(test::number_at<std::uint32_t>(bytes, section + 4) & 1U, 0U);
+  EXPECT_EQ(bytes.size() - section, 24U + 40U * 8U) << "as docs/map_format.md says";
+  EXPECT_EQ(bytes.substr(76, section - 76), without.substr(76));
+  read_map(path("none.hfm"), map);
+  EXPECT_FALSE(map.inertia()) << "of the map before";
 }
 
 TEST_F(MapFile, SharedCamerasStayShared) {

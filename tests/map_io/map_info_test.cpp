@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "holdfast/core/version.hpp"
+#include "map_io/example_inertia.hpp"
 #include "map_io/map_files.hpp"
 
 namespace holdfast {
@@ -92,6 +93,20 @@ TEST_F(MapInfoTest, CountsClasses) {
   const auto json = nlohmann::json::parse(to_json(info));
   EXPECT_EQ(json["classes"]["background"], 2);
   EXPECT_EQ(json["classes"]["a \"cat\"\x1b[31m"], 1);
+}
+
+TEST_F(MapInfoTest, ShowsEstimatesOfAnImu) {
+  Map map = random_map(4, 20, 5);
+  write_map(path("map.hfm"), map);
+  EXPECT_THAT(to_text(read_map_info(path("map.hfm"))), Not(HasSubstr("inertia")));
+  EXPECT_TRUE(nlohmann::json::parse(to_json(read_map_info(path("map.hfm"))))["inertia"].is_null());
+  map.set_inertia(test::example_inertia());
+  write_map(path("map.hfm"), map);
+  const MapInfo info = read_map_info(path("map.hfm"));
+  EXPECT_THAT(to_text(info),
+              HasSubstr("\ninertia    down is (0.16, -0.98, 0.08), biases of the gyroscope 0.0374 rad/s, "
+                        "of the accelerometer 0.374 m/s^2\n"));
+  EXPECT_EQ(nlohmann::json::parse(to_json(info))["inertia"]["accelerometer_bias"][2], -0.3);
 }
 
 /// Features are not decoded, yet their damage is seen.

@@ -143,15 +143,19 @@ TEST_F(LocalMapperTest, APoseThatIsOffIsPulledBack) {
   EXPECT_NEAR(map.keyframe(id).frame.T_world_camera().translation().x(), 0.1, 0.002);
 }
 
-/// Moves every free camera far away, whatever the problem.
+/// Moves every free camera away, whatever the problem.
 class Flight final : public Optimizer {
  public:
+  explicit Flight(double distance = 0.8) : distance_(distance) {}
   BundleSummary optimize_bundle(BundleProblem& problem, const std::atomic<bool>&) override {
     for (BundleProblem::Pose& pose : problem.poses)
-      if (!pose.fixed) pose.T_camera_world.translation().x() += 0.8;
+      if (!pose.fixed) pose.T_camera_world.translation().x() += distance_;
     return {.usable = true};
   }
   GraphSummary optimize_pose_graph(PoseGraphProblem&) override { return {}; }
+
+ private:
+  double distance_;
 };
 
 TEST_F(LocalMapperTest, AKeyframeThatFewPointsHoldDoesNotFlee) {
@@ -171,6 +175,26 @@ TEST_F(LocalMapperTest, AKeyframeThatFewPointsHoldDoesNotFlee) {
     EXPECT_EQ(map.keyframe(id).frame.T_camera_world.isApprox(before, 1e-12), shared < 15) << shared;
     EXPECT_EQ(shared<15, x> 1.0) << shared;
   }
+}
+
+TEST_F(LocalMapperTest, InertialMeasurementsHoldAKeyframeThatFewPointsHold) {
+  Flight flight(0.1);
+  const auto moves = [&](double x, double deviation) {
+    map.clear();
+    LocalMapper fleeing(MappingSettings{}, close_depth_factor, map, mutex, flight);
+    fleeing.refine(fleeing.insert(MapAccess(map), frame_at(beside(0)), false, times), times);
+    Frame frame = frame_at(beside(x));
+    match(frame, 1);
+    frame.inertial_deviation = deviation;
+    const Eigen::Isometry3d before = frame.T_camera_world;
+    const KeyFrameId id = fleeing.insert(MapAccess(map), frame, false, times);
+    fleeing.refine(id, times);
+    return !map.keyframe(id).frame.T_camera_world.isApprox(before, 1e-12);
+  };
+  EXPECT_FALSE(moves(4.2, 0.003));
+  EXPECT_TRUE(moves(4.2, 0.0)) << "nothing is known of its motion";
+  EXPECT_TRUE(moves(4.2, 0.05)) << "the measurements allow it";
+  EXPECT_TRUE(moves(0.1, 0.003)) << "ample points hold it";
 }
 
 TEST_F(LocalMapperTest, KeyframesThatShowNothingNewAreRemovedButNeverTheFirst) {

@@ -80,7 +80,8 @@ std::vector<std::pair<std::string, PerturbationSettings>> all_perturbations() {
           {"depth_bias", {.depth_bias = 0.05}},
           {"depth_offset", {.depth_offset = 6}},
           {"calibration", {.calibration = 0.02}},
-          {"occluder", {.occluder = 0.3}}};
+          {"occluder", {.occluder = 0.3}},
+          {"covered", {.covered = 3, .covered_after = 2}}};
 }
 
 /// Frames that are given and passed over together are those without passing over, with the same stamps and content.
@@ -133,7 +134,7 @@ TEST(PerturbedSourceTest, RepeatsItselfAndFollowsTheSeed) {
     const std::vector<SensorFrame> first = frames_of(settings), second = frames_of(settings);
     ASSERT_EQ(first.size(), second.size()) << kind;
     for (std::size_t i = 0; i < first.size(); ++i) ASSERT_TRUE(are_equal(first[i], second[i])) << kind << " " << i;
-    if (kind == "depth_bias" || kind == "calibration") continue;
+    if (kind == "depth_bias" || kind == "calibration" || kind == "covered") continue;
     const std::vector<SensorFrame> other = frames_of(settings, 0, 2);
     std::size_t equal = 0;
     for (std::size_t i = 0; i < std::min(first.size(), other.size()); ++i)
@@ -198,6 +199,20 @@ TEST(PerturbedSourceTest, TheOccluderIsNearMovesAndIsAnObjectWithoutAClass) {
     EXPECT_EQ(cv::countNonZero(frame.depth == 0.5), 32 * 24);
     EXPECT_EQ(cv::countNonZero(frame.truth->class_labels & is_occluder), 0);
     EXPECT_THAT(frame.truth->moving_objects, ::testing::ElementsAre(255));
+  }
+}
+
+TEST(PerturbedSourceTest, ACoveredLensShowsNothingForItsTime) {
+  const std::vector<SensorFrame> frames = frames_of({.covered = 1.5, .covered_after = 2});
+  ASSERT_EQ(frames.size(), frame_count);
+  for (const SensorFrame& frame : frames) {
+    if (frame.index < 60 || frame.index >= 105) {
+      EXPECT_TRUE(are_equal(frame, TexturedSource::frame(frame.index))) << frame.index;
+      continue;
+    }
+    EXPECT_EQ(cv::norm(frame.colour, cv::NORM_INF), 0.0) << frame.index;
+    for (const cv::Mat& image : {frame.depth, frame.truth->object_mask, frame.truth->class_labels})
+      EXPECT_EQ(cv::countNonZero(image), 0) << frame.index;
   }
 }
 

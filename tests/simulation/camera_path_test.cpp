@@ -127,6 +127,28 @@ TEST(CameraPath, SeedChangesTheMotionAndShakeScalesTheTremor) {
   EXPECT_LT((twice - 2.0 * once).norm(), 1e-12);
 }
 
+TEST(CameraPath, TurnsAreAddedToTheMotion) {
+  constexpr double degree = EIGEN_PI / 180.0;
+  const CameraPath plain(PathKind::xyz, office(), 1, steady);
+  const CameraPath turning(
+      PathKind::xyz, office(), 1,
+      {.shake = 0.0, .turns = {{2.0, 90 * degree, 300 * degree}, {4.0, -60 * degree, 100 * degree}}});
+  double largest = 0.0;
+  for (double time = 0.0; time < 6.0; time += 0.01) {
+    const Eigen::Isometry3d before = plain.pose(time), after = turning.pose(time);
+    EXPECT_LT((after.translation() - before.translation()).norm(), 1e-12);
+    const Eigen::Matrix3d turn = after.linear() * before.linear().transpose();
+    EXPECT_NEAR(turn(2, 2), 1.0, 1e-12) << "about the vertical";
+    const double angle = std::atan2(turn(1, 0), turn(0, 0)) / degree;
+    if (time < 2.0) EXPECT_NEAR(angle, 0.0, 1e-9);
+    if (time > 2.46 && time < 4.0) EXPECT_NEAR(angle, 90.0, 1e-9);
+    if (time > 4.91) EXPECT_NEAR(angle, 30.0, 1e-9);
+    const Eigen::Matrix3d next = turning.pose(time + 0.001).linear() * plain.pose(time + 0.001).linear().transpose();
+    largest = std::max(largest, Eigen::AngleAxisd(next * turn.transpose()).angle() / degree / 0.001);
+  }
+  EXPECT_NEAR(largest, 300.0, 5.0);
+}
+
 TEST(CameraPath, SpeedIsAFactorOnTheMotion) {
   for (const PathKind kind : {PathKind::xyz, PathKind::loop, PathKind::corridor, PathKind::table_edge}) {
     const CameraPath slow(kind, hall(), 1, steady), fast(kind, hall(), 1, {.speed = 2.0, .shake = 0.0});

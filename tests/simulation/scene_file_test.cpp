@@ -51,7 +51,8 @@ class SceneFile : public testing::Test {
 TEST_F(SceneFile, ReadsAllThatAScenePlans) {
   const Scene scene = read(R"(
 room: hall
-camera: { path: waypoints, along: [[1, 2, 1.4], [3, 2, 1.4]], walking_speed: 0.5, look_at: [2, 4, 1], shake: 0.5 }
+camera: { path: waypoints, along: [[1, 2, 1.4], [3, 2, 1.4]], walking_speed: 0.5, look_at: [2, 4, 1], shake: 0.5,
+  turns: [[4, 90, 300], [6, -90, 60]] }
 duration: 7
 frame_rate: 15
 seed: 12
@@ -80,6 +81,10 @@ depth_sensor: { noise: 0.5, holes: false }
   EXPECT_EQ(scene.room, RoomKind::hall);
   EXPECT_EQ(scene.camera.path, PathKind::waypoints);
   EXPECT_EQ(scene.camera.style.shake, 0.5);
+  ASSERT_EQ(scene.camera.style.turns.size(), 2U);
+  EXPECT_EQ(scene.camera.style.turns[1].begin, 6.0);
+  EXPECT_DOUBLE_EQ(scene.camera.style.turns[1].angle, -EIGEN_PI / 2.0);
+  EXPECT_DOUBLE_EQ(scene.camera.style.turns[0].rate, 300.0 / 180.0 * EIGEN_PI);
   EXPECT_EQ(scene.camera.waypoints.places[1], Eigen::Vector3d(3, 2, 1.4));
   EXPECT_EQ(scene.camera.waypoints.speed, 0.5);
   EXPECT_EQ(scene.camera.waypoints.target, Eigen::Vector3d(2, 4, 1));

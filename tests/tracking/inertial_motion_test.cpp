@@ -363,5 +363,99 @@ TEST(InertialMotion, AFewMatchesCorrectThePrediction) {
   EXPECT_LT(bench.motion.prediction()->position_deviation, 0.5 * deviation);
 }
 
+/// What a run of some seconds leaves for the next one.
+MapInertia estimates_of_a_run(double seconds, double unit = 1.0) {
+  Bench bench(seconds, false, unit);
+  bench.track(seconds);
+  EXPECT_TRUE(bench.motion.is_reliable());
+  return *bench.motion.estimates();
+}
+
+TEST(InertialMotion, BeginsWithTheEstimatesOfTheMap) {
+  for (const double unit : {1.0, 0.4}) {  // a pair, and one camera
+    const MapInertia known = estimates_of_a_run(unit == 1.0 ? 4.0 : 7.0, unit);
+    Bench bench(2.0, false, unit, 7);
+    bench.motion.begin_with(known);
+    bench.track(0.1);
+    EXPECT_TRUE(bench.motion.is_started());
+    bench.track(0.5);
+    ASSERT_TRUE(bench.motion.is_reliable()) << unit;
+    EXPECT_NEAR(bench.motion.scale(), unit, 0.01 * unit);
+    bench.bridge(1.0);
+    bench.begin();
+    EXPECT_LT(unit * bench.distance(), 0.03);
+  }
+}
+
+TEST(InertialMotion, EstimatesOfAnotherImuGiveGravityAlone) {
+  MapInertia known = estimates_of_a_run(4.0);
+  const Vector3d gyroscope = known.bias.gyroscope;
+  known.bias.gyroscope << 0.5, -0.5, 0.5;
+  known.T_body_camera.translation().x() += 0.01;
+  Bench bench(3.0, false, 1.0, 7);
+  bench.motion.begin_with(known);
+  bench.track(0.1);
+  ASSERT_TRUE(bench.motion.is_started());
+  EXPECT_LT((bench.motion.filter()->state().bias.gyroscope).norm(), 0.2);
+  bench.track(2.0);
+  ASSERT_TRUE(bench.motion.is_reliable());
+  EXPECT_LT((bench.motion.filter()->state().bias.gyroscope - gyroscope).norm(), 0.005);
+}
+
+TEST(InertialMotion, WrongEstimatesOfTheMapAreGivenUp) {
+  MapInertia known = estimates_of_a_run(4.0);
+  known.gravity = -known.gravity;
+  Bench bench(5.0, false, 1.0, 7);
+  bench.motion.begin_with(known);
+  bench.track(2.0);
+  EXPECT_FALSE(bench.motion.is_started());
+  bench.track(5.0);
+  ASSERT_TRUE(bench.motion.is_reliable());
+  EXPECT_GT(bench.motion.estimates()->gravity.dot(known.gravity), -97.0);
+  EXPECT_LT(bench.motion.estimates()->gravity.dot(known.gravity), -90.0);
+}
+
+TEST(InertialMotion, AWrongFirstPoseDoesNotCostTheEstimates) {
+  Bench bench(3.0, false, 1.0, 7);
+  bench.motion.begin_with(estimates_of_a_run(4.0));
+  bench.track(0.02);
+  bench.begin();
+  bench.found(bench.measured(bench.time) * Eigen::Translation3d(0.8, 0.0, 0.0));
+  bench.track(1.5);
+  EXPECT_TRUE(bench.motion.is_reliable());
+}
+
+TEST(InertialMotion, GoesOnWhereTheMapFindsTheCamera) {
+  Bench bench(5.0);
+  bench.track(3.0);
+  ASSERT_TRUE(bench.motion.is_reliable());
+  const Vector3d gyroscope = bench.motion.filter()->state().bias.gyroscope;
+  bench.begin();
+  const Isometry3d found = bench.measured(bench.time) * Eigen::Translation3d(0.5, 0.0, 0.0);
+  ASSERT_TRUE(bench.motion.contradicts(found, 1.0));
+  bench.motion.relocated();
+  bench.found(found);
+  ASSERT_TRUE(bench.motion.is_started());
+  EXPECT_LT((bench.motion.filter()->state().bias.gyroscope - gyroscope).norm(), 1e-9);
+  for (int i = 0; i < 15; ++i) {
+    bench.begin();
+    bench.found(bench.measured(bench.time) * Eigen::Translation3d(0.5, 0.0, 0.0));
+  }
+  EXPECT_TRUE(bench.motion.is_reliable());
+}
+
+TEST(InertialMotion, AfterALongLossItBeginsWithWhatItKnew) {
+  Bench bench(16.0, true);  // the speed of the motion grows without bound
+  bench.track(3.0);
+  ASSERT_TRUE(bench.motion.is_reliable());
+  while (bench.frames < 15 * 30) {
+    bench.begin();
+    bench.motion.lost();
+  }
+  EXPECT_FALSE(bench.motion.is_started());
+  bench.track(15.5);
+  EXPECT_TRUE(bench.motion.is_reliable());
+}
+
 }  // namespace
 }  // namespace holdfast

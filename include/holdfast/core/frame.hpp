@@ -46,6 +46,9 @@ struct Frame {
   DescriptorBlock image_descriptor;
 
   Eigen::Isometry3d T_camera_world = Eigen::Isometry3d::Identity();
+  /// Standard deviation of the position relative to the frames before, by inertial measurements, in the unit of the
+  /// map; 0 = unknown. Not saved in map files.
+  double inertial_deviation = 0.0;
 
   std::size_t size() const { return features.size(); }
   Eigen::Isometry3d T_world_camera() const;

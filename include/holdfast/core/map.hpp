@@ -11,6 +11,7 @@
 #include "holdfast/core/keyframe.hpp"
 #include "holdfast/core/map_defaults.hpp"
 #include "holdfast/core/map_features.hpp"
+#include "holdfast/core/map_inertia.hpp"
 #include "holdfast/core/map_point.hpp"
 #include "holdfast/core/sensor.hpp"
 #include "holdfast/core/slot_map.hpp"
@@ -26,6 +27,7 @@ struct MapContent {
   Sensor sensor = Sensor::rgbd;
   MapFeatures features;
   std::vector<std::string> classes;  ///< names that MapPoint::label refers to
+  std::optional<MapInertia> inertia;
 };
 
 /// Keyframes and map points, referred to by ids. The map keeps all links between them consistent: a feature of a
@@ -141,6 +143,10 @@ class Map {
   /// point without votes keeps its class.
   void classify_points();
 
+  /// Estimates from inertial measurements; empty without any.
+  const std::optional<MapInertia>& inertia() const { return inertia_; }
+  void set_inertia(const std::optional<MapInertia>& inertia) { inertia_ = inertia; }
+
   /// Incremented by invalidate_copies(); a holder of copied map data compares versions to detect that the copy is
   /// outdated.
   std::uint64_t version() const { return version_; }
@@ -182,6 +188,7 @@ class Map {
   Sensor sensor_ = Sensor::rgbd;
   MapFeatures features_;
   std::vector<std::string> classes_;
+  std::optional<MapInertia> inertia_;
   std::uint64_t version_ = 0;
   float evidence_limit_ = static_cast<float>(default_evidence_limit);
   int covisibility_minimum_ = default_covisibility_minimum;

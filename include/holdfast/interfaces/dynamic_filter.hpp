@@ -11,6 +11,7 @@
 #include "holdfast/core/map.hpp"
 #include "holdfast/core/module.hpp"
 #include "holdfast/core/moving_object.hpp"
+#include "holdfast/core/predicted_pose.hpp"
 #include "holdfast/core/sensor_frame.hpp"
 #include "holdfast/interfaces/segmenter.hpp"
 
@@ -29,6 +30,7 @@ struct Needs {
   bool pose_prior = false;    ///< FilterContext::T_camera_world
   bool matches = false;       ///< features matched with the local map, and the pose estimated from them
   bool evidence = false;      ///< evidence of an earlier filter; a warning if there is none
+  bool inertia = false;       ///< FilterContext::inertial_prediction; a warning if tracking uses no inertia
 };
 
 /// The inputs of one call of a filter. References are valid during apply() only.
@@ -41,6 +43,9 @@ struct FilterContext {
   std::uint32_t submap = 0;
   /// The current estimate of the frame's pose; nullptr when there is none.
   const Eigen::Isometry3d* T_camera_world = nullptr;
+  /// The frame's pose by inertial measurements since earlier frames; nullptr when inertial estimation does not run or
+  /// is not yet reliable.
+  const PredictedPose* inertial_prediction = nullptr;
   /// The segmentation of this very frame; set only when a keyframe is evaluated again because its mask has arrived.
   /// The mask on cells, propagated or sampled from this segmentation, is frame.coarse.mask.
   const Segmentation* segmentation = nullptr;

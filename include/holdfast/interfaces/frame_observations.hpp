@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
@@ -24,6 +25,14 @@ inline constexpr double local_divergence = 0.5;
 /// Full adjustment: the change relative to the parent, without the correction that both share; therefore smaller.
 inline constexpr double divergence_from_parent = 0.2;
 /// @}
+
+/// Change of the pose of a keyframe that few points constrain, relative to its parent [m] and [rad], above which a
+/// local adjustment has diverged, where inertial measurements determine this motion; 0 where they do not.
+inline double inertial_divergence(const Frame& frame) {
+  constexpr double smallest = 0.02, deviations = 4.0;
+  if (frame.inertial_deviation <= 0.0) return 0.0;
+  return std::clamp(deviations * frame.inertial_deviation, smallest, local_divergence);
+}
 
 /// Adds to the pose problem of `frame` that its feature number `feature` shows `point` (world [m]).
 inline void add_observation(PoseProblem& problem, const Frame& frame, std::size_t feature,

@@ -4,12 +4,14 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "holdfast/core/camera.hpp"
 #include "holdfast/core/map_features.hpp"
+#include "holdfast/core/map_inertia.hpp"
 #include "holdfast/core/sensor.hpp"
 
 namespace holdfast {
@@ -28,8 +30,9 @@ struct MapInfo {
   std::uint64_t points = 0;
   std::uint64_t observations = 0;
   std::vector<std::pair<std::string, std::uint64_t>> classes;  ///< name and number of points, by label
-  std::uint64_t covisibility_edges = 0;                        ///< each pair once
-  std::uint64_t loops = 0;                                     ///< each pair once
+  std::optional<MapInertia> inertia;
+  std::uint64_t covisibility_edges = 0;  ///< each pair once
+  std::uint64_t loops = 0;               ///< each pair once
   std::uint64_t next_sequence = 0;
   double first_timestamp = 0.0, last_timestamp = 0.0;       ///< of the keyframes [s]; 0 without keyframes
   Eigen::Vector3d minimum_point = Eigen::Vector3d::Zero();  ///< corner of the bounding box of all points, world [m]

@@ -42,7 +42,8 @@ struct TrackedView {
   const SensorFrame& sensor_frame;
   const Frame* previous;  ///< the previous frame with its pose; nullptr when it has none
   Frame& frame;
-  std::uint32_t submap = 0;  ///< submap in which the frame is tracked
+  std::uint32_t submap = 0;                            ///< submap in which the frame is tracked
+  const PredictedPose* inertial_prediction = nullptr;  ///< by inertial measurements; nullptr when there is none
 };
 
 /// A pose of the current frame from the motion model.

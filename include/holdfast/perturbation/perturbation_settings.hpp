@@ -24,6 +24,8 @@ struct PerturbationSettings {
   double depth_offset = 0.0;
   double calibration = 0.0;
   double occluder = 0.0;
+  double covered = 0.0;
+  std::int64_t covered_after = 8;
   std::int64_t seed = 0;
 
   static void describe(ParameterTable<PerturbationSettings>& table) {
@@ -61,6 +63,14 @@ struct PerturbationSettings {
         .range(0.0, 0.5);
     table.add("occluder", &S::occluder, "share of the image behind an object that swings 0.5 m before the camera")
         .range(0.0, 0.9);
+    table
+        .add("covered", &S::covered,
+             "time for which something lies on the lens: black images and no depth, by the frame rate of the camera")
+        .range(0.0, 3600.0)
+        .unit("s");
+    table.add("covered_after", &S::covered_after, "time from the first frame to the one from which the lens is covered")
+        .range(0.0, 3600.0)
+        .unit("s");
     table.add("seed", &S::seed, "seed of all that is drawn; 0 = the seed of the run").at_least(0.0);
   }
 

@@ -44,6 +44,7 @@ class PerturbedSource final : public FrameSource {
   double brightness(std::uint64_t index) const;
   Rectangle occluder_place(const SensorFrame& frame) const;
   void occlude(SensorFrame& frame);
+  bool is_covered(std::uint64_t index) const;
   void shear(SensorFrame& frame) const;
   void spoil_depth(SensorFrame& frame) const;
   void spoil_images(SensorFrame& frame) const;

@@ -30,10 +30,18 @@ PathKind path_kind(const std::string& name);
 /// because it needs more than a stage; otherwise it is the last one.
 std::vector<std::string> path_names(bool of_stage_alone = true);
 
-/// Factors on a camera path.
+/// A turn of the camera about the vertical through its centre, on top of its path.
+struct Turn {
+  double begin = 0.0;  ///< [s]
+  double angle = 0.0;  ///< to the left; below 0 to the right [rad]
+  double rate = 1.0;   ///< the largest one, which the smooth turn has at half its angle [rad/s]
+};
+
+/// Changes of a camera path.
 struct PathStyle {
-  double speed = 1.0;  ///< of the motion; the frequency of the tremor is independent
-  double shake = 1.0;  ///< of the hand's tremor and the vertical motion of walking; 0 = none
+  double speed = 1.0;  ///< factor on the motion; the frequency of the tremor is independent
+  double shake = 1.0;  ///< factor on the hand's tremor and the vertical motion of walking; 0 = none
+  std::vector<Turn> turns = {};
 };
 
 /// The camera pose as a smooth function of time, with the tremor of a hand and, for walks, the vertical motion of

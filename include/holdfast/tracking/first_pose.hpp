@@ -42,8 +42,8 @@ class FirstPose {
 /// Methods in the order in which they are tried.
 using FirstPoses = std::vector<std::unique_ptr<FirstPose>>;
 
-/// The methods of Holdfast: motion model, inertial search, reference keyframe, odometry, masked features, dense depth,
-/// inertial bridge, relocalisation.
+/// The methods of Holdfast: motion model, inertial search, reference keyframe, inertial return, odometry, masked
+/// features, dense depth, inertial bridge, relocalisation.
 FirstPoses default_first_poses();
 
 }  // namespace holdfast

@@ -25,7 +25,7 @@ class InertialFilter {
   /// Of the error of a pose: position [m] in the world frame, rotation [rad] in the body frame.
   using PoseCovariance = Eigen::Matrix<double, 6, 6>;
 
-  /// Standard deviations of the first state, per axis, without correlations.
+  /// Standard deviations of a state per axis, the largest one: of the first state, without correlations.
   struct Deviations {
     double position = 0.0;       ///< [m]
     double rotation = 0.0;       ///< [rad]
@@ -60,6 +60,7 @@ class InertialFilter {
   const geometry::InertialState& state() const { return state_; }
   const Eigen::Vector3d& gravity() const { return gravity_; }
   const Covariance& covariance() const { return covariance_; }
+  Deviations deviations() const;
   const Eigen::Matrix3d& mounting() const { return mounting_; }
   double time_offset() const { return time_offset_; }
 

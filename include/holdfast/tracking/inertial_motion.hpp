@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "holdfast/core/imu.hpp"
+#include "holdfast/core/map_inertia.hpp"
+#include "holdfast/core/predicted_pose.hpp"
 #include "holdfast/core/sensor_frame.hpp"
 #include "holdfast/tracking/inertial_filter.hpp"
 
@@ -17,19 +19,17 @@ struct InertialStart;
 }
 
 /// A pose that inertial measurements predict.
-struct InertialPrediction {
-  Eigen::Isometry3d T_camera_world;
-  /// Of the error d in T_world_camera * exp(d): translation, in the unit of the map, and rotation [rad].
-  Eigen::Matrix<double, 6, 6> covariance;
-  double position_deviation;  ///< the larger axis, in the unit of the map
-  double rotation_deviation;  ///< the larger axis [rad]
+struct InertialPrediction : PredictedPose {
+  double position_deviation = 0.0;  ///< the larger axis, in the unit of the map
+  double rotation_deviation = 0.0;  ///< the larger axis [rad]
 };
 
 /// Motion of the camera by inertial measurements. First, gravity, biases, velocity and, with one camera, the scale are
 /// estimated from the tracked poses of the last seconds (geometry::start_inertially); then an InertialFilter keeps them
 /// up to date. The filter must predict some poses before others use it (is_reliable); one that contradicts the images
 /// for long, or misses measurements, ends, and the start begins again. Until then, and without an IMU, it predicts
-/// nothing.
+/// nothing. Where gravity, biases and scale are known, from the map or from before a gap, a filter begins with the
+/// first pose, and learns the velocity from the next ones.
 ///
 /// For each frame, begin_frame() is called first, then follow_map(), and one of found(), bridged() and lost() last.
 /// Poses are those of the camera in the map. Deterministic. One thread.
@@ -38,6 +38,8 @@ class InertialMotion {
   /// Without a calibration nothing is ever predicted. `scale_is_known`: the unit of the map is the metre.
   InertialMotion(const std::optional<ImuCalibration>& imu, bool scale_is_known);
 
+  /// Estimates of an earlier run in the map, to begin with.
+  void begin_with(const MapInertia& known) { known_ = known; }
   /// Whether there is an IMU.
   bool is_used() const { return imu_.has_value(); }
   /// Propagates to the time stamp of a frame by its measurements.
@@ -75,8 +77,13 @@ class InertialMotion {
   void bridged(const Eigen::Isometry3d& T_camera_world) { keep_prediction(T_camera_world); }
   /// The current frame has no pose.
   void lost();
-  /// Begins again, as where the map begins.
+  /// The map alone gives the current pose, which contradicts the prediction, and found() gets it next: the state begins
+  /// again there, with gravity, biases and calibration as they are.
+  void relocated() { interrupt(); }
+  /// Begins again with nothing known, as where the map begins.
   void reset();
+  /// The estimates, for maps: of the current state if it is reliable, or else what a filter begins with.
+  std::optional<MapInertia> estimates() const;
 
   /// The state at the last frame, in metres, whose biases, velocity and gravity are estimates; empty before the start.
   const std::optional<InertialFilter>& filter() const { return last_; }
@@ -95,8 +102,12 @@ class InertialMotion {
   Eigen::Isometry3d camera_pose(const Eigen::Isometry3d& T_world_body) const;
   InertialFilter::PoseCovariance measurement_covariance(double deviation) const;
   void keep_prediction(const Eigen::Isometry3d& T_camera_world);
+  void interrupt();
+  void refute();
   void learn(const Eigen::Isometry3d& T_camera_world, double deviation);
   void try_to_start(const PastPose& past_pose);
+  bool is_calibrated_as(const MapInertia& known) const;
+  void begin_with_known(const Eigen::Isometry3d& T_camera_world);
   void begin_filter(const geometry::InertialStart& start, const std::vector<Eigen::Isometry3d>& poses,
                     const std::vector<geometry::Preintegration>& motions, const std::vector<Eigen::Vector3d>& rates,
                     const PoseDeviations& deviations);
@@ -113,6 +124,9 @@ class InertialMotion {
   bool is_corrected_ = false;                                  // now_ knows the current pose
   double turn_rate_ = 0.0;                                     // of the current frame [rad/s]
   double found_time_ = 0.0;                                    // [s]
+  std::optional<Eigen::Vector3d> rate_;                        // measured at the current frame [rad/s]
+  std::optional<MapInertia> known_;                            // a filter begins with it
+  int known_trials_ = 0;
   // Of the start.
   std::vector<ImuSample> samples_;
   std::vector<double> tracked_;  // time stamps [s]

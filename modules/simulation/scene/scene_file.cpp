@@ -2,6 +2,7 @@
 #include "holdfast/simulation/scene_file.hpp"
 
 #include <algorithm>
+#include <numbers>
 #include <tuple>
 
 #include "holdfast/config/missing_file.hpp"
@@ -116,11 +117,28 @@ class SceneReader {
     return place<2>(map, "facing", numbers);
   }
 
+  std::vector<Turn> turns(const ConfigurationNode& camera, const RealTable& rows) {
+    constexpr double degree = std::numbers::pi / 180.0;
+    std::vector<Turn> result;
+    const ConfigurationNode* node = camera.find("turns");
+    if (node == nullptr || node->items.size() != rows.size()) return result;  // the table has complained
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const std::vector<double>& row = rows[i];
+      if (row.size() != 3 || row[0] < 0.0 || row[2] <= 0.0)
+        complain(node->items[i].location,
+                 "found no turn; expected [begin [s], angle [degrees], rate above 0 "
+                 "[degrees/s]]");
+      else
+        result.push_back({row[0], row[1] * degree, row[2] * degree});
+    }
+    return result;
+  }
+
   CameraPlan read_camera(const ConfigurationNode& node) {
     const CameraRecord record = read_record<CameraRecord>(node, "the camera");
     CameraPlan plan;
     plan.path = path_kind(record.path);
-    plan.style = {record.speed, record.shake};
+    plan.style = {record.speed, record.shake, turns(node, record.turns)};
     plan.waypoints.places = places<3>(node, "along", record.along);
     plan.waypoints.closed = record.closed;
     plan.waypoints.speed = record.walking_speed;

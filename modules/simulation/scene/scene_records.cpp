@@ -40,6 +40,11 @@ void CameraRecord::describe(ParameterTable<CameraRecord>& table) {
   table.add("path", &S::path, "how the camera moves; waypoints: past the places in `along`").one_of(path_names(false));
   table.add("speed", &S::speed, "factor on the speed of the path").range(0.01, 10.0);
   table.add("shake", &S::shake, "factor on the tremor of the hand; 0 = none").range(0.0, 10.0);
+  table
+      .add("turns", &S::turns,
+           "turns about the vertical on top of the path: [begin [s], angle to the left [degrees], largest rate "
+           "[degrees/s]]")
+      .range(-36000.0, 36000.0);
   table.add("along", &S::along, "waypoints: places [x, y, z] to pass").range(-farthest, farthest).unit("m");
   table.add("closed", &S::closed, "waypoints: from the last place on to the first; otherwise to and fro");
   table.add("walking_speed", &S::walking_speed, "waypoints: before the factor `speed`").range(0.01, 3.0).unit("m/s");

@@ -33,6 +33,7 @@ struct CameraRecord {
   std::string path = "xyz";
   double speed = PathStyle{}.speed;
   double shake = PathStyle{}.shake;
+  RealTable turns;
   RealTable along;
   bool closed = false;
   double walking_speed = Waypoints{}.speed;

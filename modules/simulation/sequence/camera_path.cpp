@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "holdfast/simulation/camera_path.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -39,6 +40,18 @@ constexpr double step_length = 0.36, bob_up = 0.014, bob_aside = 0.012;  // of a
 Vector3d rotated_eye(const Vector3d& centre, double azimuth, double elevation, double radius) {
   return centre + radius * Vector3d(std::sin(azimuth) * std::cos(elevation), -std::cos(azimuth) * std::cos(elevation),
                                     std::sin(elevation));
+}
+
+/// Angle of all turns at a time [rad].
+double turned(const std::vector<Turn>& turns, double time) {
+  double angle = 0.0;
+  for (const Turn& turn : turns) {
+    constexpr double largest_slope = 1.5;  // of smoothstep
+    const double duration = largest_slope * std::abs(turn.angle) / turn.rate;
+    const double t = duration > 0.0 ? std::clamp((time - turn.begin) / duration, 0.0, 1.0) : 0.0;
+    angle += turn.angle * t * t * (3.0 - 2.0 * t);
+  }
+  return angle;
 }
 
 std::optional<WaypointPath> walk_of(PathKind kind, const Stage& stage) {
@@ -198,6 +211,8 @@ Eigen::Isometry3d CameraPath::drive_pose(double t) const {
 Eigen::Isometry3d CameraPath::pose(double time) const {
   const double hand_time = course_ ? time : eased(time), t = style_.speed * hand_time;
   Eigen::Isometry3d pose = course_ ? drive_pose(t) : walk_ ? walk_pose(t) : hand_pose(t);
+  if (!style_.turns.empty())
+    pose.linear() = Eigen::AngleAxisd(turned(style_.turns, time), Vector3d::UnitZ()).toRotationMatrix() * pose.linear();
   double shake[6] = {};
   for (int axis = 0; axis < 6; ++axis)
     for (const Tremor& tremor : tremors_[axis])

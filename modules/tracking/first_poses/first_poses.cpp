@@ -14,6 +14,7 @@ FirstPoses default_first_poses() {
   poses.push_back(std::make_unique<Prediction>(predict_by_motion_model));
   poses.push_back(std::make_unique<InertialSearch>());
   poses.push_back(std::make_unique<Prediction>(predict_by_reference_keyframe));
+  poses.push_back(std::make_unique<InertialReturn>());
   poses.push_back(std::make_unique<Odometry>());
   poses.push_back(std::make_unique<MaskedFeatures>());
   poses.push_back(std::make_unique<DenseDepth>());

@@ -72,6 +72,25 @@ class InertialSearch final : public FirstPose {
   }
 };
 
+/// Matches with the last keyframes without a prediction, once views that were bridged for long have made the prediction
+/// too uncertain to search the map around it: before odometry begins new map at a pose that has drifted.
+class InertialReturn final : public FirstPose {
+ public:
+  FirstPoseOutcome find(PoseSearch& search) override {
+    constexpr double uncertain = 0.02;  // standard deviation of the position [m]
+    TrackingContext& context = search.context;
+    const std::optional<InertialPrediction> prediction = context.inertia.prediction();
+    if (!prediction || search.situation.was_lost || !context.features_have_depth ||
+        prediction->position_deviation < uncertain)
+      return FirstPoseOutcome::none;
+    const StageTimer timer(search.result.times, "inertia");
+    return context.relocaliser.recover(context.last_keyframe, context.reference_keyframe, context.current,
+                                       search.result)
+               ? FirstPoseOutcome::first_pose
+               : FirstPoseOutcome::none;
+  }
+};
+
 /// The pose that inertial measurements predict, for TrackingSettings::inertial_time and up to inertial_deviation where
 /// the images do not determine one. A few matches near it correct it by their covariance.
 class InertialBridge final : public FirstPose {
