@@ -249,8 +249,8 @@ SessionPointer Bridge::State::begin_session() {
   source.has_depth = parameters.has_depth;
   source.has_right = parameters.has_right;
   source.has_imu = configuration.imu.has_value();
-  const SessionPointer begun = std::make_shared<Session>(
-      SessionStart{configuration, registry, parameters, source, map_file, localise_only});
+  const SessionPointer begun =
+      std::make_shared<Session>(SessionStart{configuration, registry, parameters, source, map_file, localise_only});
   for (const Diagnostic& warning : begun->warnings()) tell(Level::warning, warning.to_string());
   {
     const std::lock_guard lock(count_mutex);
@@ -279,8 +279,7 @@ std::vector<ImuSample> Bridge::State::take_inertia(const ImageSet& frame) {
   constexpr std::chrono::milliseconds patience(50);
   const double timestamp = seconds(frame.colour.stamp);
   std::unique_lock lock(inertia_mutex);
-  if (!parameters.is_sequential)
-    inertia_came.wait_for(lock, patience, [&] { return inertia.reaches(timestamp); });
+  if (!parameters.is_sequential) inertia_came.wait_for(lock, patience, [&] { return inertia.reaches(timestamp); });
   return inertia.take(timestamp);
 }
 
@@ -401,9 +400,7 @@ void Bridge::pause(bool is_paused) { state_->is_paused = is_paused; }
 bool Bridge::is_paused() const { return state_->is_paused; }
 
 void Bridge::reset() {
-  state_->frames.request([this] {
-    state_->begin_with({}, false);
-  });
+  state_->frames.request([this] { state_->begin_with({}, false); });
 }
 
 void Bridge::save_map(const std::string& file) {
@@ -416,9 +413,7 @@ void Bridge::save_map(const std::string& file) {
 void Bridge::load_map(const std::string& file, bool localise_only) {
   if (file.empty()) throw Error("no file to load a map from; give its name");
   read_map(file);  // throws for one that cannot be used, and the run goes on
-  state_->frames.request([&] {
-    state_->begin_with(file, localise_only);
-  });
+  state_->frames.request([&] { state_->begin_with(file, localise_only); });
 }
 
 void Bridge::finish() {

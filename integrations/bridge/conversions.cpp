@@ -24,9 +24,12 @@ struct Encoding {
   int type, conversion;  // -1: none
 };
 constexpr Encoding colour_encodings[] = {
-    {"rgb8", CV_8UC3, cv::COLOR_RGB2BGR},   {"bgr8", CV_8UC3, -1},
-    {"8UC3", CV_8UC3, -1},                  {"rgba8", CV_8UC4, cv::COLOR_RGBA2BGR},
-    {"bgra8", CV_8UC4, cv::COLOR_BGRA2BGR}, {"mono8", CV_8UC1, cv::COLOR_GRAY2BGR},
+    {"rgb8", CV_8UC3, cv::COLOR_RGB2BGR},
+    {"bgr8", CV_8UC3, -1},
+    {"8UC3", CV_8UC3, -1},
+    {"rgba8", CV_8UC4, cv::COLOR_RGBA2BGR},
+    {"bgra8", CV_8UC4, cv::COLOR_BGRA2BGR},
+    {"mono8", CV_8UC1, cv::COLOR_GRAY2BGR},
     {"8UC1", CV_8UC1, cv::COLOR_GRAY2BGR},
 };
 constexpr Encoding depth_encodings[] = {{"16UC1", CV_16UC1, -1}, {"mono16", CV_16UC1, -1}, {"32FC1", CV_32FC1, -1}};
@@ -129,8 +132,9 @@ cv::Mat depth_of(const CompressedImage& image, double factor) {
 
 Camera camera_of(const CameraInfo& info, bool is_rectified) {
   if (info.binning_x > 1 || info.binning_y > 1)
-    refuse("camera_info", "is of an image with pixels put together (binning); expected none; give the camera in the "
-                          "configuration under `camera:`");
+    refuse("camera_info",
+           "is of an image with pixels put together (binning); expected none; give the camera in the "
+           "configuration under `camera:`");
   Camera camera;
   camera.width = static_cast<int>(std::min(info.width, largest_side));
   camera.height = static_cast<int>(std::min(info.height, largest_side));

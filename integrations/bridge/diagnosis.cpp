@@ -19,10 +19,13 @@ std::string number(double value) {
 
 Level level_of(HealthState state) {
   switch (state) {
-    case HealthState::good: return Level::ok;
+    case HealthState::good:
+      return Level::ok;
     case HealthState::lost:
-    case HealthState::stalled: return Level::error;
-    default: return Level::warning;
+    case HealthState::stalled:
+      return Level::error;
+    default:
+      return Level::warning;
   }
 }
 
@@ -48,9 +51,11 @@ void describe_state(const BridgeStatus& status, Diagnostics& result) {
   if (counts.colour == 0) return say(Level::warning, "no colour image has come yet");
   if (status.needs_camera)
     return say(Level::warning, "no camera_info has come yet; give its topic, or the camera in the configuration");
-  if (status.health && counts.answered > 0) return say(level_of(status.health->health.state), text_of(status.health->health));
+  if (status.health && counts.answered > 0)
+    return say(level_of(status.health->health.state), text_of(status.health->health));
   if (counts.unpaired > 0)
-    return say(Level::warning, "colour images come without a partner of the same time; check the topics and `tolerance`");
+    return say(Level::warning,
+               "colour images come without a partner of the same time; check the topics and `tolerance`");
   say(Level::warning, "waits for the first frame");
 }
 

@@ -18,9 +18,9 @@ struct BridgeCounts {
   std::uint64_t dropped = 0;                                    ///< frames that waited too long
   std::uint64_t answered = 0;                                   ///< frames with a result
   std::uint64_t with_pose = 0;
-  std::uint64_t late = 0;       ///< answers later than the period of the camera
-  double latency = 0.0;         ///< of the last answer [s]
-  double largest_latency = 0.0; ///< [s]
+  std::uint64_t late = 0;        ///< answers later than the period of the camera
+  double latency = 0.0;          ///< of the last answer [s]
+  double largest_latency = 0.0;  ///< [s]
 };
 
 /// What a diagnosis is made from.

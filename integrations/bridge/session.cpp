@@ -26,10 +26,9 @@ class BridgeSource final : public FrameSource {
 };
 
 void register_source(Registry& registry, const SourceDescription& description) {
-  registry.add<FrameSource, NoSettings>({.name = source_name, .summary = "The images of a robot."},
-                                        [description](const NoSettings&, const CreationContext&) {
-                                          return std::make_unique<BridgeSource>(description);
-                                        });
+  registry.add<FrameSource, NoSettings>(
+      {.name = source_name, .summary = "The images of a robot."},
+      [description](const NoSettings&, const CreationContext&) { return std::make_unique<BridgeSource>(description); });
 }
 
 std::vector<Obstacle> obstacles_of(const FrameResult& result, const Eigen::Isometry3d& T_map_world) {
@@ -61,8 +60,7 @@ Configuration read_bridge_configuration(const Parameters& parameters, Registry& 
   set(std::string("source=") + source_name);
   set(std::string("run.mode=") + (parameters.is_sequential ? "sequential" : "threaded"));
   set(std::string("run.pace=") + (parameters.is_sequential ? "none" : "timestamps"));
-  Configuration configuration =
-      resolve_configuration(root, parameters.configuration, resolving, pipeline_sections());
+  Configuration configuration = resolve_configuration(root, parameters.configuration, resolving, pipeline_sections());
   load_plugins(configuration, registry);
   return configuration;
 }
@@ -89,8 +87,9 @@ Session::Session(const SessionStart& start) {
       {.name = source_name, .summary = "Shows the pipeline to the bridge."},
       [this](const NoSettings&, const CreationContext&) { return std::make_unique<Watcher>(*this); });
   configuration.observers.push_back({.kind = "observers", .name = source_name, .values = {}, .location = {}});
-  built_.emplace(build_pipeline(configuration, registry,
-                                {.output_directory = {}, .map_file = start.map_file, .localise_only = start.localise_only}));
+  built_.emplace(
+      build_pipeline(configuration, registry,
+                     {.output_directory = {}, .map_file = start.map_file, .localise_only = start.localise_only}));
   sampler_.emplace(built_->pipeline.camera());
   warnings_ = configuration.warnings;
   add_warnings(warnings_, built_->warnings());

@@ -289,7 +289,9 @@ TEST_F(BridgeTest, ErrorsOfTheConfigurationComeAtOnce) {
 }
 
 TEST_F(BridgeTest, TheSourceOfAConfigurationIsReplacedAndItsCameraCounts) {
-  write("source: { tum: { path: not_here } }\ncamera: { width: 640, height: 480, fx: 480, fy: 480, cx: 320, cy: 240 }\nfeatures: orb\noptimizer: schur\n");
+  write(
+      "source: { tum: { path: not_here } }\ncamera: { width: 640, height: 480, fx: 480, fy: 480, cx: 320, cy: 240 "
+      "}\nfeatures: orb\noptimizer: schur\n");
   Parameters p = parameters();
   p.overrides = {"features.orb.count=700"};
   Bridge bridge(p, recorder_);

@@ -74,7 +74,9 @@ TEST(Conversions, CompressedImages) {
   EXPECT_EQ(colour_of({1, "png", png.data(), png.size()}).at<cv::Vec3b>(0, 0), cv::Vec3b(1, 2, 3));
   EXPECT_THAT(error_of([&] { colour_of(CompressedImage{1, "jpeg", png.data(), 5}); }), HasSubstr("cannot be decoded"));
   EXPECT_THAT(error_of([&] { colour_of(CompressedImage{1, "jpeg", nullptr, 0}); }), HasSubstr("cannot be decoded"));
-  EXPECT_THAT(error_of([&] { depth_of(CompressedImage{1, "32FC1; compressedDepth png", png.data(), png.size()}, 1); }),
+  EXPECT_THAT(error_of([&] {
+                depth_of(CompressedImage{1, "32FC1; compressedDepth png", png.data(), png.size()}, 1);
+              }),
               HasSubstr("republish it as raw"));
 }
 

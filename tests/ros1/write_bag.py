@@ -49,8 +49,18 @@ def info_message(stamp):
     return message
 
 
+def count_frames(colours, depths, most=0.02):
+    pairs = sorted((abs(a - b), a, b) for a in colours for b in depths if abs(a - b) < most)
+    used = set()
+    for _, a, b in pairs:
+        if ("colour", a) not in used and ("depth", b) not in used:
+            used |= {("colour", a), ("depth", b)}
+    return len(used) // 2
+
+
 def write_bag(recording, bag_file, frames=None):
-    """Colour as rgb8 and depth as 16UC1 with 5000 for a metre. Returns the number of colour images."""
+    """Colour as rgb8 and depth as 16UC1 with 5000 for a metre. Returns the number of frames, by the rule of TUM: images are
+    paired one to one, nearest first, within 20 ms."""
     colours, depths = read_list(recording / "rgb.txt")[:frames], read_list(recording / "depth.txt")
     last = float(colours[-1][0])
     images = [(float(stamp), stamp, name, COLOUR) for stamp, name in colours]
@@ -63,7 +73,7 @@ def write_bag(recording, bag_file, frames=None):
                 pixels = cv2.cvtColor(pixels, cv2.COLOR_BGR2RGB)
             bag.write(topic, image_message(pixels, "rgb8" if topic == COLOUR else "16UC1", stamp), stamp)
             bag.write(INFO if topic == COLOUR else DEPTH_INFO, info_message(stamp), stamp)
-    return len(colours)
+    return count_frames([float(stamp) for stamp, _ in colours], [float(stamp) for stamp, _ in depths])
 
 
 if __name__ == "__main__":

@@ -85,22 +85,22 @@ struct FrameOutput {
 
 /// The map as poses and points, in the frame `map`.
 struct MapOutput {
-  Stamp stamp = 0;  ///< of the last frame
+  Stamp stamp = 0;                                             ///< of the last frame
   std::vector<std::pair<Stamp, Eigen::Isometry3d>> keyframes;  ///< T_map_base, oldest first
   std::vector<Eigen::Vector3f> points;                         ///< those that are not rather moving [m]
 };
 
 /// The floor as a grid and the room as an octree.
 struct GridOutput {
-  Stamp stamp = 0;  ///< of the last frame
+  Stamp stamp = 0;        ///< of the last frame
   bool has_grid = false;  ///< a floor was found; otherwise only the octree is valid
   /// Pose of the lower left corner of cell (0, 0). It is level if `map` is, to which the pose of the camera on the
   /// robot leads; the axes of the grid are those of `map` then.
   Eigen::Isometry3d T_map_grid = Eigen::Isometry3d::Identity();
   std::uint32_t width = 0, height = 0;
-  double resolution = 0.0;              ///< [m]
-  std::vector<std::int8_t> cells;       ///< row by row: 0 = free, 100 = occupied, -1 = unknown
-  std::vector<std::int8_t> octree;      ///< as octomap_msgs/Octomap has it: binary, id OcTree
+  double resolution = 0.0;          ///< [m]
+  std::vector<std::int8_t> cells;   ///< row by row: 0 = free, 100 = occupied, -1 = unknown
+  std::vector<std::int8_t> octree;  ///< as octomap_msgs/Octomap has it: binary, id OcTree
   Eigen::Isometry3d T_map_octree = Eigen::Isometry3d::Identity();
 };
 

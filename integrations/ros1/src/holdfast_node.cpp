@@ -47,9 +47,8 @@ class HoldfastNode {
     if (parameters_.bridge.has_right)
       listen<sensor_msgs::CameraInfo>("right_camera_info",
                                       [this](const auto& m) { bridge_.set_right_camera(camera_info(m)); });
-    listen<sensor_msgs::Imu>("imu", [this](const auto& m) {
-      bridge_.add_inertia(bridge::inertial_sample(m, stamp_of(m.header.stamp)));
-    });
+    listen<sensor_msgs::Imu>(
+        "imu", [this](const auto& m) { bridge_.add_inertia(bridge::inertial_sample(m, stamp_of(m.header.stamp))); });
     offer_services();
     // By the clock on the wall: a bag that stands still is worth a diagnosis, too.
     timer_ = node_.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) {
@@ -71,9 +70,11 @@ class HoldfastNode {
       if (knows_camera_pose(m.header)) bridge_.add_colour(bridge::raw_image(m, stamp_of(m.header.stamp)));
     });
     if (parameters_.bridge.has_depth)
-      listen<sensor_msgs::Image>("depth", [this](const auto& m) { bridge_.add_depth(bridge::raw_image(m, stamp_of(m.header.stamp))); });
+      listen<sensor_msgs::Image>(
+          "depth", [this](const auto& m) { bridge_.add_depth(bridge::raw_image(m, stamp_of(m.header.stamp))); });
     if (parameters_.bridge.has_right)
-      listen<sensor_msgs::Image>("right", [this](const auto& m) { bridge_.add_right(bridge::raw_image(m, stamp_of(m.header.stamp))); });
+      listen<sensor_msgs::Image>(
+          "right", [this](const auto& m) { bridge_.add_right(bridge::raw_image(m, stamp_of(m.header.stamp))); });
   }
 
   void subscribe_compressed() {
@@ -81,11 +82,13 @@ class HoldfastNode {
       if (knows_camera_pose(m.header)) bridge_.add_colour(bridge::compressed_image(m, stamp_of(m.header.stamp)));
     });
     if (parameters_.bridge.has_depth)
-      listen<sensor_msgs::CompressedImage>("depth/compressedDepth",
-                                           [this](const auto& m) { bridge_.add_depth(bridge::compressed_image(m, stamp_of(m.header.stamp))); });
+      listen<sensor_msgs::CompressedImage>("depth/compressedDepth", [this](const auto& m) {
+        bridge_.add_depth(bridge::compressed_image(m, stamp_of(m.header.stamp)));
+      });
     if (parameters_.bridge.has_right)
-      listen<sensor_msgs::CompressedImage>("right/compressed",
-                                           [this](const auto& m) { bridge_.add_right(bridge::compressed_image(m, stamp_of(m.header.stamp))); });
+      listen<sensor_msgs::CompressedImage>("right/compressed", [this](const auto& m) {
+        bridge_.add_right(bridge::compressed_image(m, stamp_of(m.header.stamp)));
+      });
   }
 
   /// Looks for the pose of the camera on the robot until it is there or the wait is over. Called by one thread at a
@@ -108,8 +111,8 @@ class HoldfastNode {
   }
 
   void place_camera_ahead(const std::string& frame, const std::string& reason) {
-    ROS_WARN_STREAM("the camera is taken to look ahead from " << parameters_.base_frame << ", because tf does not tell: "
-                                                              << reason);
+    ROS_WARN_STREAM("the camera is taken to look ahead from " << parameters_.base_frame
+                                                              << ", because tf does not tell: " << reason);
     Eigen::Isometry3d T_base_camera = Eigen::Isometry3d::Identity();
     T_base_camera.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
     if (parameters_.publishes_tf && !frame.empty() && frame != parameters_.base_frame)

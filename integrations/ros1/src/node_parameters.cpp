@@ -74,7 +74,8 @@ NodeParameters read_parameters(const ros::NodeHandle& node) {
   if (start != "new" && start != "continue" && start != "localise")
     throw std::runtime_error("found '" + start + "' for 'start'; expected new, continue or localise");
   p.bridge.localise_only = start == "localise";
-  if (start == "new") p.bridge.map_file.clear();
+  if (start == "new")
+    p.bridge.map_file.clear();
   else if (p.bridge.map_file.empty())
     throw std::runtime_error("'start' is '" + start + "' without 'map_file'; expected the file of a map");
   return p;

@@ -112,8 +112,8 @@ void Publisher::publish_transforms(const bridge::FrameOutput& frame) {
     broadcaster_.sendTransform(map_to_odom);
     return;
   }
-  broadcaster_.sendTransform({map_to_odom, transform_message(frame.stamp, parameters_.odom_frame,
-                                                             parameters_.base_frame, frame.T_odom_base)});
+  broadcaster_.sendTransform(
+      {map_to_odom, transform_message(frame.stamp, parameters_.odom_frame, parameters_.base_frame, frame.T_odom_base)});
 }
 
 void Publisher::on_map(const bridge::MapOutput& map) {

@@ -64,8 +64,8 @@ class HoldfastNode final : public LifecycleNode {
     bridge_->pause(true);
     subscribe();
     offer_services();
-    diagnostics_timer_ = create_wall_timer(std::chrono::seconds(1),
-                                           [this] { publisher_->publish_diagnostics(bridge_->diagnostics()); });
+    diagnostics_timer_ =
+        create_wall_timer(std::chrono::seconds(1), [this] { publisher_->publish_diagnostics(bridge_->diagnostics()); });
     return CallbackReturn::SUCCESS;
   } catch (const std::exception& error) {
     RCLCPP_ERROR(get_logger(), "%s", error.what());
@@ -123,7 +123,8 @@ class HoldfastNode final : public LifecycleNode {
       subscribe_raw();
     listen<CameraInfo>("camera_info", [this](const CameraInfo& m) { bridge_->set_camera(camera_info(m)); });
     if (parameters_.bridge.has_right)
-      listen<CameraInfo>("right_camera_info", [this](const CameraInfo& m) { bridge_->set_right_camera(camera_info(m)); });
+      listen<CameraInfo>("right_camera_info",
+                         [this](const CameraInfo& m) { bridge_->set_right_camera(camera_info(m)); });
     listen<sensor_msgs::msg::Imu>("imu", [this](const sensor_msgs::msg::Imu& m) {
       bridge_->add_inertia(bridge::inertial_sample(m, stamp_of(m.header.stamp)));
     });

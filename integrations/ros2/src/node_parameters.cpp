@@ -50,8 +50,7 @@ void declare_parameters(rclcpp_lifecycle::LifecycleNode& node) {
   NodeParameters defaults;
   bool has_grid = true;
   std::string start = "new";
-  visit(defaults, has_grid, start,
-        [&](const char* name, auto& value) { value = node.declare_parameter(name, value); });
+  visit(defaults, has_grid, start, [&](const char* name, auto& value) { value = node.declare_parameter(name, value); });
 }
 
 NodeParameters read_parameters(rclcpp_lifecycle::LifecycleNode& node) {

@@ -155,11 +155,11 @@ void Publisher::on_message(bridge::Diagnostics::Level level, const std::string& 
 std::optional<Eigen::Isometry3d> Publisher::odometry(bridge::Stamp stamp) {
   if (!parameters_.has_external_odometry) return std::nullopt;
   try {
-    return bridge::isometry_of(
-        transforms_
-            .lookupTransform(parameters_.odom_frame, parameters_.base_frame, tf2_ros::fromMsg(time_of(stamp)),
-                             tf2::durationFromSec(parameters_.transform_tolerance))
-            .transform);
+    return bridge::isometry_of(transforms_
+                                   .lookupTransform(parameters_.odom_frame, parameters_.base_frame,
+                                                    tf2_ros::fromMsg(time_of(stamp)),
+                                                    tf2::durationFromSec(parameters_.transform_tolerance))
+                                   .transform);
   } catch (const tf2::TransformException& error) {
     RCLCPP_WARN(node_.get_logger(), "no odometry: %s", error.what());
     return std::nullopt;
