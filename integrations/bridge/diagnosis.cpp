@@ -78,7 +78,7 @@ Diagnostics diagnose(const BridgeStatus& status) {
         std::pair("unusable", counts.unusable), std::pair("unpaired", counts.unpaired),
         std::pair("dropped", counts.dropped), std::pair("answered", counts.answered),
         std::pair("with_pose", counts.with_pose), std::pair("late", counts.late),
-        std::pair("keyframes", std::uint64_t{status.keyframes})})
+        std::pair("keyframes_added", std::uint64_t{status.keyframes})})
     add(name, std::to_string(count));
   add("latency_ms", number(1e3 * counts.latency));
   add("largest_latency_ms", number(1e3 * counts.largest_latency));
