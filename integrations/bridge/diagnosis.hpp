@@ -30,7 +30,7 @@ struct BridgeStatus {
   bool needs_camera = false;             ///< neither the configuration nor a message has told the camera
   std::string failure;                   ///< why there is no pipeline, or the last exception of it
   std::optional<PipelineHealth> health;  ///< of the pipeline, if there is one
-  std::size_t keyframes = 0;  ///< that were added; some are removed later
+  std::size_t keyframes = 0;             ///< that were added; some are removed later
 };
 
 /// What an operator should know first, and all numbers.

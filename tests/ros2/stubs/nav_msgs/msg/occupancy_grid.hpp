@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <geometry_msgs/msg/pose.hpp>
 #include <std_msgs/msg/header.hpp>
-#include <cstdint>
 #include <vector>
 
 namespace nav_msgs::msg {
