@@ -18,6 +18,8 @@
 #                                                     Debian has no package of it
 #   sh cmake/install_dependencies.sh --surface        also what the section `surface` is built of, OpenVDB, and
 #                                                     OctoMap's library, with which its tests read maps
+#   sh cmake/install_dependencies.sh --ros            also ROS 1, of which its node is built and in which its test runs it
+#                                                     (Debian 12; later ones have no ROS 1)
 #   sh cmake/install_dependencies.sh --clang          also clang, for tests of the headers and of the format, the fuzz targets and the
 #                                                     quick sanitizer build
 #   sh cmake/install_dependencies.sh --valgrind       also valgrind, for tests/valgrind
@@ -63,14 +65,19 @@ for argument in "$@"; do
     --cameras) packages="$packages libopenni2-dev" ;;
     --onnxruntime) wants_onnxruntime=yes ;;
     --surface) packages="$packages libopenvdb-dev liboctomap-dev" ;;
+    --ros)
+      packages="$packages libroscpp-dev libtf2-ros-dev libnav-msgs-dev libsensor-msgs-dev libdiagnostic-msgs-dev
+        libvisualization-msgs-dev libstd-srvs-dev python3-roslaunch rosout python3-rosbag python3-rospy python3-opencv
+        python3-diagnostic-msgs python3-nav-msgs python3-sensor-msgs python3-std-srvs python3-tf2-msgs"
+      ;;
     --clang) packages="$packages clang clang-format libclang-rt-dev llvm" ;;
     --valgrind) packages="$packages valgrind" ;;
     --clean-root) packages="$packages mmdebstrap" ;;
     --arm64) packages="$packages crossbuild-essential-arm64 mmdebstrap qemu-user-static" ;;
     --dry-run) dry_run=yes ;;
     --list) lists=yes ;;
-    -h | --help) sed -n '3,28s/^# \{0,1\}//p' "$0"; exit 0 ;;
-    *) fail "unknown argument '$argument'; known are --training, --documentation, --benchmarks, --python, --python-tests, --bench-tests, --cameras, --onnxruntime, --surface, --clang, --valgrind, --clean-root, --arm64, --dry-run, --list and --help" ;;
+    -h | --help) sed -n '3,29s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    *) fail "unknown argument '$argument'; known are --training, --documentation, --benchmarks, --python, --python-tests, --bench-tests, --cameras, --onnxruntime, --surface, --ros, --clang, --valgrind, --clean-root, --arm64, --dry-run, --list and --help" ;;
   esac
 done
 

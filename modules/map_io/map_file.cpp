@@ -16,9 +16,9 @@ namespace {
 
 using namespace map_io;
 
-std::uint64_t observation_count(const Map& map) {
+std::uint64_t observation_count(const Map& map, const DenseIndex& index) {
   std::uint64_t count = 0;
-  map.points().for_each([&](MapPointId, const MapPoint& point) { count += point.observations.size(); });
+  for (const MapPointId id : index.points()) count += map.point(id).observations.size();
   return count;
 }
 
@@ -30,8 +30,7 @@ void write_section(AtomicFile& file, const char* type, const std::string& payloa
 }
 
 /// Features, by far the most, go out keyframe by keyframe; all sizes are known before, for the header comes first.
-void write_content(AtomicFile& file, const Map& map) {
-  const DenseIndex index(map);
+void write_content(AtomicFile& file, const Map& map, const DenseIndex& index) {
   const SharedTables shared = tables_of(map, index);
   const MapFeatures& map_features = map.features();
   const bool has_descriptor_section = map_features != MapFeatures();
@@ -59,7 +58,7 @@ void write_content(AtomicFile& file, const Map& map) {
   header.sections = 3 + optional_sections + static_cast<std::uint32_t>(index.keyframes().size());
   header.keyframes = static_cast<std::uint32_t>(index.keyframes().size());
   header.points = static_cast<std::uint32_t>(index.points().size());
-  header.observations = observation_count(map);
+  header.observations = observation_count(map, index);
   header.next_sequence = map.next_sequence();
   header.sensor = static_cast<std::uint32_t>(map.sensor());
   header.file_size = header_size + header.sections * section_header_size + tables.size() + lenses.size() +
@@ -88,11 +87,11 @@ void write_content(AtomicFile& file, const Map& map) {
 
 }  // namespace
 
-void write_map(const std::filesystem::path& file, const Map& map) {
+void write_map(const std::filesystem::path& file, const Map& map, std::optional<std::uint32_t> submap) {
   if (std::error_code ignored; std::filesystem::is_directory(file, ignored))
     throw InputError({file.string()}, "found a folder; expected the name of the map file to write");
   AtomicFile written(file);
-  write_content(written, map);
+  write_content(written, map, DenseIndex(map, submap));
   written.commit();
 }
 

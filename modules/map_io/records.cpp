@@ -138,7 +138,12 @@ void refuse(const ByteReader& reader, const char* kind, std::size_t position, co
 
 }  // namespace
 
-DenseIndex::DenseIndex(const Map& map) : keyframes_(map.keyframes_by_age()), points_(map.points().ids()) {
+DenseIndex::DenseIndex(const Map& map, std::optional<std::uint32_t> submap)
+    : keyframes_(map.keyframes_by_age()), points_(map.points().ids()) {
+  if (submap) {
+    std::erase_if(keyframes_, [&](KeyFrameId id) { return map.keyframe(id).submap != *submap; });
+    std::erase_if(points_, [&](MapPointId id) { return map.submap_of(map.point(id).reference_keyframe) != submap; });
+  }
   keyframe_positions_.assign(map.keyframes().slot_count(), no_index);
   for (std::uint32_t i = 0; i < keyframes_.size(); ++i) keyframe_positions_[keyframes_[i].slot] = i;
   point_positions_.assign(map.points().slot_count(), no_index);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,8 @@ struct SharedTables {
 /// Positions in the file of the entries of a map: keyframes by rising sequence, points in slot order.
 class DenseIndex {
  public:
-  explicit DenseIndex(const Map& map);
+  /// Of the whole map, or of one of its submaps.
+  explicit DenseIndex(const Map& map, std::optional<std::uint32_t> submap = std::nullopt);
   /// By position.
   const std::vector<KeyFrameId>& keyframes() const { return keyframes_; }
   const std::vector<MapPointId>& points() const { return points_; }

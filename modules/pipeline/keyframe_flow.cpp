@@ -316,6 +316,13 @@ std::shared_ptr<const FreeSpace> KeyframeFlow::free_space() const {
   return free_space_;
 }
 
+bool KeyframeFlow::with_surface(const std::function<void(const SurfaceMap&)>& look) const {
+  if (!surface_) return false;
+  const MutexLock lock(surface_mutex_);
+  look(*surface_);
+  return true;
+}
+
 void KeyframeFlow::finish_surface() {
   if (!surface_) return;
   std::vector<KeptView> views = views_of_surface();

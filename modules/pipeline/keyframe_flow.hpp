@@ -96,6 +96,8 @@ class KeyframeFlow {
   const SurfaceMap* surface() const { return surface_ ? &*surface_ : nullptr; }
   /// See Pipeline::free_space().
   std::shared_ptr<const FreeSpace> free_space() const HOLDFAST_EXCLUDES(surface_mutex_);
+  /// See Pipeline::with_surface().
+  bool with_surface(const std::function<void(const SurfaceMap&)>& look) const HOLDFAST_EXCLUDES(surface_mutex_);
   /// A copy of the map, from any thread.
   MapSnapshot snapshot() const;
 

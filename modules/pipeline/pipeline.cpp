@@ -14,6 +14,7 @@
 #include "holdfast/core/stereo_calibration.hpp"
 #include "holdfast/core/thread_annotations.hpp"
 #include "holdfast/map_io/map_export.hpp"
+#include "holdfast/map_io/map_file.hpp"
 #include "holdfast/moving_world/moving_world.hpp"
 #include "holdfast/pipeline/health_monitor.hpp"
 #include "holdfast/tracking/image_depth.hpp"
@@ -338,12 +339,28 @@ Trajectory Pipeline::trajectory() const {
   return state_->tracker.trajectory(locked);
 }
 
+Trajectory Pipeline::poses_at(const std::vector<double>& timestamps) const {
+  const LockedMap locked(state_->map, LockPriority::tracking);
+  Trajectory poses;
+  for (const double timestamp : timestamps)
+    if (const auto T_world_camera = state_->tracker.pose_at(locked, timestamp))
+      poses.push_back({timestamp, *T_world_camera});
+  return poses;
+}
+
 Trajectory Pipeline::keyframe_trajectory() const {
   const LockedMap locked(state_->map, LockPriority::tracking);
   return holdfast::keyframe_trajectory(locked.map());
 }
 
 MapSnapshot Pipeline::map_snapshot() const { return state_->flow.snapshot(); }
+
+void Pipeline::save_map(const std::filesystem::path& file) const {
+  const LockedStructure structure(state_->map);
+  const LockedMap locked(state_->map, LockPriority::background);
+  if (locked->keyframes().empty()) throw Error("there is no map yet to be saved in " + file.string());
+  write_map(file, locked.map(), state_->tracker.main_submap(locked));
+}
 
 const Map& Pipeline::map() const { return state_->map.unshared(); }
 Map Pipeline::take_map() {
@@ -353,6 +370,9 @@ Map Pipeline::take_map() {
 const StaticScene* Pipeline::static_scene() const { return state_->flow.static_scene(); }
 const SurfaceMap* Pipeline::surface() const { return state_->flow.surface(); }
 std::shared_ptr<const FreeSpace> Pipeline::free_space() const { return state_->flow.free_space(); }
+bool Pipeline::with_surface(const std::function<void(const SurfaceMap&)>& look) const {
+  return state_->flow.with_surface(look);
+}
 bool Pipeline::is_free(const Eigen::Vector3d& point) const { return required(free_space()).is_free(point); }
 double Pipeline::distance(const Eigen::Vector3d& point) const { return required(free_space()).distance(point); }
 const MappingCounts& Pipeline::mapping_counts() const { return state_->flow.mapping_counts(); }

@@ -208,12 +208,12 @@ std::optional<Floor> find_floor(const TriangleMesh& mesh, const Eigen::Vector3d&
 }
 
 GridMap make_grid_map(const FreeSpace& space, const TriangleMesh& mesh, const Floor& floor,
-                      const SurfaceSettings& settings) {
+                      const SurfaceSettings& settings, const Eigen::Vector3d& ahead) {
   GridMap map;
   map.resolution = space.resolution();
-  const Eigen::Vector3d ahead = Eigen::Vector3d::UnitZ() - floor.up.z() * floor.up;
+  const Eigen::Vector3d level = ahead - floor.up.dot(ahead) * floor.up;
   const Eigen::Vector3d x =
-      ahead.norm() > 0.1 ? ahead.normalized() : (Eigen::Vector3d::UnitX() - floor.up.x() * floor.up).normalized();
+      level.norm() > 0.1 ? level.normalized() : (Eigen::Vector3d::UnitX() - floor.up.x() * floor.up).normalized();
   map.T_map_world.linear().row(0) = x;
   map.T_map_world.linear().row(1) = floor.up.cross(x);
   map.T_map_world.linear().row(2) = floor.up;

@@ -11,7 +11,7 @@ esac
 cd "$sources"
 list=$(mktemp)
 trap 'rm -f "$list"' EXIT
-find include modules plugins examples tests benchmarks -name '*.cpp' -o -name '*.hpp' | sort >"$list"
+find include modules plugins integrations examples tests benchmarks -name '*.cpp' -o -name '*.hpp' | sort >"$list"
 number=$(wc -l <"$list")
 [ "$number" -ge 500 ] || { echo "found only $number files in $sources" >&2; exit 1; }
 xargs -P "$(nproc)" -n 50 "$program" --dry-run -Werror <"$list" || { echo "see above; mend with clang-format -i" >&2; exit 1; }

@@ -136,12 +136,14 @@ std::vector<Layer> read_layer_table(const fs::path& page) {
 
 LayerReport check_layers(const fs::path& tree, const std::vector<Layer>& layers) {
   LayerReport report;
-  for (const char* top : {"include", "modules", "plugins"})
+  for (const char* top : {"include", "modules", "plugins", "integrations"}) {
+    if (!fs::exists(tree / top)) continue;
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(tree / top))
       if (entry.is_regular_file() && is_source(entry.path())) {
         ++report.files;
         check_file(tree, fs::relative(entry.path(), tree), layers, report);
       }
+  }
   std::sort(report.problems.begin(), report.problems.end());
   return report;
 }

@@ -27,9 +27,10 @@ struct LayerReport {
   int includes = 0;  ///< of holdfast headers
 };
 
-/// Reads the includes of every C++ file in include/, modules/ and plugins/ of a source tree. A file belongs to the
-/// layer with the longest folder that holds it. Problems: an include of a layer that the file's layer may not know, or
-/// that the table does not have; an include that climbs out of its folder (".."); a file that belongs to no layer.
+/// Reads the includes of every C++ file in include/, modules/, plugins/ and integrations/ of a source tree. A file
+/// belongs to the layer with the longest folder that holds it. Problems: an include of a layer that the file's layer
+/// may not know, or that the table does not have; an include that climbs out of its folder (".."); a file that belongs
+/// to no layer.
 LayerReport check_layers(const std::filesystem::path& tree, const std::vector<Layer>& layers);
 
 }  // namespace holdfast::layers

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 
+#include "core/map_rows.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/map_io/map_info.hpp"
 #include "map_io/example_inertia.hpp"
@@ -180,6 +181,22 @@ TEST_F(MapFile, SameBytesTwiceAndAfterARoundTrip) {
   const Map again = read_map(path("map.hfm"));
   EXPECT_TRUE(bytes_of(again) == bytes);
   EXPECT_TRUE(bytes_of(random_map(20, 40, 3)) == bytes);
+}
+
+TEST_F(MapFile, ASubmapIsWrittenAsIfItWereTheMap) {
+  Map map;
+  test::build_row(map, 6);
+  const std::vector<KeyFrameId> second = test::build_row(map, 5);
+  const std::uint32_t number = map.new_submap();
+  for (const KeyFrameId id : second) map.keyframe(id).submap = number;
+  write_map(path("part.hfm"), map, number);
+  write_map(path("other.hfm"), map, 0);
+  EXPECT_EQ(map.keyframes().size(), 11U) << "the map itself stays";
+  map.keep_submap(number);
+  write_map(path("kept.hfm"), map);
+  EXPECT_TRUE(content(path("part.hfm")) == content(path("kept.hfm")));
+  EXPECT_EQ(read_map(path("part.hfm")).keyframes().size(), 5U);
+  EXPECT_EQ(read_map(path("other.hfm")).keyframes().size(), 6U);
 }
 
 TEST_F(MapFile, AMapThatWasReadGoesOn) {

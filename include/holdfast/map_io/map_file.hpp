@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 
 #include "holdfast/core/map.hpp"
 
@@ -17,10 +19,10 @@
 /// Errors are InputError that states the file, what was found, what was expected and how to correct it.
 namespace holdfast {
 
-/// Writes the map atomically: an existing file remains unchanged if writing fails. The map must not be modified
-/// meanwhile (hold its lock). Throws InputError if the file cannot be written, CheckError if the map violates an
-/// invariant of Map or contains a number that is not finite.
-void write_map(const std::filesystem::path& file, const Map& map);
+/// Writes the map, or one of its submaps, atomically: an existing file remains unchanged if writing fails. The map must
+/// not be modified meanwhile (hold its lock). Throws InputError if the file cannot be written, CheckError if the map
+/// violates an invariant of Map or contains a number that is not finite.
+void write_map(const std::filesystem::path& file, const Map& map, std::optional<std::uint32_t> submap = std::nullopt);
 
 /// Replaces the content of `map`; the map remains unchanged if an error is thrown. Throws InputError for a file that is
 /// missing, empty, of another type, truncated, damaged, of a newer format, or inconsistent.

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -95,8 +97,8 @@ struct LoopRecord {
 /// Sequential mode: feed() processes a frame completely in the calling thread, including mapping and loop closing, and
 /// results are bit-identical on every run. Threaded mode: feed() tracks the frame and inserts keyframes; local mapping,
 /// loop closing, full bundle adjustment and segmentation run in separate threads. Tracking waits for them only when the
-/// queue of keyframes is full and frames are not paced. interrupt(), health() and map_snapshot() may be called by any
-/// thread, all other functions by one thread at a time.
+/// queue of keyframes is full and frames are not paced. interrupt(), health(), map_snapshot(), save_map(), free_space()
+/// and with_surface() may be called by any thread, all other functions by one thread at a time.
 class Pipeline {
  public:
   /// Throws CheckError if a required module is missing.
@@ -129,11 +131,19 @@ class Pipeline {
   /// submaps, the poses of the submap with most frames (TrackingSettings::restart_time). World frame: the first camera
   /// frame, or that of the continued map.
   Trajectory trajectory() const;
+  /// Poses of the frames with exactly these time stamps [s], with all corrections so far and consistent with each
+  /// other: no correction lies between them. Frames without a pose are left out. Takes microseconds for a few frames.
+  Trajectory poses_at(const std::vector<double>& timestamps) const;
   /// Poses of the keyframes in the map, by time.
   Trajectory keyframe_trajectory() const;
   /// Copy of the current keyframes, points and loops, during which the run continues. Any thread, in both modes.
   /// Tracking waits for the copy, about 2 ms for 50000 points.
   MapSnapshot map_snapshot() const;
+  /// Writes the map as it is now to a file (map_io/map_file.hpp) while the run continues: the submap of trajectory(),
+  /// and points with the classes of the map that is continued, because new ones are classified by finish(). Waits until
+  /// the keyframe in progress is refined; tracking waits for the writing. Any thread, in both modes, but not during
+  /// finish(). Throws InputError if the file cannot be written, and Error if there is no map yet.
+  void save_map(const std::filesystem::path& file) const;
   /// The map. In threaded mode only after finish().
   const Map& map() const;
   /// Moves the map out of the pipeline. Only the destructor may be called afterwards.
@@ -147,6 +157,9 @@ class Pipeline {
   /// until more is fused: the first call after a keyframe meshes the surface, which takes 50 ms for a room and longer
   /// for a hall, and fusion waits for it. From any thread, in both modes.
   std::shared_ptr<const FreeSpace> free_space() const;
+  /// Calls `look` with the surface as fused so far; the fusion waits meanwhile, tracking does not. Returns false,
+  /// without a call, if there is no surface. Any thread, in both modes.
+  bool with_surface(const std::function<void(const SurfaceMap&)>& look) const;
   /// FreeSpace::is_free() and FreeSpace::distance() [m] of free_space(), for a point in world coordinates. Throw Error
   /// without a surface.
   bool is_free(const Eigen::Vector3d& point) const;

@@ -107,9 +107,10 @@ struct GridMap {
 };
 
 /// A cell is occupied if there is surface between SurfaceSettings::robot_lowest and robot_highest, free if the floor or
-/// free space in the band was seen and no such surface, else unknown.
+/// free space in the band was seen and no such surface, else unknown. x of the map is the part along the floor of
+/// `ahead` (world), by default the viewing direction of the first camera.
 GridMap make_grid_map(const FreeSpace& space, const TriangleMesh& mesh, const Floor& floor,
-                      const SurfaceSettings& settings);
+                      const SurfaceSettings& settings, const Eigen::Vector3d& ahead = Eigen::Vector3d::UnitZ());
 
 /// Maps for navigation.
 struct NavigationMaps {

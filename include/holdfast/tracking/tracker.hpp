@@ -77,6 +77,11 @@ class Tracker {
   /// Current poses of the tracked frames of the main submap. Poses are stored relative to keyframes, so that
   /// corrections of the map move them.
   Trajectory trajectory(const MapAccess& map) const { return context_.history.trajectory(map.map()); }
+  /// Current T_world_camera of the frame with this time stamp; empty without a pose in the map.
+  std::optional<Eigen::Isometry3d> pose_at(const MapAccess& map, double timestamp) const {
+    const auto pose = context_.history.past_pose(timestamp, map.map());
+    return pose ? std::optional(pose->T_camera_world.inverse()) : std::nullopt;
+  }
 
  private:
   MapRequest begin_map(const SensorFrame& sensor_frame, FrameResult& result);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
+
 namespace geometry_msgs::msg {
 struct Point {
   double x = 0, y = 0, z = 0;
@@ -11,5 +13,23 @@ struct Quaternion {
 struct Pose {
   Point position;
   Quaternion orientation;
+};
+struct PoseWithCovariance {
+  Pose pose;
+  std::array<double, 36> covariance{};
+};
+struct Vector3 {
+  double x = 0, y = 0, z = 0;
+};
+struct Twist {
+  Vector3 linear, angular;
+};
+struct TwistWithCovariance {
+  Twist twist;
+  std::array<double, 36> covariance{};
+};
+struct Transform {
+  Vector3 translation;
+  Quaternion rotation;
 };
 }  // namespace geometry_msgs::msg

@@ -2,10 +2,14 @@
 #pragma once
 
 #include <geometry_msgs/msg/pose_stamped.hpp>
+#include <memory>
 #include <vector>
 
 namespace nav_msgs::msg {
 struct Path {
+  using SharedPtr = std::shared_ptr<Path>;
+  using ConstSharedPtr = std::shared_ptr<const Path>;
+
   std_msgs::msg::Header header;
   std::vector<geometry_msgs::msg::PoseStamped> poses;
 };
