@@ -58,7 +58,7 @@ for argument in "$@"; do
     --bench-tests) packages="$packages chromium munge parallel slurm-client slurmctld slurmd" ;;
     --cameras) packages="$packages libopenni2-dev" ;;
     --onnxruntime) wants_onnxruntime=yes ;;
-    --surface) packages="$packages libopenvdb-dev liboctomap-dev" ;;
+    --surface) packages="$packages libopenvdb-dev liboctomap-dev libassimp-dev" ;;
     --clang) packages="$packages clang clang-format libclang-rt-dev llvm" ;;
     --valgrind) packages="$packages valgrind" ;;
     --clean-root) packages="$packages mmdebstrap" ;;

@@ -293,7 +293,8 @@ void KeyframeFlow::update_surface(const KeptView* view, StageTimes& times) {
 }
 
 void KeyframeFlow::fuse(std::vector<KeptView> views, std::size_t max_moves, StageTimes& times) {
-  const StageTimer timer(times, "surface");
+  std::optional<StageTimer> timer;
+  timer.emplace(times, "surface");
   std::vector<Eigen::Isometry3d> poses;
   {
     const LockedMap map(map_, LockPriority::background);
@@ -301,9 +302,23 @@ void KeyframeFlow::fuse(std::vector<KeptView> views, std::size_t max_moves, Stag
     std::erase_if(views, [&](const KeptView& view) { return !map->submap_of(view.keyframe); });
     for (const KeptView& view : views) poses.push_back(view.T_world_view(map->pose_of(view.keyframe)));
   }
-  const MutexLock lock(surface_mutex_);
-  surface_->update(views, poses, max_moves);
-  free_space_.reset();
+  {
+    const MutexLock lock(surface_mutex_);
+    surface_->update(views, poses, max_moves);
+    free_space_.reset();
+  }
+  timer.reset();
+  show_surface();
+}
+
+void KeyframeFlow::show_surface() const {
+  if (parts_.observers.empty()) return;
+  // Only this thread changes the field; what finds its blocks is locked all the same, because it keeps the last place.
+  const ObservedSurface observed{surface_->field().version(), [this](std::uint64_t since, int coarseness) {
+                                   const MutexLock lock(surface_mutex_);
+                                   return surface_->field().changes(since, coarseness);
+                                 }};
+  for (const auto& observer : parts_.observers) observer->on_surface(observed);
 }
 
 std::shared_ptr<const FreeSpace> KeyframeFlow::free_space() const {

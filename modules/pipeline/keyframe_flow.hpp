@@ -146,6 +146,8 @@ class KeyframeFlow {
   void update_surface(const KeptView* view, StageTimes& times);
   void fuse(std::vector<KeptView> views, std::size_t max_moves, StageTimes& times)
       HOLDFAST_EXCLUDES(map_, surface_mutex_);
+  /// Tells the observers that the surface has changed.
+  void show_surface() const HOLDFAST_EXCLUDES(surface_mutex_);
   /// Tells the observers of a kept view, if there is one.
   void show_view(const KeptView* view) HOLDFAST_EXCLUDES(map_);
   bool has_keyframe(KeyFrameId keyframe) const HOLDFAST_EXCLUDES(map_);

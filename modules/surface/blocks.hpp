@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -28,6 +29,7 @@ struct Block {
 
   Eigen::Vector3i coordinates = Eigen::Vector3i::Zero();
   std::uint64_t birth = 0;                           ///< position in the order of creation
+  std::uint64_t version = 0;                         ///< Blocks::version() of the last change
   std::array<std::int32_t, size> distance{};         ///< sum of weight * distance
   std::array<float, size> balance{};                 ///< see SurfaceField, in units of a view with the number `last`
   std::array<std::uint16_t, size> weight{};          ///< sum
@@ -67,6 +69,7 @@ class Blocks {
     blocks_.push_back(std::make_unique<Block>());
     blocks_.back()->coordinates = coordinates;
     blocks_.back()->birth = births_++;
+    blocks_.back()->version = version_;
     return *blocks_.back();
   }
   /// Position in list(), or -1.
@@ -75,23 +78,55 @@ class Blocks {
   /// Block::coordinates of list(), side by side in memory.
   const std::vector<Eigen::Vector3i>& coordinates() const { return coordinates_; }
   std::uint64_t births() const { return births_; }
+  /// Number of changes so far.
+  std::uint64_t version() const { return version_; }
+  void begin_change() { ++version_; }
+
+  /// A block that was removed.
+  struct Removal {
+    Eigen::Vector3i coordinates;
+    std::uint64_t version = 0;
+  };
+  /// The last removal of each block that was removed.
+  const std::vector<Removal>& removals() const { return removals_; }
 
   template <class Condition>
   void remove_if(const Condition& condition) {
-    if (std::erase_if(blocks_, [&](const std::unique_ptr<Block>& block) { return condition(*block); }) == 0) return;
+    const std::size_t before = removals_.size();
+    begin_change();
+    std::erase_if(blocks_, [&](const std::unique_ptr<Block>& block) {
+      if (!condition(*block)) return false;
+      removals_.push_back({block->coordinates, version_});
+      return true;
+    });
+    if (removals_.size() == before) return;
     tree_.clear();
     coordinates_.clear();
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
       coordinates_.push_back(blocks_[i]->coordinates);
       tree_.set(blocks_[i]->coordinates, static_cast<std::int32_t>(i));
     }
+    forget_earlier_removals();
   }
 
  private:
+  void forget_earlier_removals() {
+    const auto values = [](const Removal& r) {
+      return std::tuple(r.coordinates.x(), r.coordinates.y(), r.coordinates.z());
+    };
+    std::stable_sort(removals_.begin(), removals_.end(),
+                     [&](const Removal& a, const Removal& b) { return values(a) < values(b); });
+    // Of those at one place the last one stays.
+    const auto last = std::unique(removals_.rbegin(), removals_.rend(),
+                                  [&](const Removal& a, const Removal& b) { return values(a) == values(b); });
+    removals_.erase(removals_.begin(), last.base());
+  }
+
   BlockTree tree_;
   std::vector<std::unique_ptr<Block>> blocks_;
   std::vector<Eigen::Vector3i> coordinates_;
-  std::uint64_t births_ = 0;
+  std::vector<Removal> removals_;
+  std::uint64_t births_ = 0, version_ = 0;
 };
 
 }  // namespace holdfast::surface

@@ -214,6 +214,7 @@ void Integrator::update(const Blocks& blocks, std::uint64_t births) const {
     if (reach == Reach::nothing) continue;
     Block& block = *blocks.list()[i];
     if (block.birth >= births) return;  // and so are all that follow
+    block.version = blocks.version();
     (reach == Reach::all_free ? carve_all_ : update_voxels_)(view_, corner.data(), block);
   }
 }

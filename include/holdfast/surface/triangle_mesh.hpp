@@ -8,14 +8,9 @@
 #include <functional>
 #include <vector>
 
-namespace holdfast {
+#include "holdfast/core/mesh_vertex.hpp"
 
-/// A vertex of a mesh in world coordinates.
-struct MeshVertex {
-  Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< [m]
-  Eigen::Vector3f normal = Eigen::Vector3f::Zero();    ///< unit, towards free space; zero if unknown
-  std::uint8_t red = 0, green = 0, blue = 0;
-};
+namespace holdfast {
 
 /// An indexed triangle mesh. The corners of a triangle are counter-clockwise as seen from free space.
 struct TriangleMesh {
