@@ -17,7 +17,8 @@
 #                                                     /usr/local/lib, from the npm package onnxruntime-node (70 MB), where
 #                                                     Debian has no package of it
 #   sh cmake/install_dependencies.sh --surface        also what the section `surface` is built of, OpenVDB, and
-#                                                     OctoMap's library, with which its tests read maps
+#                                                     OctoMap's library and assimp, with which its tests
+#                                                     read maps and meshes
 #   sh cmake/install_dependencies.sh --clang          also clang, for tests of the headers and of the format, the fuzz targets and the
 #                                                     quick sanitizer build
 #   sh cmake/install_dependencies.sh --valgrind       also valgrind, for tests/valgrind
@@ -63,7 +64,7 @@ for argument in "$@"; do
     --valgrind) packages="$packages valgrind" ;;
     --clean-root) packages="$packages mmdebstrap" ;;
     --dry-run) dry_run=yes ;;
-    -h | --help) sed -n '3,25s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    -h | --help) sed -n '3,26s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) fail "unknown argument '$argument'; known are --training, --documentation, --benchmarks, --python, --python-tests, --bench-tests, --cameras, --onnxruntime, --surface, --clang, --valgrind, --clean-root, --dry-run and --help" ;;
   esac
 done

@@ -18,6 +18,7 @@
 #include "holdfast/pipeline/pipeline.hpp"
 #include "holdfast/surface/carving_views.hpp"
 #include "holdfast/surface/free_space.hpp"
+#include "holdfast/surface/resting_cells.hpp"
 #include "holdfast/surface/surface_map.hpp"
 #include "holdfast/tracking/mono_initialiser.hpp"
 
@@ -166,6 +167,7 @@ class KeyframeFlow {
   FullAdjustment adjustment_;
   std::optional<StaticScene> scene_;
   std::optional<CarvingViews> carving_;
+  std::optional<RestingCells> resting_;
   mutable Mutex surface_mutex_;
   std::optional<SurfaceMap> surface_;  // changes with the mutex held
   mutable std::shared_ptr<const FreeSpace> free_space_ HOLDFAST_GUARDED_BY(surface_mutex_);  // nullptr if outdated

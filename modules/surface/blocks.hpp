@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "block_tree.hpp"
+#include "holdfast/core/mesh_vertex.hpp"
 
 namespace holdfast::surface {
 
@@ -27,6 +28,35 @@ struct Block {
     std::uint16_t red = 0, green = 0, blue = 0, count = 0;
   };
 
+  /// Views by the class that they gave to a voxel, for the first four classes. The counts are sums, so that a view can
+  /// be taken out again.
+  struct Votes {
+    static constexpr std::uint8_t unknown = MeshVertex::unknown_class;
+    std::array<std::uint8_t, 4> label{}, count{};
+
+    void add(std::uint8_t voted, int sign) {
+      const auto find = [&](const auto& condition) {
+        std::size_t i = 0;
+        while (i < label.size() && !condition(i)) ++i;
+        return i;
+      };
+      std::size_t i = find([&](std::size_t k) { return count[k] > 0 && label[k] == voted; });
+      if (i == label.size() && sign > 0) i = find([&](std::size_t k) { return count[k] == 0; });
+      if (i == label.size()) return;
+      if (sign > 0 && count[i] == 255)
+        for (std::uint8_t& one : count) one /= 2;
+      label[i] = voted;
+      count[i] = static_cast<std::uint8_t>(count[i] + sign);
+    }
+    /// The class with most votes, the smallest label of several; unknown without any.
+    std::uint8_t winner() const {
+      std::uint8_t best = unknown, most = 0;
+      for (std::size_t i = 0; i < label.size(); ++i)
+        if (count[i] > most || (count[i] == most && most > 0 && label[i] < best)) best = label[i], most = count[i];
+      return best;
+    }
+  };
+
   Eigen::Vector3i coordinates = Eigen::Vector3i::Zero();
   std::uint64_t birth = 0;                           ///< position in the order of creation
   std::uint64_t version = 0;                         ///< Blocks::version() of the last change
@@ -36,6 +66,7 @@ struct Block {
   std::array<std::uint16_t, size> last{};            ///< largest number of a view in the balance
   std::array<std::uint8_t, size> views{};            ///< that observed the surface
   std::unique_ptr<std::array<Colour, size>> colour;  ///< near the surface
+  std::unique_ptr<std::array<Votes, size>> votes;    ///< the same, where views have classes
 
   static constexpr int index(int x, int y, int z) { return (x * side + y) * side + z; }
 
@@ -57,6 +88,11 @@ struct Block {
     return is_free ? 1.0F : std::numeric_limits<float>::quiet_NaN();
   }
 };
+
+/// The class of a voxel, or MeshVertex::unknown_class.
+inline std::uint8_t label_of(const Block& block, std::size_t voxel) {
+  return block.votes ? (*block.votes)[voxel].winner() : Block::Votes::unknown;
+}
 
 /// All blocks, in the order of their creation, and the tree that finds them by their coordinates.
 class Blocks {

@@ -140,7 +140,8 @@ class PatchMarcher {
     Eigen::Vector3f result = Eigen::Vector3f::Zero();
     const float here = value(sample);
     for (int axis = 0; axis < 3; ++axis) {
-      const float before = value(sample - Eigen::Vector3i::Unit(axis)), after = value(sample + Eigen::Vector3i::Unit(axis));
+      const float before = value(sample - Eigen::Vector3i::Unit(axis)),
+                  after = value(sample + Eigen::Vector3i::Unit(axis));
       if (!std::isnan(before) && !std::isnan(after))
         result[axis] = 0.5F * (after - before);
       else if (!std::isnan(after))
@@ -153,14 +154,17 @@ class PatchMarcher {
 
   bool set_colour(MeshVertex& vertex, const Eigen::Vector3i& sample) const {
     int red = 0, green = 0, blue = 0, count = 0;
+    std::uint8_t label = MeshVertex::unknown_class;
     for_voxels_of(sample, [&](const Block& block, std::size_t index) {
       if (!block.colour) return;
+      label = std::min(label, label_of(block, index));
       const Block::Colour& colour = (*block.colour)[index];
       red += colour.red, green += colour.green, blue += colour.blue, count += colour.count;
     });
     if (count == 0) return false;
     const auto mean = [&](int sum) { return static_cast<std::uint8_t>((sum + count / 2) / count); };
     vertex.red = mean(red), vertex.green = mean(green), vertex.blue = mean(blue);
+    vertex.label = label;
     return true;
   }
 
@@ -191,8 +195,8 @@ class PatchMarcher {
   float voxel_;
   int scale_, cells_, side_;
   std::array<const Block*, 27> around_{};
-  std::vector<float> values_;             // of the samples
-  std::vector<std::uint16_t> vertices_;   // by 3 * sample + axis: number in patch_, or none
+  std::vector<float> values_;              // of the samples
+  std::vector<std::uint16_t> vertices_;    // by 3 * sample + axis: number in patch_, or none
   std::vector<std::uint16_t> colourless_;  // increasing
   SurfacePatch patch_;
 };

@@ -123,7 +123,10 @@ std::size_t SurfaceField::block_count() const { return parts_->blocks.list().siz
 
 std::size_t SurfaceField::memory_bytes() const {
   std::size_t bytes = 0;
-  for (const auto& block : parts_->blocks.list()) bytes += sizeof(Block) + (block->colour ? sizeof(*block->colour) : 0);
+  for (const auto& block : parts_->blocks.list()) {
+    bytes += sizeof(Block) + (block->colour ? sizeof(*block->colour) : 0);
+    bytes += block->votes ? sizeof(*block->votes) : 0;
+  }
   return bytes;
 }
 

@@ -29,8 +29,8 @@ double area_of(const Patches& patches) {
   for (const auto& [cube, patch] : patches)
     for (const auto& t : patch.triangles) {
       const Eigen::Vector3f a = patch.vertices[t[0]].position;
-      area += 0.5 * static_cast<double>(
-                        (patch.vertices[t[1]].position - a).cross(patch.vertices[t[2]].position - a).norm());
+      area += 0.5 *
+              static_cast<double>((patch.vertices[t[1]].position - a).cross(patch.vertices[t[2]].position - a).norm());
     }
   return area;
 }
@@ -143,8 +143,12 @@ TEST_F(SurfacePatchesTest, OfCoarserSamplesAreTheSameSurfaceInFewerTriangles) {
         worst = std::max(worst, std::abs((vertex.position.cast<double>() - world_.centre).norm() - SolidWorld::radius));
     }
     EXPECT_LT(worst, 0.015 * (1 << coarseness));
-    if (coarseness < 2) EXPECT_NEAR(area_of(patches), area, 0.03 * area) << coarseness;
-    if (coarseness > 0) EXPECT_LT(3 * triangles, before);
+    if (coarseness < 2) {
+      EXPECT_NEAR(area_of(patches), area, 0.03 * area) << coarseness;
+    }
+    if (coarseness > 0) {
+      EXPECT_LT(3 * triangles, before);
+    }
     before = triangles;
   }
 }

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "holdfast/core/mesh_vertex.hpp"
@@ -16,6 +17,7 @@ namespace holdfast {
 struct TriangleMesh {
   std::vector<MeshVertex> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::string> classes;  ///< names by MeshVertex::label; empty: vertices have no class
 
   bool empty() const { return triangles.empty(); }
   const Eigen::Vector3f& corner(std::size_t triangle, int index) const {

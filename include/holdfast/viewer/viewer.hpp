@@ -122,8 +122,8 @@ class Viewer {
   /// True when changes of the mesh can be shown now: somebody watches, at most once a second, at the rate of the
   /// browsers, and for at most a twentieth of the time.
   bool wants_patches() const;
-  /// Coarseness of the patches that are wanted (ObservedSurface::changes). It grows with the mesh, of which browsers get
-  /// at most 300,000 triangles; patches of all the surface are wanted then.
+  /// Coarseness of the patches that are wanted (ObservedSurface::changes). It grows with the mesh, of which browsers
+  /// get at most 300,000 triangles; patches of all the surface are wanted then.
   int patch_coarseness() const;
   /// Adds patches of the mesh, or replaces those of the same cubes. `seconds`: duration of making them.
   void add_patches(std::vector<SurfacePatch> patches, int coarseness, double seconds);
