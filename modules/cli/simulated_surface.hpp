@@ -11,8 +11,8 @@ namespace holdfast {
 /// True surfaces of a simulated scene in its world frame [m] at one time, people excluded.
 struct SimulatedSurface {
   TriangleMesh all;
-  /// What the camera has seen by then from the front at a depth of at most `depth`: divided into triangles with sides of at most
-  /// 4 cm, those whose centre it sees.
+  /// What the camera has seen by then from the front at a depth of at most `depth`: divided into triangles with sides
+  /// of at most 4 cm, those whose centre it sees.
   TriangleMesh seen;
 };
 
