@@ -17,7 +17,8 @@
 #                                                     /usr/local/lib, from the npm package onnxruntime-node (70 MB), where
 #                                                     Debian has no package of it
 #   sh cmake/install_dependencies.sh --surface        also what the section `surface` is built of, OpenVDB, and
-#                                                     OctoMap's library, with which its tests read maps
+#                                                     OctoMap's library and assimp, with which its tests
+#                                                     read maps and meshes
 #   sh cmake/install_dependencies.sh --ros            also ROS 1, of which its node is built and in which its test runs it
 #                                                     (Debian 12; later ones have no ROS 1)
 #   sh cmake/install_dependencies.sh --clang          also clang, for tests of the headers and of the format, the fuzz targets and the
@@ -64,7 +65,7 @@ for argument in "$@"; do
     --bench-tests) packages="$packages chromium munge parallel slurm-client slurmctld slurmd" ;;
     --cameras) packages="$packages libopenni2-dev" ;;
     --onnxruntime) wants_onnxruntime=yes ;;
-    --surface) packages="$packages libopenvdb-dev liboctomap-dev" ;;
+    --surface) packages="$packages libopenvdb-dev liboctomap-dev libassimp-dev" ;;
     --ros)
       packages="$packages libroscpp-dev libtf2-ros-dev libnav-msgs-dev libsensor-msgs-dev libdiagnostic-msgs-dev
         libvisualization-msgs-dev libstd-srvs-dev python3-roslaunch rosout python3-rosbag python3-rospy python3-opencv
@@ -76,7 +77,7 @@ for argument in "$@"; do
     --arm64) packages="$packages crossbuild-essential-arm64 mmdebstrap qemu-user-static" ;;
     --dry-run) dry_run=yes ;;
     --list) lists=yes ;;
-    -h | --help) sed -n '3,29s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    -h | --help) sed -n '3,s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) fail "unknown argument '$argument'; known are --training, --documentation, --benchmarks, --python, --python-tests, --bench-tests, --cameras, --onnxruntime, --surface, --ros, --clang, --valgrind, --clean-root, --arm64, --dry-run, --list and --help" ;;
   esac
 done

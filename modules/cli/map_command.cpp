@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "holdfast/map_io/map_export.hpp"
 #include "holdfast/map_io/map_file.hpp"
 #include "holdfast/map_io/map_info.hpp"
+#include "holdfast/surface/class_colours.hpp"
 #include "holdfast/surface/decimation.hpp"
 #include "holdfast/surface/mesh_files.hpp"
 #include "holdfast/surface/surface_field.hpp"
@@ -30,6 +32,8 @@ struct MapArguments {
   std::vector<std::string> views;  // folders; empty = beside the map
   double voxel = 0.0;              // [m]; 0 = as in the run
   int triangles = 0;               // most of the mesh; 0 = all
+  bool class_colours = false;
+  std::optional<double> until;  // time stamp of the last view of the mesh
 };
 
 constexpr const char* map_explanation = R"(
@@ -81,11 +85,17 @@ TriangleMesh mesh_of(const Map& map, const MapArguments& arguments) {
   if (views.left_out > 0)
     print_warning(std::to_string(views.left_out) + " of " + std::to_string(views.left_out + views.views.size()) +
                   " views are left out, because their keyframes are not in the map; are they of another run?");
+  if (arguments.until)
+    std::erase_if(views.views, [&](const KeptView& view) { return view.timestamp > *arguments.until; });
+  if (views.views.empty()) throw Error("no view is as old as --until; expected a time stamp of the recording [s]");
+  if (arguments.class_colours && views.classes.empty())
+    throw Error("the views have no classes, which --class-colours needs; run again with surface.classes=true");
   if (arguments.voxel > 0.0) views.settings.voxel = arguments.voxel;
   Progress progress(views.views.size());
   TriangleMesh mesh = fuse(views, map, [&](std::size_t done) { progress.update(done, "fused"); });
   if (mesh.empty()) throw Error("the views show no surface up to surface.maximum_depth; no mesh is written");
   if (arguments.triangles > 0) decimate(mesh, static_cast<std::size_t>(arguments.triangles));
+  if (arguments.class_colours) colour_by_class(mesh);
   return mesh;
 }
 
@@ -145,6 +155,13 @@ void add_map_command(CLI::App& app, int& exit_code) {
       ->needs(mesh);
   exporting->add_option("--triangles", arguments->triangles, "Largest number of triangles of the mesh; otherwise all")
       ->check(CLI::Range(1, 1'000'000'000))
+      ->needs(mesh);
+  exporting->add_flag("--class-colours", arguments->class_colours, "Colour the mesh by the classes of surface.classes")
+      ->needs(mesh);
+  exporting
+      ->add_option("--until", arguments->until,
+                   "Time stamp of the last view: the surface as it was then; otherwise all")
+      ->type_name("SECONDS")
       ->needs(mesh);
   exporting
       ->add_option("--views", arguments->views,

@@ -35,6 +35,7 @@ struct SimulateArguments {
   std::filesystem::path preview;
   std::filesystem::path surface, seen_surface;
   double surface_depth = 4.0;
+  std::optional<double> surface_time;
   std::vector<std::string> overrides;
   std::string camera = "tum_fr1";
   std::string colour_format = "png";
@@ -65,7 +66,7 @@ std::vector<std::string> all_overrides(const SimulateArguments& arguments) {
 }
 
 void write_surfaces(const SimulateArguments& arguments, simulation::Simulator& simulator) {
-  const SimulatedSurface surface = simulated_surface(simulator, arguments.surface_depth);
+  const SimulatedSurface surface = simulated_surface(simulator, arguments.surface_depth, arguments.surface_time);
   if (!arguments.surface.empty()) write_mesh(arguments.surface, surface.all);
   if (!arguments.seen_surface.empty()) write_mesh(arguments.seen_surface, surface.seen);
 }
@@ -139,6 +140,10 @@ void add_simulate_command(CLI::App& app, int& exit_code) {
   command->add_option("--surface-depth", arguments->surface_depth, "largest depth at which it is seen [m]")
       ->check(positive_number())
       ->capture_default_str();
+  command
+      ->add_option("--surface-time", arguments->surface_time,
+                   "time of both surfaces [s], for what moves and what was seen by then (default: the end)")
+      ->check(CLI::NonNegativeNumber);
   command->add_option("--set", arguments->overrides, "override a value of the scene: key.path=value; may be repeated")
       ->allow_extra_args(false);
   command->add_option("--seed", arguments->seed, "of textures, small things, people, path and noise (default 1)");

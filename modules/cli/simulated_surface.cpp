@@ -60,8 +60,9 @@ Divider divided_world(const simulation::World& world, double time, float longest
 
 }  // namespace
 
-SimulatedSurface simulated_surface(simulation::Simulator& simulator, double depth) {
-  const std::uint64_t frames = simulator.frame_count();
+SimulatedSurface simulated_surface(simulation::Simulator& simulator, double depth, std::optional<double> until) {
+  std::uint64_t frames = simulator.frame_count();
+  while (until && frames > 1 && simulator.timestamp(frames - 1) > *until) --frames;
   const double end = simulator.timestamp(frames - 1);
   const Divider divider = divided_world(simulator.world(), end, longest_side);
   const TriangleMesh& all = divider.mesh;

@@ -12,6 +12,9 @@
 #include "holdfast/evaluation/number_text.hpp"
 #include "holdfast/map_io/cloud_ply.hpp"
 #include "holdfast/map_io/map_file.hpp"
+#include "holdfast/surface/decimation.hpp"
+#include "holdfast/surface/mesh_files.hpp"
+#include "holdfast/surface/mesh_patches.hpp"
 
 namespace holdfast {
 
@@ -124,6 +127,13 @@ Figures figures_of(const Json& json) {
   return figures;
 }
 
+/// As many triangles as browsers are meant to draw.
+std::vector<SurfacePatch> viewed_mesh(TriangleMesh mesh) {
+  constexpr std::size_t most_triangles = 300'000;
+  if (mesh.triangles.size() > most_triangles) decimate(mesh, most_triangles);
+  return patches_of(mesh);
+}
+
 Trajectory keyframe_path(const MapSnapshot& map) {
   Trajectory path;
   for (const MapSnapshot::KeyFrame& keyframe : map.keyframes)
@@ -156,6 +166,7 @@ FoundResults find_in_folder(const fs::path& folder) {
   if (found.run.path.empty() && found.map) found.run.path = keyframe_path(*found.map);
   if (has("static_map.ply"))  // without a dense map it has the points of the map, which are there already
     found.run.cloud = read_cloud_ply(folder / "static_map.ply").value_or(std::vector<CloudPoint>());
+  if (has("surface.ply")) found.run.mesh = viewed_mesh(read_mesh(folder / "surface.ply"));
   if (has("tracks.json")) read_truth(folder / "tracks.json", found.run);
   if (has("run.json")) found.run.figures = figures_of(read_json(folder / "run.json"));
   return found;
@@ -169,6 +180,7 @@ ViewedRun viewed_run(const RunRecord& record) {
   run.camera = record.camera;
   run.path = record.trajectory;
   if (record.dense_map) run.cloud = *record.dense_map;
+  if (record.surface) run.mesh = viewed_mesh(*record.surface);
   const auto add = [&](const char* name, const std::string& value) { run.figures.emplace_back(name, value); };
   if (const std::optional<Evaluation>& evaluation = record.evaluation) {
     std::vector<std::pair<double, double>> errors;

@@ -36,6 +36,8 @@ void show_run(Observer& observer, FilterScene& scene, TrackingStatus status) {
     view.points = [](std::size_t max_count) { return std::vector<CloudPoint>(std::min<std::size_t>(max_count, 10)); };
     observer.on_static_view(view);
   }
+  const SurfacePatch patch{{0, 0, 0}, std::vector<MeshVertex>(3), {{0, 1, 2}}};
+  observer.on_surface({1, [&](std::uint64_t, int) { return std::vector<SurfacePatch>{patch}; }});
   observer.on_loop(keyframes.back(), keyframes.front(), observed);
   observer.on_finish(scene.map());
 }

@@ -35,13 +35,14 @@ std::size_t densest_view(const std::vector<KeptView>& views) {
   return least;
 }
 
-ViewSampler::ViewSampler(const Camera& camera, const DenseMapSettings& settings)
+ViewSampler::ViewSampler(const Camera& camera, const DenseMapSettings& settings, bool keeps_labels)
     : raw_(camera),
       small_(camera),
       step_(settings.step),
       reach_((std::max(settings.dilate, settings.edge) + settings.step - 1) / settings.step),
       edge_((settings.edge + settings.step - 1) / settings.step),
       margin_(static_cast<int>(std::lround(settings.depth_margin / KeptView::depth_unit))),
+      keeps_labels_(keeps_labels),
       grid_(CoarseSampler(camera).grid()) {
   small_.distortion = {};
   small_.width = camera.width / step_;
@@ -114,7 +115,19 @@ KeptView ViewSampler::sample(KeyFrameId keyframe, const SensorFrame& frame, cons
         depth |= KeptView::moves_bit;
     }
   spread(view.depth);
+  if (keeps_labels_ && !labels.empty()) view.labels = sample_labels(labels);
   return view;
+}
+
+cv::Mat ViewSampler::sample_labels(const cv::Mat& labels) const {
+  cv::Mat kept(small_.height, small_.width, CV_8UC1);
+  std::size_t i = 0;
+  for (int row = 0; row < kept.rows; ++row)
+    for (int column = 0; column < kept.cols; ++column, ++i)
+      kept.at<std::uint8_t>(row, column) =
+          raw_pixel_[i] < 0 ? CellMask::unknown
+                            : labels.ptr<std::uint8_t>(raw_pixel_[i] / raw_.width)[raw_pixel_[i] % raw_.width];
+  return kept;
 }
 
 void ViewSampler::spread(cv::Mat& depth) const {

@@ -7,8 +7,8 @@
 
 namespace holdfast {
 
-StaticScene::StaticScene(const Camera& camera, const DenseMapSettings& settings)
-    : settings_(settings), sampler_(camera, settings) {}
+StaticScene::StaticScene(const Camera& camera, const DenseMapSettings& settings, bool keeps_labels)
+    : settings_(settings), sampler_(camera, settings, keeps_labels) {}
 
 std::size_t StaticScene::view_bytes() const {
   return static_cast<std::size_t>(camera().width) * static_cast<std::size_t>(camera().height) * 5;

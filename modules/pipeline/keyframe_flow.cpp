@@ -27,10 +27,11 @@ KeyframeFlow::KeyframeFlow(PipelineParts& parts, GuardedMap& map, MovingWorld& m
   for (const KeyFrameId keyframe : loaded.keyframes_by_age())
     detector.add(keyframe, place_descriptors(loaded.keyframe(keyframe).frame, describes_images_));
   if ((parts.dense_map.enabled || parts.surface.enabled) && !parts.localise_only)
-    scene_.emplace(parts.camera, parts.dense_map);
+    scene_.emplace(parts.camera, parts.dense_map, parts.surface.enabled && parts.surface.classes);
   if (parts.surface.enabled && scene_) surface_.emplace(scene_->camera(), parts.surface);
   if (surface_ && parts.surface.carving_interval > 0.0)
     carving_.emplace(parts.surface.carving_interval, CarvingViews::per_keyframe * parts.dense_map.keyframes);
+  if (surface_ && parts.surface.resting_time > 0.0) resting_.emplace(parts.surface.resting_time);
   const std::vector<std::string>& out = parts.dense_map.classes;
   for (const std::string& name : parts.segmenter->classes())
     left_out_.push_back(std::find(out.begin(), out.end(), name) != out.end());
@@ -147,6 +148,7 @@ void KeyframeFlow::remove_map(const std::function<void(const LockedMap&)>& forge
     map->remove_all();
     if (scene_) scene_->forget_removed(map.map());
     if (carving_) carving_->forget_removed(map.map());
+    if (resting_) resting_->clear();
     mapper_.forget_map();
     forget(map);
   }
@@ -263,10 +265,14 @@ const KeptView* KeyframeFlow::keep_view(KeyFrameId keyframe, const SensorFrame& 
                                         const cv::Mat& labels, StageTimes& times) {
   if (!scene_) return nullptr;
   const StageTimer timer(times, "dense map: keep");
-  return &scene_->add(keyframe, frame, coarse, labels, left_out_);
+  if (!resting_ || coarse.static_log_odds.empty()) return &scene_->add(keyframe, frame, coarse, labels, left_out_);
+  CoarseView released = coarse;
+  released.static_log_odds = resting_->released(frame.index, coarse.static_log_odds);
+  return &scene_->add(keyframe, frame, released, labels, left_out_);
 }
 
 void KeyframeFlow::keep_carving_view(const Frame& frame, const FrameResult& result) {
+  if (resting_ && result.status == TrackingStatus::tracked) resting_->add(frame, result.is_keyframe);
   if (!carving_) return;
   if (result.is_keyframe) return carving_->keyframe_kept(frame.timestamp);
   if (result.status != TrackingStatus::tracked || result.fallback != TrackingFallback::none) return;
@@ -295,7 +301,8 @@ void KeyframeFlow::update_surface(const KeptView* view, StageTimes& times) {
 }
 
 void KeyframeFlow::fuse(std::vector<KeptView> views, std::size_t max_moves, StageTimes& times) {
-  const StageTimer timer(times, "surface");
+  std::optional<StageTimer> timer;
+  timer.emplace(times, "surface");
   std::vector<Eigen::Isometry3d> poses;
   {
     const LockedMap map(map_, LockPriority::background);
@@ -303,9 +310,23 @@ void KeyframeFlow::fuse(std::vector<KeptView> views, std::size_t max_moves, Stag
     std::erase_if(views, [&](const KeptView& view) { return !map->submap_of(view.keyframe); });
     for (const KeptView& view : views) poses.push_back(view.T_world_view(map->pose_of(view.keyframe)));
   }
-  const MutexLock lock(surface_mutex_);
-  surface_->update(views, poses, max_moves);
-  free_space_.reset();
+  {
+    const MutexLock lock(surface_mutex_);
+    surface_->update(views, poses, max_moves);
+    free_space_.reset();
+  }
+  timer.reset();
+  show_surface();
+}
+
+void KeyframeFlow::show_surface() const {
+  if (parts_.observers.empty()) return;
+  // Only this thread changes the field; what finds its blocks is locked all the same, because it keeps the last place.
+  const ObservedSurface observed{surface_->field().version(), [this](std::uint64_t since, int coarseness) {
+                                   const MutexLock lock(surface_mutex_);
+                                   return surface_->field().changes(since, coarseness);
+                                 }};
+  for (const auto& observer : parts_.observers) observer->on_surface(observed);
 }
 
 std::shared_ptr<const FreeSpace> KeyframeFlow::free_space() const {

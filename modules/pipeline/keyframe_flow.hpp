@@ -18,6 +18,7 @@
 #include "holdfast/pipeline/pipeline.hpp"
 #include "holdfast/surface/carving_views.hpp"
 #include "holdfast/surface/free_space.hpp"
+#include "holdfast/surface/resting_cells.hpp"
 #include "holdfast/surface/surface_map.hpp"
 #include "holdfast/tracking/mono_initialiser.hpp"
 
@@ -148,6 +149,8 @@ class KeyframeFlow {
   void update_surface(const KeptView* view, StageTimes& times);
   void fuse(std::vector<KeptView> views, std::size_t max_moves, StageTimes& times)
       HOLDFAST_EXCLUDES(map_, surface_mutex_);
+  /// Tells the observers that the surface has changed.
+  void show_surface() const HOLDFAST_EXCLUDES(surface_mutex_);
   /// Tells the observers of a kept view, if there is one.
   void show_view(const KeptView* view) HOLDFAST_EXCLUDES(map_);
   bool has_keyframe(KeyFrameId keyframe) const HOLDFAST_EXCLUDES(map_);
@@ -166,6 +169,7 @@ class KeyframeFlow {
   FullAdjustment adjustment_;
   std::optional<StaticScene> scene_;
   std::optional<CarvingViews> carving_;
+  std::optional<RestingCells> resting_;
   mutable Mutex surface_mutex_;
   std::optional<SurfaceMap> surface_;  // changes with the mutex held
   mutable std::shared_ptr<const FreeSpace> free_space_ HOLDFAST_GUARDED_BY(surface_mutex_);  // nullptr if outdated

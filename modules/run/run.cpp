@@ -12,6 +12,7 @@
 #include "holdfast/core/error.hpp"
 #include "holdfast/dense_map/static_scene.hpp"
 #include "holdfast/evaluation/number_text.hpp"
+#include "holdfast/surface/class_colours.hpp"
 #include "holdfast/surface/decimation.hpp"
 #include "holdfast/surface/surface_map.hpp"
 #include "run_warnings.hpp"
@@ -88,10 +89,15 @@ void record_navigation(const SurfaceMap& surface, RunRecord& record) {
                      " Let the camera see more of the floor"});
 }
 
-void record_surface(const SurfaceMap& surface, RunRecord& record) {
+/// `classes`: of the map; empty without a segmenter.
+void record_surface(const SurfaceMap& surface, const std::vector<std::string>& classes, RunRecord& record) {
   record.surface = surface.field().mesh();
+  if (surface.field().settings().classes) record.surface->classes = classes;
   record.surface_bytes = surface.memory_bytes();
-  if (surface.field().settings().keep_depth) record.surface_views = SurfaceViews::of(surface);
+  if (surface.field().settings().keep_depth) {
+    record.surface_views = SurfaceViews::of(surface);
+    record.surface_views->classes = record.surface->classes;
+  }
   if (record.surface->empty())
     add_warning(record.warnings,
                 {{},
@@ -100,8 +106,11 @@ void record_surface(const SurfaceMap& surface, RunRecord& record) {
                      " m show no surface in " + counted(surface.field().settings().minimum_views, "view") +
                      "; check the depth of the source, and `surface.maximum_depth`"});
   const SurfaceSettings& settings = surface.field().settings();
+  if (settings.classes && classes.empty())
+    add_warning(record.warnings, {{}, "surface.classes has no effect, because there is no segmenter; add one"});
   if (settings.navigation && !record.surface->empty()) record_navigation(surface, record);
   if (settings.triangles > 0) decimate(*record.surface, static_cast<std::size_t>(settings.triangles));
+  if (settings.class_colours && !classes.empty()) colour_by_class(*record.surface);
 }
 
 }  // namespace
@@ -135,7 +144,8 @@ RunRecord run(const Configuration& configuration, const Registry& registry, cons
   if (options.wrap_source) built.source = options.wrap_source(std::move(built.source));
   RunRecord record = run(built, configuration, options);
   if (const StaticScene* scene = built.pipeline.static_scene()) record.dense_map = scene->cloud(built.pipeline.map());
-  if (const SurfaceMap* surface = built.pipeline.surface()) record_surface(*surface, record);
+  if (const SurfaceMap* surface = built.pipeline.surface())
+    record_surface(*surface, built.pipeline.map().classes(), record);
   record.map = built.pipeline.take_map();
   return record;
 }

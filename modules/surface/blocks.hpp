@@ -7,10 +7,12 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "block_tree.hpp"
+#include "holdfast/core/mesh_vertex.hpp"
 
 namespace holdfast::surface {
 
@@ -26,14 +28,45 @@ struct Block {
     std::uint16_t red = 0, green = 0, blue = 0, count = 0;
   };
 
+  /// Views by the class that they gave to a voxel, for the first four classes. The counts are sums, so that a view can
+  /// be taken out again.
+  struct Votes {
+    static constexpr std::uint8_t unknown = MeshVertex::unknown_class;
+    std::array<std::uint8_t, 4> label{}, count{};
+
+    void add(std::uint8_t voted, int sign) {
+      const auto find = [&](const auto& condition) {
+        std::size_t i = 0;
+        while (i < label.size() && !condition(i)) ++i;
+        return i;
+      };
+      std::size_t i = find([&](std::size_t k) { return count[k] > 0 && label[k] == voted; });
+      if (i == label.size() && sign > 0) i = find([&](std::size_t k) { return count[k] == 0; });
+      if (i == label.size()) return;
+      if (sign > 0 && count[i] == 255)
+        for (std::uint8_t& one : count) one /= 2;
+      label[i] = voted;
+      count[i] = static_cast<std::uint8_t>(count[i] + sign);
+    }
+    /// The class with most votes, the smallest label of several; unknown without any.
+    std::uint8_t winner() const {
+      std::uint8_t best = unknown, most = 0;
+      for (std::size_t i = 0; i < label.size(); ++i)
+        if (count[i] > most || (count[i] == most && most > 0 && label[i] < best)) best = label[i], most = count[i];
+      return best;
+    }
+  };
+
   Eigen::Vector3i coordinates = Eigen::Vector3i::Zero();
   std::uint64_t birth = 0;                           ///< position in the order of creation
+  std::uint64_t version = 0;                         ///< Blocks::version() of the last change
   std::array<std::int32_t, size> distance{};         ///< sum of weight * distance
   std::array<float, size> balance{};                 ///< see SurfaceField, in units of a view with the number `last`
   std::array<std::uint16_t, size> weight{};          ///< sum
   std::array<std::uint16_t, size> last{};            ///< largest number of a view in the balance
   std::array<std::uint8_t, size> views{};            ///< that observed the surface
   std::unique_ptr<std::array<Colour, size>> colour;  ///< near the surface
+  std::unique_ptr<std::array<Votes, size>> votes;    ///< the same, where views have classes
 
   static constexpr int index(int x, int y, int z) { return (x * side + y) * side + z; }
 
@@ -56,6 +89,11 @@ struct Block {
   }
 };
 
+/// The class of a voxel, or MeshVertex::unknown_class.
+inline std::uint8_t label_of(const Block& block, std::size_t voxel) {
+  return block.votes ? (*block.votes)[voxel].winner() : Block::Votes::unknown;
+}
+
 /// All blocks, in the order of their creation, and the tree that finds them by their coordinates.
 class Blocks {
  public:
@@ -67,6 +105,7 @@ class Blocks {
     blocks_.push_back(std::make_unique<Block>());
     blocks_.back()->coordinates = coordinates;
     blocks_.back()->birth = births_++;
+    blocks_.back()->version = version_;
     return *blocks_.back();
   }
   /// Position in list(), or -1.
@@ -75,23 +114,55 @@ class Blocks {
   /// Block::coordinates of list(), side by side in memory.
   const std::vector<Eigen::Vector3i>& coordinates() const { return coordinates_; }
   std::uint64_t births() const { return births_; }
+  /// Number of changes so far.
+  std::uint64_t version() const { return version_; }
+  void begin_change() { ++version_; }
+
+  /// A block that was removed.
+  struct Removal {
+    Eigen::Vector3i coordinates;
+    std::uint64_t version = 0;
+  };
+  /// The last removal of each block that was removed.
+  const std::vector<Removal>& removals() const { return removals_; }
 
   template <class Condition>
   void remove_if(const Condition& condition) {
-    if (std::erase_if(blocks_, [&](const std::unique_ptr<Block>& block) { return condition(*block); }) == 0) return;
+    const std::size_t before = removals_.size();
+    begin_change();
+    std::erase_if(blocks_, [&](const std::unique_ptr<Block>& block) {
+      if (!condition(*block)) return false;
+      removals_.push_back({block->coordinates, version_});
+      return true;
+    });
+    if (removals_.size() == before) return;
     tree_.clear();
     coordinates_.clear();
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
       coordinates_.push_back(blocks_[i]->coordinates);
       tree_.set(blocks_[i]->coordinates, static_cast<std::int32_t>(i));
     }
+    forget_earlier_removals();
   }
 
  private:
+  void forget_earlier_removals() {
+    const auto values = [](const Removal& r) {
+      return std::tuple(r.coordinates.x(), r.coordinates.y(), r.coordinates.z());
+    };
+    std::stable_sort(removals_.begin(), removals_.end(),
+                     [&](const Removal& a, const Removal& b) { return values(a) < values(b); });
+    // Of those at one place the last one stays.
+    const auto last = std::unique(removals_.rbegin(), removals_.rend(),
+                                  [&](const Removal& a, const Removal& b) { return values(a) == values(b); });
+    removals_.erase(removals_.begin(), last.base());
+  }
+
   BlockTree tree_;
   std::vector<std::unique_ptr<Block>> blocks_;
   std::vector<Eigen::Vector3i> coordinates_;
-  std::uint64_t births_ = 0;
+  std::vector<Removal> removals_;
+  std::uint64_t births_ = 0, version_ = 0;
 };
 
 }  // namespace holdfast::surface

@@ -216,6 +216,7 @@ class Decimator {
     vertex.red = mix(vertex.red, other.red);
     vertex.green = mix(vertex.green, other.green);
     vertex.blue = mix(vertex.blue, other.blue);
+    if (share > 0.5) vertex.label = other.label;
     const auto single = static_cast<float>(share);
     vertex.normal = ((1.0F - single) * vertex.normal + single * other.normal).normalized();
     vertex.position = target.cast<float>();

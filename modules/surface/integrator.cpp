@@ -39,6 +39,12 @@ void add_colour(Block& block, std::size_t i, const ViewImage::Pixel& pixel, int 
   add(colour.count, 1);
 }
 
+void add_vote(Block& block, std::size_t i, std::uint8_t label, int sign) {
+  if (label == Block::Votes::unknown) return;
+  if (!block.votes) block.votes = std::make_unique<std::array<Block::Votes, Block::size>>();
+  (*block.votes)[i].add(label, sign);
+}
+
 #define HOLDFAST_INLINE __attribute__((always_inline)) static inline
 
 // Eight voxels, on which the compiler works with the instructions of the function into which a kernel is inlined.
@@ -134,7 +140,11 @@ HOLDFAST_INLINE void update_row(const ViewGeometry& view, float x, float y, floa
     std::memcpy(&block.views[first], &view_bits, sizeof(view_bits));
     const Int8 has_colour = is_near & (length < 1.5F * view.voxel);
     for (int k = 0; k < 8; ++k)
-      if (has_colour[k] != 0) add_colour(block, first + static_cast<std::size_t>(k), view.pixels[place[k]], view.sign);
+      if (has_colour[k] != 0) {
+        add_colour(block, first + static_cast<std::size_t>(k), view.pixels[place[k]], view.sign);
+        if (view.labels != nullptr)
+          add_vote(block, first + static_cast<std::size_t>(k), view.labels[place[k]], view.sign);
+      }
   }
 }
 
@@ -191,6 +201,7 @@ Integrator::Integrator(const ViewImage& image, const Eigen::Isometry3d& T_world_
   view_.cx = static_cast<float>(camera.cx + 0.5), view_.cy = static_cast<float>(camera.cy + 0.5);
   view_.width = static_cast<float>(camera.width), view_.height = static_cast<float>(camera.height);
   view_.pixels = image.pixels();
+  view_.labels = image.labels();
   view_.number = static_cast<std::int32_t>(std::min(number, largest_number));
   view_.sign = sign;
   const auto take = [&](auto loops) {
@@ -214,6 +225,7 @@ void Integrator::update(const Blocks& blocks, std::uint64_t births) const {
     if (reach == Reach::nothing) continue;
     Block& block = *blocks.list()[i];
     if (block.birth >= births) return;  // and so are all that follow
+    block.version = blocks.version();
     (reach == Reach::all_free ? carve_all_ : update_voxels_)(view_, corner.data(), block);
   }
 }

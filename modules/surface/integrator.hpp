@@ -15,6 +15,7 @@ struct ViewGeometry {
   float rotation[9] = {}, translation[3] = {};  ///< T_camera_world; the rotation by columns, times the side of a voxel
   float fx = 0.0F, fy = 0.0F, cx = 0.0F, cy = 0.0F, width = 0.0F, height = 0.0F;
   const ViewImage::Pixel* pixels = nullptr;
+  const std::uint8_t* labels = nullptr;   ///< of the pixels; nullptr without classes
   float voxel = 0.0F, truncation = 0.0F;  ///< [m]
   std::int32_t number = 0, sign = 1;      ///< see SurfaceField::Fusion; 1 = add the view, -1 = subtract it
 

@@ -108,15 +108,18 @@ class Marcher {
     if (colour.count == 0) return false;
     const auto mean = [&](int sum) { return static_cast<std::uint8_t>((sum + colour.count / 2) / colour.count); };
     vertex.red = mean(colour.red), vertex.green = mean(colour.green), vertex.blue = mean(colour.blue);
+    vertex.label = label_of(block, static_cast<std::size_t>(&colour - block.colour->data()));
     return true;
   }
 
-  /// Gives vertices without colour, at the rims of free space, the mean colour of their neighbours.
+  /// Gives vertices without colour, at the rims of free space, the mean colour of their neighbours, and their smallest
+  /// label.
   void spread_colours() {
     constexpr int passes = 8;
     struct Sum {
       std::uint32_t vertex = 0;
       int red = 0, green = 0, blue = 0, count = 0;
+      std::uint8_t label = MeshVertex::unknown_class;
     };
     for (int pass = 0; pass < passes; ++pass) {
       std::vector<Sum> sums;
@@ -133,6 +136,7 @@ class Marcher {
             Sum& sum = sums[place[to] - 1];
             const MeshVertex& vertex = mesh_.vertices[from];
             sum.red += vertex.red, sum.green += vertex.green, sum.blue += vertex.blue, ++sum.count;
+            sum.label = std::min(sum.label, vertex.label);
           }
         }
       if (sums.empty()) return;
@@ -141,6 +145,7 @@ class Marcher {
         vertex.red = static_cast<std::uint8_t>(sum.red / sum.count);
         vertex.green = static_cast<std::uint8_t>(sum.green / sum.count);
         vertex.blue = static_cast<std::uint8_t>(sum.blue / sum.count);
+        vertex.label = sum.label;
         has_colour_[sum.vertex] = true;
       }
     }

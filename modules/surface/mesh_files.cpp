@@ -42,6 +42,12 @@ std::uint16_t linear(std::uint8_t value) {
   return table[value];
 }
 
+std::string in_one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c >= 0 && c < ' '; }, ' ');
+  return text;
+}
+
 /// A chunk of a GLB file: padded to four bytes.
 void put_chunk(std::string& bytes, std::uint32_t type, std::string content, char padding) {
   while (content.size() % 4 != 0) content += padding;
@@ -97,11 +103,14 @@ const std::vector<std::string>& mesh_formats() {
 }
 
 std::string mesh_ply(const TriangleMesh& mesh) {
-  std::string bytes = "ply\nformat binary_little_endian 1.0\ncomment surface [m], made by Holdfast " HOLDFAST_VERSION
-                      "\nelement vertex " +
-                      std::to_string(mesh.vertices.size());
+  const bool has_classes = !mesh.classes.empty();
+  std::string bytes = "ply\nformat binary_little_endian 1.0\ncomment surface [m], made by Holdfast " HOLDFAST_VERSION;
+  for (std::size_t i = 0; i < mesh.classes.size(); ++i)
+    bytes += "\ncomment label " + std::to_string(i) + " " + in_one_line(mesh.classes[i]);
+  bytes += "\nelement vertex " + std::to_string(mesh.vertices.size());
   for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) bytes += std::string("\nproperty float ") + name;
   for (const char* name : {"red", "green", "blue"}) bytes += std::string("\nproperty uchar ") + name;
+  if (has_classes) bytes += "\nproperty uchar label";
   bytes += "\nelement face " + std::to_string(mesh.triangles.size()) +
            "\nproperty list uchar int vertex_indices\nend_header\n";
   bytes.reserve(bytes.size() + 27 * mesh.vertices.size() + 13 * mesh.triangles.size());
@@ -109,6 +118,7 @@ std::string mesh_ply(const TriangleMesh& mesh) {
     put(bytes, vertex.position);
     put(bytes, vertex.normal);
     for (const std::uint8_t value : {vertex.red, vertex.green, vertex.blue}) put(bytes, value);
+    if (has_classes) put(bytes, vertex.label);
   }
   for (const auto& triangle : mesh.triangles) {
     put(bytes, std::uint8_t{3});

@@ -233,6 +233,7 @@ class PlyReader {
     if (property.name == "red") vertex.red = static_cast<std::uint8_t>(value);
     if (property.name == "green") vertex.green = static_cast<std::uint8_t>(value);
     if (property.name == "blue") vertex.blue = static_cast<std::uint8_t>(value);
+    if (property.name == "label") vertex.label = static_cast<std::uint8_t>(value);
   }
 
   std::uint64_t list_length(const PlyProperty& property) {

@@ -8,6 +8,7 @@
 #include "holdfast/dense_map/kept_view.hpp"
 #include "integrator.hpp"
 #include "marching_cubes.hpp"
+#include "patches.hpp"
 #include "remnants.hpp"
 #include "view_image.hpp"
 
@@ -60,6 +61,7 @@ struct SurfaceField::Parts {
   Blocks blocks;
 
   void integrate(const ViewImage& image, const Fusion& fusion, int sign) {
+    blocks.begin_change();
     Integrator(image, fusion.T_world_camera, fusion.number, sign, settings).update(blocks, fusion.blocks);
   }
   Fusion put_in(const ViewImage& image, const Eigen::Isometry3d& T_world_camera, std::uint32_t number) {
@@ -111,11 +113,20 @@ TriangleMesh SurfaceField::mesh() const {
   return mesh;
 }
 
+std::uint64_t SurfaceField::version() const { return parts_->blocks.version(); }
+
+std::vector<SurfacePatch> SurfaceField::changes(std::uint64_t since, int coarseness) const {
+  return surface::changed_patches(parts_->blocks, parts_->settings, since, coarseness);
+}
+
 std::size_t SurfaceField::block_count() const { return parts_->blocks.list().size(); }
 
 std::size_t SurfaceField::memory_bytes() const {
   std::size_t bytes = 0;
-  for (const auto& block : parts_->blocks.list()) bytes += sizeof(Block) + (block->colour ? sizeof(*block->colour) : 0);
+  for (const auto& block : parts_->blocks.list()) {
+    bytes += sizeof(Block) + (block->colour ? sizeof(*block->colour) : 0);
+    bytes += block->votes ? sizeof(*block->votes) : 0;
+  }
   return bytes;
 }
 

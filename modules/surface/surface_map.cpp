@@ -16,7 +16,7 @@ std::size_t SurfaceMap::keyframe_count() const {
 std::size_t SurfaceMap::memory_bytes() const {
   std::size_t bytes = field_.memory_bytes();
   for (const Entry& entry : entries_)
-    bytes += entry.view.depth.total() * entry.view.depth.elemSize() + entry.view.colour.total() * 3;
+    bytes += entry.view.depth.total() * 2 + entry.view.colour.total() * 3 + entry.view.labels.total();
   return bytes;
 }
 

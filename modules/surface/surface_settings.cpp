@@ -32,6 +32,12 @@ void SurfaceSettings::describe(ParameterTable<SurfaceSettings>& table) {
       .range(0, 60)
       .unit("s");
   table
+      .add("resting_time", &S::resting_time,
+           "time after which something that moved and stands still, such as a chair that was moved, counts as part of "
+           "the room, although filters call it moving because old keyframes looked through it; 0: never")
+      .range(0, 60)
+      .unit("s");
+  table
       .add("moves_per_keyframe", &S::moves_per_keyframe,
            "maximum number of keyframes that are fused again at their adjusted pose with each new keyframe; at the end "
            "of a run all are")
@@ -41,6 +47,12 @@ void SurfaceSettings::describe(ParameterTable<SurfaceSettings>& table) {
       .add("triangles", &S::triangles,
            "largest number of triangles of the files, to which edges are collapsed by their quadric error; 0: all")
       .at_least(0);
+  table.add(
+      "classes", &S::classes,
+      "voxels collect the classes that the segmenter gives to pixels of keyframes, and surface.ply has the label of "
+      "each vertex");
+  table.add("class_colours", &S::class_colours,
+            "the files have the colours of classes in place of those of the images; needs `classes`");
   table.add("keep_depth", &S::keep_depth,
             "keep the fused depth and colour in the folder surface_views beside map.hfm, about 0.3 MB per keyframe, "
             "from which "
@@ -61,6 +73,7 @@ std::string SurfaceSettings::trouble() const {
   for (const std::string& format : formats)
     if (std::find(known.begin(), known.end(), format) == known.end())
       return "surface.formats: '" + format + "' is no format of meshes; expected ply, obj or glb";
+  if (class_colours && !classes) return "surface.class_colours needs surface.classes: true";
   if (robot_lowest >= robot_highest)
     return "surface.robot_lowest is not below surface.robot_highest; between them surface is an obstacle";
   return {};

@@ -141,6 +141,7 @@ class ViewReader {
     result.settings = settings_of(list.at("settings"));
     if (list.contains("carving_camera"))
       coarse_camera_ = std::make_shared<const Camera>(pinhole_of(list.at("carving_camera")));
+    if (list.contains("classes")) list.at("classes").get_to(result.classes);
     std::optional<std::uint64_t> last;
     for (const json& entry : list.at("views")) {
       const auto frame = entry.at("frame").get<std::uint64_t>();
@@ -176,7 +177,15 @@ class ViewReader {
     decoder_.read_depth(image_file(folder_, "depth", view.frame_index), 1.0, check_size).convertTo(view.depth, CV_16U);
     if (!view.only_carves())
       view.colour = decoder_.read_colour(image_file(folder_, "colour", view.frame_index), check_size).clone();
+    if (entry.value("has_labels", false)) view.labels = labels_of(view.frame_index, check_size);
     return view;
+  }
+
+  cv::Mat labels_of(std::uint64_t frame, const ImageDecoder::SizeCheck& check_size) {
+    const fs::path file = image_file(folder_, "labels", frame);
+    cv::Mat labels = decoder_.read_labels(file, check_size).clone();
+    if (labels.type() != CV_8UC1) throw InputError({file.string()}, "found labels of 16 bits; expected 8 bits");
+    return labels;
   }
 
   fs::path folder_;
@@ -202,6 +211,9 @@ void SurfaceViews::append(SurfaceViews later) {
                 std::to_string(camera.width) + "x" + std::to_string(camera.height) + ", fx " +
                 std::to_string(camera.fx) + ", and " + std::to_string(later.camera.width) + "x" +
                 std::to_string(later.camera.height) + ", fx " + std::to_string(later.camera.fx));
+  if (!classes.empty() && !later.classes.empty() && classes != later.classes)
+    throw Error("views with different classes cannot be fused into one surface; found those of different segmenters");
+  if (classes.empty()) classes = std::move(later.classes);
   const std::uint64_t first = views.empty() ? 0 : views.back().frame_index + 1;
   for (KeptView& view : later.views) {
     view.frame_index += first;
@@ -211,7 +223,10 @@ void SurfaceViews::append(SurfaceViews later) {
 }
 
 void write_views(const fs::path& folder, const SurfaceViews& views, const Map& map) {
-  for (const char* kind : {"colour", "depth"}) {
+  const bool has_labels =
+      std::any_of(views.views.begin(), views.views.end(), [](const KeptView& view) { return !view.labels.empty(); });
+  for (const char* kind : {"colour", "depth", "labels"}) {
+    if (!has_labels && kind == std::string("labels")) continue;
     std::error_code error;
     fs::create_directories(folder / kind, error);
     if (error) throw InputError({(folder / kind).string()}, "the folder cannot be made: " + error.message());
@@ -237,7 +252,11 @@ void write_views(const fs::path& folder, const SurfaceViews& views, const Map& m
     if (view.only_carves()) list["carving_camera"] = pinhole_json(*view.coarse_camera);
     write_png(image_file(folder, "depth", view.frame_index), view.depth);
     if (!view.only_carves()) write_png(image_file(folder, "colour", view.frame_index), view.colour);
+    if (view.labels.empty()) continue;
+    list["views"].back()["has_labels"] = true;
+    write_png(image_file(folder, "labels", view.frame_index), view.labels);
   }
+  if (!views.classes.empty()) list["classes"] = views.classes;
   sync_file_system(folder);
   write_file_atomically(folder / views_list, list.dump(1) + "\n");
 }
@@ -273,7 +292,9 @@ TriangleMesh fuse(const SurfaceViews& views, const Map& map, const std::function
     surface.update(fused, poses, 0);
     on_progress(i);
   }
-  return surface.field().mesh();
+  TriangleMesh mesh = surface.field().mesh();
+  mesh.classes = views.classes;
+  return mesh;
 }
 
 }  // namespace holdfast

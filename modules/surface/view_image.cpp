@@ -33,6 +33,7 @@ ViewImage::ViewImage(const KeptView& view, const Camera& kept, const SurfaceSett
   for (int y = 0; y < camera.height; ++y) rays_y_.push_back(static_cast<float>((y - camera.cy) / camera.fy));
   const cv::Mat depths = read_depth(view, static_cast<float>(settings.maximum_depth));
   if (only_carves_) return;
+  labels_ = view.labels.isContinuous() ? view.labels : view.labels.clone();
   for (int y = 0; y < camera.height; ++y)
     for (int x = 0; x < camera.width; ++x) set_slope(depths, x, y);
 }

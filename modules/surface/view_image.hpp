@@ -40,6 +40,8 @@ class ViewImage {
   const Camera& camera() const { return camera_; }
   const Pixel& at(int x, int y) const { return pixels_[static_cast<std::size_t>(y * camera_.width + x)]; }
   const Pixel* pixels() const { return pixels_.data(); }
+  /// KeptView::labels side by side in memory; nullptr if there are none.
+  const std::uint8_t* labels() const { return labels_.empty() ? nullptr : labels_.ptr<std::uint8_t>(); }
   /// Largest depth in a rectangle of pixels, or in slightly more than it [m].
   float farthest(int left, int top, int right, int bottom) const;
   /// Smallest Pixel::near in a rectangle of pixels; 0 if one is missing or outside the image.
@@ -53,6 +55,7 @@ class ViewImage {
   Camera camera_;
   bool only_carves_;
   std::vector<Pixel> pixels_;
+  cv::Mat labels_;                      // continuous
   std::vector<float> rays_x_, rays_y_;  // of the columns and rows, at depth 1
   std::vector<float> tiles_;            // largest depth of each tile [m]
   int tile_columns_ = 0;

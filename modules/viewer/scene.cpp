@@ -147,6 +147,7 @@ void Scene::set_run(ViewedRun run) {
                      TrackingMethod::none, i < run.errors.size() ? run.errors[i] : unknown, 0});
   }
   if (!run.cloud.empty()) cloud_.replace(std::exchange(run.cloud, {}));
+  if (!run.mesh.empty()) mesh_.replace(std::exchange(run.mesh, {}));
   run_ = std::move(run);
 }
 
@@ -291,7 +292,9 @@ void Scene::describe_run(Message& message) const {
 }
 
 std::string Scene::update(Progress& progress) const {
-  if (progress.has_head && progress.version == version_ && !cloud_.has_more(progress.cloud)) return {};
+  if (progress.has_head && progress.version == version_ && !cloud_.has_more(progress.cloud) &&
+      !mesh_.has_more(progress.mesh))
+    return {};
   const std::uint64_t since = progress.version;
   Message message;
   if (!progress.has_head || head_version_ > since) describe_head(message);
@@ -303,6 +306,7 @@ std::string Scene::update(Progress& progress) const {
   describe_path(progress, message);
   map_.describe(since, message);
   cloud_.describe(progress.cloud, message);
+  mesh_.describe(progress.mesh, message);
   describe_picture(progress, message);
   if (run_version_ > since) describe_run(message);
   if (progress.loops < closed_loops_.size()) {

@@ -15,6 +15,7 @@
 #include "holdfast/viewer/viewer.hpp"
 #include "message.hpp"
 #include "shown_map.hpp"
+#include "shown_mesh.hpp"
 
 namespace holdfast::viewer {
 
@@ -28,6 +29,7 @@ struct Progress {
   std::uint64_t frames = 0;  ///< number of the next frame for the time chart
   std::uint64_t picture = 0, loops = 0;
   CloudProgress cloud;
+  MeshProgress mesh;
 };
 
 /// How the run is being played, as the page shows it.
@@ -47,6 +49,9 @@ class Scene {
   void set_classes(std::vector<std::string> names);
   void add(std::span<const ViewedClass> classes);
   void add(ViewedSurface surface);
+  void add(std::vector<SurfacePatch> patches, int coarseness) { mesh_.add(std::move(patches), coarseness); }
+  /// Of the patches that are wanted.
+  int mesh_coarseness() const { return mesh_.coarseness(); }
   void set_picture(const ViewedPicture& picture);
   void add_loop(KeyFrameId keyframe, KeyFrameId candidate);
   void set_run(ViewedRun run);
@@ -89,6 +94,7 @@ class Scene {
   std::uint64_t version_ = 1, head_version_ = 1, state_version_ = 1, run_version_ = 0;
   ShownMap map_;
   DenseCloud cloud_;
+  ShownMesh mesh_;
   std::vector<std::string> classes_;
   std::vector<PathEntry> path_;
   std::uint64_t path_number_ = 1;

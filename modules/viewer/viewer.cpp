@@ -61,6 +61,8 @@ struct Mailbox {
   std::optional<std::vector<std::string>> class_names;
   std::vector<ViewedClass> classes;
   std::vector<ViewedSurface> surfaces;
+  std::vector<SurfacePatch> patches;
+  int patch_coarseness = 0;
   std::vector<std::pair<KeyFrameId, KeyFrameId>> loops;
   std::optional<ViewedRun> run;
 };
@@ -88,8 +90,9 @@ struct Viewer::State {
   viewer::PlayControl control;
   std::mutex mutex;
   Mailbox mailbox;
-  std::atomic<bool> has_picture = false, has_map = false;
-  std::atomic<double> last_picture = -1e9, last_map = 0.0, map_cost = -1.0;
+  std::atomic<bool> has_picture = false, has_map = false, has_patches = false;
+  std::atomic<double> last_picture = -1e9, last_map = 0.0, map_cost = -1.0, last_patches = -1e9, patches_cost = 0.0;
+  std::atomic<int> patch_coarseness = 0;
   std::atomic<double> rate = viewer::Server::fastest_rate;  // of messages, of the browser that wants most
   viewer::Scene scene;                                      // of the server's thread
   viewer::Server server;                                    // last: its thread uses everything above
@@ -105,6 +108,9 @@ void Viewer::State::take_mail() {
   if (!mail.classes.empty()) scene.add(mail.classes);
   if (mail.map) scene.set_map(*mail.map);
   for (ViewedSurface& surface : mail.surfaces) scene.add(std::move(surface));
+  const bool brings_patches = !mail.patches.empty();
+  if (brings_patches) scene.add(std::move(mail.patches), mail.patch_coarseness);
+  patch_coarseness = scene.mesh_coarseness();
   for (const FrameResult& frame : mail.frames) scene.add(frame);
   for (const auto& [keyframe, candidate] : mail.loops) scene.add_loop(keyframe, candidate);
   if (mail.picture) scene.set_picture(*mail.picture);
@@ -112,6 +118,7 @@ void Viewer::State::take_mail() {
   // Only now is another one wanted: whoever makes pictures and maps does not run ahead of this thread.
   if (mail.picture) has_picture = false;
   if (mail.map) has_map = false;
+  if (brings_patches) has_patches = false;
   scene.set_play({control.is_paused(), control.speed(), control.watchers()});
 }
 
@@ -198,6 +205,24 @@ void Viewer::add_point_classes(std::vector<ViewedClass> classes) {
 void Viewer::add_surface(ViewedSurface surface) {
   const std::lock_guard lock(state_->mutex);
   state_->mailbox.surfaces.push_back(std::move(surface));
+}
+
+bool Viewer::wants_patches() const {
+  if (!is_watched() || state_->has_patches) return false;
+  return now() >= state_->last_patches + std::max({1.0, 1.0 / state_->rate, 20.0 * state_->patches_cost});
+}
+
+int Viewer::patch_coarseness() const { return state_->patch_coarseness; }
+
+void Viewer::add_patches(std::vector<SurfacePatch> patches, int coarseness, double seconds) {
+  state_->patches_cost = seconds;
+  state_->last_patches = now();
+  if (patches.empty()) return;
+  state_->has_patches = true;
+  const std::lock_guard lock(state_->mutex);
+  std::vector<SurfacePatch>& kept = state_->mailbox.patches;
+  if (std::exchange(state_->mailbox.patch_coarseness, coarseness) != coarseness) kept.clear();
+  kept.insert(kept.end(), std::make_move_iterator(patches.begin()), std::make_move_iterator(patches.end()));
 }
 
 void Viewer::add_loop(KeyFrameId keyframe, KeyFrameId candidate) {

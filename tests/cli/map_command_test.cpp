@@ -142,6 +142,14 @@ TEST_F(MapCommand, ExportsAMeshFromTheKeptDepth) {
                 .exit_code,
             0);
   EXPECT_LE(read_mesh(few).triangles.size(), half);
+  EXPECT_THAT(run({"map", "export", file(), "--mesh", path("early.ply").string(), "--until", "-1", "--views",
+                   path("elsewhere").string()})
+                  .errors,
+              HasSubstr("no view is as old as --until"));
+  EXPECT_THAT(run({"map", "export", file(), "--mesh", path("classes.ply").string(), "--class-colours", "--views",
+                   path("elsewhere").string()})
+                  .errors,
+              HasSubstr("surface.classes=true"));
   EXPECT_EQ(run({"map", "export", file(), "--voxel", "0.1", "--json", "-"}).exit_code, 2);
   EXPECT_THAT(run({"map", "export", file(), "--mesh", path("room.stl").string()}).errors,
               HasSubstr(".ply, .obj or .glb"));

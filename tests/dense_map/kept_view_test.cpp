@@ -99,6 +99,21 @@ TEST(KeptView, TakesLabelsBeforeTheCoarseOnes) {
   EXPECT_EQ(count_moving(measured), 4);  // one cell of 4 x 4 px
 }
 
+TEST(KeptView, KeepsLabelsWhereAskedFor) {
+  const WallWorld world;
+  const SensorFrame frame = world.images(0.0, 0, std::nullopt);
+  const CoarseView coarse = blank_coarse(world.camera);
+  cv::Mat labels = cv::Mat::zeros(120, 160, CV_8UC1);
+  labels.colRange(80, 160).setTo(3);
+  EXPECT_TRUE(ViewSampler(world.camera, {}).sample({}, frame, coarse, labels, {}).labels.empty());
+  const ViewSampler sampler(world.camera, {}, true);
+  EXPECT_TRUE(sampler.sample({}, frame, coarse, {}, {}).labels.empty()) << "there is no mask";
+  const KeptView view = sampler.sample({}, frame, coarse, labels, {});
+  ASSERT_EQ(view.labels.size(), view.depth.size());
+  EXPECT_EQ(view.labels.at<std::uint8_t>(30, 20), 0);
+  EXPECT_EQ(view.labels.at<std::uint8_t>(30, 60), 3);
+}
+
 TEST(KeptView, HasThePoseOfTheDepthImage) {
   const WallWorld world;
   const ViewSampler sampler(world.camera, {});

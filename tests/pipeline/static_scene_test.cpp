@@ -2,6 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/dense_map/static_scene.hpp"
@@ -120,6 +123,21 @@ TEST(PipelineStaticScene, IsToldToObservers) {
   EXPECT_EQ(told.classes.size(), 3U);
 }
 
+/// Follows the surface by its changes.
+class SurfaceObserver final : public Observer {
+ public:
+  using Vertices = std::map<std::array<int, 3>, std::size_t>;
+  explicit SurfaceObserver(Vertices& vertices) : vertices_(vertices) {}
+  void on_surface(const ObservedSurface& surface) override {
+    for (const SurfacePatch& patch : surface.changes(std::exchange(seen_, surface.version), 0))
+      vertices_[{patch.cube.x(), patch.cube.y(), patch.cube.z()}] = patch.vertices.size();
+  }
+
+ private:
+  Vertices& vertices_;
+  std::uint64_t seen_ = 0;
+};
+
 /// Frames with depth everywhere: that of the points, and a wall behind them.
 SensorFrame with_wall(SensorFrame frame) {
   frame.depth.setTo(8.0F, frame.depth == 0.0F);
@@ -139,6 +157,8 @@ TEST(PipelineSurface, HasEveryKeyframeAtItsFinalPose) {
     parts.surface = {.enabled = true, .voxel = 0.2, .maximum_depth = 9.0, .moves_per_keyframe = 0, .cell = 0.5};
     parts.dense_map.step = 8;
     if (threaded) parts.run.mode = RunMode::threaded;
+    SurfaceObserver::Vertices observed;
+    parts.observers.push_back(std::make_unique<SurfaceObserver>(observed));
     Pipeline pipeline(std::move(parts));
     for (int i = 0; i < 40; ++i)
       pipeline.feed(with_wall(world.frame(static_cast<std::uint64_t>(i), i / 30.0, test::path_pose(i / 30.0))));
@@ -154,6 +174,11 @@ TEST(PipelineSurface, HasEveryKeyframeAtItsFinalPose) {
     EXPECT_EQ(pipeline.surface()->keyframe_count(), pipeline.mapping_counts().keyframes_made);
     EXPECT_GE(pipeline.surface()->view_count(), pipeline.surface()->keyframe_count() + 2U) << "frames that carve";
     EXPECT_FALSE(pipeline.surface()->field().mesh().empty());
+    std::erase_if(observed, [](const auto& entry) { return entry.second == 0; });
+    SurfaceObserver::Vertices final_vertices;
+    for (const SurfacePatch& patch : pipeline.surface()->field().changes(0, 0))
+      final_vertices[{patch.cube.x(), patch.cube.y(), patch.cube.z()}] = patch.vertices.size();
+    EXPECT_EQ(observed, final_vertices);
   }
 }
 

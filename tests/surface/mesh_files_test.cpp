@@ -10,6 +10,7 @@
 #include <string>
 
 #include "holdfast/core/error.hpp"
+#include "holdfast/surface/class_colours.hpp"
 
 namespace holdfast {
 namespace {
@@ -62,6 +63,22 @@ TEST_F(MeshFilesTest, ReadsWhatItWrites) {
     EXPECT_EQ(found.vertices[i].normal, mesh.vertices[i].normal);
     EXPECT_EQ(found.vertices[i].green, 128);
   }
+}
+
+TEST_F(MeshFilesTest, KeepsTheClassesOfVertices) {
+  TriangleMesh mesh = tetrahedron();
+  mesh.vertices[2].label = 1;
+  mesh.classes = {"background", "chair\nelement face 9"};
+  const TriangleMesh found = read_mesh(write(mesh_ply(mesh)));
+  EXPECT_EQ(found.vertices[2].label, 1);
+  EXPECT_EQ(found.vertices[0].label, MeshVertex::unknown_class);
+  EXPECT_EQ(found.triangles, mesh.triangles);
+
+  mesh.vertices[3].label = 0;
+  colour_by_class(mesh);
+  EXPECT_EQ(mesh.vertices[2].blue, 255);
+  EXPECT_EQ(mesh.vertices[3].red, 200);
+  EXPECT_NE(mesh.vertices[0].red, mesh.vertices[3].red) << "unknown and background";
 }
 
 TEST_F(MeshFilesTest, ReadsTextAndPolygonsOfOtherPrograms) {

@@ -136,6 +136,60 @@ TEST_F(SurfaceFieldTest, RemovesWhatLeavesAndKeepsWhatArrives) {
   EXPECT_NEAR(area_in_front_of(fused(0, 23), 1.65), front, 0.05);
 }
 
+/// A view whose pixels have one label.
+KeptView with_label(KeptView view, std::uint8_t label) {
+  view.labels.create(view.depth.size(), CV_8UC1);
+  view.labels.setTo(label);
+  return view;
+}
+
+TEST_F(SurfaceFieldTest, VerticesHaveTheClassOfMostVotes) {
+  SolidWorld world;
+  world.has_ball = false, world.has_wall = true;
+  const auto poses = side_by_side(8, 0.01);
+  const std::vector<KeptView> views = views_of(world, poses);
+  const auto labels_of = [&](const std::vector<std::uint8_t>& votes, std::size_t kept) {
+    std::vector<KeptView> labelled;
+    for (std::size_t i = 0; i < votes.size(); ++i) labelled.push_back(with_label(views[i], votes[i]));
+    SurfaceMap map(world.camera, settings_of_test());
+    const auto end = static_cast<std::ptrdiff_t>(votes.size());
+    map.update(labelled, {poses.begin(), poses.begin() + end}, 0);
+    labelled.resize(kept);  // the others are taken out
+    map.update(labelled, {poses.begin(), poses.begin() + static_cast<std::ptrdiff_t>(kept)}, 0);
+    std::map<int, std::size_t> counts;
+    for (const MeshVertex& vertex : map.field().mesh().vertices) ++counts[vertex.label];
+    for (const SurfacePatch& patch : map.field().changes(0, 0))
+      for (const MeshVertex& vertex : patch.vertices) EXPECT_EQ(counts.count(vertex.label), 1U) << int{vertex.label};
+    // The label that nearly all have; at the rim not all views see the wall.
+    for (const auto& [label, count] : counts)
+      if (10 * count > 9 * map.field().mesh().vertices.size()) return label;
+    return -1;
+  };
+  EXPECT_EQ(labels_of({3, 3, 3}, 3), 3);
+  EXPECT_EQ(labels_of({3, 3, 0, 3, 0}, 5), 3);
+  EXPECT_EQ(labels_of({255, 255, 7, 255}, 4), 7) << "an unknown class has no vote";
+  EXPECT_EQ(labels_of({255, 255, 255}, 3), 255);
+  EXPECT_EQ(labels_of({5, 2, 5, 2}, 4), 2) << "of several the smallest one";
+  EXPECT_EQ(labels_of({2, 2, 2, 5, 5, 5, 5}, 7), 5);
+  EXPECT_EQ(labels_of({2, 2, 2, 5, 5, 5, 5}, 5), 2) << "votes are taken out with their view";
+}
+
+TEST_F(SurfaceFieldTest, ClassesChangeNothingElse) {
+  const SolidWorld world;
+  const auto poses = test::poses_around(world.centre, 1.2);
+  std::vector<KeptView> views = views_of(world, poses);
+  for (KeptView& view : views) view = with_label(view, 1);
+  SurfaceMap with(world.camera, settings_of_test()), without = map_of(world, poses);
+  with.update(views, poses, 0);
+  TriangleMesh mesh = with.field().mesh();
+  EXPECT_EQ(mesh_ply(mesh), mesh_ply(without.field().mesh()));
+  EXPECT_GT(with.memory_bytes(), without.memory_bytes());
+  mesh.classes = {"background", "ball"};
+  const std::string ply = mesh_ply(mesh);
+  EXPECT_NE(ply.find("comment label 1 ball\n"), std::string::npos);
+  EXPECT_NE(ply.find("property uchar blue\nproperty uchar label\n"), std::string::npos);
+}
+
 /// Coarse views of frames between keyframes.
 class CarvingTest : public SurfaceFieldTest {
  protected:

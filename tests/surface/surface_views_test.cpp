@@ -99,6 +99,27 @@ TEST_F(SurfaceViewsTest, AreReadAsTheyWereWritten) {
   }
 }
 
+TEST_F(SurfaceViewsTest, KeepTheClassesOfTheirPixels) {
+  write_views(folder_, views_, map_);
+  EXPECT_FALSE(fs::exists(folder_ / "labels"));
+  EXPECT_TRUE(read_views(folder_, map_).classes.empty());
+  views_.classes = {"background", "ball"};
+  views_.views[1].labels = cv::Mat(world_.camera.height, world_.camera.width, CV_8UC1, cv::Scalar(1));
+  write_views(folder_, views_, map_);
+  const SurfaceViews read = read_views(folder_, map_);
+  EXPECT_EQ(read.classes, views_.classes);
+  EXPECT_TRUE(read.views[0].labels.empty());
+  ASSERT_FALSE(read.views[1].labels.empty());
+  EXPECT_EQ(cv::norm(read.views[1].labels, views_.views[1].labels, cv::NORM_INF), 0.0);
+  SurfaceViews others = read, more = read;
+  others.classes = {"background", "cube"};
+  EXPECT_THROW(more.append(others), Error);
+  if (!SurfaceField::is_available()) return;
+  const TriangleMesh mesh = fuse(read, map_);
+  EXPECT_EQ(mesh.classes, views_.classes);
+  EXPECT_TRUE(std::any_of(mesh.vertices.begin(), mesh.vertices.end(), [](const auto& v) { return v.label == 1; }));
+}
+
 TEST_F(SurfaceViewsTest, MakeTheMeshOfTheRunAtThePosesOfTheMap) {
   if (!SurfaceField::is_available()) GTEST_SKIP() << "built without OpenVDB";
   write_views(folder_, views_, map_);

@@ -255,6 +255,88 @@ TEST_P(ViewerDrawingTest, ColoursPointsByStateOrClass) {
   EXPECT_THAT(browser_->complaints(), IsEmpty());
 }
 
+/// A square of two triangles around (x, 0, 2), which is seen from where the camera was.
+SurfacePatch square_at(int x, float half, std::uint8_t label = 255) {
+  SurfacePatch patch{{x, 0, 0}, {}, {{0, 1, 2}, {0, 2, 3}}};
+  for (const auto& [across, down] : {std::pair{-1.0F, -1.0F}, {-1.0F, 1.0F}, {1.0F, 1.0F}, {1.0F, -1.0F}})
+    patch.vertices.push_back({{static_cast<float>(x) + half * across, half * down, 2}, {0, 0, -1}, 200, 40, 40, label});
+  return patch;
+}
+
+TEST_P(ViewerDrawingTest, TheSurfaceAsItGrowsAndCutAtAHeight) {
+  viewer_->set_map(test::row_map(4), 0.0);
+  open();
+  ASSERT_TRUE(becomes(counts + "?.points === 4"));
+  hide({"path", "keyframes", "covisibility", "loops", "grid", "points", "seen"});
+  const std::string has_slider = "!document.getElementById('cutting').hidden",
+                    ground = "holdfastViewer.pixel(2, 2).join()";
+  EXPECT_EQ(browser_->evaluate(has_slider), false) << "there is no surface";
+  // From before the squares, so that both are seen.
+  browser_->evaluate(
+      "(() => { const v = holdfastViewer.view; v.isFree = true; v.up = [0, -1, 0]; v.target = [1, 0, 2]; v.yaw = "
+      "Math.PI; "
+      "v.pitch = 0; v.distance = 4; })()");
+  const auto pixel = [&](double x, double y) {
+    return browser_->evaluate(pixel_at("[" + std::to_string(x) + ", " + std::to_string(y) + ", 2]")).get<std::string>();
+  };
+  viewer_->add_patches({square_at(0, 0.3F)}, 0, 0.0);
+  ASSERT_TRUE(becomes(counts + ".triangles === 2 && " + has_slider));
+  viewer_->add_patches({square_at(2, 0.3F)}, 0, 0.0);
+  ASSERT_TRUE(becomes(counts + ".triangles === 4"));
+  const std::string nothing = browser_->evaluate(ground).get<std::string>();
+  for (const double x : {0.0, 2.0}) {
+    EXPECT_NE(pixel(x, 0.2), nothing);
+    EXPECT_NE(pixel(x - 0.25, -0.25), nothing);
+    EXPECT_EQ(pixel(x + 0.4, 0.0), nothing);
+    EXPECT_EQ(pixel(x, -0.4), nothing);
+  }
+  // Red, and lit: as bright as can be where the eye looks straight at it.
+  EXPECT_TRUE(becomes("(() => { const [r, g, b] = " + pixel_at("[0, 0.2, 2]") +
+                      ".split(',').map(Number); return r > 150 && r < 200 && g < 45 && Math.abs(g - b) <= 1; })()"));
+  viewer_->add_patches({square_at(0, 0.1F)}, 0, 0.0);  // replaces the first one
+  EXPECT_TRUE(becomes(pixel_at("[0, 0.2, 2]") + " === '" + nothing + "'"));
+  EXPECT_NE(pixel(0.0, 0.05), nothing);
+
+  // y points down: the upper half of the second square is cut away.
+  browser_->evaluate(
+      "(() => { const c = document.getElementById('cut'); c.value = 0.5; c.dispatchEvent(new Event('input')); })()");
+  browser_->evaluate("holdfastViewer.cutAt(-0.1)");
+  EXPECT_EQ(pixel(2.0, -0.05), nothing);
+  if (GetParam() == test::BrowserDrawing::webgl) {
+    EXPECT_NE(pixel(2.0, 0.2), nothing) << "by the processor whole triangles go";
+  }
+  browser_->evaluate("holdfastViewer.cutAt(Infinity)");
+  EXPECT_NE(pixel(2.0, -0.05), nothing);
+  // From behind one looks through it.
+  browser_->evaluate("holdfastViewer.view.yaw = 0");
+  EXPECT_EQ(pixel(2.0, 0.05), nothing);
+  hide({"mesh"});
+  browser_->evaluate("holdfastViewer.view.yaw = Math.PI");
+  EXPECT_EQ(pixel(2.0, 0.05), nothing);
+  EXPECT_THAT(browser_->complaints(), IsEmpty());
+}
+
+TEST_P(ViewerDrawingTest, ColoursTheSurfaceByClass) {
+  viewer_->set_classes({"background", "chair"});
+  viewer_->set_map(test::row_map(4), 0.0);
+  viewer_->add_patches({square_at(0, 0.3F, 0), square_at(2, 0.3F, 1)}, 0, 0.0);
+  open();
+  ASSERT_TRUE(becomes(counts + "?.triangles === 4"));
+  hide({"path", "keyframes", "covisibility", "loops", "grid", "points", "seen"});
+  browser_->evaluate(
+      "(() => { const v = holdfastViewer.view; v.isFree = true; v.up = [0, -1, 0]; v.target = [1, 0, 2]; v.yaw = "
+      "Math.PI; "
+      "v.pitch = 0; v.distance = 4; })()");
+  // The two are lit differently.
+  const auto blue = [](const std::string& place) { return "Number(" + pixel_at(place) + ".split(',')[2])"; };
+  const std::string difference = "Math.abs(" + blue("[0, 0, 2]") + " - " + blue("[2, 0, 2]") + ")";
+  EXPECT_TRUE(becomes(difference + " < 15"));
+  browser_->click("document.querySelector('input[value=class]')");
+  EXPECT_TRUE(becomes(difference + " > 60"));
+  EXPECT_TRUE(becomes("document.getElementById('legend').textContent.includes('chair')")) << text("legend");
+  EXPECT_THAT(browser_->complaints(), IsEmpty());
+}
+
 INSTANTIATE_TEST_SUITE_P(All, ViewerDrawingTest,
                          ::testing::Values(test::BrowserDrawing::plain, test::BrowserDrawing::webgl),
                          [](const auto& info) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include "holdfast/interfaces/observer.hpp"
 #include "holdfast/plugin/registry.hpp"
@@ -98,6 +99,44 @@ TEST(ViewerObserverTest, ShowsClassesAndTheDenseCloud) {
     for (std::size_t i = 0; i < classes.size(); ++i) has_classes = has_classes || (slots[i] == 4 && classes[i] == 1);
     return has_cloud && has_classes;
   });
+}
+
+TEST(ViewerObserverTest, ShowsWhatHasChangedOfTheSurfaceToWhoeverWatches) {
+  Registry registry;
+  holdfast_register_plugin_viewer(registry);
+  const auto observer = registry.create<Observer>("viewer", {}, {});
+  std::vector<std::uint64_t> asked_since;
+  const auto surface_at = [&](std::uint64_t version) {
+    return ObservedSurface{version, [&, version](std::uint64_t since, int coarseness) {
+                             EXPECT_EQ(coarseness, 0);
+                             asked_since.push_back(since);
+                             const float height = static_cast<float>(version);
+                             SurfacePatch patch{{1, 2, 3}, std::vector<MeshVertex>(3), {{0, 1, 2}}};
+                             for (MeshVertex& vertex : patch.vertices) vertex.position.z() = height;
+                             return std::vector<SurfacePatch>{patch};
+                           }};
+  };
+  observer->on_surface(surface_at(1));
+  EXPECT_THAT(asked_since, SizeIs(0)) << "nobody watches";
+
+  test::SocketClient client{test::ViewerAddress(running_viewers().front()->address())};
+  client.receive();
+  observer->on_surface(surface_at(2));
+  observer->on_surface(surface_at(3));
+  EXPECT_THAT(asked_since, ElementsAre(0)) << "and no more than once a second";
+  const auto brings_height = [](float height) {
+    return [height](const ReceivedMessage& m) {
+      const std::vector<float> places = m.array<float>("patch_places");
+      return places.size() == 9 && places[2] == height;
+    };
+  };
+  client.receive_until(brings_height(2.0F));
+  while (asked_since.size() < 2) {
+    usleep(50'000);
+    observer->on_surface(surface_at(4));
+  }
+  EXPECT_THAT(asked_since, ElementsAre(0, 2));
+  client.receive_until(brings_height(4.0F));
 }
 
 TEST(ViewerObserverTest, AProgramCanKeepTheViewerBeyondTheRun) {

@@ -26,6 +26,7 @@ struct KeptView {
   double timestamp = 0.0;  ///< [s]
   cv::Mat colour;          ///< 8UC3
   cv::Mat depth;           ///< 16UC1: depth_bits in depth_units, 0 = none; moves_bit for dynamic pixels
+  cv::Mat labels = {};     ///< 8UC1: class of each pixel, 255 = unknown; empty = not kept, or not known
   /// Of a frame between keyframes, which only carves free space and has no colour: its camera. Else nullptr.
   std::shared_ptr<const Camera> coarse_camera = nullptr;
   /// Pose of the depth image relative to `keyframe`: of such a frame, or of the keyframe's own, which many sensors take
@@ -49,7 +50,8 @@ std::size_t densest_view(const std::vector<KeptView>& views);
 /// Creates kept views from the images of a camera. Immutable after construction.
 class ViewSampler {
  public:
-  ViewSampler(const Camera& camera, const DenseMapSettings& settings);
+  /// `keeps_labels`: whether views keep the classes of their pixels, one byte more per pixel.
+  ViewSampler(const Camera& camera, const DenseMapSettings& settings, bool keeps_labels = false);
 
   /// The pinhole camera of the kept views.
   const Camera& camera() const { return small_; }
@@ -62,11 +64,13 @@ class ViewSampler {
                   const std::vector<bool>& left_out) const;
 
  private:
+  cv::Mat sample_labels(const cv::Mat& labels) const;
   void spread(cv::Mat& depth) const;
 
   Camera raw_, small_;
   int step_, reach_, edge_;
-  int margin_;                           // [depth units]
+  int margin_;  // [depth units]
+  bool keeps_labels_;
   std::vector<std::int32_t> raw_pixel_;  // of each kept pixel, -1 = outside
   std::vector<std::int32_t> cell_;       // of the coarse view, -1 = none
   CoarseGrid grid_;

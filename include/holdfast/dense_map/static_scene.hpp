@@ -15,7 +15,8 @@ namespace holdfast {
 /// 640x480 and step 2), and about 64 bytes per occupied voxel during the fusion. Used by one thread.
 class StaticScene {
  public:
-  StaticScene(const Camera& camera, const DenseMapSettings& settings);
+  /// `keeps_labels`: see ViewSampler.
+  StaticScene(const Camera& camera, const DenseMapSettings& settings, bool keeps_labels = false);
 
   /// Adds a keyframe whose mask is final; see ViewSampler::sample. Keyframes may be added in any order. The kept view
   /// is valid until the next call.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -15,6 +16,7 @@
 #include "holdfast/core/map_snapshot.hpp"
 #include "holdfast/core/module.hpp"
 #include "holdfast/core/sensor_frame.hpp"
+#include "holdfast/core/surface_patch.hpp"
 
 namespace holdfast {
 
@@ -46,6 +48,15 @@ struct ObservedView {
   std::function<std::vector<CloudPoint>(std::size_t max_count)> points = {};
 };
 
+/// The fused surface (SurfaceSettings) of a run in progress. Valid during the call of the observer.
+struct ObservedSurface {
+  std::uint64_t version = 0;  ///< grows with each change
+  /// Meshes of the cubes of 8^3 voxels in which the surface may have changed since an earlier version; since 0: of all
+  /// in which there is surface. `coarseness` 0, 1 or 2: one sample per 1, 2 or 4 voxels along each axis. Parts that are
+  /// too small for the mesh of the run, and remnants of what disappeared, are included. About 0.02 ms per cube.
+  std::function<std::vector<SurfacePatch>(std::uint64_t since, int coarseness)> changes = {};
+};
+
 /// Observes a run. Every method does nothing unless overridden. In sequential mode the thread that feeds frames calls
 /// all of them; arguments are valid during the call only. No lock is held during a call: a slow observer delays the
 /// thread that calls it, and no other. An exception ends the run; feed() or finish() throws it.
@@ -63,6 +74,9 @@ class Observer : public Module {
   /// When a keyframe's mask is final and the dense map has kept its image, by the tracking thread, or by the one that
   /// calls finish(); never without DenseMapSettings::enabled.
   virtual void on_static_view(const ObservedView&) {}
+  /// After views were fused into the surface, by the thread that fuses them, or by the one that calls finish(); never
+  /// without SurfaceSettings::enabled.
+  virtual void on_surface(const ObservedSurface&) {}
   /// After a loop was closed between two keyframes, by the loop closing thread.
   virtual void on_loop(KeyFrameId, KeyFrameId, const ObservedMap&) {}
   /// Once at the end of the run, when all threads have ended, by the thread that calls finish().

@@ -13,7 +13,8 @@ namespace holdfast {
 const std::vector<std::string>& mesh_formats();
 
 /// Formats a mesh as binary little-endian PLY: float x y z nx ny nz, uchar red green blue, and faces as lists of three
-/// vertex_indices.
+/// vertex_indices. A mesh with classes has besides: uchar label (255 = unknown), and a comment "label NUMBER NAME" for
+/// each class.
 std::string mesh_ply(const TriangleMesh& mesh);
 /// Formats a mesh as Wavefront OBJ with normals; colours follow the position of a vertex, as most readers understand.
 std::string mesh_obj(const TriangleMesh& mesh);
@@ -28,9 +29,9 @@ void require_mesh_name(const std::filesystem::path& file);
 /// if it cannot be written.
 void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh);
 
-/// Reads a PLY file of any program, ASCII or binary: vertices with x, y, z (other properties are skipped, normals and
-/// colours are read if present), and polygons, which are divided into triangles. Throws InputError for a file that
-/// cannot be read, is damaged, has no triangle, or has a position that is not finite.
+/// Reads a PLY file of any program, ASCII or binary: vertices with x, y, z (other properties are skipped; normals,
+/// colours and labels, without their names, are read if present), and polygons, which are divided into triangles.
+/// Throws InputError for a file that cannot be read, is damaged, has no triangle, or has a position that is not finite.
 TriangleMesh read_mesh(const std::filesystem::path& file);
 
 }  // namespace holdfast

@@ -5,8 +5,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "holdfast/core/camera.hpp"
+#include "holdfast/core/surface_patch.hpp"
 #include "holdfast/surface/surface_settings.hpp"
 #include "holdfast/surface/triangle_mesh.hpp"
 
@@ -62,6 +64,14 @@ class SurfaceField {
   /// with separated negative corners on ambiguous faces: the mesh is closed except where the field ends. Vertices are
   /// shared, also between blocks. Parts smaller than SurfaceSettings::smallest_part are left out.
   TriangleMesh mesh() const;
+
+  /// Grows with each view that is put in, moved or taken out.
+  std::uint64_t version() const;
+  /// Meshes of the cubes of 8^3 voxels in which the surface may have changed since an earlier version, by marching
+  /// cubes over each alone, with the gradient of the field as normals; since 0: of all in which there is surface.
+  /// Patches without triangles: the surface is gone. Nothing is left out of it as of mesh(). `coarseness` from 0 to 2:
+  /// the field is sampled by the means of 1^3, 2^3 or 4^3 voxels.
+  std::vector<SurfacePatch> changes(std::uint64_t since, int coarseness) const;
 
   std::size_t block_count() const;
   std::size_t memory_bytes() const;

@@ -20,12 +20,18 @@ struct SurfaceSettings {
   double smallest_part = 0.02;  ///< connected parts of the mesh with a smaller area are left out [m^2]
   /// Time between frames whose coarse depth carves free space, beside the keyframes [s]; 0 = keyframes alone carve.
   double carving_interval = 0.2;
+  /// Time after which something that moved and stands still counts as part of the room [s]; 0 = never, if a filter
+  /// keeps calling it moving because old keyframes looked through it. Classes of dense_map.classes never count.
+  double resting_time = 0.0;
   /// Maximum number of keyframes that are fused again at their adjusted pose when another one is added; at the end of a
   /// run all are.
   int moves_per_keyframe = 2;
   std::vector<std::string> formats = {"ply"};  ///< files that a run writes: surface.ply, surface.obj, surface.glb
   /// Whether a run keeps the fused images in the folder surface_views beside its map, for `holdfast map export --mesh`.
   bool keep_depth = false;
+  /// Whether voxels collect votes of the segmenter's classes, and vertices of the mesh have a class.
+  bool classes = false;
+  bool class_colours = false;  ///< whether these files have the colours of classes in place of those of the images
   int triangles = 0;           ///< largest number of triangles of these files (decimate()); 0 = all
   bool navigation = false;     ///< whether a run writes map.pgm, map.yaml, octomap.bt and octomap.ot
   double cell = 0.05;          ///< side of a cell of these maps [m]

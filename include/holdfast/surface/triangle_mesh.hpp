@@ -6,21 +6,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <vector>
 
-namespace holdfast {
+#include "holdfast/core/mesh_vertex.hpp"
 
-/// A vertex of a mesh in world coordinates.
-struct MeshVertex {
-  Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< [m]
-  Eigen::Vector3f normal = Eigen::Vector3f::Zero();    ///< unit, towards free space; zero if unknown
-  std::uint8_t red = 0, green = 0, blue = 0;
-};
+namespace holdfast {
 
 /// An indexed triangle mesh. The corners of a triangle are counter-clockwise as seen from free space.
 struct TriangleMesh {
   std::vector<MeshVertex> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::string> classes;  ///< names by MeshVertex::label; empty: vertices have no class
 
   bool empty() const { return triangles.empty(); }
   const Eigen::Vector3f& corner(std::size_t triangle, int index) const {

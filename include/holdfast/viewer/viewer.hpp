@@ -14,6 +14,7 @@
 #include "holdfast/core/frame_result.hpp"
 #include "holdfast/core/id.hpp"
 #include "holdfast/core/map_snapshot.hpp"
+#include "holdfast/core/surface_patch.hpp"
 #include "holdfast/core/trajectory.hpp"
 
 namespace holdfast {
@@ -74,6 +75,8 @@ struct ViewedRun {
   std::vector<std::pair<std::string, std::string>> figures;  ///< name and value, for the summary beside the map
   /// Dense cloud in the world frame of the map; empty = none, and earlier surfaces stay.
   std::vector<CloudPoint> cloud;
+  /// Mesh in the world frame of the map, in patches of any kind (patches_of()); empty = none, and earlier ones stay.
+  std::vector<SurfacePatch> mesh;
 };
 
 /// Shows a run in browsers: an HTTP and WebSocket server in a separate thread, which serves one self-contained page and
@@ -116,6 +119,14 @@ class Viewer {
   void add_point_classes(std::vector<ViewedClass> classes);
   /// Adds to the dense cloud, of which browsers get at most 100,000 points: the larger the scene, the coarser.
   void add_surface(ViewedSurface surface);
+  /// True when changes of the mesh can be shown now: somebody watches, at most once a second, at the rate of the
+  /// browsers, and for at most a twentieth of the time.
+  bool wants_patches() const;
+  /// Coarseness of the patches that are wanted (ObservedSurface::changes). It grows with the mesh, of which browsers
+  /// get at most 300,000 triangles; patches of all the surface are wanted then.
+  int patch_coarseness() const;
+  /// Adds patches of the mesh, or replaces those of the same cubes. `seconds`: duration of making them.
+  void add_patches(std::vector<SurfacePatch> patches, int coarseness, double seconds);
   /// Reports a loop that was closed between two keyframes.
   void add_loop(KeyFrameId keyframe, KeyFrameId candidate);
   /// Replaces path and figures by those of a run that has ended.

@@ -1,4 +1,4 @@
-// Points and lines by WebGL 2, and colours.
+// Points, lines and the mesh by WebGL 2, and colours.
 
 const pointShader = `#version 300 es
 precision highp float;
@@ -60,6 +60,39 @@ precision mediump float;
 in vec4 colour;
 out vec4 pixel;
 void main() { pixel = colour; }`;
+
+// The light comes from the eye and a little from above; the back of a surface is not drawn, so that one looks into a room.
+const meshShader = `#version 300 es
+precision highp float;
+layout(location = 0) in vec3 place;
+layout(location = 1) in vec4 normal;  // and class
+layout(location = 2) in vec4 tint;
+uniform mat4 matrix;
+uniform vec3 eye;
+uniform vec3 up;
+uniform bool byClass;
+uniform vec4 colours[8];  // by class
+out vec3 colour;
+out float height;
+void main() {
+  gl_Position = matrix * vec4(place, 1.0);
+  height = dot(place, up);
+  int label = int(normal.w * 255.0 + 0.5);
+  vec3 own = byClass ? colours[label == 255 ? 7 : label == 0 ? 0 : (label - 1) % 6 + 1].rgb : tint.rgb;
+  vec3 n = normal.xyz * 2.0 - 1.0;
+  float facing = max(0.0, dot(n, normalize(eye - place)));
+  colour = own * (0.45 + 0.43 * facing + 0.06 * (1.0 + dot(n, up)));
+}`;
+const meshFragment = `#version 300 es
+precision highp float;
+in vec3 colour;
+in float height;
+uniform float cut;
+out vec4 pixel;
+void main() {
+  if (height > cut) discard;
+  pixel = vec4(colour, 1.0);
+}`;
 
 /// A colour of the style sheet as [r, g, b, a] from 0 to 1.
 const colourCache = new Map();
@@ -142,7 +175,10 @@ class Renderer {
     this.seenBuffer = gl.createBuffer();
     this.movingBuffer = this.pointArray();
     this.cloudBuffer = this.pointArray();
-    this.byClass = false;  // colours of map points
+    this.surface = this.program(meshShader, meshFragment, ['matrix', 'eye', 'up', 'byClass', 'colours', 'cut']);
+    this.groups = [];      // of the mesh
+    this.byClass = false;  // colours of map points and of the mesh
+    this.cut = Infinity;   // height above which the mesh is cut away
     this.sets = new Map();
     this.cornerBuffer = gl.createBuffer();
     this.corners = 0;
@@ -193,6 +229,54 @@ class Renderer {
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, slots, gl.DYNAMIC_DRAW);
     gl.bindVertexArray(null);
   }
+  /// Takes over a group of the mesh.
+  setGroup(number, {data, indices}) {
+    const gl = this.gl;
+    if (!this.groups[number]) {
+      const array = gl.createVertexArray(), buffer = gl.createBuffer(), indexBuffer = gl.createBuffer();
+      gl.bindVertexArray(array);
+      gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+      gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, indexBuffer);
+      [[0, 3, gl.FLOAT, 0], [1, 4, gl.UNSIGNED_BYTE, 12], [2, 4, gl.UNSIGNED_BYTE, 16]].forEach(([place, size, type, offset]) => {
+        gl.enableVertexAttribArray(place);
+        gl.vertexAttribPointer(place, size, type, type === gl.UNSIGNED_BYTE, vertexBytes, offset);
+      });
+      this.groups[number] = {array, buffer, indexBuffer};
+    }
+    const group = this.groups[number];
+    gl.bindVertexArray(group.array);
+    gl.bindBuffer(gl.ARRAY_BUFFER, group.buffer);
+    gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, indices, gl.DYNAMIC_DRAW);
+    gl.bindVertexArray(null);
+    group.count = indices.length;
+  }
+  clearMesh() {
+    const gl = this.gl;
+    for (const {array, buffer, indexBuffer} of this.groups) {
+      gl.deleteVertexArray(array);
+      gl.deleteBuffer(buffer);
+      gl.deleteBuffer(indexBuffer);
+    }
+    this.groups = [];
+  }
+  drawMesh(view, matrix) {
+    const gl = this.gl, {program, ...places} = this.surface;
+    gl.useProgram(program);
+    gl.uniformMatrix4fv(places.matrix, false, matrix);
+    gl.uniform3fv(places.eye, view.eye());
+    gl.uniform3fv(places.up, view.up);
+    gl.uniform1i(places.byClass, this.byClass && this.meshHasClasses ? 1 : 0);
+    gl.uniform4fv(places.colours, new Float32Array(classColours().flat()));
+    gl.uniform1f(places.cut, Math.min(this.cut, 1e9));
+    gl.enable(gl.CULL_FACE);
+    for (const group of this.groups) {
+      if (!group?.count) continue;
+      gl.bindVertexArray(group.array);
+      gl.drawElements(gl.TRIANGLES, group.count, gl.UNSIGNED_INT, 0);
+    }
+    gl.disable(gl.CULL_FACE);
+  }
   setLines(name, lines, width) {
     const gl = this.gl, count = lines.values.length / 10;
     if (!this.sets.has(name)) {
@@ -242,6 +326,7 @@ class Renderer {
     gl.clearColor(...cssColour('--map-ground'));
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     const matrix = view.matrix(width / height);
+    if (shown.mesh !== false && this.groups.length) this.drawMesh(view, matrix);
     gl.useProgram(this.lines.program);
     gl.uniformMatrix4fv(this.lines.matrix, false, matrix);
     gl.uniform2f(this.lines.screen, width, height);

@@ -15,7 +15,7 @@ const canvas = renderer.canvas;
 const pace = new Pace(renderer.isSoft);
 const picturePanel = new PicturePanel(), timesPanel = new TimesPanel();
 const shown = {};
-const layers = {points: 'map points', cloud: 'dense cloud', seen: 'points in view', moving: 'moving features', path: 'path', truth: 'true path',
+const layers = {points: 'map points', cloud: 'dense cloud', mesh: 'surface', seen: 'points in view', moving: 'moving features', path: 'path', truth: 'true path',
                 keyframes: 'keyframes', covisibility: 'covisibility', loops: 'loops', objects: 'objects and trails', grid: 'grid'};
 
 const layerOf = (name) => byId('layers').querySelector(`[data-layer=${name}]`);
@@ -25,10 +25,17 @@ for (const [name, label] of Object.entries(layers)) {
     type: 'checkbox', checked: true, onchange: (event) => { shown[name] = event.target.checked; moved = true; },
   }), label));
 }
-layerOf('cloud').hidden = true;  // until there is one
+layerOf('cloud').hidden = layerOf('mesh').hidden = true;  // until there is one
+/// Cuts the mesh where the slider says, from its lowest to its highest place.
+function cutMesh() {
+  const share = Number(byId('cut').value), [low, high] = model.mesh.heights(view.up);
+  renderer.cut = share >= 1 ? Infinity : low + share * (high - low);
+  moved = true;
+}
+byId('cut').addEventListener('input', cutMesh);
 const colourings = {state: 'State', class: 'Class'};
 for (const [key, label] of Object.entries(colourings))
-  byId('colourings').append(element('label', {title: key === 'state' ? 'colour points by whether they stand still' : 'colour points by their class'},
+  byId('colourings').append(element('label', {title: key === 'state' ? 'colour points by whether they stand still' : 'colour points and surface by their class'},
       element('input', {
         type: 'radio', name: 'colouring', value: key, checked: key === 'state',
         onchange: () => { renderer.byClass = key === 'class'; moved = true; showLegend(); },
@@ -335,6 +342,7 @@ function update(time) {
     model.changedCloud = null;
     layerOf('cloud').hidden = model.cloud.count === 0;
   }
+  if (has('mesh')) showMesh();
   if (has('points', 'path', 'keyframes') && time > nextFit) {
     fitted = fit() ?? fitted;
     buildGrid();
@@ -366,7 +374,7 @@ function update(time) {
   }
   if (has('state', 'keyframes', 'path', 'run')) showState(model, connected);
   if (has('objects')) showObjects(model);
-  if (has('run', 'path', 'keyframes', 'state', 'head', 'points')) showLegend();
+  if (has('run', 'path', 'keyframes', 'state', 'head', 'points', 'mesh')) showLegend();
   if (has('run', 'path', 'now') && errorMost !== null) drawErrors(model, errorMost, now);
   if (has('state', 'now', 'run')) showClock();
   const isBusy = changed.size > 0;
@@ -393,6 +401,18 @@ function update(time) {
   }
 }
 
+/// Hands the groups of the mesh that have changed to the renderer.
+function showMesh() {
+  const {mesh} = model, groups = mesh.changedGroups;
+  if (groups.has('all')) renderer.clearMesh();
+  for (let i = 0; i < mesh.groupCount(); ++i)
+    if (groups.has('all') || groups.has(i)) renderer.setGroup(i, mesh.group(i));
+  groups.clear();
+  renderer.meshHasClasses = mesh.hasClasses;
+  byId('cutting').hidden = layerOf('mesh').hidden = mesh.triangles === 0;
+  cutMesh();
+}
+
 /// A machine that cannot draw the whole map 25 times a second draws a part of the points while something moves, and all
 /// of them when it rests.
 const detail = {step: 1, last: 0, mean: 20, isReduced: false, isMoving: false};
@@ -414,11 +434,12 @@ document.addEventListener('themechange', redraw);
 new ResizeObserver(() => { moved = true; model.changed.add('frames'); model.changed.add('run'); model.changed.add('now'); }).observe(document.body);
 // For tests, and for whoever wants to know: what is drawn, and how fast.
 globalThis.holdfastViewer = {
-  counts: () => ({points: model.points.count, cloud: model.cloud.count, path: model.path.count, keyframes: model.keyframes.size, loops: model.loops.length / 2,
+  counts: () => ({points: model.points.count, cloud: model.cloud.count, triangles: model.mesh.triangles, path: model.path.count, keyframes: model.keyframes.size, loops: model.loops.length / 2,
                   connected, state: model.state, truth: model.truth?.stamps.length ?? 0, picture: model.picture?.frame ?? null}),
   point: (i) => [...model.points.row(i).subarray(0, 3)],
   classOf: (i) => model.points.row(i)[4],
   cloudPoint: (i) => [...model.cloud.row(i)],
+  cutAt: (height) => { renderer.cut = height; moved = true; },
   place: (i) => [...model.path.row(i).subarray(0, 3)],
   send: (text) => connection.send(text),
   view,

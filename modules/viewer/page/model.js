@@ -52,6 +52,7 @@ class Model {
     this.cloud = new Rows(pointWidth);         // in the world
     this.cloudPlaces = new Rows(3);            // the same in the frames of their keyframes
     this.surfaces = [];                        // of keyframes: {begin, count} in the cloud
+    this.mesh = new Mesh();
     this.keyframes = new Map();                // by slot: {pose, stamp}
     this.covisibility = new Uint32Array();
     this.loops = new Uint32Array();
@@ -77,6 +78,7 @@ class Model {
     if (json.frames) this.addFrames(json.frames);
     if (arrays.point_slots) this.setPoints(arrays.point_slots, arrays.point_values, arrays.point_classes);
     this.takeCloud(json, arrays);
+    if (this.mesh.take(json, arrays, this.seenClasses)) mark('mesh');
     if (arrays.keyframe_slots) this.setKeyframes(arrays);
     if (json.covisibility !== undefined) { this.covisibility = arrays.covisibility?.slice() ?? new Uint32Array(); mark('keyframes'); }
     if (json.loops !== undefined) { this.loops = arrays.loops?.slice() ?? new Uint32Array(); mark('keyframes'); }

@@ -1,4 +1,4 @@
-// Points and lines without a graphics card. What stands in for one is another process that spends more than a microsecond on
+// Points, lines and the mesh without a graphics card. What stands in for one is another process that spends more than a microsecond on
 // each point, and as much again on handing its picture over. Here the map is drawn into an image in memory; a browser that
 // offers no WebGL at all shows it as well.
 
@@ -62,6 +62,51 @@ class DepthImage {
           }
     }
   }
+  /// A group of the mesh by triangles of one colour each, without their backs and what is above the cut.
+  drawGroup({data, indices, count}, matrix, light) {
+    const {width, height, pixels, depths} = this;
+    const places = new Float32Array(data), bytes = new Uint8Array(data), row = vertexBytes / 4;
+    if (!(this.corners?.length >= 3 * count)) this.corners = new Float32Array(6 * count);
+    const screen = this.corners, [m0, m1, , m3, m4, m5, , m7, m8, m9, , m11, m12, m13, , m15] = matrix;
+    for (let i = 0; i < count; ++i) {
+      const x = places[row * i], y = places[row * i + 1], z = places[row * i + 2];
+      const w = m3 * x + m7 * y + m11 * z + m15, isShown = w > 1e-3 && light.up[0] * x + light.up[1] * y + light.up[2] * z <= light.cut;
+      screen[3 * i] = ((m0 * x + m4 * y + m8 * z + m12) / w + 1) * 0.5 * width;
+      screen[3 * i + 1] = (1 - (m1 * x + m5 * y + m9 * z + m13) / w) * 0.5 * height;
+      screen[3 * i + 2] = isShown ? 1 / w : 0;
+    }
+    for (let k = 0; k < indices.length; k += 3) {
+      const a = 3 * indices[k], b = 3 * indices[k + 1], c = 3 * indices[k + 2];
+      const na = screen[a + 2], nb = screen[b + 2], nc = screen[c + 2];
+      if (na === 0 || nb === 0 || nc === 0) continue;
+      const ax = screen[a], ay = screen[a + 1], bx = screen[b] - ax, by = screen[b + 1] - ay, cx = screen[c] - ax, cy = screen[c + 1] - ay;
+      const area = by * cx - bx * cy;  // rows count downwards
+      if (!(area > 0)) continue;
+      const left = Math.max(0, Math.ceil(ax + Math.min(0, bx, cx) - 0.5)), right = Math.min(width - 1, Math.floor(ax + Math.max(0, bx, cx) - 0.5));
+      const top = Math.max(0, Math.ceil(ay + Math.min(0, by, cy) - 0.5)), bottom = Math.min(height - 1, Math.floor(ay + Math.max(0, by, cy) - 0.5));
+      if (left > right || top > bottom) continue;
+      const colour = this.litColour(places, bytes, indices[k], light), inverse = 1 / area;
+      for (let y = top; y <= bottom; ++y)
+        for (let x = left; x <= right; ++x) {
+          const px = x + 0.5 - ax, py = y + 0.5 - ay, u = (py * cx - px * cy) * inverse, v = (by * px - bx * py) * inverse;
+          if (u < -1e-6 || v < -1e-6 || u + v > 1.000001) continue;
+          const w = 1 / (na + u * (nb - na) + v * (nc - na)), pixel = y * width + x;
+          if (depths[pixel] < w) continue;
+          depths[pixel] = w;
+          pixels[pixel] = colour;
+        }
+    }
+  }
+  /// As the shader of the mesh has it.
+  litColour(places, bytes, vertex, {eye, up, classes}) {
+    const at = vertexBytes * vertex + 12, row = vertexBytes / 4 * vertex;
+    const n = [bytes[at] / 127.5 - 1, bytes[at + 1] / 127.5 - 1, bytes[at + 2] / 127.5 - 1];
+    const to = [eye[0] - places[row], eye[1] - places[row + 1], eye[2] - places[row + 2]];
+    const light = 0.45 + 0.43 * Math.max(0, dot(n, to) / norm(to)) + 0.06 * (1 + dot(n, up));
+    const own = classes ? classes[classPlace(bytes[at + 3])] : null;
+    const part = (i) => Math.min(255, (own ? 255 * own[i] : bytes[at + 4 + i]) * light) | 0;
+    return packedNumber(part(0) << 16 | part(1) << 8 | part(2));
+  }
   /// Segments of Lines, so many pixels wide; points in front of them stay, unless they are drawn over everything.
   drawLines(values, matrix, width, isAbove = false) {
     const [m0, m1, , m3, m4, m5, , m7, m8, m9, , m11, m12, m13, , m15] = matrix;
@@ -115,12 +160,14 @@ class DepthImage {
 /// Draws like Renderer, by the processor.
 class SoftRenderer {
   constructor(canvas) {
-    Object.assign(this, {canvas, isSoft: true, byClass: false, seen: 0, image: new DepthImage(), sets: new Map()});
+    Object.assign(this, {canvas, isSoft: true, byClass: false, cut: Infinity, groups: [], seen: 0, image: new DepthImage(), sets: new Map()});
     for (const name of ['pointBuffer', 'movingBuffer', 'cloudBuffer']) this[name] = {data: new Float32Array(), count: 0};
     this.context = canvas.getContext('2d', {alpha: false, willReadFrequently: true});
   }
   setPoints(target, data, count) { Object.assign(target, {data, count}); }
   setSeen(slots) { Object.assign(this, {seenSlots: slots, seen: slots.length}); }
+  setGroup(number, group) { this.groups[number] = group; }
+  clearMesh() { this.groups = []; }
   setLines(name, lines, width) { this.sets.set(name, {values: Float32Array.from(lines.values), width}); }
   draw(view, shown, step = 1) {
     const {canvas, image} = this;
@@ -128,6 +175,8 @@ class SoftRenderer {
     if (canvas.width !== width || canvas.height !== height) { canvas.width = width; canvas.height = height; }
     const matrix = view.matrix(width / height);
     image.begin(width, height, cssColour('--map-ground'));
+    const light = {eye: view.eye(), up: view.up, cut: this.cut, classes: this.byClass && this.meshHasClasses ? classColours() : null};
+    if (shown.mesh !== false) for (const group of this.groups) if (group) image.drawGroup(group, matrix, light);
     for (const {target, slots, kind, colours, near, least} of pointLayers(this, shown))
       image.drawPoints(target.data, target.count, matrix, kind, colours, near * height, least, {slots, step: slots ? 1 : step});
     for (const [name, set] of this.sets)

@@ -49,6 +49,14 @@ class ViewerObserver final : public Observer {
   void on_static_view(const ObservedView& view) override {
     viewer_->add_surface({view.keyframe, view.timestamp, view.T_world_camera, view.points(surface_points)});
   }
+  void on_surface(const ObservedSurface& surface) override {
+    if (!viewer_->wants_patches()) return;
+    const Stopwatch watch;
+    const int coarseness = viewer_->patch_coarseness();
+    if (std::exchange(coarseness_, coarseness) != coarseness) shown_surface_ = 0;
+    std::vector<SurfacePatch> patches = surface.changes(std::exchange(shown_surface_, surface.version), coarseness);
+    viewer_->add_patches(std::move(patches), coarseness, watch.seconds());
+  }
   void on_loop(KeyFrameId keyframe, KeyFrameId candidate, const ObservedMap& map) override {
     show(map);
     viewer_->add_loop(keyframe, candidate);
@@ -77,6 +85,8 @@ class ViewerObserver final : public Observer {
   std::shared_ptr<Viewer> viewer_;
   viewer_plugin::PictureMaker pictures_;
   viewer_plugin::PointClasses classes_;
+  std::uint64_t shown_surface_ = 0;  // version of the surface that the viewer has
+  int coarseness_ = 0;               // of its patches
   bool has_classes_ = false;
   bool waits_;
 };
