@@ -77,7 +77,7 @@ for argument in "$@"; do
     --arm64) packages="$packages crossbuild-essential-arm64 mmdebstrap qemu-user-static" ;;
     --dry-run) dry_run=yes ;;
     --list) lists=yes ;;
-    -h | --help) sed -n '3,s/^# \{0,1\}//p' "$0"; exit 0 ;;
+    -h | --help) sed -n '3,31s/^# \{0,1\}//p' "$0"; exit 0 ;;
     *) fail "unknown argument '$argument'; known are --training, --documentation, --benchmarks, --python, --python-tests, --bench-tests, --cameras, --onnxruntime, --surface, --ros, --clang, --valgrind, --clean-root, --arm64, --dry-run, --list and --help" ;;
   esac
 done
