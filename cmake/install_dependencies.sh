@@ -67,7 +67,7 @@ for argument in "$@"; do
     --onnxruntime) wants_onnxruntime=yes ;;
     --surface) packages="$packages libopenvdb-dev liboctomap-dev libassimp-dev" ;;
     --ros)
-      packages="$packages libroscpp-dev libtf2-ros-dev libnav-msgs-dev libsensor-msgs-dev libdiagnostic-msgs-dev
+      packages="$packages libopenvdb-dev libroscpp-dev libtf2-ros-dev libnav-msgs-dev libsensor-msgs-dev libdiagnostic-msgs-dev
         libvisualization-msgs-dev libstd-srvs-dev python3-roslaunch rosout python3-rosbag python3-rospy python3-opencv
         python3-diagnostic-msgs python3-nav-msgs python3-sensor-msgs python3-std-srvs python3-tf2-msgs"
       ;;

@@ -13,4 +13,5 @@ scene() {
   "$(scene round seed=1)" "$(scene aisles 'seed=1, visit=2')" \
   "$(scene round seed=2)" "$(scene aisles 'seed=2, visit=2')" \
   "$(scene aisles seed=3)" "$(scene round 'seed=3, visit=2')" \
+  "$(scene round seed=4)" "$(scene aisles 'seed=4, visit=2')" \
   "$(scene hall seed=1)" "$(scene hall 'seed=1, visit=2, camera.path=corridor')"

@@ -46,7 +46,7 @@ def main():
     shares = {name: round(moving / measured, 2) for name, (measured, moving) in counts.items()
               if name != "background" and measured >= max(1, arguments.least)}
     named = ", ".join(f"{name if name.isidentifier() else chr(34) + name + chr(34)}: {share:g}"
-                      for name, share in sorted(shares.items()) if share > 0)
+                      for name, share in sorted(shares.items()) if 0 < share < 0.5)
     print(f"movable: {{ {named} }}" if named else "movable: {}")
 
 

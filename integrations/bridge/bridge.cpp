@@ -115,6 +115,7 @@ struct Bridge::State {
   std::optional<Camera> camera;
   std::optional<double> baseline;  // of camera_info of the right camera
   bool has_compared_camera = false;
+  std::atomic<bool> has_told_camera = false;  // that a camera_info cannot be used
   Eigen::Isometry3d T_base_camera = ahead_camera();
 
   std::mutex inertia_mutex;
@@ -177,18 +178,20 @@ void Bridge::State::accept_time(Stamp stamp) {
 }
 
 void Bridge::State::set_camera(const CameraInfo& info) {
-  const std::lock_guard lock(camera_mutex);
-  if (has_compared_camera) return;
-  has_compared_camera = true;
+  std::string difference;
   try {
+    const std::lock_guard lock(camera_mutex);
+    if (has_compared_camera) return;
     const Camera told = camera_of(info, parameters.is_rectified || parameters.has_right);
+    has_compared_camera = true;
     if (!camera)
       camera = told;
-    else if (const std::string difference = difference_of(*camera, told); !difference.empty())
-      tell(Level::warning, difference);
+    else
+      difference = difference_of(*camera, told);
   } catch (const std::exception& error) {
-    tell(Level::error, error.what());
+    if (!has_told_camera.exchange(true)) tell(Level::error, error.what());  // once: it comes with every image
   }
+  if (!difference.empty()) tell(Level::warning, difference);
 }
 
 void Bridge::State::run_frames() {
@@ -220,7 +223,11 @@ void Bridge::State::process(ImageSet frame) {
   }
   if (!current && !cannot_begin) {
     cannot_begin = true;  // unless it succeeds: the next frame would fail as well
-    current = begin_session();
+    try {
+      current = begin_session();
+    } catch (const InputError& error) {
+      throw Error(error.what());  // of a map or a network, no fault of the frame
+    }
     cannot_begin = false;
   }
   if (!current) return;
@@ -262,8 +269,9 @@ SessionPointer Bridge::State::begin_session() {
 }
 
 void Bridge::State::end_session() {
+  SessionPointer ended;  // its threads end without the lock
   const std::lock_guard lock(session_mutex);
-  session.reset();
+  ended.swap(session);
 }
 
 /// The next frame begins a session with this map, or a new one without it.
@@ -276,10 +284,11 @@ void Bridge::State::begin_with(const std::string& file, bool localises) {
 
 std::vector<ImuSample> Bridge::State::take_inertia(const ImageSet& frame) {
   if (!configuration.imu) return {};
-  constexpr std::chrono::milliseconds patience(50);
+  // A sequential run gives the same poses again, so that it waits longer for what is on its way.
+  const std::chrono::milliseconds patience(parameters.is_sequential ? 1000 : 50);
   const double timestamp = seconds(frame.colour.stamp);
   std::unique_lock lock(inertia_mutex);
-  if (!parameters.is_sequential) inertia_came.wait_for(lock, patience, [&] { return inertia.reaches(timestamp); });
+  inertia_came.wait_for(lock, patience, [&] { return inertia.reaches(timestamp); });
   return inertia.take(timestamp);
 }
 

@@ -30,7 +30,7 @@ void write_section(AtomicFile& file, const char* type, const std::string& payloa
 }
 
 /// Features, by far the most, go out keyframe by keyframe; all sizes are known before, for the header comes first.
-void write_content(AtomicFile& file, const Map& map, const DenseIndex& index) {
+void write_content(AtomicFile& file, const Map& map, const DenseIndex& index, bool has_first_submap) {
   const SharedTables shared = tables_of(map, index);
   const MapFeatures& map_features = map.features();
   const bool has_descriptor_section = map_features != MapFeatures();
@@ -43,7 +43,7 @@ void write_content(AtomicFile& file, const Map& map, const DenseIndex& index) {
   write_places(map, index, places);
   write_classes(map, index, classes);
   write_votes(map, index, votes);
-  write_inertia(map, inertia);
+  if (has_first_submap) write_inertia(map, inertia);  // its gravity is in that world
 
   FileHeader header;
   header.library_version = HOLDFAST_VERSION;
@@ -91,7 +91,7 @@ void write_map(const std::filesystem::path& file, const Map& map, std::optional<
   if (std::error_code ignored; std::filesystem::is_directory(file, ignored))
     throw InputError({file.string()}, "found a folder; expected the name of the map file to write");
   AtomicFile written(file);
-  write_content(written, map, DenseIndex(map, submap));
+  write_content(written, map, DenseIndex(map, submap), submap.value_or(0) == 0);
   written.commit();
 }
 

@@ -545,7 +545,8 @@ void read_votes(ByteReader reader, std::size_t classes, std::vector<MapPoint>& p
     for (std::uint8_t k = 0; k < entries; ++k) {
       const std::uint8_t label = reader.get<std::uint8_t>();
       const std::uint32_t votes = reader.get<std::uint32_t>();
-      if (label >= classes || label <= last || votes == 0)
+      constexpr std::uint32_t most_votes = 1000000000;  // so that further ones can be added
+      if (label >= classes || label <= last || votes == 0 || votes > most_votes)
         reader.fail("point " + std::to_string(i) + ": found " + std::to_string(votes) + " votes for label " +
                     std::to_string(label) + "; expected at least one vote each for increasing labels below " +
                     std::to_string(classes));

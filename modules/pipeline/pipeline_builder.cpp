@@ -297,10 +297,12 @@ void PipelineBuilder::check_class(const SourceLocation& place, const std::string
 
 void PipelineBuilder::check_classes(const ModuleOf<DynamicFilter>& module, const DynamicFilter& filter) {
   if (!parts_.segmenter) return;
+  const std::vector<std::string> named = filter.named_classes();
   for (const std::string& name : filter.movable_classes(parts_.segmenter->movable()))
-    check_class(module.place, name, "the filter '" + module.name + "' counts the class '" + name + "' as movable",
-                "expected one of its classes in `classes` of the filter; ");
-  for (const std::string& name : filter.named_classes())
+    if (std::find(named.begin(), named.end(), name) == named.end())
+      check_class(module.place, name, "the filter '" + module.name + "' counts the class '" + name + "' as movable",
+                  "expected one of its classes in `classes` of the filter; ");
+  for (const std::string& name : named)
     check_class(module.place, name, "the filter '" + module.name + "' names the class '" + name + "'",
                 "expected one of its classes in `movable` of the filter; ");
 }

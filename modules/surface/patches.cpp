@@ -154,17 +154,17 @@ class PatchMarcher {
 
   bool set_colour(MeshVertex& vertex, const Eigen::Vector3i& sample) const {
     int red = 0, green = 0, blue = 0, count = 0;
-    std::uint8_t label = MeshVertex::unknown_class;
+    Block::Votes votes;
     for_voxels_of(sample, [&](const Block& block, std::size_t index) {
       if (!block.colour) return;
-      label = std::min(label, label_of(block, index));
+      if (const std::uint8_t one = label_of(block, index); one != Block::Votes::unknown) votes.add(one, 1);
       const Block::Colour& colour = (*block.colour)[index];
       red += colour.red, green += colour.green, blue += colour.blue, count += colour.count;
     });
     if (count == 0) return false;
     const auto mean = [&](int sum) { return static_cast<std::uint8_t>((sum + count / 2) / count); };
     vertex.red = mean(red), vertex.green = mean(green), vertex.blue = mean(blue);
-    vertex.label = label;
+    vertex.label = votes.winner();
     return true;
   }
 

@@ -34,13 +34,14 @@ void LateTracker::finish(StageTimes& times) {
 void LateTracker::locate(std::vector<Frame*>& frames) {
   constexpr double near = 0.2;  // s
   Frame* located = nullptr;
-  std::erase_if(frames, [&](Frame* frame) {
+  for (Frame* frame : frames) {
     if (located != nullptr && std::abs(located->timestamp - frame->timestamp) > near) located = nullptr;
-    if (!find_pose(located, *frame)) return false;
+    if (!parts_.history.past_pose(frame->timestamp, parts_.map)) {
+      if (!find_pose(located, *frame)) continue;
+      ++located_;
+    }
     located = frame;
-    ++located_;
-    return true;
-  });
+  }
 }
 
 bool LateTracker::find_pose(Frame* neighbour, Frame& frame) {
@@ -96,7 +97,9 @@ bool LateTracker::fits_map(Frame& frame) {
 bool LateTracker::is_reachable(const Frame& frame) const {
   constexpr double tolerance = 0.1;       // m, of the poses
   std::array<const Frame*, 2> nearest{};  // before and after
+  const auto submap = parts_.map.submap_of(parts_.matcher.local_map().reference_keyframe());
   for (const KeyFrameId id : parts_.map.keyframes_by_age()) {
+    if (parts_.map.submap_of(id) != submap) continue;
     const Frame& other = parts_.map.keyframe(id).frame;
     const Frame*& side = nearest[other.timestamp < frame.timestamp ? 0 : 1];
     if (side == nullptr || std::abs(other.timestamp - frame.timestamp) < std::abs(side->timestamp - frame.timestamp))

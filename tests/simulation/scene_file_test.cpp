@@ -224,7 +224,7 @@ TEST(SceneSections, TellAllThatASceneCanSay) {
     EXPECT_THAT(markdown, HasSubstr(std::string("### `") + name + "`\n"));
   }
   EXPECT_THAT(text, testing::AllOf(HasSubstr("office | hall | corridor"), HasSubstr("shutter"), HasSubstr("put_at")));
-  EXPECT_THAT(markdown, HasSubstr("| `room` | text | office | office \\| hall \\| corridor |"));
+  EXPECT_THAT(markdown, HasSubstr("| `room` | text | office | office \\| hall \\| corridor \\| open_plan |"));
 }
 
 }  // namespace

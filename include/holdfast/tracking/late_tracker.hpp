@@ -41,7 +41,7 @@ class LateTracker {
   std::size_t located() const { return located_; }
 
  private:
-  /// Locates the frames in this order, and removes those that received a pose.
+  /// Locates the frames without a pose in this order, each by the one before it.
   void locate(std::vector<Frame*>& frames);
   /// `neighbour`: a frame with a pose close in time, or null.
   bool find_pose(Frame* neighbour, Frame& frame);
@@ -49,7 +49,7 @@ class LateTracker {
   bool match_keyframe(KeyFrameId keyframe, Frame& frame);
   /// Searches the local map from a first pose, and judges the result.
   bool fits_map(Frame& frame);
-  /// Whether the motion to the nearest frames with a pose is possible.
+  /// Whether the motion to the nearest keyframes of its submap is possible.
   bool is_reachable(const Frame& frame) const;
 
   const TrackingSettings& settings_;

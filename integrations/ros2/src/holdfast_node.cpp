@@ -4,6 +4,7 @@
 #include <exception>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <rclcpp/rclcpp.hpp>
 #include <rclcpp_components/register_node_macro.hpp>
@@ -12,6 +13,7 @@
 #include <sensor_msgs/msg/compressed_image.hpp>
 #include <sensor_msgs/msg/image.hpp>
 #include <sensor_msgs/msg/imu.hpp>
+#include <shared_mutex>
 #include <std_srvs/srv/set_bool.hpp>
 #include <std_srvs/srv/trigger.hpp>
 #include <string>
@@ -97,6 +99,7 @@ class HoldfastNode final : public LifecycleNode {
 
  private:
   void clear() {
+    const std::unique_lock lock(use_mutex_);  // no callback is under way
     diagnostics_timer_.reset();
     subscriptions_.clear();
     services_.clear();
@@ -105,6 +108,7 @@ class HoldfastNode final : public LifecycleNode {
     listener_.reset();
     transforms_.reset();
     knows_camera_pose_ = false;
+    first_image_.reset();
   }
 
   /// A topic with a thread of its own, where the executor has several. Sensor data fits every publisher.
@@ -113,7 +117,12 @@ class HoldfastNode final : public LifecycleNode {
     rclcpp::SubscriptionOptions options;
     options.callback_group = create_callback_group(rclcpp::CallbackGroupType::MutuallyExclusive);
     subscriptions_.push_back(create_subscription<Message>(
-        topic, rclcpp::SensorDataQoS(), [use](std::shared_ptr<const Message> message) { use(*message); }, options));
+        topic, rclcpp::SensorDataQoS(),
+        [this, use](std::shared_ptr<const Message> message) {
+          const std::shared_lock lock(use_mutex_);
+          if (bridge_) use(*message);
+        },
+        options));
   }
 
   void subscribe() {
@@ -230,6 +239,7 @@ class HoldfastNode final : public LifecycleNode {
   std::unique_ptr<bridge::Bridge> bridge_;
   bool knows_camera_pose_ = false;
   std::optional<std::chrono::steady_clock::time_point> first_image_;
+  std::shared_mutex use_mutex_;  // shared by callbacks of topics, which have threads of their own
   std::vector<rclcpp::SubscriptionBase::SharedPtr> subscriptions_;
   std::vector<rclcpp::ServiceBase::SharedPtr> services_;
   rclcpp::TimerBase::SharedPtr start_timer_, diagnostics_timer_;

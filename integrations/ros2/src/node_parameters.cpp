@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "node_parameters.hpp"
 
+#include <algorithm>
 #include <rclcpp/rclcpp.hpp>
 #include <stdexcept>
 #include <vector>
@@ -59,6 +60,9 @@ NodeParameters read_parameters(rclcpp_lifecycle::LifecycleNode& node) {
   std::string start = "new";
   visit(p, has_grid, start, [&](const char* name, auto& value) { node.get_parameter(name, value); });
   refuse_unknown(node);
+  // ROS 2 has no empty list of strings in launch files.
+  auto& overrides = p.bridge.overrides;
+  overrides.erase(std::remove(overrides.begin(), overrides.end(), std::string()), overrides.end());
   if (has_grid) p.bridge.overrides.insert(p.bridge.overrides.begin(), "surface.enabled=true");
   if (p.bridge.configuration.empty())
     throw std::runtime_error("parameter 'configuration' is missing; expected the YAML file of a pipeline");

@@ -39,6 +39,13 @@ std::unique_ptr<sensor_msgs::msg::PointCloud2> cloud_message(const std_msgs::msg
 /// Who subscribes later gets the last one.
 rclcpp::QoS latched() { return rclcpp::QoS(1).transient_local(); }
 
+/// Until Jazzy, publishers within a process cannot be latched.
+rclcpp::PublisherOptions not_within_process() {
+  rclcpp::PublisherOptions options;
+  options.use_intra_process_comm = rclcpp::IntraProcessSetting::Disable;
+  return options;
+}
+
 }  // namespace
 
 builtin_interfaces::msg::Time time_of(bridge::Stamp stamp) {
@@ -60,10 +67,10 @@ Publisher::Publisher(rclcpp_lifecycle::LifecycleNode& node, const NodeParameters
       obstacles_(node.create_publisher<sensor_msgs::msg::PointCloud2>("~/obstacles", 1)),
       markers_(node.create_publisher<visualization_msgs::msg::MarkerArray>("~/obstacle_markers", 1)),
       mask_(node.create_publisher<sensor_msgs::msg::Image>("~/mask", 1)),
-      path_(node.create_publisher<nav_msgs::msg::Path>("~/path", latched())),
-      points_(node.create_publisher<sensor_msgs::msg::PointCloud2>("~/points", latched())),
-      grid_(node.create_publisher<nav_msgs::msg::OccupancyGrid>("~/map", latched())),
-      octomap_(node.create_publisher<octomap_msgs::msg::Octomap>("~/octomap", latched())),
+      path_(node.create_publisher<nav_msgs::msg::Path>("~/path", latched(), not_within_process())),
+      points_(node.create_publisher<sensor_msgs::msg::PointCloud2>("~/points", latched(), not_within_process())),
+      grid_(node.create_publisher<nav_msgs::msg::OccupancyGrid>("~/map", latched(), not_within_process())),
+      octomap_(node.create_publisher<octomap_msgs::msg::Octomap>("~/octomap", latched(), not_within_process())),
       diagnostics_(node.create_publisher<diagnostic_msgs::msg::DiagnosticArray>("/diagnostics", 1)),
       broadcaster_(node),
       static_broadcaster_(node) {}

@@ -47,6 +47,10 @@ class CallbackGroup {
 struct SubscriptionOptions {
   CallbackGroup::SharedPtr callback_group;
 };
+enum class IntraProcessSetting { Enable, Disable, NodeDefault };
+struct PublisherOptions {
+  IntraProcessSetting use_intra_process_comm = IntraProcessSetting::NodeDefault;
+};
 class SubscriptionBase {
  public:
   using SharedPtr = std::shared_ptr<SubscriptionBase>;

@@ -60,7 +60,9 @@ class LifecycleNode : public node_interfaces::LifecycleNodeInterface {
 
   rclcpp::CallbackGroup::SharedPtr create_callback_group(rclcpp::CallbackGroupType group_type);
   template <typename MessageT>
-  std::shared_ptr<LifecyclePublisher<MessageT>> create_publisher(const std::string& topic_name, const rclcpp::QoS& qos);
+  std::shared_ptr<LifecyclePublisher<MessageT>> create_publisher(
+      const std::string& topic_name, const rclcpp::QoS& qos,
+      const rclcpp::PublisherOptions& options = rclcpp::PublisherOptions());
   template <typename MessageT, typename CallbackT>
   std::shared_ptr<rclcpp::Subscription<MessageT>> create_subscription(const std::string& topic_name,
                                                                       const rclcpp::QoS& qos, CallbackT&& callback,
