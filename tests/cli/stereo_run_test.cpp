@@ -97,8 +97,8 @@ TEST(StereoRun, ASimulatedPairIsTrackedToAMillimetre) {
   EXPECT_EQ(summary.at("pair_calibration").at("column_offset_px"), 0.0);
 }
 
-/// A lorry fills the middle of the view at a constant distance, with more features than the road: the road decides. With
-/// 1000 features, few of the road are like those of a view from a metre behind.
+/// A lorry fills the middle of the view at a constant distance, with more features than the road: the road decides.
+/// With 1000 features, few of the road are like those of a view from a metre behind.
 TEST(StereoRun, ASimulatedStreetIsDrivenToAFewCentimetres) {
   const test::Program program;
   for (const std::string count : {"1000", "2000"}) {
