@@ -13,6 +13,7 @@ namespace holdfast {
 /// without votes it allocates nothing. CellMask::unknown is no class and is not counted.
 class ClassVotes {
  public:
+  /// A label and how many masks gave it.
   struct Entry {
     std::uint8_t label = 0;   ///< index into Map::classes()
     std::uint32_t votes = 0;  ///< at least 1
