@@ -122,7 +122,7 @@ void leave_out_rarely_found(SeenPoints& seen, double share) {
   seen.all -= static_cast<int>(std::count_if(seen.found.begin(), seen.found.end(), [&](float f) { return f < limit; }));
 }
 
-// Number of later keyframes after which a keyframe is old.
+/// Number of later keyframes after which a keyframe is old.
 constexpr std::uint64_t recent = 200;
 
 bool is_old(const KeyFrame& keyframe, std::uint64_t now) { return keyframe.sequence + recent < now; }
@@ -141,17 +141,22 @@ std::vector<KeyFrameId> candidates(const Map& map, const KeyFrame& keyframe) {
   return result;
 }
 
-/// Whether the points of an old keyframe are redundant, or so few are not that it adds little to the map.
-bool is_old_redundant(const Map& map, KeyFrameId id, SeenPoints close, const MappingSettings& settings) {
+bool are_redundant(const SeenPoints& seen, const MappingSettings& settings) {
+  return seen.redundant > settings.redundant_share * seen.all;
+}
+
+/// Whether the points of an old keyframe are redundant, or so few are not that it adds little to the map. Close ones
+/// count, up to `limit`, if there are enough of them.
+bool is_old_redundant(const Map& map, KeyFrameId id, std::optional<float> limit, const MappingSettings& settings) {
   constexpr double little = 0.02;  // of its features
   SeenPoints all = seen_points(map, id, std::nullopt);
   leave_out_rarely_found(all, settings.weak_found_ratio);
-  const auto features = static_cast<double>(map.keyframe(id).frame.size());
-  if (all.all - all.redundant < little * features) return true;
-  if (features_have_depth(map.sensor()) && close.all < settings.minimum_depth_points)
-    return all.redundant > settings.redundant_share * all.all;
+  if (all.all - all.redundant < little * static_cast<double>(map.keyframe(id).frame.size())) return true;
+  if (!limit) return are_redundant(all, settings);
+  SeenPoints close = seen_points(map, id, limit);
+  if (close.all < settings.minimum_depth_points) return are_redundant(all, settings);
   leave_out_rarely_found(close, settings.weak_found_ratio);
-  return close.redundant > settings.redundant_share * close.all;
+  return are_redundant(close, settings);
 }
 
 }  // namespace
@@ -173,9 +178,8 @@ std::vector<KeyFrameId> remove_redundant_keyframes(Map& map, KeyFrameId id, cons
     std::optional<float> close;
     if (features_have_depth(map.sensor()))
       close = static_cast<float>(close_depth_factor * keyframe.frame.camera->baseline);
-    const SeenPoints seen = seen_points(map, candidate, close);
-    const bool is_redundant = is_old(keyframe, sequence) ? is_old_redundant(map, candidate, seen, settings)
-                                                         : seen.redundant > settings.redundant_share * seen.all;
+    const bool is_redundant = is_old(keyframe, sequence) ? is_old_redundant(map, candidate, close, settings)
+                                                         : are_redundant(seen_points(map, candidate, close), settings);
     if (!is_redundant) continue;
     map.remove_keyframe(candidate);
     removed.push_back(candidate);
