@@ -80,11 +80,13 @@ function(holdfast_add_builtin_plugin name)
   set_property(GLOBAL APPEND PROPERTY HOLDFAST_BUILTIN_PLUGINS ${name})
 endfunction()
 
-# holdfast_add_test(NAME SOURCES a.cpp ... [DEPENDS target ...] [LABELS label ...] [TIMEOUT seconds] [NIGHTLY test ...])
+# holdfast_add_test(NAME SOURCES a.cpp ... [DEPENDS target ...] [LABELS label ...] [TIMEOUT seconds] [NIGHTLY test ...]
+#                   [APART])
 # A GoogleTest program; each of its tests becomes a ctest case. Labels: quick (default), slow, data. The tests named
-# under NIGHTLY (Suite.Name) have the label nightly instead.
+# under NIGHTLY (Suite.Name) have the label nightly instead. APART: the sources use one name for different things, or gain
+# nothing from being compiled together.
 function(holdfast_add_test name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "TIMEOUT" "SOURCES;DEPENDS;LABELS;NIGHTLY")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "APART" "TIMEOUT" "SOURCES;DEPENDS;LABELS;NIGHTLY")
   if(NOT arg_LABELS)
     set(arg_LABELS quick)
   endif()
@@ -98,6 +100,9 @@ function(holdfast_add_test name)
   target_include_directories(${name} PRIVATE ${holdfast_SOURCE_DIR}/tests)
   target_link_libraries(${name} PRIVATE ${arg_DEPENDS} GTest::gtest GTest::gmock GTest::gtest_main)
   set_target_properties(${name} PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${holdfast_BINARY_DIR}/tests)
+  if(NOT arg_APART)
+    set_target_properties(${name} PROPERTIES UNITY_BUILD ${HOLDFAST_UNITY} UNITY_BUILD_BATCH_SIZE 16)
+  endif()
   include(GoogleTest)
   set(discovery TIMEOUT ${arg_TIMEOUT} DISCOVERY_TIMEOUT 60 DISCOVERY_MODE PRE_TEST)
   list(JOIN arg_NIGHTLY ":" nightly)

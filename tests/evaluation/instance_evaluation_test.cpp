@@ -12,7 +12,7 @@
 namespace holdfast {
 namespace {
 
-const std::vector<std::string> three = {"background", "person", "chair"};
+const std::vector<std::string> three_classes = {"background", "person", "chair"};
 
 /// Rows of digits, each an instance.
 InstanceImage image_of(const std::vector<std::string>& rows, std::vector<InstanceImage::Entry> entries) {
@@ -26,7 +26,7 @@ InstanceImage image_of(const std::vector<std::string>& rows, std::vector<Instanc
 }
 
 TEST(InstanceEvaluation, PerfectInstancesInAnotherOrder) {
-  InstanceEvaluator evaluator(three);
+  InstanceEvaluator evaluator(three_classes);
   evaluator.add(image_of({"1122", "1103"}, {{1}, {1}, {2}}), image_of({"3322", "3301"}, {{2}, {1}, {1}}));
   const InstanceEvaluation result = evaluator.result();
   EXPECT_DOUBLE_EQ(result.mean_ap50(), 1.0);
@@ -39,7 +39,7 @@ TEST(InstanceEvaluation, PerfectInstancesInAnotherOrder) {
 TEST(InstanceEvaluation, FiguresByHand) {
   // The first person: IoU 6/8 = 0.75, the second is missed; one find of score 0.9 is nothing, one of 0.8 the first
   // person.
-  InstanceEvaluator evaluator(three);
+  InstanceEvaluator evaluator(three_classes);
   evaluator.add(image_of({"11112222", "11110000", "00000000"}, {{1}, {1}}),
                 image_of({"22200000", "22200000", "00000011"}, {{1, 0.9F}, {1, 0.8F}}));
   const ClassInstanceEvaluation person = evaluator.result().classes[1];
@@ -54,7 +54,7 @@ TEST(InstanceEvaluation, ClassesAndUnknownPixelsCount) {
   const InstanceImage truth = image_of({"1100"}, {{1}}), found = image_of({"1111"}, {{1}}),
                       chair = image_of({"1100"}, {{2}});
   const cv::Mat left = (cv::Mat_<std::uint8_t>(1, 4) << 255, 255, 0, 0);
-  InstanceEvaluator everywhere(three), masked(three), other(three);
+  InstanceEvaluator everywhere(three_classes), masked(three_classes), other(three_classes);
   everywhere.add(truth, found);
   masked.add(truth, found, left);
   other.add(truth, chair);
@@ -66,12 +66,12 @@ TEST(InstanceEvaluation, ClassesAndUnknownPixelsCount) {
 }
 
 TEST(InstanceEvaluation, IsAMemberOfTheJson) {
-  InstanceEvaluator evaluator(three);
+  InstanceEvaluator evaluator(three_classes);
   evaluator.add(image_of({"10"}, {{1}}), image_of({"10"}, {{1}}));
-  const auto json = nlohmann::json::parse(to_json(SegmentationEvaluator(three).result(), evaluator.result()));
+  const auto json = nlohmann::json::parse(to_json(SegmentationEvaluator(three_classes).result(), evaluator.result()));
   EXPECT_DOUBLE_EQ(json["instances"]["mean_ap"], 1.0);
   EXPECT_EQ(json["instances"]["classes"].size(), 1U);
-  EXPECT_FALSE(nlohmann::json::parse(to_json(SegmentationEvaluator(three).result())).contains("instances"));
+  EXPECT_FALSE(nlohmann::json::parse(to_json(SegmentationEvaluator(three_classes).result())).contains("instances"));
   EXPECT_THAT(to_text(evaluator.result()), testing::HasSubstr("person                  100.00"));
 }
 

@@ -8,20 +8,16 @@
 #include <iterator>
 
 #include "holdfast/core/error.hpp"
+#include "inference/model_bytes.hpp"
 
 namespace holdfast {
 namespace {
 
 using testing::HasSubstr;
 
-std::vector<std::uint8_t> bytes_of(const std::string& name) {
-  std::ifstream stream(std::string(HOLDFAST_TEST_MODELS) + "/" + name + ".onnx", std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
-}
-
 class PlanTest : public testing::Test {
  protected:
-  OnnxGraph graph = read_onnx_graph(bytes_of("every_layer"), "net.onnx");
+  OnnxGraph graph = read_onnx_graph(test::model_bytes("every_layer"), "net.onnx");
 
   NetworkPlan plan(std::vector<std::int64_t> shape = {1, 3, 12, 16}) const {
     return plan_network(graph, {{"image", std::move(shape)}}, {"scores"}, "net.onnx");
@@ -153,7 +149,7 @@ TEST_F(PlanTest, ThereIsAnAnswerForEachMissingPart) {
 }
 
 TEST_F(PlanTest, NoPartOfAFileIsReadBeyondItsEnd) {
-  const std::vector<std::uint8_t> bytes = bytes_of("logits");
+  const std::vector<std::uint8_t> bytes = test::model_bytes("logits");
   EXPECT_NO_THROW(read_onnx_graph(bytes, "net.onnx"));
   // Each prefix is refused by one reader or the other; none is read beyond its end.
   for (std::size_t size = 0; size < bytes.size(); ++size) {

@@ -140,9 +140,15 @@ TEST(CameraPath, TurnsAreAddedToTheMotion) {
     const Eigen::Matrix3d turn = after.linear() * before.linear().transpose();
     EXPECT_NEAR(turn(2, 2), 1.0, 1e-12) << "about the vertical";
     const double angle = std::atan2(turn(1, 0), turn(0, 0)) / degree;
-    if (time < 2.0) EXPECT_NEAR(angle, 0.0, 1e-9);
-    if (time > 2.46 && time < 4.0) EXPECT_NEAR(angle, 90.0, 1e-9);
-    if (time > 4.91) EXPECT_NEAR(angle, 30.0, 1e-9);
+    if (time < 2.0) {
+      EXPECT_NEAR(angle, 0.0, 1e-9);
+    }
+    if (time > 2.46 && time < 4.0) {
+      EXPECT_NEAR(angle, 90.0, 1e-9);
+    }
+    if (time > 4.91) {
+      EXPECT_NEAR(angle, 30.0, 1e-9);
+    }
     const Eigen::Matrix3d next = turning.pose(time + 0.001).linear() * plain.pose(time + 0.001).linear().transpose();
     largest = std::max(largest, Eigen::AngleAxisd(next * turn.transpose()).angle() / degree / 0.001);
   }

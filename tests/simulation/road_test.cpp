@@ -9,6 +9,7 @@
 
 #include "holdfast/core/error.hpp"
 #include "holdfast/simulation/simulator.hpp"
+#include "support/same_bytes.hpp"
 
 namespace holdfast::simulation {
 namespace {
@@ -28,15 +29,11 @@ Scene road_scene(RoadKind kind, std::uint64_t seed = 1, double duration = 0.5) {
   return scene;
 }
 
-Camera small_camera() {
+Camera small_road_camera() {
   Camera camera = *find_camera("kitti_00");
   camera.width /= 4, camera.height /= 4;
   camera.fx /= 4.0, camera.fy /= 4.0, camera.cx /= 4.0, camera.cy /= 4.0;
   return camera;
-}
-
-bool same_bytes(const cv::Mat& a, const cv::Mat& b) {
-  return a.size() == b.size() && a.type() == b.type() && std::equal(a.datastart, a.dataend, b.datastart);
 }
 
 class Road : public testing::TestWithParam<RoadKind> {};
@@ -64,7 +61,7 @@ TEST_P(Road, HasALineWithItsTangentAndACarThatFollowsIt) {
 
 // Static points of a frame, moved by the true poses, are where the next frame and the right image see them.
 TEST_P(Road, DepthPosesAndThePairAgree) {
-  Simulator simulator(road_scene(GetParam()), small_camera());
+  Simulator simulator(road_scene(GetParam()), small_road_camera());
   const Camera& camera = simulator.camera();
   const RenderedFrame first = simulator.render(0), second = simulator.render(1);
   const SensorFrame pair = simulator.stereo_frame(0, 0.54);
@@ -127,13 +124,13 @@ TEST_P(Road, TrafficKeepsItsLanesAndDistances) {
 }
 
 TEST_P(Road, SameSeedSameBytesAndLongerDrivesHaveTheSameStretches) {
-  const Camera camera = small_camera();
+  const Camera camera = small_road_camera();
   Simulator one(road_scene(GetParam(), 3), camera), again(road_scene(GetParam(), 3), camera),
       other(road_scene(GetParam(), 4), camera), longer(road_scene(GetParam(), 3, 4.0), camera);
   const SensorFrame frame = one.stereo_frame(4, 0.54), same = again.stereo_frame(4, 0.54);
-  EXPECT_TRUE(same_bytes(frame.colour, same.colour));
-  EXPECT_TRUE(same_bytes(frame.right, same.right));
-  EXPECT_FALSE(same_bytes(frame.colour, other.stereo_frame(4, 0.54).colour));
+  EXPECT_TRUE(test::same_bytes(frame.colour, same.colour));
+  EXPECT_TRUE(test::same_bytes(frame.right, same.right));
+  EXPECT_FALSE(test::same_bytes(frame.colour, other.stereo_frame(4, 0.54).colour));
   const cv::Mat depth = one.render(4).depth, of_longer = longer.render(4).depth;
   for (int y = 0; y < depth.rows; ++y)
     for (int x = 0; x < depth.cols; ++x)

@@ -10,17 +10,13 @@
 #include <opencv2/imgproc.hpp>
 
 #include "holdfast/core/error.hpp"
+#include "support/same_bytes.hpp"
 
 namespace holdfast::simulation {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-bool same_bytes(const cv::Mat& a, const cv::Mat& b) {
-  if (a.size() != b.size() || a.type() != b.type() || !a.isContinuous() || !b.isContinuous()) return false;
-  return std::equal(a.datastart, a.dataend, b.datastart);
-}
 
 Scene scene_of(PathKind path, std::uint64_t seed = 1) {
   Scene scene;
@@ -41,15 +37,15 @@ TEST(Simulator, SameSeedSameBytesInAnyOrder) {
   Simulator first(scene_of(PathKind::halfsphere), camera), second(scene_of(PathKind::halfsphere), camera);
   const SensorFrame early = first.frame(5), late = first.frame(80);
   const SensorFrame late_again = second.frame(80), early_again = second.frame(5);
-  EXPECT_TRUE(same_bytes(early.colour, early_again.colour));
-  EXPECT_TRUE(same_bytes(early.depth, early_again.depth));
-  EXPECT_TRUE(same_bytes(late.colour, late_again.colour));
-  EXPECT_TRUE(same_bytes(late.depth, late_again.depth));
+  EXPECT_TRUE(test::same_bytes(early.colour, early_again.colour));
+  EXPECT_TRUE(test::same_bytes(early.depth, early_again.depth));
+  EXPECT_TRUE(test::same_bytes(late.colour, late_again.colour));
+  EXPECT_TRUE(test::same_bytes(late.depth, late_again.depth));
   EXPECT_EQ(early.truth->T_world_camera->matrix(), early_again.truth->T_world_camera->matrix());
-  EXPECT_FALSE(same_bytes(early.depth, late.depth));
+  EXPECT_FALSE(test::same_bytes(early.depth, late.depth));
 
   Simulator other(scene_of(PathKind::halfsphere, 2), camera);
-  EXPECT_FALSE(same_bytes(other.render(5).colour, first.render(5).colour));
+  EXPECT_FALSE(test::same_bytes(other.render(5).colour, first.render(5).colour));
 }
 
 TEST(Simulator, FramesCarryTimeTruthAndLabels) {

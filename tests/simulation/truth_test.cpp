@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "holdfast/simulation/simulator.hpp"
+#include "support/same_bytes.hpp"
 
 namespace holdfast::simulation {
 namespace {
@@ -68,14 +69,9 @@ Camera small(const char* name, int divisor) {
   return camera;
 }
 
-bool same_bytes(const cv::Mat& a, const cv::Mat& b) {
-  if (a.size() != b.size() || a.type() != b.type() || !a.isContinuous() || !b.isContinuous()) return false;
-  return std::equal(a.datastart, a.dataend, b.datastart);
-}
-
 bool same_truth(const SensorFrame& a, const SensorFrame& b) {
-  return same_bytes(a.depth, b.depth) && same_bytes(a.truth->object_mask, b.truth->object_mask) &&
-         same_bytes(a.truth->class_labels, b.truth->class_labels) &&
+  return test::same_bytes(a.depth, b.depth) && test::same_bytes(a.truth->object_mask, b.truth->object_mask) &&
+         test::same_bytes(a.truth->class_labels, b.truth->class_labels) &&
          a.truth->moving_objects == b.truth->moving_objects &&
          a.truth->T_world_camera->matrix() == b.truth->T_world_camera->matrix();
 }
@@ -415,10 +411,10 @@ TEST(Truth, FramesAreTheSameBytesInAnyOrder) {
   for (const std::uint64_t index : {150, 151, 720}) frames.push_back(one.frame(index));
   for (auto frame = frames.rbegin(); frame != frames.rend(); ++frame) {
     const SensorFrame again = other.frame(frame->index);
-    EXPECT_TRUE(same_bytes(again.colour, frame->colour)) << frame->index;
+    EXPECT_TRUE(test::same_bytes(again.colour, frame->colour)) << frame->index;
     EXPECT_TRUE(same_truth(again, *frame)) << frame->index;
   }
-  EXPECT_FALSE(same_bytes(frames[0].truth->object_mask, frames[1].truth->object_mask));
+  EXPECT_FALSE(test::same_bytes(frames[0].truth->object_mask, frames[1].truth->object_mask));
 }
 
 double sharpness(const cv::Mat& colour) {

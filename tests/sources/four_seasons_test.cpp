@@ -43,11 +43,7 @@ class FourSeasonsTest : public ::testing::Test {
     return test::make_source("four_seasons", values);
   }
   std::string error_with(const std::string& file, const std::string& content) const {
-    const std::string before = folder_.read(file);
-    folder_.write(file, content);
-    std::string text = test::input_error([&] { test::read_all(*open()); });
-    folder_.write(file, before);
-    return text;
+    return test::input_error_with(folder_, file, content, [&] { test::read_all(*open()); });
   }
 
   static constexpr const char* ids[] = {"1602144000000000001", "1602144000033000002", "1602144000066000003"};

@@ -20,7 +20,7 @@ constexpr double degree = std::numbers::pi / 180.0;
 constexpr double metres_per_degree = 6378137.0 * degree;  // along a meridian, and at the scaled equator
 
 /// The names and the form of the file are those of the data set; the values are ours.
-constexpr const char* calibration =
+constexpr const char* raw_calibration =
     "calib_time: 09-Jan-2012 13:57:47\ncorner_dist: 9.95e-02\n"
     "S_00: 80 60\nR_00: 1 0 0 0 1 0 0 0 1\n"
     "S_rect_00: 64 48\nR_rect_00: 0 -1 0 1 0 0 0 0 1\nP_rect_00: 50 0 32 0 0 50 24 0 0 0 1 0\n"
@@ -48,7 +48,7 @@ class KittiRawTest : public ::testing::Test {
                       "2011-09-26 13:02:26.280000000\n");
       }
     }
-    folder_.write(day("calib_cam_to_cam.txt"), calibration);
+    folder_.write(day("calib_cam_to_cam.txt"), raw_calibration);
     // The laser scanner looks along x, and the camera along its own z; the IMU stands 1 m behind the scanner.
     folder_.write(day("calib_velo_to_cam.txt"),
                   "calib_time: 15-Mar-2012 11:37:16\nR: 0 -1 0 0 0 -1 1 0 0\n"
@@ -63,14 +63,10 @@ class KittiRawTest : public ::testing::Test {
     return test::make_source("kitti", values);
   }
   std::string error_with(const std::string& file, const std::string& content) const {
-    const std::string before = folder_.read(file);
-    folder_.write(file, content);
-    std::string text = test::input_error([&] { test::read_all(*open()); });
-    folder_.write(file, before);
-    return text;
+    return test::input_error_with(folder_, file, content, [&] { test::read_all(*open()); });
   }
   static std::string changed(const std::string& from, const std::string& to) {
-    std::string text = calibration;
+    std::string text = raw_calibration;
     return text.replace(text.find(from), from.size(), to);
   }
 

@@ -83,14 +83,11 @@ class OpenLorisTest : public ::testing::Test {
   /// The error after `from` was replaced by `to` in a file.
   std::string error_with(const std::string& name, const std::string& from, const std::string& to,
                          const std::string& cameras = "rgbd") const {
-    const std::string before = folder_.read(full_name(name));
-    std::string content = before;
+    std::string content = folder_.read(full_name(name));
     const std::size_t place = content.find(from);
     EXPECT_NE(place, std::string::npos) << from;
-    folder_.write(full_name(name), content.replace(place, from.size(), to));
-    const std::string message = test::input_error([&] { test::read_all(*open(cameras)); });
-    folder_.write(full_name(name), before);
-    return message;
+    content.replace(place, from.size(), to);
+    return test::input_error_with(folder_, full_name(name), content, [&] { test::read_all(*open(cameras)); });
   }
 
   test::TemporaryFolder folder_;

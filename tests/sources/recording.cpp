@@ -151,4 +151,13 @@ std::string input_error(const std::function<void()>& run) {
   return message;
 }
 
+std::string input_error_with(const TemporaryFolder& folder, const std::string& file, const std::string& content,
+                             const std::function<void()>& run) {
+  const std::string before = folder.read(file);
+  folder.write(file, content);
+  std::string message = input_error(run);
+  folder.write(file, before);
+  return message;
+}
+
 }  // namespace holdfast::test

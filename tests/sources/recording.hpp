@@ -59,5 +59,8 @@ std::vector<SensorFrame> read_all(FrameSource& source);
 /// What() of the InputError that run throws, and what was printed to the standard error stream meanwhile; a failed
 /// expectation when it does not throw, and when something was printed.
 std::string input_error(const std::function<void()>& run);
+/// The same while a file of the folder has other content, which it loses again.
+std::string input_error_with(const TemporaryFolder& folder, const std::string& file, const std::string& content,
+                             const std::function<void()>& run);
 
 }  // namespace holdfast::test

@@ -27,9 +27,9 @@ Vector3d normal(Random& random, double deviation) {
 }
 
 /// A camera with an IMU whose images give poses with noise, in a map whose world is turned and in another unit.
-struct Bench {
+struct InertialBench {
   /// `rest`: the body stands as at time 0; `unit`: metres in a unit of the map.
-  explicit Bench(double seconds, bool rest = false, double unit = 1.0, std::uint64_t seed = 1)
+  explicit InertialBench(double seconds, bool rest = false, double unit = 1.0, std::uint64_t seed = 1)
       : random(seed), at_rest(rest), unit(unit), motion(calibration(), unit == 1.0) {
     T_map_world.linear() = exp_so3({0.7, -1.1, 0.4}).toRotationMatrix();
     T_map_world.translation() << 3, 4, 5;
@@ -128,7 +128,7 @@ struct Bench {
 
 TEST(InertialMotion, StartsInMotionAndAtRest) {
   for (const bool rest : {false, true}) {
-    Bench bench(3.0, rest);
+    InertialBench bench(3.0, rest);
     bench.track(1.9);
     EXPECT_FALSE(bench.motion.is_started());
     bench.track(2.3);
@@ -159,7 +159,7 @@ TEST(InertialMotion, BridgesAViewWithACovarianceThatGrows) {
   double chi_square = 0.0;
   const int runs = 20;
   for (int run = 0; run < runs; ++run) {
-    Bench bench(4.2, false, 1.0, static_cast<std::uint64_t>(run) + 1);
+    InertialBench bench(4.2, false, 1.0, static_cast<std::uint64_t>(run) + 1);
     bench.track(3.0);
     bench.begin();
     const double before = bench.motion.prediction()->position_deviation;
@@ -183,7 +183,7 @@ TEST(InertialMotion, BridgesAViewWithACovarianceThatGrows) {
 }
 
 TEST(InertialMotion, OneCameraGetsItsScale) {
-  Bench bench(6.5, false, 0.4);
+  InertialBench bench(6.5, false, 0.4);
   bench.track(4.9);
   EXPECT_FALSE(bench.motion.is_started());
   bench.track(6.0);
@@ -203,7 +203,7 @@ TEST(InertialMotion, AWrongImuIsNeverRelied) {
   };
   for (const auto& change : {std::function<void(std::vector<ImuSample>&)>(exchanged),
                              std::function<void(std::vector<ImuSample>&)>(in_degrees)}) {
-    Bench bench(6.0);
+    InertialBench bench(6.0);
     bench.change = change;
     while (bench.frames < 180) {
       bench.begin();
@@ -218,7 +218,7 @@ TEST(InertialMotion, MissingOrSaturatedMeasurementsBeginTheStartAgain) {
   const auto saturated = [](std::vector<ImuSample>& samples) { samples[1].angular_velocity.x() = 1000.0; };
   for (const auto& change : {std::function<void(std::vector<ImuSample>&)>(missing),
                              std::function<void(std::vector<ImuSample>&)>(saturated)}) {
-    Bench bench(6.0);
+    InertialBench bench(6.0);
     bench.track(3.0);
     ASSERT_TRUE(bench.motion.is_reliable());
     bench.change = change;
@@ -232,7 +232,7 @@ TEST(InertialMotion, MissingOrSaturatedMeasurementsBeginTheStartAgain) {
 }
 
 TEST(InertialMotion, ASampleThatComesAfterItsFrameIsNotMissed) {
-  Bench bench(3.0);
+  InertialBench bench(3.0);
   bench.change = [&](std::vector<ImuSample>& samples) {
     std::erase_if(samples, [&](const ImuSample& sample) { return sample.timestamp > bench.time; });
   };
@@ -241,7 +241,7 @@ TEST(InertialMotion, ASampleThatComesAfterItsFrameIsNotMissed) {
 }
 
 TEST(InertialMotion, FollowsCorrectionsOfTheMap) {
-  Bench bench(4.2);
+  InertialBench bench(4.2);
   bench.track(3.0);
   bench.begin();
   const Isometry3d step = *bench.motion.step(), before = bench.motion.prediction()->T_camera_world;
@@ -262,7 +262,7 @@ TEST(InertialMotion, FollowsCorrectionsOfTheMap) {
 }
 
 TEST(InertialMotion, PosesThatMoveWithAPersonContradictIt) {
-  Bench bench(6.0);
+  InertialBench bench(6.0);
   bench.track(3.0);
   // Images of which somebody at 0.5 m/s determines the pose.
   int contradicted = 0;
@@ -283,7 +283,7 @@ TEST(InertialMotion, PosesThatMoveWithAPersonContradictIt) {
 }
 
 TEST(InertialMotion, ImagesThatContradictItForLongEndIt) {
-  Bench bench(8.0);
+  InertialBench bench(8.0);
   bench.track(3.0);
   const auto moved = [&] { return bench.measured(bench.time) * Eigen::Translation3d(0.3, 0.0, 0.0); };
   for (int i = 0; i < 20; ++i) {
@@ -299,7 +299,7 @@ TEST(InertialMotion, ImagesThatContradictItForLongEndIt) {
 }
 
 TEST(InertialMotion, ARefusedPoseThatManyPointsHoldEndsAWrongEstimate) {
-  Bench bench(8.0);
+  InertialBench bench(8.0);
   bench.track(3.0);
   // Bridges while somebody hides the view, then frames of whose poses every other one contradicts the prediction.
   const auto moved = [&] { return bench.measured(bench.time) * Eigen::Translation3d(0.3, 0.0, 0.0); };
@@ -332,7 +332,7 @@ TEST(InertialMotion, ARefusedPoseThatManyPointsHoldEndsAWrongEstimate) {
 }
 
 TEST(InertialMotion, CorrectsTheCalibrationWhileTracking) {
-  Bench bench(8.0);
+  InertialBench bench(8.0);
   const Eigen::Matrix3d mounting = exp_so3({0.015, -0.02, 0.01}).toRotationMatrix();
   for (ImuSample& sample : bench.samples) {
     sample.timestamp += 0.006;
@@ -350,7 +350,7 @@ TEST(InertialMotion, CorrectsTheCalibrationWhileTracking) {
 }
 
 TEST(InertialMotion, AFewMatchesCorrectThePrediction) {
-  Bench bench(5.0);
+  InertialBench bench(5.0);
   bench.track(3.0);
   bench.bridge(4.5);
   bench.begin();
@@ -365,7 +365,7 @@ TEST(InertialMotion, AFewMatchesCorrectThePrediction) {
 
 /// What a run of some seconds leaves for the next one.
 MapInertia estimates_of_a_run(double seconds, double unit = 1.0) {
-  Bench bench(seconds, false, unit);
+  InertialBench bench(seconds, false, unit);
   bench.track(seconds);
   EXPECT_TRUE(bench.motion.is_reliable());
   return *bench.motion.estimates();
@@ -374,7 +374,7 @@ MapInertia estimates_of_a_run(double seconds, double unit = 1.0) {
 TEST(InertialMotion, BeginsWithTheEstimatesOfTheMap) {
   for (const double unit : {1.0, 0.4}) {  // a pair, and one camera
     const MapInertia known = estimates_of_a_run(unit == 1.0 ? 4.0 : 7.0, unit);
-    Bench bench(2.0, false, unit, 7);
+    InertialBench bench(2.0, false, unit, 7);
     bench.motion.begin_with(known);
     bench.track(0.1);
     EXPECT_TRUE(bench.motion.is_started());
@@ -392,7 +392,7 @@ TEST(InertialMotion, EstimatesOfAnotherImuGiveGravityAlone) {
   const Vector3d gyroscope = known.bias.gyroscope;
   known.bias.gyroscope << 0.5, -0.5, 0.5;
   known.T_body_camera.translation().x() += 0.01;
-  Bench bench(3.0, false, 1.0, 7);
+  InertialBench bench(3.0, false, 1.0, 7);
   bench.motion.begin_with(known);
   bench.track(0.1);
   ASSERT_TRUE(bench.motion.is_started());
@@ -405,7 +405,7 @@ TEST(InertialMotion, EstimatesOfAnotherImuGiveGravityAlone) {
 TEST(InertialMotion, WrongEstimatesOfTheMapAreGivenUp) {
   MapInertia known = estimates_of_a_run(4.0);
   known.gravity = -known.gravity;
-  Bench bench(5.0, false, 1.0, 7);
+  InertialBench bench(5.0, false, 1.0, 7);
   bench.motion.begin_with(known);
   bench.track(2.0);
   EXPECT_FALSE(bench.motion.is_started());
@@ -416,7 +416,7 @@ TEST(InertialMotion, WrongEstimatesOfTheMapAreGivenUp) {
 }
 
 TEST(InertialMotion, AWrongFirstPoseDoesNotCostTheEstimates) {
-  Bench bench(3.0, false, 1.0, 7);
+  InertialBench bench(3.0, false, 1.0, 7);
   bench.motion.begin_with(estimates_of_a_run(4.0));
   bench.track(0.02);
   bench.begin();
@@ -426,7 +426,7 @@ TEST(InertialMotion, AWrongFirstPoseDoesNotCostTheEstimates) {
 }
 
 TEST(InertialMotion, GoesOnWhereTheMapFindsTheCamera) {
-  Bench bench(5.0);
+  InertialBench bench(5.0);
   bench.track(3.0);
   ASSERT_TRUE(bench.motion.is_reliable());
   const Vector3d gyroscope = bench.motion.filter()->state().bias.gyroscope;
@@ -445,7 +445,7 @@ TEST(InertialMotion, GoesOnWhereTheMapFindsTheCamera) {
 }
 
 TEST(InertialMotion, AfterALongLossItBeginsWithWhatItKnew) {
-  Bench bench(16.0, true);  // the speed of the motion grows without bound
+  InertialBench bench(16.0, true);  // the speed of the motion grows without bound
   bench.track(3.0);
   ASSERT_TRUE(bench.motion.is_reliable());
   while (bench.frames < 15 * 30) {
