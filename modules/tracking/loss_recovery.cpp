@@ -73,6 +73,7 @@ void LossRecovery::try_to_return(TrackedView& view, const PoseSituation& situati
   trial.times = result.times;
   result = trial;
   context_.history.interrupt();
+  context_.inertia.reset();  // gravity was that of the submap
   left_keyframe_ = left_reference_ = KeyFrameId();
 }
 
