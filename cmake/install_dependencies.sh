@@ -34,7 +34,7 @@ set -eu
 packages="
   build-essential cmake ninja-build ccache file git ca-certificates pkg-config
   libeigen3-dev libopencv-dev libceres-dev libflann-dev liblz4-dev libbz2-dev libzstd-dev libsqlite3-dev
-  libdeflate-dev libjpeg-dev libdnnl-dev libboost-dev libyaml-cpp-dev libcli11-dev nlohmann-json3-dev
+  libdeflate-dev libjpeg-dev libopenexr-dev libdnnl-dev libboost-dev libyaml-cpp-dev libcli11-dev nlohmann-json3-dev
   libgtest-dev libgmock-dev"
 
 say() { printf 'install_dependencies: %s\n' "$*"; }
