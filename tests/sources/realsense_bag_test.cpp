@@ -132,15 +132,18 @@ TEST(DepthRegistration, KeepsTheNearestDepth) {
   Camera camera;
   camera.width = 8, camera.height = 6;
   camera.fx = camera.fy = 8, camera.cx = 3.5, camera.cy = 2.5;
-  Eigen::Isometry3d shift = Eigen::Isometry3d::Identity();
-  shift.translation().x() = -0.5;  // 4 pixels at 1 m, 1 pixel at 4 m
-  cv::Mat depth(6, 8, CV_32FC1, cv::Scalar(4.0));
-  depth.col(6).setTo(1.0F);
-  const cv::Mat moved = rosbag_plugin::DepthRegistration(camera, camera, shift).apply(depth);
-  EXPECT_EQ(moved.at<float>(2, 2), 1.0F) << "before the column 3 of 4 m";
-  EXPECT_EQ(moved.at<float>(2, 1), 4.0F);
-  EXPECT_EQ(moved.at<float>(2, 5), 0.0F) << "behind what was before it";
-  EXPECT_EQ(moved.at<float>(2, 7), 0.0F) << "outside of the view of depth";
+  for (const bool to_the_left : {true, false}) {  // what is near is read after what is far, and before it
+    Eigen::Isometry3d shift = Eigen::Isometry3d::Identity();
+    shift.translation().x() = to_the_left ? -0.5 : 0.5;  // 4 pixels at 1 m, 1 pixel at 4 m
+    const auto column = [&](int x) { return to_the_left ? x : 7 - x; };
+    cv::Mat depth(6, 8, CV_32FC1, cv::Scalar(4.0));
+    depth.col(column(6)).setTo(1.0F);
+    const cv::Mat moved = rosbag_plugin::DepthRegistration(camera, camera, shift).apply(depth);
+    EXPECT_EQ(moved.at<float>(2, column(2)), 1.0F) << "before what is 4 m away";
+    EXPECT_EQ(moved.at<float>(2, column(1)), 4.0F);
+    EXPECT_EQ(moved.at<float>(2, column(5)), 0.0F) << "behind what was before it";
+    EXPECT_EQ(moved.at<float>(2, column(7)), 0.0F) << "outside of the view of depth";
+  }
 }
 
 }  // namespace
