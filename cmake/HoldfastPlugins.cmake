@@ -13,6 +13,7 @@ set(HOLDFAST_PLUGIN_TABLE
   "source          kitti                 sources/kitti"
   "source          openloris             sources/openloris"
   "source          openni2               sources/openni2"
+  "source          phone                 sources/phone"
   "source          rosbag                sources/rosbag"
   "source          simulated             sources/simulated"
   "source          tum                   sources/tum"
@@ -145,6 +146,20 @@ if(HOLDFAST_PLUGIN_ROSBAG)
   endif()
   holdfast_optional(HOLDFAST_SQLITE "Read bags of ROS 2 in SQLite" "bags of ROS 2 in SQLite" ${found}
                     "SQLite was not found" libsqlite3-dev)
+endif()
+# An optional part of the source `phone`.
+find_path(HOLDFAST_OPENEXR_INCLUDE_DIR OpenEXR/ImfInputFile.h)
+find_path(HOLDFAST_IMATH_INCLUDE_DIR ImathBox.h PATH_SUFFIXES Imath)
+find_library(HOLDFAST_OPENEXR_LIBRARY OpenEXR)
+find_library(HOLDFAST_IMATH_LIBRARY Imath)
+mark_as_advanced(HOLDFAST_OPENEXR_INCLUDE_DIR HOLDFAST_IMATH_INCLUDE_DIR HOLDFAST_OPENEXR_LIBRARY HOLDFAST_IMATH_LIBRARY)
+if(HOLDFAST_PLUGIN_PHONE)
+  set(found OFF)
+  if(HOLDFAST_OPENEXR_INCLUDE_DIR AND HOLDFAST_IMATH_INCLUDE_DIR AND HOLDFAST_OPENEXR_LIBRARY AND HOLDFAST_IMATH_LIBRARY)
+    set(found ON)
+  endif()
+  holdfast_optional(HOLDFAST_OPENEXR "Read depth of Record3D" "depth of Record3D in the source `phone`" ${found}
+                    "OpenEXR 3 was not found" libopenexr-dev)
 endif()
 configure_file(${CMAKE_CURRENT_LIST_DIR}/settings_all.hpp.in ${holdfast_BINARY_DIR}/include/holdfast/settings/all.hpp
                @ONLY)

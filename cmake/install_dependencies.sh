@@ -34,7 +34,7 @@ set -eu
 packages="
   build-essential cmake ninja-build ccache file git ca-certificates pkg-config
   libeigen3-dev libopencv-dev libceres-dev libflann-dev liblz4-dev libbz2-dev libzstd-dev libsqlite3-dev
-  libdeflate-dev libjpeg-dev libdnnl-dev libboost-dev libyaml-cpp-dev libcli11-dev nlohmann-json3-dev
+  libdeflate-dev libjpeg-dev libopenexr-dev libdnnl-dev libboost-dev libyaml-cpp-dev libcli11-dev nlohmann-json3-dev
   libgtest-dev libgmock-dev"
 
 say() { printf 'install_dependencies: %s\n' "$*"; }
@@ -128,11 +128,29 @@ else
   exit 1
 fi
 
+# Takes what this system has no package of out of $missing, or fails and says what to do without it: Ubuntu 22.04 has no
+# libclang-rt-dev, whose files are in what clang needs; Ubuntu has no browser outside of snaps; Ubuntu 24.04 and Debian 13
+# have no ROS 1, and Ubuntu 24.04 has no python3-torch.
+leave_out_absent() {
+  present="" absent=""
+  for package in $missing; do
+    case $(LC_ALL=C apt-cache policy "$package" 2>/dev/null | sed -n 's/^  Candidate: //p') in
+      "" | "(none)") [ "$package" = libclang-rt-dev ] || absent="$absent $package" ;;
+      *) present="$present $package" ;;
+    esac
+  done
+  missing=${present# }
+  [ -z "$absent" ] && return
+  fail "this system has no package of:$absent. Leave out the option that asks for them (docs/install.md#ubuntu), or install" \
+    "them from elsewhere. The others are: $missing"
+}
+
 # `env` because sudo does not pass variables on.
 run_apt() { $as_root env DEBIAN_FRONTEND=noninteractive apt-get "$@"; }
 if [ -n "$missing" ]; then
   say "installing: $missing"
   run_apt update --quiet || fail "apt-get update failed; is there a network, and are the package sources right?"
+  leave_out_absent
   run_apt install --quiet --yes --no-install-recommends $missing ||
     fail "apt-get install failed. These were wanted: $missing"
 fi
@@ -155,4 +173,8 @@ install_onnxruntime() {
   has_onnxruntime || fail "/usr/local/lib/libonnxruntime.so.$onnxruntime is not known to the dynamic loader"
 }
 [ "$wants_onnxruntime" = no ] || install_onnxruntime
+cmake=$(dpkg-query --show --showformat='${Version}' cmake 2>/dev/null || true)
+if [ -n "$cmake" ] && dpkg --compare-versions "$cmake" lt 3.25; then
+  say "CMake $cmake of this system is too old for Holdfast, which needs 3.25; docs/install.md#ubuntu-2204 says how to get one"
+fi
 say "done"

@@ -2,6 +2,7 @@
 #include "holdfast/bench/dataset_check.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <set>
 
 #include "holdfast/core/folder_name.hpp"
@@ -12,6 +13,7 @@
 #include "holdfast/image_files/icl_nuim_files.hpp"
 #include "holdfast/image_files/image_decoder.hpp"
 #include "holdfast/image_files/image_structure.hpp"
+#include "holdfast/image_files/phone_recording.hpp"
 #include "holdfast/image_files/recorded_imu.hpp"
 #include "holdfast/image_files/recording_pairs.hpp"
 
@@ -56,6 +58,11 @@ CalibratedRecording read_calibrated(const fs::path& folder, DatasetLayout layout
     FourSeasonsOptions options;
     options.path = folder;
     return read_four_seasons_recording(options);
+  }
+  if (layout == DatasetLayout::phone) {
+    PhoneOptions options;
+    options.path = folder;
+    return read_phone_recording(options);
   }
   OpenLorisOptions options;
   options.path = folder;
@@ -149,11 +156,13 @@ class Checker {
     if (expected && frames + 2 + *expected / 100 < *expected)
       problem(counted(frames, what) + "; expected " + std::to_string(*expected) + ": the recording was cut");
     const Camera& camera = recording.camera;
-    fact("camera of its own files: " + size_text(camera.width, camera.height) +
+    fact("camera of its own files: " +
+         (recording.colour_is_video ? "the size of its video" : size_text(camera.width, camera.height)) +
          (recording.has_right ? ", baseline " + fixed_text(camera.baseline, 3) + " m" : "") +
          (recording.rectification ? ", to be rectified" : ""));
+    using Decode = std::function<void(const fs::path&)>;  // none: a file that is no PNG or JPEG image
     const auto check_side = [&](const cv::Size& size, const char* side, fs::path ImageFiles::*member,
-                                SourceLocation ImageFiles::*listed_at, const auto& decode) {
+                                SourceLocation ImageFiles::*listed_at, const Decode& decode) {
       std::vector<ListedImage> images;
       for (const ImageFiles& files : recording.files)
         images.push_back(
@@ -162,17 +171,21 @@ class Checker {
       camera_ = std::string("of the ") + side + " camera";
       const std::string list = std::string("the ") + side + " camera";
       check_presence(list, images);
+      if (!decode) return;
       check_ends(list, images);
       check_images(images, decode);
     };
-    const auto grey = [&](const fs::path& file) { decoder_.read_grey(file); };
+    const Decode grey = [&](const fs::path& file) { decoder_.read_grey(file); };
     const char* first = recording.depth ? "colour" : "left";
-    check_side(recording.left_size, first, &ImageFiles::colour, &ImageFiles::colour_listed_at, grey);
+    check_side(recording.left_size, first, &ImageFiles::colour, &ImageFiles::colour_listed_at,
+               recording.colour_is_video ? Decode() : grey);
     if (recording.has_right)
       check_side(recording.right_size, "right", &ImageFiles::right, &ImageFiles::right_listed_at, grey);
+    const bool has_png_depth = recording.depth && recording.files.front().depth.extension() == ".png";
     if (recording.depth)
-      check_side(recording.left_size, "depth", &ImageFiles::depth, &ImageFiles::depth_listed_at,
-                 [&](const fs::path& file) { decoder_.read_depth(file, *recording.depth); });
+      check_side(recording.scales_depth ? cv::Size() : recording.left_size, "depth", &ImageFiles::depth,
+                 &ImageFiles::depth_listed_at,
+                 has_png_depth ? [&](const fs::path& file) { decoder_.read_depth(file, *recording.depth); } : Decode());
     std::vector<double> stamps;
     for (const ImageFiles& files : recording.files) stamps.push_back(files.timestamp);
     check_imu(recording.imu_file, recording.imu, stamps);
@@ -391,6 +404,7 @@ DatasetLayout layout_of(const fs::path& folder) {
   if (fs::is_directory(folder / "mav0", ignored) || fs::is_directory(folder / "cam0", ignored))
     return DatasetLayout::euroc;
   if (is_file(folder / "color.txt") && !is_file(folder / "rgb.txt")) return DatasetLayout::openloris;
+  if (!is_file(folder / "rgb.txt") && is_phone_folder(folder)) return DatasetLayout::phone;
   if (is_file(folder / "times.txt") && fs::is_directory(folder / "undistorted_images", ignored))
     return DatasetLayout::four_seasons;
   for (const char* part : {"oxts", "image_00", "image_02"})
@@ -409,7 +423,9 @@ std::vector<ListedPair> dataset_pairs(const fs::path& folder, DatasetLayout layo
   if (layout == DatasetLayout::openloris)
     return associate_lists(folder / "color.txt", folder / "aligned_depth.txt", max_difference, "colour and depth");
   if (brings_camera(layout))
-    throw InputError({folder.string()}, std::string("holds stereo pairs in the layout '") + layout_name(layout) +
+    throw InputError({folder.string()}, std::string("holds ") +
+                                            (layout == DatasetLayout::phone ? "frames" : "stereo pairs") +
+                                            " in the layout '" + layout_name(layout) +
                                             "'; expected a recording with depth images, which can be associated with "
                                             "the colour images");
   if (layout == DatasetLayout::tum) return recording_pairs(folder, {}, max_difference);

@@ -18,11 +18,14 @@ namespace {
 
 using Kind = ConfigurationNode::Kind;
 
-const std::map<std::string, DatasetLayout> layouts = {
-    {"euroc", DatasetLayout::euroc},         {"four_seasons", DatasetLayout::four_seasons},
-    {"icl_nuim", DatasetLayout::icl_nuim},   {"kitti", DatasetLayout::kitti},
-    {"openloris", DatasetLayout::openloris}, {"tum", DatasetLayout::tum}};
-constexpr const char* expected_layout = "tum, icl_nuim, kitti, euroc, four_seasons or openloris";
+const std::map<std::string, DatasetLayout> layouts = {{"euroc", DatasetLayout::euroc},
+                                                      {"four_seasons", DatasetLayout::four_seasons},
+                                                      {"icl_nuim", DatasetLayout::icl_nuim},
+                                                      {"kitti", DatasetLayout::kitti},
+                                                      {"openloris", DatasetLayout::openloris},
+                                                      {"phone", DatasetLayout::phone},
+                                                      {"tum", DatasetLayout::tum}};
+constexpr const char* expected_layout = "tum, icl_nuim, kitti, euroc, four_seasons, openloris or phone";
 
 /// A text that must be there.
 std::string required_text(StrictMap& map, const std::string& key, const std::string& expected) {

@@ -61,6 +61,11 @@ std::string camera_text(const Camera& camera) {
   return text;
 }
 
+/// Of a recording that contains the calibration of its camera.
+bool has_depth(const DatasetRecipe& recipe) {
+  return recipe.layout == DatasetLayout::openloris || recipe.layout == DatasetLayout::phone;
+}
+
 std::string files_text(const DatasetRecipe& recipe) {
   if (recipe.layout == DatasetLayout::kitti && recipe.dataset == "KITTI raw")
     return "image_00/ and image_01/ (grey) or image_02/ and image_03/ (colour), oxts/, ../calib_cam_to_cam.txt, "
@@ -73,6 +78,9 @@ std::string files_text(const DatasetRecipe& recipe) {
   if (recipe.layout == DatasetLayout::four_seasons)
     return "times.txt, undistorted_images/cam0/, undistorted_images/cam1/, GNSSPoses.txt, ../calibration/";
   if (recipe.layout == DatasetLayout::euroc) return "mav0/cam0/, mav0/cam1/, mav0/state_groundtruth_estimate0/";
+  if (recipe.layout == DatasetLayout::phone)
+    return "metadata.json, rgb/, depth/ (Record3D), transforms.json (NeRFCapture) or odometry.csv, rgb.mp4 (Stray "
+           "Scanner)";
   if (recipe.layout == DatasetLayout::openloris)
     return "color.txt, aligned_depth.txt, fisheye1.txt, fisheye2.txt, sensors.yaml, trans_matrix.yaml, groundtruth.txt";
   std::string text = recipe.layout == DatasetLayout::tum ? "rgb.txt, depth.txt" : "associations.txt";
@@ -91,7 +99,7 @@ void show_all() {
       dataset = &recipe.dataset;
     }
     std::printf("    %-42s %-9s %s\n", recipe.name.c_str(),
-                brings_camera(recipe.layout) ? "stereo" : recipe.camera.name.c_str(),
+                brings_camera(recipe.layout) ? (has_depth(recipe) ? "depth" : "stereo") : recipe.camera.name.c_str(),
                 recipe.pairs ? (std::to_string(*recipe.pairs) + " pairs").c_str() : "unknown number of pairs");
   }
 }
@@ -105,7 +113,7 @@ void show(const DatasetRecipe& recipe) {
   line("files", files_text(recipe));
   if (brings_camera(recipe.layout)) {
     line("camera", "of its own files");
-    line("images", count_text(recipe.pairs) + (recipe.layout == DatasetLayout::openloris ? " pairs" : " stereo pairs"));
+    line("images", count_text(recipe.pairs) + (has_depth(recipe) ? " pairs" : " stereo pairs"));
     line("source", layout_name(recipe.layout));
   } else {
     const bool is_numbered = recipe.layout == DatasetLayout::icl_nuim;

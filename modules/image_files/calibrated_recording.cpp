@@ -19,6 +19,10 @@ ImageSequenceOptions options_of(const CalibratedRecording& recording, bool skip_
   if (recording.depth) options.depth = *recording.depth;
   options.invalid_depth_key = recording.invalid_depth_key;
   options.rectification = recording.rectification;
+  if (!recording.rectification) options.frame_size = {recording.camera.width, recording.camera.height};
+  options.scales_depth = recording.scales_depth;
+  options.minimum_confidence = recording.minimum_confidence;
+  options.readers = recording.readers;
   return options;
 }
 

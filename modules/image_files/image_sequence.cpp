@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 #include <set>
 #include <utility>
 
@@ -102,60 +103,90 @@ std::vector<double> ImageSequence::timestamps() const {
   return stamps;
 }
 
+ImageDecoder::SizeCheck ImageSequence::size_check(const std::filesystem::path& file, const cv::Size& camera) {
+  return [this, file, camera](const cv::Size& size) {
+    is_of_other_size_ = size != camera;
+    if (is_of_other_size_)
+      throw InputError({file.string()}, "is " + size_text(size.width, size.height) + " pixels, but the camera is " +
+                                            size_text(camera.width, camera.height) +
+                                            "; give the camera of this recording under `camera:`, or scale the images");
+  };
+}
+
 SensorFrame ImageSequence::decode(const ImageFiles& files) {
   SensorFrame frame;
   frame.timestamp = files.timestamp;
   frame.depth_delay = files.depth_delay;
   const StereoRectification* rectification = options_.rectification.get();
-  const auto of_camera_size = [&](const std::filesystem::path& file, const cv::Size& camera) {
-    return [&, camera](const cv::Size& size) {
-      is_of_other_size_ = size != camera;
-      if (is_of_other_size_)
-        throw InputError({file.string()},
-                         "is " + size_text(size.width, size.height) + " pixels, but the camera is " +
-                             size_text(camera.width, camera.height) +
-                             "; give the camera of this recording under `camera:`, or scale the images");
-    };
-  };
   cv::Size left_size(options_.width, options_.height), right_size = left_size;
   if (rectification != nullptr) {
     const StereoCameras& pair = rectification->calibration();
     left_size = {pair.left.width, pair.left.height};
     right_size = {pair.right.width, pair.right.height};
   }
-  frame.colour = read_at(files.colour_listed_at, [&] {
-    try {
-      return decoder_.read_widened(files.colour, of_camera_size(files.colour, left_size));
-    } catch (const InputError&) {
-      require_order(files);
-      throw;
-    }
-  });
+  frame.colour = read_at(files.colour_listed_at, [&] { return decode_colour(files, left_size); });
   if (!files.right.empty())
     frame.right = read_at(files.right_listed_at,
-                          [&] { return decoder_.read_grey(files.right, of_camera_size(files.right, right_size)); });
+                          [&] { return decoder_.read_grey(files.right, size_check(files.right, right_size)); });
   if (rectification != nullptr) {
     frame.colour = rectification->rectify_left(frame.colour);
     frame.right = rectification->rectify_right(frame.right);
   }
-  if (files.depth.empty()) return frame;
-  frame.depth = read_at(files.depth_listed_at, [&] {
-    return decoder_.read_depth(files.depth, options_.depth, [&](const cv::Size& size) {
-      is_of_other_size_ = size != frame.colour.size();
-      if (is_of_other_size_ && options_.scales_depth) {
-        require_same_view(files, size, frame.colour.size());
-        is_of_other_size_ = false;
-      }
-      if (is_of_other_size_)
-        throw InputError({files.depth.string()}, "is " + size_text(size.width, size.height) +
-                                                     " pixels, but its colour image '" + files.colour.string() +
-                                                     "' is " + size_text(frame.colour.cols, frame.colour.rows) +
-                                                     "; expected depth registered to the colour image, pixel by pixel" +
-                                                     advice_on_size(size, frame.colour.size()));
-    });
-  });
-  if (frame.depth.size() != frame.colour.size()) frame.depth = scaled_depth(frame.depth, frame.colour.size());
+  if (!files.depth.empty())
+    frame.depth = read_at(files.depth_listed_at, [&] { return decode_depth(files, frame.colour.size()); });
   return frame;
+}
+
+cv::Mat ImageSequence::decode_colour(const ImageFiles& files, const cv::Size& expected) {
+  const ImageDecoder::SizeCheck check_size = size_check(files.colour, expected);
+  cv::Mat colour;
+  try {
+    colour = options_.readers.colour ? options_.readers.colour(files) : decoder_.read_widened(files.colour, check_size);
+  } catch (const InputError&) {
+    require_order(files);
+    throw;
+  }
+  if (options_.readers.colour) check_size(colour.size());
+  if (options_.frame_size.empty() || colour.size() == options_.frame_size) return colour;
+  cv::Mat scaled;
+  cv::resize(colour, scaled, options_.frame_size, 0.0, 0.0, cv::INTER_AREA);
+  return scaled;
+}
+
+cv::Mat ImageSequence::decode_depth(const ImageFiles& files, const cv::Size& colour_size) {
+  const auto check_size = [&](const cv::Size& size) {
+    is_of_other_size_ = size != colour_size;
+    if (is_of_other_size_ && options_.scales_depth) {
+      require_same_view(files, size, colour_size);
+      is_of_other_size_ = false;
+    }
+    if (is_of_other_size_)
+      throw InputError({files.depth.string()}, "is " + size_text(size.width, size.height) +
+                                                   " pixels, but its colour image '" + files.colour.string() + "' is " +
+                                                   size_text(colour_size.width, colour_size.height) +
+                                                   "; expected depth registered to the colour image, pixel by pixel" +
+                                                   advice_on_size(size, colour_size));
+  };
+  cv::Mat depth;
+  if (options_.readers.depth) {
+    depth = options_.readers.depth(files);
+    check_size(depth.size());
+  } else {
+    depth = decoder_.read_depth(files.depth, options_.depth, check_size);
+  }
+  if (!files.confidence.empty() && options_.minimum_confidence > 0) remove_unsure_depth(files, depth);
+  return depth.size() == colour_size ? depth : scaled_depth(depth, colour_size);
+}
+
+void ImageSequence::remove_unsure_depth(const ImageFiles& files, cv::Mat& depth) {
+  const cv::Mat confidence = decoder_.read_grey(files.confidence, [&](const cv::Size& size) {
+    if (size != depth.size())
+      throw InputError({files.confidence.string()}, "is " + size_text(size.width, size.height) +
+                                                        " pixels, but its depth image '" + files.depth.string() +
+                                                        "' is " + size_text(depth.cols, depth.rows) +
+                                                        "; expected one value for each depth");
+  });
+  depth.setTo(0.0F, confidence < options_.minimum_confidence);
 }
 
 std::optional<Diagnostic> ImageSequence::suspected_no_value() const {

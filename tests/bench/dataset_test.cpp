@@ -282,6 +282,39 @@ TEST_F(DatasetCheckTest, LooksAtOpenLoris) {
   EXPECT_THAT(check().problems, ElementsAre(HasSubstr("aligned_depth.txt: is missing")));
 }
 
+/// A folder of NeRFCapture and one of Stray Scanner; the source's own tests look at their content.
+TEST_F(DatasetCheckTest, LooksAtRecordingsOfPhones) {
+  fs::create_directories(program_.path("capture/images"));
+  fs::create_directories(program_.path("scan/depth"));
+  std::string frames, rows = "timestamp, frame, x, y, z, qx, qy, qz, qw\n";
+  for (int i = 0; i < 2; ++i) {
+    const std::string number = std::to_string(i);
+    cv::imwrite(program_.path("capture/images/" + number + ".png").string(),
+                cv::Mat(48, 64, CV_8UC3, cv::Scalar::all(9)));
+    for (const std::string& name : {"capture/images/" + number + ".depth.png", "scan/depth/00000" + number + ".png"})
+      cv::imwrite(program_.path(name).string(), cv::Mat(24, 32, CV_16UC1, cv::Scalar(900)));
+    frames += std::string(i == 0 ? "" : ",") + R"({"file_path":"images/)" + number + R"(","depth_path":"images/)" +
+              number + R"(.depth.png","transform_matrix":[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]})";
+    rows += "10." + number + ", 00000" + number + ", 0, 0, 0, 0, 0, 0, 1\n";
+  }
+  program_.write(
+      "capture/transforms.json",
+      R"({"fl_x":50,"fl_y":50,"cx":32,"cy":24,"w":64,"h":48,"integer_depth_scale":0.001,"frames":[)" + frames + "]}");
+  program_.write("scan/odometry.csv", rows);
+  program_.write("scan/camera_matrix.csv", "50, 0, 32\n0, 50, 24\n0, 0, 1\n");
+  program_.write("scan/rgb.mp4", "decoded by the source");
+  for (const char* folder : {"capture", "scan"}) {
+    EXPECT_EQ(layout_of(program_.path(folder)), DatasetLayout::phone);
+    EXPECT_THAT(check_dataset(program_.path(folder), nullptr).problems, IsEmpty());
+  }
+  EXPECT_THAT(check_dataset(program_.path("scan"), nullptr).facts,
+              ElementsAre("2 colour-depth pairs", "camera of its own files: the size of its video", "2 true poses"));
+  program_.write("capture/images/1.depth.png", "no image");
+  fs::remove(program_.path("scan/rgb.mp4"));
+  EXPECT_THAT(check_dataset(program_.path("capture"), nullptr).problems, ElementsAre(HasSubstr("1.depth.png")));
+  EXPECT_THAT(check_dataset(program_.path("scan"), nullptr).problems, ElementsAre(HasSubstr("rgb.mp4")));
+}
+
 /// A sequence of three pairs in KITTI's layout; the source's own tests look at its content.
 TEST_F(DatasetCheckTest, LooksAtStereoPairs) {
   for (const char* side : {"image_0", "image_1"}) {

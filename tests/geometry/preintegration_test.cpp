@@ -199,10 +199,10 @@ TEST(Preintegration, CovarianceIsConsistentOverMonteCarlo) {
     Preintegration measured(noise, first.bias);
     ImuBias bias = first.bias;
     for (const Measurement& m : truth) {
-      measured.integrate(
-          m.rate + bias.gyroscope + normal(random, noise.gyroscope_noise_density / std::sqrt(interval)),
-          m.force + bias.accelerometer + normal(random, noise.accelerometer_noise_density / std::sqrt(interval)),
-          interval);
+      // One after the other: the order of a call's arguments is the compiler's, and with it the sample.
+      const Eigen::Vector3d force_noise = normal(random, noise.accelerometer_noise_density / std::sqrt(interval));
+      const Eigen::Vector3d rate_noise = normal(random, noise.gyroscope_noise_density / std::sqrt(interval));
+      measured.integrate(m.rate + bias.gyroscope + rate_noise, m.force + bias.accelerometer + force_noise, interval);
       bias.gyroscope += normal(random, noise.gyroscope_random_walk * std::sqrt(interval));
       bias.accelerometer += normal(random, noise.accelerometer_random_walk * std::sqrt(interval));
     }

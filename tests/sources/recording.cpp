@@ -19,6 +19,7 @@ extern "C" void holdfast_register_plugin_four_seasons(holdfast::Registry& regist
 extern "C" void holdfast_register_plugin_icl_nuim(holdfast::Registry& registry);
 extern "C" void holdfast_register_plugin_kitti(holdfast::Registry& registry);
 extern "C" void holdfast_register_plugin_openloris(holdfast::Registry& registry);
+extern "C" void holdfast_register_plugin_phone(holdfast::Registry& registry);
 #ifdef HOLDFAST_PLUGIN_V4L2
 extern "C" void holdfast_register_plugin_v4l2(holdfast::Registry& registry);
 #endif
@@ -114,6 +115,7 @@ std::unique_ptr<FrameSource> make_source(const std::string& name, const Paramete
   holdfast_register_plugin_icl_nuim(registry);
   holdfast_register_plugin_kitti(registry);
   holdfast_register_plugin_openloris(registry);
+  holdfast_register_plugin_phone(registry);
 #ifdef HOLDFAST_PLUGIN_V4L2
   holdfast_register_plugin_v4l2(registry);
 #endif

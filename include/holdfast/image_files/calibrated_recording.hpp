@@ -30,6 +30,10 @@ struct CalibratedRecording {
   std::string truth_frame = "raw";                           ///< see SourceDescription
   std::filesystem::path imu_file;                            ///< of inertial measurements; empty without any
   std::optional<ImuCalibration> imu;                         ///< relative to `camera`
+  bool colour_is_video = false;                              ///< ImageFiles::colour is one, and video_index is set
+  bool scales_depth = false;                                 ///< see ImageSequenceOptions, as the next two
+  int minimum_confidence = 0;
+  ImageReaders readers;
 };
 
 /// Converts a recording of the left camera into one of a stereo pair with rectification. `T_left_right` maps points of

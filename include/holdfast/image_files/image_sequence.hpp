@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -30,12 +31,21 @@ struct ImageFiles {
   SourceLocation depth_listed_at;
   std::filesystem::path right = {};  ///< right image of a stereo pair; empty without one
   SourceLocation right_listed_at = {};
+  std::filesystem::path confidence = {};  ///< of the depth image, with its size: 8 bits; empty without one
+  std::size_t video_index = 0;            ///< of the colour image, where `colour` is a video
+};
+
+/// Readers for images that are neither PNG nor JPEG files, such as those of a video; empty = ImageDecoder. They throw
+/// InputError for an image that cannot be used.
+struct ImageReaders {
+  std::function<cv::Mat(const ImageFiles&)> colour;  ///< 8UC3, blue green red
+  std::function<cv::Mat(const ImageFiles&)> depth;   ///< 32FC1 [m], 0 = no value
 };
 
 /// Options for reading the images of a sequence.
 struct ImageSequenceOptions {
   DepthEncoding depth;  ///< of the depth images
-  int width = 0;        ///< of every image [px]
+  int width = 0;        ///< of every image in the files [px]
   int height = 0;
   bool skip_bad_frames = false;  ///< skip and count bad frames instead of throwing InputError
   /// Grey images, which are widened to three equal channels, may have 16 bits, of which the upper 8 are used.
@@ -48,6 +58,9 @@ struct ImageSequenceOptions {
   std::shared_ptr<const StereoRectification> rectification = nullptr;
   /// The key that sets DepthEncoding::no_value, such as "source.tum.invalid_depth", for ImageSequence::warnings().
   std::string invalid_depth_key = {};
+  cv::Size frame_size = {};    ///< to which colour images are scaled down; empty = as in the files
+  ImageReaders readers = {};   ///< see there
+  int minimum_confidence = 0;  ///< depth of lower confidence has no value; see ImageFiles::confidence
 };
 
 /// Decodes the frames of a recording one by one; the common part of all sources that read image files. Used by one
@@ -74,6 +87,11 @@ class ImageSequence {
 
  private:
   SensorFrame decode(const ImageFiles& files);
+  cv::Mat decode_colour(const ImageFiles& files, const cv::Size& expected);
+  cv::Mat decode_depth(const ImageFiles& files, const cv::Size& colour_size);
+  /// Throws InputError, and sets is_of_other_size_, for another size than that of the camera.
+  ImageDecoder::SizeCheck size_check(const std::filesystem::path& file, const cv::Size& camera);
+  void remove_unsure_depth(const ImageFiles& files, cv::Mat& depth);
   std::optional<Diagnostic> suspected_stamp_unit() const;
   std::optional<Diagnostic> suspected_no_value() const;
 

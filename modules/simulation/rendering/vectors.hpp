@@ -40,7 +40,11 @@ inline Integers4 product_of_shorts(Integers4 a, Integers4 b) {
 #else
 inline Floats4 smaller(Floats4 a, Floats4 b) { return a < b ? a : b; }
 inline Floats4 larger(Floats4 a, Floats4 b) { return a > b ? a : b; }
-inline Floats4 square_root(Floats4 a) { return {std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])}; }
+inline Floats4 square_root(Floats4 a) {
+  Floats4 roots;
+  for (int i = 0; i < 4; ++i) roots[i] = std::sqrt(a[i]);
+  return roots;
+}
 inline Integers4 product_of_shorts(Integers4 a, Integers4 b) { return a * b; }
 #endif
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "image_message.hpp"
 
+#include <Eigen/Dense>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -117,6 +119,39 @@ cv::Mat convert_depth(const RawImage& image, const std::string& place, const Con
     }
   }
   return depth;
+}
+
+/// The distortion whose inverse, from raw to undistorted positions, has the coefficients of the camera: the
+/// least-squares solution for k1, k2, p1, p2, k3 in positions all over the image, which are linear in them.
+Distortion inverse_of(Camera camera, const std::string& place) {
+  constexpr int steps = 16;
+  constexpr double tolerance = 0.1;  // [px]
+  const Camera inverse = camera;
+  const auto undistorted = [&](double u, double v) { return inverse.distort(Eigen::Vector2d(u, v)); };
+  Eigen::Matrix<double, Eigen::Dynamic, 5> rows(2 * (steps + 1) * (steps + 1), 5);
+  Eigen::VectorXd shifts(rows.rows());
+  const auto pixel_of = [&](int i) {
+    return Eigen::Vector2d((camera.width - 1.0) * (i % (steps + 1)) / steps,
+                           (camera.height - 1.0) * (i / (steps + 1)) / steps);
+  };
+  for (int i = 0; i < (steps + 1) * (steps + 1); ++i) {
+    const Eigen::Vector2d raw = pixel_of(i), pixel = undistorted(raw.x(), raw.y());
+    const Eigen::Vector2d n = camera.normalised(pixel.x(), pixel.y()), to = camera.normalised(raw.x(), raw.y());
+    const double x = n.x(), y = n.y(), r = n.squaredNorm();
+    rows.row(2 * i) << x * r, x * r * r, 2 * x * y, r + 2 * x * x, x * r * r * r;
+    rows.row(2 * i + 1) << y * r, y * r * r, r + 2 * y * y, 2 * x * y, y * r * r * r;
+    shifts.segment<2>(2 * i) = to - n;
+  }
+  const Eigen::Matrix<double, 5, 1> k = rows.colPivHouseholderQr().solve(shifts);
+  camera.distortion = {.k1 = k[0], .k2 = k[1], .p1 = k[2], .p2 = k[3], .k3 = k[4]};
+  for (int i = 0; i < (steps + 1) * (steps + 1); ++i) {
+    const Eigen::Vector2d raw = pixel_of(i);
+    if ((camera.distort(undistorted(raw.x(), raw.y())) - raw).norm() > tolerance)
+      refuse(place,
+             "has an inverse distortion (Inverse Brown Conrady) that no k1, k2, p1, p2, k3 describe to 0.1 pixels; "
+             "calibrate the camera, give it under `camera:`, and set `camera_info: none`");
+  }
+  return camera.distortion;
 }
 
 }  // namespace
@@ -251,10 +286,13 @@ Camera read_camera_info(const Message& message, bool is_rectified) {
     if (!std::isfinite(number)) refuse(place, "has a distortion coefficient that is no number");
   if (is_rectified) return camera;
 
+  // librealsense names its models in words; its coefficients k1, k2, p1, p2, k3 are mostly zero.
+  const bool is_inverse = model == "Inverse Brown Conrady" && count == 5;
+  const bool is_brown = model == "plumb_bob" || model == "Brown Conrady" || is_inverse;
   const bool is_fisheye = model == "equidistant" || model == "fisheye";
-  const bool is_known = model == "plumb_bob" || model == "rational_polynomial" || is_fisheye;
-  const bool is_without = count == 0;
-  const std::uint32_t most = is_fisheye ? 4 : model == "plumb_bob" ? 5 : 8;
+  const bool is_known = is_brown || model == "rational_polynomial" || is_fisheye;
+  const bool is_without = count == 0 || (!is_fisheye && std::all_of(d, d + count, [](double c) { return c == 0.0; }));
+  const std::uint32_t most = is_fisheye ? 4 : is_brown ? 5 : 8;
   bool is_within = count <= most;
   for (std::uint32_t i = most; i < count; ++i) is_within = d[i] == 0.0;  // thin prisms and tilt that are not there
   if (!is_without && (!is_known || !is_within || (is_fisheye && count != 4)))
@@ -266,6 +304,7 @@ Camera read_camera_info(const Message& message, bool is_rectified) {
           ? Distortion{.k1 = d[0], .k2 = d[1], .k3 = d[2], .k4 = d[3]}
           : Distortion{.k1 = d[0], .k2 = d[1], .p1 = d[2], .p2 = d[3], .k3 = d[4], .k4 = d[5], .k5 = d[6], .k6 = d[7]};
   if (is_fisheye && !is_without) camera.distortion.lens = Lens::fisheye;
+  if (is_inverse && !is_without) camera.distortion = inverse_of(camera, place);
   if (const std::string trouble = camera.trouble(); !trouble.empty())
     refuse(place, trouble + "; give the camera under `camera:` and `camera_info: none`");
   return camera;

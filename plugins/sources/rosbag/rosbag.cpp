@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bag.hpp"
+#include "depth_registration.hpp"
 #include "holdfast/core/association.hpp"
 #include "holdfast/core/error.hpp"
 #include "holdfast/core/size_text.hpp"
@@ -16,6 +17,7 @@
 #include "holdfast/plugin/plugin.hpp"
 #include "image_message.hpp"
 #include "imu_message.hpp"
+#include "realsense_bag.hpp"
 #include "topics.hpp"
 
 namespace holdfast {
@@ -55,7 +57,9 @@ struct RosbagSettings : RecordedFrames {
              "upper bound of the time difference between a colour image and its depth image")
         .range(1e-6, 1.0)
         .unit("s");
-    table.add("depth_factor", &S::depth_factor, "value of one metre in depth images of whole numbers (16UC1)")
+    table
+        .add("depth_factor", &S::depth_factor,
+             "value of one metre in depth images of whole numbers (16UC1), unless a bag of librealsense says it")
         .range(1.0, 65535.0);
     table
         .add("invalid_depth", &S::invalid_depth,
@@ -150,6 +154,8 @@ class RosbagSource final : public FrameSource {
       description_.camera = read_camera();
       size_ = {description_.camera->width, description_.camera->height};
     }
+    if (is_realsense_stream(topics_.depth.name, "Depth"))
+      register_depth(description_.camera ? *description_.camera : context.camera);
     if (!settings.truth.empty()) truth_ = read_trajectory(settings.truth);
     const std::string imu_topic = choose_imu_topic(*bag_, settings.imu, context.imu.has_value());
     imu_ = RecordedImu(read_imu_topic(*bag_, imu_topic), settings.path.string() + ", " + imu_topic, context.imu,
@@ -195,6 +201,11 @@ class RosbagSource final : public FrameSource {
     const BagMessage message = bag_->messages(topics_.camera_info.name).front();
     return read_camera_info(bag_->content(message), is_rectified(topics_.colour.name));
   }
+  void register_depth(const Camera& colour) {
+    const RealsenseDepth depth = read_realsense_depth(*bag_, topics_.colour.name, topics_.depth.name);
+    if (depth.factor) settings_.depth_factor = *depth.factor;
+    registration_.emplace(depth.camera, colour, depth.T_colour_depth);
+  }
   SensorFrame decode(const BagFrame& source) {
     SensorFrame frame;
     frame.timestamp = source.colour.stamp;
@@ -208,13 +219,16 @@ class RosbagSource final : public FrameSource {
     if (!source.depth) return frame;
     frame.depth_delay = source.depth->stamp - source.colour.stamp;
     const Message depth = bag_->content(source.depth->message);
+    const cv::Size expected = registration_ ? registration_->depth_size() : size_;
     frame.depth = images_.depth(depth, {settings_.depth_factor, settings_.invalid_depth}, [&](const cv::Size& size) {
-      if (size != size_)
-        throw InputError({depth.place}, "is " + size_text(size.width, size.height) +
-                                            " pixels, but its colour image is " + size_text(size_.width, size_.height) +
+      if (size != expected)
+        throw InputError({depth.place}, "is " + size_text(size.width, size.height) + " pixels, but its " +
+                                            (registration_ ? "camera_info" : "colour image") + " is " +
+                                            size_text(expected.width, expected.height) +
                                             "; expected depth registered to the colour image; choose its topic with "
                                             "`source.rosbag.depth`");
     });
+    if (registration_) frame.depth = registration_->apply(frame.depth);
     return frame;
   }
 
@@ -224,6 +238,7 @@ class RosbagSource final : public FrameSource {
   std::vector<BagFrame> frames_;
   cv::Size size_;
   ImageMessages images_;
+  std::optional<DepthRegistration> registration_;  ///< of depth that is not registered to colour
   SourceDescription description_;
   Trajectory truth_;
   RecordedImu imu_;

@@ -7,13 +7,14 @@
 
 #include "holdfast/core/error.hpp"
 #include "image_message.hpp"
+#include "realsense_bag.hpp"
 
 namespace holdfast::rosbag_plugin {
 
 namespace {
 
 // TUM, openni_launch, realsense2_camera (of ROS 1 and 2), iai_kinect2, Azure_Kinect_ROS_Driver, zed_wrapper, usb_cam.
-// Depth only where it is registered to the colour image.
+// Depth only where it is registered to the colour image; that of librealsense's recorder is registered by the source.
 constexpr const char* usual_colour[] = {"/camera/rgb/image_color",
                                         "/camera/rgb/image_raw",
                                         "/camera/rgb/image_rect_color",
@@ -84,7 +85,9 @@ BagTopic found_topic(const Bag& bag, const std::vector<BagTopic>& candidates, st
     if (different.empty() || base_of(different.back().name) != base_of(topic.name)) different.push_back(topic);
   std::vector<BagTopic> of_usual_name;
   for (const BagTopic& topic : different)
-    if (std::find(usual.begin(), usual.end(), base_of(topic.name)) != usual.end()) of_usual_name.push_back(topic);
+    if (std::find(usual.begin(), usual.end(), base_of(topic.name)) != usual.end() ||
+        is_realsense_stream(topic.name, kind[0] == 'c' ? "Color" : "Depth"))
+      of_usual_name.push_back(topic);
   const std::vector<BagTopic>& choice = of_usual_name.empty() ? different : of_usual_name;
   if (choice.empty()) return {};
   if (choice.size() == 1) return choice.front();
@@ -125,7 +128,8 @@ ChosenTopics choose_topics(Bag& bag, const TopicNames& names) {
     return chosen;
   }
   const std::string base = base_of(chosen.colour.name);
-  const std::string beside = base.substr(0, base.rfind('/') + 1) + "camera_info";
+  const std::string beside = is_realsense_stream(base, "Color") ? realsense_camera_info(base)
+                                                                : base.substr(0, base.rfind('/') + 1) + "camera_info";
   for (const BagTopic& topic : topics)
     if (topic.name == beside && topic.type == camera_info_type && topic.is_readable() && topic.messages > 0)
       chosen.camera_info = topic;

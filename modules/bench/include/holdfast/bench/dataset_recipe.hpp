@@ -22,14 +22,15 @@ enum class DatasetLayout {
   four_seasons,  ///< undistorted stereo pairs of 4Seasons (Wenzel et al., GCPR 2020); what the source `four_seasons`
                  ///< reads
   openloris,     ///< the package format of OpenLORIS-Scene (Shi et al., ICRA 2020); what the source `openloris` reads
+  phone,         ///< folders of Record3D, NeRFCapture, Nerfstudio and Stray Scanner; what the source `phone` reads
 };
 
-/// tum, icl_nuim, kitti, euroc, four_seasons or openloris.
+/// tum, icl_nuim, kitti, euroc, four_seasons, openloris or phone.
 const char* layout_name(DatasetLayout layout);
 /// Whether the recording contains the calibration of its cameras, so that a recipe gives none.
 inline bool brings_camera(DatasetLayout layout) {
   return layout == DatasetLayout::kitti || layout == DatasetLayout::euroc || layout == DatasetLayout::four_seasons ||
-         layout == DatasetLayout::openloris;
+         layout == DatasetLayout::openloris || layout == DatasetLayout::phone;
 }
 
 /// Description of a known recording: its origin, and properties by which a folder is checked. Nothing is downloaded.
