@@ -21,6 +21,7 @@ namespace holdfast::mcap {
 /// the sink throws. Used by one thread at a time.
 class RunMessages {
  public:
+  /// Which images there are.
   struct Options {
     int image_every = 5;  ///< an image for every frame whose index is a multiple of this number; 0 = none
     int quality = 80;     ///< of JPEG images, 1 to 100

@@ -38,6 +38,7 @@ class SocketServer {
   /// Number of connections that are served at the same time; others are refused (503).
   static constexpr int max_clients = 8;
 
+  /// Where the server listens, and what it serves.
   struct Options {
     std::string name;               ///< of the thread, and the place of errors
     std::string scheme = "http";    ///< of address()
